@@ -1,0 +1,31 @@
+#include "server/base/data_files.h"
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <vector>
+
+namespace clothlab {
+
+namespace fs = std::filesystem;
+
+Result<fs::path> data_path(const std::string& relative) {
+  std::vector<fs::path> roots;
+  if (const char* root = std::getenv("CLOTHLAB_DATA")) roots.emplace_back(root);
+  std::error_code failure;
+  const fs::path program = fs::read_symlink("/proc/self/exe", failure);
+  if (!failure) roots.push_back(program.parent_path().parent_path() / "share" / "clothlab");
+  roots.emplace_back(CLOTHLAB_SOURCE_DIR);
+  for (const fs::path& root : roots)
+    if (fs::exists(root / relative, failure)) return root / relative;
+  return Error{relative, "not found below " + roots.back().string(),
+               "set CLOTHLAB_DATA to the folder that holds Clothlab's shaders/ and web/"};
+}
+
+Result<std::string> read_file(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return Error{path.string(), "cannot be read", "check that the file exists and is readable"};
+  return std::string(std::istreambuf_iterator<char>(file), {});
+}
+
+}  // namespace clothlab

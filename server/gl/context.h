@@ -1,0 +1,49 @@
+// A headless OpenGL 4.5 core context through surfaceless EGL. Knows no cloth.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/base/result.h"
+
+namespace clothlab::gl {
+
+struct Device {
+  int index = 0;          ///< the N of `--gpu N`
+  std::string name;       ///< GL_RENDERER, empty where no context could be made
+  std::string version;    ///< GL_VERSION
+  std::string vendor;     ///< GL_VENDOR
+  std::string node;       ///< /dev/dri/... or empty
+  bool software = false;  ///< Mesa's rasteriser
+  bool usable = false;    ///< OpenGL 4.5 core works on it
+  std::string problem;    ///< why not usable
+};
+
+/// Every EGL device in the driver's order; opens a context on each to ask its name.
+Result<std::vector<Device>> list_devices();
+
+/// A context that belongs to the thread that made it current. Order of devices: `gpu` if given; else the first usable
+/// one that is not software; else Mesa's software rasteriser.
+class Context {
+ public:
+  /// Makes a context and makes it current on the calling thread. Error: what is missing and the package to install.
+  static Result<std::unique_ptr<Context>> create(std::optional<int> gpu = std::nullopt);
+  ~Context();
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+
+  const Device& device() const { return device_; }
+  /// Moves the context to the calling thread (it must be current on no other).
+  Status make_current();
+  void release_current();
+
+ private:
+  Context() = default;
+  Device device_;
+  void* display_ = nullptr;
+  void* context_ = nullptr;
+};
+
+}  // namespace clothlab::gl

@@ -1,0 +1,62 @@
+// scene -> particles, springs, triangles, pins as CPU arrays. All cloths of a scene are laid end to end. No GL here.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "server/base/result.h"
+#include "server/scene/scene.h"
+
+namespace clothlab::model {
+
+using glm::dvec3;
+
+enum class SpringKind : std::uint8_t { structural, shear, bend };
+
+struct Spring {
+  std::uint32_t a = 0, b = 0;  ///< vertices, a < b
+  std::uint32_t cloth = 0;
+  SpringKind kind = SpringKind::structural;
+  double rest_length = 0;  ///< [m]
+};
+
+/// One cloth's share of the arrays.
+struct ClothRange {
+  std::uint32_t first_vertex = 0, vertex_count = 0;
+  std::uint32_t first_triangle = 0, triangle_count = 0;
+  double mean_edge_length = 0;  ///< [m], over the triangles' edges at rest
+};
+
+/// For each vertex i the items [offsets[i], offsets[i+1]) (compressed sparse rows).
+struct Adjacency {
+  std::vector<std::uint32_t> offsets;  ///< [vertex_count + 1]
+  std::vector<std::uint32_t> items;
+};
+
+inline constexpr std::int32_t not_pinned = -1;
+
+/// Everything the simulation needs that does not change while it runs.
+struct Model {
+  std::vector<dvec3> rest_position;               ///< [vertex_count] [m], transform applied; the start positions
+  std::vector<double> mass;                       ///< [vertex_count] [kg]
+  std::vector<std::int32_t> pin_motion;           ///< [vertex_count] not_pinned, or an index into `motions`
+  std::vector<scene::Motion> motions;             ///< of the pins
+  std::vector<std::uint32_t> vertex_cloth;        ///< [vertex_count]
+  std::vector<glm::vec2> texture_coordinates;     ///< [vertex_count], [0, 1] over a grid, [m] / 1 m otherwise
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< [triangle_count]
+  std::vector<Spring> springs;                    ///< each once
+  Adjacency vertex_springs;                       ///< springs at each vertex
+  Adjacency vertex_triangles;                     ///< triangles at each vertex
+  std::vector<ClothRange> cloths;
+
+  std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(rest_position.size()); }
+  std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(triangles.size()); }
+};
+
+/// Builds the arrays. Errors name the JSON Pointer: a pin outside its mesh, a triangle index out of range, ...
+Result<Model> build(const scene::Scene& scene);
+
+}  // namespace clothlab::model

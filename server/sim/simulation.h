@@ -1,0 +1,99 @@
+// A scene being stepped on the GPU. One thread owns a Simulation, its GL context current there.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "server/base/result.h"
+#include "server/gl/context.h"
+#include "server/model/model.h"
+#include "server/scene/scene.h"
+
+namespace clothlab::sim {
+
+/// How deep a change of scene cuts. Only `cloth` resets time and positions.
+enum class ChangeDepth { none, uniform, kernel, cloth };
+const char* name(ChangeDepth depth);  ///< "none", "uniform", "kernel", "cloth"
+
+/// How deep the change from one scene to another cuts; a pure comparison of documents.
+ChangeDepth change_depth(const scene::Scene& from, const scene::Scene& to);
+
+/// Sums over the whole state, made by a reduction on the GPU.
+struct Diagnostics {
+  double time = 0;            ///< [s]
+  std::uint64_t step = 0;
+  double kinetic = 0;         ///< [J]
+  double elastic = 0;         ///< [J]
+  double gravitational = 0;   ///< [J], 0 at the origin
+  double max_strain = 0;      ///< largest |l/L - 1| over the springs
+  double max_speed = 0;       ///< [m/s]
+  std::uint32_t contacts = 0; ///< vertices touching a collider or another vertex
+  bool finite = true;         ///< no NaN or infinity anywhere
+};
+
+/// The state as floats, read back from the GPU.
+struct State {
+  std::vector<glm::vec3> position;  ///< [vertex_count] [m]
+  std::vector<glm::vec3> velocity;  ///< [vertex_count] [m/s]
+};
+
+/// FNV-1a, 64 bits, over the bytes of positions and velocities (little-endian float32).
+std::uint64_t state_hash(const State& state);
+
+class Simulation {
+ public:
+  static Result<std::unique_ptr<Simulation>> create(const scene::Scene& scene);
+  ~Simulation();
+
+  /// Applies a changed scene live; on error the old one goes on.
+  Result<ChangeDepth> change(const scene::Scene& scene);
+
+  /// Queues `count` fixed steps of dt on the GPU; returns without waiting for them.
+  void step(std::uint32_t count);
+
+  /// Back to the rest shape at time 0.
+  void reset();
+
+  double time() const;             ///< [s], exact sum of the steps' dt
+  std::uint64_t step_index() const;
+  const scene::Scene& scene() const;
+  const model::Model& model() const;
+
+  /// Changes whenever triangles, vertex count or texture coordinates do.
+  std::uint32_t topology_revision() const;
+
+  /// The passes a step runs, in order, and the ones left out with the reason.
+  struct Pass {
+    std::string name;
+    std::string skipped;  ///< empty: it runs; else why not
+  };
+  std::vector<Pass> passes() const;
+
+  /// Diagnostics without stalling: request, then poll until a value comes back (usually a frame later).
+  void request_diagnostics();
+  bool poll_diagnostics(Diagnostics& out);
+  /// Diagnostics of the present state, waiting for the GPU.
+  Diagnostics diagnose();
+
+  /// Positions and velocities, waiting for the GPU.
+  State read_state();
+
+  /// Waits until the GPU has finished every queued step.
+  void finish();
+
+  /// GL buffers of the present state: vec4 a vertex, xyz position [m] and xyz velocity [m/s].
+  unsigned position_buffer() const;
+  unsigned velocity_buffer() const;
+  /// Colliders' poses at the present time, for drawing: center of each sphere, point of each plane [m].
+  std::vector<scene::Collider> colliders_now() const;
+
+ private:
+  Simulation();
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace clothlab::sim

@@ -1,0 +1,56 @@
+// What goes over the wire: the 64-byte header of contract.md section 4 and a payload, encoded once for all viewers.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <vector>
+
+#include "server/model/model.h"
+
+namespace clothlab::stream {
+
+enum class MessageKind : std::uint8_t { topology = 1, frame = 2 };
+enum class Encoding : std::uint8_t { f32 = 0, q16 = 1 };
+inline constexpr int encoding_count = 2;
+inline constexpr std::size_t header_bytes = 64;
+inline constexpr std::uint16_t flag_asleep = 1, flag_diverged = 2;
+
+/// Bytes a vertex takes in a frame of this encoding.
+constexpr std::size_t bytes_per_vertex(Encoding encoding) { return encoding == Encoding::f32 ? 24 : 8; }
+
+struct Header {
+  MessageKind kind = MessageKind::frame;
+  Encoding encoding = Encoding::q16;
+  std::uint16_t flags = 0;
+  std::uint32_t topology_revision = 0;
+  std::uint32_t sequence = 0;
+  std::uint32_t vertex_count = 0;
+  double time = 0;  ///< [s]
+  std::uint64_t step = 0;
+  glm::vec3 box_minimum{0.0f};  ///< [m]
+  glm::vec3 box_extent{0.0f};   ///< [m]
+  std::uint32_t payload_bytes = 0;
+};
+
+/// Room libwebsockets wants in front of a message (LWS_PRE, checked where net/ includes lws).
+inline constexpr std::size_t front_room = 64;
+
+/// An encoded message: front_room spare bytes, header, payload. Immutable once shared.
+struct Message {
+  Header header;
+  std::vector<std::uint8_t> bytes;
+  std::int64_t made_at_us = 0;  ///< steady clock when the step it shows had ended on the GPU [us]
+  const std::uint8_t* data() const { return bytes.data() + front_room; }
+  std::size_t size() const { return bytes.size() - front_room; }
+};
+using SharedMessage = std::shared_ptr<const Message>;
+
+/// Writes the header little-endian into `out[0, 64)`.
+void write_header(const Header& header, std::uint8_t* out);
+
+/// The topology message: triangles, cloths, texture coordinates.
+SharedMessage encode_topology(const model::Model& model, std::uint32_t revision);
+
+}  // namespace clothlab::stream
