@@ -1,0 +1,89 @@
+// GL objects that own their names: buffers, buffer textures, and the ring that brings results back without waiting.
+#pragma once
+
+#include <glad/gl.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace clothlab::gl {
+
+/// A buffer of fixed size in GPU memory.
+class Buffer {
+ public:
+  Buffer() = default;
+  /// `flags` as for glNamedBufferStorage; dynamic storage lets `upload` work.
+  explicit Buffer(std::size_t bytes, const void* data = nullptr, GLbitfield flags = GL_DYNAMIC_STORAGE_BIT);
+  template <class T>
+  explicit Buffer(const std::vector<T>& items)
+      : Buffer(items.empty() ? 16 : items.size() * sizeof(T), items.empty() ? nullptr : items.data()) {}
+  ~Buffer();
+  Buffer(Buffer&& other) noexcept { *this = std::move(other); }
+  Buffer& operator=(Buffer&& other) noexcept;
+
+  GLuint id() const { return id_; }
+  std::size_t bytes() const { return bytes_; }
+  void upload(const void* data, std::size_t bytes, std::size_t offset = 0);
+  /// Waits for the GPU.
+  void download(void* data, std::size_t bytes, std::size_t offset = 0) const;
+  void fill(std::uint32_t value);
+  void bind_storage(GLuint binding) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id_); }
+
+ private:
+  GLuint id_ = 0;
+  std::size_t bytes_ = 0;
+};
+
+/// A texture view of a buffer: much faster to read than storage buffers on software OpenGL (shaders/access.glsl).
+class BufferTexture {
+ public:
+  BufferTexture() = default;
+  BufferTexture(const Buffer& buffer, GLenum format);
+  ~BufferTexture();
+  BufferTexture(BufferTexture&& other) noexcept { *this = std::move(other); }
+  BufferTexture& operator=(BufferTexture&& other) noexcept;
+  void bind(GLuint unit) const { glBindTextureUnit(unit, id_); }
+
+ private:
+  GLuint id_ = 0;
+};
+
+/// A buffer that kernels write and other kernels read as texture.
+struct TextureBuffer {
+  Buffer buffer;
+  BufferTexture texture;
+  TextureBuffer() = default;
+  TextureBuffer(Buffer storage, GLenum format) : buffer(std::move(storage)), texture(buffer, format) {}
+};
+
+/// Copies of GPU results on their way back: copy now, read when the fence says it has arrived.
+class ReadbackRing {
+ public:
+  ReadbackRing() = default;
+  ReadbackRing(std::size_t slot_bytes, int slots);
+  ~ReadbackRing();
+  ReadbackRing(ReadbackRing&& other) noexcept { *this = std::move(other); }
+  ReadbackRing& operator=(ReadbackRing&& other) noexcept;
+
+  std::size_t slot_bytes() const { return slot_bytes_; }
+  bool full() const { return pending_ == fences_.size(); }
+  bool empty() const { return pending_ == 0; }
+  /// Queues a copy of `source` [0, bytes) behind the work queued so far. The ring must not be full.
+  void push(const Buffer& source, std::size_t bytes);
+  /// The oldest copy if it has arrived (or after waiting for it); empty span otherwise. Valid until `pop`.
+  std::span<const std::byte> front(bool wait);
+  void pop();
+
+ private:
+  Buffer storage_;
+  const std::byte* mapped_ = nullptr;
+  std::size_t slot_bytes_ = 0, slot_stride_ = 0;
+  std::vector<GLsync> fences_;
+  std::vector<std::size_t> sizes_;
+  std::size_t first_ = 0, pending_ = 0;
+};
+
+}  // namespace clothlab::gl

@@ -1,0 +1,173 @@
+#include "server/gl/context.h"
+
+#include <glad/egl.h>
+#include <glad/gl.h>
+
+#include <cstring>
+#include <mutex>
+
+namespace clothlab::gl {
+
+namespace {
+
+constexpr const char* install_hint =
+    "install Mesa's software OpenGL: apt-get install libegl1 libgl1-mesa-dri (or the GPU's own driver)";
+
+/// The EGL entry points are process-wide; loading them twice from two threads would be a race.
+std::mutex egl_mutex;
+
+struct Candidate {
+  EGLDeviceEXT handle = nullptr;  ///< null: the surfaceless platform, where devices cannot be listed
+  Device device;
+};
+
+std::string text(const char* value) { return value ? value : ""; }
+
+Status load_egl() {
+  static const int version = gladLoaderLoadEGL(nullptr);
+  if (version == 0) return Error{"EGL", "libEGL.so.1 could not be loaded", install_hint};
+  return ok();
+}
+
+std::vector<Candidate> candidates() {
+  std::vector<Candidate> found;
+  EGLint count = 0;
+  if (eglQueryDevicesEXT && eglQueryDevicesEXT(0, nullptr, &count) && count > 0) {
+    std::vector<EGLDeviceEXT> handles(static_cast<std::size_t>(count));
+    eglQueryDevicesEXT(count, handles.data(), &count);
+    for (int index = 0; index < count; ++index) {
+      Candidate candidate{handles[static_cast<std::size_t>(index)], {}};
+      candidate.device.index = index;
+      const std::string extensions = text(eglQueryDeviceStringEXT(candidate.handle, EGL_EXTENSIONS));
+      candidate.device.software = extensions.find("EGL_MESA_device_software") != std::string::npos;
+      if (extensions.find("EGL_EXT_device_drm") != std::string::npos)
+        candidate.device.node = text(eglQueryDeviceStringEXT(candidate.handle, EGL_DRM_DEVICE_FILE_EXT));
+      found.push_back(candidate);
+    }
+  }
+  if (found.empty()) {
+    Candidate surfaceless;
+    surfaceless.device.software = true;
+    found.push_back(surfaceless);
+  }
+  return found;
+}
+
+EGLDisplay open_display(const Candidate& candidate) {
+  if (!eglGetPlatformDisplayEXT) return EGL_NO_DISPLAY;
+  return candidate.handle
+             ? eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, candidate.handle, nullptr)
+             : eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+}
+
+EGLContext open_context(EGLDisplay display) {
+  const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                               4,
+                               EGL_CONTEXT_MINOR_VERSION,
+                               5,
+                               EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                               EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                               EGL_NONE};
+  if (!eglBindAPI(EGL_OPENGL_API)) return EGL_NO_CONTEXT;
+  return eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+}
+
+struct Opened {
+  EGLDisplay display = EGL_NO_DISPLAY;
+  EGLContext context = EGL_NO_CONTEXT;
+};
+
+/// Makes a context on the device and makes it current; fills in the device's names or its problem.
+Opened open(Candidate& candidate) {
+  Device& device = candidate.device;
+  Opened opened;
+  opened.display = open_display(candidate);
+  if (opened.display == EGL_NO_DISPLAY || !eglInitialize(opened.display, nullptr, nullptr)) {
+    device.problem = "EGL cannot open the device";
+    return {};
+  }
+  gladLoaderLoadEGL(opened.display);  // a display has extensions of its own
+  opened.context = open_context(opened.display);
+  if (opened.context == EGL_NO_CONTEXT) {
+    device.problem = "no OpenGL 4.5 core context";
+    return {};
+  }
+  if (!eglMakeCurrent(opened.display, EGL_NO_SURFACE, EGL_NO_SURFACE, opened.context) ||
+      !gladLoadGL(eglGetProcAddress)) {
+    device.problem = "the OpenGL context cannot be made current without a surface";
+    eglDestroyContext(opened.display, opened.context);
+    return {};
+  }
+  const auto gl_text = [](GLenum name) { return text(reinterpret_cast<const char*>(glGetString(name))); };
+  device.name = gl_text(GL_RENDERER);
+  device.version = gl_text(GL_VERSION);
+  device.vendor = gl_text(GL_VENDOR);
+  // Some drivers offer their rasteriser as an ordinary device.
+  for (const char* rasteriser : {"llvmpipe", "softpipe", "SWR"})
+    device.software = device.software || device.name.find(rasteriser) != std::string::npos;
+  device.usable = true;
+  return opened;
+}
+
+void close(const Opened& opened) {
+  eglMakeCurrent(opened.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  eglDestroyContext(opened.display, opened.context);
+}
+
+}  // namespace
+
+Result<std::vector<Device>> list_devices() {
+  const std::lock_guard lock(egl_mutex);
+  if (Status loaded = load_egl(); !loaded) return loaded.error();
+  std::vector<Device> devices;
+  for (Candidate& candidate : candidates()) {
+    if (const Opened opened = open(candidate); candidate.device.usable) close(opened);
+    devices.push_back(candidate.device);
+  }
+  return devices;
+}
+
+Result<std::unique_ptr<Context>> Context::create(std::optional<int> gpu) {
+  const std::lock_guard lock(egl_mutex);
+  if (Status loaded = load_egl(); !loaded) return loaded.error();
+  std::vector<Candidate> all = candidates();
+  const int count = static_cast<int>(all.size());
+  if (gpu && (*gpu < 0 || *gpu >= count))
+    return Error{"--gpu", std::to_string(*gpu),
+                 "a device from 0 to " + std::to_string(count - 1) + "; `clothlab info` lists them"};
+
+  std::string problems;
+  // First pass: hardware (or the device asked for); second pass: the software rasteriser.
+  for (const bool software : {false, true}) {
+    for (Candidate& candidate : all) {
+      if (gpu ? candidate.device.index != *gpu || software : candidate.device.software != software) continue;
+      const Opened opened = open(candidate);
+      if (!candidate.device.usable) {
+        problems += " device " + std::to_string(candidate.device.index) + ": " + candidate.device.problem + ";";
+        continue;
+      }
+      std::unique_ptr<Context> context(new Context);
+      context->device_ = candidate.device;
+      context->display_ = opened.display;
+      context->context_ = opened.context;
+      return context;
+    }
+  }
+  return Error{"OpenGL", "no device offers OpenGL 4.5 core:" + problems, install_hint};
+}
+
+Context::~Context() {
+  if (eglGetCurrentContext() == context_)
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  eglDestroyContext(display_, context_);
+}
+
+Status Context::make_current() {
+  eglBindAPI(EGL_OPENGL_API);
+  if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) return ok();
+  return Error{"OpenGL", "the context cannot be made current", "is it current on another thread?"};
+}
+
+void Context::release_current() { eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
+
+}  // namespace clothlab::gl

@@ -1,0 +1,126 @@
+#include "server/gl/program.h"
+
+#include <filesystem>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "server/base/data_files.h"
+
+namespace clothlab::gl {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Source text with its includes expanded; #line directives carry an index into `files`.
+struct Source {
+  std::string text;
+  std::vector<std::string> files;
+};
+
+Status expand(const std::string& path, Source& source, std::set<std::string>& seen) {
+  if (!seen.insert(path).second) return ok();  // every file is included once
+  Result<fs::path> found = data_path("shaders/" + path);
+  if (!found) return found.error();
+  Result<std::string> text = read_file(*found);
+  if (!text) return text.error();
+
+  const std::size_t file = source.files.size();
+  source.files.push_back("shaders/" + path);
+  static const std::regex include(R"(^\s*#include\s+"([^"]+)\".*$)");
+  std::istringstream lines(*text);
+  std::string line;
+  source.text += "#line 1 " + std::to_string(file) + "\n";
+  for (int number = 1; std::getline(lines, line); ++number) {
+    std::smatch match;
+    if (!std::regex_match(line, match, include)) {
+      source.text += line + "\n";
+      continue;
+    }
+    const std::string target = (fs::path(path).parent_path() / match[1].str()).lexically_normal().string();
+    if (Status status = expand(target, source, seen); !status) {
+      Error error = status.error();
+      error.where = "shaders/" + path + ":" + std::to_string(number) + ": " + error.where;
+      return error;
+    }
+    source.text += "#line " + std::to_string(number + 1) + " " + std::to_string(file) + "\n";
+  }
+  return ok();
+}
+
+/// The driver's first message, with "file(line)" or "file:line" replaced by the source file's name.
+Error compile_error(const Source& source, const std::string& log) {
+  // Mesa: "0:12(5): error: ..."; NVIDIA: "0(12) : error C0000: ..."; AMD, Intel: "ERROR: 0:12: ..."
+  static const std::regex position(R"((\d+)(?:[:(])(\d+)\)?(?:\(\d+\))?\s*:?\s*([^\n]*))");
+  std::smatch match;
+  if (std::regex_search(log, match, position)) {
+    const std::size_t file = std::stoul(match[1].str());
+    if (file < source.files.size())
+      return Error{source.files[file] + ":" + match[2].str(), match[3].str(), "mend the shader and start again"};
+  }
+  return Error{source.files.front(), log, "mend the shader and start again"};
+}
+
+GLenum stage_of(const std::string& path) {
+  const std::string ending = fs::path(path).extension().string();
+  if (ending == ".vert") return GL_VERTEX_SHADER;
+  if (ending == ".geom") return GL_GEOMETRY_SHADER;
+  if (ending == ".frag") return GL_FRAGMENT_SHADER;
+  return GL_COMPUTE_SHADER;
+}
+
+template <class Get, class GetLog>
+std::string info_log(GLuint id, Get get, GetLog get_log) {
+  GLint length = 0;
+  get(id, GL_INFO_LOG_LENGTH, &length);
+  std::string log(static_cast<std::size_t>(length > 0 ? length : 1), '\0');
+  get_log(id, static_cast<GLsizei>(log.size()), nullptr, log.data());
+  while (!log.empty() && (log.back() == '\0' || log.back() == '\n')) log.pop_back();
+  return log;
+}
+
+Result<GLuint> compile(const std::string& path, const Defines& defines) {
+  Source source;
+  source.text = "#version 450 core\n";
+  for (const auto& [name, value] : defines) source.text += "#define " + name + " " + value + "\n";
+  std::set<std::string> seen;
+  if (Status status = expand(path, source, seen); !status) return status.error();
+
+  const GLuint shader = glCreateShader(stage_of(path));
+  const char* text = source.text.c_str();
+  glShaderSource(shader, 1, &text, nullptr);
+  glCompileShader(shader);
+  GLint compiled = 0;
+  glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+  if (compiled) return shader;
+  const std::string log = info_log(shader, glGetShaderiv, glGetShaderInfoLog);
+  glDeleteShader(shader);
+  return compile_error(source, log);
+}
+
+}  // namespace
+
+Result<Program> Program::load(std::initializer_list<std::string> paths, const Defines& defines) {
+  Program program;
+  program.id_ = glCreateProgram();
+  for (const std::string& path : paths) {
+    Result<GLuint> shader = compile(path, defines);
+    if (!shader) return shader.error();
+    glAttachShader(program.id_, *shader);
+    glDeleteShader(*shader);  // freed with the program
+  }
+  glLinkProgram(program.id_);
+  GLint linked = 0;
+  glGetProgramiv(program.id_, GL_LINK_STATUS, &linked);
+  if (!linked)
+    return Error{"shaders/" + *paths.begin(), info_log(program.id_, glGetProgramiv, glGetProgramInfoLog),
+                 "mend the shader and start again"};
+  return program;
+}
+
+Program::~Program() {
+  if (id_) glDeleteProgram(id_);
+}
+
+}  // namespace clothlab::gl
