@@ -1,1 +1,68 @@
-int main() { return 0; }
+// Picks a subcommand; everything else is in that subcommand's file.
+#include <exception>
+#include <iostream>
+
+#include "server/cli/commands.h"
+
+namespace clothlab::cli {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  clothlab serve                                   the seed scene in the browser, at http://127.0.0.1:8080
+  clothlab serve --scene curtain --port 9000
+  clothlab run seed --time 5 --report report.json  as fast as it goes, with speed and energy
+  clothlab run seed --time 2 --out cloth.obj --every 0.1 --set /solver/dt=0.0005
+  clothlab render seed --time 1.5 --out seed.png
+  clothlab validate my-scene.json
+  clothlab COMMAND --help                          the options of one command
+
+Exit codes: 0 done, 1 internal error, 2 wrong usage or invalid scene, 3 no usable OpenGL, 4 the simulation diverged.)";
+
+void describe(CLI::App& app, int& exit_code) {
+  app.name("clothlab");
+  app.set_version_flag("--version", "clothlab " CLOTHLAB_VERSION, "print the version and exit");
+  app.set_help_flag("-h,--help", "print this help and exit");
+  app.require_subcommand(0, 1);
+  app.footer(examples);
+  // One line a subcommand, in the order the help shows them.
+  static_cast<void>(exit_code);
+}
+
+int usage_error(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<CLI::App*> called = app.get_subcommands();
+  const std::string command = called.empty() ? "clothlab" : "clothlab " + called.front()->get_name();
+  return fail({"", error.what(), "see `" + command + " --help`"}, exit_usage);
+}
+
+int run_program(int argc, char** argv) {
+  CLI::App app{"Clothlab simulates cloth on the GPU and shows it live in the browser."};
+  int exit_code = exit_done;
+  describe(app, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    return app.exit(asked, std::cout, std::cerr);
+  } catch (const CLI::ParseError& error) {
+    return usage_error(app, error);
+  }
+  if (app.get_subcommands().empty()) {
+    std::cerr << app.help() << std::flush;
+    return exit_usage;
+  }
+  return exit_code;
+}
+
+}  // namespace
+}  // namespace clothlab::cli
+
+int main(int argc, char** argv) {
+  using namespace clothlab::cli;
+  int code = exit_internal;
+  try {
+    code = run_program(argc, argv);
+  } catch (const std::exception& error) {
+    code = fail({"internal", error.what(), "please report it with the command you ran"}, exit_internal);
+  }
+  if (!std::cout.flush()) return fail({"stdout", "could not be written", "check the disk or the pipe"}, exit_internal);
+  return code;
+}

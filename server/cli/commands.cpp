@@ -1,0 +1,40 @@
+#include "server/cli/commands.h"
+
+#include <iostream>
+
+namespace clothlab::cli {
+
+int fail(const Error& error, ExitCode code) {
+  std::cout.flush();
+  std::cerr << "clothlab: error: " << error.text() << std::endl;
+  return code;
+}
+
+void note(const std::string& text) {
+  std::cout.flush();
+  std::cerr << "clothlab: note: " << text << std::endl;
+}
+
+void SceneChoice::add_positional(CLI::App& command) {
+  command.add_option("scene", name, "a preset's name (see `clothlab presets`) or a scene file")
+      ->required()
+      ->type_name("S");
+  add_set(command);
+}
+
+void SceneChoice::add_option(CLI::App& command) {
+  command.add_option("--scene", name, "a preset's name (see `clothlab presets`) or a scene file")
+      ->type_name("S")
+      ->capture_default_str();
+  add_set(command);
+}
+
+void SceneChoice::add_set(CLI::App& command) {
+  // One value an occurrence, so that a positional S may follow.
+  command.add_option("--set", set, "sets one value of the scene, e.g. --set /solver/dt=0.0005; may be repeated")
+      ->type_name("POINTER=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+}  // namespace clothlab::cli

@@ -1,0 +1,54 @@
+// The subcommands of `clothlab`, one file each, and what they share: exit codes, errors, how a scene is named.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "server/base/result.h"
+#include "server/scene/document.h"
+
+namespace clothlab::cli {
+
+/// What the program's exit code means to a script.
+enum ExitCode : int { exit_done = 0, exit_internal = 1, exit_usage = 2, exit_no_opengl = 3, exit_diverged = 4 };
+
+// Each adds its subcommand to `app`; when it is the one called, it runs and leaves its ExitCode in `exit_code`.
+void add_serve(CLI::App& app, int& exit_code);
+void add_run(CLI::App& app, int& exit_code);
+void add_render(CLI::App& app, int& exit_code);
+void add_validate(CLI::App& app, int& exit_code);
+void add_presets(CLI::App& app, int& exit_code);
+void add_info(CLI::App& app, int& exit_code);
+
+/// Prints "clothlab: error: where: what; remedy" on stderr and returns `code`.
+int fail(const Error& error, ExitCode code);
+/// Prints "clothlab: note: ..." on stderr.
+void note(const std::string& text);
+
+/// The scene a command works on: a preset's name or a file, then `--set POINTER=VALUE` in the order given.
+struct SceneChoice {
+  std::string name;              ///< what the command line says, or the default the command starts with
+  std::vector<std::string> set;  ///< e.g. "/solver/dt=0.0005"
+
+  /// S as a required positional argument, and `--set`.
+  void add_positional(CLI::App& command);
+  /// `--scene S` with the present name as its default, and `--set`.
+  void add_option(CLI::App& command);
+  /// Loads it and applies every `--set`.
+  Result<scene::Document> load() const;
+
+ private:
+  void add_set(CLI::App& command);
+};
+
+inline Result<scene::Document> SceneChoice::load() const {
+  Result<scene::Document> document = scene::load(name);
+  for (const std::string& assignment : set) {
+    if (!document) break;
+    document = scene::set_value(*document, assignment);
+  }
+  return document;
+}
+
+}  // namespace clothlab::cli
