@@ -1,6 +1,7 @@
 // scene -> particles, springs, triangles, pins as CPU arrays. All cloths of a scene are laid end to end. No GL here.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>

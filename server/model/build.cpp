@@ -1,0 +1,154 @@
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include "server/model/mesh_arrays.h"
+
+namespace clothlab::model {
+
+namespace {
+
+using Index = std::uint32_t;
+
+dvec3 turn(const dvec3& point, int axis, double degrees) {
+  const double angle = glm::radians(degrees), c = std::cos(angle), s = std::sin(angle);
+  const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+  dvec3 turned = point;
+  turned[a] = c * point[a] - s * point[b];
+  turned[b] = s * point[a] + c * point[b];
+  return turned;
+}
+
+dvec3 place(const scene::Transform& transform, dvec3 point) {
+  point *= transform.scale;
+  for (int axis = 0; axis < 3; ++axis) point = turn(point, axis, transform.rotate[axis]);
+  return point + transform.translate;
+}
+
+/// The vertices of a cloth, numbered within it, that a pin holds.
+std::vector<Index> held_by(const scene::Cloth& cloth, const scene::At& at, const std::vector<dvec3>& position) {
+  const auto* grid = std::get_if<scene::Grid>(&cloth.mesh);
+  const Index columns = grid ? static_cast<Index>(grid->columns) : 0;
+  const Index rows = grid ? static_cast<Index>(grid->rows) : 0;
+  std::vector<Index> held;
+  if (const auto* corner = std::get_if<scene::AtCorner>(&at)) {
+    const auto column = static_cast<Index>(corner->column), row = static_cast<Index>(corner->row);
+    if (column < columns && row < rows) held.push_back(row * columns + column);
+  } else if (const auto* vertex = std::get_if<scene::AtVertex>(&at)) {
+    if (vertex->vertex < position.size()) held.push_back(vertex->vertex);
+  } else if (const auto* edge = std::get_if<scene::AtEdge>(&at)) {
+    const auto line = static_cast<Index>(edge->index);
+    const bool row = edge->line == scene::AtEdge::Line::row;
+    if (line < (row ? rows : columns))
+      for (Index i = 0; i < (row ? columns : rows); ++i) held.push_back(row ? line * columns + i : i * columns + line);
+  } else if (const auto* box = std::get_if<scene::AtBox>(&at)) {
+    for (Index i = 0; i < position.size(); ++i)
+      if (glm::all(glm::lessThanEqual(box->minimum, position[i])) &&
+          glm::all(glm::lessThanEqual(position[i], box->maximum)))
+        held.push_back(i);
+  }
+  return held;
+}
+
+Index motion_index(std::vector<scene::Motion>& motions, const scene::Motion& motion) {
+  const auto found = std::find(motions.begin(), motions.end(), motion);
+  if (found == motions.end()) motions.push_back(motion);
+  return static_cast<Index>(found - motions.begin());
+}
+
+/// Lists for each vertex the items that touch it; `corners(item)` gives an item's vertices.
+template <class Items, class Corners>
+Adjacency adjacency(std::size_t vertex_count, const Items& items, Corners corners) {
+  Adjacency result;
+  result.offsets.assign(vertex_count + 1, 0);
+  for (const auto& item : items)
+    for (const Index vertex : corners(item)) ++result.offsets[vertex + 1];
+  for (std::size_t i = 0; i < vertex_count; ++i) result.offsets[i + 1] += result.offsets[i];
+  result.items.resize(result.offsets.back());
+  std::vector<Index> next(result.offsets.begin(), result.offsets.end() - 1);
+  for (std::size_t i = 0; i < items.size(); ++i)
+    for (const Index vertex : corners(items[i])) result.items[next[vertex]++] = static_cast<Index>(i);
+  return result;
+}
+
+std::vector<double> masses(const scene::Cloth& cloth, const MeshArrays& arrays, const std::vector<dvec3>& position) {
+  if (cloth.mass.kind == scene::Mass::Kind::per_vertex)
+    return std::vector<double>(position.size(), cloth.mass.value);
+  std::vector<double> mass(position.size(), 0.0);
+  for (const auto& [a, b, c] : arrays.triangles) {
+    const double area = 0.5 * glm::length(glm::cross(position[b] - position[a], position[c] - position[a]));
+    for (const Index corner : {a, b, c}) mass[corner] += cloth.mass.value * area / 3.0;
+  }
+  return mass;
+}
+
+double mean_edge_length(const MeshArrays& arrays, const std::vector<dvec3>& position) {
+  double sum = 0.0;
+  for (const auto& [a, b, c] : arrays.triangles)
+    sum += glm::distance(position[a], position[b]) + glm::distance(position[b], position[c]) +
+           glm::distance(position[c], position[a]);
+  return arrays.triangles.empty() ? 0.0 : sum / (3.0 * static_cast<double>(arrays.triangles.size()));
+}
+
+/// Appends one cloth to the model.
+Status add_cloth(Model& model, const scene::Cloth& cloth) {
+  const auto cloth_index = static_cast<Index>(model.cloths.size());
+  const std::string where = "/cloths/" + std::to_string(cloth_index);
+  const auto* grid = std::get_if<scene::Grid>(&cloth.mesh);
+  MeshArrays arrays = grid ? grid_arrays(*grid, cloth.material)
+                           : triangle_mesh_arrays(std::get<scene::TriangleMesh>(cloth.mesh), cloth.material);
+  std::vector<dvec3> position;
+  for (const dvec3& point : arrays.position) position.push_back(place(cloth.transform, point));
+
+  const std::vector<double> mass = masses(cloth, arrays, position);
+  const auto massless = std::find_if(mass.begin(), mass.end(), [](double m) { return !(m > 0.0); });
+  if (massless != mass.end())
+    return Error{where + "/mass", "vertex " + std::to_string(massless - mass.begin()) + " would have no mass",
+                 "with area_density every vertex belongs to a triangle with an area above 0"};
+
+  std::vector<std::int32_t> pin_motion(position.size(), not_pinned);
+  for (std::size_t i = 0; i < cloth.pins.size(); ++i) {
+    const std::vector<Index> held = held_by(cloth, cloth.pins[i].at, position);
+    if (held.empty())
+      return Error{where + "/pins/" + std::to_string(i) + "/at", "holds no vertex",
+                   "a place on the mesh" + (grid ? ", which has " + std::to_string(grid->columns) + " columns and " +
+                                                       std::to_string(grid->rows) + " rows"
+                                                 : ", which has " + std::to_string(position.size()) + " vertices")};
+    const auto motion = static_cast<std::int32_t>(motion_index(model.motions, cloth.pins[i].motion));
+    for (const Index vertex : held) pin_motion[vertex] = motion;
+  }
+
+  const Index first = model.vertex_count();
+  ClothRange range{first, static_cast<Index>(position.size()), model.triangle_count(),
+                   static_cast<Index>(arrays.triangles.size()), mean_edge_length(arrays, position)};
+  for (Spring spring : arrays.springs) {
+    spring.rest_length = glm::distance(position[spring.a], position[spring.b]);
+    spring.a += first;
+    spring.b += first;
+    spring.cloth = cloth_index;
+    model.springs.push_back(spring);
+  }
+  for (const auto& [a, b, c] : arrays.triangles) model.triangles.push_back({a + first, b + first, c + first});
+  const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  append(model.rest_position, position);
+  append(model.mass, mass);
+  append(model.pin_motion, pin_motion);
+  append(model.texture_coordinates, arrays.texture_coordinates);
+  model.vertex_cloth.resize(model.rest_position.size(), cloth_index);
+  model.cloths.push_back(range);
+  return ok();
+}
+
+}  // namespace
+
+Result<Model> build(const scene::Scene& scene) {
+  Model model;
+  for (const scene::Cloth& cloth : scene.cloths)
+    if (Status added = add_cloth(model, cloth); !added) return added.error();
+  model.vertex_springs = adjacency(model.vertex_count(), model.springs,
+                                   [](const Spring& spring) { return std::array{spring.a, spring.b}; });
+  model.vertex_triangles = adjacency(model.vertex_count(), model.triangles, [](const auto& corners) { return corners; });
+  return model;
+}
+
+}  // namespace clothlab::model

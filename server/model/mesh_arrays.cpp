@@ -1,0 +1,97 @@
+#include "server/model/mesh_arrays.h"
+
+#include <algorithm>
+#include <glm/common.hpp>
+#include <map>
+#include <tuple>
+
+namespace clothlab::model {
+
+namespace {
+
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+Edge sorted(std::uint32_t a, std::uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
+
+Spring spring(Edge edge, SpringKind kind) { return {edge.first, edge.second, 0, kind, 0.0}; }
+
+}  // namespace
+
+MeshArrays grid_arrays(const scene::Grid& grid, const scene::Springs& material) {
+  MeshArrays arrays;
+  const int columns = grid.columns, rows = grid.rows;
+  const auto index = [&](int column, int row) { return static_cast<std::uint32_t>(row * columns + column); };
+
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const double u = static_cast<double>(column) / (columns - 1), v = static_cast<double>(row) / (rows - 1);
+      arrays.position.emplace_back((u - 0.5) * grid.width, 0.0, v * grid.height);
+      arrays.texture_coordinates.emplace_back(static_cast<float>(u), static_cast<float>(v));
+    }
+  }
+  for (int row = 0; row + 1 < rows; ++row) {
+    for (int column = 0; column + 1 < columns; ++column) {
+      arrays.triangles.push_back({index(column, row), index(column, row + 1), index(column + 1, row + 1)});
+      arrays.triangles.push_back({index(column, row), index(column + 1, row + 1), index(column + 1, row)});
+    }
+  }
+
+  const auto connect = [&](SpringKind kind, double stiffness, int columns_on, int rows_on) {
+    if (stiffness == 0.0) return;
+    for (int row = 0; row < rows; ++row) {
+      for (int column = 0; column < columns; ++column) {
+        const int to_column = column + columns_on, to_row = row + rows_on;
+        if (to_column < 0 || to_column >= columns || to_row >= rows) continue;
+        arrays.springs.push_back(spring(sorted(index(column, row), index(to_column, to_row)), kind));
+      }
+    }
+  };
+  connect(SpringKind::structural, material.structural, 1, 0);
+  connect(SpringKind::structural, material.structural, 0, 1);
+  connect(SpringKind::shear, material.shear, 1, 1);
+  connect(SpringKind::shear, material.shear, -1, 1);
+  connect(SpringKind::bend, material.bend, 2, 0);
+  connect(SpringKind::bend, material.bend, 0, 2);
+  return arrays;
+}
+
+MeshArrays triangle_mesh_arrays(const scene::TriangleMesh& mesh, const scene::Springs& material) {
+  MeshArrays arrays;
+  arrays.position = mesh.vertices;
+  arrays.triangles = mesh.triangles;
+
+  // Texture coordinates: the two axes along which the mesh is largest, over their extent.
+  dvec3 low(1e300), high(-1e300);
+  for (const dvec3& point : mesh.vertices) {
+    low = glm::min(low, point);
+    high = glm::max(high, point);
+  }
+  const dvec3 extent = high - low;
+  std::array<int, 3> axes{0, 1, 2};
+  std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return extent[a] > extent[b]; });
+  const int u = std::min(axes[0], axes[1]), v = std::max(axes[0], axes[1]);
+  const double size = std::max(extent[axes[0]], 1e-9);
+  for (const dvec3& point : mesh.vertices)
+    arrays.texture_coordinates.emplace_back(static_cast<float>((point[u] - low[u]) / size),
+                                            static_cast<float>((point[v] - low[v]) / size));
+
+  std::map<Edge, std::vector<std::uint32_t>> opposite;  // edge -> the third vertex of each triangle on it
+  for (const auto& triangle : mesh.triangles)
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      opposite[sorted(triangle[corner], triangle[(corner + 1) % 3])].push_back(triangle[(corner + 2) % 3]);
+  for (const auto& [edge, corners] : opposite) {
+    if (material.structural != 0.0) arrays.springs.push_back(spring(edge, SpringKind::structural));
+    if (material.bend == 0.0 || corners.size() != 2 || corners[0] == corners[1]) continue;
+    const Edge across = sorted(corners[0], corners[1]);
+    if (!opposite.contains(across)) arrays.springs.push_back(spring(across, SpringKind::bend));
+  }
+  // Two edges may have the same pair opposite them; one spring is enough.
+  std::stable_sort(arrays.springs.begin(), arrays.springs.end(), [](const Spring& a, const Spring& b) {
+    return std::tie(a.kind, a.a, a.b) < std::tie(b.kind, b.a, b.b);
+  });
+  const auto same = [](const Spring& a, const Spring& b) { return a.a == b.a && a.b == b.b && a.kind == b.kind; };
+  arrays.springs.erase(std::unique(arrays.springs.begin(), arrays.springs.end(), same), arrays.springs.end());
+  return arrays;
+}
+
+}  // namespace clothlab::model

@@ -1,0 +1,22 @@
+// Triangles and springs of the two kinds of mesh. Internal to model/.
+#pragma once
+
+#include "server/model/model.h"
+
+namespace clothlab::model {
+
+/// What a mesh contributes, with vertex indices local to its cloth.
+struct MeshArrays {
+  std::vector<dvec3> position;  ///< before the cloth's transform [m]
+  std::vector<glm::vec2> texture_coordinates;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<Spring> springs;  ///< `cloth` and `rest_length` not yet set
+};
+
+/// Springs of a kind whose stiffness is 0 are left out.
+MeshArrays grid_arrays(const scene::Grid& grid, const scene::Springs& material);
+
+/// Structural springs along the edges, bend springs between the vertices opposite an inner edge.
+MeshArrays triangle_mesh_arrays(const scene::TriangleMesh& mesh, const scene::Springs& material);
+
+}  // namespace clothlab::model

@@ -1,0 +1,63 @@
+#include "server/model/motion.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+namespace clothlab::model {
+
+namespace {
+
+using glm::dmat3;
+using glm::dvec3;
+
+/// Rodrigues' formula: the rotation by `angle` [rad] about a unit axis.
+dmat3 rotation_about(const dvec3& axis, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  dmat3 turned;
+  for (int column = 0; column < 3; ++column) {
+    dvec3 unit(0.0);
+    unit[column] = 1.0;
+    turned[column] = c * unit + s * glm::cross(axis, unit) + (1.0 - c) * glm::dot(axis, unit) * axis;
+  }
+  return turned;
+}
+
+Pose pose_of(std::monostate, double) { return {}; }
+
+Pose pose_of(const scene::Oscillate& motion, double time) {
+  const double omega = 2.0 * std::numbers::pi * motion.frequency;
+  Pose pose;
+  pose.translation = motion.amplitude * std::sin(omega * time) * motion.axis;
+  pose.linear_velocity = motion.amplitude * omega * std::cos(omega * time) * motion.axis;
+  return pose;
+}
+
+Pose pose_of(const scene::Linear& motion, double time) {
+  Pose pose;
+  pose.translation = motion.velocity * time;
+  pose.linear_velocity = motion.velocity;
+  return pose;
+}
+
+Pose pose_of(const scene::Spin& motion, double time) {
+  const double rate = motion.degrees_per_second * std::numbers::pi / 180.0;
+  Pose pose;
+  pose.rotation = rotation_about(motion.axis, rate * time);
+  pose.translation = motion.center - pose.rotation * motion.center;
+  pose.angular_velocity = rate * motion.axis;
+  pose.linear_velocity = -glm::cross(pose.angular_velocity, motion.center);
+  return pose;
+}
+
+}  // namespace
+
+dvec3 Pose::velocity_at(const dvec3& position) const {
+  return linear_velocity + glm::cross(angular_velocity, position);
+}
+
+Pose pose(const scene::Motion& motion, double time) {
+  return std::visit([time](const auto& kind) { return pose_of(kind, time); }, motion);
+}
+
+}  // namespace clothlab::model

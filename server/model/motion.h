@@ -1,0 +1,25 @@
+// How pins and colliders move: closed forms of time, in double precision. Shared by the GPU path and the reference.
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+#include "server/scene/scene.h"
+
+namespace clothlab::model {
+
+/// A rigid motion at one time: takes a home position to where it is, and tells how fast it moves there.
+struct Pose {
+  glm::dmat3 rotation{1.0};
+  glm::dvec3 translation{0.0};       ///< [m]
+  glm::dvec3 linear_velocity{0.0};   ///< velocity of the point now at the origin [m/s]
+  glm::dvec3 angular_velocity{0.0};  ///< [rad/s]
+
+  glm::dvec3 place(const glm::dvec3& home) const { return rotation * home + translation; }
+  glm::dvec3 velocity_at(const glm::dvec3& position) const;
+};
+
+/// The pose of `motion` at `time` [s] since the start.
+Pose pose(const scene::Motion& motion, double time);
+
+}  // namespace clothlab::model
