@@ -25,7 +25,8 @@ void describe(CLI::App& app, int& exit_code) {
   app.require_subcommand(0, 1);
   app.footer(examples);
   // One line a subcommand, in the order the help shows them.
-  static_cast<void>(exit_code);
+  add_validate(app, exit_code);
+  add_presets(app, exit_code);
 }
 
 int usage_error(const CLI::App& app, const CLI::ParseError& error) {

@@ -1,4 +1,5 @@
-// The scene document: JSON as the user wrote it with every default filled in, the typed Scene it means, and patches.
+// The scene document: JSON as the user wrote it with every default filled in, the typed Scene it means, and
+// patches. No function here throws; whatever the text, each answers with a value or an Error.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -14,29 +15,46 @@ using nlohmann::json;
 
 /// A valid scene as JSON and as plain data, always in step with each other.
 struct Document {
-  json value;   ///< every key of contract.md present, defaults filled in
+  json value;  ///< every key of contract.md present, defaults filled in, the user's numbers as they were
+               ///< written
   Scene scene;
+  bool operator==(const Document&) const = default;
 };
 
 /// Limits on untrusted text, checked while parsing, before a value exists.
-inline constexpr std::size_t max_json_bytes = 64 * 1024;  ///< one message [bytes]
-inline constexpr int max_json_depth = 32;
+inline constexpr std::size_t max_json_bytes = 64 * 1024;         ///< one message [bytes]
+inline constexpr std::size_t max_file_bytes = 64 * 1024 * 1024;  ///< a scene file [bytes]
+inline constexpr std::size_t max_json_depth = 32;
+/// Operations in one RFC 6902 patch.
+inline constexpr std::size_t max_patch_operations = 1024;
 
-/// Parses JSON text (comments allowed when `comments`), refusing anything deeper than max_json_depth.
-/// Error: where = `source` and position.
-Result<json> parse_json(const std::string& text, const std::string& source, bool comments = false);
+/// Parses JSON text (comments allowed when `comments`), refusing repeated keys and anything deeper than
+/// max_json_depth. Error: where = `source`, line and column.
+Result<json> parse_json(const std::string& text, const std::string& source, bool comments = false,
+                        std::size_t max_bytes = max_json_bytes);
 
 /// Validates the whole document and fills in defaults. Error: JSON Pointer, found, allowed.
 Result<Document> validate(json value);
 
 /// Applies an RFC 7396 merge patch (object) or an RFC 6902 patch (array) and validates the outcome.
-/// On error `document` is what was there before (the function does not touch it).
+/// A merge patch removes a key with null; an absent key means its default, and the default of a key that may
+/// be null (self_collision, wind, motion, strain_limit) is null: `{"self_collision": null}` turns
+/// self-collision off. On error `document` is what was there before (the function does not touch it); the
+/// error's pointer is into the patched scene, or, for an operation that cannot be carried out,
+/// "/patch/INDEX/...".
 Result<Document> apply_patch(const Document& document, const json& patch);
 
-/// A patch of one value by JSON Pointer, for `--set /solver/dt=0.0005`: `text` is JSON, or else a plain string.
+/// A patch of one value by JSON Pointer, for `--set /solver/dt=0.0005`: `text` is JSON, or else a plain
+/// string. Absent or null parents become objects; index `-` appends to an array.
 Result<Document> set_value(const Document& document, const std::string& assignment);
 
-/// Names of the presets, the seed first.
+struct Preset {
+  std::string name;
+  std::string description;  ///< one line
+};
+
+/// The presets, the seed first.
+const std::vector<Preset>& presets();
 std::vector<std::string> preset_names();
 
 /// A preset by name. Error names the presets there are.

@@ -1,0 +1,89 @@
+// The `at` of a pin: "corner:COLUMN,ROW", "vertex:N", "edge:row:N", "edge:column:N" or {"box": [[min],
+// [max]]}.
+#include <optional>
+
+#include "server/scene/pointer.h"
+#include "server/scene/sections.h"
+
+namespace clothlab::scene {
+
+namespace {
+
+const std::string at_forms =
+    R"("corner:COLUMN,ROW", "vertex:N", "edge:row:N", "edge:column:N" or {"box": [[x,y,z],[x,y,z]]})";
+
+/// What follows `prefix`, if the text starts with it.
+std::optional<std::string> after(const std::string& text, const std::string& prefix) {
+  return text.rfind(prefix, 0) == 0 ? std::optional(text.substr(prefix.size())) : std::nullopt;
+}
+
+std::optional<std::uint32_t> index_in(const std::string& text) {
+  const std::optional<std::size_t> index = array_index(text, max_vertices);
+  return index ? std::optional(static_cast<std::uint32_t>(*index)) : std::nullopt;
+}
+
+std::optional<At> parse_at(const std::string& text) {
+  if (const auto numbers = after(text, "corner:")) {
+    const std::size_t comma = numbers->find(',');
+    if (comma == std::string::npos) return std::nullopt;
+    const auto column = index_in(numbers->substr(0, comma)), row = index_in(numbers->substr(comma + 1));
+    if (!column || !row) return std::nullopt;
+    return AtCorner{static_cast<int>(*column), static_cast<int>(*row)};
+  }
+  if (const auto number = after(text, "vertex:")) {
+    const auto vertex = index_in(*number);
+    return vertex ? std::optional<At>(AtVertex{*vertex}) : std::nullopt;
+  }
+  for (const AtEdge::Line line : {AtEdge::Line::row, AtEdge::Line::column}) {
+    const auto number = after(text, line == AtEdge::Line::row ? "edge:row:" : "edge:column:");
+    const auto index = number ? index_in(*number) : std::nullopt;
+    if (index) return AtEdge{line, static_cast<int>(*index)};
+  }
+  return std::nullopt;
+}
+
+std::string up_to(const char* what, std::size_t count) {
+  return std::string(what) + " 0 to " + std::to_string(count - 1);
+}
+
+/// What is allowed instead, or empty if `at` lies in the mesh.
+std::string outside(const At& at, const Mesh& mesh) {
+  const Grid* grid = std::get_if<Grid>(&mesh);
+  if (const AtVertex* vertex = std::get_if<AtVertex>(&at))
+    return vertex->vertex < vertex_count(mesh) ? "" : "of this mesh: " + up_to("vertex", vertex_count(mesh));
+  if (std::holds_alternative<AtBox>(at)) return "";
+  if (!grid) return "\"vertex:N\" or {\"box\": ...}: this mesh is no grid and has no rows and columns";
+  const auto columns = static_cast<std::size_t>(grid->columns), rows = static_cast<std::size_t>(grid->rows);
+  const std::string allowed = "of this grid: " + up_to("column", columns) + ", " + up_to("row", rows);
+  if (const AtCorner* corner = std::get_if<AtCorner>(&at))
+    return corner->column < grid->columns && corner->row < grid->rows ? "" : allowed;
+  const AtEdge& edge = std::get<AtEdge>(at);
+  return edge.index < (edge.line == AtEdge::Line::row ? grid->rows : grid->columns) ? "" : allowed;
+}
+
+At read_box(const Reader& at) {
+  at.object({"box"});
+  const Reader box = at.member("box");
+  if (box.array(2, 2) != 2) return AtBox{};
+  const AtBox result{box.element(0).vector(ranges::position), box.element(1).vector(ranges::position)};
+  for (int axis = 0; axis < 3; ++axis)
+    if (result.minimum[axis] > result.maximum[axis])
+      box.fail("the smaller corner first: [[min x,y,z], [max x,y,z]]");
+  return result;
+}
+
+}  // namespace
+
+At read_at(const Reader& at, const Mesh& mesh) {
+  if (at.has("box")) return read_box(at);
+  const std::optional<At> parsed = parse_at(at.string(at_forms));
+  if (!parsed) {
+    at.fail(at_forms);
+    return AtVertex{};
+  }
+  const std::string allowed = outside(*parsed, mesh);
+  if (!allowed.empty()) at.fail(allowed);
+  return *parsed;
+}
+
+}  // namespace clothlab::scene

@@ -1,0 +1,132 @@
+#include <algorithm>
+
+#include "server/scene/sections.h"
+
+namespace clothlab::scene {
+
+std::size_t vertex_count(const Mesh& mesh) {
+  if (const Grid* grid = std::get_if<Grid>(&mesh))
+    return static_cast<std::size_t>(grid->columns) * static_cast<std::size_t>(grid->rows);
+  return std::get<TriangleMesh>(mesh).vertices.size();
+}
+
+std::size_t triangle_count(const Mesh& mesh) {
+  if (const Grid* grid = std::get_if<Grid>(&mesh))
+    return 2 * static_cast<std::size_t>(grid->columns - 1) * static_cast<std::size_t>(grid->rows - 1);
+  return std::get<TriangleMesh>(mesh).triangles.size();
+}
+
+std::string default_name(const char* kind, std::size_t index) {
+  std::string name = kind;
+  if (index > 0) name.append("-").append(std::to_string(index + 1));
+  return name;
+}
+
+namespace {
+
+Grid read_grid(const Reader& grid) {
+  grid.object({"columns", "rows", "width", "height"});
+  return Grid{grid.member("columns", 25).integer(ranges::grid_count),
+              grid.member("rows", 25).integer(ranges::grid_count),
+              grid.member("width", 1.0).number(ranges::length),
+              grid.member("height", 1.0).number(ranges::length)};
+}
+
+std::array<std::uint32_t, 3> read_triangle(const Reader& triangle, std::size_t vertex_count) {
+  std::array<std::uint32_t, 3> corners{};
+  if (triangle.array(3, 3) != 3) return corners;
+  const Range index{0, static_cast<double>(vertex_count) - 1, "vertex"};
+  for (std::size_t i = 0; i < 3; ++i)
+    corners[i] = static_cast<std::uint32_t>(triangle.element(i).integer(index));
+  if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
+    triangle.fail("three different vertices");
+  return corners;
+}
+
+TriangleMesh read_triangle_mesh(const Reader& mesh) {
+  TriangleMesh result;
+  const Reader vertices = mesh.member("vertices"), triangles = mesh.member("triangles");
+  result.vertices.resize(vertices.array(3, max_vertices));
+  for (std::size_t i = 0; i < result.vertices.size(); ++i)
+    result.vertices[i] = vertices.element(i).vector(ranges::position);
+  result.triangles.resize(triangles.array(1, max_triangles));
+  for (std::size_t i = 0; i < result.triangles.size(); ++i)
+    result.triangles[i] = read_triangle(triangles.element(i), result.vertices.size());
+  return result;
+}
+
+Mesh read_mesh(const Reader& mesh) {
+  mesh.object({"grid", "vertices", "triangles"}, {"obj"});
+  if (mesh.has("triangles")) {
+    if (mesh.has("grid")) mesh.fail("either \"grid\", or \"vertices\" and \"triangles\"");
+    return read_triangle_mesh(mesh);
+  }
+  if (mesh.exactly_one({"grid", "vertices"}) == "vertices") return read_triangle_mesh(mesh);
+  return read_grid(mesh.member("grid"));
+}
+
+Transform read_transform(const Reader& transform) {
+  transform.object({"translate", "rotate", "scale"});
+  const json zero = {0, 0, 0};
+  return Transform{transform.member("translate", zero).vector(ranges::position),
+                   transform.member("rotate", zero).vector(ranges::angle),
+                   transform.member("scale", 1.0).number(ranges::scale)};
+}
+
+Mass read_mass(const Reader& mass) {
+  mass.object({"per_vertex", "area_density"});
+  const std::string kind = mass.exactly_one({"per_vertex", "area_density"});
+  if (kind == "area_density")
+    return Mass{Mass::Kind::area_density, mass.member(kind).number(ranges::area_density)};
+  return Mass{Mass::Kind::per_vertex, mass.member("per_vertex").number(ranges::mass_per_vertex)};
+}
+
+Springs read_material(const Reader& material) {
+  if (material.has("model")) material.member("model").choice({"springs"}, {"fem"});
+  material.object({"model", "structural", "shear", "bend", "damping", "strain_limit"}, {"fabric"});
+  material.member("model", "springs");
+  const Reader limit = material.member("strain_limit", json(nullptr));
+  if (!limit.is_null()) limit.fail("null; a strain limit is not supported yet");
+  return Springs{material.member("structural", 20000).number(ranges::stiffness),
+                 material.member("shear", 10000).number(ranges::stiffness),
+                 material.member("bend", 2000).number(ranges::stiffness),
+                 material.member("damping", 2.0).number(ranges::damping)};
+}
+
+std::vector<Pin> read_pins(const Reader& pins, const Mesh& mesh) {
+  std::vector<Pin> result(pins.array(0, max_pins));
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const Reader pin = pins.element(i);
+    pin.object({"at", "motion"});
+    result[i] = Pin{read_at(pin.member("at"), mesh), read_motion(pin.member("motion", json(nullptr)))};
+  }
+  return result;
+}
+
+std::string read_color(const Reader& color) {
+  const std::string allowed = "a color as #rrggbb in hexadecimal digits";
+  const std::string text = color.string(allowed);
+  const bool digits = std::all_of(text.begin() + (text.empty() ? 0 : 1), text.end(), [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F');
+  });
+  if (text.size() != 7 || text[0] != '#' || !digits) color.fail(allowed);
+  return text;
+}
+
+}  // namespace
+
+Cloth read_cloth(const Reader& cloth, std::size_t index) {
+  cloth.object({"name", "mesh", "transform", "mass", "material", "pins", "color", "texture"});
+  Cloth result;
+  result.name = cloth.member("name", default_name("cloth", index)).name();
+  result.mesh = read_mesh(cloth.member("mesh"));
+  result.transform = read_transform(cloth.member("transform", json::object()));
+  result.mass = read_mass(cloth.member("mass", json{{"per_vertex", 0.1}}));
+  result.material = read_material(cloth.member("material", json::object()));
+  result.pins = read_pins(cloth.member("pins", json::array()), result.mesh);
+  result.color = read_color(cloth.member("color", "#b03a2e"));
+  result.texture = cloth.member("texture", "weave").choice({"weave", "checker", "stripes", "plain"});
+  return result;
+}
+
+}  // namespace clothlab::scene

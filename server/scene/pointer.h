@@ -1,0 +1,32 @@
+// JSON Pointers (RFC 6901): text to tokens and back, and the rules for an index into an array.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace clothlab::scene {
+
+using nlohmann::json;
+
+/// "~" and "/" of one token escaped as "~0" and "~1".
+std::string escape_token(const std::string& token);
+
+/// The tokens of a pointer, unescaped; nothing if it is no JSON Pointer ("" or "/..." with "~" only in "~0"
+/// and "~1").
+std::optional<std::vector<std::string>> split_pointer(const std::string& pointer);
+
+/// An array index below `end`: digits without a leading zero.
+std::optional<std::size_t> array_index(const std::string& token, std::size_t end);
+
+/// The member or element of `value` that `token` names, or null.
+json* child(json& value, const std::string& token);
+
+/// JSON on one line, shortened to be read in a message.
+std::string compact(const json& value);
+
+/// Levels of nesting: 0 for a number or a text, 1 for an array of them.
+int depth(const json& value);
+
+}  // namespace clothlab::scene

@@ -1,0 +1,52 @@
+// Every range and limit of the scene document, in one place. scene.schema.json states the same numbers;
+// tests/schema holds the two together at both ends of each. All ends are inclusive, and every one is a
+// normal, finite float32.
+#pragma once
+
+#include <cstddef>
+
+namespace clothlab::scene {
+
+struct Range {
+  double minimum, maximum;
+  const char* unit = "";
+};
+
+namespace ranges {
+
+inline constexpr Range position{-1e6, 1e6, "m"};  ///< a coordinate
+inline constexpr Range length{1e-6, 1e6, "m"};    ///< a width, a height, a radius
+inline constexpr Range velocity{-1e6, 1e6, "m/s"};
+inline constexpr Range gravity{-1e6, 1e6, "m/s^2"};
+inline constexpr Range angle{-1e6, 1e6, "degrees"};
+inline constexpr Range angular_speed{-1e6, 1e6, "degrees/s"};
+inline constexpr Range direction{-1e6, 1e6};  ///< a component; not all of them 0
+inline constexpr Range amplitude{-1e6, 1e6, "m"};
+inline constexpr Range frequency{0, 1e4, "Hz"};
+
+inline constexpr Range grid_count{2, 1024, "vertices"};
+inline constexpr Range scale{1e-6, 1e6};
+inline constexpr Range mass_per_vertex{1e-9, 1e6, "kg"};
+inline constexpr Range area_density{1e-9, 1e6, "kg/m^2"};
+inline constexpr Range stiffness{0, 1e12, "N/m"};
+inline constexpr Range damping{0, 1e9, "N s/m"};
+
+inline constexpr Range friction{0, 10};
+inline constexpr Range restitution{0, 1};
+inline constexpr Range thickness{1e-6, 10, "m"};
+inline constexpr Range air_drag{0, 1e6, "1/s"};
+
+inline constexpr Range dt{1e-9, 1, "s"};
+inline constexpr Range iterations{1, 10000};
+inline constexpr Range tolerance{1e-12, 1};
+
+}  // namespace ranges
+
+inline constexpr std::size_t max_name_length = 64;  ///< characters, not bytes
+inline constexpr std::size_t max_cloths = 64;
+inline constexpr std::size_t max_colliders = 64;
+inline constexpr std::size_t max_pins = 1024;          ///< of one cloth
+inline constexpr std::size_t max_vertices = 1u << 20;  ///< of the whole scene
+inline constexpr std::size_t max_triangles = 1u << 21;
+
+}  // namespace clothlab::scene

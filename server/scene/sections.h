@@ -1,0 +1,23 @@
+// The sections of the scene document, each read and checked in its own file. Internal to server/scene.
+#pragma once
+
+#include "server/scene/reader.h"
+#include "server/scene/scene.h"
+
+namespace clothlab::scene {
+
+/// `index` gives the default name: "cloth", "cloth-2", ...
+Cloth read_cloth(const Reader& cloth, std::size_t index);
+Collider read_collider(const Reader& collider, std::size_t index);
+Motion read_motion(const Reader& motion);
+
+/// Which vertices a pin holds, checked against the mesh they belong to.
+At read_at(const Reader& at, const Mesh& mesh);
+
+std::size_t vertex_count(const Mesh& mesh);
+std::size_t triangle_count(const Mesh& mesh);
+
+/// "cloth", "cloth-2", ...
+std::string default_name(const char* kind, std::size_t index);
+
+}  // namespace clothlab::scene

@@ -1,0 +1,87 @@
+// The top of the scene document, and the rules that span its sections.
+#include <set>
+
+#include "server/scene/document.h"
+#include "server/scene/sections.h"
+
+namespace clothlab::scene {
+
+namespace {
+
+void require_unique_name(const Reader& named, const std::string& name, std::set<std::string>& taken) {
+  if (!taken.insert(name).second) named.member("name").fail("a name that no earlier one has");
+}
+
+std::vector<Cloth> read_cloths(const Reader& cloths) {
+  std::vector<Cloth> result(cloths.array(1, max_cloths));
+  std::set<std::string> names;
+  std::size_t vertices = 0, triangles = 0;
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const Reader cloth = cloths.element(i);
+    result[i] = read_cloth(cloth, i);
+    require_unique_name(cloth, result[i].name, names);
+    vertices += vertex_count(result[i].mesh);
+    triangles += triangle_count(result[i].mesh);
+    if (vertices > max_vertices || triangles > max_triangles)
+      cloth.member("mesh").fail(
+          std::to_string(vertices) + " vertices so far",
+          "at most " + std::to_string(max_vertices) + " vertices in all cloths together");
+  }
+  return result;
+}
+
+std::vector<Collider> read_colliders(const Reader& colliders) {
+  std::vector<Collider> result(colliders.array(0, max_colliders));
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    result[i] = read_collider(colliders.element(i), i);
+    require_unique_name(colliders.element(i), result[i].name, names);
+  }
+  return result;
+}
+
+std::optional<SelfCollision> read_self_collision(const Reader& self_collision) {
+  if (self_collision.is_null()) return std::nullopt;
+  self_collision.object({"thickness", "friction"});
+  return SelfCollision{self_collision.member("thickness", 0.01).number(ranges::thickness),
+                       self_collision.member("friction", 0.2).number(ranges::friction)};
+}
+
+Solver read_solver(const Reader& solver) {
+  solver.object({"method", "dt", "iterations", "tolerance"});
+  solver.member("method", "symplectic_euler")
+      .choice({"symplectic_euler"},
+              {"explicit_euler", "verlet", "rk4", "implicit_euler", "pbd", "xpbd", "vbd", "auto"});
+  return Solver{Method::symplectic_euler, solver.member("dt", 0.001).number(ranges::dt),
+                solver.member("iterations", 10).integer(ranges::iterations),
+                solver.member("tolerance", 1e-4).number(ranges::tolerance)};
+}
+
+Scene read_scene(const Reader& top) {
+  top.object(
+      {"version", "name", "gravity", "cloths", "colliders", "self_collision", "wind", "air_drag", "solver"});
+  top.member("version").integer({1, 1});
+  Scene scene;
+  scene.name = top.member("name", "scene").name();
+  scene.gravity = top.member("gravity", json{0, -9.8, 0}).vector(ranges::gravity);
+  scene.cloths = read_cloths(top.member("cloths"));
+  scene.colliders = read_colliders(top.member("colliders", json::array()));
+  scene.self_collision = read_self_collision(top.member("self_collision", json(nullptr)));
+  const Reader wind = top.member("wind", json(nullptr));
+  if (!wind.is_null()) wind.fail("null; wind is not supported yet (air_drag is)");
+  scene.air_drag = top.member("air_drag", 0.0).number(ranges::air_drag);
+  scene.solver = read_solver(top.member("solver", json::object()));
+  return scene;
+}
+
+}  // namespace
+
+Result<Document> validate(json value) {
+  std::optional<Error> error;
+  Document document{std::move(value), {}};
+  document.scene = read_scene(Reader(&document.value, "", error));
+  if (error) return *error;
+  return document;
+}
+
+}  // namespace clothlab::scene
