@@ -31,7 +31,8 @@ void SceneChoice::add_option(CLI::App& command) {
 
 void SceneChoice::add_set(CLI::App& command) {
   // One value an occurrence, so that a positional S may follow.
-  command.add_option("--set", set, "sets one value of the scene, e.g. --set /solver/dt=0.0005; may be repeated")
+  command
+      .add_option("--set", set, "sets one value of the scene, e.g. --set /solver/dt=0.0005; may be repeated")
       ->type_name("POINTER=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

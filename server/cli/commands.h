@@ -1,4 +1,5 @@
-// The subcommands of `clothlab`, one file each, and what they share: exit codes, errors, how a scene is named.
+// The subcommands of `clothlab`, one file each, and what they share: exit codes, errors, how a scene is
+// named.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,9 +12,16 @@
 namespace clothlab::cli {
 
 /// What the program's exit code means to a script.
-enum ExitCode : int { exit_done = 0, exit_internal = 1, exit_usage = 2, exit_no_opengl = 3, exit_diverged = 4 };
+enum ExitCode : int {
+  exit_done = 0,
+  exit_internal = 1,
+  exit_usage = 2,
+  exit_no_opengl = 3,
+  exit_diverged = 4
+};
 
-// Each adds its subcommand to `app`; when it is the one called, it runs and leaves its ExitCode in `exit_code`.
+// Each adds its subcommand to `app`; when it is the one called, it runs and leaves its ExitCode in
+// `exit_code`.
 void add_serve(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
 void add_render(CLI::App& app, int& exit_code);

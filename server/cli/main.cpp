@@ -64,6 +64,7 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     code = fail({"internal", error.what(), "please report it with the command you ran"}, exit_internal);
   }
-  if (!std::cout.flush()) return fail({"stdout", "could not be written", "check the disk or the pipe"}, exit_internal);
+  if (!std::cout.flush())
+    return fail({"stdout", "could not be written", "check the disk or the pipe"}, exit_internal);
   return code;
 }

@@ -42,7 +42,9 @@ void Box::add(const glm::vec3& center, float radius) {
   add(center + glm::vec3(radius));
 }
 
-float Box::radius() const { return 0.5f * glm::distance(minimum, maximum); }
+float Box::radius() const {
+  return 0.5f * glm::distance(minimum, maximum);
+}
 
 Camera frame(const Box& seen, float aspect) {
   const Box box = visible(seen);
@@ -52,11 +54,13 @@ Camera frame(const Box& seen, float aspect) {
   const float tan_y = std::tan(glm::radians(0.5f * vertical_field));
   const float tan_x = tan_y * aspect;
 
-  // A corner at (x, y, z) in the eye's axes is inside the picture when distance - z >= |x| / tan_x and |y| / tan_y.
+  // A corner at (x, y, z) in the eye's axes is inside the picture when distance - z >= |x| / tan_x and |y| /
+  // tan_y.
   float distance = 0.0f;
   for (int index = 0; index < 8; ++index) {
     const glm::vec3 offset = margin * (corner(box, index) - center);
-    const float side = std::max(std::abs(glm::dot(offset, right)) / tan_x, std::abs(glm::dot(offset, above)) / tan_y);
+    const float side =
+        std::max(std::abs(glm::dot(offset, right)) / tan_x, std::abs(glm::dot(offset, above)) / tan_y);
     distance = std::max(distance, glm::dot(offset, view_direction) + side);
   }
   Camera camera;
@@ -70,7 +74,8 @@ Camera frame(const Box& seen, float aspect) {
 glm::mat4 light_view_projection(const Box& seen, const glm::vec3& to_light) {
   const Box box = visible(seen);
   const float radius = 1.02f * box.radius();
-  const glm::mat4 view = glm::lookAt(box.center() + 2.0f * radius * to_light, box.center(), glm::vec3(0, 0, 1));
+  const glm::mat4 view =
+      glm::lookAt(box.center() + 2.0f * radius * to_light, box.center(), glm::vec3(0, 0, 1));
   return glm::ortho(-radius, radius, -radius, radius, 0.5f * radius, 4.0f * radius) * view;
 }
 

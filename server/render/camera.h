@@ -23,8 +23,8 @@ struct Camera {
   glm::mat4 view_projection{1.0f};  ///< world to clip space
 };
 
-/// Looks at the box's centre from the front, a little from the right and above, just far enough for all of the box to
-/// be in a picture of this aspect (width / height). An empty box is taken as 1 m about the origin.
+/// Looks at the box's centre from the front, a little from the right and above, just far enough for all of
+/// the box to be in a picture of this aspect (width / height). An empty box is taken as 1 m about the origin.
 Camera frame(const Box& box, float aspect);
 
 /// Parallel projection along the light onto all of the box, for the shadow map.

@@ -1,5 +1,6 @@
-// Draws a simulation's present state to a picture without a window: normals by a compute pass, then the cloth by vertex,
-// geometry and fragment shader, the colliders, a shadow. Uses the GL context that is current on the calling thread.
+// Draws a simulation's present state to a picture without a window: normals by a compute pass, then the cloth
+// by vertex, geometry and fragment shader, the colliders, a shadow. Uses the GL context that is current on
+// the calling thread.
 #pragma once
 
 #include <memory>
@@ -16,8 +17,8 @@ class Renderer {
   static Result<std::unique_ptr<Renderer>> create();
   ~Renderer();
 
-  /// The present state, `width` x `height` pixels, each in [1, max_image_side], framed so that all of it is seen.
-  /// Waits for the GPU. A vertex that is not finite is left out of the framing.
+  /// The present state, `width` x `height` pixels, each in [1, max_image_side], framed so that all of it is
+  /// seen. Waits for the GPU. A vertex that is not finite is left out of the framing.
   Result<Image> render(const sim::Simulation& simulation, int width, int height);
 
  private:

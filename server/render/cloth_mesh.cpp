@@ -1,0 +1,89 @@
+#include "server/render/cloth_mesh.h"
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+namespace clothlab::render {
+
+namespace {
+
+/// One channel of "#rrggbb" as linear light, [0, 1].
+float linear_channel(const std::string& color, std::size_t at) {
+  const double encoded = std::stoi(color.substr(at, 2), nullptr, 16) / 255.0;
+  return static_cast<float>(encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4));
+}
+
+/// The number cloth.frag knows a texture by.
+GLint pattern_number(const std::string& texture) {
+  if (texture == "weave") return 1;
+  if (texture == "checker") return 2;
+  if (texture == "stripes") return 3;
+  return 0;
+}
+
+void attribute(GLuint vertex_array, GLuint index, GLint components) {
+  glEnableVertexArrayAttrib(vertex_array, index);
+  glVertexArrayAttribFormat(vertex_array, index, components, GL_FLOAT, GL_FALSE, 0);
+  glVertexArrayAttribBinding(vertex_array, index, index);
+}
+
+}  // namespace
+
+ClothMesh::ClothMesh(const sim::Simulation& simulation, const gl::Program& normals_program)
+    : triangles_(simulation.model().triangles),
+      texture_coordinates_(simulation.model().texture_coordinates),
+      triangle_offsets_(simulation.model().vertex_triangles.offsets),
+      triangles_around_(simulation.model().vertex_triangles.items),
+      normals_(simulation.model().vertex_count() * 4 * sizeof(float)),
+      vertex_count_(simulation.model().vertex_count()),
+      triangle_count_(static_cast<GLsizei>(simulation.model().triangle_count())) {
+  glCreateVertexArrays(1, &vertex_array_);
+  attribute(vertex_array_, 0, 3);
+  attribute(vertex_array_, 1, 3);
+  attribute(vertex_array_, 2, 2);
+  glVertexArrayVertexBuffer(vertex_array_, 1, normals_.id(), 0, 4 * sizeof(float));
+  glVertexArrayVertexBuffer(vertex_array_, 2, texture_coordinates_.id(), 0, 2 * sizeof(float));
+  glVertexArrayElementBuffer(vertex_array_, triangles_.id());
+  const GLuint positions = simulation.position_buffer();
+  glVertexArrayVertexBuffer(vertex_array_, 0, positions, 0, 4 * sizeof(float));
+  compute_normals(positions, normals_program);
+}
+
+ClothMesh::~ClothMesh() {
+  glDeleteVertexArrays(1, &vertex_array_);
+}
+
+void ClothMesh::compute_normals(GLuint positions, const gl::Program& program) const {
+  program.use();
+  glUniform1ui(0, vertex_count_);
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, positions);
+  normals_.bind_storage(1);
+  triangle_offsets_.bind_storage(2);
+  triangles_around_.bind_storage(3);
+  triangles_.bind_storage(4);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  glDispatchCompute((vertex_count_ + 63) / 64, 1, 1);
+  glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
+}
+
+void ClothMesh::draw(const sim::Simulation& simulation) const {
+  glBindVertexArray(vertex_array_);
+  const std::vector<model::ClothRange>& ranges = simulation.model().cloths;
+  for (std::size_t index = 0; index < ranges.size(); ++index) {
+    const scene::Cloth& cloth = simulation.scene().cloths[index];
+    glUniform3f(0, linear_channel(cloth.color, 1), linear_channel(cloth.color, 3),
+                linear_channel(cloth.color, 5));
+    glUniform1i(1, pattern_number(cloth.texture));
+    const std::uintptr_t first_byte = ranges[index].first_triangle * 3 * sizeof(std::uint32_t);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * ranges[index].triangle_count), GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(first_byte));
+  }
+}
+
+void ClothMesh::draw_plain() const {
+  glBindVertexArray(vertex_array_);
+  glDrawElements(GL_TRIANGLES, 3 * triangle_count_, GL_UNSIGNED_INT, nullptr);
+}
+
+}  // namespace clothlab::render

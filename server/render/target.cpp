@@ -1,0 +1,111 @@
+#include "server/render/target.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+namespace clothlab::render {
+
+namespace {
+constexpr GLint wanted_samples = 8;
+constexpr GLsizei shadow_side = 2048;  // [pixels]
+
+bool complete(GLuint framebuffer) {
+  return glCheckNamedFramebufferStatus(framebuffer, GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+}
+}  // namespace
+
+Target::Target(int width, int height) : width_(width), height_(height) {
+  GLint most_samples = 1;
+  glGetIntegerv(GL_MAX_SAMPLES, &most_samples);
+  const GLint samples = std::min(wanted_samples, most_samples);
+  glCreateRenderbuffers(3, renderbuffers_);
+  glNamedRenderbufferStorageMultisample(renderbuffers_[0], samples, GL_RGBA8, width, height);
+  glNamedRenderbufferStorageMultisample(renderbuffers_[1], samples, GL_DEPTH_COMPONENT32F, width, height);
+  glNamedRenderbufferStorage(renderbuffers_[2], GL_RGBA8, width, height);
+  glCreateFramebuffers(1, &samples_framebuffer_);
+  glNamedFramebufferRenderbuffer(samples_framebuffer_, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
+                                 renderbuffers_[0]);
+  glNamedFramebufferRenderbuffer(samples_framebuffer_, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
+                                 renderbuffers_[1]);
+  glCreateFramebuffers(1, &resolved_framebuffer_);
+  glNamedFramebufferRenderbuffer(resolved_framebuffer_, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
+                                 renderbuffers_[2]);
+}
+
+Result<Target> Target::create(int width, int height) {
+  Target target(width, height);
+  if (complete(target.samples_framebuffer_) && complete(target.resolved_framebuffer_)) return target;
+  return Error{"render",
+               "no framebuffer of " + std::to_string(width) + "x" + std::to_string(height) + " pixels",
+               "the GPU may have too little memory: try a smaller size"};
+}
+
+Target::Target(Target&& other) noexcept
+    : width_(other.width_),
+      height_(other.height_),
+      samples_framebuffer_(std::exchange(other.samples_framebuffer_, 0)),
+      resolved_framebuffer_(std::exchange(other.resolved_framebuffer_, 0)) {
+  std::swap(renderbuffers_, other.renderbuffers_);
+}
+
+Target::~Target() {
+  glDeleteFramebuffers(1, &samples_framebuffer_);
+  glDeleteFramebuffers(1, &resolved_framebuffer_);
+  glDeleteRenderbuffers(3, renderbuffers_);
+}
+
+void Target::bind() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, samples_framebuffer_);
+  glViewport(0, 0, width_, height_);
+  glClear(GL_DEPTH_BUFFER_BIT);
+}
+
+Image Target::read() const {
+  glBlitNamedFramebuffer(samples_framebuffer_, resolved_framebuffer_, 0, 0, width_, height_, 0, 0, width_,
+                         height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, resolved_framebuffer_);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  Image image{width_, height_, {}};
+  const std::size_t row = 3 * static_cast<std::size_t>(width_);
+  image.pixels.resize(row * static_cast<std::size_t>(height_));
+  glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, image.pixels.data());
+  // OpenGL's first row is the bottom one.
+  for (auto top = image.pixels.begin(), bottom = image.pixels.end();
+       bottom - top >= 2 * static_cast<std::ptrdiff_t>(row); top += static_cast<std::ptrdiff_t>(row)) {
+    bottom -= static_cast<std::ptrdiff_t>(row);
+    std::swap_ranges(top, top + static_cast<std::ptrdiff_t>(row), bottom);
+  }
+  return image;
+}
+
+ShadowMap::ShadowMap() {
+  glCreateTextures(GL_TEXTURE_2D, 1, &texture_);
+  glTextureStorage2D(texture_, 1, GL_DEPTH_COMPONENT24, shadow_side, shadow_side);
+  glTextureParameteri(texture_, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTextureParameteri(texture_, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTextureParameteri(texture_, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+  glTextureParameteri(texture_, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+  // Outside the map everything is lit.
+  glTextureParameteri(texture_, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
+  glTextureParameteri(texture_, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
+  const GLfloat farthest[4] = {1, 1, 1, 1};
+  glTextureParameterfv(texture_, GL_TEXTURE_BORDER_COLOR, farthest);
+  glCreateFramebuffers(1, &framebuffer_);
+  glNamedFramebufferTexture(framebuffer_, GL_DEPTH_ATTACHMENT, texture_, 0);
+  glNamedFramebufferDrawBuffer(framebuffer_, GL_NONE);
+}
+
+ShadowMap::~ShadowMap() {
+  glDeleteFramebuffers(1, &framebuffer_);
+  glDeleteTextures(1, &texture_);
+}
+
+void ShadowMap::bind() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+  glViewport(0, 0, shadow_side, shadow_side);
+  glClear(GL_DEPTH_BUFFER_BIT);
+}
+
+}  // namespace clothlab::render

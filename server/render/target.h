@@ -1,0 +1,47 @@
+// Where the renderer draws: an anti-aliased framebuffer that becomes an Image, and the shadow map.
+#pragma once
+
+#include <glad/gl.h>
+
+#include "server/base/result.h"
+#include "server/render/image.h"
+
+namespace clothlab::render {
+
+/// A colour and depth framebuffer with several samples a pixel.
+class Target {
+ public:
+  static Result<Target> create(int width, int height);
+  ~Target();
+  Target(Target&& other) noexcept;
+  Target& operator=(Target&&) = delete;
+
+  /// Draws go here until another framebuffer is bound.
+  void bind() const;
+  /// Averages the samples and reads the picture back.
+  Image read() const;
+
+ private:
+  Target(int width, int height);
+  int width_, height_;
+  GLuint samples_framebuffer_ = 0, resolved_framebuffer_ = 0;
+  GLuint renderbuffers_[3] = {};  // samples' colour, samples' depth, resolved colour
+};
+
+/// A depth texture that the lit shaders compare with (binding 0).
+class ShadowMap {
+ public:
+  ShadowMap();
+  ~ShadowMap();
+  ShadowMap(const ShadowMap&) = delete;
+  ShadowMap& operator=(const ShadowMap&) = delete;
+
+  /// Clears it; draws go here until another framebuffer is bound.
+  void bind() const;
+  void bind_texture() const { glBindTextureUnit(0, texture_); }
+
+ private:
+  GLuint framebuffer_ = 0, texture_ = 0;
+};
+
+}  // namespace clothlab::render

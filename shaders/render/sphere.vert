@@ -1,0 +1,13 @@
+#include "frame.glsl"
+
+layout(location = 0) in vec3 unit;  // on the unit sphere
+layout(location = 0) uniform vec4 placed;  // xyz centre [m], w radius [m]
+
+out vec3 position;
+out vec3 normal;
+
+void main() {
+  position = placed.xyz + placed.w * unit;
+  normal = unit;
+  gl_Position = view_projection * vec4(position, 1.0);
+}
