@@ -1,5 +1,8 @@
 #include "server/gl/buffer.h"
 
+#include <cstdlib>
+#include <string_view>
+
 namespace clothlab::gl {
 
 Buffer::Buffer(std::size_t bytes, const void* data, GLbitfield flags) : bytes_(bytes) {
@@ -43,6 +46,22 @@ BufferTexture::~BufferTexture() {
 BufferTexture& BufferTexture::operator=(BufferTexture&& other) noexcept {
   std::swap(id_, other.id_);
   return *this;
+}
+
+bool reads_are_storage() {
+  static const bool storage = [] {
+    const char* reads = std::getenv("CLOTHLAB_READS");
+    return reads && std::string_view(reads) == "storage";
+  }();
+  return storage;
+}
+
+void TextureBuffer::bind(GLuint unit) const {
+  if (reads_are_storage()) {
+    buffer.bind_storage(8 + unit);
+  } else {
+    texture.bind(unit);
+  }
 }
 
 ReadbackRing::ReadbackRing(std::size_t slot_bytes, int slots)

@@ -51,12 +51,17 @@ class BufferTexture {
   GLuint id_ = 0;
 };
 
-/// A buffer that kernels write and other kernels read as texture.
+/// True with CLOTHLAB_READS=storage in the environment: kernels then read buffers as storage, to compare the two.
+bool reads_are_storage();
+
+/// A buffer that kernels read through shaders/access.glsl, and that other kernels may write.
 struct TextureBuffer {
   Buffer buffer;
   BufferTexture texture;
   TextureBuffer() = default;
   TextureBuffer(Buffer storage, GLenum format) : buffer(std::move(storage)), texture(buffer, format) {}
+  /// Binds it for reading as READ_...(name, unit).
+  void bind(GLuint unit) const;
 };
 
 /// Copies of GPU results on their way back: copy now, read when the fence says it has arrived.

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "server/base/data_files.h"
+#include "server/gl/buffer.h"
 
 namespace clothlab::gl {
 
@@ -83,6 +84,7 @@ std::string info_log(GLuint id, Get get, GetLog get_log) {
 Result<GLuint> compile(const std::string& path, const Defines& defines) {
   Source source;
   source.text = "#version 450 core\n";
+  if (reads_are_storage()) source.text += "#define READ_STORAGE\n";
   for (const auto& [name, value] : defines) source.text += "#define " + name + " " + value + "\n";
   std::set<std::string> seen;
   if (Status status = expand(path, source, seen); !status) return status.error();

@@ -51,9 +51,9 @@ std::vector<Index> held_by(const scene::Cloth& cloth, const scene::At& at, const
 }
 
 Index motion_index(std::vector<scene::Motion>& motions, const scene::Motion& motion) {
-  const auto found = std::find(motions.begin(), motions.end(), motion);
-  if (found == motions.end()) motions.push_back(motion);
-  return static_cast<Index>(found - motions.begin());
+  const auto index = static_cast<Index>(std::find(motions.begin(), motions.end(), motion) - motions.begin());
+  if (index == motions.size()) motions.push_back(motion);
+  return index;
 }
 
 /// Lists for each vertex the items that touch it; `corners(item)` gives an item's vertices.

@@ -1,0 +1,64 @@
+// How deep a change of scene cuts: decided by comparing the two documents, before anything is touched.
+#include <algorithm>
+
+#include "server/sim/plan.h"
+#include "server/sim/simulation.h"
+
+namespace clothlab::sim {
+
+namespace {
+
+/// A pin that appears would tear its vertex back to its home at once, so it starts the cloth anew; a pin that goes
+/// away lets its vertices fall.
+bool pins_were_added(const scene::Cloth& from, const scene::Cloth& to) {
+  return std::any_of(to.pins.begin(), to.pins.end(), [&](const scene::Pin& pin) {
+    return std::none_of(from.pins.begin(), from.pins.end(), [&](const scene::Pin& old) { return old.at == pin.at; });
+  });
+}
+
+bool new_cloth(const scene::Cloth& from, const scene::Cloth& to) {
+  return from.mesh != to.mesh || from.transform != to.transform || pins_were_added(from, to);
+}
+
+/// Same springs, same pinned vertices, same list of motions.
+bool same_structure(const scene::Cloth& from, const scene::Cloth& to) {
+  const auto kinds = [](const scene::Springs& s) { return std::array{s.structural > 0, s.shear > 0, s.bend > 0}; };
+  return kinds(from.material) == kinds(to.material) && from.pins.size() == to.pins.size();
+}
+
+/// Names, colours and textures mean nothing to the simulation.
+scene::Scene without_looks(scene::Scene scene) {
+  scene.name.clear();
+  for (scene::Cloth& cloth : scene.cloths) {
+    cloth.name.clear();
+    cloth.color.clear();
+    cloth.texture.clear();
+  }
+  for (scene::Collider& collider : scene.colliders) collider.name.clear();
+  return scene;
+}
+
+}  // namespace
+
+const char* name(ChangeDepth depth) {
+  switch (depth) {
+    case ChangeDepth::none: return "none";
+    case ChangeDepth::uniform: return "uniform";
+    case ChangeDepth::kernel: return "kernel";
+    case ChangeDepth::cloth: return "cloth";
+  }
+  return "";
+}
+
+ChangeDepth change_depth(const scene::Scene& from, const scene::Scene& to) {
+  if (without_looks(from) == without_looks(to)) return ChangeDepth::none;
+  if (from.cloths.size() != to.cloths.size()) return ChangeDepth::cloth;
+  bool same = plan(from) == plan(to);
+  for (std::size_t i = 0; i < from.cloths.size(); ++i) {
+    if (new_cloth(from.cloths[i], to.cloths[i])) return ChangeDepth::cloth;
+    same = same && same_structure(from.cloths[i], to.cloths[i]);
+  }
+  return same ? ChangeDepth::uniform : ChangeDepth::kernel;
+}
+
+}  // namespace clothlab::sim

@@ -1,0 +1,46 @@
+#include "server/sim/colliders.h"
+
+#include <algorithm>
+#include <glm/vec4.hpp>
+
+namespace clothlab::sim {
+
+double contact_margin(const scene::Scene& scene, const model::Model& model) {
+  if (scene.self_collision) return 0.5 * scene.self_collision->thickness;
+  double edge = 0.0;
+  for (const model::ClothRange& cloth : model.cloths) edge = std::max(edge, cloth.mean_edge_length);
+  return 0.01 * edge;
+}
+
+void set_colliders(const gl::Program& program, const scene::Scene& scene, const MotionTable& motions, double margin) {
+  std::vector<glm::vec4> spheres, points;
+  std::vector<glm::vec3> sphere_surfaces, normals, plane_surfaces;
+  for (const scene::Collider& collider : scene.colliders) {
+    const glm::vec3 surface(collider.friction, collider.restitution, motions.index(collider.motion));
+    if (const auto* sphere = std::get_if<scene::Sphere>(&collider.shape)) {
+      spheres.emplace_back(glm::vec3(sphere->center), static_cast<float>(sphere->radius + margin));
+      sphere_surfaces.push_back(surface);
+    } else if (const auto* plane = std::get_if<scene::Plane>(&collider.shape)) {
+      points.emplace_back(glm::vec3(plane->point), static_cast<float>(margin));
+      normals.emplace_back(plane->normal);
+      plane_surfaces.push_back(surface);
+    }
+  }
+  // Locations as laid out in colliders.glsl: each array follows the one before.
+  const auto set3 = [&](GLint location, const std::vector<glm::vec3>& values) {
+    if (!values.empty())
+      glProgramUniform3fv(program.id(), location, static_cast<GLsizei>(values.size()), &values[0].x);
+  };
+  const auto set4 = [&](GLint location, const std::vector<glm::vec4>& values) {
+    if (!values.empty())
+      glProgramUniform4fv(program.id(), location, static_cast<GLsizei>(values.size()), &values[0].x);
+  };
+  const auto sphere_count = static_cast<GLint>(spheres.size()), plane_count = static_cast<GLint>(points.size());
+  set4(16, spheres);
+  set3(16 + sphere_count, sphere_surfaces);
+  set4(256, points);
+  set3(256 + plane_count, normals);
+  set3(256 + 2 * plane_count, plane_surfaces);
+}
+
+}  // namespace clothlab::sim

@@ -1,0 +1,72 @@
+#include "server/sim/diagnose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "server/sim/plan.h"
+
+namespace clothlab::sim {
+
+namespace {
+
+/// As in diagnose.comp.
+struct Partial {
+  float kinetic, elastic, gravitational, contacts;
+  float strain, speed_squared, not_finite, unused;
+};
+
+}  // namespace
+
+Result<DiagnosticsPass> DiagnosticsPass::create(std::uint32_t vertex_count) {
+  DiagnosticsPass pass;
+  Result<gl::Program> program =
+      gl::Program::load({"stream/diagnose.comp"}, {{"GROUP_SIZE", std::to_string(group_size)}});
+  if (!program) return program.error();
+  pass.program_ = std::move(*program);
+  pass.program_.use();
+  glUniform1i(0, static_cast<GLint>(vertex_count));
+  pass.groups_ = (vertex_count + group_size - 1) / group_size;
+  pass.partials_ = gl::Buffer(pass.groups_ * sizeof(Partial));
+  pass.ring_ = gl::ReadbackRing(pass.partials_.bytes(), 3);
+  return pass;
+}
+
+bool DiagnosticsPass::request(const StateBuffers& state, const glm::dvec3& gravity, double time, std::uint64_t step) {
+  if (ring_.full()) return false;
+  program_.use();
+  glUniform4f(3, static_cast<float>(gravity.x), static_cast<float>(gravity.y), static_cast<float>(gravity.z), 0.0f);
+  state.position().bind(unit_position);
+  state.velocity().bind(unit_velocity);
+  partials_.bind_storage(0);
+  glDispatchCompute(groups_, 1, 1);
+  ring_.push(partials_, partials_.bytes());
+  requested_.emplace_back(time, step);
+  return true;
+}
+
+bool DiagnosticsPass::poll(Diagnostics& out, bool wait) {
+  const std::span<const std::byte> bytes = ring_.front(wait);
+  if (bytes.empty()) return false;
+  out = Diagnostics{};
+  std::tie(out.time, out.step) = requested_.front();
+  double contacts = 0.0, speed_squared = 0.0;
+  for (std::size_t at = 0; at < bytes.size(); at += sizeof(Partial)) {
+    Partial partial;
+    std::memcpy(&partial, bytes.data() + at, sizeof(partial));
+    out.kinetic += partial.kinetic;
+    out.elastic += partial.elastic;
+    out.gravitational += partial.gravitational;
+    contacts += partial.contacts;
+    out.max_strain = std::max(out.max_strain, static_cast<double>(partial.strain));
+    speed_squared = std::max(speed_squared, static_cast<double>(partial.speed_squared));
+    out.finite = out.finite && partial.not_finite == 0.0f;
+  }
+  out.contacts = static_cast<std::uint32_t>(contacts);
+  out.max_speed = std::sqrt(speed_squared);
+  ring_.pop();
+  requested_.pop_front();
+  return true;
+}
+
+}  // namespace clothlab::sim

@@ -1,0 +1,30 @@
+// Energies, strain, speed and contacts of the whole state: a reduction on the GPU (shaders/stream/diagnose.comp) whose
+// partial results come back through a ring, without waiting unless asked to.
+#pragma once
+
+#include <deque>
+
+#include "server/gl/program.h"
+#include "server/sim/simulation.h"
+#include "server/sim/state.h"
+
+namespace clothlab::sim {
+
+class DiagnosticsPass {
+ public:
+  static Result<DiagnosticsPass> create(std::uint32_t vertex_count);
+
+  /// Queues the reduction. False if too many are still on their way. Springs and slices must be bound.
+  bool request(const StateBuffers& state, const glm::dvec3& gravity, double time, std::uint64_t step);
+  /// True and the oldest result, if one has arrived or `wait` is set and one was requested.
+  bool poll(Diagnostics& out, bool wait);
+
+ private:
+  gl::Program program_;
+  gl::Buffer partials_;
+  gl::ReadbackRing ring_;
+  std::deque<std::pair<double, std::uint64_t>> requested_;  ///< time and step of each result on its way
+  std::uint32_t groups_ = 0;
+};
+
+}  // namespace clothlab::sim

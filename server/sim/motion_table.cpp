@@ -1,0 +1,42 @@
+#include "server/sim/motion_table.h"
+
+#include <algorithm>
+
+#include "server/model/motion.h"
+
+namespace clothlab::sim {
+
+namespace {
+constexpr std::size_t floats_a_pose = 20;
+}
+
+MotionTable::MotionTable(std::vector<scene::Motion> motions) : motions_(std::move(motions)) {
+  if (motions_.empty()) return;
+  rows_.resize((batch_steps + 1) * motions_.size() * floats_a_pose);
+  table_ = gl::TextureBuffer(gl::Buffer(rows_.size() * sizeof(float)), GL_RGBA32F);
+}
+
+int MotionTable::index(const scene::Motion& motion) const {
+  const auto found = std::find(motions_.begin(), motions_.end(), motion);
+  return found == motions_.end() ? -1 : static_cast<int>(found - motions_.begin());
+}
+
+void MotionTable::upload(const std::vector<double>& times) {
+  float* out = rows_.data();
+  const auto write = [&out](const glm::dvec3& xyz, double w) {
+    for (int axis = 0; axis < 3; ++axis) *out++ = static_cast<float>(xyz[axis]);
+    *out++ = static_cast<float>(w);
+  };
+  for (const double time : times) {
+    for (const scene::Motion& motion : motions_) {
+      const model::Pose pose = model::pose(motion, time);
+      for (int row = 0; row < 3; ++row)
+        write({pose.rotation[0][row], pose.rotation[1][row], pose.rotation[2][row]}, pose.translation[row]);
+      write(pose.linear_velocity, 0.0);
+      write(pose.angular_velocity, 0.0);
+    }
+  }
+  table_.buffer.upload(rows_.data(), static_cast<std::size_t>(out - rows_.data()) * sizeof(float));
+}
+
+}  // namespace clothlab::sim

@@ -1,0 +1,64 @@
+#include "server/sim/plan.h"
+
+#include <algorithm>
+
+namespace clothlab::sim {
+
+namespace {
+
+bool moves(const scene::Motion& motion) { return !std::holds_alternative<std::monostate>(motion); }
+
+}  // namespace
+
+std::vector<scene::Motion> moving_motions(const scene::Scene& scene) {
+  std::vector<scene::Motion> found;
+  const auto add = [&](const scene::Motion& motion) {
+    if (moves(motion) && std::find(found.begin(), found.end(), motion) == found.end()) found.push_back(motion);
+  };
+  for (const scene::Cloth& cloth : scene.cloths)
+    for (const scene::Pin& pin : cloth.pins) add(pin.motion);
+  for (const scene::Collider& collider : scene.colliders) add(collider.motion);
+  return found;
+}
+
+Plan plan(const scene::Scene& scene) {
+  Plan plan;
+  for (const scene::Cloth& cloth : scene.cloths) {
+    plan.structural |= cloth.material.structural > 0.0;
+    plan.shear |= cloth.material.shear > 0.0;
+    plan.bend |= cloth.material.bend > 0.0;
+    plan.pins |= !cloth.pins.empty();
+  }
+  for (const scene::Collider& collider : scene.colliders)
+    ++(std::holds_alternative<scene::Sphere>(collider.shape) ? plan.spheres : plan.planes);
+  plan.moving = static_cast<int>(moving_motions(scene).size());
+  plan.self_collision = scene.self_collision.has_value();
+  return plan;
+}
+
+gl::Defines step_defines(const Plan& plan) {
+  gl::Defines defines{{"GROUP_SIZE", std::to_string(group_size)},
+                      {"MOTION_COUNT", std::to_string(plan.moving)},
+                      {"SPHERE_COUNT", std::to_string(plan.spheres)},
+                      {"PLANE_COUNT", std::to_string(plan.planes)}};
+  if (plan.self_collision) defines.emplace_back("SELF_COLLISION", "1");
+  return defines;
+}
+
+std::vector<Simulation::Pass> passes(const Plan& plan) {
+  std::vector<Simulation::Pass> list;
+  const auto add = [&](const char* name, bool runs, const char* reason) { list.push_back({name, runs ? "" : reason}); };
+  add("neighbour_search", plan.self_collision, "self_collision is null");
+  add("structural_springs", plan.structural, "their stiffness is 0 in every cloth");
+  add("shear_springs", plan.shear, "their stiffness is 0 in every cloth");
+  add("bend_springs", plan.bend, "their stiffness is 0 in every cloth");
+  add("self_contacts", plan.self_collision, "self_collision is null");
+  add("symplectic_euler", true, "");
+  add("pins", plan.pins, "no cloth has pins");
+  add("moving_poses", plan.moving > 0, "no pin and no collider moves");
+  add("spheres", plan.spheres > 0, "the scene has no sphere");
+  add("planes", plan.planes > 0, "the scene has no plane");
+  return list;
+}
+
+}  // namespace clothlab::sim

@@ -1,0 +1,37 @@
+// Which passes a scene needs, and nothing else: derived from the scene alone (principle 2 of the design).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "server/gl/program.h"
+#include "server/sim/simulation.h"
+
+namespace clothlab::sim {
+
+/// Threads in a work group and vertices in a slice of the spring lists. Of 32 to 256, 128 was best or near it for
+/// cloths from 25x25 to 256x256 on llvmpipe.
+inline constexpr int group_size = 128;
+
+/// What the step kernel is specialised for. Two scenes with equal plans run the same kernels.
+struct Plan {
+  bool structural = false, shear = false, bend = false;  ///< in any cloth
+  bool pins = false;
+  int moving = 0;  ///< distinct motions of pins and colliders that are not null
+  int spheres = 0, planes = 0;
+  bool self_collision = false;
+  bool operator==(const Plan&) const = default;
+};
+
+Plan plan(const scene::Scene& scene);
+
+/// The defines that specialise the step kernel.
+gl::Defines step_defines(const Plan& plan);
+
+/// What runs and what is left out, with the reason.
+std::vector<Simulation::Pass> passes(const Plan& plan);
+
+/// The motions of pins and colliders that are not null, each once, in order of appearance.
+std::vector<scene::Motion> moving_motions(const scene::Scene& scene);
+
+}  // namespace clothlab::sim

@@ -1,0 +1,91 @@
+#include "server/sim/self_collision.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "server/sim/plan.h"
+
+namespace clothlab::sim {
+
+namespace {
+
+constexpr std::size_t neighbour_slots = 64;  // NEIGHBOUR_SLOTS in shaders/collide/neighbours.glsl
+
+GLuint groups(std::uint32_t vertex_count) { return (vertex_count + group_size - 1) / group_size; }
+
+}  // namespace
+
+Result<SelfCollision> SelfCollision::create(std::uint32_t vertex_count) {
+  SelfCollision made;
+  made.vertex_count_ = vertex_count;
+  // Two cells a vertex keep the chains short.
+  const std::uint32_t cells = std::bit_ceil(2 * vertex_count);
+  const gl::Defines defines{{"GROUP_SIZE", std::to_string(group_size)}, {"CELL_COUNT", std::to_string(cells)}};
+  for (auto [program, path] : {std::pair{&made.clear_, "collide/clear_cells.comp"},
+                               {&made.insert_, "collide/insert_cells.comp"},
+                               {&made.find_, "collide/find_neighbours.comp"}}) {
+    Result<gl::Program> loaded = gl::Program::load({path}, defines);
+    if (!loaded) return loaded.error();
+    *program = std::move(*loaded);
+    program->use();
+    glUniform1i(0, static_cast<GLint>(vertex_count));
+  }
+  made.control_ = gl::Buffer(5 * sizeof(std::uint32_t));
+  made.heads_ = gl::Buffer(cells * sizeof(std::int32_t));
+  made.chains_ = gl::Buffer(vertex_count * sizeof(std::int32_t));
+  made.counts_ = {gl::Buffer(vertex_count * sizeof(std::uint32_t)), GL_R32UI};
+  made.lists_ = {gl::Buffer(vertex_count * neighbour_slots * 2 * sizeof(std::uint32_t)), GL_RG32UI};
+  made.built_position_ = {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
+  return made;
+}
+
+void SelfCollision::set_parameters(const scene::SelfCollision& parameters, const model::Model& model) {
+  // The skin trades rebuilds against list length: one edge of the mesh keeps a flat cloth's lists empty while its
+  // contact distance is below an edge, since everything that near is joined by a spring.
+  double edge = 0.0;
+  for (const model::ClothRange& cloth : model.cloths) edge = std::max(edge, cloth.mean_edge_length);
+  skin_ = static_cast<float>(std::max(edge, 0.5 * parameters.thickness));
+  for (const gl::Program* program : {&insert_, &find_}) {
+    program->use();
+    glUniform1f(2, static_cast<float>(parameters.thickness) + skin_);
+  }
+  glUniform1f(3, static_cast<float>(parameters.thickness));
+  invalidate();
+}
+
+void SelfCollision::invalidate() {
+  const std::array<std::uint32_t, 3> dispatch{groups(vertex_count_), 1, 1};
+  control_.upload(dispatch.data(), sizeof(dispatch));
+}
+
+void SelfCollision::update_lists() {
+  bind();
+  heads_.bind_storage(3);
+  chains_.bind_storage(4);
+  built_position_.buffer.bind_storage(5);
+  counts_.buffer.bind_storage(6);
+  lists_.buffer.bind_storage(7);
+  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, control_.id());
+  for (const gl::Program* program : {&clear_, &insert_, &find_}) {
+    program->use();
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+    glDispatchComputeIndirect(0);
+  }
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+}
+
+void SelfCollision::bind() const {
+  control_.bind_storage(2);
+  counts_.bind(4);
+  lists_.bind(5);
+  built_position_.bind(8);
+}
+
+SelfCollision::Counters SelfCollision::counters() const {
+  std::array<std::uint32_t, 2> words{};
+  control_.download(words.data(), sizeof(words), 3 * sizeof(std::uint32_t));
+  return {words[0], words[1]};
+}
+
+}  // namespace clothlab::sim

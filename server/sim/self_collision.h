@@ -1,0 +1,44 @@
+// Keeps the neighbour lists that self-collision reads: three dispatches that run only in the steps in which a vertex has
+// moved half the skin, which the GPU finds out by itself (indirect dispatch), so nothing waits and nothing is guessed.
+#pragma once
+
+#include "server/base/result.h"
+#include "server/gl/buffer.h"
+#include "server/gl/program.h"
+#include "server/model/model.h"
+#include "server/scene/scene.h"
+
+namespace clothlab::sim {
+
+class SelfCollision {
+ public:
+  static Result<SelfCollision> create(std::uint32_t vertex_count);
+
+  /// The distances for this scene; the lists are rebuilt before the next step.
+  void set_parameters(const scene::SelfCollision& parameters, const model::Model& model);
+
+  /// Rebuilds the lists where a vertex has moved too far since. Needs position, springs, slices and rest positions bound.
+  void update_lists();
+  /// Rebuilds them before the next step whatever has moved.
+  void invalidate();
+
+  /// Binds what the step kernel reads and writes.
+  void bind() const;
+  float skin() const { return skin_; }
+
+  struct Counters {
+    std::uint32_t rebuilds = 0;  ///< how often the lists were built
+    std::uint32_t dropped = 0;   ///< neighbours beyond the slots of a list, over all rebuilds
+  };
+  /// Waits for the GPU.
+  Counters counters() const;
+
+ private:
+  std::uint32_t vertex_count_ = 0;
+  float skin_ = 0;  ///< [m]
+  gl::Program clear_, insert_, find_;
+  gl::Buffer control_, heads_, chains_;
+  gl::TextureBuffer counts_, lists_, built_position_;
+};
+
+}  // namespace clothlab::sim

@@ -1,0 +1,245 @@
+#include "server/sim/simulation.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "server/model/motion.h"
+#include "server/sim/colliders.h"
+#include "server/sim/diagnose.h"
+#include "server/sim/motion_table.h"
+#include "server/sim/plan.h"
+#include "server/sim/self_collision.h"
+#include "server/sim/spring_lists.h"
+#include "server/sim/state.h"
+
+namespace clothlab::sim {
+
+namespace {
+
+/// What depends on the scene's structure but not on the state: replaced as a whole by a change of kernel.
+struct Kernels {
+  Plan plan;
+  model::Model model;
+  gl::Program step;
+  MotionTable motions;
+  std::optional<SelfCollision> self_collision;
+  gl::TextureBuffer springs, slices;
+};
+
+void upload_springs(Kernels& kernels, const scene::Scene& scene) {
+  const SpringLists lists = spring_lists(kernels.model, scene);
+  kernels.springs = {gl::Buffer(lists.entries), GL_RGBA32UI};
+  kernels.slices = {gl::Buffer(lists.slices), GL_R32UI};
+}
+
+void set_parameters(Kernels& kernels, const scene::Scene& scene) {
+  const GLuint step = kernels.step.id();
+  glProgramUniform1i(step, 0, static_cast<GLint>(kernels.model.vertex_count()));
+  glProgramUniform1f(step, 2, static_cast<float>(scene.solver.dt));
+  glProgramUniform4f(step, 3, static_cast<float>(scene.gravity.x), static_cast<float>(scene.gravity.y),
+                     static_cast<float>(scene.gravity.z), static_cast<float>(scene.air_drag));
+  set_colliders(kernels.step, scene, kernels.motions, contact_margin(scene, kernels.model));
+  if (!kernels.self_collision) return;
+  kernels.self_collision->set_parameters(*scene.self_collision, kernels.model);
+  glProgramUniform1f(step, 4, static_cast<float>(scene.self_collision->friction));
+  glProgramUniform1f(step, 5, kernels.self_collision->skin());
+}
+
+Result<Kernels> make_kernels(const scene::Scene& scene) {
+  Kernels kernels;
+  Result<model::Model> model = model::build(scene);
+  if (!model) return model.error();
+  kernels.model = std::move(*model);
+  kernels.plan = plan(scene);
+  Result<gl::Program> step = gl::Program::load({"methods/symplectic_euler.comp"}, step_defines(kernels.plan));
+  if (!step) return step.error();
+  kernels.step = std::move(*step);
+  kernels.motions = MotionTable(moving_motions(scene));
+  if (kernels.plan.self_collision) {
+    Result<SelfCollision> self_collision = SelfCollision::create(kernels.model.vertex_count());
+    if (!self_collision) return self_collision.error();
+    kernels.self_collision = std::move(*self_collision);
+  }
+  upload_springs(kernels, scene);
+  set_parameters(kernels, scene);
+  return kernels;
+}
+
+gl::TextureBuffer rest_positions(const model::Model& model) {
+  std::vector<float> words;
+  for (std::uint32_t i = 0; i < model.vertex_count(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) words.push_back(static_cast<float>(model.rest_position[i][axis]));
+    words.push_back(static_cast<float>(model.vertex_cloth[i]));
+  }
+  return {gl::Buffer(words), GL_RGBA32F};
+}
+
+template <class Part>
+bool differs(const scene::Scene& from, const scene::Scene& to, Part part) {
+  return !std::equal(from.cloths.begin(), from.cloths.end(), to.cloths.begin(), to.cloths.end(),
+                     [&](const scene::Cloth& a, const scene::Cloth& b) { return a.*part == b.*part; });
+}
+
+}  // namespace
+
+struct Simulation::Implementation {
+  scene::Scene scene;
+  Kernels kernels;
+  gl::TextureBuffer rest;
+  StateBuffers state;
+  DiagnosticsPass diagnostics;
+  std::uint32_t topology_revision = 1;
+  std::uint64_t step_index = 0;
+  // Time is start_time + (step_index - start_step) dt: no sum that rounding could let drift. A change of dt starts anew.
+  double start_time = 0.0;
+  std::uint64_t start_step = 0;
+  std::vector<double> batch_times;
+
+  double time_of(std::uint64_t step) const {
+    return start_time + static_cast<double>(step - start_step) * scene.solver.dt;
+  }
+
+  void bind_constants() {
+    kernels.springs.bind(unit_springs);
+    kernels.slices.bind(unit_spring_slices);
+    rest.bind(unit_rest_position);
+  }
+
+  void run_batch(std::uint32_t count) {
+    bind_constants();
+    if (!kernels.motions.empty()) {
+      batch_times.clear();
+      for (std::uint32_t row = 0; row <= count; ++row) batch_times.push_back(time_of(step_index + row));
+      kernels.motions.upload(batch_times);
+      kernels.motions.bind(unit_motion_table);
+    }
+    const GLuint groups = (kernels.model.vertex_count() + group_size - 1) / group_size;
+    for (std::uint32_t row = 0; row < count; ++row) {
+      state.bind_for_step();
+      if (kernels.self_collision) kernels.self_collision->update_lists();
+      kernels.step.use();
+      if (!kernels.motions.empty()) glUniform1i(1, static_cast<GLint>(row));
+      // update_lists binds its own outputs to other slots than the step's two.
+      glDispatchCompute(groups, 1, 1);
+      glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+      state.swap();
+    }
+    step_index += count;
+  }
+
+  /// Takes over what changed, the state kept.
+  void adopt(const scene::Scene& next) {
+    if (next.solver.dt != scene.solver.dt) {
+      start_time = time_of(step_index);
+      start_step = step_index;
+    }
+    const bool constants = differs(scene, next, &scene::Cloth::mass) || differs(scene, next, &scene::Cloth::pins) ||
+                           moving_motions(scene) != moving_motions(next);
+    scene = next;
+    if (constants) state.rewrite_constants(kernels.model, kernels.motions);
+  }
+};
+
+Simulation::Simulation() : implementation_(std::make_unique<Implementation>()) {}
+Simulation::~Simulation() = default;
+
+Result<std::unique_ptr<Simulation>> Simulation::create(const scene::Scene& scene) {
+  std::unique_ptr<Simulation> made(new Simulation);
+  Implementation& self = *made->implementation_;
+  Result<Kernels> kernels = make_kernels(scene);
+  if (!kernels) return kernels.error();
+  self.kernels = std::move(*kernels);
+  Result<DiagnosticsPass> diagnostics = DiagnosticsPass::create(self.kernels.model.vertex_count());
+  if (!diagnostics) return diagnostics.error();
+  self.diagnostics = std::move(*diagnostics);
+  self.scene = scene;
+  self.rest = rest_positions(self.kernels.model);
+  self.state = StateBuffers(self.kernels.model, self.kernels.motions);
+  return made;
+}
+
+Result<ChangeDepth> Simulation::change(const scene::Scene& scene) {
+  Implementation& self = *implementation_;
+  const ChangeDepth depth = change_depth(self.scene, scene);
+  if (depth == ChangeDepth::cloth) {
+    Result<std::unique_ptr<Simulation>> fresh = create(scene);
+    if (!fresh) return fresh.error();
+    (*fresh)->implementation_->topology_revision = self.topology_revision + 1;
+    implementation_ = std::move((*fresh)->implementation_);
+    return depth;
+  }
+  if (depth == ChangeDepth::kernel) {
+    Result<Kernels> kernels = make_kernels(scene);
+    if (!kernels) return kernels.error();
+    self.kernels = std::move(*kernels);
+  } else if (depth == ChangeDepth::uniform) {
+    // Masses and pins live in the model; building it again is cheap and cannot change its shape here.
+    Result<model::Model> model = model::build(scene);
+    if (!model) return model.error();
+    self.kernels.model = std::move(*model);
+    self.kernels.motions = MotionTable(moving_motions(scene));
+    if (differs(self.scene, scene, &scene::Cloth::material)) upload_springs(self.kernels, scene);
+    set_parameters(self.kernels, scene);
+  }
+  self.adopt(scene);
+  return depth;
+}
+
+void Simulation::step(std::uint32_t count) {
+  while (count > 0) {
+    const std::uint32_t batch = std::min(count, batch_steps);
+    implementation_->run_batch(batch);
+    count -= batch;
+  }
+}
+
+void Simulation::reset() {
+  Implementation& self = *implementation_;
+  self.state.reset(self.kernels.model, self.kernels.motions);
+  if (self.kernels.self_collision) self.kernels.self_collision->invalidate();
+  self.step_index = self.start_step = 0;
+  self.start_time = 0.0;
+}
+
+double Simulation::time() const { return implementation_->time_of(implementation_->step_index); }
+std::uint64_t Simulation::step_index() const { return implementation_->step_index; }
+const scene::Scene& Simulation::scene() const { return implementation_->scene; }
+const model::Model& Simulation::model() const { return implementation_->kernels.model; }
+std::uint32_t Simulation::topology_revision() const { return implementation_->topology_revision; }
+std::vector<Simulation::Pass> Simulation::passes() const { return sim::passes(implementation_->kernels.plan); }
+
+void Simulation::request_diagnostics() {
+  Implementation& self = *implementation_;
+  self.bind_constants();
+  self.diagnostics.request(self.state, self.scene.gravity, time(), self.step_index);
+}
+
+bool Simulation::poll_diagnostics(Diagnostics& out) { return implementation_->diagnostics.poll(out, false); }
+
+Diagnostics Simulation::diagnose() {
+  Diagnostics result;
+  while (implementation_->diagnostics.poll(result, true)) {}  // older ones on their way
+  request_diagnostics();
+  implementation_->diagnostics.poll(result, true);
+  return result;
+}
+
+State Simulation::read_state() { return implementation_->state.read(); }
+void Simulation::finish() { glFinish(); }
+unsigned Simulation::position_buffer() const { return implementation_->state.position().buffer.id(); }
+unsigned Simulation::velocity_buffer() const { return implementation_->state.velocity().buffer.id(); }
+
+std::vector<scene::Collider> Simulation::colliders_now() const {
+  std::vector<scene::Collider> colliders = implementation_->scene.colliders;
+  for (scene::Collider& collider : colliders) {
+    const model::Pose pose = model::pose(collider.motion, time());
+    if (auto* sphere = std::get_if<scene::Sphere>(&collider.shape)) sphere->center = pose.place(sphere->center);
+    if (auto* plane = std::get_if<scene::Plane>(&collider.shape)) {
+      plane->point = pose.place(plane->point);
+      plane->normal = pose.rotation * plane->normal;
+    }
+  }
+  return colliders;
+}
+
+}  // namespace clothlab::sim

@@ -1,0 +1,86 @@
+#include "server/sim/state.h"
+
+#include <glm/vec4.hpp>
+
+#include "server/sim/motion_table.h"
+
+namespace clothlab::sim {
+
+namespace {
+
+struct Arrays {
+  std::vector<glm::vec4> position, velocity;
+};
+
+std::size_t bytes(const model::Model& model) { return model.vertex_count() * sizeof(glm::vec4); }
+
+/// The fourth components: constants of the vertex that travel with its state.
+void set_constants(Arrays& arrays, const model::Model& model, const MotionTable& motions) {
+  for (std::uint32_t i = 0; i < model.vertex_count(); ++i) {
+    const std::int32_t pin = model.pin_motion[i];
+    const bool was_pinned = arrays.position[i].w == 0.0f, pinned = pin != model::not_pinned;
+    arrays.position[i].w = pinned ? 0.0f : static_cast<float>(1.0 / model.mass[i]);
+    if (pinned) arrays.velocity[i].w = static_cast<float>(motions.index(model.motions[static_cast<std::size_t>(pin)]));
+    else if (was_pinned) arrays.velocity[i].w = 0.0f;
+  }
+}
+
+Arrays at_rest(const model::Model& model, const MotionTable& motions) {
+  Arrays arrays;
+  for (const glm::dvec3& rest : model.rest_position) arrays.position.emplace_back(glm::vec3(rest), 0.0f);
+  arrays.velocity.assign(model.vertex_count(), glm::vec4(0.0f));
+  set_constants(arrays, model, motions);
+  return arrays;
+}
+
+}  // namespace
+
+StateBuffers::StateBuffers(const model::Model& model, const MotionTable& motions) {
+  for (gl::TextureBuffer* buffer : {&position_[0], &position_[1], &velocity_[0], &velocity_[1]})
+    *buffer = {gl::Buffer(bytes(model)), GL_RGBA32F};
+  reset(model, motions);
+}
+
+void StateBuffers::reset(const model::Model& model, const MotionTable& motions) {
+  const Arrays arrays = at_rest(model, motions);
+  position_[current_].buffer.upload(arrays.position.data(), bytes(model));
+  velocity_[current_].buffer.upload(arrays.velocity.data(), bytes(model));
+}
+
+void StateBuffers::rewrite_constants(const model::Model& model, const MotionTable& motions) {
+  Arrays arrays{std::vector<glm::vec4>(model.vertex_count()), std::vector<glm::vec4>(model.vertex_count())};
+  position().buffer.download(arrays.position.data(), bytes(model));
+  velocity().buffer.download(arrays.velocity.data(), bytes(model));
+  set_constants(arrays, model, motions);
+  position_[current_].buffer.upload(arrays.position.data(), bytes(model));
+  velocity_[current_].buffer.upload(arrays.velocity.data(), bytes(model));
+}
+
+void StateBuffers::bind_for_step() const {
+  position_[current_].bind(unit_position);
+  velocity_[current_].bind(unit_velocity);
+  position_[1 - current_].buffer.bind_storage(0);
+  velocity_[1 - current_].buffer.bind_storage(1);
+}
+
+State StateBuffers::read() const {
+  const std::size_t count = position().buffer.bytes() / sizeof(glm::vec4);
+  std::vector<glm::vec4> words(count);
+  State state;
+  position().buffer.download(words.data(), count * sizeof(glm::vec4));
+  for (const glm::vec4& word : words) state.position.emplace_back(word);
+  velocity().buffer.download(words.data(), count * sizeof(glm::vec4));
+  for (const glm::vec4& word : words) state.velocity.emplace_back(word);
+  return state;
+}
+
+std::uint64_t state_hash(const State& state) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const std::vector<glm::vec3>* values : {&state.position, &state.velocity}) {
+    const auto* byte = reinterpret_cast<const unsigned char*>(values->data());
+    for (std::size_t i = 0; i < values->size() * sizeof(glm::vec3); ++i) hash = (hash ^ byte[i]) * 0x100000001b3u;
+  }
+  return hash;
+}
+
+}  // namespace clothlab::sim

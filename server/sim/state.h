@@ -1,0 +1,42 @@
+// The state of every vertex on the GPU, kept twice: a step reads one copy and writes the other.
+#pragma once
+
+#include "server/gl/buffer.h"
+#include "server/model/model.h"
+#include "server/sim/simulation.h"
+
+namespace clothlab::sim {
+
+class MotionTable;
+
+class StateBuffers {
+ public:
+  StateBuffers() = default;
+  /// At rest: the model's positions, no velocity.
+  StateBuffers(const model::Model& model, const MotionTable& motions);
+
+  /// The copy that holds the present state; after `swap` the other one.
+  const gl::TextureBuffer& position() const { return position_[current_]; }
+  const gl::TextureBuffer& velocity() const { return velocity_[current_]; }
+  void bind_for_step() const;
+  void swap() { current_ = 1 - current_; }
+
+  /// Back to rest.
+  void reset(const model::Model& model, const MotionTable& motions);
+  /// Writes changed masses and pins into the state, which otherwise stays as it is. Waits for the GPU.
+  void rewrite_constants(const model::Model& model, const MotionTable& motions);
+  State read() const;
+
+ private:
+  gl::TextureBuffer position_[2];  ///< xyz [m], w inverse mass [1/kg], 0 if pinned
+  gl::TextureBuffer velocity_[2];  ///< xyz [m/s], w contacts, or of a pinned vertex its motion's index or -1
+  int current_ = 0;
+};
+
+/// The units at which the kernels' READ_... declarations expect their buffers.
+enum ReadUnit : GLuint {
+  unit_position, unit_velocity, unit_springs, unit_spring_slices, unit_neighbour_count, unit_neighbours,
+  unit_motion_table, unit_rest_position, unit_position_when_built
+};
+
+}  // namespace clothlab::sim

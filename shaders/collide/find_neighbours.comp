@@ -1,0 +1,57 @@
+// Neighbour search, 3 of 3: lists for each vertex the others within reach that no spring joins to it, the nearest
+// NEIGHBOUR_SLOTS of them, with the distance that self-collision keeps between the two: min(thickness, rest distance).
+layout(local_size_x = GROUP_SIZE) in;
+#include "../access.glsl"
+#include "cells.glsl"
+#include "neighbours.glsl"
+#include "spring_lists.glsl"
+
+READ_VEC4(position, 0);
+READ_VEC4(rest_position, 7);  // w: the cloth
+layout(location = 3) uniform float thickness;
+layout(std430, binding = 6) writeonly buffer NeighbourCounts { uint neighbour_count[]; };
+layout(std430, binding = 7) buffer Neighbours { uvec2 neighbours[]; };  // (vertex, distance): vertex i's slot s at i * SLOTS + s
+
+float rest_distance(int i, int j) {
+  vec4 a = FETCH(rest_position, i), b = FETCH(rest_position, j);
+  return a.w == b.w ? distance(a.xyz, b.xyz) : thickness;
+}
+
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  if (gl_GlobalInvocationID.x == 0) {  // this rebuild is under way: no other until a vertex asks again
+    rebuild_groups = 0;
+    ++rebuilds;
+  }
+  if (i >= vertex_count) return;
+  vec3 x = FETCH(position, i).xyz;
+  ivec3 home = cell_of(x);
+  int first = i * NEIGHBOUR_SLOTS;
+  int count = 0;
+  uint lost = 0;
+  for (int at = 0; at < 27; ++at) {
+    ivec3 cell = home + ivec3(at % 3, at / 3 % 3, at / 9) - 1;
+    for (int j = head[bucket_of(cell)]; j >= 0; j = next[j]) {
+      vec3 y = FETCH(position, j).xyz;
+      float gap = distance(x, y);
+      // A bucket may hold several cells; only this one's vertices count, so that none is listed twice.
+      if (j == i || gap >= reach || cell_of(y) != cell || joined(i, j)) continue;
+      int slot = count;
+      if (count < NEIGHBOUR_SLOTS) ++count;
+      else ++lost;
+      for (; slot > 0; --slot) {
+        uvec2 other = neighbours[first + slot - 1];
+        float other_gap = uintBitsToFloat(other.y);
+        if (other_gap < gap || (other_gap == gap && other.x < uint(j))) break;
+        if (slot < NEIGHBOUR_SLOTS) neighbours[first + slot] = other;
+      }
+      if (slot < NEIGHBOUR_SLOTS) neighbours[first + slot] = uvec2(uint(j), floatBitsToUint(gap));
+    }
+  }
+  for (int slot = 0; slot < count; ++slot) {
+    int j = int(neighbours[first + slot].x);
+    neighbours[first + slot].y = floatBitsToUint(min(thickness, rest_distance(i, j)));
+  }
+  neighbour_count[i] = uint(count);
+  if (lost > 0) atomicAdd(dropped, lost);
+}

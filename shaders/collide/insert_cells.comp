@@ -1,0 +1,15 @@
+// Neighbour search, 2 of 3: hangs each vertex into the chain of its cell and notes where it was.
+layout(local_size_x = GROUP_SIZE) in;
+#include "../access.glsl"
+#include "cells.glsl"
+
+READ_VEC4(position, 0);
+layout(std430, binding = 5) writeonly buffer PositionWhenBuilt { vec4 position_when_built[]; };
+
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  if (i >= vertex_count) return;
+  vec4 x = FETCH(position, i);
+  next[i] = atomicExchange(head[bucket_of(cell_of(x.xyz))], i);
+  position_when_built[i] = x;
+}

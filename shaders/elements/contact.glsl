@@ -1,0 +1,47 @@
+// A vertex against a solid: where it is stopped, and what is left of its velocity.
+// Bridson, Fedkiw & Anderson 2002, sections 4 and 6 (velocity-level contact, Coulomb friction as an impulse).
+// In the common subset of GLSL and C++ (see types.glsl, elements.h).
+
+/// What a contact leaves of the velocity v relative to the surface with unit normal n: the approaching part is
+/// turned back by restitution [0, 1]; friction (Coulomb coefficient) takes at most that impulse from the sliding part.
+FUNCTION vec3 contact_velocity(vec3 v, vec3 n, real friction, real restitution) {
+  real approach = -dot(v, n);
+  if (!(approach > real(0.0))) return v;
+  vec3 sliding = v + n * approach;
+  real speed = sqrt(dot(sliding, sliding));
+  real lost = friction * (real(1.0) + restitution) * approach;
+  real kept = speed > lost ? real(1.0) - lost / speed : real(0.0);
+  return sliding * kept + n * (restitution * approach);
+}
+
+/// The path from -> to, relative to a sphere's centre at either time, against the sphere: a swept test, so that a
+/// fast vertex does not pass through. True if they meet; then `stopped` is on or outside the sphere (entry point plus
+/// the rest of the path along the tangent plane) and `normal` the unit normal there.
+/// At the very centre there is no direction: no contact, and never NaN.
+FUNCTION bool sphere_contact(vec3 from, vec3 to, real radius, OUT(vec3) stopped, OUT(vec3) normal) {
+  vec3 path = to - from;
+  real a = dot(path, path);
+  real b = dot(from, path);
+  real c = dot(from, from) - radius * radius;
+  real discriminant = b * b - a * c;
+  stopped = to;
+  normal = vec3(real(0.0));
+
+  real s = real(0.0);  // the share of the path before contact
+  if (c > real(0.0)) {
+    if (!(b < real(0.0)) || !(discriminant > real(0.0))) return false;
+    real reach = -b - sqrt(discriminant);
+    if (reach > a) return false;
+    s = reach / a;
+  } else if (!(b < real(0.0))) {
+    if (!(dot(to, to) < radius * radius)) return false;
+    s = real(1.0);  // on its way out, but not out yet
+  }
+  vec3 met = from + path * s;
+  real distance_squared = dot(met, met);
+  if (!(distance_squared > real(0.0))) return false;
+  normal = met * (real(1.0) / sqrt(distance_squared));
+  vec3 left = path * (real(1.0) - s);
+  stopped = normal * radius + left - normal * min(dot(left, normal), real(0.0));
+  return true;
+}

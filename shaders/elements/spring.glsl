@@ -1,0 +1,29 @@
+// A damped spring between two vertices: Hooke's law, and damping along the spring only.
+// physics.md, "Laws"; Provot 1995, section 2. In the common subset of GLSL and C++ (see types.glsl, elements.h).
+
+/// Force [N] on the vertex at x with velocity v, from a spring to the vertex at y with velocity w.
+/// rest_length [m], stiffness [N/m], damping [N s/m]. A spring without length has no direction and gives no force.
+/// The damping is the projection of the relative velocity on the spring: a rigid rotation feels none.
+FUNCTION vec3 spring_force(vec3 x, vec3 y, vec3 v, vec3 w, real rest_length, real stiffness, real damping) {
+  vec3 d = x - y;
+  real length_squared = dot(d, d);
+  real inverse_length = length_squared > real(0.0) ? real(1.0) / sqrt(length_squared) : real(0.0);
+  vec3 n = d * inverse_length;
+  real length_now = length_squared * inverse_length;
+  real tension = stiffness * (length_now - rest_length) + damping * dot(n, v - w);
+  return n * (-tension);
+}
+
+/// Elastic energy [J] of the spring.
+FUNCTION real spring_energy(vec3 x, vec3 y, real rest_length, real stiffness) {
+  vec3 d = x - y;
+  real stretch = sqrt(dot(d, d)) - rest_length;
+  return real(0.5) * stiffness * stretch * stretch;
+}
+
+/// |l/L - 1|; 0 for a spring that has no rest length.
+FUNCTION real spring_strain(vec3 x, vec3 y, real rest_length) {
+  vec3 d = x - y;
+  real stretch = sqrt(dot(d, d)) - rest_length;
+  return rest_length > real(0.0) ? max(stretch, -stretch) / rest_length : real(0.0);
+}

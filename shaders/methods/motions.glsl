@@ -1,0 +1,27 @@
+// Poses of moving pins and colliders, computed by the host in double precision for each step of a batch.
+// A pose takes five vec4: three rows (rotation, translation), the velocity of the origin, the angular velocity.
+#if MOTION_COUNT > 0
+READ_VEC4(motion_table, 6);
+layout(location = 1) uniform int batch_row;  // the step within the batch: row n is its start, row n + 1 its end
+
+int pose_at(int motion, int row) { return ((batch_row + row) * MOTION_COUNT + motion) * 5; }
+
+vec3 turned(int motion, int row, vec3 home) {
+  int base = pose_at(motion, row);
+  return vec3(dot(FETCH(motion_table, base).xyz, home), dot(FETCH(motion_table, base + 1).xyz, home),
+              dot(FETCH(motion_table, base + 2).xyz, home));
+}
+vec3 placed(int motion, int row, vec3 home) {
+  int base = pose_at(motion, row);
+  return turned(motion, row, home) + vec3(FETCH(motion_table, base).w, FETCH(motion_table, base + 1).w,
+                                          FETCH(motion_table, base + 2).w);
+}
+vec3 velocity_at(int motion, int row, vec3 where) {
+  int base = pose_at(motion, row);
+  return FETCH(motion_table, base + 3).xyz + cross(FETCH(motion_table, base + 4).xyz, where);
+}
+#else
+vec3 turned(int motion, int row, vec3 home) { return home; }
+vec3 placed(int motion, int row, vec3 home) { return home; }
+vec3 velocity_at(int motion, int row, vec3 where) { return vec3(0.0); }
+#endif

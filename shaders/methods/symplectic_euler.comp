@@ -1,0 +1,71 @@
+// One step of symplectic (semi-implicit) Euler: v += a dt, then x += v dt. Hairer, Lubich & Wanner 2006, section I.1.
+// Everything a vertex needs is gathered in this one dispatch: springs, gravity, air drag, self-collision from the
+// neighbour lists, then pins and colliders on the way to the new position.
+layout(local_size_x = GROUP_SIZE) in;
+#include "../access.glsl"
+#include "../elements/types.glsl"
+#include "../elements/spring.glsl"
+#include "../elements/contact.glsl"
+#include "../collide/spring_lists.glsl"
+#include "motions.glsl"
+#include "../collide/colliders.glsl"
+
+READ_VEC4(position, 0);  // w: inverse mass [1/kg], 0 if pinned
+READ_VEC4(velocity, 1);  // w: contacts of the last step; of a pinned vertex, its motion's index or -1
+READ_VEC4(rest_position, 7);  // w: the cloth
+layout(std430, binding = 0) writeonly buffer NextPosition { vec4 next_position[]; };
+layout(std430, binding = 1) writeonly buffer NextVelocity { vec4 next_velocity[]; };
+#ifdef SELF_COLLISION
+#include "../collide/neighbours.glsl"
+#include "../collide/self_contact.glsl"
+READ_VEC4(position_when_built, 8);
+layout(location = 5) uniform float skin;  // [m]
+#endif
+
+layout(location = 0) uniform int vertex_count;
+layout(location = 2) uniform float dt;        // [s]
+layout(location = 3) uniform vec4 gravity;    // xyz [m/s^2], w: air drag [1/s]
+
+vec3 spring_forces(int i, vec3 x, vec3 v) {
+  vec3 force = vec3(0.0);
+  SpringRange range = spring_range(i);
+  for (int entry = range.first; entry < range.end; entry += GROUP_SIZE) {
+    uvec4 s = FETCH(springs, entry);
+    force += spring_force(x, FETCH(position, s.x).xyz, v, FETCH(velocity, s.x).xyz, uintBitsToFloat(s.y),
+                          uintBitsToFloat(s.z), uintBitsToFloat(s.w));
+  }
+  return force;
+}
+
+void write_vertex(int i, vec4 x, vec4 v) {
+  next_position[i] = x;
+  next_velocity[i] = v;
+#ifdef SELF_COLLISION
+  vec3 moved = x.xyz - FETCH(position_when_built, i).xyz;
+  if (dot(moved, moved) > 0.25 * skin * skin) rebuild_groups = gl_NumWorkGroups.x;
+#endif
+}
+
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  if (i >= vertex_count) return;
+  vec4 x = FETCH(position, i), v = FETCH(velocity, i);
+  if (x.w == 0.0) {
+    vec3 home = FETCH(rest_position, i).xyz;
+    int motion = int(v.w);
+    vec3 there = motion < 0 ? home : placed(motion, 1, home);
+    vec3 moving = motion < 0 ? vec3(0.0) : velocity_at(motion, 1, there);
+    write_vertex(i, vec4(there, 0.0), vec4(moving, v.w));
+    return;
+  }
+  vec3 acceleration = spring_forces(i, x.xyz, v.xyz) * x.w + gravity.xyz - gravity.w * v.xyz;
+  vec3 push = vec3(0.0), impulse = vec3(0.0);
+  int contacts = 0;
+#ifdef SELF_COLLISION
+  contacts = self_contacts(i, x, v, push, impulse);
+#endif
+  vec3 v_next = v.xyz + dt * acceleration + impulse;
+  vec3 x_next = x.xyz + push + dt * v_next;
+  int met = resolve_colliders(x.xyz, x_next, v_next);
+  write_vertex(i, vec4(x_next, x.w), vec4(v_next, float(contacts + met)));
+}

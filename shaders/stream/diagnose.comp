@@ -1,0 +1,57 @@
+// Energies, largest strain and speed, contacts, and whether every value is finite: one partial result a work group, summed
+// by the host in double precision and in order, so that the outcome does not depend on the order of threads.
+layout(local_size_x = GROUP_SIZE) in;
+#include "../access.glsl"
+#include "../elements/types.glsl"
+#include "../elements/spring.glsl"
+#include "../collide/spring_lists.glsl"
+
+READ_VEC4(position, 0);
+READ_VEC4(velocity, 1);
+layout(location = 0) uniform int vertex_count;
+layout(location = 3) uniform vec4 gravity;
+
+struct Partial {
+  vec4 sums;     // kinetic, elastic, gravitational energy [J], vertices in contact
+  vec4 largest;  // strain, speed squared, 1 if something is not finite, unused
+};
+layout(std430, binding = 0) writeonly buffer Partials { Partial partials[]; };
+shared vec4 sums[GROUP_SIZE];
+shared vec4 largest[GROUP_SIZE];
+
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  int lane = int(gl_LocalInvocationID.x);
+  vec4 sum = vec4(0.0), most = vec4(0.0);
+  if (i < vertex_count) {
+    vec4 x = FETCH(position, i), v = FETCH(velocity, i);
+    SpringRange range = spring_range(i);
+    for (int entry = range.first; entry < range.end; entry += GROUP_SIZE) {
+      uvec4 s = FETCH(springs, entry);
+      if (s.x == uint(i)) continue;
+      vec3 y = FETCH(position, s.x).xyz;
+      sum.y += 0.5 * spring_energy(x.xyz, y, uintBitsToFloat(s.y), uintBitsToFloat(s.z));  // the other half is y's
+      most.x = max(most.x, spring_strain(x.xyz, y, uintBitsToFloat(s.y)));
+    }
+    float speed_squared = dot(v.xyz, v.xyz);
+    if (x.w > 0.0) {
+      sum.x = 0.5 / x.w * speed_squared;
+      sum.z = -dot(gravity.xyz, x.xyz) / x.w;
+      sum.w = v.w > 0.0 ? 1.0 : 0.0;
+    }
+    most.y = speed_squared;
+    float all_values = dot(x.xyz, x.xyz) + speed_squared;
+    most.z = isnan(all_values) || isinf(all_values) ? 1.0 : 0.0;
+  }
+  sums[lane] = sum;
+  largest[lane] = most;
+  barrier();
+  for (int half_size = GROUP_SIZE / 2; half_size > 0; half_size /= 2) {
+    if (lane < half_size) {
+      sums[lane] += sums[lane + half_size];
+      largest[lane] = max(largest[lane], largest[lane + half_size]);
+    }
+    barrier();
+  }
+  if (lane == 0) partials[gl_WorkGroupID.x] = Partial(sums[0], largest[0]);
+}
