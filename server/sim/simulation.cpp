@@ -229,6 +229,8 @@ void Simulation::finish() { glFinish(); }
 unsigned Simulation::position_buffer() const { return implementation_->state.position().buffer.id(); }
 unsigned Simulation::velocity_buffer() const { return implementation_->state.velocity().buffer.id(); }
 
+void Simulation::bind_positions(unsigned unit) const { implementation_->state.position().bind(unit); }
+
 std::vector<scene::Collider> Simulation::colliders_now() const {
   std::vector<scene::Collider> colliders = implementation_->scene.colliders;
   for (scene::Collider& collider : colliders) {

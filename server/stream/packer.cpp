@@ -1,0 +1,147 @@
+#include "server/stream/packer.h"
+
+#include <array>
+#include <chrono>
+#include <cstring>
+#include <deque>
+
+#include "server/gl/buffer.h"
+#include "server/gl/program.h"
+
+namespace clothlab::stream {
+
+namespace {
+
+constexpr int group_size = 128;
+constexpr int ring_slots = 3;  ///< frames on their way back at once
+constexpr std::size_t box_bytes = 32;
+enum Unit : GLuint { unit_position = 0, unit_fan_offsets = 2, unit_fans = 3 };
+
+std::int64_t now_us() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+/// For each vertex the two other corners of each of its triangles, in the triangle's order.
+std::vector<std::uint32_t> fan_corners(const model::Model& model) {
+  std::vector<std::uint32_t> corners;
+  for (std::uint32_t i = 0; i < model.vertex_count(); ++i) {
+    for (std::uint32_t at = model.vertex_triangles.offsets[i]; at < model.vertex_triangles.offsets[i + 1]; ++at) {
+      const auto& triangle = model.triangles[model.vertex_triangles.items[at]];
+      const std::size_t corner = triangle[0] == i ? 0 : triangle[1] == i ? 1 : 2;
+      corners.push_back(triangle[(corner + 1) % 3]);
+      corners.push_back(triangle[(corner + 2) % 3]);
+    }
+  }
+  return corners;
+}
+
+}  // namespace
+
+struct Packer::Implementation {
+  gl::Program bounds;
+  std::array<gl::Program, encoding_count> pack;
+  gl::TextureBuffer fan_offsets, fans;
+  std::array<gl::Buffer, encoding_count> packed;
+  gl::Buffer box;
+  gl::ReadbackRing ring;
+  std::array<Header, ring_slots> headers;  ///< of the frames in the ring, by sequence number
+  std::uint32_t requested = 0, delivered = 0;
+  std::uint32_t topology_revision = 0, vertex_count = 0;
+
+  /// Makes what depends on the mesh; frames of the old mesh still on their way are dropped.
+  void adopt(const model::Model& model, std::uint32_t revision) {
+    topology_revision = revision;
+    vertex_count = model.vertex_count();
+    fan_offsets = {gl::Buffer(model.vertex_triangles.offsets), GL_R32UI};
+    fans = {gl::Buffer(fan_corners(model)), GL_RG32UI};
+    for (std::size_t i = 0; i < encoding_count; ++i)
+      packed[i] = gl::Buffer(box_bytes + vertex_count * bytes_per_vertex(static_cast<Encoding>(i)));
+    ring = gl::ReadbackRing(box_bytes + vertex_count * bytes_per_vertex(Encoding::f32), ring_slots);
+    delivered = requested;
+  }
+
+  void dispatch(const gl::Program& program) const {
+    program.use();
+    glUniform1i(0, static_cast<GLint>(vertex_count));
+    glDispatchCompute((vertex_count + group_size - 1) / group_size, 1, 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  }
+
+  SharedMessage take(bool wait) {
+    const std::span<const std::byte> bytes = ring.front(wait);
+    if (bytes.empty()) return nullptr;
+    auto message = std::make_shared<Message>();
+    message->header = headers[delivered % ring_slots];
+    message->made_at_us = now_us();
+    Header& header = message->header;
+    std::memcpy(&header.box_minimum, bytes.data(), sizeof(glm::vec3));
+    std::memcpy(&header.box_extent, bytes.data() + 16, sizeof(glm::vec3));
+    message->bytes.resize(front_room + header_bytes + header.payload_bytes);
+    write_header(header, message->bytes.data() + front_room);
+    std::memcpy(message->bytes.data() + front_room + header_bytes, bytes.data() + box_bytes, header.payload_bytes);
+    ring.pop();
+    ++delivered;
+    return message;
+  }
+};
+
+Packer::Packer() : implementation_(std::make_unique<Implementation>()) {}
+Packer::~Packer() = default;
+
+Result<std::unique_ptr<Packer>> Packer::create() {
+  std::unique_ptr<Packer> packer(new Packer);
+  Implementation& self = *packer->implementation_;
+  const std::string group = std::to_string(group_size);
+  const auto load = [&group](gl::Program& into, const char* path, gl::Defines defines) -> Status {
+    defines.emplace_back("GROUP_SIZE", group);
+    Result<gl::Program> program = gl::Program::load({path}, defines);
+    if (!program) return program.error();
+    into = std::move(*program);
+    return ok();
+  };
+  if (Status status = load(self.bounds, "stream/bounds.comp", {}); !status) return status.error();
+  for (const Encoding encoding : {Encoding::f32, Encoding::q16}) {
+    gl::Defines defines;
+    if (encoding == Encoding::f32) defines.emplace_back("ENCODING_F32", "1");
+    if (Status status = load(self.pack[static_cast<std::size_t>(encoding)], "stream/pack.comp", defines); !status)
+      return status.error();
+  }
+  self.box = gl::Buffer(8 * sizeof(std::uint32_t));
+  return packer;
+}
+
+bool Packer::request(const sim::Simulation& simulation, Encoding encoding, std::uint16_t flags) {
+  Implementation& self = *implementation_;
+  if (self.topology_revision != simulation.topology_revision() || self.vertex_count == 0)
+    self.adopt(simulation.model(), simulation.topology_revision());
+  if (self.ring.full()) return false;
+
+  const auto index = static_cast<std::size_t>(encoding);
+  const std::array<std::uint32_t, 8> empty_box{~0u, ~0u, ~0u, ~0u, 0u, 0u, 0u, 0u};
+  self.box.upload(empty_box.data(), sizeof(empty_box));
+  simulation.bind_positions(unit_position);
+  self.fan_offsets.bind(unit_fan_offsets);
+  self.fans.bind(unit_fans);
+  self.box.bind_storage(2);
+  self.packed[index].bind_storage(0);
+  self.dispatch(self.bounds);
+  self.dispatch(self.pack[index]);
+
+  Header& header = self.headers[self.requested % ring_slots];
+  header.encoding = encoding;
+  header.flags = flags;
+  header.topology_revision = self.topology_revision;
+  header.sequence = ++self.requested;
+  header.vertex_count = self.vertex_count;
+  header.time = simulation.time();
+  header.step = simulation.step_index();
+  header.payload_bytes = static_cast<std::uint32_t>(self.vertex_count * bytes_per_vertex(encoding));
+  self.ring.push(self.packed[index], box_bytes + header.payload_bytes);
+  return true;
+}
+
+SharedMessage Packer::poll() { return implementation_->take(false); }
+SharedMessage Packer::wait() { return implementation_->take(true); }
+
+}  // namespace clothlab::stream

@@ -1,0 +1,46 @@
+// Frame, 2 of 2: positions and normals as they go over the wire and into WebGL (contract.md, section 4), the box first.
+layout(local_size_x = GROUP_SIZE) in;
+#include "../access.glsl"
+#include "bounds.glsl"
+
+READ_VEC4(position, 0);
+#include "normal.glsl"
+layout(location = 0) uniform int vertex_count;
+layout(std430, binding = 0) writeonly buffer Packed {
+  float packed_box[8];  // minimum, unused, extent, unused
+  uint packed_vertices[];
+};
+
+/// Octahedral normal in [-1, 1]^2: Meyer et al. 2010, Cigolle et al. 2014. The lower half (z < 0) is folded out.
+vec2 octahedral(vec3 n) {
+  vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+  return n.z >= 0.0 ? p : (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
+}
+
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  vec3 low = box_minimum();
+  vec3 extent = max(box_maximum() - low, vec3(0.0));
+  if (i == 0) {
+    for (int axis = 0; axis < 3; ++axis) {
+      packed_box[axis] = low[axis];
+      packed_box[4 + axis] = extent[axis];
+    }
+  }
+  if (i >= vertex_count) return;
+  vec3 x = FETCH(position, i).xyz;
+  vec3 n = vertex_normal(i, x);
+#ifdef ENCODING_F32
+  int at = 6 * i;
+  for (int axis = 0; axis < 3; ++axis) {
+    packed_vertices[at + axis] = floatBitsToUint(x[axis]);
+    packed_vertices[at + 3 + axis] = floatBitsToUint(n[axis]);
+  }
+#else
+  vec3 share = clamp((x - low) / max(extent, vec3(1e-30)), vec3(0.0), vec3(1.0));
+  uvec3 u = uvec3(share * 65535.0 + 0.5);
+  ivec2 o = ivec2(round(octahedral(n) * 127.0));
+  packed_vertices[2 * i] = u.x | u.y << 16;
+  packed_vertices[2 * i + 1] = u.z | uint(o.x & 255) << 16 | uint(o.y & 255) << 24;
+#endif
+}
