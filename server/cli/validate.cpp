@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "server/cli/commands.h"
+#include "server/model/model.h"
 
 namespace clothlab::cli {
 
@@ -12,17 +13,6 @@ std::string counted(std::size_t count, const std::string& one, const std::string
   return std::to_string(count) + " " + (count == 1 ? one : more);
 }
 
-std::size_t vertices(const scene::Scene& scene) {
-  std::size_t count = 0;
-  for (const scene::Cloth& cloth : scene.cloths) {
-    if (const auto* grid = std::get_if<scene::Grid>(&cloth.mesh))
-      count += static_cast<std::size_t>(grid->columns) * static_cast<std::size_t>(grid->rows);
-    else
-      count += std::get<scene::TriangleMesh>(cloth.mesh).vertices.size();
-  }
-  return count;
-}
-
 /// "seed.json: valid (...)" on stdout, or why not on stderr.
 bool report(const std::string& name) {
   const Result<scene::Document> document = scene::load(name);
@@ -30,11 +20,15 @@ bool report(const std::string& name) {
     std::cerr << document.error().text() << "\n";
     return false;
   }
-  const scene::Scene& scene = document->scene;
-  std::cout << name << ": valid (" << counted(scene.cloths.size(), "cloth", "cloths") << ", "
-            << counted(vertices(scene), "vertex", "vertices") << ", "
-            << counted(scene.colliders.size(), "collider", "colliders") << ", dt " << scene.solver.dt
-            << " s)\n";
+  const Result<model::Model> model = model::build(document->scene);  // finds e.g. a pin whose box holds no vertex
+  if (!model) {
+    std::cerr << name << ": " << model.error().text() << "\n";
+    return false;
+  }
+  std::cout << name << ": valid (" << counted(model->cloths.size(), "cloth", "cloths") << ", "
+            << counted(model->vertex_count(), "vertex", "vertices") << ", "
+            << counted(model->springs.size(), "spring", "springs") << ", "
+            << counted(document->scene.colliders.size(), "collider", "colliders") << ")\n";
   return true;
 }
 

@@ -1,0 +1,222 @@
+// The scene document, rule by rule: what just passes and what just does not.
+#include "server/scene/document.h"
+#include "server/scene/ranges.h"
+#include "tests/catch.h"
+
+using namespace clothlab;
+using scene::json;
+
+namespace {
+
+/// The seed, a floor, an explicit triangle and every motion: something to change at each place of the
+/// document.
+json base() {
+  json value = scene::load_preset("seed")->value;
+  json triangle = json::parse(
+      R"({"name": "triangle", "mesh": {"vertices": [[0,0,0],[0,0,1],[1,0,0]], "triangles": [[0,1,2]]},
+    "mass": {"area_density": 0.2},
+    "pins": [{"at": "vertex:2", "motion": {"linear": {"velocity": [1,0,0]}}},
+             {"at": {"box": [[-1,-1,-1],[0.1,1,0.1]]},
+              "motion": {"spin": {"axis": [1,0,0], "center": [0,0,0], "degrees_per_second": 72}}}]})");
+  value["cloths"].push_back(triangle);
+  value["colliders"].push_back(
+      json::parse(R"({"name": "floor", "plane": {"point": [0,0,0], "normal": [0,2,0]}})"));
+  return scene::validate(value)->value;
+}
+
+/// The pointer of the error when `pointer` is set to `text`; "valid" when there is none.
+std::string verdict(const std::string& pointer, const std::string& text) {
+  json value = base();
+  value[json::json_pointer(pointer)] = json::parse(text);
+  const Result<scene::Document> document = scene::validate(value);
+  return document ? "valid" : document.error().where;
+}
+
+struct Rule {
+  const char* pointer;
+  std::vector<const char*> good, bad;
+};
+
+const std::vector<Rule> rules = {
+    {"/version", {"1", "1.0"}, {"0", "2", "\"1\"", "null"}},
+    {"/name", {"\"x\"", "\"\\u00e9\""}, {"\"\"", "7", "\"a\\nb\"", "null"}},
+    {"/gravity/1", {"0", "-1e6", "1e6"}, {"-1.001e6", "1.001e6", "\"0\"", "null"}},
+    {"/gravity", {"[0,0,0]"}, {"[0,0]", "[0,0,0,0]", "{}", "0"}},
+    {"/cloths/0/mesh/grid/columns", {"25", "1024", "30.0"}, {"1", "1025", "25.5", "\"25\"", "-3"}},
+    {"/cloths/0/mesh/grid/width", {"1e-6", "1e6"}, {"0", "-1", "9e-7", "1.1e6"}},
+    {"/cloths/0/transform/scale", {"1e-6", "1e6"}, {"0", "-1", "1.1e6"}},
+    {"/cloths/0/mass/per_vertex", {"1e-9", "1e6"}, {"0", "-0.1", "9e-10", "1.1e6", "null"}},
+    {"/cloths/1/mass/area_density", {"1e-9", "1e6"}, {"0", "-0.1", "9e-10", "1.1e6"}},
+    {"/cloths/0/material/structural", {"0", "1e12"}, {"-1e-9", "1.1e12", "true"}},
+    {"/cloths/0/material/shear", {"0", "1e12"}, {"-1e-9", "1.1e12"}},
+    {"/cloths/0/material/bend", {"0", "1e12"}, {"-1e-9", "1.1e12"}},
+    {"/cloths/0/material/damping", {"0", "1e9"}, {"-1e-9", "1.1e9"}},
+    {"/cloths/0/color", {"\"#00ff7F\""}, {"\"#00ff7\"", "\"00ff7f0\"", "\"red\"", "\"#00fg7f\"", "\"\""}},
+    {"/cloths/0/texture", {"\"plain\"", "\"checker\"", "\"stripes\""}, {"\"velvet\"", "\"\"", "1"}},
+    {"/cloths/0/pins/0/at",
+     {"\"corner:24,24\"", "\"vertex:624\"", "\"edge:row:24\"", "\"edge:column:0\""},
+     {"\"corner:25,0\"", "\"corner:0,25\"", "\"vertex:625\"", "\"edge:row:25\"", "\"edge:column:25\"",
+      "\"corner:0\"", "\"corner:00,0\"", "\"corner:-1,0\"", "\"corner:0,0,0\"", "\"vertex:\"", "\"edge:0\"",
+      "\"middle\"", "3"}},
+    {"/cloths/1/pins/0/at", {"\"vertex:0\""}, {"\"vertex:3\"", "\"corner:0,0\"", "\"edge:row:0\""}},
+    {"/cloths/1/pins/1/at/box", {"[[0,0,0],[0,0,0]]"}, {"[[0,0,1],[0,0,0]]", "[[0,0,0]]", "[]"}},
+    {"/cloths/0/pins/0/motion/oscillate/frequency", {"0", "1e4"}, {"-1", "1.1e4"}},
+    {"/cloths/0/pins/0/motion/oscillate/axis", {"[0,0,1e-6]"}, {"[0,0,0]", "[0,-0.0,0]", "[1,0]"}},
+    {"/colliders/0/sphere/radius", {"1e-6", "1e6"}, {"0", "-1", "1.1e6"}},
+    {"/colliders/0/friction", {"0", "10"}, {"-0.1", "10.1"}},
+    {"/colliders/0/restitution", {"0", "1"}, {"-0.1", "1.1"}},
+    {"/colliders/1/plane/normal", {"[0,0,-3]"}, {"[0,0,0]"}},
+    {"/self_collision/thickness", {"1e-6", "10"}, {"0", "11"}},
+    {"/self_collision", {"null", "{}"}, {"true", "0.01"}},
+    {"/air_drag", {"0", "1e6"}, {"-0.1", "1.1e6"}},
+    {"/solver/dt", {"1e-9", "1"}, {"0", "-0.001", "1.001", "null"}},
+    {"/solver/iterations", {"1", "10000"}, {"0", "10001", "1.5"}},
+    {"/solver/tolerance", {"1e-12", "1"}, {"0", "1.1"}},
+    {"/cloths/1/mesh/triangles/0/2", {"2.0"}, {"3", "-1", "0.5"}},
+};
+
+}  // namespace
+
+TEST_CASE(
+    "every rule of the scene lets its last good value pass and stops its first bad one at its own place") {
+  for (const Rule& rule : rules) {
+    for (const char* good : rule.good) {
+      INFO(rule.pointer << " = " << good);
+      CHECK(verdict(rule.pointer, good) == "valid");
+    }
+    for (const char* bad : rule.bad) {
+      INFO(rule.pointer << " = " << bad);
+      CHECK(verdict(rule.pointer, bad).rfind(rule.pointer, 0) == 0);
+    }
+  }
+}
+
+TEST_CASE("what is not simulated yet is refused by name, never ignored") {
+  const std::vector<std::pair<std::string, std::string>> not_yet = {
+      {"/cloths/0/material", R"({"model": "fem", "warp": 300})"},
+      {"/cloths/0/material/fabric", R"("cotton")"},
+      {"/cloths/0/material/strain_limit", "0.1"},
+      {"/cloths/0/mesh", R"({"obj": "shirt.obj"})"},
+      {"/colliders/0", R"({"capsule": {"a": [0,0,0], "b": [0,1,0], "radius": 0.1}})"},
+      {"/colliders/0", R"({"box": {"center": [0,0,0], "half": [1,1,1], "rotate": [0,0,0]}})"},
+      {"/wind", R"({"velocity": [2,0,0]})"},
+      {"/solver/method", R"("explicit_euler")"},
+      {"/solver/method", R"("verlet")"},
+      {"/solver/method", R"("rk4")"},
+      {"/solver/method", R"("implicit_euler")"},
+      {"/solver/method", R"("pbd")"},
+      {"/solver/method", R"("xpbd")"},
+      {"/solver/method", R"("vbd")"},
+      {"/solver/method", R"("auto")"},
+  };
+  for (const auto& [pointer, text] : not_yet) {
+    INFO(pointer << " = " << text);
+    json value = base();
+    value[json::json_pointer(pointer)] = json::parse(text);
+    const Result<scene::Document> document = scene::validate(value);
+    REQUIRE_FALSE(document);
+    CHECK(document.error().where.rfind(pointer, 0) == 0);
+    CHECK(document.error().remedy.find("not supported yet") != std::string::npos);
+  }
+}
+
+TEST_CASE("an unknown key is named with an escaped pointer, the allowed keys and the nearest of them") {
+  json value = base();
+  value["solver"]["d/t~"] = 1;
+  Error error = scene::validate(value).error();
+  CHECK(error.where == "/solver/d~1t~0");
+  CHECK(error.remedy.find("\"dt\", \"iterations\"") != std::string::npos);
+  value = base();
+  value["cloths"][0]["material"]["sheer"] = 1;
+  error = scene::validate(value).error();
+  CHECK(error.where == "/cloths/0/material/sheer");
+  CHECK(error.remedy.find("did you mean \"shear\"?") != std::string::npos);
+}
+
+TEST_CASE("what was found is shown as JSON, shortened when it is long and never inside a character") {
+  json value = base();
+  value["solver"]["dt"] = {{"a", 1}};
+  CHECK(scene::validate(value).error().what == R"({"a":1})");
+  std::string text = "a";
+  for (int i = 0; i < 1000; ++i) text += "\u00e9";
+  value["solver"]["dt"] = text;
+  const std::string found = scene::validate(value).error().what;
+  CHECK(found.size() < 100);
+  CHECK_NOTHROW(json(found).dump());
+}
+
+TEST_CASE("a name has up to 64 characters however many bytes they take") {
+  std::string name;
+  for (int i = 0; i < 64; ++i) name += "\u00e9";
+  CHECK(verdict("/name", json(name).dump()) == "valid");
+  CHECK(verdict("/name", json(name + "x").dump()) == "/name");
+}
+
+TEST_CASE("two cloths or two colliders never share a name") {
+  CHECK(verdict("/cloths/1/name", R"("cloth")") == "/cloths/1/name");
+  CHECK(verdict("/colliders/1/name", R"("ball")") == "/colliders/1/name");
+  CHECK(verdict("/colliders/1/name", R"("cloth")") == "valid");
+}
+
+TEST_CASE("a mesh, a mass, a motion and a shape are each exactly one of their kinds") {
+  CHECK(verdict("/cloths/0/mesh/vertices", "[[0,0,0],[0,0,1],[1,0,0]]") == "/cloths/0/mesh");
+  CHECK(verdict("/cloths/0/mesh", "{}") == "/cloths/0/mesh");
+  CHECK(verdict("/cloths/1/mesh", R"({"vertices": [[0,0,0],[0,0,1],[1,0,0]]})") ==
+        "/cloths/1/mesh/triangles");
+  CHECK(verdict("/cloths/1/mesh", R"({"triangles": [[0,1,2]]})") == "/cloths/1/mesh/vertices");
+  CHECK(verdict("/cloths/0/mass/area_density", "0.1") == "/cloths/0/mass");
+  CHECK(verdict("/cloths/0/mass", "{}") == "/cloths/0/mass");
+  CHECK(verdict("/cloths/0/pins/0/motion/linear", R"({"velocity": [0,0,0]})") == "/cloths/0/pins/0/motion");
+  CHECK(verdict("/colliders/0/plane", R"({"point": [0,0,0], "normal": [0,1,0]})") == "/colliders/0");
+}
+
+TEST_CASE("a triangle has three different vertices of its mesh") {
+  CHECK(verdict("/cloths/1/mesh/triangles/0", "[0,1,1]") == "/cloths/1/mesh/triangles/0");
+  CHECK(verdict("/cloths/1/mesh/triangles/0", "[0,1]") == "/cloths/1/mesh/triangles/0");
+  CHECK(verdict("/cloths/1/mesh/triangles/0", "[0,1,3]") == "/cloths/1/mesh/triangles/0/2");
+}
+
+TEST_CASE("all cloths together have at most 2^20 vertices") {
+  json value = base();
+  value["cloths"][0]["mesh"]["grid"]["columns"] = 1024;
+  value["cloths"][0]["mesh"]["grid"]["rows"] = 1023;
+  CHECK(scene::validate(value));
+  value["cloths"][0]["mesh"]["grid"]["rows"] = 1024;  // and three more in the triangle
+  CHECK(scene::validate(value).error().where == "/cloths/1/mesh");
+}
+
+TEST_CASE("a number that is not finite never becomes part of a scene") {
+  for (const double x : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    json value = base();
+    value["gravity"][1] = x;
+    CHECK(scene::validate(value).error().where == "/gravity/1");
+  }
+}
+
+TEST_CASE("the smallest document is a whole scene, with every default in its JSON") {
+  const auto document = scene::validate(json::parse(R"({"version": 1, "cloths": [{"mesh": {"grid": {}}}]})"));
+  REQUIRE(document);
+  json expected = scene::load_preset("seed")->value;
+  expected["name"] = "scene";
+  expected["cloths"][0]["pins"] = json::array();
+  expected["colliders"] = json::array();
+  expected["self_collision"] = nullptr;
+  expected["cloths"][0]["transform"]["translate"] = {0, 0, 0};
+  CHECK(document->value == expected);
+  CHECK(scene::validate(document->value)->value == document->value);
+}
+
+TEST_CASE("the typed scene holds what the document says, directions normalised") {
+  const scene::Scene scene = scene::validate(base())->scene;
+  CHECK(std::get<scene::Grid>(scene.cloths[0].mesh).columns == 25);
+  CHECK(scene.cloths[0].material.structural == 20000);
+  CHECK(std::get<scene::AtCorner>(scene.cloths[0].pins[1].at) == scene::AtCorner{24, 0});
+  CHECK(std::get<scene::Oscillate>(scene.cloths[0].pins[1].motion).amplitude == 0.2);
+  CHECK(std::get<scene::TriangleMesh>(scene.cloths[1].mesh).triangles[0] ==
+        std::array<std::uint32_t, 3>{0, 1, 2});
+  CHECK(scene.cloths[1].mass.kind == scene::Mass::Kind::area_density);
+  CHECK(std::get<scene::Spin>(scene.cloths[1].pins[1].motion).degrees_per_second == 72);
+  CHECK(std::get<scene::Plane>(scene.colliders[1].shape).normal == scene::dvec3(0, 1, 0));
+  CHECK(scene.self_collision->thickness == 0.01);
+  CHECK(scene.gravity == scene::dvec3(0, -9.8, 0));
+}
