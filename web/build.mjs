@@ -1,0 +1,35 @@
+// Bundles the page into dist/: one HTML file, one script, one style sheet, and nothing inline (the CSP forbids it).
+import { build } from "esbuild";
+import { cpSync, mkdirSync, readFileSync, rmSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+
+const here = dirname(fileURLToPath(import.meta.url));
+const dist = join(here, "dist");
+rmSync(dist, { recursive: true, force: true });
+mkdirSync(dist);
+cpSync(join(here, "static"), dist, { recursive: true });
+
+// lil-gui's sheet carries an icon font in a data: URL, which the CSP refuses too: panel.css draws those icons.
+const withoutFonts = {
+  name: "without-fonts",
+  setup({ onLoad }) {
+    onLoad({ filter: /lil-gui(\.min)?\.css$/ }, ({ path }) => ({
+      contents: readFileSync(path, "utf8").replace(/@font-face\s*{[^}]*}/g, ""),
+      loader: "css",
+    }));
+  },
+};
+
+await build({
+  absWorkingDir: here,
+  entryPoints: { app: "src/main.ts", style: "src/style.css" },
+  outdir: "dist",
+  bundle: true,
+  minify: true,
+  format: "esm",
+  target: ["es2022", "chrome100", "firefox100", "safari15.4"],
+  plugins: [withoutFonts],
+  legalComments: "none",
+  logLevel: "warning",
+});

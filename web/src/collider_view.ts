@@ -1,0 +1,116 @@
+// Spheres and planes of the scene, and the studio floor where a scene has none. They follow simulated time.
+import {
+  CircleGeometry, Color, DoubleSide, Group, Mesh, MeshBasicMaterial, MeshLambertMaterial, Quaternion, ShaderMaterial, SphereGeometry, Vector3, type IUniform,
+} from "three";
+import type { StageUniforms } from "./fabric_material";
+import { moved } from "./motion";
+import type { Collider, SceneDocument } from "./scene_types";
+import { groundFragment, groundVertex, porcelain } from "./shaders";
+
+const up = new Vector3(0, 1, 0);
+
+/// Colours of the ground, set by the theme.
+export interface GroundUniforms {
+  groundColor: IUniform<Color>;
+  shadowColor: IUniform<Color>;
+  lineColor: IUniform<Color>;
+}
+
+function sphereMaterial(stage: StageUniforms): MeshLambertMaterial {
+  const material = new MeshLambertMaterial({ color: 0xd9d4c8 });
+  material.onBeforeCompile = (shader) => {
+    shader.fragmentShader = shader.fragmentShader.replace("#include <opaque_fragment>", `${porcelain}\n#include <opaque_fragment>`);
+    Object.assign(shader.uniforms, stage);
+  };
+  return material;
+}
+
+function groundMaterial(uniforms: Record<string, IUniform>, solid: boolean): ShaderMaterial {
+  return new ShaderMaterial({
+    uniforms, defines: solid ? { LINES: 1 } : {},
+    vertexShader: groundVertex, fragmentShader: groundFragment,
+    transparent: true, depthWrite: false, side: DoubleSide,
+  });
+}
+
+interface Shown { collider: Collider; mesh: Mesh; caster: Mesh | null }
+
+export class ColliderView {
+  readonly object = new Group();
+  readonly caster = new Group();  ///< drawn into the ground's shadow
+  private readonly sphere = new SphereGeometry(1, 64, 40);
+  private readonly disc = new CircleGeometry(1, 64);
+  private readonly sphereMaterial;
+  private readonly planeMaterial;
+  private readonly casterMaterial = new MeshBasicMaterial({ depthTest: false, toneMapped: false });
+  private readonly studio: Mesh;
+  private readonly radius = { value: 1 };
+  private shown: Shown[] = [];
+  private lowest = 0;  // where the studio floor is [m]
+
+  constructor(private readonly stage: StageUniforms, ground: GroundUniforms, shadow: Record<string, IUniform>) {
+    this.sphereMaterial = sphereMaterial(stage);
+    const uniforms = { ...ground, ...shadow, fadeRadius: this.radius };
+    this.planeMaterial = groundMaterial(uniforms, true);
+    this.studio = new Mesh(this.disc, groundMaterial(uniforms, false));
+    this.studio.quaternion.setFromUnitVectors(new Vector3(0, 0, 1), up);
+    this.studio.frustumCulled = false;
+  }
+
+  setDocument(document: SceneDocument, sceneRadius: number): void {
+    this.object.clear();
+    this.caster.clear();
+    this.radius.value = sceneRadius * 2.8;
+    this.shown = document.colliders.flatMap((collider) => {
+      const mesh = this.meshOf(collider);
+      return mesh ? [{ collider, mesh, caster: this.casterOf(collider) }] : [];
+    });
+    for (const { mesh, caster } of this.shown) {
+      this.object.add(mesh);
+      if (caster) this.caster.add(caster);
+    }
+    const floored = document.colliders.some(({ plane }) => plane && new Vector3(...plane.normal).normalize().y > 0.7);
+    if (!floored) this.object.add(this.studio);
+    const bottoms = document.colliders.flatMap(({ sphere }) => (sphere ? [sphere.center[1] - sphere.radius] : []));
+    this.lowest = Math.min(0, ...bottoms);
+    this.studio.scale.setScalar(this.radius.value);
+    this.studio.position.y = this.lowest;
+  }
+
+  /// Moves everything to where it is at `time` [s]; `clothBottom` [m] pushes the studio floor down, it is no collider.
+  update(time: number, clothBottom: number): void {
+    let spheres = 0;
+    for (const { collider, mesh, caster } of this.shown) {
+      const home = collider.sphere?.center ?? collider.plane?.point ?? [0, 0, 0];
+      mesh.position.copy(moved(home, collider.motion, time));
+      caster?.position.copy(mesh.position);
+      if (collider.sphere && spheres < this.stage.occluders.value.length) {
+        const { x, y, z } = mesh.position;
+        this.stage.occluders.value[spheres++]?.set(x, y, z, collider.sphere.radius);
+      }
+    }
+    for (; spheres < this.stage.occluders.value.length; ++spheres) this.stage.occluders.value[spheres]?.set(0, 0, 0, 0);
+    this.studio.position.y = Math.min(this.lowest, clothBottom - 0.01);
+  }
+
+  private meshOf(collider: Collider): Mesh | null {
+    if (collider.sphere) {
+      const mesh = new Mesh(this.sphere, this.sphereMaterial);
+      mesh.scale.setScalar(collider.sphere.radius);
+      mesh.castShadow = mesh.receiveShadow = true;
+      return mesh;
+    }
+    if (!collider.plane) return null;
+    const mesh = new Mesh(this.disc, this.planeMaterial);
+    mesh.quaternion.copy(new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), new Vector3(...collider.plane.normal).normalize()));
+    mesh.scale.setScalar(this.radius.value);
+    return mesh;
+  }
+
+  private casterOf(collider: Collider): Mesh | null {
+    if (!collider.sphere) return null;
+    const caster = new Mesh(this.sphere, this.casterMaterial);
+    caster.scale.setScalar(collider.sphere.radius);
+    return caster;
+  }
+}

@@ -1,0 +1,136 @@
+// The link to the server: connects, authenticates, subscribes, measures, and comes back by itself after a loss.
+import { decodeHeader, decodeTopology, encodingQ16, kindFrame, kindTopology, type Frame, type Topology } from "./protocol";
+import { errorNotAllowed, Rpc, RpcError } from "./rpc";
+
+export type LinkState = "connecting" | "open" | "waiting" | "unauthorised";
+
+export interface LinkEvents {
+  state(state: LinkState, retryInSeconds: number, why: string): void;
+  notification(method: string, params: Record<string, unknown>): void;
+  topology(topology: Topology): void;
+  frame(frame: Frame): void;
+  latency(milliseconds: number): void;
+  problem(error: Error): void;
+}
+
+const subprotocol = "clothlab.v1";
+const firstDelay = 0.25;  // [s]: a restarted server is usually back at once
+const longestDelay = 8;   // [s]
+const pingEvery = 1000;   // [ms]
+const silenceLimit = 8000;  // [ms] without one byte: sim.status alone comes 10 times a second
+
+export class Connection {
+  bytesReceived = 0;
+  private socket: WebSocket | null = null;
+  private rpc: Rpc | null = null;
+  private delay = firstDelay;
+  private retryTimer = 0;
+  private lastHeard = 0;
+  private refused = false;
+
+  constructor(private readonly session: string, private readonly events: LinkEvents) {
+    setInterval(() => this.beat(), pingEvery);
+  }
+
+  get open(): boolean { return this.socket?.readyState === WebSocket.OPEN; }
+
+  connect(): void {
+    clearTimeout(this.retryTimer);
+    this.refused = false;
+    this.events.state("connecting", 0, "");
+    const scheme = location.protocol === "https:" ? "wss:" : "ws:";
+    const socket = new WebSocket(`${scheme}//${location.host}/ws?session=${encodeURIComponent(this.session)}`, subprotocol);
+    socket.binaryType = "arraybuffer";
+    this.socket = socket;
+    this.rpc = new Rpc(socket, (method, params) => this.events.notification(method, params));
+    this.lastHeard = performance.now();
+    socket.onopen = () => void this.greet(this.rpc as Rpc);
+    socket.onmessage = (event) => this.receive(event.data as string | ArrayBuffer);
+    socket.onclose = (event) => this.closed(socket, event);
+  }
+
+  request<T = Record<string, unknown>>(method: string, params: Record<string, unknown> = {}): Promise<T> {
+    return this.rpc ? this.rpc.request<T>(method, params) : Promise.reject(new Error("not connected to the server"));
+  }
+
+  acknowledge(sequence: number): void { this.rpc?.notify("stream.ack", { frame: sequence }); }
+
+  /// Stores the token for this tab and connects with it.
+  authenticate(token: string): void {
+    sessionStorage.setItem("clothlab-token", token);
+    this.abandon();
+    this.connect();
+  }
+
+  // Everything is sent at once: the first frame needs no second round trip.
+  private async greet(rpc: Rpc): Promise<void> {
+    const token = sessionStorage.getItem("clothlab-token");
+    try {
+      const authenticated = token ? rpc.request("auth", { token }) : Promise.resolve();
+      const subscribed = rpc.request("stream.subscribe", { encoding: "q16", rate: 60, in_flight: 2 });
+      await Promise.all([authenticated, subscribed]);
+      this.delay = firstDelay;
+      this.events.state("open", 0, "");
+    } catch (error) {
+      if (error instanceof RpcError && error.code === errorNotAllowed) this.refuse(token !== null);
+      else if (error instanceof RpcError) this.events.problem(error);
+    }
+  }
+
+  private refuse(hadToken: boolean): void {
+    sessionStorage.removeItem("clothlab-token");
+    this.refused = true;
+    this.abandon();
+    this.events.state("unauthorised", 0, hadToken ? "The server did not accept this token." : "This server asks for a token.");
+  }
+
+  private receive(data: string | ArrayBuffer): void {
+    this.lastHeard = performance.now();
+    try {
+      if (typeof data === "string") {
+        this.bytesReceived += data.length;
+        this.rpc?.receive(data);
+        return;
+      }
+      this.bytesReceived += data.byteLength;
+      const header = decodeHeader(data);
+      if (header.kind === kindTopology) this.events.topology(decodeTopology(header, data));
+      else if (header.kind === kindFrame && header.encoding === encodingQ16) this.events.frame({ header, buffer: data });
+    } catch (error) {
+      this.events.problem(error as Error);
+    }
+  }
+
+  private beat(): void {
+    if (!this.open || !this.rpc) return;
+    if (performance.now() - this.lastHeard > silenceLimit) {
+      const socket = this.socket as WebSocket;
+      this.abandon();
+      this.retry(`no answer for ${silenceLimit / 1000} s from ${new URL(socket.url).host}`);
+      return;
+    }
+    const sent = performance.now();
+    this.rpc.request("ping", { t: sent }).then(() => this.events.latency(performance.now() - sent), () => undefined);
+  }
+
+  private abandon(): void {
+    if (!this.socket) return;
+    this.socket.onopen = this.socket.onmessage = this.socket.onclose = null;
+    this.socket.close();
+    this.rpc?.close();
+    this.socket = this.rpc = null;
+  }
+
+  private closed(socket: WebSocket, event: CloseEvent): void {
+    if (socket !== this.socket) return;
+    this.abandon();
+    if (!this.refused) this.retry(event.reason || (event.code === 1006 ? "" : `closed with code ${event.code}`));
+  }
+
+  private retry(why: string): void {
+    const wait = this.delay * (0.8 + 0.4 * Math.random());  // spread out: all viewers lost the server together
+    this.delay = Math.min(this.delay * 1.6, longestDelay);
+    this.events.state("waiting", wait, why);
+    this.retryTimer = window.setTimeout(() => this.connect(), wait * 1000);
+  }
+}

@@ -1,0 +1,9 @@
+// The elements of static/index.html by id, typed, with a clear error if one is missing.
+
+export function element<T extends HTMLElement>(id: string, type: new () => T): T {
+  const found = document.getElementById(id);
+  if (!(found instanceof type)) throw new Error(`index.html has no ${type.name} #${id}`);
+  return found;
+}
+
+export const button = (id: string): HTMLButtonElement => element(id, HTMLButtonElement);

@@ -1,0 +1,171 @@
+// What the panel offers for a scene: a list of sections and fields, each tied to JSON Pointers of the document.
+import type { Scale } from "./slider";
+import { valueAt } from "./json_patch";
+import type { Motion, Operation, SceneDocument, Vec3 } from "./scene_types";
+
+interface FieldBase {
+  key: string;          ///< unique in the panel
+  label: string;
+  paths: string[];      ///< the places it writes; the first is the one it reads
+  onRelease?: boolean;  ///< sent when let go: each value rebuilds the cloth
+  read?(document: SceneDocument): unknown;
+  write?(value: unknown): unknown;
+}
+export type Field =
+  | (FieldBase & { kind: "number"; scale: Scale })
+  | (FieldBase & { kind: "toggle" | "color" })
+  | (FieldBase & { kind: "choice"; choices: string[] });
+
+export interface Section { key: string; title: string; open: boolean; fields: Field[]; sections: Section[] }
+
+const meter = { unit: "m" };
+const number = (label: string, paths: string[], scale: Scale, more: Partial<FieldBase> = {}): Field =>
+  ({ key: paths[0] as string, label, paths, kind: "number", scale, ...more });
+
+const at = (bases: string[], rest: string): string[] => bases.map((base) => base + rest);
+
+function vector(label: string, bases: string[], scale: Scale): Field[] {
+  return ["x", "y", "z"].map((axis, i) => number(`${label} ${axis}`, at(bases, `/${i}`), scale));
+}
+
+const motionKinds = ["still", "oscillate", "linear", "spin"];
+const motionKind = (motion: Motion): string => (motion ? (Object.keys(motion)[0] as string) : "still");
+const axes: Record<string, Vec3> = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
+
+function freshMotion(kind: string, center: Vec3): Motion {
+  switch (kind) {
+    case "oscillate": return { oscillate: { axis: [0, 0, 1], amplitude: 0.2, frequency: 0.5 } };
+    case "linear": return { linear: { velocity: [0, 0, 0.1] } };
+    case "spin": return { spin: { axis: [0, 1, 0], center, degrees_per_second: 30 } };
+    default: return null;
+  }
+}
+
+function axisField(bases: string[], current: Vec3): Field {
+  const name = (axis: Vec3) => Object.keys(axes).find((key) => (axes[key] as Vec3).every((v, i) => v === axis[i])) ?? "other";
+  const choices = name(current) === "other" ? ["x", "y", "z", "other"] : ["x", "y", "z"];
+  return {
+    key: `${bases[0]}/axis`, label: "axis", paths: at(bases, "/axis"), kind: "choice", choices,
+    read: (document) => name(valueAt(document, `${bases[0]}/axis`) as Vec3),
+    write: (value) => axes[String(value)] ?? current,
+  };
+}
+
+/// Fields of the motions at `bases`, which are all equal and edited together.
+function motionFields(bases: string[], motion: Motion, center: Vec3): Field[] {
+  const kind: Field = {
+    key: `${bases[0]}#kind`, label: "motion", paths: bases, kind: "choice", choices: motionKinds,
+    read: (document) => motionKind(valueAt(document, bases[0] as string) as Motion),
+    write: (value) => freshMotion(String(value), center),
+  };
+  if (!motion) return [kind];
+  if ("oscillate" in motion) {
+    const inside = at(bases, "/oscillate");
+    return [kind, axisField(inside, motion.oscillate.axis),
+      number("amplitude", at(inside, "/amplitude"), { min: 0, max: 0.5, step: 0.005, ...meter }),
+      number("frequency", at(inside, "/frequency"), { min: 0, max: 3, step: 0.01, unit: "Hz" })];
+  }
+  if ("linear" in motion) return [kind, ...vector("velocity", at(bases, "/linear/velocity"), { min: -2, max: 2, step: 0.01, unit: "m/s" })];
+  const inside = at(bases, "/spin");
+  return [kind, axisField(inside, motion.spin.axis),
+    number("speed", at(inside, "/degrees_per_second"), { min: -360, max: 360, step: 1, unit: "°/s" })];
+}
+
+function pinSections(document: SceneDocument, cloth: number): Section[] {
+  const groups = new Map<string, number[]>();
+  document.cloths[cloth]?.pins.forEach((pin, i) => {
+    const same = JSON.stringify(pin.motion);
+    groups.set(same, [...(groups.get(same) ?? []), i]);
+  });
+  return [...groups.entries()].map(([motion, pins]) => ({
+    key: `/cloths/${cloth}/pins/${pins.join("+")}`,
+    title: pins.length === 1 ? `Pin ${JSON.stringify(document.cloths[cloth]?.pins[pins[0] as number]?.at).replaceAll('"', "")}` : `${pins.length} pins`,
+    open: false, sections: [],
+    fields: motionFields(pins.map((pin) => `/cloths/${cloth}/pins/${pin}/motion`), JSON.parse(motion) as Motion, [0, 0, 0]),
+  }));
+}
+
+function clothSection(document: SceneDocument, index: number): Section {
+  const cloth = document.cloths[index] as SceneDocument["cloths"][number];
+  const base = `/cloths/${index}`;
+  const stiffness = { min: 10, max: 200000, log: true, zero: true, unit: "N/m" };
+  const mass: Field = "per_vertex" in cloth.mass
+    ? number("mass", [`${base}/mass/per_vertex`], { min: 0.001, max: 1, log: true, unit: "kg/vertex" })
+    : number("mass", [`${base}/mass/area_density`], { min: 0.02, max: 20, log: true, unit: "kg/m²" });
+  const count = { min: 3, max: 200, log: true, whole: true };
+  const grid: Field[] = "grid" in cloth.mesh ? [
+    number("columns", [`${base}/mesh/grid/columns`], count, { onRelease: true }),
+    number("rows", [`${base}/mesh/grid/rows`], count, { onRelease: true })] : [];
+  return {
+    key: base, title: document.cloths.length === 1 && cloth.name === "cloth" ? "Cloth" : `Cloth: ${cloth.name}`, open: true,
+    fields: [
+      number("structural", [`${base}/material/structural`], stiffness),
+      number("shear", [`${base}/material/shear`], stiffness),
+      number("bend", [`${base}/material/bend`], stiffness),
+      number("damping", [`${base}/material/damping`], { min: 0.01, max: 100, log: true, zero: true, unit: "N s/m" }),
+      mass, ...grid,
+      { key: `${base}/color`, label: "colour", paths: [`${base}/color`], kind: "color" },
+      { key: `${base}/texture`, label: "texture", paths: [`${base}/texture`], kind: "choice", choices: ["weave", "checker", "stripes", "plain"] },
+    ],
+    sections: pinSections(document, index),
+  };
+}
+
+function colliderSection(document: SceneDocument, index: number): Section {
+  const collider = document.colliders[index] as SceneDocument["colliders"][number];
+  const base = `/colliders/${index}`;
+  const place = { min: -2, max: 2, step: 0.005, ...meter };
+  const shape: Field[] = collider.sphere
+    ? [...vector("center", [`${base}/sphere/center`], place),
+       number("radius", [`${base}/sphere/radius`], { min: 0.02, max: 1, step: 0.005, ...meter })]
+    : collider.plane ? [number("height", [`${base}/plane/point/1`], place)] : [];
+  return {
+    key: base, title: collider.name ? `Collider: ${collider.name}` : `Collider ${index + 1}`, open: false, sections: [],
+    fields: [...shape,
+      number("friction", [`${base}/friction`], { min: 0, max: 2, step: 0.01 }),
+      number("restitution", [`${base}/restitution`], { min: 0, max: 1, step: 0.01 }),
+      ...motionFields([`${base}/motion`], collider.motion, collider.sphere?.center ?? [0, 0, 0])],
+  };
+}
+
+function worldSection(): Section {
+  return {
+    key: "world", title: "World", open: true, sections: [],
+    fields: [
+      number("gravity y", ["/gravity/1"], { min: -20, max: 5, step: 0.1, unit: "m/s²" }),
+      number("air drag", ["/air_drag"], { min: 0, max: 5, step: 0.01, unit: "1/s" }),
+      number("time step", ["/solver/dt"], { min: 1e-5, max: 1e-2, log: true, unit: "s" }),
+    ],
+  };
+}
+
+function selfCollisionSection(document: SceneDocument): Section {
+  const base = "/self_collision";
+  const toggle: Field = {
+    key: base, label: "on", paths: [base], kind: "toggle",
+    read: (current) => current.self_collision !== null,
+    write: (value) => (value ? { thickness: 0.01, friction: 0.2 } : null),
+  };
+  const more: Field[] = document.self_collision ? [
+    number("thickness", [`${base}/thickness`], { min: 0.001, max: 0.05, log: true, ...meter }),
+    number("friction", [`${base}/friction`], { min: 0, max: 2, step: 0.01 })] : [];
+  return { key: base, title: "Self-collision", open: true, fields: [toggle, ...more], sections: [] };
+}
+
+export function sectionsOf(document: SceneDocument): Section[] {
+  return [
+    ...document.cloths.map((_, i) => clothSection(document, i)),
+    worldSection(),
+    selfCollisionSection(document),
+    ...document.colliders.map((_, i) => colliderSection(document, i)),
+  ];
+}
+
+export function readField(field: Field, document: SceneDocument): unknown {
+  return field.read ? field.read(document) : valueAt(document, field.paths[0] as string);
+}
+
+export function operationsFor(field: Field, value: unknown): Operation[] {
+  const written = field.write ? field.write(value) : value;
+  return field.paths.map((path) => ({ op: "replace", path, value: written }));
+}

@@ -1,0 +1,120 @@
+// The card with figures: what is drawn, what comes in, how the simulation keeps up, and which passes run.
+import { element } from "./dom";
+
+/// `sim.status` of contract.md; every part may be missing.
+export interface Status {
+  playing?: boolean;
+  time?: number;
+  step?: number;
+  speed?: number;
+  real_time_factor?: number;
+  energy?: { kinetic: number; elastic: number; gravitational: number };
+  max_strain?: number;
+  max_speed?: number;
+  contacts?: number;
+  asleep?: boolean;
+  passes?: (string | { name: string; skipped?: string })[];
+  stability?: { dt_limit: number; margin: number };
+}
+
+const rows = [
+  ["drawn", "Drawn", "frames this page draws each second"],
+  ["received", "Received", "frames that arrive each second"],
+  ["time", "Simulated", "simulated time"],
+  ["rtf", "Real time", "simulated seconds a second takes; ×1.00 keeps up"],
+  ["latency", "Latency", "round trip of a message to the server"],
+  ["rate", "Data", "everything received, a second"],
+  ["strain", "Strain", "largest stretch of any spring"],
+  ["vertices", "Vertices", "vertices of all cloths"],
+  ["viewers", "Viewers", "pages and scripts that watch this session"],
+  ["renderer", "Server", "what the server computes on"],
+] as const;
+type Row = (typeof rows)[number][0];
+
+export class Hud {
+  private readonly cells = new Map<Row, HTMLElement>();
+  private drawn = 0;
+  private received = 0;
+  private bytes = 0;
+  private since = performance.now();
+  private passes = "";
+  private timeShownAt = 0;
+
+  constructor() {
+    const list = element("stats", HTMLDListElement);
+    for (const [key, label, title] of rows) {
+      const row = document.createElement("div");
+      row.title = title;
+      const name = document.createElement("dt");
+      name.textContent = label;
+      const value = document.createElement("dd");
+      value.textContent = "–";
+      row.append(name, value);
+      list.append(row);
+      this.cells.set(key, value);
+    }
+  }
+
+  set(row: Row, text: string): void {
+    const cell = this.cells.get(row);
+    if (cell && cell.textContent !== text) cell.textContent = text;
+    if (row === "renderer" && cell) cell.title = text;
+  }
+
+  countDrawn(): void { this.drawn++; }
+  countReceived(): void { this.received++; }
+
+  /// Ten times a second is enough to read, and repainting the card costs a slow machine a frame.
+  setTime(seconds: number): void {
+    const now = performance.now();
+    if (now - this.timeShownAt < 100) return;
+    this.timeShownAt = now;
+    this.set("time", `${seconds.toFixed(2)} s`);
+    element("headline-time", HTMLElement).textContent = seconds.toFixed(1);
+  }
+
+  showStatus(status: Status): void {
+    if (status.real_time_factor !== undefined) {
+      const text = status.playing === false ? "paused" : `×${status.real_time_factor.toFixed(2)}`;
+      this.set("rtf", status.asleep ? "at rest" : text);
+      element("headline-rtf", HTMLElement).textContent = status.asleep ? "at rest" : text;
+    }
+    if (status.max_strain !== undefined) this.set("strain", `${(100 * status.max_strain).toFixed(1)} %`);
+    if (status.passes) this.showPasses(status.passes);
+  }
+
+  /// Turns the counts since the last call into rates; call it about once a second.
+  tick(bytesReceived: number): void {
+    const now = performance.now();
+    const seconds = (now - this.since) / 1000;
+    const rate = (count: number) => (count / seconds).toFixed(0);
+    this.set("drawn", `${rate(this.drawn)} /s`);
+    this.set("received", `${rate(this.received)} /s`);
+    element("headline-fps", HTMLElement).textContent = rate(this.drawn);
+    const kilobits = (8 * (bytesReceived - this.bytes)) / seconds / 1000;
+    this.set("rate", kilobits < 10000 ? `${kilobits.toFixed(0)} kbit/s` : `${(kilobits / 1000).toFixed(1)} Mbit/s`);
+    this.drawn = this.received = 0;
+    this.bytes = bytesReceived;
+    this.since = now;
+  }
+
+  private showPasses(passes: NonNullable<Status["passes"]>): void {
+    const text = JSON.stringify(passes);
+    if (text === this.passes) return;
+    this.passes = text;
+    const items = passes.map((pass) => (typeof pass === "string" ? { name: pass, skipped: "" } : { name: pass.name, skipped: pass.skipped ?? "" }));
+    const running = items.filter((item) => !item.skipped).length;
+    element("passes-count", HTMLElement).textContent = `${running} of ${items.length} run`;
+    element("passes", HTMLUListElement).replaceChildren(...items.map(({ name, skipped }) => {
+      const item = document.createElement("li");
+      item.className = skipped ? "skipped" : "";
+      item.textContent = name.replaceAll("_", " ");
+      if (skipped) {
+        const why = document.createElement("span");
+        why.textContent = skipped;
+        item.append(why);
+      }
+      return item;
+    }));
+  }
+}

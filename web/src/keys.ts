@@ -1,0 +1,26 @@
+// The keyboard: one key, one command; silent while something is being typed or a dialog is open.
+
+export type Commands = Record<"toggle" | "step" | "reset" | "fit" | "hide" | "help", () => void>;
+
+const bindings: Record<string, keyof Commands> = {
+  " ": "toggle", ".": "step", r: "reset", f: "fit", h: "hide", "?": "help",
+};
+
+/// Whether the focused element needs this key itself.
+function takes(target: EventTarget | null, key: string): boolean {
+  if (!(target instanceof HTMLElement)) return false;
+  if (target instanceof HTMLInputElement) return target.type !== "range" && target.type !== "checkbox" ? true : key === " " && target.type === "checkbox";
+  if (target instanceof HTMLSelectElement || target.isContentEditable) return true;
+  return key === " " && target.closest("button, summary") !== null;
+}
+
+export function bindKeys(commands: Commands): void {
+  addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey || event.repeat && event.key !== ".") return;
+    if (document.querySelector("dialog[open]") || takes(event.target, event.key)) return;
+    const command = bindings[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    if (!command) return;
+    event.preventDefault();
+    commands[command]();
+  });
+}

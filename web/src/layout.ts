@@ -1,0 +1,46 @@
+// Which part of the window is free for the picture, and the bottom sheet that the panel becomes on a narrow window.
+import { button, element } from "./dom";
+import type { FreeArea } from "./framing";
+
+const narrow = matchMedia("(max-width: 700px)");
+
+export class Layout {
+  private readonly panel = element("panel", HTMLElement);
+  private readonly handle = button("sheet-handle");
+  private readonly hud = element("hud", HTMLDetailsElement);
+
+  constructor(private readonly changed: () => void) {
+    this.hud.open = !narrow.matches;
+    this.handle.onclick = () => this.showSheet(!document.body.classList.contains("sheet-open"));
+    narrow.addEventListener("change", () => {
+      this.hud.open = !narrow.matches;
+      this.showSheet(false);
+    });
+    addEventListener("resize", () => this.changed());
+    element("transport", HTMLElement).addEventListener("transitionend", () => this.changed());  // it rides on the sheet
+  }
+
+  toggleInterface(): void {
+    document.body.classList.toggle("bare");
+    this.changed();
+  }
+
+  freeArea(): FreeArea {
+    const width = innerWidth;
+    const height = innerHeight;
+    if (document.body.classList.contains("bare")) return { left: 0, top: 0, width, height };
+    if (!narrow.matches) {
+      const bottom = element("transport", HTMLElement).getBoundingClientRect().top;
+      return { left: 0, top: 12, width: this.panel.getBoundingClientRect().left, height: bottom - 24 };
+    }
+    const top = element("headline-fps", HTMLElement).closest("summary")?.getBoundingClientRect().bottom ?? 0;
+    const bottom = element("transport", HTMLElement).getBoundingClientRect().top;
+    return { left: 0, top: top + 8, width, height: Math.max(120, bottom - top - 20) };
+  }
+
+  private showSheet(open: boolean): void {
+    document.body.classList.toggle("sheet-open", open);
+    this.handle.setAttribute("aria-expanded", String(open));
+    this.changed();
+  }
+}

@@ -1,0 +1,65 @@
+// Notices: what went wrong or changed, in words, with the remedy as a button where there is one.
+import { element } from "./dom";
+import { RpcError } from "./rpc";
+
+export type Level = "info" | "warning" | "error";
+export interface Action { label: string; run(): void }
+
+const shownAtOnce = 3;
+const lifetime: Record<Level, number> = { info: 5000, warning: 9000, error: 14000 };  // [ms]
+
+interface Content { title: string; lines?: string[]; action?: Action | undefined; stays?: boolean }
+
+export function notice(level: Level, content: Content): void {
+  const holder = element("notices", HTMLElement);
+  const box = document.createElement("div");
+  box.className = `notice ${level}`;
+  box.setAttribute("role", level === "error" ? "alert" : "status");
+  const title = document.createElement("strong");
+  title.textContent = content.title;
+  box.append(title);
+  for (const line of content.lines ?? []) {
+    const paragraph = document.createElement("p");
+    paragraph.textContent = line;
+    box.append(paragraph);
+  }
+  const close = document.createElement("button");
+  close.className = "close";
+  close.setAttribute("aria-label", "Dismiss");
+  close.textContent = "×";
+  close.onclick = () => box.remove();
+  if (content.action) box.append(actionButton(content.action, box));
+  box.append(close);
+  // The same trouble again replaces its notice instead of piling up.
+  for (const old of [...holder.children]) if (old.querySelector("strong")?.textContent === content.title) old.remove();
+  holder.append(box);
+  while (holder.children.length > shownAtOnce) holder.firstElementChild?.remove();
+  if (!content.stays) setTimeout(() => box.remove(), lifetime[level]);
+}
+
+function actionButton(action: Action, box: HTMLElement): HTMLButtonElement {
+  const run = document.createElement("button");
+  run.className = "action";
+  run.textContent = action.label;
+  run.onclick = () => {
+    box.remove();
+    action.run();
+  };
+  return run;
+}
+
+/// An error as a notice: where, what was found, what is allowed.
+export function noticeError(title: string, error: Error): void {
+  if (!(error instanceof RpcError)) {
+    notice("error", { title, lines: [error.message] });
+    return;
+  }
+  const { path, found, allowed } = error.data;
+  const lines = [error.message];
+  if (path) lines.push(`at ${path}`);
+  if (found !== undefined) lines.push(`found: ${asText(found)}`);
+  if (allowed !== undefined) lines.push(`allowed: ${asText(allowed)}`);
+  notice("error", { title, lines });
+}
+
+const asText = (value: unknown): string => (typeof value === "string" ? value : JSON.stringify(value));

@@ -1,0 +1,67 @@
+// JSON-RPC 2.0 over one WebSocket: requests as promises, notifications to a handler.
+
+export interface RpcErrorData { path?: string; found?: string; allowed?: string; revision?: number }
+
+export const errorNotAllowed = -32001;
+
+export class RpcError extends Error {
+  constructor(readonly code: number, message: string, readonly data: RpcErrorData = {}) {
+    super(message);
+  }
+}
+
+type Params = Record<string, unknown>;
+
+interface Pending { resolve(result: unknown): void; reject(error: Error): void }
+
+interface Incoming {
+  id?: number | string | null;
+  method?: string;
+  params?: Params;
+  result?: unknown;
+  error?: { code: number; message: string; data?: RpcErrorData };
+}
+
+export class Rpc {
+  private nextId = 1;
+  private readonly pending = new Map<number, Pending>();
+
+  constructor(private readonly socket: WebSocket,
+              private readonly onNotification: (method: string, params: Params) => void) {}
+
+  request<T = Params>(method: string, params: Params = {}): Promise<T> {
+    return new Promise((resolve, reject) => {
+      if (this.socket.readyState !== WebSocket.OPEN) {
+        reject(new Error("not connected to the server"));
+        return;
+      }
+      const id = this.nextId++;
+      this.pending.set(id, { resolve: resolve as (result: unknown) => void, reject });
+      this.socket.send(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
+    });
+  }
+
+  notify(method: string, params: Params): void {
+    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify({ jsonrpc: "2.0", method, params }));
+  }
+
+  /// Takes one text frame of the server.
+  receive(text: string): void {
+    const message = JSON.parse(text) as Incoming;
+    if (message.method !== undefined) {
+      this.onNotification(message.method, message.params ?? {});
+      return;
+    }
+    const waiting = this.pending.get(Number(message.id));
+    if (!waiting) return;
+    this.pending.delete(Number(message.id));
+    if (message.error) waiting.reject(new RpcError(message.error.code, message.error.message, message.error.data));
+    else waiting.resolve(message.result);
+  }
+
+  /// The socket is gone: nobody will answer any more.
+  close(): void {
+    for (const waiting of this.pending.values()) waiting.reject(new Error("the connection was lost before the server answered"));
+    this.pending.clear();
+  }
+}

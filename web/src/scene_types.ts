@@ -1,0 +1,58 @@
+// The scene document (contract.md, section 1) as far as the page shows it. The server fills in every default.
+
+export type Vec3 = [number, number, number];
+
+export interface Oscillate { axis: Vec3; amplitude: number; frequency: number }
+export interface Linear { velocity: Vec3 }
+export interface Spin { axis: Vec3; center: Vec3; degrees_per_second: number }
+export type Motion = null | { oscillate: Oscillate } | { linear: Linear } | { spin: Spin };
+
+export interface Grid { columns: number; rows: number; width: number; height: number }
+export interface InlineMesh { vertices: Vec3[]; triangles: Vec3[] }
+export type Mesh = { grid: Grid } | InlineMesh;
+
+export type At = string | { box: [Vec3, Vec3] };
+export interface Pin { at: At; motion: Motion }
+
+export interface Springs { model: "springs"; structural: number; shear: number; bend: number; damping: number }
+
+export interface Cloth {
+  name: string;
+  mesh: Mesh;
+  transform: { translate: Vec3; rotate: Vec3; scale: number };
+  mass: { per_vertex: number } | { area_density: number };
+  material: Springs;
+  pins: Pin[];
+  color: string;
+  texture: string;
+}
+
+export interface Sphere { center: Vec3; radius: number }
+export interface Plane { point: Vec3; normal: Vec3 }
+export interface Collider {
+  name: string;
+  sphere?: Sphere;
+  plane?: Plane;
+  friction: number;
+  restitution: number;
+  motion: Motion;
+}
+
+export interface SceneDocument {
+  version: number;
+  name: string;
+  gravity: Vec3;
+  cloths: Cloth[];
+  colliders: Collider[];
+  self_collision: null | { thickness: number; friction: number };
+  air_drag: number;
+  solver: { method: string; dt: number; iterations: number; tolerance: number };
+}
+
+export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
+
+/// One operation of an RFC 6902 patch.
+export interface Operation { op: "add" | "remove" | "replace" | "move" | "copy" | "test"; path: string; from?: string; value?: unknown }
+
+/// An array is RFC 6902, an object an RFC 7396 merge patch.
+export type Patch = Operation[] | { [key: string]: unknown };

@@ -1,0 +1,164 @@
+// GLSL spliced into three.js materials: decoding q16 vertices, woven textures, sheen, and occlusion by spheres.
+
+/// Vertex attribute `q16` = u16 x3 position and two i8 of an octahedral normal, as four normalised 16-bit words.
+export const decodeParameters = /* glsl */ `
+attribute vec4 q16;
+uniform vec3 boxMinimum;
+uniform vec3 boxExtent;
+
+vec3 decodePosition() { return boxMinimum + boxExtent * q16.xyz; }
+
+vec3 decodeNormal() {
+  float word = floor(q16.w * 65535.0 + 0.5);
+  vec2 bytes = vec2(mod(word, 256.0), floor(word / 256.0));
+  vec2 e = max((bytes - 256.0 * step(127.5, bytes)) / 127.0, -1.0);
+  vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
+  float fold = max(-n.z, 0.0);
+  n.x += n.x >= 0.0 ? -fold : fold;
+  n.y += n.y >= 0.0 ? -fold : fold;
+  return normalize(n);
+}
+`;
+
+export const fabricVertexParameters = /* glsl */ `
+${decodeParameters}
+attribute vec2 textureCoordinate;
+uniform vec2 threads;
+uniform vec3 lightDirection;
+varying vec2 vCloth;
+varying vec3 vWorld;
+`;
+
+// A back face lit from behind must push its shadow test towards the light too, or it shadows itself in stripes.
+export const fabricShadowNormal = /* glsl */ `
+transformedNormal *= dot(objectNormal, lightDirection) < 0.0 ? -1.0 : 1.0;
+`;
+
+export const occlusionParameters = /* glsl */ `
+uniform vec4 occluders[4];
+
+// The share of the sky that spheres hide from a surface: closed form of a fully visible sphere, clamped.
+float skyLeft(vec3 position, vec3 normal) {
+  float left = 1.0;
+  for (int i = 0; i < 4; ++i) {
+    if (occluders[i].w <= 0.0) break;
+    vec3 towards = occluders[i].xyz - position;
+    float squared = max(dot(towards, towards), 1e-8);
+    float facing = 0.35 + 0.65 * dot(normal, towards) * inversesqrt(squared);
+    left -= 0.85 * max(facing, 0.0) * min(occluders[i].w * occluders[i].w / squared, 1.0);
+  }
+  return clamp(left, 0.12, 1.0);
+}
+`;
+
+export const fabricFragmentParameters = /* glsl */ `
+${occlusionParameters}
+uniform vec2 threads;
+uniform float pattern;
+uniform float hemmed;
+varying vec2 vCloth;
+varying vec3 vWorld;
+
+// Plain weave: threads over and under in turn; fades to its mean where a thread is smaller than a pixel.
+float weave(vec2 at) {
+  vec2 cell = floor(at);
+  vec2 q = fract(at) - 0.5;
+  bool weftOnTop = mod(cell.x + cell.y, 2.0) < 0.5;
+  float across = weftOnTop ? q.y : q.x;
+  float along = weftOnTop ? q.x : q.y;
+  float height = cos(3.14159 * across * 0.94) * (0.72 + 0.28 * cos(3.14159 * along));
+  float shade = (weftOnTop ? 1.0 : 0.95) * (0.7 + 0.42 * height);
+  vec2 width = fwidth(at);
+  return mix(shade, 0.95, smoothstep(0.3, 0.85, max(width.x, width.y)));
+}
+
+// Positive in half of each period, negative in the other, blurred over a pixel: [0, 1].
+vec2 halves(vec2 periods) {
+  return smoothstep(-fwidth(periods), fwidth(periods), abs(fract(periods) - 0.5) - 0.25);
+}
+
+// How much of the dyed colour is here: 1 all of it, 0 the pale second shade.
+float dye(vec2 side) {
+  if (pattern < 1.5) return 1.0;
+  if (pattern > 2.5) return halves(side * 6.0).x;
+  vec2 squares = halves(side * 4.0);
+  return mix(squares.x, 1.0 - squares.x, squares.y);
+}
+
+vec3 fabricColor(vec3 base, bool front) {
+  float longer = max(threads.x, threads.y);
+  vec3 pale = mix(base, vec3(0.93, 0.9, 0.84), 0.78);
+  vec3 color = mix(pale, base, dye(vCloth / longer));
+  color *= pattern < 0.5 ? mix(weave(vCloth * 1.5), 0.95, 0.75) : weave(vCloth);
+  vec2 uv = vCloth / threads;
+  vec2 inset = min(uv, 1.0 - uv) * threads / longer;
+  float border = min(inset.x, inset.y);
+  color *= 1.0 - hemmed * 0.16 * (1.0 - smoothstep(0.016, 0.019, border));
+  return front ? color : mix(color, vec3(dot(color, vec3(0.3, 0.6, 0.1))), 0.3) * 0.85;
+}
+`;
+
+/// Grazing light caught by loose fibres, and a little light through the cloth from behind.
+export const fabricSheen = /* glsl */ `
+vec3 viewDirection = normalize(vViewPosition);
+float grazing = 1.0 - saturate(dot(viewDirection, normal));
+grazing *= grazing * grazing;
+outgoingLight += 0.016 + 0.05 * diffuseColor.rgb;  // fibres scatter some of the room's white light
+#if NUM_DIR_LIGHTS > 0
+  float towardsLight = dot(normal, directionalLights[0].direction);
+  outgoingLight += diffuseColor.rgb * directionalLights[0].color * 0.05 * max(-towardsLight, 0.0);
+  outgoingLight += (0.25 + 0.75 * diffuseColor.rgb) * grazing * (0.16 + 0.22 * saturate(0.5 + 0.5 * towardsLight));
+#endif
+`;
+
+/// A glazed sphere: a soft highlight of the key light and a brighter rim.
+export const porcelain = /* glsl */ `
+vec3 viewDirection = normalize(vViewPosition);
+float rim = pow(1.0 - saturate(dot(viewDirection, normal)), 4.0);
+outgoingLight += vec3(0.22) * rim;
+#if NUM_DIR_LIGHTS > 0
+  vec3 halfway = normalize(viewDirection + directionalLights[0].direction);
+  outgoingLight += vec3(0.35) * pow(saturate(dot(normal, halfway)), 60.0);
+#endif
+`;
+
+/// A disc that fades into the backdrop, with the soft shadow of ground_shadow.ts. Colours are sRGB as in the style
+/// sheet, and nothing is lit: the ground covers most of the picture, so a fragment must cost next to nothing.
+export const groundVertex = /* glsl */ `
+uniform mat4 shadowMatrix;
+uniform float fadeRadius;
+varying vec2 vDisc;
+varying vec2 vLines;
+varying vec2 vMask;
+void main() {
+  vec4 world = modelMatrix * vec4(position, 1.0);
+  vDisc = position.xy;
+  vLines = position.xy * fadeRadius * 4.0;
+  vMask = (shadowMatrix * world).xy;
+  gl_Position = projectionMatrix * viewMatrix * world;
+}`;
+
+export const groundFragment = /* glsl */ `
+uniform vec3 groundColor;
+uniform vec3 shadowColor;
+uniform vec3 lineColor;
+uniform sampler2D shadowMask;
+varying vec2 vDisc;
+varying vec2 vLines;
+varying vec2 vMask;
+
+void main() {
+  vec3 color = groundColor;
+  #ifdef LINES  // each 0.25 m
+    vec2 width = fwidth(vLines);
+    vec2 line = clamp(1.3 - abs(fract(vLines - 0.5) - 0.5) / width, 0.0, 1.0) * clamp(1.6 - 4.0 * width, 0.0, 1.0);
+    color = mix(color, lineColor, 0.5 * max(line.x, line.y));
+  #endif
+  vec2 off = abs(vMask - 0.5);
+  if (max(off.x, off.y) < 0.5) color = mix(color, shadowColor, 0.62 * texture2D(shadowMask, vMask).r);
+  float fade = max(1.0 - dot(vDisc, vDisc), 0.0);
+  gl_FragColor = vec4(color, fade * fade);
+}`;
+
+/// Draws a caster of ground_shadow.ts.
+export const casterFragment = "void main() { gl_FragColor = vec4(1.0); }";

@@ -1,0 +1,166 @@
+// The renderer, light, camera and the views on it. Draws only when something changed.
+import {
+  Color, DirectionalLight, HemisphereLight, PCFShadowMap, PerspectiveCamera, Scene, Vector3, Vector4, WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { ClothView } from "./cloth_view";
+import { ColliderView } from "./collider_view";
+import { centerIn, frame as frameCamera, sceneBox, type FreeArea } from "./framing";
+import { GroundShadow } from "./ground_shadow";
+import type { Frame, Topology } from "./protocol";
+import { Quality } from "./quality";
+import type { SceneDocument } from "./scene_types";
+
+const stillAfter = 300;  // [ms] without a change: a picture at rest is worth its full resolution
+const lightFrom = new Vector3(0.55, 1, 0.62).normalize();
+
+/// The name of what draws, or null without WebGL 2.
+export function probeWebGl(): string | null {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  if (!gl) return null;
+  const details = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = String(gl.getParameter(details ? details.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return name;
+}
+
+export class Stage {
+  readonly controls: OrbitControls;
+  readonly cloth: ClothView;
+  private readonly renderer: WebGLRenderer;
+  private readonly scene = new Scene();
+  private readonly camera = new PerspectiveCamera(32, 1, 0.05, 100);
+  private readonly light = new DirectionalLight(0xfff4e6, 2.5);
+  private readonly sky = new HemisphereLight(0xf2f6ff, 0x8c8378, 1.25);
+  private readonly colliders: ColliderView;
+  private readonly groundShadow: GroundShadow;
+  private readonly quality: Quality;
+  private readonly pixelRatio = { value: 1 };
+  private readonly ground = {
+    groundColor: { value: new Color() }, shadowColor: { value: new Color() }, lineColor: { value: new Color() },
+  };
+  private area: FreeArea = { left: 0, top: 0, width: 1, height: 1 };
+  private dirty = true;
+  private framed = true;  // until the user moves the camera it stays fitted to the scene
+  private fitted: SceneDocument | null = null;
+  private lastDrawn = 0;
+  private scale = 1;  // of the picture on screen: one at rest is sharp, whatever the quality level
+  private lastTime = 0;
+
+  constructor(private readonly canvas: HTMLCanvasElement, software: boolean) {
+    this.renderer = new WebGLRenderer({ canvas, antialias: !software, alpha: true, powerPreference: "high-performance" });
+    this.renderer.setClearColor(0, 0);
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = PCFShadowMap;
+    const stage = {
+      lightDirection: { value: lightFrom },
+      occluders: { value: Array.from({ length: 4 }, () => new Vector4()) },
+    };
+    this.cloth = new ClothView(stage, this.pixelRatio);
+    this.groundShadow = new GroundShadow(this.renderer, this.cloth.caster);
+    this.colliders = new ColliderView(stage, this.ground, this.groundShadow.uniforms);
+    this.groundShadow.casters.add(this.colliders.caster);
+    this.light.castShadow = true;
+    this.light.shadow.radius = 3;
+    this.scene.add(this.light, this.light.target, this.sky, this.colliders.object, this.cloth.object);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = !matchMedia("(prefers-reduced-motion: reduce)").matches;
+    this.controls.dampingFactor = 0.12;
+    this.controls.maxPolarAngle = Math.PI * 0.56;
+    this.controls.addEventListener("change", () => this.invalidate());
+    this.controls.addEventListener("start", () => { this.framed = false; });
+    this.quality = new Quality(() => this.resize(this.area), software ? 1 : 0);
+  }
+
+  get context(): WebGL2RenderingContext { return this.renderer.getContext() as WebGL2RenderingContext; }
+
+  invalidate(): void { this.dirty = true; }
+
+  setDocument(document: SceneDocument, newScene: boolean): void {
+    const box = sceneBox(document);
+    const radius = box.getSize(new Vector3()).length() / 2;
+    this.cloth.setDocument(document);
+    this.colliders.setDocument(document, radius);
+    this.colliders.update(this.lastTime, this.cloth.box.isEmpty() ? 0 : this.cloth.box.min.y);
+    this.aimLight(box.getCenter(new Vector3()), radius);
+    if (newScene || !this.fitted) this.fit(document);
+    this.invalidate();
+  }
+
+  setTopology(topology: Topology): void { this.cloth.setTopology(topology); }
+
+  show(frame: Frame): boolean {
+    if (!this.cloth.show(frame)) return false;
+    this.lastTime = frame.header.time;
+    this.colliders.update(frame.header.time, this.cloth.box.min.y);
+    this.invalidate();
+    return true;
+  }
+
+  /// Takes the theme's colours from the style sheet.
+  setTheme(): void {
+    const style = getComputedStyle(document.documentElement);
+    for (const [uniform, name] of [["groundColor", "--ground"], ["shadowColor", "--ground-shadow"], ["lineColor", "--ground-line"]] as const) {
+      this.ground[uniform].value.set(style.getPropertyValue(name).trim()).convertLinearToSRGB();  // the shader writes it as it is
+    }
+    this.sky.intensity = Number(style.getPropertyValue("--sky"));
+    this.invalidate();
+  }
+
+  fit(document: SceneDocument): void {
+    this.framed = true;
+    this.fitted = document;
+    this.controls.target.copy(frameCamera(this.camera, sceneBox(document), this.area, this.canvas.clientHeight));
+    this.controls.minDistance = this.camera.near * 4;
+    this.controls.maxDistance = this.camera.far / 6;
+    this.controls.update();
+    this.invalidate();
+  }
+
+  resize(area: FreeArea): void {
+    this.area = area;
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    const { scale, shadow } = this.quality.level;
+    this.renderer.setSize(width, height, false);
+    this.setScale(scale);
+    if (this.light.shadow.mapSize.x !== shadow) this.light.shadow.mapSize.setScalar(shadow);
+    centerIn(this.camera, area, width, height);
+    if (this.framed && this.fitted) this.fit(this.fitted);
+    this.invalidate();
+  }
+
+  /// Called for every animation frame; true if it drew.
+  draw(): boolean {
+    this.controls.update();
+    const now = performance.now();
+    const sinceLast = now - this.lastDrawn;
+    if (!this.dirty && (this.scale === 1 || sinceLast < stillAfter)) return false;
+    const scale = this.dirty ? this.quality.level.scale : 1;
+    if (scale !== this.scale) this.setScale(scale);
+    if (this.dirty) this.quality.sample(sinceLast);
+    this.dirty = false;
+    this.lastDrawn = now;
+    this.groundShadow.draw();
+    this.renderer.render(this.scene, this.camera);
+    return true;
+  }
+
+  // Also the size of the drawing buffer: three.js keeps the size in CSS pixels.
+  private setScale(scale: number): void {
+    this.scale = scale;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * scale);
+    this.pixelRatio.value = this.renderer.getPixelRatio();
+  }
+
+  private aimLight(center: Vector3, radius: number): void {
+    const reach = radius * 1.15;
+    this.groundShadow.aim(center, lightFrom, reach);
+    this.light.target.position.copy(center);
+    this.light.position.copy(center).addScaledVector(lightFrom, reach * 3);
+    const { shadow } = this.light;
+    Object.assign(shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: reach, far: reach * 6 });
+    shadow.camera.updateProjectionMatrix();
+    shadow.normalBias = 0.012 * radius;
+    shadow.bias = -0.0006;
+  }
+}

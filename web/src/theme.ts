@@ -1,0 +1,28 @@
+// Dark or light: what the system says, until the user chose here.
+
+type Theme = "dark" | "light";
+const key = "clothlab-theme";
+const systemDark = matchMedia("(prefers-color-scheme: dark)");
+
+const chosen = (): Theme | null => {
+  const stored = localStorage.getItem(key);
+  return stored === "dark" || stored === "light" ? stored : null;
+};
+
+export class ThemeSwitch {
+  constructor(private readonly changed: () => void) {
+    systemDark.addEventListener("change", () => this.apply());
+    this.apply();
+  }
+
+  toggle(): void {
+    const next: Theme = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
+    localStorage.setItem(key, next);
+    this.apply();
+  }
+
+  private apply(): void {
+    document.documentElement.dataset.theme = chosen() ?? (systemDark.matches ? "dark" : "light");
+    this.changed();
+  }
+}
