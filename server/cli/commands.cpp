@@ -38,4 +38,13 @@ void SceneChoice::add_set(CLI::App& command) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
+Result<scene::Document> SceneChoice::load() const {
+  Result<scene::Document> document = scene::load(name);
+  for (const std::string& assignment : set) {
+    if (!document) break;
+    document = scene::set_value(*document, assignment);
+  }
+  return document;
+}
+
 }  // namespace clothlab::cli

@@ -50,13 +50,4 @@ struct SceneChoice {
   void add_set(CLI::App& command);
 };
 
-inline Result<scene::Document> SceneChoice::load() const {
-  Result<scene::Document> document = scene::load(name);
-  for (const std::string& assignment : set) {
-    if (!document) break;
-    document = scene::set_value(*document, assignment);
-  }
-  return document;
-}
-
 }  // namespace clothlab::cli

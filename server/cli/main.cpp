@@ -27,6 +27,7 @@ void describe(CLI::App& app, int& exit_code) {
   // One line a subcommand, in the order the help shows them.
   add_validate(app, exit_code);
   add_presets(app, exit_code);
+  add_info(app, exit_code);
 }
 
 int usage_error(const CLI::App& app, const CLI::ParseError& error) {

@@ -10,9 +10,9 @@ namespace clothlab::render {
 
 namespace {
 
-const glm::vec3 view_direction = glm::normalize(glm::vec3(0.5f, 0.35f, 1.0f));  // from the centre to the eye
+const glm::vec3 view_direction = glm::normalize(glm::vec3(0.62f, 0.3f, 1.0f));  // from the centre to the eye
 const glm::vec3 up{0.0f, 1.0f, 0.0f};
-constexpr float vertical_field = 35.0f;   // [degrees]
+constexpr float vertical_field = 32.0f;   // [degrees]
 constexpr float margin = 1.08f;           // room around the box
 constexpr float smallest_radius = 0.01f;  // [m]; a single point still gets a picture
 
