@@ -1,0 +1,222 @@
+// `clothlab run S --time T`: steps a scene as fast as it goes and writes meshes, a trace and a report.
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include "server/cli/commands.h"
+#include "server/cli/state_files.h"
+#include "server/cli/stepping.h"
+
+namespace clothlab::cli {
+
+namespace {
+
+using Report = nlohmann::ordered_json;
+
+struct Options {
+  SceneChoice scene;
+  double time = 0;  // [s]
+  std::string out, trace, report;
+  std::optional<double> every;  // [s]
+  std::optional<int> gpu;
+};
+
+constexpr double default_every = 0.01;  // [s], of a trace
+
+std::string text(double value) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.9g", value);
+  return digits;
+}
+
+/// The `--trace` file: written row by row, so that a run that ends early leaves what it had.
+class Trace {
+ public:
+  explicit Trace(const std::string& path) : path_(path), file_(path) {
+    file_ << "time,kinetic,elastic,gravitational,max_strain,max_speed,contacts\n";
+  }
+  Status add(const sim::Diagnostics& state) {
+    for (const double value :
+         {state.time, state.kinetic, state.elastic, state.gravitational, state.max_strain, state.max_speed})
+      file_ << text(value) << ',';
+    file_ << state.contacts << '\n' << std::flush;
+    if (!file_)
+      return Error{path_, "could not be written", "check the disk's space and the file's permissions"};
+    return ok();
+  }
+  void mark_diverged(double time) { file_ << "# diverged by " << text(time) << " s\n" << std::flush; }
+
+ private:
+  std::string path_;
+  std::ofstream file_;
+};
+
+Report device_report(const gl::Device& device) {
+  return {{"index", device.index},   {"name", device.name}, {"version", device.version},
+          {"vendor", device.vendor}, {"node", device.node}, {"software", device.software}};
+}
+
+Report make_report(const Prepared& prepared, const Progress& progress, double wall_seconds,
+                   const sim::State& state) {
+  const sim::Simulation& simulation = *prepared.simulation;
+  const std::uint32_t vertices = simulation.model().vertex_count();
+  const double vertex_steps = static_cast<double>(vertices) * static_cast<double>(progress.steps);
+  Report report{{"version", CLOTHLAB_VERSION}, {"scene", simulation.scene().name}};
+  report["renderer"] = prepared.context->device().name;
+  report["device"] = device_report(prepared.context->device());
+  report["vertices"] = vertices;
+  report["dt"] = simulation.scene().solver.dt;
+  report["steps"] = progress.state.step;
+  report["sim_time"] = progress.state.time;
+  report["wall_s"] = wall_seconds;
+  report["step_s"] = progress.step_seconds;
+  report["ns_per_vertex_step"] = vertex_steps > 0 ? 1e9 * progress.step_seconds / vertex_steps : 0.0;
+  report["passes"] = Report::array();
+  report["skipped"] = Report::object();
+  for (const sim::Simulation::Pass& pass : simulation.passes()) {
+    if (pass.skipped.empty())
+      report["passes"].push_back(pass.name);
+    else
+      report["skipped"][pass.name] = pass.skipped;
+  }
+  report["max_strain"] = progress.state.max_strain;
+  report["energy"] = {{"kinetic", progress.state.kinetic},
+                      {"elastic", progress.state.elastic},
+                      {"gravitational", progress.state.gravitational}};
+  report["diverged"] = progress.diverged;
+  if (progress.diverged) report["diverged_by"] = progress.diverged_by;
+  char hash[17];
+  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(sim::state_hash(state)));
+  report["state_hash"] = hash;
+  return report;
+}
+
+void print_summary(const Report& report, double simulated) {
+  const double step_seconds = report["step_s"];
+  std::printf("%s: %llu steps to %s s, stepping took %s s", report["scene"].get<std::string>().c_str(),
+              static_cast<unsigned long long>(report["steps"].get<std::uint64_t>()),
+              text(report["sim_time"]).c_str(), text(step_seconds).c_str());
+  if (step_seconds > 0)
+    std::printf(" (%.1f times real time, %.1f ns per vertex and step)", simulated / step_seconds,
+                report["ns_per_vertex_step"].get<double>());
+  std::printf("\nlargest strain %s, state %s, on %s\n", text(report["max_strain"]).c_str(),
+              report["state_hash"].get<std::string>().c_str(), report["renderer"].get<std::string>().c_str());
+  std::fflush(stdout);
+}
+
+/// Where the outputs go, checked before anything is simulated.
+struct Outputs {
+  std::optional<StateFiles> states;
+  std::optional<Trace> trace;
+};
+
+Result<Outputs> open_outputs(const Options& options) {
+  if (options.every && options.out.empty() && options.trace.empty())
+    return Error{"--every", text(*options.every), "needs --out or --trace"};
+  Outputs outputs;
+  if (!options.out.empty()) {
+    Result<StateFiles> states = StateFiles::create(options.out, options.every.has_value());
+    if (!states) return states.error();
+    outputs.states = std::move(*states);
+  }
+  for (const auto& [option, path] :
+       {std::pair{"--trace", options.trace}, std::pair{"--report", options.report}})
+    if (!path.empty())
+      if (Status writable = check_writable(option, path); !writable) return writable.error();
+  return outputs;
+}
+
+std::string comment(const sim::Diagnostics& state, const std::string& scene, bool diverged) {
+  return "Clothlab " CLOTHLAB_VERSION ", scene " + scene + " at " + text(state.time) + " s, in metres" +
+         (diverged ? "; the simulation diverged after this" : "");
+}
+
+/// Whole steps between two stops; without --every of a trace the default, without either the whole run.
+Result<std::uint64_t> stop_interval(const Options& options, std::uint64_t steps, double dt) {
+  if (!options.every && options.trace.empty()) return std::max<std::uint64_t>(steps, 1);
+  if (!options.every)
+    return std::max<std::uint64_t>(static_cast<std::uint64_t>(std::llround(default_every / dt)), 1);
+  Result<std::uint64_t> every = whole_steps("--every", *options.every, dt);
+  if (every && *every == 0)
+    return Error{"--every", text(*options.every), "one step (" + text(dt) + " s) or more"};
+  return every;
+}
+
+int run(const Options& options) {
+  const auto start = std::chrono::steady_clock::now();
+  Result<Outputs> outputs = open_outputs(options);
+  if (!outputs) return fail(outputs.error(), exit_usage);
+  int exit_code = exit_done;
+  const std::optional<Prepared> prepared = prepare(options.scene, options.gpu, exit_code);
+  if (!prepared) return exit_code;
+  sim::Simulation& simulation = *prepared->simulation;
+  const std::string scene_name = simulation.scene().name;
+  const double dt = simulation.scene().solver.dt;
+  const Result<std::uint64_t> steps = whole_steps("--time", options.time, dt);
+  if (!steps) return fail(steps.error(), exit_usage);
+  const Result<std::uint64_t> every = stop_interval(options, *steps, dt);
+  if (!every) return fail(every.error(), exit_usage);
+
+  if (!options.trace.empty()) outputs->trace.emplace(options.trace);
+  const auto at_stop = [&](const sim::Diagnostics& state) -> Status {
+    if (outputs->trace)
+      if (Status added = outputs->trace->add(state); !added) return added;
+    if (!outputs->states || !options.every) return ok();
+    return outputs->states->add(simulation.model(), simulation.read_state(),
+                                comment(state, scene_name, false));
+  };
+  const Result<Progress> progress = advance(simulation, *steps, *every, at_stop);
+  if (!progress) return fail(progress.error(), exit_internal);
+
+  const sim::State state = simulation.read_state();
+  if (outputs->states && !options.every) {
+    const std::string about = comment(progress->state, scene_name, progress->diverged);
+    if (Status added = outputs->states->add(simulation.model(), state, about); !added)
+      return fail(added.error(), exit_internal);
+  }
+  if (outputs->trace && progress->diverged) outputs->trace->mark_diverged(progress->diverged_by);
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const Report report = make_report(*prepared, *progress, wall, state);
+  if (!options.report.empty())
+    if (Status written = write_file(options.report, report.dump(2) + "\n"); !written)
+      return fail(written.error(), exit_internal);
+  print_summary(report, static_cast<double>(progress->steps) * dt);
+  if (progress->diverged) note_diverged(*progress, dt);
+  return progress->diverged ? exit_diverged : exit_done;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("run", "simulate a scene as fast as it goes; write meshes, a trace, a report");
+  const auto options = std::make_shared<Options>();
+  options->scene.add_positional(*command);
+  command->add_option("--time", options->time, "how long to simulate [s]; rounded to whole steps")
+      ->required()
+      ->type_name("T");
+  command
+      ->add_option("--out", options->out,
+                   "the final mesh (.obj, .ply); with --every the series (.obj, .ply, .pc2)")
+      ->type_name("F");
+  command->add_option("--every", options->every, "time between two samples of --out and --trace [s]")
+      ->type_name("T");
+  command
+      ->add_option("--trace", options->trace, "a table of energies, strain, speed, contacts over time (.csv)")
+      ->type_name("F");
+  command->add_option("--report", options->report, "what ran, how fast, and how it ended (.json)")
+      ->type_name("F");
+  add_gpu(*command, options->gpu);
+  command->footer(R"(Examples:
+  clothlab run seed --time 5
+  clothlab run seed --time 5 --report report.json --trace trace.csv --every 0.1
+  clothlab run seed --time 2 --out cloth.ply --set /cloths/0/material/bend=0
+
+With --every, samples of cloth.obj go to cloth-0000.obj (the start), cloth-0001.obj, ...; a trace alone has a row
+every 0.01 s. The report's step_s is the time of stepping alone: not of setting up, diagnostics or files.
+The result is the same, bit for bit, each time the same build runs the same scene on the same device.)");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace clothlab::cli

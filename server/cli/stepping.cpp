@@ -1,0 +1,120 @@
+#include "server/cli/stepping.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace clothlab::cli {
+
+namespace {
+
+constexpr double most_steps = 1e12;
+constexpr std::uint64_t longest_batch = 1000;  // steps queued at once
+
+/// Steps between two looks at whether it still goes well: seldom enough to cost nothing, often enough that a
+/// run that blew up ends soon and close to where it did.
+std::uint64_t steps_between_looks(std::uint64_t steps) {
+  return std::clamp<std::uint64_t>(steps / 32, 100, longest_batch);
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return text;
+}
+
+bool good(const sim::Diagnostics& state) {
+  return state.finite && std::isfinite(state.kinetic) && std::isfinite(state.elastic) &&
+         std::isfinite(state.gravitational);
+}
+
+/// Steps `count` times and waits for the GPU; returns the seconds that took.
+double timed_steps(sim::Simulation& simulation, std::uint64_t count) {
+  const auto start = std::chrono::steady_clock::now();
+  simulation.step(static_cast<std::uint32_t>(count));
+  simulation.finish();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void go_back_to(sim::Simulation& simulation, std::uint64_t step) {
+  simulation.reset();
+  while (simulation.step_index() < step)
+    timed_steps(simulation, std::min(step - simulation.step_index(), longest_batch));
+}
+
+}  // namespace
+
+void add_gpu(CLI::App& command, std::optional<int>& gpu) {
+  command.add_option("--gpu", gpu, "the device to use, by the number `clothlab info` shows")->type_name("N");
+}
+
+std::optional<Prepared> prepare(const SceneChoice& choice, std::optional<int> gpu, int& exit_code) {
+  const Result<scene::Document> document = choice.load();
+  if (!document) {
+    exit_code = fail(document.error(), exit_usage);
+    return std::nullopt;
+  }
+  Result<std::unique_ptr<gl::Context>> context = gl::Context::create(gpu);
+  if (!context) {
+    exit_code = fail(context.error(), context.error().where == "--gpu" ? exit_usage : exit_no_opengl);
+    return std::nullopt;
+  }
+  Result<std::unique_ptr<sim::Simulation>> simulation = sim::Simulation::create(document->scene);
+  if (!simulation) {
+    // A JSON Pointer says that the scene is at fault, anything else that the program is.
+    exit_code =
+        fail(simulation.error(), simulation.error().where.starts_with("/") ? exit_usage : exit_internal);
+    return std::nullopt;
+  }
+  return Prepared{std::move(*context), std::move(*simulation)};
+}
+
+Result<std::uint64_t> whole_steps(const std::string& option, double seconds, double dt) {
+  if (!std::isfinite(seconds) || seconds < 0)
+    return Error{option, number(seconds), "a time in seconds, 0 or more"};
+  const double steps = std::round(seconds / dt);
+  if (steps > most_steps)
+    return Error{option, number(seconds), "at most " + number(most_steps * dt) + " s at this dt"};
+  if (std::abs(steps * dt - seconds) > 1e-6 * dt)
+    note(option + " " + number(seconds) + " is not a whole number of steps of " + number(dt) +
+         " s; taken as " + number(steps * dt));
+  return static_cast<std::uint64_t>(steps);
+}
+
+Result<Progress> advance(sim::Simulation& simulation, std::uint64_t steps, std::uint64_t every,
+                         const AtStop& at_stop) {
+  Progress progress;
+  // Drivers compile a kernel when it first runs: that belongs to no step.
+  timed_steps(simulation, 1);
+  simulation.reset();
+  progress.state = simulation.diagnose();
+  if (Status stop = at_stop(progress.state); !stop) return stop.error();
+
+  const std::uint64_t look_every = steps_between_looks(steps);
+  std::uint64_t next_stop = 0;
+  while (progress.steps < steps) {
+    if (progress.steps == next_stop) next_stop = std::min(next_stop + every, steps);
+    const std::uint64_t count = std::min(next_stop - progress.steps, look_every);
+    progress.step_seconds += timed_steps(simulation, count);
+    progress.steps += count;
+    const sim::Diagnostics state = simulation.diagnose();
+    if (!good(state)) {
+      progress.diverged = true;
+      progress.diverged_by = simulation.time();
+      go_back_to(simulation, progress.state.step);
+      return progress;
+    }
+    progress.state = state;
+    if (progress.steps == next_stop)
+      if (Status stop = at_stop(state); !stop) return stop.error();
+  }
+  return progress;
+}
+
+void note_diverged(const Progress& progress, double dt) {
+  note("the simulation diverged between " + number(progress.state.time) + " s and " +
+       number(progress.diverged_by) +
+       " s; what was good is kept. A smaller step may help: --set /solver/dt=" + number(dt / 2));
+}
+
+}  // namespace clothlab::cli
