@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "server/sim/plan.h"
+#include "server/sim/state.h"
 
 namespace clothlab::sim {
 
@@ -32,8 +33,8 @@ Result<SelfCollision> SelfCollision::create(std::uint32_t vertex_count) {
     glUniform1i(0, static_cast<GLint>(vertex_count));
   }
   made.control_ = gl::Buffer(5 * sizeof(std::uint32_t));
-  made.heads_ = gl::Buffer(cells * sizeof(std::int32_t));
-  made.chains_ = gl::Buffer(vertex_count * sizeof(std::int32_t));
+  made.heads_ = {gl::Buffer(cells * sizeof(std::uint32_t)), GL_R32UI};
+  made.chains_ = {gl::Buffer(vertex_count * sizeof(std::uint32_t)), GL_R32UI};
   made.counts_ = {gl::Buffer(vertex_count * sizeof(std::uint32_t)), GL_R32UI};
   made.lists_ = {gl::Buffer(vertex_count * neighbour_slots * 2 * sizeof(std::uint32_t)), GL_RG32UI};
   made.built_position_ = {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
@@ -60,26 +61,24 @@ void SelfCollision::invalidate() {
 }
 
 void SelfCollision::update_lists() {
-  bind();
-  heads_.bind_storage(3);
-  chains_.bind_storage(4);
+  control_.bind_storage(2);
+  heads_.buffer.bind_storage(3);
+  chains_.buffer.bind_storage(4);
   built_position_.buffer.bind_storage(5);
   counts_.buffer.bind_storage(6);
   lists_.buffer.bind_storage(7);
+  heads_.bind(unit_neighbour_count);  // the search reads its hash where the step reads its lists
+  chains_.bind(unit_neighbours);
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, control_.id());
   for (const gl::Program* program : {&clear_, &insert_, &find_}) {
     program->use();
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
     glDispatchComputeIndirect(0);
   }
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
-}
-
-void SelfCollision::bind() const {
-  control_.bind_storage(2);
-  counts_.bind(4);
-  lists_.bind(5);
-  built_position_.bind(8);
+  counts_.bind(unit_neighbour_count);
+  lists_.bind(unit_neighbours);
+  built_position_.bind(unit_position_when_built);
 }
 
 SelfCollision::Counters SelfCollision::counters() const {

@@ -17,13 +17,12 @@ class SelfCollision {
   /// The distances for this scene; the lists are rebuilt before the next step.
   void set_parameters(const scene::SelfCollision& parameters, const model::Model& model);
 
-  /// Rebuilds the lists where a vertex has moved too far since. Needs position, springs, slices and rest positions bound.
+  /// Rebuilds the lists if a vertex has moved too far since. Needs position, springs, slices and rest positions bound;
+  /// leaves bound what the step kernel reads and writes of the lists.
   void update_lists();
   /// Rebuilds them before the next step whatever has moved.
   void invalidate();
 
-  /// Binds what the step kernel reads and writes.
-  void bind() const;
   float skin() const { return skin_; }
 
   struct Counters {
@@ -37,8 +36,8 @@ class SelfCollision {
   std::uint32_t vertex_count_ = 0;
   float skin_ = 0;  ///< [m]
   gl::Program clear_, insert_, find_;
-  gl::Buffer control_, heads_, chains_;
-  gl::TextureBuffer counts_, lists_, built_position_;
+  gl::Buffer control_;
+  gl::TextureBuffer heads_, chains_, counts_, lists_, built_position_;
 };
 
 }  // namespace clothlab::sim

@@ -2,8 +2,7 @@
 layout(location = 0) uniform int vertex_count;
 layout(location = 2) uniform float reach;  // contact distance + skin, also the cell's edge [m]
 
-layout(std430, binding = 3) buffer CellHeads { int head[]; };   // [CELL_COUNT] first vertex of the chain, or -1
-layout(std430, binding = 4) buffer CellChains { int next[]; };  // [vertex_count]
+const uint chain_end = 0xffffffffu;
 
 ivec3 cell_of(vec3 x) { return ivec3(floor(clamp(x / reach, vec3(-1e9), vec3(1e9)))); }
 

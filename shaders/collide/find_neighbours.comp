@@ -7,6 +7,8 @@ layout(local_size_x = GROUP_SIZE) in;
 #include "spring_lists.glsl"
 
 READ_VEC4(position, 0);
+READ_UINT(head, 4);
+READ_UINT(next, 5);
 READ_VEC4(rest_position, 7);  // w: the cloth
 layout(location = 3) uniform float thickness;
 layout(std430, binding = 6) writeonly buffer NeighbourCounts { uint neighbour_count[]; };
@@ -31,21 +33,21 @@ void main() {
   uint lost = 0;
   for (int at = 0; at < 27; ++at) {
     ivec3 cell = home + ivec3(at % 3, at / 3 % 3, at / 9) - 1;
-    for (int j = head[bucket_of(cell)]; j >= 0; j = next[j]) {
+    for (uint j = FETCH_UINT(head, bucket_of(cell)); j != chain_end; j = FETCH_UINT(next, j)) {
       vec3 y = FETCH(position, j).xyz;
       float gap = distance(x, y);
       // A bucket may hold several cells; only this one's vertices count, so that none is listed twice.
-      if (j == i || gap >= reach || cell_of(y) != cell || joined(i, j)) continue;
+      if (j == uint(i) || gap >= reach || cell_of(y) != cell || joined(i, int(j))) continue;
       int slot = count;
       if (count < NEIGHBOUR_SLOTS) ++count;
       else ++lost;
       for (; slot > 0; --slot) {
         uvec2 other = neighbours[first + slot - 1];
         float other_gap = uintBitsToFloat(other.y);
-        if (other_gap < gap || (other_gap == gap && other.x < uint(j))) break;
+        if (other_gap < gap || (other_gap == gap && other.x < j)) break;
         if (slot < NEIGHBOUR_SLOTS) neighbours[first + slot] = other;
       }
-      if (slot < NEIGHBOUR_SLOTS) neighbours[first + slot] = uvec2(uint(j), floatBitsToUint(gap));
+      if (slot < NEIGHBOUR_SLOTS) neighbours[first + slot] = uvec2(j, floatBitsToUint(gap));
     }
   }
   for (int slot = 0; slot < count; ++slot) {
