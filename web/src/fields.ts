@@ -92,7 +92,7 @@ function clothSection(document: SceneDocument, index: number): Section {
   const mass: Field = "per_vertex" in cloth.mass
     ? number("mass", [`${base}/mass/per_vertex`], { min: 0.001, max: 1, log: true, unit: "kg/vertex" })
     : number("mass", [`${base}/mass/area_density`], { min: 0.02, max: 20, log: true, unit: "kg/m²" });
-  const count = { min: 3, max: 200, log: true, whole: true };
+  const count = { min: 3, max: 150, step: 1, whole: true };
   const grid: Field[] = "grid" in cloth.mesh ? [
     number("columns", [`${base}/mesh/grid/columns`], count, { onRelease: true }),
     number("rows", [`${base}/mesh/grid/rows`], count, { onRelease: true })] : [];

@@ -7,7 +7,7 @@ import type { Cloth, SceneDocument } from "./scene_types";
 /// The part of the window that panels leave free [CSS pixels].
 export interface FreeArea { left: number; top: number; width: number; height: number }
 
-const viewFrom = new Vector3(0.62, 0.3, 1).normalize();
+const viewFrom = new Vector3(1, 0.34, 0.5).normalize();  // from the side: the seed's cloth hides its sphere from the front
 
 function clothBox(cloth: Cloth, falls: boolean): Box3 {
   const rest = restPositions(cloth);

@@ -1,7 +1,7 @@
 // The card with figures: what is drawn, what comes in, how the simulation keeps up, and which passes run.
 import { element } from "./dom";
 
-/// `sim.status` of contract.md; every part may be missing.
+/// `sim.status`; every part may be missing.
 export interface Status {
   playing?: boolean;
   time?: number;
@@ -13,8 +13,8 @@ export interface Status {
   max_speed?: number;
   contacts?: number;
   asleep?: boolean;
-  passes?: (string | { name: string; skipped?: string })[];
-  stability?: { dt_limit: number; margin: number };
+  passes?: string[];
+  skipped?: { name: string; reason: string }[];
 }
 
 const rows = [
@@ -58,7 +58,13 @@ export class Hud {
   set(row: Row, text: string): void {
     const cell = this.cells.get(row);
     if (cell && cell.textContent !== text) cell.textContent = text;
-    if (row === "renderer" && cell) cell.title = text;
+  }
+
+  /// Its name without versions and buses; the rest is in the tooltip.
+  setRenderer(name: string): void {
+    this.set("renderer", name.split(/ \(|\//)[0] ?? name);
+    const cell = this.cells.get("renderer");
+    if (cell) cell.title = name;
   }
 
   countDrawn(): void { this.drawn++; }
@@ -80,7 +86,7 @@ export class Hud {
       element("headline-rtf", HTMLElement).textContent = status.asleep ? "at rest" : text;
     }
     if (status.max_strain !== undefined) this.set("strain", `${(100 * status.max_strain).toFixed(1)} %`);
-    if (status.passes) this.showPasses(status.passes);
+    if (status.passes) this.showPasses(status.passes, status.skipped ?? []);
   }
 
   /// Turns the counts since the last call into rates; call it about once a second.
@@ -98,23 +104,22 @@ export class Hud {
     this.since = now;
   }
 
-  private showPasses(passes: NonNullable<Status["passes"]>): void {
-    const text = JSON.stringify(passes);
+  private showPasses(running: string[], skipped: { name: string; reason: string }[]): void {
+    const text = JSON.stringify([running, skipped]);
     if (text === this.passes) return;
     this.passes = text;
-    const items = passes.map((pass) => (typeof pass === "string" ? { name: pass, skipped: "" } : { name: pass.name, skipped: pass.skipped ?? "" }));
-    const running = items.filter((item) => !item.skipped).length;
-    element("passes-count", HTMLElement).textContent = `${running} of ${items.length} run`;
-    element("passes", HTMLUListElement).replaceChildren(...items.map(({ name, skipped }) => {
-      const item = document.createElement("li");
-      item.className = skipped ? "skipped" : "";
-      item.textContent = name.replaceAll("_", " ");
-      if (skipped) {
-        const why = document.createElement("span");
-        why.textContent = skipped;
-        item.append(why);
-      }
-      return item;
-    }));
+    element("passes-count", HTMLElement).textContent = `${running.length} of ${running.length + skipped.length} run`;
+    const item = (name: string, reason: string): HTMLLIElement => {
+      const entry = document.createElement("li");
+      entry.textContent = name.replaceAll("_", " ");
+      if (reason === "") return entry;
+      entry.className = "skipped";
+      const why = document.createElement("span");
+      why.textContent = reason;
+      entry.append(why);
+      return entry;
+    };
+    element("passes", HTMLUListElement).replaceChildren(
+      ...running.map((name) => item(name, "")), ...skipped.map(({ name, reason }) => item(name, reason)));
   }
 }

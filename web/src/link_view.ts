@@ -27,8 +27,6 @@ export class LinkView {
     if (state === "unauthorised") this.ask(why);
   }
 
-  role(role: string): void { document.body.classList.toggle("viewer", role === "viewer"); }
-
   /// A frame is on screen.
   drawing(): void {
     if (this.everDrawn) return;

@@ -21,7 +21,7 @@ interface TestHook {
   framesDrawn: number;
   simTime: number;
   step: number;
-  box: { min: number[]; max: number[] } | null;
+  lastFrame: Frame | null;
   firstFrameAt: number;  ///< [ms] since navigation, 0 before
   document: SceneDocument | null;
   revision: number;
@@ -30,7 +30,7 @@ interface TestHook {
 declare global { interface Window { clothlab: TestHook } }
 
 const hook: TestHook = window.clothlab = {
-  framesReceived: 0, framesDrawn: 0, simTime: 0, step: 0, box: null, firstFrameAt: 0, document: null, revision: 0, stage: null,
+  framesReceived: 0, framesDrawn: 0, simTime: 0, step: 0, lastFrame: null, firstFrameAt: 0, document: null, revision: 0, stage: null,
 };
 
 const softwareRenderers = /swiftshader|llvmpipe|softpipe|software|basic render/i;
@@ -40,11 +40,12 @@ function start(stage: Stage): void {
   const hud = new Hud();
   let latest: Frame | null = null;
   let sceneName = "";
+  let mayEdit = true;  // a viewer's role may only watch
 
   const connection = new Connection(session, {
     state: (state, retryIn, why) => {
       link.show(state, retryIn, why);
-      transport.enable(state === "open");
+      transport.enable(state === "open" && mayEdit);
       if (state === "open" && !store.document) void fetchScene();
       if (state !== "open") store.forget();
     },
@@ -103,18 +104,23 @@ function start(stage: Stage): void {
 
   const notifications: Record<string, (params: Record<string, unknown>) => void> = {
     hello: (params) => {
-      hud.set("renderer", String(params.renderer ?? "unknown"));
-      link.role(String(params.role ?? "operator"));
-      connection.request<{ presets: (string | { name: string })[] }>("scene.presets").then(
-        ({ presets }) => panel.setPresets(presets.map((preset) => (typeof preset === "string" ? preset : preset.name))), () => undefined);
+      hud.setRenderer(String(params.renderer ?? "unknown"));
+      mayEdit = params.role !== "viewer";
+      document.body.classList.toggle("viewer", !mayEdit);
+      transport.enable(connection.open && mayEdit);
+      connection.request<{ presets: string[] }>("scene.presets").then(({ presets }) => panel.setPresets(presets), () => undefined);
     },
-    scene: (params) => store.replace((params.document ?? params.scene) as SceneDocument, Number(params.revision)),
+    scene: (params) => store.replace(params.document as SceneDocument, Number(params.revision)),
     "scene.changed": (params) => store.patched(Number(params.revision), params.patch as Patch),
     "sim.status": (params) => {
       hud.showStatus(params as Status);
       transport.status(params as Status);
     },
-    "sim.diverged": (params) => showDiverged(params, (patch) => request("scene.patch", { patch })),
+    "sim.diverged": (params) => showDiverged(params as unknown as Diverged, async (patch) => {
+      await connection.request("scene.patch", { patch });
+      await connection.request("sim.reset");
+      await connection.request("sim.play");
+    }),
     viewers: (params) => hud.set("viewers", String(params.count)),
     notice: (params) => notice((params.level as Level) ?? "info", { title: String(params.text) }),
   };
@@ -142,15 +148,16 @@ function start(stage: Stage): void {
     connection.acknowledge(frame.header.sequence);
     if (shown) drawn(frame);
   };
-  const drawn = ({ header }: Frame): void => {
+  const drawn = (frame: Frame): void => {
+    const { header } = frame;
     hud.countDrawn();
     hud.setTime(header.time);
     hud.set("vertices", String(header.vertexCount));
     link.drawing();
     hook.framesDrawn++;
+    hook.lastFrame = frame;
     hook.simTime = header.time;
     hook.step = header.step;
-    hook.box = { min: header.boxMinimum, max: header.boxMinimum.map((low, i) => low + (header.boxExtent[i] ?? 0)) };
     hook.firstFrameAt ||= performance.now();
   };
 
@@ -172,12 +179,14 @@ function showApplied(depth: string): void {
   appliedTimer = window.setTimeout(() => place.classList.remove("shown"), 1600);
 }
 
-function showDiverged(params: Record<string, unknown>, patch: (patch: Patch) => void): void {
-  const remedy = params.remedy as { text?: string; patch?: Patch } | undefined;
-  const fix = remedy?.patch;
+interface Diverged { reason: string; remedy?: { text: string; patch?: Patch } }
+
+function showDiverged({ reason, remedy }: Diverged, apply: (patch: Patch) => Promise<void>): void {
+  const patch = remedy?.patch;
+  const run = (fix: Patch): void => void apply(fix).catch((error: Error) => noticeError("The remedy was refused", error));
   notice("error", {
-    title: "The simulation blew up", lines: [String(params.reason ?? ""), remedy?.text ?? ""].filter(Boolean), stays: true,
-    action: fix ? { label: "Apply the remedy", run: () => patch(fix) } : undefined,
+    title: "The simulation blew up", lines: [reason, ...(remedy ? [`Remedy: ${remedy.text}.`] : [])], stays: true,
+    action: patch ? { label: "Apply the remedy", run: () => run(patch) } : undefined,
   });
 }
 

@@ -94,7 +94,7 @@ vec3 fabricColor(vec3 base, bool front) {
   vec2 inset = min(uv, 1.0 - uv) * threads / longer;
   float border = min(inset.x, inset.y);
   color *= 1.0 - hemmed * 0.16 * (1.0 - smoothstep(0.016, 0.019, border));
-  return front ? color : mix(color, vec3(dot(color, vec3(0.3, 0.6, 0.1))), 0.3) * 0.85;
+  return front ? color : mix(color, vec3(dot(color, vec3(0.3, 0.6, 0.1))), 0.25) * 0.94;
 }
 `;
 

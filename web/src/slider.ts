@@ -4,31 +4,26 @@ import { Controller, type GUI } from "lil-gui";
 export interface Scale {
   min: number;
   max: number;
-  step?: number;   ///< of a linear scale
+  step?: number;   ///< of a linear scale; a logarithmic one moves by 0.4 % of its travel
   log?: boolean;   ///< equal ratios take equal travel
   zero?: boolean;  ///< the left end of a logarithmic scale is 0
   unit?: string;
   whole?: boolean;
 }
 
-const travel = 1000;
-const zeroEnd = 20;  // of the travel, where a logarithmic scale jumps to 0
+const travel = 1000;  // of a logarithmic scale
+const zeroEnd = 20;   // of the travel, where a logarithmic scale jumps to 0
 
 function toValue(at: number, scale: Scale): number {
-  if (!scale.log) {
-    const step = scale.step ?? (scale.max - scale.min) / 200;
-    const value = scale.min + ((scale.max - scale.min) * at) / travel;
-    return Number((Math.round(value / step) * step).toPrecision(6));
-  }
+  if (!scale.log) return Number(at.toPrecision(6));
   const start = scale.zero ? zeroEnd : 0;
   if (scale.zero && at < start / 2) return 0;
   const share = Math.max(0, at - start) / (travel - start);
-  const value = scale.min * (scale.max / scale.min) ** share;
-  return scale.whole ? Math.round(value) : Number(value.toPrecision(3));
+  return Number((scale.min * (scale.max / scale.min) ** share).toPrecision(3));
 }
 
 function toTravel(value: number, scale: Scale): number {
-  if (!scale.log) return (travel * (value - scale.min)) / (scale.max - scale.min);
+  if (!scale.log) return value;
   if (value <= 0) return 0;
   const start = scale.zero ? zeroEnd : 0;
   return start + ((travel - start) * Math.log(value / scale.min)) / Math.log(scale.max / scale.min);
@@ -42,20 +37,25 @@ export function readable(value: number): string {
 export class SliderController extends Controller {
   private readonly range = document.createElement("input");
   private readonly text = document.createElement("input");
+  private readonly low: number;
+  private readonly high: number;
+  private readonly stride: number;
 
   constructor(gui: GUI, object: Record<string, unknown>, property: string, label: string, private readonly scale: Scale) {
     super(gui, object, property, "slider-controller");
     this.range.type = "range";
-    this.range.min = "0";
-    this.range.max = String(travel);
-    this.range.step = "1";
+    [this.low, this.high, this.stride] = scale.log ? [0, travel, 4] : [scale.min, scale.max, scale.step ?? (scale.max - scale.min) / 200];
+    this.range.min = String(this.low);
+    this.range.max = String(this.high);
+    this.range.step = "any";  // a value between two steps stays where it is
     this.range.tabIndex = 0;
     this.text.type = "text";
     this.text.inputMode = "decimal";
     this.text.spellcheck = false;
     for (const input of [this.range, this.text]) input.setAttribute("aria-label", scale.unit ? `${label} [${scale.unit}]` : label);
     this.$widget.append(this.range, this.text);
-    this.range.addEventListener("input", () => this.setValue(toValue(Number(this.range.value), this.scale)));
+    this.range.addEventListener("input", () => this.setValue(toValue(this.snapped(Number(this.range.value)), this.scale)));
+    this.range.addEventListener("keydown", (event) => this.rangeKey(event));
     this.range.addEventListener("change", () => this._callOnFinishChange());
     this.text.addEventListener("focus", () => this.text.select());
     this.text.addEventListener("blur", () => this.take());
@@ -74,12 +74,38 @@ export class SliderController extends Controller {
 
   override updateDisplay(): this {
     const value = Number(this.getValue());
-    const at = Math.min(travel, Math.max(0, toTravel(value, this.scale)));
-    if (Number(this.range.value) !== Math.round(at)) this.range.value = String(at);
-    this.range.style.setProperty("--filled", `${at / (travel / 100)}%`);
+    const at = this.clamped(toTravel(value, this.scale));
+    this.range.value = String(at);
+    this.range.style.setProperty("--filled", `${(100 * (at - this.low)) / (this.high - this.low)}%`);
     this.range.setAttribute("aria-valuetext", `${readable(value)} ${this.scale.unit ?? ""}`);
     if (document.activeElement !== this.text) this.text.value = readable(value);
     return this;
+  }
+
+  private clamped(at: number): number { return Math.min(this.high, Math.max(this.low, at)); }
+
+  private snapped(at: number): number {
+    return this.scale.log ? at : this.clamped(this.low + Math.round((at - this.low) / this.stride) * this.stride);
+  }
+
+  // Moves by whole steps from the value there is; with Shift by ten.
+  private nudge(direction: number, event: KeyboardEvent): void {
+    const steps = direction * (event.shiftKey || event.key.startsWith("Page") ? 10 : 1);
+    this.jump(toTravel(Number(this.getValue()), this.scale) + steps * this.stride, event);
+  }
+
+  private jump(at: number, event: KeyboardEvent): void {
+    event.preventDefault();
+    this.setValue(toValue(this.clamped(at), this.scale));
+    this._callOnFinishChange();
+  }
+
+  private rangeKey(event: KeyboardEvent): void {
+    const directions: Record<string, number> = { ArrowRight: 1, ArrowUp: 1, PageUp: 1, ArrowLeft: -1, ArrowDown: -1, PageDown: -1 };
+    const direction = directions[event.key];
+    if (direction !== undefined) this.nudge(direction, event);
+    else if (event.key === "Home") this.jump(this.low, event);
+    else if (event.key === "End") this.jump(this.high, event);
   }
 
   private key(event: KeyboardEvent): void {
@@ -88,13 +114,9 @@ export class SliderController extends Controller {
       this.text.value = readable(Number(this.getValue()));
       this.text.blur();
     }
-    const direction = event.key === "ArrowUp" ? 1 : event.key === "ArrowDown" ? -1 : 0;
-    if (direction === 0) return;
-    event.preventDefault();
-    const at = toTravel(Number(this.getValue()), this.scale) + direction * (event.shiftKey ? 50 : 10);
-    this.setValue(toValue(Math.min(travel, Math.max(0, at)), this.scale));
+    if (event.key !== "ArrowUp" && event.key !== "ArrowDown") return;
+    this.nudge(event.key === "ArrowUp" ? 1 : -1, event);
     this.text.value = readable(Number(this.getValue()));
-    this._callOnFinishChange();
   }
 
   // A typed number may lie outside the slider's travel: the server has the last word.

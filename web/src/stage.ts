@@ -110,6 +110,10 @@ export class Stage {
   fit(document: SceneDocument): void {
     this.framed = true;
     this.fitted = document;
+    const damped = this.controls.enableDamping;
+    this.controls.enableDamping = false;  // an update without damping ends the swing of the last drag
+    this.controls.update();
+    this.controls.enableDamping = damped;
     this.controls.target.copy(frameCamera(this.camera, sceneBox(document), this.area, this.canvas.clientHeight));
     this.controls.minDistance = this.camera.near * 4;
     this.controls.maxDistance = this.camera.far / 6;
