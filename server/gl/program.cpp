@@ -14,10 +14,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Source text with its includes expanded; #line directives carry an index into `files`.
+/// Source text with its includes expanded, and where each of its lines came from. (Mesa forgets the file that a #line
+/// directive names in some of its messages, so lines are counted here.)
 struct Source {
   std::string text;
-  std::vector<std::string> files;
+  std::vector<std::string> origins;  ///< "shaders/FILE:LINE" of each line of text
+
+  void add_line(const std::string& line, const std::string& origin) {
+    text += line + "\n";
+    origins.push_back(origin);
+  }
 };
 
 Status expand(const std::string& path, Source& source, std::set<std::string>& seen) {
@@ -27,40 +33,38 @@ Status expand(const std::string& path, Source& source, std::set<std::string>& se
   Result<std::string> text = read_file(*found);
   if (!text) return text.error();
 
-  const std::size_t file = source.files.size();
-  source.files.push_back("shaders/" + path);
   static const std::regex include(R"(^\s*#include\s+"([^"]+)\".*$)");
   std::istringstream lines(*text);
   std::string line;
-  source.text += "#line 1 " + std::to_string(file) + "\n";
   for (int number = 1; std::getline(lines, line); ++number) {
+    const std::string origin = "shaders/" + path + ":" + std::to_string(number);
     std::smatch match;
     if (!std::regex_match(line, match, include)) {
-      source.text += line + "\n";
+      source.add_line(line, origin);
       continue;
     }
     const std::string target = (fs::path(path).parent_path() / match[1].str()).lexically_normal().string();
     if (Status status = expand(target, source, seen); !status) {
       Error error = status.error();
-      error.where = "shaders/" + path + ":" + std::to_string(number) + ": " + error.where;
+      error.where = origin + ": " + error.where;
       return error;
     }
-    source.text += "#line " + std::to_string(number + 1) + " " + std::to_string(file) + "\n";
   }
   return ok();
 }
 
-/// The driver's first message, with "file(line)" or "file:line" replaced by the source file's name.
+/// The driver's first message, with its line of the expanded text replaced by the source file's name and line.
 Error compile_error(const Source& source, const std::string& log) {
+  const std::string remedy = "mend the shader and start again";
   // Mesa: "0:12(5): error: ..."; NVIDIA: "0(12) : error C0000: ..."; AMD, Intel: "ERROR: 0:12: ..."
-  static const std::regex position(R"((\d+)(?:[:(])(\d+)\)?(?:\(\d+\))?\s*:?\s*([^\n]*))");
+  static const std::regex position(R"(\d+[:(](\d+)\)?(?:\(\d+\))?\s*:?\s*([^\n]*))");
   std::smatch match;
   if (std::regex_search(log, match, position)) {
-    const std::size_t file = std::stoul(match[1].str());
-    if (file < source.files.size())
-      return Error{source.files[file] + ":" + match[2].str(), match[3].str(), "mend the shader and start again"};
+    const std::size_t line = std::stoul(match[1].str());
+    if (line >= 1 && line <= source.origins.size())
+      return Error{source.origins[line - 1], match[2].str(), remedy};
   }
-  return Error{source.files.front(), log, "mend the shader and start again"};
+  return Error{source.origins.back(), log, remedy};
 }
 
 GLenum stage_of(const std::string& path) {
@@ -83,9 +87,10 @@ std::string info_log(GLuint id, Get get, GetLog get_log) {
 
 Result<GLuint> compile(const std::string& path, const Defines& defines) {
   Source source;
-  source.text = "#version 450 core\n";
-  if (reads_are_storage()) source.text += "#define READ_STORAGE\n";
-  for (const auto& [name, value] : defines) source.text += "#define " + name + " " + value + "\n";
+  const std::string prologue = "shaders/" + path + ":0";
+  source.add_line("#version 450 core", prologue);
+  if (reads_are_storage()) source.add_line("#define READ_STORAGE", prologue);
+  for (const auto& [name, value] : defines) source.add_line("#define " + name + " " + value, prologue);
   std::set<std::string> seen;
   if (Status status = expand(path, source, seen); !status) return status.error();
 

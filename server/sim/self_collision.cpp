@@ -29,8 +29,7 @@ Result<SelfCollision> SelfCollision::create(std::uint32_t vertex_count) {
     Result<gl::Program> loaded = gl::Program::load({path}, defines);
     if (!loaded) return loaded.error();
     *program = std::move(*loaded);
-    program->use();
-    glUniform1i(0, static_cast<GLint>(vertex_count));
+    glProgramUniform1i(program->id(), 0, static_cast<GLint>(vertex_count));
   }
   made.control_ = gl::Buffer(5 * sizeof(std::uint32_t));
   made.heads_ = {gl::Buffer(cells * sizeof(std::uint32_t)), GL_R32UI};
@@ -47,11 +46,9 @@ void SelfCollision::set_parameters(const scene::SelfCollision& parameters, const
   double edge = 0.0;
   for (const model::ClothRange& cloth : model.cloths) edge = std::max(edge, cloth.mean_edge_length);
   skin_ = static_cast<float>(std::max(edge, 0.5 * parameters.thickness));
-  for (const gl::Program* program : {&insert_, &find_}) {
-    program->use();
-    glUniform1f(2, static_cast<float>(parameters.thickness) + skin_);
-  }
-  glUniform1f(3, static_cast<float>(parameters.thickness));
+  reach_ = static_cast<float>(parameters.thickness) + skin_;
+  for (const gl::Program* program : {&insert_, &find_}) glProgramUniform1f(program->id(), 2, reach_);
+  glProgramUniform1f(find_.id(), 3, static_cast<float>(parameters.thickness));
   invalidate();
 }
 
@@ -79,6 +76,19 @@ void SelfCollision::update_lists() {
   counts_.bind(unit_neighbour_count);
   lists_.bind(unit_neighbours);
   built_position_.bind(unit_position_when_built);
+}
+
+std::vector<std::vector<SelfCollision::Neighbour>> SelfCollision::read_lists() const {
+  std::vector<std::uint32_t> counts(vertex_count_);
+  std::vector<Neighbour> slots(vertex_count_ * neighbour_slots);
+  counts_.buffer.download(counts.data(), counts.size() * sizeof(std::uint32_t));
+  lists_.buffer.download(slots.data(), slots.size() * sizeof(Neighbour));
+  std::vector<std::vector<Neighbour>> lists;
+  for (std::size_t i = 0; i < vertex_count_; ++i) {
+    const auto first = slots.begin() + static_cast<std::ptrdiff_t>(i * neighbour_slots);
+    lists.emplace_back(first, first + counts[i]);
+  }
+  return lists;
 }
 
 SelfCollision::Counters SelfCollision::counters() const {

@@ -25,6 +25,15 @@ class SelfCollision {
 
   float skin() const { return skin_; }
 
+  struct Neighbour {
+    std::uint32_t vertex = 0;
+    float distance = 0;  ///< that self-collision keeps [m]
+    bool operator==(const Neighbour&) const = default;
+  };
+  /// Each vertex's list as it is now, nearest first. Waits for the GPU.
+  std::vector<std::vector<Neighbour>> read_lists() const;
+  float reach() const { return reach_; }
+
   struct Counters {
     std::uint32_t rebuilds = 0;  ///< how often the lists were built
     std::uint32_t dropped = 0;   ///< neighbours beyond the slots of a list, over all rebuilds
@@ -34,7 +43,8 @@ class SelfCollision {
 
  private:
   std::uint32_t vertex_count_ = 0;
-  float skin_ = 0;  ///< [m]
+  float skin_ = 0;   ///< [m]
+  float reach_ = 0;  ///< contact distance + skin: how far the lists look [m]
   gl::Program clear_, insert_, find_;
   gl::Buffer control_;
   gl::TextureBuffer heads_, chains_, counts_, lists_, built_position_;

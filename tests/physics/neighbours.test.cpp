@@ -1,0 +1,170 @@
+// The neighbour lists of self-collision against brute force over all pairs.
+#include <algorithm>
+#include <glm/vec4.hpp>
+#include <numeric>
+#include <random>
+#include <set>
+
+#include "server/sim/self_collision.h"
+#include "server/sim/spring_lists.h"
+#include "server/sim/state.h"
+#include "tests/scenes.h"
+
+using namespace clothlab;
+
+namespace {
+
+using Lists = std::vector<std::vector<sim::SelfCollision::Neighbour>>;
+constexpr double thickness = 0.01;
+
+model::Model sheet_model(int side) {
+  Result<model::Model> model = model::build(test::sheet(side, side));
+  REQUIRE(model);
+  return std::move(*model);
+}
+
+/// The lists the GPU builds for `model` with its vertices at `position`.
+struct Search {
+  sim::SelfCollision self_collision;
+  gl::TextureBuffer position, rest, springs, slices;
+
+  Search(const model::Model& model, const std::vector<glm::vec4>& at) {
+    Result<sim::SelfCollision> made = sim::SelfCollision::create(model.vertex_count());
+    INFO((made ? "" : made.error().text()));
+    REQUIRE(made);
+    self_collision = std::move(*made);
+    self_collision.set_parameters({thickness, 0.0}, model);
+    std::vector<glm::vec4> home;
+    for (std::uint32_t i = 0; i < model.vertex_count(); ++i)
+      home.emplace_back(glm::vec3(model.rest_position[i]), static_cast<float>(model.vertex_cloth[i]));
+    const sim::SpringLists lists = sim::spring_lists(model, test::sheet(2, 2));
+    position = {gl::Buffer(at), GL_RGBA32F};
+    rest = {gl::Buffer(home), GL_RGBA32F};
+    springs = {gl::Buffer(lists.entries), GL_RGBA32UI};
+    slices = {gl::Buffer(lists.slices), GL_R32UI};
+  }
+  Lists run() {
+    position.bind(sim::unit_position);
+    rest.bind(sim::unit_rest_position);
+    springs.bind(sim::unit_springs);
+    slices.bind(sim::unit_spring_slices);
+    self_collision.update_lists();
+    return self_collision.read_lists();
+  }
+};
+
+std::vector<std::set<std::uint32_t>> brute_force(const model::Model& model, const std::vector<glm::vec4>& at, float reach) {
+  std::set<std::pair<std::uint32_t, std::uint32_t>> joined;
+  for (const model::Spring& spring : model.springs) joined.insert({spring.a, spring.b});
+  std::vector<std::set<std::uint32_t>> near(at.size());
+  for (std::uint32_t i = 0; i < at.size(); ++i)
+    for (std::uint32_t j = 0; j < at.size(); ++j)
+      if (i != j && glm::distance(glm::vec3(at[i]), glm::vec3(at[j])) < reach &&
+          !joined.contains({std::min(i, j), std::max(i, j)}))
+        near[i].insert(j);
+  return near;
+}
+
+void check_against_brute_force(const model::Model& model, const std::vector<glm::vec4>& at) {
+  Search search(model, at);
+  const Lists lists = search.run();
+  const auto expected = brute_force(model, at, search.self_collision.reach());
+  std::size_t found = 0;
+  for (std::uint32_t i = 0; i < at.size(); ++i) {
+    std::set<std::uint32_t> listed;
+    for (const auto& neighbour : lists[i]) listed.insert(neighbour.vertex);
+    REQUIRE(listed.size() == lists[i].size());  // none twice
+    REQUIRE(listed == expected[i]);
+    found += listed.size();
+  }
+  REQUIRE(found > at.size());  // the case is not an empty one
+  REQUIRE(search.self_collision.counters().dropped == 0);
+}
+
+std::vector<glm::vec4> random_cloud(std::size_t count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> place(-0.2f, 0.2f);  // also negative cells
+  std::vector<glm::vec4> at(count);
+  for (glm::vec4& x : at) x = {place(random), place(random), place(random), 1.0f};
+  return at;
+}
+
+/// A sheet folded in four layers, 8 mm apart.
+std::vector<glm::vec4> folded(const model::Model& model) {
+  std::vector<glm::vec4> at;
+  for (const glm::dvec3& x : model.rest_position) {
+    const double along = x.z * 4.0, layer = std::min(3.0, std::floor(along)), within = along - layer;
+    const double z = (static_cast<int>(layer) % 2 == 0 ? within : 1.0 - within) / 4.0;
+    at.emplace_back(static_cast<float>(x.x), static_cast<float>(0.008 * layer), static_cast<float>(z), 1.0f);
+  }
+  return at;
+}
+
+}  // namespace
+
+TEST_CASE("neighbour lists hold exactly the pairs that brute force finds in a random cloud") {
+  const auto context = test::context();
+  const model::Model model = sheet_model(19);  // 361 vertices: no multiple of the work group
+  for (const unsigned seed : {1u, 2u, 3u}) check_against_brute_force(model, random_cloud(model.vertex_count(), seed));
+}
+
+TEST_CASE("neighbour lists hold exactly the pairs that brute force finds on a folded cloth") {
+  const auto context = test::context();
+  const model::Model model = sheet_model(25);
+  check_against_brute_force(model, folded(model));
+}
+
+TEST_CASE("neighbour lists are the same whatever the order of threads: nearest first, every time") {
+  const auto context = test::context();
+  const model::Model model = sheet_model(25);
+  const auto at = random_cloud(model.vertex_count(), 4);
+  Search search(model, at);
+  const Lists first = search.run();
+  for (std::uint32_t i = 0; i < at.size(); ++i)
+    for (std::size_t slot = 1; slot < first[i].size(); ++slot) {
+      const auto gap = [&](std::size_t s) {
+        return glm::distance(glm::vec3(at[i]), glm::vec3(at[first[i][s].vertex]));
+      };
+      REQUIRE(gap(slot - 1) <= gap(slot) + 1e-6f);  // one rounding of a length below 1
+    }
+  for (int again = 0; again < 5; ++again) {
+    search.self_collision.invalidate();
+    REQUIRE(search.run() == first);
+  }
+}
+
+TEST_CASE("neighbour lists do not depend on the numbering of the vertices") {
+  const auto context = test::context();
+  // Unconnected triangles, so that numbering can be permuted without touching springs.
+  const auto cloud = random_cloud(300, 5);
+  std::vector<std::uint32_t> order(cloud.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::shuffle(order.begin(), order.end(), std::mt19937(6));
+
+  model::Model model;
+  model.rest_position.assign(cloud.size(), glm::dvec3(0.0));
+  for (std::size_t i = 0; i < cloud.size(); ++i) model.rest_position[i].x = static_cast<double>(i);
+  model.vertex_cloth.assign(cloud.size(), 0);
+  model.vertex_springs.offsets.assign(cloud.size() + 1, 0);
+  model.cloths.push_back({0, static_cast<std::uint32_t>(cloud.size()), 0, 0, 0.05});
+  std::vector<glm::vec4> shuffled(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) shuffled[order[i]] = cloud[i];
+
+  const Lists plain = Search(model, cloud).run(), permuted = Search(model, shuffled).run();
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    std::set<std::uint32_t> expected, found;
+    for (const auto& neighbour : plain[i]) expected.insert(order[neighbour.vertex]);
+    for (const auto& neighbour : permuted[order[i]]) found.insert(neighbour.vertex);
+    REQUIRE(found == expected);
+  }
+}
+
+TEST_CASE("vertices at the same place are neighbours and give no NaN") {
+  const auto context = test::context();
+  scene::Scene scene = test::sheet(5, 5);
+  scene.self_collision = scene::SelfCollision{thickness, 0.3};
+  scene.cloths.push_back(scene.cloths[0]);  // the same sheet again, in the same place
+  const auto simulation = test::simulation(scene);
+  simulation->step(100);
+  REQUIRE(simulation->diagnose().finite);
+}

@@ -1,0 +1,49 @@
+// Scenes as plain data for the tests, and the OpenGL context they run in.
+#pragma once
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+
+#include "server/gl/context.h"
+#include "server/sim/simulation.h"
+#include "tests/catch.h"
+
+namespace clothlab::test {
+
+/// A context current on this thread for the rest of the test. Fails the test with the reason if there is none.
+inline std::unique_ptr<gl::Context> context() {
+  Result<std::unique_ptr<gl::Context>> made = gl::Context::create();
+  INFO((made ? "" : made.error().text()));
+  REQUIRE(made);
+  return std::move(*made);
+}
+
+inline std::unique_ptr<sim::Simulation> simulation(const scene::Scene& scene) {
+  Result<std::unique_ptr<sim::Simulation>> made = sim::Simulation::create(scene);
+  INFO((made ? "" : made.error().text()));
+  REQUIRE(made);
+  return std::move(*made);
+}
+
+/// A free 1 m x 1 m grid at y = 1 with the seed's material; nothing to collide with.
+inline scene::Scene sheet(int columns, int rows) {
+  scene::Scene scene;
+  scene::Cloth cloth;
+  cloth.mesh = scene::Grid{columns, rows, 1.0, 1.0};
+  cloth.transform.translate = {0.0, 1.0, 0.0};
+  scene.cloths = {cloth};
+  return scene;
+}
+
+/// The seed scene of contract.md.
+inline scene::Scene seed() {
+  scene::Scene scene = sheet(25, 25);
+  const scene::Oscillate swing{{0.0, 0.0, 1.0}, 0.2, 0.5};
+  scene.cloths[0].pins = {{scene::AtCorner{0, 0}, swing}, {scene::AtCorner{24, 0}, swing}};
+  scene.colliders = {{"ball", scene::Sphere{{0.0, 0.6, 0.0}, 0.25}, 0.3, 0.0, {}}};
+  scene.self_collision = scene::SelfCollision{0.01, 0.2};
+  return scene;
+}
+
+}  // namespace clothlab::test
