@@ -137,10 +137,9 @@ Result<std::uint64_t> stop_interval(const Options& options, std::uint64_t steps,
   if (!options.every && options.trace.empty()) return std::max<std::uint64_t>(steps, 1);
   if (!options.every)
     return std::max<std::uint64_t>(static_cast<std::uint64_t>(std::llround(default_every / dt)), 1);
-  Result<std::uint64_t> every = whole_steps("--every", *options.every, dt);
-  if (every && *every == 0)
+  if (*options.every < dt / 2)
     return Error{"--every", text(*options.every), "one step (" + text(dt) + " s) or more"};
-  return every;
+  return whole_steps("--every", *options.every, dt);
 }
 
 int run(const Options& options) {

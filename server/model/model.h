@@ -60,4 +60,8 @@ struct Model {
 /// Builds the arrays. Errors name the JSON Pointer: a pin outside its mesh, a triangle index out of range, ...
 Result<Model> build(const scene::Scene& scene);
 
+/// For each vertex the two other corners of each of its triangles, counter-clockwise, in the order of
+/// `vertex_triangles`: what shaders/stream/normal.glsl reads.
+std::vector<std::uint32_t> vertex_fans(const Model& model);
+
 }  // namespace clothlab::model

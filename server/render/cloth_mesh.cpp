@@ -33,8 +33,6 @@ void attribute(GLuint vertex_array, GLuint index, GLint components) {
 ClothMesh::ClothMesh(const sim::Simulation& simulation, const gl::Program& normals_program)
     : triangles_(simulation.model().triangles),
       texture_coordinates_(simulation.model().texture_coordinates),
-      triangle_offsets_(simulation.model().vertex_triangles.offsets),
-      triangles_around_(simulation.model().vertex_triangles.items),
       normals_(simulation.model().vertex_count() * 4 * sizeof(float)),
       vertex_count_(simulation.model().vertex_count()),
       triangle_count_(static_cast<GLsizei>(simulation.model().triangle_count())) {
@@ -45,24 +43,24 @@ ClothMesh::ClothMesh(const sim::Simulation& simulation, const gl::Program& norma
   glVertexArrayVertexBuffer(vertex_array_, 1, normals_.id(), 0, 4 * sizeof(float));
   glVertexArrayVertexBuffer(vertex_array_, 2, texture_coordinates_.id(), 0, 2 * sizeof(float));
   glVertexArrayElementBuffer(vertex_array_, triangles_.id());
-  const GLuint positions = simulation.position_buffer();
-  glVertexArrayVertexBuffer(vertex_array_, 0, positions, 0, 4 * sizeof(float));
-  compute_normals(positions, normals_program);
+  glVertexArrayVertexBuffer(vertex_array_, 0, simulation.position_buffer(), 0, 4 * sizeof(float));
+  compute_normals(simulation, normals_program);
 }
 
 ClothMesh::~ClothMesh() {
   glDeleteVertexArrays(1, &vertex_array_);
 }
 
-void ClothMesh::compute_normals(GLuint positions, const gl::Program& program) const {
+void ClothMesh::compute_normals(const sim::Simulation& simulation, const gl::Program& program) const {
+  const gl::TextureBuffer fan_offsets(gl::Buffer(simulation.model().vertex_triangles.offsets), GL_R32UI);
+  const gl::TextureBuffer fans(gl::Buffer(model::vertex_fans(simulation.model())), GL_RG32UI);
   program.use();
-  glUniform1ui(0, vertex_count_);
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, positions);
-  normals_.bind_storage(1);
-  triangle_offsets_.bind_storage(2);
-  triangles_around_.bind_storage(3);
-  triangles_.bind_storage(4);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  glUniform1i(0, static_cast<GLint>(vertex_count_));
+  simulation.bind_positions(0);
+  fan_offsets.bind(2);
+  fans.bind(3);
+  normals_.bind_storage(0);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   glDispatchCompute((vertex_count_ + 63) / 64, 1, 1);
   glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
 }

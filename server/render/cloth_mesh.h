@@ -25,9 +25,9 @@ class ClothMesh {
   void draw_plain() const;
 
  private:
-  void compute_normals(GLuint positions, const gl::Program& program) const;
+  void compute_normals(const sim::Simulation& simulation, const gl::Program& program) const;
 
-  gl::Buffer triangles_, texture_coordinates_, triangle_offsets_, triangles_around_, normals_;
+  gl::Buffer triangles_, texture_coordinates_, normals_;
   GLuint vertex_array_ = 0;
   GLuint vertex_count_;
   GLsizei triangle_count_;

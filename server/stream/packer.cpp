@@ -22,20 +22,6 @@ std::int64_t now_us() {
       .count();
 }
 
-/// For each vertex the two other corners of each of its triangles, in the triangle's order.
-std::vector<std::uint32_t> fan_corners(const model::Model& model) {
-  std::vector<std::uint32_t> corners;
-  for (std::uint32_t i = 0; i < model.vertex_count(); ++i) {
-    for (std::uint32_t at = model.vertex_triangles.offsets[i]; at < model.vertex_triangles.offsets[i + 1]; ++at) {
-      const auto& triangle = model.triangles[model.vertex_triangles.items[at]];
-      const std::size_t corner = triangle[0] == i ? 0 : triangle[1] == i ? 1 : 2;
-      corners.push_back(triangle[(corner + 1) % 3]);
-      corners.push_back(triangle[(corner + 2) % 3]);
-    }
-  }
-  return corners;
-}
-
 }  // namespace
 
 struct Packer::Implementation {
@@ -54,7 +40,7 @@ struct Packer::Implementation {
     topology_revision = revision;
     vertex_count = model.vertex_count();
     fan_offsets = {gl::Buffer(model.vertex_triangles.offsets), GL_R32UI};
-    fans = {gl::Buffer(fan_corners(model)), GL_RG32UI};
+    fans = {gl::Buffer(model::vertex_fans(model)), GL_RG32UI};
     for (std::size_t i = 0; i < encoding_count; ++i)
       packed[i] = gl::Buffer(box_bytes + vertex_count * bytes_per_vertex(static_cast<Encoding>(i)));
     ring = gl::ReadbackRing(box_bytes + vertex_count * bytes_per_vertex(Encoding::f32), ring_slots);

@@ -1,0 +1,84 @@
+// `clothlab render`: the picture is a PNG of the size asked for, and shows the scene.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { inflateSync } from "node:zlib";
+import { clothlab, folder } from "./program.mjs";
+
+/** Width, height and RGB pixels of an 8-bit RGB PNG; every filter of the format. */
+function decode(path) {
+  const png = readFileSync(path);
+  assert.equal(png.subarray(0, 8).toString("latin1"), "\x89PNG\r\n\x1a\n");
+  const [width, height] = [png.readUInt32BE(16), png.readUInt32BE(20)];
+  assert.deepEqual([png[24], png[25]], [8, 2], "8 bits, RGB");
+  const chunks = [];
+  for (let at = 8; at < png.length; at += 12 + png.readUInt32BE(at))
+    if (png.toString("latin1", at + 4, at + 8) === "IDAT") chunks.push(png.subarray(at + 8, at + 8 + png.readUInt32BE(at)));
+  const packed = inflateSync(Buffer.concat(chunks));
+  const row = 3 * width, pixels = Buffer.alloc(row * height);
+  const paeth = (a, b, c) => {
+    const [pa, pb, pc] = [Math.abs(b - c), Math.abs(a - c), Math.abs(a + b - 2 * c)];
+    return pa <= pb && pa <= pc ? a : pb <= pc ? b : c;
+  };
+  for (let y = 0; y < height; ++y) {
+    const filter = packed[y * (row + 1)];
+    for (let x = 0; x < row; ++x) {
+      const left = x < 3 ? 0 : pixels[y * row + x - 3], up = y === 0 ? 0 : pixels[(y - 1) * row + x];
+      const corner = x < 3 || y === 0 ? 0 : pixels[(y - 1) * row + x - 3];
+      const guess = [0, left, up, (left + up) >> 1, paeth(left, up, corner)][filter];
+      pixels[y * row + x] = packed[y * (row + 1) + 1 + x] + guess;
+    }
+  }
+  return { width, height, at: (x, y) => [...pixels.subarray(y * row + 3 * x, y * row + 3 * x + 3)] };
+}
+
+function render(name, ...args) {
+  const { status, stderr } = clothlab(["render", ...args, "--out", name]);
+  assert.equal(status, 0, stderr);
+  return decode(join(folder, name));
+}
+
+const isRed = ([r, g, b]) => r > 1.6 * g && r > 1.6 * b;
+
+/** Box and number of the pixels that satisfy the predicate. */
+function region(image, predicate) {
+  const found = { count: 0, left: image.width, right: -1, top: image.height, bottom: -1 };
+  for (let y = 0; y < image.height; ++y)
+    for (let x = 0; x < image.width; ++x) {
+      if (!predicate(image.at(x, y))) continue;
+      ++found.count;
+      [found.left, found.right] = [Math.min(found.left, x), Math.max(found.right, x)];
+      [found.top, found.bottom] = [Math.min(found.top, y), Math.max(found.bottom, y)];
+    }
+  return found;
+}
+
+test("the seed scene's red cloth fills a good part of the picture and touches no edge", () => {
+  const image = render("seed.png", "seed", "--time", "0.5", "--size", "320x180");
+  assert.deepEqual([image.width, image.height], [320, 180]);
+  const cloth = region(image, isRed);
+  assert.ok(cloth.count > 0.05 * 320 * 180, `${cloth.count} pixels`);
+  assert.ok(cloth.left > 0 && cloth.right < 319 && cloth.top > 0 && cloth.bottom < 179);
+});
+
+test("a portrait picture is framed as well", () => {
+  const cloth = region(render("tall.png", "seed", "--time", "0.5", "--size", "120x240"), isRed);
+  assert.ok(cloth.count > 0.05 * 120 * 240);
+  assert.ok(cloth.left > 0 && cloth.right < 119 && cloth.top > 0 && cloth.bottom < 239);
+});
+
+test("both sides of the cloth are drawn: turned over, it covers the same pixels", () => {
+  const plain = ["seed", "--time", "0", "--size", "160x90", "--set", "/colliders=[]", "--set", "/cloths/0/pins=[]"];
+  const centered = [...plain, "--set", "/cloths/0/transform/translate=[0,0,-0.5]"];
+  const turned = [...plain, "--set", "/cloths/0/transform/translate=[0,0,0.5]", "--set", "/cloths/0/transform/rotate=[180,0,0]"];
+  const front = region(render("front.png", ...centered), isRed), back = region(render("back.png", ...turned), isRed);
+  assert.ok(front.count > 500);
+  assert.ok(Math.abs(front.count - back.count) < 0.05 * front.count, `${front.count} and ${back.count} pixels`);
+});
+
+test("the colour is the scene's", () => {
+  const image = render("blue.png", "seed", "--time", "0", "--size", "160x90", "--set", "/cloths/0/color=#2040d0");
+  assert.equal(region(image, isRed).count, 0);
+  assert.ok(region(image, ([r, g, b]) => b > 1.5 * r && b > 1.5 * g).count > 500);
+});

@@ -1,0 +1,118 @@
+// `clothlab run`: report, trace, meshes, the same result every time, and a run that diverges.
+import assert from "node:assert/strict";
+import { readFileSync, readdirSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { clothlab, folder } from "./program.mjs";
+
+const file = (name) => readFileSync(join(folder, name));
+const report = (name) => JSON.parse(file(name));
+
+function run(...args) {
+  const result = clothlab(["run", ...args]);
+  assert.equal(result.status, 0, result.stderr);
+  return result;
+}
+
+test("the report holds what the contract promises", () => {
+  run("seed", "--time", "0.05", "--report", "report.json");
+  const r = report("report.json");
+  assert.equal(r.vertices, 625);
+  assert.equal(r.steps, 50);
+  assert.ok(Math.abs(r.sim_time - 0.05) < 1e-9);
+  assert.ok(r.renderer.length > 0 && r.passes.length > 0);
+  assert.ok(r.step_s > 0 && r.wall_s > r.step_s);
+  assert.ok(Math.abs(r.ns_per_vertex_step - (1e9 * r.step_s) / (625 * 50)) < 1e-6 * r.ns_per_vertex_step);
+  for (const key of ["kinetic", "elastic", "gravitational"]) assert.ok(Number.isFinite(r.energy[key]), key);
+  assert.ok(r.max_strain > 0 && r.max_strain < 1);
+  assert.equal(r.diverged, false);
+  assert.match(r.state_hash, /^[0-9a-f]{16}$/);
+});
+
+test("two processes reach the same state to the bit, whatever else they write", () => {
+  run("seed", "--time", "0.3", "--report", "plain.json");
+  run("seed", "--time", "0.3", "--report", "watched.json", "--trace", "w.csv", "--out", "w.obj", "--every", "0.017");
+  assert.equal(report("plain.json").state_hash, report("watched.json").state_hash);
+});
+
+test("--set changes the run, the later of two wins", () => {
+  run("seed", "--time", "0.05", "--set", "/solver/dt=0.001", "--set", "/solver/dt=0.0005", "--report", "set.json");
+  assert.equal(report("set.json").steps, 100);
+  assert.equal(report("set.json").dt, 0.0005);
+});
+
+test("a time that is not whole in steps is rounded, and that is said", () => {
+  const { stderr } = run("seed", "--time", "0.0204", "--report", "rounded.json");
+  assert.equal(report("rounded.json").steps, 20);
+  assert.match(stderr, /note: --time 0\.0204 .*0\.02\b/);
+});
+
+test("the trace has a row per --every, the start and the end among them", () => {
+  run("seed", "--time", "0.05", "--trace", "trace.csv", "--every", "0.02");
+  const [header, ...rows] = file("trace.csv").toString().trim().split("\n");
+  assert.equal(header, "time,kinetic,elastic,gravitational,max_strain,max_speed,contacts");
+  const values = rows.map((row) => row.split(",").map(Number));
+  assert.deepEqual(values.map(([time]) => Math.round(time * 1000)), [0, 20, 40, 50]);
+  assert.ok(values.flat().every(Number.isFinite));
+  assert.equal(values[0][1], 0, "it starts at rest");
+});
+
+test("an OBJ has every vertex and two triangles a cell, with indices in range", () => {
+  run("seed", "--time", "0", "--out", "start.obj");
+  const lines = file("start.obj").toString().trim().split("\n");
+  const of = (kind) => lines.filter((line) => line.startsWith(`${kind} `)).map((line) => line.split(" ").slice(1));
+  const vertices = of("v").map((v) => v.map(Number));
+  assert.equal(vertices.length, 625);
+  assert.equal(of("vt").length, 625);
+  assert.deepEqual(vertices[0], [-0.5, 1, 0]);
+  assert.deepEqual(vertices[624], [0.5, 1, 1]);
+  const faces = of("f").map((f) => f.map((corner) => Number(corner.split("/")[0])));
+  assert.equal(faces.length, 2 * 24 * 24);
+  assert.ok(faces.flat().every((corner) => corner >= 1 && corner <= 625));
+  assert.deepEqual(faces[0], [1, 26, 27]);
+});
+
+test("a PLY holds the same positions as the OBJ", () => {
+  run("seed", "--time", "0.1", "--out", "same.obj");
+  run("seed", "--time", "0.1", "--out", "same.ply");
+  const bytes = file("same.ply");
+  const start = bytes.indexOf("end_header\n") + "end_header\n".length;
+  const header = bytes.subarray(0, start).toString();
+  assert.match(header, /^ply\nformat binary_little_endian 1\.0\n/);
+  assert.match(header, /element vertex 625\n/);
+  assert.equal(bytes.length, start + 625 * 20 + 2 * 24 * 24 * 13);
+  const obj = file("same.obj").toString().split("\n").filter((line) => line.startsWith("v "));
+  obj.forEach((line, vertex) => {
+    const position = [0, 4, 8].map((at) => bytes.readFloatLE(start + 20 * vertex + at));
+    assert.deepEqual(line.split(" ").slice(1).map((text) => Math.fround(Number(text))), position);
+  });
+});
+
+test("samples go to numbered files", () => {
+  run("seed", "--time", "0.03", "--out", "step.obj", "--every", "0.01");
+  const written = readdirSync(folder).filter((name) => /^step-.*\.obj$/.test(name)).sort();
+  assert.deepEqual(written, ["step-0000.obj", "step-0001.obj", "step-0002.obj", "step-0003.obj"]);
+});
+
+test("a point cache counts its samples and holds them all", () => {
+  run("seed", "--time", "0.03", "--out", "cache.pc2", "--every", "0.01");
+  const bytes = file("cache.pc2");
+  assert.equal(bytes.subarray(0, 12).toString("latin1"), "POINTCACHE2\0");
+  assert.deepEqual([bytes.readInt32LE(12), bytes.readInt32LE(16), bytes.readInt32LE(28)], [1, 625, 4]);
+  assert.equal(bytes.length, 32 + 4 * 625 * 12);
+  assert.deepEqual([0, 4, 8].map((at) => bytes.readFloatLE(32 + at)), [-0.5, 1, 0]);
+});
+
+test("a run that diverges exits 4, keeps what was good, and marks it", () => {
+  const { status, stderr } = clothlab(
+    ["run", "blowup", "--time", "1", "--report", "blowup.json", "--out", "blowup.obj", "--trace", "blowup.csv"]);
+  assert.equal(status, 4);
+  assert.match(stderr, /note: the simulation diverged .*--set \/solver\/dt=/);
+  const r = report("blowup.json");
+  assert.equal(r.diverged, true);
+  assert.ok(r.diverged_by > r.sim_time);
+  const obj = file("blowup.obj").toString();
+  assert.match(obj, /^#.*diverged/);
+  assert.doesNotMatch(obj, /nan|inf/i);
+  assert.match(file("blowup.csv").toString(), /\n# diverged by [\d.]+ s\n$/);
+});

@@ -1,0 +1,89 @@
+// Help, exit codes, and what is said about wrong input.
+import assert from "node:assert/strict";
+import { existsSync, mkdirSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { clothlab, folder } from "./program.mjs";
+
+const commands = ["run", "render", "validate", "presets", "info"];
+
+test("without a subcommand the help goes to stderr and the exit code is 2", () => {
+  const { status, stdout, stderr } = clothlab([]);
+  assert.equal(status, 2);
+  assert.equal(stdout, "");
+  for (const command of commands) assert.match(stderr, new RegExp(`^  ${command} `, "m"));
+  assert.match(stderr, /Examples:/);
+});
+
+test("--help and --version exit 0 and print on stdout", () => {
+  for (const args of [["--help"], ...commands.map((command) => [command, "--help"])]) {
+    const { status, stdout, stderr } = clothlab(args);
+    assert.equal(status, 0, args.join(" "));
+    assert.match(stdout, /Usage: /);
+    assert.equal(stderr, "");
+  }
+  assert.match(clothlab(["--version"]).stdout, /^clothlab \d+\.\d+\.\d+\n$/);
+});
+
+const wrong = {
+  "an unknown command": [["fly"], /fly/],
+  "an unknown option": [["run", "seed", "--time", "1", "--tmie", "2"], /--tmie/],
+  "no --time": [["run", "seed"], /--time/],
+  "no scene": [["run", "--time", "1"], /scene/],
+  "a time that is no number": [["run", "seed", "--time", "soon"], /--time/],
+  "a negative time": [["run", "seed", "--time", "-1"], /0 or more/],
+  "a time that is not finite": [["run", "seed", "--time", "inf"], /0 or more/],
+  "a preset that is not there": [["run", "sead", "--time", "1"], /seed/],
+  "a value out of range": [["run", "seed", "--time", "1", "--set", "/solver/dt=-1"], /\/solver\/dt/],
+  "a key that is not there": [["run", "seed", "--time", "1", "--set", "/solver/dd=1"], /\/solver\/dd/],
+  "an assignment without a value": [["run", "seed", "--time", "1", "--set", "/solver/dt"], /--set|\/solver\/dt/],
+  "an unknown kind of mesh file": [["run", "seed", "--time", "1", "--out", "a.stl"], /\.obj, \.ply, \.pc2/],
+  "a point cache of one state": [["run", "seed", "--time", "1", "--out", "a.pc2"], /--every/],
+  "--every for nothing": [["run", "seed", "--time", "1", "--every", "0.1"], /--out or --trace/],
+  "--every below a step": [["run", "seed", "--time", "1", "--every", "1e-5", "--trace", "t.csv"], /one step/],
+  "a size without a height": [["render", "seed", "--time", "0", "--out", "a.png", "--size", "100"], /WIDTHxHEIGHT/],
+  "a size with more after it": [["render", "seed", "--time", "0", "--out", "a.png", "--size", "10x10x10"], /WIDTHxHEIGHT/],
+  "a size of nothing": [["render", "seed", "--time", "0", "--out", "a.png", "--size", "0x100"], /from 1 to/],
+  "a size beyond the largest": [["render", "seed", "--time", "0", "--out", "a.png", "--size", "9999x10"], /from 1 to/],
+  "a picture that is no PNG": [["render", "seed", "--time", "0", "--out", "a.jpg"], /\.png/],
+  "a GPU that is not there": [["run", "seed", "--time", "0", "--gpu", "99"], /clothlab info/],
+};
+for (const [what, [args, message]] of Object.entries(wrong)) {
+  test(`${what} exits 2 with one line that says what is wrong`, () => {
+    const { status, stderr } = clothlab(args);
+    assert.equal(status, 2, stderr);
+    assert.match(stderr, /^clothlab: error: [^\n]+\n$/);
+    assert.match(stderr, message);
+  });
+}
+
+test("outputs are checked before anything is simulated, and nothing is left behind", () => {
+  mkdirSync(join(folder, "a-folder.csv"));
+  const good = { "--out": "early.obj", "--report": "early.json", "--trace": "early.csv" };
+  for (const [option, path] of [["--out", "nowhere/a.obj"], ["--report", "nowhere/a.json"], ["--trace", "a-folder.csv"]]) {
+    const { status, stderr } = clothlab(["run", "seed", "--time", "1e6", ...Object.entries({ ...good, [option]: path }).flat()]);
+    assert.equal(status, 2);
+    assert.match(stderr, new RegExp(`${option} ${path}`));
+    for (const early of Object.values(good)) assert.ok(!existsSync(join(folder, early)), early);
+  }
+});
+
+test("a scene file that is not JSON names the file and the place", () => {
+  writeFileSync(join(folder, "broken.json"), '{ "version": 1,, }');
+  const { status, stderr } = clothlab(["run", "broken.json", "--time", "1"]);
+  assert.equal(status, 2);
+  assert.match(stderr, /broken\.json/);
+});
+
+test("without any OpenGL the exit code is 3 and the packages to install are named", () => {
+  const { status, stderr } = clothlab(["run", "seed", "--time", "0"], { __EGL_VENDOR_LIBRARY_DIRS: "/nonexistent" });
+  assert.equal(status, 3);
+  assert.match(stderr, /libegl1 libgl1-mesa-dri/);
+});
+
+test("info names a usable device, the one that is used, and the folders of the data files", () => {
+  const { status, stdout } = clothlab(["info"]);
+  assert.equal(status, 0);
+  assert.match(stdout, /^\* \d+: .*OpenGL 4\./m);
+  assert.match(stdout, /^shaders +\/.*shaders$/m);
+});
