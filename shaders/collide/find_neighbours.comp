@@ -27,17 +27,25 @@ void main() {
   }
   if (i >= vertex_count) return;
   vec3 x = FETCH(position, i).xyz;
-  ivec3 home = cell_of(x);
+  // Cells are twice the reach wide, so only the eight on this vertex's side of its cell can hold a neighbour. One loop
+  // walks all eight chains: threads of a group with chains of different lengths do not wait for each other at each cell.
+  ivec3 corner = corner_of(x);
   int first = i * NEIGHBOUR_SLOTS;
   int count = 0;
   uint lost = 0;
-  for (int at = 0; at < 27; ++at) {
-    ivec3 cell = home + ivec3(at % 3, at / 3 % 3, at / 9) - 1;
-    for (uint j = FETCH_UINT(head, bucket_of(cell)); j != chain_end; j = FETCH_UINT(next, j)) {
-      vec3 y = FETCH(position, j).xyz;
-      float gap = distance(x, y);
-      // A bucket may hold several cells; only this one's vertices count, so that none is listed twice.
-      if (j == uint(i) || gap >= reach || cell_of(y) != cell || joined(i, int(j))) continue;
+  ivec3 cell = corner;
+  uint j = FETCH_UINT(head, bucket_of(cell));
+  for (int at = 0;;) {
+    if (j == chain_end) {
+      if (++at == 8) break;
+      cell = corner + ivec3(at & 1, at >> 1 & 1, at >> 2);
+      j = FETCH_UINT(head, bucket_of(cell));
+      continue;
+    }
+    vec3 y = FETCH(position, j).xyz;
+    float gap = distance(x, y);
+    // A bucket may hold several cells; only this one's vertices count, so that none is listed twice.
+    if (j != uint(i) && gap < reach && cell_of(y) == cell && !joined(i, int(j))) {
       int slot = count;
       if (count < NEIGHBOUR_SLOTS) ++count;
       else ++lost;
@@ -49,6 +57,7 @@ void main() {
       }
       if (slot < NEIGHBOUR_SLOTS) neighbours[first + slot] = uvec2(j, floatBitsToUint(gap));
     }
+    j = FETCH_UINT(next, j);
   }
   for (int slot = 0; slot < count; ++slot) {
     int j = int(neighbours[first + slot].x);
