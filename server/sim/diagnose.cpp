@@ -27,20 +27,26 @@ Result<DiagnosticsPass> DiagnosticsPass::create(std::uint32_t vertex_count) {
   pass.program_.use();
   glUniform1i(0, static_cast<GLint>(vertex_count));
   pass.groups_ = (vertex_count + group_size - 1) / group_size;
-  pass.partials_ = gl::Buffer(pass.groups_ * sizeof(Partial));
-  pass.ring_ = gl::ReadbackRing(pass.partials_.bytes(), 3);
+  pass.results_ = gl::Buffer(pass.groups_ * sizeof(Partial) + sizeof(SelfCollision::Counters));
+  pass.ring_ = gl::ReadbackRing(pass.results_.bytes(), 3);
   return pass;
 }
 
-bool DiagnosticsPass::request(const StateBuffers& state, const glm::dvec3& gravity, double time, std::uint64_t step) {
+bool DiagnosticsPass::request(const StateBuffers& state, const SelfCollision* self_collision,
+                              const glm::dvec3& gravity, double time, std::uint64_t step) {
   if (ring_.full()) return false;
   program_.use();
   glUniform4f(3, static_cast<float>(gravity.x), static_cast<float>(gravity.y), static_cast<float>(gravity.z), 0.0f);
   state.position().bind(unit_position);
   state.velocity().bind(unit_velocity);
-  partials_.bind_storage(0);
+  results_.bind_storage(0);
   glDispatchCompute(groups_, 1, 1);
-  ring_.push(partials_, partials_.bytes());
+  if (self_collision) {
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glCopyNamedBufferSubData(self_collision->control().id(), results_.id(), SelfCollision::counters_offset,
+                             static_cast<GLintptr>(groups_ * sizeof(Partial)), sizeof(SelfCollision::Counters));
+  }
+  ring_.push(results_, results_.bytes());
   requested_.emplace_back(time, step);
   return true;
 }
@@ -51,9 +57,9 @@ bool DiagnosticsPass::poll(Diagnostics& out, bool wait) {
   out = Diagnostics{};
   std::tie(out.time, out.step) = requested_.front();
   double contacts = 0.0, speed_squared = 0.0;
-  for (std::size_t at = 0; at < bytes.size(); at += sizeof(Partial)) {
+  for (std::size_t group = 0; group < groups_; ++group) {
     Partial partial;
-    std::memcpy(&partial, bytes.data() + at, sizeof(partial));
+    std::memcpy(&partial, bytes.data() + group * sizeof(partial), sizeof(partial));
     out.kinetic += partial.kinetic;
     out.elastic += partial.elastic;
     out.gravitational += partial.gravitational;
@@ -62,6 +68,10 @@ bool DiagnosticsPass::poll(Diagnostics& out, bool wait) {
     speed_squared = std::max(speed_squared, static_cast<double>(partial.speed_squared));
     out.finite = out.finite && partial.not_finite == 0.0f;
   }
+  SelfCollision::Counters counters;
+  std::memcpy(&counters, bytes.data() + groups_ * sizeof(Partial), sizeof(counters));
+  out.neighbour_rebuilds = counters.rebuilds;
+  out.neighbours_dropped = counters.dropped;
   out.contacts = static_cast<std::uint32_t>(contacts);
   out.max_speed = std::sqrt(speed_squared);
   ring_.pop();

@@ -5,6 +5,7 @@
 #include <deque>
 
 #include "server/gl/program.h"
+#include "server/sim/self_collision.h"
 #include "server/sim/simulation.h"
 #include "server/sim/state.h"
 
@@ -15,13 +16,15 @@ class DiagnosticsPass {
   static Result<DiagnosticsPass> create(std::uint32_t vertex_count);
 
   /// Queues the reduction. False if too many are still on their way. Springs and slices must be bound.
-  bool request(const StateBuffers& state, const glm::dvec3& gravity, double time, std::uint64_t step);
+  /// `self_collision` may be null.
+  bool request(const StateBuffers& state, const SelfCollision* self_collision, const glm::dvec3& gravity, double time,
+               std::uint64_t step);
   /// True and the oldest result, if one has arrived or `wait` is set and one was requested.
   bool poll(Diagnostics& out, bool wait);
 
  private:
   gl::Program program_;
-  gl::Buffer partials_;
+  gl::Buffer results_;  ///< the partial results, then self-collision's counters
   gl::ReadbackRing ring_;
   std::deque<std::pair<double, std::uint64_t>> requested_;  ///< time and step of each result on its way
   std::uint32_t groups_ = 0;

@@ -91,10 +91,4 @@ std::vector<std::vector<SelfCollision::Neighbour>> SelfCollision::read_lists() c
   return lists;
 }
 
-SelfCollision::Counters SelfCollision::counters() const {
-  std::array<std::uint32_t, 2> words{};
-  control_.download(words.data(), sizeof(words), 3 * sizeof(std::uint32_t));
-  return {words[0], words[1]};
-}
-
 }  // namespace clothlab::sim

@@ -38,8 +38,9 @@ class SelfCollision {
     std::uint32_t rebuilds = 0;  ///< how often the lists were built
     std::uint32_t dropped = 0;   ///< neighbours beyond the slots of a list, over all rebuilds
   };
-  /// Waits for the GPU.
-  Counters counters() const;
+  /// Where the GPU keeps the counters, to be copied along with other results.
+  const gl::Buffer& control() const { return control_; }
+  static constexpr std::size_t counters_offset = 3 * sizeof(std::uint32_t);
 
  private:
   std::uint32_t vertex_count_ = 0;

@@ -211,7 +211,8 @@ std::vector<Simulation::Pass> Simulation::passes() const { return sim::passes(im
 void Simulation::request_diagnostics() {
   Implementation& self = *implementation_;
   self.bind_constants();
-  self.diagnostics.request(self.state, self.scene.gravity, time(), self.step_index);
+  const SelfCollision* self_collision = self.kernels.self_collision ? &*self.kernels.self_collision : nullptr;
+  self.diagnostics.request(self.state, self_collision, self.scene.gravity, time(), self.step_index);
 }
 
 bool Simulation::poll_diagnostics(Diagnostics& out) { return implementation_->diagnostics.poll(out, false); }

@@ -32,6 +32,8 @@ struct Diagnostics {
   double max_speed = 0;       ///< [m/s]
   std::uint32_t contacts = 0; ///< vertices touching a collider or another vertex
   bool finite = true;         ///< no NaN or infinity anywhere
+  std::uint32_t neighbour_rebuilds = 0;  ///< of the neighbour lists, since the kernels were made
+  std::uint32_t neighbours_dropped = 0;  ///< that found no room in a list: self_collision is too thick for the mesh
 };
 
 /// The state as floats, read back from the GPU.

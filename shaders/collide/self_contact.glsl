@@ -1,9 +1,13 @@
-// Self-collision of the vertex with those of its neighbour list that are too close: pushes the two apart and takes out
-// the approaching velocity, each its share by inverse mass, with Coulomb friction. Both vertices compute the same
-// contact with the same scale, so momentum is kept. Needs neighbours.glsl's lists, contact.glsl, position, velocity.
+// Self-collision of a vertex with those of its neighbour list that would come too close within this step: takes out the
+// approaching velocity that is more than the room between them, with Coulomb friction, and pushes apart what is too close
+// already, each vertex its share by inverse mass. Both vertices compute the same contact with the same scale, so momentum
+// is kept. Speculative contacts: Catto 2013. Needs neighbours.glsl, contact.glsl, position, velocity, dt.
 READ_UINT(neighbour_count, 4);
 READ_UVEC2(neighbours, 5);
 layout(location = 4) uniform float self_friction;
+
+// The part of an overlap mended in one step. All of it at once would stretch the springs and so add energy.
+const float mended = 0.2;
 
 /// Adds to push [m] and impulse (change of velocity [m/s]); returns the number of vertices touched.
 /// Several contacts at once would add up to more than is needed: each is scaled by the larger of the two vertices'
@@ -14,18 +18,18 @@ int self_contacts(int i, vec4 x, vec4 v, inout vec3 push, inout vec3 impulse) {
   for (int slot = 0; slot < count; ++slot) {
     uvec2 neighbour = FETCH_UVEC2(neighbours, i * NEIGHBOUR_SLOTS + slot);
     vec4 y = FETCH(position, neighbour.x);
-    vec3 d = x.xyz - y.xyz;
-    float keep = uintBitsToFloat(neighbour.y);
-    float gap_squared = dot(d, d);
-    if (!(gap_squared < keep * keep) || !(gap_squared > 0.0)) continue;
-    ++touched;
-    float gap = sqrt(gap_squared);
-    vec3 n = d / gap;
     vec4 w = FETCH(velocity, neighbour.x);
+    vec3 d = x.xyz - y.xyz;
+    float gap = length(d);
+    if (!(gap > 0.0)) continue;  // no direction
+    vec3 n = d / gap;
+    float room = gap - uintBitsToFloat(neighbour.y);
+    vec3 relative = v.xyz - w.xyz + n * (max(room, 0.0) / dt);
+    if (room >= 0.0 && dot(relative, n) >= 0.0) continue;
+    ++touched;
     float others = y.w > 0.0 ? w.w : 0.0;  // a pinned vertex keeps its motion's index there
     float share = x.w / (x.w + y.w) / max(2.0, max(v.w, others));
-    vec3 relative = v.xyz - w.xyz;
-    push += share * (keep - gap) * n;
+    push += share * mended * max(-room, 0.0) * n;
     impulse += share * (contact_velocity(relative, n, self_friction, 0.0) - relative);
   }
   return touched;

@@ -15,16 +15,15 @@ READ_VEC4(velocity, 1);  // w: contacts of the last step; of a pinned vertex, it
 READ_VEC4(rest_position, 7);  // w: the cloth
 layout(std430, binding = 0) writeonly buffer NextPosition { vec4 next_position[]; };
 layout(std430, binding = 1) writeonly buffer NextVelocity { vec4 next_velocity[]; };
+layout(location = 0) uniform int vertex_count;
+layout(location = 2) uniform float dt;        // [s]
+layout(location = 3) uniform vec4 gravity;    // xyz [m/s^2], w: air drag [1/s]
 #ifdef SELF_COLLISION
 #include "../collide/neighbours.glsl"
 #include "../collide/self_contact.glsl"
 READ_VEC4(position_when_built, 8);
 layout(location = 5) uniform float skin;  // [m]
 #endif
-
-layout(location = 0) uniform int vertex_count;
-layout(location = 2) uniform float dt;        // [s]
-layout(location = 3) uniform vec4 gravity;    // xyz [m/s^2], w: air drag [1/s]
 
 vec3 spring_forces(int i, vec3 x, vec3 v) {
   vec3 force = vec3(0.0);
