@@ -1,6 +1,6 @@
 // Draws the streamed vertices: the q16 payload is the vertex buffer, decoded in the vertex shader.
 import { Box3, BufferAttribute, BufferGeometry, Group, Mesh, Points, Vector3, type IUniform } from "three";
-import { clothCasterMaterial, clothDepthMaterial, FabricMaterial, pinMaterial, type DecodeUniforms, type StageUniforms } from "./fabric_material";
+import { clothCasterMaterial, FabricMaterial, pinMaterial, type DecodeUniforms, type StageUniforms } from "./fabric_material";
 import { pinnedVertices } from "./pins";
 import { q16Words, type Frame, type Topology } from "./protocol";
 import type { SceneDocument } from "./scene_types";
@@ -15,7 +15,7 @@ export class ClothView {
   private words: BufferAttribute | null = null;
   private readonly decode: DecodeUniforms = { boxMinimum: { value: new Vector3() }, boxExtent: { value: new Vector3() } };
   private readonly materials: FabricMaterial[] = [];
-  private readonly depthMaterial = clothDepthMaterial(this.decode);
+  private readonly depthMaterial = clothCasterMaterial(this.decode);
   private readonly casterMaterial = clothCasterMaterial(this.decode);
   private readonly pinMaterial;
   private mesh: Mesh | null = null;
@@ -57,6 +57,9 @@ export class ClothView {
     this.box.max.copy(this.box.min).add(this.decode.boxExtent.value);
     return true;
   }
+
+  /// A mesh drawn like the first cloth, to compile its program before there is one.
+  sample(): Mesh { return new Mesh(new BufferGeometry(), this.material(0)); }
 
   private material(index: number): FabricMaterial {
     return (this.materials[index] ??= new FabricMaterial(this.decode, this.stage));

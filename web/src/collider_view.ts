@@ -1,8 +1,8 @@
 // Spheres and planes of the scene, and the studio floor where a scene has none. They follow simulated time.
 import {
-  CircleGeometry, Color, DoubleSide, Group, Mesh, MeshBasicMaterial, MeshLambertMaterial, Quaternion, ShaderMaterial, SphereGeometry, Vector3, type IUniform,
+  CircleGeometry, Color, DoubleSide, Group, Mesh, MeshLambertMaterial, Quaternion, ShaderMaterial, SphereGeometry, Vector3, type IUniform,
 } from "three";
-import type { StageUniforms } from "./fabric_material";
+import { casterMaterial, type StageUniforms } from "./fabric_material";
 import { moved } from "./motion";
 import type { Collider, SceneDocument } from "./scene_types";
 import { groundFragment, groundVertex, porcelain } from "./shaders";
@@ -42,7 +42,8 @@ export class ColliderView {
   private readonly disc = new CircleGeometry(1, 64);
   private readonly sphereMaterial;
   private readonly planeMaterial;
-  private readonly casterMaterial = new MeshBasicMaterial({ depthTest: false, toneMapped: false });
+  private readonly casterMaterial = casterMaterial();
+  private readonly depthMaterial = casterMaterial();
   private readonly studio: Mesh;
   private readonly radius = { value: 1 };
   private shown: Shown[] = [];
@@ -93,11 +94,15 @@ export class ColliderView {
     this.studio.position.y = Math.min(this.lowest, clothBottom - 0.01);
   }
 
+  /// A mesh drawn like every sphere, to compile its program before there is one.
+  sample(): Mesh { return new Mesh(this.sphere, this.sphereMaterial); }
+
   private meshOf(collider: Collider): Mesh | null {
     if (collider.sphere) {
       const mesh = new Mesh(this.sphere, this.sphereMaterial);
       mesh.scale.setScalar(collider.sphere.radius);
       mesh.castShadow = mesh.receiveShadow = true;
+      mesh.customDepthMaterial = this.depthMaterial;
       return mesh;
     }
     if (!collider.plane) return null;

@@ -113,6 +113,12 @@ export class Connection {
     this.rpc.request("ping", { t: sent }).then(() => this.events.latency(performance.now() - sent), () => undefined);
   }
 
+  /// For good: nothing reconnects it.
+  close(): void {
+    clearTimeout(this.retryTimer);
+    this.abandon();
+  }
+
   private abandon(): void {
     if (!this.socket) return;
     this.socket.onopen = this.socket.onmessage = this.socket.onclose = null;

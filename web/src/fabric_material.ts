@@ -1,5 +1,5 @@
 // The cloth's materials: three.js' Lambert shading with vertices decoded from q16 words, woven colour and sheen.
-import { Color, DoubleSide, MeshDepthMaterial, MeshLambertMaterial, ShaderMaterial, Vector2, Vector3, type IUniform, type Vector4 } from "three";
+import { Color, DoubleSide, MeshLambertMaterial, ShaderMaterial, Vector2, Vector3, type IUniform, type Vector4 } from "three";
 import {
   casterFragment, decodeParameters, fabricFragmentParameters, fabricShadowNormal, fabricSheen, fabricVertexParameters,
 } from "./shaders";
@@ -56,23 +56,19 @@ export class FabricMaterial extends MeshLambertMaterial {
   }
 }
 
-/// What the shadow pass draws the cloth with.
-export function clothDepthMaterial(decode: DecodeUniforms): MeshDepthMaterial {
-  const material = new MeshDepthMaterial({ side: DoubleSide });
-  material.onBeforeCompile = (shader) => {
-    Object.assign(shader.uniforms, decode);
-    shader.vertexShader = shader.vertexShader
-      .replace("#include <common>", `#include <common>\n${decodeParameters}`)
-      .replace("#include <begin_vertex>", "vec3 transformed = decodePosition();");
-  };
-  return material;
-}
-
-/// What the ground's shadow mask draws the cloth with.
+/// What draws the cloth where only its outline or its depth counts: both kinds of shadow.
 export function clothCasterMaterial(decode: DecodeUniforms): ShaderMaterial {
   return new ShaderMaterial({
-    uniforms: decode, side: DoubleSide, depthTest: false,
+    uniforms: decode, side: DoubleSide,
     vertexShader: `${decodeParameters}\nvoid main() { gl_Position = projectionMatrix * viewMatrix * vec4(decodePosition(), 1.0); }`,
+    fragmentShader: casterFragment,
+  });
+}
+
+/// The same for a mesh of three.js.
+export function casterMaterial(): ShaderMaterial {
+  return new ShaderMaterial({
+    vertexShader: "void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }",
     fragmentShader: casterFragment,
   });
 }

@@ -1,6 +1,7 @@
 // Notices: what went wrong or changed, in words, with the remedy as a button where there is one.
 import { element } from "./dom";
 import { RpcError } from "./rpc";
+import type { Patch } from "./scene_types";
 
 export type Level = "info" | "warning" | "error";
 export interface Action { label: string; run(): void }
@@ -63,3 +64,30 @@ export function noticeError(title: string, error: Error): void {
 }
 
 const asText = (value: unknown): string => (typeof value === "string" ? value : JSON.stringify(value));
+
+/// `sim.diverged` of contract.md.
+export interface Diverged { reason: string; remedy?: { text: string; patch?: Patch } }
+
+/// Says why the simulation blew up, with its remedy as a button.
+export function showDiverged({ reason, remedy }: Diverged, apply: (patch: Patch) => Promise<void>): void {
+  const patch = remedy?.patch;
+  const run = (fix: Patch): void => void apply(fix).catch((error: Error) => noticeError("The remedy was refused", error));
+  notice("error", {
+    title: "The simulation blew up", lines: [reason, ...(remedy ? [`Remedy: ${remedy.text}.`] : [])], stays: true,
+    action: patch ? { label: "Apply the remedy", run: () => run(patch) } : undefined,
+  });
+}
+
+const depths: Record<string, string> = {
+  none: "nothing to change", uniform: "applied live", kernel: "applied live, kernel rebuilt", cloth: "cloth rebuilt, time reset",
+};
+let appliedTimer = 0;
+
+/// How deep an edit cut, in a line at the foot of the panel.
+export function showApplied(depth: string): void {
+  const place = element("applied", HTMLElement);
+  place.textContent = depths[depth] ?? `applied (${depth})`;
+  place.classList.add("shown");
+  clearTimeout(appliedTimer);
+  appliedTimer = window.setTimeout(() => place.classList.remove("shown"), 1600);
+}

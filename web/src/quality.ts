@@ -27,8 +27,8 @@ export class Quality {
 
   /// One continuous frame took `milliseconds` since the last one.
   sample(milliseconds: number): void {
-    if (milliseconds > 400) return;  // a pause, not a slow frame
-    this.average += 0.1 * (milliseconds - this.average);
+    if (milliseconds > 1500) return;  // a pause, not a slow frame
+    this.average += 0.1 * (Math.min(milliseconds, 200) - this.average);
     this.calm = this.average < fastEnough ? this.calm + 1 : 0;
     if (++this.samples < patience) return;
     if (this.average > tooSlow && this.index < levels.length - 1) {

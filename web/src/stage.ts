@@ -12,6 +12,7 @@ import { Quality } from "./quality";
 import type { SceneDocument } from "./scene_types";
 
 const stillAfter = 300;  // [ms] without a change: a picture at rest is worth its full resolution
+const explodedAt = 12;     // times the scene's radius
 const lightFrom = new Vector3(0.55, 1, 0.62).normalize();
 
 /// The name of what draws, or null without WebGL 2.
@@ -46,6 +47,7 @@ export class Stage {
   private lastDrawn = 0;
   private scale = 1;  // of the picture on screen: one at rest is sharp, whatever the quality level
   private lastTime = 0;
+  private radius = 1;  // of the scene [m]
 
   constructor(private readonly canvas: HTMLCanvasElement, software: boolean) {
     this.renderer = new WebGLRenderer({ canvas, antialias: !software, alpha: true, powerPreference: "high-performance" });
@@ -70,6 +72,7 @@ export class Stage {
     this.controls.addEventListener("change", () => this.invalidate());
     this.controls.addEventListener("start", () => { this.framed = false; });
     this.quality = new Quality(() => this.resize(this.area), software ? 1 : 0);
+    this.compileAhead();
   }
 
   get context(): WebGL2RenderingContext { return this.renderer.getContext() as WebGL2RenderingContext; }
@@ -78,7 +81,7 @@ export class Stage {
 
   setDocument(document: SceneDocument, newScene: boolean): void {
     const box = sceneBox(document);
-    const radius = box.getSize(new Vector3()).length() / 2;
+    const radius = this.radius = box.getSize(new Vector3()).length() / 2;
     this.cloth.setDocument(document);
     this.colliders.setDocument(document, radius);
     this.colliders.update(this.lastTime, this.cloth.box.isEmpty() ? 0 : this.cloth.box.min.y);
@@ -90,6 +93,8 @@ export class Stage {
   setTopology(topology: Topology): void { this.cloth.setTopology(topology); }
 
   show(frame: Frame): boolean {
+    // A cloth that has blown up would fill the window many times over: its last sane shape stays.
+    if (Math.max(...frame.header.boxExtent) > explodedAt * this.radius) return true;
     if (!this.cloth.show(frame)) return false;
     this.lastTime = frame.header.time;
     this.colliders.update(frame.header.time, this.cloth.box.min.y);
@@ -147,6 +152,14 @@ export class Stage {
     this.groundShadow.draw();
     this.renderer.render(this.scene, this.camera);
     return true;
+  }
+
+  // The driver compiles while the connection is made: the first frame need not wait for it.
+  private compileAhead(): void {
+    const samples = [this.cloth.sample(), this.colliders.sample()];
+    this.scene.add(...samples);
+    this.renderer.compile(this.scene, this.camera);
+    this.scene.remove(...samples);
   }
 
   // Also the size of the drawing buffer: three.js keeps the size in CSS pixels.

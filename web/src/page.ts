@@ -1,0 +1,179 @@
+// Wires the connection, the scene's document, the stage and the controls to each other.
+import { Connection, type LinkEvents } from "./connection";
+import { button, element } from "./dom";
+import { Hud, type Status } from "./hud";
+import { bindKeys } from "./keys";
+import { Layout } from "./layout";
+import { LinkView } from "./link_view";
+import { notice, noticeError, showApplied, showDiverged, type Diverged, type Level } from "./notices";
+import { Panel } from "./panel";
+import type { Frame } from "./protocol";
+import { RpcError } from "./rpc";
+import { SceneStore } from "./scene_store";
+import type { Patch, SceneDocument } from "./scene_types";
+import type { Stage } from "./stage";
+import { hook } from "./test_hook";
+import { ThemeSwitch } from "./theme";
+import { Transport } from "./transport";
+
+type Params = Record<string, unknown>;
+
+export class Page {
+  private stage!: Stage;  // given by show(), before any event of the connection can arrive
+  private readonly hud = new Hud();
+  private readonly connection = new Connection(new URLSearchParams(location.search).get("session") ?? "main", this.linkEvents());
+  private readonly link = new LinkView(this.connection);
+  private readonly transport = new Transport({ request: (method, params) => this.request(method, params) });
+  private readonly store = this.makeStore();
+  private readonly panel = this.makePanel();
+  private readonly notifications = this.makeNotifications();
+  private latest: Frame | null = null;
+  private sceneName = "";
+  private mayEdit = true;  // a viewer's role may only watch
+
+  constructor() { this.connection.connect(); }
+
+  /// Draws on this stage from now on.
+  show(stage: Stage): void {
+    this.stage = hook.stage = stage;
+    const layout = new Layout(() => stage.resize(layout.freeArea()));
+    const theme = new ThemeSwitch(() => stage.setTheme());
+    this.bind(layout, theme);
+    stage.resize(layout.freeArea());
+    setInterval(() => this.hud.tick(this.connection.bytesReceived), 1000);
+    const animate = (): void => {
+      requestAnimationFrame(animate);
+      this.animate();
+    };
+    requestAnimationFrame(animate);
+  }
+
+  close(): void { this.connection.close(); }
+
+  private bind(layout: Layout, theme: ThemeSwitch): void {
+    const fit = (): void => { if (this.store.document) this.stage.fit(this.store.document); };
+    const help = element("help-dialog", HTMLDialogElement);
+    bindKeys({
+      toggle: () => this.transport.toggle(), step: () => this.transport.step(), reset: () => this.transport.reset(),
+      fit, hide: () => layout.toggleInterface(), help: () => help.showModal(),
+    });
+    button("fit").onclick = fit;
+    button("help").onclick = () => help.showModal();
+    button("theme").onclick = () => theme.toggle();
+  }
+
+  private animate(): void {
+    const frame = this.latest;
+    this.latest = null;
+    const shown = frame !== null && this.stage.show(frame);
+    this.stage.draw();
+    if (!frame) return;
+    this.connection.acknowledge(frame.header.sequence);
+    if (!shown) return;
+    this.hud.countDrawn();
+    this.hud.setTime(frame.header.time);
+    this.hud.set("vertices", String(frame.header.vertexCount));
+    this.link.drawing();
+    hook.framesDrawn++;
+    hook.lastFrame = frame;
+    hook.simTime = frame.header.time;
+    hook.step = frame.header.step;
+    hook.firstFrameAt ||= performance.now();
+  }
+
+  private linkEvents(): LinkEvents {
+    return {
+      state: (state, retryIn, why) => {
+        this.link.show(state, retryIn, why);
+        this.transport.enable(state === "open" && this.mayEdit);
+        if (state !== "open") this.store.forget();
+        else if (!this.store.document) void this.fetchScene();
+      },
+      notification: (method, params) => this.notifications[method]?.(params),
+      topology: (topology) => this.stage.setTopology(topology),
+      frame: (frame) => {
+        hook.framesReceived++;
+        this.hud.countReceived();
+        const replaced = this.latest;  // before it was drawn
+        if (replaced && !document.hidden) this.connection.acknowledge(replaced.header.sequence);
+        this.latest = frame;
+      },
+      latency: (milliseconds) => this.hud.set("latency", `${milliseconds.toFixed(milliseconds < 10 ? 1 : 0)} ms`),
+      problem: (error) => noticeError("The server sent something unexpected", error),
+    };
+  }
+
+  private makeStore(): SceneStore {
+    return new SceneStore({
+      send: (patch) => this.connection.request("scene.patch", { patch }),
+      fetch: () => this.fetchScene(),
+      changed: (document, whole) => this.sceneChanged(document, whole),
+      applied: showApplied,
+      rejected: (error) => {
+        if (error instanceof RpcError) noticeError("Not applied", error);
+        this.panel.snapBack();
+      },
+    });
+  }
+
+  private makePanel(): Panel {
+    return new Panel(element("panel-body", HTMLElement), {
+      edit: (operations) => this.store.edit(operations),
+      busy: (path) => this.store.busy(path),
+      loadPreset: (name) => {
+        this.sceneName = "";
+        this.request("scene.load", { preset: name });
+      },
+    });
+  }
+
+  private makeNotifications(): Record<string, (params: Params) => void> {
+    return {
+      hello: (params) => this.greeted(params),
+      scene: (params) => this.store.replace(params.document as SceneDocument, Number(params.revision)),
+      "scene.changed": (params) => this.store.patched(Number(params.revision), params.patch as Patch),
+      "sim.status": (params) => {
+        this.hud.showStatus(params as Status);
+        this.transport.status(params as Status);
+      },
+      "sim.diverged": (params) => showDiverged(params as unknown as Diverged, (patch) => this.remedy(patch)),
+      viewers: (params) => this.hud.set("viewers", String(params.count)),
+      notice: (params) => notice(params.level as Level, { title: String(params.text) }),
+    };
+  }
+
+  private greeted(params: Params): void {
+    this.hud.setRenderer(String(params.renderer));
+    this.mayEdit = params.role !== "viewer";
+    document.body.classList.toggle("viewer", !this.mayEdit);
+    this.transport.enable(this.connection.open && this.mayEdit);
+    this.connection.request<{ presets: string[] }>("scene.presets").then(({ presets }) => this.panel.setPresets(presets), () => undefined);
+  }
+
+  private sceneChanged(document: SceneDocument, whole: boolean): void {
+    hook.document = document;
+    const newScene = whole && document.name !== this.sceneName;
+    this.sceneName = document.name;
+    element("scene-name", HTMLElement).textContent = document.name;
+    this.stage.setDocument(document, newScene);
+    this.panel.show(document);
+  }
+
+  private async fetchScene(): Promise<void> {
+    const answer = await this.connection.request<{ document: SceneDocument; revision: number }>("scene.get").catch(() => null);
+    if (answer) this.store.replace(answer.document, answer.revision);
+  }
+
+  private async remedy(patch: Patch): Promise<void> {
+    await this.connection.request("scene.patch", { patch });
+    await this.connection.request("sim.reset");
+    await this.connection.request("sim.play");
+  }
+
+  // A request lost with its connection needs no notice: the banner tells.
+  private request(method: string, params: Params = {}): void {
+    this.connection.request(method, params).catch((error: Error) => {
+      if (error instanceof RpcError) noticeError("The server refused this", error);
+    });
+  }
+}
