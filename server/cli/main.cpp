@@ -25,6 +25,7 @@ void describe(CLI::App& app, int& exit_code) {
   app.require_subcommand(0, 1);
   app.footer(examples);
   // One line a subcommand, in the order the help shows them.
+  add_serve(app, exit_code);
   add_run(app, exit_code);
   add_render(app, exit_code);
   add_validate(app, exit_code);

@@ -1,0 +1,139 @@
+#include "server/net/callbacks.h"
+
+#include <libwebsockets.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
+#include <new>
+
+#include "server/net/client.h"
+#include "server/net/http.h"
+#include "server/net/log.h"
+#include "server/net/request_headers.h"
+#include "server/net/server.h"
+
+namespace clothlab::net {
+
+namespace {
+
+// What libwebsockets keeps for each connection (zeroed by it): who handles the connection.
+struct HttpSlot {
+  HttpRequest* request;
+};
+struct ClientSlot {
+  Client* client;
+};
+
+Server& server_of(lws* wsi) {
+  return *static_cast<Server*>(lws_context_user(lws_get_context(wsi)));
+}
+
+int finish_http(HttpSlot& slot, lws* wsi, int result) {
+  if (result == 0) return 0;
+  delete slot.request;
+  slot.request = nullptr;
+  if (result < 0) return -1;
+  return lws_http_transaction_completed(wsi) ? -1 : 0;
+}
+
+int on_http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size) {
+  auto* slot = static_cast<HttpSlot*>(user);
+  switch (reason) {
+    case LWS_CALLBACK_HTTP:
+      delete slot->request;
+      slot->request = new HttpRequest(server_of(wsi).hub(), server_of(wsi).files(), wsi);
+      slot->request->begin(std::string(static_cast<const char*>(in), size));
+      return 0;
+    case LWS_CALLBACK_HTTP_WRITEABLE:
+      return slot->request ? finish_http(*slot, wsi, slot->request->writeable()) : 0;
+    case LWS_CALLBACK_CLOSED_HTTP:
+      if (slot) finish_http(*slot, wsi, -1);
+      return 0;
+    case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
+      // libwebsockets would answer h2c too.
+      return std::string_view(static_cast<const char*>(in)) == "websocket" ? 0 : -1;
+    case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
+      return -1;  // a WebSocket that asks for this protocol by name
+    case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
+      server_of(wsi).hub().pump();
+      return 0;
+    default:
+      return 0;
+  }
+}
+
+int refuse(lws* wsi, unsigned status, const char* why) {
+  ++server_of(wsi).hub().metrics().refused;
+  lws_return_http_status(wsi, status, why);
+  return -1;
+}
+
+int on_handshake(lws* wsi) {
+  if (header(wsi, WSI_TOKEN_PROTOCOL).empty())
+    return refuse(wsi, HTTP_STATUS_BAD_REQUEST, "ask for the subprotocol clothlab.v1");
+  const char* why = "";
+  const unsigned status = server_of(wsi).refusal(wsi, why);
+  return status == 0 ? 0 : refuse(wsi, status, why);
+}
+
+/// What the kernel has not sent can no longer be replaced by something newer: keep that little.
+void set_socket_options(lws* wsi) {
+  const int socket = lws_get_socket_fd(wsi);
+  const int unsent = unsent_kernel_bytes, yes = 1;
+  setsockopt(socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &unsent, sizeof unsent);
+  setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+}
+
+int on_client(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size) {
+  auto* slot = static_cast<ClientSlot*>(user);
+  switch (reason) {
+    case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
+      return on_handshake(wsi);
+    case LWS_CALLBACK_ESTABLISHED:
+      set_socket_options(wsi);
+      slot->client = new Client(server_of(wsi).hub(), wsi, query(wsi, "session", main_session));
+      return 0;
+    case LWS_CALLBACK_RECEIVE:
+      return slot->client ? slot->client->receive(static_cast<const char*>(in), size) : -1;
+    case LWS_CALLBACK_SERVER_WRITEABLE:
+      return slot->client ? slot->client->writeable() : -1;
+    case LWS_CALLBACK_WS_PEER_INITIATED_CLOSE:
+      return slot->client && slot->client->close_said() ? -1 : 0;
+    case LWS_CALLBACK_TIMER:
+      if (slot && slot->client) slot->client->timer();
+      return 0;
+    case LWS_CALLBACK_CLOSED:
+      delete slot->client;
+      slot->client = nullptr;
+      return 0;
+    default:
+      return 0;
+  }
+}
+
+// Exceptions must not cross libwebsockets: a connection that meets one is closed.
+template <int (*handler)(lws*, lws_callback_reasons, void*, void*, std::size_t)>
+int guarded(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size) {
+  try {
+    return handler(wsi, reason, user, in, size);
+  } catch (const std::exception& error) {
+    log(std::string("a connection is closed: ") + error.what());
+    return -1;
+  }
+}
+
+}  // namespace
+
+const lws_protocols* protocols() {
+  // A frame leaves in one piece, not in slices of the receive buffer's size.
+  constexpr std::size_t receive_bytes = max_message_bytes, send_bytes = 8 * 1024 * 1024;
+  static const lws_protocols list[] = {
+      {"http", guarded<on_http>, sizeof(HttpSlot), 4096, 0, nullptr, send_bytes},
+      {subprotocol, guarded<on_client>, sizeof(ClientSlot), receive_bytes, 0, nullptr, send_bytes},
+      {nullptr, nullptr, 0, 0, 0, nullptr, 0},
+  };
+  return list;
+}
+
+}  // namespace clothlab::net

@@ -1,0 +1,219 @@
+#include "server/net/client.h"
+
+#include <libwebsockets.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "server/net/methods.h"
+
+namespace clothlab::net {
+
+Client::Client(Hub& hub, lws* wsi, std::string session)
+    : hub_(hub),
+      wsi_(wsi),
+      id_(hub.next_id()),
+      session_(std::move(session)),
+      role_(hub.role_of("")),
+      messages_(messages_per_second, message_burst, now_us()) {
+  hub_.add(*this);
+  if (role_ != Role::none)
+    enter_room();
+  else
+    lws_set_timer_usecs(wsi_, lws_usec_t{auth_seconds} * LWS_USEC_PER_SEC);
+}
+
+Client::~Client() {
+  leave_room();
+  hub_.remove(*this);
+}
+
+bool Client::enter_room() {
+  room_ = hub_.open_room(session_);
+  if (!room_) {
+    close(close_policy, "too many sessions");
+    return false;
+  }
+  room_->enter(*this);
+  return true;
+}
+
+void Client::leave_room() {
+  pacing_.unsubscribe();
+  if (Room* room = room_) {
+    room_ = nullptr;
+    room->leave(*this);
+  }
+}
+
+bool Client::admit(Role role) {
+  if (role_ == Role::none) lws_set_timer_usecs(wsi_, LWS_SET_TIMER_USEC_CANCEL);
+  role_ = role;
+  return room_ || enter_room();
+}
+
+void Client::timer() {
+  if (role_ == Role::none) close(close_policy, "no token came in time");
+  wake();
+}
+
+int Client::receive(const char* data, std::size_t size) {
+  if (close_code_ != 0) return 0;  // whatever it says, it is on its way out
+  if (lws_is_first_fragment(wsi_)) {
+    incoming_.clear();
+    incoming_text_ = !lws_frame_is_binary(wsi_);
+  }
+  if (incoming_.size() + size + lws_remaining_packet_payload(wsi_) > max_message_bytes) {
+    close(close_too_big, "a message may have 64 KiB");
+    return 0;
+  }
+  incoming_.append(data, size);
+  if (!lws_is_final_fragment(wsi_) || lws_remaining_packet_payload(wsi_) > 0) return 0;
+  ++hub_.metrics().messages_received;
+  if (!messages_.take(now_us()))
+    close(close_policy, "too many messages");
+  else if (incoming_text_)
+    handle(incoming_);
+  else
+    send(error_text(nullptr, {error_invalid_request, "only text messages are understood", nullptr}));
+  return 0;
+}
+
+void Client::handle(const std::string& text) {
+  std::variant<Request, BadRequest> parsed = parse_request(text);
+  if (const auto* bad = std::get_if<BadRequest>(&parsed)) return send(error_text(bad->id, bad->error));
+  const auto& request = std::get<Request>(parsed);
+  const Outcome outcome = call(*this, request);
+  if (!request.id) return;
+  if (const json* result = std::get_if<json>(&outcome)) send(result_text(*request.id, *result));
+  if (const auto* error = std::get_if<RpcError>(&outcome)) send(error_text(*request.id, *error));
+}
+
+void Client::greet(const std::string& hello) {
+  outbox_.push_first(make_text(hello));
+  greeted_ = true;
+  wake();
+}
+
+void Client::send(SharedText text) {
+  if (!outbox_.push(std::move(text))) close(close_policy, "messages are not being read");
+  wake();
+}
+
+void Client::send_status(SharedText text) {
+  outbox_.set_status(std::move(text));
+  wake();
+}
+
+void Client::wake() {
+  lws_callback_on_writable(wsi_);
+}
+
+void Client::close(int code, std::string reason) {
+  if (close_code_ != 0) return;
+  close_code_ = code;
+  close_reason_ = std::move(reason);
+  wake();
+  // A client that reads nothing never becomes writeable.
+  lws_set_timeout(wsi_, PENDING_TIMEOUT_CLOSE_SEND, 2);
+}
+
+void Client::subscribe(stream::Encoding encoding, double rate, int in_flight) {
+  if (!pacing_.subscribed()) topology_sent_ = false;
+  pacing_.subscribe(encoding, rate, in_flight, now_us());
+  room_->demand_changed(encoding);
+  wake();
+}
+
+void Client::unsubscribe() {
+  pacing_.unsubscribe();
+  room_->demand_changed(std::nullopt);
+}
+
+void Client::acknowledge(std::uint32_t sequence) {
+  const std::int64_t now = now_us();
+  pacing_.acknowledge(sequence, now);
+  schedule_frame(now);
+}
+
+void Client::frame_arrived(stream::Encoding encoding, std::int64_t now) {
+  if (!pacing_.subscribed() || pacing_.encoding() != encoding) return;
+  if (frame_waits_) ++hub_.metrics().frames_skipped;
+  frame_waits_ = true;
+  schedule_frame(now);
+}
+
+void Client::schedule_frame(std::int64_t now) {
+  const std::optional<std::int64_t> wait = pacing_.wait(now);
+  if (!wait || role_ == Role::none) return;
+  if (*wait == 0)
+    wake();
+  else
+    lws_set_timer_usecs(wsi_, *wait);
+}
+
+/// Before hello, only who may not enter is answered.
+bool Client::may_speak() const {
+  return greeted_ || role_ == Role::none || !room_;
+}
+
+int Client::writeable() {
+  if (close_code_ != 0) return say_close();
+  if (!may_speak()) return 0;
+  return send_next();
+}
+
+// lws_close_reason would close the socket with the client's messages unread; the kernel would then reset it,
+// and the client would never learn why. So the close frame is written here, and what still comes is read and
+// dropped until the client has answered, or for 2 s.
+int Client::say_close() {
+  if (std::exchange(close_said_, true)) return 0;
+  constexpr std::size_t longest = 123;  // of a control frame's reason (RFC 6455, 5.5)
+  const std::string reason = close_reason_.substr(0, longest);
+  std::string frame{'\x88', static_cast<char>(reason.size() + 2), static_cast<char>(close_code_ >> 8),
+                    static_cast<char>(close_code_ & 0xFF)};
+  const Text text(frame + reason);
+  lws_set_timeout(wsi_, PENDING_TIMEOUT_CLOSE_SEND, 2);
+  return lws_write(wsi_, text.data(), text.size(), LWS_WRITE_RAW) < 0 ? -1 : 0;
+}
+
+// One message a call, as libwebsockets wants it: control first, then the topology, then the latest frame.
+int Client::send_next() {
+  if (const SharedText text = outbox_.pop()) {
+    wake();
+    return write(text->data(), text->size(), true);
+  }
+  if (!room_ || !pacing_.subscribed()) return 0;
+  const stream::SharedMessage& topology = room_->topology();
+  if (topology && (!topology_sent_ || topology_revision_ != topology->header.topology_revision)) {
+    topology_sent_ = true;
+    topology_revision_ = topology->header.topology_revision;
+    wake();
+    return write(const_cast<unsigned char*>(topology->data()), topology->size(), false);
+  }
+  const stream::SharedMessage frame = room_->frame(pacing_.encoding());
+  if (!frame || !pacing_.is_news(frame->header.sequence)) return 0;
+  const std::optional<std::int64_t> wait = pacing_.wait(now_us());
+  if (wait && *wait == 0) return send_frame(frame);
+  if (wait) lws_set_timer_usecs(wsi_, *wait);
+  return 0;
+}
+
+int Client::send_frame(const stream::SharedMessage& frame) {
+  const std::int64_t held_until = pacing_.ready_since(now_us());
+  // libwebsockets writes its header into the room in front, the same bytes for every viewer.
+  const int result = write(const_cast<unsigned char*>(frame->data()), frame->size(), false);
+  const std::int64_t now = now_us();
+  pacing_.sent(frame->header.sequence, now);
+  frame_waits_ = false;
+  ++hub_.metrics().frames_sent;
+  hub_.metrics().latency.add(now - std::max(frame->made_at_us, held_until));
+  return result;
+}
+
+int Client::write(unsigned char* data, std::size_t size, bool text) {
+  hub_.metrics().bytes_sent += size;
+  return lws_write(wsi_, data, size, text ? LWS_WRITE_TEXT : LWS_WRITE_BINARY) < 0 ? -1 : 0;
+}
+
+}  // namespace clothlab::net

@@ -1,0 +1,87 @@
+// One WebSocket connection: what it says, what waits to be said to it, and which frames it gets.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "server/net/hub.h"
+#include "server/net/json_rpc.h"
+#include "server/net/outbox.h"
+#include "server/net/pacing.h"
+
+struct lws;
+
+namespace clothlab::net {
+
+class Client {
+ public:
+  /// `session` is entered at once if no token is needed, else after `auth`.
+  Client(Hub& hub, lws* wsi, std::string session);
+  ~Client();
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  std::uint64_t id() const { return id_; }
+  Role role() const { return role_; }
+  Hub& hub() { return hub_; }
+  Room* room() { return room_; }
+  FramePacing& pacing() { return pacing_; }
+  const FramePacing& pacing() const { return pacing_; }
+
+  // From libwebsockets; -1 closes the connection.
+  int receive(const char* data, std::size_t size);
+  int writeable();
+  void timer();
+  /// Whether the server has said that it closes, so that the client's close is the answer to that.
+  bool close_said() const { return close_said_; }
+  /// Something is ready to be sent.
+  void wake();
+
+  /// Gives the client this role and lets it enter its session. False: there are too many sessions.
+  bool admit(Role role);
+  void subscribe(stream::Encoding encoding, double rate, int in_flight);
+  void unsubscribe();
+  void acknowledge(std::uint32_t sequence);
+  void leave_room();
+
+  // From the room.
+  void greet(const std::string& hello);  ///< goes before anything that waits
+  void send(const std::string& text) { send(make_text(text)); }
+  void send(SharedText text);
+  void send_status(SharedText text);
+  void frame_arrived(stream::Encoding encoding, std::int64_t now);
+
+  /// Closes the connection with a code of RFC 6455 as soon as it can be told.
+  void close(int code, std::string reason);
+
+ private:
+  bool enter_room();
+  void handle(const std::string& text);
+  void schedule_frame(std::int64_t now);
+  bool may_speak() const;
+  int say_close();
+  int send_next();
+  int write(unsigned char* data, std::size_t size, bool text);
+  int send_frame(const stream::SharedMessage& frame);
+
+  Hub& hub_;
+  lws* wsi_;
+  std::uint64_t id_;
+  std::string session_;
+  Role role_;
+  Room* room_ = nullptr;
+  bool greeted_ = false;
+  std::string incoming_;  ///< a message in several fragments, so far
+  bool incoming_text_ = true;
+  Outbox outbox_;
+  FramePacing pacing_;
+  TokenBucket messages_;
+  bool topology_sent_ = false;
+  std::uint32_t topology_revision_ = 0;
+  bool frame_waits_ = false;
+  int close_code_ = 0;
+  bool close_said_ = false;
+  std::string close_reason_;
+};
+
+}  // namespace clothlab::net

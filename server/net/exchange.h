@@ -1,0 +1,161 @@
+// All that passes between a session's thread and the service thread: commands in; events, a status and the
+// latest frame of each encoding out. Its locks are held only to move a pointer or swap a vector.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "server/net/json_rpc.h"
+#include "server/sim/simulation.h"
+#include "server/stream/frame.h"
+
+namespace clothlab::net {
+
+using Clock = std::chrono::steady_clock;
+using stream::encoding_count;
+
+/// Who asked, and the request's id (none: a notification, or the server itself). 0 is nobody.
+struct Ticket {
+  std::uint64_t asker = 0;
+  std::optional<json> id;
+};
+
+// Commands to a session.
+struct GetScene {};
+struct LoadScene {
+  std::string preset;  ///< or, where empty:
+  json document;
+};
+struct PatchScene {
+  json patch;
+  std::optional<std::uint64_t> revision;  ///< the one the patch was made for
+};
+struct Play {};
+struct Pause {};
+struct Step {
+  std::uint64_t steps = 1;
+};
+struct Reset {};
+struct Speed {
+  double factor = 1;
+};
+/// What viewers want: the highest rate of each encoding, and which are wanted at once, even while nothing
+/// moves.
+struct Demand {
+  std::array<double, encoding_count> rate{};  ///< [1/s], 0: nobody
+  std::array<bool, encoding_count> fresh{};
+};
+struct Watchers {
+  int count = 0;
+};
+/// A picture (width > 0) or a mesh for the HTTP API; `Ticket::asker` is the HTTP request.
+struct Export {
+  int width = 0, height = 0;  ///< [pixels]
+};
+struct Command {
+  Ticket ticket;
+  std::variant<GetScene, LoadScene, PatchScene, Play, Pause, Step, Reset, Speed, Demand, Watchers, Export>
+      what;
+};
+
+// Events from a session.
+struct Started {
+  std::string renderer;
+};
+struct Failed {
+  Error error;
+  bool no_opengl = false;  ///< before anything of the scene was tried
+};
+struct Reply {
+  Ticket ticket;
+  std::variant<json, RpcError> answer;
+};
+/// The document has changed: by `patch`, or as a whole where there is none.
+struct SceneChanged {
+  std::shared_ptr<const json> document;
+  std::uint64_t revision = 0;
+  std::optional<json> patch;
+  std::uint64_t by = 0;
+};
+struct TopologyChanged {
+  stream::SharedMessage message;
+};
+struct PassesChanged {
+  std::vector<sim::Simulation::Pass> passes;
+};
+struct Diverged {
+  std::string reason;
+  std::string remedy;
+  json patch;
+};
+struct Notice {
+  const char* level = "info";  ///< info | warning | error
+  std::string text;
+};
+struct Exported {
+  std::uint64_t asker = 0;
+  const char* content_type = "";
+  Result<std::string> body;
+};
+using Event = std::variant<Started, Failed, Reply, SceneChanged, TopologyChanged, PassesChanged, Diverged,
+                           Notice, Exported>;
+
+/// What sim.status is made of; plain data, so that the session's thread allocates nothing for it.
+struct Status {
+  bool playing = false, diverged = false;
+  double speed = 1, real_time_factor = 0;
+  sim::Diagnostics diagnostics;
+};
+
+class Exchange {
+ public:
+  /// `wake` is called on the session's thread after something has been put out; it must not block.
+  explicit Exchange(std::function<void()> wake) : wake_(std::move(wake)) {}
+
+  // The service thread's side.
+  void post(Command command);
+  void stop();
+  void take_events(std::vector<Event>& out);  ///< `out` is emptied first
+  bool take_status(Status& out);              ///< false: nothing new
+  stream::SharedMessage frame(stream::Encoding encoding) const;
+  std::int64_t heartbeat_us() const { return heartbeat_us_.load(std::memory_order_relaxed); }
+  std::uint64_t steps() const { return steps_.load(std::memory_order_relaxed); }
+
+  // The session's side.
+  /// Waits for a command until `until`; false: the session is to end. `out` is emptied first.
+  bool take_commands(std::vector<Command>& out, Clock::time_point until);
+  void emit(Event event);
+  void publish(const Status& status);
+  void publish(stream::SharedMessage frame);
+  void forget_frames();  ///< what is in the mailbox no longer shows the present
+  void forget_frame(stream::Encoding encoding);
+  void beat();
+  void count_steps(std::uint64_t steps) { steps_.fetch_add(steps, std::memory_order_relaxed); }
+
+ private:
+  std::function<void()> wake_;
+  mutable std::mutex mutex_;
+  std::condition_variable commands_changed_;
+  std::vector<Command> commands_;
+  std::vector<Event> events_;
+  std::array<stream::SharedMessage, encoding_count> frames_;
+  Status status_;
+  bool status_new_ = false, stopping_ = false;
+  std::atomic<std::int64_t> heartbeat_us_{0};
+  std::atomic<std::uint64_t> steps_{0};
+};
+
+/// Steady clock now [us], as Message::made_at_us counts.
+std::int64_t now_us();
+
+}  // namespace clothlab::net

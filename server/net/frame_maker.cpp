@@ -1,0 +1,139 @@
+#include "server/net/frame_maker.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace clothlab::net {
+
+namespace {
+
+Clock::duration period(double rate) {
+  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / rate));
+}
+
+bool finite(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<FrameMaker>> FrameMaker::create(Exchange& exchange) {
+  Result<std::unique_ptr<stream::Packer>> packer = stream::Packer::create();
+  if (!packer) return packer.error();
+  return std::unique_ptr<FrameMaker>(new FrameMaker(exchange, std::move(*packer)));
+}
+
+FrameMaker::FrameMaker(Exchange& exchange, std::unique_ptr<stream::Packer> packer)
+    : exchange_(exchange), packer_(std::move(packer)) {}
+
+void FrameMaker::demand(const Demand& demand, Clock::time_point now) {
+  for (std::size_t i = 0; i < lanes_.size(); ++i) {
+    Lane& lane = lanes_[i];
+    if (lane.rate <= 0 && demand.rate[i] > 0) lane.due = now;
+    lane.rate = demand.rate[i];
+    if (demand.fresh[i]) lane.urgent = true;
+  }
+}
+
+void FrameMaker::touch_now() {
+  touch();
+  for (Lane& lane : lanes_) lane.urgent = true;
+}
+
+void FrameMaker::restart() {
+  void_until_ = arrived_ = requested_;  // they may come yet, or be dropped with their mesh
+  diverged_ = false;
+  touch_now();
+  for (Lane& lane : lanes_) {
+    lane.good.reset();
+    lane.candidate.reset();
+  }
+  exchange_.forget_frames();
+}
+
+bool FrameMaker::request(std::size_t index, const sim::Simulation& simulation) {
+  const std::uint16_t flags = diverged_ ? stream::flag_diverged : 0;
+  if (!packer_->request(simulation, static_cast<stream::Encoding>(index), flags)) return false;
+  ++requested_;
+  lanes_[index].packed_version = version_;
+  return true;
+}
+
+void FrameMaker::make_urgent(const sim::Simulation& simulation, Clock::time_point now) {
+  for (std::size_t i = 0; i < lanes_.size(); ++i) {
+    Lane& lane = lanes_[i];
+    if (!lane.urgent) continue;
+    if (lane.rate > 0 && !request(i, simulation)) continue;  // the ring is full: after the next poll
+    lane.urgent = false;
+    if (lane.rate > 0) lane.due = now + period(lane.rate);
+  }
+}
+
+void FrameMaker::make_due(const sim::Simulation& simulation, Clock::time_point now) {
+  for (std::size_t i = 0; i < lanes_.size(); ++i) {
+    Lane& lane = lanes_[i];
+    if (lane.rate <= 0 || now < lane.due || lane.packed_version == version_) continue;
+    if (!request(i, simulation)) continue;
+    // On the beat of the clock; after a gap the beat starts anew.
+    lane.due = std::max(lane.due + period(lane.rate), now);
+  }
+}
+
+void FrameMaker::poll() {
+  while (stream::SharedMessage frame = packer_->poll()) {
+    if (frame->header.sequence <= void_until_) continue;
+    arrived_ = frame->header.sequence;
+    publish(std::move(frame));
+  }
+}
+
+void FrameMaker::publish(stream::SharedMessage frame) {
+  if (diverged_) {
+    frame = last_good(*frame);
+  } else if (!finite(frame->header.box_minimum) || !finite(frame->header.box_extent)) {
+    frame.reset();
+  } else {
+    Lane& lane = lanes_[static_cast<std::size_t>(frame->header.encoding)];
+    if (frame->header.step == 0)
+      lane.good = frame;  // the rest shape of a valid scene
+    else if (!lane.candidate)
+      lane.candidate = frame;
+  }
+  if (frame) exchange_.publish(std::move(frame));
+}
+
+stream::SharedMessage FrameMaker::last_good(const stream::Message& instead) const {
+  const stream::SharedMessage& good = lanes_[static_cast<std::size_t>(instead.header.encoding)].good;
+  if (!good) return nullptr;
+  auto copy = std::make_shared<stream::Message>(*good);
+  copy->header.flags |= stream::flag_diverged;
+  copy->header.sequence = instead.header.sequence;
+  copy->made_at_us = instead.made_at_us;
+  stream::write_header(copy->header, copy->bytes.data() + stream::front_room);
+  return copy;
+}
+
+void FrameMaker::confirm(std::uint64_t step) {
+  for (Lane& lane : lanes_)
+    if (lane.candidate && lane.candidate->header.step <= step) lane.good = std::move(lane.candidate);
+}
+
+void FrameMaker::diverge() {
+  diverged_ = true;
+  for (Lane& lane : lanes_) lane.candidate.reset();
+  touch_now();
+}
+
+bool FrameMaker::urgent() const {
+  return std::any_of(lanes_.begin(), lanes_.end(),
+                     [](const Lane& lane) { return lane.urgent && lane.rate > 0; });
+}
+
+Clock::time_point FrameMaker::next_due() const {
+  Clock::time_point next = Clock::time_point::max();
+  for (const Lane& lane : lanes_)
+    if (lane.rate > 0) next = std::min(next, lane.due);
+  return next;
+}
+
+}  // namespace clothlab::net

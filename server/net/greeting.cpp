@@ -1,0 +1,33 @@
+#include "server/net/greeting.h"
+
+#include "server/net/client.h"
+#include "server/net/hub.h"
+#include "server/net/limits.h"
+#include "server/net/methods.h"
+
+namespace clothlab::net {
+
+nlohmann::json hello_params(const Hub& hub, const Room& room, const Client& client) {
+  return {{"server", "clothlab"},
+          {"version", CLOTHLAB_VERSION},
+          {"session", room.name()},
+          {"role", name(client.role())},
+          {"client", client.id()},  // the `by` of this client's edits
+          {"renderer", room.renderer()},
+          {"methods", {"symplectic_euler"}},
+          {"requests", method_names()},
+          {"encodings", {"f32", "q16"}},
+          {"limits",
+           {{"message_bytes", max_message_bytes},
+            {"json_depth", scene::max_json_depth},
+            {"messages_per_second", messages_per_second},
+            {"message_burst", message_burst},
+            {"sessions", hub.options().max_sessions},
+            {"clients", hub.options().max_clients},
+            {"rate", max_rate},
+            {"in_flight", max_in_flight},
+            {"steps", max_steps},
+            {"speed", {min_speed, max_speed}}}}};
+}
+
+}  // namespace clothlab::net

@@ -1,0 +1,166 @@
+#include "server/net/http.h"
+
+#include <libwebsockets.h>
+
+#include <charconv>
+
+#include "server/net/hub.h"
+#include "server/net/limits.h"
+#include "server/net/request_headers.h"
+
+namespace clothlab::net {
+
+namespace {
+
+// The page runs only its own scripts; lil-gui brings its style as an element.
+constexpr const char* content_security_policy =
+    "default-src 'self'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
+    "connect-src 'self' ws: wss:; worker-src 'self' blob:; object-src 'none'; base-uri 'none'; form-action "
+    "'none'; "
+    "frame-ancestors 'self'";
+
+HttpAnswer plain(unsigned status, const std::string& text) {
+  return {status, "text/plain; charset=utf-8", text + "\n", {}};
+}
+
+/// A whole number in [1, most], or 0.
+int side(const std::string& text, int most) {
+  int value = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return failure == std::errc() && end == text.data() + text.size() && value >= 1 && value <= most ? value
+                                                                                                   : 0;
+}
+
+}  // namespace
+
+HttpRequest::HttpRequest(Hub& hub, const WebFiles& files, lws* wsi)
+    : hub_(hub), files_(files), wsi_(wsi), id_(hub.next_id()) {
+  hub_.add(id_, *this);
+}
+
+HttpRequest::~HttpRequest() {
+  hub_.remove_request(id_);
+}
+
+void HttpRequest::begin(const std::string& path) {
+  head_ = lws_hdr_total_length(wsi_, WSI_TOKEN_HEAD_URI) > 0;
+  if (!head_ && lws_hdr_total_length(wsi_, WSI_TOKEN_GET_URI) <= 0) {
+    HttpAnswer refusal =
+        plain(405, "only GET and HEAD are answered here; changes go over the WebSocket at /ws");
+    refusal.headers = {{"allow:", "GET, HEAD"}};
+    return answer(std::move(refusal));
+  }
+  if (path == "/healthz")
+    return answer(hub_.all_sessions_beat() ? plain(200, "ok")
+                                           : plain(503, "a session's thread does not answer"));
+  if (path == "/metrics")
+    return answer(
+        {200, "text/plain; version=0.0.4; charset=utf-8", metrics_text(hub_.metrics(), hub_.gauges()), {}});
+  if (path == "/ws") {
+    HttpAnswer refusal = plain(426, "connect with a WebSocket, subprotocol clothlab.v1");
+    refusal.headers = {{"upgrade:", "websocket"}};
+    return answer(std::move(refusal));
+  }
+  if (path.rfind("/api/", 0) == 0) return api(path);
+  answer(file(path));
+}
+
+HttpAnswer HttpRequest::file(const std::string& path) const {
+  const WebFile* file = files_.find(path);
+  if (!file) return plain(404, "nothing is at " + path + "; the page is at /");
+  HttpAnswer answer{200,
+                    file->type,
+                    {},
+                    {{"etag:", file->etag}, {"cache-control:", "no-cache"}, {"vary:", "accept-encoding"}}};
+  if (header(wsi_, WSI_TOKEN_HTTP_IF_NONE_MATCH).find(file->etag) != std::string::npos) {
+    answer.status = 304;
+    return answer;
+  }
+  const bool zip = !file->gzipped.empty() &&
+                   header(wsi_, WSI_TOKEN_HTTP_ACCEPT_ENCODING).find("gzip") != std::string::npos;
+  if (zip) answer.headers.emplace_back("content-encoding:", "gzip");
+  answer.body = zip ? file->gzipped : file->body;
+  return answer;
+}
+
+bool HttpRequest::authorised() const {
+  if (!hub_.needs_token()) return true;
+  const std::string given = header(wsi_, WSI_TOKEN_HTTP_AUTHORIZATION);
+  const std::string scheme = "Bearer ";
+  return given.rfind(scheme, 0) == 0 && hub_.role_of(given.substr(scheme.size())) != Role::none;
+}
+
+void HttpRequest::api(const std::string& path) {
+  if (!authorised()) {
+    HttpAnswer refusal = plain(401, "send the server's token as `Authorization: Bearer TOKEN`");
+    refusal.headers = {{"www-authenticate:", "Bearer"}};
+    return answer(std::move(refusal));
+  }
+  const std::string session = query(wsi_, "session", main_session);
+  const bool mesh = path == "/api/mesh.obj", picture = path == "/api/snapshot.png";
+  if (!mesh && !picture && path != "/api/scene")
+    return answer(plain(404, "the API has /api/scene, /api/mesh.obj and /api/snapshot.png"));
+  Room* room = hub_.find_room(session);
+  if (!room || !room->started())
+    return answer(
+        plain(404, "no such session is open; one opens when a page or script connects to /ws?session=NAME"));
+  if (path == "/api/scene") return answer({200, "application/json", room->document()->dump(2) + "\n", {}});
+  if (mesh) return ask_session(session, {});
+  const Export what{side(query(wsi_, "width", "1280"), max_snapshot_side),
+                    side(query(wsi_, "height", "720"), max_snapshot_side)};
+  if (what.width == 0 || what.height == 0)
+    return answer(
+        plain(400, "width and height are whole numbers from 1 to " + std::to_string(max_snapshot_side)));
+  ask_session(session, what);
+}
+
+void HttpRequest::ask_session(const std::string& session, Export what) {
+  constexpr int patience = 30;  // [s]
+  lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, patience);
+  hub_.find_room(session)->post({{id_, std::nullopt}, what});
+}
+
+void HttpRequest::deliver(Exported exported) {
+  if (!exported.body) return answer(plain(500, exported.body.error().text()));
+  answer({200, exported.content_type, std::move(*exported.body), {{"cache-control:", "no-store"}}});
+}
+
+void HttpRequest::answer(HttpAnswer answer) {
+  answer_ = std::move(answer);
+  answered_ = true;
+  lws_callback_on_writable(wsi_);
+}
+
+int HttpRequest::send_headers() {
+  unsigned char buffer[LWS_PRE + 4096];
+  unsigned char *at = buffer + LWS_PRE, *const start = at, *const end = buffer + sizeof buffer - 1;
+  const auto add = [&](const char* name, const std::string& value) {
+    return lws_add_http_header_by_name(wsi_, reinterpret_cast<const unsigned char*>(name),
+                                       reinterpret_cast<const unsigned char*>(value.data()),
+                                       static_cast<int>(value.size()), &at, end);
+  };
+  int failed = lws_add_http_header_status(wsi_, answer_.status, &at, end);
+  failed |= add("content-type:", answer_.type);
+  failed |= lws_add_http_header_content_length(wsi_, answer_.body.size(), &at, end);
+  failed |= add("content-security-policy:", content_security_policy);
+  failed |= add("x-content-type-options:", "nosniff");
+  failed |= add("referrer-policy:", "no-referrer");
+  for (const auto& [name, value] : answer_.headers) failed |= add(name.c_str(), value);
+  if (failed || lws_finalize_http_header(wsi_, &at, end)) return -1;
+  headers_sent_ = true;
+  const bool alone = head_ || answer_.body.empty();
+  const auto size = static_cast<std::size_t>(at - start);
+  if (lws_write(wsi_, start, size, LWS_WRITE_HTTP_HEADERS) < 0) return -1;
+  if (alone) return 1;
+  lws_callback_on_writable(wsi_);
+  return 0;
+}
+
+int HttpRequest::writeable() {
+  if (!answered_) return 0;
+  if (!headers_sent_) return send_headers();
+  auto* body = reinterpret_cast<unsigned char*>(answer_.body.data());
+  return lws_write(wsi_, body, answer_.body.size(), LWS_WRITE_HTTP_FINAL) < 0 ? -1 : 1;
+}
+
+}  // namespace clothlab::net

@@ -1,0 +1,56 @@
+// Plain HTTP: the page, /healthz, /metrics and the API. One object a request, on the service thread.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/net/exchange.h"
+#include "server/net/web_files.h"
+
+struct lws;
+
+namespace clothlab::net {
+
+class Hub;
+
+struct HttpAnswer {
+  unsigned status = 200;
+  std::string type = "text/plain; charset=utf-8";
+  std::string body;
+  std::vector<std::pair<std::string, std::string>> headers;
+};
+
+class HttpRequest {
+ public:
+  HttpRequest(Hub& hub, const WebFiles& files, lws* wsi);
+  ~HttpRequest();
+  HttpRequest(const HttpRequest&) = delete;
+  HttpRequest& operator=(const HttpRequest&) = delete;
+
+  /// Works out the answer, or asks a session for it.
+  void begin(const std::string& path);
+  /// Sends the next part; -1 closes the connection, 1: the answer is complete.
+  int writeable();
+  /// The session's answer.
+  void deliver(Exported exported);
+
+ private:
+  HttpAnswer file(const std::string& path) const;
+  void api(const std::string& path);
+  void ask_session(const std::string& session, Export what);
+  void answer(HttpAnswer answer);
+  int send_headers();
+  bool authorised() const;
+
+  Hub& hub_;
+  const WebFiles& files_;
+  lws* wsi_;
+  std::uint64_t id_;
+  bool head_ = false;
+  bool answered_ = false, headers_sent_ = false;
+  HttpAnswer answer_;
+};
+
+}  // namespace clothlab::net

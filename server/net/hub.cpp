@@ -1,0 +1,125 @@
+#include "server/net/hub.h"
+
+#include "server/net/client.h"
+#include "server/net/http.h"
+
+namespace clothlab::net {
+
+namespace {
+
+/// In a time that does not tell how much of a guess was right.
+bool same(const std::string& a, const std::string& b) {
+  unsigned difference = a.size() == b.size() ? 0 : 1;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    difference |=
+        static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b.empty() ? '\0' : b[i % b.size()]);
+  return difference == 0;
+}
+
+}  // namespace
+
+const char* name(Role role) {
+  return role == Role::operator_ ? "operator" : role == Role::viewer ? "viewer" : "none";
+}
+
+Hub::Hub(Options options, std::function<void()> wake)
+    : options_(std::move(options)), wake_(std::move(wake)) {}
+
+Hub::~Hub() {
+  stop_sessions();
+}
+
+Role Hub::role_of(const std::string& token) const {
+  if (!needs_token() || same(token, options_.token)) return Role::operator_;
+  if (!options_.view_token.empty() && same(token, options_.view_token)) return Role::viewer;
+  return Role::none;
+}
+
+Room* Hub::find_room(const std::string& name) {
+  const auto found = rooms_.find(name);
+  return found == rooms_.end() ? nullptr : found->second.get();
+}
+
+bool Hub::has_place_for(const std::string& name) {
+  return find_room(name) || rooms_.size() < static_cast<std::size_t>(options_.max_sessions) ||
+         !sleeping_room().empty();
+}
+
+Room* Hub::open_room(const std::string& name) {
+  if (Room* room = find_room(name)) return room;
+  if (!has_place_for(name)) return nullptr;
+  if (rooms_.size() >= static_cast<std::size_t>(options_.max_sessions)) retire(sleeping_room());
+  return (rooms_[name] = std::make_unique<Room>(*this, name, wake_)).get();
+}
+
+std::string Hub::sleeping_room() const {
+  std::string longest;
+  std::int64_t since = now_us() - static_cast<std::int64_t>(unwatched_seconds * 1e6);
+  for (const auto& [name, room] : rooms_) {
+    if (name == main_session || !room->empty() || room->unwatched_since() > since) continue;
+    since = room->unwatched_since();
+    longest = name;
+  }
+  return longest;
+}
+
+void Hub::retire(const std::string& name) {
+  const auto found = rooms_.find(name);
+  // Its thread may need a turn to end: not on this thread's time.
+  retiring_.push_back(std::async(
+      std::launch::async, [session = found->second->give_up_session()]() mutable { session.reset(); }));
+  rooms_.erase(found);
+}
+
+void Hub::add(Client& client) {
+  clients_[client.id()] = &client;
+}
+void Hub::remove(Client& client) {
+  clients_.erase(client.id());
+}
+
+Client* Hub::find_client(std::uint64_t id) {
+  const auto found = clients_.find(id);
+  return found == clients_.end() ? nullptr : found->second;
+}
+
+void Hub::close_all(int code, const std::string& reason) {
+  for (const auto& [id, client] : clients_) client->close(code, reason);
+}
+
+void Hub::deliver(Exported exported) {
+  const auto found = waiting_.find(exported.asker);
+  if (found != waiting_.end()) found->second->deliver(std::move(exported));
+}
+
+void Hub::pump() {
+  std::vector<std::string> failed;
+  for (const auto& [name, room] : rooms_) {
+    room->pump();
+    if (!room->failure()) continue;
+    if (name == main_session && !main_failure_) main_failure_ = room->failure();
+    failed.push_back(name);
+  }
+  for (const std::string& name : failed) retire(name);
+}
+
+void Hub::stop_sessions() {
+  for (const auto& [name, room] : rooms_) room->stop();
+  for (const auto& [name, room] : rooms_) room->give_up_session().reset();
+  retiring_.clear();  // waits for each
+}
+
+Gauges Hub::gauges() const {
+  Gauges gauges{rooms_.size(), clients_.size(), 0, 0};
+  for (const auto& [id, client] : clients_) gauges.viewers += client->pacing().subscribed() ? 1u : 0u;
+  for (const auto& [name, room] : rooms_) gauges.steps += room->steps();
+  return gauges;
+}
+
+bool Hub::all_sessions_beat() const {
+  for (const auto& [name, room] : rooms_)
+    if (!room->beats()) return false;
+  return true;
+}
+
+}  // namespace clothlab::net

@@ -1,0 +1,81 @@
+// Everything the service thread knows: rooms (a session and who is in it), clients, HTTP requests that wait
+// for a session. Only that thread touches it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <future>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "server/net/metrics.h"
+#include "server/net/options.h"
+#include "server/net/room.h"
+
+namespace clothlab::net {
+
+class Client;
+class HttpRequest;
+
+enum class Role { none, viewer, operator_ };
+const char* name(Role role);
+
+class Hub {
+ public:
+  /// `wake` makes the service thread call `pump`; any thread may call it.
+  Hub(Options options, std::function<void()> wake);
+  ~Hub();
+
+  const Options& options() const { return options_; }
+  Metrics& metrics() { return metrics_; }
+
+  /// What a token makes of who has it; without `--token` everybody is an operator.
+  Role role_of(const std::string& token) const;
+  bool needs_token() const { return !options_.token.empty(); }
+
+  Room* find_room(const std::string& name);
+  /// The room, opened if it is new; null over --max-sessions. The longest unwatched session, if it sleeps,
+  /// makes room.
+  Room* open_room(const std::string& name);
+  bool has_place_for(const std::string& name);
+
+  void add(Client& client);
+  void remove(Client& client);
+  Client* find_client(std::uint64_t id);
+  bool full() const { return clients_.size() >= static_cast<std::size_t>(options_.max_clients); }
+  bool empty() const { return clients_.empty(); }
+  void close_all(int code, const std::string& reason);
+  std::uint64_t next_id() { return ++last_id_; }
+
+  void add(std::uint64_t id, HttpRequest& request) { waiting_[id] = &request; }
+  void remove_request(std::uint64_t id) { waiting_.erase(id); }
+  void deliver(Exported exported);
+
+  /// Takes in what the sessions have put out.
+  void pump();
+  /// Stops every session's thread and waits for them.
+  void stop_sessions();
+  /// Why the session `main` could not start, once it is known.
+  const std::optional<Failed>& main_failure() const { return main_failure_; }
+
+  Gauges gauges() const;
+  bool all_sessions_beat() const;
+
+ private:
+  void retire(const std::string& name);
+  std::string sleeping_room() const;
+
+  Options options_;
+  std::function<void()> wake_;
+  Metrics metrics_;
+  std::map<std::string, std::unique_ptr<Room>> rooms_;
+  std::map<std::uint64_t, Client*> clients_;
+  std::map<std::uint64_t, HttpRequest*> waiting_;
+  std::vector<std::future<void>> retiring_;
+  std::uint64_t last_id_ = 0;
+  std::optional<Failed> main_failure_;
+};
+
+}  // namespace clothlab::net

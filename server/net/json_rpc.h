@@ -1,0 +1,89 @@
+// JSON-RPC 2.0 as contract.md section 4 narrows it: named parameters, no batches, errors that carry their
+// remedy.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "server/base/result.h"
+
+namespace clothlab::net {
+
+using nlohmann::json;
+
+enum ErrorCode : int {
+  error_parse = -32700,
+  error_invalid_request = -32600,
+  error_unknown_method = -32601,
+  error_invalid_params = -32602,
+  error_internal = -32603,
+  error_not_allowed = -32001,
+  error_over_limit = -32002,
+  error_revision_conflict = -32003,
+  error_diverged = -32004,
+};
+
+struct RpcError {
+  int code = error_internal;
+  std::string message;
+  json data = nullptr;  ///< left out of the message when null
+};
+
+/// -32602 with data {path, found, allowed}.
+RpcError invalid_params(const std::string& path, const std::string& found, const std::string& allowed);
+/// The same from an Error whose `where` is a JSON Pointer (scene errors).
+RpcError invalid_params(const Error& error);
+
+/// A call from a client; without an id it is a notification and is never answered.
+struct Request {
+  std::string method;
+  json params = json::object();
+  std::optional<json> id;
+};
+
+/// What a message could not be read as, and the id to answer to (null where it is unknown).
+struct BadRequest {
+  RpcError error;
+  json id = nullptr;
+};
+
+/// Reads one text message. Too deep or not JSON: -32700; a batch or no request: -32600; positional
+/// parameters: -32602.
+std::variant<Request, BadRequest> parse_request(const std::string& text);
+
+// Messages to the client, as text.
+std::string result_text(const json& id, const json& result);
+std::string error_text(const json& id, const RpcError& error);
+std::string notification_text(const char* method, const json& params);
+
+/// Reads named parameters one by one; the first fault is kept, and `check` also refuses names that nobody
+/// asked for.
+class Params {
+ public:
+  explicit Params(const json& params) : params_(params) {}
+
+  /// A finite number in [least, most]; `fallback` where it is left out.
+  double number(const char* name, double least, double most, std::optional<double> fallback);
+  std::int64_t integer(const char* name, std::int64_t least, std::int64_t most,
+                       std::optional<std::int64_t> fallback);
+  std::string text(const char* name, std::optional<std::string> fallback);
+  /// Any value, null where it is left out.
+  const json& value(const char* name);
+  bool has(const char* name) const { return params_.contains(name); }
+
+  void refuse(const char* name, const std::string& allowed);
+  /// The first fault, if there was one.
+  std::optional<RpcError> check();
+
+ private:
+  const json* find(const char* name);
+
+  const json& params_;
+  std::vector<std::string> known_;
+  std::optional<RpcError> error_;
+};
+
+}  // namespace clothlab::net

@@ -1,0 +1,33 @@
+// The bounds that keep one client from costing the others anything. `hello` announces the ones a client can
+// meet.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "server/scene/document.h"
+
+namespace clothlab::net {
+
+inline constexpr std::size_t max_message_bytes = scene::max_json_bytes;  ///< larger: closed with 1009
+inline constexpr std::size_t max_unsent_text_bytes =
+    4 * 1024 * 1024;  ///< control text a client may let pile up
+inline constexpr double messages_per_second = 2000,
+                        message_burst = 4000;               ///< beyond: a flood, closed with 1008
+inline constexpr double min_rate = 0.1, max_rate = 120;     ///< frames a second a viewer may ask for
+inline constexpr int max_in_flight = 8;                     ///< unacknowledged frames a viewer may ask for
+inline constexpr std::int64_t max_steps = 1'000'000;        ///< of one sim.step
+inline constexpr double min_speed = 0.01, max_speed = 100;  ///< of sim.speed
+inline constexpr int auth_seconds = 5;          ///< a client without a role is closed with 1008 after this
+inline constexpr int max_snapshot_side = 4096;  ///< [pixels]
+inline constexpr double status_rate = 10;       ///< sim.status a second
+/// A session that nobody has watched for this long stops stepping until somebody does again [s].
+inline constexpr double unwatched_seconds = 30;
+/// Unsent bytes the kernel may hold for a client: what lies there can no longer be replaced by something
+/// newer.
+inline constexpr int unsent_kernel_bytes = 64 * 1024;
+
+// Close codes of RFC 6455.
+inline constexpr int close_policy = 1008, close_too_big = 1009, close_internal = 1011;
+
+}  // namespace clothlab::net

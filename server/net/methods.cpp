@@ -1,0 +1,88 @@
+#include "server/net/methods.h"
+
+#include <algorithm>
+#include <array>
+
+#include "server/net/client.h"
+
+namespace clothlab::net {
+
+namespace {
+
+Outcome ping(Client&, const Request& request) {
+  Params params(request.params);
+  const json& t = params.value("t");
+  if (auto error = params.check()) return *error;
+  return json{{"t", t}};
+}
+
+Outcome auth(Client& client, const Request& request) {
+  Params params(request.params);
+  const std::string token = params.text("token", std::nullopt);
+  if (auto error = params.check()) return *error;
+  const Role role = client.hub().role_of(token);
+  if (role == Role::none)
+    return RpcError{error_not_allowed, "this token opens nothing here; see --token and --view-token",
+                    nullptr};
+  if (!client.admit(role))
+    return RpcError{error_over_limit, "too many sessions; see --max-sessions", nullptr};
+  return json{{"role", name(role)}};
+}
+
+struct Method {
+  const char* name;
+  bool changes;  ///< what operators may do, and viewers not
+  Outcome (*run)(Client&, const Request&);
+};
+
+constexpr std::array methods{
+    Method{"auth", false, auth},
+    Method{"ping", false, ping},
+    Method{"scene.get", false, scene_get},
+    Method{"scene.load", true, scene_load},
+    Method{"scene.patch", true, scene_patch},
+    Method{"scene.presets", false, scene_presets},
+    Method{"sim.pause", true, sim_pause},
+    Method{"sim.play", true, sim_play},
+    Method{"sim.reset", true, sim_reset},
+    Method{"sim.speed", true, sim_speed},
+    Method{"sim.step", true, sim_step},
+    Method{"stream.ack", false, stream_ack},
+    Method{"stream.subscribe", false, stream_subscribe},
+    Method{"stream.unsubscribe", false, stream_unsubscribe},
+};
+
+// Of the protocol, but not of this version of the server.
+constexpr std::array later{"mesh.upload", "lab.chart",  "lab.stability", "lab.choose",
+                           "lab.cancel",  "grab.start", "grab.move",     "grab.end"};
+
+RpcError unknown(const std::string& method) {
+  const bool known = std::find(later.begin(), later.end(), method) != later.end();
+  return {error_unknown_method,
+          method + (known ? " is not supported yet" : ": there is no such method"),
+          {{"allowed", method_names()}}};
+}
+
+}  // namespace
+
+std::vector<std::string> method_names() {
+  std::vector<std::string> names;
+  for (const Method& method : methods) names.emplace_back(method.name);
+  return names;
+}
+
+Outcome call(Client& client, const Request& request) {
+  if (client.role() == Role::none && request.method != "auth")
+    return RpcError{error_not_allowed, "this server wants a token: call auth {token} first", nullptr};
+  const auto method = std::find_if(methods.begin(), methods.end(),
+                                   [&](const Method& candidate) { return request.method == candidate.name; });
+  if (method == methods.end()) return unknown(request.method);
+  if (method->changes && client.role() != Role::operator_)
+    return RpcError{error_not_allowed, request.method + " changes something; a viewer may only look",
+                    nullptr};
+  if (!client.room() && request.method != "auth")
+    return RpcError{error_over_limit, "no session is open for this connection; connect again", nullptr};
+  return method->run(client, request);
+}
+
+}  // namespace clothlab::net

@@ -1,0 +1,38 @@
+// The methods of the protocol: what each needs and what it does. See contract.md, section 4.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "server/net/json_rpc.h"
+
+namespace clothlab::net {
+
+class Client;
+
+/// The session's thread will answer.
+struct Later {};
+using Outcome = std::variant<json, RpcError, Later>;
+
+/// Checks the method's name, the client's role and the parameters, and carries the request out.
+Outcome call(Client& client, const Request& request);
+
+/// What a client may call.
+std::vector<std::string> method_names();
+
+// The groups of methods, one file each.
+Outcome scene_get(Client& client, const Request& request);
+Outcome scene_load(Client& client, const Request& request);
+Outcome scene_patch(Client& client, const Request& request);
+Outcome scene_presets(Client& client, const Request& request);
+Outcome sim_play(Client& client, const Request& request);
+Outcome sim_pause(Client& client, const Request& request);
+Outcome sim_step(Client& client, const Request& request);
+Outcome sim_reset(Client& client, const Request& request);
+Outcome sim_speed(Client& client, const Request& request);
+Outcome stream_subscribe(Client& client, const Request& request);
+Outcome stream_unsubscribe(Client& client, const Request& request);
+Outcome stream_ack(Client& client, const Request& request);
+
+}  // namespace clothlab::net

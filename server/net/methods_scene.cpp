@@ -1,0 +1,45 @@
+// scene.*: read, replace and patch the document. The session's thread validates and answers.
+#include "server/net/client.h"
+#include "server/net/methods.h"
+
+namespace clothlab::net {
+
+Outcome scene_get(Client& client, const Request& request) {
+  Params params(request.params);
+  if (auto error = params.check()) return *error;
+  client.room()->post({{client.id(), request.id}, GetScene{}});
+  return Later{};
+}
+
+Outcome scene_load(Client& client, const Request& request) {
+  Params params(request.params);
+  LoadScene load{params.text("preset", ""), params.value("scene")};
+  if (params.has("preset") == params.has("scene"))
+    params.refuse("preset", "either a preset's name, or a scene");
+  else if (params.has("preset") && load.preset.empty())
+    params.refuse("preset", "a preset's name, see scene.presets");
+  if (auto error = params.check()) return *error;
+  client.room()->post({{client.id(), request.id}, std::move(load)});
+  return Later{};
+}
+
+Outcome scene_patch(Client& client, const Request& request) {
+  Params params(request.params);
+  PatchScene patch{params.value("patch"), std::nullopt};
+  if (!patch.patch.is_object() && !patch.patch.is_array())
+    params.refuse("patch", "an object (RFC 7396 merge patch) or an array (RFC 6902 patch)");
+  constexpr std::int64_t most = (std::int64_t{1} << 53) - 1;  // what a JSON number holds exactly
+  const std::int64_t revision = params.integer("revision", 0, most, -1);
+  if (auto error = params.check()) return *error;
+  if (revision >= 0) patch.revision = static_cast<std::uint64_t>(revision);
+  client.room()->post({{client.id(), request.id}, std::move(patch)});
+  return Later{};
+}
+
+Outcome scene_presets(Client&, const Request& request) {
+  Params params(request.params);
+  if (auto error = params.check()) return *error;
+  return json{{"presets", scene::preset_names()}};
+}
+
+}  // namespace clothlab::net

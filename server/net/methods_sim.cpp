@@ -1,0 +1,45 @@
+// sim.*: play, pause, step, reset, speed. The session's thread carries them out in order and answers.
+#include "server/net/client.h"
+#include "server/net/methods.h"
+
+namespace clothlab::net {
+
+namespace {
+
+template <class What>
+Outcome without_parameters(Client& client, const Request& request) {
+  Params params(request.params);
+  if (auto error = params.check()) return *error;
+  client.room()->post({{client.id(), request.id}, What{}});
+  return Later{};
+}
+
+}  // namespace
+
+Outcome sim_play(Client& client, const Request& request) {
+  return without_parameters<Play>(client, request);
+}
+Outcome sim_pause(Client& client, const Request& request) {
+  return without_parameters<Pause>(client, request);
+}
+Outcome sim_reset(Client& client, const Request& request) {
+  return without_parameters<Reset>(client, request);
+}
+
+Outcome sim_step(Client& client, const Request& request) {
+  Params params(request.params);
+  const std::int64_t steps = params.integer("steps", 1, max_steps, 1);
+  if (auto error = params.check()) return *error;
+  client.room()->post({{client.id(), request.id}, Step{static_cast<std::uint64_t>(steps)}});
+  return Later{};
+}
+
+Outcome sim_speed(Client& client, const Request& request) {
+  Params params(request.params);
+  const double factor = params.number("factor", min_speed, max_speed, std::nullopt);
+  if (auto error = params.check()) return *error;
+  client.room()->post({{client.id(), request.id}, Speed{factor}});
+  return Later{};
+}
+
+}  // namespace clothlab::net

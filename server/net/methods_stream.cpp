@@ -1,0 +1,38 @@
+// stream.*: which frames this client gets. Answered here: they concern nobody else.
+#include <limits>
+
+#include "server/net/client.h"
+#include "server/net/methods.h"
+
+namespace clothlab::net {
+
+Outcome stream_subscribe(Client& client, const Request& request) {
+  Params params(request.params);
+  const std::string encoding = params.text("encoding", "q16");
+  if (encoding != "f32" && encoding != "q16")
+    params.refuse("encoding", encoding == "c16" ? "f32 or q16; c16 is not supported yet" : "f32 or q16");
+  const double rate = params.number("rate", min_rate, max_rate, 60);
+  const std::int64_t in_flight = params.integer("in_flight", 1, max_in_flight, 2);
+  if (auto error = params.check()) return *error;
+  client.subscribe(encoding == "f32" ? stream::Encoding::f32 : stream::Encoding::q16, rate,
+                   static_cast<int>(in_flight));
+  return json{{"encoding", encoding}, {"rate", rate}, {"in_flight", in_flight}};
+}
+
+Outcome stream_unsubscribe(Client& client, const Request& request) {
+  Params params(request.params);
+  if (auto error = params.check()) return *error;
+  client.unsubscribe();
+  return json::object();
+}
+
+Outcome stream_ack(Client& client, const Request& request) {
+  Params params(request.params);
+  const std::int64_t frame =
+      params.integer("frame", 0, std::numeric_limits<std::uint32_t>::max(), std::nullopt);
+  if (auto error = params.check()) return *error;
+  client.acknowledge(static_cast<std::uint32_t>(frame));
+  return json::object();
+}
+
+}  // namespace clothlab::net

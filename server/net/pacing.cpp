@@ -1,0 +1,55 @@
+#include "server/net/pacing.h"
+
+#include <algorithm>
+
+namespace clothlab::net {
+
+void FramePacing::subscribe(stream::Encoding encoding, double rate, int in_flight, std::int64_t now) {
+  if (!subscribed_ || encoding != encoding_) sent_any_ = false;  // whatever there is, is new to it
+  if (!subscribed_) count_ = 0;
+  subscribed_ = true;
+  encoding_ = encoding;
+  rate_ = rate;
+  period_ = static_cast<std::int64_t>(1e6 / rate);
+  in_flight_ = in_flight;
+  due_ = unblocked_ = now;
+}
+
+std::optional<std::int64_t> FramePacing::wait(std::int64_t now) const {
+  if (!subscribed_ || count_ >= in_flight_) return std::nullopt;
+  // Frames come at the viewer's own rate, a little early or late: a quarter of a period must not cost it one.
+  return std::max<std::int64_t>(0, due_ - period_ / 4 - now);
+}
+
+std::int64_t FramePacing::ready_since(std::int64_t now) const {
+  return std::min(now, std::max(unblocked_, due_ - period_ / 4));
+}
+
+void FramePacing::sent(std::uint32_t sequence, std::int64_t now) {
+  sent_any_ = true;
+  last_sent_ = sequence;
+  unacknowledged_[static_cast<std::size_t>(count_++)] = sequence;
+  due_ = std::max(due_, now - period_) + period_;
+}
+
+void FramePacing::acknowledge(std::uint32_t sequence, std::int64_t now) {
+  if (!sent_any_ || newer(sequence, last_sent_)) return;
+  const bool blocked = count_ >= in_flight_;
+  int kept = 0;
+  for (int i = 0; i < count_; ++i) {
+    const std::uint32_t waiting = unacknowledged_[static_cast<std::size_t>(i)];
+    if (newer(waiting, sequence)) unacknowledged_[static_cast<std::size_t>(kept++)] = waiting;
+  }
+  count_ = kept;
+  if (blocked && count_ < in_flight_) unblocked_ = now;
+}
+
+bool TokenBucket::take(std::int64_t now) {
+  tokens_ = std::min(burst_, tokens_ + rate_ * 1e-6 * static_cast<double>(now - last_));
+  last_ = now;
+  if (tokens_ < 1) return false;
+  tokens_ -= 1;
+  return true;
+}
+
+}  // namespace clothlab::net

@@ -1,0 +1,42 @@
+#include "server/net/request_headers.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace clothlab::net {
+
+namespace {
+constexpr int longest = 4096;
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+}  // namespace
+
+std::string header(lws* wsi, lws_token_indexes token) {
+  const int length = lws_hdr_total_length(wsi, token);
+  if (length <= 0 || length > longest) return {};
+  std::string text(static_cast<std::size_t>(length) + 1, '\0');
+  const int copied = lws_hdr_copy(wsi, text.data(), length + 1, token);
+  text.resize(copied > 0 ? static_cast<std::size_t>(copied) : 0);
+  return text;
+}
+
+std::string query(lws* wsi, const std::string& name, const std::string& fallback) {
+  char buffer[256];
+  const std::string key = name + "=";
+  const char* value = lws_get_urlarg_by_name(wsi, key.c_str(), buffer, sizeof buffer);
+  return value ? value : fallback;
+}
+
+bool origin_allowed(const std::string& origin, const std::string& host,
+                    const std::vector<std::string>& allowed) {
+  if (origin.empty()) return true;
+  const std::string asked = lower(origin);
+  const auto same = [&](const std::string& candidate) { return lower(candidate) == asked; };
+  if (std::any_of(allowed.begin(), allowed.end(), same)) return true;
+  return !host.empty() && (same("http://" + host) || same("https://" + host));
+}
+
+}  // namespace clothlab::net

@@ -1,0 +1,21 @@
+// What a request says of itself, read from libwebsockets while it handles that request.
+#pragma once
+
+#include <libwebsockets.h>
+
+#include <string>
+#include <vector>
+
+namespace clothlab::net {
+
+/// A header's value, empty if it is missing or longer than 4 KiB.
+std::string header(lws* wsi, lws_token_indexes token);
+/// An argument of the query, `fallback` if it is missing.
+std::string query(lws* wsi, const std::string& name, const std::string& fallback);
+
+/// Whether a page from `origin` may connect: the page's own server, or one of `allowed`. No Origin is no
+/// browser.
+bool origin_allowed(const std::string& origin, const std::string& host,
+                    const std::vector<std::string>& allowed);
+
+}  // namespace clothlab::net

@@ -1,0 +1,189 @@
+#include "server/net/room.h"
+
+#include <algorithm>
+
+#include "server/net/client.h"
+#include "server/net/greeting.h"
+#include "server/net/hub.h"
+#include "server/net/log.h"
+
+namespace clothlab::net {
+
+bool is_session_name(const std::string& name) {
+  const auto allowed = [](unsigned char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
+  return !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), allowed);
+}
+
+Room::Room(Hub& hub, std::string name, const std::function<void()>& wake)
+    : hub_(hub),
+      name_(std::move(name)),
+      session_(std::make_unique<Session>(hub.options().document, hub.options().gpu, wake)),
+      unwatched_since_(now_us()) {}
+
+stream::SharedMessage Room::frame(stream::Encoding encoding) const {
+  stream::SharedMessage frame = session_ ? session_->exchange().frame(encoding) : nullptr;
+  if (frame && topology_ && frame->header.topology_revision != topology_->header.topology_revision)
+    return nullptr;
+  return frame;
+}
+
+void Room::post(Command command) {
+  if (session_) session_->exchange().post(std::move(command));
+}
+
+void Room::stop() {
+  if (session_) session_->exchange().stop();
+}
+
+void Room::enter(Client& client) {
+  clients_.push_back(&client);
+  post({{}, Watchers{static_cast<int>(clients_.size())}});
+  if (started()) greet(client);
+  broadcast_viewers();
+}
+
+void Room::leave(Client& client) {
+  clients_.erase(std::remove(clients_.begin(), clients_.end(), &client), clients_.end());
+  if (clients_.empty()) unwatched_since_ = now_us();
+  post({{}, Watchers{static_cast<int>(clients_.size())}});
+  demand_changed(std::nullopt);
+  broadcast_viewers();
+}
+
+void Room::demand_changed(std::optional<stream::Encoding> fresh) {
+  Demand demand;
+  for (const Client* client : clients_) {
+    if (!client->pacing().subscribed()) continue;
+    double& rate = demand.rate[static_cast<std::size_t>(client->pacing().encoding())];
+    rate = std::max(rate, client->pacing().rate());
+  }
+  for (std::size_t i = 0; i < demand.rate.size(); ++i) {
+    // Nobody has asked for it for a while: what lies in the mailbox may be long past.
+    if (demanded_[i] <= 0 && demand.rate[i] > 0 && session_)
+      session_->exchange().forget_frame(static_cast<stream::Encoding>(i));
+    demanded_[i] = demand.rate[i];
+  }
+  if (fresh) demand.fresh[static_cast<std::size_t>(*fresh)] = true;
+  post({{}, demand});
+}
+
+void Room::pump() {
+  if (!session_) return;
+  Exchange& exchange = session_->exchange();
+  exchange.take_events(events_);
+  for (Event& event : events_) std::visit([&](auto& what) { take(what); }, event);
+  Status status;
+  if (exchange.take_status(status) && !clients_.empty() && started()) {
+    const SharedText text = make_text(notification_text("sim.status", status_params(status)));
+    for (Client* client : clients_) client->send_status(text);
+  }
+  const std::int64_t now = now_us();
+  for (std::size_t i = 0; i < seen_.size(); ++i) {
+    const auto encoding = static_cast<stream::Encoding>(i);
+    const stream::SharedMessage latest = demanded_[i] > 0 ? frame(encoding) : nullptr;
+    if (!latest || latest->header.sequence == seen_[i]) continue;
+    seen_[i] = latest->header.sequence;
+    for (Client* client : clients_) client->frame_arrived(encoding, now);
+  }
+}
+
+void Room::take(Started& started) {
+  renderer_ = started.renderer;
+  log("session " + name_ + " runs on " + renderer_);
+  for (Client* client : clients_) greet(*client);
+}
+
+void Room::take(Failed& failed) {
+  log("session " + name_ + ": " + failed.error.text());
+  broadcast("notice", {{"level", "error"}, {"text", failed.error.text()}});
+  while (!clients_.empty()) {
+    Client* client = clients_.back();
+    client->leave_room();
+    client->close(close_internal, "the session has failed");
+  }
+  failure_ = failed;
+}
+
+void Room::take(Reply& reply) {
+  Client* client = hub_.find_client(reply.ticket.asker);
+  if (!client || !reply.ticket.id) return;
+  const json& id = *reply.ticket.id;
+  if (const json* result = std::get_if<json>(&reply.answer))
+    client->send(result_text(id, *result));
+  else
+    client->send(error_text(id, std::get<RpcError>(reply.answer)));
+}
+
+void Room::take(SceneChanged& changed) {
+  document_ = changed.document;
+  revision_ = changed.revision;
+  if (changed.patch)
+    broadcast("scene.changed", {{"revision", revision_}, {"patch", *changed.patch}, {"by", changed.by}});
+  else if (started())
+    broadcast("scene", {{"document", *document_}, {"revision", revision_}});
+}
+
+void Room::take(TopologyChanged& changed) {
+  topology_ = changed.message;
+  for (Client* client : clients_) client->wake();
+}
+
+void Room::take(PassesChanged& changed) {
+  passes_ = skipped_ = json::array();
+  for (const sim::Simulation::Pass& pass : changed.passes) {
+    if (pass.skipped.empty())
+      passes_.push_back(pass.name);
+    else
+      skipped_.push_back({{"name", pass.name}, {"reason", pass.skipped}});
+  }
+}
+
+void Room::take(Diverged& diverged) {
+  broadcast("sim.diverged", {{"reason", diverged.reason},
+                             {"remedy", {{"text", diverged.remedy}, {"patch", diverged.patch}}}});
+}
+
+void Room::take(Notice& notice) {
+  broadcast("notice", {{"level", notice.level}, {"text", notice.text}});
+}
+
+void Room::take(Exported& exported) {
+  hub_.deliver(std::move(exported));
+}
+
+void Room::greet(Client& client) {
+  client.greet(notification_text("hello", hello_params(hub_, *this, client)));
+  client.send(notification_text("scene", {{"document", *document_}, {"revision", revision_}}));
+}
+
+void Room::broadcast(const char* method, const json& params) {
+  if (clients_.empty()) return;
+  const SharedText text = make_text(notification_text(method, params));
+  for (Client* client : clients_) client->send(text);
+}
+
+void Room::broadcast_viewers() {
+  broadcast("viewers", {{"count", clients_.size()}});
+}
+
+json Room::status_params(const Status& status) const {
+  const sim::Diagnostics& d = status.diagnostics;
+  return {{"playing", status.playing},
+          {"time", d.time},
+          {"step", d.step},
+          {"speed", status.speed},
+          {"real_time_factor", status.real_time_factor},
+          {"energy", {{"kinetic", d.kinetic}, {"elastic", d.elastic}, {"gravitational", d.gravitational}}},
+          {"max_strain", d.max_strain},
+          {"max_speed", d.max_speed},
+          {"contacts", d.contacts},
+          {"passes", passes_},
+          {"skipped", skipped_},
+          {"stability", nullptr},
+          {"asleep", false},
+          {"diverged", status.diverged}};
+}
+
+}  // namespace clothlab::net

@@ -1,0 +1,87 @@
+// A session as the service thread sees it: who is in it, its scene and topology as last announced, its
+// frames.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/net/outbox.h"
+#include "server/net/session.h"
+
+namespace clothlab::net {
+
+class Client;
+class Hub;
+
+inline constexpr const char* main_session = "main";
+
+/// [A-Za-z0-9_-], 1 to 64 of them.
+bool is_session_name(const std::string& name);
+
+class Room {
+ public:
+  Room(Hub& hub, std::string name, const std::function<void()>& wake);
+
+  const std::string& name() const { return name_; }
+  bool started() const { return !renderer_.empty(); }
+  const std::string& renderer() const { return renderer_; }
+  const std::shared_ptr<const json>& document() const { return document_; }
+  const stream::SharedMessage& topology() const { return topology_; }
+  /// The latest frame, or null: none yet, or only one that the present topology does not fit.
+  stream::SharedMessage frame(stream::Encoding encoding) const;
+
+  void enter(Client& client);
+  void leave(Client& client);
+  bool empty() const { return clients_.empty(); }
+  std::int64_t unwatched_since() const { return unwatched_since_; }  ///< [us]
+  /// A client's subscription has changed; `fresh`: it needs a frame of this encoding though nothing moves.
+  void demand_changed(std::optional<stream::Encoding> fresh);
+
+  void post(Command command);
+  /// Takes in what the session has put out and passes it on.
+  void pump();
+  const std::optional<Failed>& failure() const { return failure_; }
+
+  void stop();
+  std::unique_ptr<Session> give_up_session() { return std::move(session_); }
+  bool beats() const { return !session_ || session_->beats(); }
+  std::uint64_t steps() const { return session_ ? session_->exchange().steps() : 0; }
+
+ private:
+  void take(Started& started);
+  void take(Failed& failed);
+  void take(Reply& reply);
+  void take(SceneChanged& changed);
+  void take(TopologyChanged& changed);
+  void take(PassesChanged& changed);
+  void take(Diverged& diverged);
+  void take(Notice& notice);
+  void take(Exported& exported);
+  void greet(Client& client);
+  void broadcast(const char* method, const json& params);
+  void broadcast_viewers();
+  json status_params(const Status& status) const;
+
+  Hub& hub_;
+  std::string name_;
+  std::unique_ptr<Session> session_;
+  std::vector<Client*> clients_;
+  std::vector<Event> events_;
+  std::string renderer_;
+  std::shared_ptr<const json> document_;
+  std::uint64_t revision_ = 0;
+  stream::SharedMessage topology_;
+  json passes_ = json::array(), skipped_ = json::array();
+  std::array<double, encoding_count> demanded_{};
+  std::array<std::uint32_t, encoding_count>
+      seen_{};  ///< sequence number of the last frame offered to viewers
+  std::optional<Failed> failure_;
+  std::int64_t unwatched_since_ = 0;
+};
+
+}  // namespace clothlab::net

@@ -1,0 +1,128 @@
+#include "server/net/server.h"
+
+#include <libwebsockets.h>
+
+#include "server/net/callbacks.h"
+#include "server/net/log.h"
+#include "server/net/request_headers.h"
+
+namespace clothlab::net {
+
+namespace {
+
+bool is_ipv6(const std::string& address) {
+  return address.find(':') != std::string::npos;
+}
+
+// A client that is gone without a word is noticed by a ping it does not answer.
+constexpr lws_retry_bo_t keep_alive{nullptr, 0, 0, 30, 60, 0};
+
+}  // namespace
+
+bool is_loopback(const std::string& address) {
+  return address == "localhost" || address == "::1" || address.rfind("127.", 0) == 0;
+}
+
+Server::Server(Options options)
+    : hub_(std::move(options), [this] {
+        if (lws_context* context = context_.load()) lws_cancel_service(context);
+      }) {}
+
+Server::~Server() {
+  hub_.stop_sessions();
+  if (lws_context* context = context_.exchange(nullptr)) lws_context_destroy(context);
+}
+
+Result<std::unique_ptr<Server>> Server::listen(Options options) {
+  lws_set_log_level(LLL_ERR, [](int, const char* line) { std::cerr << "clothlab: libwebsockets: " << line; });
+  auto server = std::unique_ptr<Server>(new Server(std::move(options)));
+  const Options& with = server->hub_.options();
+  const std::string address = with.bind == "localhost" ? "127.0.0.1" : with.bind;
+  lws_context_creation_info info{};
+  info.port = with.port;
+  info.iface = address.c_str();
+  info.protocols = protocols();
+  info.user = server.get();
+  info.options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_EXPLICIT_VHOSTS;
+  if (!is_ipv6(address)) info.options |= LWS_SERVER_OPTION_DISABLE_IPV6;
+  info.pt_serv_buf_size = 256 * 1024;
+  info.timeout_secs = 20;
+  info.keepalive_timeout = 30;
+  info.retry_and_idle_policy = &keep_alive;
+  info.alpn = "http/1.1";
+  if (!with.tls_certificate.empty()) {
+    info.options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
+    info.ssl_cert_filepath = with.tls_certificate.c_str();
+    info.ssl_private_key_filepath = with.tls_key.c_str();
+  }
+  lws_context* context = lws_create_context(&info);
+  if (!context) return Error{"serve", "libwebsockets could not start", "see the lines above"};
+  server->context_ = context;
+  server->vhost_ = lws_create_vhost(context, &info);
+  if (!server->vhost_)
+    return Error{"serve", "cannot listen on " + with.bind + " port " + std::to_string(with.port),
+                 "if another program uses it, choose another with --port, or --port 0 for any free one" +
+                     std::string(with.tls_certificate.empty()
+                                     ? ""
+                                     : "; check that --tls-cert and --tls-key are PEM files")};
+  return server;
+}
+
+std::string Server::url() const {
+  const Options& with = hub_.options();
+  const std::string host = is_ipv6(with.bind) ? "[" + with.bind + "]" : with.bind;
+  return (with.tls_certificate.empty() ? "http://" : "https://") + host + ":" +
+         std::to_string(lws_get_vhost_listen_port(vhost_)) + "/";
+}
+
+std::optional<Failed> Server::run(const std::function<void()>& ready) {
+  if (!files_.built())
+    log("the page is not built; run `npm --prefix web ci && npm --prefix web run build`, or server/run");
+  hub_.open_room(main_session);
+  bool announced = false;
+  while (!stopping_) {
+    if (lws_service(context_, 0) < 0) break;
+    if (announced) continue;
+    if (hub_.main_failure()) return hub_.main_failure();
+    const Room* room = hub_.find_room(main_session);
+    announced = room && room->started();
+    if (announced) ready();
+  }
+  say_goodbye();
+  return std::nullopt;
+}
+
+void Server::say_goodbye() {
+  constexpr int going_away = 1001;
+  hub_.close_all(going_away, "the server is shutting down");
+  const std::int64_t until = now_us() + 300'000;
+  while (!hub_.empty() && now_us() < until) {
+    lws_cancel_service(context_);  // so that the wait below is short
+    if (lws_service(context_, 0) < 0) break;
+  }
+}
+
+void Server::stop() {
+  stopping_ = true;
+  if (lws_context* context = context_.load()) lws_cancel_service(context);
+}
+
+unsigned Server::refusal(lws* wsi, const char*& why) {
+  const std::string path = header(wsi, WSI_TOKEN_GET_URI);
+  const std::string session = query(wsi, "session", main_session);
+  if (path != "/ws") return why = "the WebSocket is at /ws", HTTP_STATUS_NOT_FOUND;
+  if (!is_session_name(session))
+    return why = "a session's name has 1 to 64 letters, digits, - or _", HTTP_STATUS_BAD_REQUEST;
+  if (!origin_allowed(header(wsi, WSI_TOKEN_ORIGIN), header(wsi, WSI_TOKEN_HOST),
+                      hub_.options().allow_origin))
+    return why = "pages of this origin may not connect; see --allow-origin", HTTP_STATUS_FORBIDDEN;
+  if (hub_.full())
+    return why = "the server has as many clients as it may; see --max-clients",
+           HTTP_STATUS_SERVICE_UNAVAILABLE;
+  if (!hub_.has_place_for(session))
+    return why = "the server has as many sessions as it may; see --max-sessions",
+           HTTP_STATUS_SERVICE_UNAVAILABLE;
+  return 0;
+}
+
+}  // namespace clothlab::net

@@ -1,0 +1,39 @@
+// A session: one simulation on a thread of its own, with a GL context of its own. This is the service
+// thread's handle.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "server/net/exchange.h"
+#include "server/scene/document.h"
+
+namespace clothlab::net {
+
+class Session {
+ public:
+  /// Starts the thread; what becomes of it arrives as an event (Started or Failed).
+  Session(scene::Document document, std::optional<int> gpu, std::function<void()> wake);
+  /// Ends the thread and waits for it: a turn at most.
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  Exchange& exchange() { return exchange_; }
+  const Exchange& exchange() const { return exchange_; }
+  /// A thread that has not come round for this long is stuck [s].
+  static constexpr double longest_silence = 10;
+  bool beats() const {
+    return static_cast<double>(now_us() - exchange_.heartbeat_us()) < longest_silence * 1e6;
+  }
+
+ private:
+  static void run(Exchange& exchange, scene::Document document, std::optional<int> gpu);
+
+  Exchange exchange_;
+  std::thread thread_;
+};
+
+}  // namespace clothlab::net

@@ -1,0 +1,102 @@
+// What a session's thread does, turn by turn: commands, steps, frames, diagnostics. It owns the simulation,
+// and the GL context must be current on the thread that calls it. The state after N steps depends on the
+// scene alone, never on who watches: viewers only decide when frames are packed, and whether an unwatched
+// session goes on at all.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "server/net/exchange.h"
+#include "server/net/frame_maker.h"
+#include "server/net/gpu_backlog.h"
+#include "server/net/real_time.h"
+#include "server/render/renderer.h"
+#include "server/scene/document.h"
+
+namespace clothlab::net {
+
+class Stepper {
+ public:
+  /// `document` is loaded and plays at once.
+  static Result<std::unique_ptr<Stepper>> create(scene::Document document, Exchange& exchange);
+
+  /// Handles `commands`, then does the work that is due; returns when the next turn is, if no command comes
+  /// before.
+  Clock::time_point turn(std::vector<Command>& commands);
+
+ private:
+  struct Waiting {  // a sim.step that is not finished
+    Ticket ticket;
+    std::uint64_t until_step = 0;
+  };
+  using Answer = std::variant<json, RpcError>;
+
+  Stepper(scene::Document document, Exchange& exchange)
+      : document_(std::move(document)), exchange_(exchange) {}
+
+  // stepper_commands.cpp; each answers its ticket where it has one.
+  void handle(Command& command);
+  void perform(GetScene&, const Ticket& ticket);
+  void perform(LoadScene& load, const Ticket& ticket);
+  void perform(PatchScene& patch, const Ticket& ticket);
+  void perform(Play&, const Ticket& ticket);
+  void perform(Pause&, const Ticket& ticket);
+  void perform(Step& step, const Ticket& ticket);
+  void perform(Reset&, const Ticket& ticket);
+  void perform(Speed& speed, const Ticket& ticket);
+  void perform(Demand& demand, const Ticket& ticket);
+  void perform(Watchers& watchers, const Ticket& ticket);
+  void perform(Export& what, const Ticket& ticket);
+  void reply(const Ticket& ticket, Answer answer);
+  Result<std::string> picture(const Export& what);
+  json where_we_are() const;
+  RpcError diverged_error() const;
+  void adopt(scene::Document document, sim::ChangeDepth depth);
+  void restart();
+  void state_replaced(bool rebuilt);
+  void announce_scene(std::optional<json> patch, std::uint64_t by);
+  void announce_passes();
+
+  // stepper.cpp
+  void advance(Clock::time_point now);
+  void finish_waiting(bool all);
+  void follow_diagnostics(Clock::time_point now);
+  void request_status(Clock::time_point now);
+  void accept(const sim::Diagnostics& diagnostics);
+  void diverge();
+  void publish_status(Clock::time_point now);
+  void warn_if_slow(Clock::time_point now);
+  bool suspended(Clock::time_point now) const;
+  bool running(Clock::time_point now) const { return playing_ && !diverged_ && !suspended(now); }
+  Clock::time_point next_turn(Clock::time_point now) const;
+
+  scene::Document document_;
+  Exchange& exchange_;
+  std::unique_ptr<sim::Simulation> simulation_;
+  std::unique_ptr<FrameMaker> frames_;
+  std::unique_ptr<render::Renderer> renderer_;  ///< made for the first picture
+  GpuBacklog backlog_;
+  RealTime real_time_;
+
+  std::uint64_t revision_ = 1;
+  std::uint32_t topology_revision_ = 0;
+  bool playing_ = true, diverged_ = false;
+  bool resume_on_load_ = false;  ///< it was playing when it diverged
+  bool was_running_ = false;
+  std::vector<Waiting> waiting_;
+  std::uint64_t pending_steps_ = 0;  ///< of sim.step
+  int watchers_ = 0;
+  Clock::time_point last_watched_{};
+
+  sim::Diagnostics diagnostics_{};
+  std::uint64_t state_version_ = 1,
+                diagnosed_version_ = 0;  ///< whether the diagnostics are of the present state
+  bool diagnosing_ = false, diagnosis_is_stale_ = false;
+  Clock::time_point next_status_{};
+  Clock::time_point slow_since_{};
+  bool slow_announced_ = false;
+};
+
+}  // namespace clothlab::net

@@ -1,0 +1,166 @@
+#include "server/model/mesh_file.h"
+#include "server/net/stepper.h"
+
+namespace clothlab::net {
+
+void Stepper::handle(Command& command) {
+  std::visit([&](auto& what) { perform(what, command.ticket); }, command.what);
+}
+
+void Stepper::reply(const Ticket& ticket, Answer answer) {
+  if (ticket.id) exchange_.emit(Reply{ticket, std::move(answer)});
+}
+
+json Stepper::where_we_are() const {
+  return {{"playing", playing_}, {"time", simulation_->time()}, {"step", simulation_->step_index()}};
+}
+
+RpcError Stepper::diverged_error() const {
+  return {error_diverged, "the simulation has diverged; use sim.reset, or scene.load", nullptr};
+}
+
+void Stepper::perform(GetScene&, const Ticket& ticket) {
+  reply(ticket, json{{"document", document_.value}, {"revision", revision_}});
+}
+
+void Stepper::perform(LoadScene& load, const Ticket& ticket) {
+  Result<scene::Document> document =
+      load.preset.empty() ? scene::validate(std::move(load.document)) : scene::load_preset(load.preset);
+  if (!document && !load.preset.empty())
+    return reply(ticket, invalid_params("/preset", json(load.preset).dump(), document.error().remedy));
+  if (!document) return reply(ticket, invalid_params(document.error()));
+  const Result<sim::ChangeDepth> depth = simulation_->change(document->scene);
+  if (!depth) return reply(ticket, invalid_params(depth.error()));
+  playing_ = playing_ || (diverged_ && resume_on_load_);
+  adopt(std::move(*document), *depth);
+  // Another scene starts at its beginning, however alike the two are.
+  if (*depth != sim::ChangeDepth::cloth) restart();
+  reply(ticket, json{{"revision", revision_}, {"applies", sim::name(sim::ChangeDepth::cloth)}});
+  announce_scene(std::nullopt, ticket.asker);
+}
+
+void Stepper::perform(PatchScene& patch, const Ticket& ticket) {
+  if (patch.revision && *patch.revision != revision_)
+    return reply(ticket, RpcError{error_revision_conflict,
+                                  "the scene is at revision " + std::to_string(revision_) + ", not " +
+                                      std::to_string(*patch.revision) + "; get the scene and patch that",
+                                  {{"revision", revision_}}});
+  Result<scene::Document> document = scene::apply_patch(document_, patch.patch);
+  if (!document) return reply(ticket, invalid_params(document.error()));
+  const Result<sim::ChangeDepth> depth = simulation_->change(document->scene);
+  if (!depth) return reply(ticket, invalid_params(depth.error()));
+  adopt(std::move(*document), *depth);
+  reply(ticket, json{{"revision", revision_}, {"applies", sim::name(*depth)}});
+  announce_scene(std::move(patch.patch), ticket.asker);
+  if (*depth == sim::ChangeDepth::cloth)
+    exchange_.emit(Notice{"info", "the cloth was rebuilt for this change: time starts again at 0"});
+}
+
+void Stepper::adopt(scene::Document document, sim::ChangeDepth depth) {
+  document_ = std::move(document);
+  ++revision_;
+  if (depth == sim::ChangeDepth::cloth)
+    state_replaced(true);
+  else
+    frames_->touch_now();
+  ++state_version_;
+  announce_passes();
+}
+
+void Stepper::restart() {
+  simulation_->reset();
+  state_replaced(false);
+}
+
+void Stepper::state_replaced(bool rebuilt) {
+  finish_waiting(true);
+  diverged_ = slow_announced_ = false;
+  diagnostics_ = {};
+  ++state_version_;
+  // A diagnosis under way is of the old state; a rebuilt simulation has forgotten it.
+  diagnosing_ = diagnosing_ && !rebuilt;
+  diagnosis_is_stale_ = diagnosing_;
+  real_time_.restart(Clock::now());
+  frames_->restart();
+}
+
+void Stepper::perform(Play&, const Ticket& ticket) {
+  if (diverged_) return reply(ticket, diverged_error());
+  finish_waiting(true);
+  playing_ = true;
+  reply(ticket, where_we_are());
+}
+
+void Stepper::perform(Pause&, const Ticket& ticket) {
+  finish_waiting(true);
+  playing_ = false;
+  reply(ticket, where_we_are());
+}
+
+void Stepper::perform(Step& step, const Ticket& ticket) {
+  if (diverged_) return reply(ticket, diverged_error());
+  playing_ = false;
+  pending_steps_ += step.steps;
+  waiting_.push_back({ticket, simulation_->step_index() + pending_steps_});
+}
+
+void Stepper::perform(Reset&, const Ticket& ticket) {
+  restart();
+  reply(ticket, where_we_are());
+}
+
+void Stepper::perform(Speed& speed, const Ticket& ticket) {
+  real_time_.set_speed(speed.factor);
+  real_time_.restart(Clock::now());
+  reply(ticket, json{{"factor", speed.factor}});
+}
+
+void Stepper::perform(Demand& demand, const Ticket&) {
+  frames_->demand(demand, Clock::now());
+}
+
+void Stepper::perform(Watchers& watchers, const Ticket&) {
+  watchers_ = watchers.count;
+  last_watched_ = Clock::now();
+}
+
+// On this thread, where the simulation's buffers are: a picture costs this session's viewers a hiccup, nobody
+// else.
+void Stepper::perform(Export& what, const Ticket& ticket) {
+  last_watched_ = Clock::now();
+  if (what.width > 0)
+    exchange_.emit(Exported{ticket.asker, "image/png", picture(what)});
+  else
+    exchange_.emit(Exported{ticket.asker, "text/plain; charset=utf-8",
+                            model::obj_text(simulation_->model(), simulation_->read_state().position,
+                                            "t = " + json(simulation_->time()).dump() + " s")});
+}
+
+Result<std::string> Stepper::picture(const Export& what) {
+  if (!renderer_) {
+    Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create();
+    if (!renderer) return renderer.error();
+    renderer_ = std::move(*renderer);
+  }
+  const Result<render::Image> image = renderer_->render(*simulation_, what.width, what.height);
+  if (!image) return image.error();
+  const Result<std::vector<std::uint8_t>> png = render::encode_png(*image);
+  if (!png) return png.error();
+  return std::string(png->begin(), png->end());
+}
+
+void Stepper::announce_scene(std::optional<json> patch, std::uint64_t by) {
+  // A topology precedes the frames that need it, so it goes out with the scene that changed it.
+  if (const std::uint32_t revision = simulation_->topology_revision(); revision != topology_revision_) {
+    topology_revision_ = revision;
+    exchange_.emit(TopologyChanged{stream::encode_topology(simulation_->model(), revision)});
+  }
+  exchange_.emit(
+      SceneChanged{std::make_shared<const json>(document_.value), revision_, std::move(patch), by});
+}
+
+void Stepper::announce_passes() {
+  exchange_.emit(PassesChanged{simulation_->passes()});
+}
+
+}  // namespace clothlab::net

@@ -1,0 +1,105 @@
+#include "server/net/web_files.h"
+
+#include <zlib.h>
+
+#include <array>
+#include <cstdint>
+#include <cstdio>
+
+#include "server/base/data_files.h"
+
+namespace clothlab::net {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* not_built = R"(<!doctype html>
+<html lang="en"><meta charset="utf-8"><title>Clothlab</title>
+<h1>The page has not been built</h1>
+<p>The server runs, and scripts can talk to it at <code>/ws</code>. To build the page, run this in the project's
+folder, then start the server again:</p>
+<pre>npm --prefix web ci &amp;&amp; npm --prefix web run build</pre>
+<p>or start the server with <code>server/run</code>, which builds everything.</p>
+</html>
+)";
+
+std::string type_of(const std::string& path) {
+  static constexpr std::array<std::array<const char*, 2>, 14> types{{
+      {".html", "text/html; charset=utf-8"},
+      {".js", "text/javascript; charset=utf-8"},
+      {".mjs", "text/javascript; charset=utf-8"},
+      {".css", "text/css; charset=utf-8"},
+      {".json", "application/json"},
+      {".map", "application/json"},
+      {".svg", "image/svg+xml"},
+      {".png", "image/png"},
+      {".jpg", "image/jpeg"},
+      {".webp", "image/webp"},
+      {".ico", "image/x-icon"},
+      {".wasm", "application/wasm"},
+      {".woff2", "font/woff2"},
+      {".txt", "text/plain; charset=utf-8"},
+  }};
+  const std::string extension = fs::path(path).extension().string();
+  for (const auto& [ending, type] : types)
+    if (extension == ending) return type;
+  return "application/octet-stream";
+}
+
+std::string gzip(const std::string& body) {
+  z_stream stream{};
+  constexpr int window_with_gzip_header = 15 + 16;
+  if (deflateInit2(&stream, 6, Z_DEFLATED, window_with_gzip_header, 8, Z_DEFAULT_STRATEGY) != Z_OK) return {};
+  std::string out(deflateBound(&stream, static_cast<uLong>(body.size())), '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(body.data()));
+  stream.avail_in = static_cast<uInt>(body.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out.data());
+  stream.avail_out = static_cast<uInt>(out.size());
+  const bool done = deflate(&stream, Z_FINISH) == Z_STREAM_END;
+  out.resize(done ? stream.total_out : 0);
+  deflateEnd(&stream);
+  return out.size() < body.size() ? out : std::string();
+}
+
+std::string etag_of(const std::string& body) {
+  std::uint64_t hash = 14695981039346656037ull;  // FNV-1a
+  for (const char c : body) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+  char text[24];
+  std::snprintf(text, sizeof text, "\"%016llx\"", static_cast<unsigned long long>(hash));
+  return text;
+}
+
+}  // namespace
+
+void WebFiles::add(const std::string& path, std::string body) {
+  const std::string type = type_of(path);
+  const bool packed_already = type.rfind("image/", 0) == 0 && type != "image/svg+xml";
+  std::string gzipped = packed_already ? std::string() : gzip(body);
+  std::string etag = etag_of(body);
+  files_[path] = {type, std::move(body), std::move(gzipped), std::move(etag)};
+}
+
+WebFiles WebFiles::load() {
+  WebFiles files;
+  const Result<fs::path> root = data_path("web/dist");
+  std::error_code failure;
+  if (root) {
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(*root, failure)) {
+      if (!entry.is_regular_file(failure)) continue;
+      if (Result<std::string> body = read_file(entry.path()))
+        files.add((fs::path("/") / entry.path().lexically_relative(*root)).generic_string(),
+                  std::move(*body));
+    }
+  }
+  files.built_ = files.files_.count("/index.html") > 0;
+  if (!files.built_) files.add("/index.html", not_built);
+  return files;
+}
+
+const WebFile* WebFiles::find(const std::string& path) const {
+  const auto found = files_.find(path == "/" ? "/index.html" : path);
+  return found == files_.end() ? nullptr : &found->second;
+}
+
+}  // namespace clothlab::net

@@ -1,0 +1,65 @@
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { Client, Server, sleep, withTimeout } from "./harness.mjs";
+
+let server;
+before(async () => (server = await Server.start("--token", "secret", "--view-token", "look")));
+after(() => server.stop());
+
+test("with --token the server says nothing until auth has succeeded", async () => {
+  const client = await Client.connect(server);
+  await sleep(500);
+  assert.deepEqual(client.messages, []);
+  const answer = client.request("auth", { token: "secret" });
+  await client.notification("scene");
+  assert.deepEqual(client.messages.slice(0, 2).map((message) => message.method), ["hello", "scene"]);
+  assert.deepEqual(await answer, { role: "operator" });
+  assert.equal((await client.notification("hello")).role, "operator");
+  assert.equal((await client.request("sim.pause")).playing, false);
+  await client.request("sim.play");
+  await client.close();
+});
+
+test("before auth, and with a wrong token, everything answers -32001", async () => {
+  const client = await Client.connect(server);
+  for (const [method, params] of [["ping", {}], ["scene.get", {}], ["sim.pause", {}], ["stream.subscribe", {}],
+                                  ["auth", { token: "wrong" }], ["auth", { token: "" }], ["auth", { token: "secretx" }]])
+    assert.equal((await client.refusal(method, params)).code, -32001, method);
+  assert.deepEqual(client.messages, []);
+  await client.request("auth", { token: "secret" });
+  await client.close();
+});
+
+test("who does not authenticate is closed with 1008 after 5 s", async () => {
+  const client = await Client.connect(server);
+  const from = performance.now();
+  assert.equal((await withTimeout(client.closed, "the close")).code, 1008);
+  assert.ok(performance.now() - from > 4000);
+});
+
+test("a viewer reads and watches; whatever changes something answers -32001", async () => {
+  const client = await Client.connect(server);
+  assert.deepEqual(await client.request("auth", { token: "look" }), { role: "viewer" });
+  assert.equal((await client.notification("hello")).role, "viewer");
+  for (const [method, params] of [["scene.load", { preset: "seed" }], ["scene.patch", { patch: {} }], ["sim.play", {}],
+                                  ["sim.pause", {}], ["sim.step", {}], ["sim.reset", {}], ["sim.speed", { factor: 1 }]])
+    assert.equal((await client.refusal(method, params)).code, -32001, method);
+  assert.equal((await client.request("scene.get")).document.name, "seed");
+  assert.ok((await client.request("scene.presets")).presets.length > 0);
+  await client.request("stream.subscribe");
+  await client.frame();
+  await client.close();
+});
+
+test("the HTTP API wants the token as a Bearer token; the page and /healthz do not", async () => {
+  for (const path of ["/api/scene", "/api/mesh.obj", "/api/snapshot.png"]) {
+    const refused = await server.get(path);
+    assert.equal(refused.status, 401);
+    assert.equal(refused.headers["www-authenticate"], "Bearer");
+    assert.equal((await server.get(path, { authorization: "Bearer wrong" })).status, 401);
+  }
+  for (const token of ["secret", "look"])
+    assert.equal((await server.get("/api/scene", { authorization: `Bearer ${token}` })).status, 200);
+  assert.equal((await server.get("/")).status, 200);
+  assert.equal((await server.get("/healthz")).status, 200);
+});

@@ -1,0 +1,203 @@
+// A server process and clients of it, over real sockets.
+import { spawn } from "node:child_process";
+import { once } from "node:events";
+import http from "node:http";
+import WebSocket from "ws";
+import { decode } from "./decode.mjs";
+
+const program = process.env.CLOTHLAB;
+if (!program) throw new Error("CLOTHLAB must name the program to test");
+
+/// Generous: a busy machine under a sanitizer must not fail a test.
+export const patience = 30_000;
+
+export const sleep = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
+
+export function withTimeout(promise, what, milliseconds = patience) {
+  let timer;
+  const late = new Promise((_, reject) => {
+    timer = setTimeout(() => reject(new Error(`waited ${milliseconds / 1000} s for ${what}`)), milliseconds);
+  });
+  return Promise.race([promise, late]).finally(() => clearTimeout(timer));
+}
+
+/// Runs the program to its end.
+export async function runProgram(args) {
+  const child = spawn(program, args, { stdio: ["ignore", "pipe", "pipe"] });
+  let stdout = "", stderr = "";
+  child.stdout.on("data", (data) => (stdout += data));
+  child.stderr.on("data", (data) => (stderr += data));
+  const [code] = await withTimeout(once(child, "close"), `clothlab ${args.join(" ")} to end`).catch((error) => {
+    child.kill("SIGKILL");
+    throw error;
+  });
+  return { code, stdout, stderr };
+}
+
+export class Server {
+  static async start(...args) {
+    const server = new Server();
+    server.startedAt = performance.now();
+    server.child = spawn(program, ["serve", "--port", "0", ...args], { stdio: ["ignore", "pipe", "pipe"] });
+    server.closed = once(server.child, "close");
+    server.stdout = server.stderr = "";
+    server.child.stderr.on("data", (data) => (server.stderr += data));
+    const line = new Promise((resolve, reject) => {
+      server.child.stdout.on("data", (data) => {
+        server.stdout += data;
+        if (server.stdout.includes("\n")) resolve(server.stdout);
+      });
+      server.child.on("close", (code) => reject(new Error(`serve ended with ${code}: ${server.stderr}`)));
+    });
+    const match = /^listening on (https?):\/\/([^/]+):(\d+)\/\n/.exec(await withTimeout(line, "the server to listen"));
+    if (!match) throw new Error(`serve said ${JSON.stringify(server.stdout)}`);
+    server.port = Number(match[3]);
+    server.host = `127.0.0.1:${server.port}`;
+    return server;
+  }
+
+  /// Ends it as a user would; the exit code.
+  async stop(signal = "SIGTERM") {
+    this.child.kill(signal);
+    const [code] = await withTimeout(this.closed, "the server to end");
+    return code;
+  }
+
+  get(path, headers = {}, method = "GET") {
+    const answer = new Promise((resolve, reject) => {
+      const request = http.request({ host: "127.0.0.1", port: this.port, path, headers, method }, async (response) => {
+        const chunks = [];
+        for await (const chunk of response) chunks.push(chunk);
+        resolve({ status: response.statusCode, headers: response.headers, body: Buffer.concat(chunks) });
+      });
+      request.on("error", reject);
+      request.end();
+    });
+    return withTimeout(answer, path);
+  }
+}
+
+export class RpcError extends Error {
+  constructor(error) {
+    super(error.message);
+    this.code = error.code;
+    this.data = error.data;
+  }
+}
+
+export class Client {
+  /// Connects and waits for the handshake; a refusal rejects with its HTTP status in `status`.
+  static async connect(server, { session, protocols = ["clothlab.v1"], headers = {}, path, acknowledge = true } = {}) {
+    const client = new Client();
+    client.acknowledge = acknowledge;
+    const where = path ?? "/ws" + (session === undefined ? "" : `?session=${session}`);
+    client.socket = new WebSocket(`ws://${server.host}${where}`, protocols, { headers, perMessageDeflate: false });
+    client.nextId = 1;
+    client.pending = new Map();
+    client.messages = [];  // notifications and errors without an id, as they came
+    client.binary = [];    // decoded topologies and frames
+    client.waiting = new Set();
+    client.closed = new Promise((resolve) => client.socket.on("close", (code, reason) => {
+      client.over = true;
+      resolve({ code, reason: reason.toString() });
+      for (const { reject } of client.pending.values()) reject(new Error(`closed with ${code} ${reason}`));
+    }));
+    client.socket.on("message", (data, isBinary) => client.receive(data, isBinary));
+    const opened = new Promise((resolve, reject) => {
+      client.socket.on("open", resolve);
+      client.socket.on("error", reject);
+      client.socket.on("unexpected-response", (_, response) => {
+        response.resume();
+        reject(Object.assign(new Error(`refused with ${response.statusCode}`), { status: response.statusCode }));
+      });
+    });
+    await withTimeout(opened, "the handshake");
+    client.socket.on("error", () => {});
+    return client;
+  }
+
+  receive(data, isBinary) {
+    if (isBinary) {
+      const message = { ...decode(data), receivedAt: performance.now() };
+      this.binary.push(message);
+      if (message.kind === 2 && this.acknowledge) this.notify("stream.ack", { frame: message.sequence });
+    } else {
+      const message = JSON.parse(data.toString());
+      if (message.jsonrpc !== "2.0") throw new Error("a message without jsonrpc 2.0");
+      const call = this.pending.get(message.id);
+      if (call) {
+        this.pending.delete(message.id);
+        if (message.error) call.reject(new RpcError(message.error));
+        else call.resolve(message.result);
+      } else {
+        this.messages.push(message);
+      }
+    }
+    for (const check of this.waiting) check();
+  }
+
+  get frames() { return this.binary.filter((message) => message.kind === 2); }
+  get topologies() { return this.binary.filter((message) => message.kind === 1); }
+
+  send(text) { this.socket.send(text); }
+  notify(method, params = {}) { if (!this.over) this.send(JSON.stringify({ jsonrpc: "2.0", method, params })); }
+
+  request(method, params) {
+    const id = this.nextId++;
+    const answer = new Promise((resolve, reject) => this.pending.set(id, { resolve, reject }));
+    this.send(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
+    return withTimeout(answer, `the answer to ${method}`);
+  }
+
+  /// The error a request is answered with.
+  async refusal(method, params) {
+    try {
+      await this.request(method, params);
+    } catch (error) {
+      if (error instanceof RpcError) return error;
+      throw error;
+    }
+    throw new Error(`${method} was not refused`);
+  }
+
+  /// The first item of `list()` that satisfies `predicate`, now or later.
+  until(list, predicate, what) {
+    let check;
+    const found = new Promise((resolve) => {
+      check = () => {
+        const item = list().find(predicate);
+        if (item !== undefined) resolve(item);
+      };
+      this.waiting.add(check);
+      check();
+    });
+    return withTimeout(found, what).finally(() => this.waiting.delete(check));
+  }
+
+  /// The parameters of a notification that has come or will come.
+  async notification(method, predicate = () => true) {
+    const message = await this.until(() => this.messages, (m) => m.method === method && predicate(m.params), method);
+    return message.params;
+  }
+  /// The same, but only one that comes from now on.
+  nextNotification(method, predicate = () => true) {
+    const before = new Set(this.messages);
+    return this.until(() => this.messages, (m) => !before.has(m) && m.method === method && predicate(m.params), method)
+      .then((message) => message.params);
+  }
+  /// An answer with id null: to what could not be read.
+  errorWithoutId(from = 0) {
+    return this.until(() => this.messages.slice(from), (m) => m.id === null && m.error, "an error").then((m) => m.error);
+  }
+
+  frame(predicate = () => true) { return this.until(() => this.frames, predicate, "a frame"); }
+  nextFrame(predicate = () => true) {
+    const count = this.frames.length;
+    return this.until(() => this.frames.slice(count), predicate, "a new frame");
+  }
+
+  async close() {
+    this.socket.close();
+    await withTimeout(this.closed, "the connection to close");
+  }
+}

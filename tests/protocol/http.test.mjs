@@ -1,0 +1,136 @@
+import assert from "node:assert/strict";
+import net from "node:net";
+import { once } from "node:events";
+import { after, before, test } from "node:test";
+import { gunzipSync } from "node:zlib";
+import { Client, Server, withTimeout } from "./harness.mjs";
+
+let server;
+before(async () => (server = await Server.start()));
+after(() => server.stop());
+
+test("the page comes as HTML, with the headers that keep it to itself", async () => {
+  const { status, headers, body } = await server.get("/");
+  assert.equal(status, 200);
+  assert.equal(headers["content-type"], "text/html; charset=utf-8");
+  assert.match(body.toString(), /<html/i);
+  const policy = headers["content-security-policy"];
+  assert.match(policy, /script-src 'self'(;|$)/);
+  assert.doesNotMatch(/script-src[^;]*/.exec(policy)[0], /unsafe/);
+  assert.equal(headers["x-content-type-options"], "nosniff");
+  assert.equal(headers["referrer-policy"], "no-referrer");
+});
+
+test("the page comes compressed to who understands it, and not again to who has it", async () => {
+  const plain = await server.get("/");
+  const packed = await server.get("/", { "accept-encoding": "gzip, br" });
+  assert.equal(packed.headers["content-encoding"], "gzip");
+  assert.deepEqual(gunzipSync(packed.body), plain.body);
+  const known = await server.get("/", { "if-none-match": plain.headers.etag });
+  assert.equal(known.status, 304);
+  assert.equal(known.body.length, 0);
+});
+
+test("HEAD answers as GET does, without the body", async () => {
+  const [head, get] = [await server.get("/", {}, "HEAD"), await server.get("/")];
+  assert.equal(head.status, 200);
+  assert.equal(head.headers["content-length"], get.headers["content-length"]);
+  assert.equal(head.body.length, 0);
+});
+
+test("what is not there is a readable 404; nothing outside the page's folder can be reached", async () => {
+  for (const path of ["/nothing", "/web", "/assets/", "/..%2f..%2fetc/passwd", "/%2e%2e/%2e%2e/CMakeLists.txt", "/.git/config"]) {
+    const { status, body } = await server.get(path);
+    assert.equal(status, 404, path);
+    assert.ok(body.length > 0);
+  }
+  const socket = net.connect(server.port, "127.0.0.1");
+  await once(socket, "connect");
+  socket.write("GET /../../../../etc/passwd HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  let text = "";
+  socket.on("data", (data) => (text += data));
+  await withTimeout(once(socket, "close"), "the answer");
+  assert.doesNotMatch(text, /root:/);
+});
+
+test("other verbs than GET and HEAD answer 405 with what is allowed", async () => {
+  for (const method of ["POST", "PUT", "DELETE"]) {
+    const { status, headers } = await server.get("/api/scene", { "content-length": "0" }, method);
+    assert.equal(status, 405, method);
+    assert.equal(headers.allow, "GET, HEAD");
+  }
+});
+
+test("/ws without an upgrade says what it is", async () => {
+  const { status, body } = await server.get("/ws");
+  assert.equal(status, 426);
+  assert.match(body.toString(), /clothlab\.v1/);
+});
+
+test("/healthz is 200 while the sessions' threads beat", async () => {
+  const { status, body } = await server.get("/healthz");
+  assert.equal(status, 200);
+  assert.equal(body.toString(), "ok\n");
+});
+
+test("/metrics counts sessions, clients, viewers, steps, frames and bytes, and the latency of frames", async () => {
+  const client = await Client.connect(server);
+  await client.request("stream.subscribe");
+  await client.until(() => client.frames.slice(10), () => true, "10 frames");
+  const text = (await server.get("/metrics")).body.toString();
+  const value = (name) => Number(new RegExp(`^${name} (\\S+)$`, "m").exec(text)[1]);
+  assert.equal(value("clothlab_sessions"), 1);
+  assert.equal(value("clothlab_clients"), 1);
+  assert.equal(value("clothlab_viewers"), 1);
+  assert.ok(value("clothlab_steps_total") > 0);
+  assert.ok(value("clothlab_frames_sent_total") >= 10);
+  assert.ok(value("clothlab_bytes_sent_total") > 10 * 5000);
+  assert.ok(value("clothlab_frame_latency_seconds_count") >= 10);
+  const p95 = value("clothlab_frame_latency_p95_seconds");
+  assert.ok(p95 > 0 && p95 < 1);
+  await client.close();
+});
+
+test("/api/scene is the document as scene.get answers it", async () => {
+  const client = await Client.connect(server);
+  const { document } = await client.request("scene.get");
+  const { status, headers, body } = await server.get("/api/scene");
+  assert.equal(status, 200);
+  assert.equal(headers["content-type"], "application/json");
+  assert.deepEqual(JSON.parse(body), document);
+  await client.close();
+});
+
+test("/api/mesh.obj is the present cloth", async () => {
+  const client = await Client.connect(server);
+  await client.request("sim.pause");
+  await client.request("sim.reset");
+  const { status, body } = await server.get("/api/mesh.obj?session=main");
+  assert.equal(status, 200);
+  const lines = body.toString().split("\n");
+  const vertices = lines.filter((line) => line.startsWith("v ")).map((line) => line.split(" ").slice(1).map(Number));
+  assert.equal(vertices.length, 625);
+  assert.deepEqual(vertices[0], [-0.5, 1, 0]);
+  const faces = lines.filter((line) => line.startsWith("f "));
+  assert.equal(faces.length, 1152);
+  assert.ok(faces.every((face) => face.match(/\d+/g).every((index) => index >= 1 && index <= 625)));
+  await client.request("sim.play");
+  await client.close();
+});
+
+test("the API of a session that is not open answers 404 and opens none", async () => {
+  for (const path of ["/api/scene", "/api/mesh.obj", "/api/snapshot.png"])
+    assert.equal((await server.get(`${path}?session=nobody`)).status, 404);
+  assert.match((await server.get("/metrics")).body.toString(), /^clothlab_sessions 1$/m);
+});
+
+test("/api/snapshot.png is a picture of the size asked for", async () => {
+  const { status, headers, body } = await server.get("/api/snapshot.png?width=320&height=200");
+  assert.equal(status, 200);
+  assert.equal(headers["content-type"], "image/png");
+  assert.equal(body.subarray(1, 4).toString(), "PNG");
+  assert.equal(body.readUInt32BE(16), 320);
+  assert.equal(body.readUInt32BE(20), 200);
+  for (const query of ["width=0&height=10", "width=10&height=5000", "width=x&height=10", "width=1e2&height=10"])
+    assert.equal((await server.get(`/api/snapshot.png?${query}`)).status, 400, query);
+});

@@ -1,0 +1,124 @@
+import assert from "node:assert/strict";
+import { after, afterEach, before, beforeEach, test } from "node:test";
+import { Client, Server } from "./harness.mjs";
+
+let server, client;
+before(async () => (server = await Server.start("--scene", "seed", "--set", "/gravity/1=-5")));
+after(() => server.stop());
+beforeEach(async () => {
+  client = await Client.connect(server);
+  await client.notification("scene");
+  await client.request("scene.load", { preset: "seed" });
+});
+afterEach(() => client.close());
+
+test("serve starts with the scene and the values of its command line", async () => {
+  const other = await Client.connect(server, { session: "fresh" });
+  const { document } = await other.notification("scene");
+  assert.deepEqual(document.gravity, [0, -5, 0]);
+  await other.close();
+});
+
+test("scene.get answers the document and its revision", async () => {
+  const { document, revision } = await client.request("scene.get");
+  assert.equal(document.name, "seed");
+  assert.equal(document.cloths[0].material.structural, 20000);
+  assert.ok(revision >= 1);
+});
+
+test("scene.presets lists the presets of the contract, the seed first", async () => {
+  const { presets } = await client.request("scene.presets");
+  assert.equal(presets[0], "seed");
+  for (const name of ["flag", "curtain", "tablecloth", "drape", "twist", "hanging-strip", "cantilever", "trampoline", "blowup"])
+    assert.ok(presets.includes(name), name);
+});
+
+test("a merge patch changes the scene and raises the revision by one", async () => {
+  const before = await client.request("scene.get");
+  const changed = client.nextNotification("scene.changed");
+  const patch = { gravity: [0, -1.5, 0], solver: { dt: 0.0005 } };
+  const answer = await client.request("scene.patch", { patch });
+  assert.equal(answer.revision, before.revision + 1);
+  assert.equal(answer.applies, "uniform");
+  const hello = await client.notification("hello");
+  assert.deepEqual(await changed, { revision: answer.revision, patch, by: hello.client });
+  const after = await client.request("scene.get");
+  assert.equal(after.revision, answer.revision);
+  assert.deepEqual(after.document, { ...before.document, gravity: [0, -1.5, 0], solver: { ...before.document.solver, dt: 0.0005 } });
+});
+
+test("a JSON patch (RFC 6902) changes the scene, echoed as it was given", async () => {
+  const changed = client.nextNotification("scene.changed");
+  const patch = [{ op: "test", path: "/name", value: "seed" }, { op: "replace", path: "/cloths/0/material/damping", value: 1 }];
+  await client.request("scene.patch", { patch });
+  assert.deepEqual((await changed).patch, patch);
+  assert.equal((await client.request("scene.get")).document.cloths[0].material.damping, 1);
+});
+
+test("a patch says how deep it cuts, and only a rebuilt cloth resets time", async () => {
+  const apply = async (patch) => (await client.request("scene.patch", { patch })).applies;
+  await client.request("sim.step", { steps: 5 });
+  const at = async () => (await client.request("sim.pause")).step;
+  const step = await at();
+  assert.ok(step >= 5);
+  assert.equal(await apply({}), "none");
+  assert.equal(await apply({ gravity: [0, -2, 0] }), "uniform");
+  assert.equal(await apply({ self_collision: null }), "kernel");
+  assert.equal(await at(), step);
+  const notice = client.nextNotification("notice");
+  assert.equal(await apply([{ op: "replace", path: "/cloths/0/mesh/grid/columns", value: 30 },
+                            { op: "replace", path: "/cloths/0/pins", value: [] }]), "cloth");
+  assert.equal(await at(), 0);
+  assert.match((await notice).text, /rebuilt/);
+});
+
+test("an invalid patch answers -32602 with the scene's pointer and changes nothing", async () => {
+  const before = await client.request("scene.get");
+  const cases = [
+    [{ solver: { dt: -1 } }, "/solver/dt"], [{ solver: { dt: "x" } }, "/solver/dt"], [{ bogus: 1 }, "/bogus"],
+    [{ colliders: [{ name: "b", sphere: { center: [0, 0, 0], radius: -1 } }] }, "/colliders/0/sphere/radius"],
+    [[{ op: "replace", path: "/solver/dt", value: null }], "/solver/dt"],
+    [[{ op: "replace", path: "/cloths/0/pins/0/at", value: "corner:99,0" }], "/cloths/0/pins/0/at"],
+  ];
+  for (const [patch, path] of cases) {
+    const error = await client.refusal("scene.patch", { patch });
+    assert.equal(error.code, -32602, JSON.stringify(patch));
+    assert.equal(error.data.path, path);
+    assert.ok(error.data.found.length > 0 && error.data.allowed.length > 0);
+  }
+  assert.deepEqual(await client.request("scene.get"), before);
+});
+
+test("what is not supported yet is refused and says so", async () => {
+  const error = await client.refusal("scene.patch", { patch: { wind: { velocity: [1, 0, 0] } } });
+  assert.equal(error.code, -32602);
+  assert.match(error.message, /not supported yet/);
+});
+
+test("a patch for a revision that is past answers -32003 with the current one", async () => {
+  const { revision } = await client.request("scene.get");
+  const patch = { gravity: [0, -3, 0] };
+  await client.request("scene.patch", { patch, revision });
+  const error = await client.refusal("scene.patch", { patch, revision });
+  assert.equal(error.code, -32003);
+  assert.deepEqual(error.data, { revision: revision + 1 });
+});
+
+test("scene.load takes a preset, and everybody gets the whole scene", async () => {
+  const scene = client.nextNotification("scene");
+  const answer = await client.request("scene.load", { preset: "curtain" });
+  assert.equal(answer.applies, "cloth");
+  assert.equal((await scene).document.name, "curtain");
+  assert.equal((await scene).revision, answer.revision);
+});
+
+test("scene.load takes a scene of one's own, at time 0", async () => {
+  const { document } = await client.request("scene.get");
+  await client.request("sim.step", { steps: 3 });
+  await client.request("scene.load", { scene: { ...document, name: "mine" } });
+  assert.equal((await client.request("sim.pause")).step, 0);
+  assert.equal((await client.request("scene.get")).document.name, "mine");
+  const error = await client.refusal("scene.load", { scene: { ...document, version: 2 } });
+  assert.equal(error.code, -32602);
+  assert.equal(error.data.path, "/version");
+});

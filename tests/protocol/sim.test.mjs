@@ -1,0 +1,169 @@
+import assert from "node:assert/strict";
+import { after, afterEach, before, beforeEach, test } from "node:test";
+import { Client, Server, sleep } from "./harness.mjs";
+
+let server, client;
+before(async () => (server = await Server.start()));
+after(() => server.stop());
+beforeEach(async () => {
+  client = await Client.connect(server);
+  await client.notification("scene");
+  await client.request("sim.pause");
+  await client.request("scene.load", { preset: "seed" });
+});
+afterEach(() => client.close());
+
+test("sim.status has every field of the contract, with the passes that run and those that do not", async () => {
+  await client.request("sim.play");
+  const status = await client.nextNotification("sim.status", (s) => s.playing && s.step > 0);
+  for (const field of ["time", "step", "real_time_factor", "speed", "max_strain", "max_speed", "contacts"])
+    assert.ok(Number.isFinite(status[field]), field);
+  for (const field of ["kinetic", "elastic", "gravitational"]) assert.ok(Number.isFinite(status.energy[field]), field);
+  assert.ok(status.passes.length > 0 && status.passes.every((name) => typeof name === "string"));
+  assert.ok(status.skipped.every(({ name, reason }) => name && reason));
+  assert.equal(status.stability, null);
+  assert.equal(status.asleep, false);
+  assert.equal(status.diverged, false);
+});
+
+test("sim.status comes about 10 times a second, playing or not", async () => {
+  for (const method of ["sim.play", "sim.pause"]) {
+    await client.request(method);
+    const before = client.messages.length;
+    await sleep(2000);
+    const count = client.messages.slice(before).filter((message) => message.method === "sim.status").length;
+    assert.ok(count >= 8 && count <= 24, `${count} in 2 s after ${method}`);
+  }
+});
+
+test("what is skipped follows the scene", async () => {
+  const patched = await client.request("scene.patch", { patch: { self_collision: null, colliders: [] } });
+  assert.equal(patched.applies, "kernel");
+  const status = await client.nextNotification("sim.status", (s) => s.skipped.some((pass) => /self/.test(pass.name)));
+  assert.ok(!status.passes.some((name) => /self/.test(name)));
+});
+
+test("play moves time, pause holds it", async () => {
+  await client.request("sim.play");
+  await client.nextNotification("sim.status", (s) => s.step > 20);
+  const { step, playing } = await client.request("sim.pause");
+  assert.equal(playing, false);
+  assert.ok(step > 20);
+  await sleep(300);
+  assert.equal((await client.request("sim.pause")).step, step);
+  const status = await client.nextNotification("sim.status", (s) => s.step === step);
+  assert.equal(status.playing, false);
+});
+
+test("sim.step pauses first and answers when exactly that many steps are done", async () => {
+  await client.request("sim.play");
+  const first = await client.request("sim.step", { steps: 7 });
+  assert.equal(first.playing, false);
+  const second = await client.request("sim.step", { steps: 500 });
+  assert.equal(second.step, first.step + 500);
+  assert.ok(Math.abs(second.time - first.time - 0.5) < 1e-9);
+  assert.equal((await client.request("sim.step")).step, second.step + 1);
+});
+
+test("several sim.step in a row are all done", async () => {
+  const answers = await Promise.all([10, 20, 30].map((steps) => client.request("sim.step", { steps })));
+  assert.deepEqual(answers.map((answer) => answer.step), [10, 30, 60]);
+});
+
+test("sim.reset goes back to the rest shape at time 0 and keeps playing or pausing", async () => {
+  await client.request("stream.subscribe", { encoding: "f32" });
+  const rest = await client.frame((frame) => frame.step === 0);
+  await client.request("sim.step", { steps: 50 });
+  const moved = await client.frame((frame) => frame.step === 50);
+  assert.notDeepEqual(moved.positions, rest.positions);
+  const next = client.nextFrame((frame) => frame.step !== 50);
+  assert.deepEqual(await client.request("sim.reset"), { playing: false, time: 0, step: 0 });
+  const again = await next;
+  assert.equal(again.step, 0);
+  assert.deepEqual(again.positions, rest.positions);
+  await client.request("sim.play");
+  assert.equal((await client.request("sim.reset")).playing, true);
+});
+
+test("the same step has the same positions whoever watches, and however it was reached", async () => {
+  await client.request("stream.subscribe", { encoding: "f32", rate: 120, in_flight: 8 });
+  await client.request("sim.step", { steps: 300 });
+  const atOnce = await client.frame((frame) => frame.step === 300);
+
+  const alone = await Client.connect(server, { session: "other" });
+  await alone.request("sim.pause");
+  await alone.request("sim.reset");
+  for (let i = 0; i < 10; ++i) await alone.request("sim.step", { steps: 30 });
+  await alone.request("stream.subscribe", { encoding: "f32" });
+  const inPieces = await alone.frame((frame) => frame.step === 300);
+  assert.deepEqual(inPieces.positions, atOnce.positions);
+
+  await alone.request("sim.reset");
+  await alone.request("sim.play");
+  const playing = await alone.frame((frame) => frame.step > 300);
+  await alone.request("sim.pause");
+  await client.request("sim.step", { steps: playing.step - 300 });
+  const stepped = await client.frame((frame) => frame.step === playing.step);
+  assert.deepEqual(stepped.positions, playing.positions);
+  await alone.close();
+});
+
+test("sim.speed slows time down and answers the factor", async () => {
+  assert.deepEqual(await client.request("sim.speed", { factor: 0.1 }), { factor: 0.1 });
+  await client.request("sim.reset");
+  await client.request("sim.play");
+  await sleep(2000);
+  const { time } = await client.request("sim.pause");
+  assert.ok(time > 0.02 && time < 0.5, `${time} s simulated in about 2 s at a tenth of the speed`);
+  await client.request("sim.speed", { factor: 1 });
+});
+
+test("a speed beyond the machine slows time but answers commands at once", async () => {
+  await client.request("sim.speed", { factor: 100 });
+  await client.request("sim.play");
+  for (let i = 0; i < 20; ++i) {
+    const sent = performance.now();
+    await client.request("scene.get");
+    assert.ok(performance.now() - sent < 3000);
+  }
+  const status = await client.nextNotification("sim.status", (s) => s.real_time_factor > 0);
+  assert.equal(status.speed, 100);
+  await client.request("sim.speed", { factor: 1 });
+});
+
+test("a blow-up is a state with a remedy: told, stopped, the last good frame kept, and left by a reset", async () => {
+  await client.request("scene.load", { preset: "blowup" });
+  await client.request("stream.subscribe", { encoding: "q16" });
+  const told = client.nextNotification("sim.diverged");
+  await client.request("sim.play");
+  const { reason, remedy } = await told;
+  assert.ok(reason.length > 0 && remedy.text.length > 0);
+  const flagged = await client.frame((frame) => (frame.flags & 2) !== 0);
+  assert.ok(flagged.positions.flat().every(Number.isFinite));
+  for (const method of ["sim.play", "sim.step"]) assert.equal((await client.refusal(method)).code, -32004);
+  const status = await client.nextNotification("sim.status", (s) => s.diverged);
+  assert.equal(status.playing, false);
+
+  const late = await Client.connect(server);
+  await late.request("stream.subscribe", { encoding: "q16" });
+  assert.equal((await late.frame()).flags & 2, 2);
+  await late.close();
+
+  assert.ok(remedy.patch.solver.dt < 0.0025);
+  await client.request("scene.patch", { patch: remedy.patch });
+  const next = client.nextFrame((frame) => frame.step === 0);
+  assert.equal((await client.request("sim.reset")).step, 0);
+  assert.equal((await next).flags, 0);
+  assert.equal((await client.request("sim.step", { steps: 200 })).step, 200);
+  assert.equal((await client.nextNotification("sim.status", (s) => s.step === 200)).diverged, false);
+});
+
+test("another scene ends a blow-up too, and plays again if it played before", async () => {
+  await client.request("scene.load", { preset: "blowup" });
+  const told = client.nextNotification("sim.diverged");
+  await client.request("sim.play");
+  await told;
+  await client.request("scene.load", { preset: "seed" });
+  const status = await client.nextNotification("sim.status", (s) => s.step > 0 && !s.diverged);
+  assert.equal(status.playing, true);
+});
