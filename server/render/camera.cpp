@@ -14,7 +14,7 @@ const glm::vec3 view_direction = glm::normalize(glm::vec3(0.62f, 0.3f, 1.0f));  
 const glm::vec3 up{0.0f, 1.0f, 0.0f};
 constexpr float vertical_field = 32.0f;   // [degrees]
 constexpr float margin = 1.08f;           // room around the box
-constexpr float smallest_radius = 0.01f;  // [m]; a single point still gets a picture
+constexpr float smallest_radius = 1e-4f;  // [m]; a single point still gets a picture
 
 glm::vec3 corner(const Box& box, int index) {
   return {index & 1 ? box.maximum.x : box.minimum.x, index & 2 ? box.maximum.y : box.minimum.y,

@@ -5,7 +5,7 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { clothlab, folder } from "./program.mjs";
 
-const commands = ["run", "render", "validate", "presets", "info"];
+const commands = ["run", "render", "validate", "presets", "info", "serve"];
 
 test("without a subcommand the help goes to stderr and the exit code is 2", () => {
   const { status, stdout, stderr } = clothlab([]);

@@ -1,0 +1,58 @@
+// The README's scripts are run as they stand there, but for the port.
+import assert from "node:assert/strict";
+import { spawn, spawnSync } from "node:child_process";
+import { readFileSync, rmSync, writeFileSync } from "node:fs";
+import { createInterface } from "node:readline";
+import { after, before, test } from "node:test";
+import { fileURLToPath } from "node:url";
+
+const readme = readFileSync(new URL("../../README.md", import.meta.url), "utf8");
+const scripts = [];
+let server, address;
+
+/** Starts a process and resolves to its first lines that match, or rejects when it ends without them. */
+function firstLines(child, pattern, count) {
+  return new Promise((resolve, reject) => {
+    const lines = [];
+    let errors = "";
+    child.stderr.on("data", (data) => (errors += data));
+    createInterface({ input: child.stdout }).on("line", (line) => {
+      if (pattern.test(line) && lines.push(line) === count) resolve(lines);
+    });
+    child.on("error", reject);
+    child.on("exit", (code) => reject(new Error(`it ended with ${code} after ${lines.length} lines: ${errors}`)));
+  });
+}
+
+before(async () => {
+  server = spawn(process.env.CLOTHLAB ?? "build/release/clothlab", ["serve", "--port", "0"]);
+  const [line] = await firstLines(server, /^listening on /, 1);
+  address = new URL(line.replace("listening on ", "")).host;
+});
+after(() => {
+  server?.kill();
+  for (const path of scripts) rmSync(path, { force: true });
+});
+
+async function runs(language, extension, program) {
+  const code = readme.match(new RegExp("```" + language + "\n(.*?)```", "s"))[1];
+  assert.match(code, /127\.0\.0\.1:8080/);
+  // Below tests/, where Node finds the packages.
+  const path = fileURLToPath(new URL(`readme-${process.pid}.${extension}`, import.meta.url));
+  scripts.push(path);
+  writeFileSync(path, code.replaceAll("127.0.0.1:8080", address));
+  const child = spawn(program, [path]);
+  try {
+    const lines = await firstLines(child, /^\d+\.\d+ s: lowest vertex at -?\d+\.\d+ m$/, 3);
+    const times = lines.map(parseFloat);
+    assert.ok(times[0] <= times[1] && times[1] <= times[2], lines.join("\n"));
+  } finally {
+    child.kill();
+  }
+}
+
+test("the script for Node prints a line a frame", () => runs("js", "mjs", process.execPath));
+
+const python = ["/usr/bin/python3", "python3"].find((program) => spawnSync(program, ["-c", "import websockets"]).status === 0);
+test("the script for Python prints a line a frame", { skip: python ? false : "Python has no websockets here" },
+     () => runs("python", "py", python));
