@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <tuple>
 
 #include "server/sim/plan.h"
 
@@ -28,7 +29,7 @@ Result<DiagnosticsPass> DiagnosticsPass::create(std::uint32_t vertex_count) {
   glUniform1i(0, static_cast<GLint>(vertex_count));
   pass.groups_ = (vertex_count + group_size - 1) / group_size;
   pass.results_ = gl::Buffer(pass.groups_ * sizeof(Partial) + sizeof(SelfCollision::Counters));
-  pass.ring_ = gl::ReadbackRing(pass.results_.bytes(), 3);
+  pass.ring_ = gl::ReadbackRing(pass.results_.bytes(), ring_slots);
   return pass;
 }
 
@@ -47,7 +48,7 @@ bool DiagnosticsPass::request(const StateBuffers& state, const SelfCollision* se
                              static_cast<GLintptr>(groups_ * sizeof(Partial)), sizeof(SelfCollision::Counters));
   }
   ring_.push(results_, results_.bytes());
-  requested_.emplace_back(time, step);
+  shown_[requested_++ % ring_slots] = {time, step};
   return true;
 }
 
@@ -55,7 +56,7 @@ bool DiagnosticsPass::poll(Diagnostics& out, bool wait) {
   const std::span<const std::byte> bytes = ring_.front(wait);
   if (bytes.empty()) return false;
   out = Diagnostics{};
-  std::tie(out.time, out.step) = requested_.front();
+  std::tie(out.time, out.step) = shown_[delivered_++ % ring_slots];
   double contacts = 0.0, speed_squared = 0.0;
   for (std::size_t group = 0; group < groups_; ++group) {
     Partial partial;
@@ -75,7 +76,6 @@ bool DiagnosticsPass::poll(Diagnostics& out, bool wait) {
   out.contacts = static_cast<std::uint32_t>(contacts);
   out.max_speed = std::sqrt(speed_squared);
   ring_.pop();
-  requested_.pop_front();
   return true;
 }
 

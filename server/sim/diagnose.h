@@ -2,7 +2,7 @@
 // partial results come back through a ring, without waiting unless asked to.
 #pragma once
 
-#include <deque>
+#include <array>
 
 #include "server/gl/program.h"
 #include "server/sim/self_collision.h"
@@ -26,7 +26,9 @@ class DiagnosticsPass {
   gl::Program program_;
   gl::Buffer results_;  ///< the partial results, then self-collision's counters
   gl::ReadbackRing ring_;
-  std::deque<std::pair<double, std::uint64_t>> requested_;  ///< time and step of each result on its way
+  static constexpr std::size_t ring_slots = 3;
+  std::array<std::pair<double, std::uint64_t>, ring_slots> shown_{};  ///< time and step of each result on its way
+  std::size_t requested_ = 0, delivered_ = 0;
   std::uint32_t groups_ = 0;
 };
 
