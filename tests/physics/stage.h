@@ -1,0 +1,40 @@
+// What the tests against the double-precision reference share: scenes from JSON, and states in double.
+#pragma once
+
+#include <glm/geometric.hpp>
+#include <string>
+
+#include "server/reference/reference.h"
+#include "server/scene/document.h"
+#include "server/sim/colliders.h"
+#include "tests/scenes.h"
+
+namespace clothlab {
+
+inline scene::Scene scene_of(const std::string& text) {
+  Result<scene::json> value = scene::parse_json(text, "test", true);
+  Result<scene::Document> document = value ? scene::validate(*value) : value.error();
+  if (!document) FAIL(document.error().text());
+  return document->scene;
+}
+
+inline scene::Scene preset(const std::string& name) {
+  return scene::load_preset(name)->scene;
+}
+
+/// The same scene for the double-precision reference.
+inline reference::World world_of(const scene::Scene& scene) {
+  return *reference::make_world(scene, sim::contact_margin(scene, *model::build(scene)));
+}
+
+/// The reference's state from the GPU's: the same numbers, in double.
+inline reference::State in_double(const sim::State& state, std::uint64_t step) {
+  reference::State result;
+  result.position.assign(state.position.begin(), state.position.end());
+  result.velocity.assign(state.velocity.begin(), state.velocity.end());
+  result.contacts.assign(state.position.size(), 0);
+  result.step = step;
+  return result;
+}
+
+}  // namespace clothlab
