@@ -17,10 +17,10 @@ Client::Client(Hub& hub, lws* wsi, std::string session)
       role_(hub.role_of("")),
       messages_(messages_per_second, message_burst, now_us()) {
   hub_.add(*this);
-  if (role_ != Role::none)
-    enter_room();
-  else
+  if (role_ == Role::none)
     lws_set_timer_usecs(wsi_, lws_usec_t{auth_seconds} * LWS_USEC_PER_SEC);
+  else if (!enter_room())
+    close(close_policy, "too many sessions");
 }
 
 Client::~Client() {
@@ -30,12 +30,8 @@ Client::~Client() {
 
 bool Client::enter_room() {
   room_ = hub_.open_room(session_);
-  if (!room_) {
-    close(close_policy, "too many sessions");
-    return false;
-  }
-  room_->enter(*this);
-  return true;
+  if (room_) room_->enter(*this);
+  return room_ != nullptr;
 }
 
 void Client::leave_room() {

@@ -31,7 +31,7 @@ class FrameMaker {
   /// Publishes what has arrived.
   void poll();
 
-  /// Every state up to `step` is known to be finite.
+  /// Every state up to `step` is known to be sound.
   void confirm(std::uint64_t step);
   /// From now on viewers get the last good frame, flagged.
   void diverge();
@@ -47,7 +47,7 @@ class FrameMaker {
     bool urgent = false;
     std::uint64_t packed_version = 0;
     Clock::time_point due{};
-    stream::SharedMessage good;       ///< the newest frame known to be finite
+    stream::SharedMessage good;       ///< the newest frame known to be sound
     stream::SharedMessage candidate;  ///< waits for a diagnosis
   };
   FrameMaker(Exchange& exchange, std::unique_ptr<stream::Packer> packer);

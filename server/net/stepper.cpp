@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "server/net/limits.h"
-
 namespace clothlab::net {
 
 using std::chrono::duration;
@@ -13,8 +11,9 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Exchange& exchange) {
-  auto stepper = std::unique_ptr<Stepper>(new Stepper(std::move(document), exchange));
+Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Exchange& exchange,
+                                                 double patience) {
+  auto stepper = std::unique_ptr<Stepper>(new Stepper(std::move(document), exchange, patience));
   Result<std::unique_ptr<sim::Simulation>> simulation = sim::Simulation::create(stepper->document_.scene);
   if (!simulation) return simulation.error();
   stepper->simulation_ = std::move(*simulation);
@@ -108,7 +107,9 @@ void Stepper::request_status(Clock::time_point now) {
 void Stepper::accept(const sim::Diagnostics& diagnostics) {
   if (!diagnostics.finite) return diverge();
   diagnostics_ = diagnostics;
-  frames_->confirm(diagnostics.step);
+  // On its way to infinity a blow-up is finite for a while: that is no state to keep for the viewers.
+  constexpr double beyond_any_cloth = 10;
+  if (diagnostics.max_strain < beyond_any_cloth) frames_->confirm(diagnostics.step);
 }
 
 void Stepper::diverge() {
@@ -152,7 +153,7 @@ void Stepper::warn_if_slow(Clock::time_point now) {
 }
 
 bool Stepper::suspended(Clock::time_point now) const {
-  return watchers_ == 0 && duration<double>(now - last_watched_).count() > unwatched_seconds;
+  return watchers_ == 0 && duration<double>(now - last_watched_).count() > patience_;
 }
 
 Clock::time_point Stepper::next_turn(Clock::time_point now) const {

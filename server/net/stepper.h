@@ -11,6 +11,7 @@
 #include "server/net/exchange.h"
 #include "server/net/frame_maker.h"
 #include "server/net/gpu_backlog.h"
+#include "server/net/limits.h"
 #include "server/net/real_time.h"
 #include "server/render/renderer.h"
 #include "server/scene/document.h"
@@ -19,8 +20,10 @@ namespace clothlab::net {
 
 class Stepper {
  public:
-  /// `document` is loaded and plays at once.
-  static Result<std::unique_ptr<Stepper>> create(scene::Document document, Exchange& exchange);
+  /// `document` is loaded and plays at once. Unwatched for `patience` [s], it stops until it is watched
+  /// again.
+  static Result<std::unique_ptr<Stepper>> create(scene::Document document, Exchange& exchange,
+                                                 double patience = unwatched_seconds);
 
   /// Handles `commands`, then does the work that is due; returns when the next turn is, if no command comes
   /// before.
@@ -33,8 +36,8 @@ class Stepper {
   };
   using Answer = std::variant<json, RpcError>;
 
-  Stepper(scene::Document document, Exchange& exchange)
-      : document_(std::move(document)), exchange_(exchange) {}
+  Stepper(scene::Document document, Exchange& exchange, double patience)
+      : document_(std::move(document)), exchange_(exchange), patience_(patience) {}
 
   // stepper_commands.cpp; each answers its ticket where it has one.
   void handle(Command& command);
@@ -74,6 +77,7 @@ class Stepper {
 
   scene::Document document_;
   Exchange& exchange_;
+  double patience_;  ///< [s]
   std::unique_ptr<sim::Simulation> simulation_;
   std::unique_ptr<FrameMaker> frames_;
   std::unique_ptr<render::Renderer> renderer_;  ///< made for the first picture

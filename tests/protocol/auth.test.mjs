@@ -3,7 +3,7 @@ import { after, before, test } from "node:test";
 import { Client, Server, sleep, withTimeout } from "./harness.mjs";
 
 let server;
-before(async () => (server = await Server.start("--token", "secret", "--view-token", "look")));
+before(async () => (server = await Server.start("--token", "secret", "--view-token", "look", "--max-sessions", "2")));
 after(() => server.stop());
 
 test("with --token the server says nothing until auth has succeeded", async () => {
@@ -49,6 +49,15 @@ test("a viewer reads and watches; whatever changes something answers -32001", as
   await client.request("stream.subscribe");
   await client.frame();
   await client.close();
+});
+
+test("auth into one session more than --max-sessions answers -32002, and the next one may", async () => {
+  const [first, second] = [await Client.connect(server, { session: "a" }), await Client.connect(server, { session: "b" })];
+  await first.request("auth", { token: "secret" });
+  assert.equal((await second.refusal("auth", { token: "secret" })).code, -32002);
+  assert.equal((await second.refusal("scene.get")).code, -32002);
+  await first.close();
+  await second.close();
 });
 
 test("the HTTP API wants the token as a Bearer token; the page and /healthz do not", async () => {

@@ -87,11 +87,12 @@ export class RpcError extends Error {
 
 export class Client {
   /// Connects and waits for the handshake; a refusal rejects with its HTTP status in `status`.
-  static async connect(server, { session, protocols = ["clothlab.v1"], headers = {}, path, acknowledge = true } = {}) {
+  static async connect(server, { session, protocols = ["clothlab.v1"], headers = {}, path, acknowledge = true, scheme = "ws" } = {}) {
     const client = new Client();
     client.acknowledge = acknowledge;
     const where = path ?? "/ws" + (session === undefined ? "" : `?session=${session}`);
-    client.socket = new WebSocket(`ws://${server.host}${where}`, protocols, { headers, perMessageDeflate: false });
+    client.socket = new WebSocket(`${scheme}://${server.host}${where}`, protocols,
+                                  { headers, perMessageDeflate: false, rejectUnauthorized: false });
     client.nextId = 1;
     client.pending = new Map();
     client.messages = [];  // notifications and errors without an id, as they came

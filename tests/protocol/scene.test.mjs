@@ -105,7 +105,7 @@ test("a patch for a revision that is past answers -32003 with the current one", 
 });
 
 test("scene.load takes a preset, and everybody gets the whole scene", async () => {
-  const scene = client.nextNotification("scene");
+  const scene = client.nextNotification("scene", ({ document }) => document.name === "curtain");
   const answer = await client.request("scene.load", { preset: "curtain" });
   assert.equal(answer.applies, "cloth");
   assert.equal((await scene).document.name, "curtain");

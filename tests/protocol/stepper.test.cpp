@@ -1,0 +1,114 @@
+// Of the session's thread, in this process: what it allocates.
+#include "server/net/stepper.h"
+
+#include <cstdlib>
+#include <new>
+#include <thread>
+
+#include "server/gl/context.h"
+#include "tests/catch.h"
+
+namespace {
+thread_local std::size_t allocations = 0;  // by operator new; the GL driver has allocators of its own
+
+void* allocate(std::size_t bytes) {
+  ++allocations;
+  if (void* memory = std::malloc(bytes)) return memory;
+  throw std::bad_alloc();
+}
+}  // namespace
+
+void* operator new(std::size_t bytes) {
+  return allocate(bytes);
+}
+void* operator new[](std::size_t bytes) {
+  return allocate(bytes);
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+
+using namespace clothlab;
+using net::Clock;
+
+namespace {
+
+struct Fixture {
+  std::unique_ptr<gl::Context> context;
+  net::Exchange exchange{[] {}};
+  std::unique_ptr<net::Stepper> stepper;
+  std::vector<net::Command> commands;
+
+  explicit Fixture(double patience = net::unwatched_seconds) {
+    Result<std::unique_ptr<gl::Context>> made = gl::Context::create();
+    REQUIRE(made);
+    context = std::move(*made);
+    Result<scene::Document> seed = scene::load_preset("seed");
+    REQUIRE(seed);
+    Result<std::unique_ptr<net::Stepper>> created =
+        net::Stepper::create(std::move(*seed), exchange, patience);
+    REQUIRE(created);
+    stepper = std::move(*created);
+  }
+
+  void turn() {
+    const Clock::time_point next = stepper->turn(commands);
+    commands.clear();
+    std::this_thread::sleep_until(std::min(next, Clock::now() + std::chrono::milliseconds(20)));
+  }
+  void turn_for(double seconds) {
+    for (const auto until = Clock::now() + std::chrono::duration<double>(seconds); Clock::now() < until;)
+      turn();
+  }
+
+  /// Turns until `frames` more frames were published; how many times the turns allocated.
+  std::size_t allocations_for(std::uint32_t frames) {
+    const auto sequence = [&] {
+      const stream::SharedMessage frame = exchange.frame(stream::Encoding::q16);
+      return frame ? frame->header.sequence : 0u;
+    };
+    const std::uint32_t until = sequence() + frames;
+    const std::size_t before = allocations;
+    while (sequence() < until) turn();
+    return allocations - before;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("in steady state the stepping thread allocates nothing but the frames themselves") {
+  Fixture session;
+  net::Demand demand;
+  demand.rate[static_cast<std::size_t>(stream::Encoding::q16)] = 60;
+  session.commands.push_back({{}, net::Watchers{1}});
+  session.commands.push_back({{}, demand});
+  session.allocations_for(40);
+  constexpr std::size_t frames = 120, a_frame = 2;  // the message with its count, and its bytes
+  const std::size_t counted = session.allocations_for(frames);
+  CHECK(counted >= frames);  // the counting works
+  CHECK(counted <= frames * a_frame);
+}
+
+TEST_CASE("an unwatched session steps until its patience ends, sleeps, and goes on when somebody comes") {
+  Fixture session(0.5);
+  session.turn_for(0.2);
+  const std::uint64_t early = session.exchange.steps();
+  CHECK(early > 0);
+  session.turn_for(1.0);
+  const std::uint64_t asleep = session.exchange.steps();
+  CHECK(asleep > early);
+  session.turn_for(0.5);
+  CHECK(session.exchange.steps() == asleep);
+  session.commands.push_back({{}, net::Watchers{1}});
+  session.turn_for(1.0);
+  CHECK(session.exchange.steps() > asleep);
+}
