@@ -37,7 +37,7 @@ TEST_CASE("a change says how deep it cuts") {
   CHECK(depth([](scene::Scene& s) { s.cloths[0].pins.push_back({scene::AtVertex{300}, {}}); }) == ChangeDepth::cloth);
 }
 
-TEST_CASE("uniforms and kernels change under a running cloth; only a new cloth starts at time 0") {
+TEST_CASE("uniforms and kernels change under a running cloth, only a new cloth starts at time 0") {
   const auto context = test::context();
   const auto simulation = test::simulation(test::seed());
   simulation->step(100);

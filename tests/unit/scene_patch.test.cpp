@@ -167,7 +167,7 @@ TEST_CASE("after any sequence of random patches the document is valid and in ste
   CHECK(accepted > 100);
 }
 
-TEST_CASE("--set changes one value: JSON where it is JSON, else a text") {
+TEST_CASE("an assignment of --set changes one value: JSON where it is JSON, else a text") {
   const auto set = [](const char* assignment) { return scene::set_value(seed(), assignment); };
   CHECK(set("/solver/dt=0.0005")->scene.solver.dt == 0.0005);
   CHECK(set("/cloths/0/texture=checker")->scene.cloths[0].texture == "checker");

@@ -94,7 +94,7 @@ TEST_CASE("the seed is the contract's scene, floor and wind left out") {
   CHECK(seed.solver == scene::Solver{});
 }
 
-TEST_CASE("a scene file may have comments; what is wrong with it is named with the file") {
+TEST_CASE("a scene file may have comments, and what is wrong with it is named with the file") {
   const std::string path =
       (std::filesystem::temp_directory_path() / "clothlab_scene_file_test.json").string();
   std::ofstream(path) << "// mine\n{\"version\": 1, \"cloths\": [{\"mesh\": {\"grid\": {}}}]}";
