@@ -11,7 +11,7 @@ const std::vector<Preset>& presets() {
   static const std::vector<Preset> list = {
       {"seed", "a cloth on two swinging corners falls against a sphere"},
       {"flag", "one edge on a pole that swings to and fro"},
-      {"curtain", "hung from rings along its top edge; a sphere swings through it"},
+      {"curtain", "hung from rings along its top edge; a sphere swings against it"},
       {"tablecloth", "its middle lies on a table, its border falls over the edges"},
       {"drape", "a free cloth falls over a sphere and onto the floor"},
       {"twist", "opposite edges turned against each other at 72 degrees/s"},
