@@ -96,12 +96,12 @@ void add_serve(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<ServeArguments>();
   net::Options& options = arguments->options;
   CLI::App* command =
-      app.add_subcommand("serve", "shows a scene live in the browser, and to scripts over its WebSocket");
+      app.add_subcommand("serve", "show a scene live in the browser, and to scripts over its WebSocket");
   arguments->scene.add_option(*command);
   command->add_option("--bind", options.bind, "the address to listen on; beyond loopback only with --token")
       ->type_name("ADDRESS")
       ->capture_default_str();
-  command->add_option("--port", options.port, "0 picks a free one")
+  command->add_option("--port", options.port, "the port to listen on; 0 picks a free one")
       ->type_name("PORT")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
@@ -115,11 +115,11 @@ void add_serve(CLI::App& app, int& exit_code) {
       ->type_name("ORIGIN")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->add_option("--max-sessions", options.max_sessions)
+  command->add_option("--max-sessions", options.max_sessions, "scenes that run side by side (/?session=NAME)")
       ->type_name("N")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_option("--max-clients", options.max_clients)
+  command->add_option("--max-clients", options.max_clients, "connections, over all sessions")
       ->type_name("N")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
@@ -133,6 +133,12 @@ void add_serve(CLI::App& app, int& exit_code) {
   command->add_option("--tls-cert", options.tls_certificate, "PEM file; with --tls-key: HTTPS and WSS")
       ->type_name("FILE");
   command->add_option("--tls-key", options.tls_key, "PEM file")->type_name("FILE");
+  command->footer(R"(Examples:
+  clothlab serve                                              open http://127.0.0.1:8080
+  clothlab serve --scene my-scene.json --port 0               on a free port
+  clothlab serve --bind 0.0.0.0 --token SECRET --view-token PUBLIC
+
+Prints "listening on http://..." when it accepts connections; Ctrl+C ends it.)");
   command->callback([arguments, &exit_code] { exit_code = serve(*arguments); });
 }
 

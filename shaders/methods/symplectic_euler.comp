@@ -36,35 +36,39 @@ vec3 spring_forces(int i, vec3 x, vec3 v) {
   return force;
 }
 
-void write_vertex(int i, vec4 x, vec4 v) {
-  next_position[i] = x;
-  next_velocity[i] = v;
-#ifdef SELF_COLLISION
-  vec3 moved = x.xyz - FETCH(position_when_built, i).xyz;
-  if (dot(moved, moved) > 0.25 * skin * skin) rebuild_groups = gl_NumWorkGroups.x;
-#endif
+/// A pinned vertex is where its motion takes it.
+void follow_motion(int i, vec4 v, out vec3 x_next, out vec3 v_next) {
+  vec3 home = FETCH(rest_position, i).xyz;
+  int motion = int(v.w);
+  x_next = motion < 0 ? home : placed(motion, 1, home);
+  v_next = motion < 0 ? vec3(0.0) : velocity_at(motion, 1, x_next);
 }
 
-void main() {
-  int i = int(gl_GlobalInvocationID.x);
-  if (i >= vertex_count) return;
-  vec4 x = FETCH(position, i), v = FETCH(velocity, i);
-  if (x.w == 0.0) {
-    vec3 home = FETCH(rest_position, i).xyz;
-    int motion = int(v.w);
-    vec3 there = motion < 0 ? home : placed(motion, 1, home);
-    vec3 moving = motion < 0 ? vec3(0.0) : velocity_at(motion, 1, there);
-    write_vertex(i, vec4(there, 0.0), vec4(moving, v.w));
-    return;
-  }
+/// A free vertex: forces, then velocity, then position. Returns how many things it touches.
+int integrate(int i, vec4 x, vec4 v, out vec3 x_next, out vec3 v_next) {
   vec3 acceleration = spring_forces(i, x.xyz, v.xyz) * x.w + gravity.xyz - gravity.w * v.xyz;
   vec3 push = vec3(0.0), impulse = vec3(0.0);
   int contacts = 0;
 #ifdef SELF_COLLISION
   contacts = self_contacts(i, x, v, push, impulse);
 #endif
-  vec3 v_next = v.xyz + dt * acceleration + impulse;
-  vec3 x_next = x.xyz + push + dt * v_next;
-  int met = resolve_colliders(x.xyz, x_next, v_next);
-  write_vertex(i, vec4(x_next, x.w), vec4(v_next, float(contacts + met)));
+  v_next = v.xyz + dt * acceleration + impulse;
+  x_next = x.xyz + push + dt * v_next;
+  return contacts + resolve_colliders(x.xyz, x_next, v_next);
+}
+
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  if (i >= vertex_count) return;
+  vec4 x = FETCH(position, i), v = FETCH(velocity, i);
+  vec3 x_next, v_next;
+  float tag = v.w;
+  if (x.w == 0.0) follow_motion(i, v, x_next, v_next);
+  else tag = float(integrate(i, x, v, x_next, v_next));
+  next_position[i] = vec4(x_next, x.w);
+  next_velocity[i] = vec4(v_next, tag);
+#ifdef SELF_COLLISION
+  vec3 moved = x_next - FETCH(position_when_built, i).xyz;
+  if (dot(moved, moved) > 0.25 * skin * skin) rebuild_groups = gl_NumWorkGroups.x;
+#endif
 }

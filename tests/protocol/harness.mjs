@@ -38,7 +38,7 @@ export class Server {
   static async start(...args) {
     const server = new Server();
     server.startedAt = performance.now();
-    server.child = spawn(program, ["serve", "--port", "0", ...args], { stdio: ["ignore", "pipe", "pipe"] });
+    server.child = spawn(program, ["serve", ...(args.includes("--port") ? [] : ["--port", "0"]), ...args], { stdio: ["ignore", "pipe", "pipe"] });
     server.closed = once(server.child, "close");
     server.stdout = server.stderr = "";
     server.child.stderr.on("data", (data) => (server.stderr += data));

@@ -1,0 +1,119 @@
+// Chromium with the page in it, and what tests read from the page: pixels, positions, controls.
+import { existsSync, mkdirSync } from "node:fs";
+import { test } from "node:test";
+import { fileURLToPath } from "node:url";
+import { chromium } from "playwright-core";
+import { patience } from "../protocol/harness.mjs";
+
+const candidates = [process.env.CLOTHLAB_BROWSER, "/usr/bin/chromium", "/usr/bin/google-chrome", "/usr/bin/google-chrome-stable"];
+const executablePath = candidates.find((path) => path && existsSync(path));
+
+/// A test that needs a browser; skipped, and said so, only where there is none.
+export function browserTest(name, body) {
+  const skip = executablePath ? false : "no Chromium here: install chromium, or name one in CLOTHLAB_BROWSER";
+  test(name, { skip, timeout: 240_000 }, async () => {
+    try {
+      await body();
+    } finally {
+      await Promise.all((running?.contexts() ?? []).map((context) => context.close()));  // pages left open would draw on
+    }
+  });
+}
+
+export const screenshots = fileURLToPath(new URL("../../build/screenshots/", import.meta.url));
+mkdirSync(screenshots, { recursive: true });
+
+let running = null;
+
+/// The browser, or null where there is none.
+export async function launch() {
+  if (!executablePath) return null;
+  running = await chromium.launch({
+    executablePath,
+    headless: true,
+    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--disable-quic",
+      "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+  });
+  return running;
+}
+
+export class Viewer {
+  /// Opens the page on a session of its own, and waits until it has drawn.
+  static async open(browser, server, { session = "main", width = 900, height = 600, colorScheme = "light", drawn = 3 } = {}) {
+    const viewer = new Viewer();
+    viewer.page = await browser.newPage({ viewport: { width, height }, colorScheme });
+    viewer.page.setDefaultTimeout(patience);
+    viewer.complaints = [];
+    viewer.page.on("console", (message) => {
+      if (["error", "warning"].includes(message.type())) viewer.complaints.push(message.text());
+    });
+    viewer.page.on("pageerror", (error) => viewer.complaints.push(error.message));
+    await viewer.page.goto(`http://${server.host}/?session=${session}`);
+    if (drawn > 0) await viewer.until((count) => window.clothlab?.framesDrawn >= count, drawn);
+    return viewer;
+  }
+
+  until(condition, argument) { return this.page.waitForFunction(condition, argument, { timeout: patience }); }
+
+  read(name) { return this.page.evaluate((key) => window.clothlab[key], name); }
+
+  input(type, section, label) {
+    const folder = this.page.locator(`.lil-gui:has(> .lil-title:text-is("${section}")) > .lil-children`);
+    return folder.locator(`input[type=${type}][aria-label^="${label}"]`).first();
+  }
+
+  /// The range input of a parameter; its folder is opened if it has to be.
+  async slider(section, label) {
+    const range = this.input("range", section, label);
+    if (!(await range.isVisible())) await this.page.locator(`.lil-title:text-is("${section}")`).first().click();
+    await range.waitFor({ state: "visible" });
+    return range;
+  }
+
+  /// The number beside a slider.
+  number(section, label) { return this.input("text", section, label); }
+
+  /// Vertex positions [m] of the frame on screen, decoded here from the bytes that were uploaded.
+  positions() {
+    return this.page.evaluate(() => {
+      const { header, buffer } = window.clothlab.lastFrame;
+      const words = new Uint16Array(buffer, 64, header.vertexCount * 4);
+      return Array.from({ length: header.vertexCount }, (_, i) =>
+        [0, 1, 2].map((axis) => header.boxMinimum[axis] + (header.boxExtent[axis] * words[4 * i + axis]) / 65535));
+    });
+  }
+
+  /// What a person sees, as numbers: pixels of the cloth's red in a screenshot, their share, middle and a checksum.
+  async cloth() {
+    const png = (await this.page.screenshot()).toString("base64");
+    const helper = await this.page.context().browser().newPage();
+    try {
+      return await helper.evaluate(countRed, png);
+    } finally {
+      await helper.close();
+    }
+  }
+}
+
+// Runs in a blank page: the browser decodes its own screenshot.
+async function countRed(png) {
+  const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${png}`)).blob());
+  const context = new OffscreenCanvas(image.width, image.height).getContext("2d");
+  context.drawImage(image, 0, 0);
+  // The middle of the window: no panel, no red button.
+  const left = Math.round(image.width * 0.26), width = Math.round(image.width * 0.4), height = Math.round(image.height * 0.86);
+  const { data } = context.getImageData(left, 0, width, height);
+  let count = 0, sumX = 0, sumY = 0, checksum = 0;
+  const shades = new Set();
+  for (let i = 0; i < data.length; i += 4) {
+    const [r, g, b] = [data[i], data[i + 1], data[i + 2]];
+    if (r < 60 || r < 1.6 * g || r < 1.6 * b) continue;
+    const pixel = i / 4;
+    count++;
+    sumX += pixel % width;
+    sumY += Math.floor(pixel / width);
+    checksum = (Math.imul(checksum, 31) + pixel + r) | 0;
+    shades.add((r << 16) | (g << 8) | b);
+  }
+  return { count, share: count / (width * height), x: sumX / count, y: sumY / count, shades: shades.size, checksum };
+}

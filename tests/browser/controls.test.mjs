@@ -1,0 +1,188 @@
+import assert from "node:assert/strict";
+import { after, before } from "node:test";
+import { Client, Server } from "../protocol/harness.mjs";
+import { browserTest, launch, Viewer } from "./browser.mjs";
+
+let server, browser;
+before(async () => {
+  server = await Server.start("--max-sessions", "16");
+  browser = await launch();
+});
+after(async () => {
+  await browser?.close();
+  await server?.stop();
+});
+
+/// A page and a script on the same session.
+async function both(session, options) {
+  const viewer = await Viewer.open(browser, server, { session, width: 1280, height: 800, ...options });
+  const client = await Client.connect(server, { session });
+  return { viewer, client, scene: async () => (await client.request("scene.get", {})).document };
+}
+
+async function eventually(what, read, good) {
+  const until = Date.now() + 30_000;
+  for (;;) {
+    const value = await read();
+    if (good(value)) return value;
+    assert.ok(Date.now() < until, `${what}: still ${JSON.stringify(value)}`);
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+}
+
+browserTest("a slider dragged by mouse changes the server's scene; the last value arrives, few messages are sent", async () => {
+  const { viewer, client, scene } = await both("slider");
+  const slider = await viewer.slider("Cloth", "structural");
+  const box = await slider.boundingBox();
+  const at = (share) => [box.x + box.width * share, box.y + box.height / 2];
+  const started = Date.now();
+  await viewer.page.mouse.move(...at(0.75));
+  await viewer.page.mouse.down();
+  for (let i = 0; i < 60; ++i) await viewer.page.mouse.move(...at(0.75 - i * 0.005));
+  await viewer.page.mouse.up();
+  const seconds = (Date.now() - started) / 1000;
+  const shown = Number(await viewer.number("Cloth", "structural").inputValue());
+  assert.ok(shown < 20000, `the number beside the slider is ${shown}`);
+  await eventually("structural on the server", async () => (await scene()).cloths[0].material.structural, (value) => value === shown);
+  const sent = client.messages.filter((message) => message.method === "scene.changed").length;
+  assert.ok(sent >= 1 && sent <= 20 * seconds + 3, `${sent} patches in ${seconds} s`);
+  await client.close();
+});
+
+browserTest("a slider moved by keyboard changes the server's scene", async () => {
+  const { viewer, client, scene } = await both("keyboard");
+  const before = (await scene()).cloths[0].material.damping;
+  const slider = await viewer.slider("Cloth", "damping");
+  await slider.focus();
+  for (let i = 0; i < 5; ++i) await viewer.page.keyboard.press("ArrowRight");
+  await eventually("damping", async () => (await scene()).cloths[0].material.damping, (value) => value > before);
+  await client.close();
+});
+
+browserTest("both pins are edited together, and the sphere by its own fields", async () => {
+  const { viewer, client, scene } = await both("members");
+  const amplitude = await viewer.slider("2 pins", "amplitude");
+  await amplitude.focus();
+  await viewer.page.keyboard.press("Home");
+  await eventually("amplitudes", async () => (await scene()).cloths[0].pins.map((pin) => pin.motion.oscillate.amplitude),
+                   (all) => all.every((value) => value === 0));
+  const radius = await viewer.slider("Collider: ball", "radius");
+  await radius.focus();
+  await viewer.page.keyboard.press("ArrowRight");
+  await eventually("radius", async () => (await scene()).colliders[0].sphere.radius, (value) => value > 0.25);
+  await client.close();
+});
+
+browserTest("self-collision is switched off and on", async () => {
+  const { viewer, client, scene } = await both("toggle");
+  const box = viewer.page.locator('.lil-gui:has(> .lil-title:text-is("Self-collision")) input[type=checkbox]').first();
+  await box.uncheck();
+  await eventually("self_collision", async () => (await scene()).self_collision, (value) => value === null);
+  await box.check();
+  await eventually("self_collision", async () => (await scene()).self_collision, (value) => value?.thickness > 0);
+  await client.close();
+});
+
+browserTest("another viewer's edit moves the panel", async () => {
+  const { viewer, client } = await both("other");
+  await viewer.slider("Cloth", "bend");
+  await client.request("scene.patch", { patch: [{ op: "replace", path: "/cloths/0/material/bend", value: 777 }] });
+  await eventually("the number in the panel", () => viewer.number("Cloth", "bend").inputValue(), (text) => text === "777");
+  await client.request("scene.patch", { patch: { gravity: [0, -3.5, 0], solver: { dt: 0.0005 } } });
+  await eventually("gravity in the panel", () => viewer.number("World", "gravity y").inputValue(), (text) => text === "-3.5");
+  await eventually("dt in the panel", () => viewer.number("World", "time step").inputValue(), (text) => text === "0.0005");
+  // No echo: the panel sends nothing back.
+  const { revision } = await client.request("scene.get", {});
+  await viewer.page.waitForTimeout(500);
+  assert.equal((await client.request("scene.get", {})).revision, revision);
+  await client.close();
+});
+
+browserTest("a refused edit is explained by a notice, and the control goes back", async () => {
+  const { viewer, client, scene } = await both("refused");
+  await viewer.slider("World", "time step");
+  const number = viewer.number("World", "time step");
+  const before = await number.inputValue();
+  await number.fill("-4");
+  await number.press("Enter");
+  const notice = viewer.page.locator(".notice.error");
+  await notice.waitFor();
+  const text = await notice.innerText();
+  for (const part of ["/solver/dt", "-4"]) assert.ok(text.includes(part), `the notice says ${JSON.stringify(text)}`);
+  assert.match(text, /allowed: \S/);
+  await eventually("the control", () => number.inputValue(), (value) => value === before);
+  assert.equal(String((await scene()).solver.dt), before);
+  await client.close();
+});
+
+browserTest("pause pauses, step steps once, reset goes back to 0, and keys do the same", async () => {
+  const { viewer, client } = await both("transport");
+  const { page } = viewer;
+  const still = async () => {
+    const from = await viewer.read("step");
+    await page.waitForTimeout(500);
+    return (await viewer.read("step")) === from;
+  };
+  await page.getByRole("button", { name: "Pause" }).click();
+  await page.getByRole("button", { name: "Play" }).waitFor();
+  await eventually("steps", still, (value) => value);
+  const at = await viewer.read("step");
+  await page.getByRole("button", { name: "Step", exact: true }).click();
+  await eventually("one step", () => viewer.read("step"), (step) => step === at + 1);
+  await page.locator("#view").click({ position: { x: 640, y: 300 } });
+  await page.keyboard.press(".");
+  await eventually("another step", () => viewer.read("step"), (step) => step === at + 2);
+  await page.keyboard.press("r");
+  await eventually("reset", () => viewer.read("step"), (step) => step === 0);
+  await page.keyboard.press(" ");
+  await eventually("playing", () => viewer.read("step"), (step) => step > 10);
+  await page.keyboard.press(" ");
+  await eventually("paused by key", still, (value) => value);
+  // The server says the same to a script.
+  const status = await client.nextNotification("sim.status", (params) => params.playing === false);
+  assert.equal(status.playing, false);
+  await client.close();
+});
+
+browserTest("speed, help, fit and hiding: the remaining controls do what they say", async () => {
+  const { viewer, client } = await both("keys");
+  const { page } = viewer;
+  await page.getByRole("combobox", { name: "Speed" }).selectOption("0.25");
+  await client.notification("sim.status", (params) => params.speed === 0.25);
+  await page.keyboard.press("Escape");
+  await page.locator("#view").click({ position: { x: 640, y: 300 } });
+  await page.keyboard.press("?");
+  await page.getByRole("dialog").waitFor();
+  await page.getByRole("button", { name: "Close" }).click();
+  await page.keyboard.press("h");
+  await page.locator("#panel").waitFor({ state: "hidden" });
+  await page.keyboard.press("h");
+  await page.locator("#panel").waitFor({ state: "visible" });
+  const camera = () => page.evaluate(() => window.clothlab.stage.controls.object.position.toArray().map((v) => v.toFixed(3)).join());
+  const home = await camera();
+  await page.mouse.move(500, 400);
+  await page.mouse.down();
+  await page.mouse.move(620, 380, { steps: 5 });
+  await page.mouse.up();
+  await eventually("the orbited camera", camera, (now) => now !== home);
+  await page.waitForTimeout(600);  // the swing of the damped controls ends
+  await page.keyboard.press("f");
+  await eventually("the fitted camera", camera, (now) => now === home);
+  await client.close();
+});
+
+browserTest("a preset is loaded from the panel, and a divergence is told with its remedy", async () => {
+  const { viewer, client, scene } = await both("preset");
+  const preset = viewer.page.locator('.lil-controller:has(.lil-name:text-is("preset")) select');
+  await preset.selectOption("drape");
+  await eventually("the scene's name", async () => (await scene()).name, (name) => name === "drape");
+  await eventually("the page's name", () => viewer.page.locator("#scene-name").innerText(), (name) => name === "drape");
+  await preset.selectOption("blowup");
+  const notice = viewer.page.locator(".notice.error");
+  await notice.waitFor();
+  assert.match(await notice.innerText(), /blew up/);
+  const { dt } = (await scene()).solver;
+  await notice.getByRole("button", { name: "Apply the remedy" }).click();
+  await eventually("the time step", async () => (await scene()).solver.dt, (value) => value < dt);
+  await client.close();
+});

@@ -1,0 +1,57 @@
+import assert from "node:assert/strict";
+import { after, before } from "node:test";
+import { Server } from "../protocol/harness.mjs";
+import { browserTest, launch, Viewer } from "./browser.mjs";
+
+let browser;
+before(async () => { browser = await launch(); });
+after(async () => { await browser?.close(); });
+
+browserTest("a server that is killed and started again on its port is reconnected to, and the page says so meanwhile", async () => {
+  const server = await Server.start();
+  const viewer = await Viewer.open(browser, server);
+  await server.stop("SIGKILL");
+  const banner = viewer.page.locator("#banner");
+  await banner.waitFor({ state: "visible" });
+  assert.match(await banner.innerText(), /Connection lost/);
+  const drawn = await viewer.read("framesDrawn");
+  const again = await Server.start("--port", String(server.port));
+  try {
+    await viewer.until((count) => window.clothlab.framesDrawn > count + 3, drawn);
+    await banner.waitFor({ state: "hidden" });
+    assert.equal(await viewer.page.locator("#link").getAttribute("data-state"), "open");
+  } finally {
+    await again.stop();
+  }
+});
+
+browserTest("a server with a token asks for it, refuses a wrong one, and lets the right one in", async () => {
+  const server = await Server.start("--token", "spun gold");
+  try {
+    const viewer = await Viewer.open(browser, server, { drawn: 0 });
+    const dialog = viewer.page.getByRole("dialog");
+    await dialog.waitFor();
+    const enter = async (token) => {
+      await viewer.page.getByLabel("Token", { exact: true }).fill(token);
+      await viewer.page.getByRole("button", { name: "Connect" }).click();
+    };
+    await enter("straw");
+    await viewer.page.getByText("did not accept this token").waitFor();
+    await enter("spun gold");
+    await viewer.until(() => window.clothlab.framesDrawn > 2);
+    assert.equal(await dialog.isVisible(), false);
+    await viewer.page.reload();
+    await viewer.until(() => window.clothlab.framesDrawn > 2);  // kept for this tab
+  } finally {
+    await server.stop();
+  }
+});
+
+browserTest("a page that finds no server says so instead of staying empty", async () => {
+  const server = await Server.start();
+  const viewer = await Viewer.open(browser, server, { drawn: 0 });
+  await viewer.page.route("**/ws**", (route) => route.abort());
+  await server.stop("SIGKILL");
+  await viewer.page.locator("#banner").waitFor({ state: "visible" });
+  assert.match(await viewer.page.locator("#banner").innerText(), /Connection lost|No server answers/);
+});

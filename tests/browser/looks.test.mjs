@@ -1,0 +1,83 @@
+import assert from "node:assert/strict";
+import { readdirSync, readFileSync } from "node:fs";
+import { after, before } from "node:test";
+import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
+import { Server } from "../protocol/harness.mjs";
+import { browserTest, launch, screenshots, Viewer } from "./browser.mjs";
+
+let server, browser;
+before(async () => {
+  server = await Server.start("--max-sessions", "16");
+  browser = await launch();
+});
+after(async () => {
+  await browser?.close();
+  await server?.stop();
+});
+
+/// Visible controls and cards that stick out of the window, or text cut off inside them.
+const cutOff = () => {
+  const problems = [];
+  const visible = (node) => node.checkVisibility({ visibilityProperty: true, opacityProperty: true });
+  for (const node of document.querySelectorAll(".card, .card button, .card select, #headline-fps, #headline-rtf, .brand")) {
+    if (!visible(node)) continue;
+    const { left, top, right, bottom } = node.getBoundingClientRect();
+    const inPanel = node.closest(".panel-body");  // which scrolls
+    if (left < 0 || right > innerWidth + 0.5 || (!inPanel && (top < 0 || bottom > innerHeight + 1))) {
+      problems.push(`${node.id || node.className} at ${[left, top, right, bottom].map(Math.round)}`);
+    }
+  }
+  for (const node of document.querySelectorAll(".lil-name, .lil-title, dt, #applied")) {
+    if (visible(node) && node.scrollWidth > node.clientWidth + 1) problems.push(`"${node.textContent}" is cut off`);
+  }
+  if (document.documentElement.scrollWidth > innerWidth) problems.push("the page scrolls sideways");
+  return problems;
+};
+
+for (const [width, height] of [[1280, 800], [360, 740]]) {
+  for (const colorScheme of ["dark", "light"]) {
+    browserTest(`at ${width}x${height}, ${colorScheme}, nothing is cut off and the console is silent`, async () => {
+      const viewer = await Viewer.open(browser, server, { session: `looks-${width}-${colorScheme}`, width, height, colorScheme });
+      await viewer.until(() => window.clothlab.simTime > 1.1);
+      await viewer.page.keyboard.press(" ");
+      await viewer.page.waitForTimeout(900);  // a picture at rest is drawn at full resolution
+      assert.equal(await viewer.page.evaluate(() => document.documentElement.dataset.theme), colorScheme);
+      assert.deepEqual(await viewer.page.evaluate(cutOff), []);
+      await viewer.page.screenshot({ path: `${screenshots}${width}x${height}-${colorScheme}.png` });
+      if (width < 700) {
+        await viewer.page.getByRole("button", { name: "Parameters" }).click();
+        await viewer.page.waitForTimeout(900);
+        assert.deepEqual(await viewer.page.evaluate(cutOff), []);
+        assert.ok(await (await viewer.slider("Cloth", "structural")).isVisible());
+        await viewer.page.screenshot({ path: `${screenshots}${width}x${height}-${colorScheme}-parameters.png` });
+      }
+      const forbidden = viewer.complaints.filter((text) => !/GPU stall|GL Driver Message/.test(text));
+      assert.deepEqual(forbidden, [], "no violation of the content security policy, no error, no warning");
+    });
+  }
+}
+
+browserTest("every control is reachable by Tab, and has a name", async () => {
+  const viewer = await Viewer.open(browser, server, { session: "tab", width: 1280, height: 800 });
+  const reached = new Set();
+  for (let i = 0; i < 90; ++i) {
+    await viewer.page.keyboard.press("Tab");
+    reached.add(await viewer.page.evaluate(() => {
+      const node = document.activeElement;
+      return node?.getAttribute("aria-label") ?? node?.getAttribute("aria-labelledby") ?? node?.textContent?.trim() ?? "";
+    }));
+  }
+  for (const name of ["Pause", "Step", "Reset", "Speed", "Fit the scene", "Dark or light", "Help", "structural [N/m]", "time step [s]"]) {
+    assert.ok([...reached].some((label) => label === name), `${name} is not among ${[...reached].join(", ")}`);
+  }
+});
+
+browserTest("the page weighs less than 300 kB compressed, and the server compresses it", async () => {
+  const folder = fileURLToPath(new URL("../../web/dist/", import.meta.url));
+  const total = readdirSync(folder).reduce((sum, name) => sum + gzipSync(readFileSync(folder + name)).length, 0);
+  assert.ok(total < 300_000, `${total} bytes`);
+  const { headers, body } = await server.get("/app.js", { "accept-encoding": "gzip" });
+  assert.equal(headers["content-encoding"], "gzip");
+  assert.ok(body.length < 300_000);
+});
