@@ -9,6 +9,7 @@ namespace clothlab::render {
 
 namespace {
 constexpr GLint wanted_samples = 8;
+constexpr GLint most_total_samples = 32 * 1024 * 1024;  // 8 bytes each: larger pictures get fewer samples a pixel
 constexpr GLsizei shadow_side = 2048;  // [pixels]
 
 bool complete(GLuint framebuffer) {
@@ -19,7 +20,8 @@ bool complete(GLuint framebuffer) {
 Target::Target(int width, int height) : width_(width), height_(height) {
   GLint most_samples = 1;
   glGetIntegerv(GL_MAX_SAMPLES, &most_samples);
-  const GLint samples = std::min(wanted_samples, most_samples);
+  const GLint affordable = std::max(most_total_samples / (width * height), 1);
+  const GLint samples = std::min({wanted_samples, most_samples, affordable});
   glCreateRenderbuffers(3, renderbuffers_);
   glNamedRenderbufferStorageMultisample(renderbuffers_[0], samples, GL_RGBA8, width, height);
   glNamedRenderbufferStorageMultisample(renderbuffers_[1], samples, GL_DEPTH_COMPONENT32F, width, height);
