@@ -1,9 +1,11 @@
 // Draws the streamed vertices: the q16 payload is the vertex buffer, decoded in the vertex shader.
 import { Box3, BufferAttribute, BufferGeometry, Group, Mesh, Points, Vector3, type IUniform } from "three";
 import { clothCasterMaterial, FabricMaterial, pinMaterial, type DecodeUniforms, type StageUniforms } from "./fabric_material";
-import { pinnedVertices } from "./pins";
+import { heldVertices } from "./pins";
 import { q16Words, type Frame, type Topology } from "./protocol";
 import type { SceneDocument } from "./scene_types";
+
+const mostMarkers = 160;  // a crowd of them would hide the cloth
 
 export class ClothView {
   readonly object = new Group();
@@ -107,12 +109,13 @@ export class ClothView {
     const ranges = this.topology.cloths;
     const pinned = this.document.cloths.flatMap((cloth, i) => {
       const range = ranges[i];
-      return range ? pinnedVertices(cloth).filter((v) => v < range.vertexCount).map((v) => range.firstVertex + v) : [];
+      return range ? [...heldVertices(cloth).keys()].filter((v) => v < range.vertexCount).map((v) => range.firstVertex + v) : [];
     });
-    if (pinned.length === 0) return;
+    if (pinned.length === 0 || pinned.length > mostMarkers) return;
     const geometry = new BufferGeometry();
     geometry.setAttribute("q16", this.words);
     geometry.setIndex(pinned);
+    this.pinMaterial.uniforms.diameter = { value: pinned.length <= 8 ? 9 : 5 };
     this.markers = new Points(geometry, this.pinMaterial);
     this.markers.frustumCulled = false;
     this.object.add(this.markers);

@@ -76,16 +76,17 @@ export function casterMaterial(): ShaderMaterial {
 /// Small discs on the vertices that pins hold, drawn from the same payload.
 export function pinMaterial(decode: DecodeUniforms, pixelRatio: IUniform<number>): ShaderMaterial {
   return new ShaderMaterial({
-    uniforms: { ...decode, pixelRatio },
+    uniforms: { ...decode, pixelRatio, diameter: { value: 9 } },
     transparent: true,
     depthWrite: false,
     vertexShader: /* glsl */ `
       ${decodeParameters}
       uniform float pixelRatio;
+      uniform float diameter;  // [CSS pixels]
       void main() {
         gl_Position = projectionMatrix * modelViewMatrix * vec4(decodePosition(), 1.0);
         gl_Position.z -= 0.002 * gl_Position.w;  // in front of the cloth it holds
-        gl_PointSize = 9.0 * pixelRatio;
+        gl_PointSize = diameter * pixelRatio;
       }`,
     fragmentShader: /* glsl */ `
       void main() {

@@ -1,7 +1,7 @@
 // What the panel offers for a scene: a list of sections and fields, each tied to JSON Pointers of the document.
 import type { Scale } from "./slider";
 import { valueAt } from "./json_patch";
-import type { Motion, Operation, SceneDocument, Vec3 } from "./scene_types";
+import type { At, Motion, Operation, SceneDocument, Vec3 } from "./scene_types";
 
 interface FieldBase {
   key: string;          ///< unique in the panel
@@ -71,6 +71,8 @@ function motionFields(bases: string[], motion: Motion, center: Vec3): Field[] {
     number("speed", at(inside, "/degrees_per_second"), { min: -360, max: 360, step: 1, unit: "°/s" })];
 }
 
+const pinTitle = (at: At | undefined): string => (typeof at === "string" ? `Pin ${at}` : "Pin in a box");
+
 function pinSections(document: SceneDocument, cloth: number): Section[] {
   const groups = new Map<string, number[]>();
   document.cloths[cloth]?.pins.forEach((pin, i) => {
@@ -79,7 +81,7 @@ function pinSections(document: SceneDocument, cloth: number): Section[] {
   });
   return [...groups.entries()].map(([motion, pins]) => ({
     key: `/cloths/${cloth}/pins/${pins.join("+")}`,
-    title: pins.length === 1 ? `Pin ${JSON.stringify(document.cloths[cloth]?.pins[pins[0] as number]?.at).replaceAll('"', "")}` : `${pins.length} pins`,
+    title: pins.length === 1 ? pinTitle(document.cloths[cloth]?.pins[pins[0] as number]?.at) : `${pins.length} pins`,
     open: false, sections: [],
     fields: motionFields(pins.map((pin) => `/cloths/${cloth}/pins/${pin}/motion`), JSON.parse(motion) as Motion, [0, 0, 0]),
   }));
@@ -90,7 +92,7 @@ function clothSection(document: SceneDocument, index: number): Section {
   const base = `/cloths/${index}`;
   const stiffness = { min: 10, max: 200000, log: true, zero: true, unit: "N/m" };
   const mass: Field = "per_vertex" in cloth.mass
-    ? number("mass", [`${base}/mass/per_vertex`], { min: 0.001, max: 1, log: true, unit: "kg/vertex" })
+    ? number("mass", [`${base}/mass/per_vertex`], { min: 1e-5, max: 1, log: true, unit: "kg/vertex" })
     : number("mass", [`${base}/mass/area_density`], { min: 0.02, max: 20, log: true, unit: "kg/m²" });
   const count = { min: 3, max: 150, step: 1, whole: true };
   const grid: Field[] = "grid" in cloth.mesh ? [

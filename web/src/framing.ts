@@ -1,7 +1,7 @@
 // Where the camera stands so that the whole scene fits into the part of the window no panel covers.
 import { Box3, MathUtils, PerspectiveCamera, Sphere, Vector3 } from "three";
-import { moved, reach } from "./motion";
-import { pinnedVertices, restPositions } from "./pins";
+import { extremes, moved } from "./motion";
+import { heldVertices, restPositions } from "./pins";
 import type { Cloth, SceneDocument } from "./scene_types";
 
 /// The part of the window that panels leave free [CSS pixels].
@@ -9,22 +9,30 @@ export interface FreeArea { left: number; top: number; width: number; height: nu
 
 const viewFrom = new Vector3(1, 0.34, 0.5).normalize();  // from the side: the seed's cloth hides its sphere from the front
 
+/// How far a cloth can hang from its pins [m]: the largest distance from a vertex to the nearest pin, at rest.
+function hangingLength(rest: Vector3[], pins: Vector3[]): number {
+  const every = (points: Vector3[], most: number) => points.filter((_, i) => i % Math.ceil(points.length / most) === 0);
+  const some = every(pins, 64);
+  return Math.max(...every(rest, 400).map((point) => Math.min(...some.map((pin) => pin.distanceTo(point)))));
+}
+
 function clothBox(cloth: Cloth, falls: boolean): Box3 {
   const rest = restPositions(cloth);
   const box = new Box3().setFromPoints(rest);
-  const pinned = pinnedVertices(cloth);
-  if (pinned.length === 0 || !falls) return box;
-  // A pinned cloth hangs down from its pins by about its own length.
-  const hold = new Box3().setFromPoints(pinned.flatMap((i) => rest[i] ?? []));
-  const size = box.getSize(new Vector3());
-  const length = Math.max(size.y, size.z);
-  const swing = Math.max(...cloth.pins.map((pin) => reach(pin.motion)));
-  const hanging = hold.clone().expandByScalar(swing);
-  hanging.min.y = Math.min(hanging.min.y, hold.min.y - length);
-  // It leaves its rest shape within a second: half of the way out there is enough.
-  box.min.lerp(hold.min, 0.5);
-  box.max.lerp(hold.max, 0.5);
-  return box.union(hanging);
+  const held = [...heldVertices(cloth)].filter(([vertex]) => rest[vertex]);
+  if (held.length === 0) return box;
+  const pins = held.map(([vertex]) => rest[vertex] as Vector3);
+  const swept = new Box3().setFromPoints(held.flatMap(([vertex, motion]) =>
+    extremes(motion).map((time) => moved((rest[vertex] as Vector3).toArray(), motion, time))));
+  if (!falls) return box.union(swept);
+  const length = hangingLength(rest, pins);
+  // What hangs far from its pins leaves its rest shape within a second: not all of the way out there counts.
+  const hold = new Box3().setFromPoints(pins);
+  const share = 0.42 * Math.min(1, length / box.getSize(new Vector3()).length());
+  box.min.lerp(hold.min, share);
+  box.max.lerp(hold.max, share);
+  swept.min.y = Math.min(swept.min.y, hold.min.y - length);
+  return box.union(swept);
 }
 
 /// The space a scene is going to use [m]: known before the first frame, and the same whenever F is pressed.
@@ -34,8 +42,9 @@ export function sceneBox(document: SceneDocument): Box3 {
   for (const cloth of document.cloths) box.union(clothBox(cloth, falls));
   for (const { sphere, motion } of document.colliders) {
     if (!sphere) continue;
-    const ball = new Sphere(moved(sphere.center, motion, 0), sphere.radius + reach(motion));
-    box.union(ball.getBoundingBox(new Box3()));
+    for (const time of extremes(motion)) {
+      box.union(new Sphere(moved(sphere.center, motion, time), sphere.radius).getBoundingBox(new Box3()));
+    }
   }
   for (const { plane } of document.colliders) {
     if (plane && plane.normal[1] > 0.7) box.min.y = Math.max(Math.min(box.min.y, box.max.y), plane.point[1]);
@@ -43,25 +52,25 @@ export function sceneBox(document: SceneDocument): Box3 {
   return box;
 }
 
+/// Half of the width of what is in the box along a direction [m]. Corners of a bulky box are empty and those of a thin
+/// one are not: between the box itself and the ellipsoid that touches its sides.
+function halfWidth(box: Box3, along: Vector3): number {
+  const parts = box.getSize(new Vector3()).multiplyScalar(0.5).multiply(along).toArray().map(Math.abs);
+  return 0.4 * parts.reduce((sum, part) => sum + part, 0) + 0.6 * Math.hypot(...parts);
+}
+
 /// Distance at which the box just fits a view of these half-angle tangents, seen along `direction`.
 function distanceToFit(box: Box3, direction: Vector3, tangentX: number, tangentY: number): number {
-  const center = box.getCenter(new Vector3());
   const right = new Vector3(0, 1, 0).cross(direction).normalize();
   const above = direction.clone().cross(right);
-  let distance = 0.1;
-  for (let corner = 0; corner < 8; ++corner) {
-    const point = new Vector3(
-      corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y, corner & 4 ? box.max.z : box.min.z).sub(center);
-    const towards = point.dot(direction);
-    distance = Math.max(distance, towards + Math.abs(point.dot(right)) / tangentX, towards + Math.abs(point.dot(above)) / tangentY);
-  }
-  return distance;
+  const flat = Math.max(halfWidth(box, right) / tangentX, halfWidth(box, above) / tangentY, 0.05);
+  return flat + 0.6 * halfWidth(box, direction);
 }
 
 /// Places the camera; returns the point it should orbit around.
 export function frame(camera: PerspectiveCamera, box: Box3, area: FreeArea, windowHeight: number): Vector3 {
   const perPixel = Math.tan(MathUtils.degToRad(camera.fov / 2)) / (windowHeight / 2);
-  const margin = 0.9;  // corners of the box are empty
+  const margin = 1.04;
   const distance = margin * distanceToFit(box, viewFrom, (perPixel * area.width) / 2, (perPixel * area.height) / 2);
   const center = box.getCenter(new Vector3());
   camera.position.copy(center).addScaledVector(viewFrom, distance);

@@ -2,7 +2,7 @@
 import { button, element } from "./dom";
 import type { FreeArea } from "./framing";
 
-const narrow = matchMedia("(max-width: 700px)");
+const narrow = matchMedia("(max-width: 760px)");
 
 export class Layout {
   private readonly panel = element("panel", HTMLElement);
@@ -31,7 +31,9 @@ export class Layout {
     if (document.body.classList.contains("bare")) return { left: 0, top: 0, width, height };
     if (!narrow.matches) {
       const bottom = element("transport", HTMLElement).getBoundingClientRect().top;
-      return { left: 0, top: 12, width: this.panel.getBoundingClientRect().left, height: bottom - 24 };
+      const right = this.panel.getBoundingClientRect().left;
+      const left = width < 1100 ? 0 : this.hud.getBoundingClientRect().right;
+      return { left, top: 12, width: right - left, height: bottom - 24 };
     }
     const top = element("headline-fps", HTMLElement).closest("summary")?.getBoundingClientRect().bottom ?? 0;
     const bottom = element("transport", HTMLElement).getBoundingClientRect().top;

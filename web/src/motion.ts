@@ -16,7 +16,13 @@ export function moved(home: Vec3, motion: Motion, time: number): Vector3 {
   return point.sub(about).applyAxisAngle(new Vector3(...axis).normalize(), MathUtils.degToRad(degrees_per_second * time)).add(about);
 }
 
-/// How far a motion may take a point from home [m]; what has no bound counts as 0.
-export function reach(motion: Motion): number {
-  return motion && "oscillate" in motion ? Math.abs(motion.oscillate.amplitude) : 0;
+/// Times [s] at which a motion is farthest from home, one period long; what leaves for good counts as still.
+export function extremes(motion: Motion): number[] {
+  if (motion && "oscillate" in motion && motion.oscillate.frequency > 0) {
+    return [0, 0.25 / motion.oscillate.frequency, 0.75 / motion.oscillate.frequency];
+  }
+  if (motion && "spin" in motion && motion.spin.degrees_per_second !== 0) {
+    return Array.from({ length: 12 }, (_, i) => (i * 30) / Math.abs(motion.spin.degrees_per_second));
+  }
+  return [0];
 }

@@ -17,7 +17,7 @@ export function notice(level: Level, content: Content): void {
   box.className = `notice ${level}`;
   box.setAttribute("role", level === "error" ? "alert" : "status");
   const title = document.createElement("strong");
-  title.textContent = content.title;
+  title.textContent = content.title.charAt(0).toUpperCase() + content.title.slice(1);
   box.append(title);
   for (const line of content.lines ?? []) {
     const paragraph = document.createElement("p");
@@ -32,7 +32,7 @@ export function notice(level: Level, content: Content): void {
   if (content.action) box.append(actionButton(content.action, box));
   box.append(close);
   // The same trouble again replaces its notice instead of piling up.
-  for (const old of [...holder.children]) if (old.querySelector("strong")?.textContent === content.title) old.remove();
+  for (const old of [...holder.children]) if (old.querySelector("strong")?.textContent === title.textContent) old.remove();
   holder.append(box);
   while (holder.children.length > shownAtOnce) holder.firstElementChild?.remove();
   if (!content.stays) setTimeout(() => box.remove(), lifetime[level]);
@@ -56,8 +56,7 @@ export function noticeError(title: string, error: Error): void {
     return;
   }
   const { path, found, allowed } = error.data;
-  const lines = [error.message];
-  if (path) lines.push(`at ${path}`);
+  const lines = path ? [`at ${path}`] : [error.message];
   if (found !== undefined) lines.push(`found: ${asText(found)}`);
   if (allowed !== undefined) lines.push(`allowed: ${asText(allowed)}`);
   notice("error", { title, lines });

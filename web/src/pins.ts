@@ -1,6 +1,6 @@
 // Which vertices the pins of a scene hold, by the rules of contract.md, for the small markers.
 import { Euler, MathUtils, Vector3 } from "three";
-import type { At, Cloth, Vec3 } from "./scene_types";
+import type { At, Cloth, Motion, Vec3 } from "./scene_types";
 
 /// Rest positions of a cloth in world space [m].
 export function restPositions(cloth: Cloth): Vector3[] {
@@ -39,8 +39,8 @@ function verticesAt(at: At, cloth: Cloth, rest: Vector3[]): number[] {
     : Array.from({ length: rows }, (_, row) => row * columns + line);
 }
 
-/// Vertex indices within the cloth, each once.
-export function pinnedVertices(cloth: Cloth): number[] {
+/// Vertices of the cloth that pins hold, each once, with the motion of its (last) pin.
+export function heldVertices(cloth: Cloth): Map<number, Motion> {
   const rest = cloth.pins.some((pin) => typeof pin.at !== "string") ? restPositions(cloth) : [];
-  return [...new Set(cloth.pins.flatMap((pin) => verticesAt(pin.at, cloth, rest)))];
+  return new Map(cloth.pins.flatMap((pin) => verticesAt(pin.at, cloth, rest).map((vertex) => [vertex, pin.motion] as const)));
 }

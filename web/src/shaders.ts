@@ -118,7 +118,8 @@ float rim = pow(1.0 - saturate(dot(viewDirection, normal)), 4.0);
 outgoingLight += vec3(0.22) * rim;
 #if NUM_DIR_LIGHTS > 0
   vec3 halfway = normalize(viewDirection + directionalLights[0].direction);
-  outgoingLight += vec3(0.35) * pow(saturate(dot(normal, halfway)), 60.0);
+  float lit = smoothstep(0.0, 0.25, reflectedLight.directDiffuse.g);  // none where the light is hidden
+  outgoingLight += 0.35 * lit * pow(saturate(dot(normal, halfway)), 60.0);
 #endif
 `;
 
@@ -157,7 +158,8 @@ void main() {
   vec2 off = abs(vMask - 0.5);
   if (max(off.x, off.y) < 0.5) color = mix(color, shadowColor, 0.62 * texture2D(shadowMask, vMask).r);
   float fade = max(1.0 - dot(vDisc, vDisc), 0.0);
-  gl_FragColor = vec4(color, fade * fade);
+  float noise = fract(52.98 * fract(dot(gl_FragCoord.xy, vec2(0.0671, 0.00584)))) - 0.5;  // against rings of equal shade
+  gl_FragColor = vec4(color, fade * fade + 0.012 * noise);
 }`;
 
 /// Draws a caster of ground_shadow.ts.

@@ -37,7 +37,7 @@ export class Stage {
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
   private readonly camera = new PerspectiveCamera(32, 1, 0.05, 100);
-  private readonly light = new DirectionalLight(0xfff4e6, 2.5);
+  private readonly light = new DirectionalLight(0xfff4e6, 2.25);
   private readonly sky = new HemisphereLight(0xf2f6ff, 0x8c8378, 1.25);
   private readonly colliders: ColliderView;
   private readonly groundShadow: GroundShadow;
