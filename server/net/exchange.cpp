@@ -1,9 +1,21 @@
 #include "server/net/exchange.h"
 
+#include "server/net/limits.h"
+
 namespace clothlab::net {
 
 std::int64_t now_us() {
   return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch()).count();
+}
+
+bool Exchange::offer(Command command) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (commands_.size() >= max_waiting_commands) return false;
+    commands_.push_back(std::move(command));
+  }
+  commands_changed_.notify_one();
+  return true;
 }
 
 void Exchange::post(Command command) {
@@ -45,7 +57,10 @@ bool Exchange::take_commands(std::vector<Command>& out, Clock::time_point until)
   out.clear();
   std::unique_lock lock(mutex_);
   commands_changed_.wait_until(lock, until, [&] { return stopping_ || !commands_.empty(); });
-  out.swap(commands_);
+  while (!commands_.empty() && out.size() < commands_a_turn) {
+    out.push_back(std::move(commands_.front()));
+    commands_.pop_front();
+  }
   return !stopping_;
 }
 

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -119,10 +120,15 @@ struct Status {
 
 class Exchange {
  public:
+  static constexpr std::size_t commands_a_turn = 8;
+
   /// `wake` is called on the session's thread after something has been put out; it must not block.
   explicit Exchange(std::function<void()> wake) : wake_(std::move(wake)) {}
 
   // The service thread's side.
+  /// What a client asks for. False: max_waiting_commands wait already.
+  [[nodiscard]] bool offer(Command command);
+  /// What the server itself has to say; never refused.
   void post(Command command);
   void stop();
   void take_events(std::vector<Event>& out);  ///< `out` is emptied first
@@ -132,7 +138,8 @@ class Exchange {
   std::uint64_t steps() const { return steps_.load(std::memory_order_relaxed); }
 
   // The session's side.
-  /// Waits for a command until `until`; false: the session is to end. `out` is emptied first.
+  /// Waits for a command until `until`; false: the session is to end. `out` is emptied first, and gets no
+  /// more than `commands_a_turn`, so that a session with much to do still ends, beats and shows frames.
   bool take_commands(std::vector<Command>& out, Clock::time_point until);
   void emit(Event event);
   void publish(const Status& status);
@@ -146,7 +153,7 @@ class Exchange {
   std::function<void()> wake_;
   mutable std::mutex mutex_;
   std::condition_variable commands_changed_;
-  std::vector<Command> commands_;
+  std::deque<Command> commands_;
   std::vector<Event> events_;
   std::array<stream::SharedMessage, encoding_count> frames_;
   Status status_;

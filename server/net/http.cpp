@@ -117,7 +117,8 @@ void HttpRequest::api(const std::string& path) {
 void HttpRequest::ask_session(const std::string& session, Export what) {
   constexpr int patience = 30;  // [s]
   lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, patience);
-  hub_.find_room(session)->post({{id_, std::nullopt}, what});
+  if (!hub_.find_room(session)->offer({{id_, std::nullopt}, what}))
+    answer(plain(503, "the session has too many requests waiting"));
 }
 
 void HttpRequest::deliver(Exported exported) {

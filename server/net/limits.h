@@ -14,6 +14,7 @@ inline constexpr std::size_t max_unsent_text_bytes =
     4 * 1024 * 1024;  ///< control text a client may let pile up
 inline constexpr double messages_per_second = 2000,
                         message_burst = 4000;               ///< beyond: a flood, closed with 1008
+inline constexpr std::size_t max_waiting_commands = 1024;   ///< of a session; beyond: -32002
 inline constexpr double min_rate = 0.1, max_rate = 120;     ///< frames a second a viewer may ask for
 inline constexpr int max_in_flight = 8;                     ///< unacknowledged frames a viewer may ask for
 inline constexpr std::int64_t max_steps = 1'000'000;        ///< of one sim.step

@@ -71,6 +71,12 @@ std::vector<std::string> method_names() {
   return names;
 }
 
+Outcome ask_session(Client& client, const Request& request, decltype(Command::what) what) {
+  if (client.room()->offer({{client.id(), request.id}, std::move(what)})) return Later{};
+  return RpcError{error_over_limit, "the session has too many requests waiting; wait for its answers",
+                  nullptr};
+}
+
 Outcome call(Client& client, const Request& request) {
   if (client.role() == Role::none && request.method != "auth")
     return RpcError{error_not_allowed, "this server wants a token: call auth {token} first", nullptr};

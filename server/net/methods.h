@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "server/net/exchange.h"
 #include "server/net/json_rpc.h"
 
 namespace clothlab::net {
@@ -20,6 +21,9 @@ Outcome call(Client& client, const Request& request);
 
 /// What a client may call.
 std::vector<std::string> method_names();
+
+/// Leaves it to the client's session, or says that it is too busy.
+Outcome ask_session(Client& client, const Request& request, decltype(Command::what) what);
 
 // The groups of methods, one file each.
 Outcome scene_get(Client& client, const Request& request);

@@ -7,8 +7,7 @@ namespace clothlab::net {
 Outcome scene_get(Client& client, const Request& request) {
   Params params(request.params);
   if (auto error = params.check()) return *error;
-  client.room()->post({{client.id(), request.id}, GetScene{}});
-  return Later{};
+  return ask_session(client, request, GetScene{});
 }
 
 Outcome scene_load(Client& client, const Request& request) {
@@ -19,8 +18,7 @@ Outcome scene_load(Client& client, const Request& request) {
   else if (params.has("preset") && load.preset.empty())
     params.refuse("preset", "a preset's name, see scene.presets");
   if (auto error = params.check()) return *error;
-  client.room()->post({{client.id(), request.id}, std::move(load)});
-  return Later{};
+  return ask_session(client, request, std::move(load));
 }
 
 Outcome scene_patch(Client& client, const Request& request) {
@@ -32,8 +30,7 @@ Outcome scene_patch(Client& client, const Request& request) {
   const std::int64_t revision = params.integer("revision", 0, most, -1);
   if (auto error = params.check()) return *error;
   if (revision >= 0) patch.revision = static_cast<std::uint64_t>(revision);
-  client.room()->post({{client.id(), request.id}, std::move(patch)});
-  return Later{};
+  return ask_session(client, request, std::move(patch));
 }
 
 Outcome scene_presets(Client&, const Request& request) {

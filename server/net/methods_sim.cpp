@@ -10,8 +10,7 @@ template <class What>
 Outcome without_parameters(Client& client, const Request& request) {
   Params params(request.params);
   if (auto error = params.check()) return *error;
-  client.room()->post({{client.id(), request.id}, What{}});
-  return Later{};
+  return ask_session(client, request, What{});
 }
 
 }  // namespace
@@ -30,16 +29,14 @@ Outcome sim_step(Client& client, const Request& request) {
   Params params(request.params);
   const std::int64_t steps = params.integer("steps", 1, max_steps, 1);
   if (auto error = params.check()) return *error;
-  client.room()->post({{client.id(), request.id}, Step{static_cast<std::uint64_t>(steps)}});
-  return Later{};
+  return ask_session(client, request, Step{static_cast<std::uint64_t>(steps)});
 }
 
 Outcome sim_speed(Client& client, const Request& request) {
   Params params(request.params);
   const double factor = params.number("factor", min_speed, max_speed, std::nullopt);
   if (auto error = params.check()) return *error;
-  client.room()->post({{client.id(), request.id}, Speed{factor}});
-  return Later{};
+  return ask_session(client, request, Speed{factor});
 }
 
 }  // namespace clothlab::net

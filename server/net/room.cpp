@@ -33,6 +33,10 @@ void Room::post(Command command) {
   if (session_) session_->exchange().post(std::move(command));
 }
 
+bool Room::offer(Command command) {
+  return session_ && session_->exchange().offer(std::move(command));
+}
+
 void Room::stop() {
   if (session_) session_->exchange().stop();
 }

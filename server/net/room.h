@@ -43,6 +43,8 @@ class Room {
   void demand_changed(std::optional<stream::Encoding> fresh);
 
   void post(Command command);
+  /// The same for what a client asks for. False: too much waits already.
+  [[nodiscard]] bool offer(Command command);
   /// Takes in what the session has put out and passes it on.
   void pump();
   const std::optional<Failed>& failure() const { return failure_; }

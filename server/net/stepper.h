@@ -4,6 +4,7 @@
 // session goes on at all.
 #pragma once
 
+#include <future>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -53,7 +54,8 @@ class Stepper {
   void perform(Watchers& watchers, const Ticket& ticket);
   void perform(Export& what, const Ticket& ticket);
   void reply(const Ticket& ticket, Answer answer);
-  Result<std::string> picture(const Export& what);
+  Result<render::Image> picture(const Export& what);
+  void encode_picture(render::Image image, std::uint64_t asker);
   json where_we_are() const;
   RpcError diverged_error() const;
   void adopt(scene::Document document, sim::ChangeDepth depth);
@@ -81,6 +83,7 @@ class Stepper {
   std::unique_ptr<sim::Simulation> simulation_;
   std::unique_ptr<FrameMaker> frames_;
   std::unique_ptr<render::Renderer> renderer_;  ///< made for the first picture
+  std::vector<std::future<void>> encoders_;     ///< pictures being compressed; they end before this object
   GpuBacklog backlog_;
   RealTime real_time_;
 

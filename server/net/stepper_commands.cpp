@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "server/model/mesh_file.h"
 #include "server/net/stepper.h"
 
@@ -124,29 +126,42 @@ void Stepper::perform(Watchers& watchers, const Ticket&) {
   last_watched_ = Clock::now();
 }
 
-// On this thread, where the simulation's buffers are: a picture costs this session's viewers a hiccup, nobody
-// else.
+// On this thread, where the simulation's buffers are: it costs this session's viewers a hiccup, nobody else.
 void Stepper::perform(Export& what, const Ticket& ticket) {
   last_watched_ = Clock::now();
-  if (what.width > 0)
-    exchange_.emit(Exported{ticket.asker, "image/png", picture(what)});
-  else
-    exchange_.emit(Exported{ticket.asker, "text/plain; charset=utf-8",
-                            model::obj_text(simulation_->model(), simulation_->read_state().position,
-                                            "t = " + json(simulation_->time()).dump() + " s")});
+  if (what.width == 0) {
+    const std::string comment = "t = " + json(simulation_->time()).dump() + " s";
+    exchange_.emit(
+        Exported{ticket.asker, "text/plain; charset=utf-8",
+                 model::obj_text(simulation_->model(), simulation_->read_state().position, comment)});
+    return;
+  }
+  Result<render::Image> image = picture(what);
+  if (!image) return exchange_.emit(Exported{ticket.asker, "", image.error()});
+  encode_picture(std::move(*image), ticket.asker);
 }
 
-Result<std::string> Stepper::picture(const Export& what) {
+Result<render::Image> Stepper::picture(const Export& what) {
   if (!renderer_) {
     Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create();
     if (!renderer) return renderer.error();
     renderer_ = std::move(*renderer);
   }
-  const Result<render::Image> image = renderer_->render(*simulation_, what.width, what.height);
-  if (!image) return image.error();
-  const Result<std::vector<std::uint8_t>> png = render::encode_png(*image);
-  if (!png) return png.error();
-  return std::string(png->begin(), png->end());
+  return renderer_->render(*simulation_, what.width, what.height);
+}
+
+// Compression takes as long as the drawing, and needs no GL: off this thread.
+void Stepper::encode_picture(render::Image image, std::uint64_t asker) {
+  const auto done = [](const std::future<void>& encoder) {
+    return encoder.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  };
+  encoders_.erase(std::remove_if(encoders_.begin(), encoders_.end(), done), encoders_.end());
+  encoders_.push_back(
+      std::async(std::launch::async, [image = std::move(image), asker, &exchange = exchange_] {
+        const Result<std::vector<std::uint8_t>> png = render::encode_png(image);
+        if (!png) return exchange.emit(Exported{asker, "", png.error()});
+        exchange.emit(Exported{asker, "image/png", std::string(png->begin(), png->end())});
+      }));
 }
 
 void Stepper::announce_scene(std::optional<json> patch, std::uint64_t by) {

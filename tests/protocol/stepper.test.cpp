@@ -24,6 +24,11 @@ void* operator new(std::size_t bytes) {
 void* operator new[](std::size_t bytes) {
   return allocate(bytes);
 }
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
+  ++allocations;
+  return std::malloc(bytes);
+}
+void* operator new[](std::size_t bytes, const std::nothrow_t& tag) noexcept { return operator new(bytes, tag); }
 void operator delete(void* memory) noexcept {
   std::free(memory);
 }
@@ -95,15 +100,17 @@ TEST_CASE("in steady state the stepping thread allocates nothing but the frames 
   constexpr std::size_t frames = 120, a_frame = 2;  // the message with its count, and its bytes
   const std::size_t counted = session.allocations_for(frames);
   CHECK(counted >= frames);  // the counting works
-  CHECK(counted <= frames * a_frame);
+  // A slow machine is told once that it is slow, and that takes a few too.
+  constexpr std::size_t a_notice = 16;
+  CHECK(counted <= frames * a_frame + a_notice);
 }
 
 TEST_CASE("an unwatched session steps until its patience ends, sleeps, and goes on when somebody comes") {
-  Fixture session(0.5);
+  Fixture session(1.5);
   session.turn_for(0.2);
   const std::uint64_t early = session.exchange.steps();
   CHECK(early > 0);
-  session.turn_for(1.0);
+  session.turn_for(2.5);
   const std::uint64_t asleep = session.exchange.steps();
   CHECK(asleep > early);
   session.turn_for(0.5);

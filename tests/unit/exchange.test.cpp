@@ -1,0 +1,69 @@
+#include "server/net/exchange.h"
+
+#include "server/net/limits.h"
+#include "tests/catch.h"
+
+using namespace clothlab;
+using net::Clock;
+using net::Exchange;
+
+namespace {
+stream::SharedMessage frame(stream::Encoding encoding, std::uint32_t sequence) {
+  auto message = std::make_shared<stream::Message>();
+  message->header.encoding = encoding;
+  message->header.sequence = sequence;
+  return message;
+}
+}  // namespace
+
+TEST_CASE("a session takes max_waiting_commands requests of clients, and always what the server says") {
+  Exchange exchange([] {});
+  for (std::size_t i = 0; i < net::max_waiting_commands; ++i) REQUIRE(exchange.offer({{}, net::Play{}}));
+  CHECK_FALSE(exchange.offer({{}, net::Play{}}));
+  exchange.post({{}, net::Watchers{3}});
+  std::size_t taken = 0;
+  std::vector<net::Command> commands;
+  while (taken < net::max_waiting_commands + 1) {
+    REQUIRE(exchange.take_commands(commands, Clock::now()));
+    REQUIRE_FALSE(commands.empty());
+    REQUIRE(commands.size() <= Exchange::commands_a_turn);
+    taken += commands.size();
+  }
+  CHECK(std::get<net::Watchers>(commands.back().what).count == 3);
+  CHECK(exchange.offer({{}, net::Play{}}));
+}
+
+TEST_CASE("the mailbox keeps the latest frame of each encoding, for every viewer the same bytes") {
+  Exchange exchange([] {});
+  CHECK_FALSE(exchange.frame(stream::Encoding::q16));
+  exchange.publish(frame(stream::Encoding::q16, 1));
+  exchange.publish(frame(stream::Encoding::f32, 2));
+  exchange.publish(frame(stream::Encoding::q16, 3));
+  CHECK(exchange.frame(stream::Encoding::q16)->header.sequence == 3);
+  CHECK(exchange.frame(stream::Encoding::q16) == exchange.frame(stream::Encoding::q16));
+  exchange.forget_frame(stream::Encoding::q16);
+  CHECK_FALSE(exchange.frame(stream::Encoding::q16));
+  CHECK(exchange.frame(stream::Encoding::f32)->header.sequence == 2);
+}
+
+TEST_CASE("events arrive once and in order, and each wakes the service thread") {
+  int wakes = 0;
+  Exchange exchange([&wakes] { ++wakes; });
+  exchange.emit(net::Notice{"info", "first"});
+  exchange.emit(net::Notice{"info", "second"});
+  std::vector<net::Event> events;
+  exchange.take_events(events);
+  REQUIRE(events.size() == 2);
+  CHECK(std::get<net::Notice>(events[0]).text == "first");
+  CHECK(std::get<net::Notice>(events[1]).text == "second");
+  CHECK(wakes == 2);
+  exchange.take_events(events);
+  CHECK(events.empty());
+}
+
+TEST_CASE("a session that is told to stop does not wait for commands") {
+  Exchange exchange([] {});
+  exchange.stop();
+  std::vector<net::Command> commands;
+  CHECK_FALSE(exchange.take_commands(commands, Clock::now() + std::chrono::hours(1)));
+}
