@@ -1,16 +1,14 @@
 // Starts the page: the connection first, since its handshake needs no processor while WebGL starts.
 import { element } from "./dom";
 import { Page } from "./page";
-import { probeWebGl, Stage } from "./stage";
-
-const softwareRenderers = /swiftshader|llvmpipe|softpipe|software|basic render/i;
+import { Stage } from "./stage";
+import { openWebGl } from "./webgl";
 
 const page = new Page();
-const renderer = probeWebGl();
-if (renderer) {
-  const software = softwareRenderers.test(renderer);
-  document.body.classList.toggle("software", software);
-  page.show(new Stage(element("view", HTMLCanvasElement), software));
+const graphics = openWebGl(element("view", HTMLCanvasElement));
+if (graphics) {
+  document.body.classList.toggle("software", graphics.software);
+  page.show(new Stage(graphics));
 } else {
   page.close();
   document.body.classList.add("bare");

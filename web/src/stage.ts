@@ -10,20 +10,11 @@ import { GroundShadow } from "./ground_shadow";
 import type { Frame, Topology } from "./protocol";
 import { Quality } from "./quality";
 import type { SceneDocument } from "./scene_types";
+import type { Graphics } from "./webgl";
 
 const stillAfter = 300;  // [ms] without a change: a picture at rest is worth its full resolution
-const explodedAt = 12;     // times the scene's radius
+const explodedAt = 12;   // times the scene's radius
 const lightFrom = new Vector3(0.55, 1, 0.62).normalize();
-
-/// The name of what draws, or null without WebGL 2.
-export function probeWebGl(): string | null {
-  const gl = document.createElement("canvas").getContext("webgl2");
-  if (!gl) return null;
-  const details = gl.getExtension("WEBGL_debug_renderer_info");
-  const name = String(gl.getParameter(details ? details.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
-  gl.getExtension("WEBGL_lose_context")?.loseContext();
-  return name;
-}
 
 // Five filtered reads of the shadow map a pixel are most of what a software renderer spends on the cloth: one will do.
 function readShadowsOnce(): void {
@@ -34,6 +25,8 @@ function readShadowsOnce(): void {
 export class Stage {
   readonly controls: OrbitControls;
   readonly cloth: ClothView;
+  onLost = (): void => undefined;  ///< the WebGL context is gone; three.js restores what it can when it comes back
+  private readonly canvas: HTMLCanvasElement;
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
   private readonly camera = new PerspectiveCamera(32, 1, 0.05, 100);
@@ -51,13 +44,16 @@ export class Stage {
   private framed = true;  // until the user moves the camera it stays fitted to the scene
   private fitted: SceneDocument | null = null;
   private lastDrawn = 0;
-  private scale = 1;  // of the picture on screen: one at rest is sharp, whatever the quality level
+  private scale = 1;      // resolution of the picture on screen: one at rest is sharp, whatever the quality level
+  private readonly stillScale: number;
   private lastTime = 0;
   private radius = 1;  // of the scene [m]
 
-  constructor(private readonly canvas: HTMLCanvasElement, software: boolean) {
+  constructor({ canvas, context, software }: Graphics) {
+    this.canvas = canvas;
     if (software) readShadowsOnce();
-    this.renderer = new WebGLRenderer({ canvas, antialias: !software, alpha: true, powerPreference: "high-performance" });
+    this.stillScale = software ? 1.5 : 1;  // more pixels smooth the edges that nothing else smooths there
+    this.renderer = new WebGLRenderer({ canvas, context, alpha: true });
     this.renderer.setClearColor(0, 0);
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
@@ -78,11 +74,11 @@ export class Stage {
     this.controls.maxPolarAngle = Math.PI * 0.56;
     this.controls.addEventListener("change", () => this.invalidate());
     this.controls.addEventListener("start", () => { this.framed = false; });
+    canvas.addEventListener("webglcontextlost", () => this.onLost());
+    canvas.addEventListener("webglcontextrestored", () => this.invalidate());
     this.quality = new Quality(() => this.resize(this.area), software ? 1 : 0);
     this.compileAhead();
   }
-
-  get context(): WebGL2RenderingContext { return this.renderer.getContext() as WebGL2RenderingContext; }
 
   invalidate(): void { this.dirty = true; }
 
@@ -150,8 +146,8 @@ export class Stage {
     this.controls.update();
     const now = performance.now();
     const sinceLast = now - this.lastDrawn;
-    if (!this.dirty && (this.scale === 1 || sinceLast < stillAfter)) return false;
-    const scale = this.dirty ? this.quality.level.scale : 1;
+    if (!this.dirty && (this.scale === this.stillScale || sinceLast < stillAfter)) return false;
+    const scale = this.dirty ? this.quality.level.scale : this.stillScale;
     if (scale !== this.scale) this.setScale(scale);
     if (this.dirty) this.quality.sample(sinceLast);
     this.dirty = false;
