@@ -3,6 +3,7 @@
 #include <libwebsockets.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <strings.h>
 #include <sys/socket.h>
 
 #include <new>
@@ -52,7 +53,7 @@ int on_http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::si
       return 0;
     case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
       // libwebsockets would answer h2c too.
-      return std::string_view(static_cast<const char*>(in)) == "websocket" ? 0 : -1;
+      return strcasecmp(static_cast<const char*>(in), "websocket") == 0 ? 0 : -1;
     case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
       return -1;  // a WebSocket that asks for this protocol by name
     case LWS_CALLBACK_EVENT_WAIT_CANCELLED:

@@ -154,7 +154,9 @@ bool Client::may_speak() const {
 }
 
 int Client::writeable() {
-  if (close_code_ != 0) return say_close();
+  // A flood or a client that does not read is cut off at once; the others first get what was said to them.
+  const bool finish_first = close_code_ == close_internal && !outbox_.empty();
+  if (close_code_ != 0 && !finish_first) return say_close();
   if (!may_speak()) return 0;
   return send_next();
 }

@@ -91,6 +91,12 @@ test("an upgrade to h2c is refused", async () => {
   assert.doesNotMatch(answer, /^HTTP\/1.1 101/);
 });
 
+test("the word websocket in the handshake may be written in any case", async () => {
+  const answer = await raw("GET /ws HTTP/1.1\r\nHost: x\r\nConnection: upgrade\r\nUpgrade: WebSocket\r\nSec-WebSocket-Version: 13\r\n" +
+                           "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Protocol: clothlab.v1\r\n\r\n", "\r\n\r\n");
+  assert.match(answer, /^HTTP\/1.1 101/);
+});
+
 test("HTTP/2 with prior knowledge gets no HTTP/2", async () => {
   const answer = await raw("PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n\0\0\0\x04\0\0\0\0\0", "\r\n\r\n");
   assert.ok(!answer.startsWith("\0"), "that is a SETTINGS frame");
