@@ -32,7 +32,10 @@ for (let i = 0; i < 6; ++i) {
 async function rates(width, height) {
   const viewer = await Viewer.open(browser, server, { width, height });
   await viewer.page.waitForTimeout(4000);  // the resolution settles
-  const count = () => viewer.page.evaluate(() => ({ at: performance.now(), drawn: window.clothlab.framesDrawn, received: window.clothlab.framesReceived }));
+  const count = () => viewer.page.evaluate(() => {
+    const { framesDrawn: drawn, framesReceived: received } = window.clothlab;
+    return { at: performance.now(), drawn, received };
+  });
   const before = await count();
   await viewer.page.waitForTimeout(seconds * 1000);
   const after = await count();

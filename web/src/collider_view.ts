@@ -38,7 +38,8 @@ interface Shown { collider: Collider; mesh: Mesh; caster: Mesh | null }
 export class ColliderView {
   readonly object = new Group();
   readonly caster = new Group();  ///< drawn into the ground's shadow
-  private readonly sphere = new SphereGeometry(1, 64, 40);
+  private readonly sphere = new SphereGeometry(1, 40, 24);
+  private readonly coarseSphere = new SphereGeometry(1, 16, 10);  // a blurred shadow needs no more
   private readonly disc = new CircleGeometry(1, 64);
   private readonly sphereMaterial;
   private readonly planeMaterial;
@@ -114,7 +115,7 @@ export class ColliderView {
 
   private casterOf(collider: Collider): Mesh | null {
     if (!collider.sphere) return null;
-    const caster = new Mesh(this.sphere, this.casterMaterial);
+    const caster = new Mesh(this.coarseSphere, this.casterMaterial);
     caster.scale.setScalar(collider.sphere.radius);
     return caster;
   }

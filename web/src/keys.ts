@@ -9,7 +9,7 @@ const bindings: Record<string, keyof Commands> = {
 /// Whether the focused element needs this key itself.
 function takes(target: EventTarget | null, key: string): boolean {
   if (!(target instanceof HTMLElement)) return false;
-  if (target instanceof HTMLInputElement) return target.type !== "range" && target.type !== "checkbox" ? true : key === " " && target.type === "checkbox";
+  if (target instanceof HTMLInputElement) return target.type === "checkbox" ? key === " " : target.type !== "range";
   if (target instanceof HTMLSelectElement || target.isContentEditable) return true;
   return key === " " && target.closest("button, summary") !== null;
 }

@@ -39,7 +39,9 @@ export class Page {
     const layout = new Layout(() => stage.resize(layout.freeArea()));
     const theme = new ThemeSwitch(() => stage.setTheme());
     this.bind(layout, theme);
-    stage.onLost = () => notice("warning", { title: "The browser took the graphics away", lines: ["It gives them back by itself; if not, reload the page."] });
+    stage.onLost = () => notice("warning", {
+      title: "The browser took the graphics away", lines: ["It gives them back by itself; if not, reload the page."],
+    });
     stage.resize(layout.freeArea());
     setInterval(() => this.hud.tick(this.connection.bytesReceived), 1000);
     const animate = (): void => {
