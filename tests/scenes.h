@@ -11,7 +11,8 @@
 
 namespace clothlab::test {
 
-/// A context current on this thread for the rest of the test. Fails the test with the reason if there is none.
+/// A context current on this thread for the rest of the test. Fails the test with the reason if there is
+/// none.
 inline std::unique_ptr<gl::Context> context() {
   Result<std::unique_ptr<gl::Context>> made = gl::Context::create();
   INFO((made ? "" : made.error().text()));

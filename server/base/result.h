@@ -1,4 +1,5 @@
-// Errors as values that carry their remedy. Exceptions do not cross a thread, a callback or a public function.
+// Errors as values that carry their remedy. Exceptions do not cross a thread, a callback or a public
+// function.
 #pragma once
 
 #include <string>
@@ -8,7 +9,8 @@
 namespace clothlab {
 
 /// What went wrong, in three parts that every front end shows the same way.
-/// For a scene: `where` is a JSON Pointer, `what` the value found (compact JSON), `remedy` what is allowed there.
+/// For a scene: `where` is a JSON Pointer, `what` the value found (compact JSON), `remedy` what is allowed
+/// there.
 struct Error {
   std::string where;   ///< file, line, JSON Pointer, or subsystem
   std::string what;    ///< what was found
@@ -38,6 +40,8 @@ class [[nodiscard]] Result {
 
 /// The result of something that only succeeds or fails.
 using Status = Result<std::monostate>;
-inline Status ok() { return Status(std::monostate{}); }
+inline Status ok() {
+  return Status(std::monostate{});
+}
 
 }  // namespace clothlab

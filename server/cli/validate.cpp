@@ -20,7 +20,8 @@ bool report(const std::string& name) {
     std::cerr << document.error().text() << "\n";
     return false;
   }
-  const Result<model::Model> model = model::build(document->scene);  // finds e.g. a pin whose box holds no vertex
+  const Result<model::Model> model =
+      model::build(document->scene);  // finds e.g. a pin whose box holds no vertex
   if (!model) {
     std::cerr << name << ": " << model.error().text() << "\n";
     return false;

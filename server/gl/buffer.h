@@ -1,4 +1,5 @@
-// GL objects that own their names: buffers, buffer textures, and the ring that brings results back without waiting.
+// GL objects that own their names: buffers, buffer textures, and the ring that brings results back without
+// waiting.
 #pragma once
 
 #include <glad/gl.h>
@@ -37,7 +38,8 @@ class Buffer {
   std::size_t bytes_ = 0;
 };
 
-/// A texture view of a buffer: much faster to read than storage buffers on software OpenGL (shaders/access.glsl).
+/// A texture view of a buffer: much faster to read than storage buffers on software OpenGL
+/// (shaders/access.glsl).
 class BufferTexture {
  public:
   BufferTexture() = default;
@@ -51,7 +53,8 @@ class BufferTexture {
   GLuint id_ = 0;
 };
 
-/// True with CLOTHLAB_READS=storage in the environment: kernels then read buffers as storage, to compare the two.
+/// True with CLOTHLAB_READS=storage in the environment: kernels then read buffers as storage, to compare the
+/// two.
 bool reads_are_storage();
 
 /// A buffer that kernels read through shaders/access.glsl, and that other kernels may write.

@@ -21,7 +21,9 @@ struct Candidate {
   Device device;
 };
 
-std::string text(const char* value) { return value ? value : ""; }
+std::string text(const char* value) {
+  return value ? value : "";
+}
 
 Status load_egl() {
   static const int version = gladLoaderLoadEGL(nullptr);
@@ -143,7 +145,8 @@ Result<std::unique_ptr<Context>> Context::create(std::optional<int> gpu) {
       if (gpu ? candidate.device.index != *gpu || software : candidate.device.software != software) continue;
       const Opened opened = open(candidate);
       if (!candidate.device.usable) {
-        problems += " device " + std::to_string(candidate.device.index) + ": " + candidate.device.problem + ";";
+        problems +=
+            " device " + std::to_string(candidate.device.index) + ": " + candidate.device.problem + ";";
         continue;
       }
       std::unique_ptr<Context> context(new Context);
@@ -168,6 +171,8 @@ Status Context::make_current() {
   return Error{"OpenGL", "the context cannot be made current", "is it current on another thread?"};
 }
 
-void Context::release_current() { eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
+void Context::release_current() {
+  eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+}
 
 }  // namespace clothlab::gl

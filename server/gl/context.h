@@ -24,11 +24,12 @@ struct Device {
 /// Every EGL device in the driver's order; opens a context on each to ask its name.
 Result<std::vector<Device>> list_devices();
 
-/// A context that belongs to the thread that made it current. Order of devices: `gpu` if given; else the first usable
-/// one that is not software; else Mesa's software rasteriser.
+/// A context that belongs to the thread that made it current. Order of devices: `gpu` if given; else the
+/// first usable one that is not software; else Mesa's software rasteriser.
 class Context {
  public:
-  /// Makes a context and makes it current on the calling thread. Error: what is missing and the package to install.
+  /// Makes a context and makes it current on the calling thread. Error: what is missing and the package to
+  /// install.
   static Result<std::unique_ptr<Context>> create(std::optional<int> gpu = std::nullopt);
   ~Context();
   Context(const Context&) = delete;

@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Source text with its includes expanded, and where each of its lines came from. (Mesa forgets the file that a #line
-/// directive names in some of its messages, so lines are counted here.)
+/// Source text with its includes expanded, and where each of its lines came from. (Mesa forgets the file that
+/// a #line directive names in some of its messages, so lines are counted here.)
 struct Source {
   std::string text;
   std::vector<std::string> origins;  ///< "shaders/FILE:LINE" of each line of text
@@ -53,7 +53,8 @@ Status expand(const std::string& path, Source& source, std::set<std::string>& se
   return ok();
 }
 
-/// The driver's first message, with its line of the expanded text replaced by the source file's name and line.
+/// The driver's first message, with its line of the expanded text replaced by the source file's name and
+/// line.
 Error compile_error(const Source& source, const std::string& log) {
   const std::string remedy = "mend the shader and start again";
   // Mesa: "0:12(5): error: ..."; NVIDIA: "0(12) : error C0000: ..."; AMD, Intel: "ERROR: 0:12: ..."

@@ -17,9 +17,9 @@ using Defines = std::vector<std::pair<std::string, std::string>>;
 class Program {
  public:
   Program() = default;
-  /// Compiles and links `paths`, e.g. {"render/cloth.vert", "render/cloth.geom", "render/cloth.frag"} or one .comp;
-  /// the stage follows from the file's ending. `defines` come right after #version 450 core.
-  /// Errors: where = "shaders/FILE:LINE" of the source file, also inside an #include.
+  /// Compiles and links `paths`, e.g. {"render/cloth.vert", "render/cloth.geom", "render/cloth.frag"} or one
+  /// .comp; the stage follows from the file's ending. `defines` come right after #version 450 core. Errors:
+  /// where = "shaders/FILE:LINE" of the source file, also inside an #include.
   static Result<Program> load(std::initializer_list<std::string> paths, const Defines& defines = {});
   ~Program();
   Program(Program&& other) noexcept { std::swap(id_, other.id_); }

@@ -26,7 +26,8 @@ dvec3 place(const scene::Transform& transform, dvec3 point) {
 }
 
 /// The vertices of a cloth, numbered within it, that a pin holds.
-std::vector<Index> held_by(const scene::Cloth& cloth, const scene::At& at, const std::vector<dvec3>& position) {
+std::vector<Index> held_by(const scene::Cloth& cloth, const scene::At& at,
+                           const std::vector<dvec3>& position) {
   const auto* grid = std::get_if<scene::Grid>(&cloth.mesh);
   const Index columns = grid ? static_cast<Index>(grid->columns) : 0;
   const Index rows = grid ? static_cast<Index>(grid->rows) : 0;
@@ -40,7 +41,8 @@ std::vector<Index> held_by(const scene::Cloth& cloth, const scene::At& at, const
     const auto line = static_cast<Index>(edge->index);
     const bool row = edge->line == scene::AtEdge::Line::row;
     if (line < (row ? rows : columns))
-      for (Index i = 0; i < (row ? columns : rows); ++i) held.push_back(row ? line * columns + i : i * columns + line);
+      for (Index i = 0; i < (row ? columns : rows); ++i)
+        held.push_back(row ? line * columns + i : i * columns + line);
   } else if (const auto* box = std::get_if<scene::AtBox>(&at)) {
     for (Index i = 0; i < position.size(); ++i)
       if (glm::all(glm::lessThanEqual(box->minimum, position[i])) &&
@@ -71,7 +73,8 @@ Adjacency adjacency(std::size_t vertex_count, const Items& items, Corners corner
   return result;
 }
 
-std::vector<double> masses(const scene::Cloth& cloth, const MeshArrays& arrays, const std::vector<dvec3>& position) {
+std::vector<double> masses(const scene::Cloth& cloth, const MeshArrays& arrays,
+                           const std::vector<dvec3>& position) {
   if (cloth.mass.kind == scene::Mass::Kind::per_vertex)
     return std::vector<double>(position.size(), cloth.mass.value);
   std::vector<double> mass(position.size(), 0.0);
@@ -110,10 +113,11 @@ Status add_cloth(Model& model, const scene::Cloth& cloth) {
   for (std::size_t i = 0; i < cloth.pins.size(); ++i) {
     const std::vector<Index> held = held_by(cloth, cloth.pins[i].at, position);
     if (held.empty())
-      return Error{where + "/pins/" + std::to_string(i) + "/at", "holds no vertex",
-                   "a place on the mesh" + (grid ? ", which has " + std::to_string(grid->columns) + " columns and " +
-                                                       std::to_string(grid->rows) + " rows"
-                                                 : ", which has " + std::to_string(position.size()) + " vertices")};
+      return Error{
+          where + "/pins/" + std::to_string(i) + "/at", "holds no vertex",
+          "a place on the mesh" + (grid ? ", which has " + std::to_string(grid->columns) + " columns and " +
+                                              std::to_string(grid->rows) + " rows"
+                                        : ", which has " + std::to_string(position.size()) + " vertices")};
     const auto motion = static_cast<std::int32_t>(motion_index(model.motions, cloth.pins[i].motion));
     for (const Index vertex : held) pin_motion[vertex] = motion;
   }
@@ -145,9 +149,11 @@ Result<Model> build(const scene::Scene& scene) {
   Model model;
   for (const scene::Cloth& cloth : scene.cloths)
     if (Status added = add_cloth(model, cloth); !added) return added.error();
-  model.vertex_springs = adjacency(model.vertex_count(), model.springs,
-                                   [](const Spring& spring) { return std::array{spring.a, spring.b}; });
-  model.vertex_triangles = adjacency(model.vertex_count(), model.triangles, [](const auto& corners) { return corners; });
+  model.vertex_springs = adjacency(model.vertex_count(), model.springs, [](const Spring& spring) {
+    return std::array{spring.a, spring.b};
+  });
+  model.vertex_triangles =
+      adjacency(model.vertex_count(), model.triangles, [](const auto& corners) { return corners; });
   return model;
 }
 

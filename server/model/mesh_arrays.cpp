@@ -11,9 +11,13 @@ namespace {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-Edge sorted(std::uint32_t a, std::uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
+Edge sorted(std::uint32_t a, std::uint32_t b) {
+  return {std::min(a, b), std::max(a, b)};
+}
 
-Spring spring(Edge edge, SpringKind kind) { return {edge.first, edge.second, 0, kind, 0.0}; }
+Spring spring(Edge edge, SpringKind kind) {
+  return {edge.first, edge.second, 0, kind, 0.0};
+}
 
 }  // namespace
 
@@ -89,7 +93,9 @@ MeshArrays triangle_mesh_arrays(const scene::TriangleMesh& mesh, const scene::Sp
   std::stable_sort(arrays.springs.begin(), arrays.springs.end(), [](const Spring& a, const Spring& b) {
     return std::tie(a.kind, a.a, a.b) < std::tie(b.kind, b.a, b.b);
   });
-  const auto same = [](const Spring& a, const Spring& b) { return a.a == b.a && a.b == b.b && a.kind == b.kind; };
+  const auto same = [](const Spring& a, const Spring& b) {
+    return a.a == b.a && a.b == b.b && a.kind == b.kind;
+  };
   arrays.springs.erase(std::unique(arrays.springs.begin(), arrays.springs.end(), same), arrays.springs.end());
   return arrays;
 }

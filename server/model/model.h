@@ -1,4 +1,5 @@
-// scene -> particles, springs, triangles, pins as CPU arrays. All cloths of a scene are laid end to end. No GL here.
+// scene -> particles, springs, triangles, pins as CPU arrays. All cloths of a scene are laid end to end. No
+// GL here.
 #pragma once
 
 #include <array>
@@ -41,23 +42,24 @@ inline constexpr std::int32_t not_pinned = -1;
 
 /// Everything the simulation needs that does not change while it runs.
 struct Model {
-  std::vector<dvec3> rest_position;               ///< [vertex_count] [m], transform applied; the start positions
-  std::vector<double> mass;                       ///< [vertex_count] [kg]
-  std::vector<std::int32_t> pin_motion;           ///< [vertex_count] not_pinned, or an index into `motions`
-  std::vector<scene::Motion> motions;             ///< of the pins
-  std::vector<std::uint32_t> vertex_cloth;        ///< [vertex_count]
-  std::vector<glm::vec2> texture_coordinates;     ///< [vertex_count], [0, 1] over a grid, [m] / 1 m otherwise
+  std::vector<dvec3> rest_position;            ///< [vertex_count] [m], transform applied; the start positions
+  std::vector<double> mass;                    ///< [vertex_count] [kg]
+  std::vector<std::int32_t> pin_motion;        ///< [vertex_count] not_pinned, or an index into `motions`
+  std::vector<scene::Motion> motions;          ///< of the pins
+  std::vector<std::uint32_t> vertex_cloth;     ///< [vertex_count]
+  std::vector<glm::vec2> texture_coordinates;  ///< [vertex_count], [0, 1] over a grid, [m] / 1 m otherwise
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< [triangle_count]
-  std::vector<Spring> springs;                    ///< each once
-  Adjacency vertex_springs;                       ///< springs at each vertex
-  Adjacency vertex_triangles;                     ///< triangles at each vertex
+  std::vector<Spring> springs;                          ///< each once
+  Adjacency vertex_springs;                             ///< springs at each vertex
+  Adjacency vertex_triangles;                           ///< triangles at each vertex
   std::vector<ClothRange> cloths;
 
   std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(rest_position.size()); }
   std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(triangles.size()); }
 };
 
-/// Builds the arrays. Errors name the JSON Pointer: a pin outside its mesh, a triangle index out of range, ...
+/// Builds the arrays. Errors name the JSON Pointer: a pin outside its mesh, a triangle index out of range,
+/// ...
 Result<Model> build(const scene::Scene& scene);
 
 /// For each vertex the two other corners of each of its triangles, counter-clockwise, in the order of

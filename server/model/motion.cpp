@@ -23,7 +23,9 @@ dmat3 rotation_about(const dvec3& axis, double angle) {
   return turned;
 }
 
-Pose pose_of(std::monostate, double) { return {}; }
+Pose pose_of(std::monostate, double) {
+  return {};
+}
 
 Pose pose_of(const scene::Oscillate& motion, double time) {
   const double omega = 2.0 * std::numbers::pi * motion.frequency;

@@ -1,4 +1,5 @@
-// How pins and colliders move: closed forms of time, in double precision. Shared by the GPU path and the reference.
+// How pins and colliders move: closed forms of time, in double precision. Shared by the GPU path and the
+// reference.
 #pragma once
 
 #include <glm/mat3x3.hpp>

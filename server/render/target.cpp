@@ -9,7 +9,8 @@ namespace clothlab::render {
 
 namespace {
 constexpr GLint wanted_samples = 8;
-constexpr GLint most_total_samples = 32 * 1024 * 1024;  // 8 bytes each: larger pictures get fewer samples a pixel
+constexpr GLint most_total_samples =
+    32 * 1024 * 1024;                  // 8 bytes each: larger pictures get fewer samples a pixel
 constexpr GLsizei shadow_side = 2048;  // [pixels]
 
 bool complete(GLuint framebuffer) {

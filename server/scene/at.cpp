@@ -50,7 +50,9 @@ std::string up_to(const char* what, std::size_t count) {
 std::string outside(const At& at, const Mesh& mesh) {
   const Grid* grid = std::get_if<Grid>(&mesh);
   if (const AtVertex* vertex = std::get_if<AtVertex>(&at))
-    return vertex->vertex < vertex_count(mesh) ? "" : "a vertex of this mesh: " + up_to("vertex", vertex_count(mesh));
+    return vertex->vertex < vertex_count(mesh)
+               ? ""
+               : "a vertex of this mesh: " + up_to("vertex", vertex_count(mesh));
   if (std::holds_alternative<AtBox>(at)) return "";
   if (!grid) return "\"vertex:N\" or {\"box\": ...}: this mesh is no grid and has no rows and columns";
   const auto columns = static_cast<std::size_t>(grid->columns), rows = static_cast<std::size_t>(grid->rows);

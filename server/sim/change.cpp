@@ -8,11 +8,12 @@ namespace clothlab::sim {
 
 namespace {
 
-/// A pin that appears would tear its vertex back to its home at once, so it starts the cloth anew; a pin that goes
-/// away lets its vertices fall.
+/// A pin that appears would tear its vertex back to its home at once, so it starts the cloth anew; a pin that
+/// goes away lets its vertices fall.
 bool pins_were_added(const scene::Cloth& from, const scene::Cloth& to) {
   return std::any_of(to.pins.begin(), to.pins.end(), [&](const scene::Pin& pin) {
-    return std::none_of(from.pins.begin(), from.pins.end(), [&](const scene::Pin& old) { return old.at == pin.at; });
+    return std::none_of(from.pins.begin(), from.pins.end(),
+                        [&](const scene::Pin& old) { return old.at == pin.at; });
   });
 }
 
@@ -22,7 +23,9 @@ bool new_cloth(const scene::Cloth& from, const scene::Cloth& to) {
 
 /// Same springs, same pinned vertices, same list of motions.
 bool same_structure(const scene::Cloth& from, const scene::Cloth& to) {
-  const auto kinds = [](const scene::Springs& s) { return std::array{s.structural > 0, s.shear > 0, s.bend > 0}; };
+  const auto kinds = [](const scene::Springs& s) {
+    return std::array{s.structural > 0, s.shear > 0, s.bend > 0};
+  };
   return kinds(from.material) == kinds(to.material) && from.pins.size() == to.pins.size();
 }
 
@@ -42,10 +45,14 @@ scene::Scene without_looks(scene::Scene scene) {
 
 const char* name(ChangeDepth depth) {
   switch (depth) {
-    case ChangeDepth::none: return "none";
-    case ChangeDepth::uniform: return "uniform";
-    case ChangeDepth::kernel: return "kernel";
-    case ChangeDepth::cloth: return "cloth";
+    case ChangeDepth::none:
+      return "none";
+    case ChangeDepth::uniform:
+      return "uniform";
+    case ChangeDepth::kernel:
+      return "kernel";
+    case ChangeDepth::cloth:
+      return "cloth";
   }
   return "";
 }

@@ -12,7 +12,8 @@ double contact_margin(const scene::Scene& scene, const model::Model& model) {
   return 0.01 * edge;
 }
 
-void set_colliders(const gl::Program& program, const scene::Scene& scene, const MotionTable& motions, double margin) {
+void set_colliders(const gl::Program& program, const scene::Scene& scene, const MotionTable& motions,
+                   double margin) {
   std::vector<glm::vec4> spheres, points;
   std::vector<glm::vec3> sphere_surfaces, normals, plane_surfaces;
   for (const scene::Collider& collider : scene.colliders) {
@@ -35,7 +36,8 @@ void set_colliders(const gl::Program& program, const scene::Scene& scene, const 
     if (!values.empty())
       glProgramUniform4fv(program.id(), location, static_cast<GLsizei>(values.size()), &values[0].x);
   };
-  const auto sphere_count = static_cast<GLint>(spheres.size()), plane_count = static_cast<GLint>(points.size());
+  const auto sphere_count = static_cast<GLint>(spheres.size()),
+             plane_count = static_cast<GLint>(points.size());
   set4(16, spheres);
   set3(16 + sphere_count, sphere_surfaces);
   set4(256, points);

@@ -7,11 +7,12 @@
 
 namespace clothlab::sim {
 
-/// How far from a collider's surface a vertex is kept [m]: half the cloth's thickness where the scene gives one, else a
-/// hundredth of the mesh's mean edge, so that rounding never lets a vertex in.
+/// How far from a collider's surface a vertex is kept [m]: half the cloth's thickness where the scene gives
+/// one, else a hundredth of the mesh's mean edge, so that rounding never lets a vertex in.
 double contact_margin(const scene::Scene& scene, const model::Model& model);
 
 /// Sets the uniforms of `program`, which was compiled for this scene's numbers of spheres and planes.
-void set_colliders(const gl::Program& program, const scene::Scene& scene, const MotionTable& motions, double margin);
+void set_colliders(const gl::Program& program, const scene::Scene& scene, const MotionTable& motions,
+                   double margin);
 
 }  // namespace clothlab::sim

@@ -37,7 +37,8 @@ bool DiagnosticsPass::request(const StateBuffers& state, const SelfCollision* se
                               const glm::dvec3& gravity, double time, std::uint64_t step) {
   if (ring_.full()) return false;
   program_.use();
-  glUniform4f(3, static_cast<float>(gravity.x), static_cast<float>(gravity.y), static_cast<float>(gravity.z), 0.0f);
+  glUniform4f(3, static_cast<float>(gravity.x), static_cast<float>(gravity.y), static_cast<float>(gravity.z),
+              0.0f);
   state.position().bind(unit_position);
   state.velocity().bind(unit_velocity);
   results_.bind_storage(0);
@@ -45,7 +46,8 @@ bool DiagnosticsPass::request(const StateBuffers& state, const SelfCollision* se
   if (self_collision) {
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glCopyNamedBufferSubData(self_collision->control().id(), results_.id(), SelfCollision::counters_offset,
-                             static_cast<GLintptr>(groups_ * sizeof(Partial)), sizeof(SelfCollision::Counters));
+                             static_cast<GLintptr>(groups_ * sizeof(Partial)),
+                             sizeof(SelfCollision::Counters));
   }
   ring_.push(results_, results_.bytes());
   shown_[requested_++ % ring_slots] = {time, step};

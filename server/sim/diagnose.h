@@ -1,5 +1,6 @@
-// Energies, strain, speed and contacts of the whole state: a reduction on the GPU (shaders/stream/diagnose.comp) whose
-// partial results come back through a ring, without waiting unless asked to.
+// Energies, strain, speed and contacts of the whole state: a reduction on the GPU
+// (shaders/stream/diagnose.comp) whose partial results come back through a ring, without waiting unless asked
+// to.
 #pragma once
 
 #include <array>
@@ -17,8 +18,8 @@ class DiagnosticsPass {
 
   /// Queues the reduction. False if too many are still on their way. Springs and slices must be bound.
   /// `self_collision` may be null.
-  bool request(const StateBuffers& state, const SelfCollision* self_collision, const glm::dvec3& gravity, double time,
-               std::uint64_t step);
+  bool request(const StateBuffers& state, const SelfCollision* self_collision, const glm::dvec3& gravity,
+               double time, std::uint64_t step);
   /// True and the oldest result, if one has arrived or `wait` is set and one was requested.
   bool poll(Diagnostics& out, bool wait);
 
@@ -27,7 +28,8 @@ class DiagnosticsPass {
   gl::Buffer results_;  ///< the partial results, then self-collision's counters
   gl::ReadbackRing ring_;
   static constexpr std::size_t ring_slots = 3;
-  std::array<std::pair<double, std::uint64_t>, ring_slots> shown_{};  ///< time and step of each result on its way
+  std::array<std::pair<double, std::uint64_t>, ring_slots>
+      shown_{};  ///< time and step of each result on its way
   std::size_t requested_ = 0, delivered_ = 0;
   std::uint32_t groups_ = 0;
 };

@@ -1,4 +1,5 @@
-// Poses of everything that moves, for each step of a batch: computed in double precision, read by shaders/methods/motions.glsl.
+// Poses of everything that moves, for each step of a batch: computed in double precision, read by
+// shaders/methods/motions.glsl.
 #pragma once
 
 #include <cstdint>

@@ -6,14 +6,17 @@ namespace clothlab::sim {
 
 namespace {
 
-bool moves(const scene::Motion& motion) { return !std::holds_alternative<std::monostate>(motion); }
+bool moves(const scene::Motion& motion) {
+  return !std::holds_alternative<std::monostate>(motion);
+}
 
 }  // namespace
 
 std::vector<scene::Motion> moving_motions(const scene::Scene& scene) {
   std::vector<scene::Motion> found;
   const auto add = [&](const scene::Motion& motion) {
-    if (moves(motion) && std::find(found.begin(), found.end(), motion) == found.end()) found.push_back(motion);
+    if (moves(motion) && std::find(found.begin(), found.end(), motion) == found.end())
+      found.push_back(motion);
   };
   for (const scene::Cloth& cloth : scene.cloths)
     for (const scene::Pin& pin : cloth.pins) add(pin.motion);
@@ -47,7 +50,9 @@ gl::Defines step_defines(const Plan& plan) {
 
 std::vector<Simulation::Pass> passes(const Plan& plan) {
   std::vector<Simulation::Pass> list;
-  const auto add = [&](const char* name, bool runs, const char* reason) { list.push_back({name, runs ? "" : reason}); };
+  const auto add = [&](const char* name, bool runs, const char* reason) {
+    list.push_back({name, runs ? "" : reason});
+  };
   add("neighbour_search", plan.self_collision, "self_collision is null");
   add("structural_springs", plan.structural, "their stiffness is 0 in every cloth");
   add("shear_springs", plan.shear, "their stiffness is 0 in every cloth");

@@ -9,8 +9,8 @@
 
 namespace clothlab::sim {
 
-/// Threads in a work group and vertices in a slice of the spring lists. Of 32 to 256, 128 was best or near it for
-/// cloths from 25x25 to 256x256 on llvmpipe.
+/// Threads in a work group and vertices in a slice of the spring lists. Of 32 to 256, 128 was best or near it
+/// for cloths from 25x25 to 256x256 on llvmpipe.
 inline constexpr int group_size = 128;
 
 /// What the step kernel is specialised for. Two scenes with equal plans run the same kernels.

@@ -13,7 +13,9 @@ namespace {
 
 constexpr std::size_t neighbour_slots = 64;  // NEIGHBOUR_SLOTS in shaders/collide/neighbours.glsl
 
-GLuint groups(std::uint32_t vertex_count) { return (vertex_count + group_size - 1) / group_size; }
+GLuint groups(std::uint32_t vertex_count) {
+  return (vertex_count + group_size - 1) / group_size;
+}
 
 }  // namespace
 
@@ -22,7 +24,8 @@ Result<SelfCollision> SelfCollision::create(std::uint32_t vertex_count) {
   made.vertex_count_ = vertex_count;
   // Two cells a vertex keep the chains short.
   const std::uint32_t cells = std::bit_ceil(2 * vertex_count);
-  const gl::Defines defines{{"GROUP_SIZE", std::to_string(group_size)}, {"CELL_COUNT", std::to_string(cells)}};
+  const gl::Defines defines{{"GROUP_SIZE", std::to_string(group_size)},
+                            {"CELL_COUNT", std::to_string(cells)}};
   for (auto [program, path] : {std::pair{&made.clear_, "collide/clear_cells.comp"},
                                {&made.insert_, "collide/insert_cells.comp"},
                                {&made.find_, "collide/find_neighbours.comp"}}) {
@@ -41,8 +44,8 @@ Result<SelfCollision> SelfCollision::create(std::uint32_t vertex_count) {
 }
 
 void SelfCollision::set_parameters(const scene::SelfCollision& parameters, const model::Model& model) {
-  // The skin trades rebuilds against list length: one edge of the mesh keeps a flat cloth's lists empty while its
-  // contact distance is below an edge, since everything that near is joined by a spring.
+  // The skin trades rebuilds against list length: one edge of the mesh keeps a flat cloth's lists empty while
+  // its contact distance is below an edge, since everything that near is joined by a spring.
   double edge = 0.0;
   for (const model::ClothRange& cloth : model.cloths) edge = std::max(edge, cloth.mean_edge_length);
   skin_ = static_cast<float>(std::max(edge, 0.5 * parameters.thickness));

@@ -1,5 +1,6 @@
-// Keeps the neighbour lists that self-collision reads: three dispatches that run only in the steps in which a vertex has
-// moved half the skin, which the GPU finds out by itself (indirect dispatch), so nothing waits and nothing is guessed.
+// Keeps the neighbour lists that self-collision reads: three dispatches that run only in the steps in which a
+// vertex has moved half the skin, which the GPU finds out by itself (indirect dispatch), so nothing waits and
+// nothing is guessed.
 #pragma once
 
 #include "server/base/result.h"
@@ -17,8 +18,8 @@ class SelfCollision {
   /// The distances for this scene; the lists are rebuilt before the next step.
   void set_parameters(const scene::SelfCollision& parameters, const model::Model& model);
 
-  /// Rebuilds the lists if a vertex has moved too far since. Needs position, springs, slices and rest positions bound;
-  /// leaves bound what the step kernel reads and writes of the lists.
+  /// Rebuilds the lists if a vertex has moved too far since. Needs position, springs, slices and rest
+  /// positions bound; leaves bound what the step kernel reads and writes of the lists.
   void update_lists();
   /// Rebuilds them before the next step whatever has moved.
   void invalidate();

@@ -90,7 +90,8 @@ struct Simulation::Implementation {
   DiagnosticsPass diagnostics;
   std::uint32_t topology_revision = 1;
   std::uint64_t step_index = 0;
-  // Time is start_time + (step_index - start_step) dt: no sum that rounding could let drift. A change of dt starts anew.
+  // Time is start_time + (step_index - start_step) dt: no sum that rounding could let drift. A change of dt
+  // starts anew.
   double start_time = 0.0;
   std::uint64_t start_step = 0;
   std::vector<double> batch_times;
@@ -133,7 +134,8 @@ struct Simulation::Implementation {
       start_time = time_of(step_index);
       start_step = step_index;
     }
-    const bool constants = differs(scene, next, &scene::Cloth::mass) || differs(scene, next, &scene::Cloth::pins) ||
+    const bool constants = differs(scene, next, &scene::Cloth::mass) ||
+                           differs(scene, next, &scene::Cloth::pins) ||
                            moving_motions(scene) != moving_motions(next);
     scene = next;
     if (constants) state.rewrite_constants(kernels.model, kernels.motions);
@@ -201,12 +203,24 @@ void Simulation::reset() {
   self.start_time = 0.0;
 }
 
-double Simulation::time() const { return implementation_->time_of(implementation_->step_index); }
-std::uint64_t Simulation::step_index() const { return implementation_->step_index; }
-const scene::Scene& Simulation::scene() const { return implementation_->scene; }
-const model::Model& Simulation::model() const { return implementation_->kernels.model; }
-std::uint32_t Simulation::topology_revision() const { return implementation_->topology_revision; }
-std::vector<Simulation::Pass> Simulation::passes() const { return sim::passes(implementation_->kernels.plan); }
+double Simulation::time() const {
+  return implementation_->time_of(implementation_->step_index);
+}
+std::uint64_t Simulation::step_index() const {
+  return implementation_->step_index;
+}
+const scene::Scene& Simulation::scene() const {
+  return implementation_->scene;
+}
+const model::Model& Simulation::model() const {
+  return implementation_->kernels.model;
+}
+std::uint32_t Simulation::topology_revision() const {
+  return implementation_->topology_revision;
+}
+std::vector<Simulation::Pass> Simulation::passes() const {
+  return sim::passes(implementation_->kernels.plan);
+}
 
 void Simulation::request_diagnostics() {
   Implementation& self = *implementation_;
@@ -215,28 +229,42 @@ void Simulation::request_diagnostics() {
   self.diagnostics.request(self.state, self_collision, self.scene.gravity, time(), self.step_index);
 }
 
-bool Simulation::poll_diagnostics(Diagnostics& out) { return implementation_->diagnostics.poll(out, false); }
+bool Simulation::poll_diagnostics(Diagnostics& out) {
+  return implementation_->diagnostics.poll(out, false);
+}
 
 Diagnostics Simulation::diagnose() {
   Diagnostics result;
-  while (implementation_->diagnostics.poll(result, true)) {}  // older ones on their way
+  while (implementation_->diagnostics.poll(result, true)) {
+  }  // older ones on their way
   request_diagnostics();
   implementation_->diagnostics.poll(result, true);
   return result;
 }
 
-State Simulation::read_state() { return implementation_->state.read(); }
-void Simulation::finish() { glFinish(); }
-unsigned Simulation::position_buffer() const { return implementation_->state.position().buffer.id(); }
-unsigned Simulation::velocity_buffer() const { return implementation_->state.velocity().buffer.id(); }
+State Simulation::read_state() {
+  return implementation_->state.read();
+}
+void Simulation::finish() {
+  glFinish();
+}
+unsigned Simulation::position_buffer() const {
+  return implementation_->state.position().buffer.id();
+}
+unsigned Simulation::velocity_buffer() const {
+  return implementation_->state.velocity().buffer.id();
+}
 
-void Simulation::bind_positions(unsigned unit) const { implementation_->state.position().bind(unit); }
+void Simulation::bind_positions(unsigned unit) const {
+  implementation_->state.position().bind(unit);
+}
 
 std::vector<scene::Collider> Simulation::colliders_now() const {
   std::vector<scene::Collider> colliders = implementation_->scene.colliders;
   for (scene::Collider& collider : colliders) {
     const model::Pose pose = model::pose(collider.motion, time());
-    if (auto* sphere = std::get_if<scene::Sphere>(&collider.shape)) sphere->center = pose.place(sphere->center);
+    if (auto* sphere = std::get_if<scene::Sphere>(&collider.shape))
+      sphere->center = pose.place(sphere->center);
     if (auto* plane = std::get_if<scene::Plane>(&collider.shape)) {
       plane->point = pose.place(plane->point);
       plane->normal = pose.rotation * plane->normal;

@@ -23,17 +23,18 @@ ChangeDepth change_depth(const scene::Scene& from, const scene::Scene& to);
 
 /// Sums over the whole state, made by a reduction on the GPU.
 struct Diagnostics {
-  double time = 0;            ///< [s]
+  double time = 0;  ///< [s]
   std::uint64_t step = 0;
-  double kinetic = 0;         ///< [J]
-  double elastic = 0;         ///< [J]
-  double gravitational = 0;   ///< [J], 0 at the origin
-  double max_strain = 0;      ///< largest |l/L - 1| over the springs
-  double max_speed = 0;       ///< [m/s]
-  std::uint32_t contacts = 0; ///< vertices touching a collider or another vertex
-  bool finite = true;         ///< no NaN or infinity anywhere
+  double kinetic = 0;                    ///< [J]
+  double elastic = 0;                    ///< [J]
+  double gravitational = 0;              ///< [J], 0 at the origin
+  double max_strain = 0;                 ///< largest |l/L - 1| over the springs
+  double max_speed = 0;                  ///< [m/s]
+  std::uint32_t contacts = 0;            ///< vertices touching a collider or another vertex
+  bool finite = true;                    ///< no NaN or infinity anywhere
   std::uint32_t neighbour_rebuilds = 0;  ///< of the neighbour lists, since the kernels were made
-  std::uint32_t neighbours_dropped = 0;  ///< that found no room in a list: self_collision is too thick for the mesh
+  std::uint32_t neighbours_dropped =
+      0;  ///< that found no room in a list: self_collision is too thick for the mesh
 };
 
 /// The state as floats, read back from the GPU.
@@ -59,7 +60,7 @@ class Simulation {
   /// Back to the rest shape at time 0.
   void reset();
 
-  double time() const;             ///< [s], exact sum of the steps' dt
+  double time() const;  ///< [s], exact sum of the steps' dt
   std::uint64_t step_index() const;
   const scene::Scene& scene() const;
   const model::Model& model() const;

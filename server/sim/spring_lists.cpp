@@ -10,9 +10,12 @@ namespace {
 
 double stiffness_of(const scene::Springs& material, model::SpringKind kind) {
   switch (kind) {
-    case model::SpringKind::structural: return material.structural;
-    case model::SpringKind::shear: return material.shear;
-    case model::SpringKind::bend: return material.bend;
+    case model::SpringKind::structural:
+      return material.structural;
+    case model::SpringKind::shear:
+      return material.shear;
+    case model::SpringKind::bend:
+      return material.bend;
   }
   return 0.0;
 }
@@ -37,7 +40,8 @@ SpringLists spring_lists(const model::Model& model, const scene::Scene& scene) {
         const model::Spring& spring = model.springs[model.vertex_springs.items[offsets[i] + slot]];
         const scene::Springs& material = scene.cloths[spring.cloth].material;
         entry = {spring.a == i ? spring.b : spring.a, static_cast<float>(spring.rest_length),
-                 static_cast<float>(stiffness_of(material, spring.kind)), static_cast<float>(material.damping)};
+                 static_cast<float>(stiffness_of(material, spring.kind)),
+                 static_cast<float>(material.damping)};
       }
     }
     lists.slices.push_back(lists.slices.back() + longest);

@@ -1,5 +1,5 @@
-// The springs of a model as the kernels read them: slices of group_size vertices, each padded to its longest list.
-// Sliced ELLPACK, Monakov et al. 2010; see shaders/collide/spring_lists.glsl.
+// The springs of a model as the kernels read them: slices of group_size vertices, each padded to its longest
+// list. Sliced ELLPACK, Monakov et al. 2010; see shaders/collide/spring_lists.glsl.
 #pragma once
 
 #include <cstdint>

@@ -12,7 +12,9 @@ struct Arrays {
   std::vector<glm::vec4> position, velocity;
 };
 
-std::size_t bytes(const model::Model& model) { return model.vertex_count() * sizeof(glm::vec4); }
+std::size_t bytes(const model::Model& model) {
+  return model.vertex_count() * sizeof(glm::vec4);
+}
 
 /// The fourth components: constants of the vertex that travel with its state.
 void set_constants(Arrays& arrays, const model::Model& model, const MotionTable& motions) {
@@ -20,8 +22,10 @@ void set_constants(Arrays& arrays, const model::Model& model, const MotionTable&
     const std::int32_t pin = model.pin_motion[i];
     const bool was_pinned = arrays.position[i].w == 0.0f, pinned = pin != model::not_pinned;
     arrays.position[i].w = pinned ? 0.0f : static_cast<float>(1.0 / model.mass[i]);
-    if (pinned) arrays.velocity[i].w = static_cast<float>(motions.index(model.motions[static_cast<std::size_t>(pin)]));
-    else if (was_pinned) arrays.velocity[i].w = 0.0f;
+    if (pinned)
+      arrays.velocity[i].w = static_cast<float>(motions.index(model.motions[static_cast<std::size_t>(pin)]));
+    else if (was_pinned)
+      arrays.velocity[i].w = 0.0f;
   }
 }
 
@@ -78,7 +82,8 @@ std::uint64_t state_hash(const State& state) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const std::vector<glm::vec3>* values : {&state.position, &state.velocity}) {
     const auto* byte = reinterpret_cast<const unsigned char*>(values->data());
-    for (std::size_t i = 0; i < values->size() * sizeof(glm::vec3); ++i) hash = (hash ^ byte[i]) * 0x100000001b3u;
+    for (std::size_t i = 0; i < values->size() * sizeof(glm::vec3); ++i)
+      hash = (hash ^ byte[i]) * 0x100000001b3u;
   }
   return hash;
 }

@@ -35,8 +35,15 @@ class StateBuffers {
 
 /// The units at which the kernels' READ_... declarations expect their buffers.
 enum ReadUnit : GLuint {
-  unit_position, unit_velocity, unit_springs, unit_spring_slices, unit_neighbour_count, unit_neighbours,
-  unit_motion_table, unit_rest_position, unit_position_when_built
+  unit_position,
+  unit_velocity,
+  unit_springs,
+  unit_spring_slices,
+  unit_neighbour_count,
+  unit_neighbours,
+  unit_motion_table,
+  unit_rest_position,
+  unit_position_when_built
 };
 
 }  // namespace clothlab::sim

@@ -39,14 +39,15 @@ SharedMessage encode_topology(const model::Model& model, std::uint32_t revision)
   header.encoding = Encoding::f32;
   header.topology_revision = revision;
   header.vertex_count = model.vertex_count();
-  header.payload_bytes = static_cast<std::uint32_t>(8 + 8 * model.cloths.size() + 12 * model.triangles.size() +
-                                                    8 * model.texture_coordinates.size());
+  header.payload_bytes = static_cast<std::uint32_t>(
+      8 + 8 * model.cloths.size() + 12 * model.triangles.size() + 8 * model.texture_coordinates.size());
   message->bytes.resize(front_room + header_bytes + header.payload_bytes);
   std::uint8_t* out = message->bytes.data() + front_room;
   write_header(header, out);
   out = put(out + header_bytes, model.triangle_count());
   out = put(out, static_cast<std::uint32_t>(model.cloths.size()));
-  for (const model::ClothRange& cloth : model.cloths) out = put(put(out, cloth.first_vertex), cloth.vertex_count);
+  for (const model::ClothRange& cloth : model.cloths)
+    out = put(put(out, cloth.first_vertex), cloth.vertex_count);
   for (const auto& triangle : model.triangles) out = put(out, triangle);
   for (const glm::vec2& texture : model.texture_coordinates) out = put(put(out, texture.x), texture.y);
   return message;

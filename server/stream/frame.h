@@ -1,4 +1,5 @@
-// What goes over the wire: the 64-byte header of contract.md section 4 and a payload, encoded once for all viewers.
+// What goes over the wire: the 64-byte header of contract.md section 4 and a payload, encoded once for all
+// viewers.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +19,9 @@ inline constexpr std::size_t header_bytes = 64;
 inline constexpr std::uint16_t flag_asleep = 1, flag_diverged = 2;
 
 /// Bytes a vertex takes in a frame of this encoding.
-constexpr std::size_t bytes_per_vertex(Encoding encoding) { return encoding == Encoding::f32 ? 24 : 8; }
+constexpr std::size_t bytes_per_vertex(Encoding encoding) {
+  return encoding == Encoding::f32 ? 24 : 8;
+}
 
 struct Header {
   MessageKind kind = MessageKind::frame;

@@ -18,7 +18,8 @@ constexpr std::size_t box_bytes = 32;
 enum Unit : GLuint { unit_position = 0, unit_fan_offsets = 2, unit_fans = 3 };
 
 std::int64_t now_us() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now().time_since_epoch())
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
       .count();
 }
 
@@ -65,7 +66,8 @@ struct Packer::Implementation {
     std::memcpy(&header.box_extent, bytes.data() + 16, sizeof(glm::vec3));
     message->bytes.resize(front_room + header_bytes + header.payload_bytes);
     write_header(header, message->bytes.data() + front_room);
-    std::memcpy(message->bytes.data() + front_room + header_bytes, bytes.data() + box_bytes, header.payload_bytes);
+    std::memcpy(message->bytes.data() + front_room + header_bytes, bytes.data() + box_bytes,
+                header.payload_bytes);
     ring.pop();
     ++delivered;
     return message;
@@ -90,7 +92,8 @@ Result<std::unique_ptr<Packer>> Packer::create() {
   for (const Encoding encoding : {Encoding::f32, Encoding::q16}) {
     gl::Defines defines;
     if (encoding == Encoding::f32) defines.emplace_back("ENCODING_F32", "1");
-    if (Status status = load(self.pack[static_cast<std::size_t>(encoding)], "stream/pack.comp", defines); !status)
+    if (Status status = load(self.pack[static_cast<std::size_t>(encoding)], "stream/pack.comp", defines);
+        !status)
       return status.error();
   }
   self.box = gl::Buffer(8 * sizeof(std::uint32_t));
@@ -127,7 +130,11 @@ bool Packer::request(const sim::Simulation& simulation, Encoding encoding, std::
   return true;
 }
 
-SharedMessage Packer::poll() { return implementation_->take(false); }
-SharedMessage Packer::wait() { return implementation_->take(true); }
+SharedMessage Packer::poll() {
+  return implementation_->take(false);
+}
+SharedMessage Packer::wait() {
+  return implementation_->take(true);
+}
 
 }  // namespace clothlab::stream

@@ -1,4 +1,5 @@
-// Turns the present state into frames on the GPU: bounds, normals, quantisation, readback, without stalling the steps.
+// Turns the present state into frames on the GPU: bounds, normals, quantisation, readback, without stalling
+// the steps.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +16,12 @@ class Packer {
   static Result<std::unique_ptr<Packer>> create();
   ~Packer();
 
-  /// Queues the packing of the present state after the steps queued so far. False if the readback ring is full
-  /// (the newest frames are still in flight): try again after the next poll.
+  /// Queues the packing of the present state after the steps queued so far. False if the readback ring is
+  /// full (the newest frames are still in flight): try again after the next poll.
   bool request(const sim::Simulation& simulation, Encoding encoding, std::uint16_t flags);
 
-  /// The oldest finished frame, or null if none has finished. Never waits. Sequence numbers rise by one a frame.
+  /// The oldest finished frame, or null if none has finished. Never waits. Sequence numbers rise by one a
+  /// frame.
   SharedMessage poll();
 
   /// Waits for the oldest requested frame; null if none was requested.

@@ -1,5 +1,6 @@
-// Stepping cost of one configuration: the seed scene on a grid of any size. Prints one JSON line; step.mjs runs it for
-// all configurations. CLOTHLAB_READS=storage measures reads through storage buffers instead of buffer textures.
+// Stepping cost of one configuration: the seed scene on a grid of any size. Prints one JSON line; step.mjs
+// runs it for all configurations. CLOTHLAB_READS=storage measures reads through storage buffers instead of
+// buffer textures.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -13,8 +14,8 @@ using namespace clothlab;
 
 namespace {
 
-/// The seed scene with another number of vertices a side. The contact distance keeps its share of the spacing, 0.24,
-/// so that every size does the same work a vertex.
+/// The seed scene with another number of vertices a side. The contact distance keeps its share of the
+/// spacing, 0.24, so that every size does the same work a vertex.
 scene::Scene seed_of(int side, bool self_collision) {
   scene::Scene scene;
   scene::Cloth cloth;
@@ -36,7 +37,8 @@ double seconds() {
 
 /// bench_step SIDE SELF_COLLISION(0|1) WARM_UP_STEPS STEPS REPEATS
 int main(int argc, char** argv) {
-  if (argc != 6) return std::fputs("usage: bench_step SIDE SELF_COLLISION WARM_UP STEPS REPEATS\n", stderr), 2;
+  if (argc != 6)
+    return std::fputs("usage: bench_step SIDE SELF_COLLISION WARM_UP STEPS REPEATS\n", stderr), 2;
   const int side = std::atoi(argv[1]), self_collision = std::atoi(argv[2]), repeats = std::atoi(argv[5]);
   const auto warm_up = static_cast<std::uint32_t>(std::atoi(argv[3]));
   const auto steps = static_cast<std::uint32_t>(std::atoi(argv[4]));

@@ -25,16 +25,21 @@ TEST_CASE("a change says how deep it cuts") {
   CHECK(depth([](scene::Scene& s) { s.gravity = glm::dvec3(0.0); }) == ChangeDepth::uniform);
   CHECK(depth([](scene::Scene& s) { s.colliders[0].friction = 0.9; }) == ChangeDepth::uniform);
   CHECK(depth([](scene::Scene& s) { s.self_collision->thickness = 0.02; }) == ChangeDepth::uniform);
-  CHECK(depth([](scene::Scene& s) { std::get<scene::Oscillate>(s.cloths[0].pins[0].motion).amplitude = 0.1; }) ==
-        ChangeDepth::kernel);  // now the two pins move differently
+  CHECK(depth([](scene::Scene& s) {
+          std::get<scene::Oscillate>(s.cloths[0].pins[0].motion).amplitude = 0.1;
+        }) == ChangeDepth::kernel);  // now the two pins move differently
   CHECK(depth([](scene::Scene& s) { s.cloths[0].material.bend = 0.0; }) == ChangeDepth::kernel);
   CHECK(depth([](scene::Scene& s) { s.cloths[0].pins.pop_back(); }) == ChangeDepth::kernel);
   CHECK(depth([](scene::Scene& s) { s.colliders.clear(); }) == ChangeDepth::kernel);
   CHECK(depth([](scene::Scene& s) { s.self_collision.reset(); }) == ChangeDepth::kernel);
-  CHECK(depth([](scene::Scene& s) { s.cloths[0].mesh = scene::Grid{10, 10, 1.0, 1.0}; }) == ChangeDepth::cloth);
+  CHECK(depth([](scene::Scene& s) {
+          s.cloths[0].mesh = scene::Grid{10, 10, 1.0, 1.0};
+        }) == ChangeDepth::cloth);
   CHECK(depth([](scene::Scene& s) { s.cloths[0].transform.translate.y = 2.0; }) == ChangeDepth::cloth);
   CHECK(depth([](scene::Scene& s) { s.cloths.push_back(s.cloths[0]); }) == ChangeDepth::cloth);
-  CHECK(depth([](scene::Scene& s) { s.cloths[0].pins.push_back({scene::AtVertex{300}, {}}); }) == ChangeDepth::cloth);
+  CHECK(depth([](scene::Scene& s) {
+          s.cloths[0].pins.push_back({scene::AtVertex{300}, {}});
+        }) == ChangeDepth::cloth);
 }
 
 TEST_CASE("uniforms and kernels change under a running cloth, only a new cloth starts at time 0") {
@@ -101,7 +106,9 @@ TEST_CASE("a change that cannot be made leaves the running scene as it was") {
   const auto simulation = test::simulation(test::seed());
   simulation->step(50);
   const std::uint64_t before = sim::state_hash(simulation->read_state());
-  const auto change = simulation->change(edited([](scene::Scene& s) { s.cloths[0].pins[0].at = scene::AtCorner{99, 0}; }));
+  const auto change = simulation->change(edited([](scene::Scene& s) {
+    s.cloths[0].pins[0].at = scene::AtCorner{99, 0};
+  }));
   REQUIRE_FALSE(change);
   REQUIRE(change.error().where == "/cloths/0/pins/0/at");
   REQUIRE(sim::state_hash(simulation->read_state()) == before);

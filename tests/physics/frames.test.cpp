@@ -50,7 +50,8 @@ std::vector<glm::dvec3> normals_of(const model::Model& model, const sim::State& 
 
 }  // namespace
 
-TEST_CASE("an f32 frame carries the state's own positions and right normals, its header what the contract says") {
+TEST_CASE(
+    "an f32 frame carries the state's own positions and right normals, its header what the contract says") {
   const auto context = test::context();
   const auto simulation = test::simulation(test::seed());
   simulation->step(600);
@@ -69,7 +70,8 @@ TEST_CASE("an f32 frame carries the state's own positions and right normals, its
   for (std::size_t i = 0; i < 625; ++i) {
     REQUIRE(at<glm::vec3>(frame, 64 + 24 * i) == state.position[i]);
     const glm::dvec3 normal(at<glm::vec3>(frame, 64 + 24 * i + 12));
-    // Cross products of edges of 4 cm from float32 positions near 1: a relative error of about 1e-7 / 0.04 an edge.
+    // Cross products of edges of 4 cm from float32 positions near 1: a relative error of about 1e-7 / 0.04 an
+    // edge.
     REQUIRE(glm::distance(normal, normals[i]) < 1e-4);
   }
 }
@@ -91,8 +93,9 @@ TEST_CASE("a q16 frame is within half a quantum of the state, its normals within
       const double bound = extent[axis] * (0.5 / 65535.0 + 2e-7) + 2e-7;
       REQUIRE(std::abs(decoded - static_cast<double>(state.position[i][axis])) <= bound);
     }
-    const glm::vec3 normal = octahedral_decoded(static_cast<float>(at<std::int8_t>(frame, 64 + 8 * i + 6)) / 127.0f,
-                                                static_cast<float>(at<std::int8_t>(frame, 64 + 8 * i + 7)) / 127.0f);
+    const glm::vec3 normal =
+        octahedral_decoded(static_cast<float>(at<std::int8_t>(frame, 64 + 8 * i + 6)) / 127.0f,
+                           static_cast<float>(at<std::int8_t>(frame, 64 + 8 * i + 7)) / 127.0f);
     // Half a step of 1/127 in each of two coordinates; the map stretches lengths by less than 2.5.
     REQUIRE(glm::distance(glm::dvec3(normal), normals[i]) < 2.5 * std::sqrt(2.0) * 0.5 / 127.0);
   }
@@ -126,9 +129,9 @@ TEST_CASE("a topology message lists cloths, triangles and texture coordinates") 
   REQUIRE(message->size() == 64 + payload);
   REQUIRE(at<std::uint32_t>(message, 64) == 8);
   REQUIRE(at<std::uint32_t>(message, 68) == 2);
-  REQUIRE(at<std::uint32_t>(message, 72 + 8) == 6);           // the second cloth's first vertex
-  REQUIRE(at<std::uint32_t>(message, 88) == 0);               // first triangle: (0,0) (0,1) (1,1)
+  REQUIRE(at<std::uint32_t>(message, 72 + 8) == 6);  // the second cloth's first vertex
+  REQUIRE(at<std::uint32_t>(message, 88) == 0);      // first triangle: (0,0) (0,1) (1,1)
   REQUIRE(at<std::uint32_t>(message, 92) == 3);
   REQUIRE(at<std::uint32_t>(message, 96) == 4);
-  REQUIRE(at<float>(message, message->size() - 4) == 1.0f);   // the last vertex's v
+  REQUIRE(at<float>(message, message->size() - 4) == 1.0f);  // the last vertex's v
 }

@@ -53,7 +53,8 @@ struct Search {
   }
 };
 
-std::vector<std::set<std::uint32_t>> brute_force(const model::Model& model, const std::vector<glm::vec4>& at, float reach) {
+std::vector<std::set<std::uint32_t>> brute_force(const model::Model& model, const std::vector<glm::vec4>& at,
+                                                 float reach) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> joined;
   for (const model::Spring& spring : model.springs) joined.insert({spring.a, spring.b});
   std::vector<std::set<std::uint32_t>> near(at.size());
@@ -77,7 +78,7 @@ void check_against_brute_force(const model::Model& model, const std::vector<glm:
     REQUIRE(listed == expected[i]);
     found += listed.size();
   }
-  REQUIRE(found > at.size());  // the case is not an empty one
+  REQUIRE(found > at.size());                                // the case is not an empty one
   for (const auto& list : lists) REQUIRE(list.size() < 64);  // none was cut short
 }
 
@@ -105,7 +106,8 @@ std::vector<glm::vec4> folded(const model::Model& model) {
 TEST_CASE("neighbour lists hold exactly the pairs that brute force finds in a random cloud") {
   const auto context = test::context();
   const model::Model model = sheet_model(19);  // 361 vertices: no multiple of the work group
-  for (const unsigned seed : {1u, 2u, 3u}) check_against_brute_force(model, random_cloud(model.vertex_count(), seed));
+  for (const unsigned seed : {1u, 2u, 3u})
+    check_against_brute_force(model, random_cloud(model.vertex_count(), seed));
 }
 
 TEST_CASE("neighbour lists hold exactly the pairs that brute force finds on a folded cloth") {
@@ -209,8 +211,10 @@ TEST_CASE("a sheet that falls on another one comes to lie a thickness above it")
   simulation->step(2500);
   const sim::State state = simulation->read_state();
   float lowest = 1e9f;
-  for (std::size_t i = 0; i < 169; ++i) lowest = std::min(lowest, state.position[169 + i].y - state.position[i].y);
-  // The layers lie vertex over vertex: each pair is kept a thickness apart, less one step's fall before it is seen.
+  for (std::size_t i = 0; i < 169; ++i)
+    lowest = std::min(lowest, state.position[169 + i].y - state.position[i].y);
+  // The layers lie vertex over vertex: each pair is kept a thickness apart, less one step's fall before it is
+  // seen.
   REQUIRE(lowest > 0.02f - 2e-4f);
   REQUIRE(simulation->diagnose().contacts > 100);
 }

@@ -12,11 +12,15 @@ TEST_CASE("a shader error names file and line of the source file, also in an inc
   const auto context = test::context();
   const fs::path root = fs::temp_directory_path() / "clothlab-shader-test";
   fs::create_directories(root / "shaders/part");
-  const auto write = [&](const char* name, const char* text) { std::ofstream(root / "shaders" / name) << text; };
+  const auto write = [&](const char* name, const char* text) {
+    std::ofstream(root / "shaders" / name) << text;
+  };
   write("good.glsl", "float one() { return 1.0; }\n");
   write("part/bad.glsl", "float two() {\n  return missing;\n}\n");
-  write("outer.comp", "layout(local_size_x = 1) in;\n#include \"good.glsl\"\n#include \"part/bad.glsl\"\nvoid main() {}\n");
-  write("inner.comp", "layout(local_size_x = 1) in;\n#include \"good.glsl\"\nvoid main() {\n\n  undefined_call();\n}\n");
+  write("outer.comp",
+        "layout(local_size_x = 1) in;\n#include \"good.glsl\"\n#include \"part/bad.glsl\"\nvoid main() {}\n");
+  write("inner.comp",
+        "layout(local_size_x = 1) in;\n#include \"good.glsl\"\nvoid main() {\n\n  undefined_call();\n}\n");
   write("lost.comp", "layout(local_size_x = 1) in;\n#include \"nowhere.glsl\"\n");
   setenv("CLOTHLAB_DATA", root.c_str(), 1);
 
