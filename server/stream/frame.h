@@ -44,7 +44,7 @@ inline constexpr std::size_t front_room = 64;
 struct Message {
   Header header;
   std::vector<std::uint8_t> bytes;
-  std::int64_t made_at_us = 0;  ///< steady clock when the step it shows had ended on the GPU [us]
+  std::int64_t made_at_us = 0;  ///< steady clock when its packing was asked for, its steps queued before [us]
   const std::uint8_t* data() const { return bytes.data() + front_room; }
   std::size_t size() const { return bytes.size() - front_room; }
 };

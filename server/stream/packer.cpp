@@ -32,6 +32,7 @@ struct Packer::Implementation {
   std::array<gl::Buffer, encoding_count> packed;
   gl::Buffer box;
   gl::ReadbackRing ring;
+  std::array<std::int64_t, ring_slots> requested_at_us{};
   std::array<Header, ring_slots> headers;  ///< of the frames in the ring, by sequence number
   std::uint32_t requested = 0, delivered = 0;
   std::uint32_t topology_revision = 0, vertex_count = 0;
@@ -60,7 +61,7 @@ struct Packer::Implementation {
     if (bytes.empty()) return nullptr;
     auto message = std::make_shared<Message>();
     message->header = headers[delivered % ring_slots];
-    message->made_at_us = now_us();
+    message->made_at_us = requested_at_us[delivered % ring_slots];
     Header& header = message->header;
     std::memcpy(&header.box_minimum, bytes.data(), sizeof(glm::vec3));
     std::memcpy(&header.box_extent, bytes.data() + 16, sizeof(glm::vec3));
@@ -101,6 +102,7 @@ Result<std::unique_ptr<Packer>> Packer::create() {
 }
 
 bool Packer::request(const sim::Simulation& simulation, Encoding encoding, std::uint16_t flags) {
+  const std::int64_t begun_us = now_us();
   Implementation& self = *implementation_;
   if (self.topology_revision != simulation.topology_revision() || self.vertex_count == 0)
     self.adopt(simulation.model(), simulation.topology_revision());
@@ -117,6 +119,7 @@ bool Packer::request(const sim::Simulation& simulation, Encoding encoding, std::
   self.dispatch(self.bounds);
   self.dispatch(self.pack[index]);
 
+  self.requested_at_us[self.requested % ring_slots] = begun_us;
   Header& header = self.headers[self.requested % ring_slots];
   header.encoding = encoding;
   header.flags = flags;

@@ -110,6 +110,19 @@ TEST_CASE("neighbour lists hold exactly the pairs that brute force finds in a ra
     check_against_brute_force(model, random_cloud(model.vertex_count(), seed));
 }
 
+TEST_CASE("no neighbour is listed twice where several cells share a bucket of the hash") {
+  const auto context = test::context();
+  const model::Model model = sheet_model(3);  // 9 vertices, 32 buckets
+  std::mt19937 random(8);
+  std::uniform_real_distribution<float> far(-20.0f, 20.0f);
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    const glm::vec4 offset(far(random), far(random), far(random), 0.0f);  // other cells each time
+    auto cloud = random_cloud(model.vertex_count(), seed);
+    for (glm::vec4& x : cloud) x += offset;
+    check_against_brute_force(model, cloud);
+  }
+}
+
 TEST_CASE("neighbour lists hold exactly the pairs that brute force finds on a folded cloth") {
   const auto context = test::context();
   const model::Model model = sheet_model(25);

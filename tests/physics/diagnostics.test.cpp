@@ -1,0 +1,57 @@
+// Energies, strain and speed as the GPU reduces them, against sums over the same state in double precision.
+#include <algorithm>
+
+#include "shaders/elements/elements.h"
+#include "tests/scenes.h"
+
+using namespace clothlab;
+
+TEST_CASE("diagnostics are the sums over the state: energies, largest strain and speed, contacts") {
+  const auto context = test::context();
+  const scene::Scene seed = test::seed();
+  const auto simulation = test::simulation(seed);
+  simulation->step(900);
+  const sim::Diagnostics found = simulation->diagnose();
+  const sim::State state = simulation->read_state();
+  const model::Model& model = simulation->model();
+
+  double kinetic = 0.0, elastic = 0.0, gravitational = 0.0, strain = 0.0, speed = 0.0;
+  for (std::uint32_t i = 0; i < model.vertex_count(); ++i) {
+    const glm::dvec3 x(state.position[i]), v(state.velocity[i]);
+    speed = std::max(speed, glm::length(v));
+    if (model.pin_motion[i] != model::not_pinned) continue;
+    kinetic += 0.5 * model.mass[i] * glm::dot(v, v);
+    gravitational -= model.mass[i] * glm::dot(seed.gravity, x);
+  }
+  const std::array stiffness{seed.cloths[0].material.structural, seed.cloths[0].material.shear,
+                             seed.cloths[0].material.bend};
+  for (const model::Spring& spring : model.springs) {
+    const glm::dvec3 a(state.position[spring.a]), b(state.position[spring.b]);
+    elastic +=
+        elements::spring_energy(a, b, spring.rest_length, stiffness[static_cast<std::size_t>(spring.kind)]);
+    strain = std::max(strain, elements::spring_strain(a, b, spring.rest_length));
+  }
+  // Sums of 128 float32 values a group, each rounded: 128 * 6e-8. A stretch is a difference of lengths near
+  // 0.04 from positions near 1, each rounded to 6e-8: 1.5e-6 of the length, against strains of some
+  // hundredths, squared.
+  CHECK(found.kinetic == Approx(kinetic).epsilon(1e-5));
+  CHECK(found.gravitational == Approx(gravitational).epsilon(1e-5));
+  CHECK(found.elastic == Approx(elastic).epsilon(2e-4));
+  CHECK(found.max_strain == Approx(strain).margin(5e-6));
+  CHECK(found.max_speed == Approx(speed).epsilon(1e-6));
+  CHECK(found.time == Approx(0.9));
+  CHECK(found.step == 900);
+  CHECK(found.finite);
+  CHECK(found.contacts > 0);  // the cloth lies on the ball by now
+}
+
+TEST_CASE("a value that is not finite is told, wherever it is") {
+  const auto context = test::context();
+  scene::Scene scene = test::sheet(25, 25);
+  scene.cloths[0].pins = {{scene::AtVertex{0}, {}}};
+  scene.solver.dt = 0.01;  // seven times the limit of about 1.4 ms
+  const auto simulation = test::simulation(scene);
+  REQUIRE(simulation->diagnose().finite);
+  simulation->step(2000);
+  REQUIRE_FALSE(simulation->diagnose().finite);
+}
