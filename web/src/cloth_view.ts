@@ -1,5 +1,5 @@
 // Draws the streamed vertices: the q16 payload is the vertex buffer, decoded in the vertex shader.
-import { Box3, BufferAttribute, BufferGeometry, Group, Mesh, Points, Vector3, type IUniform } from "three";
+import { Box3, BufferAttribute, BufferGeometry, Group, Mesh, Points, Vector3, type IUniform, type Object3D } from "three";
 import { clothCasterMaterial, FabricMaterial, pinMaterial, type DecodeUniforms, type StageUniforms } from "./fabric_material";
 import { heldVertices } from "./pins";
 import { q16Words, type Frame, type Topology } from "./protocol";
@@ -60,8 +60,14 @@ export class ClothView {
     return true;
   }
 
-  /// A mesh drawn like the first cloth, to compile its program before there is one.
-  sample(): Mesh { return new Mesh(new BufferGeometry(), this.material(0)); }
+  /// What is drawn like the first cloth and its pins, and like its shadow, to compile their programs before there is one.
+  samples(): { shown: Object3D[]; cast: Object3D[] } {
+    const nothing = new BufferGeometry();
+    return {
+      shown: [new Mesh(nothing, this.material(0)), new Points(nothing, this.pinMaterial)],
+      cast: [new Mesh(nothing, this.casterMaterial)],
+    };
+  }
 
   private material(index: number): FabricMaterial {
     return (this.materials[index] ??= new FabricMaterial(this.decode, this.stage));

@@ -1,6 +1,6 @@
 // Spheres and planes of the scene, and the studio floor where a scene has none. They follow simulated time.
 import {
-  CircleGeometry, Color, DoubleSide, Group, Mesh, MeshLambertMaterial, Quaternion, ShaderMaterial, SphereGeometry, Vector3, type IUniform,
+  CircleGeometry, Color, DoubleSide, Group, Mesh, MeshLambertMaterial, Quaternion, ShaderMaterial, SphereGeometry, Vector3, type IUniform, type Object3D,
 } from "three";
 import { casterMaterial, type StageUniforms } from "./fabric_material";
 import { moved } from "./motion";
@@ -95,8 +95,10 @@ export class ColliderView {
     this.studio.position.y = Math.min(this.lowest, clothBottom - 0.01);
   }
 
-  /// A mesh drawn like every sphere, to compile its program before there is one.
-  sample(): Mesh { return new Mesh(this.sphere, this.sphereMaterial); }
+  /// What is drawn like every sphere and the studio floor, and like a sphere's shadow: see ClothView.samples.
+  samples(): { shown: Object3D[]; cast: Object3D[] } {
+    return { shown: [new Mesh(this.sphere, this.sphereMaterial), this.studio], cast: [new Mesh(this.coarseSphere, this.casterMaterial)] };
+  }
 
   private meshOf(collider: Collider): Mesh | null {
     if (collider.sphere) {

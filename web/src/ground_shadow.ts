@@ -65,6 +65,16 @@ export class GroundShadow {
       .multiply(this.camera.projectionMatrix).multiply(this.camera.matrixWorldInverse);
   }
 
+  /// Compiles what draw() needs for casters like these.
+  compile(samples: Object3D[]): void {
+    this.renderer.setRenderTarget(this.targets[0]);  // a program depends on what it draws to
+    this.casters.add(...samples);
+    this.renderer.compile(this.casters, this.camera);
+    this.casters.remove(...samples);
+    this.renderer.compile(this.screen, this.camera);
+    this.renderer.setRenderTarget(null);
+  }
+
   draw(): void {
     const [mask, blurred] = this.targets;
     this.renderer.setRenderTarget(mask);

@@ -143,6 +143,7 @@ export class Stage {
 
   /// Called for every animation frame; true if it drew.
   draw(): boolean {
+    if (this.cloth.vertices === 0) return false;  // an empty stage is not worth the time before the first frame
     this.controls.update();
     const now = performance.now();
     const sinceLast = now - this.lastDrawn;
@@ -159,10 +160,12 @@ export class Stage {
 
   // The driver compiles while the connection is made: the first frame need not wait for it.
   private compileAhead(): void {
-    const samples = [this.cloth.sample(), this.colliders.sample()];
-    this.scene.add(...samples);
+    const samples = [this.cloth.samples(), this.colliders.samples()];
+    const shown = samples.flatMap((sample) => sample.shown);
+    this.scene.add(...shown);
     this.renderer.compile(this.scene, this.camera);
-    this.scene.remove(...samples);
+    this.scene.remove(...shown);
+    this.groundShadow.compile(samples.flatMap((sample) => sample.cast));
   }
 
   // Also the size of the drawing buffer: three.js keeps the size in CSS pixels.
