@@ -1,6 +1,6 @@
 // Spheres and planes: stops a vertex's step at their surface. The same order as in the scene, spheres first.
 #include "../elements/contact.glsl"
-
+#include "../rarely.glsl"
 
 #if SPHERE_COUNT > 0
 layout(location = 16) uniform vec4 sphere[SPHERE_COUNT];          // centre at home [m], radius + margin [m]
@@ -12,10 +12,15 @@ layout(location = 256 + PLANE_COUNT) uniform vec3 plane_normal[PLANE_COUNT];
 layout(location = 256 + 2 * PLANE_COUNT) uniform vec3 plane_surface[PLANE_COUNT];
 #endif
 
-vec3 at_step(int motion, int row, vec3 home) { return motion < 0 ? home : placed(motion, row, home); }
+vec3 at_step(int motion, int row, vec3 home) {
+  vec3 there = home;
+  RARELY(motion >= 0) there = placed(motion, row, home);
+  return there;
+}
 
 void meet_surface(int motion, vec3 surface, vec3 normal, vec3 x, inout vec3 v) {
-  vec3 moving = motion < 0 ? vec3(0.0) : velocity_at(motion, 1, x);
+  vec3 moving = vec3(0.0);
+  RARELY(motion >= 0) moving = velocity_at(motion, 1, x);
   v = moving + contact_velocity(v - moving, normal, surface.x, surface.y);
 }
 
@@ -26,11 +31,16 @@ int resolve_colliders(vec3 from, inout vec3 x, inout vec3 v) {
   for (int i = 0; i < SPHERE_COUNT; ++i) {
     int motion = int(sphere_surface[i].z);
     vec3 centre = at_step(motion, 1, sphere[i].xyz);
-    vec3 stopped, normal;
-    if (!sphere_contact(from - at_step(motion, 0, sphere[i].xyz), x - centre, sphere[i].w, stopped, normal)) continue;
-    x = centre + stopped;
-    meet_surface(motion, sphere_surface[i], normal, x, v);
-    ++contacts;
+    vec3 start = from - at_step(motion, 0, sphere[i].xyz), end = x - centre;
+    float within_reach = sphere[i].w + distance(start, end);
+    RARELY(dot(start, start) <= within_reach * within_reach) {
+      vec3 stopped, normal;
+      if (sphere_contact(start, end, sphere[i].w, stopped, normal)) {
+        x = centre + stopped;
+        meet_surface(motion, sphere_surface[i], normal, x, v);
+        ++contacts;
+      }
+    }
   }
 #endif
 #if PLANE_COUNT > 0

@@ -1,0 +1,3 @@
+// `RARELY(condition) { ... }` does what `if` does. Software OpenGL runs both sides of an `if` for every group of lanes,
+// but leaves a loop that no lane enters: for what few vertices need, the loop that runs at most once is cheaper.
+#define RARELY(condition) for (bool enter = (condition); enter; enter = false)
