@@ -145,8 +145,8 @@ Result<std::unique_ptr<Context>> Context::create(std::optional<int> gpu) {
       if (gpu ? candidate.device.index != *gpu || software : candidate.device.software != software) continue;
       const Opened opened = open(candidate);
       if (!candidate.device.usable) {
-        problems +=
-            " device " + std::to_string(candidate.device.index) + ": " + candidate.device.problem + ";";
+        problems += (problems.empty() ? " device " : ", device ") + std::to_string(candidate.device.index) +
+                    ": " + candidate.device.problem;
         continue;
       }
       std::unique_ptr<Context> context(new Context);

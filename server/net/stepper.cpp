@@ -107,6 +107,7 @@ void Stepper::request_status(Clock::time_point now) {
 void Stepper::accept(const sim::Diagnostics& diagnostics) {
   if (!diagnostics.finite) return diverge();
   diagnostics_ = diagnostics;
+  warn_if_crowded();
   // On its way to infinity a blow-up is finite for a while: that is no state to keep for the viewers.
   constexpr double beyond_any_cloth = 10;
   if (diagnostics.max_strain < beyond_any_cloth) frames_->confirm(diagnostics.step);
@@ -150,6 +151,15 @@ void Stepper::warn_if_slow(Clock::time_point now) {
   exchange_.emit(Notice{"warning",
                         "this machine cannot keep up: time runs slower than asked for; a smaller cloth, a "
                         "longer time step or a lower speed helps"});
+}
+
+void Stepper::warn_if_crowded() {
+  if (crowded_announced_ || diagnostics_.neighbours_dropped == 0) return;
+  crowded_announced_ = true;
+  exchange_.emit(Notice{
+      "warning",
+      "self-collision: some vertices have more neighbours than are looked at, the nearest 64; a smaller "
+      "thickness or a coarser mesh helps"});
 }
 
 bool Stepper::suspended(Clock::time_point now) const {

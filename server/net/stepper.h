@@ -73,6 +73,7 @@ class Stepper {
   void diverge();
   void publish_status(Clock::time_point now);
   void warn_if_slow(Clock::time_point now);
+  void warn_if_crowded();
   bool suspended(Clock::time_point now) const;
   bool running(Clock::time_point now) const { return playing_ && !diverged_ && !suspended(now); }
   Clock::time_point next_turn(Clock::time_point now) const;
@@ -103,7 +104,7 @@ class Stepper {
   bool diagnosing_ = false, diagnosis_is_stale_ = false;
   Clock::time_point next_status_{};
   Clock::time_point slow_since_{};
-  bool slow_announced_ = false;
+  bool slow_announced_ = false, crowded_announced_ = false;
 };
 
 }  // namespace clothlab::net

@@ -76,7 +76,7 @@ void Stepper::restart() {
 
 void Stepper::state_replaced(bool rebuilt) {
   finish_waiting(true);
-  diverged_ = slow_announced_ = false;
+  diverged_ = slow_announced_ = crowded_announced_ = false;
   diagnostics_ = {};
   ++state_version_;
   // A diagnosis under way is of the old state; a rebuilt simulation has forgotten it.

@@ -122,3 +122,12 @@ test("scene.load takes a scene of one's own, at time 0", async () => {
   assert.equal(error.code, -32602);
   assert.equal(error.data.path, "/version");
 });
+
+test("a contact distance that crowds the neighbour lists is told by a notice", async () => {
+  const notice = client.nextNotification("notice", ({ text }) => /self-collision/.test(text));
+  await client.request("scene.patch", { patch: { self_collision: { thickness: 0.5 } } });
+  await client.request("sim.play");  // the lists are built by the next step
+  const { level, text } = await notice;
+  assert.equal(level, "warning");
+  assert.match(text, /thickness/);
+});
