@@ -145,6 +145,18 @@ Status add_cloth(Model& model, const scene::Cloth& cloth) {
 
 }  // namespace
 
+double stiffness(const scene::Springs& material, SpringKind kind) {
+  switch (kind) {
+    case SpringKind::structural:
+      return material.structural;
+    case SpringKind::shear:
+      return material.shear;
+    case SpringKind::bend:
+      return material.bend;
+  }
+  return 0.0;
+}
+
 Result<Model> build(const scene::Scene& scene) {
   Model model;
   for (const scene::Cloth& cloth : scene.cloths)

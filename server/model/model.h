@@ -18,6 +18,9 @@ using glm::dvec3;
 
 enum class SpringKind : std::uint8_t { structural, shear, bend };
 
+/// The stiffness [N/m] that `material` gives springs of this kind.
+double stiffness(const scene::Springs& material, SpringKind kind);
+
 struct Spring {
   std::uint32_t a = 0, b = 0;  ///< vertices, a < b
   std::uint32_t cloth = 0;

@@ -6,22 +6,6 @@
 
 namespace clothlab::reference {
 
-namespace {
-
-double stiffness(const scene::Springs& material, model::SpringKind kind) {
-  switch (kind) {
-    case model::SpringKind::structural:
-      return material.structural;
-    case model::SpringKind::shear:
-      return material.shear;
-    case model::SpringKind::bend:
-      return material.bend;
-  }
-  return 0.0;
-}
-
-}  // namespace
-
 Result<World> make_world(const scene::Scene& scene, double contact_margin) {
   Result<model::Model> model = model::build(scene);
   if (!model) return model.error();
@@ -40,9 +24,10 @@ std::vector<dvec3> spring_forces(const World& world, const State& state) {
   std::vector<dvec3> force(world.model.vertex_count(), dvec3(0.0));
   for (const model::Spring& spring : world.model.springs) {
     const scene::Springs& material = world.scene.cloths[spring.cloth].material;
-    const dvec3 on_a = elements::spring_force(
-        state.position[spring.a], state.position[spring.b], state.velocity[spring.a],
-        state.velocity[spring.b], spring.rest_length, stiffness(material, spring.kind), material.damping);
+    const dvec3 on_a =
+        elements::spring_force(state.position[spring.a], state.position[spring.b], state.velocity[spring.a],
+                               state.velocity[spring.b], spring.rest_length,
+                               model::stiffness(material, spring.kind), material.damping);
     force[spring.a] += on_a;
     force[spring.b] -= on_a;
   }

@@ -6,22 +6,6 @@
 
 namespace clothlab::sim {
 
-namespace {
-
-double stiffness_of(const scene::Springs& material, model::SpringKind kind) {
-  switch (kind) {
-    case model::SpringKind::structural:
-      return material.structural;
-    case model::SpringKind::shear:
-      return material.shear;
-    case model::SpringKind::bend:
-      return material.bend;
-  }
-  return 0.0;
-}
-
-}  // namespace
-
 SpringLists spring_lists(const model::Model& model, const scene::Scene& scene) {
   SpringLists lists;
   lists.slices.push_back(0);
@@ -40,7 +24,7 @@ SpringLists spring_lists(const model::Model& model, const scene::Scene& scene) {
         const model::Spring& spring = model.springs[model.vertex_springs.items[offsets[i] + slot]];
         const scene::Springs& material = scene.cloths[spring.cloth].material;
         entry = {spring.a == i ? spring.b : spring.a, static_cast<float>(spring.rest_length),
-                 static_cast<float>(stiffness_of(material, spring.kind)),
+                 static_cast<float>(model::stiffness(material, spring.kind)),
                  static_cast<float>(material.damping)};
       }
     }

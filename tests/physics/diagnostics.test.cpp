@@ -23,12 +23,10 @@ TEST_CASE("diagnostics are the sums over the state: energies, largest strain and
     kinetic += 0.5 * model.mass[i] * glm::dot(v, v);
     gravitational -= model.mass[i] * glm::dot(seed.gravity, x);
   }
-  const std::array stiffness{seed.cloths[0].material.structural, seed.cloths[0].material.shear,
-                             seed.cloths[0].material.bend};
   for (const model::Spring& spring : model.springs) {
     const glm::dvec3 a(state.position[spring.a]), b(state.position[spring.b]);
-    elastic +=
-        elements::spring_energy(a, b, spring.rest_length, stiffness[static_cast<std::size_t>(spring.kind)]);
+    elastic += elements::spring_energy(a, b, spring.rest_length,
+                                       model::stiffness(seed.cloths[0].material, spring.kind));
     strain = std::max(strain, elements::spring_strain(a, b, spring.rest_length));
   }
   // Sums of 128 float32 values a group, each rounded: 128 * 6e-8. A stretch is a difference of lengths near
