@@ -11,6 +11,7 @@ const here = dirname(fileURLToPath(import.meta.url))
 const build = join(here, '../../build/release')
 const machine = process.argv[2] ?? `${cpus().length}-cores`
 const rounds = 5
+execFileSync('cmake', ['--build', build, '--target', 'bench_step', 'clothlab'], { stdio: 'ignore' })
 
 /** Steps a run: enough for about a second a configuration, and past the first folds of the cloth. */
 const grids = [
