@@ -53,6 +53,9 @@ struct Springs {
   double shear = 10000.0;       ///< [N/m]
   double bend = 2000.0;         ///< [N/m]
   double damping = 2.0;         ///< [N s/m], along the spring
+  /// The most a spring may exceed its rest length after a step, as a share of it; Provot 1995. None: no
+  /// limit.
+  std::optional<double> strain_limit = std::nullopt;
   bool operator==(const Springs&) const = default;
 };
 
@@ -143,7 +146,8 @@ struct SelfCollision {
   bool operator==(const SelfCollision&) const = default;
 };
 
-enum class Method { symplectic_euler };
+/// How the scene is advanced in time. scene/method.h has their names.
+enum class Method { explicit_euler, symplectic_euler, verlet, rk4, implicit_euler };
 
 struct Solver {
   Method method = Method::symplectic_euler;

@@ -14,6 +14,19 @@ FUNCTION vec3 spring_force(vec3 x, vec3 y, vec3 v, vec3 w, real rest_length, rea
   return n * (-tension);
 }
 
+/// The second derivative of the energy with respect to x, -df/dx [N/m], in parts: along n n^T + across (I - n n^T), with n
+/// the spring's direction. `across` is negative in a compressed spring: that part makes the matrix indefinite, and implicit
+/// methods drop it (Choi & Ko 2002, section 4). A spring without length gives stiffness times the unit matrix.
+FUNCTION void spring_hessian(vec3 x, vec3 y, real rest_length, real stiffness, OUT(vec3) n, OUT(real) along,
+                             OUT(real) across) {
+  vec3 d = x - y;
+  real length_squared = dot(d, d);
+  real inverse_length = length_squared > real(0.0) ? real(1.0) / sqrt(length_squared) : real(0.0);
+  n = d * inverse_length;
+  along = stiffness;
+  across = stiffness * (real(1.0) - rest_length * inverse_length);
+}
+
 /// Elastic energy [J] of the spring.
 FUNCTION real spring_energy(vec3 x, vec3 y, real rest_length, real stiffness) {
   vec3 d = x - y;

@@ -1,0 +1,21 @@
+// The names of the methods, as the scene document, the command line and the protocol spell them.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "server/scene/scene.h"
+
+namespace clothlab::scene {
+
+/// All there are, in the order in which they are listed to a user.
+inline constexpr std::array methods{Method::explicit_euler, Method::symplectic_euler, Method::verlet,
+                                    Method::rk4, Method::implicit_euler};
+
+/// "symplectic_euler", ...
+const char* name(Method method);
+
+/// The method of that name, which must be one of them.
+Method method_of(const std::string& name);
+
+}  // namespace clothlab::scene
