@@ -4,8 +4,20 @@
 #include "server/net/hub.h"
 #include "server/net/limits.h"
 #include "server/net/methods.h"
+#include "server/scene/method.h"
 
 namespace clothlab::net {
+
+namespace {
+
+nlohmann::json method_list() {
+  auto list = nlohmann::json::array();
+  for (const scene::Method method : scene::methods)
+    if (scene::is_simulated(method)) list.push_back(scene::name(method));
+  return list;
+}
+
+}  // namespace
 
 nlohmann::json hello_params(const Hub& hub, const Room& room, const Client& client) {
   return {{"server", "clothlab"},
@@ -14,7 +26,7 @@ nlohmann::json hello_params(const Hub& hub, const Room& room, const Client& clie
           {"role", name(client.role())},
           {"client", client.id()},  // the `by` of this client's edits
           {"renderer", room.renderer()},
-          {"methods", {"symplectic_euler"}},
+          {"methods", method_list()},
           {"requests", method_names()},
           {"encodings", {"f32", "q16"}},
           {"limits",

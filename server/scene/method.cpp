@@ -20,9 +20,10 @@ const char* name(Method method) {
   return "";
 }
 
-Method method_of(const std::string& wanted) {
-  return *std::find_if(methods.begin(), methods.end() - 1,
-                       [&](Method method) { return name(method) == wanted; });
+std::optional<Method> method_of(const std::string& wanted) {
+  const auto found =
+      std::find_if(methods.begin(), methods.end(), [&](Method method) { return name(method) == wanted; });
+  return found == methods.end() ? std::nullopt : std::optional(*found);
 }
 
 }  // namespace clothlab::scene

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 
 #include "server/scene/scene.h"
@@ -12,10 +13,15 @@ namespace clothlab::scene {
 inline constexpr std::array methods{Method::explicit_euler, Method::symplectic_euler, Method::verlet,
                                     Method::rk4, Method::implicit_euler};
 
+/// Whether the simulation has kernels for it. A document that names another is refused as not supported yet.
+constexpr bool is_simulated(Method method) {
+  return method == Method::symplectic_euler;
+}
+
 /// "symplectic_euler", ...
 const char* name(Method method);
 
-/// The method of that name, which must be one of them.
-Method method_of(const std::string& name);
+/// The method of that name, if there is one.
+std::optional<Method> method_of(const std::string& name);
 
 }  // namespace clothlab::scene

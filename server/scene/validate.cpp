@@ -2,6 +2,7 @@
 #include <set>
 
 #include "server/scene/document.h"
+#include "server/scene/method.h"
 #include "server/scene/sections.h"
 
 namespace clothlab::scene {
@@ -47,12 +48,16 @@ std::optional<SelfCollision> read_self_collision(const Reader& self_collision) {
                        self_collision.member("friction", 0.2).number(ranges::friction)};
 }
 
+Method read_method(const Reader& method) {
+  Words simulated, later = {"pbd", "xpbd", "vbd", "auto"};
+  for (const Method each : methods) (is_simulated(each) ? simulated : later).push_back(name(each));
+  return method_of(method.choice(simulated, later)).value_or(Solver{}.method);
+}
+
 Solver read_solver(const Reader& solver) {
   solver.object({"method", "dt", "iterations", "tolerance"});
-  solver.member("method", "symplectic_euler")
-      .choice({"symplectic_euler"},
-              {"explicit_euler", "verlet", "rk4", "implicit_euler", "pbd", "xpbd", "vbd", "auto"});
-  return Solver{Method::symplectic_euler, solver.member("dt", 0.001).number(ranges::dt),
+  return Solver{read_method(solver.member("method", name(Solver{}.method))),
+                solver.member("dt", 0.001).number(ranges::dt),
                 solver.member("iterations", 10).integer(ranges::iterations),
                 solver.member("tolerance", 1e-4).number(ranges::tolerance)};
 }
