@@ -27,22 +27,21 @@ void set_colliders(const gl::Program& program, const scene::Scene& scene, const 
       plane_surfaces.push_back(surface);
     }
   }
-  // Locations as laid out in colliders.glsl: each array follows the one before.
-  const auto set3 = [&](GLint location, const std::vector<glm::vec3>& values) {
+  const auto set3 = [&](const char* name, const std::vector<glm::vec3>& values) {
     if (!values.empty())
-      glProgramUniform3fv(program.id(), location, static_cast<GLsizei>(values.size()), &values[0].x);
+      glProgramUniform3fv(program.id(), program.uniform(name), static_cast<GLsizei>(values.size()),
+                          &values[0].x);
   };
-  const auto set4 = [&](GLint location, const std::vector<glm::vec4>& values) {
+  const auto set4 = [&](const char* name, const std::vector<glm::vec4>& values) {
     if (!values.empty())
-      glProgramUniform4fv(program.id(), location, static_cast<GLsizei>(values.size()), &values[0].x);
+      glProgramUniform4fv(program.id(), program.uniform(name), static_cast<GLsizei>(values.size()),
+                          &values[0].x);
   };
-  const auto sphere_count = static_cast<GLint>(spheres.size()),
-             plane_count = static_cast<GLint>(points.size());
-  set4(16, spheres);
-  set3(16 + sphere_count, sphere_surfaces);
-  set4(256, points);
-  set3(256 + plane_count, normals);
-  set3(256 + 2 * plane_count, plane_surfaces);
+  set4("sphere", spheres);
+  set3("sphere_surface", sphere_surfaces);
+  set4("plane_point", points);
+  set3("plane_normal", normals);
+  set3("plane_surface", plane_surfaces);
 }
 
 }  // namespace clothlab::sim

@@ -10,9 +10,10 @@ namespace {
 constexpr std::size_t floats_a_pose = 20;
 }
 
-MotionTable::MotionTable(std::vector<scene::Motion> motions) : motions_(std::move(motions)) {
+MotionTable::MotionTable(std::vector<scene::Motion> motions, int rows_a_step) : motions_(std::move(motions)) {
   if (motions_.empty()) return;
-  rows_.resize((batch_steps + 1) * motions_.size() * floats_a_pose);
+  const std::size_t rows = batch_steps * static_cast<std::size_t>(rows_a_step) + 1;
+  rows_.resize(rows * motions_.size() * floats_a_pose);
   table_ = gl::TextureBuffer(gl::Buffer(rows_.size() * sizeof(float)), GL_RGBA32F);
 }
 

@@ -16,13 +16,14 @@ inline constexpr std::uint32_t batch_steps = 32;
 class MotionTable {
  public:
   MotionTable() = default;
-  explicit MotionTable(std::vector<scene::Motion> motions);
+  /// Each step has `rows_a_step` rows after the one at its start.
+  MotionTable(std::vector<scene::Motion> motions, int rows_a_step);
 
   bool empty() const { return motions_.empty(); }
   /// The index kernels use, or -1 for a motion that is null.
   int index(const scene::Motion& motion) const;
 
-  /// Uploads the poses at `times` [s]: one row for the start of the batch and one for each step's end.
+  /// Uploads the poses at `times` [s]: a row for the start of the batch and rows_a_step for each step.
   void upload(const std::vector<double>& times);
   void bind(GLuint unit) const { table_.bind(unit); }
 

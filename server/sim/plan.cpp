@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "server/scene/method.h"
+
 namespace clothlab::sim {
 
 namespace {
@@ -26,6 +28,7 @@ std::vector<scene::Motion> moving_motions(const scene::Scene& scene) {
 
 Plan plan(const scene::Scene& scene) {
   Plan plan;
+  plan.method = scene.solver.method;
   for (const scene::Cloth& cloth : scene.cloths) {
     plan.structural |= cloth.material.structural > 0.0;
     plan.shear |= cloth.material.shear > 0.0;
@@ -42,6 +45,7 @@ Plan plan(const scene::Scene& scene) {
 gl::Defines step_defines(const Plan& plan) {
   gl::Defines defines{{"GROUP_SIZE", std::to_string(group_size)},
                       {"MOTION_COUNT", std::to_string(plan.moving)},
+                      {"END_ROW", std::to_string(plan.pose_rows())},
                       {"SPHERE_COUNT", std::to_string(plan.spheres)},
                       {"PLANE_COUNT", std::to_string(plan.planes)}};
   if (plan.self_collision) defines.emplace_back("SELF_COLLISION", "1");
@@ -58,7 +62,7 @@ std::vector<Simulation::Pass> passes(const Plan& plan) {
   add("shear_springs", plan.shear, "their stiffness is 0 in every cloth");
   add("bend_springs", plan.bend, "their stiffness is 0 in every cloth");
   add("self_contacts", plan.self_collision, "self_collision is null");
-  add("symplectic_euler", true, "");
+  add(scene::name(plan.method), true, "");
   add("pins", plan.pins, "no cloth has pins");
   add("moving_poses", plan.moving > 0, "no pin and no collider moves");
   add("spheres", plan.spheres > 0, "the scene has no sphere");

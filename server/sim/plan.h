@@ -15,11 +15,15 @@ inline constexpr int group_size = 128;
 
 /// What the step kernel is specialised for. Two scenes with equal plans run the same kernels.
 struct Plan {
+  scene::Method method = scene::Method::symplectic_euler;
   bool structural = false, shear = false, bend = false;  ///< in any cloth
   bool pins = false;
   int moving = 0;  ///< distinct motions of pins and colliders that are not null
   int spheres = 0, planes = 0;
   bool self_collision = false;
+  /// Rows that a step has in the table of poses after the one at its start: its end, and before that its
+  /// middle if the method looks at it.
+  int pose_rows() const { return method == scene::Method::rk4 ? 2 : 1; }
   bool operator==(const Plan&) const = default;
 };
 

@@ -4,11 +4,8 @@
 #include <optional>
 
 #include "server/model/motion.h"
-#include "server/sim/colliders.h"
 #include "server/sim/diagnose.h"
-#include "server/sim/motion_table.h"
-#include "server/sim/plan.h"
-#include "server/sim/self_collision.h"
+#include "server/sim/integrator.h"
 #include "server/sim/spring_lists.h"
 #include "server/sim/state.h"
 
@@ -20,10 +17,14 @@ namespace {
 struct Kernels {
   Plan plan;
   model::Model model;
-  gl::Program step;
   MotionTable motions;
   std::optional<SelfCollision> self_collision;
   gl::TextureBuffer springs, slices;
+  std::unique_ptr<Integrator> integrator;
+
+  Surroundings surroundings(const scene::Scene& scene) const {
+    return {scene, model, motions, self_collision ? &*self_collision : nullptr};
+  }
 };
 
 void upload_springs(Kernels& kernels, const scene::Scene& scene) {
@@ -32,17 +33,8 @@ void upload_springs(Kernels& kernels, const scene::Scene& scene) {
   kernels.slices = {gl::Buffer(lists.slices), GL_R32UI};
 }
 
-void set_parameters(Kernels& kernels, const scene::Scene& scene) {
-  const GLuint step = kernels.step.id();
-  glProgramUniform1i(step, 0, static_cast<GLint>(kernels.model.vertex_count()));
-  glProgramUniform1f(step, 2, static_cast<float>(scene.solver.dt));
-  glProgramUniform4f(step, 3, static_cast<float>(scene.gravity.x), static_cast<float>(scene.gravity.y),
-                     static_cast<float>(scene.gravity.z), static_cast<float>(scene.air_drag));
-  set_colliders(kernels.step, scene, kernels.motions, contact_margin(scene, kernels.model));
-  if (!kernels.self_collision) return;
-  kernels.self_collision->set_parameters(*scene.self_collision, kernels.model);
-  glProgramUniform1f(step, 4, static_cast<float>(scene.self_collision->friction));
-  glProgramUniform1f(step, 5, kernels.self_collision->skin());
+MotionTable motion_table(const scene::Scene& scene, const Plan& plan) {
+  return MotionTable(moving_motions(scene), plan.pose_rows());
 }
 
 Result<Kernels> make_kernels(const scene::Scene& scene) {
@@ -51,17 +43,17 @@ Result<Kernels> make_kernels(const scene::Scene& scene) {
   if (!model) return model.error();
   kernels.model = std::move(*model);
   kernels.plan = plan(scene);
-  Result<gl::Program> step = gl::Program::load({"methods/symplectic_euler.comp"}, step_defines(kernels.plan));
-  if (!step) return step.error();
-  kernels.step = std::move(*step);
-  kernels.motions = MotionTable(moving_motions(scene));
+  kernels.motions = motion_table(scene, kernels.plan);
   if (kernels.plan.self_collision) {
     Result<SelfCollision> self_collision = SelfCollision::create(kernels.model.vertex_count());
     if (!self_collision) return self_collision.error();
     kernels.self_collision = std::move(*self_collision);
+    kernels.self_collision->set_parameters(*scene.self_collision, kernels.model);
   }
   upload_springs(kernels, scene);
-  set_parameters(kernels, scene);
+  Result<std::unique_ptr<Integrator>> integrator = make_integrator(kernels.surroundings(scene), kernels.plan);
+  if (!integrator) return integrator.error();
+  kernels.integrator = std::move(*integrator);
   return kernels;
 }
 
@@ -96,8 +88,9 @@ struct Simulation::Implementation {
   std::uint64_t start_step = 0;
   std::vector<double> batch_times;
 
-  double time_of(std::uint64_t step) const {
-    return start_time + static_cast<double>(step - start_step) * scene.solver.dt;
+  /// Of a step, or of a point `share` of a step after it.
+  double time_of(std::uint64_t step, double share = 0.0) const {
+    return start_time + (static_cast<double>(step - start_step) + share) * scene.solver.dt;
   }
 
   void bind_constants() {
@@ -106,24 +99,25 @@ struct Simulation::Implementation {
     rest.bind(unit_rest_position);
   }
 
+  void upload_poses(std::uint32_t steps) {
+    if (kernels.motions.empty()) return;
+    batch_times.clear();
+    const int rows = kernels.plan.pose_rows();
+    for (std::uint32_t step = 0; step < steps; ++step)
+      for (int row = 0; row < rows; ++row)
+        batch_times.push_back(time_of(step_index + step, static_cast<double>(row) / rows));
+    batch_times.push_back(time_of(step_index + steps));
+    kernels.motions.upload(batch_times);
+    kernels.motions.bind(unit_motion_table);
+  }
+
   void run_batch(std::uint32_t count) {
     bind_constants();
-    if (!kernels.motions.empty()) {
-      batch_times.clear();
-      for (std::uint32_t row = 0; row <= count; ++row) batch_times.push_back(time_of(step_index + row));
-      kernels.motions.upload(batch_times);
-      kernels.motions.bind(unit_motion_table);
-    }
-    const GLuint groups = (kernels.model.vertex_count() + group_size - 1) / group_size;
-    for (std::uint32_t row = 0; row < count; ++row) {
-      state.bind_for_step();
+    upload_poses(count);
+    for (std::uint32_t step = 0; step < count; ++step) {
+      state.position().bind(unit_position);
       if (kernels.self_collision) kernels.self_collision->update_lists();
-      kernels.step.use();
-      if (!kernels.motions.empty()) glUniform1i(1, static_cast<GLint>(row));
-      // update_lists binds its own outputs to other slots than the step's two.
-      glDispatchCompute(groups, 1, 1);
-      glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-      state.swap();
+      kernels.integrator->step(state, static_cast<int>(step) * kernels.plan.pose_rows());
     }
     step_index += count;
   }
@@ -157,6 +151,7 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const scene::Scene& scene
   self.scene = scene;
   self.rest = rest_positions(self.kernels.model);
   self.state = StateBuffers(self.kernels.model, self.kernels.motions);
+  self.kernels.integrator->restart(self.state);
   return made;
 }
 
@@ -174,14 +169,17 @@ Result<ChangeDepth> Simulation::change(const scene::Scene& scene) {
     Result<Kernels> kernels = make_kernels(scene);
     if (!kernels) return kernels.error();
     self.kernels = std::move(*kernels);
+    self.kernels.integrator->restart(self.state);
   } else if (depth == ChangeDepth::uniform) {
     // Masses and pins live in the model; building it again is cheap and cannot change its shape here.
     Result<model::Model> model = model::build(scene);
     if (!model) return model.error();
     self.kernels.model = std::move(*model);
-    self.kernels.motions = MotionTable(moving_motions(scene));
+    self.kernels.motions = motion_table(scene, self.kernels.plan);
     if (differs(self.scene, scene, &scene::Cloth::material)) upload_springs(self.kernels, scene);
-    set_parameters(self.kernels, scene);
+    if (self.kernels.self_collision)
+      self.kernels.self_collision->set_parameters(*scene.self_collision, self.kernels.model);
+    self.kernels.integrator->set_parameters(self.kernels.surroundings(scene));
   }
   self.adopt(scene);
   return depth;
@@ -199,6 +197,7 @@ void Simulation::reset() {
   Implementation& self = *implementation_;
   self.state.reset(self.kernels.model, self.kernels.motions);
   if (self.kernels.self_collision) self.kernels.self_collision->invalidate();
+  self.kernels.integrator->restart(self.state);
   self.step_index = self.start_step = 0;
   self.start_time = 0.0;
 }

@@ -1,6 +1,8 @@
 // The state of every vertex on the GPU, kept twice: a step reads one copy and writes the other.
 #pragma once
 
+#include <glm/vec4.hpp>
+
 #include "server/gl/buffer.h"
 #include "server/model/model.h"
 #include "server/sim/simulation.h"
@@ -26,6 +28,7 @@ class StateBuffers {
   /// Writes changed masses and pins into the state, which otherwise stays as it is. Waits for the GPU.
   void rewrite_constants(const model::Model& model, const MotionTable& motions);
   State read() const;
+  std::vector<glm::vec4> read_velocity() const;
 
  private:
   gl::TextureBuffer position_[2];  ///< xyz [m], w inverse mass [1/kg], 0 if pinned

@@ -3,13 +3,13 @@
 #include "../rarely.glsl"
 
 #if SPHERE_COUNT > 0
-layout(location = 16) uniform vec4 sphere[SPHERE_COUNT];          // centre at home [m], radius + margin [m]
-layout(location = 16 + SPHERE_COUNT) uniform vec3 sphere_surface[SPHERE_COUNT];  // friction, restitution, motion
+uniform vec4 sphere[SPHERE_COUNT];          // centre at home [m], radius + margin [m]
+uniform vec3 sphere_surface[SPHERE_COUNT];  // friction, restitution, motion
 #endif
 #if PLANE_COUNT > 0
-layout(location = 256) uniform vec4 plane_point[PLANE_COUNT];    // a point of it at home [m], margin [m]
-layout(location = 256 + PLANE_COUNT) uniform vec3 plane_normal[PLANE_COUNT];
-layout(location = 256 + 2 * PLANE_COUNT) uniform vec3 plane_surface[PLANE_COUNT];
+uniform vec4 plane_point[PLANE_COUNT];    // a point of it at home [m], margin [m]
+uniform vec3 plane_normal[PLANE_COUNT];
+uniform vec3 plane_surface[PLANE_COUNT];
 #endif
 
 vec3 at_step(int motion, int row, vec3 home) {
@@ -20,7 +20,7 @@ vec3 at_step(int motion, int row, vec3 home) {
 
 void meet_surface(int motion, vec3 surface, vec3 normal, vec3 x, inout vec3 v) {
   vec3 moving = vec3(0.0);
-  RARELY(motion >= 0) moving = velocity_at(motion, 1, x);
+  RARELY(motion >= 0) moving = velocity_at(motion, END_ROW, x);
   v = moving + contact_velocity(v - moving, normal, surface.x, surface.y);
 }
 
@@ -30,7 +30,7 @@ int resolve_colliders(vec3 from, inout vec3 x, inout vec3 v) {
 #if SPHERE_COUNT > 0
   for (int i = 0; i < SPHERE_COUNT; ++i) {
     int motion = int(sphere_surface[i].z);
-    vec3 centre = at_step(motion, 1, sphere[i].xyz);
+    vec3 centre = at_step(motion, END_ROW, sphere[i].xyz);
     vec3 start = from - at_step(motion, 0, sphere[i].xyz), end = x - centre;
     float within_reach = sphere[i].w + distance(start, end);
     RARELY(dot(start, start) <= within_reach * within_reach) {
@@ -46,8 +46,8 @@ int resolve_colliders(vec3 from, inout vec3 x, inout vec3 v) {
 #if PLANE_COUNT > 0
   for (int i = 0; i < PLANE_COUNT; ++i) {
     int motion = int(plane_surface[i].z);
-    vec3 normal = motion < 0 ? plane_normal[i] : turned(motion, 1, plane_normal[i]);
-    float depth = plane_point[i].w - dot(x - at_step(motion, 1, plane_point[i].xyz), normal);
+    vec3 normal = motion < 0 ? plane_normal[i] : turned(motion, END_ROW, plane_normal[i]);
+    float depth = plane_point[i].w - dot(x - at_step(motion, END_ROW, plane_point[i].xyz), normal);
     if (!(depth > 0.0)) continue;
     x += depth * normal;
     meet_surface(motion, plane_surface[i], normal, x, v);

@@ -3,7 +3,7 @@
 // Needs neighbours.glsl, contact.glsl, position, velocity, dt.
 READ_UINT(neighbour_count, 4);
 READ_UVEC2(neighbours, 5);
-layout(location = 4) uniform float self_friction;
+uniform float self_friction;
 
 /// Adds to push [m] and impulse (change of velocity [m/s]); returns the number of vertices touched.
 /// Several contacts at once would add up to more than is needed: each is scaled by the larger of the two vertices'

@@ -1,10 +1,11 @@
 // Poses of moving pins and colliders, computed by the host in double precision for each step of a batch.
+// A step has END_ROW rows after the one at its start: the last is its end, one before it (if any) its middle.
 // A pose takes five vec4: three rows (rotation, translation), the velocity of the origin, the angular velocity.
 #if MOTION_COUNT > 0
 READ_VEC4(motion_table, 6);
-layout(location = 1) uniform int batch_row;  // the step within the batch: row n is its start, row n + 1 its end
+uniform int start_row;  // of the step, in the batch
 
-int pose_at(int motion, int row) { return ((batch_row + row) * MOTION_COUNT + motion) * 5; }
+int pose_at(int motion, int row) { return ((start_row + row) * MOTION_COUNT + motion) * 5; }
 
 vec3 turned(int motion, int row, vec3 home) {
   int base = pose_at(motion, row);

@@ -1,0 +1,45 @@
+#include "server/sim/integrator.h"
+
+#include "server/scene/method.h"
+#include "server/sim/colliders.h"
+
+namespace clothlab::sim {
+
+namespace {
+
+Result<std::unique_ptr<Integrator>> make(const Surroundings& around, const Plan& plan) {
+  switch (around.scene.solver.method) {
+    case scene::Method::explicit_euler:
+    case scene::Method::symplectic_euler:
+    case scene::Method::verlet:
+      return make_whole_step(around.scene.solver.method, around.model.vertex_count(), plan);
+    default:
+      break;
+  }
+  return Error{"/solver/method", scene::name(around.scene.solver.method), "a method that has kernels"};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Integrator>> make_integrator(const Surroundings& around, const Plan& plan) {
+  Result<std::unique_ptr<Integrator>> integrator = make(around, plan);
+  if (integrator) (*integrator)->set_parameters(around);
+  return integrator;
+}
+
+void set_step_uniforms(const gl::Program& program, const Surroundings& around) {
+  const scene::Scene& scene = around.scene;
+  const GLuint id = program.id();
+  glProgramUniform1i(id, program.uniform("vertex_count"), static_cast<GLint>(around.model.vertex_count()));
+  glProgramUniform1f(id, program.uniform("dt"), static_cast<float>(scene.solver.dt));
+  glProgramUniform4f(id, program.uniform("gravity"), static_cast<float>(scene.gravity.x),
+                     static_cast<float>(scene.gravity.y), static_cast<float>(scene.gravity.z),
+                     static_cast<float>(scene.air_drag));
+  set_colliders(program, scene, around.motions, contact_margin(scene, around.model));
+  if (!around.self_collision) return;
+  glProgramUniform1f(id, program.uniform("self_friction"),
+                     static_cast<float>(scene.self_collision->friction));
+  glProgramUniform1f(id, program.uniform("skin"), around.self_collision->skin());
+}
+
+}  // namespace clothlab::sim

@@ -1,0 +1,76 @@
+// One way of advancing the state by a step on the GPU. Each family of methods is one file: whole_step.cpp
+// (one dispatch a step), rk4.cpp, implicit_euler.cpp.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "server/base/result.h"
+#include "server/gl/program.h"
+#include "server/model/model.h"
+#include "server/scene/scene.h"
+#include "server/sim/motion_table.h"
+#include "server/sim/plan.h"
+#include "server/sim/self_collision.h"
+#include "server/sim/state.h"
+
+namespace clothlab::sim {
+
+/// What a step depends on besides the state.
+struct Surroundings {
+  const scene::Scene& scene;
+  const model::Model& model;
+  const MotionTable& motions;
+  const SelfCollision* self_collision;  ///< null without
+};
+
+/// What a method that solves equations has done since it was made.
+struct SolverWork {
+  std::uint64_t linear_iterations = 0;  ///< of conjugate gradients
+  std::uint64_t newton_steps = 0;
+  std::uint64_t unconverged = 0;  ///< linear solves that ended before the tolerance was met
+};
+
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+
+  /// Takes over what may change without new kernels.
+  virtual void set_parameters(const Surroundings& around) = 0;
+
+  /// Queues one step: reads the state, writes its other copy, swaps the two. `row` is the step's first in the
+  /// pose table. Springs, slices, rest positions, poses and neighbour lists must be bound.
+  virtual void step(StateBuffers& state, int row) = 0;
+
+  /// The state was not made by this object's last step: forget what was carried over from it.
+  virtual void restart(const StateBuffers&) {}
+
+  virtual SolverWork work() const { return {}; }
+
+  /// Dispatches queued since it was made.
+  std::uint64_t dispatches() const { return dispatches_; }
+
+ protected:
+  void dispatch(GLuint groups) {
+    glDispatchCompute(groups, 1, 1);
+    ++dispatches_;
+  }
+  std::uint64_t dispatches_ = 0;
+};
+
+/// The one that the scene's solver names, its parameters set.
+Result<std::unique_ptr<Integrator>> make_integrator(const Surroundings& around, const Plan& plan);
+
+/// The families, for make_integrator.
+Result<std::unique_ptr<Integrator>> make_whole_step(scene::Method method, std::uint32_t vertex_count,
+                                                    const Plan& plan);
+
+/// Work groups of a kernel with one thread a vertex.
+inline GLuint vertex_groups(std::uint32_t vertex_count) {
+  return (vertex_count + group_size - 1) / group_size;
+}
+
+/// Sets the uniforms that the kernels of all methods share, where the program has them.
+void set_step_uniforms(const gl::Program& program, const Surroundings& around);
+
+}  // namespace clothlab::sim

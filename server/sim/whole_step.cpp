@@ -1,0 +1,62 @@
+// Methods that need one evaluation of the forces a step, and so one dispatch:
+// shaders/methods/whole_step.glsl.
+#include <string>
+
+#include "server/scene/method.h"
+#include "server/sim/integrator.h"
+
+namespace clothlab::sim {
+
+namespace {
+
+constexpr GLuint slot_carried = 3;  // verlet.comp
+
+class WholeStep : public Integrator {
+ public:
+  WholeStep(gl::Program program, std::uint32_t vertex_count, bool carries)
+      : program_(std::move(program)), groups_(vertex_groups(vertex_count)) {
+    if (carries) carried_ = gl::Buffer(vertex_count * 4 * sizeof(float));
+  }
+
+  void set_parameters(const Surroundings& around) override {
+    set_step_uniforms(program_, around);
+    start_row_ = program_.uniform("start_row");
+  }
+
+  void step(StateBuffers& state, int row) override {
+    program_.use();
+    glUniform1i(start_row_, row);
+    state.bind_for_step();
+    if (carried_.bytes() > 0) carried_.bind_storage(slot_carried);
+    dispatch(groups_);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+    state.swap();
+  }
+
+  /// The velocity in the middle of a step of no length is the velocity.
+  void restart(const StateBuffers& state) override {
+    if (carried_.bytes() == 0) return;
+    std::vector<glm::vec4> velocity = state.read_velocity();
+    for (glm::vec4& v : velocity) v.w = 0.0f;
+    carried_.upload(velocity.data(), carried_.bytes());
+  }
+
+ private:
+  gl::Program program_;
+  gl::Buffer carried_;  ///< verlet's; none otherwise
+  GLint start_row_ = -1;
+  GLuint groups_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Integrator>> make_whole_step(scene::Method method, std::uint32_t vertex_count,
+                                                    const Plan& plan) {
+  const std::string path = std::string("methods/") + scene::name(method) + ".comp";
+  Result<gl::Program> program = gl::Program::load({path}, step_defines(plan));
+  if (!program) return program.error();
+  return std::unique_ptr<Integrator>(
+      std::make_unique<WholeStep>(std::move(*program), vertex_count, method == scene::Method::verlet));
+}
+
+}  // namespace clothlab::sim

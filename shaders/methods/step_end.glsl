@@ -1,0 +1,17 @@
+// The end of a step: the new state is written, and the neighbour lists' rebuild is asked for if the vertex went too far.
+layout(std430, binding = 0) writeonly buffer NextPosition { vec4 next_position[]; };
+layout(std430, binding = 1) writeonly buffer NextVelocity { vec4 next_velocity[]; };
+#ifdef SELF_COLLISION
+#include "../collide/neighbours.glsl"
+READ_VEC4(position_when_built, 8);
+uniform float skin;  // [m]
+#endif
+
+void end_step(int i, vec4 x_next, vec4 v_next) {
+  next_position[i] = x_next;
+  next_velocity[i] = v_next;
+#ifdef SELF_COLLISION
+  vec3 moved = x_next.xyz - FETCH(position_when_built, i).xyz;
+  if (dot(moved, moved) > 0.25 * skin * skin) rebuild_groups = gl_NumWorkGroups.x;
+#endif
+}
