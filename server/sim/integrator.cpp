@@ -13,6 +13,8 @@ Result<std::unique_ptr<Integrator>> make(const Surroundings& around, const Plan&
     case scene::Method::symplectic_euler:
     case scene::Method::verlet:
       return make_whole_step(around.scene.solver.method, around.model.vertex_count(), plan);
+    case scene::Method::rk4:
+      return make_rk4(around.model.vertex_count(), plan);
     default:
       break;
   }

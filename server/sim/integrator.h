@@ -64,6 +64,7 @@ Result<std::unique_ptr<Integrator>> make_integrator(const Surroundings& around, 
 /// The families, for make_integrator.
 Result<std::unique_ptr<Integrator>> make_whole_step(scene::Method method, std::uint32_t vertex_count,
                                                     const Plan& plan);
+Result<std::unique_ptr<Integrator>> make_rk4(std::uint32_t vertex_count, const Plan& plan);
 
 /// Work groups of a kernel with one thread a vertex.
 inline GLuint vertex_groups(std::uint32_t vertex_count) {

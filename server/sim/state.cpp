@@ -63,6 +63,10 @@ void StateBuffers::rewrite_constants(const model::Model& model, const MotionTabl
 void StateBuffers::bind_for_step() const {
   position_[current_].bind(unit_position);
   velocity_[current_].bind(unit_velocity);
+  bind_outputs();
+}
+
+void StateBuffers::bind_outputs() const {
   position_[1 - current_].buffer.bind_storage(0);
   velocity_[1 - current_].buffer.bind_storage(1);
 }

@@ -1,6 +1,11 @@
 // Self-collision of a vertex with those of its neighbour list that it touches within this step (elements/contact.glsl),
 // each of the two taking its share by inverse mass: both compute the same contact, so momentum is kept.
+// START_POSITION and START_VELOCITY name the state at the step's start where position and velocity are another.
 // Needs neighbours.glsl, contact.glsl, position, velocity, dt.
+#ifndef START_POSITION
+#define START_POSITION position
+#define START_VELOCITY velocity
+#endif
 READ_UINT(neighbour_count, 4);
 READ_UVEC2(neighbours, 5);
 uniform float self_friction;
@@ -13,8 +18,8 @@ int self_contacts(int i, vec4 x, vec4 v, inout vec3 push, inout vec3 impulse) {
   int count = int(FETCH_UINT(neighbour_count, i));
   for (int slot = 0; slot < count; ++slot) {
     uvec2 neighbour = FETCH_UVEC2(neighbours, i * NEIGHBOUR_SLOTS + slot);
-    vec4 y = FETCH(position, neighbour.x);
-    vec4 w = FETCH(velocity, neighbour.x);
+    vec4 y = FETCH(START_POSITION, neighbour.x);
+    vec4 w = FETCH(START_VELOCITY, neighbour.x);
     vec3 apart, change;
     if (!self_contact(x.xyz, y.xyz, v.xyz, w.xyz, uintBitsToFloat(neighbour.y), self_friction, dt, apart, change))
       continue;

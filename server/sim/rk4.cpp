@@ -1,0 +1,83 @@
+// The classical Runge-Kutta method: four dispatches of shaders/methods/rk4.comp.
+#include <array>
+
+#include "server/sim/integrator.h"
+
+namespace clothlab::sim {
+
+namespace {
+
+constexpr GLuint slot_slope = 3;
+constexpr GLuint unit_start_position = 9, unit_start_velocity = 10, unit_slope = 11;  // and the two after it
+
+class Rk4 : public Integrator {
+ public:
+  explicit Rk4(std::array<gl::Program, 4> stages, std::uint32_t vertex_count)
+      : stages_(std::move(stages)), groups_(vertex_groups(vertex_count)) {
+    const auto per_vertex = [&] {
+      return gl::TextureBuffer(gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F);
+    };
+    for (Between& between : between_) between = {per_vertex(), per_vertex()};
+    for (gl::TextureBuffer& slope : slopes_) slope = per_vertex();
+  }
+
+  void set_parameters(const Surroundings& around) override {
+    for (const gl::Program& stage : stages_) set_step_uniforms(stage, around);
+  }
+
+  void step(StateBuffers& state, int row) override {
+    state.bind_for_step();
+    state.position().bind(unit_start_position);
+    state.velocity().bind(unit_start_velocity);
+    for (std::size_t stage = 0; stage < 4; ++stage) {
+      if (stage > 0) between_[(stage - 1) % 2].bind_for_reading();
+      if (stage < 3) {
+        between_[stage % 2].bind_for_writing();
+        slopes_[stage].buffer.bind_storage(slot_slope);
+      } else {
+        for (GLuint slope = 0; slope < 3; ++slope) slopes_[slope].bind(unit_slope + slope);
+        state.bind_outputs();
+      }
+      stages_[stage].use();
+      glUniform1i(stages_[stage].uniform("start_row"), row);
+      dispatch(groups_);
+      glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+    }
+    state.swap();
+  }
+
+ private:
+  /// A state between the step's start and its end.
+  struct Between {
+    gl::TextureBuffer position, velocity;
+    void bind_for_reading() const {
+      position.bind(unit_position);
+      velocity.bind(unit_velocity);
+    }
+    void bind_for_writing() const {
+      position.buffer.bind_storage(0);
+      velocity.buffer.bind_storage(1);
+    }
+  };
+
+  std::array<gl::Program, 4> stages_;
+  std::array<Between, 2> between_;
+  std::array<gl::TextureBuffer, 3> slopes_;
+  GLuint groups_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Integrator>> make_rk4(std::uint32_t vertex_count, const Plan& plan) {
+  std::array<gl::Program, 4> stages;
+  for (std::size_t stage = 0; stage < 4; ++stage) {
+    gl::Defines defines = step_defines(plan);
+    defines.emplace_back("STAGE", std::to_string(stage + 1));
+    Result<gl::Program> program = gl::Program::load({"methods/rk4.comp"}, defines);
+    if (!program) return program.error();
+    stages[stage] = std::move(*program);
+  }
+  return std::unique_ptr<Integrator>(std::make_unique<Rk4>(std::move(stages), vertex_count));
+}
+
+}  // namespace clothlab::sim

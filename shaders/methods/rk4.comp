@@ -1,0 +1,72 @@
+// The classical Runge-Kutta method of order 4: four evaluations of the forces a step, each a dispatch of this kernel with
+// STAGE 1 to 4. Hairer, Norsett & Wanner 1993, section II.1. Each stage gathers what the one before it wrote; contacts are
+// seen once, from the state at the step's start, and applied at its end.
+#include "gather.glsl"
+#include "step_end.glsl"
+#if STAGE > 1
+READ_VEC4(start_position, 9);
+READ_VEC4(start_velocity, 10);
+#else
+#define start_position position
+#define start_velocity velocity
+#endif
+#if STAGE < 4
+layout(std430, binding = 3) writeonly buffer Slope { vec4 slope[]; };  // xyz: this stage's acceleration [m/s^2]
+#else
+READ_VEC4(slope_1, 11);
+READ_VEC4(slope_2, 12);
+READ_VEC4(slope_3, 13);
+#define START_POSITION start_position
+#define START_VELOCITY start_velocity
+#include "../collide/colliders.glsl"
+#ifdef SELF_COLLISION
+#include "../collide/self_contact.glsl"
+#endif
+#endif
+
+#if STAGE < 4
+/// The state that the next stage looks at: half a step on, or a whole one.
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  if (i >= vertex_count) return;
+  vec4 x = FETCH(start_position, i), v = FETCH(start_velocity, i);
+  vec3 x_next, v_next;
+  if (x.w == 0.0) {
+    follow_motion(i, v.w, STAGE < 3 ? 1 : END_ROW, x_next, v_next);
+  } else {
+    vec4 x_now = FETCH(position, i), v_now = FETCH(velocity, i);
+    vec3 a = acceleration(i, x_now, v_now.xyz);
+    float ahead = STAGE < 3 ? 0.5 * dt : dt;
+    x_next = x.xyz + ahead * v_now.xyz;
+    v_next = v.xyz + ahead * a;
+    slope[i] = vec4(a, 0.0);
+  }
+  next_position[i] = vec4(x_next, x.w);
+  next_velocity[i] = vec4(v_next, v.w);
+}
+#else
+/// The slopes' weighted mean; with each stage's velocity written out, the position's needs no velocity but the first.
+int move_freely(int i, vec4 x, vec4 v, out vec3 x_next, out vec3 v_next) {
+  vec3 a1 = FETCH(slope_1, i).xyz, a2 = FETCH(slope_2, i).xyz, a3 = FETCH(slope_3, i).xyz;
+  vec3 a4 = acceleration(i, FETCH(position, i), FETCH(velocity, i).xyz);
+  vec3 push = vec3(0.0), impulse = vec3(0.0);
+  int contacts = 0;
+#ifdef SELF_COLLISION
+  contacts = self_contacts(i, x, v, push, impulse);
+#endif
+  v_next = v.xyz + dt / 6.0 * (a1 + 2.0 * (a2 + a3) + a4) + impulse;
+  x_next = x.xyz + push + dt * (v.xyz + impulse + dt / 6.0 * (a1 + a2 + a3));
+  return contacts + resolve_colliders(x.xyz, x_next, v_next);
+}
+
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  if (i >= vertex_count) return;
+  vec4 x = FETCH(start_position, i), v = FETCH(start_velocity, i);
+  vec3 x_next, v_next;
+  float tag = v.w;
+  if (x.w == 0.0) follow_motion(i, v.w, END_ROW, x_next, v_next);
+  else tag = float(move_freely(i, x, v, x_next, v_next));
+  end_step(i, vec4(x_next, x.w), vec4(v_next, tag));
+}
+#endif
