@@ -1,0 +1,132 @@
+#include "server/model/stability.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+namespace clothlab::model {
+
+namespace {
+
+using scene::Method;
+
+/// The positive root dt of dt^2 omega^2 + factor dt damping = 4: where a step of a method that lags its
+/// damping turns the vibration round, x -> -x, and beyond which it grows.
+double flip_limit(double factor, const Mode& mode) {
+  const double half = 0.5 * factor * mode.damping;
+  // Written so that nothing cancels: 4 / (half + sqrt(half^2 + 4 omega^2)).
+  return 4.0 / (half + std::sqrt(half * half + 4.0 * mode.omega_squared));
+}
+
+/// The root of s^2 + damping s + omega^2 farthest from 0.
+std::complex<double> farthest_root(const Mode& mode) {
+  const double half = 0.5 * mode.damping, square = half * half - mode.omega_squared;
+  if (square >= 0.0) return -half - std::sqrt(square);
+  return {-half, std::sqrt(-square)};
+}
+
+/// Where |1 + s dt| = 1.
+double explicit_limit(const Mode& mode) {
+  const std::complex<double> root = farthest_root(mode);
+  return -2.0 * root.real() / std::norm(root);
+}
+
+/// Where the ray from 0 through the root leaves |1 + w + w^2/2 + w^3/6 + w^4/24| <= 1. In the left half plane
+/// that is between 2.6 and 3 from 0 and the ray leaves once (Hairer & Wanner 1996, section IV.2).
+double rk4_limit(const Mode& mode) {
+  const std::complex<double> root = farthest_root(mode), direction = root / std::abs(root);
+  double inside = 2.0, outside = 4.0;
+  for (int halving = 0; halving < 52; ++halving) {
+    const double radius = 0.5 * (inside + outside);
+    const std::complex<double> w = radius * direction;
+    const std::complex<double> growth = 1.0 + w * (1.0 + w / 2.0 * (1.0 + w / 3.0 * (1.0 + w / 4.0)));
+    (std::norm(growth) <= 1.0 ? inside : outside) = radius;
+  }
+  return inside / std::abs(root);
+}
+
+constexpr double symplectic_lag = 2.0, verlet_lag = 4.0;
+
+/// Whether the worst vibration is one of the largest of a single matrix: then any start finds it.
+bool one_worst(Method method) {
+  return method == Method::symplectic_euler || method == Method::verlet;
+}
+
+double undamped_limit(const Mode& mode) {
+  return 1.0 / std::sqrt(mode.omega_squared);
+}
+double overdamped_limit(const Mode& mode) {
+  return 1.0 / mode.damping;
+}
+
+}  // namespace
+
+double dt_limit(Method method, const Mode& mode) {
+  if (!(mode.omega_squared > 0.0) && !(mode.damping > 0.0)) return no_limit;
+  switch (method) {
+    case Method::explicit_euler:
+      return explicit_limit(mode);
+    case Method::symplectic_euler:
+      return flip_limit(symplectic_lag, mode);
+    case Method::verlet:
+      return flip_limit(verlet_lag, mode);
+    case Method::rk4:
+      return rk4_limit(mode);
+    case Method::implicit_euler:
+      return no_limit;
+  }
+  return no_limit;
+}
+
+double omega_bound(const Model& model, const scene::Scene& scene) {
+  return std::sqrt(SpringOperator(model, scene, model.rest_position).stiffness_bound());
+}
+
+double omega_max(const Model& model, const scene::Scene& scene) {
+  return omega_max(model, scene, model.rest_position);
+}
+
+double omega_max(const Model& model, const scene::Scene& scene, const Field& shape) {
+  const SpringOperator springs(model, scene, shape);
+  return std::sqrt(extreme_mode(springs, undamped_limit, scattered_start(springs)).mode.omega_squared);
+}
+
+double dt_limit_bound(const Model& model, const scene::Scene& scene) {
+  const SpringOperator springs(model, scene, model.rest_position);
+  const Method method = scene.solver.method;
+  const Mode worst{springs.stiffness_bound(), springs.damping_bound()};
+  if (!springs.any_free()) return no_limit;
+  if (springs.empty() || method == Method::implicit_euler) return dt_limit(method, {0.0, springs.air_drag()});
+  if (one_worst(method)) return dt_limit(method, worst);
+  // Both need roots that are no farther from 0 than this.
+  const double farthest = std::max(std::sqrt(worst.omega_squared), worst.damping);
+  if (method == Method::rk4) return 2.6 / farthest;
+  return std::min(springs.least_damping_time() + springs.air_drag() / worst.omega_squared,
+                  worst.damping > 0.0 ? 2.0 / worst.damping : no_limit);
+}
+
+double dt_limit(const Model& model, const scene::Scene& scene, const std::stop_token& stop) {
+  const Method method = scene.solver.method;
+  const SpringOperator springs(model, scene, model.rest_position);
+  if (!springs.any_free()) return no_limit;
+  // What stretches no spring, a cloth that moves as a whole, is only slowed by the air.
+  double least = dt_limit(method, {0.0, springs.air_drag()});
+  if (springs.empty() || method == Method::implicit_euler) return least;
+  if (method == Method::explicit_euler && springs.air_drag() == 0.0 && springs.least_damping_time() == 0.0)
+    return 0.0;
+  const auto of_mode = [&](const Mode& mode) { return dt_limit(method, mode); };
+  const auto search = [&](Field start) {
+    least = std::min(least, of_mode(extreme_mode(springs, of_mode, std::move(start), stop).mode));
+  };
+  const Field scattered = scattered_start(springs);
+  if (one_worst(method)) {
+    search(scattered);
+  } else {
+    // The worst vibration is near the stiffest or near the most damped, and either may be the worse.
+    search(extreme_mode(springs, undamped_limit, scattered, stop).y);
+    if (springs.damping_bound() > 0.0) search(extreme_mode(springs, overdamped_limit, scattered, stop).y);
+  }
+  return stop.stop_requested() ? dt_limit_bound(model, scene) : least;
+}
+
+}  // namespace clothlab::model
