@@ -3,7 +3,7 @@
 # and cmake print goes to build/setup-*.log and is shown only when they fail.
 
 build_packages=(g++ cmake ninja-build pkg-config python3-glad libegl1 libgl1-mesa-dri libwebsockets-dev
-  nlohmann-json3-dev libstb-dev libglm-dev libcli11-dev zlib1g-dev)
+  nlohmann-json3-dev libstb-dev libglm-dev libeigen3-dev libcli11-dev zlib1g-dev)
 test_packages=(catch2)
 
 say() { echo "$script: $*"; }

@@ -1,10 +1,32 @@
 #include "server/reference/reference.h"
 
+#include <glm/geometric.hpp>
+
 #include "server/model/motion.h"
 #include "server/reference/contacts.h"
+#include "server/reference/methods.h"
+#include "server/reference/strain_limit.h"
 #include "shaders/elements/elements.h"
 
 namespace clothlab::reference {
+
+namespace {
+
+using Vectors = std::vector<dvec3>;
+
+/// Stops the free vertices of `next` at the colliders on their way from `before`.
+void stop_at_colliders(const World& world, const State& before, double t, State& next) {
+  for (std::size_t i = 0; i < next.position.size(); ++i) {
+    if (world.pinned(i)) continue;
+    const int met = meet_colliders(world, t, before.position[i], next.position[i], next.velocity[i]);
+    next.contacts[i] += met;
+    if (met == 0 || next.half_dt.empty()) continue;
+    next.half_velocity[i] = next.velocity[i];  // the velocity after a contact is of the step's end
+    next.half_dt[i] = 0.0;
+  }
+}
+
+}  // namespace
 
 Result<World> make_world(const scene::Scene& scene, double contact_margin) {
   Result<model::Model> model = model::build(scene);
@@ -16,17 +38,15 @@ Result<World> make_world(const scene::Scene& scene, double contact_margin) {
 
 State at_rest(const World& world) {
   const std::size_t count = world.model.vertex_count();
-  return State{world.model.rest_position, std::vector<dvec3>(count, dvec3(0.0)), std::vector<int>(count, 0),
-               0};
+  return State{world.model.rest_position, Vectors(count, dvec3(0.0)), std::vector<int>(count, 0), 0};
 }
 
-std::vector<dvec3> spring_forces(const World& world, const State& state) {
-  std::vector<dvec3> force(world.model.vertex_count(), dvec3(0.0));
+Vectors spring_forces(const World& world, const Vectors& x, const Vectors& v) {
+  Vectors force(world.model.vertex_count(), dvec3(0.0));
   for (const model::Spring& spring : world.model.springs) {
     const scene::Springs& material = world.scene.cloths[spring.cloth].material;
     const dvec3 on_a =
-        elements::spring_force(state.position[spring.a], state.position[spring.b], state.velocity[spring.a],
-                               state.velocity[spring.b], spring.rest_length,
+        elements::spring_force(x[spring.a], x[spring.b], v[spring.a], v[spring.b], spring.rest_length,
                                model::stiffness(material, spring.kind), material.damping);
     force[spring.a] += on_a;
     force[spring.b] -= on_a;
@@ -34,30 +54,66 @@ std::vector<dvec3> spring_forces(const World& world, const State& state) {
   return force;
 }
 
-void step(const World& world, State& state) {
-  const scene::Scene& scene = world.scene;
-  const double dt = scene.solver.dt;
-  const double t = static_cast<double>(state.step) * dt, t_next = static_cast<double>(state.step + 1) * dt;
-  const std::vector<dvec3> force = spring_forces(world, state);
-  State next = state;
-  next.step = state.step + 1;
-  for (std::uint32_t i = 0; i < world.model.vertex_count(); ++i) {
-    dvec3 x = state.position[i], v = state.velocity[i];
-    if (const std::int32_t pin = world.model.pin_motion[i]; pin != model::not_pinned) {
-      const model::Pose pose = model::pose(world.model.motions[static_cast<std::size_t>(pin)], t_next);
-      next.position[i] = pose.place(world.model.rest_position[i]);
-      next.velocity[i] = pose.velocity_at(next.position[i]);
-      continue;
-    }
-    const SelfContact contact = scene.self_collision ? self_contact(world, state, i) : SelfContact{};
-    v += dt * (force[i] / world.model.mass[i] + scene.gravity - scene.air_drag * v) + contact.impulse;
-    x += contact.push + dt * v;
-    const int met = meet_colliders(world, t, state.position[i], x, v);
-    next.position[i] = x;
-    next.velocity[i] = v;
-    next.contacts[i] = contact.touched + met;
+Vectors accelerations(const World& world, const Vectors& x, const Vectors& v) {
+  Vectors a = spring_forces(world, x, v);
+  for (std::size_t i = 0; i < a.size(); ++i)
+    a[i] = a[i] / world.model.mass[i] + world.scene.gravity - world.scene.air_drag * v[i];
+  return a;
+}
+
+void place_pins(const World& world, double t, Vectors& x, Vectors& v) {
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!world.pinned(i)) continue;
+    const auto motion = static_cast<std::size_t>(world.model.pin_motion[i]);
+    const model::Pose pose = model::pose(world.model.motions[motion], t);
+    x[i] = pose.place(world.model.rest_position[i]);
+    v[i] = pose.velocity_at(x[i]);
   }
+}
+
+Energy energy(const World& world, const State& state) {
+  Energy sum;
+  for (std::size_t i = 0; i < state.position.size(); ++i) {
+    const double mass = world.model.mass[i];
+    sum.kinetic += 0.5 * mass * glm::dot(state.velocity[i], state.velocity[i]);
+    sum.gravitational -= mass * glm::dot(world.scene.gravity, state.position[i]);
+  }
+  for (const model::Spring& spring : world.model.springs)
+    sum.elastic +=
+        elements::spring_energy(state.position[spring.a], state.position[spring.b], spring.rest_length,
+                                model::stiffness(world.scene.cloths[spring.cloth].material, spring.kind));
+  return sum;
+}
+
+void advance(StepMethod method, const World& world, State& state, double t, double t_next) {
+  const std::uint32_t count = world.model.vertex_count();
+  StepStart start{
+      world, state, Vectors(count, dvec3(0.0)), Vectors(count, dvec3(0.0)), t, world.scene.solver.dt};
+  std::vector<int> touched(count, 0);
+  for (std::uint32_t i = 0; world.scene.self_collision && i < count; ++i) {
+    if (world.pinned(i)) continue;
+    const SelfContact contact = self_contact(world, state, i);
+    start.push[i] = contact.push;
+    start.impulse[i] = contact.impulse;
+    touched[i] = contact.touched;
+  }
+  State next = method(start);
+  next.step = state.step + 1;
+  next.contacts = touched;
+  place_pins(world, t_next, next.position, next.velocity);
+  stop_at_colliders(world, state, t, next);
+  limit_strain(world, next);
   state = std::move(next);
+}
+
+void step(const World& world, State& state) {
+  const double dt = world.scene.solver.dt, n = static_cast<double>(state.step);
+  advance(step_method(world.scene.solver.method), world, state, n * dt, (n + 1) * dt);
+}
+
+void baraff_witkin_step(const World& world, State& state) {
+  const double dt = world.scene.solver.dt, n = static_cast<double>(state.step);
+  advance(baraff_witkin, world, state, n * dt, (n + 1) * dt);
 }
 
 }  // namespace clothlab::reference

@@ -24,6 +24,8 @@ struct World {
   double contact_margin = 0;  ///< distance kept from a collider's surface [m]
   std::set<std::pair<std::uint32_t, std::uint32_t>>
       joined;  ///< pairs (a, b) with a spring between them, a < b
+
+  bool pinned(std::size_t vertex) const { return model.pin_motion[vertex] != model::not_pinned; }
 };
 
 struct State {
@@ -32,18 +34,47 @@ struct State {
   std::vector<int>
       contacts;  ///< [vertex_count] of the last step: colliders met and vertices touched; 0 if pinned
   std::uint64_t step = 0;  ///< steps since the start: the time is step * dt
+  /// Verlet's own, [vertex_count] or empty before its first step: the velocity half a step ago [m/s], and the
+  /// dt of that half step [s], 0 where the velocity is of now.
+  std::vector<dvec3> half_velocity = {};
+  std::vector<double> half_dt = {};
+  /// What an implicit method left unsolved, as a share of the largest momentum in its equation; 0 after
+  /// others.
+  double residual = 0;
 };
 
+/// A world for `scene`, or why its model cannot be built.
 Result<World> make_world(const scene::Scene& scene, double contact_margin);
 
 /// The rest shape, at time 0.
 State at_rest(const World& world);
 
-/// One step of symplectic Euler from (x, v) at time t: v += a(x, v) dt, then x += v dt. Pins are put where
-/// their motion is at t + dt; a vertex that would enter a collider on its way is stopped at the surface.
+/// One step of dt by the scene's method (methods.h). Self-collision acts from the state at the start; pins
+/// are put where their motion is at t + dt; a vertex that would enter a collider on its way is stopped at the
+/// surface; then the strain limit. Implicit Euler is solved to the rounding of double precision, whatever
+/// `iterations` says.
 void step(const World& world, State& state);
 
+/// The same with Baraff & Witkin's implicit Euler in the place of the method: at most `solver.iterations`
+/// Newton steps, none of them searched along. What the GPU computes, less the tolerance of its linear solver.
+void baraff_witkin_step(const World& world, State& state);
+
 /// Forces of the springs on each vertex [N].
-std::vector<dvec3> spring_forces(const World& world, const State& state);
+std::vector<dvec3> spring_forces(const World& world, const std::vector<dvec3>& position,
+                                 const std::vector<dvec3>& velocity);
+
+/// What springs, gravity and air drag do to each vertex, as if none were pinned [m/s^2].
+std::vector<dvec3> accelerations(const World& world, const std::vector<dvec3>& position,
+                                 const std::vector<dvec3>& velocity);
+
+/// Puts the pinned vertices where their motions take them at time t [s], with the velocity they have there.
+void place_pins(const World& world, double t, std::vector<dvec3>& position, std::vector<dvec3>& velocity);
+
+struct Energy {
+  double kinetic = 0, elastic = 0,
+         gravitational = 0;  ///< [J], of all vertices; gravitational 0 at the origin
+  double total() const { return kinetic + elastic + gravitational; }
+};
+Energy energy(const World& world, const State& state);
 
 }  // namespace clothlab::reference

@@ -1,0 +1,178 @@
+// Backward Euler as an equation for the velocity u at the end of the step (Baraff & Witkin 1998, section 3),
+// solved by Newton's method: fully, or by the given number of steps from u = 0.
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "server/reference/methods.h"
+#include "server/reference/system.h"
+#include "shaders/elements/elements.h"
+
+namespace clothlab::reference {
+
+namespace {
+
+using Vectors = std::vector<dvec3>;
+
+constexpr double solved = 1e-13;  // of the largest momentum in the equation: a few hundred roundings
+constexpr int most_newton_steps =
+    200;  // far from the solution the dropped `across` makes it converge linearly
+
+/// r(u) = M (1 + dt drag) u - M (v + dt g) - dt f(x + dt u, u), 0 for the free vertices at the end of the
+/// step.
+struct Equation {
+  const World& world;
+  Vectors x, v;   ///< at the start, self-collision's impulse in v
+  Vectors moved;  ///< [m/s]: (place at the end - x) / dt of the pinned vertices, 0 of the others
+  double dt;
+
+  explicit Equation(const StepStart& start)
+      : world(start.world), x(start.state.position), v(start.state.velocity), moved(x), dt(start.dt) {
+    Vectors unused(x.size());
+    place_pins(world, start.t + dt, moved, unused);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      moved[i] = (moved[i] - x[i]) / dt;
+      v[i] += start.impulse[i];
+    }
+  }
+
+  Vectors end(const Vectors& u) const {
+    Vectors positions = x;
+    for (std::size_t i = 0; i < x.size(); ++i) positions[i] += dt * u[i];
+    return positions;
+  }
+
+  Vectors residual(const Vectors& u) const {
+    const Vectors force = spring_forces(world, end(u), u);
+    Vectors r(x.size(), dvec3(0.0));
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (world.pinned(i)) continue;
+      const double mass = world.model.mass[i];
+      r[i] =
+          mass * ((1.0 + dt * world.scene.air_drag) * u[i] - v[i] - dt * world.scene.gravity) - dt * force[i];
+    }
+    return r;
+  }
+
+  Matrix jacobian(const Vectors& u, Across across) const {
+    return system_matrix(world, end(u), {1.0 + dt * world.scene.air_drag, dt, dt * dt}, across);
+  }
+
+  /// The largest momentum that goes into any vertex's equation: what its rounding is measured by.
+  double scale(const Vectors& u) const {
+    Vectors sum(x.size());
+    const Vectors positions = end(u);
+    for (std::size_t i = 0; i < x.size(); ++i)
+      sum[i].x = world.model.mass[i] *
+                 (glm::length(u[i]) + glm::length(v[i]) + dt * glm::length(world.scene.gravity));
+    for (const model::Spring& spring : world.model.springs) {
+      const scene::Springs& material = world.scene.cloths[spring.cloth].material;
+      const double length = glm::distance(positions[spring.a], positions[spring.b]);
+      const double most = model::stiffness(material, spring.kind) * (length + spring.rest_length) +
+                          material.damping * glm::distance(u[spring.a], u[spring.b]);
+      sum[spring.a].x += dt * most;
+      sum[spring.b].x += dt * most;
+    }
+    double largest = 1e-300;
+    for (const dvec3& s : sum) largest = std::max(largest, s.x);
+    return largest;
+  }
+
+  /// What a Newton step has to lower. Without damping the incremental potential, whose gradient r is; with it
+  /// there is none, and it is |r|^2.
+  double merit(const Vectors& u) const {
+    const auto damped = [](const scene::Cloth& cloth) { return cloth.material.damping > 0.0; };
+    const std::vector<scene::Cloth>& cloths = world.scene.cloths;
+    double sum = 0.0;
+    if (std::any_of(cloths.begin(), cloths.end(), damped)) {
+      for (const dvec3& r : residual(u)) sum += glm::dot(r, r);
+      return sum;
+    }
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (world.pinned(i)) continue;
+      const dvec3 driven = v[i] + dt * world.scene.gravity;
+      sum += world.model.mass[i] *
+             (0.5 * (1.0 + dt * world.scene.air_drag) * glm::dot(u[i], u[i]) - glm::dot(u[i], driven));
+    }
+    return sum + energy(world, State{end(u), Vectors(x.size(), dvec3(0.0)), {}}).elastic;
+  }
+};
+
+double largest(const Vectors& r) {
+  double most = 0.0;
+  for (const dvec3& one : r) most = std::max(most, glm::length(one));
+  return most;
+}
+
+Vectors plus(const Vectors& a, double scale, const Vectors& b) {
+  Vectors sum = a;
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += scale * b[i];
+  return sum;
+}
+
+/// The Newton step from u. The true matrix converges quadratically but is not always positive definite; the
+/// one without the compressed springs' negative part always is.
+Vectors newton_step(const Equation& equation, const Vectors& u, const Vectors& r) {
+  const Vectors wanted = plus(Vectors(u.size(), dvec3(0.0)), -1.0, r), still(u.size(), dvec3(0.0));
+  Vectors du;
+  if (!solve_with_pins(equation.world, equation.jacobian(u, Across::kept), wanted, still, du))
+    solve_with_pins(equation.world, equation.jacobian(u, Across::dropped), wanted, still, du);
+  return du;
+}
+
+/// The share of du that lowers the merit; 0 if none does, as happens at the rounding of the solution.
+double line_search(const Equation& equation, const Vectors& u, const Vectors& du) {
+  const double before = equation.merit(u);
+  for (double share = 1.0; share > 1e-6; share *= 0.5)
+    if (equation.merit(plus(u, share, du)) < before) return share;
+  return 0.0;
+}
+
+/// The state at the end of the step with velocity u.
+State end_state(const StepStart& start, const Equation& equation, const Vectors& u) {
+  State next = start.state;
+  next.position = plus(equation.end(u), 1.0, start.push);
+  next.velocity = u;
+  next.residual = largest(equation.residual(u)) / equation.scale(u);
+  return next;
+}
+
+}  // namespace
+
+State backward_euler(const StepStart& start) {
+  const Equation equation(start);
+  Vectors u = equation.v;
+  for (std::size_t i = 0; i < u.size(); ++i)
+    if (start.world.pinned(i)) u[i] = equation.moved[i];
+  const double scale = equation.scale(u);
+  Vectors r = equation.residual(u);
+  for (int n = 0; n < most_newton_steps && largest(r) > solved * scale; ++n) {
+    const Vectors du = newton_step(equation, u, r);
+    // Near the solution the merit's rounding hides its decrease, and the residual shows it better.
+    Vectors next = plus(u, 1.0, du), r_next = equation.residual(next);
+    if (!(largest(r_next) < 0.5 * largest(r))) {
+      const double share = line_search(equation, u, du);
+      if (share == 0.0) break;
+      next = plus(u, share, du);
+      r_next = equation.residual(next);
+    }
+    u = next;
+    r = r_next;
+  }
+  return end_state(start, equation, u);
+}
+
+State baraff_witkin(const StepStart& start) {
+  const Equation equation(start);
+  Vectors u(equation.x.size(), dvec3(0.0));
+  for (int n = 0; n < start.world.scene.solver.iterations; ++n) {
+    const Vectors r = equation.residual(u), wanted = plus(Vectors(u.size(), dvec3(0.0)), -1.0, r);
+    const Vectors to_pins = plus(equation.moved, -1.0, u);  // all of the way in the first step
+    Vectors du;
+    solve_with_pins(start.world, equation.jacobian(u, Across::dropped), wanted, to_pins, du);
+    u = plus(u, 1.0, du);
+  }
+  return end_state(start, equation, u);
+}
+
+}  // namespace clothlab::reference

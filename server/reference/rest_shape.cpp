@@ -1,0 +1,156 @@
+#include "server/reference/rest_shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <optional>
+
+#include "server/reference/contacts.h"
+#include "server/reference/system.h"
+
+namespace clothlab::reference {
+
+namespace {
+
+using Vectors = std::vector<dvec3>;
+
+constexpr double balanced = 1e-12;  // of the largest force on any vertex: some thousand roundings
+constexpr int most_newton_steps = 2000;
+
+/// The sum of forces on each free vertex [N]; 0 on the pinned.
+Vectors forces(const World& world, const Vectors& x) {
+  Vectors force = spring_forces(world, x, Vectors(x.size(), dvec3(0.0)));
+  for (std::size_t i = 0; i < x.size(); ++i)
+    force[i] = world.pinned(i) ? dvec3(0.0) : force[i] + world.model.mass[i] * world.scene.gravity;
+  return force;
+}
+
+double largest(const Vectors& vectors) {
+  double most = 0.0;
+  for (const dvec3& one : vectors) most = std::max(most, glm::length(one));
+  return most;
+}
+
+/// The largest sum of stiffness over mass at a vertex [1/s^2], and of the forces that balance there [N].
+struct Scale {
+  double stiffness = 1e-300, force = 1e-300;
+};
+Scale scale(const World& world) {
+  std::vector<double> stiffness(world.model.vertex_count(), 0.0), force(stiffness);
+  for (const model::Spring& spring : world.model.springs) {
+    const double k = model::stiffness(world.scene.cloths[spring.cloth].material, spring.kind);
+    for (const std::uint32_t vertex : {spring.a, spring.b}) {
+      stiffness[vertex] += k;
+      force[vertex] += k * spring.rest_length;
+    }
+  }
+  Scale result;
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    result.stiffness = std::max(result.stiffness, stiffness[i] / world.model.mass[i]);
+    result.force = std::max(result.force, force[i] + world.model.mass[i] * glm::length(world.scene.gravity));
+  }
+  return result;
+}
+
+double potential(const World& world, const Vectors& x) {
+  const Energy sum = energy(world, State{x, Vectors(x.size(), dvec3(0.0)), {}});
+  return sum.elastic + sum.gravitational;
+}
+
+/// A vertex from which no chain of springs leads to a pin.
+std::optional<std::size_t> unheld_vertex(const World& world) {
+  std::vector<bool> held(world.model.vertex_count());
+  for (std::size_t i = 0; i < held.size(); ++i) held[i] = world.pinned(i);
+  for (bool spreading = true; spreading;) {
+    spreading = false;
+    for (const model::Spring& spring : world.model.springs) {
+      if (held[spring.a] == held[spring.b]) continue;
+      held[spring.a] = held[spring.b] = spreading = true;
+    }
+  }
+  const auto found = std::find(held.begin(), held.end(), false);
+  if (found == held.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - held.begin());
+}
+
+/// One step of Newton's method with `shift` [N/m] added to every stiffness (Levenberg): the true matrix where
+/// that is positive definite, else the one without the compressed springs' negative part.
+Vectors shifted_step(const World& world, const Vectors& x, const Vectors& force, double shift) {
+  const Vectors still(x.size(), dvec3(0.0));
+  Vectors dx;
+  if (!solve_with_pins(world, system_matrix(world, x, {shift, 0.0, 1.0}, Across::kept), force, still, dx))
+    solve_with_pins(world, system_matrix(world, x, {shift, 0.0, 1.0}, Across::dropped), force, still, dx);
+  return dx;
+}
+
+/// Newton's method from `start`; the shift falls as long as steps go downhill and rises when they do not.
+RestShape descend(const World& world, const Vectors& start) {
+  const Scale scales = scale(world);
+  RestShape shape{start, 0.0, 0};
+  double shift = 1e-2 * scales.stiffness, height = potential(world, shape.position);
+  Vectors force = forces(world, shape.position);
+  for (; shape.iterations < most_newton_steps; ++shape.iterations) {
+    if (largest(force) <= balanced * scales.force || !(shift < 1e6 * scales.stiffness)) break;
+    Vectors next = shifted_step(world, shape.position, force, shift);
+    double expected = 0.0;  // how far the slope alone would take the energy down
+    for (std::size_t i = 0; i < next.size(); ++i) {
+      expected += glm::dot(next[i], force[i]);
+      next[i] += shape.position[i];
+    }
+    const double height_next = potential(world, next);
+    const Vectors force_next = forces(world, next);
+    // At the minimum the energy's rounding hides the decrease, and the force shows it better.
+    if (height_next < height - 0.1 * expected || largest(force_next) < 0.5 * largest(force)) {
+      shape.position = next;
+      force = force_next;
+      height = height_next;
+      shift *= 0.25;
+    } else {
+      shift = std::max(4.0 * shift, 1e-12 * scales.stiffness);
+    }
+  }
+  shape.residual = largest(force);
+  return shape;
+}
+
+/// What of the scene the shape does not respect.
+std::optional<Error> violated(const World& world, const Vectors& x) {
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    dvec3 stopped = x[i], v(0.0);
+    if (!world.pinned(i) && meet_colliders(world, 0.0, x[i], stopped, v) > 0)
+      return Error{"/colliders", "vertex " + std::to_string(i) + " would hang inside a collider",
+                   "a rest shape is found only where the cloth hangs clear of the colliders"};
+  }
+  for (const model::Spring& spring : world.model.springs) {
+    const std::optional<double>& limit = world.scene.cloths[spring.cloth].material.strain_limit;
+    if (limit && glm::distance(x[spring.a], x[spring.b]) > (1.0 + *limit) * spring.rest_length)
+      return Error{"/cloths/" + std::to_string(spring.cloth) + "/material/strain_limit",
+                   "the spring between vertices " + std::to_string(spring.a) + " and " +
+                       std::to_string(spring.b) + " would be longer than its limit",
+                   "a rest shape is found only where the limit does not act"};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Result<RestShape> rest_shape(const World& world) {
+  if (const std::optional<std::size_t> vertex = unheld_vertex(world))
+    return Error{"/cloths/" + std::to_string(world.model.vertex_cloth[*vertex]) + "/pins",
+                 "nothing holds vertex " + std::to_string(*vertex),
+                 "every part of a cloth is pinned somewhere"};
+  Vectors start = world.model.rest_position, unused(start.size());
+  place_pins(world, 0.0, start, unused);
+  const RestShape shape = descend(world, start);
+  const double allowed = 1e-8 * scale(world).force;
+  if (!(shape.residual <= allowed))
+    return Error{
+        "rest shape",
+        "a force of " + std::to_string(shape.residual) + " N is left after " +
+            std::to_string(shape.iterations) + " Newton steps",
+        "at most " + std::to_string(allowed) + " N; a stiffer or less folded cloth converges better"};
+  if (const std::optional<Error> error = violated(world, shape.position)) return *error;
+  return shape;
+}
+
+}  // namespace clothlab::reference

@@ -1,0 +1,52 @@
+#include "server/reference/strain_limit.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+namespace clothlab::reference {
+
+namespace {
+
+constexpr double enough = 1e-12;    // of the rest length: some thousand roundings
+constexpr int most_sweeps = 20000;  // Gauss-Seidel over a cloth that hangs needs about (rows)^2
+
+/// Shortens one spring to the most that `limit` allows. Returns by how much it was too long, as a share of
+/// its rest length.
+double shorten(const World& world, const model::Spring& spring, double limit, std::vector<dvec3>& x) {
+  const double wa = world.pinned(spring.a) ? 0.0 : 1.0 / world.model.mass[spring.a];
+  const double wb = world.pinned(spring.b) ? 0.0 : 1.0 / world.model.mass[spring.b];
+  const dvec3 d = x[spring.a] - x[spring.b];
+  const double length = glm::length(d), excess = length - (1.0 + limit) * spring.rest_length;
+  if (!(excess > 0.0) || wa + wb == 0.0) return 0.0;
+  const dvec3 correction = d * (excess / (length * (wa + wb)));
+  x[spring.a] -= wa * correction;
+  x[spring.b] += wb * correction;
+  return spring.rest_length > 0.0 ? excess / spring.rest_length : 0.0;
+}
+
+double sweep(const World& world, std::vector<dvec3>& x) {
+  double worst = 0.0;
+  for (const model::Spring& spring : world.model.springs) {
+    const std::optional<double>& limit = world.scene.cloths[spring.cloth].material.strain_limit;
+    if (limit) worst = std::max(worst, shorten(world, spring, *limit, x));
+  }
+  return worst;
+}
+
+}  // namespace
+
+double limit_strain(const World& world, State& state) {
+  const auto limited = [](const scene::Cloth& cloth) { return cloth.material.strain_limit.has_value(); };
+  if (std::none_of(world.scene.cloths.begin(), world.scene.cloths.end(), limited)) return 0.0;
+  const std::vector<dvec3> before = state.position;
+  double worst = sweep(world, state.position);
+  for (int n = 1; worst > enough && n < most_sweeps; ++n) worst = sweep(world, state.position);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const dvec3 gained = (state.position[i] - before[i]) / world.scene.solver.dt;
+    state.velocity[i] += gained;
+    if (!state.half_velocity.empty()) state.half_velocity[i] += gained;
+  }
+  return worst;
+}
+
+}  // namespace clothlab::reference
