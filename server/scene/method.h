@@ -15,7 +15,7 @@ inline constexpr std::array methods{Method::explicit_euler, Method::symplectic_e
 
 /// Whether the simulation has kernels for it. A document that names another is refused as not supported yet.
 constexpr bool is_simulated(Method method) {
-  return method == Method::symplectic_euler;
+  return method != Method::implicit_euler;
 }
 
 /// "symplectic_euler", ...

@@ -1,9 +1,11 @@
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import net from "node:net";
 import { once } from "node:events";
 import { after, before, test } from "node:test";
 import { Client, Server, withTimeout } from "./harness.mjs";
 
+const schema = JSON.parse(readFileSync(new URL("../../server/scene/scene.schema.json", import.meta.url)));
 let server;
 before(async () => (server = await Server.start("--allow-origin", "https://friend.example", "--max-clients", "3", "--max-sessions", "2")));
 after(() => server.stop());
@@ -41,7 +43,7 @@ test("hello comes first, then the whole scene", async () => {
   assert.equal(hello.session, "main");
   assert.equal(hello.role, "operator");
   assert.ok(hello.renderer.length > 0);
-  assert.deepEqual(hello.methods, ["symplectic_euler"]);
+  assert.deepEqual(hello.methods, schema.properties.solver.properties.method.enum);
   assert.deepEqual(hello.encodings, ["f32", "q16"]);
   assert.equal(hello.limits.message_bytes, 65536);
   assert.equal(hello.limits.json_depth, 32);

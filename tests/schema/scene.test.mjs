@@ -93,7 +93,7 @@ function* mutations() {
   const others = [null, true, "", "x", 7, -1, [], {}, [0, 1, 0], [0, 0, 0], ["0", 1, 0], { x: 1 }];
   const texts = ["corner:4,3", "corner:5,0", "corner:01,0", "corner:1", "vertex:19", "vertex:20", "vertex:-1", "edge:column:4",
     "edge:column:5", "edge:diagonal:1", "edge:row:0 ", "#00FF7f", "#00ff7", "#00ff7g", "plain", "checker", "stripes", "velvet", "fem",
-    "springs", "verlet", "auto", "first", "cloth-2", "é".repeat(64), "é".repeat(65), "😀".repeat(64), "tab\t", "del\u007f"];
+    "springs", "explicit_euler", "symplectic_euler", "verlet", "rk4", "implicit_euler", "pbd", "xpbd", "vbd", "auto", "first", "cloth-2", "é".repeat(64), "é".repeat(65), "😀".repeat(64), "tab\t", "del\u007f"];
   for (const base of [whole, least]) {
     yield base;
     for (const path of paths(base)) {
