@@ -90,7 +90,7 @@ browserTest("another viewer's edit moves the panel", async () => {
   await eventually("the number in the panel", () => viewer.number("Cloth", "bend").inputValue(), (text) => text === "777");
   await client.request("scene.patch", { patch: { gravity: [0, -3.5, 0], solver: { dt: 0.0005 } } });
   await eventually("gravity in the panel", () => viewer.number("World", "gravity y").inputValue(), (text) => text === "-3.5");
-  await eventually("dt in the panel", () => viewer.number("World", "time step").inputValue(), (text) => text === "0.0005");
+  await eventually("dt in the panel", () => viewer.number("Solver", "time step").inputValue(), (text) => text === "0.0005");
   // No echo: the panel sends nothing back.
   const { revision } = await client.request("scene.get", {});
   await viewer.page.waitForTimeout(500);
@@ -100,8 +100,8 @@ browserTest("another viewer's edit moves the panel", async () => {
 
 browserTest("a refused edit is explained by a notice, and the control goes back", async () => {
   const { viewer, client, scene } = await both("refused");
-  await viewer.slider("World", "time step");
-  const number = viewer.number("World", "time step");
+  await viewer.slider("Solver", "time step");
+  const number = viewer.number("Solver", "time step");
   const before = await number.inputValue();
   await number.fill("-4");
   await number.press("Enter");

@@ -28,7 +28,7 @@ const cutOff = () => {
       problems.push(`${node.id || node.className} at ${[left, top, right, bottom].map(Math.round)}`);
     }
   }
-  for (const node of document.querySelectorAll(".lil-name, .lil-title, dt, #applied")) {
+  for (const node of document.querySelectorAll(".lil-name, .lil-title, .note, .gauge-line, dt, #applied")) {
     if (visible(node) && node.scrollWidth > node.clientWidth + 1) problems.push(`"${node.textContent}" is cut off`);
   }
   if (document.documentElement.scrollWidth > innerWidth) problems.push("the page scrolls sideways");

@@ -1,4 +1,5 @@
 // What the panel offers for a scene: a list of sections and fields, each tied to JSON Pointers of the document.
+import { methodText } from "./methods";
 import type { Scale } from "./slider";
 import { valueAt } from "./json_patch";
 import type { At, Motion, Operation, SceneDocument, Vec3 } from "./scene_types";
@@ -8,13 +9,14 @@ interface FieldBase {
   label: string;
   paths: string[];      ///< the places it writes; the first is the one it reads
   onRelease?: boolean;  ///< sent when let go: each value rebuilds the cloth
+  hint?: string;        ///< a tooltip
   read?(document: SceneDocument): unknown;
   write?(value: unknown): unknown;
 }
 export type Field =
   | (FieldBase & { kind: "number"; scale: Scale })
   | (FieldBase & { kind: "toggle" | "color" })
-  | (FieldBase & { kind: "choice"; choices: string[] });
+  | (FieldBase & { kind: "choice"; choices: string[]; names?: Record<string, string>; says?(value: string): string });
 
 export interface Section { key: string; title: string; open: boolean; fields: Field[]; sections: Section[] }
 
@@ -136,7 +138,28 @@ function worldSection(): Section {
     fields: [
       number("gravity y", ["/gravity/1"], { min: -20, max: 5, step: 0.1, unit: "m/s²" }),
       number("air drag", ["/air_drag"], { min: 0, max: 5, step: 0.01, unit: "1/s" }),
-      number("time step", ["/solver/dt"], { min: 1e-5, max: 1e-2, log: true, unit: "s" }),
+    ],
+  };
+}
+
+/// Where the gauge belongs.
+export const timeStep = "/solver/dt";
+
+function solverSection(document: SceneDocument, methods: string[]): Section {
+  const { method } = document.solver;
+  const choices = methods.includes(method) ? methods : [method, ...methods];
+  const names = Object.fromEntries(choices.map((id) => [id, methodText(id).name]));
+  const iterating: Field[] = methodText(method).iterates ? [
+    number("iterations", ["/solver/iterations"], { min: 1, max: 20, step: 1, whole: true },
+      { hint: "The most Newton steps a time step; 1 is a single linear solve." }),
+    number("tolerance", ["/solver/tolerance"], { min: 1e-8, max: 0.1, log: true },
+      { hint: "Where the conjugate gradients stop: the residual left, as a share of the first." })] : [];
+  return {
+    key: "solver", title: "Solver", open: true, sections: [],
+    fields: [
+      { key: "/solver/method", label: "method", paths: ["/solver/method"], kind: "choice", choices, names, says: (id) => methodText(id).says },
+      number("time step", [timeStep], { min: 1e-5, max: 1e-2, log: true, unit: "s" }),
+      ...iterating,
     ],
   };
 }
@@ -154,8 +177,9 @@ function selfCollisionSection(document: SceneDocument): Section {
   return { key: base, title: "Self-collision", open: true, fields: [toggle, ...more], sections: [] };
 }
 
-export function sectionsOf(document: SceneDocument): Section[] {
+export function sectionsOf(document: SceneDocument, methods: string[]): Section[] {
   return [
+    solverSection(document, methods),
     ...document.cloths.map((_, i) => clothSection(document, i)),
     worldSection(),
     selfCollisionSection(document),

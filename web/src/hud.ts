@@ -75,11 +75,16 @@ export class Hud {
     const now = performance.now();
     if (now - this.timeShownAt < 100) return;
     this.timeShownAt = now;
+    this.showTime(seconds);
+  }
+
+  private showTime(seconds: number): void {
     this.set("time", `${seconds.toFixed(2)} s`);
     element("headline-time", HTMLElement).textContent = seconds.toFixed(1);
   }
 
   showStatus(status: Status): void {
+    if (status.playing === false && status.time !== undefined) this.showTime(status.time);  // the last frame came too soon to be shown
     if (status.real_time_factor !== undefined) {
       const text = status.playing === false ? "paused" : `×${status.real_time_factor.toFixed(2)}`;
       this.set("rtf", status.asleep ? "at rest" : text);

@@ -1,6 +1,7 @@
 // Wires the connection, the scene's document, the stage and the controls to each other.
 import { Connection, type LinkEvents } from "./connection";
 import { button, element } from "./dom";
+import type { Stability } from "./gauge";
 import { Hud, type Status } from "./hud";
 import { bindKeys } from "./keys";
 import { Layout } from "./layout";
@@ -138,6 +139,7 @@ export class Page {
       "sim.status": (params) => {
         this.hud.showStatus(params as Status);
         this.transport.status(params as Status);
+        if (params.stability) this.panel.showStability(params.stability as Stability);
       },
       "sim.diverged": (params) => showDiverged(params as unknown as Diverged, (patch) => this.remedy(patch)),
       viewers: (params) => this.hud.set("viewers", String(params.count)),
@@ -148,6 +150,7 @@ export class Page {
   private greeted(params: Params): void {
     this.hud.setRenderer(String(params.renderer));
     this.mayEdit = params.role !== "viewer";
+    this.panel.setMethods((params.methods as string[] | undefined) ?? []);
     document.body.classList.toggle("viewer", !this.mayEdit);
     this.transport.enable(this.connection.open && this.mayEdit);
     this.connection.request<{ presets: string[] }>("scene.presets").then(({ presets }) => this.panel.setPresets(presets), () => undefined);

@@ -1,6 +1,7 @@
 // The panel: generated from the scene document, kept in step with it, and turning what is moved into patches.
 import GUI, { type Controller } from "lil-gui";
-import { operationsFor, readField, sectionsOf, type Field, type Section } from "./fields";
+import { operationsFor, readField, sectionsOf, timeStep, type Field, type Section } from "./fields";
+import { Gauge, type Stability } from "./gauge";
 import type { Operation, SceneDocument } from "./scene_types";
 import { SliderController } from "./slider";
 
@@ -18,6 +19,10 @@ export class Panel {
   private controls: Control[] = [];
   private values: Record<string, unknown> = {};
   private presets: string[] = [];
+  private methods: string[] = [];
+  private stability: Stability | null = null;
+  private notes: (() => void)[] = [];
+  private readonly gauge = new Gauge((dt) => this.events.edit([{ op: "replace", path: timeStep, value: dt }]));
   private document: SceneDocument | null = null;
   private readonly folded = new Map<string, boolean>();
   private preset: Controller | null = null;
@@ -27,6 +32,17 @@ export class Panel {
   setPresets(presets: string[]): void {
     this.presets = presets;
     this.rebuildIfNeeded();
+  }
+
+  setMethods(methods: string[]): void {
+    this.methods = methods;
+    this.rebuildIfNeeded();
+  }
+
+  /// The largest stable time step, as the server last computed it.
+  showStability(stability: Stability): void {
+    this.stability = stability;
+    this.moveGauge();
   }
 
   /// Moves the controls to the document, except those the user is ahead with.
@@ -42,6 +58,7 @@ export class Panel {
     }
     this.values.preset = this.presets.includes(document.name) ? document.name : "";
     this.preset?.updateDisplay();
+    this.accompany();
   }
 
   /// After a rejected edit: back to what the server has.
@@ -52,7 +69,7 @@ export class Panel {
 
   private rebuildIfNeeded(): void {
     if (!this.document) return;
-    const sections = sectionsOf(this.document);
+    const sections = sectionsOf(this.document, this.methods);
     const shape = JSON.stringify([sections, this.presets], (key, value: unknown) => (key === "open" ? undefined : value));
     if (shape === this.shape) return;
     this.shape = shape;
@@ -60,10 +77,12 @@ export class Panel {
     const focused = (document.activeElement as HTMLElement | null)?.getAttribute("aria-label");
     this.gui?.destroy();
     this.controls = [];
+    this.notes = [];
     this.values = { preset: this.presets.includes(this.document.name) ? this.document.name : "" };
     this.gui = new GUI({ container: this.container, title: "Scene", injectStyles: false });
     this.addPresets(this.gui);
     for (const section of sections) this.addSection(this.gui, section);
+    this.accompany();
     this.container.scrollTop = scroll;
     if (focused) this.container.querySelector<HTMLElement>(`[aria-label="${CSS.escape(focused)}"]`)?.focus();
   }
@@ -91,9 +110,13 @@ export class Panel {
     const controller = this.controllerFor(folder, field);
     const control: Control = { field, controller, held: false };
     this.controls.push(control);
+    if (field.hint) controller.domElement.title = field.hint;
+    if (field.kind === "choice" && field.says) this.addNote(folder, field.key, field.says);
+    if (field.key === timeStep) folder.$children.append(this.gauge.element);
     controller.onChange((value: unknown) => {
       control.held = field.onRelease === true;
       if (!field.onRelease) this.events.edit(operationsFor(field, value));
+      this.accompany();
     });
     controller.onFinishChange((value: unknown) => {
       if (field.onRelease && control.held) this.events.edit(operationsFor(field, value));
@@ -106,7 +129,38 @@ export class Panel {
       case "number": return new SliderController(folder, this.values, field.key, field.label, field.scale);
       case "color": return folder.addColor(this.values, field.key).name(field.label);
       case "toggle": return folder.add(this.values, field.key).name(field.label);
-      case "choice": return folder.add(this.values, field.key, field.choices).name(field.label);
+      case "choice": return this.choice(folder, field);
     }
+  }
+
+  private choice(folder: GUI, field: Field & { kind: "choice" }): Controller {
+    const choices = Object.fromEntries(field.choices.map((value) => [field.names?.[value] ?? value, value]));
+    const controller = folder.add(this.values, field.key, choices).name(field.label);
+    controller.domElement.querySelector("select")?.setAttribute("aria-label", field.label);
+    return controller;
+  }
+
+  /// A line below a choice that says what the present one means.
+  private addNote(folder: GUI, key: string, says: (value: string) => string): void {
+    const note = document.createElement("p");
+    note.className = "note";
+    folder.$children.append(note);
+    this.notes.push(() => {
+      const text = says(String(this.values[key]));
+      if (note.textContent !== text) note.textContent = text;
+    });
+  }
+
+  /// What stands beside the controls follows them.
+  private accompany(): void {
+    for (const update of this.notes) update();
+    this.moveGauge();
+  }
+
+  private moveGauge(): void {
+    if (!this.stability) return;
+    this.gauge.show(Number(this.values[timeStep]), this.stability);
+    const control = this.controls.find(({ field }) => field.key === timeStep);
+    if (control?.controller instanceof SliderController) control.controller.mark(this.stability.dt_limit);
   }
 }

@@ -9,6 +9,7 @@ export interface Scale {
   zero?: boolean;  ///< the left end of a logarithmic scale is 0
   unit?: string;
   whole?: boolean;
+  zeroText?: string;  ///< what 0 is called, where it is no number to the user
 }
 
 const travel = 1000;  // of a logarithmic scale
@@ -37,6 +38,7 @@ export function readable(value: number): string {
 export class SliderController extends Controller {
   private readonly range = document.createElement("input");
   private readonly text = document.createElement("input");
+  private readonly tick = document.createElement("i");
   private readonly low: number;
   private readonly high: number;
   private readonly stride: number;
@@ -53,7 +55,12 @@ export class SliderController extends Controller {
     this.text.inputMode = "decimal";
     this.text.spellcheck = false;
     for (const input of [this.range, this.text]) input.setAttribute("aria-label", scale.unit ? `${label} [${scale.unit}]` : label);
-    this.$widget.append(this.range, this.text);
+    this.tick.className = "slider-mark";
+    this.tick.hidden = true;
+    const rail = document.createElement("span");
+    rail.className = "slider-rail";
+    rail.append(this.range, this.tick);
+    this.$widget.append(rail, this.text);
     this.range.addEventListener("input", () => this.setValue(toValue(this.snapped(Number(this.range.value)), this.scale)));
     this.range.addEventListener("keydown", (event) => this.rangeKey(event));
     this.range.addEventListener("change", () => this._callOnFinishChange());
@@ -77,10 +84,20 @@ export class SliderController extends Controller {
     const at = this.clamped(toTravel(value, this.scale));
     this.range.value = String(at);
     this.range.style.setProperty("--filled", `${(100 * (at - this.low)) / (this.high - this.low)}%`);
-    this.range.setAttribute("aria-valuetext", `${readable(value)} ${this.scale.unit ?? ""}`);
-    if (document.activeElement !== this.text) this.text.value = readable(value);
+    this.range.setAttribute("aria-valuetext", this.named(value) ?? `${readable(value)} ${this.scale.unit ?? ""}`);
+    if (document.activeElement !== this.text) this.text.value = this.written(value);
     return this;
   }
+
+  /// Marks a value on the travel; one outside it, or null, has no mark.
+  mark(value: number | null): void {
+    const share = value === null || value <= 0 ? -1 : (toTravel(value, this.scale) - this.low) / (this.high - this.low);
+    this.tick.hidden = !(share >= 0 && share <= 1);
+    this.tick.style.setProperty("--at", String(share));
+  }
+
+  private named(value: number): string | undefined { return value === 0 ? this.scale.zeroText : undefined; }
+  private written(value: number): string { return this.named(value) ?? readable(value); }
 
   private clamped(at: number): number { return Math.min(this.high, Math.max(this.low, at)); }
 
@@ -111,23 +128,23 @@ export class SliderController extends Controller {
   private key(event: KeyboardEvent): void {
     if (event.key === "Enter") this.text.blur();
     if (event.key === "Escape") {
-      this.text.value = readable(Number(this.getValue()));
+      this.text.value = this.written(Number(this.getValue()));
       this.text.blur();
     }
     if (event.key !== "ArrowUp" && event.key !== "ArrowDown") return;
     this.nudge(event.key === "ArrowUp" ? 1 : -1, event);
-    this.text.value = readable(Number(this.getValue()));
+    this.text.value = this.written(Number(this.getValue()));
   }
 
   // A typed number may lie outside the slider's travel: the server has the last word.
   private take(): void {
     const typed = this.text.value.trim().replace(",", ".");
-    const value = Number(typed);
+    const value = typed === this.scale.zeroText ? 0 : Number(typed);
     const changed = typed !== "" && Number.isFinite(value) && readable(value) !== readable(Number(this.getValue()));
     if (changed) {
       this.setValue(this.scale.whole ? Math.round(value) : value);
       this._callOnFinishChange();
     }
-    this.text.value = readable(Number(this.getValue()));
+    this.text.value = this.written(Number(this.getValue()));
   }
 }

@@ -1,0 +1,95 @@
+// The stability gauge: the time step as a share of the largest stable one, which the server computes for the scene as it is.
+import { readable } from "./slider";
+
+/// Of `sim.status`. null: no limit; 0: no time step is stable.
+export interface Stability { dt_limit: number | null }
+
+const near = 0.9;    // from here on the server warns too
+const end = 1.5;     // the share at the right end
+const safer = 0.8;   // of the limit, where the button goes
+
+export type Verdict = "good" | "near" | "beyond";
+export interface Reading { verdict: Verdict; word: string; share: string; spoken: string; filled: number }
+
+/// What the gauge says of a time step [s].
+export function reading(dt: number, limit: number | null): Reading {
+  const always = (verdict: Verdict, word: string): Reading =>
+    ({ verdict, word, share: "at any time step", spoken: `${word} at any time step`, filled: 1 });
+  if (limit === null) return always("good", "Stable");
+  if (limit <= 0) return always("beyond", "Unstable");
+  const ratio = dt / limit;
+  const verdict = ratio > 1 ? "beyond" : ratio > near ? "near" : "good";
+  const word = { good: "Stable", near: "Marginal", beyond: "Unstable" }[verdict];
+  const share = ratio < 9.995 ? `${(100 * ratio).toFixed(ratio < 0.0995 ? 1 : 0)} %` : `${Number(ratio.toPrecision(3))} ×`;
+  return { verdict, word, share, spoken: `${word}: ${share}${ratio < 9.995 ? " of" : ""} the limit`, filled: Math.min(1, ratio / end) };
+}
+
+const glyphs: Record<Verdict, string> = { good: "✓", near: "!", beyond: "✕" };
+
+function part(tag: string, className: string, parent: HTMLElement): HTMLElement {
+  const made = document.createElement(tag);
+  made.className = className;
+  parent.append(made);
+  return made;
+}
+
+export class Gauge {
+  readonly element = document.createElement("div");
+  private readonly track = part("div", "gauge-track", this.element);
+  private readonly line = part("div", "gauge-line", this.element);
+  private readonly glyph = part("span", "gauge-glyph", this.line);
+  private readonly word = part("b", "gauge-word", this.line);
+  private readonly share = part("span", "gauge-share", this.line);
+  private readonly limit = part("button", "gauge-limit", this.line) as HTMLButtonElement;
+  private readonly spoken = part("span", "visually-hidden", this.element);  // the word, said when it changes
+  private saferStep = 0;
+
+  constructor(setTimeStep: (dt: number) => void) {
+    this.element.className = "gauge";
+    this.element.hidden = true;
+    part("i", "gauge-fill", this.track);
+    part("i", "gauge-mark", this.track).style.left = `${100 / end}%`;
+    this.track.setAttribute("role", "meter");
+    this.track.setAttribute("aria-label", "time step against its stability limit");
+    this.track.setAttribute("aria-valuemin", "0");
+    this.track.setAttribute("aria-valuemax", String(end));
+    this.glyph.setAttribute("aria-hidden", "true");
+    this.spoken.setAttribute("role", "status");
+    this.limit.type = "button";
+    this.limit.onclick = () => setTimeStep(this.saferStep);
+  }
+
+  show(dt: number, { dt_limit }: Stability): void {
+    const now = reading(dt, dt_limit);
+    const { style, dataset } = this.element;
+    this.element.hidden = false;
+    if (dataset.verdict !== now.verdict) this.spoken.textContent = now.spoken;
+    dataset.verdict = now.verdict;
+    dataset.limited = String(dt_limit !== null && dt_limit > 0);
+    style.setProperty("--filled", `${100 * now.filled}%`);
+    this.glyph.textContent = glyphs[now.verdict];
+    this.word.textContent = now.word;
+    this.share.textContent = now.share;
+    this.track.setAttribute("aria-valuenow", (end * now.filled).toFixed(3));
+    this.track.setAttribute("aria-valuetext", now.spoken);
+    this.element.title = explain(dt, dt_limit);
+    this.showLimit(dt_limit);
+  }
+
+  private showLimit(limit: number | null): void {
+    this.limit.hidden = !limit;
+    if (!limit) return;
+    this.saferStep = Math.max(1e-9, Number((safer * limit).toPrecision(3)));
+    const text = `limit ${readable(Number(limit.toPrecision(3)))} s`;
+    if (this.limit.textContent !== text) this.limit.textContent = text;
+    this.limit.title = `Set the time step to ${safer} of the limit: ${readable(this.saferStep)} s`;
+    this.limit.setAttribute("aria-label", `${text}: set the time step to ${safer} of it`);
+  }
+}
+
+function explain(dt: number, limit: number | null): string {
+  if (limit === null) return "This method is stable at any time step; a long one damps the motion.";
+  if (limit <= 0) return "Without damping this method gains energy at any time step: add damping, or choose another method.";
+  return `time step ${readable(dt)} s, largest stable one ${readable(Number(limit.toPrecision(3)))} s.\n` +
+    "It shrinks with stiffer springs, lighter vertices and more damping. Beyond it the cloth blows up.";
+}
