@@ -1,0 +1,75 @@
+// Scenes whose motion has a closed form, as plain data: for the tests of the reference and of the GPU alike.
+// Each is doubled sideways (a grid has two columns at least): two copies side by side that move as one, the
+// springs between them at rest.
+#pragma once
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "server/scene/scene.h"
+
+namespace clothlab::test {
+
+inline scene::Scene bare_scene(scene::Method method, double dt) {
+  scene::Scene scene;
+  scene.gravity = glm::dvec3(0.0);
+  scene.solver = {.method = method, .dt = dt};
+  return scene;
+}
+
+/// One spring of 1 m, 16 N/m, along z, with 1 kg at its end: omega = 4 / s. A force of 1.6 N along z has its
+/// balance at z = 1.1 m; it starts unstretched, 0.1 m from there. Damping ratio z = damping / 8.
+inline scene::Scene one_spring(scene::Method method, double dt, double damping = 0.0) {
+  scene::Scene scene = bare_scene(method, dt);
+  scene.gravity = {0.0, 0.0, 1.6};
+  scene::Cloth cloth;
+  cloth.mesh = scene::Grid{2, 2, 1.0, 1.0};
+  cloth.mass = {scene::Mass::Kind::per_vertex, 1.0};
+  cloth.material = {16.0, 0.0, 0.0, damping};
+  cloth.pins = {{scene::AtEdge{scene::AtEdge::Line::row, 0}, {}}};
+  scene.cloths = {cloth};
+  return scene;
+}
+inline constexpr std::size_t spring_end = 2;      ///< a vertex of one_spring that moves
+inline constexpr double spring_omega = 4.0;       ///< [1/s]
+inline constexpr double spring_balance = 1.1;     ///< its z at balance [m]
+inline constexpr double spring_amplitude = -0.1;  ///< z - balance at the start [m]
+
+/// A chain of `links` springs of 1/links m along z from a pinned end, `mass` at each node [kg], k [N/m] each.
+inline scene::Scene chain(scene::Method method, double dt, int links, double k, double mass) {
+  scene::Scene scene = one_spring(method, dt);
+  scene.gravity = glm::dvec3(0.0);
+  scene.cloths[0].mesh = scene::Grid{2, links + 1, 1.0, 1.0};
+  scene.cloths[0].mass.value = mass;
+  scene.cloths[0].material = {k, 0.0, 0.0, 0.0};
+  return scene;
+}
+
+/// A rod of 1 m that swings from a pinned end, let go at `degrees` from hanging down: a spring of stiffness k
+/// [N/m] with 1 kg at its end, in the y-z plane with gravity of 9.81 m/s^2. A rod's period is 2 pi sqrt(1 m /
+/// g) times its factor.
+inline scene::Scene pendulum(scene::Method method, double dt, double degrees, double k) {
+  scene::Scene scene = one_spring(method, dt);
+  const double angle = degrees * std::acos(-1.0) / 180.0;
+  scene.gravity =
+      9.81 * glm::dvec3(0.0, -std::sin(angle), std::cos(angle));  // the grid's +z makes `degrees` with it
+  scene.cloths[0].material = {k, 0.0, 0.0, 0.0};
+  return scene;
+}
+
+/// The cloth of physics.md's work-precision table: 17 x 17 over 0.5 m, 1.4648e-4 kg a vertex, 100 N/m
+/// everywhere, two pinned corners, no damping. Its unit of time is sqrt(m/k).
+inline scene::Scene swinging_cloth(scene::Method method, double dt) {
+  scene::Scene scene = bare_scene(method, dt);
+  scene.gravity = {0.0, -9.81, 0.0};
+  scene::Cloth cloth;
+  cloth.mesh = scene::Grid{17, 17, 0.5, 0.5};
+  cloth.mass = {scene::Mass::Kind::per_vertex, 1.4648e-4};
+  cloth.material = {100.0, 100.0, 100.0, 0.0};
+  cloth.pins = {{scene::AtCorner{0, 0}, {}}, {scene::AtCorner{16, 0}, {}}};
+  scene.cloths = {cloth};
+  return scene;
+}
+inline const double cloth_unit = std::sqrt(1.4648e-4 / 100.0);  ///< [s]
+
+}  // namespace clothlab::test

@@ -1,0 +1,110 @@
+// Provot's strain limit in the reference.
+#include "server/reference/strain_limit.h"
+
+#include <algorithm>
+#include <array>
+#include <glm/geometric.hpp>
+#include <random>
+
+#include "tests/catch.h"
+#include "tests/small_scenes.h"
+
+using namespace clothlab;
+using scene::Method;
+
+namespace {
+
+reference::World world_of(const scene::Scene& scene) {
+  return *reference::make_world(scene, 0.0);
+}
+
+/// The largest l / L - 1 of the springs with a free end.
+double largest_stretch(const reference::World& world, const reference::State& state) {
+  double largest = 0.0;
+  for (const model::Spring& spring : world.model.springs) {
+    if (world.pinned(spring.a) && world.pinned(spring.b)) continue;
+    const double length = glm::distance(state.position[spring.a], state.position[spring.b]);
+    largest = std::max(largest, length / spring.rest_length - 1.0);
+  }
+  return largest;
+}
+
+scene::Scene heavy_cloth(Method method) {
+  scene::Scene scene = test::swinging_cloth(method, 2e-4);
+  scene.cloths[0].mass.value = 4e-3;
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "after each step of every method no spring is longer than the strain limit allows, which it would be "
+    "without") {
+  for (const Method method : {Method::explicit_euler, Method::symplectic_euler, Method::verlet, Method::rk4,
+                              Method::implicit_euler}) {
+    scene::Scene scene = heavy_cloth(method);
+    const int steps = method == Method::implicit_euler ? 40 : 400;
+    scene.solver.dt = 0.08 / steps;
+    reference::World world = world_of(scene);
+    reference::State state = reference::at_rest(world);
+    for (int n = 0; n < steps; ++n) reference::step(world, state);
+    CHECK(largest_stretch(world, state) > 0.1);
+
+    world.scene.cloths[0].material.strain_limit = 0.05;
+    state = reference::at_rest(world);
+    for (int n = 0; n < steps; ++n) {
+      reference::step(world, state);
+      CHECK(largest_stretch(world, state) <
+            0.1 + 2e-12);  // what the sweeps leave, and a rounding of the test's own
+    }
+  }
+}
+
+TEST_CASE("the strain limit keeps a free sheet's momentum and angular momentum, with unequal masses too") {
+  scene::Scene scene = test::swinging_cloth(Method::symplectic_euler, 1e-3);
+  scene.cloths[0].pins.clear();
+  scene.cloths[0].material.strain_limit = 0.05;
+  scene.cloths[0].mass = {scene::Mass::Kind::area_density, 0.2};
+  const reference::World world = world_of(scene);
+  reference::State state = reference::at_rest(world);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> either(-1.0, 1.0);
+  for (std::size_t i = 0; i < state.position.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis) {
+      state.position[i][axis] += 0.01 * either(random);
+      state.velocity[i][axis] = either(random);
+    }
+  const auto momenta = [&](const reference::State& s) {
+    std::array<glm::dvec3, 3> sums{};
+    for (std::size_t i = 0; i < s.position.size(); ++i) {
+      const glm::dvec3 p = world.model.mass[i] * s.velocity[i];
+      sums[0] += p;
+      sums[1] += world.model.mass[i] * s.position[i];  // what the corrections move of the centre of mass
+      sums[2] += glm::cross(world.model.mass[i] * state.position[i], s.velocity[i]);
+    }
+    return sums;
+  };
+  reference::State limited = state;
+  CHECK(reference::limit_strain(world, limited) <= 1e-12);
+  CHECK(glm::distance(limited.position[0], state.position[0]) > 1e-4);
+  const auto before = momenta(state), after = momenta(limited);
+  // Sums of 289 vertices; a correction is along its spring as it then is, so angular momentum about the
+  // positions before is kept to the corrections' share of the arm only.
+  CHECK(glm::distance(before[0], after[0]) < 1e-12);
+  CHECK(glm::distance(before[1], after[1]) < 1e-15);
+}
+
+TEST_CASE("a limit that the pins forbid is reported, and the free vertices still go as far as they can") {
+  scene::Scene scene = test::one_spring(Method::symplectic_euler, 0.01);
+  scene.cloths[0].mesh = scene::Grid{2, 3, 1.0, 2.0};
+  scene.cloths[0].material.strain_limit = 0.1;
+  scene.cloths[0].pins.push_back(
+      {scene::AtEdge{scene::AtEdge::Line::row, 2}, scene::Linear{{0.0, 0.0, 1.0}}});
+  const reference::World world = world_of(scene);
+  reference::State state = reference::at_rest(world);
+  for (const std::size_t i : {4, 5}) state.position[i].z = 3.0;  // two springs of 1 m over 3 m
+  const double left = reference::limit_strain(world, state);
+  CHECK(left > 0.3);
+  CHECK(left < 0.9);
+  CHECK(state.position[4].z == 3.0);
+}
