@@ -2,6 +2,8 @@
 
 #include <iostream>
 
+#include "server/model/stability.h"
+
 namespace clothlab::cli {
 
 int fail(const Error& error, ExitCode code) {
@@ -13,6 +15,15 @@ int fail(const Error& error, ExitCode code) {
 void note(const std::string& text) {
   std::cout.flush();
   std::cerr << "clothlab: note: " << text << std::endl;
+}
+
+void warn_of_step(const model::Model& model, const scene::Scene& scene, const std::string& about) {
+  // Where the safe bound is content, the sharp value need not be computed.
+  if (model::step_warning(scene.solver, model::dt_limit_bound(model, scene)).empty()) return;
+  const std::string warning = model::step_warning(scene.solver, model::dt_limit(model, scene));
+  if (warning.empty()) return;
+  std::cout.flush();
+  std::cerr << "clothlab: warning: " << about << warning << std::endl;
 }
 
 void SceneChoice::add_positional(CLI::App& command) {

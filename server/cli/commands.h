@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "server/base/result.h"
+#include "server/model/model.h"
 #include "server/scene/document.h"
 
 namespace clothlab::cli {
@@ -33,6 +34,9 @@ void add_info(CLI::App& app, int& exit_code);
 int fail(const Error& error, ExitCode code);
 /// Prints "clothlab: note: ..." on stderr.
 void note(const std::string& text);
+
+/// Prints a warning on stderr if the scene's step is near or beyond the longest stable one.
+void warn_of_step(const model::Model& model, const scene::Scene& scene, const std::string& about = "");
 
 /// The scene a command works on: a preset's name or a file, then `--set POINTER=VALUE` in the order given.
 struct SceneChoice {

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <cstdio>
+
+#include "server/scene/method.h"
 
 namespace clothlab::model {
 
@@ -91,12 +94,10 @@ double omega_max(const Model& model, const scene::Scene& scene, const Field& sha
   return std::sqrt(extreme_mode(springs, undamped_limit, scattered_start(springs)).mode.omega_squared);
 }
 
-double dt_limit_bound(const Model& model, const scene::Scene& scene) {
-  const SpringOperator springs(model, scene, model.rest_position);
-  const Method method = scene.solver.method;
-  const Mode worst{springs.stiffness_bound(), springs.damping_bound()};
+double dt_limit_bound(Method method, const SpringOperator& springs) {
   if (!springs.any_free()) return no_limit;
   if (springs.empty() || method == Method::implicit_euler) return dt_limit(method, {0.0, springs.air_drag()});
+  const Mode worst{springs.stiffness_bound(), springs.damping_bound()};
   if (one_worst(method)) return dt_limit(method, worst);
   // Both need roots that are no farther from 0 than this.
   const double farthest = std::max(std::sqrt(worst.omega_squared), worst.damping);
@@ -105,9 +106,7 @@ double dt_limit_bound(const Model& model, const scene::Scene& scene) {
                   worst.damping > 0.0 ? 2.0 / worst.damping : no_limit);
 }
 
-double dt_limit(const Model& model, const scene::Scene& scene, const std::stop_token& stop) {
-  const Method method = scene.solver.method;
-  const SpringOperator springs(model, scene, model.rest_position);
+double dt_limit(Method method, const SpringOperator& springs, const std::stop_token& stop) {
   if (!springs.any_free()) return no_limit;
   // What stretches no spring, a cloth that moves as a whole, is only slowed by the air.
   double least = dt_limit(method, {0.0, springs.air_drag()});
@@ -126,7 +125,42 @@ double dt_limit(const Model& model, const scene::Scene& scene, const std::stop_t
     search(extreme_mode(springs, undamped_limit, scattered, stop).y);
     if (springs.damping_bound() > 0.0) search(extreme_mode(springs, overdamped_limit, scattered, stop).y);
   }
-  return stop.stop_requested() ? dt_limit_bound(model, scene) : least;
+  return stop.stop_requested() ? dt_limit_bound(method, springs) : least;
+}
+
+double dt_limit_bound(const Model& model, const scene::Scene& scene) {
+  return dt_limit_bound(scene.solver.method, SpringOperator(model, scene, model.rest_position));
+}
+
+double dt_limit(const Model& model, const scene::Scene& scene) {
+  return dt_limit(scene.solver.method, SpringOperator(model, scene, model.rest_position));
+}
+
+std::optional<double> margin(double dt, double limit) {
+  if (limit == no_limit || limit <= 0.0) return std::nullopt;
+  return dt / limit;
+}
+
+std::string step_warning(const scene::Solver& solver, double limit) {
+  const std::string method = scene::name(solver.method);
+  if (limit <= 0.0)
+    return method +
+           " without damping is stable at no step: whatever dt is, the cloth will blow up; "
+           "symplectic_euler costs the same and is not";
+  const std::optional<double> share = margin(solver.dt, limit);
+  if (!share || *share <= margin_to_warn) return {};
+  char text[200];
+  if (*share <= 1.0)
+    std::snprintf(text, sizeof text,
+                  "dt = %.4g s is %.0f %% of %.4g s, the longest stable step of %s for this stiffness and "
+                  "mass; stay below 90 %%",
+                  solver.dt, 100.0 * *share, limit, method.c_str());
+  else
+    std::snprintf(text, sizeof text,
+                  "dt = %.4g s is beyond %.4g s, the longest stable step of %s for this stiffness and mass: "
+                  "the cloth will blow up",
+                  solver.dt, limit, method.c_str());
+  return text;
 }
 
 }  // namespace clothlab::model

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <stop_token>
+#include <string>
 
 #include "server/model/extreme_mode.h"
 #include "server/model/model.h"
@@ -27,13 +29,22 @@ double omega_bound(const Model& model, const scene::Scene& scene);
 double omega_max(const Model& model, const scene::Scene& scene);
 double omega_max(const Model& model, const scene::Scene& scene, const Field& shape);
 
-/// The longest stable step [s] of a scene, with its method, damping and air drag: never too long, at the cost
-/// of a pass over the springs ...
-double dt_limit_bound(const Model& model, const scene::Scene& scene);
+/// The longest stable step [s] of a method on a cloth, damping and air drag included: never too long, at the
+/// cost of a pass over the springs ...
+double dt_limit_bound(scene::Method method, const SpringOperator& springs);
 /// ... and sharp, from above, to about 0.1 %: some 60 passes. `stop` makes it give up and return the bound.
-double dt_limit(const Model& model, const scene::Scene& scene, const std::stop_token& stop = {});
+double dt_limit(scene::Method method, const SpringOperator& springs, const std::stop_token& stop = {});
+
+/// The same two for a scene as it lies at rest, with its own method.
+double dt_limit_bound(const Model& model, const scene::Scene& scene);
+double dt_limit(const Model& model, const scene::Scene& scene);
 
 /// Above this share of the limit users are warned: contacts and large bends may add a little.
 inline constexpr double margin_to_warn = 0.9;
+
+/// dt over the limit. None where nothing limits the step, and where no step is stable.
+std::optional<double> margin(double dt, double limit);
+/// What to tell about a step above `margin_to_warn` of the limit, in a sentence; empty where all is well.
+std::string step_warning(const scene::Solver& solver, double limit);
 
 }  // namespace clothlab::model

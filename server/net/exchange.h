@@ -115,6 +115,8 @@ using Event = std::variant<Started, Failed, Reply, SceneChanged, TopologyChanged
 struct Status {
   bool playing = false, diverged = false;
   double speed = 1, real_time_factor = 0;
+  double dt_limit = 0;           ///< [s]; infinite: none, 0: no step is stable
+  std::optional<double> margin;  ///< dt over dt_limit; none where that says nothing
   sim::Diagnostics diagnostics;
 };
 

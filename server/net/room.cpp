@@ -1,6 +1,7 @@
 #include "server/net/room.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "server/net/client.h"
 #include "server/net/greeting.h"
@@ -185,7 +186,9 @@ json Room::status_params(const Status& status) const {
           {"contacts", d.contacts},
           {"passes", passes_},
           {"skipped", skipped_},
-          {"stability", nullptr},
+          {"stability",
+           {{"dt_limit", std::isfinite(status.dt_limit) ? json(status.dt_limit) : json(nullptr)},
+            {"margin", status.margin ? json(*status.margin) : json(nullptr)}}},
           {"asleep", false},
           {"diverged", status.diverged}};
 }

@@ -23,6 +23,7 @@ Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Excha
   stepper->last_watched_ = stepper->next_status_ = Clock::now();
   stepper->announce_scene(std::nullopt, 0);
   stepper->announce_passes();
+  stepper->step_limit_.follow(stepper->simulation_->model(), stepper->document_.scene);
   return stepper;
 }
 
@@ -135,9 +136,18 @@ void Stepper::publish_status(Clock::time_point now) {
   status.diverged = diverged_;
   status.speed = real_time_.speed();
   status.real_time_factor = was_running_ ? real_time_.factor() : 0;
+  follow_step_limit();
+  status.dt_limit = step_limit_.dt_limit();
+  status.margin = step_limit_.margin();
   status.diagnostics = diagnostics_;
   exchange_.publish(status);
   warn_if_slow(now);
+}
+
+void Stepper::follow_step_limit() {
+  step_limit_.poll();
+  if (std::optional<std::string> warning = step_limit_.take_warning())
+    exchange_.emit(Notice{"warning", std::move(*warning)});
 }
 
 void Stepper::warn_if_slow(Clock::time_point now) {

@@ -14,6 +14,7 @@
 #include "server/net/gpu_backlog.h"
 #include "server/net/limits.h"
 #include "server/net/real_time.h"
+#include "server/net/step_limit.h"
 #include "server/render/renderer.h"
 #include "server/scene/document.h"
 
@@ -72,6 +73,7 @@ class Stepper {
   void accept(const sim::Diagnostics& diagnostics);
   void diverge();
   void publish_status(Clock::time_point now);
+  void follow_step_limit();
   void warn_if_slow(Clock::time_point now);
   void warn_if_crowded();
   bool suspended(Clock::time_point now) const;
@@ -87,6 +89,7 @@ class Stepper {
   std::vector<std::future<void>> encoders_;     ///< pictures being compressed; they end before this object
   GpuBacklog backlog_;
   RealTime real_time_;
+  StepLimit step_limit_;
 
   std::uint64_t revision_ = 1;
   std::uint32_t topology_revision_ = 0;

@@ -67,6 +67,7 @@ void Stepper::adopt(scene::Document document, sim::ChangeDepth depth) {
     frames_->touch_now();
   ++state_version_;
   announce_passes();
+  if (depth != sim::ChangeDepth::none) step_limit_.follow(simulation_->model(), document_.scene);
 }
 
 void Stepper::restart() {

@@ -87,3 +87,14 @@ test("info names a usable device, the one that is used, and the folders of the d
   assert.match(stdout, /^\* \d+: .*OpenGL 4\./m);
   assert.match(stdout, /^shaders +\/.*shaders$/m);
 });
+
+test("a step near or beyond the longest stable one is said on stderr, in one line, and is no error", () => {
+  for (const args of [["validate", "blowup"], ["run", "seed", "--time", "0", "--set", "/solver/dt=0.0025"]]) {
+    const { status, stderr } = clothlab(args);
+    assert.equal(status, 0);
+    assert.match(stderr, /^clothlab: warning: .*0\.0025 s is beyond 0\.001701 s.*symplectic_euler.*\n$/);
+  }
+  const near = clothlab(["run", "seed", "--time", "0", "--set", "/solver/dt=0.0016"]);
+  assert.match(near.stderr, /^clothlab: warning: dt = 0\.0016 s is 94 % of 0\.001701 s.*\n$/);
+  for (const args of [["validate", "seed"], ["run", "seed", "--time", "0"]]) assert.equal(clothlab(args).stderr, "");
+});

@@ -1,45 +1,13 @@
 // The scenes that come with the program, and scene files.
-#include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <glm/glm.hpp>
 
-#include "server/model/model.h"
+#include "server/model/stability.h"
 #include "server/scene/document.h"
 #include "tests/catch.h"
 
 using namespace clothlab;
 using scene::json;
-
-namespace {
-
-/// The largest eigenvalue of a symmetric positive semi-definite matrix, by power iteration.
-double largest_eigenvalue(const glm::dmat3& matrix) {
-  glm::dvec3 direction(0.6, 0.7, 0.8);
-  for (int i = 0; i < 60; ++i) direction = glm::normalize(matrix * direction);
-  return glm::dot(direction, matrix * direction);
-}
-
-/// The stability limit of physics.md [s], which is on the safe side of the true one: 2 / omega_max with
-/// omega_max^2 = max_i lambda_max(sum_j 2 k_ij n_ij n_ij^T) / m_i.
-double safe_dt(const model::Model& model, const scene::Scene& scene) {
-  std::vector<glm::dmat3> stiffness(model.vertex_count(), glm::dmat3(0.0));
-  for (const model::Spring& spring : model.springs) {
-    const scene::Springs& material = scene.cloths[spring.cloth].material;
-    const double k = spring.kind == model::SpringKind::structural ? material.structural
-                     : spring.kind == model::SpringKind::shear    ? material.shear
-                                                                  : material.bend;
-    const glm::dvec3 n = glm::normalize(model.rest_position[spring.a] - model.rest_position[spring.b]);
-    for (const std::uint32_t vertex : {spring.a, spring.b})
-      stiffness[vertex] += 2.0 * k * glm::outerProduct(n, n);
-  }
-  double largest = 0.0;
-  for (std::uint32_t i = 0; i < model.vertex_count(); ++i)
-    largest = std::max(largest, largest_eigenvalue(stiffness[i]) / model.mass[i]);
-  return 2.0 / std::sqrt(largest);
-}
-
-}  // namespace
 
 TEST_CASE("every preset is valid, has its file's name and builds a model") {
   for (const std::string& name : scene::preset_names()) {
@@ -76,11 +44,10 @@ TEST_CASE("every preset but blowup steps well below its stability limit, and blo
   for (const std::string& name : scene::preset_names()) {
     INFO(name);
     const scene::Scene scene = scene::load_preset(name)->scene;
-    const double margin = scene.solver.dt / safe_dt(*model::build(scene), scene);
-    INFO("dt / safe dt = " << margin);
+    const double margin = scene.solver.dt / model::dt_limit(*model::build(scene), scene);
+    INFO("dt / limit = " << margin);
     if (name == "blowup")
-      CHECK(margin >
-            1.2);  // the bound is below the true limit by 9 % on an infinite equal-k grid (physics.md)
+      CHECK(margin > 1.2);
     else
       CHECK(margin < 0.8);
   }
