@@ -21,12 +21,13 @@ bool new_cloth(const scene::Cloth& from, const scene::Cloth& to) {
   return from.mesh != to.mesh || from.transform != to.transform || pins_were_added(from, to);
 }
 
-/// Same springs, same pinned vertices, same list of motions.
+/// Same springs, same pinned vertices, same list of motions, limited or not.
 bool same_structure(const scene::Cloth& from, const scene::Cloth& to) {
   const auto kinds = [](const scene::Springs& s) {
     return std::array{s.structural > 0, s.shear > 0, s.bend > 0};
   };
-  return kinds(from.material) == kinds(to.material) && from.pins.size() == to.pins.size();
+  return kinds(from.material) == kinds(to.material) && from.pins.size() == to.pins.size() &&
+         from.material.strain_limit.has_value() == to.material.strain_limit.has_value();
 }
 
 /// Names, colours and textures mean nothing to the simulation.

@@ -1,4 +1,5 @@
 // Live changes of the scene: how deep each cuts, and that only a new cloth resets time.
+#include "server/scene/method.h"
 #include "tests/scenes.h"
 
 using namespace clothlab;
@@ -32,6 +33,8 @@ TEST_CASE("a change says how deep it cuts") {
   CHECK(depth([](scene::Scene& s) { s.cloths[0].pins.pop_back(); }) == ChangeDepth::kernel);
   CHECK(depth([](scene::Scene& s) { s.colliders.clear(); }) == ChangeDepth::kernel);
   CHECK(depth([](scene::Scene& s) { s.self_collision.reset(); }) == ChangeDepth::kernel);
+  CHECK(depth([](scene::Scene& s) { s.solver.method = scene::Method::rk4; }) == ChangeDepth::kernel);
+  CHECK(depth([](scene::Scene& s) { s.cloths[0].material.strain_limit = 0.1; }) == ChangeDepth::kernel);
   CHECK(depth([](scene::Scene& s) {
           s.cloths[0].mesh = scene::Grid{10, 10, 1.0, 1.0};
         }) == ChangeDepth::cloth);
@@ -40,6 +43,36 @@ TEST_CASE("a change says how deep it cuts") {
   CHECK(depth([](scene::Scene& s) {
           s.cloths[0].pins.push_back({scene::AtVertex{300}, {}});
         }) == ChangeDepth::cloth);
+}
+
+TEST_CASE("a strain limit that is there is changed as a number, one that comes or goes is another kernel") {
+  const scene::Scene limited = edited([](scene::Scene& s) { s.cloths[0].material.strain_limit = 0.1; });
+  const scene::Scene tighter = edited([](scene::Scene& s) { s.cloths[0].material.strain_limit = 0.05; });
+  CHECK(sim::change_depth(limited, tighter) == ChangeDepth::uniform);
+  CHECK(sim::change_depth(limited, test::seed()) == ChangeDepth::kernel);
+}
+
+TEST_CASE("another method takes the cloth over where it is") {
+  const auto context = test::context();
+  const auto simulation = test::simulation(test::seed());
+  for (const scene::Method method : scene::methods) {
+    if (!scene::is_simulated(method)) continue;
+    INFO(scene::name(method));
+    simulation->step(20);
+    const sim::State before = simulation->read_state();
+    scene::Scene next = simulation->scene();
+    next.solver.method = method;
+    next.solver.dt = 0.0002;  // that explicit Euler takes 4 ms without harm
+    REQUIRE(simulation->change(next));
+    CHECK(sim::state_hash(simulation->read_state()) == sim::state_hash(before));
+    simulation->step(20);
+    const sim::State after = simulation->read_state();
+    // Nothing moves farther in 20 steps than its speed, and what gravity and the springs make of it, allow.
+    for (std::size_t i = 0; i < after.position.size(); ++i) {
+      const float way = glm::distance(after.position[i], before.position[i]);
+      CHECK(way <= 20 * 0.0002f * (2.0f * glm::length(before.velocity[i]) + 1.0f));
+    }
+  }
 }
 
 TEST_CASE("uniforms and kernels change under a running cloth, only a new cloth starts at time 0") {
