@@ -15,8 +15,8 @@ Result<std::unique_ptr<Integrator>> make(const Surroundings& around, const Plan&
       return make_whole_step(around.scene.solver.method, around.model.vertex_count(), plan);
     case scene::Method::rk4:
       return make_rk4(around.model.vertex_count(), plan);
-    default:
-      break;
+    case scene::Method::implicit_euler:
+      return make_implicit_euler(around.model.vertex_count(), plan);
   }
   return Error{"/solver/method", scene::name(around.scene.solver.method), "a method that has kernels"};
 }

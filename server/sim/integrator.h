@@ -65,6 +65,7 @@ Result<std::unique_ptr<Integrator>> make_integrator(const Surroundings& around, 
 Result<std::unique_ptr<Integrator>> make_whole_step(scene::Method method, std::uint32_t vertex_count,
                                                     const Plan& plan);
 Result<std::unique_ptr<Integrator>> make_rk4(std::uint32_t vertex_count, const Plan& plan);
+Result<std::unique_ptr<Integrator>> make_implicit_euler(std::uint32_t vertex_count, const Plan& plan);
 
 /// Work groups of a kernel with one thread a vertex.
 inline GLuint vertex_groups(std::uint32_t vertex_count) {

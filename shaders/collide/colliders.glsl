@@ -12,6 +12,10 @@ uniform vec3 plane_normal[PLANE_COUNT];
 uniform vec3 plane_surface[PLANE_COUNT];
 #endif
 
+// Of the surface met last: its unit normal, its velocity [m/s] there, friction, restitution.
+vec3 met_normal, met_velocity;
+vec2 met_surface;
+
 vec3 at_step(int motion, int row, vec3 home) {
   vec3 there = home;
   RARELY(motion >= 0) there = placed(motion, row, home);
@@ -21,21 +25,24 @@ vec3 at_step(int motion, int row, vec3 home) {
 void meet_surface(int motion, vec3 surface, vec3 normal, vec3 x, inout vec3 v) {
   vec3 moving = vec3(0.0);
   RARELY(motion >= 0) moving = velocity_at(motion, END_ROW, x);
+  met_normal = normal;
+  met_velocity = moving;
+  met_surface = surface.xy;
   v = moving + contact_velocity(v - moving, normal, surface.x, surface.y);
 }
 
-/// Mends the step from -> x with end velocity v. Returns the number of colliders met.
-int resolve_colliders(vec3 from, inout vec3 x, inout vec3 v) {
+/// Mends the step from -> x with end velocity v; colliders are thicker by `reach` [m]. Returns the number of them met.
+int resolve_colliders(vec3 from, inout vec3 x, inout vec3 v, float reach) {
   int contacts = 0;
 #if SPHERE_COUNT > 0
   for (int i = 0; i < SPHERE_COUNT; ++i) {
     int motion = int(sphere_surface[i].z);
     vec3 centre = at_step(motion, END_ROW, sphere[i].xyz);
     vec3 start = from - at_step(motion, 0, sphere[i].xyz), end = x - centre;
-    float within_reach = sphere[i].w + distance(start, end);
+    float radius = sphere[i].w + reach, within_reach = radius + distance(start, end);
     RARELY(dot(start, start) <= within_reach * within_reach) {
       vec3 stopped, normal;
-      if (sphere_contact(start, end, sphere[i].w, stopped, normal)) {
+      if (sphere_contact(start, end, radius, stopped, normal)) {
         x = centre + stopped;
         meet_surface(motion, sphere_surface[i], normal, x, v);
         ++contacts;
@@ -47,7 +54,7 @@ int resolve_colliders(vec3 from, inout vec3 x, inout vec3 v) {
   for (int i = 0; i < PLANE_COUNT; ++i) {
     int motion = int(plane_surface[i].z);
     vec3 normal = motion < 0 ? plane_normal[i] : turned(motion, END_ROW, plane_normal[i]);
-    float depth = plane_point[i].w - dot(x - at_step(motion, END_ROW, plane_point[i].xyz), normal);
+    float depth = plane_point[i].w + reach - dot(x - at_step(motion, END_ROW, plane_point[i].xyz), normal);
     if (!(depth > 0.0)) continue;
     x += depth * normal;
     meet_surface(motion, plane_surface[i], normal, x, v);

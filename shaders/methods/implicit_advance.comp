@@ -1,0 +1,55 @@
+// Implicit Euler, after each solve: the estimates of velocity and position take the change, or the share of it that the line
+// search found best. What the filter kept out of the solution is the impulse of the contact: a collider that would have to
+// pull lets go, in the next Newton step if there is one and in the next time step. One that the estimate has entered gets
+// hold of the vertex for the next Newton step.
+#include "implicit_euler.glsl"
+#include "group_sums.glsl"
+#include "../collide/colliders.glsl"
+READ_VEC4(start_position, 9);
+READ_VEC4(group_sums, 10);
+READ_VEC4(residual, 12);
+layout(std430, binding = 0) writeonly buffer NextPosition { vec4 next_position[]; };
+layout(std430, binding = 3) buffer Estimate { vec4 estimate[]; };
+layout(std430, binding = 4) buffer Change { vec4 change[]; };
+layout(std430, binding = 5) buffer Constraint { vec4 constraint[]; };
+layout(std430, binding = 6) buffer Surface { vec4 surface[]; };
+uniform int group_count;
+
+/// The largest share that the next smaller one does not beat. A hundredth more, so that rounding beats nothing.
+float best_share() {
+  vec4 first = vec4(0.0), second = vec4(0.0);
+  for (int group = int(gl_LocalInvocationID.x); group < group_count; group += GROUP_SIZE) {
+    first += FETCH(group_sums, 2 * group);
+    second += FETCH(group_sums, 2 * group + 1);
+  }
+  first = sum_of_group(first);
+  second = sum_of_group(second);
+  float energy[SHARES] = float[](first.x, first.y, first.z, first.w, second.x, second.y, second.z, second.w);
+  int k = 0;
+  while (k + 1 < SHARES && !(energy[k] <= energy[k + 1] + 0.01 * abs(energy[k + 1]))) ++k;
+  return shares[k];
+}
+
+/// The change of velocity with which the next Newton step begins.
+vec3 update_constraint(int i, vec3 start, vec3 x, vec3 u) {
+  if (dot(FETCH(residual, i).xyz, constraint[i].xyz) > 0.0) constraint[i] = vec4(vec3(0.0), -1.0);
+  vec3 first = vec3(0.0), stopped = x, after = u;
+  RARELY(constraint[i] == vec4(0.0) && resolve_colliders(start, stopped, after, 0.0) > 0) {
+    constraint[i] = vec4(met_normal, 0.0);
+    surface[i] = vec4(met_velocity, met_surface.x);
+    first = met_normal * (dot(stopped - x, met_normal) / dt);
+  }
+  return first;
+}
+
+void main() {
+  float share = best_share();
+  int i = int(gl_GlobalInvocationID.x);
+  if (i >= vertex_count) return;
+  vec4 start = FETCH(start_position, i);
+  vec3 u = estimate[i].xyz + (start.w == 0.0 ? 1.0 : share) * change[i].xyz;
+  vec3 x = start.xyz + dt * u;
+  estimate[i] = vec4(u, 0.0);
+  change[i] = vec4(start.w == 0.0 ? vec3(0.0) : update_constraint(i, start.xyz, x, u), 0.0);
+  next_position[i] = vec4(x, start.w);
+}

@@ -1,0 +1,44 @@
+// Implicit Euler: Baraff & Witkin 1998. The unknown is the velocity u at the step's end; from an estimate of it, with
+// x = start + dt u, each Newton step solves
+//   J change = m (v - u) + dt f(x, u),   J = m (1 + dt air_drag) + dt C + dt^2 K,
+// with C and K the matrices of the springs' damping and stiffness at x, without the part of K that a compressed spring makes
+// indefinite. The first estimate is u = 0: one Newton step from there is theirs. What a vertex cannot do, because a pin
+// holds it or a collider is in the way, is filtered out of every vector of the solver (sections 5.1 to 5.3).
+// A full Newton step can overshoot where springs turn by much in one step, so it is shortened until the energy whose
+// minimum is sought falls (a line search: Nocedal & Wright 2006, chapter 3).
+// Here `position` and `velocity` are the estimates.
+#include "gather.glsl"
+
+/// The spring's share of J: along n n^T + across (I - n n^T) [kg].
+void spring_matrix(vec3 x, vec3 y, uvec4 s, out vec3 n, out float along, out float across) {
+  spring_hessian(x, y, uintBitsToFloat(s.y), uintBitsToFloat(s.z), n, along, across);
+  along = dt * (dt * along + uintBitsToFloat(s.w));
+  across = dt * dt * max(across, 0.0);
+}
+
+/// Without the part along the normal of a contact, which is 0 where there is none; nothing is left of a pinned vertex.
+vec3 filtered(vec3 v, float inverse_mass, vec3 normal) {
+  return inverse_mass > 0.0 ? v - normal * dot(normal, v) : vec3(0.0);
+}
+
+/// A vertex's 3x3 block of J is kept as L D L^T: a = 1 / D, b = the lower triangle of L (21, 31, 32).
+vec3 block_times(vec3 a, vec3 b, vec3 v) {
+  v.x += b.x * v.y + b.y * v.z;
+  v.y += b.z * v.z;
+  v /= a;
+  v.z += b.y * v.x + b.z * v.y;
+  v.y += b.x * v.x;
+  return v;
+}
+vec3 solve_block(vec3 a, vec3 b, vec3 r) {
+  r.y -= b.x * r.x;
+  r.z -= b.y * r.x + b.z * r.y;
+  r *= a;
+  r.y -= b.z * r.z;
+  r.x -= b.x * r.y + b.y * r.z;
+  return r;
+}
+
+/// Shares of the change that the line search tries.
+#define SHARES 8
+const float shares[SHARES] = float[](1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125, 0.015625, 0.00390625);

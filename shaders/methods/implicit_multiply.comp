@@ -1,0 +1,39 @@
+// Implicit Euler's conjugate gradients, first half of an iteration: the matrix times the preconditioned residual, and the
+// sums that the second half needs. With both sums at once an iteration is two dispatches: Chronopoulos & Gear 1989.
+#include "implicit_euler.glsl"
+#include "group_sums.glsl"
+READ_VEC4(constraint, 10);
+READ_VEC4(residual, 11);
+READ_VEC4(preconditioned, 12);
+layout(std430, binding = 0) writeonly buffer Product { vec4 product[]; };
+layout(std430, binding = 1) writeonly buffer Sums { vec4 group_sums[]; };  // one a work group
+
+vec3 multiply(int i, vec4 x, vec3 z) {
+  vec3 result = z * ((1.0 + dt * gravity.w) / x.w);
+  SpringRange range = spring_range(i);
+  for (int entry = range.first; entry < range.end; entry += GROUP_SIZE) {
+    uvec4 s = FETCH(springs, entry);
+    vec3 apart = z - FETCH(preconditioned, s.x).xyz, n;
+    float along, across;
+    spring_matrix(x.xyz, FETCH(position, s.x).xyz, s, n, along, across);
+    result += across * apart + n * ((along - across) * dot(n, apart));
+  }
+  return result;
+}
+
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  vec4 sum = vec4(0.0);
+  if (i < vertex_count) {
+    vec4 x = FETCH(position, i), r = FETCH(residual, i);
+    vec3 w = vec3(0.0);
+    if (x.w > 0.0) {
+      vec3 z = FETCH(preconditioned, i).xyz, left = filtered(r.xyz, x.w, FETCH(constraint, i).xyz);
+      w = multiply(i, x, z);  // z is filtered, so its products with w and r are, too
+      sum = vec4(dot(r.xyz, z), dot(w, z), x.w * dot(left, left), r.w);
+    }
+    product[i] = vec4(w, 0.0);
+  }
+  vec4 total = sum_of_group(sum);
+  if (gl_LocalInvocationID.x == 0) group_sums[gl_WorkGroupID.x] = total;
+}

@@ -1,0 +1,51 @@
+// Implicit Euler's line search: by how much the incremental potential
+//   m/2 |u - v|^2 + elastic(start + dt u) - dt m g.u + dt m air_drag/2 |u|^2 + dt c/2 sum (n.(u_i - u_j))^2
+// changes for each share of the change. A pin goes its whole way whatever the share.
+#include "implicit_euler.glsl"
+#include "group_sums.glsl"
+READ_VEC4(start_velocity, 9);
+READ_VEC4(change, 11);
+layout(std430, binding = 1) writeonly buffer Sums { vec4 group_sums[]; };  // two a work group
+
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  float energy[SHARES];
+  for (int k = 0; k < SHARES; ++k) energy[k] = 0.0;
+  vec4 x = i < vertex_count ? FETCH(position, i) : vec4(0.0);
+  if (i < vertex_count) {
+    vec3 u = FETCH(velocity, i).xyz, d = FETCH(change, i).xyz;
+    bool held = x.w == 0.0;
+    SpringRange range = spring_range(i);
+    for (int entry = range.first; entry < range.end; entry += GROUP_SIZE) {
+      uvec4 s = FETCH(springs, entry);
+      vec4 y = FETCH(position, s.x);
+      vec3 other_u = FETCH(velocity, s.x).xyz, other_d = FETCH(change, s.x).xyz;
+      bool other_held = y.w == 0.0;
+      float rest_length = uintBitsToFloat(s.y), stiffness = uintBitsToFloat(s.z), damping = uintBitsToFloat(s.w);
+      // A free end's change is scaled, a pinned one's is not.
+      vec3 fixed_change = (held ? d : vec3(0.0)) - (other_held ? other_d : vec3(0.0));
+      vec3 scaled_change = (held ? vec3(0.0) : d) - (other_held ? vec3(0.0) : other_d);
+      vec3 apart = x.xyz - y.xyz + dt * fixed_change, speed = u - other_u + fixed_change;
+      float length_before = length(apart);
+      vec3 n = length_before > 0.0 ? apart / length_before : vec3(0.0);
+      float closing = dot(n, speed), closing_change = dot(n, scaled_change);
+      for (int k = 0; k < SHARES; ++k) {
+        float now = length(apart + (dt * shares[k]) * scaled_change);
+        float more = shares[k] * closing_change;
+        energy[k] += 0.25 * (stiffness * (now - length_before) * (now + length_before - 2.0 * rest_length) +
+                             dt * damping * more * (2.0 * closing + more));  // the other half is the other vertex's
+      }
+    }
+    if (!held) {
+      float m = 1.0 / x.w;
+      float slope = m * dot(d, u - FETCH(start_velocity, i).xyz - dt * gravity.xyz + dt * gravity.w * u);
+      float curvature = m * (1.0 + dt * gravity.w) * dot(d, d);
+      for (int k = 0; k < SHARES; ++k) energy[k] += shares[k] * (slope + 0.5 * shares[k] * curvature);
+    }
+  }
+  vec4 first = sum_of_group(vec4(energy[0], energy[1], energy[2], energy[3]));
+  vec4 second = sum_of_group(vec4(energy[4], energy[5], energy[6], energy[7]));
+  if (gl_LocalInvocationID.x != 0) return;
+  group_sums[2 * gl_WorkGroupID.x] = first;
+  group_sums[2 * gl_WorkGroupID.x + 1] = second;
+}

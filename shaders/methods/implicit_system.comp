@@ -1,0 +1,51 @@
+// Implicit Euler, once a Newton step: the residual of the first guess, and each vertex's block of the matrix, factorised.
+#include "implicit_euler.glsl"
+READ_VEC4(start_velocity, 9);
+READ_VEC4(constraint, 10);
+READ_VEC4(change, 11);
+layout(std430, binding = 0) writeonly buffer Residual { vec4 residual[]; };            // not filtered; w: energy scale of the vertex
+layout(std430, binding = 1) writeonly buffer Preconditioned { vec4 preconditioned[]; };
+layout(std430, binding = 3) writeonly buffer BlockA { vec4 block_a[]; };
+layout(std430, binding = 4) writeonly buffer BlockB { vec4 block_b[]; };
+
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  if (i >= vertex_count) return;
+  vec4 x = FETCH(position, i);
+  vec3 u = FETCH(velocity, i).xyz, d = FETCH(change, i).xyz;
+  vec3 force = vec3(0.0), product = vec3(0.0), diagonal = vec3(0.0), corner = vec3(0.0);
+  SpringRange range = spring_range(i);
+  for (int entry = range.first; entry < range.end; entry += GROUP_SIZE) {
+    uvec4 s = FETCH(springs, entry);
+    vec3 y = FETCH(position, s.x).xyz, n;
+    float along, across;
+    force += spring_force(x.xyz, y, u, FETCH(velocity, s.x).xyz, uintBitsToFloat(s.y), uintBitsToFloat(s.z),
+                          uintBitsToFloat(s.w));
+    spring_matrix(x.xyz, y, s, n, along, across);
+    if (s.x == uint(i)) continue;  // padding
+    vec3 apart = d - FETCH(change, s.x).xyz;
+    product += across * apart + n * ((along - across) * dot(n, apart));
+    diagonal += across + (along - across) * n * n;
+    corner += (along - across) * n.xxy * n.yzz;
+  }
+  if (x.w == 0.0) {
+    residual[i] = preconditioned[i] = block_a[i] = block_b[i] = vec4(0.0);
+    return;
+  }
+  float m = 1.0 / x.w, inertia = m * (1.0 + dt * gravity.w);
+  vec3 v = FETCH(start_velocity, i).xyz, normal = FETCH(constraint, i).xyz;
+  vec3 r = m * (v - u + dt * (gravity.xyz - gravity.w * u)) + dt * force - inertia * d - product;
+
+  // L D L^T; no pivot is less than the mass, whatever rounding made of it.
+  diagonal += inertia;
+  float l_xy = corner.x / diagonal.x, l_xz = corner.y / diagonal.x;
+  float pivot_y = max(diagonal.y - l_xy * corner.x, inertia);
+  float l_yz = (corner.z - l_xz * corner.x) / pivot_y;
+  float pivot_z = max(diagonal.z - l_xz * corner.y - l_yz * l_yz * pivot_y, inertia);
+  vec3 a = 1.0 / vec3(diagonal.x, pivot_y, pivot_z), b = vec3(l_xy, l_xz, l_yz);
+  block_a[i] = vec4(a, 0.0);
+  block_b[i] = vec4(b, 0.0);
+  // What the residual is measured against, as an energy [J]: the vertex's own, and what forces give it in one step.
+  residual[i] = vec4(r, m * (dot(v, v) + dt * dt * dot(gravity.xyz, gravity.xyz)) + dt * dt * x.w * dot(force, force));
+  preconditioned[i] = vec4(filtered(solve_block(a, b, filtered(r, x.w, normal)), x.w, normal), 0.0);
+}
