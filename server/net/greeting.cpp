@@ -12,8 +12,7 @@ namespace {
 
 nlohmann::json method_list() {
   auto list = nlohmann::json::array();
-  for (const scene::Method method : scene::methods)
-    if (scene::is_simulated(method)) list.push_back(scene::name(method));
+  for (const scene::Method method : scene::methods) list.push_back(scene::name(method));
   return list;
 }
 

@@ -13,11 +13,6 @@ namespace clothlab::scene {
 inline constexpr std::array methods{Method::explicit_euler, Method::symplectic_euler, Method::verlet,
                                     Method::rk4, Method::implicit_euler};
 
-/// Whether the simulation has kernels for it. A document that names another is refused as not supported yet.
-constexpr bool is_simulated(Method method) {
-  return method != Method::implicit_euler;
-}
-
 /// "symplectic_euler", ...
 const char* name(Method method);
 

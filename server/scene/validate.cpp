@@ -49,9 +49,9 @@ std::optional<SelfCollision> read_self_collision(const Reader& self_collision) {
 }
 
 Method read_method(const Reader& method) {
-  Words simulated, later = {"pbd", "xpbd", "vbd", "auto"};
-  for (const Method each : methods) (is_simulated(each) ? simulated : later).push_back(name(each));
-  return method_of(method.choice(simulated, later)).value_or(Solver{}.method);
+  Words names;
+  for (const Method each : methods) names.push_back(name(each));
+  return method_of(method.choice(names, {"pbd", "xpbd", "vbd", "auto"})).value_or(Solver{}.method);
 }
 
 Solver read_solver(const Reader& solver) {

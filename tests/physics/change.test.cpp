@@ -56,7 +56,6 @@ TEST_CASE("another method takes the cloth over where it is") {
   const auto context = test::context();
   const auto simulation = test::simulation(test::seed());
   for (const scene::Method method : scene::methods) {
-    if (!scene::is_simulated(method)) continue;
     INFO(scene::name(method));
     simulation->step(20);
     const sim::State before = simulation->read_state();
