@@ -1,4 +1,5 @@
 // Chromium with the page in it, and what tests read from the page: pixels, positions, controls.
+import assert from "node:assert/strict";
 import { existsSync, mkdirSync } from "node:fs";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
@@ -18,6 +19,17 @@ export function browserTest(name, body) {
       await Promise.all((running?.contexts() ?? []).map((context) => context.close()));  // pages left open would draw on
     }
   });
+}
+
+/// Reads until it is as it should be.
+export async function eventually(what, read, good) {
+  const until = Date.now() + 30_000;
+  for (;;) {
+    const value = await read();
+    if (good(value)) return value;
+    assert.ok(Date.now() < until, `${what}: still ${JSON.stringify(value)}`);
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
 }
 
 export const screenshots = fileURLToPath(new URL("../../build/screenshots/", import.meta.url));

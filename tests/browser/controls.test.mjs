@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { after, before } from "node:test";
 import { Client, Server } from "../protocol/harness.mjs";
-import { browserTest, launch, Viewer } from "./browser.mjs";
+import { browserTest, eventually, launch, Viewer } from "./browser.mjs";
 
 let server, browser;
 before(async () => {
@@ -18,16 +18,6 @@ async function both(session, options) {
   const viewer = await Viewer.open(browser, server, { session, width: 1280, height: 800, ...options });
   const client = await Client.connect(server, { session });
   return { viewer, client, scene: async () => (await client.request("scene.get", {})).document };
-}
-
-async function eventually(what, read, good) {
-  const until = Date.now() + 30_000;
-  for (;;) {
-    const value = await read();
-    if (good(value)) return value;
-    assert.ok(Date.now() < until, `${what}: still ${JSON.stringify(value)}`);
-    await new Promise((resolve) => setTimeout(resolve, 50));
-  }
 }
 
 browserTest("a slider dragged by mouse changes the server's scene; the last value arrives, few messages are sent", async () => {
