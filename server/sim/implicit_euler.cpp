@@ -1,8 +1,6 @@
 // Implicit Euler on the GPU: shaders/methods/implicit_*.comp. Vectors and sums stay there; the host only
 // asks, now and then, whether a solve has ended.
-#include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "server/sim/integrator.h"
 
@@ -21,24 +19,6 @@ struct Control {
   std::uint32_t iterations = 0, converged = 0;
   std::array<std::uint32_t, 3> unused{};
 };
-
-/// The least relative residual that float32 can tell: one rounding of a velocity, times the largest entry of
-/// the matrix over the mass it stands beside.
-double rounding_floor(const Surroundings& around) {
-  const scene::Scene& scene = around.scene;
-  const double dt = scene.solver.dt;
-  std::vector<double> diagonal(around.model.vertex_count(), 0.0);
-  for (const model::Spring& spring : around.model.springs) {
-    const scene::Springs& material = scene.cloths[spring.cloth].material;
-    const double share = dt * (dt * model::stiffness(material, spring.kind) + material.damping);
-    diagonal[spring.a] += share;
-    diagonal[spring.b] += share;
-  }
-  double largest = 0.0;
-  for (std::size_t i = 0; i < diagonal.size(); ++i)
-    largest = std::max(largest, diagonal[i] / around.model.mass[i]);
-  return 0x1p-24 * (1.0 + largest);
-}
 
 class ImplicitEuler : public Integrator {
  public:
@@ -63,39 +43,53 @@ class ImplicitEuler : public Integrator {
     for (const gl::Program* program : {&start_, &system_, &multiply_, &update_, &search_, &advance_, &end_})
       set_step_uniforms(*program, around);
     most_newton_steps_ = around.scene.solver.iterations;
-    const double tolerance = std::max(around.scene.solver.tolerance, rounding_floor(around));
-    glProgramUniform1f(update_.id(), update_.uniform("tolerance"), static_cast<float>(tolerance));
+    glProgramUniform1f(system_.id(), system_.uniform("tolerance"),
+                       static_cast<float>(around.scene.solver.tolerance));
     for (const gl::Program* program : {&update_, &advance_})
       glProgramUniform1i(program->id(), program->uniform("group_count"), static_cast<GLint>(groups_));
   }
 
   void step(StateBuffers& state, int row) override {
     begin(state, row);
+    const Vectors* last = nullptr;
     for (int newton = 0; newton < most_newton_steps_; ++newton) {
       set_up(newton == 0 ? start_position_ : position_);
       const Control solved = solve();
       ++work_.newton_steps;
       work_.linear_iterations += solved.iterations;
       work_.unconverged += solved.converged ? 0 : 1;
-      if (newton > 0 && solved.iterations == 0) break;  // the estimate already meets the tolerance
-      advance(row);
+      if (newton > 0 && solved.iterations == 0) {  // the estimate already meets the tolerance
+        last = &vectors_[0];
+        break;
+      }
+      if (solved.iterations == 0)  // the guess is the solution; it is where the next one goes
+        glCopyNamedBufferSubData(guess_.buffer.id(), vectors_[0].change.buffer.id(), 0, 0,
+                                 static_cast<GLsizeiptr>(guess_.buffer.bytes()));
+      last = &vectors_[solved.iterations % 2];
+      advance(*last, row);
     }
-    finish(state, row);
+    finish(state, *last, row);
   }
 
   /// No contact was found to pull.
-  void restart(const StateBuffers&) override { constraint_.buffer.fill(0); }
+  void restart() override { constraint_.buffer.fill(0); }
 
   SolverWork work() const override { return work_; }
 
  private:
+  /// What conjugate gradients carry from one iteration to the next.
+  struct Vectors {
+    gl::TextureBuffer change, residual, preconditioned, direction, direction_product;
+  };
+
   explicit ImplicitEuler(std::uint32_t vertex_count) : groups_(vertex_groups(vertex_count)) {
-    for (gl::TextureBuffer* vector :
-         {&start_position_, &start_velocity_, &position_, &velocity_, &change_, &constraint_, &surface_,
-          &residual_, &preconditioned_, &product_, &block_a_, &block_b_})
+    for (gl::TextureBuffer* vector : {&start_position_, &start_velocity_, &position_, &velocity_, &guess_,
+                                      &constraint_, &surface_, &product_, &block_a_, &block_b_})
       *vector = {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
-    direction_ = gl::Buffer(vertex_count * 4 * sizeof(float));
-    direction_product_ = gl::Buffer(vertex_count * 4 * sizeof(float));
+    for (Vectors& set : vectors_)
+      for (gl::TextureBuffer* vector :
+           {&set.change, &set.residual, &set.preconditioned, &set.direction, &set.direction_product})
+        *vector = {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
     sums_ = {gl::Buffer(groups_ * 8 * sizeof(float)), GL_RGBA32F};
     control_ = gl::Buffer(sizeof(Control) + most_iterations * 2 * sizeof(float));
   }
@@ -106,7 +100,8 @@ class ImplicitEuler : public Integrator {
     wait();
   }
   static void wait() {
-    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
+                    GL_BUFFER_UPDATE_BARRIER_BIT);
   }
 
   void begin(const StateBuffers& state, int row) {
@@ -114,7 +109,7 @@ class ImplicitEuler : public Integrator {
     start_position_.buffer.bind_storage(0);
     start_velocity_.buffer.bind_storage(1);
     velocity_.buffer.bind_storage(3);
-    change_.buffer.bind_storage(4);
+    guess_.buffer.bind_storage(4);
     constraint_.buffer.bind_storage(5);
     surface_.buffer.bind_storage(6);
     glProgramUniform1i(start_.id(), start_.uniform("start_row"), row);
@@ -127,9 +122,9 @@ class ImplicitEuler : public Integrator {
     velocity_.bind(unit_velocity);
     start_velocity_.bind(9);
     constraint_.bind(10);
-    change_.bind(11);
-    residual_.buffer.bind_storage(0);
-    preconditioned_.buffer.bind_storage(1);
+    guess_.bind(11);
+    vectors_[0].residual.buffer.bind_storage(0);
+    vectors_[0].preconditioned.buffer.bind_storage(1);
     block_a_.buffer.bind_storage(3);
     block_b_.buffer.bind_storage(4);
     run(system_);
@@ -147,25 +142,31 @@ class ImplicitEuler : public Integrator {
   }
 
   void iterate(int iteration) {
+    const Vectors &now = vectors_[iteration % 2], &next = vectors_[(iteration + 1) % 2];
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, control_.id());
     constraint_.bind(10);
-    residual_.bind(11);
-    preconditioned_.bind(12);
+    now.residual.bind(11);
+    now.preconditioned.bind(12);
     product_.buffer.bind_storage(0);
     sums_.buffer.bind_storage(1);
     multiply_.use();
     glDispatchComputeIndirect(0);
     wait();
+    now.residual.bind(16);
+    now.preconditioned.bind(17);
+    now.direction.bind(18);
+    now.direction_product.bind(19);
+    (iteration == 0 ? guess_ : now.change).bind(20);
     product_.bind(9);
     sums_.bind(11);
     block_a_.bind(12);
     block_b_.bind(13);
-    residual_.buffer.bind_storage(0);
-    preconditioned_.buffer.bind_storage(1);
+    next.residual.buffer.bind_storage(0);
+    next.preconditioned.buffer.bind_storage(1);
     control_.bind_storage(3);
-    direction_.bind_storage(4);
-    direction_product_.bind_storage(5);
-    change_.buffer.bind_storage(6);
+    next.direction.buffer.bind_storage(4);
+    next.direction_product.buffer.bind_storage(5);
+    next.change.buffer.bind_storage(6);
     update_.use();
     glUniform1i(update_.uniform("iteration"), iteration);
     glDispatchComputeIndirect(0);
@@ -174,30 +175,30 @@ class ImplicitEuler : public Integrator {
   }
 
   /// Line search, then the estimate takes its share of the change.
-  void advance(int row) {
+  void advance(const Vectors& solved, int row) {
     start_velocity_.bind(9);
-    change_.bind(11);
+    solved.change.bind(11);
     sums_.buffer.bind_storage(1);
     run(search_);
     start_position_.bind(9);
     sums_.bind(10);
-    residual_.bind(12);
+    solved.residual.bind(12);
     position_.buffer.bind_storage(0);
     velocity_.buffer.bind_storage(3);
-    change_.buffer.bind_storage(4);
+    guess_.buffer.bind_storage(4);
     constraint_.buffer.bind_storage(5);
     surface_.buffer.bind_storage(6);
     glProgramUniform1i(advance_.id(), advance_.uniform("start_row"), row);
     run(advance_);
   }
 
-  void finish(StateBuffers& state, int row) {
+  void finish(StateBuffers& state, const Vectors& solved, int row) {
     position_.bind(unit_position);
     velocity_.bind(unit_velocity);
     state.position().bind(9);
     state.velocity().bind(10);
     start_velocity_.bind(11);
-    residual_.bind(12);
+    solved.residual.bind(12);
     surface_.bind(13);
     constraint_.bind(14);
     block_a_.bind(4);
@@ -213,10 +214,11 @@ class ImplicitEuler : public Integrator {
   gl::Program start_, system_, multiply_, update_, search_, advance_, end_;
   gl::TextureBuffer start_position_, start_velocity_;  ///< where the step starts, with self-collision's share
   gl::TextureBuffer position_, velocity_;              ///< estimate of where it ends
-  gl::TextureBuffer change_;                           ///< of the velocity: what is solved for
+  gl::TextureBuffer guess_;                            ///< of the change of velocity that is solved for
   gl::TextureBuffer constraint_, surface_;             ///< of the contacts with colliders
-  gl::TextureBuffer residual_, preconditioned_, product_, block_a_, block_b_, sums_;
-  gl::Buffer direction_, direction_product_, control_;
+  gl::TextureBuffer block_a_, block_b_, product_, sums_;
+  std::array<Vectors, 2> vectors_;  ///< each iteration reads one set and writes the other
+  gl::Buffer control_;
   SolverWork work_;
 };
 

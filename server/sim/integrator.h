@@ -24,13 +24,6 @@ struct Surroundings {
   const SelfCollision* self_collision;  ///< null without
 };
 
-/// What a method that solves equations has done since it was made.
-struct SolverWork {
-  std::uint64_t linear_iterations = 0;  ///< of conjugate gradients
-  std::uint64_t newton_steps = 0;
-  std::uint64_t unconverged = 0;  ///< linear solves that ended before the tolerance was met
-};
-
 class Integrator {
  public:
   virtual ~Integrator() = default;
@@ -43,7 +36,7 @@ class Integrator {
   virtual void step(StateBuffers& state, int row) = 0;
 
   /// The state was not made by this object's last step: forget what was carried over from it.
-  virtual void restart(const StateBuffers&) {}
+  virtual void restart() {}
 
   virtual SolverWork work() const { return {}; }
 

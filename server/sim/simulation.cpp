@@ -151,7 +151,7 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const scene::Scene& scene
   self.scene = scene;
   self.rest = rest_positions(self.kernels.model);
   self.state = StateBuffers(self.kernels.model, self.kernels.motions);
-  self.kernels.integrator->restart(self.state);
+  self.kernels.integrator->restart();
   return made;
 }
 
@@ -169,7 +169,7 @@ Result<ChangeDepth> Simulation::change(const scene::Scene& scene) {
     Result<Kernels> kernels = make_kernels(scene);
     if (!kernels) return kernels.error();
     self.kernels = std::move(*kernels);
-    self.kernels.integrator->restart(self.state);
+    self.kernels.integrator->restart();
   } else if (depth == ChangeDepth::uniform) {
     // Masses and pins live in the model; building it again is cheap and cannot change its shape here.
     Result<model::Model> model = model::build(scene);
@@ -197,7 +197,7 @@ void Simulation::reset() {
   Implementation& self = *implementation_;
   self.state.reset(self.kernels.model, self.kernels.motions);
   if (self.kernels.self_collision) self.kernels.self_collision->invalidate();
-  self.kernels.integrator->restart(self.state);
+  self.kernels.integrator->restart();
   self.step_index = self.start_step = 0;
   self.start_time = 0.0;
 }
@@ -219,6 +219,13 @@ std::uint32_t Simulation::topology_revision() const {
 }
 std::vector<Simulation::Pass> Simulation::passes() const {
   return sim::passes(implementation_->kernels.plan);
+}
+
+SolverWork Simulation::solver_work() const {
+  return implementation_->kernels.integrator->work();
+}
+std::uint64_t Simulation::dispatches() const {
+  return implementation_->kernels.integrator->dispatches();
 }
 
 void Simulation::request_diagnostics() {

@@ -46,6 +46,13 @@ struct State {
 /// FNV-1a, 64 bits, over the bytes of positions and velocities (little-endian float32).
 std::uint64_t state_hash(const State& state);
 
+/// What a method that solves equations has done.
+struct SolverWork {
+  std::uint64_t linear_iterations = 0;  ///< of conjugate gradients
+  std::uint64_t newton_steps = 0;
+  std::uint64_t unconverged = 0;  ///< linear solves that ended before the tolerance was met
+};
+
 class Simulation {
  public:
   static Result<std::unique_ptr<Simulation>> create(const scene::Scene& scene);
@@ -67,6 +74,11 @@ class Simulation {
 
   /// Changes whenever triangles, vertex count or texture coordinates do.
   std::uint32_t topology_revision() const;
+
+  /// What the present method's equation solver has done since the kernels were made.
+  SolverWork solver_work() const;
+  /// Dispatches that the present method has queued since the kernels were made, without self-collision's.
+  std::uint64_t dispatches() const;
 
   /// The passes a step runs, in order, and the ones left out with the reason.
   struct Pass {

@@ -71,12 +71,6 @@ void StateBuffers::bind_outputs() const {
   velocity_[1 - current_].buffer.bind_storage(1);
 }
 
-std::vector<glm::vec4> StateBuffers::read_velocity() const {
-  std::vector<glm::vec4> words(velocity().buffer.bytes() / sizeof(glm::vec4));
-  velocity().buffer.download(words.data(), words.size() * sizeof(glm::vec4));
-  return words;
-}
-
 State StateBuffers::read() const {
   const std::size_t count = position().buffer.bytes() / sizeof(glm::vec4);
   std::vector<glm::vec4> words(count);

@@ -1,8 +1,6 @@
 // The state of every vertex on the GPU, kept twice: a step reads one copy and writes the other.
 #pragma once
 
-#include <glm/vec4.hpp>
-
 #include "server/gl/buffer.h"
 #include "server/model/model.h"
 #include "server/sim/simulation.h"
@@ -29,7 +27,6 @@ class StateBuffers {
   /// Writes changed masses and pins into the state, which otherwise stays as it is. Waits for the GPU.
   void rewrite_constants(const model::Model& model, const MotionTable& motions);
   State read() const;
-  std::vector<glm::vec4> read_velocity() const;
 
  private:
   gl::TextureBuffer position_[2];  ///< xyz [m], w inverse mass [1/kg], 0 if pinned

@@ -7,10 +7,11 @@
 #include "../collide/colliders.glsl"
 READ_VEC4(start_position, 9);
 READ_VEC4(group_sums, 10);
+READ_VEC4(change, 11);
 READ_VEC4(residual, 12);
 layout(std430, binding = 0) writeonly buffer NextPosition { vec4 next_position[]; };
 layout(std430, binding = 3) buffer Estimate { vec4 estimate[]; };
-layout(std430, binding = 4) buffer Change { vec4 change[]; };
+layout(std430, binding = 4) writeonly buffer Guess { vec4 guess[]; };  // of the next change
 layout(std430, binding = 5) buffer Constraint { vec4 constraint[]; };
 layout(std430, binding = 6) buffer Surface { vec4 surface[]; };
 uniform int group_count;
@@ -47,9 +48,9 @@ void main() {
   int i = int(gl_GlobalInvocationID.x);
   if (i >= vertex_count) return;
   vec4 start = FETCH(start_position, i);
-  vec3 u = estimate[i].xyz + (start.w == 0.0 ? 1.0 : share) * change[i].xyz;
+  vec3 u = estimate[i].xyz + (start.w == 0.0 ? 1.0 : share) * FETCH(change, i).xyz;
   vec3 x = start.xyz + dt * u;
   estimate[i] = vec4(u, 0.0);
-  change[i] = vec4(start.w == 0.0 ? vec3(0.0) : update_constraint(i, start.xyz, x, u), 0.0);
+  guess[i] = vec4(start.w == 0.0 ? vec3(0.0) : update_constraint(i, start.xyz, x, u), 0.0);
   next_position[i] = vec4(x, start.w);
 }

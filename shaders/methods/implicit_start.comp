@@ -8,7 +8,7 @@
 layout(std430, binding = 0) writeonly buffer Start { vec4 start_position[]; };      // w: inverse mass
 layout(std430, binding = 1) writeonly buffer Inertia { vec4 start_velocity[]; };    // w: vertices touched
 layout(std430, binding = 3) writeonly buffer Estimate { vec4 estimate[]; };         // of the velocity: 0
-layout(std430, binding = 4) writeonly buffer Change { vec4 change[]; };             // the solver's first guess
+layout(std430, binding = 4) writeonly buffer Guess { vec4 first_guess[]; };         // the solver's
 layout(std430, binding = 5) buffer Constraint { vec4 constraint[]; };   // normal of the contact, or 0; speed of the rebound
 layout(std430, binding = 6) writeonly buffer Surface { vec4 surface[]; };  // its velocity, its friction
 
@@ -51,5 +51,5 @@ void main() {
   start_position[i] = vec4(x.xyz + push, x.w);
   start_velocity[i] = vec4(v.xyz + impulse, float(contacts));
   estimate[i] = vec4(0.0);
-  change[i] = vec4(guess, 0.0);
+  first_guess[i] = vec4(guess, 0.0);
 }

@@ -3,10 +3,20 @@
 READ_VEC4(start_velocity, 9);
 READ_VEC4(constraint, 10);
 READ_VEC4(change, 11);
-layout(std430, binding = 0) writeonly buffer Residual { vec4 residual[]; };            // not filtered; w: energy scale of the vertex
+layout(std430, binding = 0) writeonly buffer Residual { vec4 residual[]; };            // not filtered; w: the vertex's share of what is good enough
 layout(std430, binding = 1) writeonly buffer Preconditioned { vec4 preconditioned[]; };
 layout(std430, binding = 3) writeonly buffer BlockA { vec4 block_a[]; };
 layout(std430, binding = 4) writeonly buffer BlockB { vec4 block_b[]; };
+uniform float tolerance;  // of the residual, relative
+
+/// What the residual of the vertex, squared and over its mass [J], may be: relative to its own energy and what forces give
+/// it in one step; and not less than what rounding its position makes of its springs' forces.
+float good_enough(float inverse_mass, vec3 v, vec3 force, float stiffness, vec3 x, vec3 d) {
+  float own = (dot(v, v) + dt * dt * dot(gravity.xyz, gravity.xyz)) / inverse_mass +
+              dt * dt * inverse_mass * dot(force, force);
+  float rounding = 5.96e-8 * dt * stiffness * (length(x) + dt * length(d));
+  return tolerance * tolerance * own + inverse_mass * rounding * rounding;
+}
 
 void main() {
   int i = int(gl_GlobalInvocationID.x);
@@ -14,6 +24,7 @@ void main() {
   vec4 x = FETCH(position, i);
   vec3 u = FETCH(velocity, i).xyz, d = FETCH(change, i).xyz;
   vec3 force = vec3(0.0), product = vec3(0.0), diagonal = vec3(0.0), corner = vec3(0.0);
+  float stiffness = 0.0;
   SpringRange range = spring_range(i);
   for (int entry = range.first; entry < range.end; entry += GROUP_SIZE) {
     uvec4 s = FETCH(springs, entry);
@@ -23,6 +34,7 @@ void main() {
                           uintBitsToFloat(s.w));
     spring_matrix(x.xyz, y, s, n, along, across);
     if (s.x == uint(i)) continue;  // padding
+    stiffness += uintBitsToFloat(s.z) + uintBitsToFloat(s.w) / dt;
     vec3 apart = d - FETCH(change, s.x).xyz;
     product += across * apart + n * ((along - across) * dot(n, apart));
     diagonal += across + (along - across) * n * n;
@@ -45,7 +57,6 @@ void main() {
   vec3 a = 1.0 / vec3(diagonal.x, pivot_y, pivot_z), b = vec3(l_xy, l_xz, l_yz);
   block_a[i] = vec4(a, 0.0);
   block_b[i] = vec4(b, 0.0);
-  // What the residual is measured against, as an energy [J]: the vertex's own, and what forces give it in one step.
-  residual[i] = vec4(r, m * (dot(v, v) + dt * dt * dot(gravity.xyz, gravity.xyz)) + dt * dt * x.w * dot(force, force));
+  residual[i] = vec4(r, good_enough(x.w, v, force, stiffness, x.xyz, d));
   preconditioned[i] = vec4(filtered(solve_block(a, b, filtered(r, x.w, normal)), x.w, normal), 0.0);
 }

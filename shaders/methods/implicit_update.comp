@@ -2,13 +2,21 @@
 // order, and so comes to the same step and the same decision to stop; then each vertex takes its part of the step.
 #include "implicit_euler.glsl"
 #include "group_sums.glsl"
-READ_VEC4(constraint, 10);
+READ_VEC4(residual, 16);
+READ_VEC4(preconditioned, 17);
+READ_VEC4(direction, 18);
+READ_VEC4(direction_product, 19);
+READ_VEC4(change, 20);
 READ_VEC4(product, 9);
+READ_VEC4(constraint, 10);
 READ_VEC4(group_sums, 11);
 READ_VEC4(block_a, 12);
 READ_VEC4(block_b, 13);
-layout(std430, binding = 0) buffer Residual { vec4 residual[]; };
-layout(std430, binding = 1) buffer Preconditioned { vec4 preconditioned[]; };
+layout(std430, binding = 0) writeonly buffer Residual { vec4 next_residual[]; };
+layout(std430, binding = 1) writeonly buffer Preconditioned { vec4 next_preconditioned[]; };
+layout(std430, binding = 4) writeonly buffer Direction { vec4 next_direction[]; };
+layout(std430, binding = 5) writeonly buffer DirectionProduct { vec4 next_direction_product[]; };
+layout(std430, binding = 6) writeonly buffer Change { vec4 next_change[]; };
 layout(std430, binding = 3) buffer Control {
   uint groups, groups_y, groups_z;  // of the next iterations' dispatches: 0 once this solve has ended
   uint iterations;                  // of this solve
@@ -16,12 +24,8 @@ layout(std430, binding = 3) buffer Control {
   uint unused_1, unused_2, unused_3;
   vec2 steps[];  // of each iteration: residual times preconditioned residual, length of the step
 };
-layout(std430, binding = 4) buffer Direction { vec4 direction[]; };
-layout(std430, binding = 5) buffer DirectionProduct { vec4 direction_product[]; };
-layout(std430, binding = 6) buffer Change { vec4 change[]; };
 uniform int group_count;
 uniform int iteration;
-uniform float tolerance;  // of the residual, relative
 
 /// Every work group adds up what all wrote.
 vec4 total() {
@@ -41,7 +45,7 @@ void main() {
     kept = now / last.x;
     curvature -= kept * now / last.y;
   }
-  bool met = sum.z <= tolerance * tolerance * sum.w;
+  bool met = sum.z <= sum.w;
   bool ended = met || !(now > 0.0 && curvature > 0.0);  // or no precision is left
   float along = now / curvature;
   if (i == 0) {
@@ -55,19 +59,19 @@ void main() {
   }
   if (ended || i >= vertex_count) return;
 
-  vec3 p = preconditioned[i].xyz, q = FETCH(product, i).xyz;
+  vec3 p = FETCH(preconditioned, i).xyz, q = FETCH(product, i).xyz;
   if (iteration > 0) {
-    p += kept * direction[i].xyz;
-    q += kept * direction_product[i].xyz;
+    p += kept * FETCH(direction, i).xyz;
+    q += kept * FETCH(direction_product, i).xyz;
   }
-  direction[i] = vec4(p, 0.0);
-  direction_product[i] = vec4(q, 0.0);
-  change[i].xyz += along * p;
-  vec4 r = residual[i];
+  vec4 r = FETCH(residual, i);
   r.xyz -= along * q;
-  residual[i] = r;
   float inverse_mass = FETCH(position, i).w;
   vec3 normal = FETCH(constraint, i).xyz;
   vec3 z = solve_block(FETCH(block_a, i).xyz, FETCH(block_b, i).xyz, filtered(r.xyz, inverse_mass, normal));
-  preconditioned[i] = vec4(filtered(z, inverse_mass, normal), 0.0);
+  next_change[i] = vec4(FETCH(change, i).xyz + along * p, 0.0);
+  next_direction[i] = vec4(p, 0.0);
+  next_direction_product[i] = vec4(q, 0.0);
+  next_residual[i] = r;
+  next_preconditioned[i] = vec4(filtered(z, inverse_mass, normal), 0.0);
 }
