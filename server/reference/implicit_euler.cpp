@@ -22,18 +22,20 @@ constexpr int most_newton_steps =
 /// step.
 struct Equation {
   const World& world;
-  Vectors x, v;   ///< at the start, self-collision's impulse in v
+  Vectors x, v;   ///< at the start, with self-collision's push and impulse
   Vectors moved;  ///< [m/s]: (place at the end - x) / dt of the pinned vertices, 0 of the others
   double dt;
 
   explicit Equation(const StepStart& start)
-      : world(start.world), x(start.state.position), v(start.state.velocity), moved(x), dt(start.dt) {
-    Vectors unused(x.size());
-    place_pins(world, start.t + dt, moved, unused);
+      : world(start.world), x(start.state.position), v(start.state.velocity), dt(start.dt) {
     for (std::size_t i = 0; i < x.size(); ++i) {
-      moved[i] = (moved[i] - x[i]) / dt;
+      x[i] += start.push[i];
       v[i] += start.impulse[i];
     }
+    Vectors unused(x.size());
+    moved = x;
+    place_pins(world, start.t + dt, moved, unused);
+    for (std::size_t i = 0; i < x.size(); ++i) moved[i] = (moved[i] - x[i]) / dt;
   }
 
   Vectors end(const Vectors& u) const {
@@ -131,7 +133,7 @@ double line_search(const Equation& equation, const Vectors& u, const Vectors& du
 /// The state at the end of the step with velocity u.
 State end_state(const StepStart& start, const Equation& equation, const Vectors& u) {
   State next = start.state;
-  next.position = plus(equation.end(u), 1.0, start.push);
+  next.position = equation.end(u);
   next.velocity = u;
   next.residual = largest(equation.residual(u)) / equation.scale(u);
   return next;

@@ -1,0 +1,84 @@
+// The two sides of every claim about a method: the double-precision reference and the GPU's float32, behind
+// one face.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "server/reference/reference.h"
+#include "server/scene/method.h"
+#include "server/sim/colliders.h"
+#include "tests/scenes.h"
+
+namespace clothlab::test {
+
+enum class Side { reference, gpu };
+inline constexpr std::array sides{Side::reference, Side::gpu};
+inline const char* name(Side side) {
+  return side == Side::gpu ? "GPU, float32" : "reference, float64";
+}
+
+/// A scene being stepped on one side, from rest. On the GPU's side a context must be current on this thread.
+class Stepped {
+ public:
+  Stepped(Side side, const scene::Scene& scene)
+      : world_(world_of(scene)), state_(reference::at_rest(world_)) {
+    if (side == Side::gpu) simulation_ = simulation(scene);
+  }
+
+  void step(int count) {
+    if (simulation_) return simulation_->step(static_cast<std::uint32_t>(count));
+    for (int n = 0; n < count; ++n) reference::step(world_, state_);
+  }
+
+  /// The state now, the GPU's read back.
+  reference::State state() {
+    if (!simulation_) return state_;
+    const sim::State found = simulation_->read_state();
+    reference::State result;
+    result.position.assign(found.position.begin(), found.position.end());
+    result.velocity.assign(found.velocity.begin(), found.velocity.end());
+    return result;
+  }
+
+  /// Of the state now, summed in double precision on either side [J].
+  reference::Energy energy() { return reference::energy(world_, state()); }
+
+  /// Goes on from the present state with a changed scene of the same vertices.
+  void change(const scene::Scene& scene) {
+    world_ = world_of(scene);
+    if (!simulation_) {
+      state_.half_dt.clear();  // Verlet starts anew from the velocity it has
+      return;
+    }
+    const auto changed = simulation_->change(scene);
+    INFO((changed ? "" : changed.error().text()));
+    REQUIRE(changed);
+  }
+
+  /// Back to rest, with another dt.
+  void restart(double dt) {
+    scene::Scene scene = world_.scene;
+    scene.solver.dt = dt;
+    change(scene);
+    state_ = reference::at_rest(world_);
+    if (simulation_) simulation_->reset();
+  }
+
+  const reference::World& world() const { return world_; }
+
+ private:
+  static reference::World world_of(const scene::Scene& scene) {
+    Result<model::Model> model = model::build(scene);
+    REQUIRE(model);
+    return *reference::make_world(scene, sim::contact_margin(scene, *model));
+  }
+
+  reference::World world_;
+  reference::State state_;
+  std::unique_ptr<sim::Simulation> simulation_;
+};
+
+}  // namespace clothlab::test
