@@ -86,6 +86,9 @@ browserTest("another method is chosen from the panel, says what to expect of it,
   // 2.828 / omega instead of 2 / omega without damping; the seed's damping leaves it above 1.2.
   await eventually("the gauge", gauge, ({ value }) => value < before.value / 1.2);
   assert.equal(await viewer.input("range", "Solver", "iterations").count(), 0, "a method that does not iterate has no iterations");
+  await choice.selectOption("Implicit Euler");
+  await eventually("no limit", gauge, ({ says, text }) => says === "Stable at any time step" && !text.includes("limit"));
+  for (const label of ["iterations", "tolerance"]) await (await viewer.slider("Solver", label)).waitFor({ state: "visible" });
   const step = await viewer.read("step");
   await viewer.until((at) => window.clothlab.step > at + 10, step);
   await client.close();

@@ -63,7 +63,7 @@ export class Gauge {
     const now = reading(dt, dt_limit);
     const { style, dataset } = this.element;
     this.element.hidden = false;
-    if (dataset.verdict !== now.verdict) this.spoken.textContent = now.spoken;
+    if (dataset.verdict !== now.verdict) this.spoken.textContent = `time step: ${now.word.toLowerCase()}`;
     dataset.verdict = now.verdict;
     dataset.limited = String(dt_limit !== null && dt_limit > 0);
     style.setProperty("--filled", `${100 * now.filled}%`);

@@ -17,7 +17,7 @@ export function notice(level: Level, content: Content): void {
   box.className = `notice ${level}`;
   box.setAttribute("role", level === "error" ? "alert" : "status");
   const title = document.createElement("strong");
-  title.textContent = content.title.charAt(0).toUpperCase() + content.title.slice(1);
+  title.textContent = content.title.replace(/^[a-z](?=[a-z]{2})/, (letter) => letter.toUpperCase());  // but not dt
   box.append(title);
   for (const line of content.lines ?? []) {
     const paragraph = document.createElement("p");
