@@ -34,6 +34,7 @@ Plan plan(const scene::Scene& scene) {
     plan.shear |= cloth.material.shear > 0.0;
     plan.bend |= cloth.material.bend > 0.0;
     plan.pins |= !cloth.pins.empty();
+    plan.strain_limit |= cloth.material.strain_limit.has_value();
   }
   for (const scene::Collider& collider : scene.colliders)
     ++(std::holds_alternative<scene::Sphere>(collider.shape) ? plan.spheres : plan.planes);
@@ -63,6 +64,7 @@ std::vector<Simulation::Pass> passes(const Plan& plan) {
   add("bend_springs", plan.bend, "their stiffness is 0 in every cloth");
   add("self_contacts", plan.self_collision, "self_collision is null");
   add(scene::name(plan.method), true, "");
+  add("strain_limit", plan.strain_limit, "no cloth has a strain_limit");
   add("pins", plan.pins, "no cloth has pins");
   add("moving_poses", plan.moving > 0, "no pin and no collider moves");
   add("spheres", plan.spheres > 0, "the scene has no sphere");

@@ -8,6 +8,7 @@
 #include "server/sim/integrator.h"
 #include "server/sim/spring_lists.h"
 #include "server/sim/state.h"
+#include "server/sim/strain_limit.h"
 
 namespace clothlab::sim {
 
@@ -21,16 +22,19 @@ struct Kernels {
   std::optional<SelfCollision> self_collision;
   gl::TextureBuffer springs, slices;
   std::unique_ptr<Integrator> integrator;
+  std::optional<StrainLimit> strain_limit;
 
   Surroundings surroundings(const scene::Scene& scene) const {
     return {scene, model, motions, self_collision ? &*self_collision : nullptr};
   }
 };
 
-void upload_springs(Kernels& kernels, const scene::Scene& scene) {
+/// Returns the number of entries.
+std::size_t upload_springs(Kernels& kernels, const scene::Scene& scene) {
   const SpringLists lists = spring_lists(kernels.model, scene);
   kernels.springs = {gl::Buffer(lists.entries), GL_RGBA32UI};
   kernels.slices = {gl::Buffer(lists.slices), GL_R32UI};
+  return lists.entries.size();
 }
 
 MotionTable motion_table(const scene::Scene& scene, const Plan& plan) {
@@ -50,10 +54,15 @@ Result<Kernels> make_kernels(const scene::Scene& scene) {
     kernels.self_collision = std::move(*self_collision);
     kernels.self_collision->set_parameters(*scene.self_collision, kernels.model);
   }
-  upload_springs(kernels, scene);
+  const std::size_t entries = upload_springs(kernels, scene);
   Result<std::unique_ptr<Integrator>> integrator = make_integrator(kernels.surroundings(scene), kernels.plan);
   if (!integrator) return integrator.error();
   kernels.integrator = std::move(*integrator);
+  if (kernels.plan.strain_limit) {
+    Result<StrainLimit> limit = StrainLimit::create(kernels.surroundings(scene), kernels.plan, entries);
+    if (!limit) return limit.error();
+    kernels.strain_limit = std::move(*limit);
+  }
   return kernels;
 }
 
@@ -118,6 +127,7 @@ struct Simulation::Implementation {
       state.position().bind(unit_position);
       if (kernels.self_collision) kernels.self_collision->update_lists();
       kernels.integrator->step(state, static_cast<int>(step) * kernels.plan.pose_rows());
+      if (kernels.strain_limit) kernels.strain_limit->apply(state);
     }
     step_index += count;
   }
@@ -180,6 +190,8 @@ Result<ChangeDepth> Simulation::change(const scene::Scene& scene) {
     if (self.kernels.self_collision)
       self.kernels.self_collision->set_parameters(*scene.self_collision, self.kernels.model);
     self.kernels.integrator->set_parameters(self.kernels.surroundings(scene));
+    if (self.kernels.strain_limit)
+      self.kernels.strain_limit->set_parameters(self.kernels.surroundings(scene));
   }
   self.adopt(scene);
   return depth;
@@ -198,6 +210,7 @@ void Simulation::reset() {
   self.state.reset(self.kernels.model, self.kernels.motions);
   if (self.kernels.self_collision) self.kernels.self_collision->invalidate();
   self.kernels.integrator->restart();
+  if (self.kernels.strain_limit) self.kernels.strain_limit->restart();
   self.step_index = self.start_step = 0;
   self.start_time = 0.0;
 }
@@ -223,6 +236,10 @@ std::vector<Simulation::Pass> Simulation::passes() const {
 
 SolverWork Simulation::solver_work() const {
   return implementation_->kernels.integrator->work();
+}
+StrainLimitWork Simulation::strain_limit_work() const {
+  return implementation_->kernels.strain_limit ? implementation_->kernels.strain_limit->work()
+                                               : StrainLimitWork{};
 }
 std::uint64_t Simulation::dispatches() const {
   return implementation_->kernels.integrator->dispatches();

@@ -53,6 +53,12 @@ struct SolverWork {
   std::uint64_t unconverged = 0;  ///< linear solves that ended before the tolerance was met
 };
 
+/// What the strain limit has done.
+struct StrainLimitWork {
+  std::uint64_t sweeps = 0;
+  std::uint64_t unconverged = 0;  ///< steps that ended with a spring longer than it may be
+};
+
 class Simulation {
  public:
   static Result<std::unique_ptr<Simulation>> create(const scene::Scene& scene);
@@ -77,6 +83,8 @@ class Simulation {
 
   /// What the present method's equation solver has done since the kernels were made.
   SolverWork solver_work() const;
+  /// What the strain limit has done since the kernels were made.
+  StrainLimitWork strain_limit_work() const;
   /// Dispatches that the present method has queued since the kernels were made, without self-collision's.
   std::uint64_t dispatches() const;
 

@@ -18,6 +18,8 @@ class StateBuffers {
   /// The copy that holds the present state; after `swap` the other one.
   const gl::TextureBuffer& position() const { return position_[current_]; }
   const gl::TextureBuffer& velocity() const { return velocity_[current_]; }
+  /// Where the last step began, until the next one.
+  const gl::TextureBuffer& previous_position() const { return position_[1 - current_]; }
   void bind_for_step() const;  ///< the present copy for reading, the other for writing
   void bind_outputs() const;   ///< the other copy for writing
   void swap() { current_ = 1 - current_; }

@@ -1,0 +1,124 @@
+#include "server/sim/strain_limit.h"
+
+#include <algorithm>
+#include <glm/mat3x3.hpp>
+
+namespace clothlab::sim {
+
+namespace {
+
+constexpr int most_sweeps = 512;
+constexpr int sweeps_between_looks = 8;
+
+/// As in strain_limit_sweep.comp.
+struct Control {
+  std::uint32_t groups = 0, groups_y = 1, groups_z = 1;
+  std::uint32_t sweeps = 0;
+};
+
+/// Jacobi's iteration converges below 2 over the largest eigenvalue of the springs' coupling, which is at
+/// most that of sum n n^T over the springs of any one vertex, whatever the masses: (a - b)^2 / (v + w) <= a^2
+/// / v + b^2 / w. The largest row sum bounds that in turn. A margin is left for springs that turn.
+float relaxation(const model::Model& model) {
+  std::vector<glm::dmat3> coupling(model.vertex_count(), glm::dmat3(0.0));
+  for (const model::Spring& spring : model.springs) {
+    const glm::dvec3 d = model.rest_position[spring.a] - model.rest_position[spring.b];
+    const double squared = glm::dot(d, d);
+    if (!(squared > 0.0)) continue;
+    const glm::dmat3 share = glm::outerProduct(d, d) / squared;
+    coupling[spring.a] += share;
+    coupling[spring.b] += share;
+  }
+  double largest = 1.0;
+  for (const glm::dmat3& c : coupling)
+    for (int row = 0; row < 3; ++row)
+      largest = std::max(largest, std::abs(c[0][row]) + std::abs(c[1][row]) + std::abs(c[2][row]));
+  return static_cast<float>(1.6 / largest);
+}
+
+void wait() {
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
+                  GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+}  // namespace
+
+Result<StrainLimit> StrainLimit::create(const Surroundings& around, const Plan& plan, std::size_t entries) {
+  StrainLimit made;
+  gl::Defines defines = step_defines(plan);
+  defines.emplace_back("CLOTH_COUNT", std::to_string(around.scene.cloths.size()));
+  for (auto [program, path] : {std::pair{&made.start_, "methods/strain_limit_start.comp"},
+                               {&made.sweep_, "methods/strain_limit_sweep.comp"},
+                               {&made.end_, "methods/strain_limit_end.comp"}}) {
+    Result<gl::Program> loaded = gl::Program::load({path}, defines);
+    if (!loaded) return loaded.error();
+    *program = std::move(*loaded);
+  }
+  const std::uint32_t count = around.model.vertex_count();
+  made.groups_ = vertex_groups(count);
+  for (gl::TextureBuffer& position : made.position_)
+    position = {gl::Buffer(count * 4 * sizeof(float)), GL_RGBA32F};
+  for (gl::TextureBuffer& excess : made.group_excess_)
+    excess = {gl::Buffer(made.groups_ * 4 * sizeof(float)), GL_RGBA32F};
+  made.pulls_ = gl::Buffer(std::max<std::size_t>(entries, 1) * sizeof(float));
+  made.control_ = gl::Buffer(sizeof(Control));
+  made.restart();
+  made.set_parameters(around);
+  return made;
+}
+
+void StrainLimit::set_parameters(const Surroundings& around) {
+  for (const gl::Program* program : {&start_, &sweep_, &end_}) set_step_uniforms(*program, around);
+  std::vector<float> limits;
+  for (const scene::Cloth& cloth : around.scene.cloths)
+    limits.push_back(static_cast<float>(cloth.material.strain_limit.value_or(-1.0)));
+  const GLuint sweep = sweep_.id();
+  glProgramUniform1fv(sweep, sweep_.uniform("limit"), static_cast<GLsizei>(limits.size()), limits.data());
+  glProgramUniform1i(sweep, sweep_.uniform("group_count"), static_cast<GLint>(groups_));
+  glProgramUniform1f(sweep, sweep_.uniform("relaxation"), relaxation(around.model));
+  // A pull is a force times dt^2.
+  if (around.scene.solver.dt != dt_) restart();
+  dt_ = around.scene.solver.dt;
+}
+
+void StrainLimit::apply(StateBuffers& state) {
+  state.position().bind(unit_position);
+  state.previous_position().bind(10);
+  position_[0].buffer.bind_storage(0);
+  pulls_.bind_storage(3);
+  start_.use();
+  glDispatchCompute(groups_, 1, 1);
+  wait();
+
+  Control control;
+  control.groups = groups_;
+  control_.upload(&control, sizeof control);
+  sweep_.use();
+  control_.bind_storage(4);
+  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, control_.id());
+  const GLint sweep_location = sweep_.uniform("sweep");
+  for (int done = 0; done < most_sweeps && control.groups > 0; done += sweeps_between_looks) {
+    for (int sweep = done; sweep < done + sweeps_between_looks; ++sweep) {
+      const std::size_t now = static_cast<std::size_t>(sweep) % 2;
+      position_[now].bind(unit_position);
+      group_excess_[now].bind(9);
+      position_[1 - now].buffer.bind_storage(0);
+      group_excess_[1 - now].buffer.bind_storage(1);
+      glUniform1i(sweep_location, sweep);
+      glDispatchComputeIndirect(0);
+      wait();
+    }
+    control_.download(&control, sizeof control);
+  }
+  work_.sweeps += control.sweeps;
+  work_.unconverged += control.groups > 0 ? 1 : 0;
+
+  state.bind_for_step();
+  position_[control.sweeps % 2].bind(9);
+  end_.use();
+  glDispatchCompute(groups_, 1, 1);
+  wait();
+  state.swap();
+}
+
+}  // namespace clothlab::sim

@@ -1,0 +1,37 @@
+// Provot 1995, section 4: after a step of any method, springs longer than they may be are shortened by moving their ends,
+// each by its inverse mass, until none is left; the velocities take the same correction. All springs are looked at at once,
+// from the positions of the sweep before (projected Jacobi), so the outcome depends on no order. They pull along the
+// direction they had at the step's start, as in SHAKE (Ryckaert, Ciccotti & Berendsen 1977), which keeps the angular
+// momentum; where a spring has turned by more than 60 degrees in the step, along the one it has now. By how much a limit has
+// pulled is kept and begins the next step (warm starting): otherwise the weight of a hanging cloth would have to find its
+// way up to the pins anew in every step.
+layout(local_size_x = GROUP_SIZE) in;
+#include "../access.glsl"
+#include "../elements/types.glsl"
+#include "../collide/spring_lists.glsl"
+
+READ_VEC4(position, 0);       // w: inverse mass [1/kg], 0 if pinned
+READ_VEC4(rest_position, 7);  // w: the cloth
+READ_VEC4(start_position, 10);  // at the step's start
+uniform int vertex_count;
+uniform float limit[CLOTH_COUNT];  // largest strain of each cloth's springs; negative: none
+
+/// Springs are pulled to this share of the limit below it, so that the sweeps can end with none above.
+const float margin = 0.02;
+
+vec3 unit(vec3 d, out float size) {
+  float squared = dot(d, d), inverse = squared > 0.0 ? inversesqrt(squared) : 0.0;
+  size = squared * inverse;
+  return d * inverse;
+}
+
+/// The way in which the spring between vertices i and j, now at x and y, pulls i away from j; and by how much the spring
+/// grows if they are moved apart that way by 1.
+vec3 pull_direction(int i, uint j, vec3 x, vec3 y, out float distance, out float growth) {
+  float before;
+  vec3 n = unit(x - y, distance), n_start = unit(FETCH(start_position, i).xyz - FETCH(start_position, j).xyz, before);
+  growth = dot(n, n_start);
+  if (growth > 0.5) return n_start;
+  growth = 1.0;
+  return n;
+}

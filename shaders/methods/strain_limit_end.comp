@@ -1,0 +1,16 @@
+// The strain limit, once a step: the corrected positions become the state's, and the velocities follow.
+#include "strain_limit.glsl"
+READ_VEC4(velocity, 1);
+READ_VEC4(corrected_position, 9);
+layout(std430, binding = 0) writeonly buffer NextPosition { vec4 next_position[]; };
+layout(std430, binding = 1) writeonly buffer NextVelocity { vec4 next_velocity[]; };
+uniform float dt;  // [s]
+
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  if (i >= vertex_count) return;
+  vec4 x = FETCH(position, i), v = FETCH(velocity, i);
+  vec3 corrected = FETCH(corrected_position, i).xyz;
+  next_position[i] = vec4(corrected, x.w);
+  next_velocity[i] = vec4(v.xyz + (corrected - x.xyz) / dt, v.w);
+}

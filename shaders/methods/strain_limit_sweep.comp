@@ -1,0 +1,57 @@
+// The strain limit, one sweep: each spring's pull changes by a part of what it lacks, and its ends move accordingly. A work
+// group first looks at what the sweep before found; if that was good enough, all leave everything as it is.
+#include "strain_limit.glsl"
+#include "group_sums.glsl"
+READ_VEC4(group_excess, 9);
+layout(std430, binding = 0) writeonly buffer NextPosition { vec4 next_position[]; };
+layout(std430, binding = 1) writeonly buffer Excess { vec4 next_group_excess[]; };  // x: largest, in shares of the limit
+layout(std430, binding = 3) buffer Pulls { float pulls[]; };
+layout(std430, binding = 4) buffer Control {
+  uint groups, groups_y, groups_z;  // of the next sweeps' dispatches: 0 once they have ended
+  uint sweeps;
+};
+uniform int group_count;
+uniform int sweep;
+uniform float relaxation;
+
+float excess_before() {
+  float most = 0.0;
+  for (int group = int(gl_LocalInvocationID.x); group < group_count; group += GROUP_SIZE)
+    most = max(most, FETCH(group_excess, group).x);
+  return largest_of_group(most);
+}
+
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  bool ended = sweep > 0 && excess_before() <= margin;
+  if (ended) {
+    if (i == 0) groups = 0;
+    return;
+  }
+  if (i == 0) sweeps = uint(sweep) + 1;
+  float most = 0.0;
+  if (i < vertex_count) {
+    vec4 x = FETCH(position, i);
+    vec3 moved = vec3(0.0);
+    float largest_strain = limit[int(FETCH(rest_position, i).w)];
+    SpringRange range = spring_range(i);
+    for (int entry = range.first; entry < range.end; entry += GROUP_SIZE) {
+      uvec4 s = FETCH(springs, entry);
+      vec4 y = FETCH(position, s.x);
+      float rest_length = uintBitsToFloat(s.y), pull = pulls[entry], distance, growth;
+      vec3 n = pull_direction(i, s.x, x.xyz, y.xyz, distance, growth);
+      float allowed = largest_strain * rest_length;
+      float excess = distance - rest_length - allowed * (1.0 - margin);
+      float mobility = x.w + y.w;
+      if (!(excess > 0.0 || pull > 0.0) || largest_strain < 0.0 || mobility == 0.0) continue;
+      float changed = max(pull + relaxation * excess / (mobility * growth), 0.0);
+      pulls[entry] = changed;
+      moved -= (changed - pull) * n;
+      // What is left to do: too long, or too short because of the pull.
+      most = max(most, (changed > 0.0 ? abs(excess) : excess) / allowed);
+    }
+    next_position[i] = vec4(x.xyz + x.w * moved, x.w);
+  }
+  most = largest_of_group(most);
+  if (gl_LocalInvocationID.x == 0) next_group_excess[gl_WorkGroupID.x] = vec4(most, 0.0, 0.0, 0.0);
+}

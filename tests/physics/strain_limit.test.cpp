@@ -1,0 +1,128 @@
+// Provot's strain limit after a step of every method.
+#include <algorithm>
+
+#include "server/scene/method.h"
+#include "tests/scenes.h"
+
+using namespace clothlab;
+
+namespace {
+
+/// The seed's cloth, 0.1 kg a vertex, hanging still from two corners: its springs alone would stretch by a
+/// third.
+scene::Scene heavy(scene::Method method, std::optional<double> limit) {
+  scene::Scene scene = test::sheet(25, 25);
+  scene.cloths[0].pins = {{scene::AtCorner{0, 0}, {}}, {scene::AtCorner{24, 0}, {}}};
+  scene.cloths[0].material.strain_limit = limit;
+  scene.solver.method = method;
+  scene.solver.iterations = 1;
+  // Explicit Euler holds below damping / stiffness only, 1e-4 s; implicit Euler at any step.
+  scene.solver.dt = method == scene::Method::explicit_euler ? 5e-5 : 1e-3;
+  if (method == scene::Method::implicit_euler) scene.solver.dt = 5e-3;
+  return scene;
+}
+
+/// Longest spring over its length at rest, less 1: stretch alone, where max_strain counts compression, too.
+double largest_stretch(sim::Simulation& simulation) {
+  const sim::State state = simulation.read_state();
+  double largest = 0.0;
+  for (const model::Spring& spring : simulation.model().springs)
+    largest = std::max(
+        largest, glm::distance(glm::dvec3(state.position[spring.a]), glm::dvec3(state.position[spring.b])) /
+                         spring.rest_length -
+                     1.0);
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "with a strain limit no spring of a heavy hanging cloth is longer than that after a step of any method") {
+  const auto context = test::context();
+  constexpr double limit = 0.1;
+  for (const scene::Method method : scene::methods) {
+    INFO(scene::name(method));
+    const scene::Scene scene = heavy(method, limit);
+    const auto simulation = test::simulation(scene);
+    const auto steps = static_cast<std::uint32_t>(0.4 / scene.solver.dt);
+    for (std::uint32_t look = 0; look < 10; ++look) {
+      simulation->step(steps / 10);
+      // Roundings of the two ends' coordinates, about 1 m, over the shortest spring.
+      CHECK(largest_stretch(*simulation) <= limit + 4 * 0x1p-24 / (1.0 / 24));
+    }
+    CHECK(simulation->strain_limit_work().unconverged == 0);
+    CHECK(simulation->strain_limit_work().sweeps > simulation->step_index());  // it had work to do
+  }
+}
+
+TEST_CASE("without a strain limit the same cloth's springs get longer than that") {
+  const auto context = test::context();
+  const auto simulation = test::simulation(heavy(scene::Method::symplectic_euler, std::nullopt));
+  simulation->step(400);
+  CHECK(largest_stretch(*simulation) > 0.2);
+}
+
+TEST_CASE("the strain limit leaves pins exactly where their motion takes them") {
+  const auto context = test::context();
+  scene::Scene scene = heavy(scene::Method::symplectic_euler, 0.1);
+  const auto free = test::simulation([&] {
+    scene::Scene other = scene;
+    other.cloths[0].material.strain_limit.reset();
+    return other;
+  }());
+  const auto limited = test::simulation(scene);
+  for (sim::Simulation* simulation : {free.get(), limited.get()}) simulation->step(300);
+  const sim::State expected = free->read_state(), found = limited->read_state();
+  for (const std::size_t pin : {std::size_t{0}, std::size_t{24}})
+    CHECK(found.position[pin] == expected.position[pin]);
+}
+
+TEST_CASE("the strain limit keeps the momentum of a free sheet whose springs are all too long") {
+  const auto context = test::context();
+  scene::Scene scene = test::sheet(9, 7);
+  scene.gravity = {0.0, 0.0, 0.0};
+  scene.cloths[0].mass = {scene::Mass::Kind::area_density, 0.5};
+  // A spin about the sheet's normal so fast that it is torn apart: v^2 / r = 100 m/s^2 at the edge.
+  scene.cloths[0].material = {50.0, 50.0, 0.0, 0.0, 0.02};
+  scene.cloths[0].pins = {{scene::AtVertex{31}, scene::Spin{{0.0, 1.0, 0.0}, {0.0, 1.0, 0.5}, 2000.0}},
+                          {scene::AtVertex{32}, scene::Spin{{0.0, 1.0, 0.0}, {0.0, 1.0, 0.5}, 2000.0}}};
+  const auto simulation = test::simulation(scene);
+  simulation->step(300);
+  scene.cloths[0].pins.clear();
+  REQUIRE(simulation->change(scene));
+  const auto momentum = [&] {
+    const sim::State state = simulation->read_state();
+    glm::dvec3 linear(0.0), angular(0.0);
+    double scale = 0.0;
+    for (std::size_t i = 0; i < state.position.size(); ++i) {
+      const glm::dvec3 p = simulation->model().mass[i] * glm::dvec3(state.velocity[i]);
+      linear += p;
+      angular += glm::cross(glm::dvec3(state.position[i]) - glm::dvec3(0.0, 1.0, 0.5), p);
+      scale += glm::length(p);
+    }
+    return std::tuple{linear, angular, scale};
+  };
+  const auto [linear_before, angular_before, scale] = momentum();
+  const std::uint64_t sweeps_before = simulation->strain_limit_work().sweeps;
+  simulation->step(100);
+  CHECK(simulation->strain_limit_work().sweeps > sweeps_before + 100);
+  const auto [linear, angular, scale_after] = momentum();
+  // A correction is a difference of two positions, about 1.2 m from the origin, each rounded, over dt:
+  // independent from vertex to vertex and step to step, so four standard deviations of their sum. Arms are
+  // below 1 m.
+  const double mass = simulation->model().mass[31];
+  const double rounding = 0x1p-24 * 1.2 / scene.solver.dt * mass * std::sqrt(63.0 * 100.0);
+  CHECK(glm::distance(linear, linear_before) < 4 * rounding);
+  CHECK(glm::distance(angular, angular_before) < 4 * rounding);
+  CHECK(4 * rounding < 1e-4 * scale);
+}
+
+TEST_CASE("a strain limit that nothing reaches changes no bit of the outcome") {
+  const auto context = test::context();
+  scene::Scene scene = heavy(scene::Method::symplectic_euler, 10.0);
+  const auto limited = test::simulation(scene);
+  scene.cloths[0].material.strain_limit.reset();
+  const auto free = test::simulation(scene);
+  for (sim::Simulation* simulation : {free.get(), limited.get()}) simulation->step(100);
+  CHECK(sim::state_hash(limited->read_state()) == sim::state_hash(free->read_state()));
+}
