@@ -1,6 +1,5 @@
 // Scenes whose motion has a closed form, as plain data: for the tests of the reference and of the GPU alike.
-// Each is doubled sideways (a grid has two columns at least): two copies side by side that move as one, the
-// springs between them at rest.
+// A grid has two columns at least: each scene is two copies side by side that move as one.
 #pragma once
 
 #include <cmath>
@@ -17,31 +16,41 @@ inline scene::Scene bare_scene(scene::Method method, double dt) {
   return scene;
 }
 
-/// One spring of 1 m, 16 N/m, along z, with 1 kg at its end: omega = 4 / s. A force of 1.6 N along z has its
-/// balance at z = 1.1 m; it starts unstretched, 0.1 m from there. Damping ratio z = damping / 8.
-inline scene::Scene one_spring(scene::Method method, double dt, double damping = 0.0) {
+/// A strip of `columns` x `rows` vertices of 1 kg, `height` long, hung by its first row; no springs yet.
+inline scene::Scene hung_strip(scene::Method method, double dt, int columns, int rows, double width,
+                               double height) {
   scene::Scene scene = bare_scene(method, dt);
-  scene.gravity = {0.0, 0.0, 1.6};
   scene::Cloth cloth;
-  cloth.mesh = scene::Grid{2, 2, 1.0, 1.0};
+  cloth.mesh = scene::Grid{columns, rows, width, height};
   cloth.mass = {scene::Mass::Kind::per_vertex, 1.0};
-  cloth.material = {16.0, 0.0, 0.0, damping};
+  cloth.material = {0.0, 0.0, 0.0, 0.0};
   cloth.pins = {{scene::AtEdge{scene::AtEdge::Line::row, 0}, {}}};
   scene.cloths = {cloth};
   return scene;
 }
-inline constexpr std::size_t spring_end = 2;      ///< a vertex of one_spring that moves
+
+/// One spring of 1 m, 16 N/m, along z, with 1 kg at its end: omega = 4 / s. It starts unstretched, at rest,
+/// `amplitude` [m] from the balance that gravity along z gives it. Damping ratio z = damping / 8. It is a
+/// bend spring, over a row that is pinned too: no spring joins the two copies.
+inline scene::Scene one_spring(scene::Method method, double dt, double damping = 0.0,
+                               double amplitude = 0.1) {
+  scene::Scene scene = hung_strip(method, dt, 2, 3, 1.0, 1.0);
+  scene.gravity = {0.0, 0.0, 16.0 * amplitude};
+  scene.cloths[0].material = {0.0, 0.0, 16.0, damping};
+  scene.cloths[0].pins.push_back({scene::AtEdge{scene::AtEdge::Line::row, 1}, {}});
+  return scene;
+}
+inline constexpr std::size_t spring_end = 4;      ///< a vertex of one_spring that moves
 inline constexpr double spring_omega = 4.0;       ///< [1/s]
 inline constexpr double spring_balance = 1.1;     ///< its z at balance [m]
 inline constexpr double spring_amplitude = -0.1;  ///< z - balance at the start [m]
 
 /// A chain of `links` springs of 1/links m along z from a pinned end, `mass` at each node [kg], k [N/m] each.
+/// Springs across join the two copies; they stay at rest.
 inline scene::Scene chain(scene::Method method, double dt, int links, double k, double mass) {
-  scene::Scene scene = one_spring(method, dt);
-  scene.gravity = glm::dvec3(0.0);
-  scene.cloths[0].mesh = scene::Grid{2, links + 1, 1.0, 1.0};
+  scene::Scene scene = hung_strip(method, dt, 2, links + 1, 1.0, 1.0);
   scene.cloths[0].mass.value = mass;
-  scene.cloths[0].material = {k, 0.0, 0.0, 0.0};
+  scene.cloths[0].material.structural = k;
   return scene;
 }
 
@@ -53,7 +62,7 @@ inline scene::Scene pendulum(scene::Method method, double dt, double degrees, do
   const double angle = degrees * std::acos(-1.0) / 180.0;
   scene.gravity =
       9.81 * glm::dvec3(0.0, -std::sin(angle), std::cos(angle));  // the grid's +z makes `degrees` with it
-  scene.cloths[0].material = {k, 0.0, 0.0, 0.0};
+  scene.cloths[0].material.bend = k;
   return scene;
 }
 

@@ -175,8 +175,9 @@ TEST_CASE(
   for (const Method method : {Method::explicit_euler, Method::symplectic_euler, Method::verlet, Method::rk4,
                               Method::implicit_euler}) {
     scene::Scene scene = test::one_spring(method, 0.01);
-    scene.cloths[0].pins = {{scene::AtEdge{scene::AtEdge::Line::row, 0}, scene::Linear{{0.3, 0.0, 0.0}}},
-                            {scene::AtEdge{scene::AtEdge::Line::row, 1}, scene::Linear{{0.3, 0.0, 0.0}}}};
+    const scene::Linear sideways{{0.3, 0.0, 0.0}};
+    for (const int row : {0, 1, 2})
+      scene.cloths[0].pins.push_back({scene::AtEdge{scene::AtEdge::Line::row, row}, sideways});
     const reference::World world = world_of(scene);
     reference::State state = reference::at_rest(world);
     for (int n = 0; n < 100; ++n) reference::step(world, state);
