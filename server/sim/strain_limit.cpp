@@ -60,7 +60,8 @@ Result<StrainLimit> StrainLimit::create(const Surroundings& around, const Plan& 
     position = {gl::Buffer(count * 4 * sizeof(float)), GL_RGBA32F};
   for (gl::TextureBuffer& excess : made.group_excess_)
     excess = {gl::Buffer(made.groups_ * 4 * sizeof(float)), GL_RGBA32F};
-  made.pulls_ = gl::Buffer(std::max<std::size_t>(entries, 1) * sizeof(float));
+  for (gl::TextureBuffer& pulls : made.pulls_)
+    pulls = {gl::Buffer(std::max<std::size_t>(entries, 1) * sizeof(float)), GL_R32F};
   made.control_ = gl::Buffer(sizeof(Control));
   made.restart();
   made.set_parameters(around);
@@ -85,7 +86,7 @@ void StrainLimit::apply(StateBuffers& state) {
   state.position().bind(unit_position);
   state.previous_position().bind(10);
   position_[0].buffer.bind_storage(0);
-  pulls_.bind_storage(3);
+  pulls_[current_].bind(11);
   start_.use();
   glDispatchCompute(groups_, 1, 1);
   wait();
@@ -99,11 +100,14 @@ void StrainLimit::apply(StateBuffers& state) {
   const GLint sweep_location = sweep_.uniform("sweep");
   for (int done = 0; done < most_sweeps && control.groups > 0; done += sweeps_between_looks) {
     for (int sweep = done; sweep < done + sweeps_between_looks; ++sweep) {
-      const std::size_t now = static_cast<std::size_t>(sweep) % 2;
-      position_[now].bind(unit_position);
-      group_excess_[now].bind(9);
-      position_[1 - now].buffer.bind_storage(0);
-      group_excess_[1 - now].buffer.bind_storage(1);
+      const auto from = static_cast<std::size_t>(sweep) % 2, to = 1 - from;
+      const std::size_t pulls_from = (current_ + from) % 2;
+      position_[from].bind(unit_position);
+      pulls_[pulls_from].bind(11);
+      group_excess_[from].bind(9);
+      position_[to].buffer.bind_storage(0);
+      group_excess_[to].buffer.bind_storage(1);
+      pulls_[1 - pulls_from].buffer.bind_storage(3);
       glUniform1i(sweep_location, sweep);
       glDispatchComputeIndirect(0);
       wait();
@@ -115,6 +119,7 @@ void StrainLimit::apply(StateBuffers& state) {
 
   state.bind_for_step();
   position_[control.sweeps % 2].bind(9);
+  current_ = (current_ + control.sweeps) % 2;
   end_.use();
   glDispatchCompute(groups_, 1, 1);
   wait();

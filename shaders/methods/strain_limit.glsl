@@ -7,29 +7,29 @@
 // way up to the pins anew in every step.
 layout(local_size_x = GROUP_SIZE) in;
 #include "../access.glsl"
+#include "../rarely.glsl"
 #include "../elements/types.glsl"
 #include "../collide/spring_lists.glsl"
 
 READ_VEC4(position, 0);       // w: inverse mass [1/kg], 0 if pinned
 READ_VEC4(rest_position, 7);  // w: the cloth
 READ_VEC4(start_position, 10);  // at the step's start
+READ_FLOAT(pulls, 11);  // of each entry of the spring lists: impulse times dt, 0 or more [kg m]
 uniform int vertex_count;
 uniform float limit[CLOTH_COUNT];  // largest strain of each cloth's springs; negative: none
 
 /// Springs are pulled to this share of the limit below it, so that the sweeps can end with none above.
 const float margin = 0.02;
 
-vec3 unit(vec3 d, out float size) {
-  float squared = dot(d, d), inverse = squared > 0.0 ? inversesqrt(squared) : 0.0;
-  size = squared * inverse;
-  return d * inverse;
+vec3 unit(vec3 d) {
+  float squared = dot(d, d);
+  return squared > 0.0 ? d * inversesqrt(squared) : vec3(0.0);
 }
 
-/// The way in which the spring between vertices i and j, now at x and y, pulls i away from j; and by how much the spring
-/// grows if they are moved apart that way by 1.
-vec3 pull_direction(int i, uint j, vec3 x, vec3 y, out float distance, out float growth) {
-  float before;
-  vec3 n = unit(x - y, distance), n_start = unit(FETCH(start_position, i).xyz - FETCH(start_position, j).xyz, before);
+/// The way in which a spring that is now along d, and was along d_start, pulls its first end away from its second; and by
+/// how much it grows if the ends are moved apart that way by 1.
+vec3 pull_direction(vec3 d, vec3 d_start, out float growth) {
+  vec3 n = unit(d), n_start = unit(d_start);
   growth = dot(n, n_start);
   if (growth > 0.5) return n_start;
   growth = 1.0;

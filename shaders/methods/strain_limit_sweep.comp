@@ -5,7 +5,7 @@
 READ_VEC4(group_excess, 9);
 layout(std430, binding = 0) writeonly buffer NextPosition { vec4 next_position[]; };
 layout(std430, binding = 1) writeonly buffer Excess { vec4 next_group_excess[]; };  // x: largest, in shares of the limit
-layout(std430, binding = 3) buffer Pulls { float pulls[]; };
+layout(std430, binding = 3) writeonly buffer Pulls { float next_pulls[]; };
 layout(std430, binding = 4) buffer Control {
   uint groups, groups_y, groups_z;  // of the next sweeps' dispatches: 0 once they have ended
   uint sweeps;
@@ -32,23 +32,25 @@ void main() {
   float most = 0.0;
   if (i < vertex_count) {
     vec4 x = FETCH(position, i);
-    vec3 moved = vec3(0.0);
+    vec3 x_start = FETCH(start_position, i).xyz, moved = vec3(0.0);
     float largest_strain = limit[int(FETCH(rest_position, i).w)];
     SpringRange range = spring_range(i);
     for (int entry = range.first; entry < range.end; entry += GROUP_SIZE) {
       uvec4 s = FETCH(springs, entry);
       vec4 y = FETCH(position, s.x);
-      float rest_length = uintBitsToFloat(s.y), pull = pulls[entry], distance, growth;
-      vec3 n = pull_direction(i, s.x, x.xyz, y.xyz, distance, growth);
-      float allowed = largest_strain * rest_length;
-      float excess = distance - rest_length - allowed * (1.0 - margin);
-      float mobility = x.w + y.w;
-      if (!(excess > 0.0 || pull > 0.0) || largest_strain < 0.0 || mobility == 0.0) continue;
-      float changed = max(pull + relaxation * excess / (mobility * growth), 0.0);
-      pulls[entry] = changed;
-      moved -= (changed - pull) * n;
-      // What is left to do: too long, or too short because of the pull.
-      most = max(most, (changed > 0.0 ? abs(excess) : excess) / allowed);
+      vec3 d = x.xyz - y.xyz;
+      float pull = FETCH_FLOAT(pulls, entry), changed = pull;
+      float rest_length = uintBitsToFloat(s.y), allowed = largest_strain * rest_length, mobility = x.w + y.w;
+      float excess = length(d) - rest_length - allowed * (1.0 - margin);
+      RARELY((excess > 0.0 || pull > 0.0) && allowed > 0.0 && mobility > 0.0) {
+        float growth;
+        vec3 n = pull_direction(d, x_start - FETCH(start_position, s.x).xyz, growth);
+        changed = max(pull + relaxation * excess / (mobility * growth), 0.0);
+        moved -= (changed - pull) * n;
+        // What is left to do: too long, or too short because of the pull.
+        most = max(most, (changed > 0.0 ? abs(excess) : excess) / allowed);
+      }
+      next_pulls[entry] = changed;
     }
     next_position[i] = vec4(x.xyz + x.w * moved, x.w);
   }

@@ -1,0 +1,117 @@
+// What a step of each method costs on the seed scene with another number of vertices a side: time,
+// dispatches, bytes. The methods take turns in every round, so that a noisy machine disturbs all alike and
+// their ratios mean something. bench_methods SIDE ROUNDS: one JSON line a method; methods.mjs runs it for all
+// sizes.
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <vector>
+
+#include "server/gl/context.h"
+#include "server/scene/method.h"
+#include "server/sim/simulation.h"
+
+using namespace clothlab;
+
+namespace {
+
+/// Without self-collision, which costs the same under every method. dt below each method's limit; implicit
+/// Euler at the 1/60 s it is used with, one Newton step.
+scene::Scene seed_of(int side, scene::Method method) {
+  scene::Scene scene;
+  scene::Cloth cloth;
+  cloth.mesh = scene::Grid{side, side, 1.0, 1.0};
+  cloth.transform.translate = {0.0, 1.0, 0.0};
+  const scene::Oscillate swing{{0.0, 0.0, 1.0}, 0.2, 0.5};
+  cloth.pins = {{scene::AtCorner{0, 0}, swing}, {scene::AtCorner{side - 1, 0}, swing}};
+  scene.cloths = {cloth};
+  scene.colliders = {{"ball", scene::Sphere{{0.0, 0.6, 0.0}, 0.25}, 0.3, 0.0, {}}};
+  scene.solver = {method, 1e-3, 1, 1e-4};
+  if (method == scene::Method::explicit_euler) scene.solver.dt = 5e-5;
+  if (method == scene::Method::implicit_euler) scene.solver.dt = 1.0 / 60;
+  return scene;
+}
+
+/// Bytes that the kernels of one step read and write for a vertex with `entries` springs, caches not counted:
+/// 16 for each spring entry, position, velocity or other vector, as the shaders of server/sim list them.
+double bytes_a_vertex(scene::Method method, double entries, double iterations) {
+  const double vector = 16;
+  const double gather = entries * 3 * vector + 2 * vector;  // of each spring: entry, position, velocity
+  switch (method) {
+    case scene::Method::explicit_euler:
+    case scene::Method::symplectic_euler:
+      return gather + 2 * vector;
+    case scene::Method::verlet:
+      return gather + 4 * vector;
+    case scene::Method::rk4:
+      return 4 * gather + (3 + 5 + 5 + 7) * vector;
+    case scene::Method::implicit_euler:
+      break;
+  }
+  const double once = (3 + 6) * vector + (entries * 4 + 5 + 4) * vector +  // start, system
+                      (entries * 4 + 4) * vector + (7 + 4) * vector +      // search, advance
+                      (9 + 2) * vector;                                    // end
+  return once + iterations * ((entries * 3 + 4 + 1) + (11 + 5)) * vector;  // multiply, update
+}
+
+double seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+struct Contestant {
+  scene::Method method;
+  std::uint32_t steps;  ///< a round
+  std::unique_ptr<sim::Simulation> simulation;
+  std::vector<double> samples;  ///< [ns] a vertex and step
+  std::uint64_t steps_before = 0, dispatches_before = 0;
+  sim::SolverWork work_before;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) return std::fputs("usage: bench_methods SIDE ROUNDS\n", stderr), 2;
+  const int side = std::atoi(argv[1]), rounds = std::atoi(argv[2]);
+  const auto context = gl::Context::create();
+  if (!context) return std::fprintf(stderr, "%s\n", context.error().text().c_str()), 3;
+
+  const double vertices = static_cast<double>(side) * side;
+  std::vector<Contestant> contestants;
+  for (const scene::Method method : scene::methods) {
+    auto simulation = sim::Simulation::create(seed_of(side, method));
+    if (!simulation) return std::fprintf(stderr, "%s\n", simulation.error().text().c_str()), 1;
+    const bool implicit = method == scene::Method::implicit_euler;
+    const auto steps = static_cast<std::uint32_t>(implicit ? 3 : 20 + 2e5 / vertices);
+    contestants.push_back({method, steps, std::move(*simulation), {}, 0, 0, {}});
+    // Compiles, and lets the cloth get moving.
+    contestants.back().simulation->step(implicit ? 10 : 100);
+    contestants.back().simulation->finish();
+    contestants.back().steps_before = contestants.back().simulation->step_index();
+    contestants.back().dispatches_before = contestants.back().simulation->dispatches();
+    contestants.back().work_before = contestants.back().simulation->solver_work();
+  }
+  for (int round = 0; round < rounds; ++round) {
+    for (Contestant& one : contestants) {
+      const double start = seconds();
+      one.simulation->step(one.steps);
+      one.simulation->finish();
+      one.samples.push_back((seconds() - start) * 1e9 / one.steps / vertices);
+    }
+  }
+  for (Contestant& one : contestants) {
+    const auto steps = static_cast<double>(one.simulation->step_index() - one.steps_before);
+    const sim::SolverWork work = one.simulation->solver_work();
+    const double iterations =
+        static_cast<double>(work.linear_iterations - one.work_before.linear_iterations) / steps;
+    const double entries = 2.0 * static_cast<double>(one.simulation->model().springs.size()) / vertices;
+    std::printf(
+        "{\"renderer\": \"%s\", \"side\": %d, \"method\": \"%s\", \"dt\": %g, \"dispatches\": %.1f, "
+        "\"bytes_a_vertex\": %.0f, \"cg_iterations\": %.1f, \"ns\": [",
+        (*context)->device().name.c_str(), side, scene::name(one.method), one.simulation->scene().solver.dt,
+        static_cast<double>(one.simulation->dispatches() - one.dispatches_before) / steps,
+        bytes_a_vertex(one.method, entries, iterations), iterations);
+    for (std::size_t i = 0; i < one.samples.size(); ++i) std::printf("%s%.2f", i ? ", " : "", one.samples[i]);
+    std::puts("]}");
+  }
+}
