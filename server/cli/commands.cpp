@@ -18,9 +18,7 @@ void note(const std::string& text) {
 }
 
 void warn_of_step(const model::Model& model, const scene::Scene& scene, const std::string& about) {
-  // Where the safe bound is content, the sharp value need not be computed.
-  if (model::step_warning(scene.solver, model::dt_limit_bound(model, scene)).empty()) return;
-  const std::string warning = model::step_warning(scene.solver, model::dt_limit(model, scene));
+  const std::string warning = model::step_warning(scene.solver, model::dt_limit_if_near(model, scene));
   if (warning.empty()) return;
   std::cout.flush();
   std::cerr << "clothlab: warning: " << about << warning << std::endl;

@@ -73,7 +73,7 @@ int render_scene(const Options& options) {
   if (Status drawn = draw(simulation, *size, options.out); !drawn) return fail(drawn.error(), exit_internal);
   std::cout << options.out << ": " << options.size << ", " << simulation.scene().name << " at "
             << progress->state.time << " s\n";
-  if (progress->diverged) note_diverged(*progress, dt);
+  if (progress->diverged) note_diverged(*progress);
   return progress->diverged ? exit_diverged : exit_done;
 }
 

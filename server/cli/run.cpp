@@ -85,7 +85,10 @@ Report make_report(const Prepared& prepared, const Progress& progress, double wa
                       {"elastic", progress.state.elastic},
                       {"gravitational", progress.state.gravitational}};
   report["diverged"] = progress.diverged;
-  if (progress.diverged) report["diverged_by"] = progress.diverged_by;
+  if (progress.diverged) {
+    report["diverged_by"] = progress.diverged_by;
+    report["diverged_reason"] = progress.reason;
+  }
   char hash[17];
   std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(sim::state_hash(state)));
   report["state_hash"] = hash;
@@ -181,7 +184,7 @@ int run(const Options& options) {
     if (Status written = write_file(options.report, report.dump(2) + "\n"); !written)
       return fail(written.error(), exit_internal);
   print_summary(report, static_cast<double>(progress->steps) * dt);
-  if (progress->diverged) note_diverged(*progress, dt);
+  if (progress->diverged) note_diverged(*progress);
   return progress->diverged ? exit_diverged : exit_done;
 }
 

@@ -4,28 +4,27 @@
 #include <chrono>
 #include <cmath>
 
+#include "server/model/stability.h"
+#include "server/scene/method.h"
+#include "server/sim/blow_up.h"
+#include "server/sim/motion_table.h"
+
 namespace clothlab::cli {
 
 namespace {
 
 constexpr double most_steps = 1e12;
-constexpr std::uint64_t longest_batch = 1000;  // steps queued at once
 
-/// Steps between two looks at whether it still goes well: seldom enough to cost nothing, often enough that a
-/// run that blew up ends soon and close to where it did.
-std::uint64_t steps_between_looks(std::uint64_t steps) {
-  return std::clamp<std::uint64_t>(steps / 32, 100, longest_batch);
+/// Steps between two looks at whether it still goes well: as many as are queued behind one table of poses, so
+/// that a look costs little; fewer where a blow-up is expected, so that more of the good part is kept.
+std::uint64_t steps_between_looks(double dt, double limit) {
+  return dt > model::margin_to_warn * limit ? sim::batch_steps / 8 : sim::batch_steps;
 }
 
 std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.9g", value);
   return text;
-}
-
-bool good(const sim::Diagnostics& state) {
-  return state.finite && std::isfinite(state.kinetic) && std::isfinite(state.elastic) &&
-         std::isfinite(state.gravitational);
 }
 
 /// Steps `count` times and waits for the GPU; returns the seconds that took.
@@ -36,10 +35,15 @@ double timed_steps(sim::Simulation& simulation, std::uint64_t count) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void go_back_to(sim::Simulation& simulation, std::uint64_t step) {
-  simulation.reset();
-  while (simulation.step_index() < step)
-    timed_steps(simulation, std::min(step - simulation.step_index(), longest_batch));
+/// What there is to tell about a blow-up, and the simulation back where it was good.
+void end_diverged(Progress& progress, sim::Simulation& simulation, const sim::BlowUp& watch, double limit) {
+  const scene::Scene& scene = simulation.scene();
+  progress.diverged = true;
+  progress.diverged_by = simulation.time();
+  progress.reason = watch.reason() + model::against_limit(scene.solver, limit);
+  progress.remedy = model::remedy(simulation.model(), scene, limit);
+  progress.state = watch.last_good();
+  simulation.go_back();
 }
 
 }  // namespace
@@ -91,7 +95,10 @@ Result<Progress> advance(sim::Simulation& simulation, std::uint64_t steps, std::
   progress.state = simulation.diagnose();
   if (Status stop = at_stop(progress.state); !stop) return stop.error();
 
-  const std::uint64_t look_every = steps_between_looks(steps);
+  const double limit = model::dt_limit_if_near(simulation.model(), simulation.scene());
+  const std::uint64_t look_every = steps_between_looks(simulation.scene().solver.dt, limit);
+  sim::BlowUp watch;
+  watch.start(sim::allowance(simulation.scene(), simulation.model(), limit), progress.state);
   std::uint64_t next_stop = 0;
   while (progress.steps < steps) {
     if (progress.steps == next_stop) next_stop = std::min(next_stop + every, steps);
@@ -99,12 +106,12 @@ Result<Progress> advance(sim::Simulation& simulation, std::uint64_t steps, std::
     progress.step_seconds += timed_steps(simulation, count);
     progress.steps += count;
     const sim::Diagnostics state = simulation.diagnose();
-    if (!good(state)) {
-      progress.diverged = true;
-      progress.diverged_by = simulation.time();
-      go_back_to(simulation, progress.state.step);
+    const sim::BlowUp::Verdict verdict = watch.judge(state);
+    if (verdict == sim::BlowUp::Verdict::blown_up) {
+      end_diverged(progress, simulation, watch, limit);
       return progress;
     }
+    if (verdict == sim::BlowUp::Verdict::good) simulation.keep_diagnosed();
     progress.state = state;
     if (progress.steps == next_stop)
       if (Status stop = at_stop(state); !stop) return stop.error();
@@ -112,10 +119,12 @@ Result<Progress> advance(sim::Simulation& simulation, std::uint64_t steps, std::
   return progress;
 }
 
-void note_diverged(const Progress& progress, double dt) {
-  note("the simulation diverged between " + number(progress.state.time) + " s and " +
-       number(progress.diverged_by) +
-       " s; what was good is kept. A smaller step may help: --set /solver/dt=" + number(dt / 2));
+void note_diverged(const Progress& progress) {
+  const model::Remedy& remedy = progress.remedy;
+  note("the simulation diverged: " + progress.reason +
+       "; what was good, up to t = " + number(progress.state.time) + " s, is kept. " + remedy.text + ": " +
+       (remedy.method ? std::string("--set /solver/method=") + scene::name(*remedy.method) + " " : "") +
+       "--set /solver/dt=" + number(remedy.dt));
 }
 
 }  // namespace clothlab::cli

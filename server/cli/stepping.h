@@ -10,6 +10,7 @@
 #include "server/base/result.h"
 #include "server/cli/commands.h"
 #include "server/gl/context.h"
+#include "server/model/remedy.h"
 #include "server/sim/simulation.h"
 
 namespace clothlab::cli {
@@ -31,22 +32,23 @@ Result<std::uint64_t> whole_steps(const std::string& option, double seconds, dou
 
 /// How far `advance` came.
 struct Progress {
-  sim::Diagnostics state;   ///< at the end; the last one seen good if it diverged
+  sim::Diagnostics state;   ///< at the end; the last good one if it diverged
   double step_seconds = 0;  ///< stepping alone, GPU finished, without the stops [s]
   std::uint64_t steps = 0;  ///< that were timed
   bool diverged = false;
   double diverged_by = 0;  ///< the simulated time at which that was seen [s]
+  std::string reason;      ///< of the blow-up, in numbers
+  model::Remedy remedy;    ///< for it
 };
 
 using AtStop = std::function<Status(const sim::Diagnostics&)>;
 
-/// Steps `steps` times, stopping at the start, every `every` steps and at the end. `at_stop` is called at
-/// each, unless the state is not finite any more: then the simulation is brought back to its last good stop,
-/// and that is the end.
+/// Steps `steps` times, stopping at the start, every `every` steps and at the end; `at_stop` is called at
+/// each. If it blows up the simulation is brought back to its last good state, and that is the end.
 Result<Progress> advance(sim::Simulation& simulation, std::uint64_t steps, std::uint64_t every,
                          const AtStop& at_stop);
 
-/// The note on stderr about a run that diverged.
-void note_diverged(const Progress& progress, double dt);
+/// The note on stderr about a run that diverged: why, what is kept, and what to do.
+void note_diverged(const Progress& progress);
 
 }  // namespace clothlab::cli

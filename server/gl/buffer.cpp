@@ -34,6 +34,11 @@ void Buffer::fill(std::uint32_t value) {
   glClearNamedBufferData(id_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
 }
 
+void Buffer::copy_from(const Buffer& other) {
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  glCopyNamedBufferSubData(other.id_, id_, 0, 0, static_cast<GLsizeiptr>(bytes_));
+}
+
 BufferTexture::BufferTexture(const Buffer& buffer, GLenum format) {
   glCreateTextures(GL_TEXTURE_BUFFER, 1, &id_);
   glTextureBuffer(id_, format, buffer.id());

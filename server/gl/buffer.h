@@ -31,6 +31,8 @@ class Buffer {
   /// Waits for the GPU.
   void download(void* data, std::size_t bytes, std::size_t offset = 0) const;
   void fill(std::uint32_t value);
+  /// Queues a copy of all of a buffer of the same size.
+  void copy_from(const Buffer& other);
   void bind_storage(GLuint binding) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id_); }
 
  private:

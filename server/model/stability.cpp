@@ -136,6 +136,11 @@ double dt_limit(const Model& model, const scene::Scene& scene) {
   return dt_limit(scene.solver.method, SpringOperator(model, scene, model.rest_position));
 }
 
+double dt_limit_if_near(const Model& model, const scene::Scene& scene) {
+  const double bound = dt_limit_bound(model, scene);
+  return scene.solver.dt > margin_to_warn * bound ? dt_limit(model, scene) : bound;
+}
+
 std::optional<double> margin(double dt, double limit) {
   if (limit == no_limit || limit <= 0.0) return std::nullopt;
   return dt / limit;

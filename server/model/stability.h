@@ -38,6 +38,9 @@ double dt_limit(scene::Method method, const SpringOperator& springs, const std::
 /// The same two for a scene as it lies at rest, with its own method.
 double dt_limit_bound(const Model& model, const scene::Scene& scene);
 double dt_limit(const Model& model, const scene::Scene& scene);
+/// The sharp limit where the scene's own dt is near it, else the bound, which is enough to know that it is
+/// not.
+double dt_limit_if_near(const Model& model, const scene::Scene& scene);
 
 /// Above this share of the limit users are warned: contacts and large bends may add a little.
 inline constexpr double margin_to_warn = 0.9;

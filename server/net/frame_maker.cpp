@@ -44,10 +44,6 @@ void FrameMaker::restart() {
   void_until_ = arrived_ = requested_;  // they may come yet, or be dropped with their mesh
   diverged_ = false;
   touch_now();
-  for (Lane& lane : lanes_) {
-    lane.good.reset();
-    lane.candidate.reset();
-  }
   exchange_.forget_frames();
 }
 
@@ -88,39 +84,18 @@ void FrameMaker::poll() {
 }
 
 void FrameMaker::publish(stream::SharedMessage frame) {
-  if (diverged_) {
-    frame = last_good(*frame);
-  } else if (!finite(frame->header.box_minimum) || !finite(frame->header.box_extent)) {
-    frame.reset();
-  } else {
-    Lane& lane = lanes_[static_cast<std::size_t>(frame->header.encoding)];
-    if (frame->header.step == 0)
-      lane.good = frame;  // the rest shape of a valid scene
-    else if (!lane.candidate)
-      lane.candidate = frame;
-  }
-  if (frame) exchange_.publish(std::move(frame));
-}
-
-stream::SharedMessage FrameMaker::last_good(const stream::Message& instead) const {
-  const stream::SharedMessage& good = lanes_[static_cast<std::size_t>(instead.header.encoding)].good;
-  if (!good) return nullptr;
-  auto copy = std::make_shared<stream::Message>(*good);
-  copy->header.flags |= stream::flag_diverged;
-  copy->header.sequence = instead.header.sequence;
-  copy->made_at_us = instead.made_at_us;
-  stream::write_header(copy->header, copy->bytes.data() + stream::front_room);
-  return copy;
-}
-
-void FrameMaker::confirm(std::uint64_t step) {
-  for (Lane& lane : lanes_)
-    if (lane.candidate && lane.candidate->header.step <= step) lane.good = std::move(lane.candidate);
+  // Until a blow-up is noticed its frames are shown, but not what nothing could draw.
+  if (finite(frame->header.box_minimum) && finite(frame->header.box_extent))
+    exchange_.publish(std::move(frame));
 }
 
 void FrameMaker::diverge() {
+  restart();
   diverged_ = true;
-  for (Lane& lane : lanes_) lane.candidate.reset();
+}
+
+void FrameMaker::go_on() {
+  diverged_ = false;
   touch_now();
 }
 

@@ -31,10 +31,10 @@ class FrameMaker {
   /// Publishes what has arrived.
   void poll();
 
-  /// Every state up to `step` is known to be sound.
-  void confirm(std::uint64_t step);
-  /// From now on viewers get the last good frame, flagged.
+  /// The state is the last good one again, after a blow-up: frames say so, and those on their way are void.
   void diverge();
+  /// It goes on from there.
+  void go_on();
 
   bool in_flight() const { return requested_ != arrived_; }
   bool urgent() const;
@@ -47,13 +47,10 @@ class FrameMaker {
     bool urgent = false;
     std::uint64_t packed_version = 0;
     Clock::time_point due{};
-    stream::SharedMessage good;       ///< the newest frame known to be sound
-    stream::SharedMessage candidate;  ///< waits for a diagnosis
   };
   FrameMaker(Exchange& exchange, std::unique_ptr<stream::Packer> packer);
   bool request(std::size_t lane, const sim::Simulation& simulation);
   void publish(stream::SharedMessage frame);
-  stream::SharedMessage last_good(const stream::Message& instead) const;
 
   Exchange& exchange_;
   std::unique_ptr<stream::Packer> packer_;

@@ -22,6 +22,7 @@ inline constexpr double min_speed = 0.01, max_speed = 100;  ///< of sim.speed
 inline constexpr int auth_seconds = 5;          ///< a client without a role is closed with 1008 after this
 inline constexpr int max_snapshot_side = 4096;  ///< [pixels]
 inline constexpr double status_rate = 10;       ///< sim.status a second
+inline constexpr double diagnosis_rate = 60;    ///< looks a second at whether a session blows up
 /// A session that nobody has watched for this long stops stepping until somebody does again [s].
 inline constexpr double unwatched_seconds = 30;
 /// Unsent bytes the kernel may hold for a client: what lies there can no longer be replaced by something

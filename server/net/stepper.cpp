@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "server/model/remedy.h"
+#include "server/scene/method.h"
+
 namespace clothlab::net {
 
 using std::chrono::duration;
@@ -10,6 +13,12 @@ using std::chrono::duration_cast;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
+
+namespace {
+Clock::duration period(double rate) {
+  return duration_cast<Clock::duration>(duration<double>(1.0 / rate));
+}
+}  // namespace
 
 Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Exchange& exchange,
                                                  double patience) {
@@ -24,6 +33,7 @@ Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Excha
   stepper->announce_scene(std::nullopt, 0);
   stepper->announce_passes();
   stepper->step_limit_.follow(stepper->simulation_->model(), stepper->document_.scene);
+  stepper->watch_anew();
   return stepper;
 }
 
@@ -83,50 +93,69 @@ void Stepper::finish_waiting(bool all) {
 }
 
 void Stepper::follow_diagnostics(Clock::time_point now) {
-  if (now >= next_status_) {
-    const auto period = duration_cast<Clock::duration>(duration<double>(1.0 / status_rate));
-    next_status_ = std::max(next_status_ + period, now);
-    if (!suspended(now)) request_status(now);
-  }
   sim::Diagnostics arrived;
-  if (!diagnosing_ || !simulation_->poll_diagnostics(arrived)) return;
-  diagnosing_ = false;
-  const bool stale = std::exchange(diagnosis_is_stale_, false);
-  if (stale) return;
-  accept(arrived);
+  if (diagnosing_ && simulation_->poll_diagnostics(arrived)) {
+    diagnosing_ = false;
+    if (!std::exchange(diagnosis_is_stale_, false)) accept(arrived);
+  }
+  request_diagnosis(now);
+  if (now < next_status_) return;
+  next_status_ = std::max(next_status_ + period(status_rate), now);
   publish_status(now);
 }
 
-// Of a state that has moved the status waits for its diagnosis; of one that has not it is sent again.
-void Stepper::request_status(Clock::time_point now) {
-  if (diagnosing_ || diverged_ || diagnosed_version_ == state_version_) return publish_status(now);
+// Of a state that stands still once is enough.
+void Stepper::request_diagnosis(Clock::time_point now) {
+  if (diagnosing_ || diagnosed_version_ == state_version_ || now < next_diagnosis_) return;
   simulation_->request_diagnostics();
   diagnosing_ = true;
   diagnosed_version_ = state_version_;
+  next_diagnosis_ = std::max(next_diagnosis_ + period(diagnosis_rate), now);
 }
 
 void Stepper::accept(const sim::Diagnostics& diagnostics) {
-  if (!diagnostics.finite) return diverge();
+  const sim::BlowUp::Verdict verdict = blow_up_.judge(diagnostics);
+  if (verdict == sim::BlowUp::Verdict::blown_up) return diverge();
+  if (verdict == sim::BlowUp::Verdict::good) simulation_->keep_diagnosed();
   diagnostics_ = diagnostics;
   warn_if_crowded();
-  // On its way to infinity a blow-up is finite for a while: that is no state to keep for the viewers.
-  constexpr double beyond_any_cloth = 10;
-  if (diagnostics.max_strain < beyond_any_cloth) frames_->confirm(diagnostics.step);
+}
+
+sim::Allowance Stepper::allowance() const {
+  return sim::allowance(document_.scene, simulation_->model(), step_limit_.dt_limit());
+}
+
+// The state is a new one, and taken for sound.
+void Stepper::watch_anew() {
+  diagnostics_ = simulation_->diagnose();
+  diagnosing_ = diagnosis_is_stale_ = false;
+  blow_up_.start(allowance(), diagnostics_);
 }
 
 void Stepper::diverge() {
-  if (diverged_) return;
+  const std::string reason = blow_up_.reason();
+  const scene::Solver& solver = document_.scene.solver;
+  const double limit = step_limit_.dt_limit();
+  const model::Remedy remedy = model::remedy(simulation_->model(), document_.scene, limit);
+  json change{{"dt", remedy.dt}};
+  if (remedy.method) change["method"] = scene::name(*remedy.method);
+  simulation_->go_back();
+  ++state_version_;
+  watch_anew();
   diverged_ = true;
-  resume_on_load_ = playing_;
+  resume_ = playing_;
   playing_ = false;
   finish_waiting(true);
   frames_->diverge();
-  const double dt = document_.scene.solver.dt;
-  exchange_.emit(Diverged{
-      "the cloth's positions stopped being finite numbers after t = " + json(diagnostics_.time).dump() +
-          " s: the time step of " + json(dt).dump() + " s is too long for this stiffness and mass",
-      "halve the time step, then reset",
-      {{"solver", {{"dt", dt / 2}}}}});
+  exchange_.emit(Diverged{reason + model::against_limit(solver, limit), remedy.text, {{"solver", change}}});
+}
+
+// The scene was changed after a blow-up: from the last good state, as it went before.
+void Stepper::go_on() {
+  if (!diverged_) return;
+  diverged_ = false;
+  real_time_.restart(Clock::now());
+  frames_->go_on();
 }
 
 void Stepper::publish_status(Clock::time_point now) {

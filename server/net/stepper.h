@@ -17,6 +17,7 @@
 #include "server/net/step_limit.h"
 #include "server/render/renderer.h"
 #include "server/scene/document.h"
+#include "server/sim/blow_up.h"
 
 namespace clothlab::net {
 
@@ -59,9 +60,10 @@ class Stepper {
   void encode_picture(render::Image image, std::uint64_t asker);
   json where_we_are() const;
   RpcError diverged_error() const;
+  Result<sim::ChangeDepth> change(const scene::Scene& scene);
   void adopt(scene::Document document, sim::ChangeDepth depth);
   void restart();
-  void state_replaced(bool rebuilt);
+  void state_replaced();
   void announce_scene(std::optional<json> patch, std::uint64_t by);
   void announce_passes();
 
@@ -69,9 +71,12 @@ class Stepper {
   void advance(Clock::time_point now);
   void finish_waiting(bool all);
   void follow_diagnostics(Clock::time_point now);
-  void request_status(Clock::time_point now);
+  void request_diagnosis(Clock::time_point now);
   void accept(const sim::Diagnostics& diagnostics);
+  void watch_anew();
+  sim::Allowance allowance() const;
   void diverge();
+  void go_on();
   void publish_status(Clock::time_point now);
   void follow_step_limit();
   void warn_if_slow(Clock::time_point now);
@@ -94,18 +99,19 @@ class Stepper {
   std::uint64_t revision_ = 1;
   std::uint32_t topology_revision_ = 0;
   bool playing_ = true, diverged_ = false;
-  bool resume_on_load_ = false;  ///< it was playing when it diverged
+  bool resume_ = false;  ///< it was playing when it diverged
   bool was_running_ = false;
   std::vector<Waiting> waiting_;
   std::uint64_t pending_steps_ = 0;  ///< of sim.step
   int watchers_ = 0;
   Clock::time_point last_watched_{};
 
+  sim::BlowUp blow_up_;
   sim::Diagnostics diagnostics_{};
   std::uint64_t state_version_ = 1,
                 diagnosed_version_ = 0;  ///< whether the diagnostics are of the present state
   bool diagnosing_ = false, diagnosis_is_stale_ = false;
-  Clock::time_point next_status_{};
+  Clock::time_point next_status_{}, next_diagnosis_{};
   Clock::time_point slow_since_{};
   bool slow_announced_ = false, crowded_announced_ = false;
 };

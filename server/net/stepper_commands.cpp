@@ -18,7 +18,9 @@ json Stepper::where_we_are() const {
 }
 
 RpcError Stepper::diverged_error() const {
-  return {error_diverged, "the simulation has diverged; use sim.reset, or scene.load", nullptr};
+  return {error_diverged,
+          "the simulation has diverged; send the remedy's patch or another, or use sim.reset or scene.load",
+          nullptr};
 }
 
 void Stepper::perform(GetScene&, const Ticket& ticket) {
@@ -33,7 +35,7 @@ void Stepper::perform(LoadScene& load, const Ticket& ticket) {
   if (!document) return reply(ticket, invalid_params(document.error()));
   const Result<sim::ChangeDepth> depth = simulation_->change(document->scene);
   if (!depth) return reply(ticket, invalid_params(depth.error()));
-  playing_ = playing_ || (diverged_ && resume_on_load_);
+  playing_ = playing_ || (diverged_ && resume_);
   adopt(std::move(*document), *depth);
   // Another scene starts at its beginning, however alike the two are.
   if (*depth != sim::ChangeDepth::cloth) restart();
@@ -49,7 +51,7 @@ void Stepper::perform(PatchScene& patch, const Ticket& ticket) {
                                   {{"revision", revision_}}});
   Result<scene::Document> document = scene::apply_patch(document_, patch.patch);
   if (!document) return reply(ticket, invalid_params(document.error()));
-  const Result<sim::ChangeDepth> depth = simulation_->change(document->scene);
+  const Result<sim::ChangeDepth> depth = change(document->scene);
   if (!depth) return reply(ticket, invalid_params(depth.error()));
   adopt(std::move(*document), *depth);
   reply(ticket, json{{"revision", revision_}, {"applies", sim::name(*depth)}});
@@ -58,31 +60,44 @@ void Stepper::perform(PatchScene& patch, const Ticket& ticket) {
     exchange_.emit(Notice{"info", "the cloth was rebuilt for this change: time starts again at 0"});
 }
 
+// The energies before and after the change, of the same state: what it adds is no growth, and growth cannot
+// hide behind one change after another.
+Result<sim::ChangeDepth> Stepper::change(const scene::Scene& scene) {
+  if (!sim::changes_energy(document_.scene, scene)) return simulation_->change(scene);
+  accept(simulation_->diagnose());
+  diagnosing_ = diagnosis_is_stale_ = false;
+  const Result<sim::ChangeDepth> depth = simulation_->change(scene);
+  if (depth && *depth != sim::ChangeDepth::cloth) blow_up_.rebase(simulation_->diagnose());
+  return depth;
+}
+
 void Stepper::adopt(scene::Document document, sim::ChangeDepth depth) {
   document_ = std::move(document);
   ++revision_;
   if (depth == sim::ChangeDepth::cloth)
-    state_replaced(true);
+    state_replaced();
   else
     frames_->touch_now();
   ++state_version_;
   announce_passes();
-  if (depth != sim::ChangeDepth::none) step_limit_.follow(simulation_->model(), document_.scene);
+  if (depth == sim::ChangeDepth::none) return;
+  playing_ = playing_ || (diverged_ && resume_);
+  step_limit_.follow(simulation_->model(), document_.scene);
+  if (depth == sim::ChangeDepth::cloth) return watch_anew();
+  blow_up_.allow(allowance());
+  go_on();
 }
 
 void Stepper::restart() {
   simulation_->reset();
-  state_replaced(false);
+  state_replaced();
+  watch_anew();
 }
 
-void Stepper::state_replaced(bool rebuilt) {
+void Stepper::state_replaced() {
   finish_waiting(true);
   diverged_ = slow_announced_ = crowded_announced_ = false;
-  diagnostics_ = {};
   ++state_version_;
-  // A diagnosis under way is of the old state; a rebuilt simulation has forgotten it.
-  diagnosing_ = diagnosing_ && !rebuilt;
-  diagnosis_is_stale_ = diagnosing_;
   real_time_.restart(Clock::now());
   frames_->restart();
 }
@@ -96,7 +111,7 @@ void Stepper::perform(Play&, const Ticket& ticket) {
 
 void Stepper::perform(Pause&, const Ticket& ticket) {
   finish_waiting(true);
-  playing_ = false;
+  playing_ = resume_ = false;
   reply(ticket, where_we_are());
 }
 

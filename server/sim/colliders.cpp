@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <glm/vec4.hpp>
 
+#include "server/model/motion.h"
+
 namespace clothlab::sim {
 
 double contact_margin(const scene::Scene& scene, const model::Model& model) {
@@ -42,6 +44,20 @@ void set_colliders(const gl::Program& program, const scene::Scene& scene, const 
   set4("plane_point", points);
   set3("plane_normal", normals);
   set3("plane_surface", plane_surfaces);
+}
+
+std::vector<scene::Collider> colliders_at(const scene::Scene& scene, double time) {
+  std::vector<scene::Collider> colliders = scene.colliders;
+  for (scene::Collider& collider : colliders) {
+    const model::Pose pose = model::pose(collider.motion, time);
+    if (auto* sphere = std::get_if<scene::Sphere>(&collider.shape))
+      sphere->center = pose.place(sphere->center);
+    if (auto* plane = std::get_if<scene::Plane>(&collider.shape)) {
+      plane->point = pose.place(plane->point);
+      plane->normal = pose.rotation * plane->normal;
+    }
+  }
+  return colliders;
 }
 
 }  // namespace clothlab::sim

@@ -1,4 +1,5 @@
-// Hands the scene's spheres and planes to the step kernel (shaders/collide/colliders.glsl).
+// Hands the scene's spheres and planes to the step kernel (shaders/collide/colliders.glsl), and tells where
+// they are.
 #pragma once
 
 #include "server/gl/program.h"
@@ -14,5 +15,8 @@ double contact_margin(const scene::Scene& scene, const model::Model& model);
 /// Sets the uniforms of `program`, which was compiled for this scene's numbers of spheres and planes.
 void set_colliders(const gl::Program& program, const scene::Scene& scene, const MotionTable& motions,
                    double margin);
+
+/// Where the colliders are at `time` [s].
+std::vector<scene::Collider> colliders_at(const scene::Scene& scene, double time);
 
 }  // namespace clothlab::sim

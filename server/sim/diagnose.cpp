@@ -15,6 +15,7 @@ namespace {
 struct Partial {
   float kinetic, elastic, gravitational, contacts;
   float strain, speed_squared, not_finite, unused;
+  float pin_force, contact_force, contact_mass, unused_too;
 };
 
 }  // namespace
@@ -67,6 +68,9 @@ bool DiagnosticsPass::poll(Diagnostics& out, bool wait) {
     out.elastic += partial.elastic;
     out.gravitational += partial.gravitational;
     contacts += partial.contacts;
+    out.pin_force += partial.pin_force;
+    out.contact_force += partial.contact_force;
+    out.contact_mass += partial.contact_mass;
     out.max_strain = std::max(out.max_strain, static_cast<double>(partial.strain));
     speed_squared = std::max(speed_squared, static_cast<double>(partial.speed_squared));
     out.finite = out.finite && partial.not_finite == 0.0f;

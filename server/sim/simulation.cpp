@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <optional>
 
-#include "server/model/motion.h"
+#include "server/sim/colliders.h"
 #include "server/sim/diagnose.h"
 #include "server/sim/integrator.h"
+#include "server/sim/last_good.h"
 #include "server/sim/spring_lists.h"
 #include "server/sim/state.h"
 #include "server/sim/strain_limit.h"
@@ -89,6 +90,8 @@ struct Simulation::Implementation {
   gl::TextureBuffer rest;
   StateBuffers state;
   DiagnosticsPass diagnostics;
+  std::uint64_t diagnosed_step = 0;  ///< of the diagnosis that came last
+  LastGood last_good;
   std::uint32_t topology_revision = 1;
   std::uint64_t step_index = 0;
   // Time is start_time + (step_index - start_step) dt: no sum that rounding could let drift. A change of dt
@@ -132,6 +135,20 @@ struct Simulation::Implementation {
     step_index += count;
   }
 
+  /// The state was put there, by no step: nothing carried over from steps holds.
+  void state_replaced(double time, std::uint64_t step) {
+    if (kernels.self_collision) kernels.self_collision->invalidate();
+    kernels.integrator->restart();
+    if (kernels.strain_limit) kernels.strain_limit->restart();
+    start_time = time;
+    step_index = start_step = step;
+  }
+
+  void keep_start() {
+    last_good.put_aside(state, time_of(step_index), step_index);
+    last_good.keep(step_index);
+  }
+
   /// Takes over what changed, the state kept.
   void adopt(const scene::Scene& next) {
     if (next.solver.dt != scene.solver.dt) {
@@ -162,6 +179,8 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const scene::Scene& scene
   self.rest = rest_positions(self.kernels.model);
   self.state = StateBuffers(self.kernels.model, self.kernels.motions);
   self.kernels.integrator->restart();
+  self.last_good = LastGood(self.kernels.model.vertex_count());
+  self.keep_start();
   return made;
 }
 
@@ -208,11 +227,19 @@ void Simulation::step(std::uint32_t count) {
 void Simulation::reset() {
   Implementation& self = *implementation_;
   self.state.reset(self.kernels.model, self.kernels.motions);
-  if (self.kernels.self_collision) self.kernels.self_collision->invalidate();
-  self.kernels.integrator->restart();
-  if (self.kernels.strain_limit) self.kernels.strain_limit->restart();
-  self.step_index = self.start_step = 0;
-  self.start_time = 0.0;
+  self.state_replaced(0.0, 0);
+  self.keep_start();
+}
+
+void Simulation::keep_diagnosed() {
+  implementation_->last_good.keep(implementation_->diagnosed_step);
+}
+
+void Simulation::go_back() {
+  Implementation& self = *implementation_;
+  const LastGood::When when = self.last_good.restore(self.state);
+  self.state.rewrite_constants(self.kernels.model, self.kernels.motions);  // they may have changed since
+  self.state_replaced(when.time, when.step);
 }
 
 double Simulation::time() const {
@@ -249,11 +276,14 @@ void Simulation::request_diagnostics() {
   Implementation& self = *implementation_;
   self.bind_constants();
   const SelfCollision* self_collision = self.kernels.self_collision ? &*self.kernels.self_collision : nullptr;
-  self.diagnostics.request(self.state, self_collision, self.scene.gravity, time(), self.step_index);
+  if (self.diagnostics.request(self.state, self_collision, self.scene.gravity, time(), self.step_index))
+    self.last_good.put_aside(self.state, time(), self.step_index);
 }
 
 bool Simulation::poll_diagnostics(Diagnostics& out) {
-  return implementation_->diagnostics.poll(out, false);
+  if (!implementation_->diagnostics.poll(out, false)) return false;
+  implementation_->diagnosed_step = out.step;
+  return true;
 }
 
 Diagnostics Simulation::diagnose() {
@@ -262,6 +292,7 @@ Diagnostics Simulation::diagnose() {
   }  // older ones on their way
   request_diagnostics();
   implementation_->diagnostics.poll(result, true);
+  implementation_->diagnosed_step = result.step;
   return result;
 }
 
@@ -283,17 +314,7 @@ void Simulation::bind_positions(unsigned unit) const {
 }
 
 std::vector<scene::Collider> Simulation::colliders_now() const {
-  std::vector<scene::Collider> colliders = implementation_->scene.colliders;
-  for (scene::Collider& collider : colliders) {
-    const model::Pose pose = model::pose(collider.motion, time());
-    if (auto* sphere = std::get_if<scene::Sphere>(&collider.shape))
-      sphere->center = pose.place(sphere->center);
-    if (auto* plane = std::get_if<scene::Plane>(&collider.shape)) {
-      plane->point = pose.place(plane->point);
-      plane->normal = pose.rotation * plane->normal;
-    }
-  }
-  return colliders;
+  return colliders_at(implementation_->scene, time());
 }
 
 }  // namespace clothlab::sim

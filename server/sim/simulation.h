@@ -25,13 +25,16 @@ ChangeDepth change_depth(const scene::Scene& from, const scene::Scene& to);
 struct Diagnostics {
   double time = 0;  ///< [s]
   std::uint64_t step = 0;
-  double kinetic = 0;                    ///< [J]
-  double elastic = 0;                    ///< [J]
-  double gravitational = 0;              ///< [J], 0 at the origin
-  double max_strain = 0;                 ///< largest |l/L - 1| over the springs
-  double max_speed = 0;                  ///< [m/s]
-  std::uint32_t contacts = 0;            ///< vertices touching a collider or another vertex
-  bool finite = true;                    ///< no NaN or infinity anywhere
+  double kinetic = 0;          ///< [J]
+  double elastic = 0;          ///< [J]
+  double gravitational = 0;    ///< [J], 0 at the origin
+  double max_strain = 0;       ///< largest |l/L - 1| over the springs
+  double max_speed = 0;        ///< [m/s]
+  std::uint32_t contacts = 0;  ///< vertices touching a collider or another vertex
+  bool finite = true;          ///< no NaN or infinity anywhere
+  double pin_force = 0;        ///< sum of the springs' pulls at each moving pinned vertex [N]
+  double contact_force = 0;    ///< the same, with the weight, of free vertices that touch something [N]
+  double contact_mass = 0;     ///< of these [kg]
   std::uint32_t neighbour_rebuilds = 0;  ///< of the neighbour lists, since the kernels were made
   std::uint32_t neighbours_dropped =
       0;  ///< that found no room in a list: self_collision is too thick for the mesh
@@ -100,6 +103,11 @@ class Simulation {
   bool poll_diagnostics(Diagnostics& out);
   /// Diagnostics of the present state, waiting for the GPU.
   Diagnostics diagnose();
+
+  /// The state of the diagnosis that came last is sound: one to go back to.
+  void keep_diagnosed();
+  /// Back to the last state that was kept, or to the start if none was since.
+  void go_back();
 
   /// Positions and velocities, waiting for the GPU.
   State read_state();

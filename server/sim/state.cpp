@@ -60,6 +60,16 @@ void StateBuffers::rewrite_constants(const model::Model& model, const MotionTabl
   velocity_[current_].buffer.upload(arrays.velocity.data(), bytes(model));
 }
 
+void StateBuffers::save(gl::Buffer& position, gl::Buffer& velocity) const {
+  position.copy_from(position_[current_].buffer);
+  velocity.copy_from(velocity_[current_].buffer);
+}
+
+void StateBuffers::load(const gl::Buffer& position, const gl::Buffer& velocity) {
+  position_[current_].buffer.copy_from(position);
+  velocity_[current_].buffer.copy_from(velocity);
+}
+
 void StateBuffers::bind_for_step() const {
   position_[current_].bind(unit_position);
   velocity_[current_].bind(unit_velocity);

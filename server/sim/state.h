@@ -28,6 +28,9 @@ class StateBuffers {
   void reset(const model::Model& model, const MotionTable& motions);
   /// Writes changed masses and pins into the state, which otherwise stays as it is. Waits for the GPU.
   void rewrite_constants(const model::Model& model, const MotionTable& motions);
+  /// Copies the present state to, or from, buffers of the same size, on the GPU.
+  void save(gl::Buffer& position, gl::Buffer& velocity) const;
+  void load(const gl::Buffer& position, const gl::Buffer& velocity);
   State read() const;
 
  private:

@@ -14,17 +14,21 @@ layout(location = 3) uniform vec4 gravity;
 struct Partial {
   vec4 sums;     // kinetic, elastic, gravitational energy [J], vertices in contact
   vec4 largest;  // strain, speed squared, 1 if something is not finite, unused
+  vec4 work;     // pull at moving pins [N], pull and weight of what touches something [N], its mass [kg], unused
 };
 layout(std430, binding = 0) writeonly buffer Partials { Partial partials[]; };
 shared vec4 sums[GROUP_SIZE];
 shared vec4 largest[GROUP_SIZE];
+shared vec4 work[GROUP_SIZE];
 
 void main() {
   int i = int(gl_GlobalInvocationID.x);
   int lane = int(gl_LocalInvocationID.x);
-  vec4 sum = vec4(0.0), most = vec4(0.0);
+  vec4 sum = vec4(0.0), most = vec4(0.0), pull = vec4(0.0);
   if (i < vertex_count) {
     vec4 x = FETCH(position, i), v = FETCH(velocity, i);
+    bool moving_pin = x.w == 0.0 && v.w >= 0.0, touching = x.w > 0.0 && v.w > 0.0;
+    vec3 force = vec3(0.0);
     SpringRange range = spring_range(i);
     for (int entry = range.first; entry < range.end; entry += GROUP_SIZE) {
       uvec4 s = FETCH(springs, entry);
@@ -32,6 +36,9 @@ void main() {
       vec3 y = FETCH(position, s.x).xyz;
       sum.y += 0.5 * spring_energy(x.xyz, y, uintBitsToFloat(s.y), uintBitsToFloat(s.z));  // the other half is y's
       most.x = max(most.x, spring_strain(x.xyz, y, uintBitsToFloat(s.y)));
+      if (moving_pin || touching)
+        force += spring_force(x.xyz, y, v.xyz, FETCH(velocity, s.x).xyz, uintBitsToFloat(s.y), uintBitsToFloat(s.z),
+                              uintBitsToFloat(s.w));
     }
     float speed_squared = dot(v.xyz, v.xyz);
     if (x.w > 0.0) {
@@ -39,19 +46,23 @@ void main() {
       sum.z = -dot(gravity.xyz, x.xyz) / x.w;
       sum.w = v.w > 0.0 ? 1.0 : 0.0;
     }
+    if (moving_pin) pull.x = length(force);
+    if (touching) pull.yz = vec2(length(force) + length(gravity.xyz) / x.w, 1.0 / x.w);
     most.y = speed_squared;
     float all_values = dot(x.xyz, x.xyz) + speed_squared;
     most.z = isnan(all_values) || isinf(all_values) ? 1.0 : 0.0;
   }
   sums[lane] = sum;
   largest[lane] = most;
+  work[lane] = pull;
   barrier();
   for (int half_size = GROUP_SIZE / 2; half_size > 0; half_size /= 2) {
     if (lane < half_size) {
       sums[lane] += sums[lane + half_size];
+      work[lane] += work[lane + half_size];
       largest[lane] = max(largest[lane], largest[lane + half_size]);
     }
     barrier();
   }
-  if (lane == 0) partials[gl_WorkGroupID.x] = Partial(sums[0], largest[0]);
+  if (lane == 0) partials[gl_WorkGroupID.x] = Partial(sums[0], largest[0], work[0]);
 }

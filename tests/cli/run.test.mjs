@@ -107,10 +107,13 @@ test("a run that diverges exits 4, keeps what was good, and marks it", () => {
   const { status, stderr } = clothlab(
     ["run", "blowup", "--time", "1", "--report", "blowup.json", "--out", "blowup.obj", "--trace", "blowup.csv"]);
   assert.equal(status, 4);
-  assert.match(stderr, /note: the simulation diverged .*--set \/solver\/dt=/);
+  assert.match(stderr, /note: the simulation diverged: .* J at t = .*1\.[45]\d* times.*--set \/solver\/dt=0\.001[23]\n/);
   const r = report("blowup.json");
   assert.equal(r.diverged, true);
   assert.ok(r.diverged_by > r.sim_time);
+  assert.match(r.diverged_reason, /0\.0025 s/);
+  // The cloth as it was before: some 600 J are what 62.5 kg have to fall.
+  assert.ok(r.max_strain < 0.5 && r.energy.kinetic + r.energy.elastic < 600, JSON.stringify(r.energy));
   const obj = file("blowup.obj").toString();
   assert.match(obj, /^#.*diverged/);
   assert.doesNotMatch(obj, /nan|inf/i);

@@ -23,12 +23,22 @@ TEST_CASE("diagnostics are the sums over the state: energies, largest strain and
     kinetic += 0.5 * model.mass[i] * glm::dot(v, v);
     gravitational -= model.mass[i] * glm::dot(seed.gravity, x);
   }
+  std::vector<glm::dvec3> force(model.vertex_count(), glm::dvec3(0.0));
   for (const model::Spring& spring : model.springs) {
+    const glm::dvec3 on_a = elements::spring_force(
+        glm::dvec3(state.position[spring.a]), glm::dvec3(state.position[spring.b]),
+        glm::dvec3(state.velocity[spring.a]), glm::dvec3(state.velocity[spring.b]), spring.rest_length,
+        model::stiffness(seed.cloths[0].material, spring.kind), seed.cloths[0].material.damping);
+    force[spring.a] += on_a;
+    force[spring.b] -= on_a;
     const glm::dvec3 a(state.position[spring.a]), b(state.position[spring.b]);
     elastic += elements::spring_energy(a, b, spring.rest_length,
                                        model::stiffness(seed.cloths[0].material, spring.kind));
     strain = std::max(strain, elements::spring_strain(a, b, spring.rest_length));
   }
+  double pin_force = 0.0;
+  for (std::uint32_t i = 0; i < model.vertex_count(); ++i)
+    if (model.pin_motion[i] != model::not_pinned) pin_force += glm::length(force[i]);
   // Sums of 128 float32 values a group, each rounded: 128 * 6e-8. A stretch is a difference of lengths near
   // 0.04 from positions near 1, each rounded to 6e-8: 1.5e-6 of the length, against strains of some
   // hundredths, squared.
@@ -41,6 +51,10 @@ TEST_CASE("diagnostics are the sums over the state: energies, largest strain and
   CHECK(found.step == 900);
   CHECK(found.finite);
   CHECK(found.contacts > 0);  // the cloth lies on the ball by now
+  // Both pins swing; forces are differences of the same lengths as above, of 20000 N/m.
+  CHECK(found.pin_force == Approx(pin_force).epsilon(1e-3));
+  CHECK(found.contact_mass == Approx(0.1 * found.contacts).epsilon(1e-5));
+  CHECK(found.contact_force >= 9.8 * found.contact_mass * (1 - 1e-5));
 }
 
 TEST_CASE("a value that is not finite is told, wherever it is") {

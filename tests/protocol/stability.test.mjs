@@ -66,3 +66,73 @@ test("a large cloth gets an answer at once and a sharper one soon", async () => 
 function seedCloth() {
   return client.messages.findLast((m) => m.method === "scene").params.document.cloths[0];
 }
+
+/// Whether a frame shows a cloth that hangs, and not one that flies: the seed's is 1 m wide at 1 m height.
+function hangs(frame) {
+  return frame.positions.every(([x, y, z]) => Math.abs(x) < 2 && y > -1.5 && y < 1.5 && Math.abs(z) < 2.5);
+}
+
+test("a patch past the limit blows up, the remedy's patch alone makes the cloth go on from where it was good", async () => {
+  await client.request("stream.subscribe", { encoding: "q16" });
+  await client.request("sim.play");
+  await client.nextNotification("sim.status", (s) => s.time > 0.2);
+  const told = client.nextNotification("sim.diverged");
+  await patch({ solver: { dt: 0.0025 } });
+  const { reason, remedy } = await told;
+  assert.match(reason, /t = 0\.\d+ s.*dt = 0\.0025 s is 1\.47 times .*symplectic_euler, 0\.001701 s/);
+  assert.deepEqual(remedy.patch, { solver: { dt: 0.0013 } });
+  assert.match(remedy.text, /0\.0013/);
+  const flagged = await client.nextFrame((frame) => frame.flags & 2);
+  assert.ok(flagged.time > 0.2 && hangs(flagged), "the last good state is that of just before");
+  const status = await client.nextNotification("sim.status", (s) => s.diverged);
+  assert.equal(status.playing, false);
+  assert.ok(Math.abs(status.time - flagged.time) < 1e-9);
+
+  const next = client.nextFrame((frame) => frame.flags === 0);
+  await patch(remedy.patch);
+  assert.ok((await next).time >= flagged.time);
+  const later = await client.nextFrame((frame) => frame.time > flagged.time + 1);
+  assert.ok(hangs(later) && later.flags === 0);
+  const going = await client.nextNotification("sim.status", (s) => s.step > 0);
+  assert.equal(going.diverged, false);
+  assert.equal(going.playing, true);
+  assert.ok(going.stability.margin < 0.8);
+});
+
+test("a paused session that diverges by sim.step stays paused after the remedy, at the last good step", async () => {
+  const told = client.nextNotification("sim.diverged");
+  await patch({ solver: { dt: 0.0025 } });
+  await client.request("sim.step", { steps: 100 }).catch((error) => assert.equal(error.code, -32004));
+  const { remedy } = await told;
+  assert.equal((await client.refusal("sim.step", { steps: 1 })).code, -32004);
+  await patch({ name: "renamed" });
+  assert.equal((await client.refusal("sim.play")).code, -32004, "a name cures nothing");
+  await patch(remedy.patch);
+  const { playing, step } = await client.request("sim.step", { steps: 1 });
+  assert.equal(playing, false);
+  assert.ok(step < 30, `${step}`);
+});
+
+test("explicit Euler without damping blows up, and its remedy is another method", async () => {
+  await patch({ cloths: [{ ...seedCloth(), material: { structural: 20000, shear: 10000, bend: 2000, damping: 0 } }] });
+  const told = client.nextNotification("sim.diverged");
+  const warned = client.nextNotification("notice", (n) => /explicit_euler/.test(n.text));
+  await patch({ solver: { method: "explicit_euler", dt: 0.0005 } });
+  assert.match((await warned).text, /stable at no step/);
+  assert.equal((await stability((s) => s.dt_limit === 0)).margin, null);
+  await client.request("sim.play");
+  const { reason, remedy } = await told;
+  assert.match(reason, /explicit_euler/);
+  assert.deepEqual(remedy.patch, { solver: { dt: 0.0005, method: "symplectic_euler" } });
+  await patch(remedy.patch);
+  await client.nextNotification("sim.status", (s) => s.playing && !s.diverged && s.time > 0.5);
+});
+
+test("the same cure twice: what blows up again is told again", async () => {
+  await patch({ solver: { dt: 0.004 } });
+  await client.request("sim.play");
+  await client.notification("sim.diverged", ({ reason }) => /0\.004 s/.test(reason));
+  const again = client.nextNotification("sim.diverged");
+  await patch({ solver: { dt: 0.003 } });
+  assert.match((await again).reason, /0\.003 s/);
+});

@@ -1,0 +1,72 @@
+#include "server/model/remedy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "server/model/stability.h"
+#include "server/scene/method.h"
+#include "server/scene/ranges.h"
+
+namespace clothlab::model {
+
+namespace {
+
+constexpr double safe_share = 0.8;
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+double within_safe_share(double limit) {
+  return std::max(rounded_down(safe_share * limit), scene::ranges::dt.minimum);
+}
+
+}  // namespace
+
+double rounded_down(double value) {
+  const int digits = 1 - static_cast<int>(std::floor(std::log10(value)));
+  // Multiplying by a negative power of ten would leave its rounding in the result.
+  const double scale = std::pow(10.0, std::abs(digits));
+  const double shifted = digits >= 0 ? value * scale : value / scale;
+  const double whole = std::floor(shifted + 1e-9);
+  return digits >= 0 ? whole / scale : whole * scale;
+}
+
+Remedy remedy(const Model& model, const scene::Scene& scene, double limit) {
+  const scene::Solver& solver = scene.solver;
+  Remedy remedy;
+  remedy.dt = solver.dt;
+  if (solver.method == scene::Method::explicit_euler) {
+    scene::Scene other = scene;
+    other.solver.method = scene::Method::symplectic_euler;
+    const double holds = dt_limit_bound(model, other);
+    if (solver.dt > safe_share * holds) remedy.dt = within_safe_share(holds);
+    remedy.method = other.solver.method;
+    remedy.text = std::string("use symplectic_euler, which costs the same") +
+                  (remedy.dt < solver.dt ? ", with dt = " + number(remedy.dt) + " s" : "");
+  } else if (solver.dt > margin_to_warn * limit) {
+    remedy.dt = within_safe_share(limit);
+    remedy.text = "set dt to " + number(remedy.dt) + " s, 80 % of the limit";
+  } else {
+    remedy.dt = std::max(rounded_down(0.5 * solver.dt), scene::ranges::dt.minimum);
+    remedy.text = "halve the time step, to dt = " + number(remedy.dt) + " s";
+  }
+  return remedy;
+}
+
+std::string against_limit(const scene::Solver& solver, double limit) {
+  const std::string step = ": dt = " + number(solver.dt) + " s", method = scene::name(solver.method);
+  const std::optional<double> share = margin(solver.dt, limit);
+  if (limit <= 0.0) return ": " + method + " without damping is stable at no step";
+  if (!share) return step + ", for which " + method + " has no limit of stability";
+  if (*share <= 1.0)
+    return step + " is only " + number(*share) + " of the longest stable step of " + method +
+           " about the rest shape, " + number(limit) + " s; here the cloth is stiffer than that";
+  return step + " is " + number(*share) + " times the longest stable step of " + method + ", " +
+         number(limit) + " s";
+}
+
+}  // namespace clothlab::model

@@ -1,0 +1,177 @@
+#include "server/sim/blow_up.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+#include <numbers>
+
+namespace clothlab::sim {
+
+namespace {
+
+constexpr double growth_that_proves = 4.0;
+constexpr int patience = 60;           // judgements, about a second of frames
+constexpr double share_of_good = 0.1;  // of what is allowed
+
+double moving_energy(const Diagnostics& state) {
+  return state.kinetic + state.elastic;
+}
+double total(const Diagnostics& state) {
+  return moving_energy(state) + state.gravitational;
+}
+bool finite(const Diagnostics& state) {
+  return state.finite && std::isfinite(total(state));
+}
+
+/// The largest speed of a motion within `reach` [m] of `where`, at any time.
+double largest_speed(const scene::Motion& motion, const glm::dvec3& where, double reach) {
+  if (const auto* swing = std::get_if<scene::Oscillate>(&motion))
+    return std::abs(2.0 * std::numbers::pi * swing->frequency * swing->amplitude);
+  if (const auto* line = std::get_if<scene::Linear>(&motion)) return glm::length(line->velocity);
+  if (const auto* spin = std::get_if<scene::Spin>(&motion))
+    return std::abs(glm::radians(spin->degrees_per_second)) * (glm::distance(where, spin->center) + reach);
+  return 0.0;
+}
+
+double collider_speed(const scene::Collider& collider, double size) {
+  if (const auto* sphere = std::get_if<scene::Sphere>(&collider.shape))
+    return largest_speed(collider.motion, sphere->center, sphere->radius);
+  return largest_speed(collider.motion, std::get<scene::Plane>(collider.shape).point, size);
+}
+
+struct Extent {
+  double size = 0;      ///< diagonal of the box about the rest shape [m]
+  double farthest = 0;  ///< largest coordinate [m]
+};
+
+Extent extent(const model::Model& model) {
+  glm::dvec3 low(1e300), high(-1e300);
+  for (const glm::dvec3& x : model.rest_position) {
+    low = glm::min(low, x);
+    high = glm::max(high, x);
+  }
+  const glm::dvec3 far = glm::max(glm::abs(low), glm::abs(high));
+  return {glm::distance(low, high), std::max({far.x, far.y, far.z})};
+}
+
+double stable_swing(double dt, double dt_limit) {
+  constexpr double nearest = 0.95, at_least = 2.0, known_unstable = 4.0;
+  if (std::isinf(dt_limit)) return at_least;
+  if (dt >= dt_limit) return known_unstable;
+  const double share = std::min(dt / dt_limit, nearest);
+  return std::max(at_least, (1.0 + share) / (1.0 - share));
+}
+
+}  // namespace
+
+Allowance allowance(const scene::Scene& scene, const model::Model& model, double dt_limit) {
+  const Extent cloth = extent(model);
+  Allowance allowed;
+  double mass = 0.0, spring_energy = 0.0;
+  for (std::uint32_t i = 0; i < model.vertex_count(); ++i) {
+    const std::int32_t pin = model.pin_motion[i];
+    if (pin == model::not_pinned)
+      mass += model.mass[i];
+    else
+      allowed.pin_speed =
+          std::max(allowed.pin_speed,
+                   largest_speed(model.motions[static_cast<std::size_t>(pin)], model.rest_position[i], 0.0));
+  }
+  for (const scene::Collider& collider : scene.colliders)
+    allowed.collider_speed = std::max(allowed.collider_speed, collider_speed(collider, cloth.size));
+  const double push = scene.self_collision ? 0.2 * scene.self_collision->thickness : 0.0;
+  for (const model::Spring& spring : model.springs) {
+    // A thousandth of its length, and the last bits of a coordinate in float32.
+    const double stretch = push + 1e-3 * spring.rest_length + 1e-6 * cloth.farthest;
+    spring_energy +=
+        0.5 * model::stiffness(scene.cloths[spring.cloth].material, spring.kind) * stretch * stretch;
+  }
+  const double speed = allowed.pin_speed + allowed.collider_speed;
+  allowed.slack = mass * (glm::length(scene.gravity) * cloth.size + 2.0 * speed * speed) + spring_energy;
+  allowed.ratio = stable_swing(scene.solver.dt, dt_limit);
+  return allowed;
+}
+
+bool changes_energy(const scene::Scene& from, scene::Scene to) {
+  to.solver = from.solver;
+  return change_depth(from, to) != ChangeDepth::none;
+}
+
+void BlowUp::start(const Allowance& allowance, const Diagnostics& state) {
+  *this = BlowUp();
+  allowance_ = allowance;
+  ledger_ = total(state);
+  last_ = last_good_ = state;
+}
+
+void BlowUp::rebase(const Diagnostics& state) {
+  const double before = moving_energy(last_);
+  ledger_ += total(state) - total(last_);
+  if (before > 0.0) doubted_energy_ *= moving_energy(state) / before;
+  last_ = state;
+}
+
+/// Forces do work where what they pull at moves; forces are seen at the two ends of the time between, the
+/// speed is the largest there ever is. A collider also throws what it hits.
+double BlowUp::work_since_last(const Diagnostics& state) const {
+  const double seconds = state.time - last_.time;
+  const double pins = allowance_.pin_speed * std::max(state.pin_force, last_.pin_force);
+  const double colliders = allowance_.collider_speed * std::max(state.contact_force, last_.contact_force);
+  const double thrown = 2.0 * allowance_.collider_speed * allowance_.collider_speed * state.contact_mass;
+  return seconds * (pins + colliders) + thrown;
+}
+
+BlowUp::Verdict BlowUp::judge(const Diagnostics& state) {
+  if (!finite(state)) {
+    last_ = state;
+    return Verdict::blown_up;
+  }
+  const double work = work_since_last(state);
+  work_ += work;
+  ledger_ += work;
+  const double there_is = std::max(0.0, ledger_ - state.gravitational);
+  const double beyond = (allowance_.ratio - 1.0) * there_is + allowance_.slack;
+  const double excess = moving_energy(state) - there_is;
+  ledger_ = std::min(ledger_, total(state));
+  last_ = state;
+  if (excess > beyond) return doubt(state);
+  doubted_energy_ = 0.0;
+  if (excess > share_of_good * beyond) return Verdict::doubtful;
+  last_good_ = state;
+  work_ = 0.0;
+  return Verdict::good;
+}
+
+BlowUp::Verdict BlowUp::doubt(const Diagnostics& state) {
+  const double energy = moving_energy(state);
+  if (doubted_energy_ == 0.0) {
+    doubted_energy_ = energy;
+    doubted_for_ = 0;
+  }
+  if (energy >= growth_that_proves * doubted_energy_) return Verdict::blown_up;
+  if (++doubted_for_ < patience) return Verdict::doubtful;
+  doubted_for_ = 0;
+  if (energy > doubted_energy_) return Verdict::doubtful;  // it grows on, slowly
+  start(allowance_, state);
+  return Verdict::good;
+}
+
+std::string BlowUp::reason() const {
+  char text[300];
+  if (!finite(last_))
+    std::snprintf(text, sizeof text,
+                  "positions and velocities stopped being finite numbers between t = %.4g s and t = %.4g s",
+                  last_good_.time, last_.time);
+  else
+    std::snprintf(text, sizeof text,
+                  "the energy of motion and stretch grew from %.3g J at t = %.4g s to %.3g J at t = %.4g s, "
+                  "with at most %.3g J of work done on the cloth and %.3g J of fall",
+                  moving_energy(last_good_), last_good_.time, moving_energy(last_), last_.time, work_,
+                  std::max(0.0, last_good_.gravitational - last_.gravitational));
+  return text;
+}
+
+}  // namespace clothlab::sim
