@@ -1,0 +1,173 @@
+// What each method does to the energy of an undamped motion: kept without slope, or changed by its own law,
+// on both sides.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "tests/sides.h"
+#include "tests/small_scenes.h"
+
+using namespace clothlab;
+using namespace clothlab::test;
+using scene::Method;
+
+namespace {
+
+constexpr int steps = 10000;
+constexpr double float32_rounding = 0x1p-24;
+
+/// Of one_spring about its balance, both copies [J].
+double spring_energy(const reference::State& state) {
+  const double u = state.position[spring_end].z - spring_balance, v = state.velocity[spring_end].z;
+  return v * v + spring_omega * spring_omega * u * u;
+}
+constexpr double spring_start = spring_omega * spring_omega * spring_amplitude * spring_amplitude;
+
+struct Line {
+  double drift;  ///< of the fitted line, from the first sample to the last
+  double error;  ///< its standard error, from how far the samples are from the line
+};
+
+Line fit(const std::vector<double>& samples) {
+  const auto count = static_cast<double>(samples.size());
+  const double mean = std::accumulate(samples.begin(), samples.end(), 0.0) / count;
+  double xy = 0.0, xx = 0.0, rest = 0.0;
+  const auto x_of = [&](std::size_t i) { return static_cast<double>(i) - (count - 1) / 2; };
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    xy += x_of(i) * (samples[i] - mean);
+    xx += x_of(i) * x_of(i);
+  }
+  const double slope = xy / xx;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double off = samples[i] - mean - slope * x_of(i);
+    rest += off * off;
+  }
+  return {slope * count, std::sqrt(rest / (count - 2) / xx) * count};
+}
+
+}  // namespace
+
+TEST_CASE(
+    "on one spring symplectic Euler and Verlet keep the energy for 10,000 steps, between bounds and without "
+    "slope") {
+  const auto context = test::context();
+  for (const Side side : sides) {
+    for (const Method method : {Method::symplectic_euler, Method::verlet}) {
+      for (const double y : {0.2, 0.6, 1.2}) {  // omega dt
+        Stepped stepped(side, one_spring(method, y / spring_omega));
+        std::vector<double> energy;
+        for (int n = 0; n < steps; ++n) {
+          stepped.step(1);
+          energy.push_back(spring_energy(stepped.state()) / spring_start);
+        }
+        // Exactly kept: v^2 + (omega u)^2 - y omega u v, so the energy to 1 +- y/2; with Verlet's v_n, v^2 +
+        // (1 - y^2/4) (omega u)^2, and the velocity shown is ahead of that by up to y^2/2 of the half step's.
+        const double low = method == Method::verlet ? 1 - y * y / 4 : 1 / (1 + y / 2);
+        const double high =
+            method == Method::verlet ? (1 + y * y / 2) * (1 + y * y / 2) / (1 - y * y / 4) : 1 / (1 - y / 2);
+        const auto [least, most] = std::minmax_element(energy.begin(), energy.end());
+        // A line through an oscillation of amplitude A and 2 theta a step drifts by up to 6 A / (N sin theta)
+        // by itself; float32 rounds z of 1.2 m and v each step, which takes the energy for a random walk.
+        const double theta = 2 * std::asin(y / 2), amplitude = (*most - *least) / 2;
+        const double walk = 3 * std::sqrt(steps) * 2 * 1.2 * float32_rounding * spring_omega / 0.4 *
+                            (1 / std::cos(theta / 2));
+        const double error = 6 * amplitude / (steps * std::sin(theta)) + (side == Side::gpu ? 4 * walk : 0.0);
+        INFO(scene::name(method) << ", " << name(side) << ", omega dt " << y << ": energy " << *least
+                                 << " to " << *most << ", drift " << fit(energy).drift << ", error bar "
+                                 << error);
+        CHECK(*least > low - error);
+        CHECK(*most < high + error);
+        CHECK(std::abs(fit(energy).drift) < error);
+        CHECK(error < 0.01);  // of the energy, over 10,000 steps: the bar still means something
+      }
+    }
+  }
+}
+
+TEST_CASE(
+    "on a chain of ten links symplectic Euler and Verlet keep the energy for 10,000 steps without slope") {
+  const auto context = test::context();
+  const double k = 400.0, mass = 0.01, fastest = 2 * std::sqrt(k / mass);
+  for (const Side side : sides) {
+    for (const Method method : {Method::symplectic_euler, Method::verlet}) {
+      for (const double y : {0.2, 0.6}) {
+        scene::Scene scene = chain(method, y / fastest, 10, k, mass);
+        scene.gravity = {0.0, 0.0, 50.0};
+        Stepped stepped(side, scene);
+        const double start = stepped.energy().total();
+        double kinetic = 0.0;
+        std::vector<double> blocks;  // means over 500 steps, several periods of the slowest vibration
+        for (int block = 0; block < 20; ++block) {
+          double sum = 0.0;
+          for (int n = 0; n < 500; ++n) {
+            stepped.step(1);
+            const reference::Energy now = stepped.energy();
+            sum += now.total() - start;
+            kinetic = std::max(kinetic, now.kinetic);
+          }
+          blocks.push_back(sum / 500);
+        }
+        const Line line = fit(blocks);
+        INFO(scene::name(method) << ", " << name(side) << ", omega dt " << y << ": drift "
+                                 << line.drift / kinetic << ", error bar " << line.error / kinetic
+                                 << " of the vibrations' energy");
+        CHECK(std::abs(line.drift) < 3 * line.error);  // 3 standard errors
+        CHECK(3 * line.error < 0.01 * kinetic);        // and these are small
+      }
+    }
+  }
+}
+
+TEST_CASE(
+    "on a swinging cloth, buckling and all, symplectic Euler and Verlet keep the energy bounded for 10,000 "
+    "steps") {
+  const auto context = test::context();
+  for (const Side side : sides) {
+    for (const Method method : {Method::symplectic_euler, Method::verlet}) {
+      const double y = 0.3;  // omega dt of the fastest vibration
+      Stepped stepped(side, swinging_cloth(method, y / 2 * 0.6285 * cloth_unit));
+      const double start = stepped.energy().total();
+      double least = 0.0, most = 0.0, kinetic = 0.0;
+      for (int n = 0; n < steps; n += 10) {
+        stepped.step(10);
+        const reference::Energy now = stepped.energy();
+        least = std::min(least, now.total() - start);
+        most = std::max(most, now.total() - start);
+        kinetic = std::max(kinetic, now.kinetic);
+      }
+      // No vibration's energy is off by more than on one spring at the fastest's omega dt: y/2, and y^2/2 for
+      // Verlet.
+      const double bound = (method == Method::verlet ? y * y / 2 : y / 2) * kinetic;
+      INFO(scene::name(method) << ", " << name(side) << ": " << least << " to " << most << " J, bound "
+                               << bound << " J");
+      CHECK(least > -bound);
+      CHECK(most < bound);
+    }
+  }
+}
+
+TEST_CASE(
+    "on one spring implicit Euler loses energy by 1/(1 + y^2) a step, RK4 by 1 - y^6/72 + y^8/576, y = omega "
+    "dt") {
+  const auto context = test::context();
+  for (const Side side : sides) {
+    for (const double y : {0.03, 0.1, 0.3}) {
+      scene::Scene scene = one_spring(Method::implicit_euler, y / spring_omega);
+      scene.solver.tolerance = 1e-7;
+      const double law = std::log1p(y * y);
+      const int count = std::min(steps, static_cast<int>(3.0 / law));  // to a twentieth of the energy
+      Stepped stepped(side, scene);
+      stepped.step(count);
+      INFO("implicit Euler, " << name(side) << ", y " << y << ", " << count << " steps");
+      CHECK(-std::log(spring_energy(stepped.state()) / spring_start) == Approx(count * law).epsilon(0.003));
+    }
+    for (const double y : {0.2, 0.5, 1.0, 2.0}) {
+      const double law = -std::log1p(std::pow(y, 6) * (y * y / 8 - 1) / 72);
+      const int count = std::min(steps, static_cast<int>(3.0 / law));
+      Stepped stepped(side, one_spring(Method::rk4, y / spring_omega));
+      stepped.step(count);
+      INFO("RK4, " << name(side) << ", y " << y << ", " << count << " steps");
+      CHECK(-std::log(spring_energy(stepped.state()) / spring_start) == Approx(count * law).epsilon(0.003));
+    }
+  }
+}
