@@ -57,7 +57,25 @@ scene::Scene held(Method method, double dt) {
 /// parts.
 struct Change {
   double linear = 0, angular = 0;
+  double unsolved = 0;  ///< the most that implicit Euler's linear solver may add to `linear`, on the GPU
 };
+
+/// The most momentum that a solve may leave: its residual r ends with sum |r|^2/m below tolerance^2 times the
+/// sum of m v^2 + dt^2 f^2/m (shaders/methods/implicit_system.comp), and |sum r| <= sqrt(sum m) sqrt(sum
+/// |r|^2/m).
+double unsolved_momentum(const reference::World& world, const reference::State& state) {
+  const scene::Solver& solver = world.scene.solver;
+  const std::vector<glm::dvec3> force = reference::spring_forces(world, state.position, state.velocity);
+  double mass = 0.0, scale = 0.0;
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    const double m = world.model.mass[i];
+    mass += m;
+    scale += m * glm::dot(state.velocity[i], state.velocity[i]) +
+             solver.dt * solver.dt / m * glm::dot(force[i], force[i]);
+  }
+  return solver.tolerance * std::sqrt(mass * scale);
+}
+
 Change change_after_release(Side side, Method method, double dt) {
   scene::Scene scene = held(method, dt);
   Stepped stepped(side, scene);
@@ -68,6 +86,7 @@ Change change_after_release(Side side, Method method, double dt) {
   const Momentum start = momentum(stepped.world(), stepped.state());
   Change change;
   for (int part = 0; part < 10; ++part) {
+    change.unsolved += steps / 10 * unsolved_momentum(stepped.world(), stepped.state()) / start.linear_scale;
     stepped.step(steps / 10);
     const Momentum now = momentum(stepped.world(), stepped.state());
     change.linear = std::max(change.linear, glm::distance(now.linear, start.linear) / start.linear_scale);
@@ -79,18 +98,21 @@ Change change_after_release(Side side, Method method, double dt) {
 
 }  // namespace
 
-TEST_CASE("a free sheet keeps its linear momentum to 1e-5 under every method") {
+TEST_CASE(
+    "a free sheet keeps its linear momentum to 1e-5 under every method, implicit Euler to its solver's "
+    "tolerance") {
   const auto context = test::context();
   for (const Side side : sides) {
     for (const Method method : scene::methods) {
-      // Implicit Euler's linear solver leaves a share of 1e-7 of the momentum to chance each step: 1e-5 in
-      // 100 steps, and this is 82. The others add up roundings.
-      const double dt = (method == Method::implicit_euler ? 0.5 : 0.1) * cloth_unit;
-      const double change = change_after_release(side, method, dt).linear;
-      INFO(scene::name(method) << ", " << name(side) << ": " << change);
-      // Every spring's two forces cancel: in double precision to 400 steps' rounding, and implicit Euler's to
-      // what Newton's method leaves.
-      CHECK(change < (side == Side::gpu ? 1e-5 : 1e-12));
+      const Change change = change_after_release(side, method, 0.1 * cloth_unit);
+      INFO(scene::name(method) << ", " << name(side) << ": " << change.linear << ", unsolved "
+                               << change.unsolved);
+      // Every spring's two forces cancel: in double precision to 400 steps' rounding. Implicit Euler's solver
+      // on the GPU leaves a little each step.
+      double allowed = side == Side::gpu ? 1e-5 : 1e-12;
+      if (side == Side::gpu && method == Method::implicit_euler) allowed += change.unsolved;
+      CHECK(change.linear < allowed);
+      CHECK(allowed < 1e-4);
     }
   }
 }
