@@ -8,19 +8,15 @@
 #define READ_UVEC4(name, unit) READ_BUFFER_(uvec4, name, unit)
 #define READ_UVEC2(name, unit) READ_BUFFER_(uvec2, name, unit)
 #define READ_UINT(name, unit) READ_BUFFER_(uint, name, unit)
-#define READ_FLOAT(name, unit) READ_BUFFER_(float, name, unit)
 #define FETCH(name, i) name[i]
 #define FETCH_UVEC2(name, i) name[i]
 #define FETCH_UINT(name, i) name[i]
-#define FETCH_FLOAT(name, i) name[i]
 #else
 #define READ_VEC4(name, unit) layout(binding = unit) uniform samplerBuffer name
 #define READ_UVEC4(name, unit) layout(binding = unit) uniform usamplerBuffer name
 #define READ_UVEC2(name, unit) layout(binding = unit) uniform usamplerBuffer name
 #define READ_UINT(name, unit) layout(binding = unit) uniform usamplerBuffer name
-#define READ_FLOAT(name, unit) layout(binding = unit) uniform samplerBuffer name
 #define FETCH(name, i) texelFetch(name, int(i))
 #define FETCH_UVEC2(name, i) texelFetch(name, int(i)).xy
 #define FETCH_UINT(name, i) texelFetch(name, int(i)).x
-#define FETCH_FLOAT(name, i) texelFetch(name, int(i)).x
 #endif

@@ -24,6 +24,8 @@ class ImplicitEuler : public Integrator {
  public:
   static Result<std::unique_ptr<Integrator>> create(std::uint32_t vertex_count, const Plan& plan) {
     std::unique_ptr<ImplicitEuler> made(new ImplicitEuler(vertex_count));
+    gl::Defines defines = step_defines(plan);
+    defines.emplace_back("GROUP_COUNT", std::to_string(made->groups_));
     for (auto [program, name] : {std::pair{&made->start_, "start"},
                                  {&made->system_, "system"},
                                  {&made->multiply_, "multiply"},
@@ -32,7 +34,7 @@ class ImplicitEuler : public Integrator {
                                  {&made->advance_, "advance"},
                                  {&made->end_, "end"}}) {
       Result<gl::Program> loaded =
-          gl::Program::load({std::string("methods/implicit_") + name + ".comp"}, step_defines(plan));
+          gl::Program::load({std::string("methods/implicit_") + name + ".comp"}, defines);
       if (!loaded) return loaded.error();
       *program = std::move(*loaded);
     }
@@ -45,8 +47,6 @@ class ImplicitEuler : public Integrator {
     most_newton_steps_ = around.scene.solver.iterations;
     glProgramUniform1f(system_.id(), system_.uniform("tolerance"),
                        static_cast<float>(around.scene.solver.tolerance));
-    for (const gl::Program* program : {&update_, &advance_})
-      glProgramUniform1i(program->id(), program->uniform("group_count"), static_cast<GLint>(groups_));
   }
 
   void step(StateBuffers& state, int row) override {

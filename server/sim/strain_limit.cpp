@@ -46,6 +46,7 @@ void wait() {
 Result<StrainLimit> StrainLimit::create(const Surroundings& around, const Plan& plan, std::size_t entries) {
   StrainLimit made;
   gl::Defines defines = step_defines(plan);
+  defines.emplace_back("GROUP_COUNT", std::to_string(vertex_groups(around.model.vertex_count())));
   defines.emplace_back("CLOTH_COUNT", std::to_string(around.scene.cloths.size()));
   for (auto [program, path] : {std::pair{&made.start_, "methods/strain_limit_start.comp"},
                                {&made.sweep_, "methods/strain_limit_sweep.comp"},
@@ -60,8 +61,7 @@ Result<StrainLimit> StrainLimit::create(const Surroundings& around, const Plan& 
     position = {gl::Buffer(count * 4 * sizeof(float)), GL_RGBA32F};
   for (gl::TextureBuffer& excess : made.group_excess_)
     excess = {gl::Buffer(made.groups_ * 4 * sizeof(float)), GL_RGBA32F};
-  for (gl::TextureBuffer& pulls : made.pulls_)
-    pulls = {gl::Buffer(std::max<std::size_t>(entries, 1) * sizeof(float)), GL_R32F};
+  made.pulls_ = gl::Buffer(std::max<std::size_t>(entries, 1) * sizeof(float));
   made.control_ = gl::Buffer(sizeof(Control));
   made.restart();
   made.set_parameters(around);
@@ -75,7 +75,6 @@ void StrainLimit::set_parameters(const Surroundings& around) {
     limits.push_back(static_cast<float>(cloth.material.strain_limit.value_or(-1.0)));
   const GLuint sweep = sweep_.id();
   glProgramUniform1fv(sweep, sweep_.uniform("limit"), static_cast<GLsizei>(limits.size()), limits.data());
-  glProgramUniform1i(sweep, sweep_.uniform("group_count"), static_cast<GLint>(groups_));
   glProgramUniform1f(sweep, sweep_.uniform("relaxation"), relaxation(around.model));
   // A pull is a force times dt^2.
   if (around.scene.solver.dt != dt_) restart();
@@ -86,7 +85,7 @@ void StrainLimit::apply(StateBuffers& state) {
   state.position().bind(unit_position);
   state.previous_position().bind(10);
   position_[0].buffer.bind_storage(0);
-  pulls_[current_].bind(11);
+  pulls_.bind_storage(3);
   start_.use();
   glDispatchCompute(groups_, 1, 1);
   wait();
@@ -101,13 +100,10 @@ void StrainLimit::apply(StateBuffers& state) {
   for (int done = 0; done < most_sweeps && control.groups > 0; done += sweeps_between_looks) {
     for (int sweep = done; sweep < done + sweeps_between_looks; ++sweep) {
       const auto from = static_cast<std::size_t>(sweep) % 2, to = 1 - from;
-      const std::size_t pulls_from = (current_ + from) % 2;
       position_[from].bind(unit_position);
-      pulls_[pulls_from].bind(11);
       group_excess_[from].bind(9);
       position_[to].buffer.bind_storage(0);
       group_excess_[to].buffer.bind_storage(1);
-      pulls_[1 - pulls_from].buffer.bind_storage(3);
       glUniform1i(sweep_location, sweep);
       glDispatchComputeIndirect(0);
       wait();
@@ -119,7 +115,6 @@ void StrainLimit::apply(StateBuffers& state) {
 
   state.bind_for_step();
   position_[control.sweeps % 2].bind(9);
-  current_ = (current_ + control.sweeps) % 2;
   end_.use();
   glDispatchCompute(groups_, 1, 1);
   wait();

@@ -21,15 +21,14 @@ class StrainLimit {
   void apply(StateBuffers& state);
 
   /// The state was not made by the last step: forget what the limits pulled in it.
-  void restart() { pulls_[current_].buffer.fill(0); }
+  void restart() { pulls_.fill(0); }
 
   StrainLimitWork work() const { return work_; }
 
  private:
   gl::Program start_, sweep_, end_;
-  std::array<gl::TextureBuffer, 2> position_, pulls_, group_excess_;  ///< a sweep reads one, writes the other
-  gl::Buffer control_;
-  std::size_t current_ = 0;  ///< of the two, the pulls that are valid
+  std::array<gl::TextureBuffer, 2> position_, group_excess_;  ///< a sweep reads one, writes the other
+  gl::Buffer pulls_, control_;
   double dt_ = 0;            ///< [s]
   GLuint groups_ = 0;
   StrainLimitWork work_;

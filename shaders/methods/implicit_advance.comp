@@ -14,17 +14,31 @@ layout(std430, binding = 3) buffer Estimate { vec4 estimate[]; };
 layout(std430, binding = 4) writeonly buffer Guess { vec4 guess[]; };  // of the next change
 layout(std430, binding = 5) buffer Constraint { vec4 constraint[]; };
 layout(std430, binding = 6) buffer Surface { vec4 surface[]; };
-uniform int group_count;
 
-/// The largest share that the next smaller one does not beat. A hundredth more, so that rounding beats nothing.
-float best_share() {
-  vec4 first = vec4(0.0), second = vec4(0.0);
-  for (int group = int(gl_LocalInvocationID.x); group < group_count; group += GROUP_SIZE) {
+#if GROUP_COUNT <= 16  // no barrier pays for so few
+void add_up(out vec4 first, out vec4 second) {
+  first = second = vec4(0.0);
+  for (int group = 0; group < GROUP_COUNT; ++group) {
+    first += FETCH(group_sums, 2 * group);
+    second += FETCH(group_sums, 2 * group + 1);
+  }
+}
+#else
+void add_up(out vec4 first, out vec4 second) {
+  first = second = vec4(0.0);
+  for (int group = int(gl_LocalInvocationID.x); group < GROUP_COUNT; group += GROUP_SIZE) {
     first += FETCH(group_sums, 2 * group);
     second += FETCH(group_sums, 2 * group + 1);
   }
   first = sum_of_group(first);
   second = sum_of_group(second);
+}
+#endif
+
+/// The largest share that the next smaller one does not beat. A hundredth more, so that rounding beats nothing.
+float best_share() {
+  vec4 first, second;
+  add_up(first, second);
   float energy[SHARES] = float[](first.x, first.y, first.z, first.w, second.x, second.y, second.z, second.w);
   int k = 0;
   while (k + 1 < SHARES && !(energy[k] <= energy[k + 1] + 0.01 * abs(energy[k + 1]))) ++k;

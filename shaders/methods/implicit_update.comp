@@ -24,16 +24,23 @@ layout(std430, binding = 3) buffer Control {
   uint unused_1, unused_2, unused_3;
   vec2 steps[];  // of each iteration: residual times preconditioned residual, length of the step
 };
-uniform int group_count;
 uniform int iteration;
 
 /// Every work group adds up what all wrote.
+#if GROUP_COUNT <= 16  // no barrier pays for so few
 vec4 total() {
   vec4 sum = vec4(0.0);
-  for (int group = int(gl_LocalInvocationID.x); group < group_count; group += GROUP_SIZE)
+  for (int group = 0; group < GROUP_COUNT; ++group) sum += FETCH(group_sums, group);
+  return sum;
+}
+#else
+vec4 total() {
+  vec4 sum = vec4(0.0);
+  for (int group = int(gl_LocalInvocationID.x); group < GROUP_COUNT; group += GROUP_SIZE)
     sum += FETCH(group_sums, group);
   return sum_of_group(sum);
 }
+#endif
 
 void main() {
   int i = int(gl_GlobalInvocationID.x);

@@ -14,7 +14,8 @@ layout(local_size_x = GROUP_SIZE) in;
 READ_VEC4(position, 0);       // w: inverse mass [1/kg], 0 if pinned
 READ_VEC4(rest_position, 7);  // w: the cloth
 READ_VEC4(start_position, 10);  // at the step's start
-READ_FLOAT(pulls, 11);  // of each entry of the spring lists: impulse times dt, 0 or more [kg m]
+/// Of each entry of the spring lists, its own vertex's alone: impulse times dt, 0 or more [kg m].
+layout(std430, binding = 3) buffer Pulls { float pulls[]; };
 uniform int vertex_count;
 uniform float limit[CLOTH_COUNT];  // largest strain of each cloth's springs; negative: none
 

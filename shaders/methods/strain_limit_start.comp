@@ -9,7 +9,7 @@ void main() {
   vec3 x_start = FETCH(start_position, i).xyz, moved = vec3(0.0);
   SpringRange range = spring_range(i);
   for (int entry = range.first; entry < range.end; entry += GROUP_SIZE) {
-    float pull = FETCH_FLOAT(pulls, entry);
+    float pull = pulls[entry];
     RARELY(pull > 0.0) {
       uint j = FETCH(springs, entry).x;
       float growth;

@@ -5,21 +5,27 @@
 READ_VEC4(group_excess, 9);
 layout(std430, binding = 0) writeonly buffer NextPosition { vec4 next_position[]; };
 layout(std430, binding = 1) writeonly buffer Excess { vec4 next_group_excess[]; };  // x: largest, in shares of the limit
-layout(std430, binding = 3) writeonly buffer Pulls { float next_pulls[]; };
 layout(std430, binding = 4) buffer Control {
   uint groups, groups_y, groups_z;  // of the next sweeps' dispatches: 0 once they have ended
   uint sweeps;
 };
-uniform int group_count;
 uniform int sweep;
 uniform float relaxation;
 
+#if GROUP_COUNT <= 16  // no barrier pays for so few
 float excess_before() {
   float most = 0.0;
-  for (int group = int(gl_LocalInvocationID.x); group < group_count; group += GROUP_SIZE)
+  for (int group = 0; group < GROUP_COUNT; ++group) most = max(most, FETCH(group_excess, group).x);
+  return most;
+}
+#else
+float excess_before() {
+  float most = 0.0;
+  for (int group = int(gl_LocalInvocationID.x); group < GROUP_COUNT; group += GROUP_SIZE)
     most = max(most, FETCH(group_excess, group).x);
   return largest_of_group(most);
 }
+#endif
 
 void main() {
   int i = int(gl_GlobalInvocationID.x);
@@ -39,18 +45,18 @@ void main() {
       uvec4 s = FETCH(springs, entry);
       vec4 y = FETCH(position, s.x);
       vec3 d = x.xyz - y.xyz;
-      float pull = FETCH_FLOAT(pulls, entry), changed = pull;
+      float pull = pulls[entry];
       float rest_length = uintBitsToFloat(s.y), allowed = largest_strain * rest_length, mobility = x.w + y.w;
       float excess = length(d) - rest_length - allowed * (1.0 - margin);
       RARELY((excess > 0.0 || pull > 0.0) && allowed > 0.0 && mobility > 0.0) {
         float growth;
         vec3 n = pull_direction(d, x_start - FETCH(start_position, s.x).xyz, growth);
-        changed = max(pull + relaxation * excess / (mobility * growth), 0.0);
+        float changed = max(pull + relaxation * excess / (mobility * growth), 0.0);
+        pulls[entry] = changed;
         moved -= (changed - pull) * n;
         // What is left to do: too long, or too short because of the pull.
         most = max(most, (changed > 0.0 ? abs(excess) : excess) / allowed);
       }
-      next_pulls[entry] = changed;
     }
     next_position[i] = vec4(x.xyz + x.w * moved, x.w);
   }
