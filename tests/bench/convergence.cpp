@@ -1,0 +1,87 @@
+// Error against dt, the table of physics.md: the swinging 17 x 17 cloth at 0.3 s under symplectic Euler,
+// Verlet and RK4, by the reference in double precision and by the GPU in float32, against RK4 in double
+// precision at u/200 (u = sqrt(m/k)). Prints a JSON document.
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "server/gl/context.h"
+#include "server/reference/trajectory.h"
+#include "server/scene/method.h"
+#include "server/sim/simulation.h"
+#include "tests/small_scenes.h"
+
+using namespace clothlab;
+using scene::Method;
+using Positions = std::vector<glm::dvec3>;
+
+namespace {
+
+constexpr double end = 0.3;                                            // [s], before the cloth buckles
+constexpr double shares[] = {0.6, 0.3, 0.15, 0.075, 0.0375, 0.01875};  // of u
+
+Positions in_double(const scene::Scene& scene, int steps) {
+  const reference::World world = *reference::make_world(scene, 0.0);
+  reference::State state = reference::at_rest(world);
+  for (int n = 0; n < steps; ++n) reference::step(world, state);
+  return state.position;
+}
+
+Positions on_gpu(const scene::Scene& scene, int steps) {
+  const auto simulation = sim::Simulation::create(scene);
+  if (!simulation)
+    return std::fprintf(stderr, "%s\n", simulation.error().text().c_str()), std::exit(1), Positions{};
+  (*simulation)->step(static_cast<std::uint32_t>(steps));
+  const sim::State state = (*simulation)->read_state();
+  return {state.position.begin(), state.position.end()};
+}
+
+int steps_of(double share) {
+  return static_cast<int>(std::lround(end / (share * test::cloth_unit)));
+}
+
+void print_row(Method method, const char* precision, const std::vector<double>& errors, bool last) {
+  std::printf("  {\"method\": \"%s\", \"precision\": \"%s\", \"rms_error_m\": [", scene::name(method),
+              precision);
+  for (std::size_t i = 0; i < errors.size(); ++i) std::printf("%s%.2e", i ? ", " : "", errors[i]);
+  std::printf("]}%s\n", last ? "" : ",");
+}
+
+}  // namespace
+
+int main() {
+  const auto context = gl::Context::create();
+  if (!context) return std::fprintf(stderr, "%s\n", context.error().text().c_str()), 3;
+  const reference::World world = *reference::make_world(test::swinging_cloth(Method::rk4, 1.0), 0.0);
+  const auto truth = reference::trajectory(world, {end}, test::cloth_unit / 100);
+  if (!truth) return std::fprintf(stderr, "%s\n", truth.error().text().c_str()), 1;
+  const Positions& exact = truth->states[0].position;
+
+  std::printf(
+      "{\n \"what\": \"RMS position error [m] at 0.3 s of the swinging 17 x 17 cloth, against dt\",\n");
+  std::printf(" \"renderer\": \"%s\",\n \"u_s\": %.6e,\n", (*context)->device().name.c_str(),
+              test::cloth_unit);
+  std::printf(
+      " \"reference\": {\"method\": \"rk4, float64\", \"dt_over_u\": %.4f, \"difference_to_twice_dt_m\": "
+      "%.1e},\n",
+      truth->dt / test::cloth_unit, truth->error[0]);
+  std::printf(" \"dt_over_u\": [");
+  for (const double share : shares)
+    std::printf("%s%.4f", share == shares[0] ? "" : ", ", end / steps_of(share) / test::cloth_unit);
+  std::printf("],\n \"rows\": [\n");
+  for (const Method method : {Method::symplectic_euler, Method::verlet, Method::rk4}) {
+    std::vector<double> float64, float32, rounding;
+    for (const double share : shares) {
+      const int steps = steps_of(share);
+      const scene::Scene scene = test::swinging_cloth(method, end / steps);
+      const Positions ours = in_double(scene, steps), theirs = on_gpu(scene, steps);
+      float64.push_back(reference::rms_distance(ours, exact));
+      float32.push_back(reference::rms_distance(theirs, exact));
+      rounding.push_back(reference::rms_distance(theirs, ours));
+    }
+    print_row(method, "float64, reference", float64, false);
+    print_row(method, "float32, GPU", float32, false);
+    print_row(method, "float32 - float64", rounding, method == Method::rk4);
+  }
+  std::printf(" ]\n}\n");
+}
