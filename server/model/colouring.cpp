@@ -1,0 +1,126 @@
+#include "server/model/colouring.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace clothlab::model {
+
+namespace {
+
+using Index = std::uint32_t;
+constexpr Index uncoloured = ~Index{0};
+
+struct GridPlace {
+  Index column = 0, row = 0;
+};
+
+GridPlace place(const scene::Grid& grid, Index vertex) {
+  const auto columns = static_cast<Index>(grid.columns);
+  return {vertex % columns, vertex / columns};
+}
+
+/// Twelve classes: six directions, two colours each. Along its direction a spring's two ends are one or two
+/// vertices apart: counted in that length from the edge of the grid, even and odd ones alternate.
+Index grid_spring_colour(const scene::Grid& grid, Index first_vertex, const Spring& spring) {
+  const GridPlace a = place(grid, spring.a - first_vertex), b = place(grid, spring.b - first_vertex);
+  const Index across = b.column > a.column ? b.column - a.column : a.column - b.column, down = b.row - a.row;
+  const Index left = std::min(a.column, b.column);
+  if (down == 0) return (across == 2 ? 8 : 0) + left / across % 2;
+  if (across == 0) return (down == 2 ? 10 : 2) + a.row / down % 2;
+  return (b.column > a.column ? 4 : 6) + a.row % 2;
+}
+
+/// The colour that none of `taken` is; of several, the one with fewest members; a new one if there is none.
+Index least_crowded(const std::vector<char>& taken, std::vector<Index>& members) {
+  Index best = uncoloured;
+  for (Index colour = 0; colour < members.size(); ++colour)
+    if (!taken[colour] && (best == uncoloured || members[colour] < members[best])) best = colour;
+  if (best == uncoloured) {
+    best = static_cast<Index>(members.size());
+    members.push_back(0);
+  }
+  ++members[best];
+  return best;
+}
+
+/// Colours the items of `queue` one by one; `neighbours(item, visit)` visits those that must differ from it.
+template <class Neighbours>
+void colour_greedily(const std::vector<Index>& queue, Neighbours neighbours, std::vector<Index>& colour) {
+  std::vector<Index> members;
+  std::vector<char> taken;
+  for (const Index item : queue) {
+    taken.assign(members.size() + 1, 0);
+    neighbours(item, [&](Index other) {
+      if (colour[other] != uncoloured) taken[colour[other]] = 1;
+    });
+    colour[item] = least_crowded(taken, members);
+  }
+}
+
+/// Sorts by colour; colours nobody has are left out.
+Colouring group(const std::vector<Index>& colour) {
+  const Index count = colour.empty() ? 0 : *std::max_element(colour.begin(), colour.end()) + 1;
+  std::vector<std::vector<Index>> groups(count);
+  for (Index item = 0; item < colour.size(); ++item) groups[colour[item]].push_back(item);
+  Colouring result;
+  result.offsets.push_back(0);
+  for (const std::vector<Index>& members : groups) {
+    if (members.empty()) continue;
+    result.order.insert(result.order.end(), members.begin(), members.end());
+    result.offsets.push_back(static_cast<Index>(result.order.size()));
+  }
+  return result;
+}
+
+const scene::Grid* grid_of(const scene::Scene& scene, Index cloth) {
+  return std::get_if<scene::Grid>(&scene.cloths[cloth].mesh);
+}
+
+Index other_end(const Spring& spring, Index vertex) {
+  return spring.a == vertex ? spring.b : spring.a;
+}
+
+}  // namespace
+
+Colouring colour_springs(const Model& model, const scene::Scene& scene) {
+  std::vector<Index> colour(model.springs.size(), uncoloured), queue;
+  for (Index i = 0; i < model.springs.size(); ++i) {
+    const Spring& spring = model.springs[i];
+    if (const scene::Grid* grid = grid_of(scene, spring.cloth))
+      colour[i] = grid_spring_colour(*grid, model.cloths[spring.cloth].first_vertex, spring);
+    else
+      queue.push_back(i);
+  }
+  const auto neighbours = [&](Index spring, auto visit) {
+    for (const Index vertex : {model.springs[spring].a, model.springs[spring].b})
+      for (Index k = model.vertex_springs.offsets[vertex]; k < model.vertex_springs.offsets[vertex + 1]; ++k)
+        if (model.vertex_springs.items[k] != spring) visit(model.vertex_springs.items[k]);
+  };
+  colour_greedily(queue, neighbours, colour);
+  return group(colour);
+}
+
+Colouring colour_vertices(const Model& model, const scene::Scene& scene) {
+  std::vector<Index> colour(model.vertex_count(), uncoloured), queue;
+  for (Index i = 0; i < model.vertex_count(); ++i) {
+    const Index cloth = model.vertex_cloth[i];
+    if (const scene::Grid* grid = grid_of(scene, cloth)) {
+      const GridPlace at = place(*grid, i - model.cloths[cloth].first_vertex);
+      colour[i] = (at.column + 2 * at.row) % 5;
+    } else {
+      queue.push_back(i);
+    }
+  }
+  const std::vector<Index>& offsets = model.vertex_springs.offsets;
+  std::stable_sort(queue.begin(), queue.end(), [&](Index a, Index b) {
+    return offsets[a + 1] - offsets[a] > offsets[b + 1] - offsets[b];
+  });
+  const auto neighbours = [&](Index vertex, auto visit) {
+    for (Index k = offsets[vertex]; k < offsets[vertex + 1]; ++k)
+      visit(other_end(model.springs[model.vertex_springs.items[k]], vertex));
+  };
+  colour_greedily(queue, neighbours, colour);
+  return group(colour);
+}
+
+}  // namespace clothlab::model
