@@ -2,18 +2,14 @@
 #include <algorithm>
 #include <random>
 
+#include "server/reference/trajectory.h"
+#include "server/scene/method.h"
 #include "tests/physics/rounding.h"
 #include "tests/physics/stage.h"
 
 using namespace clothlab;
 
 namespace {
-
-double rms_distance(const std::vector<glm::dvec3>& a, const std::vector<glm::dvec3>& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += glm::dot(a[i] - b[i], a[i] - b[i]);
-  return std::sqrt(sum / static_cast<double>(a.size()));
-}
 
 reference::State after(const reference::World& world, reference::State state, int steps) {
   for (int n = 0; n < steps; ++n) reference::step(world, state);
@@ -39,7 +35,7 @@ double largest_growth(const reference::World& world, const Rounding& rounding, i
   for (int n = 0; n < steps; ++n) {
     reference::step(world, plain);
     reference::step(world, disturbed);
-    largest = std::max(largest, rms_distance(plain.position, disturbed.position) / part);
+    largest = std::max(largest, reference::rms_distance(plain.position, disturbed.position) / part);
   }
   return largest;
 }
@@ -82,7 +78,7 @@ TEST_CASE("after 1, 10 and 100 steps of the seed scene the GPU is where the doub
     const reference::State found = in_double(simulation->read_state(), 0);
     const reference::State expected = after(world, reference::at_rest(world), steps);
     const double bound = steps * largest_growth(world, rounding, steps);
-    const double error = rms_distance(found.position, expected.position);
+    const double error = reference::rms_distance(found.position, expected.position);
     INFO(steps << " steps: RMS error " << error << " m, bound " << bound << " m");
     CHECK(error < bound);
     CHECK(bound < 2e-3);  // two thousandths of the cloth: the bound still means something
@@ -97,8 +93,9 @@ struct Agreement {
   double worst = 0;   ///< largest error of the others over the bound of one step's rounding
 };
 
-/// Compares each step from `first` on with a reference step from the GPU's own state before it.
-Agreement compare_contacts(const scene::Scene& scene, std::uint64_t first, int steps) {
+/// Lets symplectic Euler go to step `first`, then `method` go on; compares each of its steps with a reference
+/// step from the GPU's own state before it.
+Agreement compare_contacts(scene::Scene scene, scene::Method method, std::uint64_t first, int steps) {
   // Whether a vertex just touches hangs on the last bit; such vertices are found by moving the surfaces a
   // little.
   const auto moved = [&](double by) {
@@ -107,25 +104,32 @@ Agreement compare_contacts(const scene::Scene& scene, std::uint64_t first, int s
     if (world.scene.self_collision) world.scene.self_collision->thickness += by;
     return world;
   };
-  const reference::World world = moved(0.0), nearer = moved(-2e-6), farther = moved(2e-6);
   const auto simulation = test::simulation(scene);
   simulation->step(static_cast<std::uint32_t>(first));
+  scene.solver.method = method;
+  REQUIRE(simulation->change(scene));
+  const reference::World world = moved(0.0), nearer = moved(-2e-6), farther = moved(2e-6);
   Agreement agreement;
-  std::vector<int> contacts(world.model.vertex_count(), 0);
+  reference::State expected = in_double(simulation->read_state(), first);
   for (int n = 0; n <= steps; ++n) {
     reference::State before = in_double(simulation->read_state(), first + static_cast<std::uint64_t>(n));
-    before.contacts = contacts;
-    const reference::State expected = after(world, before, 1);
+    // What the GPU does not show, it got from the step before: how many contacts share a push, and Verlet's
+    // half step.
+    before.contacts = expected.contacts;
+    before.half_dt = expected.half_dt;
+    before.half_velocity = before.velocity;
+    for (std::size_t i = 0; i < expected.half_velocity.size(); ++i)
+      before.half_velocity[i] -= expected.velocity[i] - expected.half_velocity[i];
+    expected = after(world, before, 1);
     const reference::State less = after(nearer, before, 1), more = after(farther, before, 1);
     simulation->step(1);
     const reference::State found = in_double(simulation->read_state(), 0);
     const Rounding bound = step_rounding(world, before, expected);
-    contacts = expected.contacts;
-    if (n == 0) continue;  // the contacts of the step before, which share out the push, are known from now on
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-      if (contacts[i] == 0) continue;
+    if (n == 0) continue;  // of the first step they are not known
+    for (std::size_t i = 0; i < expected.contacts.size(); ++i) {
+      if (expected.contacts[i] == 0) continue;
       ++agreement.touching;
-      if (less.contacts[i] != contacts[i] || more.contacts[i] != contacts[i])
+      if (less.contacts[i] != expected.contacts[i] || more.contacts[i] != expected.contacts[i])
         ++agreement.undecided;
       else
         agreement.worst = std::max(
@@ -138,18 +142,43 @@ Agreement compare_contacts(const scene::Scene& scene, std::uint64_t first, int s
 
 }  // namespace
 
-TEST_CASE("a step on the sphere equals the reference wherever rounding cannot decide the contact") {
+namespace {
+
+/// The methods that meet contacts in the same way as the reference: all but implicit Euler, which foresees
+/// them.
+struct Contact {
+  scene::Method method;
+  int steps;         ///< that are compared: explicit Euler, unstable here, has a few before it blows up
+  double undecided;  ///< share of contacts that rounding may decide: with explicit Euler what slid along a
+                     ///< surface last step now just touches it
+  double more;  ///< roundings, as a multiple of those of a step with one evaluation, of which a contact adds
+                ///< as many
+};
+constexpr Contact contact_methods[] = {{scene::Method::explicit_euler, 8, 0.4, 2.0},
+                                       {scene::Method::symplectic_euler, 40, 0.1, 2.0},
+                                       {scene::Method::verlet, 40, 0.1, 2.0},
+                                       {scene::Method::rk4, 40, 0.1, 4.0}};
+
+void check_contacts(const scene::Scene& scene, std::uint64_t first) {
   const auto context = test::context();
-  const Agreement agreement = compare_contacts(preset("seed"), 600, 40);
-  INFO(agreement.touching << " contacts, " << agreement.undecided << " undecided");
-  CHECK(agreement.touching > 200);
-  CHECK(agreement.undecided < agreement.touching / 10);
-  CHECK(agreement.worst < 2.0);  // a contact rounds a few times more than the step it mends
+  for (const Contact& contact : contact_methods) {
+    const Agreement agreement = compare_contacts(scene, contact.method, first, contact.steps);
+    INFO(scene::name(contact.method) << ": " << agreement.touching << " contacts, " << agreement.undecided
+                                     << " undecided, largest error over its bound " << agreement.worst);
+    CHECK(agreement.touching > 5 * contact.steps);
+    CHECK(agreement.undecided < contact.undecided * agreement.touching);
+    CHECK(agreement.worst < contact.more);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a step on the sphere equals the reference wherever rounding cannot decide the contact") {
+  check_contacts(preset("seed"), 600);
 }
 
 TEST_CASE("a step of two sheets that fall onto each other equals the reference, all pairs tried") {
-  const auto context = test::context();
-  const Agreement agreement = compare_contacts(scene_of(R"({"version": 1,
+  check_contacts(scene_of(R"({"version": 1,
     "cloths": [{"mesh": {"grid": {"columns": 15, "rows": 15, "width": 0.28, "height": 0.28}},
                 "mass": {"per_vertex": 0.001}, "material": {"structural": 200, "shear": 100, "bend": 20, "damping": 0.02},
                 "pins": [{"at": "edge:row:0"}, {"at": "edge:row:14"}]},
@@ -157,9 +186,5 @@ TEST_CASE("a step of two sheets that fall onto each other equals the reference, 
                 "transform": {"translate": [0.013, 0.05, 0.037], "rotate": [0, 20, 0]},
                 "mass": {"per_vertex": 0.002}, "material": {"structural": 200, "shear": 100, "bend": 20, "damping": 0.02}}],
     "self_collision": {"thickness": 0.03, "friction": 0.4}})"),
-                                               70, 60);
-  INFO(agreement.touching << " contacts, " << agreement.undecided << " undecided");
-  CHECK(agreement.touching > 200);
-  CHECK(agreement.undecided < agreement.touching / 10);
-  CHECK(agreement.worst < 2.0);  // a contact rounds a few times more than the step it mends
+                 80);
 }

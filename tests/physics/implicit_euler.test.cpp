@@ -1,0 +1,73 @@
+// Implicit Euler on the GPU against the double-precision reference: Newton step by Newton step, and where it
+// comes to rest.
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "server/reference/rest_shape.h"
+#include "server/reference/trajectory.h"
+#include "tests/sides.h"
+#include "tests/small_scenes.h"
+
+using namespace clothlab;
+using namespace clothlab::test;
+using scene::Method;
+
+TEST_CASE(
+    "each step of implicit Euler with one and with two Newton steps is the reference's with as many, pins "
+    "moving") {
+  const auto context = test::context();
+  for (const int iterations : {1, 2}) {
+    scene::Scene scene = swinging_cloth(Method::implicit_euler, 3 * cloth_unit);
+    scene.cloths[0].material.damping = 0.01;
+    scene.cloths[0].pins[0].motion = scene::Oscillate{{0.0, 0.0, 1.0}, 0.02, 5.0};
+    scene.air_drag = 0.5;
+    scene.solver.iterations = iterations;
+    scene.solver.tolerance = 1e-7;
+    Stepped gpu(Side::gpu, scene);
+    double worst = 0.0, moved = 0.0, apart = 0.0;
+    for (int n = 0; n < 40; ++n) {
+      reference::State before = gpu.state();
+      before.contacts.assign(before.position.size(), 0);
+      before.step = static_cast<std::uint64_t>(n);
+      reference::State expected = before, exact = before;
+      reference::baraff_witkin_step(gpu.world(), expected);
+      if (n == 39) reference::step(gpu.world(), exact);
+      gpu.step(1);
+      const reference::State found = gpu.state();
+      worst = std::max(worst, reference::rms_distance(found.position, expected.position));
+      moved = reference::rms_distance(found.position, before.position);
+      if (n == 39) apart = reference::rms_distance(expected.position, exact.position);
+    }
+    // Each end of 12 springs is off by float32's half ulp of 0.5 m; that, times k dt^2 / m, moves a vertex.
+    const double rounding = 0.5 * 0x1p-24 * std::sqrt(12.0) * 9.0;
+    INFO(iterations << " Newton steps: off by " << worst << " m, of a step of " << moved
+                    << " m; from the exact step " << apart << " m");
+    CHECK(worst < 2 * rounding);
+    CHECK(apart > 4 * rounding);  // so many Newton steps are told from more
+    CHECK(moved > 1e-3);
+  }
+}
+
+TEST_CASE(
+    "implicit Euler in steps of 0.05 s comes to rest with the energy of the balance that the reference "
+    "finds") {
+  const auto context = test::context();
+  scene::Scene scene = swinging_cloth(Method::implicit_euler, 0.05);
+  scene.cloths[0].mesh = scene::Grid{9, 9, 0.5, 0.5};
+  scene.cloths[0].pins[1].at = scene::AtCorner{8, 0};
+  Stepped gpu(Side::gpu, scene);
+  const auto balance = reference::rest_shape(gpu.world());
+  REQUIRE(balance);
+  const std::vector<glm::dvec3> still(balance->position.size(), glm::dvec3(0.0));
+  const reference::Energy expected = reference::energy(gpu.world(), {balance->position, still, {}});
+  const double start = gpu.energy().total();
+  gpu.step(300);
+  const reference::Energy found = gpu.energy();
+  // Its folds may have fallen the other way: the same energy, another shape. The energy has its minimum
+  // there, so what the solver's tolerance of 1e-4 leaves of the motion shows only in its square.
+  INFO("energy " << found.total() << " J, at balance " << expected.total() << " J, at the start " << start
+                 << " J");
+  CHECK(std::abs(found.total() - expected.total()) < 1e-5 * (start - expected.total()));
+  CHECK(found.kinetic < 1e-6 * (start - expected.total()));
+  CHECK(found.elastic == Approx(expected.elastic).epsilon(1e-3));
+}
