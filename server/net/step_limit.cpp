@@ -10,17 +10,19 @@ constexpr std::chrono::milliseconds worth_waiting{8};  // half a frame
 }
 
 void StepLimit::follow(const model::Model& model, const scene::Scene& scene) {
+  looked_ = false;
+  const bool same_limit = scene_.cloths == scene.cloths && scene_.air_drag == scene.air_drag &&
+                          scene_.solver.method == scene.solver.method;
+  scene_ = scene;
+  if (same_limit) return poll();
   stop_.request_stop();
   if (search_.valid()) search_.wait();  // an iteration at most
   stop_ = std::stop_source();
-  solver_ = scene.solver;
-  looked_ = false;
   model::SpringOperator springs(model, scene, model.rest_position);
-  dt_limit_ = model::dt_limit_bound(solver_.method, springs);
+  dt_limit_ = model::dt_limit_bound(scene.solver.method, springs);
   search_ = std::async(std::launch::async,
-                       [springs = std::move(springs), method = solver_.method, stop = stop_.get_token()] {
-                         return model::dt_limit(method, springs, stop);
-                       });
+                       [springs = std::move(springs), method = scene.solver.method,
+                        stop = stop_.get_token()] { return model::dt_limit(method, springs, stop); });
   search_.wait_for(worth_waiting);
   poll();
 }
@@ -33,10 +35,10 @@ void StepLimit::poll() {
 std::optional<std::string> StepLimit::take_warning() {
   if (looked_ || !sharp()) return std::nullopt;  // the bound may cry wolf
   looked_ = true;
-  const double share = dt_limit_ > 0.0 ? solver_.dt / dt_limit_ : model::no_limit;
+  const double share = dt_limit_ > 0.0 ? scene_.solver.dt / dt_limit_ : model::no_limit;
   const int risk = share > 1.0 ? 2 : share > model::margin_to_warn ? 1 : 0;
   if (risk <= std::exchange(risk_, risk)) return std::nullopt;
-  return model::step_warning(solver_, dt_limit_);
+  return model::step_warning(scene_.solver, dt_limit_);
 }
 
 }  // namespace clothlab::net

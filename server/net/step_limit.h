@@ -26,12 +26,12 @@ class StepLimit {
 
   double dt_limit() const { return dt_limit_; }  ///< [s]; model::no_limit, 0: none is stable
   bool sharp() const { return !search_.valid(); }
-  std::optional<double> margin() const { return model::margin(solver_.dt, dt_limit_); }
+  std::optional<double> margin() const { return model::margin(scene_.solver.dt, dt_limit_); }
   /// A warning to pass on: when a change of scene has brought the step near its limit, or beyond it.
   std::optional<std::string> take_warning();
 
  private:
-  scene::Solver solver_;
+  scene::Scene scene_;  ///< the one that was followed last
   double dt_limit_ = model::no_limit;
   bool looked_ = false;  ///< at the present value
   int risk_ = 0;         ///< when last looked at: 0 none, 1 near the limit, 2 beyond it

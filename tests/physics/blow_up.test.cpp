@@ -66,6 +66,22 @@ TEST_CASE("the seed at 0.9 of its limit holds under every method that has one, b
   }
 }
 
+TEST_CASE("a strain limit, which moves vertices without a force, is no blow-up") {
+  const auto context = test::context();
+  for (const scene::Method method : {scene::Method::symplectic_euler, scene::Method::verlet}) {
+    scene::Scene scene = test::sheet(9, 9);
+    scene.solver.method = method;
+    scene.cloths[0].mass.value = 0.5;
+    scene.cloths[0].material.strain_limit = 0.05;
+    scene.cloths[0].pins = {{scene::AtCorner{0, 0}, {}}, {scene::AtCorner{8, 0}, {}}};
+    const auto simulation = test::simulation(scene);
+    const Watched run = watch(*simulation, 2.0, 16);
+    INFO("method " << static_cast<int>(method) << ": " << run.good << " of " << run.looks << " good");
+    CHECK(run.verdict != Verdict::blown_up);
+    CHECK(run.good > 0.9 * run.looks);
+  }
+}
+
 TEST_CASE("a collider put into the cloth, and one shot through it, are no blow-ups") {
   const auto context = test::context();
   scene::Scene scene = test::seed();
