@@ -12,7 +12,7 @@ namespace clothlab::sim {
 
 namespace {
 
-constexpr double growth_that_proves = 4.0;
+constexpr double growth_that_proves = 4.0, proved_already = 1.0;
 constexpr int patience = 60;           // judgements, about a second of frames
 constexpr double share_of_good = 0.1;  // of what is allowed
 
@@ -90,8 +90,10 @@ Allowance allowance(const scene::Scene& scene, const model::Model& model, double
         0.5 * model::stiffness(scene.cloths[spring.cloth].material, spring.kind) * stretch * stretch;
   }
   const double speed = allowed.pin_speed + allowed.collider_speed;
-  allowed.slack = mass * (glm::length(scene.gravity) * cloth.size + 2.0 * speed * speed) + spring_energy;
+  allowed.slack =
+      mass * (0.25 * glm::length(scene.gravity) * cloth.size + 2.0 * speed * speed) + spring_energy;
   allowed.ratio = stable_swing(scene.solver.dt, dt_limit);
+  allowed.growth = scene.solver.dt > dt_limit ? proved_already : growth_that_proves;
   return allowed;
 }
 
@@ -151,7 +153,7 @@ BlowUp::Verdict BlowUp::doubt(const Diagnostics& state) {
     doubted_energy_ = energy;
     doubted_for_ = 0;
   }
-  if (energy >= growth_that_proves * doubted_energy_) return Verdict::blown_up;
+  if (energy >= allowance_.growth * doubted_energy_) return Verdict::blown_up;
   if (++doubted_for_ < patience) return Verdict::doubtful;
   doubted_for_ = 0;
   if (energy > doubted_energy_) return Verdict::doubtful;  // it grows on, slowly

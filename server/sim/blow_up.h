@@ -12,23 +12,24 @@ namespace clothlab::sim {
 struct Allowance {
   double slack = 0;           ///< [J]
   double ratio = 2;           ///< kinetic + elastic energy over what is there for them
+  double growth = 4;          ///< from where a doubt begins to where it is proved; 1 beyond the step limit
   double pin_speed = 0;       ///< of the fastest pin [m/s]
   double collider_speed = 0;  ///< of the fastest point of a collider near the cloth [m/s]
 };
 
-/// The slack is the scene's own scale of energy: the cloth lifted by its size, set moving as fast as what
-/// moves it, each vertex pushed as far as self-collision does in a step, and what float32 rounds away.
-/// The ratio is how far the energy of a stable vibration swings under symplectic Euler at this share of the
-/// step limit, (1 + s) / (1 - s) with s = dt / dt_limit.
+/// The slack is the scene's own scale of energy: the cloth lifted by a quarter of its size, set moving as
+/// fast as what moves it, each vertex pushed as far as self-collision does in a step, and what float32 rounds
+/// away. The ratio is how far the energy of a stable vibration swings under symplectic Euler at this share of
+/// the step limit, (1 + s) / (1 - s) with s = dt / dt_limit.
 Allowance allowance(const scene::Scene& scene, const model::Model& model, double dt_limit);
 
 /// Whether a change of scene may change the energy of a state, as one of dt cannot.
 bool changes_energy(const scene::Scene& from, scene::Scene to);
 
 /// Keeps a ledger: the energy at the start, plus the work that pins and colliders may have done since, less
-/// what was lost. What the ledger leaves for kinetic and elastic energy is `ratio` times and `slack` too
-/// little: then the run is in doubt. A jump that is over (a collider put into the cloth) does not grow on;
-/// one that grows fourfold from there has blown up.
+/// what was lost. If kinetic and elastic energy are more than `ratio` times what the ledger leaves for them,
+/// and `slack`, the run is in doubt. A jump that is over (a collider put into the cloth) does not grow on;
+/// one that grows by `growth` from there has blown up.
 class BlowUp {
  public:
   enum class Verdict {
