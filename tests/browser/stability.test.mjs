@@ -93,3 +93,70 @@ browserTest("another method is chosen from the panel, says what to expect of it,
   await viewer.until((at) => window.clothlab.step > at + 10, step);
   await client.close();
 });
+
+for (const [name, section, label] of [["time step", "Solver", "time step"], ["stiffness", "Cloth", "structural"]]) {
+  browserTest(`the ${name}'s slider pushed past the limit: a notice says why, and its button makes the cloth hang again`, async () => {
+    const { viewer, client, gauge, solver } = await both(`remedy-${section}`);
+    await client.notification("sim.status", (status) => status.time > 0.3);
+    const slider = await viewer.slider(section, label);
+    await slider.focus();
+    const notice = viewer.page.locator(".notice.error");
+    await eventually("beyond the limit", async () => {
+      const now = await gauge();
+      if (now.value < 1.2) await viewer.page.keyboard.press("PageUp");
+      return now;
+    }, ({ verdict, value }) => verdict === "beyond" && value >= 1.2);
+    await notice.waitFor();
+    const text = await notice.innerText();
+    assert.match(text, /blew up[^]*\d J[^]*Remedy: /);
+
+    // What is shown meanwhile is the last good state.
+    const stopped = await client.notification("sim.status", (status) => status.diverged);
+    await eventually("the last good frame", () => viewer.read("step"), (step) => step === stopped.step);
+    assert.ok(stopped.time > 0.3, `the last good state is of ${stopped.time} s`);
+    inOnePiece(await viewer.positions());
+    const { dt } = await solver();
+
+    await notice.getByRole("button", { name: "Apply the remedy" }).click();
+    await notice.waitFor({ state: "detached" });
+    await eventually("a shorter step", async () => (await solver()).dt, (now) => now < dt);
+    await eventually("the gauge", gauge, ({ verdict }) => verdict === "good");
+    // It goes on from there, and has time to swing through.
+    const shown = [];
+    await eventually("a second of motion", async () => {
+      shown.push(await viewer.read("simTime"));
+      return shown.at(-1);
+    }, (time) => time > stopped.time + 1);
+    assert.ok(shown.every((time) => time >= stopped.time), `time went back: ${shown.slice(0, 5)}`);
+    const positions = await viewer.positions();
+    inOnePiece(positions);
+    const heights = positions.map(([, y]) => y);
+    assert.ok(Math.max(...heights) < 1.2 && Math.min(...heights) < 0.6, `from ${Math.min(...heights)} to ${Math.max(...heights)} m`);
+    assert.ok(heights.reduce((sum, y) => sum + y) / heights.length < 0.85, "below its pins, which are at 1 m");
+    assert.ok((await viewer.cloth()).share > 0.02, "and it is to be seen");
+    await client.close();
+  });
+}
+
+browserTest("a page opened on a session that has blown up says so, and no page does once somebody has seen to it", async () => {
+  const client = await Client.connect(server, { session: "late" });
+  await client.request("scene.patch", { patch: { solver: { dt: 0.004 } } });
+  await client.notification("sim.diverged");
+  const viewer = await Viewer.open(browser, server, { session: "late", drawn: 1 });
+  const notice = viewer.page.locator(".notice.error");
+  await notice.waitFor();
+  assert.match(await notice.innerText(), /blew up[^]*before this page was opened[^]*Remedy: set dt to 0\.001/);
+  await client.request("scene.patch", { patch: { solver: { dt: 0.001 } } });
+  await notice.waitFor({ state: "detached" });
+  await client.close();
+});
+
+/// The seed's 25 x 25 vertices, 1/24 m apart at rest: none is lost, and no cell has more than doubled.
+function inOnePiece(positions) {
+  assert.equal(positions.length, 625);
+  positions.forEach((at, i) => {
+    assert.ok(at.every(Number.isFinite), `vertex ${i} at ${at}`);
+    const next = positions[i + 1];
+    if (i % 25 !== 24) assert.ok(Math.hypot(...at.map((x, axis) => x - next[axis])) < 2 / 24, `between vertices ${i} and ${i + 1}`);
+  });
+}

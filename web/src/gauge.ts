@@ -8,6 +8,9 @@ const near = 0.9;    // from here on the server warns too
 const end = 1.5;     // the share at the right end
 const safer = 0.8;   // of the limit, where the button goes
 
+/// A time step [s] that is well below the limit, in a number that is easy to read.
+export const saferStep = (limit: number): number => Math.max(1e-9, Number((safer * limit).toPrecision(3)));
+
 export type Verdict = "good" | "near" | "beyond";
 export interface Reading { verdict: Verdict; word: string; share: string; spoken: string; filled: number }
 
@@ -42,7 +45,7 @@ export class Gauge {
   private readonly share = part("span", "gauge-share", this.line);
   private readonly limit = part("button", "gauge-limit", this.line) as HTMLButtonElement;
   private readonly spoken = part("span", "visually-hidden", this.element);  // the word, said when it changes
-  private saferStep = 0;
+  private saferStep = 0;  // [s], for the button
 
   constructor(setTimeStep: (dt: number) => void) {
     this.element.className = "gauge";
@@ -79,7 +82,7 @@ export class Gauge {
   private showLimit(limit: number | null): void {
     this.limit.hidden = !limit;
     if (!limit) return;
-    this.saferStep = Math.max(1e-9, Number((safer * limit).toPrecision(3)));
+    this.saferStep = saferStep(limit);
     const text = `limit ${readable(Number(limit.toPrecision(3)))} s`;
     if (this.limit.textContent !== text) this.limit.textContent = text;
     this.limit.title = `Set the time step to ${safer} of the limit: ${readable(this.saferStep)} s`;

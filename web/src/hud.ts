@@ -1,5 +1,6 @@
 // The card with figures: what is drawn, what comes in, how the simulation keeps up, and which passes run.
 import { element } from "./dom";
+import type { Stability } from "./gauge";
 
 /// `sim.status`; every part may be missing.
 export interface Status {
@@ -13,6 +14,8 @@ export interface Status {
   max_speed?: number;
   contacts?: number;
   asleep?: boolean;
+  diverged?: boolean;
+  stability?: Stability | null;
   passes?: string[];
   skipped?: { name: string; reason: string }[];
 }

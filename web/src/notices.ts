@@ -6,7 +6,8 @@ import type { Patch } from "./scene_types";
 export type Level = "info" | "warning" | "error";
 export interface Action { label: string; run(): void }
 
-const shownAtOnce = 3;
+const narrow = matchMedia("(max-width: 760px)");  // room for one
+const shownAtOnce = (): number => (narrow.matches ? 1 : 3);
 const lifetime: Record<Level, number> = { info: 5000, warning: 9000, error: 14000 };  // [ms]
 
 interface Content { title: string; lines?: string[]; action?: Action | undefined; stays?: boolean }
@@ -17,7 +18,7 @@ export function notice(level: Level, content: Content): void {
   box.className = `notice ${level}`;
   box.setAttribute("role", level === "error" ? "alert" : "status");
   const title = document.createElement("strong");
-  title.textContent = content.title.replace(/^[a-z](?=[a-z]{2})/, (letter) => letter.toUpperCase());  // but not dt
+  title.textContent = capitalised(content.title);
   box.append(title);
   for (const line of content.lines ?? []) {
     const paragraph = document.createElement("p");
@@ -34,9 +35,13 @@ export function notice(level: Level, content: Content): void {
   // The same trouble again replaces its notice instead of piling up.
   for (const old of [...holder.children]) if (old.querySelector("strong")?.textContent === title.textContent) old.remove();
   holder.append(box);
-  while (holder.children.length > shownAtOnce) holder.firstElementChild?.remove();
+  box.dataset.stays = String(content.stays === true);
+  while (holder.children.length > shownAtOnce()) (holder.querySelector('[data-stays="false"]') ?? holder.firstElementChild)?.remove();
   if (!content.stays) setTimeout(() => box.remove(), lifetime[level]);
 }
+
+const capitalised = (text: string): string => text.replace(/^[a-z](?=[a-z]{2})/, (letter) => letter.toUpperCase());  // but not dt
+const sentence = (text: string): string => capitalised(text).replace(/\.?$/, ".");
 
 function actionButton(action: Action, box: HTMLElement): HTMLButtonElement {
   const run = document.createElement("button");
@@ -67,12 +72,21 @@ const asText = (value: unknown): string => (typeof value === "string" ? value : 
 /// `sim.diverged` of contract.md.
 export interface Diverged { reason: string; remedy?: { text: string; patch?: Patch } }
 
+const blewUp = "The simulation blew up";
+
+/// It goes on, whoever has seen to that: the notice has done its duty.
+export function clearDiverged(): void {
+  for (const box of element("notices", HTMLElement).querySelectorAll(".notice")) {
+    if (box.querySelector("strong")?.textContent === blewUp) box.remove();
+  }
+}
+
 /// Says why the simulation blew up, with its remedy as a button.
 export function showDiverged({ reason, remedy }: Diverged, apply: (patch: Patch) => Promise<void>): void {
   const patch = remedy?.patch;
   const run = (fix: Patch): void => void apply(fix).catch((error: Error) => noticeError("The remedy was refused", error));
   notice("error", {
-    title: "The simulation blew up", lines: [reason, ...(remedy ? [`Remedy: ${remedy.text}.`] : [])], stays: true,
+    title: blewUp, lines: [sentence(reason), ...(remedy ? [sentence(`Remedy: ${remedy.text}`)] : [])], stays: true,
     action: patch ? { label: "Apply the remedy", run: () => run(patch) } : undefined,
   });
 }

@@ -1,12 +1,12 @@
 // Wires the connection, the scene's document, the stage and the controls to each other.
 import { Connection, type LinkEvents } from "./connection";
 import { button, element } from "./dom";
-import type { Stability } from "./gauge";
+import { saferStep, type Stability } from "./gauge";
 import { Hud, type Status } from "./hud";
 import { bindKeys } from "./keys";
 import { Layout } from "./layout";
 import { LinkView } from "./link_view";
-import { notice, noticeError, showApplied, showDiverged, type Diverged, type Level } from "./notices";
+import { clearDiverged, notice, noticeError, showApplied, showDiverged, type Diverged, type Level } from "./notices";
 import { Panel } from "./panel";
 import type { Frame } from "./protocol";
 import { RpcError } from "./rpc";
@@ -30,6 +30,8 @@ export class Page {
   private readonly notifications = this.makeNotifications();
   private latest: Frame | null = null;
   private sceneName = "";
+  private toldOfDivergence = false;
+  private diverged = false;  // by the last status
   private mayEdit = true;  // a viewer's role may only watch
 
   constructor() { this.connection.connect(); }
@@ -140,8 +142,9 @@ export class Page {
         this.hud.showStatus(params as Status);
         this.transport.status(params as Status);
         if (params.stability) this.panel.showStability(params.stability as Stability);
+        this.followDivergence(params as Status);
       },
-      "sim.diverged": (params) => showDiverged(params as unknown as Diverged, (patch) => this.remedy(patch)),
+      "sim.diverged": (params) => this.tellDivergence(params as unknown as Diverged),
       viewers: (params) => this.hud.set("viewers", String(params.count)),
       notice: (params) => notice(params.level as Level, { title: String(params.text) }),
     };
@@ -170,10 +173,26 @@ export class Page {
     if (answer) this.store.replace(answer.document, answer.revision);
   }
 
-  private async remedy(patch: Patch): Promise<void> {
-    await this.connection.request("scene.patch", { patch });
-    await this.connection.request("sim.reset");
-    await this.connection.request("sim.play");
+  private tellDivergence(diverged: Diverged): void {
+    this.toldOfDivergence = true;
+    // The patch applied, the server goes on from the last good state by itself.
+    showDiverged(diverged, async (patch) => void await this.connection.request("scene.patch", { patch }));
+  }
+
+  // Somebody else may have seen to it, or it was before this page was opened.
+  private followDivergence({ diverged, stability }: Status): void {
+    if (this.diverged && !diverged) {
+      clearDiverged();
+      this.toldOfDivergence = false;
+    }
+    this.diverged = diverged === true;
+    if (!this.diverged || this.toldOfDivergence) return;
+    const limit = stability?.dt_limit;
+    const dt = limit ? saferStep(limit) : 0;
+    this.tellDivergence({
+      reason: "it stopped at its last good state before this page was opened",
+      ...(dt > 0 ? { remedy: { text: `set dt to ${dt} s, below its limit`, patch: { solver: { dt } } } } : {}),
+    });
   }
 
   // A request lost with its connection needs no notice: the banner tells.
