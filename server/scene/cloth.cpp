@@ -86,11 +86,11 @@ Springs read_material(const Reader& material) {
   material.object({"model", "structural", "shear", "bend", "damping", "strain_limit"}, {"fabric"});
   material.member("model", "springs");
   const Reader limit = material.member("strain_limit", json(nullptr));
-  if (!limit.is_null()) limit.fail("null; a strain limit is not supported yet");
   return Springs{material.member("structural", 20000).number(ranges::stiffness),
                  material.member("shear", 10000).number(ranges::stiffness),
                  material.member("bend", 2000).number(ranges::stiffness),
-                 material.member("damping", 2.0).number(ranges::damping)};
+                 material.member("damping", 2.0).number(ranges::damping),
+                 limit.is_null() ? std::nullopt : std::optional(limit.number(ranges::strain_limit))};
 }
 
 std::vector<Pin> read_pins(const Reader& pins, const Mesh& mesh) {

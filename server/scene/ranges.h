@@ -30,6 +30,7 @@ inline constexpr Range mass_per_vertex{1e-9, 1e6, "kg"};
 inline constexpr Range area_density{1e-9, 1e6, "kg/m^2"};
 inline constexpr Range stiffness{0, 1e12, "N/m"};
 inline constexpr Range damping{0, 1e9, "N s/m"};
+inline constexpr Range strain_limit{1e-3, 10, "of the rest length; or null"};
 
 inline constexpr Range friction{0, 10};
 inline constexpr Range restitution{0, 1};

@@ -52,6 +52,9 @@ const std::vector<Rule> rules = {
     {"/cloths/0/material/shear", {"0", "1e12"}, {"-1e-9", "1.1e12"}},
     {"/cloths/0/material/bend", {"0", "1e12"}, {"-1e-9", "1.1e12"}},
     {"/cloths/0/material/damping", {"0", "1e9"}, {"-1e-9", "1.1e9"}},
+    {"/cloths/0/material/strain_limit",
+     {"null", "0.001", "10"},
+     {"0", "-0.1", "9e-4", "10.1", "\"0.1\"", "false", "[]"}},
     {"/cloths/0/color", {"\"#00ff7F\""}, {"\"#00ff7\"", "\"00ff7f0\"", "\"red\"", "\"#00fg7f\"", "\"\""}},
     {"/cloths/0/texture", {"\"plain\"", "\"checker\"", "\"stripes\""}, {"\"velvet\"", "\"\"", "1"}},
     {"/cloths/0/pins/0/at",
@@ -96,7 +99,6 @@ TEST_CASE("what is not simulated yet is refused by name, never ignored") {
   const std::vector<std::pair<std::string, std::string>> not_yet = {
       {"/cloths/0/material", R"({"model": "fem", "warp": 300})"},
       {"/cloths/0/material/fabric", R"("cotton")"},
-      {"/cloths/0/material/strain_limit", "0.1"},
       {"/cloths/0/mesh", R"({"obj": "shirt.obj"})"},
       {"/colliders/0", R"({"capsule": {"a": [0,0,0], "b": [0,1,0], "radius": 0.1}})"},
       {"/colliders/0", R"({"box": {"center": [0,0,0], "half": [1,1,1], "rotate": [0,0,0]}})"},
@@ -247,6 +249,15 @@ TEST_CASE("the smallest document is a whole scene, with every default in its JSO
   expected["cloths"][0]["transform"]["translate"] = {0, 0, 0};
   CHECK(document->value == expected);
   CHECK(scene::validate(document->value)->value == document->value);
+}
+
+TEST_CASE("a strain limit is a number or null, and null takes it away") {
+  const auto limited = scene::set_value(*scene::load_preset("seed"), "/cloths/0/material/strain_limit=0.1");
+  REQUIRE(limited);
+  CHECK(limited->scene.cloths[0].material.strain_limit == std::optional(0.1));
+  const auto free = scene::set_value(*limited, "/cloths/0/material/strain_limit=null");
+  REQUIRE(free);
+  CHECK_FALSE(free->scene.cloths[0].material.strain_limit);
 }
 
 TEST_CASE("the typed scene holds what the document says, directions normalised") {

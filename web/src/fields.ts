@@ -89,6 +89,15 @@ function pinSections(document: SceneDocument, cloth: number): Section[] {
   }));
 }
 
+/// In percent; null, no limit, is the slider's left end.
+function strainLimit(paths: string[]): Field {
+  return number("strain limit", paths, { min: 0.1, max: 100, log: true, zero: true, zeroText: "off", unit: "%" }, {
+    hint: "The most a spring may stretch, after Provot 1995",
+    read: (document) => 100 * ((valueAt(document, paths[0] as string) as number | null) ?? 0),
+    write: (percent) => (Number(percent) > 0 ? Number((Number(percent) / 100).toPrecision(6)) : null),
+  });
+}
+
 function clothSection(document: SceneDocument, index: number): Section {
   const cloth = document.cloths[index] as SceneDocument["cloths"][number];
   const base = `/cloths/${index}`;
@@ -107,6 +116,7 @@ function clothSection(document: SceneDocument, index: number): Section {
       number("shear", [`${base}/material/shear`], stiffness),
       number("bend", [`${base}/material/bend`], stiffness),
       number("damping", [`${base}/material/damping`], { min: 0.01, max: 100, log: true, zero: true, unit: "N s/m" }),
+      strainLimit([`${base}/material/strain_limit`]),
       mass, ...grid,
       { key: `${base}/color`, label: "colour", paths: [`${base}/color`], kind: "color" },
       { key: `${base}/texture`, label: "texture", paths: [`${base}/texture`], kind: "choice", choices: ["weave", "checker", "stripes", "plain"] },

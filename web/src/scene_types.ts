@@ -14,7 +14,7 @@ export type Mesh = { grid: Grid } | InlineMesh;
 export type At = string | { box: [Vec3, Vec3] };
 export interface Pin { at: At; motion: Motion }
 
-export interface Springs { model: "springs"; structural: number; shear: number; bend: number; damping: number }
+export interface Springs { model: "springs"; structural: number; shear: number; bend: number; damping: number; strain_limit: number | null }
 
 export interface Cloth {
   name: string;
