@@ -100,6 +100,8 @@ void Stepper::follow_diagnostics(Clock::time_point now) {
   }
   request_diagnosis(now);
   if (now < next_status_) return;
+  // The first status of a state that has come to rest tells of that one and no earlier.
+  if (!running(now) && pending_steps_ == 0 && (diagnosing_ || diagnosed_version_ != state_version_)) return;
   next_status_ = std::max(next_status_ + period(status_rate), now);
   publish_status(now);
 }

@@ -111,8 +111,11 @@ for (const [name, section, label] of [["time step", "Solver", "time step"], ["st
     assert.match(text, /blew up[^]*\d J[^]*Remedy: /);
 
     // What is shown meanwhile is the last good state.
-    const stopped = await client.notification("sim.status", (status) => status.diverged);
-    await eventually("the last good frame", () => viewer.read("step"), (step) => step === stopped.step);
+    // (Each press of a key was an edit, after which it went on until it blew up again.)
+    const lastStatus = () => client.messages.findLast(({ method }) => method === "sim.status").params;
+    await eventually("the last good frame", async () => [await viewer.read("step"), lastStatus().step, lastStatus().diverged],
+                     ([shown, step, diverged]) => diverged && shown === step);
+    const stopped = lastStatus();
     assert.ok(stopped.time > 0.3, `the last good state is of ${stopped.time} s`);
     inOnePiece(await viewer.positions());
     const { dt } = await solver();

@@ -55,6 +55,16 @@ test("play moves time, pause holds it", async () => {
   assert.equal(status.playing, false);
 });
 
+test("the first status of a paused session is of the step at which it stopped", async () => {
+  for (let i = 0; i < 10; ++i) {
+    await client.request("sim.play");
+    await sleep(50 + 37 * i);
+    const status = client.nextNotification("sim.status", ({ playing }) => !playing);
+    const { step } = await client.request("sim.pause");
+    assert.equal((await status).step, step);
+  }
+});
+
 test("sim.step pauses first and answers when exactly that many steps are done", async () => {
   await client.request("sim.play");
   const first = await client.request("sim.step", { steps: 7 });
