@@ -52,16 +52,18 @@ browserTest("the gauge shows the server's margin, and follows the stiffness, the
 
 browserTest("a time step beyond the limit is told by word, sign and colour, and a click on the limit takes it to 0.8 of it", async () => {
   const { viewer, client, gauge, solver } = await both("limit");
+  const { stability: { dt_limit: limit } } = await client.notification("sim.status", (status) => status.time > 0.2);
   await viewer.page.keyboard.press(" ");  // paused: nothing blows up
-  const { stability: { dt_limit: limit } } = await client.notification("sim.status", (status) => status.stability?.dt_limit > 0);
+  await client.notification("sim.status", ({ playing }) => !playing);
   const number = viewer.number("Solver", "time step");
   const colors = new Set();
   for (const [share, verdict, word, sign] of [[0.5, "good", "Stable", "✓"], [0.95, "near", "Marginal", "!"], [1.2, "beyond", "Unstable", "✕"]]) {
     await number.fill(String(Number((share * limit).toPrecision(4))));
     await number.press("Enter");
-    const shown = await eventually(word, gauge, (now) => now.verdict === verdict);
-    assert.match(shown.text, new RegExp(`\\${sign}\\s*${word}\\s*${Math.round(100 * share)} %`));
-    assert.equal(shown.says, `${word}: ${Math.round(100 * share)} % of the limit`);
+    // On a busy machine a bound stands in for the sharp limit for a moment.
+    const percent = `${Math.round(100 * share)} %`;
+    const shown = await eventually(word, gauge, (now) => now.verdict === verdict && now.says === `${word}: ${percent} of the limit`);
+    assert.match(shown.text, new RegExp(`\\${sign}\\s*${word}\\s*${percent}`));
     colors.add(await viewer.page.locator(".gauge-fill").evaluate((fill) => getComputedStyle(fill).backgroundColor));
   }
   assert.equal(colors.size, 3);
@@ -108,7 +110,7 @@ for (const [name, section, label] of [["time step", "Solver", "time step"], ["st
     }, ({ verdict, value }) => verdict === "beyond" && value >= 1.2);
     await notice.waitFor();
     const text = await notice.innerText();
-    assert.match(text, /blew up[^]*\d J[^]*Remedy: /);
+    assert.match(text, /blew up[^]*(\d J|finite)[^]*t = \d[^]*the longest stable step[^]*Remedy: set dt to /);
 
     // What is shown meanwhile is the last good state.
     // (Each press of a key was an edit, after which it went on until it blew up again.)
