@@ -26,6 +26,7 @@ class ImplicitEuler : public Integrator {
     std::unique_ptr<ImplicitEuler> made(new ImplicitEuler(vertex_count));
     gl::Defines defines = step_defines(plan);
     defines.emplace_back("GROUP_COUNT", std::to_string(made->groups_));
+    if (!plan.pins && plan.spheres + plan.planes == 0) defines.emplace_back("FREE", "1");
     for (auto [program, name] : {std::pair{&made->start_, "start"},
                                  {&made->system_, "system"},
                                  {&made->multiply_, "multiply"},
@@ -90,7 +91,7 @@ class ImplicitEuler : public Integrator {
       for (gl::TextureBuffer* vector :
            {&set.change, &set.residual, &set.preconditioned, &set.direction, &set.direction_product})
         *vector = {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
-    sums_ = {gl::Buffer(groups_ * 8 * sizeof(float)), GL_RGBA32F};
+    sums_ = {gl::Buffer(groups_ * 12 * sizeof(float)), GL_RGBA32F};  // three vec4 at most
     control_ = gl::Buffer(sizeof(Control) + most_iterations * 2 * sizeof(float));
   }
 

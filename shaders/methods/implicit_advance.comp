@@ -15,34 +15,36 @@ layout(std430, binding = 4) writeonly buffer Guess { vec4 guess[]; };  // of the
 layout(std430, binding = 5) buffer Constraint { vec4 constraint[]; };
 layout(std430, binding = 6) buffer Surface { vec4 surface[]; };
 
+/// The total of one of the sums that the line search made.
+vec4 total(int sum) {
+  vec4 all = vec4(0.0);
 #if GROUP_COUNT <= 16  // no barrier pays for so few
-void add_up(out vec4 first, out vec4 second) {
-  first = second = vec4(0.0);
-  for (int group = 0; group < GROUP_COUNT; ++group) {
-    first += FETCH(group_sums, 2 * group);
-    second += FETCH(group_sums, 2 * group + 1);
-  }
-}
+  for (int group = 0; group < GROUP_COUNT; ++group) all += FETCH(group_sums, SUMS * group + sum);
+  return all;
 #else
-void add_up(out vec4 first, out vec4 second) {
-  first = second = vec4(0.0);
-  for (int group = int(gl_LocalInvocationID.x); group < GROUP_COUNT; group += GROUP_SIZE) {
-    first += FETCH(group_sums, 2 * group);
-    second += FETCH(group_sums, 2 * group + 1);
-  }
-  first = sum_of_group(first);
-  second = sum_of_group(second);
-}
+  for (int group = int(gl_LocalInvocationID.x); group < GROUP_COUNT; group += GROUP_SIZE)
+    all += FETCH(group_sums, SUMS * group + sum);
+  return sum_of_group(all);
 #endif
+}
 
 /// The largest share that the next smaller one does not beat. A hundredth more, so that rounding beats nothing.
 float best_share() {
-  vec4 first, second;
-  add_up(first, second);
+  vec4 first = total(0), second = total(1);
   float energy[SHARES] = float[](first.x, first.y, first.z, first.w, second.x, second.y, second.z, second.w);
   int k = 0;
   while (k + 1 < SHARES && !(energy[k] <= energy[k + 1] + 0.01 * abs(energy[k + 1]))) ++k;
   return shares[k];
+}
+
+/// A linear solver that ends at a tolerance loses momentum, and a free sheet would drift: the whole cloth gets it back.
+vec3 drift() {
+#ifdef FREE
+  vec4 left_out = total(2);
+  return left_out.xyz / left_out.w;
+#else
+  return vec3(0.0);
+#endif
 }
 
 /// The change of velocity with which the next Newton step begins.
@@ -59,10 +61,12 @@ vec3 update_constraint(int i, vec3 start, vec3 x, vec3 u) {
 
 void main() {
   float share = best_share();
+  vec3 regained = drift();
   int i = int(gl_GlobalInvocationID.x);
   if (i >= vertex_count) return;
   vec4 start = FETCH(start_position, i);
   vec3 u = estimate[i].xyz + (start.w == 0.0 ? 1.0 : share) * FETCH(change, i).xyz;
+  if (share == 1.0) u += regained;  // the sum was made for the whole change
   vec3 x = start.xyz + dt * u;
   estimate[i] = vec4(u, 0.0);
   guess[i] = vec4(start.w == 0.0 ? vec3(0.0) : update_constraint(i, start.xyz, x, u), 0.0);

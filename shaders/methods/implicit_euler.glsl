@@ -39,6 +39,14 @@ vec3 solve_block(vec3 a, vec3 b, vec3 r) {
   return r;
 }
 
+/// Sums that the line search makes, each a vec4. With FREE, where nothing but its own springs acts on the cloth, one more:
+/// the momentum that the linear solver left out.
+#ifdef FREE
+#define SUMS 3
+#else
+#define SUMS 2
+#endif
+
 /// Shares of the change that the line search tries.
 #define SHARES 8
 const float shares[SHARES] = float[](1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125, 0.015625, 0.00390625);

@@ -5,7 +5,16 @@
 #include "group_sums.glsl"
 READ_VEC4(start_velocity, 9);
 READ_VEC4(change, 11);
-layout(std430, binding = 1) writeonly buffer Sums { vec4 group_sums[]; };  // two a work group
+layout(std430, binding = 1) writeonly buffer Sums { vec4 group_sums[]; };  // SUMS a work group
+
+#ifdef FREE
+/// xyz: the momentum [kg m/s] that gravity and air drag leave the vertex without its springs, less the one it would have
+/// with the whole change. Springs only pass it on, so that its sum should be 0. w: what a change of velocity adds to that.
+vec4 momentum_left_out(int i, vec4 x) {
+  vec3 v = FETCH(start_velocity, i).xyz, u = FETCH(velocity, i).xyz + FETCH(change, i).xyz;
+  return vec4(v - u + dt * (gravity.xyz - gravity.w * u), 1.0 + dt * gravity.w) / x.w;
+}
+#endif
 
 void main() {
   int i = int(gl_GlobalInvocationID.x);
@@ -45,7 +54,13 @@ void main() {
   }
   vec4 first = sum_of_group(vec4(energy[0], energy[1], energy[2], energy[3]));
   vec4 second = sum_of_group(vec4(energy[4], energy[5], energy[6], energy[7]));
+#ifdef FREE
+  vec4 left_out = sum_of_group(i < vertex_count ? momentum_left_out(i, x) : vec4(0.0));
+#endif
   if (gl_LocalInvocationID.x != 0) return;
-  group_sums[2 * gl_WorkGroupID.x] = first;
-  group_sums[2 * gl_WorkGroupID.x + 1] = second;
+  group_sums[SUMS * gl_WorkGroupID.x] = first;
+  group_sums[SUMS * gl_WorkGroupID.x + 1] = second;
+#ifdef FREE
+  group_sums[SUMS * gl_WorkGroupID.x + 2] = left_out;
+#endif
 }
