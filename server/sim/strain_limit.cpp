@@ -119,6 +119,8 @@ void StrainLimit::apply(StateBuffers& state) {
   glDispatchCompute(groups_, 1, 1);
   wait();
   state.swap();
+  // Limits that cannot be met pull without bound: what that has come to must not begin the next step.
+  if (control.groups > 0) restart();
 }
 
 }  // namespace clothlab::sim

@@ -196,3 +196,26 @@ TEST_CASE("implicit Euler holds with steps of a second, whatever the stiffness a
     }
   }
 }
+
+TEST_CASE("a strain limit that pins or springs without length make impossible leaves every number finite") {
+  const auto context = test::context();
+  scene::Scene torn = hung({2000.0, 1000.0, 200.0, 0.2});
+  torn.cloths[0].pins[1].motion = scene::Linear{glm::dvec3(500.0, 0.0, 0.0)};  // a pin runs away with it
+  scene::Scene held = hung({2000.0, 1000.0, 200.0, 0.2});
+  held.cloths[0].pins = {{scene::AtBox{glm::dvec3(-9.0), glm::dvec3(9.0)}, {}}};
+  const scene::Scene lengthless = scene_of(R"({"version": 1, "cloths": [{
+    "mesh": {"vertices": [[0,1,0], [0,1,0], [0,1,0], [1,1,0], [0,1,1]],
+             "triangles": [[0,1,2], [0,1,3], [1,2,4], [3,4,0]]}, "pins": [{"at": "vertex:3"}],
+    "material": {"structural": 2000, "shear": 0, "bend": 200, "damping": 0.2}}]})");
+  for (scene::Scene scene : {torn, held, lengthless}) {
+    for (const double limit : {scene::ranges::strain_limit.minimum, scene::ranges::strain_limit.maximum}) {
+      scene.cloths[0].material.strain_limit = limit;
+      INFO("limit " << limit);
+      under_every_method(scene, [](const scene::Scene& each) {
+        const auto simulation = test::simulation(each);
+        simulation->step(40);
+        CHECK(simulation->diagnose().finite);
+      });
+    }
+  }
+}
