@@ -33,10 +33,11 @@ void StepLimit::poll() {
 }
 
 std::optional<std::string> StepLimit::take_warning() {
-  if (looked_ || !sharp()) return std::nullopt;  // the bound may cry wolf
-  looked_ = true;
+  if (looked_) return std::nullopt;
   const double share = dt_limit_ > 0.0 ? scene_.solver.dt / dt_limit_ : model::no_limit;
   const int risk = share > 1.0 ? 2 : share > model::margin_to_warn ? 1 : 0;
+  if (risk > 0 && !sharp()) return std::nullopt;  // the bound may cry wolf
+  looked_ = true;
   if (risk <= std::exchange(risk_, risk)) return std::nullopt;
   return model::step_warning(scene_.solver, dt_limit_);
 }

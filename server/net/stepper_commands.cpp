@@ -83,6 +83,7 @@ void Stepper::adopt(scene::Document document, sim::ChangeDepth depth) {
   if (depth == sim::ChangeDepth::none) return;
   playing_ = playing_ || (diverged_ && resume_);
   step_limit_.follow(simulation_->model(), document_.scene);
+  follow_step_limit();  // at once: the next change may come before the next status
   if (depth == sim::ChangeDepth::cloth) return watch_anew();
   blow_up_.allow(allowance());
   go_on();
