@@ -13,6 +13,8 @@ namespace clothlab::model {
 namespace {
 
 constexpr double safe_share = 0.8;
+constexpr double too_slow = 0.1;   // of the present step: what a user would not wait for
+constexpr double a_frame = 0.016;  // [s]
 
 std::string number(double value) {
   char text[32];
@@ -47,6 +49,11 @@ Remedy remedy(const Model& model, const scene::Scene& scene, double limit) {
     remedy.method = other.solver.method;
     remedy.text = std::string("use symplectic_euler, which costs the same") +
                   (remedy.dt < solver.dt ? ", with dt = " + number(remedy.dt) + " s" : "");
+  } else if (safe_share * limit < std::max(too_slow * solver.dt, scene::ranges::dt.minimum)) {
+    remedy.dt = std::min(solver.dt, a_frame);
+    remedy.method = scene::Method::implicit_euler;
+    remedy.text = "use implicit_euler, which has no such limit, with dt = " + number(remedy.dt) + " s; " +
+                  scene::name(solver.method) + " would need a step below " + number(limit) + " s";
   } else if (solver.dt > margin_to_warn * limit) {
     remedy.dt = within_safe_share(limit);
     remedy.text = "set dt to " + number(remedy.dt) + " s, 80 % of the limit";
