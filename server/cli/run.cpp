@@ -80,6 +80,12 @@ Report make_report(const Prepared& prepared, const Progress& progress, double wa
     else
       report["skipped"][pass.name] = pass.skipped;
   }
+  if (const sim::SolverWork work = simulation.solver_work(); work.newton_steps > 0)
+    report["solver"] = {{"newton_steps", work.newton_steps},
+                        {"linear_iterations", work.linear_iterations},
+                        {"unconverged", work.unconverged}};
+  if (const sim::StrainLimitWork work = simulation.strain_limit_work(); work.sweeps > 0)
+    report["strain_limit"] = {{"sweeps", work.sweeps}, {"unconverged", work.unconverged}};
   report["max_strain"] = progress.state.max_strain;
   report["energy"] = {{"kinetic", progress.state.kinetic},
                       {"elastic", progress.state.elastic},
@@ -106,6 +112,16 @@ void print_summary(const Report& report, double simulated) {
   std::printf("\nlargest strain %s, state %s, on %s\n", text(report["max_strain"]).c_str(),
               report["state_hash"].get<std::string>().c_str(), report["renderer"].get<std::string>().c_str());
   std::fflush(stdout);
+}
+
+/// What the methods' own iterations did not reach.
+void note_unconverged(const sim::Simulation& simulation) {
+  if (const std::uint64_t solves = simulation.solver_work().unconverged; solves > 0)
+    note(std::to_string(solves) +
+         " linear solves ended before they met solver.tolerance; a smaller dt or a larger tolerance helps");
+  if (const std::uint64_t steps = simulation.strain_limit_work().unconverged; steps > 0)
+    note(std::to_string(steps) +
+         " steps ended with a spring longer than its strain_limit; a smaller dt or a larger limit helps");
 }
 
 /// Where the outputs go, checked before anything is simulated.
@@ -184,6 +200,7 @@ int run(const Options& options) {
     if (Status written = write_file(options.report, report.dump(2) + "\n"); !written)
       return fail(written.error(), exit_internal);
   print_summary(report, static_cast<double>(progress->steps) * dt);
+  note_unconverged(simulation);
   if (progress->diverged) note_diverged(*progress);
   return progress->diverged ? exit_diverged : exit_done;
 }

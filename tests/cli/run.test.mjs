@@ -29,6 +29,17 @@ test("the report holds what the contract promises", () => {
   assert.match(r.state_hash, /^[0-9a-f]{16}$/);
 });
 
+test("the report counts what implicit Euler's solver and the strain limit did", () => {
+  run("seed", "--time", "0.1", "--report", "report.json", "--set", "/solver/method=implicit_euler",
+    "--set", "/solver/dt=0.01", "--set", "/solver/iterations=1", "--set", "/cloths/0/material/strain_limit=0.05");
+  const r = report("report.json");
+  assert.ok(r.solver.newton_steps >= 10 && r.solver.linear_iterations > 10 && r.solver.unconverged === 0);
+  assert.ok(r.strain_limit.sweeps >= 10);
+  assert.ok(r.passes.includes("implicit_euler") && r.passes.includes("strain_limit"));
+  run("seed", "--time", "0.01", "--report", "report.json");
+  assert.ok(!("solver" in report("report.json")) && !("strain_limit" in report("report.json")));
+});
+
 test("two processes reach the same state to the bit, whatever else they write", () => {
   run("seed", "--time", "0.3", "--report", "plain.json");
   run("seed", "--time", "0.3", "--report", "watched.json", "--trace", "w.csv", "--out", "w.obj", "--every", "0.017");
