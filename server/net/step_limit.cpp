@@ -14,7 +14,7 @@ void StepLimit::follow(const model::Model& model, const scene::Scene& scene) {
   const bool same_limit = scene_.cloths == scene.cloths && scene_.air_drag == scene.air_drag &&
                           scene_.solver.method == scene.solver.method;
   scene_ = scene;
-  if (same_limit) return poll();
+  if (same_limit) return;
   stop_.request_stop();
   if (search_.valid()) search_.wait();  // an iteration at most
   stop_ = std::stop_source();
@@ -27,9 +27,11 @@ void StepLimit::follow(const model::Model& model, const scene::Scene& scene) {
   poll();
 }
 
-void StepLimit::poll() {
-  if (search_.valid() && search_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
-    dt_limit_ = search_.get();
+bool StepLimit::poll() {
+  if (!search_.valid() || search_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+    return false;
+  dt_limit_ = search_.get();
+  return true;
 }
 
 std::optional<std::string> StepLimit::take_warning() {

@@ -21,8 +21,8 @@ class StepLimit {
   /// The scene has changed. For a small cloth the sharp value is there when this returns; it waits no longer
   /// than a few milliseconds.
   void follow(const model::Model& model, const scene::Scene& scene);
-  /// Takes in the sharp value if it has come.
-  void poll();
+  /// Takes in the sharp value; true if it has come just now.
+  bool poll();
 
   double dt_limit() const { return dt_limit_; }  ///< [s]; model::no_limit, 0: none is stable
   bool sharp() const { return !search_.valid(); }

@@ -96,7 +96,7 @@ void Stepper::follow_diagnostics(Clock::time_point now) {
   sim::Diagnostics arrived;
   if (diagnosing_ && simulation_->poll_diagnostics(arrived)) {
     diagnosing_ = false;
-    if (!std::exchange(diagnosis_is_stale_, false)) accept(arrived);
+    accept(arrived);
   }
   request_diagnosis(now);
   if (now < next_status_) return;
@@ -130,7 +130,7 @@ sim::Allowance Stepper::allowance() const {
 // The state is a new one, and taken for sound.
 void Stepper::watch_anew() {
   diagnostics_ = simulation_->diagnose();
-  diagnosing_ = diagnosis_is_stale_ = false;
+  diagnosing_ = false;
   blow_up_.start(allowance(), diagnostics_);
 }
 
@@ -176,7 +176,7 @@ void Stepper::publish_status(Clock::time_point now) {
 }
 
 void Stepper::follow_step_limit() {
-  step_limit_.poll();
+  if (step_limit_.poll()) blow_up_.allow(allowance());
   if (std::optional<std::string> warning = step_limit_.take_warning())
     exchange_.emit(Notice{"warning", std::move(*warning)});
 }

@@ -110,7 +110,7 @@ class Stepper {
   sim::Diagnostics diagnostics_{};
   std::uint64_t state_version_ = 1,
                 diagnosed_version_ = 0;  ///< whether the diagnostics are of the present state
-  bool diagnosing_ = false, diagnosis_is_stale_ = false;
+  bool diagnosing_ = false;
   Clock::time_point next_status_{}, next_diagnosis_{};
   Clock::time_point slow_since_{};
   bool slow_announced_ = false, crowded_announced_ = false;

@@ -65,7 +65,7 @@ void Stepper::perform(PatchScene& patch, const Ticket& ticket) {
 Result<sim::ChangeDepth> Stepper::change(const scene::Scene& scene) {
   if (!sim::changes_energy(document_.scene, scene)) return simulation_->change(scene);
   accept(simulation_->diagnose());
-  diagnosing_ = diagnosis_is_stale_ = false;
+  diagnosing_ = false;
   const Result<sim::ChangeDepth> depth = simulation_->change(scene);
   if (depth && *depth != sim::ChangeDepth::cloth) blow_up_.rebase(simulation_->diagnose());
   return depth;
