@@ -71,12 +71,11 @@ inline scene::Scene pendulum(scene::Method method, double dt, double degrees, do
 inline scene::Scene swinging_cloth(scene::Method method, double dt) {
   scene::Scene scene = bare_scene(method, dt);
   scene.gravity = {0.0, -9.81, 0.0};
-  scene::Cloth cloth;
+  scene::Cloth& cloth = scene.cloths.emplace_back();
   cloth.mesh = scene::Grid{17, 17, 0.5, 0.5};
   cloth.mass = {scene::Mass::Kind::per_vertex, 1.4648e-4};
   cloth.material = {100.0, 100.0, 100.0, 0.0};
   cloth.pins = {{scene::AtCorner{0, 0}, {}}, {scene::AtCorner{16, 0}, {}}};
-  scene.cloths = {cloth};
   return scene;
 }
 inline const double cloth_unit = std::sqrt(1.4648e-4 / 100.0);  ///< [s]

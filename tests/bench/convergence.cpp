@@ -3,6 +3,7 @@
 // precision at u/200 (u = sqrt(m/k)). Prints a JSON document.
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <vector>
 
 #include "server/gl/context.h"
