@@ -82,7 +82,7 @@ test("a patch past the limit blows up, the remedy's patch alone makes the cloth 
   const told = client.nextNotification("sim.diverged");
   await patch({ solver: { dt: 0.0025 } });
   const { reason, remedy } = await told;
-  assert.match(reason, /t = 0\.\d+ s.*dt = 0\.0025 s is 1\.47 times .*symplectic_euler, 0\.001701 s/);
+  assert.match(reason, /t = [\d.]+ s.*dt = 0\.0025 s is 1\.47 times .*symplectic_euler, 0\.001701 s/);
   assert.deepEqual(remedy.patch, { solver: { dt: 0.0013 } });
   assert.match(remedy.text, /0\.0013/);
   const flagged = await client.frame((frame) => frame.flags & 2);
