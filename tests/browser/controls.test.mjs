@@ -73,6 +73,23 @@ browserTest("self-collision is switched off and on", async () => {
   await client.close();
 });
 
+browserTest("a strain limit is set in percent, and its slider's left end takes it away", async () => {
+  const { viewer, client, scene } = await both("strain-limit");
+  const limit = async () => (await scene()).cloths[0].material.strain_limit;
+  const slider = await viewer.slider("Cloth", "strain limit");
+  const number = viewer.number("Cloth", "strain limit");
+  assert.equal(await number.inputValue(), "off");
+  await number.fill("7");
+  await number.press("Enter");
+  await eventually("strain_limit", limit, (value) => value === 0.07);
+  await client.notification("sim.status", ({ passes }) => passes.includes("strain_limit"));
+  await slider.focus();
+  await viewer.page.keyboard.press("Home");
+  await eventually("strain_limit", limit, (value) => value === null);
+  await eventually("the number", () => number.inputValue(), (text) => text === "off");
+  await client.close();
+});
+
 browserTest("another viewer's edit moves the panel", async () => {
   const { viewer, client } = await both("other");
   await viewer.slider("Cloth", "bend");
