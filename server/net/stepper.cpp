@@ -121,6 +121,7 @@ void Stepper::accept(const sim::Diagnostics& diagnostics) {
   if (verdict == sim::BlowUp::Verdict::good) simulation_->keep_diagnosed();
   diagnostics_ = diagnostics;
   warn_if_crowded();
+  warn_if_unconverged();
 }
 
 sim::Allowance Stepper::allowance() const {
@@ -201,6 +202,20 @@ void Stepper::warn_if_crowded() {
       "warning",
       "self-collision: some vertices have more neighbours than are looked at, the nearest 64; a smaller "
       "thickness or a coarser mesh helps"});
+}
+
+// A few such steps are no news: a cloth that falls into its limit takes them.
+void Stepper::warn_if_unconverged() {
+  constexpr std::uint64_t many = 50;
+  const bool limit = simulation_->strain_limit_work().unconverged > many;
+  const bool solver = simulation_->solver_work().unconverged > many;
+  if (unconverged_announced_ || !(limit || solver)) return;
+  unconverged_announced_ = true;
+  exchange_.emit(
+      Notice{"warning", limit ? "strain_limit: some springs stay longer than it allows; a larger limit, "
+                                "a shorter time step or pins that leave room helps"
+                              : "the linear solver often ends before it meets solver.tolerance; a "
+                                "shorter time step or a larger tolerance helps"});
 }
 
 bool Stepper::suspended(Clock::time_point now) const {

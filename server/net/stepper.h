@@ -81,6 +81,7 @@ class Stepper {
   void follow_step_limit();
   void warn_if_slow(Clock::time_point now);
   void warn_if_crowded();
+  void warn_if_unconverged();
   bool suspended(Clock::time_point now) const;
   bool running(Clock::time_point now) const { return playing_ && !diverged_ && !suspended(now); }
   Clock::time_point next_turn(Clock::time_point now) const;
@@ -113,7 +114,7 @@ class Stepper {
   bool diagnosing_ = false;
   Clock::time_point next_status_{}, next_diagnosis_{};
   Clock::time_point slow_since_{};
-  bool slow_announced_ = false, crowded_announced_ = false;
+  bool slow_announced_ = false, crowded_announced_ = false, unconverged_announced_ = false;
 };
 
 }  // namespace clothlab::net

@@ -97,7 +97,7 @@ void Stepper::restart() {
 
 void Stepper::state_replaced() {
   finish_waiting(true);
-  diverged_ = slow_announced_ = crowded_announced_ = false;
+  diverged_ = slow_announced_ = crowded_announced_ = unconverged_announced_ = false;
   ++state_version_;
   real_time_.restart(Clock::now());
   frames_->restart();

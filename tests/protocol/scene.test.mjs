@@ -131,3 +131,15 @@ test("a contact distance that crowds the neighbour lists is told by a notice", a
   assert.equal(level, "warning");
   assert.match(text, /thickness/);
 });
+
+test("a strain limit that the pins leave no room for is told by a notice", async () => {
+  const notice = client.nextNotification("notice", ({ text }) => /strain_limit/.test(text));
+  const cloths = [{
+    mesh: { grid: { columns: 3, rows: 3 } },
+    material: { strain_limit: 0.01 },
+    pins: [{ at: "corner:0,0" }, { at: "corner:2,0", motion: { linear: { velocity: [0.2, 0, 0] } } }],
+  }];
+  await client.request("scene.load", { scene: { version: 1, cloths } });
+  await client.request("sim.play");
+  assert.equal((await notice).level, "warning");
+});
