@@ -20,12 +20,11 @@ inline scene::Scene bare_scene(scene::Method method, double dt) {
 inline scene::Scene hung_strip(scene::Method method, double dt, int columns, int rows, double width,
                                double height) {
   scene::Scene scene = bare_scene(method, dt);
-  scene::Cloth cloth;
+  scene::Cloth& cloth = scene.cloths.emplace_back();
   cloth.mesh = scene::Grid{columns, rows, width, height};
   cloth.mass = {scene::Mass::Kind::per_vertex, 1.0};
   cloth.material = {0.0, 0.0, 0.0, 0.0};
   cloth.pins = {{scene::AtEdge{scene::AtEdge::Line::row, 0}, {}}};
-  scene.cloths = {cloth};
   return scene;
 }
 
