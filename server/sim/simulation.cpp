@@ -5,67 +5,13 @@
 
 #include "server/sim/colliders.h"
 #include "server/sim/diagnose.h"
-#include "server/sim/integrator.h"
+#include "server/sim/kernels.h"
 #include "server/sim/last_good.h"
-#include "server/sim/spring_lists.h"
 #include "server/sim/state.h"
-#include "server/sim/strain_limit.h"
 
 namespace clothlab::sim {
 
 namespace {
-
-/// What depends on the scene's structure but not on the state: replaced as a whole by a change of kernel.
-struct Kernels {
-  Plan plan;
-  model::Model model;
-  MotionTable motions;
-  std::optional<SelfCollision> self_collision;
-  gl::TextureBuffer springs, slices;
-  std::unique_ptr<Integrator> integrator;
-  std::optional<StrainLimit> strain_limit;
-
-  Surroundings surroundings(const scene::Scene& scene) const {
-    return {scene, model, motions, self_collision ? &*self_collision : nullptr};
-  }
-};
-
-/// Returns the number of entries.
-std::size_t upload_springs(Kernels& kernels, const scene::Scene& scene) {
-  const SpringLists lists = spring_lists(kernels.model, scene);
-  kernels.springs = {gl::Buffer(lists.entries), GL_RGBA32UI};
-  kernels.slices = {gl::Buffer(lists.slices), GL_R32UI};
-  return lists.entries.size();
-}
-
-MotionTable motion_table(const scene::Scene& scene, const Plan& plan) {
-  return MotionTable(moving_motions(scene), plan.pose_rows());
-}
-
-Result<Kernels> make_kernels(const scene::Scene& scene) {
-  Kernels kernels;
-  Result<model::Model> model = model::build(scene);
-  if (!model) return model.error();
-  kernels.model = std::move(*model);
-  kernels.plan = plan(scene);
-  kernels.motions = motion_table(scene, kernels.plan);
-  if (kernels.plan.self_collision) {
-    Result<SelfCollision> self_collision = SelfCollision::create(kernels.model.vertex_count());
-    if (!self_collision) return self_collision.error();
-    kernels.self_collision = std::move(*self_collision);
-    kernels.self_collision->set_parameters(*scene.self_collision, kernels.model);
-  }
-  const std::size_t entries = upload_springs(kernels, scene);
-  Result<std::unique_ptr<Integrator>> integrator = make_integrator(kernels.surroundings(scene), kernels.plan);
-  if (!integrator) return integrator.error();
-  kernels.integrator = std::move(*integrator);
-  if (kernels.plan.strain_limit) {
-    Result<StrainLimit> limit = StrainLimit::create(kernels.surroundings(scene), kernels.plan, entries);
-    if (!limit) return limit.error();
-    kernels.strain_limit = std::move(*limit);
-  }
-  return kernels;
-}
 
 gl::TextureBuffer rest_positions(const model::Model& model) {
   std::vector<float> words;
@@ -169,7 +115,7 @@ Simulation::~Simulation() = default;
 Result<std::unique_ptr<Simulation>> Simulation::create(const scene::Scene& scene) {
   std::unique_ptr<Simulation> made(new Simulation);
   Implementation& self = *made->implementation_;
-  Result<Kernels> kernels = make_kernels(scene);
+  Result<Kernels> kernels = Kernels::create(scene);
   if (!kernels) return kernels.error();
   self.kernels = std::move(*kernels);
   Result<DiagnosticsPass> diagnostics = DiagnosticsPass::create(self.kernels.model.vertex_count());
@@ -178,7 +124,6 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const scene::Scene& scene
   self.scene = scene;
   self.rest = rest_positions(self.kernels.model);
   self.state = StateBuffers(self.kernels.model, self.kernels.motions);
-  self.kernels.integrator->restart();
   self.last_good = LastGood(self.kernels.model.vertex_count());
   self.keep_start();
   return made;
@@ -195,22 +140,12 @@ Result<ChangeDepth> Simulation::change(const scene::Scene& scene) {
     return depth;
   }
   if (depth == ChangeDepth::kernel) {
-    Result<Kernels> kernels = make_kernels(scene);
+    Result<Kernels> kernels = Kernels::create(scene);
     if (!kernels) return kernels.error();
     self.kernels = std::move(*kernels);
-    self.kernels.integrator->restart();
   } else if (depth == ChangeDepth::uniform) {
-    // Masses and pins live in the model; building it again is cheap and cannot change its shape here.
-    Result<model::Model> model = model::build(scene);
-    if (!model) return model.error();
-    self.kernels.model = std::move(*model);
-    self.kernels.motions = motion_table(scene, self.kernels.plan);
-    if (differs(self.scene, scene, &scene::Cloth::material)) upload_springs(self.kernels, scene);
-    if (self.kernels.self_collision)
-      self.kernels.self_collision->set_parameters(*scene.self_collision, self.kernels.model);
-    self.kernels.integrator->set_parameters(self.kernels.surroundings(scene));
-    if (self.kernels.strain_limit)
-      self.kernels.strain_limit->set_parameters(self.kernels.surroundings(scene));
+    const bool springs = differs(self.scene, scene, &scene::Cloth::material);
+    if (Status updated = self.kernels.update(scene, springs); !updated) return updated.error();
   }
   self.adopt(scene);
   return depth;

@@ -1,0 +1,62 @@
+#include "server/sim/kernels.h"
+
+#include "server/sim/spring_lists.h"
+
+namespace clothlab::sim {
+
+namespace {
+
+/// Returns the number of entries.
+std::size_t upload_springs(Kernels& kernels, const scene::Scene& scene) {
+  const SpringLists lists = spring_lists(kernels.model, scene);
+  kernels.springs = {gl::Buffer(lists.entries), GL_RGBA32UI};
+  kernels.slices = {gl::Buffer(lists.slices), GL_R32UI};
+  return lists.entries.size();
+}
+
+MotionTable motion_table(const scene::Scene& scene, const Plan& plan) {
+  return MotionTable(moving_motions(scene), plan.pose_rows());
+}
+
+}  // namespace
+
+Result<Kernels> Kernels::create(const scene::Scene& scene) {
+  Kernels kernels;
+  Result<model::Model> model = model::build(scene);
+  if (!model) return model.error();
+  kernels.model = std::move(*model);
+  kernels.plan = sim::plan(scene);
+  kernels.motions = motion_table(scene, kernels.plan);
+  if (kernels.plan.self_collision) {
+    Result<SelfCollision> self_collision = SelfCollision::create(kernels.model.vertex_count());
+    if (!self_collision) return self_collision.error();
+    kernels.self_collision = std::move(*self_collision);
+    kernels.self_collision->set_parameters(*scene.self_collision, kernels.model);
+  }
+  const std::size_t entries = upload_springs(kernels, scene);
+  Result<std::unique_ptr<Integrator>> integrator = make_integrator(kernels.surroundings(scene), kernels.plan);
+  if (!integrator) return integrator.error();
+  kernels.integrator = std::move(*integrator);
+  kernels.integrator->restart();
+  if (kernels.plan.strain_limit) {
+    Result<StrainLimit> limit = StrainLimit::create(kernels.surroundings(scene), kernels.plan, entries);
+    if (!limit) return limit.error();
+    kernels.strain_limit = std::move(*limit);
+  }
+  return kernels;
+}
+
+Status Kernels::update(const scene::Scene& scene, bool springs_changed) {
+  // Masses and pins live in the model; building it again is cheap and cannot change its shape here.
+  Result<model::Model> rebuilt = model::build(scene);
+  if (!rebuilt) return rebuilt.error();
+  model = std::move(*rebuilt);
+  motions = motion_table(scene, plan);
+  if (springs_changed) upload_springs(*this, scene);
+  if (self_collision) self_collision->set_parameters(*scene.self_collision, model);
+  integrator->set_parameters(surroundings(scene));
+  if (strain_limit) strain_limit->set_parameters(surroundings(scene));
+  return ok();
+}
+
+}  // namespace clothlab::sim

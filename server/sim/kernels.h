@@ -1,0 +1,33 @@
+// What a simulation has that depends on the scene's structure but not on the state: the passes that step it
+// and the arrays they read. A change of structure replaces it as a whole, a change of numbers updates it.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "server/sim/integrator.h"
+#include "server/sim/strain_limit.h"
+
+namespace clothlab::sim {
+
+struct Kernels {
+  Plan plan;
+  model::Model model;
+  MotionTable motions;
+  std::optional<SelfCollision> self_collision;
+  gl::TextureBuffer springs, slices;
+  std::unique_ptr<Integrator> integrator;
+  std::optional<StrainLimit> strain_limit;
+
+  /// For a state that none of its steps made yet.
+  static Result<Kernels> create(const scene::Scene& scene);
+
+  /// Takes over the numbers of a scene with the same structure; `springs_changed`: a material is another.
+  Status update(const scene::Scene& scene, bool springs_changed);
+
+  Surroundings surroundings(const scene::Scene& scene) const {
+    return {scene, model, motions, self_collision ? &*self_collision : nullptr};
+  }
+};
+
+}  // namespace clothlab::sim
