@@ -1,5 +1,6 @@
 // Methods that need one evaluation of the forces a step, and so one dispatch:
 // shaders/methods/whole_step.glsl.
+#include <array>
 #include <string>
 
 #include "server/scene/method.h"
@@ -9,13 +10,15 @@ namespace clothlab::sim {
 
 namespace {
 
-constexpr GLuint slot_carried = 3;  // verlet.comp
+constexpr GLuint unit_carried = 9, slot_carried = 3;  // verlet.comp
 
 class WholeStep : public Integrator {
  public:
   WholeStep(gl::Program program, std::uint32_t vertex_count, bool carries)
       : program_(std::move(program)), groups_(vertex_groups(vertex_count)) {
-    if (carries) carried_ = gl::Buffer(vertex_count * 4 * sizeof(float));
+    if (!carries) return;
+    for (gl::TextureBuffer& carried : carried_)
+      carried = {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
   }
 
   void set_parameters(const Surroundings& around) override {
@@ -27,7 +30,11 @@ class WholeStep : public Integrator {
     program_.use();
     glUniform1i(start_row_, row);
     state.bind_for_step();
-    if (carried_.bytes() > 0) carried_.bind_storage(slot_carried);
+    if (carries()) {
+      carried_[current_].bind(unit_carried);
+      current_ = 1 - current_;
+      carried_[current_].buffer.bind_storage(slot_carried);
+    }
     dispatch(groups_);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
     state.swap();
@@ -35,12 +42,15 @@ class WholeStep : public Integrator {
 
   /// Nothing carried: the velocity is the velocity now.
   void restart() override {
-    if (carried_.bytes() > 0) carried_.fill(0);
+    if (carries()) carried_[current_].buffer.fill(0);
   }
 
  private:
   gl::Program program_;
-  gl::Buffer carried_;  ///< verlet's; none otherwise
+  bool carries() const { return carried_[0].buffer.bytes() > 0; }
+  std::array<gl::TextureBuffer, 2>
+      carried_;  ///< verlet's; none otherwise. A step reads one, writes the other
+  std::size_t current_ = 0;
   GLint start_row_ = -1;
   GLuint groups_;
 };

@@ -7,6 +7,7 @@ void integrate(int i, vec4 x, vec3 v, vec3 a, vec3 push, vec3 impulse, out vec3 
   x_next = x.xyz + push + dt * (v + impulse);  // an impulse acts at the step's start
   v_next = v + dt * a + impulse;
 }
-void touched(int i, vec3 v_next) {}
+void touched() {}
+void end(int i) {}
 
 #include "whole_step.glsl"

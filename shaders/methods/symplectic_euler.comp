@@ -6,6 +6,7 @@ void integrate(int i, vec4 x, vec3 v, vec3 a, vec3 push, vec3 impulse, out vec3 
   v_next = v + dt * a + impulse;
   x_next = x.xyz + push + dt * v_next;
 }
-void touched(int i, vec3 v_next) {}
+void touched() {}
+void end(int i) {}
 
 #include "whole_step.glsl"

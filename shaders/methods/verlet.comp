@@ -7,15 +7,18 @@
 
 /// xyz: how much w is ahead of the velocity in the middle of the last step [m/s]; w: the dt of that step [s]. Both 0 after a
 /// start or a contact: then w is the velocity now. Kept as a difference, so that who changes w changes both.
-layout(std430, binding = 3) buffer Carried { vec4 carried[]; };
+READ_VEC4(carried, 9);
+layout(std430, binding = 3) writeonly buffer Carried { vec4 next_carried[]; };
+vec4 carry;
 
 void integrate(int i, vec4 x, vec3 v, vec3 a, vec3 push, vec3 impulse, out vec3 x_next, out vec3 v_next) {
-  vec4 before = carried[i];
+  vec4 before = FETCH(carried, i);
   vec3 now = v - before.xyz + (0.5 * before.w) * a + impulse;
   x_next = x.xyz + push + dt * (now + (0.5 * dt) * a);
   v_next = now + dt * a;
-  carried[i] = vec4((0.5 * dt) * a, dt);
+  carry = vec4((0.5 * dt) * a, dt);
 }
-void touched(int i, vec3 v_next) { carried[i] = vec4(0.0); }
+void touched() { carry = vec4(0.0); }
+void end(int i) { next_carried[i] = carry; }
 
 #include "whole_step.glsl"
