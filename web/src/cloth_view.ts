@@ -14,7 +14,9 @@ export class ClothView {
   vertices = 0;
   private topology: Topology | null = null;
   private document: SceneDocument | null = null;
-  private words: BufferAttribute | null = null;
+  // Two buffers in turn: with one, Chromium's software WebGL was seen to draw the mesh, but not the pins, from the vertices
+  // of an earlier frame, and to go on with that when no further frame came.
+  private words: [BufferAttribute, BufferAttribute] | null = null;
   private readonly decode: DecodeUniforms = { boxMinimum: { value: new Vector3() }, boxExtent: { value: new Vector3() } };
   private readonly materials: FabricMaterial[] = [];
   private readonly depthMaterial = clothCasterMaterial(this.decode);
@@ -46,11 +48,14 @@ export class ClothView {
     }
     const words = q16Words(frame);
     if (this.words) {
-      this.words.array = words;
-      this.words.needsUpdate = true;
+      this.words.reverse();
+      this.words[0].array = words;
+      this.words[0].needsUpdate = true;
+      this.bindWords(this.mesh?.geometry);
+      this.bindWords(this.markers?.geometry);
     } else {
-      this.words = new BufferAttribute(words, 4, true);
-      this.build(this.topology, this.words);
+      this.words = [new BufferAttribute(words, 4, true), new BufferAttribute(words, 4, true)];
+      this.build(this.topology);
     }
     this.vertices = header.vertexCount;
     this.decode.boxMinimum.value.set(...header.boxMinimum);
@@ -73,9 +78,16 @@ export class ClothView {
     return (this.materials[index] ??= new FabricMaterial(this.decode, this.stage));
   }
 
-  private build(topology: Topology, words: BufferAttribute): void {
+  // The resting one is bound, too, so that it is freed with the geometry.
+  private bindWords(geometry: BufferGeometry | undefined): void {
+    if (!geometry || !this.words) return;
+    geometry.setAttribute("q16", this.words[0]);
+    geometry.setAttribute("resting", this.words[1]);
+  }
+
+  private build(topology: Topology): void {
     const geometry = new BufferGeometry();
-    geometry.setAttribute("q16", words);
+    this.bindWords(geometry);
     geometry.setAttribute("textureCoordinate", new BufferAttribute(topology.textureCoordinates, 2));
     geometry.setIndex(new BufferAttribute(topology.triangles, 1));
     this.addGroups(geometry, topology);
@@ -119,7 +131,7 @@ export class ClothView {
     });
     if (pinned.length === 0 || pinned.length > mostMarkers) return;
     const geometry = new BufferGeometry();
-    geometry.setAttribute("q16", this.words);
+    this.bindWords(geometry);
     geometry.setIndex(pinned);
     this.pinMaterial.uniforms.diameter = { value: pinned.length <= 8 ? 9 : 5 };
     this.markers = new Points(geometry, this.pinMaterial);
