@@ -28,7 +28,7 @@ Result<DiagnosticsPass> DiagnosticsPass::create(std::uint32_t vertex_count) {
   pass.program_ = std::move(*program);
   pass.program_.use();
   glUniform1i(0, static_cast<GLint>(vertex_count));
-  pass.groups_ = (vertex_count + group_size - 1) / group_size;
+  pass.groups_ = vertex_groups(vertex_count);
   pass.results_ = gl::Buffer(pass.groups_ * sizeof(Partial) + sizeof(SelfCollision::Counters));
   pass.ring_ = gl::ReadbackRing(pass.results_.bytes(), ring_slots);
   return pass;

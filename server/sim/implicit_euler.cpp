@@ -45,6 +45,7 @@ class ImplicitEuler : public Integrator {
   void set_parameters(const Surroundings& around) override {
     for (const gl::Program* program : {&start_, &system_, &multiply_, &update_, &search_, &advance_, &end_})
       set_step_uniforms(*program, around);
+    iteration_location_ = update_.uniform("iteration");
     most_newton_steps_ = around.scene.solver.iterations;
     glProgramUniform1f(system_.id(), system_.uniform("tolerance"),
                        static_cast<float>(around.scene.solver.tolerance));
@@ -98,11 +99,7 @@ class ImplicitEuler : public Integrator {
   void run(const gl::Program& program) {
     program.use();
     dispatch(groups_);
-    wait();
-  }
-  static void wait() {
-    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
-                    GL_BUFFER_UPDATE_BARRIER_BIT);
+    wait_for_writes();
   }
 
   void begin(const StateBuffers& state, int row) {
@@ -152,7 +149,7 @@ class ImplicitEuler : public Integrator {
     sums_.buffer.bind_storage(1);
     multiply_.use();
     glDispatchComputeIndirect(0);
-    wait();
+    wait_for_writes();
     now.residual.bind(16);
     now.preconditioned.bind(17);
     now.direction.bind(18);
@@ -169,9 +166,9 @@ class ImplicitEuler : public Integrator {
     next.direction_product.buffer.bind_storage(5);
     next.change.buffer.bind_storage(6);
     update_.use();
-    glUniform1i(update_.uniform("iteration"), iteration);
+    glUniform1i(iteration_location_, iteration);
     glDispatchComputeIndirect(0);
-    wait();
+    wait_for_writes();
     dispatches_ += 2;
   }
 
@@ -212,6 +209,7 @@ class ImplicitEuler : public Integrator {
 
   GLuint groups_;
   int most_newton_steps_ = 1;
+  GLint iteration_location_ = -1;
   gl::Program start_, system_, multiply_, update_, search_, advance_, end_;
   gl::TextureBuffer start_position_, start_velocity_;  ///< where the step starts, with self-collision's share
   gl::TextureBuffer position_, velocity_;              ///< estimate of where it ends

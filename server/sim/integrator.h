@@ -60,9 +60,11 @@ Result<std::unique_ptr<Integrator>> make_whole_step(scene::Method method, std::u
 Result<std::unique_ptr<Integrator>> make_rk4(std::uint32_t vertex_count, const Plan& plan);
 Result<std::unique_ptr<Integrator>> make_implicit_euler(std::uint32_t vertex_count, const Plan& plan);
 
-/// Work groups of a kernel with one thread a vertex.
-inline GLuint vertex_groups(std::uint32_t vertex_count) {
-  return (vertex_count + group_size - 1) / group_size;
+/// What the kernels so far have written is there for the next one to read, for indirect dispatches and for
+/// copies.
+inline void wait_for_writes() {
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
+                  GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
 /// Sets the uniforms that the kernels of all methods share, where the program has them.

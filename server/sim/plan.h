@@ -1,6 +1,7 @@
 // Which passes a scene needs, and nothing else: derived from the scene alone (principle 2 of the design).
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,11 @@ namespace clothlab::sim {
 /// Threads in a work group and vertices in a slice of the spring lists. Of 32 to 256, 128 was best or near it
 /// for cloths from 25x25 to 256x256 on llvmpipe.
 inline constexpr int group_size = 128;
+
+/// Work groups of a kernel with one thread a vertex.
+constexpr std::uint32_t vertex_groups(std::uint32_t vertex_count) {
+  return (vertex_count + group_size - 1) / group_size;
+}
 
 /// What the step kernel is specialised for. Two scenes with equal plans run the same kernels.
 struct Plan {

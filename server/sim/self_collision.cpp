@@ -13,10 +13,6 @@ namespace {
 
 constexpr std::size_t neighbour_slots = 64;  // NEIGHBOUR_SLOTS in shaders/collide/neighbours.glsl
 
-GLuint groups(std::uint32_t vertex_count) {
-  return (vertex_count + group_size - 1) / group_size;
-}
-
 }  // namespace
 
 Result<SelfCollision> SelfCollision::create(std::uint32_t vertex_count) {
@@ -56,7 +52,7 @@ void SelfCollision::set_parameters(const scene::SelfCollision& parameters, const
 }
 
 void SelfCollision::invalidate() {
-  const std::array<std::uint32_t, 3> dispatch{groups(vertex_count_), 1, 1};
+  const std::array<std::uint32_t, 3> dispatch{vertex_groups(vertex_count_), 1, 1};
   control_.upload(dispatch.data(), sizeof(dispatch));
 }
 

@@ -36,11 +36,6 @@ float relaxation(const model::Model& model) {
   return static_cast<float>(1.6 / largest);
 }
 
-void wait() {
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
-                  GL_BUFFER_UPDATE_BARRIER_BIT);
-}
-
 }  // namespace
 
 Result<StrainLimit> StrainLimit::create(const Surroundings& around, const Plan& plan, std::size_t entries) {
@@ -63,7 +58,7 @@ Result<StrainLimit> StrainLimit::create(const Surroundings& around, const Plan& 
     excess = {gl::Buffer(made.groups_ * 4 * sizeof(float)), GL_RGBA32F};
   made.pulls_ = gl::Buffer(std::max<std::size_t>(entries, 1) * sizeof(float));
   made.control_ = gl::Buffer(sizeof(Control));
-  made.restart();
+  glProgramUniform1f(made.sweep_.id(), made.sweep_.uniform("relaxation"), relaxation(around.model));
   made.set_parameters(around);
   return made;
 }
@@ -75,7 +70,6 @@ void StrainLimit::set_parameters(const Surroundings& around) {
     limits.push_back(static_cast<float>(cloth.material.strain_limit.value_or(-1.0)));
   const GLuint sweep = sweep_.id();
   glProgramUniform1fv(sweep, sweep_.uniform("limit"), static_cast<GLsizei>(limits.size()), limits.data());
-  glProgramUniform1f(sweep, sweep_.uniform("relaxation"), relaxation(around.model));
   // A pull is a force times dt^2.
   if (around.scene.solver.dt != dt_) restart();
   dt_ = around.scene.solver.dt;
@@ -88,7 +82,7 @@ void StrainLimit::apply(StateBuffers& state) {
   pulls_.bind_storage(3);
   start_.use();
   glDispatchCompute(groups_, 1, 1);
-  wait();
+  wait_for_writes();
 
   Control control;
   control.groups = groups_;
@@ -106,7 +100,7 @@ void StrainLimit::apply(StateBuffers& state) {
       group_excess_[to].buffer.bind_storage(1);
       glUniform1i(sweep_location, sweep);
       glDispatchComputeIndirect(0);
-      wait();
+      wait_for_writes();
     }
     control_.download(&control, sizeof control);
   }
@@ -117,7 +111,7 @@ void StrainLimit::apply(StateBuffers& state) {
   position_[control.sweeps % 2].bind(9);
   end_.use();
   glDispatchCompute(groups_, 1, 1);
-  wait();
+  wait_for_writes();
   state.swap();
   // Limits that cannot be met pull without bound: what that has come to must not begin the next step.
   if (control.groups > 0) restart();

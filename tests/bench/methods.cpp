@@ -2,7 +2,6 @@
 // dispatches, bytes. The methods take turns in every round, so that a noisy machine disturbs all alike and
 // their ratios mean something. bench_methods SIDE ROUNDS: one JSON line a method; methods.mjs runs it for all
 // sizes.
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -11,22 +10,16 @@
 #include "server/gl/context.h"
 #include "server/scene/method.h"
 #include "server/sim/simulation.h"
+#include "tests/bench/seed.h"
 
 using namespace clothlab;
 
 namespace {
 
-/// Without self-collision, which costs the same under every method. dt below each method's limit; implicit
-/// Euler at the 1/60 s it is used with, one Newton step.
+/// Self-collision, which is left out, costs the same under every method. dt below each method's limit;
+/// implicit Euler at the 1/60 s it is used with, one Newton step.
 scene::Scene seed_of(int side, scene::Method method) {
-  scene::Scene scene;
-  scene::Cloth cloth;
-  cloth.mesh = scene::Grid{side, side, 1.0, 1.0};
-  cloth.transform.translate = {0.0, 1.0, 0.0};
-  const scene::Oscillate swing{{0.0, 0.0, 1.0}, 0.2, 0.5};
-  cloth.pins = {{scene::AtCorner{0, 0}, swing}, {scene::AtCorner{side - 1, 0}, swing}};
-  scene.cloths = {cloth};
-  scene.colliders = {{"ball", scene::Sphere{{0.0, 0.6, 0.0}, 0.25}, 0.3, 0.0, {}}};
+  scene::Scene scene = bench::seed_of(side);
   scene.solver = {method, 1e-3, 1, 1e-4};
   if (method == scene::Method::explicit_euler) scene.solver.dt = 5e-5;
   if (method == scene::Method::implicit_euler) scene.solver.dt = 1.0 / 60;
@@ -53,10 +46,6 @@ double bytes_a_vertex(scene::Method method, double entries, double iterations) {
                       (entries * 4 + 4) * vector + (7 + 4) * vector +      // search, advance
                       (9 + 2) * vector;                                    // end
   return once + iterations * ((entries * 3 + 4 + 1) + (11 + 5)) * vector;  // multiply, update
-}
-
-double seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 struct Contestant {
@@ -93,10 +82,10 @@ int main(int argc, char** argv) {
   }
   for (int round = 0; round < rounds; ++round) {
     for (Contestant& one : contestants) {
-      const double start = seconds();
+      const double start = bench::seconds();
       one.simulation->step(one.steps);
       one.simulation->finish();
-      one.samples.push_back((seconds() - start) * 1e9 / one.steps / vertices);
+      one.samples.push_back((bench::seconds() - start) * 1e9 / one.steps / vertices);
     }
   }
   for (Contestant& one : contestants) {

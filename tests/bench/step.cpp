@@ -1,7 +1,6 @@
 // Stepping cost of one configuration: the seed scene on a grid of any size. Prints one JSON line; step.mjs
 // runs it for all configurations. CLOTHLAB_READS=storage measures reads through storage buffers instead of
 // buffer textures.
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -9,28 +8,17 @@
 
 #include "server/gl/context.h"
 #include "server/sim/simulation.h"
+#include "tests/bench/seed.h"
 
 using namespace clothlab;
 
 namespace {
 
-/// The seed scene with another number of vertices a side. The contact distance keeps its share of the
-/// spacing, 0.24, so that every size does the same work a vertex.
+/// The contact distance keeps its share of the spacing, 0.24, so that every size does the same work a vertex.
 scene::Scene seed_of(int side, bool self_collision) {
-  scene::Scene scene;
-  scene::Cloth cloth;
-  cloth.mesh = scene::Grid{side, side, 1.0, 1.0};
-  cloth.transform.translate = {0.0, 1.0, 0.0};
-  const scene::Oscillate swing{{0.0, 0.0, 1.0}, 0.2, 0.5};
-  cloth.pins = {{scene::AtCorner{0, 0}, swing}, {scene::AtCorner{side - 1, 0}, swing}};
-  scene.cloths = {cloth};
-  scene.colliders = {{"ball", scene::Sphere{{0.0, 0.6, 0.0}, 0.25}, 0.3, 0.0, {}}};
+  scene::Scene scene = bench::seed_of(side);
   if (self_collision) scene.self_collision = scene::SelfCollision{0.24 / (side - 1), 0.2};
   return scene;
-}
-
-double seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 }  // namespace
@@ -52,10 +40,10 @@ int main(int argc, char** argv) {
   std::printf("{\"renderer\": \"%s\", \"side\": %d, \"self_collision\": %s, \"ns_per_vertex_step\": [",
               (*context)->device().name.c_str(), side, self_collision ? "true" : "false");
   for (int repeat = 0; repeat < repeats; ++repeat) {
-    const double start = seconds();
+    const double start = bench::seconds();
     (*simulation)->step(steps);
     (*simulation)->finish();
-    std::printf("%s%.2f", repeat ? ", " : "", (seconds() - start) * 1e9 / steps / (side * side));
+    std::printf("%s%.2f", repeat ? ", " : "", (bench::seconds() - start) * 1e9 / steps / (side * side));
   }
   std::printf("]}\n");
 }

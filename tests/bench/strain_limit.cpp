@@ -1,12 +1,12 @@
 // Cost and effect of the strain limit: the seed's heavy cloth (0.1 kg a vertex) hanging from two corners for
 // 1 s, symplectic Euler at 1 ms. One JSON line a limit; methods.mjs runs it.
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <glm/geometric.hpp>
 
 #include "server/gl/context.h"
 #include "server/sim/simulation.h"
+#include "tests/bench/seed.h"
+#include "tests/stretch.h"
 
 using namespace clothlab;
 
@@ -23,19 +23,6 @@ scene::Scene heavy(double limit) {
   return scene;
 }
 
-double largest_stretch(sim::Simulation& simulation) {
-  const sim::State state = simulation.read_state();
-  double largest = 0.0;
-  for (const model::Spring& spring : simulation.model().springs)
-    largest = std::max(
-        largest, glm::distance(state.position[spring.a], state.position[spring.b]) / spring.rest_length - 1);
-  return largest;
-}
-
-double seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 }  // namespace
 
 int main() {
@@ -50,11 +37,11 @@ int main() {
     const sim::StrainLimitWork before = (*simulation)->strain_limit_work();
     double stretch = 0.0, spent = 0.0;
     for (int look = 0; look < 20; ++look) {
-      const double start = seconds();
+      const double start = bench::seconds();
       (*simulation)->step(50);
       (*simulation)->finish();
-      spent += seconds() - start;
-      stretch = std::max(stretch, largest_stretch(**simulation));
+      spent += bench::seconds() - start;
+      stretch = std::max(stretch, test::largest_stretch(**simulation));
     }
     const sim::StrainLimitWork work = (*simulation)->strain_limit_work();
     std::printf(

@@ -1,8 +1,7 @@
 // Provot's strain limit after a step of every method.
-#include <algorithm>
-
 #include "server/scene/method.h"
 #include "tests/scenes.h"
+#include "tests/stretch.h"
 
 using namespace clothlab;
 
@@ -22,18 +21,6 @@ scene::Scene heavy(scene::Method method, std::optional<double> limit) {
   return scene;
 }
 
-/// Longest spring over its length at rest, less 1: stretch alone, where max_strain counts compression, too.
-double largest_stretch(sim::Simulation& simulation) {
-  const sim::State state = simulation.read_state();
-  double largest = 0.0;
-  for (const model::Spring& spring : simulation.model().springs)
-    largest = std::max(
-        largest, glm::distance(glm::dvec3(state.position[spring.a]), glm::dvec3(state.position[spring.b])) /
-                         spring.rest_length -
-                     1.0);
-  return largest;
-}
-
 }  // namespace
 
 TEST_CASE(
@@ -48,7 +35,7 @@ TEST_CASE(
     for (std::uint32_t look = 0; look < 10; ++look) {
       simulation->step(steps / 10);
       // Roundings of the two ends' coordinates, about 1 m, over the shortest spring.
-      CHECK(largest_stretch(*simulation) <= limit + 4 * 0x1p-24 / (1.0 / 24));
+      CHECK(test::largest_stretch(*simulation) <= limit + 4 * 0x1p-24 / (1.0 / 24));
     }
     CHECK(simulation->strain_limit_work().unconverged == 0);
     CHECK(simulation->strain_limit_work().sweeps > simulation->step_index());  // it had work to do
@@ -59,7 +46,7 @@ TEST_CASE("without a strain limit the same cloth's springs get longer than that"
   const auto context = test::context();
   const auto simulation = test::simulation(heavy(scene::Method::symplectic_euler, std::nullopt));
   simulation->step(400);
-  CHECK(largest_stretch(*simulation) > 0.2);
+  CHECK(test::largest_stretch(*simulation) > 0.2);
 }
 
 TEST_CASE("the strain limit leaves pins exactly where their motion takes them") {

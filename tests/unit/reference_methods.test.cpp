@@ -7,6 +7,7 @@
 #include "server/reference/reference.h"
 #include "tests/catch.h"
 #include "tests/small_scenes.h"
+#include "tests/unit/world.h"
 
 using namespace clothlab;
 using scene::Method;
@@ -14,10 +15,6 @@ using scene::Method;
 namespace {
 
 constexpr double rounding = 0x1p-52;
-
-reference::World world_of(const scene::Scene& scene) {
-  return *reference::make_world(scene, 0.0);
-}
 
 /// Displacement from balance and velocity [m, m/s] of the end of one_spring after n steps.
 std::array<double, 2> spring_after(const scene::Scene& scene, int steps) {

@@ -7,15 +7,12 @@
 #include "server/reference/trajectory.h"
 #include "tests/catch.h"
 #include "tests/small_scenes.h"
+#include "tests/unit/world.h"
 
 using namespace clothlab;
 using scene::Method;
 
 namespace {
-
-reference::World world_of(const scene::Scene& scene) {
-  return *reference::make_world(scene, 0.0);
-}
 
 /// The angle [rad] from hanging down at which the rod of `pendulum` is, by its own plane.
 double angle_of(const scene::Scene& scene, const reference::State& state) {

@@ -6,15 +6,12 @@
 
 #include "tests/catch.h"
 #include "tests/small_scenes.h"
+#include "tests/unit/world.h"
 
 using namespace clothlab;
 using scene::Method;
 
 namespace {
-
-reference::World world_of(const scene::Scene& scene) {
-  return *reference::make_world(scene, 0.0);
-}
 
 std::vector<glm::dvec3> shape_of(const scene::Scene& scene) {
   const Result<reference::RestShape> found = reference::rest_shape(world_of(scene));

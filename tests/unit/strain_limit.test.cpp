@@ -8,15 +8,12 @@
 
 #include "tests/catch.h"
 #include "tests/small_scenes.h"
+#include "tests/unit/world.h"
 
 using namespace clothlab;
 using scene::Method;
 
 namespace {
-
-reference::World world_of(const scene::Scene& scene) {
-  return *reference::make_world(scene, 0.0);
-}
 
 /// The largest l / L - 1 of the springs with a free end.
 double largest_stretch(const reference::World& world, const reference::State& state) {

@@ -1,0 +1,12 @@
+// A scene for the double-precision reference, where nothing collides.
+#pragma once
+
+#include "server/reference/reference.h"
+
+namespace clothlab {
+
+inline reference::World world_of(const scene::Scene& scene) {
+  return *reference::make_world(scene, 0.0);
+}
+
+}  // namespace clothlab
