@@ -76,6 +76,9 @@ double dt_limit(Method method, const Mode& mode) {
     case Method::rk4:
       return rk4_limit(mode);
     case Method::implicit_euler:
+    case Method::pbd:
+    case Method::xpbd:
+    case Method::vbd:
       return no_limit;
   }
   return no_limit;
@@ -96,7 +99,7 @@ double omega_max(const Model& model, const scene::Scene& scene, const Field& sha
 
 double dt_limit_bound(Method method, const SpringOperator& springs) {
   if (!springs.any_free()) return no_limit;
-  if (springs.empty() || method == Method::implicit_euler) return dt_limit(method, {0.0, springs.air_drag()});
+  if (springs.empty() || scene::any_step_is_stable(method)) return dt_limit(method, {0.0, springs.air_drag()});
   const Mode worst{springs.stiffness_bound(), springs.damping_bound()};
   if (one_worst(method)) return dt_limit(method, worst);
   // Both need roots that are no farther from 0 than this.
@@ -110,7 +113,7 @@ double dt_limit(Method method, const SpringOperator& springs, const std::stop_to
   if (!springs.any_free()) return no_limit;
   // What stretches no spring, a cloth that moves as a whole, is only slowed by the air.
   double least = dt_limit(method, {0.0, springs.air_drag()});
-  if (springs.empty() || method == Method::implicit_euler) return least;
+  if (springs.empty() || scene::any_step_is_stable(method)) return least;
   if (method == Method::explicit_euler && springs.air_drag() == 0.0 && springs.least_damping_time() == 0.0)
     return 0.0;
   const auto of_mode = [&](const Mode& mode) { return dt_limit(method, mode); };

@@ -95,6 +95,10 @@ StepMethod step_method(scene::Method method) {
       return rk4;
     case scene::Method::implicit_euler:
       return backward_euler;
+    case scene::Method::pbd:
+    case scene::Method::xpbd:
+    case scene::Method::vbd:
+      break;  // gauss_seidel.h
   }
   return symplectic_euler;
 }

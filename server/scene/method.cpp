@@ -16,8 +16,22 @@ const char* name(Method method) {
       return "rk4";
     case Method::implicit_euler:
       return "implicit_euler";
+    case Method::pbd:
+      return "pbd";
+    case Method::xpbd:
+      return "xpbd";
+    case Method::vbd:
+      return "vbd";
   }
   return "";
+}
+
+bool sweeps(Method method) {
+  return method == Method::pbd || method == Method::xpbd || method == Method::vbd;
+}
+
+bool any_step_is_stable(Method method) {
+  return method == Method::implicit_euler || sweeps(method);
 }
 
 std::optional<Method> method_of(const std::string& wanted) {

@@ -13,6 +13,13 @@ namespace clothlab::scene {
 inline constexpr std::array methods{Method::explicit_euler, Method::symplectic_euler, Method::verlet,
                                     Method::rk4, Method::implicit_euler};
 
+/// Those that sweep over springs or vertices colour by colour: Gauss-Seidel iterations, `iterations` of them
+/// a step.
+bool sweeps(Method method);
+
+/// No length of step makes the method blow up.
+bool any_step_is_stable(Method method);
+
 /// "symplectic_euler", ...
 const char* name(Method method);
 

@@ -147,7 +147,7 @@ struct SelfCollision {
 };
 
 /// How the scene is advanced in time. scene/method.h has their names.
-enum class Method { explicit_euler, symplectic_euler, verlet, rk4, implicit_euler };
+enum class Method { explicit_euler, symplectic_euler, verlet, rk4, implicit_euler, pbd, xpbd, vbd };
 
 struct Solver {
   Method method = Method::symplectic_euler;

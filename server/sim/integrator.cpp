@@ -17,6 +17,10 @@ Result<std::unique_ptr<Integrator>> make(const Surroundings& around, const Plan&
       return make_rk4(around.model.vertex_count(), plan);
     case scene::Method::implicit_euler:
       return make_implicit_euler(around.model.vertex_count(), plan);
+    case scene::Method::pbd:
+    case scene::Method::xpbd:
+    case scene::Method::vbd:
+      break;
   }
   return Error{"/solver/method", scene::name(around.scene.solver.method), "a method that has kernels"};
 }

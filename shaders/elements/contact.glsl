@@ -66,3 +66,27 @@ FUNCTION bool self_contact(vec3 x, vec3 y, vec3 v, vec3 w, real keep, real frict
   impulse = contact_velocity(relative, n, friction, real(0.0)) - relative;
   return true;
 }
+
+/// The part of a displacement that friction takes: `moved` [m] is that of a step relative to a surface with unit normal n
+/// which pushed back by `depth` [m] (Coulomb's law for positions: Macklin et al. 2014, equation 24).
+FUNCTION vec3 friction_displacement(vec3 moved, vec3 n, real friction, real depth) {
+  vec3 sliding = moved - n * dot(moved, n);
+  real distance_slid = sqrt(dot(sliding, sliding));
+  real most = friction * depth;
+  return distance_slid > most ? sliding * (most / distance_slid) : sliding;
+}
+
+/// Two vertices of cloth that keep a distance of `keep` [m], their difference at the step's start and now: swept, as for a
+/// sphere. True if they meet; `correction` then goes to the first, less the second's share. If they started closer than
+/// `keep` already, no more than the share `mend` of what lacks is asked for: all of it at once would be a blow.
+FUNCTION bool pair_contact(vec3 before, vec3 now, real keep, real friction, real mend, OUT(vec3) correction) {
+  correction = vec3(real(0.0));
+  real gap = sqrt(dot(before, before));
+  real kept = gap < keep ? gap + mend * (keep - gap) : keep;
+  vec3 stopped, n;
+  if (!sphere_contact(before, now, kept, stopped, n)) return false;
+  correction = stopped - now;
+  real depth = dot(correction, n);
+  correction = correction - friction_displacement(stopped - before, n, friction, depth);
+  return true;
+}

@@ -40,3 +40,18 @@ FUNCTION real spring_strain(vec3 x, vec3 y, real rest_length) {
   real stretch = sqrt(dot(d, d)) - rest_length;
   return rest_length > real(0.0) ? max(stretch, -stretch) / rest_length : real(0.0);
 }
+
+/// One visit of a Gauss-Seidel sweep to a spring, in PBD and XPBD (Mueller et al. 2007, section 3.3; Macklin et al. 2016,
+/// equations 18 and 26): how much more it now pushes its ends apart along n, as an impulse times dt [kg m]. `d` is
+/// the difference of its ends as they are now, `moved` how that has changed since the step's start, `multiplier` what it
+/// has pushed since then. The gains follow from stiffness, damping, masses and dt: server/model/spring_gains.h.
+FUNCTION real spring_projection(vec3 d, vec3 moved, real rest_length, real stretch_gain, real damping_gain,
+                                real memory, real multiplier, OUT(vec3) n) {
+  real length_squared = dot(d, d);
+  n = vec3(real(0.0));
+  if (!(length_squared > real(0.0))) return real(0.0);
+  real inverse_length = real(1.0) / sqrt(length_squared);
+  n = d * inverse_length;
+  return -(stretch_gain * (length_squared * inverse_length - rest_length) + damping_gain * dot(n, moved) +
+           memory * multiplier);
+}

@@ -40,6 +40,9 @@ double bytes_a_vertex(scene::Method method, double entries, double iterations) {
     case scene::Method::rk4:
       return 4 * gather + (3 + 5 + 5 + 7) * vector;
     case scene::Method::implicit_euler:
+    case scene::Method::pbd:
+    case scene::Method::xpbd:
+    case scene::Method::vbd:
       break;
   }
   const double once = (3 + 6) * vector + (entries * 4 + 5 + 4) * vector +  // start, system

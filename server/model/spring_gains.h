@@ -1,0 +1,22 @@
+// What PBD and XPBD multiply a spring's stretch with when they visit it (elements/spring.glsl,
+// spring_projection): where stiffness in N/m and damping in N s/m become numbers for one dt.
+#pragma once
+
+#include "server/scene/scene.h"
+
+namespace clothlab::model {
+
+struct SpringGains {
+  double stretch = 0, damping = 0;  ///< [kg]
+  double memory = 0;                ///< of what the spring has pushed in this step already, [0, 1)
+};
+
+/// XPBD: Macklin, Mueller & Chentanez 2016, equation 26, multiplied by stiffness dt^2, so that stiffnesses of
+/// 0 and beyond all measure keep their digits. Converged, the springs' forces are those of implicit Euler.
+/// PBD (Mueller et al. 2007) is XPBD without memory. Its stiffness in [0, 1] is chosen so that a spring
+/// alone, after `solver.iterations` visits, is where XPBD would put it: 1 - (1 + w (dt^2 k + dt
+/// c))^(-1/iterations). `inverse_mass` w [1/kg]: the sum of both ends'. Stiffness k [N/m] above 0, damping c
+/// [N s/m].
+SpringGains spring_gains(const scene::Solver& solver, double stiffness, double damping, double inverse_mass);
+
+}  // namespace clothlab::model
