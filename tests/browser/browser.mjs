@@ -1,10 +1,10 @@
 // Chromium with the page in it, and what tests read from the page: pixels, positions, controls.
 import assert from "node:assert/strict";
 import { existsSync, mkdirSync } from "node:fs";
-import { test } from "node:test";
+import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
-import { patience } from "../protocol/harness.mjs";
+import { Client, patience, Server } from "../protocol/harness.mjs";
 
 const candidates = [process.env.CLOTHLAB_BROWSER, "/usr/bin/chromium", "/usr/bin/google-chrome", "/usr/bin/google-chrome-stable"];
 const executablePath = candidates.find((path) => path && existsSync(path));
@@ -47,6 +47,35 @@ export async function launch() {
       "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
   });
   return running;
+}
+
+/// Gives a file's tests a browser, closed after them.
+export function withBrowser() {
+  const here = {
+    browser: null,
+    open: (server, options) => Viewer.open(here.browser, server, options),
+  };
+  before(async () => { here.browser = await launch(); });
+  after(() => here.browser?.close());
+  return here;
+}
+
+/// A browser and a server, both stopped after a file's tests.
+export function withServer(...args) {
+  const browser = withBrowser();
+  const here = {
+    server: null,
+    open: (options) => browser.open(here.server, options),
+    /// A page and a script on the same session, and the scene as the server has it.
+    async both(session, options) {
+      const viewer = await here.open({ session, width: 1280, height: 800, ...options });
+      const client = await Client.connect(here.server, { session });
+      return { viewer, client, scene: async () => (await client.request("scene.get", {})).document };
+    },
+  };
+  before(async () => { here.server = await Server.start("--max-sessions", "16", ...args); });
+  after(() => here.server?.stop());
+  return here;
 }
 
 export class Viewer {

@@ -1,24 +1,7 @@
 import assert from "node:assert/strict";
-import { after, before } from "node:test";
-import { Client, Server } from "../protocol/harness.mjs";
-import { browserTest, eventually, launch, Viewer } from "./browser.mjs";
+import { browserTest, eventually, withServer } from "./browser.mjs";
 
-let server, browser;
-before(async () => {
-  server = await Server.start("--max-sessions", "16");
-  browser = await launch();
-});
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-});
-
-/// A page and a script on the same session.
-async function both(session, options) {
-  const viewer = await Viewer.open(browser, server, { session, width: 1280, height: 800, ...options });
-  const client = await Client.connect(server, { session });
-  return { viewer, client, scene: async () => (await client.request("scene.get", {})).document };
-}
+const { both } = withServer();
 
 browserTest("a slider dragged by mouse changes the server's scene; the last value arrives, few messages are sent", async () => {
   const { viewer, client, scene } = await both("slider");

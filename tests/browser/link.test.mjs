@@ -1,15 +1,12 @@
 import assert from "node:assert/strict";
-import { after, before } from "node:test";
 import { Server } from "../protocol/harness.mjs";
-import { browserTest, launch, Viewer } from "./browser.mjs";
+import { browserTest, withBrowser } from "./browser.mjs";
 
-let browser;
-before(async () => { browser = await launch(); });
-after(async () => { await browser?.close(); });
+const { open } = withBrowser();
 
 browserTest("a server that is killed and started again on its port is reconnected to, and the page says so meanwhile", async () => {
   const server = await Server.start();
-  const viewer = await Viewer.open(browser, server);
+  const viewer = await open(server);
   await server.stop("SIGKILL");
   const banner = viewer.page.locator("#banner");
   await banner.waitFor({ state: "visible" });
@@ -28,7 +25,7 @@ browserTest("a server that is killed and started again on its port is reconnecte
 browserTest("a server with a token asks for it, refuses a wrong one, and lets the right one in", async () => {
   const server = await Server.start("--token", "spun gold");
   try {
-    const viewer = await Viewer.open(browser, server, { drawn: 0 });
+    const viewer = await open(server, { drawn: 0 });
     const dialog = viewer.page.getByRole("dialog");
     await dialog.waitFor();
     const enter = async (token) => {
@@ -49,7 +46,7 @@ browserTest("a server with a token asks for it, refuses a wrong one, and lets th
 
 browserTest("a page that finds no server says so instead of staying empty", async () => {
   const server = await Server.start();
-  const viewer = await Viewer.open(browser, server, { drawn: 0 });
+  const viewer = await open(server, { drawn: 0 });
   await viewer.page.route("**/ws**", (route) => route.abort());
   await server.stop("SIGKILL");
   // Between two tries it says for a moment that it tries again.

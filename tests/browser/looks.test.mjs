@@ -1,20 +1,10 @@
 import assert from "node:assert/strict";
 import { readdirSync, readFileSync } from "node:fs";
-import { after, before } from "node:test";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
-import { Server } from "../protocol/harness.mjs";
-import { browserTest, launch, screenshots, Viewer } from "./browser.mjs";
+import { browserTest, screenshots, withServer } from "./browser.mjs";
 
-let server, browser;
-before(async () => {
-  server = await Server.start("--max-sessions", "16");
-  browser = await launch();
-});
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-});
+const here = withServer();
 
 /// Visible controls and cards that stick out of the window, or text cut off inside them.
 const cutOff = () => {
@@ -38,7 +28,7 @@ const cutOff = () => {
 for (const [width, height] of [[1280, 800], [360, 740]]) {
   for (const colorScheme of ["dark", "light"]) {
     browserTest(`at ${width}x${height}, ${colorScheme}, nothing is cut off and the console is silent`, async () => {
-      const viewer = await Viewer.open(browser, server, { session: `looks-${width}-${colorScheme}`, width, height, colorScheme });
+      const viewer = await here.open({ session: `looks-${width}-${colorScheme}`, width, height, colorScheme });
       await viewer.until(() => window.clothlab.simTime > 1.1);
       await viewer.page.keyboard.press(" ");
       await viewer.page.waitForTimeout(900);  // a picture at rest is drawn at full resolution
@@ -59,7 +49,7 @@ for (const [width, height] of [[1280, 800], [360, 740]]) {
 }
 
 browserTest("every control is reachable by Tab, and has a name", async () => {
-  const viewer = await Viewer.open(browser, server, { session: "tab", width: 1280, height: 800 });
+  const viewer = await here.open({ session: "tab", width: 1280, height: 800 });
   const reached = new Set();
   for (let i = 0; i < 90; ++i) {
     await viewer.page.keyboard.press("Tab");
@@ -77,7 +67,7 @@ browserTest("the page weighs less than 300 kB compressed, and the server compres
   const folder = fileURLToPath(new URL("../../web/dist/", import.meta.url));
   const total = readdirSync(folder).reduce((sum, name) => sum + gzipSync(readFileSync(folder + name)).length, 0);
   assert.ok(total < 300_000, `${total} bytes`);
-  const { headers, body } = await server.get("/app.js", { "accept-encoding": "gzip" });
+  const { headers, body } = await here.server.get("/app.js", { "accept-encoding": "gzip" });
   assert.equal(headers["content-encoding"], "gzip");
   assert.ok(body.length < 300_000);
 });

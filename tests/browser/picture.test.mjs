@@ -1,20 +1,10 @@
 import assert from "node:assert/strict";
-import { after, before } from "node:test";
-import { Server } from "../protocol/harness.mjs";
-import { browserTest, launch, Viewer } from "./browser.mjs";
+import { browserTest, withServer } from "./browser.mjs";
 
-let server, browser;
-before(async () => {
-  server = await Server.start("--max-sessions", "16");
-  browser = await launch();
-});
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-});
+const { open } = withServer();
 
 browserTest("the cloth is on the screen: a large, shaded, red surface where the seed scene hangs", async () => {
-  const viewer = await Viewer.open(browser, server, { session: "drawn" });
+  const viewer = await open({ session: "drawn" });
   await viewer.until(() => window.clothlab.simTime > 0.7);
   await viewer.page.waitForTimeout(400);  // past the fade-in
   const seen = await viewer.cloth();
@@ -23,7 +13,7 @@ browserTest("the cloth is on the screen: a large, shaded, red surface where the 
 });
 
 browserTest("the cloth moves: two screenshots a moment apart differ, and it has fallen", async () => {
-  const viewer = await Viewer.open(browser, server, { session: "moves" });
+  const viewer = await open({ session: "moves" });
   await viewer.page.waitForTimeout(400);
   const before = await viewer.cloth();
   const time = await viewer.read("simTime");
@@ -35,7 +25,7 @@ browserTest("the cloth moves: two screenshots a moment apart differ, and it has 
 });
 
 browserTest("the cloth hits the sphere and lies on it: vertices touch its surface, none is inside", async () => {
-  const viewer = await Viewer.open(browser, server, { session: "sphere" });
+  const viewer = await open({ session: "sphere" });
   // Pins swing with a period of 2 s: at 3 s the pinned edge has gone over to the far side of the ball.
   await viewer.until(() => window.clothlab.simTime > 2.9);
   const { center, radius } = (await viewer.read("document")).colliders[0].sphere;
@@ -47,7 +37,7 @@ browserTest("the cloth hits the sphere and lies on it: vertices touch its surfac
 });
 
 browserTest("what is drawn follows the scene: another colour is another colour on the screen", async () => {
-  const viewer = await Viewer.open(browser, server, { session: "colour" });
+  const viewer = await open({ session: "colour" });
   await viewer.until(() => window.clothlab.simTime > 0.5);
   const red = await viewer.cloth();
   assert.ok(red.share > 0.03);

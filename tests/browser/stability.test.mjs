@@ -1,22 +1,12 @@
 import assert from "node:assert/strict";
-import { after, before } from "node:test";
-import { Client, Server } from "../protocol/harness.mjs";
-import { browserTest, eventually, launch, Viewer } from "./browser.mjs";
+import { Client } from "../protocol/harness.mjs";
+import { browserTest, eventually, withServer } from "./browser.mjs";
 
-let server, browser;
-before(async () => {
-  server = await Server.start("--max-sessions", "16");
-  browser = await launch();
-});
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-});
+const here = withServer();
 
 /// A page and a script on the same session, and what the page's gauge says.
 async function both(session, options) {
-  const viewer = await Viewer.open(browser, server, { session, width: 1280, height: 800, ...options });
-  const client = await Client.connect(server, { session });
+  const { viewer, client, scene } = await here.both(session, options);
   const meter = viewer.page.getByRole("meter");
   const gauge = async () => ({
     value: Number(await meter.getAttribute("aria-valuenow")),
@@ -24,7 +14,7 @@ async function both(session, options) {
     verdict: await viewer.page.locator(".gauge").getAttribute("data-verdict"),
     text: await viewer.page.locator(".gauge").innerText(),
   });
-  const solver = async () => (await client.request("scene.get", {})).document.solver;
+  const solver = async () => (await scene()).solver;
   return { viewer, client, gauge, solver };
 }
 
@@ -144,10 +134,10 @@ for (const [name, section, label] of [["time step", "Solver", "time step"], ["st
 }
 
 browserTest("a page opened on a session that has blown up says so, and no page does once somebody has seen to it", async () => {
-  const client = await Client.connect(server, { session: "late" });
+  const client = await Client.connect(here.server, { session: "late" });
   await client.request("scene.patch", { patch: { solver: { dt: 0.004 } } });
   await client.notification("sim.diverged");
-  const viewer = await Viewer.open(browser, server, { session: "late", drawn: 1 });
+  const viewer = await here.open({ session: "late", drawn: 1 });
   const notice = viewer.page.locator(".notice.error");
   await notice.waitFor();
   assert.match(await notice.innerText(), /blew up[^]*before this page was opened[^]*Remedy: set dt to 0\.001/);
