@@ -1,6 +1,8 @@
 // Contacts of the reference: a vertex against the scene's colliders and against every other vertex.
 #pragma once
 
+#include <optional>
+
 #include "server/reference/reference.h"
 
 namespace clothlab::reference {
@@ -8,6 +10,22 @@ namespace clothlab::reference {
 /// Stops the step from -> x of a vertex with end velocity v at the colliders, as they move from time t to t +
 /// dt. Returns the number of colliders met.
 int meet_colliders(const World& world, double t, const dvec3& from, dvec3& x, dvec3& v);
+
+/// What a vertex met: the unit normal there, the surface's velocity [m/s], friction, restitution.
+struct Surface {
+  dvec3 normal{0.0}, velocity{0.0};
+  double friction = 0, restitution = 0;
+};
+
+/// The same for the position alone; `last` becomes the surface met last, if one is.
+int stop_on_way(const World& world, double t, const dvec3& from, dvec3& x, Surface& last);
+
+/// 1 / mass [1/kg], 0 if pinned.
+double inverse_mass(const World& world, std::uint32_t vertex);
+
+/// How far apart self-collision keeps two vertices [m]: at most their distance at rest within one cloth; none
+/// if a spring joins them.
+std::optional<double> kept_distance(const World& world, std::uint32_t i, std::uint32_t j);
 
 struct SelfContact {
   dvec3 push{0.0};     ///< added to the position [m]

@@ -4,8 +4,10 @@
 
 #include "server/model/motion.h"
 #include "server/reference/contacts.h"
+#include "server/reference/gauss_seidel.h"
 #include "server/reference/methods.h"
 #include "server/reference/strain_limit.h"
+#include "server/scene/method.h"
 #include "shaders/elements/elements.h"
 
 namespace clothlab::reference {
@@ -31,7 +33,9 @@ void stop_at_colliders(const World& world, const State& before, double t, State&
 Result<World> make_world(const scene::Scene& scene, double contact_margin) {
   Result<model::Model> model = model::build(scene);
   if (!model) return model.error();
-  World world{scene, std::move(*model), contact_margin, {}};
+  World world{scene, std::move(*model), contact_margin, {}, {}, {}};
+  world.spring_colours = model::colour_springs(world.model, scene);
+  world.vertex_colours = model::colour_vertices(world.model, scene);
   for (const model::Spring& spring : world.model.springs) world.joined.insert({spring.a, spring.b});
   return world;
 }
@@ -108,6 +112,7 @@ void advance(StepMethod method, const World& world, State& state, double t, doub
 
 void step(const World& world, State& state) {
   const double dt = world.scene.solver.dt, n = static_cast<double>(state.step);
+  if (scene::sweeps(world.scene.solver.method)) return gauss_seidel_step(world, state, n * dt, (n + 1) * dt);
   advance(step_method(world.scene.solver.method), world, state, n * dt, (n + 1) * dt);
 }
 

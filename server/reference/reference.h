@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "server/base/result.h"
+#include "server/model/colouring.h"
 #include "server/model/model.h"
 #include "server/scene/scene.h"
 
@@ -23,7 +24,8 @@ struct World {
   model::Model model;
   double contact_margin = 0;  ///< distance kept from a collider's surface [m]
   std::set<std::pair<std::uint32_t, std::uint32_t>>
-      joined;  ///< pairs (a, b) with a spring between them, a < b
+      joined;                                       ///< pairs (a, b) with a spring between them, a < b
+  model::Colouring spring_colours, vertex_colours;  ///< the orders of Gauss-Seidel sweeps
 
   bool pinned(std::size_t vertex) const { return model.pin_motion[vertex] != model::not_pinned; }
 };
@@ -38,6 +40,9 @@ struct State {
   /// dt of that half step [s], 0 where the velocity is of now.
   std::vector<dvec3> half_velocity = {};
   std::vector<double> half_dt = {};
+  /// VBD's own, [vertex_count] or empty before its first step: the velocity at the start of the last step
+  /// [m/s].
+  std::vector<dvec3> velocity_before = {};
   /// What an implicit method left unsolved, as a share of the largest momentum in its equation; 0 after
   /// others.
   double residual = 0;
@@ -51,7 +56,8 @@ State at_rest(const World& world);
 
 /// One step of dt by the scene's method (methods.h). Self-collision acts from the state at the start; pins
 /// are put where their motion is at t + dt; a vertex that would enter a collider on its way is stopped at the
-/// surface; then the strain limit. Implicit Euler is solved to the rounding of double precision, whatever
+/// surface; then the strain limit. PBD, XPBD and VBD meet contacts within their iterations
+/// (gauss_seidel.h). Implicit Euler is solved to the rounding of double precision, whatever
 /// `iterations` says.
 void step(const World& world, State& state);
 

@@ -1,0 +1,153 @@
+#include "server/reference/sweeps.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include "server/model/spring_gains.h"
+#include "server/reference/contacts.h"
+#include "shaders/elements/elements.h"
+
+namespace clothlab::reference {
+
+namespace {
+
+using glm::dmat3;
+
+dmat3 outer(const dvec3& n) {
+  return glm::outerProduct(n, n);
+}
+
+/// What the springs and inertia leave of a vertex's balance, and its derivative.
+struct Balance {
+  dvec3 residual{0.0};  ///< [kg m]
+  dmat3 hessian{0.0};   ///< [kg], positive definite
+};
+
+Balance balance(const SweepState& step, std::uint32_t i) {
+  const World& world = step.world;
+  const double mass = 1.0 / step.mobility[i], dt = step.dt;
+  Balance result{mass * (step.free[i] - step.displacement[i]), dmat3(mass)};
+  const model::Adjacency& springs = world.model.vertex_springs;
+  for (std::uint32_t slot = springs.offsets[i]; slot < springs.offsets[i + 1]; ++slot) {
+    const model::Spring& spring = world.model.springs[springs.items[slot]];
+    const std::uint32_t j = spring.a == i ? spring.b : spring.a;
+    const scene::Springs& material = world.scene.cloths[spring.cloth].material;
+    const double stiffness = model::stiffness(material, spring.kind);
+    const dvec3 moved = step.displacement[i] - step.displacement[j], still(0.0);
+    dvec3 n;
+    double along, across;
+    elements::spring_hessian(step.now(i), step.now(j), spring.rest_length, stiffness, n, along, across);
+    result.residual += dt * dt *
+                       elements::spring_force(step.now(i), step.now(j), moved / dt, still, spring.rest_length,
+                                              stiffness, material.damping);
+    // A spring without length has n = 0: it resists alike in every direction, and its damping none.
+    const double sideways = dt * dt * std::max(across, 0.0);
+    result.hessian += dmat3(sideways) + (dt * dt * along + dt * material.damping - sideways) * outer(n);
+  }
+  return result;
+}
+
+/// The impulses of the colliders that the vertex would enter by moving by `move`, through the same matrix as
+/// the springs' forces: one along the normal that stops it, and friction.
+dvec3 stopped_move(SweepState& step, std::uint32_t i, const dmat3& inverse, dvec3 move) {
+  const dvec3 trial = step.now(i) + move;
+  dvec3 stopped = trial;
+  Surface met;
+  const int count = stop_on_way(step.world, step.t, step.x[i], stopped, met);
+  if (!step.world.scene.self_collision) step.contacts[i] = count;  // else the contact pass counts
+  if (count == 0) return move;
+  const dvec3& n = met.normal;
+  const dvec3 response = inverse * n;
+  const double impulse = glm::dot(stopped - trial, n) / glm::dot(n, response);
+  move += response * impulse;
+  const dvec3 slid = step.displacement[i] + move - step.dt * met.velocity;
+  const dvec3 sliding = slid - n * glm::dot(slid, n);
+  const double distance = glm::length(sliding);
+  if (!(distance > 0.0)) return move;
+  const dvec3 along = sliding / distance;
+  const double give = glm::dot(along, inverse * along);
+  return move - along * (give * std::min(distance / give, met.friction * impulse));
+}
+
+/// What self-collision pushes vertex i by, and how many vertices it touches.
+dvec3 pair_push(const SweepState& step, std::uint32_t i, int& touched) {
+  const World& world = step.world;
+  const scene::SelfCollision& self = *world.scene.self_collision;
+  // All of an old overlap at once would be a blow: a fifth a step, less in small steps.
+  const double mend = std::min(0.2, 20.0 * step.dt);
+  dvec3 push(0.0);
+  for (std::uint32_t j = 0; j < world.model.vertex_count(); ++j) {
+    const dvec3 before = step.x[i] - step.x[j], now = step.now(i) - step.now(j);
+    if (glm::length(before) > self.thickness + glm::distance(before, now)) continue;  // spares the look-up
+    const std::optional<double> keep = kept_distance(world, i, j);
+    dvec3 correction;
+    if (!keep || !elements::pair_contact(before, now, *keep, self.friction, mend, correction)) continue;
+    ++touched;
+    const double crowd = std::max({2, step.contacts[i], step.contacts[j]});
+    push += step.mobility[i] / (step.mobility[i] + step.mobility[j]) / crowd * correction;
+  }
+  return push;
+}
+
+}  // namespace
+
+void sweep_springs(SweepState& step) {
+  const World& world = step.world;
+  for (const std::uint32_t s : world.spring_colours.order) {
+    const model::Spring& spring = world.model.springs[s];
+    const std::uint32_t a = spring.a, b = spring.b;
+    const double wa = step.mobility[a], wb = step.mobility[b];
+    if (wa + wb == 0.0) continue;
+    const scene::Springs& material = world.scene.cloths[spring.cloth].material;
+    const model::SpringGains gains = model::spring_gains(
+        world.scene.solver, model::stiffness(material, spring.kind), material.damping, wa + wb);
+    const dvec3 moved = step.displacement[a] - step.displacement[b];
+    dvec3 n;
+    const double push =
+        elements::spring_projection((step.x[a] - step.x[b]) + moved, moved, spring.rest_length, gains.stretch,
+                                    gains.damping, gains.memory, step.multiplier[s], n);
+    step.multiplier[s] += push;
+    step.displacement[a] += wa * push * n;
+    step.displacement[b] -= wb * push * n;
+  }
+}
+
+void sweep_vertices(SweepState& step) {
+  const bool colliders = !step.world.scene.colliders.empty();
+  for (const std::uint32_t i : step.world.vertex_colours.order) {
+    if (step.mobility[i] == 0.0) continue;
+    const Balance at = balance(step, i);
+    const dmat3 inverse = glm::inverse(at.hessian);
+    const dvec3 move = inverse * at.residual;
+    step.displacement[i] += colliders ? stopped_move(step, i, inverse, move) : move;
+  }
+}
+
+void contact_pass(SweepState& step) {
+  const World& world = step.world;
+  const bool remembers = world.scene.solver.method == scene::Method::vbd;
+  std::vector<dvec3> push(step.x.size(), dvec3(0.0));
+  std::vector<int> contacts(step.x.size(), 0);
+  for (std::uint32_t i = 0; world.scene.self_collision && i < push.size(); ++i)
+    if (step.mobility[i] > 0.0) push[i] = pair_push(step, i, contacts[i]);
+  for (std::uint32_t i = 0; i < push.size(); ++i) {
+    if (step.mobility[i] == 0.0) continue;
+    dvec3& d = step.displacement[i];
+    d += push[i];
+    if (remembers) step.free[i] += push[i];
+    const dvec3 trial = step.now(i);
+    dvec3 stopped = trial;
+    Surface met;
+    const int count = stop_on_way(world, step.t, step.x[i], stopped, met);
+    contacts[i] += count;
+    if (count == 0) continue;
+    d += stopped - trial;
+    d -= elements::friction_displacement(d - step.dt * met.velocity, met.normal, met.friction,
+                                         glm::dot(stopped - trial, met.normal));
+  }
+  step.contacts = contacts;
+}
+
+}  // namespace clothlab::reference
