@@ -3,6 +3,7 @@
 #include <glm/trigonometric.hpp>
 
 #include "server/model/mesh_arrays.h"
+#include "server/model/start.h"
 
 namespace clothlab::model {
 
@@ -25,7 +26,7 @@ dvec3 place(const scene::Transform& transform, dvec3 point) {
   return point + transform.translate;
 }
 
-/// The vertices of a cloth, numbered within it, that a pin holds.
+/// The vertices of a cloth, numbered within it, that a pin or a weight names.
 std::vector<Index> held_by(const scene::Cloth& cloth, const scene::At& at,
                            const std::vector<dvec3>& position) {
   const auto* grid = std::get_if<scene::Grid>(&cloth.mesh);
@@ -50,6 +51,19 @@ std::vector<Index> held_by(const scene::Cloth& cloth, const scene::At& at,
         held.push_back(i);
   }
   return held;
+}
+
+/// The same, or why there are none; `where` is the JSON Pointer of `at`.
+Result<std::vector<Index>> held_at(const std::string& where, const scene::Cloth& cloth, const scene::At& at,
+                                   const std::vector<dvec3>& position) {
+  std::vector<Index> held = held_by(cloth, at, position);
+  if (!held.empty()) return held;
+  const auto* grid = std::get_if<scene::Grid>(&cloth.mesh);
+  return Error{
+      where, "holds no vertex",
+      "a place on the mesh" + (grid ? ", which has " + std::to_string(grid->columns) + " columns and " +
+                                          std::to_string(grid->rows) + " rows"
+                                    : ", which has " + std::to_string(position.size()) + " vertices")};
 }
 
 Index motion_index(std::vector<scene::Motion>& motions, const scene::Motion& motion) {
@@ -103,7 +117,7 @@ Status add_cloth(Model& model, const scene::Cloth& cloth) {
   std::vector<dvec3> position;
   for (const dvec3& point : arrays.position) position.push_back(place(cloth.transform, point));
 
-  const std::vector<double> mass = masses(cloth, arrays, position);
+  std::vector<double> mass = masses(cloth, arrays, position);
   const auto massless = std::find_if(mass.begin(), mass.end(), [](double m) { return !(m > 0.0); });
   if (massless != mass.end())
     return Error{where + "/mass", "vertex " + std::to_string(massless - mass.begin()) + " would have no mass",
@@ -111,15 +125,17 @@ Status add_cloth(Model& model, const scene::Cloth& cloth) {
 
   std::vector<std::int32_t> pin_motion(position.size(), not_pinned);
   for (std::size_t i = 0; i < cloth.pins.size(); ++i) {
-    const std::vector<Index> held = held_by(cloth, cloth.pins[i].at, position);
-    if (held.empty())
-      return Error{
-          where + "/pins/" + std::to_string(i) + "/at", "holds no vertex",
-          "a place on the mesh" + (grid ? ", which has " + std::to_string(grid->columns) + " columns and " +
-                                              std::to_string(grid->rows) + " rows"
-                                        : ", which has " + std::to_string(position.size()) + " vertices")};
+    const auto held =
+        held_at(where + "/pins/" + std::to_string(i) + "/at", cloth, cloth.pins[i].at, position);
+    if (!held) return held.error();
     const auto motion = static_cast<std::int32_t>(motion_index(model.motions, cloth.pins[i].motion));
-    for (const Index vertex : held) pin_motion[vertex] = motion;
+    for (const Index vertex : *held) pin_motion[vertex] = motion;
+  }
+  for (std::size_t i = 0; i < cloth.weights.size(); ++i) {
+    const auto held =
+        held_at(where + "/weights/" + std::to_string(i) + "/at", cloth, cloth.weights[i].at, position);
+    if (!held) return held.error();
+    for (const Index vertex : *held) mass[vertex] += cloth.weights[i].mass;
   }
 
   const Index first = model.vertex_count();
@@ -135,6 +151,7 @@ Status add_cloth(Model& model, const scene::Cloth& cloth) {
   for (const auto& [a, b, c] : arrays.triangles) model.triangles.push_back({a + first, b + first, c + first});
   const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
   append(model.rest_position, position);
+  append(model.start_position, start_positions(cloth.start, position, pin_motion));
   append(model.mass, mass);
   append(model.pin_motion, pin_motion);
   append(model.texture_coordinates, arrays.texture_coordinates);

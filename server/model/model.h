@@ -45,8 +45,9 @@ inline constexpr std::int32_t not_pinned = -1;
 
 /// Everything the simulation needs that does not change while it runs.
 struct Model {
-  std::vector<dvec3> rest_position;            ///< [vertex_count] [m], transform applied; the start positions
-  std::vector<double> mass;                    ///< [vertex_count] [kg]
+  std::vector<dvec3> rest_position;            ///< [vertex_count] [m], transform applied; home of the pins
+  std::vector<dvec3> start_position;           ///< [vertex_count] [m] at time 0; most often the same
+  std::vector<double> mass;                    ///< [vertex_count] [kg], weights included
   std::vector<std::int32_t> pin_motion;        ///< [vertex_count] not_pinned, or an index into `motions`
   std::vector<scene::Motion> motions;          ///< of the pins
   std::vector<std::uint32_t> vertex_cloth;     ///< [vertex_count]

@@ -42,7 +42,7 @@ Result<World> make_world(const scene::Scene& scene, double contact_margin) {
 
 State at_rest(const World& world) {
   const std::size_t count = world.model.vertex_count();
-  return State{world.model.rest_position, Vectors(count, dvec3(0.0)), std::vector<int>(count, 0), 0};
+  return State{world.model.start_position, Vectors(count, dvec3(0.0)), std::vector<int>(count, 0), 0};
 }
 
 Vectors spring_forces(const World& world, const Vectors& x, const Vectors& v) {

@@ -51,7 +51,7 @@ struct State {
 /// A world for `scene`, or why its model cannot be built.
 Result<World> make_world(const scene::Scene& scene, double contact_margin);
 
-/// The rest shape, at time 0.
+/// Where the cloths start, nothing moving, at time 0.
 State at_rest(const World& world);
 
 /// One step of dt by the scene's method (methods.h). Self-collision acts from the state at the start; pins

@@ -1,5 +1,5 @@
-// The `at` of a pin: "corner:COLUMN,ROW", "vertex:N", "edge:row:N", "edge:column:N" or {"box": [[min],
-// [max]]}.
+// The `at` of a pin or a weight: "corner:COLUMN,ROW", "vertex:N", "edge:row:N", "edge:column:N" or {"box":
+// [[min], [max]]}.
 #include <optional>
 
 #include "server/scene/pointer.h"

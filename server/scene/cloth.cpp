@@ -103,6 +103,27 @@ std::vector<Pin> read_pins(const Reader& pins, const Mesh& mesh) {
   return result;
 }
 
+std::vector<Weight> read_weights(const Reader& weights, const Mesh& mesh) {
+  std::vector<Weight> result(weights.array(0, max_weights));
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const Reader weight = weights.element(i);
+    weight.object({"at", "mass"});
+    result[i] = Weight{read_at(weight.member("at"), mesh), weight.member("mass").number(ranges::weight)};
+  }
+  return result;
+}
+
+Start read_start(const Reader& start) {
+  if (start.is_null()) return std::monostate{};
+  const Words kinds = {"scatter", "scale"};
+  start.object(kinds);
+  if (start.exactly_one(kinds) == "scale") return Stretch{start.member("scale").vector(ranges::start_scale)};
+  const Reader scatter = start.member("scatter");
+  scatter.object({"size", "seed"});
+  return Scatter{scatter.member("size").number(ranges::length),
+                 static_cast<std::uint32_t>(scatter.member("seed", 1).integer(ranges::seed))};
+}
+
 std::string read_color(const Reader& color) {
   const std::string allowed = "a color as #rrggbb in hexadecimal digits";
   const std::string text = color.string(allowed);
@@ -116,7 +137,8 @@ std::string read_color(const Reader& color) {
 }  // namespace
 
 Cloth read_cloth(const Reader& cloth, std::size_t index) {
-  cloth.object({"name", "mesh", "transform", "mass", "material", "pins", "color", "texture"});
+  cloth.object(
+      {"name", "mesh", "transform", "mass", "material", "pins", "weights", "start", "color", "texture"});
   Cloth result;
   result.name = cloth.member("name", default_name("cloth", index)).name();
   result.mesh = read_mesh(cloth.member("mesh"));
@@ -124,6 +146,8 @@ Cloth read_cloth(const Reader& cloth, std::size_t index) {
   result.mass = read_mass(cloth.member("mass", json{{"per_vertex", 0.1}}));
   result.material = read_material(cloth.member("material", json::object()));
   result.pins = read_pins(cloth.member("pins", json::array()), result.mesh);
+  result.weights = read_weights(cloth.member("weights", json::array()), result.mesh);
+  result.start = read_start(cloth.member("start", json(nullptr)));
   result.color = read_color(cloth.member("color", "#b03a2e"));
   result.texture = cloth.member("texture", "weave").choice({"weave", "checker", "stripes", "plain"});
   return result;

@@ -38,7 +38,7 @@ Result<Document> validate(json value);
 
 /// Applies an RFC 7396 merge patch (object) or an RFC 6902 patch (array) and validates the outcome.
 /// A merge patch removes a key with null; an absent key means its default, and the default of a key that may
-/// be null (self_collision, wind, motion, strain_limit) is null: `{"self_collision": null}` turns
+/// be null (self_collision, wind, motion, start, strain_limit) is null: `{"self_collision": null}` turns
 /// self-collision off. On error `document` is what was there before (the function does not touch it); the
 /// error's pointer is into the patched scene, or, for an operation that cannot be carried out,
 /// "/patch/INDEX/...".

@@ -28,9 +28,13 @@ inline constexpr Range grid_count{2, 1024, "vertices"};
 inline constexpr Range scale{1e-6, 1e6};
 inline constexpr Range mass_per_vertex{1e-9, 1e6, "kg"};
 inline constexpr Range area_density{1e-9, 1e6, "kg/m^2"};
+inline constexpr Range weight{1e-9, 1e6, "kg"};  ///< added to a vertex
 inline constexpr Range stiffness{0, 1e12, "N/m"};
 inline constexpr Range damping{0, 1e9, "N s/m"};
 inline constexpr Range strain_limit{1e-3, 10, "of the rest length; or null"};
+
+inline constexpr Range start_scale{-1e3, 1e3};
+inline constexpr Range seed{0, 1e9};
 
 inline constexpr Range friction{0, 10};
 inline constexpr Range restitution{0, 1};
@@ -47,6 +51,7 @@ inline constexpr std::size_t max_name_length = 64;  ///< characters, not bytes
 inline constexpr std::size_t max_cloths = 64;
 inline constexpr std::size_t max_colliders = 64;
 inline constexpr std::size_t max_pins = 1024;          ///< of one cloth
+inline constexpr std::size_t max_weights = 1024;       ///< of one cloth
 inline constexpr std::size_t max_vertices = 1u << 20;  ///< of the whole scene
 inline constexpr std::size_t max_triangles = 1u << 21;
 

@@ -107,6 +107,29 @@ struct Pin {
   bool operator==(const Pin&) const = default;
 };
 
+/// Mass on top of the cloth's own, such as a weight sewn into a hem.
+struct Weight {
+  At at;
+  double mass = 0.0;  ///< added to each of the vertices [kg], above 0
+  bool operator==(const Weight&) const = default;
+};
+
+/// Free vertices start at pseudo-random places in a cube about the middle of the cloth's rest shape.
+struct Scatter {
+  double size = 1.0;       ///< the cube's edge [m]
+  std::uint32_t seed = 1;  ///< the same seed, the same places, on every machine
+  bool operator==(const Scatter&) const = default;
+};
+/// Free vertices start with their place relative to the middle of the cloth's rest shape scaled along the
+/// axes of the world: (1, 1, 0) makes it flat, (0, 0, 0) a point.
+struct Stretch {
+  dvec3 scale{1.0};
+  bool operator==(const Stretch&) const = default;
+};
+/// Where the free vertices are at time 0; monostate: in the rest shape. Rest lengths are those of the rest
+/// shape always.
+using Start = std::variant<std::monostate, Scatter, Stretch>;
+
 struct Cloth {
   std::string name = "cloth";
   Mesh mesh;
@@ -114,6 +137,8 @@ struct Cloth {
   Mass mass;
   Springs material;
   std::vector<Pin> pins;
+  std::vector<Weight> weights;
+  Start start;
   std::string color = "#b03a2e";  ///< #rrggbb
   std::string texture = "weave";  ///< weave | checker | stripes | plain
   bool operator==(const Cloth&) const = default;

@@ -11,7 +11,7 @@ Cloth read_cloth(const Reader& cloth, std::size_t index);
 Collider read_collider(const Reader& collider, std::size_t index);
 Motion read_motion(const Reader& motion);
 
-/// Which vertices a pin holds, checked against the mesh they belong to.
+/// Which vertices a pin holds or a weight is at, checked against the mesh they belong to.
 At read_at(const Reader& at, const Mesh& mesh);
 
 std::size_t vertex_count(const Mesh& mesh);

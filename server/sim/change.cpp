@@ -18,7 +18,8 @@ bool pins_were_added(const scene::Cloth& from, const scene::Cloth& to) {
 }
 
 bool new_cloth(const scene::Cloth& from, const scene::Cloth& to) {
-  return from.mesh != to.mesh || from.transform != to.transform || pins_were_added(from, to);
+  return from.mesh != to.mesh || from.transform != to.transform || from.start != to.start ||
+         pins_were_added(from, to);
 }
 
 /// Same springs, same pinned vertices, same list of motions, limited or not.

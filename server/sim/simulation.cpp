@@ -101,9 +101,9 @@ struct Simulation::Implementation {
       start_time = time_of(step_index);
       start_step = step_index;
     }
-    const bool constants = differs(scene, next, &scene::Cloth::mass) ||
-                           differs(scene, next, &scene::Cloth::pins) ||
-                           moving_motions(scene) != moving_motions(next);
+    const bool constants =
+        differs(scene, next, &scene::Cloth::mass) || differs(scene, next, &scene::Cloth::weights) ||
+        differs(scene, next, &scene::Cloth::pins) || moving_motions(scene) != moving_motions(next);
     scene = next;
     if (constants) state.rewrite_constants(kernels.model, kernels.motions);
   }

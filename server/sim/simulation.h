@@ -73,7 +73,7 @@ class Simulation {
   /// Queues `count` fixed steps of dt on the GPU; returns without waiting for them.
   void step(std::uint32_t count);
 
-  /// Back to the rest shape at time 0.
+  /// Back to the start positions, at rest, at time 0.
   void reset();
 
   double time() const;  ///< [s], exact sum of the steps' dt

@@ -31,7 +31,7 @@ void set_constants(Arrays& arrays, const model::Model& model, const MotionTable&
 
 Arrays at_rest(const model::Model& model, const MotionTable& motions) {
   Arrays arrays;
-  for (const glm::dvec3& rest : model.rest_position) arrays.position.emplace_back(glm::vec3(rest), 0.0f);
+  for (const glm::dvec3& start : model.start_position) arrays.position.emplace_back(glm::vec3(start), 0.0f);
   arrays.velocity.assign(model.vertex_count(), glm::vec4(0.0f));
   set_constants(arrays, model, motions);
   return arrays;

@@ -12,7 +12,7 @@ class MotionTable;
 class StateBuffers {
  public:
   StateBuffers() = default;
-  /// At rest: the model's positions, no velocity.
+  /// At rest: the model's start positions, no velocity.
   StateBuffers(const model::Model& model, const MotionTable& motions);
 
   /// The copy that holds the present state; after `swap` the other one.
@@ -24,7 +24,7 @@ class StateBuffers {
   void bind_outputs() const;   ///< the other copy for writing
   void swap() { current_ = 1 - current_; }
 
-  /// Back to rest.
+  /// Back to the start.
   void reset(const model::Model& model, const MotionTable& motions);
   /// Writes changed masses and pins into the state, which otherwise stays as it is. Waits for the GPU.
   void rewrite_constants(const model::Model& model, const MotionTable& motions);

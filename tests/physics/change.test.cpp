@@ -39,6 +39,10 @@ TEST_CASE("a change says how deep it cuts") {
           s.cloths[0].mesh = scene::Grid{10, 10, 1.0, 1.0};
         }) == ChangeDepth::cloth);
   CHECK(depth([](scene::Scene& s) { s.cloths[0].transform.translate.y = 2.0; }) == ChangeDepth::cloth);
+  CHECK(depth([](scene::Scene& s) { s.cloths[0].start = scene::Scatter{}; }) == ChangeDepth::cloth);
+  CHECK(depth([](scene::Scene& s) {
+          s.cloths[0].weights = {{scene::AtVertex{300}, 1.0}};
+        }) == ChangeDepth::uniform);
   CHECK(depth([](scene::Scene& s) { s.cloths.push_back(s.cloths[0]); }) == ChangeDepth::cloth);
   CHECK(depth([](scene::Scene& s) {
           s.cloths[0].pins.push_back({scene::AtVertex{300}, {}});

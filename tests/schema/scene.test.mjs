@@ -44,6 +44,8 @@ const whole = {
         { at: "edge:row:3", motion: spin },
         { at: { box: [[-9, -9, -9], [9, 9, 9]] }, motion: linear },
       ],
+      weights: [{ at: "edge:row:3", mass: 0.5 }, { at: { box: [[-9, -9, -9], [9, 9, 9]] }, mass: 1e-3 }],
+      start: { scatter: { size: 0.5, seed: 1 } },
       color: "#b03a2e",
       texture: "weave",
     },
@@ -51,6 +53,8 @@ const whole = {
       mesh: { vertices: [[0, 0, 0], [0, 0, 1], [1, 0, 0], [1, 0, 1]], triangles: [[0, 1, 2], [2, 1, 3]] },
       mass: { area_density: 0.15 },
       pins: [{ at: "vertex:2" }],
+      weights: [{ at: "vertex:1", mass: 1 }],
+      start: { scale: [1, 0, -1] },
     },
   ],
   colliders: [
@@ -105,7 +109,7 @@ function* mutations() {
       if (path.length) yield changed(base, path, (parent, key) => (Array.isArray(parent) ? parent.splice(Number(key), 1) : delete parent[key]));
       if (Array.isArray(value)) yield changed(base, path, (parent, key) => parent[key].push(structuredClone(value[0] ?? 0)));
       else if (value !== null && typeof value === "object")
-        for (const [key, extra] of Object.entries({ extra: 1, motion: null, grid: grid.grid, obj: "a.obj", fabric: "cotton", per_vertex: 1,
+        for (const [key, extra] of Object.entries({ extra: 1, motion: null, grid: grid.grid, obj: "a.obj", fabric: "cotton", per_vertex: 1, scale: [1, 1, 1], scatter: { size: 1 }, mass: 1,
           box: [[0, 0, 0], [1, 1, 1]], capsule: {}, ...spin, ...linear, sphere: { center: [0, 0, 0], radius: 1 } }))
           yield changed(base, path, (parent, name) => (parent[name][key] = extra));
     }
@@ -116,6 +120,7 @@ function* mutations() {
     yield { ...least, cloths: many(64 + extra, () => small) };
     yield { ...least, colliders: many(64 + extra, () => ({ sphere: { center: [0, 0, 0], radius: 1 } })) };
     yield { ...least, cloths: [{ ...small, pins: many(1024 + extra, () => ({ at: "vertex:0" })) }] };
+    yield { ...least, cloths: [{ ...small, weights: many(1024 + extra, () => ({ at: "vertex:0", mass: 1 })) }] };
     yield { ...least, name: "x".repeat(64 + extra) };
   }
   yield { ...least, cloths: [{ mesh: { grid: { columns: 1024, rows: 1024 } } }, small] };

@@ -18,7 +18,8 @@ json base() {
     "mass": {"area_density": 0.2},
     "pins": [{"at": "vertex:2", "motion": {"linear": {"velocity": [1,0,0]}}},
              {"at": {"box": [[-1,-1,-1],[0.1,1,0.1]]},
-              "motion": {"spin": {"axis": [1,0,0], "center": [0,0,0], "degrees_per_second": 72}}}]})");
+              "motion": {"spin": {"axis": [1,0,0], "center": [0,0,0], "degrees_per_second": 72}}}],
+    "weights": [{"at": "vertex:1", "mass": 0.5}], "start": {"scatter": {"size": 0.5}}})");
   value["cloths"].push_back(triangle);
   value["colliders"].push_back(
       json::parse(R"({"name": "floor", "plane": {"point": [0,0,0], "normal": [0,2,0]}})"));
@@ -64,6 +65,24 @@ const std::vector<Rule> rules = {
       "\"middle\"", "3"}},
     {"/cloths/1/pins/0/at", {"\"vertex:0\""}, {"\"vertex:3\"", "\"corner:0,0\"", "\"edge:row:0\""}},
     {"/cloths/1/pins/1/at/box", {"[[0,0,0],[0,0,0]]"}, {"[[0,0,1],[0,0,0]]", "[[0,0,0]]", "[]"}},
+    {"/cloths/0/weights",
+     {"[]", R"([{"at": "edge:row:24", "mass": 1e-9}, {"at": "vertex:0", "mass": 1e6}])",
+      R"([{"at": {"box": [[-1,0,-1],[1,2,2]]}, "mass": 1}])"},
+     {"null", "{}", "1"}},
+    {"/cloths/1/weights/0",
+     {R"({"at": "vertex:2", "mass": 1})"},
+     {"null", R"({"at": "vertex:2", "mass": 1, "motion": null})"}},
+    {"/cloths/1/weights/0/at",
+     {"\"vertex:0\"", R"({"box": [[-1,-1,-1],[1,1,1]]})"},
+     {"\"vertex:3\"", "\"corner:0,0\"", R"({"box": [[1,0,0],[0,0,0]]})", "null"}},
+    {"/cloths/1/weights/0/mass", {"1e-9", "1e6"}, {"0", "-1", "9e-10", "1.1e6", "null"}},
+    {"/cloths/0/start",
+     {"null", R"({"scatter": {"size": 1}})", R"({"scale": [1, -1e3, 1e3]})"},
+     {"{}", "true", "[]", "\"scatter\"", R"({"scatter": {"size": 1}, "scale": [0,0,0]})"}},
+    {"/cloths/1/start/scatter", {R"({"size": 1e-6, "seed": 0})"}, {"null", "1", "[]"}},
+    {"/cloths/1/start/scatter/size", {"1e-6", "1e6"}, {"0", "-1", "1.1e6", "null"}},
+    {"/cloths/1/start/scatter/seed", {"0", "1e9", "7.0"}, {"-1", "1.5", "1.1e9", "null"}},
+    {"/cloths/1/start/scatter/sead", {}, {"1"}},
     {"/cloths/0/pins/0/motion/oscillate/frequency", {"0", "1e4"}, {"-1", "1.1e4"}},
     {"/cloths/0/pins/0/motion/oscillate/axis", {"[0,0,1e-6]"}, {"[0,0,0]", "[0,-0.0,0]", "[1,0]"}},
     {"/colliders/0/sphere/radius", {"1e-6", "1e6"}, {"0", "-1", "1.1e6"}},
@@ -258,6 +277,25 @@ TEST_CASE("a strain limit is a number or null, and null takes it away") {
   const auto free = scene::set_value(*limited, "/cloths/0/material/strain_limit=null");
   REQUIRE(free);
   CHECK_FALSE(free->scene.cloths[0].material.strain_limit);
+}
+
+TEST_CASE("a start and weights are read, a seed is filled in, and null or an empty list takes them away") {
+  const scene::Document document = *scene::validate(base());
+  CHECK(document.value["cloths"][1]["start"] == json::parse(R"({"scatter": {"size": 0.5, "seed": 1}})"));
+  CHECK(document.scene.cloths[1].start == scene::Start(scene::Scatter{0.5, 1}));
+  CHECK(document.scene.cloths[1].weights == std::vector{scene::Weight{scene::AtVertex{1}, 0.5}});
+  CHECK(scene::validate(document.value)->scene == document.scene);
+  CHECK(document.scene.cloths[0].start == scene::Start());
+  CHECK(document.scene.cloths[0].weights.empty());
+  const auto flat = scene::set_value(document, "/cloths/1/start={\"scale\": [1, 0, -2]}");
+  REQUIRE(flat);
+  CHECK(flat->scene.cloths[1].start == scene::Start(scene::Stretch{{1, 0, -2}}));
+  const auto plain =
+      scene::apply_patch(*flat, json::parse(R"([{"op": "replace", "path": "/cloths/1/start", "value": null},
+                             {"op": "replace", "path": "/cloths/1/weights", "value": []}])"));
+  REQUIRE(plain);
+  CHECK(plain->scene.cloths[1].start == scene::Start());
+  CHECK(plain->scene.cloths[1].weights.empty());
 }
 
 TEST_CASE("the typed scene holds what the document says, directions normalised") {

@@ -13,6 +13,8 @@ export type Mesh = { grid: Grid } | InlineMesh;
 
 export type At = string | { box: [Vec3, Vec3] };
 export interface Pin { at: At; motion: Motion }
+export interface Weight { at: At; mass: number }
+export type Start = null | { scatter: { size: number; seed: number } } | { scale: Vec3 };
 
 export interface Springs { model: "springs"; structural: number; shear: number; bend: number; damping: number; strain_limit: number | null }
 
@@ -23,6 +25,8 @@ export interface Cloth {
   mass: { per_vertex: number } | { area_density: number };
   material: Springs;
   pins: Pin[];
+  weights: Weight[];
+  start: Start;
   color: string;
   texture: string;
 }
