@@ -2,7 +2,11 @@
 // spring_projection): where stiffness in N/m and damping in N s/m become numbers for one dt.
 #pragma once
 
-#include "server/scene/scene.h"
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "server/model/model.h"
 
 namespace clothlab::model {
 
@@ -18,5 +22,13 @@ struct SpringGains {
 /// c))^(-1/iterations). `inverse_mass` w [1/kg]: the sum of both ends'. Stiffness k [N/m] above 0, damping c
 /// [N s/m].
 SpringGains spring_gains(const scene::Solver& solver, double stiffness, double damping, double inverse_mass);
+
+/// Of a spring's stretch the share that one visit takes away, (0, 1], for each SpringKind; none for a kind
+/// that the cloth does not have.
+using PbdStiffness = std::array<std::optional<double>, 3>;
+
+/// PBD's stiffness, which is no property of the cloth alone: for each cloth what `spring_gains` makes of its
+/// N/m for the scene's dt and iterations, between two free vertices of its median mass.
+std::vector<PbdStiffness> pbd_stiffness(const Model& model, const scene::Scene& scene);
 
 }  // namespace clothlab::model

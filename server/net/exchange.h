@@ -94,6 +94,10 @@ struct TopologyChanged {
 struct PassesChanged {
   std::vector<sim::Simulation::Pass> passes;
 };
+/// What sim.status says of the solver; see README.
+struct SolverChanged {
+  json facts;
+};
 struct Diverged {
   std::string reason;
   std::string remedy;
@@ -108,8 +112,8 @@ struct Exported {
   const char* content_type = "";
   Result<std::string> body;
 };
-using Event = std::variant<Started, Failed, Reply, SceneChanged, TopologyChanged, PassesChanged, Diverged,
-                           Notice, Exported>;
+using Event = std::variant<Started, Failed, Reply, SceneChanged, TopologyChanged, PassesChanged,
+                           SolverChanged, Diverged, Notice, Exported>;
 
 /// What sim.status is made of; plain data, so that the session's thread allocates nothing for it.
 struct Status {

@@ -145,6 +145,10 @@ void Room::take(PassesChanged& changed) {
   }
 }
 
+void Room::take(SolverChanged& changed) {
+  solver_ = std::move(changed.facts);
+}
+
 void Room::take(Diverged& diverged) {
   broadcast("sim.diverged", {{"reason", diverged.reason},
                              {"remedy", {{"text", diverged.remedy}, {"patch", diverged.patch}}}});
@@ -189,6 +193,7 @@ json Room::status_params(const Status& status) const {
           {"stability",
            {{"dt_limit", std::isfinite(status.dt_limit) ? json(status.dt_limit) : json(nullptr)},
             {"margin", status.margin ? json(*status.margin) : json(nullptr)}}},
+          {"solver", solver_},
           {"asleep", false},
           {"diverged", status.diverged}};
 }

@@ -61,6 +61,7 @@ class Room {
   void take(SceneChanged& changed);
   void take(TopologyChanged& changed);
   void take(PassesChanged& changed);
+  void take(SolverChanged& changed);
   void take(Diverged& diverged);
   void take(Notice& notice);
   void take(Exported& exported);
@@ -78,7 +79,7 @@ class Room {
   std::shared_ptr<const json> document_;
   std::uint64_t revision_ = 0;
   stream::SharedMessage topology_;
-  json passes_ = json::array(), skipped_ = json::array();
+  json passes_ = json::array(), skipped_ = json::array(), solver_ = json::object();
   std::array<double, encoding_count> demanded_{};
   std::array<std::uint32_t, encoding_count>
       seen_{};  ///< sequence number of the last frame offered to viewers

@@ -32,6 +32,7 @@ Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Excha
   stepper->last_watched_ = stepper->next_status_ = Clock::now();
   stepper->announce_scene(std::nullopt, 0);
   stepper->announce_passes();
+  stepper->announce_solver();
   stepper->step_limit_.follow(stepper->simulation_->model(), stepper->document_.scene);
   stepper->watch_anew();
   return stepper;

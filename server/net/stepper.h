@@ -66,6 +66,7 @@ class Stepper {
   void state_replaced();
   void announce_scene(std::optional<json> patch, std::uint64_t by);
   void announce_passes();
+  void announce_solver();
 
   // stepper.cpp
   void advance(Clock::time_point now);

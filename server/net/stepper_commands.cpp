@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "server/model/mesh_file.h"
+#include "server/model/spring_gains.h"
 #include "server/net/stepper.h"
 
 namespace clothlab::net {
@@ -80,6 +81,7 @@ void Stepper::adopt(scene::Document document, sim::ChangeDepth depth) {
     frames_->touch_now();
   ++state_version_;
   announce_passes();
+  announce_solver();
   if (depth == sim::ChangeDepth::none) return;
   playing_ = playing_ || (diverged_ && resume_);
   step_limit_.follow(simulation_->model(), document_.scene);
@@ -193,6 +195,24 @@ void Stepper::announce_scene(std::optional<json> patch, std::uint64_t by) {
 
 void Stepper::announce_passes() {
   exchange_.emit(PassesChanged{simulation_->passes()});
+}
+
+// Stiffness in N/m means the same under every method but PBD, which says what it makes of it.
+void Stepper::announce_solver() {
+  json shares = nullptr;
+  if (document_.scene.solver.method == scene::Method::pbd) {
+    shares = json::array();
+    for (const model::PbdStiffness& of : model::pbd_stiffness(simulation_->model(), document_.scene)) {
+      const auto share = [&](model::SpringKind kind) {
+        const std::optional<double>& value = of[static_cast<std::size_t>(kind)];
+        return value ? json(*value) : json(nullptr);
+      };
+      shares.push_back({{"structural", share(model::SpringKind::structural)},
+                        {"shear", share(model::SpringKind::shear)},
+                        {"bend", share(model::SpringKind::bend)}});
+    }
+  }
+  exchange_.emit(SolverChanged{{{"pbd_stiffness", shares}}});
 }
 
 }  // namespace clothlab::net

@@ -1,8 +1,17 @@
 // What the panel offers for a scene: a list of sections and fields, each tied to JSON Pointers of the document.
-import { methodText } from "./methods";
-import type { Scale } from "./slider";
+import { methodText, type Setting } from "./methods";
+import { readable, type Scale } from "./slider";
 import { valueAt } from "./json_patch";
 import type { At, Motion, Operation, SceneDocument, Vec3 } from "./scene_types";
+
+/// What `sim.status` says of the solver.
+export interface SolverFacts {
+  /// Of a spring's stretch the share that a visit takes away, for each cloth; only under PBD.
+  pbd_stiffness?: Record<(typeof kinds)[number], number | null>[] | null;
+}
+
+/// A line below a control, and what a click in it would change.
+export interface Note { text: string; offer?: { text: string; operations: Operation[] } }
 
 interface FieldBase {
   key: string;          ///< unique in the panel
@@ -10,13 +19,14 @@ interface FieldBase {
   paths: string[];      ///< the places it writes; the first is the one it reads
   onRelease?: boolean;  ///< sent when let go: each value rebuilds the cloth
   hint?: string;        ///< a tooltip
+  note?(values: Record<string, unknown>, facts: SolverFacts): Note;  ///< `values` by the keys of all fields
   read?(document: SceneDocument): unknown;
   write?(value: unknown): unknown;
 }
 export type Field =
   | (FieldBase & { kind: "number"; scale: Scale })
   | (FieldBase & { kind: "toggle" | "color" })
-  | (FieldBase & { kind: "choice"; choices: string[]; names?: Record<string, string>; says?(value: string): string });
+  | (FieldBase & { kind: "choice"; choices: string[]; names?: Record<string, string> });
 
 export interface Section { key: string; title: string; open: boolean; fields: Field[]; sections: Section[] }
 
@@ -98,6 +108,17 @@ function strainLimit(paths: string[]): Field {
   });
 }
 
+const kinds = ["structural", "shear", "bend"] as const;
+const percent = (share: number): string => `${readable(Number((100 * share).toPrecision(2)))}\u00a0%`;
+
+/// PBD knows no N/m: what the server makes of them for a cloth. Nothing under the other methods.
+function pbdStiffness(index: number, { pbd_stiffness }: SolverFacts): Note {
+  const cloth = pbd_stiffness?.[index];
+  const shares = kinds.flatMap((kind) => (cloth?.[kind] == null ? [] : [`${kind}\u00a0${percent(cloth[kind])}`]));
+  if (shares.length === 0) return { text: "" };
+  return { text: `PBD knows no N/m. For this step and these iterations it takes away of a spring's stretch at each visit: ${shares.join(", ")}.` };
+}
+
 function clothSection(document: SceneDocument, index: number): Section {
   const cloth = document.cloths[index] as SceneDocument["cloths"][number];
   const base = `/cloths/${index}`;
@@ -114,7 +135,7 @@ function clothSection(document: SceneDocument, index: number): Section {
     fields: [
       number("structural", [`${base}/material/structural`], stiffness),
       number("shear", [`${base}/material/shear`], stiffness),
-      number("bend", [`${base}/material/bend`], stiffness),
+      number("bend", [`${base}/material/bend`], stiffness, { note: (_, facts) => pbdStiffness(index, facts) }),
       number("damping", [`${base}/material/damping`], { min: 0.01, max: 100, log: true, zero: true, unit: "N s/m" }),
       strainLimit([`${base}/material/strain_limit`]),
       mass, ...grid,
@@ -154,21 +175,35 @@ function worldSection(): Section {
 
 /// Where the gauge belongs.
 export const timeStep = "/solver/dt";
+const iterationCount = "/solver/iterations";
+
+const secondsText = (seconds: number): string => (seconds === 1 / 60 ? "1/60 s" : `${readable(seconds)} s`);
+
+function suggestion(suits: Setting | null, values: Record<string, unknown>): Note["offer"] {
+  if (!suits || (readable(Number(values[timeStep])) === readable(suits.dt) && values[iterationCount] === suits.iterations)) return undefined;
+  return {
+    text: `Use ${secondsText(suits.dt)}, ${suits.iterations} iteration${suits.iterations === 1 ? "" : "s"}`,
+    operations: [{ op: "replace", path: timeStep, value: suits.dt }, { op: "replace", path: iterationCount, value: suits.iterations }],
+  };
+}
 
 function solverSection(document: SceneDocument, methods: string[]): Section {
   const { method } = document.solver;
   const choices = methods.includes(method) ? methods : [method, ...methods];
   const names = Object.fromEntries(choices.map((id) => [id, methodText(id).name]));
-  const iterating: Field[] = methodText(method).iterates ? [
-    number("iterations", ["/solver/iterations"], { min: 1, max: 20, step: 1, whole: true },
-      { hint: "The most Newton steps a time step; 1 is a single linear solve." }),
-    number("tolerance", ["/solver/tolerance"], { min: 1e-8, max: 0.1, log: true },
-      { hint: "Where the conjugate gradients stop: the residual left, as a share of the first." })] : [];
+  const { iterations } = methodText(method);
+  const iterating: Field[] = iterations ? [
+    number("iterations", [iterationCount], { min: 1, max: iterations.most, step: 1, whole: true }, {
+      note: (values) => ({ text: iterations.trade, offer: suggestion(iterations.suits, values) }),
+    })] : [];
+  if (iterations?.solves) iterating.push(number("tolerance", ["/solver/tolerance"], { min: 1e-8, max: 0.1, log: true },
+    { hint: "Where the conjugate gradients stop: the residual left, as a share of the first." }));
   return {
     key: "solver", title: "Solver", open: true, sections: [],
     fields: [
-      { key: "/solver/method", label: "method", paths: ["/solver/method"], kind: "choice", choices, names, says: (id) => methodText(id).says },
-      number("time step", [timeStep], { min: 1e-5, max: 1e-2, log: true, unit: "s" }),
+      { key: "/solver/method", label: "method", paths: ["/solver/method"], kind: "choice", choices, names,
+        note: (values) => ({ text: methodText(String(values["/solver/method"])).says }) },
+      number("time step", [timeStep], { min: 1e-5, max: 0.05, log: true, unit: "s" }),
       ...iterating,
     ],
   };

@@ -1,20 +1,56 @@
-// The methods of time stepping by the names people know them by, and in a line what to expect of each.
+// The methods of time stepping by the names people know them by, in a line what to expect of each, and what their
+// iterations buy.
+
+/// A time step [s] and a number of iterations that suit a method.
+export interface Setting { dt: number; iterations: number }
+
+export interface Iterations {
+  most: number;    ///< at the slider's right end
+  trade: string;   ///< what more of them are good for, against shorter steps
+  suits: Setting | null;  ///< a good start
+  solves: boolean; ///< equations, to `tolerance`
+}
 
 export interface MethodText {
   name: string;
   says: string;
-  iterates: boolean;  ///< it reads `iterations` and `tolerance`
+  iterations: Iterations | null;  ///< null: it does not iterate
 }
 
+const frame = 1 / 60;
+const sweeps = (trade: string, suits: Setting | null): Iterations => ({ most: 50, trade, suits, solves: false });
+
 const texts: Record<string, MethodText> = {
-  explicit_euler: { name: "Explicit Euler", says: "First order, one force a step. Gains energy unless damping takes it away.", iterates: false },
-  symplectic_euler: { name: "Symplectic Euler", says: "First order, one force a step. Keeps the energy bounded below its limit.", iterates: false },
-  verlet: { name: "Verlet", says: "Second order, one force a step. Keeps the energy bounded below its limit.", iterates: false },
-  rk4: { name: "Runge–Kutta 4", says: "Fourth order, four forces a step. The most accurate below its limit.", iterates: false },
-  implicit_euler: { name: "Implicit Euler", says: "First order, solves for the end of the step. Holds at any step, and damps the motion.", iterates: true },
+  explicit_euler: { name: "Explicit Euler", says: "First order, one force a step. Gains energy unless damping takes it away.", iterations: null },
+  symplectic_euler: { name: "Symplectic Euler", says: "First order, one force a step. Keeps the energy bounded below its limit.", iterations: null },
+  verlet: { name: "Verlet", says: "Second order, one force a step. Keeps the energy bounded below its limit.", iterations: null },
+  rk4: { name: "Runge–Kutta 4", says: "Fourth order, four forces a step. The most accurate below its limit.", iterations: null },
+  implicit_euler: {
+    name: "Implicit Euler",
+    says: "First order, solves for the end of the step. Holds at any step, and damps the motion.",
+    iterations: {
+      most: 20, solves: true, suits: { dt: frame, iterations: 1 },
+      trade: "Each iteration is a Newton step: one linear solve. One is enough unless the cloth turns far within a step.",
+    },
+  },
+  pbd: {
+    name: "PBD",
+    says: "Position-based dynamics: puts one spring after another right. Holds at any step; how stiff the cloth is depends on step and iterations.",
+    iterations: sweeps("Many short steps with one iteration come nearer to the stiffness asked for than one long step with many.", { dt: 0.001, iterations: 1 }),
+  },
+  xpbd: {
+    name: "XPBD",
+    says: "PBD that knows N/m: what each spring has pushed is remembered through the step. Holds at any step.",
+    iterations: sweeps("Many short steps with one iteration beat one long step with many (Macklin et al. 2019). Too few leave the cloth softer than asked for.", { dt: 0.001, iterations: 1 }),
+  },
+  vbd: {
+    name: "VBD",
+    says: "Vertex block descent: moves one vertex after another to where implicit Euler wants it. Holds at any step.",
+    iterations: sweeps("Here too, short steps with few iterations beat a long step with many. Too few leave the cloth slow to follow.", { dt: 0.001, iterations: 1 }),
+  },
 };
 
 /// One the page does not know yet is shown as the server spells it.
 export function methodText(id: string): MethodText {
-  return texts[id] ?? { name: id.replaceAll("_", " "), says: "", iterates: true };
+  return texts[id] ?? { name: id.replaceAll("_", " "), says: "", iterations: { ...sweeps("", null), solves: true } };
 }

@@ -1,6 +1,7 @@
 // Wires the connection, the scene's document, the stage and the controls to each other.
 import { Connection, type LinkEvents } from "./connection";
 import { button, element } from "./dom";
+import type { SolverFacts } from "./fields";
 import { saferStep, type Stability } from "./gauge";
 import { Hud, type Status } from "./hud";
 import { bindKeys } from "./keys";
@@ -142,6 +143,7 @@ export class Page {
         this.hud.showStatus(params as Status);
         this.transport.status(params as Status);
         if (params.stability) this.panel.showStability(params.stability as Stability);
+        if (params.solver) this.panel.showSolver(params.solver as SolverFacts);
         this.followDivergence(params as Status);
       },
       "sim.diverged": (params) => this.tellDivergence(params as unknown as Diverged),

@@ -1,6 +1,6 @@
 // The panel: generated from the scene document, kept in step with it, and turning what is moved into patches.
 import GUI, { type Controller } from "lil-gui";
-import { operationsFor, readField, sectionsOf, timeStep, type Field, type Section } from "./fields";
+import { operationsFor, readField, sectionsOf, timeStep, type Field, type Note, type Section, type SolverFacts } from "./fields";
 import { Gauge, type Stability } from "./gauge";
 import type { Operation, SceneDocument } from "./scene_types";
 import { SliderController } from "./slider";
@@ -21,6 +21,7 @@ export class Panel {
   private presets: string[] = [];
   private methods: string[] = [];
   private stability: Stability | null = null;
+  private facts: SolverFacts = {};
   private notes: (() => void)[] = [];
   private readonly gauge = new Gauge((dt) => this.events.edit([{ op: "replace", path: timeStep, value: dt }]));
   private document: SceneDocument | null = null;
@@ -43,6 +44,12 @@ export class Panel {
   showStability(stability: Stability): void {
     this.stability = stability;
     this.moveGauge();
+  }
+
+  /// What the server makes of the solver's settings.
+  showSolver(facts: SolverFacts): void {
+    this.facts = facts;
+    this.accompany();
   }
 
   /// Moves the controls to the document, except those the user is ahead with.
@@ -111,7 +118,7 @@ export class Panel {
     const control: Control = { field, controller, held: false };
     this.controls.push(control);
     if (field.hint) controller.domElement.title = field.hint;
-    if (field.kind === "choice" && field.says) this.addNote(folder, field.key, field.says);
+    if (field.note) this.addNote(folder, field.note);
     if (field.key === timeStep) folder.$children.append(this.gauge.element);
     controller.onChange((value: unknown) => {
       control.held = field.onRelease === true;
@@ -140,15 +147,30 @@ export class Panel {
     return controller;
   }
 
-  /// A line below a choice that says what the present one means.
-  private addNote(folder: GUI, key: string, says: (value: string) => string): void {
-    const note = document.createElement("p");
-    note.className = "note";
-    folder.$children.append(note);
+  /// A line below a control that says what its present value means.
+  private addNote(folder: GUI, says: NonNullable<Field["note"]>): void {
+    const line = document.createElement("p");
+    line.className = "note";
+    folder.$children.append(line);
+    let shown = "";
     this.notes.push(() => {
-      const text = says(String(this.values[key]));
-      if (note.textContent !== text) note.textContent = text;
+      const note = says(this.values, this.facts);
+      const now = JSON.stringify(note);
+      if (now === shown) return;
+      shown = now;
+      line.hidden = note.text === "";
+      line.replaceChildren(note.text, ...this.offer(note));
     });
+  }
+
+  private offer({ offer }: Note): HTMLElement[] {
+    if (!offer) return [];
+    const button = document.createElement("button");
+    button.type = "button";
+    button.className = "offer";
+    button.textContent = offer.text;
+    button.onclick = () => this.events.edit(offer.operations);
+    return [button];
   }
 
   /// What stands beside the controls follows them.
