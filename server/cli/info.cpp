@@ -1,4 +1,5 @@
-// `clothlab info`: versions, the devices there are and which one would be used, where the data files are.
+// `clothlab info`: versions, methods, the devices there are and which one would be used, where the data files
+// are.
 #include <libwebsockets.h>
 
 #include <iostream>
@@ -7,6 +8,7 @@
 #include "server/base/data_files.h"
 #include "server/cli/commands.h"
 #include "server/gl/context.h"
+#include "server/scene/method.h"
 
 namespace clothlab::cli {
 
@@ -30,6 +32,9 @@ void print_device(const gl::Device& device, bool used) {
 int info() {
   std::cout << "clothlab " CLOTHLAB_VERSION ", compiler " __VERSION__ ", libwebsockets "
             << lws_get_library_version() << "\n";
+  std::cout << "methods ";
+  for (const scene::Method method : scene::methods) std::cout << " " << scene::name(method);
+  std::cout << "\n";
   print_data_folder("shaders  ", "shaders/access.glsl");
   print_data_folder("presets  ", "server/scene/presets/seed.json");
   print_data_folder("page     ", "web/dist/index.html");

@@ -16,14 +16,33 @@ using namespace clothlab;
 
 namespace {
 
-/// Self-collision, which is left out, costs the same under every method. dt below each method's limit;
-/// implicit Euler at the 1/60 s it is used with, one Newton step.
-scene::Scene seed_of(int side, scene::Method method) {
+/// dt below each method's limit; implicit Euler at the 1/60 s it is used with, one Newton step; what sweeps
+/// at 1 ms, once and ten times.
+std::vector<scene::Solver> settings() {
+  std::vector<scene::Solver> result;
+  for (const scene::Method method : scene::methods) {
+    const double dt = method == scene::Method::explicit_euler   ? 5e-5
+                      : method == scene::Method::implicit_euler ? 1.0 / 60
+                                                                : 1e-3;
+    result.push_back({method, dt, 1, 1e-4});
+    if (scene::sweeps(method)) result.push_back({method, dt, 10, 1e-4});
+  }
+  return result;
+}
+
+/// Self-collision, which is left out, costs the same under most methods.
+scene::Scene seed_of(int side, const scene::Solver& solver) {
   scene::Scene scene = bench::seed_of(side);
-  scene.solver = {method, 1e-3, 1, 1e-4};
-  if (method == scene::Method::explicit_euler) scene.solver.dt = 5e-5;
-  if (method == scene::Method::implicit_euler) scene.solver.dt = 1.0 / 60;
+  scene.solver = solver;
   return scene;
+}
+
+/// Steps that make a round of some tenth of a second.
+std::uint32_t steps_a_round(const scene::Solver& solver, double vertices) {
+  if (solver.method == scene::Method::implicit_euler) return 3;
+  const double steps = 20 + 2e5 / vertices;
+  return static_cast<std::uint32_t>(scene::sweeps(solver.method) ? 2 + steps / (10 * solver.iterations)
+                                                                 : steps);
 }
 
 /// Bytes that the kernels of one step read and write for a vertex with `entries` springs, caches not counted:
@@ -52,7 +71,7 @@ double bytes_a_vertex(scene::Method method, double entries, double iterations) {
 }
 
 struct Contestant {
-  scene::Method method;
+  scene::Solver solver;
   std::uint32_t steps;  ///< a round
   std::unique_ptr<sim::Simulation> simulation;
   std::vector<double> samples;  ///< [ns] a vertex and step
@@ -70,14 +89,12 @@ int main(int argc, char** argv) {
 
   const double vertices = static_cast<double>(side) * side;
   std::vector<Contestant> contestants;
-  for (const scene::Method method : scene::methods) {
-    auto simulation = sim::Simulation::create(seed_of(side, method));
+  for (const scene::Solver& solver : settings()) {
+    auto simulation = sim::Simulation::create(seed_of(side, solver));
     if (!simulation) return std::fprintf(stderr, "%s\n", simulation.error().text().c_str()), 1;
-    const bool implicit = method == scene::Method::implicit_euler;
-    const auto steps = static_cast<std::uint32_t>(implicit ? 3 : 20 + 2e5 / vertices);
-    contestants.push_back({method, steps, std::move(*simulation), {}, 0, 0, {}});
+    contestants.push_back({solver, steps_a_round(solver, vertices), std::move(*simulation), {}, 0, 0, {}});
     // Compiles, and lets the cloth get moving.
-    contestants.back().simulation->step(implicit ? 10 : 100);
+    contestants.back().simulation->step(steps_a_round(solver, vertices) < 20 ? 10 : 100);
     contestants.back().simulation->finish();
     contestants.back().steps_before = contestants.back().simulation->step_index();
     contestants.back().dispatches_before = contestants.back().simulation->dispatches();
@@ -98,11 +115,13 @@ int main(int argc, char** argv) {
         static_cast<double>(work.linear_iterations - one.work_before.linear_iterations) / steps;
     const double entries = 2.0 * static_cast<double>(one.simulation->model().springs.size()) / vertices;
     std::printf(
-        "{\"renderer\": \"%s\", \"side\": %d, \"method\": \"%s\", \"dt\": %g, \"dispatches\": %.1f, "
+        "{\"renderer\": \"%s\", \"side\": %d, \"method\": \"%s\", \"dt\": %g, \"iterations\": %d, "
+        "\"dispatches\": %.1f, "
         "\"bytes_a_vertex\": %.0f, \"cg_iterations\": %.1f, \"ns\": [",
-        (*context)->device().name.c_str(), side, scene::name(one.method), one.simulation->scene().solver.dt,
+        (*context)->device().name.c_str(), side, scene::name(one.solver.method), one.solver.dt,
+        one.solver.iterations,
         static_cast<double>(one.simulation->dispatches() - one.dispatches_before) / steps,
-        bytes_a_vertex(one.method, entries, iterations), iterations);
+        bytes_a_vertex(one.solver.method, entries, iterations), iterations);
     for (std::size_t i = 0; i < one.samples.size(); ++i) std::printf("%s%.2f", i ? ", " : "", one.samples[i]);
     std::puts("]}");
   }

@@ -36,7 +36,7 @@ const summary = { what: 'cost of a step per method, seed scene on other grids, n
                   methods, strain_limit: strainLimit }
 const out = join(here, `results/methods-${machine}.json`)
 writeFileSync(out, JSON.stringify(summary, null, 1) + '\n')
-console.table(methods.map((m) => ({ side: m.side, method: m.method, 'ns median': m.median_ns, 'ns min': m.min_ns,
+console.table(methods.map((m) => ({ side: m.side, method: m.method, iterations: m.iterations, 'ns median': m.median_ns, 'ns min': m.min_ns,
   'to symplectic': m.to_symplectic, dispatches: m.dispatches, 'bytes a vertex': m.bytes_a_vertex,
   'cg iterations': m.cg_iterations })))
 console.table(strainLimit)

@@ -81,10 +81,11 @@ test("without any OpenGL the exit code is 3 and the packages to install are name
   assert.match(stderr, /libegl1 libgl1-mesa-dri/);
 });
 
-test("info names a usable device, the one that is used, and the folders of the data files", () => {
+test("info names a usable device, the one that is used, the methods, and the folders of the data files", () => {
   const { status, stdout } = clothlab(["info"]);
   assert.equal(status, 0);
   assert.match(stdout, /^\* \d+: .*OpenGL 4\./m);
+  assert.match(stdout, /^methods .*\bsymplectic_euler\b/m);
   assert.match(stdout, /^shaders +\/.*shaders$/m);
 });
 
