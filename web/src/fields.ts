@@ -1,5 +1,5 @@
 // What the panel offers for a scene: a list of sections and fields, each tied to JSON Pointers of the document.
-import { methodText, type Setting } from "./methods";
+import { methodText, type MethodText, type Setting } from "./methods";
 import { readable, type Scale } from "./slider";
 import { valueAt } from "./json_patch";
 import type { At, Motion, Operation, SceneDocument, Vec3 } from "./scene_types";
@@ -175,9 +175,18 @@ function worldSection(): Section {
 
 /// Where the gauge belongs.
 export const timeStep = "/solver/dt";
+const methodChoice = "/solver/method";
 const iterationCount = "/solver/iterations";
 
 const secondsText = (seconds: number): string => (seconds === 1 / 60 ? "1/60 s" : `${readable(seconds)} s`);
+
+const methodOf = (values: Record<string, unknown>): MethodText => methodText(String(values[methodChoice]));
+
+/// What iterations are good for under the method that is chosen.
+function tradeOff(values: Record<string, unknown>): Note {
+  const { iterations } = methodOf(values);
+  return iterations ? { text: iterations.trade, offer: suggestion(iterations.suits, values) } : { text: "" };
+}
 
 function suggestion(suits: Setting | null, values: Record<string, unknown>): Note["offer"] {
   if (!suits || (readable(Number(values[timeStep])) === readable(suits.dt) && values[iterationCount] === suits.iterations)) return undefined;
@@ -194,15 +203,15 @@ function solverSection(document: SceneDocument, methods: string[]): Section {
   const { iterations } = methodText(method);
   const iterating: Field[] = iterations ? [
     number("iterations", [iterationCount], { min: 1, max: iterations.most, step: 1, whole: true }, {
-      note: (values) => ({ text: iterations.trade, offer: suggestion(iterations.suits, values) }),
+      note: tradeOff,
     })] : [];
   if (iterations?.solves) iterating.push(number("tolerance", ["/solver/tolerance"], { min: 1e-8, max: 0.1, log: true },
     { hint: "Where the conjugate gradients stop: the residual left, as a share of the first." }));
   return {
     key: "solver", title: "Solver", open: true, sections: [],
     fields: [
-      { key: "/solver/method", label: "method", paths: ["/solver/method"], kind: "choice", choices, names,
-        note: (values) => ({ text: methodText(String(values["/solver/method"])).says }) },
+      { key: methodChoice, label: "method", paths: [methodChoice], kind: "choice", choices, names,
+        note: (values) => ({ text: methodOf(values).says }) },
       number("time step", [timeStep], { min: 1e-5, max: 0.05, log: true, unit: "s" }),
       ...iterating,
     ],
