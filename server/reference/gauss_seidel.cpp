@@ -14,7 +14,7 @@ namespace {
 using Vectors = std::vector<dvec3>;
 
 /// How much of gravity a vertex fell with in the step before (Chen et al. 2024, section 3.7): none at rest,
-/// so that a cloth at rest starts where it stays.
+/// so that a cloth at rest starts where it stays; all of it in free fall, in air too.
 dvec3 felt_gravity(const dvec3& gravity, const dvec3& acceleration) {
   const double squared = glm::dot(gravity, gravity);
   if (!(squared > 0.0)) return dvec3(0.0);
@@ -45,7 +45,8 @@ SweepState begin(const World& world, const State& state, double t, double t_next
     step.displacement[i] = step.free[i] =
         world.pinned(i) ? end[i] - state.position[i] : drag * (dt * v + dt * dt * gravity);
     if (guesses && !world.pinned(i))
-      step.displacement[i] = dt * v + dt * dt * felt_gravity(gravity, (v - state.velocity_before[i]) / dt);
+      step.displacement[i] =
+          drag * (dt * v + dt * dt * felt_gravity(gravity, (v / drag - state.velocity_before[i]) / dt));
   }
   return step;
 }
