@@ -25,6 +25,10 @@ std::string text(const char* value) {
   return value ? value : "";
 }
 
+std::string gl_text(GLenum name) {
+  return text(reinterpret_cast<const char*>(glGetString(name)));
+}
+
 Status load_egl() {
   static const int version = gladLoaderLoadEGL(nullptr);
   if (version == 0) return Error{"EGL", "libEGL.so.1 could not be loaded", install_hint};
@@ -100,13 +104,10 @@ Opened open(Candidate& candidate) {
     eglDestroyContext(opened.display, opened.context);
     return {};
   }
-  const auto gl_text = [](GLenum name) { return text(reinterpret_cast<const char*>(glGetString(name))); };
   device.name = gl_text(GL_RENDERER);
   device.version = gl_text(GL_VERSION);
   device.vendor = gl_text(GL_VENDOR);
-  // Some drivers offer their rasteriser as an ordinary device.
-  for (const char* rasteriser : {"llvmpipe", "softpipe", "SWR"})
-    device.software = device.software || device.name.find(rasteriser) != std::string::npos;
+  device.software = device.software || software_renderer();  // some drivers offer it as an ordinary device
   device.usable = true;
   return opened;
 }
@@ -117,6 +118,13 @@ void close(const Opened& opened) {
 }
 
 }  // namespace
+
+bool software_renderer() {
+  const std::string name = gl_text(GL_RENDERER);
+  for (const char* rasteriser : {"llvmpipe", "softpipe", "SWR"})
+    if (name.find(rasteriser) != std::string::npos) return true;
+  return false;
+}
 
 Result<std::vector<Device>> list_devices() {
   const std::lock_guard lock(egl_mutex);

@@ -21,6 +21,9 @@ struct Device {
   std::string problem;    ///< why not usable
 };
 
+/// Mesa's rasteriser draws in the context that is current here.
+bool software_renderer();
+
 /// Every EGL device in the driver's order; opens a context on each to ask its name.
 Result<std::vector<Device>> list_devices();
 

@@ -10,8 +10,10 @@
 namespace clothlab::scene {
 
 /// All there are, in the order in which they are listed to a user.
-inline constexpr std::array methods{Method::explicit_euler, Method::symplectic_euler, Method::verlet,
-                                    Method::rk4, Method::implicit_euler};
+inline constexpr std::array methods{Method::explicit_euler, Method::symplectic_euler,
+                                    Method::verlet,         Method::rk4,
+                                    Method::implicit_euler, Method::pbd,
+                                    Method::xpbd,           Method::vbd};
 
 /// Those that sweep over springs or vertices colour by colour: Gauss-Seidel iterations, `iterations` of them
 /// a step.

@@ -51,7 +51,7 @@ std::optional<SelfCollision> read_self_collision(const Reader& self_collision) {
 Method read_method(const Reader& method) {
   Words names;
   for (const Method each : methods) names.push_back(name(each));
-  return method_of(method.choice(names, {"pbd", "xpbd", "vbd", "auto"})).value_or(Solver{}.method);
+  return method_of(method.choice(names, {"auto"})).value_or(Solver{}.method);
 }
 
 Solver read_solver(const Reader& solver) {

@@ -20,7 +20,7 @@ Result<std::unique_ptr<Integrator>> make(const Surroundings& around, const Plan&
     case scene::Method::pbd:
     case scene::Method::xpbd:
     case scene::Method::vbd:
-      break;
+      return make_gauss_seidel(around, plan);
   }
   return Error{"/solver/method", scene::name(around.scene.solver.method), "a method that has kernels"};
 }

@@ -1,5 +1,5 @@
 // One way of advancing the state by a step on the GPU. Each family of methods is one file: whole_step.cpp
-// (one dispatch a step), rk4.cpp, implicit_euler.cpp.
+// (one dispatch a step), rk4.cpp, implicit_euler.cpp, gauss_seidel.cpp.
 #pragma once
 
 #include <cstdint>
@@ -59,6 +59,7 @@ Result<std::unique_ptr<Integrator>> make_whole_step(scene::Method method, std::u
                                                     const Plan& plan);
 Result<std::unique_ptr<Integrator>> make_rk4(std::uint32_t vertex_count, const Plan& plan);
 Result<std::unique_ptr<Integrator>> make_implicit_euler(std::uint32_t vertex_count, const Plan& plan);
+Result<std::unique_ptr<Integrator>> make_gauss_seidel(const Surroundings& around, const Plan& plan);
 
 /// What the kernels so far have written is there for the next one to read, for indirect dispatches and for
 /// copies.

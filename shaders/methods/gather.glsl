@@ -16,7 +16,7 @@ uniform vec4 gravity;  // xyz [m/s^2], w: air drag [1/s]
 vec3 spring_forces(int i, vec3 x, vec3 v) {
   vec3 force = vec3(0.0);
   SpringRange range = spring_range(i);
-  for (int entry = range.first; entry < range.end; entry += GROUP_SIZE) {
+  for (int entry = range.first; entry < range.end; entry += SLICE_SIZE) {
     uvec4 s = FETCH(springs, entry);
     force += spring_force(x, FETCH(position, s.x).xyz, v, FETCH(velocity, s.x).xyz, uintBitsToFloat(s.y),
                           uintBitsToFloat(s.z), uintBitsToFloat(s.w));

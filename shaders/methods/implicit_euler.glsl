@@ -8,6 +8,7 @@
 // minimum is sought falls (a line search: Nocedal & Wright 2006, chapter 3).
 // Here `position` and `velocity` are the estimates.
 #include "gather.glsl"
+#include "blocks.glsl"
 
 /// The spring's share of J: along n n^T + across (I - n n^T) [kg].
 void spring_matrix(vec3 x, vec3 y, uvec4 s, out vec3 n, out float along, out float across) {
@@ -19,24 +20,6 @@ void spring_matrix(vec3 x, vec3 y, uvec4 s, out vec3 n, out float along, out flo
 /// Without the part along the normal of a contact, which is 0 where there is none; nothing is left of a pinned vertex.
 vec3 filtered(vec3 v, float inverse_mass, vec3 normal) {
   return inverse_mass > 0.0 ? v - normal * dot(normal, v) : vec3(0.0);
-}
-
-/// A vertex's 3x3 block of J is kept as L D L^T: a = 1 / D, b = the lower triangle of L (21, 31, 32).
-vec3 block_times(vec3 a, vec3 b, vec3 v) {
-  v.x += b.x * v.y + b.y * v.z;
-  v.y += b.z * v.z;
-  v /= a;
-  v.z += b.y * v.x + b.z * v.y;
-  v.y += b.x * v.x;
-  return v;
-}
-vec3 solve_block(vec3 a, vec3 b, vec3 r) {
-  r.y -= b.x * r.x;
-  r.z -= b.y * r.x + b.z * r.y;
-  r *= a;
-  r.y -= b.z * r.z;
-  r.x -= b.x * r.y + b.y * r.z;
-  return r;
 }
 
 /// Sums that the line search makes, each a vec4. With FREE, where nothing but its own springs acts on the cloth, one more:

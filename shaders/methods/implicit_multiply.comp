@@ -11,7 +11,7 @@ layout(std430, binding = 1) writeonly buffer Sums { vec4 group_sums[]; };  // on
 vec3 multiply(int i, vec4 x, vec3 z) {
   vec3 result = z * ((1.0 + dt * gravity.w) / x.w);
   SpringRange range = spring_range(i);
-  for (int entry = range.first; entry < range.end; entry += GROUP_SIZE) {
+  for (int entry = range.first; entry < range.end; entry += SLICE_SIZE) {
     uvec4 s = FETCH(springs, entry);
     vec3 apart = z - FETCH(preconditioned, s.x).xyz, n;
     float along, across;

@@ -25,7 +25,7 @@ void main() {
     vec3 u = FETCH(velocity, i).xyz, d = FETCH(change, i).xyz;
     bool held = x.w == 0.0;
     SpringRange range = spring_range(i);
-    for (int entry = range.first; entry < range.end; entry += GROUP_SIZE) {
+    for (int entry = range.first; entry < range.end; entry += SLICE_SIZE) {
       uvec4 s = FETCH(springs, entry);
       vec4 y = FETCH(position, s.x);
       vec3 other_u = FETCH(velocity, s.x).xyz, other_d = FETCH(change, s.x).xyz;

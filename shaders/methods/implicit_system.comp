@@ -26,7 +26,7 @@ void main() {
   vec3 force = vec3(0.0), product = vec3(0.0), diagonal = vec3(0.0), corner = vec3(0.0);
   float stiffness = 0.0;
   SpringRange range = spring_range(i);
-  for (int entry = range.first; entry < range.end; entry += GROUP_SIZE) {
+  for (int entry = range.first; entry < range.end; entry += SLICE_SIZE) {
     uvec4 s = FETCH(springs, entry);
     vec3 y = FETCH(position, s.x).xyz, n;
     float along, across;
@@ -48,13 +48,8 @@ void main() {
   vec3 v = FETCH(start_velocity, i).xyz, normal = FETCH(constraint, i).xyz;
   vec3 r = m * (v - u + dt * (gravity.xyz - gravity.w * u)) + dt * force - inertia * d - product;
 
-  // L D L^T; no pivot is less than the mass, whatever rounding made of it.
-  diagonal += inertia;
-  float l_xy = corner.x / diagonal.x, l_xz = corner.y / diagonal.x;
-  float pivot_y = max(diagonal.y - l_xy * corner.x, inertia);
-  float l_yz = (corner.z - l_xz * corner.x) / pivot_y;
-  float pivot_z = max(diagonal.z - l_xz * corner.y - l_yz * l_yz * pivot_y, inertia);
-  vec3 a = 1.0 / vec3(diagonal.x, pivot_y, pivot_z), b = vec3(l_xy, l_xz, l_yz);
+  vec3 a, b;
+  factorise(diagonal + inertia, corner, inertia, a, b);
   block_a[i] = vec4(a, 0.0);
   block_b[i] = vec4(b, 0.0);
   residual[i] = vec4(r, good_enough(x.w, v, force, stiffness, x.xyz, d));

@@ -12,6 +12,6 @@ void end_step(int i, vec4 x_next, vec4 v_next) {
   next_velocity[i] = v_next;
 #ifdef SELF_COLLISION
   vec3 moved = x_next.xyz - FETCH(position_when_built, i).xyz;
-  if (dot(moved, moved) > 0.25 * skin * skin) rebuild_groups = gl_NumWorkGroups.x;
+  if (dot(moved, moved) > 0.25 * skin * skin) rebuild_groups = uint((vertex_count + SLICE_SIZE - 1) / SLICE_SIZE);
 #endif
 }

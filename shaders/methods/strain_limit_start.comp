@@ -8,7 +8,7 @@ void main() {
   vec4 x = FETCH(position, i);
   vec3 x_start = FETCH(start_position, i).xyz, moved = vec3(0.0);
   SpringRange range = spring_range(i);
-  for (int entry = range.first; entry < range.end; entry += GROUP_SIZE) {
+  for (int entry = range.first; entry < range.end; entry += SLICE_SIZE) {
     float pull = pulls[entry];
     RARELY(pull > 0.0) {
       uint j = FETCH(springs, entry).x;

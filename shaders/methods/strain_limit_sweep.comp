@@ -41,7 +41,7 @@ void main() {
     vec3 x_start = FETCH(start_position, i).xyz, moved = vec3(0.0);
     float largest_strain = limit[int(FETCH(rest_position, i).w)];
     SpringRange range = spring_range(i);
-    for (int entry = range.first; entry < range.end; entry += GROUP_SIZE) {
+    for (int entry = range.first; entry < range.end; entry += SLICE_SIZE) {
       uvec4 s = FETCH(springs, entry);
       vec4 y = FETCH(position, s.x);
       vec3 d = x.xyz - y.xyz;

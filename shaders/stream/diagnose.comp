@@ -30,7 +30,7 @@ void main() {
     bool moving_pin = x.w == 0.0 && v.w >= 0.0, touching = x.w > 0.0 && v.w > 0.0;
     vec3 force = vec3(0.0);
     SpringRange range = spring_range(i);
-    for (int entry = range.first; entry < range.end; entry += GROUP_SIZE) {
+    for (int entry = range.first; entry < range.end; entry += SLICE_SIZE) {
       uvec4 s = FETCH(springs, entry);
       if (s.x == uint(i)) continue;
       vec3 y = FETCH(position, s.x).xyz;

@@ -1,0 +1,84 @@
+#include "server/sim/coloured_work.h"
+
+#include <glad/gl.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string_view>
+
+#include "server/gl/context.h"
+#include "server/model/spring_gains.h"
+
+namespace clothlab::sim {
+
+namespace {
+
+bool pinned(const model::Model& model, std::uint32_t vertex) {
+  return model.pin_motion[vertex] != model::not_pinned;
+}
+
+/// Those for which `wanted`; colours that lose all their members go.
+template <class Wanted>
+model::Colouring only(const model::Colouring& all, Wanted wanted) {
+  model::Colouring kept;
+  kept.offsets.push_back(0);
+  for (std::uint32_t colour = 0; colour < all.colours(); ++colour) {
+    for (std::uint32_t k = all.offsets[colour]; k < all.offsets[colour + 1]; ++k)
+      if (wanted(all.order[k])) kept.order.push_back(all.order[k]);
+    if (kept.order.size() > kept.offsets.back())
+      kept.offsets.push_back(static_cast<std::uint32_t>(kept.order.size()));
+  }
+  return kept;
+}
+
+}  // namespace
+
+model::Colouring visited_springs(const model::Model& model, const scene::Scene& scene) {
+  return only(model::colour_springs(model, scene), [&](std::uint32_t spring) {
+    return !pinned(model, model.springs[spring].a) || !pinned(model, model.springs[spring].b);
+  });
+}
+
+model::Colouring visited_vertices(const model::Model& model, const scene::Scene& scene) {
+  return only(model::colour_vertices(model, scene),
+              [&](std::uint32_t vertex) { return !pinned(model, vertex); });
+}
+
+ProjectedSprings projected_springs(const model::Colouring& visited, const model::Model& model,
+                                   const scene::Scene& scene) {
+  ProjectedSprings list;
+  const double mobility = 1.0 / (1.0 + scene.solver.dt * scene.air_drag);
+  const auto inverse_mass = [&](std::uint32_t vertex) {
+    return pinned(model, vertex) ? 0.0 : mobility / model.mass[vertex];
+  };
+  for (const std::uint32_t index : visited.order) {
+    const model::Spring& spring = model.springs[index];
+    const scene::Springs& material = scene.cloths[spring.cloth].material;
+    const model::SpringGains gains =
+        model::spring_gains(scene.solver, model::stiffness(material, spring.kind), material.damping,
+                            inverse_mass(spring.a) + inverse_mass(spring.b));
+    list.entries.push_back(
+        {spring.a, spring.b, static_cast<float>(spring.rest_length), static_cast<float>(gains.stretch)});
+    list.gains.push_back({static_cast<float>(gains.damping), static_cast<float>(gains.memory)});
+  }
+  return list;
+}
+
+bool fits_one_group(std::uint32_t vertex_count, bool self_collision) {
+  GLint shared_bytes = 0;
+  glGetIntegerv(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE, &shared_bytes);
+  const std::size_t needed = std::size_t{vertex_count} * 16 * (self_collision ? 2 : 1);
+  if (needed > static_cast<std::size_t>(shared_bytes)) return false;
+  const char* asked = std::getenv("CLOTHLAB_SWEEPS");
+  if (asked && std::string_view(asked) == "dispatches") return false;
+  return true;
+}
+
+int lanes_of_one_group() {
+  if (gl::software_renderer()) return 8;
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &most);
+  return most;
+}
+
+}  // namespace clothlab::sim

@@ -1,0 +1,179 @@
+// PBD, XPBD and VBD: shaders/methods/gauss_seidel.comp, in one dispatch a step for small cloths, in one a
+// phase and colour for large ones.
+#include <algorithm>
+#include <cstdlib>
+#include <string_view>
+
+#include "server/gl/context.h"
+#include "server/model/colouring.h"
+#include "server/sim/coloured_work.h"
+#include "server/sim/integrator.h"
+
+namespace clothlab::sim {
+
+namespace {
+
+constexpr GLuint unit_displacement = 9, unit_projected = 10, unit_gains = 11, unit_visited = 12;
+constexpr GLuint slot_displacement = 3, slot_multipliers = 4, slot_pushed = 5, slot_velocity_before = 6;
+
+gl::TextureBuffer per_vertex(std::uint32_t vertex_count) {
+  return {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
+}
+
+class GaussSeidel : public Integrator {
+ public:
+  static Result<std::unique_ptr<Integrator>> create(const Surroundings& around, const Plan& plan) {
+    std::unique_ptr<GaussSeidel> made(new GaussSeidel(around, plan));
+    const Status loaded = made->one_group_ ? made->load_one_group(plan) : made->load_phases(plan);
+    if (!loaded) return loaded.error();
+    return std::unique_ptr<Integrator>(std::move(made));
+  }
+
+  void set_parameters(const Surroundings& around) override {
+    sweeps_ = around.scene.solver.iterations;
+    const float mobility = static_cast<float>(1.0 / (1.0 + around.scene.solver.dt * around.scene.air_drag));
+    for (const gl::Program* program : {&whole_, &begin_, &visit_, &meet_, &finish_}) {
+      if (!program->id()) continue;
+      set_step_uniforms(*program, around);
+      glProgramUniform1f(program->id(), program->uniform("mobility"), mobility);
+    }
+    if (by_vertex_) return;
+    const ProjectedSprings springs = projected_springs(work_, around.model, around.scene);
+    projected_ = {gl::Buffer(springs.entries), GL_RGBA32UI};
+    gains_ = {gl::Buffer(springs.gains), GL_RG32UI};
+  }
+
+  void step(StateBuffers& state, int row) override {
+    state.bind_for_step();
+    if (by_vertex_) {
+      visited_.bind(unit_visited);
+      velocity_before_.bind_storage(slot_velocity_before);
+      if (contacts_) pushed_.bind_storage(slot_pushed);
+    } else {
+      projected_.bind(unit_projected);
+      gains_.bind(unit_gains);
+      multipliers_.bind_storage(slot_multipliers);
+    }
+    if (one_group_)
+      step_in_one_group(row);
+    else
+      step_in_phases(row);
+    state.swap();
+  }
+
+  /// No velocity before.
+  void restart() override {
+    if (by_vertex_) velocity_before_.fill(0);
+  }
+
+ private:
+  GaussSeidel(const Surroundings& around, const Plan& plan)
+      : by_vertex_(plan.method == scene::Method::vbd),
+        contacts_(plan.self_collision || (!by_vertex_ && plan.spheres + plan.planes > 0)),
+        vertex_count_(around.model.vertex_count()),
+        work_(by_vertex_ ? visited_vertices(around.model, around.scene)
+                         : visited_springs(around.model, around.scene)) {
+    one_group_ = fits_one_group(vertex_count_, plan.self_collision);
+    if (by_vertex_) {
+      visited_ = {gl::Buffer(work_.order), GL_R32UI};
+      velocity_before_ = gl::Buffer(vertex_count_ * 4 * sizeof(float));
+      if (contacts_) pushed_ = gl::Buffer(vertex_count_ * 4 * sizeof(float));
+    } else {
+      multipliers_ = gl::Buffer(std::max<std::size_t>(work_.order.size(), 1) * sizeof(float));
+    }
+    if (one_group_) return;
+    for (gl::TextureBuffer& displacement : displacement_) displacement = per_vertex(vertex_count_);
+  }
+
+  gl::Defines defines(const Plan& plan) const {
+    gl::Defines list = step_defines(plan);
+    if (by_vertex_) list.emplace_back("BY_VERTEX", "1");
+    if (plan.method == scene::Method::xpbd) list.emplace_back("MEMORY", "1");
+    if (contacts_) list.emplace_back("CONTACTS", "1");
+    return list;
+  }
+
+  Status load_one_group(const Plan& plan) {
+    gl::Defines list = defines(plan);
+    for (auto& [name, value] : list)
+      if (name == "GROUP_SIZE") value = std::to_string(lanes_of_one_group());
+    list.emplace_back("SLICE_SIZE", std::to_string(group_size));
+    list.emplace_back("ONE_GROUP", "1");
+    list.emplace_back("VERTEX_COUNT", std::to_string(vertex_count_));
+    list.emplace_back("COLOUR_COUNT", std::to_string(work_.colours()));
+    Result<gl::Program> loaded = gl::Program::load({"methods/gauss_seidel.comp"}, list);
+    if (!loaded) return loaded.error();
+    whole_ = std::move(*loaded);
+    const std::vector<GLint> first(work_.offsets.begin(), work_.offsets.end());
+    glProgramUniform1iv(whole_.id(), whole_.uniform("colour_first"), static_cast<GLsizei>(first.size()),
+                        first.data());
+    return ok();
+  }
+
+  Status load_phases(const Plan& plan) {
+    for (auto [program, phase] :
+         {std::pair{&begin_, "begin"}, {&visit_, "visit"}, {&meet_, "meet"}, {&finish_, "finish"}}) {
+      gl::Defines list = defines(plan);
+      list.emplace_back("PHASE", phase);
+      Result<gl::Program> loaded = gl::Program::load({"methods/gauss_seidel.comp"}, list);
+      if (!loaded) return loaded.error();
+      *program = std::move(*loaded);
+    }
+    return ok();
+  }
+
+  void step_in_one_group(int row) {
+    whole_.use();
+    glUniform1i(whole_.uniform("start_row"), row);
+    glUniform1i(whole_.uniform("sweeps"), sweeps_);
+    dispatch(1);
+    wait_for_writes();
+  }
+
+  void step_in_phases(int row) {
+    std::size_t current = 0;
+    const auto run = [&](const gl::Program& program, std::uint32_t first, std::uint32_t end) {
+      glUniform1i(program.uniform("first"), static_cast<GLint>(first));
+      glUniform1i(program.uniform("end"), static_cast<GLint>(end));
+      dispatch(vertex_groups(end - first));
+      wait_for_writes();
+    };
+    const auto use = [&](const gl::Program& program, std::size_t read, std::size_t written) {
+      program.use();
+      glUniform1i(program.uniform("start_row"), row);
+      displacement_[read].bind(unit_displacement);
+      displacement_[written].buffer.bind_storage(slot_displacement);
+    };
+    use(begin_, current, current);
+    run(begin_, 0, vertex_count_);
+    for (int sweep = 0; sweep < sweeps_; ++sweep) {
+      use(visit_, current, current);
+      glUniform1i(visit_.uniform("sweep"), sweep);
+      for (std::uint32_t colour = 0; colour < work_.colours(); ++colour)
+        run(visit_, work_.offsets[colour], work_.offsets[colour + 1]);
+      if (!contacts_) continue;
+      use(meet_, current, 1 - current);
+      run(meet_, 0, vertex_count_);
+      current = 1 - current;
+    }
+    use(finish_, current, current);
+    run(finish_, 0, vertex_count_);
+  }
+
+  bool by_vertex_, contacts_, one_group_ = false;
+  std::uint32_t vertex_count_;
+  int sweeps_ = 1;
+  model::Colouring work_;  ///< springs, or vertices, to visit
+  gl::Program whole_, begin_, visit_, meet_, finish_;
+  std::array<gl::TextureBuffer, 2> displacement_;  ///< a pass of contacts reads one and writes the other
+  gl::TextureBuffer projected_, gains_, visited_;
+  gl::Buffer multipliers_, pushed_, velocity_before_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Integrator>> make_gauss_seidel(const Surroundings& around, const Plan& plan) {
+  return GaussSeidel::create(around, plan);
+}
+
+}  // namespace clothlab::sim

@@ -1,0 +1,90 @@
+// PBD, XPBD and VBD: a step begins with a guess of how far each vertex will move; sweeps over the springs (or the vertices),
+// colour after colour, improve it, each followed by a pass of contacts; at the end it becomes the new state. What has one
+// colour touches nothing else of that colour, so the outcome depends on no order of threads (server/model/colouring.h).
+// In two forms, for small cloths and for large: ONE_GROUP is the whole step in one work group, which waits for itself at
+// barriers; else each PHASE, and each colour, is a dispatch.
+#include "gather.glsl"
+#include "step_end.glsl"
+#include "../collide/colliders.glsl"
+#include "displacement.glsl"
+#ifdef BY_VERTEX
+#include "vertex_descent.glsl"
+#else
+#include "spring_projection.glsl"
+#endif
+#include "sweep_contacts.glsl"
+
+void begin(int i) {
+  vec4 x = FETCH(position, i), v = FETCH(velocity, i);
+  vec3 there, moving;
+  if (x.w > 0.0) {
+    displace(i, vec4(first_displacement(i, v.xyz), v.w));
+  } else {
+    follow_motion(i, v.w, END_ROW, there, moving);
+    displace(i, vec4(there - x.xyz, 0.0));
+  }
+}
+
+/// A vertex that hits a surface leaves it with its share of the velocity; what gravity gives in two steps is no impact.
+vec3 rebound(vec3 x, vec3 v_start, vec3 v) {
+  vec3 free = x + free_displacement(v_start), unused = v_start;
+  RARELY(resolve_colliders(x, free, unused, 0.0) > 0) {
+    float approach = dot(met_velocity - v_start, met_normal);
+    if (met_surface.y > 0.0 && approach > 2.0 * dt * length(gravity.xyz))
+      v += met_normal * (met_surface.y * approach - dot(v - met_velocity, met_normal));
+  }
+  return v;
+}
+
+void finish(int i) {
+  vec4 x = FETCH(position, i), v = FETCH(velocity, i), d = displacement(i);
+  vec3 x_next, v_next;
+  float tag = v.w;
+  if (x.w > 0.0) {
+    x_next = x.xyz + d.xyz;
+    v_next = d.xyz / dt;
+#if SPHERE_COUNT + PLANE_COUNT > 0
+    v_next = rebound(x.xyz, v.xyz, v_next);
+#endif
+    tag = d.w;
+  } else {
+    follow_motion(i, tag, END_ROW, x_next, v_next);
+  }
+  end_step(i, vec4(x_next, x.w), vec4(v_next, tag));
+}
+
+#ifdef ONE_GROUP
+uniform int sweeps;
+uniform int colour_first[COLOUR_COUNT + 1];  // item
+
+#define EACH(item, first, end) int item = first + int(gl_LocalInvocationID.x); item < end; item += GROUP_SIZE
+void wait() {
+  groupMemoryBarrier();
+  barrier();
+}
+
+void main() {
+  for (EACH(i, 0, VERTEX_COUNT)) begin(i);
+  wait();
+  for (sweep = 0; sweep < sweeps; ++sweep) {
+    for (int colour = 0; colour < COLOUR_COUNT; ++colour) {
+      for (EACH(item, colour_first[colour], colour_first[colour + 1])) visit(item);
+      wait();
+    }
+#ifdef CONTACTS
+    copy_written = DISPLACEMENTS - 1 - copy_read;
+    for (EACH(i, 0, VERTEX_COUNT)) meet(i);
+    copy_read = copy_written;
+    wait();
+#endif
+  }
+  for (EACH(i, 0, VERTEX_COUNT)) finish(i);
+}
+#else
+uniform int first, end;  // items
+
+void main() {
+  int item = first + int(gl_GlobalInvocationID.x);
+  if (item < end) PHASE(item);
+}
+#endif

@@ -1,0 +1,52 @@
+// Contacts within the iteration, after each sweep over the springs: every vertex at once, from the displacements as the sweep
+// left them, so that no order matters. Several pairs at once would add up to more than is needed: each is scaled by the
+// larger of the two vertices' contact counts of the pass before, at least 2.
+#ifdef SELF_COLLISION
+READ_UINT(neighbour_count, 4);
+READ_UVEC2(neighbours, 5);
+uniform float self_friction;
+
+/// Of an overlap at the step's start [1/s]: what is mended becomes velocity.
+const float mending = 20.0;
+
+/// What the vertices that touch it push it by [m].
+vec3 push_of_pairs(int i, vec4 x, vec4 d, inout int touched) {
+  vec3 push = vec3(0.0);
+  int count = int(FETCH_UINT(neighbour_count, i));
+  for (int slot = 0; slot < count; ++slot) {
+    uvec2 neighbour = FETCH_UVEC2(neighbours, i * NEIGHBOUR_SLOTS + slot);
+    vec4 y = FETCH(position, neighbour.x), e = displacement(neighbour.x);
+    vec3 before = x.xyz - y.xyz, correction;
+    if (!pair_contact(before, before + (d.xyz - e.xyz), uintBitsToFloat(neighbour.y), self_friction,
+                      min(0.2, mending * dt), correction))
+      continue;
+    ++touched;
+    push += (x.w / (x.w + y.w) / max(2.0, max(d.w, e.w))) * correction;
+  }
+  return push;
+}
+#endif
+
+void meet(int i) {
+  vec4 x = FETCH(position, i), d = displacement(i);
+  if (x.w == 0.0) {
+    displace(i, d);
+    return;
+  }
+  int touched = 0;
+#ifdef SELF_COLLISION
+  vec3 push = push_of_pairs(i, x, d, touched);
+  d.xyz += push;
+#ifdef BY_VERTEX
+  pushed[i].xyz += push;
+#endif
+#endif
+  vec3 wanted = x.xyz + d.xyz, stopped = wanted, v = vec3(0.0);
+  int met = resolve_colliders(x.xyz, stopped, v, 0.0);
+  RARELY(met > 0) {
+    vec3 back = stopped - wanted;
+    d.xyz += back;
+    d.xyz -= friction_displacement(d.xyz - dt * met_velocity, met_normal, met_surface.x, dot(back, met_normal));
+  }
+  displace(i, vec4(d.xyz, float(touched + met)));
+}

@@ -1,0 +1,73 @@
+// VBD: Chen et al. 2024. A visit to a vertex takes one Newton step on implicit Euler's objective with all other vertices held
+// (their equation 9), the part of the Hessian that a compressed spring makes indefinite left out. A collider in the way is
+// met with the vertex's own block: it pushes as hard as it must, and friction follows from that.
+#include "blocks.glsl"
+READ_UINT(visited, 12);  // vertices, colour after colour
+layout(std430, binding = 6) buffer VelocityBefore { vec4 velocity_before[]; };  // at the last step's start; w: 0 if there was none
+#ifdef SELF_COLLISION
+layout(std430, binding = 5) coherent buffer Pushed { vec4 pushed[]; };  // by self-collision since the step's start [m]
+#endif
+
+/// Their adaptive guess (section 3.7): as much of gravity as the vertex has followed of late, so that a cloth at rest starts
+/// from rest.
+vec3 first_displacement(int i, vec3 v) {
+  vec4 before = velocity_before[i];
+  velocity_before[i] = vec4(v, 1.0);
+#ifdef SELF_COLLISION
+  pushed[i] = vec4(0.0);
+#endif
+  if (before.w == 0.0) return free_displacement(v);
+  float squared = dot(gravity.xyz, gravity.xyz);
+  float followed = squared > 0.0 ? clamp(dot(v - before.xyz, gravity.xyz) / (dt * squared), 0.0, 1.0) : 0.0;
+  return dt * (v + (dt * followed) * gravity.xyz);
+}
+
+/// Stops the step of a vertex, x + d to x + d + descent, at the colliders; a, b: its block.
+void stop(vec3 x, vec3 d, vec3 a, vec3 b, inout vec3 descent) {
+  vec3 wanted = x + d + descent, stopped = wanted, v = vec3(0.0);
+  RARELY(resolve_colliders(x, stopped, v, 0.0) > 0) {
+    float depth = dot(stopped - wanted, met_normal);
+    vec3 give = solve_block(a, b, met_normal);
+    float impulse = depth / dot(met_normal, give);
+    descent += impulse * give;
+    vec3 sliding = d + descent - dt * met_velocity;
+    sliding -= met_normal * dot(met_normal, sliding);
+    float distance_slid = length(sliding);
+    vec3 along = sliding / max(distance_slid, 1e-30);
+    float taken = min(distance_slid, met_surface.x * impulse * dot(along, solve_block(a, b, along)));
+    descent -= along * taken;
+  }
+}
+
+void visit(int item) {
+  int i = int(FETCH_UINT(visited, item));
+  vec4 x = FETCH(position, i), d = displacement(i);
+  if (x.w == 0.0) return;
+  float inertia = 1.0 / (x.w * mobility);
+  vec3 target = free_displacement(FETCH(velocity, i).xyz);
+#ifdef SELF_COLLISION
+  target += pushed[i].xyz;
+#endif
+  vec3 residual = inertia * (target - d.xyz), diagonal = vec3(inertia), corner = vec3(0.0);
+  SpringRange range = spring_range(i);
+  for (int entry = range.first; entry < range.end; entry += SLICE_SIZE) {
+    uvec4 s = FETCH(springs, entry);
+    vec3 moved = d.xyz - displacement(s.x).xyz, n;
+    vec3 apart = (x.xyz - FETCH(position, s.x).xyz) + moved;
+    float rest_length = uintBitsToFloat(s.y), damping = dt * uintBitsToFloat(s.w), along, across;
+    spring_hessian(apart, vec3(0.0), rest_length, uintBitsToFloat(s.z), n, along, across);
+    along *= dt * dt;
+    across = dt * dt * max(across, 0.0);
+    residual -= (along * (dot(n, apart) - rest_length) + damping * dot(n, moved)) * n;
+    float more = along + damping - across;
+    diagonal += across + more * n * n;
+    corner += more * n.xxy * n.yzz;
+  }
+  vec3 a, b;
+  factorise(diagonal, corner, inertia, a, b);
+  vec3 descent = solve_block(a, b, residual);
+#if SPHERE_COUNT + PLANE_COUNT > 0
+  stop(x.xyz, d.xyz, a, b, descent);
+#endif
+  displace(i, d.xyz + descent);
+}
