@@ -8,6 +8,8 @@
 #include <glm/trigonometric.hpp>
 #include <numbers>
 
+#include "server/scene/method.h"
+
 namespace clothlab::sim {
 
 namespace {
@@ -16,11 +18,8 @@ constexpr double growth_that_proves = 4.0, proved_already = 1.0;
 constexpr int patience = 60;           // judgements, about a second of frames
 constexpr double share_of_good = 0.1;  // of what is allowed
 
-double moving_energy(const Diagnostics& state) {
-  return state.kinetic + state.elastic;
-}
 double total(const Diagnostics& state) {
-  return moving_energy(state) + state.gravitational;
+  return state.kinetic + state.elastic + state.gravitational;
 }
 bool finite(const Diagnostics& state) {
   return state.finite && std::isfinite(total(state));
@@ -93,6 +92,7 @@ Allowance allowance(const scene::Scene& scene, const model::Model& model, double
   allowed.slack =
       mass * (0.25 * glm::length(scene.gravity) * cloth.size + 2.0 * speed * speed) + spring_energy;
   allowed.ratio = stable_swing(scene.solver.dt, dt_limit);
+  allowed.stretch = !scene::sweeps(scene.solver.method);
   allowed.growth = scene.solver.dt > dt_limit ? proved_already : growth_that_proves;
   return allowed;
 }
@@ -110,9 +110,9 @@ void BlowUp::start(const Allowance& allowance, const Diagnostics& state) {
 }
 
 void BlowUp::rebase(const Diagnostics& state) {
-  const double before = moving_energy(last_);
+  const double before = growing_energy(last_);
   ledger_ += total(state) - total(last_);
-  if (before > 0.0) doubted_energy_ *= moving_energy(state) / before;
+  if (before > 0.0) doubted_energy_ *= growing_energy(state) / before;
   last_ = state;
 }
 
@@ -136,7 +136,7 @@ BlowUp::Verdict BlowUp::judge(const Diagnostics& state) {
   ledger_ += work;
   const double there_is = std::max(0.0, ledger_ - state.gravitational);
   const double beyond = (allowance_.ratio - 1.0) * there_is + allowance_.slack;
-  const double excess = moving_energy(state) - there_is;
+  const double excess = growing_energy(state) - there_is;
   ledger_ = std::min(ledger_, total(state));
   last_ = state;
   if (excess > beyond) return doubt(state);
@@ -148,7 +148,7 @@ BlowUp::Verdict BlowUp::judge(const Diagnostics& state) {
 }
 
 BlowUp::Verdict BlowUp::doubt(const Diagnostics& state) {
-  const double energy = moving_energy(state);
+  const double energy = growing_energy(state);
   if (doubted_energy_ == 0.0) {
     doubted_energy_ = energy;
     doubted_for_ = 0;
@@ -169,9 +169,10 @@ std::string BlowUp::reason() const {
                   last_good_.time, last_.time);
   else
     std::snprintf(text, sizeof text,
-                  "the energy of motion and stretch grew from %.3g J at t = %.4g s to %.3g J at t = %.4g s, "
+                  "the energy of motion%s grew from %.3g J at t = %.4g s to %.3g J at t = %.4g s, "
                   "with at most %.3g J of work done on the cloth and %.3g J of fall",
-                  moving_energy(last_good_), last_good_.time, moving_energy(last_), last_.time, work_,
+                  allowance_.stretch ? " and stretch" : "", growing_energy(last_good_), last_good_.time,
+                  growing_energy(last_), last_.time, work_,
                   std::max(0.0, last_good_.gravitational - last_.gravitational));
   return text;
 }

@@ -15,12 +15,15 @@ struct Allowance {
   double growth = 4;          ///< from where a doubt begins to where it is proved; 1 beyond the step limit
   double pin_speed = 0;       ///< of the fastest pin [m/s]
   double collider_speed = 0;  ///< of the fastest point of a collider near the cloth [m/s]
+  bool stretch = true;        ///< whether elastic energy counts as growth
 };
 
 /// The slack is the scene's own scale of energy: the cloth lifted by a quarter of its size, set moving as
 /// fast as what moves it, each vertex pushed as far as self-collision does in a step, and what float32 rounds
 /// away. The ratio is how far the energy of a stable vibration swings under symplectic Euler at this share of
-/// the step limit, (1 + s) / (1 - s) with s = dt / dt_limit.
+/// the step limit, (1 + s) / (1 - s) with s = dt / dt_limit. What sweeps too few times holds the cloth with
+/// less than its stiffness: it stretches far, and by that stiffness with more energy than anybody gave, which
+/// is no blow-up; only motion is.
 Allowance allowance(const scene::Scene& scene, const model::Model& model, double dt_limit);
 
 /// Whether a change of scene may change the energy of a state, as one of dt cannot.
@@ -54,11 +57,14 @@ class BlowUp {
  private:
   double work_since_last(const Diagnostics& state) const;
   Verdict doubt(const Diagnostics& state);
+  double growing_energy(const Diagnostics& state) const {
+    return state.kinetic + (allowance_.stretch ? state.elastic : 0.0);
+  }
 
   Allowance allowance_;
   double ledger_ = 0;          ///< [J]
   double work_ = 0;            ///< since the last good state [J]
-  double doubted_energy_ = 0;  ///< kinetic + elastic when the doubt began [J]; 0: no doubt
+  double doubted_energy_ = 0;  ///< what grew when the doubt began [J]; 0: no doubt
   int doubted_for_ = 0;        ///< judgements
   Diagnostics last_, last_good_;
 };

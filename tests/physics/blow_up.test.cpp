@@ -3,6 +3,7 @@
 #include "server/sim/blow_up.h"
 
 #include "server/model/stability.h"
+#include "server/scene/method.h"
 #include "tests/physics/stage.h"
 
 using namespace clothlab;
@@ -60,6 +61,21 @@ TEST_CASE("the seed at 0.9 of its limit holds under every method that has one, b
       INFO("method " << static_cast<int>(method) << ", share " << share << ", at " << simulation->time());
       CHECK((run.verdict == Verdict::blown_up) == (share > 1.0));
     }
+  }
+}
+
+TEST_CASE("a cloth that too few sweeps leave soft as rubber is no blow-up") {
+  const auto context = test::context();
+  for (const scene::Method method : {scene::Method::pbd, scene::Method::xpbd, scene::Method::vbd}) {
+    scene::Scene scene = test::seed();
+    const auto simulation = test::simulation(scene);
+    simulation->step(100);
+    scene.solver = {method, 1.0 / 60, 1, 1e-4};
+    REQUIRE(simulation->change(scene));
+    const Watched run = watch(*simulation, 3.0, 1);
+    INFO(scene::name(method) << ": " << run.good << " of " << run.looks << " good");
+    CHECK(run.verdict != Verdict::blown_up);
+    CHECK(run.good > 0.9 * run.looks);
   }
 }
 

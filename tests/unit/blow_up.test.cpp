@@ -137,6 +137,25 @@ TEST_CASE("a jump in energy that does not grow on is doubted for a while, then t
   CHECK(blow_up.judge(state) == Verdict::good);
 }
 
+TEST_CASE("a method that may be softer than the cloth is judged by its motion, not by its stretch") {
+  sim::Allowance allowance = allowed(0.5);
+  for (const bool stretch : {true, false}) {
+    for (double sim::Diagnostics::*energy : {&sim::Diagnostics::elastic, &sim::Diagnostics::kinetic}) {
+      allowance.stretch = stretch;
+      sim::Diagnostics state;
+      sim::BlowUp blow_up;
+      blow_up.start(allowance, state);
+      bool found = false;
+      for (int i = 0; i < 100; ++i) {
+        state.time += 1.0 / 60.0;
+        state.*energy = 1e-3 * std::exp(0.5 * i);
+        found = found || blow_up.judge(state) == Verdict::blown_up;
+      }
+      CHECK(found == (stretch || energy == &sim::Diagnostics::kinetic));
+    }
+  }
+}
+
 TEST_CASE("what is not finite has blown up, and the reason says between which times") {
   sim::BlowUp blow_up;
   sim::Diagnostics state;
