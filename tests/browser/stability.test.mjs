@@ -90,6 +90,40 @@ browserTest("another method is chosen from the panel, says what to expect of it,
   await client.close();
 });
 
+browserTest("PBD, XPBD and VBD have no limit and no tolerance, say what iterations are good for, and PBD what its stiffness is", async () => {
+  const { viewer, client, gauge, solver } = await both("sweeps");
+  const choice = viewer.page.getByRole("combobox", { name: "method" });
+  const notes = () => viewer.page.locator(".note:visible").allInnerTexts();
+  const trades = new Set();
+  for (const name of ["VBD", "XPBD", "PBD"]) {
+    await choice.selectOption(name);
+    await eventually(name, async () => (await solver()).method, (method) => method === name.toLowerCase());
+    await eventually("no limit", gauge, ({ says, text }) => says === "Stable at any time step" && !text.includes("limit"));
+    await viewer.slider("Solver", "iterations");
+    assert.equal(await viewer.input("range", "Solver", "tolerance").count(), 0, `${name} has no tolerance`);
+    trades.add((await eventually("its own trade", notes, ([, trade]) => trade && !trades.has(trade)))[1]);
+  }
+  // The figures are the server's, and follow the iterations as well as the stiffness.
+  const told = async () => (await eventually("the note", notes, (texts) => texts.length === 3))[2];
+  const shown = async () => {
+    const { pbd_stiffness: [{ structural, shear, bend }] } = (await client.nextNotification("sim.status")).solver;
+    const percent = (share) => `${Number((100 * share).toPrecision(2))}\u00a0%`;
+    const expected = `structural\u00a0${percent(structural)}, shear\u00a0${percent(shear)}, bend\u00a0${percent(bend)}`;
+    await eventually(expected, told, (text) => text.includes(expected));
+    return structural;
+  };
+  const ten = await shown();
+  await viewer.page.getByRole("button", { name: "Use 0.001 s, 1 iteration" }).click();
+  await client.nextNotification("sim.status", (status) => status.solver.pbd_stiffness[0].structural > 5 * ten);
+  const one = await shown();
+  await press(viewer, "Cloth", "structural", "PageDown", 2);
+  await client.nextNotification("sim.status", (status) => status.solver.pbd_stiffness[0].structural < 0.9 * one);
+  await shown();
+  await choice.selectOption("Symplectic Euler");
+  await eventually("N/m again", notes, (texts) => texts.length === 1);
+  await client.close();
+});
+
 for (const [name, section, label] of [["time step", "Solver", "time step"], ["stiffness", "Cloth", "structural"]]) {
   browserTest(`the ${name}'s slider pushed past the limit: a notice says why, and its button makes the cloth hang again`, async () => {
     const { viewer, client, gauge, solver } = await both(`remedy-${section}`);
