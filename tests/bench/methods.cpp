@@ -47,8 +47,11 @@ std::uint32_t steps_a_round(const scene::Solver& solver, double vertices) {
 
 /// Bytes that the kernels of one step read and write for a vertex with `entries` springs, caches not counted:
 /// 16 for each spring entry, position, velocity or other vector, as the shaders of server/sim list them.
+/// `iterations`: of conjugate gradients, or sweeps; displacements count as memory, though a small cloth has
+/// them in its work group.
 double bytes_a_vertex(scene::Method method, double entries, double iterations) {
   const double vector = 16;
+  const double memory = method == scene::Method::xpbd ? 8 : 0;
   const double gather = entries * 3 * vector + 2 * vector;  // of each spring: entry, position, velocity
   switch (method) {
     case scene::Method::explicit_euler:
@@ -58,10 +61,12 @@ double bytes_a_vertex(scene::Method method, double entries, double iterations) {
       return gather + 4 * vector;
     case scene::Method::rk4:
       return 4 * gather + (3 + 5 + 5 + 7) * vector;
-    case scene::Method::implicit_euler:
     case scene::Method::pbd:
-    case scene::Method::xpbd:
+    case scene::Method::xpbd:  // begin and finish; springs and the pass of contacts of each sweep
+      return (3 + 5) * vector + iterations * (entries / 2 * (7 * vector + 8 + memory) + 3 * vector);
     case scene::Method::vbd:
+      return (5 + 5) * vector + iterations * (entries * 3 * vector + 4 * vector + 4);
+    case scene::Method::implicit_euler:
       break;
   }
   const double once = (3 + 6) * vector + (entries * 4 + 5 + 4) * vector +  // start, system
@@ -111,8 +116,9 @@ int main(int argc, char** argv) {
   for (Contestant& one : contestants) {
     const auto steps = static_cast<double>(one.simulation->step_index() - one.steps_before);
     const sim::SolverWork work = one.simulation->solver_work();
-    const double iterations =
+    const double cg_iterations =
         static_cast<double>(work.linear_iterations - one.work_before.linear_iterations) / steps;
+    const double sweeps = scene::sweeps(one.solver.method) ? one.solver.iterations : cg_iterations;
     const double entries = 2.0 * static_cast<double>(one.simulation->model().springs.size()) / vertices;
     std::printf(
         "{\"renderer\": \"%s\", \"side\": %d, \"method\": \"%s\", \"dt\": %g, \"iterations\": %d, "
@@ -121,7 +127,7 @@ int main(int argc, char** argv) {
         (*context)->device().name.c_str(), side, scene::name(one.solver.method), one.solver.dt,
         one.solver.iterations,
         static_cast<double>(one.simulation->dispatches() - one.dispatches_before) / steps,
-        bytes_a_vertex(one.solver.method, entries, iterations), iterations);
+        bytes_a_vertex(one.solver.method, entries, sweeps), cg_iterations);
     for (std::size_t i = 0; i < one.samples.size(); ++i) std::printf("%s%.2f", i ? ", " : "", one.samples[i]);
     std::puts("]}");
   }
