@@ -28,7 +28,7 @@ struct Balance {
 Balance balance(const SweepState& step, std::uint32_t i) {
   const World& world = step.world;
   const double mass = 1.0 / step.mobility[i], dt = step.dt;
-  Balance result{mass * (step.free[i] - step.displacement[i]), dmat3(mass)};
+  Balance result{mass * (step.free[i] + step.pushed[i] - step.displacement[i]), dmat3(mass)};
   const model::Adjacency& springs = world.model.vertex_springs;
   for (std::uint32_t slot = springs.offsets[i]; slot < springs.offsets[i + 1]; ++slot) {
     const model::Spring& spring = world.model.springs[springs.items[slot]];
@@ -55,9 +55,9 @@ dvec3 stopped_move(SweepState& step, std::uint32_t i, const dmat3& inverse, dvec
   const dvec3 trial = step.now(i) + move;
   dvec3 stopped = trial;
   Surface met;
-  const int count = stop_on_way(step.world, step.t, step.x[i], stopped, met);
-  if (!step.world.scene.self_collision) step.contacts[i] = count;  // else the contact pass counts
-  if (count == 0) return move;
+  step.met[i] = stop_on_way(step.world, step.t, step.x[i], stopped, met);
+  if (!step.world.scene.self_collision) step.contacts[i] = step.met[i];  // else the contact pass counts
+  if (step.met[i] == 0) return move;
   const dvec3& n = met.normal;
   const dvec3 response = inverse * n;
   const double impulse = glm::dot(stopped - trial, n) / glm::dot(n, response);
@@ -136,12 +136,12 @@ void contact_pass(SweepState& step) {
     if (step.mobility[i] == 0.0) continue;
     dvec3& d = step.displacement[i];
     d += push[i];
-    if (remembers) step.free[i] += push[i];
+    if (remembers) step.pushed[i] += push[i];
     const dvec3 trial = step.now(i);
     dvec3 stopped = trial;
     Surface met;
     const int count = stop_on_way(world, step.t, step.x[i], stopped, met);
-    contacts[i] += count;
+    contacts[i] += std::max(count, step.met[i]);  // VBD's visit has put it on the surface already
     if (count == 0) continue;
     d += stopped - trial;
     d -= elements::friction_displacement(d - step.dt * met.velocity, met.normal, met.friction,
