@@ -191,9 +191,12 @@ void Stepper::warn_if_slow(Clock::time_point now) {
   }
   if (slow_announced_ || now - slow_since_ < seconds(3)) return;
   slow_announced_ = true;
-  exchange_.emit(Notice{"warning",
-                        "this machine cannot keep up: time runs slower than asked for; a smaller cloth, a "
-                        "longer time step or a lower speed helps"});
+  const scene::Method method = document_.scene.solver.method;
+  const bool iterates = method == scene::Method::implicit_euler || scene::sweeps(method);
+  exchange_.emit(
+      Notice{"warning",
+             std::string("this machine cannot keep up: time runs slower than asked for; a smaller cloth, ") +
+                 (iterates ? "fewer iterations, " : "") + "a longer time step or a lower speed helps"});
 }
 
 void Stepper::warn_if_crowded() {

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { readdirSync, readFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
-import { browserTest, screenshots, withServer } from "./browser.mjs";
+import { browserTest, eventually, screenshots, withServer } from "./browser.mjs";
 
 const here = withServer();
 
@@ -42,6 +42,10 @@ for (const [width, height] of [[1280, 800], [360, 740]]) {
         assert.ok(await (await viewer.slider("Cloth", "structural")).isVisible());
         await viewer.page.screenshot({ path: `${screenshots}${width}x${height}-${colorScheme}-parameters.png` });
       }
+      await viewer.page.getByRole("combobox", { name: "method" }).selectOption("PBD");  // it has most to say
+      await eventually("notes", () => viewer.page.locator(".note:visible").count(), (count) => count === 3);
+      assert.deepEqual(await viewer.page.evaluate(cutOff), []);
+      await viewer.page.screenshot({ path: `${screenshots}${width}x${height}-${colorScheme}-pbd.png` });
       const forbidden = viewer.complaints.filter((text) => !/GPU stall|GL Driver Message/.test(text));
       assert.deepEqual(forbidden, [], "no violation of the content security policy, no error, no warning");
     });

@@ -206,7 +206,7 @@ function solverSection(document: SceneDocument, methods: string[]): Section {
       note: tradeOff,
     })] : [];
   if (iterations?.solves) iterating.push(number("tolerance", ["/solver/tolerance"], { min: 1e-8, max: 0.1, log: true },
-    { hint: "Where the conjugate gradients stop: the residual left, as a share of the first." }));
+    { hint: "Where the conjugate gradients stop: the residual left, as a share of the first. Very short steps ask for a smaller one: what is left adds up." }));
   return {
     key: "solver", title: "Solver", open: true, sections: [],
     fields: [

@@ -91,7 +91,7 @@ export class Gauge {
 }
 
 function explain(dt: number, limit: number | null): string {
-  if (limit === null) return "This method is stable at any time step; a long one damps the motion.";
+  if (limit === null) return "This method is stable at any time step; a long one damps the motion and asks for more iterations.";
   if (limit <= 0) return "Without damping this method gains energy at any time step: add damping, or choose another method.";
   return `time step ${readable(dt)} s, largest stable one ${readable(Number(limit.toPrecision(3)))} s.\n` +
     "It shrinks with stiffer springs, lighter vertices and more damping. Beyond it the cloth blows up.";

@@ -30,7 +30,7 @@ const texts: Record<string, MethodText> = {
     says: "First order, solves for the end of the step. Holds at any step, and damps the motion.",
     iterations: {
       most: 20, solves: true, suits: { dt: frame, iterations: 1 },
-      trade: "Each iteration is a Newton step: one linear solve. One is enough unless the cloth turns far within a step.",
+      trade: "Each iteration is a Newton step: one linear solve. One will do for short steps; a long one in which the cloth turns far asks for a few.",
     },
   },
   pbd: {
