@@ -1,6 +1,7 @@
 // Error against dt, the table of physics.md: the swinging 17 x 17 cloth at 0.3 s under symplectic Euler,
-// Verlet and RK4, by the reference in double precision and by the GPU in float32, against RK4 in double
-// precision at u/200 (u = sqrt(m/k)). Prints a JSON document.
+// Verlet, RK4, PBD, XPBD and VBD, by the reference in double precision and by the GPU in float32, against RK4
+// in double precision at u/200 (u = sqrt(m/k)). XPBD also as float32 is usually made to do it, by differences
+// of positions: what the GPU's displacements are for. Prints a JSON document.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -10,6 +11,7 @@
 #include "server/reference/trajectory.h"
 #include "server/scene/method.h"
 #include "server/sim/simulation.h"
+#include "tests/bench/float32_xpbd.h"
 #include "tests/small_scenes.h"
 
 using namespace clothlab;
@@ -41,11 +43,20 @@ int steps_of(double share) {
   return static_cast<int>(std::lround(end / (share * test::cloth_unit)));
 }
 
-void print_row(Method method, const char* precision, const std::vector<double>& errors, bool last) {
-  std::printf("  {\"method\": \"%s\", \"precision\": \"%s\", \"rms_error_m\": [", scene::name(method),
-              precision);
+struct Contestant {
+  Method method;
+  int iterations;  ///< 0 where it has none
+};
+
+void print_row(const Contestant& row, const char* precision, const std::vector<double>& errors) {
+  static bool first = true;
+  std::printf("%s  {\"method\": \"%s\", ", first ? "" : ",\n", scene::name(row.method));
+  first = false;
+  if (row.iterations) std::printf("\"iterations\": %d, ", row.iterations);
+  std::printf("\"precision\": \"%s\", \"rms_error_m\": [", precision);
   for (std::size_t i = 0; i < errors.size(); ++i) std::printf("%s%.2e", i ? ", " : "", errors[i]);
-  std::printf("]}%s\n", last ? "" : ",");
+  std::printf("]}");
+  std::fflush(stdout);
 }
 
 }  // namespace
@@ -70,19 +81,28 @@ int main() {
   for (const double share : shares)
     std::printf("%s%.4f", share == shares[0] ? "" : ", ", end / steps_of(share) / test::cloth_unit);
   std::printf("],\n \"rows\": [\n");
-  for (const Method method : {Method::symplectic_euler, Method::verlet, Method::rk4}) {
-    std::vector<double> float64, float32, rounding;
+  for (const Contestant& row :
+       {Contestant{Method::symplectic_euler, 0}, Contestant{Method::verlet, 0}, Contestant{Method::rk4, 0},
+        Contestant{Method::xpbd, 1}, Contestant{Method::xpbd, 10}, Contestant{Method::pbd, 10},
+        Contestant{Method::vbd, 10}}) {
+    std::vector<double> float64, float32, rounding, differences;
     for (const double share : shares) {
       const int steps = steps_of(share);
-      const scene::Scene scene = test::swinging_cloth(method, end / steps);
+      scene::Scene scene = test::swinging_cloth(row.method, end / steps);
+      if (row.iterations) scene.solver.iterations = row.iterations;
       const Positions ours = in_double(scene, steps), theirs = on_gpu(scene, steps);
       float64.push_back(reference::rms_distance(ours, exact));
       float32.push_back(reference::rms_distance(theirs, exact));
       rounding.push_back(reference::rms_distance(theirs, ours));
+      if (row.method == Method::xpbd && row.iterations == 1)
+        differences.push_back(reference::rms_distance(
+            bench::xpbd_by_differences(*reference::make_world(scene, 0.0), steps), exact));
     }
-    print_row(method, "float64, reference", float64, false);
-    print_row(method, "float32, GPU", float32, false);
-    print_row(method, "float32 - float64", rounding, method == Method::rk4);
+    print_row(row, "float64, reference", float64);
+    print_row(row, "float32, GPU", float32);
+    print_row(row, "float32 - float64", rounding);
+    if (!differences.empty()) print_row(row, "float32, differences of positions", differences);
   }
+  std::printf("\n");
   std::printf(" ]\n}\n");
 }
