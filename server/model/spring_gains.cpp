@@ -10,11 +10,11 @@ SpringGains spring_gains(const scene::Solver& solver, double stiffness, double d
   const double coupling = inverse_mass * (k + c);
   if (solver.method == scene::Method::xpbd) {
     const double share = 1.0 / (1.0 + coupling);
-    return {share * k, share * c, share};
+    return {share * k, share * c, share, inverse_mass * k};
   }
-  if (!(coupling > 0.0)) return {k, c, 0.0};
+  if (!(coupling > 0.0)) return {k, c, 0.0, 0.0};
   const double share = -std::expm1(-std::log1p(coupling) / solver.iterations) / coupling;
-  return {share * k, share * c, 0.0};
+  return {share * k, share * c, 0.0, 0.0};
 }
 
 namespace {

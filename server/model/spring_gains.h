@@ -13,6 +13,7 @@ namespace clothlab::model {
 struct SpringGains {
   double stretch = 0, damping = 0;  ///< [kg]
   double memory = 0;                ///< of what the spring has pushed in this step already, [0, 1)
+  double turning = 0;               ///< its stiffness over that of both ends' inertia; 0 without memory
 };
 
 /// XPBD: Macklin, Mueller & Chentanez 2016, equation 26, multiplied by stiffness dt^2, so that stiffnesses of

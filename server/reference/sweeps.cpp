@@ -104,13 +104,12 @@ void sweep_springs(SweepState& step) {
     const model::SpringGains gains = model::spring_gains(
         world.scene.solver, model::stiffness(material, spring.kind), material.damping, wa + wb);
     const dvec3 moved = step.displacement[a] - step.displacement[b];
-    dvec3 n;
-    const double push =
+    const dvec3 push =
         elements::spring_projection((step.x[a] - step.x[b]) + moved, moved, spring.rest_length, gains.stretch,
-                                    gains.damping, gains.memory, step.multiplier[s], n);
-    step.multiplier[s] += push;
-    step.displacement[a] += wa * push * n;
-    step.displacement[b] -= wb * push * n;
+                                    gains.damping, gains.memory, gains.turning, step.spring_pushed[s]);
+    if (gains.memory > 0.0) step.spring_pushed[s] += push;
+    step.displacement[a] += wa * push;
+    step.displacement[b] -= wb * push;
   }
 }
 

@@ -8,15 +8,15 @@ namespace clothlab::reference {
 /// A step under way. All displacements are from the step's start.
 struct SweepState {
   const World& world;
-  double t, dt;                     ///< [s], of the step's start and its length
-  std::vector<dvec3> x, v;          ///< [vertex_count] at the step's start [m], [m/s]
-  std::vector<dvec3> displacement;  ///< [vertex_count] so far [m]; of pinned vertices the whole step's
-  std::vector<dvec3> free;          ///< [vertex_count] what inertia, gravity and air drag alone would do [m]
-  std::vector<dvec3> pushed;        ///< [vertex_count] VBD: by self-collision so far [m]
-  std::vector<double> mobility;     ///< [vertex_count] 1 / ((1 + dt air drag) mass) [1/kg], 0 if pinned
-  std::vector<double> multiplier;   ///< [spring_count] XPBD: what each spring has pushed in this step [kg m]
-  std::vector<int> met;             ///< [vertex_count] VBD: colliders met at the last visit
-  std::vector<int> contacts;        ///< [vertex_count] counted in the last pass; 0 if pinned
+  double t, dt;                      ///< [s], of the step's start and its length
+  std::vector<dvec3> x, v;           ///< [vertex_count] at the step's start [m], [m/s]
+  std::vector<dvec3> displacement;   ///< [vertex_count] so far [m]; of pinned vertices the whole step's
+  std::vector<dvec3> free;           ///< [vertex_count] what inertia, gravity and air drag alone would do [m]
+  std::vector<dvec3> pushed;         ///< [vertex_count] VBD: by self-collision so far [m]
+  std::vector<double> mobility;      ///< [vertex_count] 1 / ((1 + dt air drag) mass) [1/kg], 0 if pinned
+  std::vector<dvec3> spring_pushed;  ///< [spring_count] XPBD: by each spring so far, on its first end [kg m]
+  std::vector<int> met;              ///< [vertex_count] VBD: colliders met at the last visit
+  std::vector<int> contacts;         ///< [vertex_count] counted in the last pass; 0 if pinned
 
   dvec3 now(std::size_t vertex) const { return x[vertex] + displacement[vertex]; }
 };

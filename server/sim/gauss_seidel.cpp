@@ -14,7 +14,7 @@ namespace clothlab::sim {
 namespace {
 
 constexpr GLuint unit_displacement = 9, unit_projected = 10, unit_gains = 11, unit_visited = 12;
-constexpr GLuint slot_displacement = 3, slot_multipliers = 4, slot_pushed = 5, slot_velocity_before = 6;
+constexpr GLuint slot_displacement = 3, slot_spring_pushes = 4, slot_pushed = 5, slot_velocity_before = 6;
 
 gl::TextureBuffer per_vertex(std::uint32_t vertex_count) {
   return {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
@@ -36,6 +36,7 @@ class GaussSeidel : public Integrator {
       if (!program->id()) continue;
       set_step_uniforms(*program, around);
       glProgramUniform1f(program->id(), program->uniform("mobility"), mobility);
+      glProgramUniform1i(program->id(), program->uniform("last_sweep"), sweeps_ - 1);
     }
     if (by_vertex_) return;
     const ProjectedSprings springs = projected_springs(work_, around.model, around.scene);
@@ -52,7 +53,7 @@ class GaussSeidel : public Integrator {
     } else {
       projected_.bind(unit_projected);
       gains_.bind(unit_gains);
-      multipliers_.bind_storage(slot_multipliers);
+      spring_pushes_.bind_storage(slot_spring_pushes);
     }
     if (one_group_)
       step_in_one_group(row);
@@ -79,7 +80,7 @@ class GaussSeidel : public Integrator {
       velocity_before_ = gl::Buffer(vertex_count_ * 4 * sizeof(float));
       if (contacts_) pushed_ = gl::Buffer(vertex_count_ * 4 * sizeof(float));
     } else {
-      multipliers_ = gl::Buffer(std::max<std::size_t>(work_.order.size(), 1) * sizeof(float));
+      spring_pushes_ = gl::Buffer(std::max<std::size_t>(work_.order.size(), 1) * 4 * sizeof(float));
     }
     if (one_group_) return;
     for (gl::TextureBuffer& displacement : displacement_) displacement = per_vertex(vertex_count_);
@@ -125,7 +126,6 @@ class GaussSeidel : public Integrator {
   void step_in_one_group(int row) {
     whole_.use();
     glUniform1i(whole_.uniform("start_row"), row);
-    glUniform1i(whole_.uniform("sweeps"), sweeps_);
     dispatch(1);
     wait_for_writes();
   }
@@ -167,7 +167,7 @@ class GaussSeidel : public Integrator {
   gl::Program whole_, begin_, visit_, meet_, finish_;
   std::array<gl::TextureBuffer, 2> displacement_;  ///< a pass of contacts reads one and writes the other
   gl::TextureBuffer projected_, gains_, visited_;
-  gl::Buffer multipliers_, pushed_, velocity_before_;
+  gl::Buffer spring_pushes_, pushed_, velocity_before_;
 };
 
 }  // namespace

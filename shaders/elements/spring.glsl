@@ -42,16 +42,21 @@ FUNCTION real spring_strain(vec3 x, vec3 y, real rest_length) {
 }
 
 /// One visit of a Gauss-Seidel sweep to a spring, in PBD and XPBD (Mueller et al. 2007, section 3.3; Macklin et al. 2016,
-/// equations 18 and 26): how much more it now pushes its ends apart along n, as an impulse times dt [kg m]. `d` is
-/// the difference of its ends as they are now, `moved` how that has changed since the step's start, `multiplier` what it
-/// has pushed since then. The gains follow from stiffness, damping, masses and dt: server/model/spring_gains.h.
-FUNCTION real spring_projection(vec3 d, vec3 moved, real rest_length, real stretch_gain, real damping_gain,
-                                real memory, real multiplier, OUT(vec3) n) {
+/// equations 18 and 26): what more it gives its first end and takes from its second, as an impulse times dt [kg m]. `d` is
+/// the difference of its ends as they are now, `moved` how that has changed since the step's start, `pushed` what it has
+/// given since then. The gains follow from stiffness, damping, masses and dt: server/model/spring_gains.h.
+/// What was given along a direction that the spring no longer has is turned to the one it has now; XPBD as published leaves
+/// it, and so ends beside implicit Euler's solution when springs turn within a step. `turning` = w k dt^2, with w the sum of
+/// the ends' inverse masses, takes into account that the spring itself resists (Newton's method, if it is stretched).
+FUNCTION vec3 spring_projection(vec3 d, vec3 moved, real rest_length, real stretch_gain, real damping_gain,
+                                real memory, real turning, vec3 pushed) {
   real length_squared = dot(d, d);
-  n = vec3(real(0.0));
-  if (!(length_squared > real(0.0))) return real(0.0);
+  if (!(length_squared > real(0.0))) return vec3(real(0.0));
   real inverse_length = real(1.0) / sqrt(length_squared);
-  n = d * inverse_length;
-  return -(stretch_gain * (length_squared * inverse_length - rest_length) + damping_gain * dot(n, moved) +
-           memory * multiplier);
+  vec3 n = d * inverse_length;
+  real stretch = length_squared * inverse_length - rest_length;
+  real along = dot(n, pushed);
+  real change = -(stretch_gain * stretch + damping_gain * dot(n, moved) + memory * along);
+  real resisted = turning * inverse_length * max(stretch, -stretch);
+  return n * change - (pushed - n * along) * (real(1.0) / (real(1.0) + resisted));
 }

@@ -22,6 +22,7 @@ void displace(uint i, vec4 d) { displacement_written[i] = d; }
 void displace(uint i, vec3 d) { displacement_written[i].xyz = d; }
 #endif
 
+uniform int last_sweep;
 uniform float mobility;  // 1 / (1 + dt air drag): air drag as if mass were more
 
 /// Where inertia and gravity take a free vertex, if nothing is in its way.

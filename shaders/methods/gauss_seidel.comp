@@ -54,7 +54,6 @@ void finish(int i) {
 }
 
 #ifdef ONE_GROUP
-uniform int sweeps;
 uniform int colour_first[COLOUR_COUNT + 1];  // item
 
 #define EACH(item, first, end) int item = first + int(gl_LocalInvocationID.x); item < end; item += GROUP_SIZE
@@ -66,7 +65,7 @@ void wait() {
 void main() {
   for (EACH(i, 0, VERTEX_COUNT)) begin(i);
   wait();
-  for (sweep = 0; sweep < sweeps; ++sweep) {
+  for (sweep = 0; sweep <= last_sweep; ++sweep) {
     for (int colour = 0; colour < COLOUR_COUNT; ++colour) {
       for (EACH(item, colour_first[colour], colour_first[colour + 1])) visit(item);
       wait();

@@ -48,5 +48,8 @@ void meet(int i) {
     d.xyz += back;
     d.xyz -= friction_displacement(d.xyz - dt * met_velocity, met_normal, met_surface.x, dot(back, met_normal));
   }
+#if defined(SELF_COLLISION) && defined(BY_VERTEX)
+  met = max(met, int(pushed[i].w));
+#endif
   displace(i, vec4(d.xyz, float(touched + met)));
 }

@@ -5,7 +5,7 @@
 READ_UINT(visited, 12);  // vertices, colour after colour
 layout(std430, binding = 6) buffer VelocityBefore { vec4 velocity_before[]; };  // at the last step's start; w: 0 if there was none
 #ifdef SELF_COLLISION
-layout(std430, binding = 5) coherent buffer Pushed { vec4 pushed[]; };  // by self-collision since the step's start [m]
+layout(std430, binding = 5) coherent buffer Pushed { vec4 pushed[]; };  // by self-collision since the step's start [m], w: colliders met at the last visit
 #endif
 
 /// Their adaptive guess (section 3.7): as much of gravity as the vertex has followed of late, so that a cloth at rest starts
@@ -16,16 +16,17 @@ vec3 first_displacement(int i, vec3 v) {
 #ifdef SELF_COLLISION
   pushed[i] = vec4(0.0);
 #endif
-  if (before.w == 0.0) return free_displacement(v);
   float squared = dot(gravity.xyz, gravity.xyz);
-  float followed = squared > 0.0 ? clamp(dot(v - before.xyz, gravity.xyz) / (dt * squared), 0.0, 1.0) : 0.0;
-  return dt * (v + (dt * followed) * gravity.xyz);
+  if (before.w == 0.0 || squared == 0.0) return free_displacement(v);
+  float followed = clamp(dot(v / mobility - before.xyz, gravity.xyz) / (dt * squared), 0.0, 1.0);
+  return mobility * dt * (v + (dt * followed) * gravity.xyz);
 }
 
-/// Stops the step of a vertex, x + d to x + d + descent, at the colliders; a, b: its block.
-void stop(vec3 x, vec3 d, vec3 a, vec3 b, inout vec3 descent) {
+/// Stops the step of a vertex, x + d to x + d + descent, at the colliders; a, b: its block. Returns how many it meets.
+int stop(vec3 x, vec3 d, vec3 a, vec3 b, inout vec3 descent) {
   vec3 wanted = x + d + descent, stopped = wanted, v = vec3(0.0);
-  RARELY(resolve_colliders(x, stopped, v, 0.0) > 0) {
+  int met = resolve_colliders(x, stopped, v, 0.0);
+  RARELY(met > 0) {
     float depth = dot(stopped - wanted, met_normal);
     vec3 give = solve_block(a, b, met_normal);
     float impulse = depth / dot(met_normal, give);
@@ -37,6 +38,7 @@ void stop(vec3 x, vec3 d, vec3 a, vec3 b, inout vec3 descent) {
     float taken = min(distance_slid, met_surface.x * impulse * dot(along, solve_block(a, b, along)));
     descent -= along * taken;
   }
+  return met;
 }
 
 void visit(int item) {
@@ -66,8 +68,11 @@ void visit(int item) {
   vec3 a, b;
   factorise(diagonal, corner, inertia, a, b);
   vec3 descent = solve_block(a, b, residual);
-#if SPHERE_COUNT + PLANE_COUNT > 0
-  stop(x.xyz, d.xyz, a, b, descent);
-#endif
+  int met = stop(x.xyz, d.xyz, a, b, descent);
+#ifdef SELF_COLLISION
+  pushed[i].w = float(met);
   displace(i, d.xyz + descent);
+#else
+  displace(i, vec4(d.xyz + descent, float(met)));
+#endif
 }
