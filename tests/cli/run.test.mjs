@@ -40,6 +40,16 @@ test("the report counts what implicit Euler's solver and the strain limit did", 
   assert.ok(!("solver" in report("report.json")) && !("strain_limit" in report("report.json")));
 });
 
+test("what sweeps a given number of times has nothing to report of its solver, and no limit to warn of", () => {
+  for (const method of ["pbd", "xpbd", "vbd"]) {
+    const { stderr } = run("seed", "--time", "0.033", "--report", "report.json", "--set", `/solver/method=${method}`,
+      "--set", "/solver/dt=0.0165", "--set", "/solver/iterations=2");
+    assert.equal(stderr, "");
+    const r = report("report.json");
+    assert.ok(r.passes.includes(method) && !("solver" in r), JSON.stringify(r));
+  }
+});
+
 test("two processes reach the same state to the bit, whatever else they write", () => {
   run("seed", "--time", "0.3", "--report", "plain.json");
   run("seed", "--time", "0.3", "--report", "watched.json", "--trace", "w.csv", "--out", "w.obj", "--every", "0.017");
