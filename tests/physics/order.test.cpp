@@ -80,7 +80,10 @@ TEST_CASE("one spring: every method has its order, in float32 down to a micromet
                 {Method::symplectic_euler, 100, 4, 2e-6},
                 {Method::verlet, 20, 4, 1e-6},
                 {Method::rk4, 12, 2, 1e-6},
-                {Method::implicit_euler, 100, 4, 5e-6}});
+                {Method::implicit_euler, 100, 4, 5e-6},
+                {Method::pbd, 100, 4, 5e-6},
+                {Method::xpbd, 100, 4, 5e-6},
+                {Method::vbd, 100, 4, 5e-6}});
 }
 
 TEST_CASE("one damped spring: every method has its order, in float32 down to a micrometre") {
@@ -89,7 +92,10 @@ TEST_CASE("one damped spring: every method has its order, in float32 down to a m
                 {Method::symplectic_euler, 100, 4, 2e-6},
                 {Method::verlet, 20, 4, 1e-6},
                 {Method::rk4, 20, 1, 1e-6},
-                {Method::implicit_euler, 100, 4, 5e-6}});
+                {Method::implicit_euler, 100, 4, 5e-6},
+                {Method::pbd, 100, 4, 5e-6},
+                {Method::xpbd, 100, 4, 5e-6},
+                {Method::vbd, 100, 4, 5e-6}});
 }
 
 // Implicit Euler leaves 1e-7 of a momentum of 4 m/s a step unsolved, for up to 1600 steps of 1 s in all: at
@@ -100,7 +106,9 @@ TEST_CASE("a pendulum: every method has its order, in float32 down to some micro
                 {Method::symplectic_euler, 200, 4, 3e-6},
                 {Method::verlet, 40, 3, 2e-6},
                 {Method::rk4, 15, 2, 1e-6},
-                {Method::implicit_euler, 100, 4, 1e-4}});
+                {Method::implicit_euler, 100, 4, 1e-4},
+                {Method::xpbd, 100, 4, 1e-5},
+                {Method::vbd, 100, 4, 1e-5}});
 }
 
 TEST_CASE(
@@ -113,13 +121,16 @@ TEST_CASE(
                 {Method::rk4, 300, 0, 1e-5}});
 }
 
-TEST_CASE("a cloth that begins to swing: explicit and implicit Euler have order 1") {
+TEST_CASE("a cloth that begins to swing: explicit and implicit Euler, XPBD and VBD have order 1") {
   // Explicit Euler's undamped vibrations grow by exp(omega^2 dt t / 2): an early time and a small dt, so that
   // those of rounding do not show. Even so float32 leaves a halving or none. Implicit Euler damps vibrations
   // by as much: the same early time shows the order of the motion rather than the loss of vibrations.
   const SceneOf scene = [](Method method, double dt) { return precise(swinging_cloth(method, dt)); };
   check_orders(scene, 0.03, 600,
-               {{Method::explicit_euler, 620, 0, 1e-5}, {Method::implicit_euler, 16, 3, 1e-5}});
+               {{Method::explicit_euler, 620, 0, 1e-5},
+                {Method::implicit_euler, 16, 3, 1e-5},
+                {Method::xpbd, 24, 3, 1e-5},
+                {Method::vbd, 24, 3, 1e-5}});
 }
 
 TEST_CASE("a damped swinging cloth: explicit Euler has order 1, in float32 too") {
