@@ -27,7 +27,7 @@ class Search {
     std::vector<double> values = test_.knob.values;
     if (by_limit) {
       values.clear();  // blow-ups end early, so it costs little to start far above the limit
-      const double least = std::max(predicted_ / 64, test_.seconds / 6e5);
+      const double least = predicted_ > 0 ? predicted_ / 8 : test_.seconds / 6e5;
       for (double dt = 1.0 / 30; dt > least; dt /= 4) values.push_back(dt);
     }
     for (const double value : values) {
@@ -54,8 +54,8 @@ class Search {
       const Verdict verdict = Trial(test_, scene).run();
       ++result_.runs;
       result_.false_alarm =
-          result_.false_alarm ||
-          (verdict.alarm && (verdict.ending == Ending::holds || verdict.ending == Ending::elsewhere));
+          result_.false_alarm || (verdict.alarm && value < 0.9 * predicted_ &&
+                                  (verdict.ending == Ending::holds || verdict.ending == Ending::elsewhere));
       if (verdict.ending == Ending::holds) {
         result_.cut_short = result_.cut_short || verdict.cut_short;
         ++result_.finished;
@@ -159,6 +159,7 @@ int main(int argc, char** argv) {
           test.name.find(part) != std::string::npos && (only.empty() || only == scene::name(method)))
         study(test, method);
   for (const Method method : scene::methods)
-    if (scene::sweeps(method) && std::string("stretch").find(part) != std::string::npos)
+    if (scene::sweeps(method) && (only.empty() || only == scene::name(method)) &&
+        std::string("stretch").find(part) != std::string::npos)
       study_stretch(method);
 }

@@ -64,7 +64,7 @@ inline Knob mass_ratio() {
 inline Knob distance() {
   return {"distance", "m", {1e5, 1e4, 1e3, 1e2, 1e1}, [](scene::Scene& scene, double x) {
             scene.solver.dt = scene::any_step_is_stable(scene.solver.method)         ? 1.0 / 120
-                              : scene.solver.method == scene::Method::explicit_euler ? 1e-4
+                              : scene.solver.method == scene::Method::explicit_euler ? 2e-4
                                                                                      : 5e-4;
             scene.cloths[0].transform.translate.x = x;
           }};

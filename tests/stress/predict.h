@@ -5,7 +5,6 @@
 
 #include "server/model/spring_gains.h"
 #include "server/model/stability.h"
-#include "shaders/elements/elements.h"
 #include "tests/stress/trial.h"
 
 namespace clothlab::stress {
@@ -99,13 +98,12 @@ class Column {
           const double w = mobility(link.bottom) + mobility(link.top), moved = d[a] - d[b];
           const model::SpringGains gains =
               model::spring_gains(scene_.solver, link.stiffness, scene_.cloths[0].material.damping, w);
-          dvec3 n;
+          const double now = x[a] - x[b] + moved;
           const double push =
-              elements::spring_projection(dvec3(x[a] - x[b] + moved, 0, 0), dvec3(moved, 0, 0), link.length,
-                                          gains.stretch, gains.damping, gains.memory, pushed[s], n);
+              -(gains.stretch * (now - link.length) + gains.damping * moved + gains.memory * pushed[s]);
           pushed[s] += push;
-          d[a] += mobility(link.bottom) * push * n.x;
-          d[b] -= mobility(link.top) * push * n.x;
+          d[a] += mobility(link.bottom) * push;
+          d[b] -= mobility(link.top) * push;
         }
       double most = 0.0;
       for (std::size_t i = 1; i < x.size(); ++i) {
