@@ -51,7 +51,6 @@ std::uint32_t steps_a_round(const scene::Solver& solver, double vertices) {
 /// them in its work group.
 double bytes_a_vertex(scene::Method method, double entries, double iterations) {
   const double vector = 16;
-  const double memory = method == scene::Method::xpbd ? 8 : 0;
   const double gather = entries * 3 * vector + 2 * vector;  // of each spring: entry, position, velocity
   switch (method) {
     case scene::Method::explicit_euler:
@@ -62,8 +61,11 @@ double bytes_a_vertex(scene::Method method, double entries, double iterations) {
     case scene::Method::rk4:
       return 4 * gather + (3 + 5 + 5 + 7) * vector;
     case scene::Method::pbd:
-    case scene::Method::xpbd:  // begin and finish; springs and the pass of contacts of each sweep
-      return (3 + 5) * vector + iterations * (entries / 2 * (7 * vector + 8 + memory) + 3 * vector);
+    case scene::Method::xpbd: {  // begin and finish; springs and the pass of contacts of each sweep
+      const double springs = entries / 2, remembered = method == scene::Method::xpbd ? iterations - 1 : 0;
+      return (3 + 5) * vector + iterations * (springs * (7 * vector + 8) + 3 * vector) +
+             remembered * springs * 2 * vector;
+    }
     case scene::Method::vbd:
       return (5 + 5) * vector + iterations * (entries * 3 * vector + 4 * vector + 4);
     case scene::Method::implicit_euler:
