@@ -1,5 +1,6 @@
 // Part of the work-precision table of physics.md: RMS position error of the swinging cloth at 0.3 s. The
 // whole of it: tests/bench/convergence.cpp and its results.
+#include "tests/bench/float32_xpbd.h"
 #include "tests/physics/orders.h"
 
 using namespace clothlab;
@@ -37,5 +38,34 @@ TEST_CASE("the swinging cloth's errors in double precision and on the GPU are th
     const bool shows = entry.float32 > 1.05 * entry.float64;
     CHECK(theirs.error < (shows ? 3.0 : 1.06) * entry.float32);
     CHECK(theirs.error > (shows ? 1 / 3.0 : 1 / 1.06) * entry.float32);
+  }
+}
+
+TEST_CASE(
+    "XPBD's error on the GPU falls with dt where differences of positions in float32 let it rise again") {
+  const SceneOf once = [](Method method, double dt) {
+    scene::Scene scene = swinging_cloth(method, dt);
+    scene.solver.iterations = 1;
+    return scene;
+  };
+  struct Entry {
+    double share, float64, differences;  // dt / u, [m], [m]
+  };
+  const auto context = test::context();
+  const double time = 0.3;
+  const Truth exact = truth(swinging_cloth, time, 4000);
+  for (const Entry& entry :
+       {Entry{0.6, 2.9e-3, 2.8e-3}, Entry{0.15, 6.9e-4, 6.6e-4}, Entry{0.0375, 2.2e-4, 4.7e-3}}) {
+    const int steps = static_cast<int>(std::lround(time / (entry.share * cloth_unit)));
+    const Rung theirs = climb(Method::xpbd, once, time, steps, 1, exact).gpu[0];
+    const double differences = reference::rms_distance(
+        bench::xpbd_by_differences(*reference::make_world(once(Method::xpbd, time / steps), 0.0), steps),
+        exact.position);
+    INFO("dt " << entry.share << " u: " << theirs.error << " m, of float32 " << theirs.floor
+               << " m; by differences " << differences << " m");
+    CHECK(theirs.error == Approx(entry.float64).epsilon(0.04));  // two digits are given
+    CHECK(theirs.floor < 1e-5);
+    // The size of what rounding does is reproduced, its digits hang on the order of the operations.
+    CHECK(differences == Approx(entry.differences).epsilon(0.1));
   }
 }
