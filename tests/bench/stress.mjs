@@ -36,7 +36,7 @@ const predicted = (r) => {
   if (r.predicted_from === null) return 'holds'
   if (r.predicted_from === 0) return 'at every step'
   const to = `from ${value(r, r.predicted_from)}`
-  return r.predicted_at_start ? `${to}, at the start from ${value(r, r.predicted_at_start)}` : to
+  return r.predicted_at_start ? `${to}; at the start from ${value(r, r.predicted_at_start)}` : to
 }
 
 function measured(r) {
@@ -52,16 +52,19 @@ const kind = (how) => how.split(/ after|:/)[0]
 function cell(name, method) {
   const r = cases.find((each) => each.case === name && each.method === method)
   if (!r) return '-'
-  const guess = r.predicted_from === null ? 'none' : r.predicted_from === 0 ? 'every' : value(r, r.predicted_from)
-  if (r.fails_from === null) return guess === 'none' ? 'holds' : `holds (${guess})`
+  const start = r.predicted_at_start ? `${value(r, r.predicted_at_start)} to ` : ''
+  const guess = r.predicted_from === null ? 'none' : r.predicted_from === 0 ? 'every' : start + value(r, r.predicted_from)
+  const shape = tangle(r) ? `, ${rests(r)}` : ''
+  if (r.fails_from === null) return (guess === 'none' ? 'holds' : `holds (${guess})`) + shape
   const from = r.holds_at === null ? `≤ ${value(r, r.fails_from)}` : value(r, r.fails_from)
-  return `**${from}** (${guess}) ${kind(r.how)}${r.in_order ? '' : ' *'}`
+  return `**${from}** (${guess}) ${kind(r.how)}${r.in_order ? '' : ' *'}${shape}`
 }
 
-const rests = (r) => (r.at_rest_shape > 0 || /start|point|line/.test(r.case) ? `${r.at_rest_shape} of ${r.runs}` : '')
+const tangle = (r) => /random|point|on a line/.test(r.case)
+const rests = (r) => `${r.at_rest_shape} of ${r.held}`
 const long = cases.map((r) =>
   [r.case, `\`${r.method}\``, predicted(r), r.why, measured(r), r.how, r.at_worst === r.how ? '' : r.at_worst,
-   [rests(r) && `${rests(r)} runs at the rest shape`, r.cut_short && 'stopped after 40,000 steps', r.false_alarm && 'the watch calls a run that holds diverged']
+   [tangle(r) && `${rests(r)} that came to rest are at the rest shape`, r.cut_short && 'runs cut short at 40,000 steps', r.false_alarm && 'the watch calls a run that holds diverged']
      .filter(Boolean).join('; ')].join(' | '))
 
 const text = `# Where methods fail
@@ -71,9 +74,10 @@ vertices; 20 iterations (Newton steps of \`implicit_euler\`, sweeps of \`pbd\`, 
 fails, in brackets what was predicted before it was run (none: no failure), and how; the scene's knob is turned up, dt unless
 the row says otherwise, to 1/30 s, and the edge found by bisection. \`*\`: not in order, a larger value than the one it fails at holds.
 
-A scene that settles must be at rest (RMS ${'5 mm/s'}) after its time and within 5 mm RMS of the rest shape that the reference finds in
+A scene that settles must be at rest (RMS 5 mm/s) after its time and within 5 mm RMS of the rest shape that the reference finds in
 double precision (or its mirror image); a start in a tangle must come to rest, and how often that is the rest shape is
-counted. Not possible yet: layers through a funnel (no such collider), a seam between two materials (a cloth has one).
+counted (2 of 3: two of the three runs that came to rest). Runs stop after 40,000 steps: of a step so short, only blow-ups show.
+Not possible yet: layers through a funnel (no such collider), a seam between two materials (a cloth has one).
 
 | scene | ${methods.map((m) => `\`${m}\``).join(' | ')} |
 |---|${methods.map(() => '---|').join('')}
@@ -90,6 +94,24 @@ ${[...new Set(stretch.map((r) => `${r.method} ${r.iterations}`))].map((key) => {
   const row = stretch.filter((r) => `${r.method} ${r.iterations}` === key)
   return `| \`${row[0].method}\` | ${row[0].iterations} | ${row.map((r) => `${r.measured} (${r.predicted})`).join(' | ')} |`
 }).join('\n')}
+
+## What the predictions missed
+
+Written after the first run.
+
+- \`implicit_euler\` at 1e8 N/m leaves the sheet in the air where it was let go: beside dt² k the mass is lost in its 32-bit
+  linear solver. In double precision it settles.
+- A start with long springs is as unstable as predicted for moments only; how far the limit falls depends on how long they stay long.
+  \`explicit_euler\` has no damping across them, so 4 µs were predicted, and 80 µs found.
+- \`verlet\` gains energy from 0.3 of its limit on while the table-cloth slides: lasting contact, not the springs.
+- \`pbd\` overstretches a table-cloth that is pulled fast; no number was predicted for it.
+- \`vbd\`: 1e4 N/m were predicted for where the sweeps no longer settle the level sheet at 1/30 s. A sheet falls across its springs, which the sweeps do not
+  hold back, so it is 10 to 100 times better. Beyond, and with a single sweep, it does not explode but keeps moving.
+- \`vbd\` slows a light, stiff sheet in free fall: its guess goes on with the last step's acceleration, and so with its rounding, and what the sweeps
+  do not reach stays. In double precision it falls as it should.
+- Crumpled cloth under \`vbd\` may keep moving, too: sweeps that end early do not balance its moments.
+- Past a sphere at 10 or 50 m/s \`implicit_euler\` lets the middle of the cloth slip at long steps; why was not looked into.
+- Far from the origin all hold some six times farther than if every last bit flickered at every step.
 
 ## All of them
 
