@@ -110,7 +110,6 @@ Written after the first run.
 - \`vbd\` slows a light, stiff sheet in free fall: its guess goes on with the last step's acceleration, and so with its rounding, and what the sweeps
   do not reach stays. In double precision it falls as it should.
 - Crumpled cloth under \`vbd\` may keep moving, too: sweeps that end early do not balance its moments.
-- Past a sphere at 10 or 50 m/s \`implicit_euler\` lets the middle of the cloth slip at long steps; why was not looked into.
 - Far from the origin all hold some six times farther than if every last bit flickered at every step.
 
 ## All of them

@@ -111,6 +111,8 @@ class Trial {
         return fail(verdict, Ending::not_finite, format("not finite after %.3g s", t));
       if (state.kinetic > allowed) return fail(verdict, Ending::blows_up, format("blows up after %.3g s", t));
       last_ = state;
+      if (test_.check == Check::struck) judge_sphere(simulation, verdict);
+      if (verdict.ending != Ending::holds) return verdict;
     }
     if (!verdict.cut_short) judge(simulation, verdict);
     if (verdict.alarm && verdict.ending == Ending::restless)
@@ -145,11 +147,10 @@ class Trial {
       case Check::untangles:
         return judge_rest(state, verdict);
       case Check::bounded:
+      case Check::struck:
         return;
       case Check::falls:
         return judge_fall(simulation.model(), state, verdict);
-      case Check::struck:
-        return judge_sphere(simulation, state, verdict);
       case Check::pulled:
         return judge_stretch(state, verdict);
     }
@@ -180,14 +181,19 @@ class Trial {
       fail(verdict, Ending::falls_wrong, format("does not stay flat: strain %.2g", last_.max_strain));
   }
 
-  void judge_sphere(const sim::Simulation& simulation, const sim::State& state, Verdict& verdict) {
+  /// At every look. Whether the cloth is taken along is asked once, when the sphere has come as far as it
+  /// should; later any cloth slides off it.
+  void judge_sphere(sim::Simulation& simulation, Verdict& verdict) {
+    const sim::State state = simulation.read_state();
     const scene::Collider collider = simulation.colliders_now()[0];
     const auto& sphere = std::get<scene::Sphere>(collider.shape);
     double deepest = 0.0;
     for (const glm::vec3& x : state.position)
       deepest = std::max(deepest, sphere.radius - glm::distance(dvec3(x), sphere.center));
     const glm::vec3 middle = state.position[state.position.size() / 2];
-    if (!(middle.z > sphere.center.z))
+    const bool arrived = !arrived_ && last_.time > test_.seconds - 1e-9;
+    arrived_ = arrived_ || arrived;
+    if (arrived && !(middle.z > sphere.center.z))
       fail(verdict, Ending::passes_through,
            format("the sphere passes: its middle is %.3g m ahead of the cloth's",
                   sphere.center.z - static_cast<double>(middle.z)));
@@ -234,6 +240,7 @@ class Trial {
   sim::BlowUp watch_;
   sim::Diagnostics last_;
   double mass_ = 0;
+  bool arrived_ = false;
 };
 
 }  // namespace clothlab::stress
