@@ -64,7 +64,16 @@ ProjectedSprings projected_springs(const model::Colouring& visited, const model:
   return list;
 }
 
-bool fits_one_group(std::uint32_t vertex_count, bool self_collision) {
+std::uint64_t turns_of_sweep(const model::Colouring& work, std::uint32_t inner) {
+  const auto lanes = static_cast<std::uint32_t>(lanes_of_one_group());
+  std::uint64_t turns = 0;
+  for (std::uint32_t colour = 0; colour < work.colours(); ++colour)
+    turns += 1 + (work.offsets[colour + 1] - work.offsets[colour] + lanes - 1) / lanes * (1 + inner);
+  return turns;
+}
+
+bool fits_one_group(std::uint32_t vertex_count, bool self_collision, std::uint64_t turns) {
+  if (gl::software_renderer() && turns > 64000) return false;
   GLint shared_bytes = 0;
   glGetIntegerv(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE, &shared_bytes);
   const std::size_t needed = std::size_t{vertex_count} * 16 * (self_collision ? 2 : 1);

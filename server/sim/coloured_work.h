@@ -26,9 +26,15 @@ struct ProjectedSprings {
 ProjectedSprings projected_springs(const model::Colouring& visited, const model::Model& model,
                                    const scene::Scene& scene);
 
-/// True where one work group is faster than many dispatches, and its shared memory is enough.
-/// CLOTHLAB_SWEEPS=one_group or =dispatches in the environment decides otherwise, to compare the two.
-bool fits_one_group(std::uint32_t vertex_count, bool self_collision);
+/// Turns of all loops of a sweep, contacts included, that one work group of the lanes below takes: over the
+/// items of each colour, and within an item over `inner` more.
+std::uint64_t turns_of_sweep(const model::Colouring& work, std::uint32_t inner);
+
+/// True where one work group is faster than many dispatches, and its shared memory is enough. Software OpenGL
+/// ends every loop of a kernel after 65535 turns in all (gallivm's LP_MAX_TGSI_LOOP_ITERATIONS), silently: a
+/// step that needs more `turns` is not for one kernel there. CLOTHLAB_SWEEPS=one_group or =dispatches in the
+/// environment decides otherwise, to compare the two.
+bool fits_one_group(std::uint32_t vertex_count, bool self_collision, std::uint64_t turns);
 /// Threads of that work group. Software OpenGL runs 8 at a time and pays for more at every barrier; a GPU
 /// wants all it can have.
 int lanes_of_one_group();

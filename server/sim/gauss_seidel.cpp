@@ -13,6 +13,8 @@ namespace clothlab::sim {
 
 namespace {
 
+constexpr std::uint32_t neighbour_slots = 64;  // NEIGHBOUR_SLOTS in shaders/collide/neighbours.glsl
+
 constexpr GLuint unit_displacement = 9, unit_projected = 10, unit_gains = 11, unit_visited = 12;
 constexpr GLuint slot_displacement = 3, slot_spring_pushes = 4, slot_pushed = 5, slot_velocity_before = 6;
 
@@ -74,7 +76,7 @@ class GaussSeidel : public Integrator {
         vertex_count_(around.model.vertex_count()),
         work_(by_vertex_ ? visited_vertices(around.model, around.scene)
                          : visited_springs(around.model, around.scene)) {
-    one_group_ = fits_one_group(vertex_count_, plan.self_collision);
+    one_group_ = fits_one_group(vertex_count_, plan.self_collision, turns(around.model, plan));
     if (by_vertex_) {
       visited_ = {gl::Buffer(work_.order), GL_R32UI};
       velocity_before_ = gl::Buffer(vertex_count_ * 4 * sizeof(float));
@@ -84,6 +86,19 @@ class GaussSeidel : public Integrator {
     }
     if (one_group_) return;
     for (gl::TextureBuffer& displacement : displacement_) displacement = per_vertex(vertex_count_);
+  }
+
+  /// Of all loops in a step, at most.
+  std::uint64_t turns(const model::Model& model, const Plan& plan) const {
+    // What llvmpipe makes of a visit, found by counting where it ends: five turns with a memory to write,
+    // else one; of a vertex one more than its springs.
+    std::uint32_t inner = plan.method == scene::Method::xpbd ? 4 : by_vertex_ ? 1 : 0;
+    for (std::uint32_t i = 0; by_vertex_ && i < vertex_count_; ++i)
+      inner = std::max(inner, 1 + model.vertex_springs.offsets[i + 1] - model.vertex_springs.offsets[i]);
+    const auto lanes = static_cast<std::uint32_t>(lanes_of_one_group());
+    const std::uint64_t meeting =
+        contacts_ ? (vertex_count_ / lanes + 1) * (5 + (plan.self_collision ? neighbour_slots : 0)) : 0;
+    return static_cast<std::uint64_t>(plan.most_sweeps) * (turns_of_sweep(work_, inner) + meeting);
   }
 
   gl::Defines defines(const Plan& plan) const {
