@@ -14,11 +14,12 @@ namespace {
 using Vectors = std::vector<dvec3>;
 
 /// How much of gravity a vertex fell with in the step before (Chen et al. 2024, section 3.7): none at rest,
-/// so that a cloth at rest starts where it stays; all of it in free fall, in air too.
+/// so that a cloth at rest starts where it stays; all of it in free fall, in air too. Nearly all counts as
+/// all, for the sake of float32.
 dvec3 felt_gravity(const dvec3& gravity, const dvec3& acceleration) {
   const double squared = glm::dot(gravity, gravity);
   if (!(squared > 0.0)) return dvec3(0.0);
-  return gravity * std::clamp(glm::dot(acceleration, gravity) / squared, 0.0, 1.0);
+  return gravity * std::clamp(1.02 * glm::dot(acceleration, gravity) / squared, 0.0, 1.0);
 }
 
 SweepState begin(const World& world, const State& state, double t, double t_next) {

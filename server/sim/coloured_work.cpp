@@ -64,30 +64,19 @@ ProjectedSprings projected_springs(const model::Colouring& visited, const model:
   return list;
 }
 
-std::uint64_t turns_of_sweep(const model::Colouring& work, std::uint32_t inner) {
-  const auto lanes = static_cast<std::uint32_t>(lanes_of_one_group());
-  std::uint64_t turns = 0;
-  for (std::uint32_t colour = 0; colour < work.colours(); ++colour)
-    turns += 1 + (work.offsets[colour + 1] - work.offsets[colour] + lanes - 1) / lanes * (1 + inner);
-  return turns;
-}
-
-bool fits_one_group(std::uint32_t vertex_count, bool self_collision, std::uint64_t turns) {
-  if (gl::software_renderer() && turns > 64000) return false;
-  GLint shared_bytes = 0;
-  glGetIntegerv(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE, &shared_bytes);
-  const std::size_t needed = std::size_t{vertex_count} * 16 * (self_collision ? 2 : 1);
-  if (needed > static_cast<std::size_t>(shared_bytes)) return false;
+std::uint32_t lanes_of_one_group(std::uint32_t vertex_count, bool self_collision,
+                                 const std::function<std::uint64_t(std::uint32_t)>& turns) {
   const char* asked = std::getenv("CLOTHLAB_SWEEPS");
-  if (asked && std::string_view(asked) == "dispatches") return false;
-  return true;
-}
-
-int lanes_of_one_group() {
-  if (gl::software_renderer()) return 8;
-  GLint most = 0;
-  glGetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &most);
-  return most;
+  if (asked && std::string_view(asked) == "dispatches") return 0;
+  GLint shared_bytes = 0, most_lanes = 0;
+  glGetIntegerv(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE, &shared_bytes);
+  glGetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &most_lanes);
+  const std::size_t needed = std::size_t{vertex_count} * 16 * (self_collision ? 2 : 1);
+  if (needed > static_cast<std::size_t>(shared_bytes)) return 0;
+  if (!gl::software_renderer()) return static_cast<std::uint32_t>(most_lanes);
+  for (std::uint32_t lanes = 8; lanes <= 128; lanes *= 2)
+    if (turns(lanes) < 50000) return lanes;  // some to spare: how Mesa counts is not documented
+  return 0;
 }
 
 }  // namespace clothlab::sim

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "server/model/colouring.h"
@@ -26,17 +27,12 @@ struct ProjectedSprings {
 ProjectedSprings projected_springs(const model::Colouring& visited, const model::Model& model,
                                    const scene::Scene& scene);
 
-/// Turns of all loops of a sweep, contacts included, that one work group of the lanes below takes: over the
-/// items of each colour, and within an item over `inner` more.
-std::uint64_t turns_of_sweep(const model::Colouring& work, std::uint32_t inner);
-
-/// True where one work group is faster than many dispatches, and its shared memory is enough. Software OpenGL
-/// ends every loop of a kernel after 65535 turns in all (gallivm's LP_MAX_TGSI_LOOP_ITERATIONS), silently: a
-/// step that needs more `turns` is not for one kernel there. CLOTHLAB_SWEEPS=one_group or =dispatches in the
-/// environment decides otherwise, to compare the two.
-bool fits_one_group(std::uint32_t vertex_count, bool self_collision, std::uint64_t turns);
-/// Threads of that work group. Software OpenGL runs 8 at a time and pays for more at every barrier; a GPU
-/// wants all it can have.
-int lanes_of_one_group();
+/// Threads of the one work group that does a whole step; 0 where many dispatches are faster, or where its
+/// shared memory is too little. A GPU wants all it can have. Software OpenGL runs 8 at a time and pays for
+/// more at every barrier; but it ends every loop of a kernel after 65535 turns in all (gallivm's
+/// LP_MAX_TGSI_LOOP_ITERATIONS), silently: it gets as many as keep `turns(lanes)` below that.
+/// CLOTHLAB_SWEEPS=dispatches in the environment decides for those, to compare the two.
+std::uint32_t lanes_of_one_group(std::uint32_t vertex_count, bool self_collision,
+                                 const std::function<std::uint64_t(std::uint32_t)>& turns);
 
 }  // namespace clothlab::sim

@@ -14,9 +14,9 @@ namespace clothlab::sim {
 namespace {
 
 constexpr std::uint32_t neighbour_slots = 64;  // NEIGHBOUR_SLOTS in shaders/collide/neighbours.glsl
-
-constexpr GLuint unit_displacement = 9, unit_projected = 10, unit_gains = 11, unit_visited = 12;
-constexpr GLuint slot_displacement = 3, slot_spring_pushes = 4, slot_pushed = 5, slot_velocity_before = 6;
+constexpr GLuint unit_deviation = 9, unit_projected = 10, unit_gains = 11, unit_visited = 12;
+constexpr GLuint slot_deviation = 3, slot_spring_pushes = 4, slot_targets = 5, slot_velocity_before = 6,
+                 slot_remainders = 7;
 
 gl::TextureBuffer per_vertex(std::uint32_t vertex_count) {
   return {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
@@ -26,7 +26,7 @@ class GaussSeidel : public Integrator {
  public:
   static Result<std::unique_ptr<Integrator>> create(const Surroundings& around, const Plan& plan) {
     std::unique_ptr<GaussSeidel> made(new GaussSeidel(around, plan));
-    const Status loaded = made->one_group_ ? made->load_one_group(plan) : made->load_phases(plan);
+    const Status loaded = made->lanes_ > 0 ? made->load_one_group(plan) : made->load_phases(plan);
     if (!loaded) return loaded.error();
     return std::unique_ptr<Integrator>(std::move(made));
   }
@@ -48,24 +48,26 @@ class GaussSeidel : public Integrator {
 
   void step(StateBuffers& state, int row) override {
     state.bind_for_step();
+    remainders_.bind_storage(slot_remainders);
     if (by_vertex_) {
       visited_.bind(unit_visited);
       velocity_before_.bind_storage(slot_velocity_before);
-      if (contacts_) pushed_.bind_storage(slot_pushed);
+      targets_.bind_storage(slot_targets);
     } else {
       projected_.bind(unit_projected);
       gains_.bind(unit_gains);
       spring_pushes_.bind_storage(slot_spring_pushes);
     }
-    if (one_group_)
+    if (lanes_ > 0)
       step_in_one_group(row);
     else
       step_in_phases(row);
     state.swap();
   }
 
-  /// No velocity before.
+  /// No velocity before, and positions that were rounded by nobody.
   void restart() override {
+    remainders_.fill(0);
     if (by_vertex_) velocity_before_.fill(0);
   }
 
@@ -76,29 +78,33 @@ class GaussSeidel : public Integrator {
         vertex_count_(around.model.vertex_count()),
         work_(by_vertex_ ? visited_vertices(around.model, around.scene)
                          : visited_springs(around.model, around.scene)) {
-    one_group_ = fits_one_group(vertex_count_, plan.self_collision, turns(around.model, plan));
+    lanes_ = lanes_of_one_group(vertex_count_, plan.self_collision,
+                                [&](std::uint32_t lanes) { return turns(around.model, plan, lanes); });
+    remainders_ = gl::Buffer(vertex_count_ * 8 * sizeof(float));
     if (by_vertex_) {
       visited_ = {gl::Buffer(work_.order), GL_R32UI};
       velocity_before_ = gl::Buffer(vertex_count_ * 4 * sizeof(float));
-      if (contacts_) pushed_ = gl::Buffer(vertex_count_ * 4 * sizeof(float));
+      targets_ = gl::Buffer(vertex_count_ * 4 * sizeof(float));
     } else {
       spring_pushes_ = gl::Buffer(std::max<std::size_t>(work_.order.size(), 1) * 4 * sizeof(float));
     }
-    if (one_group_) return;
-    for (gl::TextureBuffer& displacement : displacement_) displacement = per_vertex(vertex_count_);
+    if (lanes_ > 0) return;
+    for (gl::TextureBuffer& deviation : deviation_) deviation = per_vertex(vertex_count_);
   }
 
-  /// Of all loops in a step, at most.
-  std::uint64_t turns(const model::Model& model, const Plan& plan) const {
-    // What llvmpipe makes of a visit, found by counting where it ends: five turns with a memory to write,
-    // else one; of a vertex one more than its springs.
-    std::uint32_t inner = plan.method == scene::Method::xpbd ? 4 : by_vertex_ ? 1 : 0;
+  /// Of all loops in a step, at most, with so many lanes.
+  std::uint64_t turns(const model::Model& model, const Plan& plan, std::uint32_t lanes) const {
+    const auto rounds = [&](std::uint32_t items) { return std::uint64_t{(items + lanes - 1) / lanes}; };
+    const std::uint64_t colliders = 2 + 6 * static_cast<std::uint64_t>(plan.spheres + plan.planes);
+    std::uint64_t visit = 1;
     for (std::uint32_t i = 0; by_vertex_ && i < vertex_count_; ++i)
-      inner = std::max(inner, 1 + model.vertex_springs.offsets[i + 1] - model.vertex_springs.offsets[i]);
-    const auto lanes = static_cast<std::uint32_t>(lanes_of_one_group());
-    const std::uint64_t meeting =
-        contacts_ ? (vertex_count_ / lanes + 1) * (5 + (plan.self_collision ? neighbour_slots : 0)) : 0;
-    return static_cast<std::uint64_t>(plan.most_sweeps) * (turns_of_sweep(work_, inner) + meeting);
+      visit = std::max(visit,
+                       colliders + 1 + model.vertex_springs.offsets[i + 1] - model.vertex_springs.offsets[i]);
+    std::uint64_t sweep = 0;
+    for (std::uint32_t colour = 0; colour < work_.colours(); ++colour)
+      sweep += 1 + rounds(work_.offsets[colour + 1] - work_.offsets[colour]) * visit;
+    if (contacts_) sweep += rounds(vertex_count_) * (colliders + (plan.self_collision ? neighbour_slots : 0));
+    return static_cast<std::uint64_t>(plan.most_sweeps) * sweep + 2 * rounds(vertex_count_) * colliders;
   }
 
   gl::Defines defines(const Plan& plan) const {
@@ -112,7 +118,7 @@ class GaussSeidel : public Integrator {
   Status load_one_group(const Plan& plan) {
     gl::Defines list = defines(plan);
     for (auto& [name, value] : list)
-      if (name == "GROUP_SIZE") value = std::to_string(lanes_of_one_group());
+      if (name == "GROUP_SIZE") value = std::to_string(lanes_);
     list.emplace_back("SLICE_SIZE", std::to_string(group_size));
     list.emplace_back("ONE_GROUP", "1");
     list.emplace_back("VERTEX_COUNT", std::to_string(vertex_count_));
@@ -156,8 +162,8 @@ class GaussSeidel : public Integrator {
     const auto use = [&](const gl::Program& program, std::size_t read, std::size_t written) {
       program.use();
       glUniform1i(program.uniform("start_row"), row);
-      displacement_[read].bind(unit_displacement);
-      displacement_[written].buffer.bind_storage(slot_displacement);
+      deviation_[read].bind(unit_deviation);
+      deviation_[written].buffer.bind_storage(slot_deviation);
     };
     use(begin_, current, current);
     run(begin_, 0, vertex_count_);
@@ -175,14 +181,15 @@ class GaussSeidel : public Integrator {
     run(finish_, 0, vertex_count_);
   }
 
-  bool by_vertex_, contacts_, one_group_ = false;
+  bool by_vertex_, contacts_;
+  std::uint32_t lanes_ = 0;  ///< of the one work group; 0: many dispatches instead
   std::uint32_t vertex_count_;
   int sweeps_ = 1;
   model::Colouring work_;  ///< springs, or vertices, to visit
   gl::Program whole_, begin_, visit_, meet_, finish_;
-  std::array<gl::TextureBuffer, 2> displacement_;  ///< a pass of contacts reads one and writes the other
+  std::array<gl::TextureBuffer, 2> deviation_;  ///< a pass of contacts reads one and writes the other
   gl::TextureBuffer projected_, gains_, visited_;
-  gl::Buffer spring_pushes_, pushed_, velocity_before_;
+  gl::Buffer spring_pushes_, targets_, velocity_before_, remainders_;
 };
 
 }  // namespace

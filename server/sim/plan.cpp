@@ -40,7 +40,8 @@ Plan plan(const scene::Scene& scene) {
     ++(std::holds_alternative<scene::Sphere>(collider.shape) ? plan.spheres : plan.planes);
   plan.moving = static_cast<int>(moving_motions(scene).size());
   plan.self_collision = scene.self_collision.has_value();
-  if (scene::sweeps(plan.method)) plan.most_sweeps = (scene.solver.iterations + 9) / 10 * 10;
+  if (scene::sweeps(plan.method))
+    for (plan.most_sweeps = 16; plan.most_sweeps < scene.solver.iterations;) plan.most_sweeps *= 4;
   return plan;
 }
 

@@ -28,7 +28,7 @@ struct Plan {
   int spheres = 0, planes = 0;
   bool self_collision = false;
   bool strain_limit = false;  ///< of any cloth
-  int most_sweeps = 0;        ///< at least the iterations of PBD, XPBD or VBD: a multiple of 10
+  int most_sweeps = 0;        ///< at least the iterations of PBD, XPBD or VBD: 16, 64, 256, ...
   /// Rows that a step has in the table of poses after the one at its start: its end, and before that its
   /// middle if the method looks at it.
   int pose_rows() const { return method == scene::Method::rk4 ? 2 : 1; }

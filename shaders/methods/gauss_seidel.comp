@@ -1,4 +1,4 @@
-// PBD, XPBD and VBD: a step begins with a guess of how far each vertex will move; sweeps over the springs (or the vertices),
+// PBD, XPBD and VBD: a step begins with a guess of where each vertex will be; sweeps over the springs (or the vertices),
 // colour after colour, improve it, each followed by a pass of contacts; at the end it becomes the new state. What has one
 // colour touches nothing else of that colour, so the outcome depends on no order of threads (server/model/colouring.h).
 // In two forms, for small cloths and for large: ONE_GROUP is the whole step in one work group, which waits for itself at
@@ -6,7 +6,7 @@
 #include "gather.glsl"
 #include "step_end.glsl"
 #include "../collide/colliders.glsl"
-#include "displacement.glsl"
+#include "deviation.glsl"
 #ifdef BY_VERTEX
 #include "vertex_descent.glsl"
 #else
@@ -18,11 +18,23 @@ void begin(int i) {
   vec4 x = FETCH(position, i), v = FETCH(velocity, i);
   vec3 there, moving;
   if (x.w > 0.0) {
-    displace(i, vec4(first_displacement(i, v.xyz), v.w));
+    set_deviation(i, vec4(remainder(i) + first_deviation(i, v.xyz), v.w));
   } else {
     follow_motion(i, v.w, END_ROW, there, moving);
-    displace(i, vec4(there - x.xyz, 0.0));
+    set_deviation(i, vec4((there - x.xyz) - free_displacement(v.xyz), 0.0));
   }
+}
+
+/// The state at the step's end, and what rounding takes from it.
+void advance(int i, vec3 x, vec3 v, vec3 d, out vec3 x_next, out vec3 v_next) {
+  precise vec3 moved = free_displacement(v) + d;
+  precise vec3 gained = mobility * (remainders[i].velocity.xyz + dt * (gravity.xyz - gravity.w * v)) + (d - remainder(i)) / dt;
+  precise vec3 there = x + moved, then = v + gained;
+  precise vec3 rounded_move = there - x, rounded_gain = then - v;
+  remainders[i].position.xyz = moved - rounded_move;
+  remainders[i].velocity.xyz = gained - rounded_gain;
+  x_next = there;
+  v_next = then;
 }
 
 /// A vertex that hits a surface leaves it with its share of the velocity; what gravity gives in two steps is no impact.
@@ -37,12 +49,11 @@ vec3 rebound(vec3 x, vec3 v_start, vec3 v) {
 }
 
 void finish(int i) {
-  vec4 x = FETCH(position, i), v = FETCH(velocity, i), d = displacement(i);
+  vec4 x = FETCH(position, i), v = FETCH(velocity, i), d = deviation(i);
   vec3 x_next, v_next;
   float tag = v.w;
   if (x.w > 0.0) {
-    x_next = x.xyz + d.xyz;
-    v_next = d.xyz / dt;
+    advance(i, x.xyz, v.xyz, d.xyz, x_next, v_next);
 #if SPHERE_COUNT + PLANE_COUNT > 0
     v_next = rebound(x.xyz, v.xyz, v_next);
 #endif
@@ -71,7 +82,7 @@ void main() {
       wait();
     }
 #ifdef CONTACTS
-    copy_written = DISPLACEMENTS - 1 - copy_read;
+    copy_written = DEVIATIONS - 1 - copy_read;
     for (EACH(i, 0, VERTEX_COUNT)) meet(i);
     copy_read = copy_written;
     wait();

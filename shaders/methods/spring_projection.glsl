@@ -6,24 +6,25 @@ READ_UVEC2(gains, 11);      // (damping gain [kg], memory)
 layout(std430, binding = 4) buffer Pushed { vec4 pushed[]; };  // by each spring since the step's start [kg m]
 #endif
 
-vec3 first_displacement(int i, vec3 v) { return free_displacement(v); }
+vec3 first_deviation(int i, vec3 v) { return vec3(0.0); }
 
 void visit(int item) {
   uvec4 s = FETCH(projected, item);
   vec2 gain = uintBitsToFloat(FETCH_UVEC2(gains, item));
   vec4 x = FETCH(position, s.x), y = FETCH(position, s.y);
-  vec3 dx = displacement(s.x).xyz, dy = displacement(s.y).xyz, moved = dx - dy;
+  vec3 dx = deviation(s.x).xyz, dy = deviation(s.y).xyz;
+  vec3 moved = drift(FETCH(velocity, s.x).xyz - FETCH(velocity, s.y).xyz) + (dx - dy);
   float w_x = x.w * mobility, w_y = y.w * mobility, stretch_gain = uintBitsToFloat(s.w), turning = 0.0;
   vec3 before = vec3(0.0);
 #ifdef MEMORY
-  RARELY(sweep > 0) before = pushed[item].xyz;
+  if (sweep > 0) before = pushed[item].xyz;
   turning = (w_x + w_y) * stretch_gain / gain.y;
 #endif
   vec3 change = spring_projection((x.xyz - y.xyz) + moved, moved, uintBitsToFloat(s.z), stretch_gain, gain.x, gain.y,
                                   turning, before);
 #ifdef MEMORY
-  RARELY(sweep < last_sweep) pushed[item].xyz = before + change;
+  if (sweep < last_sweep) pushed[item].xyz = before + change;
 #endif
-  displace(s.x, dx + w_x * change);
-  displace(s.y, dy - w_y * change);
+  set_deviation(s.x, dx + w_x * change);
+  set_deviation(s.y, dy - w_y * change);
 }

@@ -1,5 +1,4 @@
-// Contacts within the iteration, after each sweep over the springs: every vertex at once, from the displacements as the sweep
-// left them, so that no order matters. Several pairs at once would add up to more than is needed: each is scaled by the
+// Contacts within the iteration, after each sweep over the springs: every vertex at once, from where the sweep left them, so that no order matters. Several pairs at once would add up to more than is needed: each is scaled by the
 // larger of the two vertices' contact counts of the pass before, at least 2.
 #ifdef SELF_COLLISION
 READ_UINT(neighbour_count, 4);
@@ -10,14 +9,15 @@ uniform float self_friction;
 const float mending = 20.0;
 
 /// What the vertices that touch it push it by [m].
-vec3 push_of_pairs(int i, vec4 x, vec4 d, inout int touched) {
+vec3 push_of_pairs(int i, vec4 x, vec3 v, vec4 d, inout int touched) {
   vec3 push = vec3(0.0);
   int count = int(FETCH_UINT(neighbour_count, i));
   for (int slot = 0; slot < count; ++slot) {
     uvec2 neighbour = FETCH_UVEC2(neighbours, i * NEIGHBOUR_SLOTS + slot);
-    vec4 y = FETCH(position, neighbour.x), e = displacement(neighbour.x);
+    vec4 y = FETCH(position, neighbour.x), e = deviation(neighbour.x);
+    vec3 moved = drift(v - FETCH(velocity, neighbour.x).xyz) + (d.xyz - e.xyz);
     vec3 before = x.xyz - y.xyz, correction;
-    if (!pair_contact(before, before + (d.xyz - e.xyz), uintBitsToFloat(neighbour.y), self_friction,
+    if (!pair_contact(before, before + moved, uintBitsToFloat(neighbour.y), self_friction,
                       min(0.2, mending * dt), correction))
       continue;
     ++touched;
@@ -28,28 +28,29 @@ vec3 push_of_pairs(int i, vec4 x, vec4 d, inout int touched) {
 #endif
 
 void meet(int i) {
-  vec4 x = FETCH(position, i), d = displacement(i);
+  vec4 x = FETCH(position, i), d = deviation(i);
+  vec3 v = FETCH(velocity, i).xyz, free = free_displacement(v);
   if (x.w == 0.0) {
-    displace(i, d);
+    set_deviation(i, d);
     return;
   }
   int touched = 0;
 #ifdef SELF_COLLISION
-  vec3 push = push_of_pairs(i, x, d, touched);
+  vec3 push = push_of_pairs(i, x, v, d, touched);
   d.xyz += push;
 #ifdef BY_VERTEX
-  pushed[i].xyz += push;
+  targets[i].xyz += push;
 #endif
 #endif
-  vec3 wanted = x.xyz + d.xyz, stopped = wanted, v = vec3(0.0);
+  vec3 wanted = x.xyz + (free + d.xyz), stopped = wanted;
   int met = resolve_colliders(x.xyz, stopped, v, 0.0);
   RARELY(met > 0) {
     vec3 back = stopped - wanted;
     d.xyz += back;
-    d.xyz -= friction_displacement(d.xyz - dt * met_velocity, met_normal, met_surface.x, dot(back, met_normal));
+    d.xyz -= friction_displacement(free + d.xyz - dt * met_velocity, met_normal, met_surface.x, dot(back, met_normal));
   }
 #if defined(SELF_COLLISION) && defined(BY_VERTEX)
-  met = max(met, int(pushed[i].w));
+  met = max(met, int(targets[i].w));
 #endif
-  displace(i, vec4(d.xyz, float(touched + met)));
+  set_deviation(i, vec4(d.xyz, float(touched + met)));
 }

@@ -4,22 +4,21 @@
 #include "blocks.glsl"
 READ_UINT(visited, 12);  // vertices, colour after colour
 layout(std430, binding = 6) buffer VelocityBefore { vec4 velocity_before[]; };  // at the last step's start; w: 0 if there was none
-#ifdef SELF_COLLISION
-layout(std430, binding = 5) coherent buffer Pushed { vec4 pushed[]; };  // by self-collision since the step's start [m], w: colliders met at the last visit
-#endif
+/// Where inertia would have each vertex, in the terms of its deviation: pushed by self-collision since the step's start [m];
+/// w: colliders met at the last visit.
+layout(std430, binding = 5) coherent buffer Targets { vec4 targets[]; };
 
 /// Their adaptive guess (section 3.7): as much of gravity as the vertex has followed of late, so that a cloth at rest starts
-/// from rest.
-vec3 first_displacement(int i, vec3 v) {
+/// from rest. Nearly all counts as all: what rounding cuts off at 1 would brake a falling cloth, step after step.
+vec3 first_deviation(int i, vec3 v) {
   vec4 before = velocity_before[i];
   velocity_before[i] = vec4(v, 1.0);
-#ifdef SELF_COLLISION
-  pushed[i] = vec4(0.0);
-#endif
+  targets[i] = vec4(remainder(i), 0.0);
   float squared = dot(gravity.xyz, gravity.xyz);
-  if (before.w == 0.0 || squared == 0.0) return free_displacement(v);
-  float followed = clamp(dot(v / mobility - before.xyz, gravity.xyz) / (dt * squared), 0.0, 1.0);
-  return mobility * dt * (v + (dt * followed) * gravity.xyz);
+  if (before.w == 0.0 || squared == 0.0) return vec3(0.0);
+  float share = dot(v / mobility - before.xyz, gravity.xyz) / (dt * squared);
+  float followed = clamp(1.02 * share, 0.0, 1.0);
+  return drift(dt * (followed - 1.0) * gravity.xyz);
 }
 
 /// Stops the step of a vertex, x + d to x + d + descent, at the colliders; a, b: its block. Returns how many it meets.
@@ -43,36 +42,34 @@ int stop(vec3 x, vec3 d, vec3 a, vec3 b, inout vec3 descent) {
 
 void visit(int item) {
   int i = int(FETCH_UINT(visited, item));
-  vec4 x = FETCH(position, i), d = displacement(i);
+  vec4 x = FETCH(position, i);
   if (x.w == 0.0) return;
   float inertia = 1.0 / (x.w * mobility);
-  vec3 target = free_displacement(FETCH(velocity, i).xyz);
-#ifdef SELF_COLLISION
-  target += pushed[i].xyz;
-#endif
-  vec3 residual = inertia * (target - d.xyz), diagonal = vec3(inertia), corner = vec3(0.0);
+  vec3 v = FETCH(velocity, i).xyz, d = deviation(i).xyz;
+  // precise: both forms of the kernel, compiled apart, are to round alike.
+  precise vec3 residual = inertia * (targets[i].xyz - d), diagonal = vec3(inertia), corner = vec3(0.0);
   SpringRange range = spring_range(i);
   for (int entry = range.first; entry < range.end; entry += SLICE_SIZE) {
     uvec4 s = FETCH(springs, entry);
-    vec3 moved = d.xyz - displacement(s.x).xyz, n;
+    vec3 moved = drift(v - FETCH(velocity, s.x).xyz) + (d - deviation(s.x).xyz), n;
     vec3 apart = (x.xyz - FETCH(position, s.x).xyz) + moved;
     float rest_length = uintBitsToFloat(s.y), damping = dt * uintBitsToFloat(s.w), along, across;
     spring_hessian(apart, vec3(0.0), rest_length, uintBitsToFloat(s.z), n, along, across);
     along *= dt * dt;
     across = dt * dt * max(across, 0.0);
     residual -= (along * (dot(n, apart) - rest_length) + damping * dot(n, moved)) * n;
-    float more = along + damping - across;
+    precise float more = along + damping - across;
     diagonal += across + more * n * n;
     corner += more * n.xxy * n.yzz;
   }
   vec3 a, b;
   factorise(diagonal, corner, inertia, a, b);
-  vec3 descent = solve_block(a, b, residual);
-  int met = stop(x.xyz, d.xyz, a, b, descent);
+  precise vec3 descent = solve_block(a, b, residual);
+  int met = stop(x.xyz, free_displacement(v) + d, a, b, descent);
 #ifdef SELF_COLLISION
-  pushed[i].w = float(met);
-  displace(i, d.xyz + descent);
+  targets[i].w = float(met);
+  set_deviation(i, d + descent);
 #else
-  displace(i, vec4(d.xyz + descent, float(met)));
+  set_deviation(i, vec4(d + descent, float(met)));
 #endif
 }
