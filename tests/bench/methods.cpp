@@ -47,7 +47,7 @@ std::uint32_t steps_a_round(const scene::Solver& solver, double vertices) {
 
 /// Bytes that the kernels of one step read and write for a vertex with `entries` springs, caches not counted:
 /// 16 for each spring entry, position, velocity or other vector, as the shaders of server/sim list them.
-/// `iterations`: of conjugate gradients, or sweeps; displacements count as memory, though a small cloth has
+/// `iterations`: of conjugate gradients, or sweeps; deviations count as memory, though a small cloth has
 /// them in its work group.
 double bytes_a_vertex(scene::Method method, double entries, double iterations) {
   const double vector = 16;
@@ -63,11 +63,11 @@ double bytes_a_vertex(scene::Method method, double entries, double iterations) {
     case scene::Method::pbd:
     case scene::Method::xpbd: {  // begin and finish; springs and the pass of contacts of each sweep
       const double springs = entries / 2, remembered = method == scene::Method::xpbd ? iterations - 1 : 0;
-      return (3 + 5) * vector + iterations * (springs * (7 * vector + 8) + 3 * vector) +
+      return (5 + 9) * vector + iterations * (springs * (9 * vector + 8) + 4 * vector) +
              remembered * springs * 2 * vector;
     }
     case scene::Method::vbd:
-      return (5 + 5) * vector + iterations * (entries * 3 * vector + 4 * vector + 4);
+      return (8 + 9) * vector + iterations * (entries * 4 * vector + 5 * vector + 4);
     case scene::Method::implicit_euler:
       break;
   }
