@@ -1,10 +1,8 @@
 // PBD, XPBD and VBD: shaders/methods/gauss_seidel.comp, in one dispatch a step for small cloths, in one a
 // phase and colour for large ones.
 #include <algorithm>
-#include <cstdlib>
-#include <string_view>
+#include <array>
 
-#include "server/gl/context.h"
 #include "server/model/colouring.h"
 #include "server/sim/coloured_work.h"
 #include "server/sim/integrator.h"
@@ -56,7 +54,7 @@ class GaussSeidel : public Integrator {
     } else {
       projected_.bind(unit_projected);
       gains_.bind(unit_gains);
-      spring_pushes_.bind_storage(slot_spring_pushes);
+      if (spring_pushes_.bytes() > 0) spring_pushes_.bind_storage(slot_spring_pushes);
     }
     if (lanes_ > 0)
       step_in_one_group(row);
@@ -85,7 +83,7 @@ class GaussSeidel : public Integrator {
       visited_ = {gl::Buffer(work_.order), GL_R32UI};
       velocity_before_ = gl::Buffer(vertex_count_ * 4 * sizeof(float));
       targets_ = gl::Buffer(vertex_count_ * 4 * sizeof(float));
-    } else {
+    } else if (plan.method == scene::Method::xpbd) {
       spring_pushes_ = gl::Buffer(std::max<std::size_t>(work_.order.size(), 1) * 4 * sizeof(float));
     }
     if (lanes_ > 0) return;
