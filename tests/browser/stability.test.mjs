@@ -105,11 +105,14 @@ browserTest("PBD, XPBD and VBD have no limit and no tolerance, say what iteratio
   }
   // The figures are the server's, and follow the iterations as well as the stiffness.
   const told = async () => (await eventually("the note", notes, (texts) => texts.length === 3))[2];
+  const percent = (share) => `${Number((100 * share).toPrecision(2))}\u00a0%`;
+  // Both are read anew at each try: an edit may still be on its way.
   const shown = async () => {
-    const { pbd_stiffness: [{ structural, shear, bend }] } = (await client.nextNotification("sim.status")).solver;
-    const percent = (share) => `${Number((100 * share).toPrecision(2))}\u00a0%`;
-    const expected = `structural\u00a0${percent(structural)}, shear\u00a0${percent(shear)}, bend\u00a0${percent(bend)}`;
-    await eventually(expected, told, (text) => text.includes(expected));
+    const { structural } = await eventually("the server's figures", async () => {
+      const [share] = (await client.nextNotification("sim.status")).solver.pbd_stiffness;
+      return { ...share, text: await told() };
+    }, ({ structural, shear, bend, text }) =>
+      text.includes(`structural\u00a0${percent(structural)}, shear\u00a0${percent(shear)}, bend\u00a0${percent(bend)}`));
     return structural;
   };
   const ten = await shown();
