@@ -19,6 +19,7 @@ std::mutex egl_mutex;
 struct Candidate {
   EGLDeviceEXT handle = nullptr;  ///< null: the surfaceless platform, where devices cannot be listed
   Device device;
+  bool apart = false;  ///< as the surfaceless platform's default display, not as a device
 };
 
 std::string text(const char* value) {
@@ -61,7 +62,7 @@ std::vector<Candidate> candidates() {
 
 EGLDisplay open_display(const Candidate& candidate) {
   if (!eglGetPlatformDisplayEXT) return EGL_NO_DISPLAY;
-  return candidate.handle
+  return candidate.handle && !candidate.apart
              ? eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, candidate.handle, nullptr)
              : eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
 }
@@ -117,10 +118,25 @@ void close(const Opened& opened) {
   eglDestroyContext(opened.display, opened.context);
 }
 
+/// The same software device through a display of its own: Mesa has its helper threads by display. Nothing
+/// where that is another device.
+std::optional<Opened> open_apart(Candidate candidate) {
+  const std::string wanted = candidate.device.name;
+  candidate.apart = true;
+  const Opened opened = open(candidate);
+  if (candidate.device.usable && candidate.device.name == wanted) return opened;
+  if (candidate.device.usable) close(opened);
+  return std::nullopt;
+}
+
 }  // namespace
 
+std::string renderer_name() {
+  return gl_text(GL_RENDERER);
+}
+
 bool software_renderer() {
-  const std::string name = gl_text(GL_RENDERER);
+  const std::string name = renderer_name();
   for (const char* rasteriser : {"llvmpipe", "softpipe", "SWR"})
     if (name.find(rasteriser) != std::string::npos) return true;
   return false;
@@ -137,7 +153,7 @@ Result<std::vector<Device>> list_devices() {
   return devices;
 }
 
-Result<std::unique_ptr<Context>> Context::create(std::optional<int> gpu) {
+Result<std::unique_ptr<Context>> Context::create(std::optional<int> gpu, HelperThreads threads) {
   const std::lock_guard lock(egl_mutex);
   if (Status loaded = load_egl(); !loaded) return loaded.error();
   std::vector<Candidate> all = candidates();
@@ -151,11 +167,16 @@ Result<std::unique_ptr<Context>> Context::create(std::optional<int> gpu) {
   for (const bool software : {false, true}) {
     for (Candidate& candidate : all) {
       if (gpu ? candidate.device.index != *gpu || software : candidate.device.software != software) continue;
-      const Opened opened = open(candidate);
+      Opened opened = open(candidate);
       if (!candidate.device.usable) {
         problems += (problems.empty() ? " device " : ", device ") + std::to_string(candidate.device.index) +
                     ": " + candidate.device.problem;
         continue;
+      }
+      if (threads == HelperThreads::own && candidate.handle && candidate.device.software) {
+        close(opened);
+        const std::optional<Opened> apart = open_apart(candidate);
+        opened = apart ? *apart : open(candidate);
       }
       std::unique_ptr<Context> context(new Context);
       context->device_ = candidate.device;

@@ -24,8 +24,18 @@ struct Device {
 /// Mesa's rasteriser draws in the context that is current here.
 bool software_renderer();
 
+/// GL_RENDERER of the context that is current here.
+std::string renderer_name();
+
 /// Every EGL device in the driver's order; opens a context on each to ask its name.
 Result<std::vector<Device>> list_devices();
+
+/// Software OpenGL computes on threads of its own, which contexts of a device share: they work in turns, at
+/// the priority of whoever made the first one.
+enum class HelperThreads {
+  shared,
+  own  ///< made by, and with the priority of, the thread that makes the context; where that cannot be: shared
+};
 
 /// A context that belongs to the thread that made it current. Order of devices: `gpu` if given; else the
 /// first usable one that is not software; else Mesa's software rasteriser.
@@ -33,7 +43,8 @@ class Context {
  public:
   /// Makes a context and makes it current on the calling thread. Error: what is missing and the package to
   /// install.
-  static Result<std::unique_ptr<Context>> create(std::optional<int> gpu = std::nullopt);
+  static Result<std::unique_ptr<Context>> create(std::optional<int> gpu = std::nullopt,
+                                                 HelperThreads threads = HelperThreads::shared);
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;

@@ -5,6 +5,10 @@
 
 namespace clothlab::model {
 
+double mobility(const scene::Scene& scene) {
+  return 1.0 / (1.0 + scene.solver.dt * scene.air_drag);
+}
+
 SpringGains spring_gains(const scene::Solver& solver, double stiffness, double damping, double inverse_mass) {
   const double k = stiffness * solver.dt * solver.dt, c = damping * solver.dt;
   const double coupling = inverse_mass * (k + c);
@@ -31,10 +35,9 @@ double median_mass(const Model& model, const ClothRange& cloth) {
 
 std::vector<PbdStiffness> pbd_stiffness(const Model& model, const scene::Scene& scene) {
   std::vector<PbdStiffness> result(scene.cloths.size());
-  const double mobility = 1.0 / (1.0 + scene.solver.dt * scene.air_drag);
   for (std::size_t i = 0; i < result.size(); ++i) {
     const scene::Springs& material = scene.cloths[i].material;
-    const double inverse_mass = 2.0 * mobility / median_mass(model, model.cloths[i]);
+    const double inverse_mass = 2.0 * mobility(scene) / median_mass(model, model.cloths[i]);
     for (const SpringKind kind : {SpringKind::structural, SpringKind::shear, SpringKind::bend}) {
       const double k = stiffness(material, kind);
       if (k > 0.0)

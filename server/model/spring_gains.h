@@ -16,6 +16,9 @@ struct SpringGains {
   double turning = 0;               ///< its stiffness over that of both ends' inertia; 0 without memory
 };
 
+/// 1 / (1 + dt air drag): what an implicit step makes of air drag, as if mass were more.
+double mobility(const scene::Scene& scene);
+
 /// XPBD: Macklin, Mueller & Chentanez 2016, equation 26, multiplied by stiffness dt^2, so that stiffnesses of
 /// 0 and beyond all measure keep their digits. Converged, the springs' forces are those of implicit Euler.
 /// PBD (Mueller et al. 2007) is XPBD without memory. Its stiffness in [0, 1] is chosen so that a spring

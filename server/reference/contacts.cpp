@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "server/model/motion.h"
 #include "shaders/elements/elements.h"
@@ -82,13 +83,50 @@ std::optional<double> kept_distance(const World& world, std::uint32_t i, std::ui
   return std::min(thickness, glm::distance(model.rest_position[i], model.rest_position[j]));
 }
 
-SelfContact self_contact(const World& world, const State& state, std::uint32_t i) {
+model::Adjacency within_reach(const World& world, const State& state) {
+  const std::size_t count = state.position.size();
+  double fastest = 0.0;
+  bool sound = true;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double speed = glm::length(state.velocity[i]);
+    sound = sound && std::isfinite(speed + glm::length(state.position[i]));
+    fastest = std::max(fastest, speed);
+  }
+  model::Adjacency near{std::vector<std::uint32_t>(count + 1, 0), {}};
+  if (!sound) return near;  // the run is lost anyhow, and such places have no order
+  const double reach = world.scene.self_collision->thickness + 2.0 * fastest * world.scene.solver.dt;
+  std::vector<std::uint32_t> along(count);
+  std::iota(along.begin(), along.end(), 0);
+  std::sort(along.begin(), along.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return state.position[a].x < state.position[b].x; });
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (std::size_t a = 0; a < count; ++a) {
+    const dvec3& x = state.position[along[a]];
+    for (std::size_t b = a + 1; b < count && state.position[along[b]].x - x.x <= reach; ++b) {
+      const dvec3 apart = state.position[along[b]] - x;
+      if (glm::dot(apart, apart) > reach * reach) continue;
+      pairs.emplace_back(along[a], along[b]);
+      pairs.emplace_back(along[b], along[a]);
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  for (const auto& [a, b] : pairs) {
+    ++near.offsets[a + 1];
+    near.items.push_back(b);
+  }
+  for (std::size_t i = 0; i < count; ++i) near.offsets[i + 1] += near.offsets[i];
+  return near;
+}
+
+SelfContact self_contact(const World& world, const State& state, const model::Adjacency& reach,
+                         std::uint32_t i) {
   SelfContact contact;
   const double thickness = world.scene.self_collision->thickness, dt = world.scene.solver.dt;
-  for (std::uint32_t j = 0; j < world.model.vertex_count(); ++j) {
+  for (std::uint32_t item = reach.offsets[i]; item < reach.offsets[i + 1]; ++item) {
+    const std::uint32_t j = reach.items[item];
     const double gap = glm::distance(state.position[i], state.position[j]);
     const double closing = glm::distance(state.velocity[i], state.velocity[j]) * dt;
-    if (j == i || gap > thickness + closing) continue;  // cannot meet; spares the look-up below
+    if (gap > thickness + closing) continue;  // cannot meet; spares the look-up below
     const std::optional<double> keep = kept_distance(world, i, j);
     dvec3 push, impulse;
     if (!keep ||

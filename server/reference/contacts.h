@@ -33,7 +33,12 @@ struct SelfContact {
   int touched = 0;     ///< vertices that were too close
 };
 
+/// For each vertex, in rising order, those it could touch within a step from `state`: found along one axis,
+/// as all pairs would take most of a long run's time.
+model::Adjacency within_reach(const World& world, const State& state);
+
 /// What self-collision does to vertex i, from the positions and velocities before the step.
-SelfContact self_contact(const World& world, const State& state, std::uint32_t i);
+SelfContact self_contact(const World& world, const State& state, const model::Adjacency& reach,
+                         std::uint32_t i);
 
 }  // namespace clothlab::reference

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
+#include "server/model/spring_gains.h"
 #include "server/reference/contacts.h"
 #include "server/reference/strain_limit.h"
 #include "server/reference/sweeps.h"
@@ -24,7 +25,7 @@ dvec3 felt_gravity(const dvec3& gravity, const dvec3& acceleration) {
 
 SweepState begin(const World& world, const State& state, double t, double t_next) {
   const std::size_t count = state.position.size();
-  const double dt = world.scene.solver.dt, drag = 1.0 / (1.0 + dt * world.scene.air_drag);
+  const double dt = world.scene.solver.dt, drag = model::mobility(world.scene);
   const dvec3& gravity = world.scene.gravity;
   SweepState step{world,
                   t,

@@ -1,5 +1,5 @@
 // The truth the GPU is held against: the same scene, one step at a time, in double precision and in the
-// plainest form. Every spring once and every pair of vertices, no lists and no hash; only the element laws
+// plainest form. Every spring once, every pair of vertices that could touch, no hash; only the element laws
 // are shared with the shaders.
 #pragma once
 

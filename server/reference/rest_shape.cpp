@@ -84,13 +84,14 @@ Vectors shifted_step(const World& world, const Vectors& x, const Vectors& force,
 }
 
 /// Newton's method from `start`; the shift falls as long as steps go downhill and rises when they do not.
-RestShape descend(const World& world, const Vectors& start) {
+RestShape descend(const World& world, const Vectors& start, const std::stop_token& stop) {
   const Scale scales = scale(world);
   RestShape shape{start, 0.0, 0};
   double shift = 1e-2 * scales.stiffness, height = potential(world, shape.position);
   Vectors force = forces(world, shape.position);
   for (; shape.iterations < most_newton_steps; ++shape.iterations) {
     if (largest(force) <= balanced * scales.force || !(shift < 1e6 * scales.stiffness)) break;
+    if (stop.stop_requested()) break;
     Vectors next = shifted_step(world, shape.position, force, shift);
     double expected = 0.0;  // how far the slope alone would take the energy down
     for (std::size_t i = 0; i < next.size(); ++i) {
@@ -135,13 +136,17 @@ std::optional<Error> violated(const World& world, const Vectors& x) {
 }  // namespace
 
 Result<RestShape> rest_shape(const World& world) {
+  return rest_shape(world, world.model.rest_position, {});
+}
+
+Result<RestShape> rest_shape(const World& world, std::vector<dvec3> start, const std::stop_token& stop) {
   if (const std::optional<std::size_t> vertex = unheld_vertex(world))
     return Error{"/cloths/" + std::to_string(world.model.vertex_cloth[*vertex]) + "/pins",
                  "nothing holds vertex " + std::to_string(*vertex),
                  "every part of a cloth is pinned somewhere"};
-  Vectors start = world.model.rest_position, unused(start.size());
+  Vectors unused(start.size());
   place_pins(world, 0.0, start, unused);
-  const RestShape shape = descend(world, start);
+  const RestShape shape = descend(world, start, stop);
   const double allowed = 1e-8 * scale(world).force;
   if (!(shape.residual <= allowed))
     return Error{

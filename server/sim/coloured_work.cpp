@@ -47,7 +47,7 @@ model::Colouring visited_vertices(const model::Model& model, const scene::Scene&
 ProjectedSprings projected_springs(const model::Colouring& visited, const model::Model& model,
                                    const scene::Scene& scene) {
   ProjectedSprings list;
-  const double mobility = 1.0 / (1.0 + scene.solver.dt * scene.air_drag);
+  const double mobility = model::mobility(scene);
   const auto inverse_mass = [&](std::uint32_t vertex) {
     return pinned(model, vertex) ? 0.0 : mobility / model.mass[vertex];
   };

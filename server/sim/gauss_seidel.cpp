@@ -4,6 +4,7 @@
 #include <array>
 
 #include "server/model/colouring.h"
+#include "server/model/spring_gains.h"
 #include "server/sim/coloured_work.h"
 #include "server/sim/integrator.h"
 
@@ -11,7 +12,6 @@ namespace clothlab::sim {
 
 namespace {
 
-constexpr std::uint32_t neighbour_slots = 64;  // NEIGHBOUR_SLOTS in shaders/collide/neighbours.glsl
 constexpr GLuint unit_deviation = 9, unit_projected = 10, unit_gains = 11, unit_visited = 12;
 constexpr GLuint slot_deviation = 3, slot_spring_pushes = 4, slot_targets = 5, slot_velocity_before = 6,
                  slot_remainders = 7;
@@ -31,7 +31,7 @@ class GaussSeidel : public Integrator {
 
   void set_parameters(const Surroundings& around) override {
     sweeps_ = around.scene.solver.iterations;
-    const float mobility = static_cast<float>(1.0 / (1.0 + around.scene.solver.dt * around.scene.air_drag));
+    const float mobility = static_cast<float>(model::mobility(around.scene));
     for (const gl::Program* program : {&whole_, &begin_, &visit_, &meet_, &finish_}) {
       if (!program->id()) continue;
       set_step_uniforms(*program, around);

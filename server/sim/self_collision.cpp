@@ -9,12 +9,6 @@
 
 namespace clothlab::sim {
 
-namespace {
-
-constexpr std::size_t neighbour_slots = 64;  // NEIGHBOUR_SLOTS in shaders/collide/neighbours.glsl
-
-}  // namespace
-
 Result<SelfCollision> SelfCollision::create(std::uint32_t vertex_count) {
   SelfCollision made;
   made.vertex_count_ = vertex_count;

@@ -11,6 +11,9 @@
 
 namespace clothlab::sim {
 
+/// Of a vertex's neighbour list: NEIGHBOUR_SLOTS in shaders/collide/neighbours.glsl.
+inline constexpr std::size_t neighbour_slots = 64;
+
 class SelfCollision {
  public:
   static Result<SelfCollision> create(std::uint32_t vertex_count);

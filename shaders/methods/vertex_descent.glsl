@@ -2,7 +2,7 @@
 // (their equation 9), the part of the Hessian that a compressed spring makes indefinite left out. A collider in the way is
 // met with the vertex's own block: it pushes as hard as it must, and friction follows from that.
 #include "blocks.glsl"
-READ_UINT(visited, 12);  // vertices, colour after colour
+READ_UINT(visited, 12);  // free vertices, colour after colour
 layout(std430, binding = 6) buffer VelocityBefore { vec4 velocity_before[]; };  // at the last step's start; w: 0 if there was none
 /// Where inertia would have each vertex, in the terms of its deviation: pushed by self-collision since the step's start [m];
 /// w: colliders met at the last visit.
@@ -43,7 +43,6 @@ int stop(vec3 x, vec3 d, vec3 a, vec3 b, inout vec3 descent) {
 void visit(int item) {
   int i = int(FETCH_UINT(visited, item));
   vec4 x = FETCH(position, i);
-  if (x.w == 0.0) return;
   float inertia = 1.0 / (x.w * mobility);
   vec3 v = FETCH(velocity, i).xyz, d = deviation(i).xyz;
   // precise: both forms of the kernel, compiled apart, are to round alike.

@@ -178,13 +178,5 @@ TEST_CASE("a step on the sphere equals the reference wherever rounding cannot de
 }
 
 TEST_CASE("a step of two sheets that fall onto each other equals the reference, all pairs tried") {
-  check_contacts(scene_of(R"({"version": 1,
-    "cloths": [{"mesh": {"grid": {"columns": 15, "rows": 15, "width": 0.28, "height": 0.28}},
-                "mass": {"per_vertex": 0.001}, "material": {"structural": 200, "shear": 100, "bend": 20, "damping": 0.02},
-                "pins": [{"at": "edge:row:0"}, {"at": "edge:row:14"}]},
-               {"mesh": {"grid": {"columns": 12, "rows": 12, "width": 0.2, "height": 0.2}},
-                "transform": {"translate": [0.013, 0.05, 0.037], "rotate": [0, 20, 0]},
-                "mass": {"per_vertex": 0.002}, "material": {"structural": 200, "shear": 100, "bend": 20, "damping": 0.02}}],
-    "self_collision": {"thickness": 0.03, "friction": 0.4}})"),
-                 80);
+  check_contacts(two_sheets(), 80);
 }
