@@ -15,6 +15,9 @@ inline constexpr std::array methods{Method::explicit_euler, Method::symplectic_e
                                     Method::implicit_euler, Method::pbd,
                                     Method::xpbd,           Method::vbd};
 
+/// What a document says instead of one of these for Solver::automatic.
+inline constexpr const char* automatic_method = "auto";
+
 /// Those that sweep over springs or vertices colour by colour: Gauss-Seidel iterations, `iterations` of them
 /// a step.
 bool sweeps(Method method);

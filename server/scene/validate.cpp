@@ -48,18 +48,15 @@ std::optional<SelfCollision> read_self_collision(const Reader& self_collision) {
                        self_collision.member("friction", 0.2).number(ranges::friction)};
 }
 
-Method read_method(const Reader& method) {
-  Words names;
-  for (const Method each : methods) names.push_back(name(each));
-  return method_of(method.choice(names, {"auto"})).value_or(Solver{}.method);
-}
-
 Solver read_solver(const Reader& solver) {
   solver.object({"method", "dt", "iterations", "tolerance"});
-  return Solver{read_method(solver.member("method", name(Solver{}.method))),
-                solver.member("dt", 0.001).number(ranges::dt),
+  Words names;
+  for (const Method each : methods) names.push_back(name(each));
+  names.push_back(automatic_method);
+  const std::string method = solver.member("method", name(Solver{}.method)).choice(names);
+  return Solver{method_of(method).value_or(Method::verlet), solver.member("dt", 0.001).number(ranges::dt),
                 solver.member("iterations", 10).integer(ranges::iterations),
-                solver.member("tolerance", 1e-4).number(ranges::tolerance)};
+                solver.member("tolerance", 1e-4).number(ranges::tolerance), method == automatic_method};
 }
 
 Scene read_scene(const Reader& top) {
