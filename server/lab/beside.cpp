@@ -1,0 +1,185 @@
+#include "server/lab/beside.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "server/lab/coarsen.h"
+#include "server/model/stability.h"
+#include "server/reference/trajectory.h"
+#include "server/scene/ranges.h"
+
+namespace clothlab::lab {
+
+namespace {
+
+using scene::Document;
+
+constexpr double truth_budget = 20.0, timed = 0.25;  // wall time [s]
+constexpr int rounds = 5;
+/// Of a copy that tells whether a motion without a reference is chaotic, and by how much it may grow.
+constexpr double heavier = 1e-4, most_amplified = 100.0;
+
+std::string format(const char* form, double value) {
+  char text[160];
+  std::snprintf(text, sizeof text, form, value);
+  return text;
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+}
+
+double least(const std::vector<double>& values) {
+  return *std::min_element(values.begin(), values.end());
+}
+
+}  // namespace
+
+bool Candidate::coarser() const {
+  return std::any_of(parts.begin(), parts.end(), [](const Part* part) { return part->coarser > 1; });
+}
+
+Status Beside::start(double time, const std::function<void(double share)>& progress,
+                     std::vector<std::string>& notes) {
+  Result<Truth> truth = lab::truth(whole_.document.scene, {time, 1e-6, truth_budget}, stop_, progress);
+  if (!truth) return truth.error();
+  truth_ = std::move(*truth);
+  notes = truth_.notes;
+  if (truth_.missing.empty()) {
+    notes.push_back(truth_.horizon_reason);
+    if (truth_.horizon > 0.0 && truth_.horizon < truth_.time)
+      notes.push_back("What a part does only later, such as a contact, is no part of its change.");
+    if (truth_.horizon == 0.0)
+      notes.push_back(
+          "Energy and the largest strain can still be compared, and are given; a part is recommended to be "
+          "dropped only where positions can be.");
+  } else {
+    notes.push_back("There is no reference (" + truth_.missing +
+                    "): errors are not known, only what each part changes.");
+    // The samples' times remain, for runs to be compared with each other.
+    without_truth_ = truth_.time = time;
+    truth_.spacing = time / samples_to_horizon;
+    truth_.energy.clear();
+    truth_.strain.clear();
+    truth_.position.clear();
+  }
+  whole_.variant.name = "the whole scene";
+  whole_.variant.patch = scene::json::object();
+  if (Status measured = run(whole_); !measured) return measured;
+  return whole_.variant.measured && !truth_.missing.empty() ? compare_without_truth(notes) : ok();
+}
+
+/// Nothing has said until when the motion can be compared: a copy that starts almost alike does.
+Status Beside::compare_without_truth(std::vector<std::string>& notes) {
+  Candidate copy = whole_;
+  for (scene::Cloth& cloth : copy.document.scene.cloths) cloth.mass.value *= 1.0 + heavier;
+  if (Status measured = run(copy); !measured) return measured;
+  const double apart = copy.variant.change.value_or(1.0);
+  if (copy.variant.measured && apart <= most_amplified * heavier) return ok();
+  notes.push_back(
+      format("A copy whose masses are %.3g %% larger", 100 * heavier) +
+      format(" is %.3g %% of the size elsewhere", 100 * apart) +
+      format(" after %.3g s: positions cannot be compared, and nothing is recommended.", truth_.time));
+  without_truth_ = 0.0;
+  whole_.variant.change.reset();
+  return ok();
+}
+
+Status Beside::measure(Candidate& candidate, Document document) {
+  candidate.document = std::move(document);
+  if (candidate.coarser())
+    if (Status stepped = same_share_of_limit(candidate); !stepped) return stepped;
+  candidate.variant.patch = merge_patch(whole_.document.value, candidate.document.value);
+  return run(candidate);
+}
+
+/// A coarser mesh allows longer steps, which is where most of its saving is: its step is the same share of
+/// its limit.
+Status Beside::same_share_of_limit(Candidate& candidate) {
+  const Result<double> limit = limit_of(candidate.document.scene);
+  if (!limit) return limit.error();
+  const double before = whole_.variant.dt_limit;
+  if (!std::isfinite(*limit) || !std::isfinite(before) || before == 0.0) return ok();
+  const double dt = std::min({whole_.document.scene.solver.dt * *limit / before, scene::ranges::dt.maximum,
+                              truth_.spacing * samples_to_horizon / 4});
+  scene::json value = candidate.document.value;
+  value["solver"]["dt"] = dt;
+  Result<Document> stepped = scene::validate(std::move(value));
+  if (!stepped) return stepped.error();
+  candidate.document = std::move(*stepped);
+  return ok();
+}
+
+Result<double> Beside::limit_of(const scene::Scene& scene) const {
+  const Result<model::Model> model = model::build(scene);
+  if (!model) return model.error();
+  const double limit =
+      model::dt_limit(scene.solver.method, model::SpringOperator(*model, scene, model->rest_position), stop_);
+  if (stop_.stop_requested()) return cancelled;
+  return limit;
+}
+
+/// Errors, change and step limit; the cost comes later, taking turns.
+Status Beside::run(Candidate& candidate) {
+  Variant& variant = candidate.variant;
+  const scene::Scene& scene = candidate.document.scene;
+  const Result<double> limit = limit_of(scene);
+  if (!limit) return limit.error();
+  variant.dt_limit = *limit;
+  // The vertices of a coarser mesh are others: positions are compared apart.
+  Truth others = truth_;
+  others.position.clear();
+  const Result<Trial> trial = bench_.run(scene, candidate.coarser() ? others : truth_, truth_.time, stop_);
+  if (!trial) return trial.error();
+  if (trial->blew_up_at) {
+    variant.reason = "it blew up at " + format("%.3g s", *trial->blew_up_at);
+    return ok();
+  }
+  variant.error = trial->error;
+  variant.measured = true;
+  return compared_at() > 0.0 ? compare(candidate, *trial) : ok();
+}
+
+Status Beside::compare(Candidate& candidate, const Trial& trial) {
+  if (!trial.at_horizon.empty()) {
+    candidate.at_horizon.assign(trial.at_horizon.begin(), trial.at_horizon.end());
+  } else {
+    scene::Scene scene = candidate.document.scene;
+    scene.solver.dt = fitted_dt(scene.solver.dt, truth_);
+    const auto state = bench_.run_to(scene, compared_at(), stop_);
+    if (!state) return state.error();
+    if (!*state) return ok();
+    candidate.at_horizon = at_fine_vertices(whole_.document.scene, scene, (*state)->position);
+    if (!truth_.position.empty())
+      candidate.variant.error[index(Axis::position)] =
+          reference::rms_distance(candidate.at_horizon, truth_.position.back()) / truth_.size;
+  }
+  const std::vector<glm::dvec3>& whole = &candidate == &whole_ ? candidate.at_horizon : whole_.at_horizon;
+  candidate.variant.change = reference::rms_distance(candidate.at_horizon, whole) / truth_.size;
+  return ok();
+}
+
+/// The whole and these, taking turns; ratios are of the same turn, so that a slow minute of the machine is
+/// nobody's.
+Status Beside::time(const std::vector<Candidate*>& candidates) {
+  std::vector<scene::Scene> scenes{whole_.document.scene};
+  for (const Candidate* candidate : candidates) scenes.push_back(candidate->document.scene);
+  const auto times = bench_.time(scenes, truth_.time, timed, rounds, stop_);
+  if (!times) return times.error();
+  const std::vector<double>& whole = times->front();
+  whole_.variant.cost = cost_of(whole);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const std::vector<double>& own = (*times)[i + 1];
+    std::vector<double> ratios;
+    for (std::size_t round = 0; round < own.size(); ++round) ratios.push_back(own[round] / whole[round]);
+    candidates[i]->variant.cost = cost_of(own);
+    // Noise only ever makes a run longer, and an odd turn may flatter either: what saves does so in both.
+    candidates[i]->variant.cost_ratio = std::max(median(ratios), least(own) / least(whole));
+  }
+  return ok();
+}
+
+}  // namespace clothlab::lab

@@ -1,0 +1,138 @@
+#include "server/lab/cache.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <vector>
+
+#include "server/base/data_files.h"
+#include "server/lab/exports.h"
+
+namespace clothlab::lab {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::uintmax_t most_bytes_a_file = 16 * 1024 * 1024;
+constexpr const char *suffix = ".json", *unfinished_suffix = ".part";
+
+bool complete(const Outcome& outcome) {
+  return std::visit([](const auto& result) { return result.complete; }, outcome);
+}
+
+Outcome named(Outcome outcome, const std::string& scene) {
+  std::visit([&](auto& result) { result.scene = scene; }, outcome);
+  return outcome;
+}
+
+}  // namespace
+
+fs::path cache_folder() {
+  // A relative path would be somewhere else in every folder; the XDG specification has it ignored.
+  const char* cache = std::getenv("XDG_CACHE_HOME");
+  if (cache && fs::path(cache).is_absolute()) return fs::path(cache) / "clothlab" / "lab";
+  const char* home = std::getenv("HOME");
+  if (home && fs::path(home).is_absolute()) return fs::path(home) / ".cache" / "clothlab" / "lab";
+  return {};
+}
+
+std::optional<Outcome> Cache::find(const CacheKey& key) {
+  const std::lock_guard lock(mutex_);
+  const auto found = std::find_if(recent_.begin(), recent_.end(),
+                                  [&](const Entry& entry) { return entry.hash == key.hash; });
+  if (found != recent_.end()) {
+    recent_.splice(recent_.begin(), recent_, found);
+    return named(recent_.front().outcome, key.scene);
+  }
+  std::optional<Outcome> outcome = read(key.hash);
+  if (!outcome) return std::nullopt;
+  remember(key.hash, *outcome);
+  return named(*outcome, key.scene);
+}
+
+void Cache::keep(const CacheKey& key, const Outcome& outcome) {
+  if (!complete(outcome)) return;
+  const std::lock_guard lock(mutex_);
+  std::erase_if(recent_, [&](const Entry& entry) { return entry.hash == key.hash; });
+  remember(key.hash, outcome);
+  write(key.hash, outcome);
+}
+
+void Cache::remember(const std::string& hash, const Outcome& outcome) {
+  recent_.push_front({hash, outcome});
+  while (recent_.size() > limits_.entries_in_memory) recent_.pop_back();
+}
+
+std::optional<Outcome> Cache::read(const std::string& hash) const {
+  if (folder_.empty()) return std::nullopt;
+  const fs::path path = folder_ / (hash + suffix);
+  std::error_code failure;
+  if (!fs::is_regular_file(path, failure)) return std::nullopt;
+  if (const std::uintmax_t bytes = fs::file_size(path, failure); failure || bytes > most_bytes_a_file)
+    return std::nullopt;
+  const Result<std::string> text = read_file(path);
+  if (!text) return std::nullopt;
+  // With limits on depth and size, and errors as values: anybody may have written to that folder.
+  const Result<json> file = scene::parse_json(*text, path.string(), false, most_bytes_a_file);
+  if (!file || !file->is_object() || !file->contains("key") || !file->contains("result") ||
+      file->at("key") != hash)
+    return std::nullopt;
+  const Result<Outcome> outcome = from_json(file->at("result"));
+  if (!outcome || !complete(*outcome)) return std::nullopt;
+  return *outcome;
+}
+
+void Cache::write(const std::string& hash, const Outcome& outcome) const {
+  if (folder_.empty()) return;
+  std::error_code failure;
+  fs::create_directories(folder_, failure);
+  const std::string text =
+      json{{"key", hash}, {"result", to_json(outcome)}}.dump(-1, ' ', false, json::error_handler_t::replace);
+  if (text.size() > most_bytes_a_file) return;
+  // Whole or not at all, whoever reads or dies meanwhile.
+  const fs::path unfinished = folder_ / (hash + "-" + std::to_string(getpid()) + unfinished_suffix);
+  {
+    std::ofstream file(unfinished, std::ios::binary | std::ios::trunc);
+    file << text << std::flush;
+    if (!file) {
+      file.close();
+      fs::remove(unfinished, failure);
+      return;
+    }
+  }
+  fs::rename(unfinished, folder_ / (hash + suffix), failure);
+  if (failure) fs::remove(unfinished, failure);
+  remove_oldest();
+}
+
+void Cache::remove_oldest() const {
+  struct File {
+    fs::path path;
+    fs::file_time_type written;
+    std::uintmax_t bytes;
+  };
+  std::vector<File> files;
+  std::uintmax_t bytes = 0;
+  std::error_code failure;
+  for (fs::directory_iterator at(folder_, failure), end; !failure && at != end; at.increment(failure)) {
+    std::error_code gone;  // another program may be tidying up as well
+    const std::string extension = at->path().extension().string();
+    if (extension != suffix && extension != unfinished_suffix) continue;
+    File file{at->path(), at->last_write_time(gone), at->file_size(gone)};
+    if (gone) continue;
+    bytes += file.bytes;
+    files.push_back(std::move(file));
+  }
+  std::sort(files.begin(), files.end(),
+            [](const File& one, const File& other) { return one.written < other.written; });
+  for (const File& file : files) {
+    if (bytes <= limits_.bytes_on_disk) return;
+    fs::remove(file.path, failure);
+    bytes -= file.bytes;
+  }
+}
+
+}  // namespace clothlab::lab

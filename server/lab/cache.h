@@ -1,0 +1,61 @@
+// Results of the lab that were measured before: the same scene, job, build and device give the same answer
+// without work. In memory, and on disk for other runs of the program; a disk that cannot be written is no
+// error, and a file that is damaged or not ours is as good as none.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <list>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "server/lab/job.h"
+
+namespace clothlab::lab {
+
+/// What a result depends on.
+struct CacheKey {
+  std::string hash;   ///< 32 hexadecimal digits; of the scene without its names, colours and textures, the
+                      ///< job, the program and its shaders, and the renderer
+  std::string scene;  ///< its name, which a result carries though it does not depend on it
+};
+/// `renderer`: gl::renderer_name() of the context the job would run in.
+CacheKey cache_key(const scene::Document& document, const Job& job, const std::string& renderer);
+
+/// $XDG_CACHE_HOME/clothlab/lab, or ~/.cache/clothlab/lab; empty where neither is known.
+std::filesystem::path cache_folder();
+
+/// All functions may be called from any thread, and several programs may use one folder.
+class Cache {
+ public:
+  struct Limits {
+    std::size_t entries_in_memory = 64;
+    std::uintmax_t bytes_on_disk = 64 * 1024 * 1024;
+  };
+
+  /// Results stay in memory only where `folder` is empty or cannot be written.
+  explicit Cache(std::filesystem::path folder = cache_folder()) : Cache(std::move(folder), Limits{}) {}
+  Cache(std::filesystem::path folder, Limits limits) : folder_(std::move(folder)), limits_(limits) {}
+
+  std::optional<Outcome> find(const CacheKey& key);
+  /// Only what is complete is kept. The oldest go where there is no room.
+  void keep(const CacheKey& key, const Outcome& outcome);
+
+ private:
+  struct Entry {
+    std::string hash;
+    Outcome outcome;
+  };
+  void remember(const std::string& hash, const Outcome& outcome);
+  std::optional<Outcome> read(const std::string& hash) const;
+  void write(const std::string& hash, const Outcome& outcome) const;
+  void remove_oldest() const;
+
+  std::filesystem::path folder_;
+  Limits limits_;
+  std::mutex mutex_;
+  std::list<Entry> recent_;  ///< the latest used first
+};
+
+}  // namespace clothlab::lab

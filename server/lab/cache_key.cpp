@@ -1,0 +1,118 @@
+// What a result of the lab depends on, as one hash.
+#include <algorithm>
+#include <cstdio>
+#include <vector>
+
+#include "server/base/data_files.h"
+#include "server/lab/cache.h"
+#include "server/scene/method.h"
+
+namespace clothlab::lab {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// FNV-1a over 128 bits as two lanes with different starts: not against an adversary, who has nothing to
+/// gain.
+class Hash {
+ public:
+  void add(const std::string& bytes) {
+    for (const char byte : bytes) {
+      const auto value = static_cast<std::uint8_t>(byte);
+      first_ = (first_ ^ value) * 0x100000001b3ull;
+      // Another multiplier, so that the two lanes do not collide together.
+      second_ = (second_ + value + 1) * 0x9e3779b97f4a7c15ull;
+      second_ ^= second_ >> 32;
+    }
+    // Where one part ends and the next begins is part of it.
+    first_ = (first_ ^ bytes.size()) * 0x100000001b3ull;
+    second_ = (second_ ^ bytes.size()) * 0x9e3779b97f4a7c15ull;
+  }
+  std::string text() const {
+    char digits[33];
+    std::snprintf(digits, sizeof digits, "%016llx%016llx", static_cast<unsigned long long>(first_),
+                  static_cast<unsigned long long>(second_));
+    return digits;
+  }
+
+ private:
+  std::uint64_t first_ = 0xcbf29ce484222325ull, second_ = 0x84222325cbf29ce4ull;
+};
+
+/// The program and the shaders it compiles while it runs.
+std::string build_hash() {
+  Hash hash;
+  if (const Result<std::string> program = read_file("/proc/self/exe")) hash.add(*program);
+  const Result<fs::path> shaders = data_path("shaders");
+  std::vector<fs::path> files;
+  std::error_code failure;
+  if (shaders)
+    for (fs::recursive_directory_iterator at(*shaders, failure), end; !failure && at != end;
+         at.increment(failure))
+      if (at->is_regular_file(failure)) files.push_back(at->path());
+  std::sort(files.begin(), files.end());  // folders are listed in any order
+  for (const fs::path& file : files) {
+    hash.add(fs::relative(file, *shaders, failure).string());
+    if (const Result<std::string> text = read_file(file)) hash.add(*text);
+  }
+  return hash.text();
+}
+
+/// Without what cannot matter to how the cloth moves.
+json what_moves(json scene) {
+  scene.erase("name");
+  for (json& cloth : scene["cloths"])
+    for (const char* key : {"name", "color", "texture"}) cloth.erase(key);
+  for (json& collider : scene["colliders"]) collider.erase("name");
+  return scene;
+}
+
+/// None named means all; the order in which they are named is nothing.
+json names(std::vector<scene::Method> methods) {
+  if (methods.empty()) methods.assign(scene::methods.begin(), scene::methods.end());
+  std::sort(methods.begin(), methods.end());
+  json list = json::array();
+  for (const scene::Method method : methods) list.push_back(scene::name(method));
+  return list;
+}
+
+json maybe(const std::optional<double>& value) {
+  return value ? json(*value) : json();
+}
+
+json of(const ChartRequest& request) {
+  return {{"methods", names(request.methods)},
+          {"iterations", request.iterations},
+          {"time", maybe(request.time)},
+          {"budget", request.budget}};
+}
+json of(const MapRequest& request) {
+  return {{"methods", names(request.methods)},
+          {"field", request.field},
+          {"from", maybe(request.from)},
+          {"to", maybe(request.to)},
+          {"columns", request.columns}};
+}
+json of(const ChooseRequest& request) {
+  return {
+      {"tolerance", request.tolerance}, {"methods", names(request.methods)}, {"time", maybe(request.time)}};
+}
+json of(const SimplifyRequest& request) {
+  return {{"tolerance", request.tolerance}, {"time", maybe(request.time)}};
+}
+
+}  // namespace
+
+CacheKey cache_key(const scene::Document& document, const Job& job, const std::string& renderer) {
+  static const std::string build = build_hash();
+  Hash hash;
+  hash.add(build);
+  hash.add(renderer);
+  hash.add(name(job));
+  hash.add(std::visit([](const auto& request) { return of(request); }, job).dump());
+  hash.add(what_moves(document.value).dump());
+  return {hash.text(), document.scene.name};
+}
+
+}  // namespace clothlab::lab

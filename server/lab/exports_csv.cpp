@@ -1,0 +1,123 @@
+// Results of the lab as CSV (RFC 4180, but with plain line feeds): a header with the units, then a row a
+// point, cell, trial or variant. What there is no number for is left empty.
+#include <cmath>
+#include <cstdio>
+
+#include "server/lab/exports.h"
+#include "server/scene/method.h"
+
+namespace clothlab::lab {
+
+namespace {
+
+class Table {
+ public:
+  explicit Table(const std::string& header) : text_(header) {}
+
+  Table& row() {
+    text_ += '\n';
+    first_ = true;
+    return *this;
+  }
+  Table& add(const std::string& words) {
+    if (!first_) text_ += ',';
+    first_ = false;
+    if (words.find_first_of(",\"\r\n") == std::string::npos) {
+      text_ += words;
+      return *this;
+    }
+    text_ += '"';
+    for (const char character : words) text_ += character == '"' ? "\"\"" : std::string(1, character);
+    text_ += '"';
+    return *this;
+  }
+  Table& add(const char* words) { return add(std::string(words)); }
+  Table& add(double value) {
+    char digits[32] = "";
+    if (std::isfinite(value)) std::snprintf(digits, sizeof digits, "%.9g", value);
+    return add(std::string(digits));
+  }
+  Table& add(const std::optional<double>& value) { return value ? add(*value) : add(""); }
+  Table& add(int value) { return add(std::to_string(value)); }
+  Table& add(bool value) { return add(value ? "yes" : "no"); }
+  Table& add(const Errors& errors) {
+    for (const std::optional<double>& error : errors) add(error);
+    return *this;
+  }
+  Table& add(const std::optional<Cost>& cost) {
+    if (!cost) return add("").add("").add("");
+    return add(cost->median).add(cost->minimum).add(cost->runs);
+  }
+  std::string finish() { return text_ + "\n"; }
+
+ private:
+  std::string text_;
+  bool first_ = true;
+};
+
+const std::string errors_header =
+    "position_error_over_size,energy_error_share,strain_error_share,rest_error_over_size";
+const std::string cost_header = "median_ms_per_simulated_s,minimum_ms_per_simulated_s,timed_runs";
+
+std::string of_points(const std::vector<Point>& points) {
+  Table table("method,dt_s,iterations,linear_tolerance," + errors_header +
+              ",largest_position_error_over_size," + cost_header + ",blew_up_at_s,dt_over_limit");
+  for (const Point& point : points) {
+    const Setting& setting = point.setting;
+    table.row().add(scene::name(setting.method)).add(setting.dt);
+    iterates(setting.method) ? table.add(setting.iterations) : table.add("");
+    setting.method == scene::Method::implicit_euler ? table.add(setting.tolerance) : table.add("");
+    table.add(point.error).add(point.largest_position_error).add(point.cost);
+    table.add(point.blew_up_at).add(point.dt_over_limit);
+  }
+  return table.finish();
+}
+
+std::string of(const Chart& chart) {
+  return of_points(chart.points);
+}
+
+std::string of(const Choice& choice) {
+  return of_points(choice.tried);
+}
+
+std::string of(const StabilityMap& map) {
+  const std::string unit = map.unit.empty() ? "" : " [" + map.unit + "]";
+  Table table("method,field,value" + unit +
+              ",dt_s,log10_energy_growth,blew_up,theory_s,held_s,failed_s,disagrees,reason");
+  for (const MethodMap& method : map.methods)
+    for (const MapColumn& column : method.columns) {
+      const auto row = [&](const MapCell* cell) {
+        table.row().add(scene::name(method.method)).add(map.field).add(column.value);
+        cell ? table.add(cell->dt).add(cell->growth).add(cell->blew_up) : table.add("").add("").add("");
+        table.add(column.theory).add(column.held).add(column.failed).add(column.disagrees);
+        table.add(column.reason);
+      };
+      for (const MapCell& cell : column.cells) row(&cell);
+      if (column.cells.empty()) row(nullptr);  // what theory says of it is known all the same
+    }
+  return table.finish();
+}
+
+std::string of(const Simplification& simplification) {
+  Table table("variant,measured,reason," + errors_header + ",change_over_size," + cost_header +
+              ",cost_ratio,dt_limit_s,drop,patch");
+  const auto row = [&](const Variant& variant) {
+    table.row().add(variant.name).add(variant.measured).add(variant.reason).add(variant.error);
+    table.add(variant.change).add(variant.cost);
+    variant.measured ? table.add(variant.cost_ratio) : table.add("");
+    table.add(variant.dt_limit).add(variant.drop).add(variant.patch.dump());
+  };
+  row(simplification.whole);
+  for (const Variant& variant : simplification.variants) row(variant);
+  if (!simplification.recommended.name.empty()) row(simplification.recommended);
+  return table.finish();
+}
+
+}  // namespace
+
+std::string csv(const Outcome& outcome) {
+  return std::visit([](const auto& result) { return of(result); }, outcome);
+}
+
+}  // namespace clothlab::lab

@@ -1,0 +1,174 @@
+// Results of the lab as JSON. A number that is not finite becomes null.
+#include <cmath>
+
+#include "server/lab/exports.h"
+#include "server/scene/method.h"
+
+namespace clothlab::lab {
+
+namespace {
+
+json number(double value) {
+  return std::isfinite(value) ? json(value) : json();
+}
+
+json number(const std::optional<double>& value) {
+  return value ? number(*value) : json();
+}
+
+json of(const Errors& errors) {
+  json object = json::object();
+  for (const Axis axis : all_axes) object[name(axis)] = number(errors[static_cast<std::size_t>(axis)]);
+  return object;
+}
+
+json of(const std::optional<Cost>& cost) {
+  if (!cost) return {};
+  return {{"median", number(cost->median)}, {"minimum", number(cost->minimum)}, {"runs", cost->runs}};
+}
+
+json of(const Point& point) {
+  json object = to_json(point.setting);
+  object["error"] = of(point.error);
+  object["largest_position_error"] = number(point.largest_position_error);
+  object["ms_a_simulated_s"] = of(point.cost);
+  object["blew_up_at_s"] = number(point.blew_up_at);
+  object["dt_over_limit"] = number(point.dt_over_limit);
+  object["patch"] = patch(point.setting);
+  return object;
+}
+
+json of(const LeftOut& left_out);
+json of(const MapCell& cell);
+json of(const MapColumn& column);
+json of(const MethodMap& map);
+json of(const Variant& variant);
+
+template <class Item>
+json list_of(const std::vector<Item>& items) {
+  json list = json::array();
+  for (const Item& item : items) list.push_back(of(item));
+  return list;
+}
+
+json of(const LeftOut& left_out) {
+  return {{"method", scene::name(left_out.method)},
+          {"dt_s", number(left_out.dt)},
+          {"iterations", left_out.iterations ? json(*left_out.iterations) : json()},
+          {"reason", left_out.reason}};
+}
+
+json of(const AxisFacts& facts) {
+  return {{"available", facts.available},
+          {"reason", facts.reason},
+          {"reference_error", number(facts.reference_error)},
+          {"float32_floor", number(facts.float32_floor)}};
+}
+
+json of(const Chart& chart) {
+  json axes = json::object();
+  for (const Axis axis : all_axes) axes[name(axis)] = of(chart.axes[static_cast<std::size_t>(axis)]);
+  return {{"kind", "chart"},
+          {"scene", chart.scene},
+          {"renderer", chart.renderer},
+          {"size_m", number(chart.size)},
+          {"time_s", number(chart.time)},
+          {"horizon_s", number(chart.horizon)},
+          {"horizon_reason", chart.horizon_reason},
+          {"complete", chart.complete},
+          {"present", to_json(chart.present)},
+          {"axes", axes},
+          {"lines", {{"real_time_ms", real_time}, {"one_pixel", one_pixel}}},
+          {"points", list_of(chart.points)},
+          {"left_out", list_of(chart.left_out)},
+          {"notes", chart.notes}};
+}
+
+json of(const MapCell& cell) {
+  return {{"dt_s", number(cell.dt)}, {"growth", number(cell.growth)}, {"blew_up", cell.blew_up}};
+}
+
+json of(const MapColumn& column) {
+  return {{"value", number(column.value)}, {"theory_s", number(column.theory)},
+          {"held_s", number(column.held)}, {"failed_s", number(column.failed)},
+          {"disagrees", column.disagrees}, {"reason", column.reason},
+          {"cells", list_of(column.cells)}};
+}
+
+json of(const MethodMap& map) {
+  return {{"method", scene::name(map.method)}, {"columns", list_of(map.columns)}};
+}
+
+json of(const StabilityMap& map) {
+  return {{"kind", "stability"},
+          {"scene", map.scene},
+          {"renderer", map.renderer},
+          {"field", map.field},
+          {"unit", map.unit},
+          {"present",
+           {{"value", number(map.present_value)},
+            {"dt_s", number(map.present_dt)},
+            {"method", scene::name(map.present_method)}}},
+          {"time_s", number(map.time)},
+          {"steps", map.steps},
+          {"complete", map.complete},
+          {"methods", list_of(map.methods)},
+          {"notes", map.notes}};
+}
+
+json of(const Choice& choice) {
+  return {{"kind", "choose"},
+          {"scene", choice.scene},
+          {"renderer", choice.renderer},
+          {"tolerance", number(choice.tolerance)},
+          {"time_s", number(choice.time)},
+          {"horizon_s", number(choice.horizon)},
+          {"reference_error", number(choice.reference_error)},
+          {"met", choice.met},
+          {"complete", choice.complete},
+          {"chosen", of(choice.chosen)},
+          {"runner_up", choice.runner_up ? of(*choice.runner_up) : json()},
+          {"present", of(choice.present)},
+          {"why", choice.why},
+          {"patch", patch(choice.chosen.setting)},
+          {"tried", list_of(choice.tried)},
+          {"notes", choice.notes}};
+}
+
+json of(const Variant& variant) {
+  return {{"name", variant.name},
+          {"patch", variant.patch},
+          {"measured", variant.measured},
+          {"reason", variant.reason},
+          {"error", of(variant.error)},
+          {"change", number(variant.change)},
+          {"ms_a_simulated_s", of(variant.cost)},
+          {"cost_ratio", number(variant.cost_ratio)},
+          {"dt_limit_s", number(variant.dt_limit)},
+          {"drop", variant.drop}};
+}
+
+json of(const Simplification& simplification) {
+  return {{"kind", "simplify"},
+          {"scene", simplification.scene},
+          {"renderer", simplification.renderer},
+          {"tolerance", number(simplification.tolerance)},
+          {"time_s", number(simplification.time)},
+          {"horizon_s", number(simplification.horizon)},
+          {"size_m", number(simplification.size)},
+          {"setting", to_json(simplification.setting)},
+          {"complete", simplification.complete},
+          {"whole", of(simplification.whole)},
+          {"variants", list_of(simplification.variants)},
+          {"recommended", of(simplification.recommended)},
+          {"why", simplification.why},
+          {"notes", simplification.notes}};
+}
+
+}  // namespace
+
+json to_json(const Outcome& outcome) {
+  return std::visit([](const auto& result) { return of(result); }, outcome);
+}
+
+}  // namespace clothlab::lab

@@ -1,0 +1,56 @@
+#include "server/lab/setting.h"
+
+#include <cstdio>
+
+#include "server/scene/method.h"
+
+namespace clothlab::lab {
+
+using scene::Method;
+
+Setting setting_of(const scene::Scene& scene) {
+  const scene::Solver& solver = scene.solver;
+  Setting setting{solver.method, solver.dt, 1, 1e-4};
+  if (iterates(solver.method)) setting.iterations = solver.iterations;
+  if (solver.method == Method::implicit_euler) setting.tolerance = solver.tolerance;
+  return setting;
+}
+
+scene::Scene with(scene::Scene scene, const Setting& setting) {
+  scene.solver.method = setting.method;
+  scene.solver.dt = setting.dt;
+  scene.solver.iterations = setting.iterations;
+  scene.solver.tolerance = setting.tolerance;
+  return scene;
+}
+
+bool iterates(Method method) {
+  return method == Method::implicit_euler || scene::sweeps(method);
+}
+
+json patch(const Setting& setting) {
+  json solver{{"method", scene::name(setting.method)}, {"dt", setting.dt}};
+  if (iterates(setting.method)) solver["iterations"] = setting.iterations;
+  if (setting.method == Method::implicit_euler) solver["tolerance"] = setting.tolerance;
+  return {{"solver", solver}};
+}
+
+json to_json(const Setting& setting) {
+  const bool iterating = iterates(setting.method), solving = setting.method == Method::implicit_euler;
+  return {{"method", scene::name(setting.method)},
+          {"dt_s", setting.dt},
+          {"iterations", iterating ? json(setting.iterations) : json()},
+          {"tolerance", solving ? json(setting.tolerance) : json()}};
+}
+
+std::string text(const Setting& setting) {
+  char step[48];
+  std::snprintf(step, sizeof step, ", dt %.3g ms", 1000.0 * setting.dt);
+  std::string text = scene::name(setting.method) + std::string(step);
+  if (iterates(setting.method))
+    text +=
+        ", " + std::to_string(setting.iterations) + (setting.iterations == 1 ? " iteration" : " iterations");
+  return text;
+}
+
+}  // namespace clothlab::lab

@@ -1,0 +1,200 @@
+// The lab's truth, chart and choice, mostly on the swinging cloth, whose errors are known (physics.md).
+#include <cmath>
+
+#include "server/lab/choice.h"
+#include "server/lab/trial.h"
+#include "server/lab/truth.h"
+#include "server/reference/trajectory.h"
+#include "server/scene/method.h"
+#include "tests/physics/stage.h"
+#include "tests/small_scenes.h"
+
+using namespace clothlab;
+using namespace clothlab::lab;
+using scene::Method;
+
+namespace {
+
+scene::Scene swinging(Method method = Method::symplectic_euler) {
+  scene::Scene scene = test::swinging_cloth(method, 0.6 * test::cloth_unit);
+  scene.cloths[0].transform.translate = {0.0, 1.0, 0.0};  // where a zero of energy would show
+  return scene;
+}
+
+Truth truth_of(const scene::Scene& scene, TruthRequest request) {
+  Result<Truth> found = truth(scene, request, {}, [](double) {});
+  if (!found) FAIL(found.error().text());
+  return *found;
+}
+
+Chart chart_of(const scene::Scene& scene, const ChartRequest& request) {
+  Result<Chart> made = chart(scene, request, {});
+  if (!made) FAIL(made.error().text());
+  return *made;
+}
+
+std::vector<Point> points_of(const Chart& chart, Method method) {
+  std::vector<Point> points;
+  for (const Point& point : chart.points)
+    if (point.setting.method == method && point.error[index(Axis::position)]) points.push_back(point);
+  return points;
+}
+
+/// Slope in the log-log plane between two points.
+double order(const Point& a, const Point& b) {
+  return std::log(*a.error[index(Axis::position)] / *b.error[index(Axis::position)]) /
+         std::log(a.setting.dt / b.setting.dt);
+}
+
+}  // namespace
+
+TEST_CASE("the lab's steps meet many samples, are no longer than asked for, and stay what they are") {
+  Truth truth;
+  truth.spacing = 0.3 / samples_to_horizon;
+  for (double dt = 0.2; dt > 1e-5; dt /= 1.037) {
+    const int steps = steps_to_horizon(dt, truth);
+    const double fitted = fitted_dt(dt, truth);
+    CAPTURE(dt, steps);
+    CHECK(fitted <= dt * (1 + 2e-5));
+    CHECK(steps % 4 == 0);
+    CHECK(steps <= std::max(1.04 * std::ceil(0.3 / dt) + 1, std::ceil(0.3 / dt) + 3));
+    CHECK(std::abs(fitted * steps - 0.3) < 2e-6);
+    CHECK(steps_to_horizon(fitted, truth) == steps);
+    if (steps >= 1600) CHECK(steps % samples_to_horizon == 0);
+  }
+}
+
+TEST_CASE("the lab's reference of the swinging cloth is as exact as it says, for the whole time") {
+  const Truth found = truth_of(swinging(), {0.3, 1e-7, 30.0});
+  CHECK(found.missing.empty());
+  CHECK(found.horizon == 0.3);  // it buckles at 0.5 s
+  REQUIRE(found.position.size() == samples_to_horizon);
+  const auto exact = reference::trajectory(found.world, {0.3}, test::cloth_unit / 100);
+  REQUIRE(exact);
+  const double off = reference::rms_distance(found.position.back(), exact->states[0].position);
+  // An estimate of the size of the error: within a factor of three of it, and as small as was asked for.
+  CHECK(off < 3.0 * found.position_error);
+  CHECK(found.position_error < 1e-7 * found.size);
+}
+
+TEST_CASE("a horizon ends where a cloth buckles, and a tangle has none: the lab says why") {
+  const Truth buckling = truth_of(swinging(), {1.0, 1e-5, 30.0});
+  CHECK(buckling.horizon > 0.3);
+  CHECK(buckling.horizon < 1.0);
+  CHECK(buckling.horizon_reason.find("100 times") != std::string::npos);
+
+  // A tangle parts from its copy within 0.2 s: at once, for who wants to see ten seconds.
+  scene::Scene tangle = swinging();
+  tangle.cloths[0].mesh = scene::Grid{7, 7, 0.5, 0.5};
+  tangle.cloths[0].pins = {{scene::AtCorner{0, 0}, {}}};
+  tangle.cloths[0].start = scene::Scatter{0.5, 1};
+  const Truth lost = truth_of(tangle, {10.0, 1e-5, 60.0});
+  CHECK(lost.horizon == 0.0);
+  CHECK(lost.position.empty());
+  CHECK(lost.energy.size() == samples_to_horizon);
+  CHECK(lost.horizon_reason.find("chaotic at once") != std::string::npos);
+}
+
+TEST_CASE(
+    "a scene too stiff for a reference is told so, with what can be charted and what would bring it back") {
+  const auto gpu = test::context();
+  scene::Scene stiff = swinging();
+  stiff.cloths[0].material.structural = 1e12;
+  const Truth none = truth_of(stiff, {1.0, 1e-5, 0.5});
+  CHECK(none.energy.empty());
+  CHECK(none.missing.find("softer") != std::string::npos);
+  const Chart made = chart_of(stiff, {{Method::xpbd, Method::verlet}, {1}, 0.02, 1.5});
+  REQUIRE_FALSE(made.points.empty());
+  for (const Axis axis : {Axis::position, Axis::energy, Axis::strain}) {
+    CHECK_FALSE(made.axes[index(axis)].available);
+    CHECK(made.axes[index(axis)].reason.find("There is no reference") == 0);
+  }
+  for (const Point& point : made.points) CHECK((point.cost || point.blew_up_at));
+  const Result<Choice> choice = choose(stiff, {1e-2, {}, 1.0}, {});
+  REQUIRE_FALSE(choice);
+  CHECK(choice.error().remedy.find("chart") != std::string::npos);
+}
+
+TEST_CASE("the chart of the swinging cloth shows each method's order, float32's floor, and who blows up") {
+  const auto gpu = test::context();
+  ChartRequest request{{Method::symplectic_euler, Method::verlet, Method::rk4, Method::xpbd}, {1}, 0.3, 25.0};
+  const Chart made = chart_of(swinging(), request);
+  CHECK(made.complete);
+  CHECK(made.horizon == 0.3);
+  // The first two rungs below the limit, 0.95 and 0.48 of it; what higher orders of dt add there is below
+  // 0.15.
+  for (const auto& [method, of_theory] : {std::pair{Method::symplectic_euler, 1.0}, {Method::verlet, 2.0}}) {
+    const std::vector<Point> points = points_of(made, method);
+    REQUIRE(points.size() >= 2);
+    CAPTURE(scene::name(method));
+    CHECK(std::abs(order(points[0], points[1]) - of_theory) < 0.15);
+  }
+  // At dt = 0.6 u: 7.8e-4 and 3.4e-5 m in physics.md, of a size of 0.5 m. The step here is up to 4 % shorter.
+  CHECK(std::abs(*points_of(made, Method::symplectic_euler)[0].error[0] / 1.56e-3 - 1.0) < 0.05);
+  CHECK(std::abs(*points_of(made, Method::verlet)[0].error[0] / 6.8e-5 - 1.0) < 0.09);
+  // Verlet keeps the energy: what swings is of the order of (omega dt)^2 in the fastest modes, which carry
+  // little.
+  CHECK(*points_of(made, Method::verlet)[0].error[index(Axis::energy)] < 1e-3);
+  // RK4 at half its limit is at float32's floor: 3.7e-7 to 7.4e-7 m there, and no shorter step is below a
+  // third.
+  const std::optional<double> floor = made.axes[index(Axis::position)].float32_floor;
+  REQUIRE(floor);
+  CHECK(*floor > 0.2e-6);
+  CHECK(*floor < 3e-6);
+  for (const Point& point : points_of(made, Method::rk4)) CHECK(*point.error[0] > *floor / 3);
+  int crosses = 0;
+  for (const Point& point : made.points) {
+    if (!point.blew_up_at) continue;
+    ++crosses;
+    CHECK(point.dt_over_limit.value_or(0) > 1.0);
+    CHECK_FALSE(point.error[0]);
+  }
+  CHECK(crosses == 3);  // all but XPBD, 5 % beyond their limits
+}
+
+TEST_CASE(
+    "the choice keeps its tolerance when it is run again, with a margin, and nothing tried is cheaper") {
+  const auto gpu = test::context();
+  const double tolerance = 1e-3;
+  const auto made =
+      choose(swinging(), {tolerance, {Method::symplectic_euler, Method::verlet, Method::xpbd}, 0.3}, {});
+  if (!made) FAIL(made.error().text());
+  REQUIRE(made->met);
+  const Setting& chosen = made->chosen.setting;
+  CHECK(made->chosen.dt_over_limit.value_or(0.0) <= 0.9 * (1 + 1e-9));
+  REQUIRE(made->runner_up);
+  CHECK(made->runner_up->setting.method != chosen.method);
+
+  const auto exact =
+      reference::trajectory(*reference::make_world(swinging(), 0.0), {0.15, 0.3}, test::cloth_unit / 100);
+  REQUIRE(exact);
+  auto simulation = sim::Simulation::create(with(swinging(), chosen));
+  REQUIRE(simulation);
+  const auto steps = static_cast<std::uint32_t>(std::lround(0.3 / chosen.dt));
+  (*simulation)->step(steps);
+  const sim::State read = (*simulation)->read_state();
+  const double error =
+      reference::rms_distance({read.position.begin(), read.position.end()}, exact->states[1].position) / 0.5;
+  // The same bits as in the choice, against a reference that is some 1e-7 off.
+  CHECK(std::abs(error / *made->chosen.error[index(Axis::position)] - 1.0) < 0.01);
+  CHECK(*made->chosen.largest_position_error <= tolerance);
+  CHECK(error <= tolerance);
+}
+
+TEST_CASE("a job of the lab that is cancelled ends, and says that it is not complete") {
+  const auto gpu = test::context();
+  std::stop_source stop;
+  Control<Chart> control;
+  control.stop = stop.get_token();
+  control.arrived = [&](const Chart& so_far) {
+    if (so_far.points.size() >= 2) stop.request_stop();
+  };
+  const Result<Chart> some = chart(swinging(), {{}, {}, 0.3, 60.0}, control);
+  REQUIRE(some);
+  CHECK_FALSE(some->complete);
+  CHECK(some->points.size() >= 2);
+  CHECK(some->points.size() <= 3);
+  const Result<Choice> none = choose(swinging(), {}, {stop.get_token()});
+  REQUIRE_FALSE(none);
+  CHECK(was_cancelled(none.error()));
+}

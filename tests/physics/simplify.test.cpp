@@ -1,0 +1,143 @@
+// What the lab says of leaving parts of a scene out.
+#include <chrono>
+#include <cmath>
+
+#include "server/lab/simplification.h"
+#include "tests/scenes.h"
+
+using namespace clothlab;
+using lab::Simplification;
+using lab::Variant;
+
+namespace {
+
+scene::Document document(const std::string& text) {
+  Result<scene::json> value = scene::parse_json(text, "test");
+  REQUIRE(value);
+  Result<scene::Document> made = scene::validate(*value);
+  INFO((made ? "" : made.error().text()));
+  REQUIRE(made);
+  return *made;
+}
+
+/// A sheet pulled a little in its plane, which swings by less than a thousandth and never meets itself.
+scene::Document pulled(const std::string& material, const std::string& more) {
+  return document(R"({"version": 1, "name": "pulled", "gravity": [0, 0, 0.5],
+    "cloths": [{"mesh": {"grid": {"columns": 33, "rows": 33, "width": 1, "height": 1}}, "mass": {"per_vertex": 0.001},
+                "material": )" +
+                  material + R"(, "pins": [{"at": "edge:row:0"}]}])" + more + "}");
+}
+
+const Variant& variant(const Simplification& result, const std::string& name) {
+  for (const Variant& each : result.variants)
+    if (each.name == name) return each;
+  FAIL("no variant " << name);
+  return result.whole;
+}
+
+Simplification simplified(const scene::Document& document, const lab::SimplifyRequest& request) {
+  const Result<Simplification> result = lab::simplify(document, request, {});
+  INFO((result ? "" : result.error().text()));
+  REQUIRE(result);
+  CHECK(result->complete);
+  CHECK(result->variants.size() == 6);
+  return *result;
+}
+
+}  // namespace
+
+TEST_CASE("a flat pulled sheet needs neither bend springs nor self-collision nor its fine mesh") {
+  const auto context = test::context();
+  const scene::Document whole =
+      pulled(R"({"structural": 200, "shear": 100, "bend": 50, "damping": 0.01})",
+             R"(, "self_collision": {"thickness": 0.01}, "solver": {"dt": 0.0005})");
+  const Simplification result = simplified(whole, {1e-2, 0.3});
+  REQUIRE(result.whole.measured);
+  CHECK(*result.whole.change == 0.0);
+  for (const char* name : {"without bend springs", "without self-collision", "half the mesh resolution"}) {
+    INFO(name);
+    const Variant& part = variant(result, name);
+    REQUIRE(part.measured);
+    REQUIRE(part.change);
+    // It is pulled g M / (2 k) = 1.4 mm at most; no part is more than that.
+    CHECK(*part.change < 2e-3);
+    CHECK(part.error[lab::index(lab::Axis::position)]);
+    CHECK(part.drop == (part.cost_ratio <= 0.95 && name != std::string("half the mesh resolution")));
+  }
+  CHECK(*variant(result, "without self-collision").change < 1e-7);
+  CHECK(variant(result, "without self-collision").drop);
+  const Variant& half = variant(result, "half the mesh resolution");
+  const Variant& quarter = variant(result, "a quarter of the mesh resolution");
+  CHECK(half.cost_ratio < 0.5);
+  CHECK(quarter.cost_ratio < half.cost_ratio);
+  CHECK(quarter.drop);
+  // The step keeps its share of the limit, which is twice as long on cells twice as wide, edges apart.
+  const double dt = half.patch["solver"]["dt"];
+  CHECK(dt / half.dt_limit == Approx(0.0005 / result.whole.dt_limit).epsilon(1e-9));
+  CHECK(half.dt_limit / result.whole.dt_limit == Approx(2.0).epsilon(0.05));
+  REQUIRE(result.recommended.drop);
+  CHECK(*result.recommended.change <= result.tolerance);
+  CHECK(result.recommended.cost_ratio < 0.2);
+  CHECK(result.why.find("without self-collision") != std::string::npos);
+  const auto patched = scene::apply_patch(whole, result.recommended.patch);
+  REQUIRE(patched);
+  CHECK_FALSE(patched->scene.self_collision);
+  CHECK(std::get<scene::Grid>(patched->scene.cloths[0].mesh).columns == 9);
+}
+
+TEST_CASE("what a scene does not have is not measured, and what changes too much stays") {
+  const auto context = test::context();
+  const Simplification result = simplified(*scene::load_preset("hanging-strip"), {1e-4, 0.3});
+  const Variant& bend = variant(result, "without bend springs");
+  CHECK_FALSE(bend.measured);
+  CHECK(bend.reason == "the scene has no bend springs");
+  const Variant& half = variant(result, "half the mesh resolution");
+  CHECK(half.measured);
+  CHECK(*half.change > 1e-4);
+  CHECK_FALSE(half.drop);
+  CHECK_FALSE(result.recommended.drop);
+  CHECK(result.recommended.patch.empty());
+  CHECK(result.why.starts_with("Nothing "));
+}
+
+TEST_CASE("a scene that blows up as it is gets no advice but a stable step") {
+  const auto context = test::context();
+  const Result<Simplification> result = lab::simplify(*scene::load_preset("blowup"), {1e-2, 0.3}, {});
+  REQUIRE(result);
+  CHECK_FALSE(result->whole.measured);
+  CHECK(result->whole.reason.starts_with("it blew up at"));
+  CHECK(result->variants.empty());
+  CHECK(result->why.find("stable step") != std::string::npos);
+}
+
+TEST_CASE("without a reference what parts change is still measured, and errors are not made up") {
+  const auto context = test::context();
+  // Stiff and light: a second takes 1e6 steps of the reference and more.
+  const scene::Document stiff = pulled(R"({"structural": 2e9, "shear": 1e9, "bend": 1e8, "damping": 0})",
+                                       R"(, "solver": {"method": "xpbd", "dt": 0.005, "iterations": 5})");
+  const Simplification result = simplified(stiff, {1e-2, 0.2});
+  CHECK(result.whole.measured);
+  CHECK_FALSE(result.whole.error[lab::index(lab::Axis::position)]);
+  CHECK(std::any_of(result.notes.begin(), result.notes.end(),
+                    [](const std::string& note) { return note.starts_with("There is no reference"); }));
+  CHECK(variant(result, "without bend springs").change);
+}
+
+TEST_CASE("a cancelled simplification ends within half a second, and a wrong tolerance is refused") {
+  const auto context = test::context();
+  std::stop_source source;
+  std::chrono::steady_clock::time_point asked;
+  lab::Control<Simplification> control;
+  control.stop = source.get_token();
+  control.progress = [&](const lab::Progress& progress) {
+    if (progress.doing != "timing, taking turns" || source.stop_requested()) return;
+    asked = std::chrono::steady_clock::now();
+    source.request_stop();
+  };
+  const auto result = lab::simplify(*scene::load_preset("hanging-strip"), {1e-2, 0.2}, control);
+  REQUIRE_FALSE(result);
+  CHECK(lab::was_cancelled(result.error()));
+  CHECK(std::chrono::steady_clock::now() - asked < std::chrono::milliseconds(500));
+  CHECK(lab::simplify(*scene::load_preset("seed"), {0.0, {}}, {}).error().where == "tolerance");
+  CHECK(lab::simplify(*scene::load_preset("seed"), {0.1, -1.0}, {}).error().where == "time");
+}

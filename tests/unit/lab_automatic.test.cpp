@@ -1,0 +1,53 @@
+// The method "auto": how a document asks for it, what is stepped until the lab has chosen, when a choice
+// holds.
+#include <cmath>
+
+#include "server/lab/automatic.h"
+#include "server/model/stability.h"
+#include "tests/catch.h"
+
+using namespace clothlab;
+
+namespace {
+
+scene::Document seed_with(const scene::json& patch) {
+  const Result<scene::Document> changed = scene::apply_patch(*scene::load_preset("seed"), patch);
+  if (!changed) FAIL(changed.error().text());
+  return *changed;
+}
+
+const scene::json automatic{{"solver", {{"method", "auto"}, {"tolerance", 1e-2}}}};
+
+}  // namespace
+
+TEST_CASE("a scene with the method auto steps by verlet, stably, until something is chosen") {
+  const scene::Document document = seed_with(automatic);
+  CHECK(document.scene.solver.automatic);
+  CHECK(document.value["solver"]["method"] == "auto");
+  CHECK_FALSE(seed_with({{"solver", {{"method", "rk4"}}}}).scene.solver.automatic);
+  const model::Model model = *model::build(document.scene);
+  const lab::Setting setting = lab::provisional(model, document.scene);
+  CHECK(setting.method == scene::Method::verlet);
+  const double limit = model::dt_limit(model, lab::with(document.scene, setting));
+  CHECK(setting.dt < 0.8 * limit);
+  CHECK(setting.dt > 0.5 * limit);  // the bound it comes from is never that far below
+}
+
+TEST_CASE("a choice holds while numbers stay within a tenth, and no longer") {
+  const scene::json measured = seed_with(automatic).value;
+  const auto after = [&](scene::json patch) {
+    patch.merge_patch(automatic);
+    return lab::covers(measured, seed_with(patch).value);
+  };
+  CHECK(after({}));
+  CHECK(after({{"gravity", {0, -9.0, 0}}}));
+  CHECK_FALSE(after({{"gravity", {0, -8.0, 0}}}));
+  CHECK_FALSE(after({{"gravity", {0.1, -9.8, 0}}}));  // something from nothing is no small change
+  CHECK(after({{"name", "another"}}));
+  CHECK_FALSE(after({{"self_collision", nullptr}}));
+  CHECK_FALSE(after({{"air_drag", 0.5}}));
+  CHECK_FALSE(
+      lab::covers(measured, seed_with({{"solver", {{"method", "auto"}, {"tolerance", 1e-3}}}}).value));
+  CHECK_FALSE(
+      lab::covers(measured, seed_with({{"solver", {{"method", "verlet"}, {"tolerance", 1e-2}}}}).value));
+}
