@@ -18,6 +18,7 @@ void note(const std::string& text) {
 }
 
 void warn_of_step(const model::Model& model, const scene::Scene& scene, const std::string& about) {
+  if (scene.solver.automatic) return;  // its step is not the user's
   const std::string warning = model::step_warning(scene.solver, model::dt_limit_if_near(model, scene));
   if (warning.empty()) return;
   std::cout.flush();

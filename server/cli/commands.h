@@ -26,6 +26,10 @@ enum ExitCode : int {
 void add_serve(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
 void add_render(CLI::App& app, int& exit_code);
+void add_chart(CLI::App& app, int& exit_code);
+void add_stability(CLI::App& app, int& exit_code);
+void add_choose(CLI::App& app, int& exit_code);
+void add_simplify(CLI::App& app, int& exit_code);
 void add_validate(CLI::App& app, int& exit_code);
 void add_presets(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);

@@ -7,6 +7,7 @@
 #include "server/cli/commands.h"
 #include "server/cli/state_files.h"
 #include "server/cli/stepping.h"
+#include "server/scene/method.h"
 
 namespace clothlab::cli {
 
@@ -66,7 +67,9 @@ Report make_report(const Prepared& prepared, const Progress& progress, double wa
   report["renderer"] = prepared.context->device().name;
   report["device"] = device_report(prepared.context->device());
   report["vertices"] = vertices;
+  report["method"] = scene::name(simulation.scene().solver.method);
   report["dt"] = simulation.scene().solver.dt;
+  if (!prepared.chosen.empty()) report["chosen"] = prepared.chosen;
   report["steps"] = progress.state.step;
   report["sim_time"] = progress.state.time;
   report["wall_s"] = wall_seconds;

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "server/lab/automatic.h"
+#include "server/lab/choice.h"
 #include "server/model/stability.h"
 #include "server/scene/method.h"
 #include "server/sim/blow_up.h"
@@ -46,6 +48,28 @@ void end_diverged(Progress& progress, sim::Simulation& simulation, const sim::Bl
   simulation.go_back();
 }
 
+/// The scene with what the lab chooses in the place of the method `auto`; others as they are. Where it cannot
+/// choose, what is stable, and why.
+Result<scene::Scene> settle_method(scene::Scene scene, std::string& chosen) {
+  if (!scene.solver.automatic) return scene;
+  note("method auto: measuring what keeps a tolerance of " + number(scene.solver.tolerance) +
+       " at the least cost");
+  const Result<lab::Choice> choice = lab::choose(scene, {scene.solver.tolerance, {}, {}}, {});
+  if (choice) {
+    chosen = choice->why;
+    scene = lab::with(scene, choice->chosen.setting);
+  } else {
+    const Result<model::Model> model = model::build(scene);
+    if (!model) return model.error();
+    const lab::Setting setting = lab::provisional(*model, scene);
+    chosen = lab::text(setting) + ", which is stable; nothing better can be chosen: " + choice.error().text();
+    scene = lab::with(scene, setting);
+  }
+  scene.solver.automatic = false;
+  note("method auto: " + chosen);
+  return scene;
+}
+
 }  // namespace
 
 void add_gpu(CLI::App& command, std::optional<int>& gpu) {
@@ -63,15 +87,21 @@ std::optional<Prepared> prepare(const SceneChoice& choice, std::optional<int> gp
     exit_code = fail(context.error(), context.error().where == "--gpu" ? exit_usage : exit_no_opengl);
     return std::nullopt;
   }
-  Result<std::unique_ptr<sim::Simulation>> simulation = sim::Simulation::create(document->scene);
+  std::string chosen;
+  const Result<scene::Scene> settled = settle_method(document->scene, chosen);
+  if (!settled) {
+    exit_code = fail(settled.error(), settled.error().where.starts_with("/") ? exit_usage : exit_internal);
+    return std::nullopt;
+  }
+  Result<std::unique_ptr<sim::Simulation>> simulation = sim::Simulation::create(*settled);
   if (!simulation) {
     // A JSON Pointer says that the scene is at fault, anything else that the program is.
     exit_code =
         fail(simulation.error(), simulation.error().where.starts_with("/") ? exit_usage : exit_internal);
     return std::nullopt;
   }
-  warn_of_step((*simulation)->model(), document->scene);
-  return Prepared{std::move(*context), std::move(*simulation)};
+  warn_of_step((*simulation)->model(), *settled);
+  return Prepared{std::move(*context), std::move(*simulation), chosen};
 }
 
 Result<std::uint64_t> whole_steps(const std::string& option, double seconds, double dt) {

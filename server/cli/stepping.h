@@ -22,8 +22,10 @@ void add_gpu(CLI::App& command, std::optional<int>& gpu);
 struct Prepared {
   std::unique_ptr<gl::Context> context;
   std::unique_ptr<sim::Simulation> simulation;
+  std::string chosen;  ///< for the method `auto`: what was chosen and why; empty for others
 };
-/// On failure says why on stderr and leaves the exit code.
+/// For the method `auto` the lab chooses first, and its words go to stderr. On failure says why on stderr and
+/// leaves the exit code.
 std::optional<Prepared> prepare(const SceneChoice& choice, std::optional<int> gpu, int& exit_code);
 
 /// `seconds` as whole steps, rounded; says so on stderr when it was not whole. Error: not finite, negative,

@@ -5,7 +5,7 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { clothlab, folder } from "./program.mjs";
 
-const commands = ["run", "render", "validate", "presets", "info", "serve"];
+const commands = ["run", "render", "chart", "stability", "choose", "simplify", "validate", "presets", "info", "serve"];
 
 test("without a subcommand the help goes to stderr and the exit code is 2", () => {
   const { status, stdout, stderr } = clothlab([]);
@@ -46,6 +46,17 @@ const wrong = {
   "a size of nothing": [["render", "seed", "--time", "0", "--out", "a.png", "--size", "0x100"], /from 1 to/],
   "a size beyond the largest": [["render", "seed", "--time", "0", "--out", "a.png", "--size", "9999x10"], /from 1 to/],
   "a picture that is no PNG": [["render", "seed", "--time", "0", "--out", "a.jpg"], /\.png/],
+  "a method that is not there": [["chart", "seed", "--methods", "verlet,leapfrog"], /leapfrog.*symplectic_euler/],
+  "iterations that are no number": [["chart", "seed", "--iterations", "1,,4"], /whole numbers from 1/],
+  "a chart of a negative time": [["chart", "seed", "--time", "-1"], /--time: -1; above 0/],
+  "a chart of a time that is not finite": [["chart", "seed", "--time", "nan"], /--time: nan; above 0/],
+  "a chart without a budget": [["chart", "seed", "--budget", "0"], /--budget: 0; above 0/],
+  "a chart into a folder that cannot be made": [["chart", "seed", "--out", "nowhere/below"], /--out nowhere\/below/],
+  "a choice without a tolerance": [["choose", "seed"], /--tolerance/],
+  "a tolerance beyond the whole": [["choose", "seed", "--tolerance", "1.5"], /above 0, at most 1/],
+  "a part's worth at no tolerance": [["simplify", "seed", "--tolerance", "0"], /above 0, at most 1/],
+  "a map of a number that is not there": [["stability", "seed", "--field", "/solver/speed"], /--field/],
+  "a map of a single value": [["stability", "seed", "--columns", "1"], /--columns.*2 to 41/],
   "a GPU that is not there": [["run", "seed", "--time", "0", "--gpu", "99"], /clothlab info/],
 };
 for (const [what, [args, message]] of Object.entries(wrong)) {

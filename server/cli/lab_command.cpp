@@ -1,0 +1,276 @@
+#include "server/cli/lab_command.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <thread>
+
+#include "server/cli/state_files.h"
+#include "server/cli/stepping.h"
+#include "server/gl/context.h"
+#include "server/lab/cache.h"
+#include "server/lab/exports.h"
+#include "server/scene/method.h"
+
+namespace clothlab::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int exit_interrupted = 128 + SIGINT;  // what shells say of a program that Ctrl-C ended
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+/// Asks the job to stop at the first Ctrl-C; the second ends the program as it always would. Made before any
+/// other thread, which would not be spared the signal otherwise.
+class StopOnInterrupt {
+ public:
+  StopOnInterrupt() {
+    sigemptyset(&signals_);
+    sigaddset(&signals_, SIGINT);
+    sigaddset(&signals_, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &signals_, &before_);
+    thread_ = std::thread([this] { wait(); });
+  }
+  ~StopOnInterrupt() {
+    done_ = true;
+    thread_.join();
+    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+  StopOnInterrupt(const StopOnInterrupt&) = delete;
+  StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
+
+  std::stop_token token() const { return stop_.get_token(); }
+
+ private:
+  void wait() {
+    const timespec a_while{0, 50'000'000};
+    while (!done_) {
+      if (sigtimedwait(&signals_, nullptr, &a_while) < 0) continue;
+      stop_.request_stop();
+      pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);  // of this thread: it will take the next one
+      while (!done_) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+  }
+
+  std::stop_source stop_;
+  std::atomic<bool> done_ = false;
+  sigset_t signals_{}, before_{};
+  std::thread thread_;
+};
+
+/// One line on a terminal that is written over and over; nothing where stderr is none.
+class ProgressLine {
+ public:
+  ~ProgressLine() { clear(); }
+  void show(const lab::Progress& progress) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!terminal_ || (shown_ && now - last_ < std::chrono::milliseconds(100))) return;
+    last_ = now;
+    shown_ = true;
+    const double share = progress.total > 0 ? std::clamp(progress.done / progress.total, 0.0, 1.0) : 0.0;
+    std::fprintf(stderr, "\r\033[K%3.0f %%  %.100s", 100 * share, progress.doing.c_str());
+    std::fflush(stderr);
+  }
+  void clear() {
+    if (shown_) std::fputs("\r\033[K", stderr);
+    shown_ = false;
+  }
+
+ private:
+  const bool terminal_ = isatty(STDERR_FILENO) == 1;
+  bool shown_ = false;
+  std::chrono::steady_clock::time_point last_;
+};
+
+constexpr std::array extensions{".json", ".csv", ".svg"};
+
+std::string file_name(const LabOptions& options, const char* kind, const char* extension) {
+  return (fs::path(options.out) / (std::string(kind) + extension)).string();
+}
+
+/// Before any work: the folder exists then, and the files can be written.
+Status check_out(const LabOptions& options, const char* kind) {
+  if (options.out.empty()) return ok();
+  std::error_code failure;
+  fs::create_directory(options.out, failure);
+  if (!fs::is_directory(options.out, failure))
+    return Error{"--out " + options.out, "is no folder and cannot be made one",
+                 "name a folder that is there or whose parent is"};
+  for (const char* extension : extensions)
+    if (Status writable = check_writable("--out", file_name(options, kind, extension)); !writable)
+      return writable;
+  return ok();
+}
+
+Status write_files(const LabOptions& options, const lab::Outcome& outcome) {
+  if (options.out.empty()) return ok();
+  const char* kind = lab::name(outcome);
+  const std::string json =
+      lab::to_json(outcome).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  const std::array texts{json, lab::csv(outcome), lab::svg(outcome)};
+  for (std::size_t index = 0; index < texts.size(); ++index)
+    if (Status written = write_file(file_name(options, kind, extensions[index]), texts[index]); !written)
+      return written;
+  return ok();
+}
+
+/// The job's errors name its parameters; a user knows them as options.
+int fail_job(Error error) {
+  for (const char* option : {"field", "from", "to", "columns", "tolerance", "time", "methods"})
+    if (error.where == option) error.where = std::string("--") + option;
+  // Of anything but the scene and what was asked of it the program is to blame.
+  const bool asked = error.where.starts_with("-") || error.where.starts_with("/") ||
+                     error.where == "choose" || error.where == "simplify" || error.where == "chart" ||
+                     error.where == "stability";
+  return fail(error, asked ? exit_usage : exit_internal);
+}
+
+int report(const LabOptions& options, const lab::Outcome& outcome, void (*print)(const lab::Outcome&)) {
+  if (Status written = write_files(options, outcome); !written) return fail(written.error(), exit_internal);
+  if (options.json)
+    std::cout << lab::to_json(outcome).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+  else
+    print(outcome);
+  if (!options.out.empty() && !options.json)
+    std::cout << "written: " << file_name(options, lab::name(outcome), ".json") << ", .csv, .svg\n";
+  return exit_done;
+}
+
+}  // namespace
+
+const char* const lab_footer = R"(
+With --out the folder gets NAME.json, NAME.csv and NAME.svg. Results are kept below ~/.cache/clothlab/lab (or
+$XDG_CACHE_HOME) by scene, job, build and device: asked again, they are there at once; --fresh measures anew.
+Ctrl-C ends the work early and keeps what there is, marked incomplete; the exit code is 130 then. Times are
+only worth something while nothing else runs.)";
+
+void add_lab_options(CLI::App& command, LabOptions& options) {
+  options.scene.add_positional(command);
+  command.add_option("--out", options.out, "the folder for the result as JSON, CSV and SVG")
+      ->type_name("DIR");
+  command.add_flag("--json", options.json, "print the whole result as JSON");
+  command.add_flag("--fresh", options.fresh, "measure, whatever was measured before");
+  add_gpu(command, options.gpu);
+}
+
+void add_methods(CLI::App& command, LabOptions& options) {
+  command.add_option("--methods", options.methods, "only these, e.g. verlet,xpbd (all: see `clothlab info`)")
+      ->type_name("A,B");
+}
+
+Result<std::vector<scene::Method>> methods_of(const LabOptions& options) {
+  std::vector<scene::Method> methods;
+  std::string known;
+  for (const scene::Method method : scene::methods)
+    known += (known.empty() ? "" : ", ") + std::string(scene::name(method));
+  if (options.methods.empty()) return methods;
+  for (std::size_t at = 0; at <= options.methods.size();) {
+    const std::size_t end = std::min(options.methods.find(',', at), options.methods.size());
+    const std::string name = options.methods.substr(at, end - at);
+    const std::optional<scene::Method> method = scene::method_of(name);
+    if (!method) return Error{"--methods", "\"" + name + "\"", "some of " + known + ", with commas between"};
+    if (std::find(methods.begin(), methods.end(), *method) == methods.end()) methods.push_back(*method);
+    at = end + 1;
+  }
+  return methods;
+}
+
+Status check_positive(const std::string& option, double value, double most) {
+  if (std::isfinite(value) && value > 0 && value <= most) return ok();
+  return Error{option, number(value), "above 0, at most " + number(most)};
+}
+
+int run_lab(const LabOptions& options, const lab::Job& job, void (*print)(const lab::Outcome&)) {
+  const Result<scene::Document> document = options.scene.load();
+  if (!document) return fail(document.error(), exit_usage);
+  if (Status possible = check_out(options, lab::name(job)); !possible)
+    return fail(possible.error(), exit_usage);
+
+  const StopOnInterrupt interrupt;
+  const Result<std::unique_ptr<gl::Context>> context = gl::Context::create(options.gpu);
+  if (!context) return fail(context.error(), context.error().where == "--gpu" ? exit_usage : exit_no_opengl);
+  lab::Cache cache;
+  const lab::CacheKey key = lab::cache_key(*document, job, gl::renderer_name());
+  if (!options.fresh)
+    if (const std::optional<lab::Outcome> known = cache.find(key)) {
+      note("measured before on the same scene, build and device; --fresh measures again");
+      return report(options, *known, print);
+    }
+
+  ProgressLine line;
+  std::optional<lab::Outcome> so_far;
+  const lab::Control<lab::Outcome> control{interrupt.token(),
+                                           [&](const lab::Progress& progress) { line.show(progress); },
+                                           [&](const lab::Outcome& partial) { so_far = partial; }};
+  const Result<lab::Outcome> outcome = lab::run(*document, job, control);
+  line.clear();
+  if (outcome) {
+    cache.keep(key, *outcome);
+    return report(options, *outcome, print);
+  }
+  if (!lab::was_cancelled(outcome.error())) return fail_job(outcome.error());
+  if (so_far)
+    if (const int code = report(options, *so_far, print); code != exit_done) return code;
+  note(so_far ? "interrupted: this is what there was, not complete"
+              : "interrupted before there was anything");
+  return exit_interrupted;
+}
+
+void print_table(const std::vector<std::vector<std::string>>& rows) {
+  // Bytes are not columns: "×" and "⁻" take several of the first, one of the second.
+  const auto columns_of = [](const std::string& text) {
+    return static_cast<std::size_t>(
+        std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; }));
+  };
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows)
+    for (std::size_t column = 0; column < row.size(); ++column) {
+      if (column == widths.size()) widths.push_back(0);
+      widths[column] = std::max(widths[column], columns_of(row[column]));
+    }
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t column = 0; column < row.size(); ++column) {
+      line += row[column];
+      if (column + 1 < row.size()) line.append(widths[column] - columns_of(row[column]) + 2, ' ');
+    }
+    std::cout << line << "\n";
+  }
+}
+
+void print_notes(const std::vector<std::string>& notes) {
+  for (const std::string& words : notes)
+    if (!words.empty()) std::cout << "note: " << words << "\n";
+}
+
+void print_heading(const std::string& what, double time, const std::string& renderer, bool complete) {
+  std::cout << what << ", " << number(time) << " s simulated on " << renderer
+            << (complete ? "" : ", NOT COMPLETE") << "\n";
+}
+
+std::string set_options(const lab::Setting& setting) {
+  std::string options;
+  const nlohmann::json patch = lab::patch(setting);
+  for (const auto& [key, value] : patch.at("solver").items())
+    options += (options.empty() ? "--set /solver/" : " --set /solver/") + key + "=" +
+               (value.is_string() ? value.get<std::string>() : value.dump());
+  return options;
+}
+
+}  // namespace clothlab::cli
