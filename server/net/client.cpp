@@ -45,6 +45,7 @@ void Client::leave_room() {
 bool Client::admit(Role role) {
   if (role_ == Role::none) lws_set_timer_usecs(wsi_, LWS_SET_TIMER_USEC_CANCEL);
   role_ = role;
+  if (role != Role::operator_) hub_.lab().client_left(id_);
   return room_ || enter_room();
 }
 

@@ -16,7 +16,9 @@
 #include <variant>
 #include <vector>
 
+#include "server/lab/choice.h"
 #include "server/net/json_rpc.h"
+#include "server/scene/document.h"
 #include "server/sim/simulation.h"
 #include "server/stream/frame.h"
 
@@ -63,9 +65,25 @@ struct Watchers {
 struct Export {
   int width = 0, height = 0;  ///< [pixels]
 };
+/// For a job of the lab: answered by SceneReached, after what the commands before it have changed.
+struct ReachScene {
+  std::uint64_t job = 0;
+};
+/// Stands still if it plays, for a job of the lab to measure: answered by Held.
+struct Hold {
+  std::uint64_t job = 0;
+};
+/// Plays on, unless somebody has played, paused or stepped it since it was held.
+struct Release {};
+/// What the lab says to a scene with the method `auto`.
+struct Chosen {
+  std::shared_ptr<const scene::Document> measured;
+  Result<lab::Choice> choice;
+};
 struct Command {
   Ticket ticket;
-  std::variant<GetScene, LoadScene, PatchScene, Play, Pause, Step, Reset, Speed, Demand, Watchers, Export>
+  std::variant<GetScene, LoadScene, PatchScene, Play, Pause, Step, Reset, Speed, Demand, Watchers, Export,
+               ReachScene, Hold, Release, Chosen>
       what;
 };
 
@@ -83,7 +101,7 @@ struct Reply {
 };
 /// The document has changed: by `patch`, or as a whole where there is none.
 struct SceneChanged {
-  std::shared_ptr<const json> document;
+  std::shared_ptr<const scene::Document> document;
   std::uint64_t revision = 0;
   std::optional<json> patch;
   std::uint64_t by = 0;
@@ -112,12 +130,20 @@ struct Exported {
   const char* content_type = "";
   Result<std::string> body;
 };
+struct SceneReached {
+  std::uint64_t job = 0;
+};
+struct Held {
+  std::uint64_t job = 0;
+};
+/// The scene's method is `auto`, and the lab is to choose for it.
+struct ChoiceWanted {};
 using Event = std::variant<Started, Failed, Reply, SceneChanged, TopologyChanged, PassesChanged,
-                           SolverChanged, Diverged, Notice, Exported>;
+                           SolverChanged, Diverged, Notice, Exported, SceneReached, Held, ChoiceWanted>;
 
 /// What sim.status is made of; plain data, so that the session's thread allocates nothing for it.
 struct Status {
-  bool playing = false, diverged = false;
+  bool playing = false, diverged = false, asleep = false;
   double speed = 1, real_time_factor = 0;
   double dt_limit = 0;           ///< [s]; infinite: none, 0: no step is stable
   std::optional<double> margin;  ///< dt over dt_limit; none where that says nothing

@@ -48,8 +48,9 @@ void FrameMaker::restart() {
 }
 
 bool FrameMaker::request(std::size_t index, const sim::Simulation& simulation) {
-  const std::uint16_t flags = diverged_ ? stream::flag_diverged : 0;
-  if (!packer_->request(simulation, static_cast<stream::Encoding>(index), flags)) return false;
+  const auto flags = (diverged_ ? stream::flag_diverged : 0) | (asleep_ ? stream::flag_asleep : 0);
+  if (!packer_->request(simulation, static_cast<stream::Encoding>(index), static_cast<std::uint16_t>(flags)))
+    return false;
   ++requested_;
   lanes_[index].packed_version = version_;
   return true;
@@ -96,6 +97,11 @@ void FrameMaker::diverge() {
 
 void FrameMaker::go_on() {
   diverged_ = false;
+  touch_now();
+}
+
+void FrameMaker::asleep(bool asleep) {
+  asleep_ = asleep;
   touch_now();
 }
 

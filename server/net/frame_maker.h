@@ -36,6 +36,9 @@ class FrameMaker {
   /// It goes on from there.
   void go_on();
 
+  /// The cloth is at rest, and frames say so; or no longer.
+  void asleep(bool asleep);
+
   bool in_flight() const { return requested_ != arrived_; }
   bool urgent() const;
   /// When the next frame is due if the state moves; far in the future if nobody wants one.
@@ -59,7 +62,7 @@ class FrameMaker {
   std::uint32_t arrived_ = 0;     ///< of the newest that came back, or that is void
   std::uint32_t void_until_ = 0;  ///< frames up to this one show a state that was replaced
   std::uint64_t version_ = 1;
-  bool diverged_ = false;
+  bool diverged_ = false, asleep_ = false;
 };
 
 }  // namespace clothlab::net

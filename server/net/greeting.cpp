@@ -13,6 +13,7 @@ namespace {
 nlohmann::json method_list() {
   auto list = nlohmann::json::array();
   for (const scene::Method method : scene::methods) list.push_back(scene::name(method));
+  list.push_back(scene::automatic_method);
   return list;
 }
 
@@ -38,7 +39,12 @@ nlohmann::json hello_params(const Hub& hub, const Room& room, const Client& clie
             {"rate", max_rate},
             {"in_flight", max_in_flight},
             {"steps", max_steps},
-            {"speed", {min_speed, max_speed}}}}};
+            {"speed", {min_speed, max_speed}},
+            {"lab",
+             {{"jobs", max_lab_jobs},
+              {"jobs_a_client", max_lab_jobs_a_client},
+              {"time", {min_lab_time, max_lab_time}},
+              {"budget", {min_lab_budget, max_lab_budget}}}}}}};
 }
 
 }  // namespace clothlab::net

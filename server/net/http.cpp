@@ -104,7 +104,7 @@ void HttpRequest::api(const std::string& path) {
   if (!room || !room->started())
     return answer(
         plain(404, "no such session is open; one opens when a page or script connects to /ws?session=NAME"));
-  if (path == "/api/scene") return answer({200, "application/json", room->document()->dump(2) + "\n", {}});
+  if (path == "/api/scene") return answer({200, "application/json", room->document().dump(2) + "\n", {}});
   if (mesh) return ask_session(session, {});
   const Export what{side(query(wsi_, "width", "1280"), max_snapshot_side),
                     side(query(wsi_, "height", "720"), max_snapshot_side)};

@@ -23,10 +23,46 @@ const char* name(Role role) {
 }
 
 Hub::Hub(Options options, std::function<void()> wake)
-    : options_(std::move(options)), wake_(std::move(wake)) {}
+    : options_(std::move(options)),
+      wake_(std::move(wake)),
+      lab_(std::make_unique<LabQueue>(lab_port(), [gpu = options_.gpu] { return open_lab(gpu); })) {}
 
 Hub::~Hub() {
   stop_sessions();
+}
+
+LabQueue::Port Hub::lab_port() {
+  LabQueue::Port port;
+  port.notify = [this](std::uint64_t id, const char* method, const json& params) {
+    if (Client* client = find_client(id)) client->send(notification_text(method, params));
+  };
+  port.answer = [this](const Ticket& ticket, const json& answer) {
+    if (Client* client = ticket.id ? find_client(ticket.asker) : nullptr)
+      client->send(result_text(*ticket.id, answer));
+  };
+  port.hold = [this](const std::string& session, std::uint64_t job) {
+    if (Room* room = find_room(session)) room->post({{}, Hold{job}});
+  };
+  port.release = [this](const std::string& session) {
+    if (Room* room = find_room(session)) room->post({{}, Release{}});
+  };
+  port.steps = [this] { return steps(); };
+  // The lab's context is on the device that the sessions run on.
+  const auto key = [this](const scene::Document& document, const lab::Job& job) {
+    const Room* room = find_room(main_session);
+    return lab::cache_key(document, job, room ? room->renderer() : "");
+  };
+  port.known = [this, key](const scene::Document& document, const lab::Job& job) {
+    return lab_cache_.find(key(document, job));
+  };
+  port.keep = [this, key](const scene::Document& document, const lab::Job& job, const lab::Outcome& outcome) {
+    lab_cache_.keep(key(document, job), outcome);
+  };
+  port.chosen = [this](const std::string& session, SharedDocument measured, Result<lab::Choice> choice) {
+    if (Room* room = find_room(session)) room->post({{}, Chosen{std::move(measured), std::move(choice)}});
+  };
+  port.wake = wake_;
+  return port;
 }
 
 Role Hub::role_of(const std::string& token) const {
@@ -65,6 +101,7 @@ std::string Hub::sleeping_room() const {
 
 void Hub::retire(const std::string& name) {
   const auto found = rooms_.find(name);
+  lab_->session_left(name);
   // Its thread may need a turn to end: not on this thread's time.
   retiring_.push_back(std::async(
       std::launch::async, [session = found->second->give_up_session()]() mutable { session.reset(); }));
@@ -101,19 +138,27 @@ void Hub::pump() {
     failed.push_back(name);
   }
   for (const std::string& name : failed) retire(name);
+  lab_->pump(now_us());
 }
 
 void Hub::stop_sessions() {
   for (const auto& [name, room] : rooms_) room->stop();
+  lab_->stop();
   for (const auto& [name, room] : rooms_) room->give_up_session().reset();
   retiring_.clear();  // waits for each
 }
 
 Gauges Hub::gauges() const {
-  Gauges gauges{rooms_.size(), clients_.size(), 0, 0};
+  Gauges gauges{rooms_.size(), clients_.size(), 0, steps(), lab_->gauges(), 0};
+  for (const auto& [name, room] : rooms_) gauges.asleep += room->asleep() ? 1u : 0u;
   for (const auto& [id, client] : clients_) gauges.viewers += client->pacing().subscribed() ? 1u : 0u;
-  for (const auto& [name, room] : rooms_) gauges.steps += room->steps();
   return gauges;
+}
+
+std::uint64_t Hub::steps() const {
+  std::uint64_t steps = 0;
+  for (const auto& [name, room] : rooms_) steps += room->steps();
+  return steps;
 }
 
 bool Hub::all_sessions_beat() const {

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "server/lab/cache.h"
+#include "server/net/lab_queue.h"
 #include "server/net/metrics.h"
 #include "server/net/options.h"
 #include "server/net/room.h"
@@ -30,6 +32,7 @@ class Hub {
 
   const Options& options() const { return options_; }
   Metrics& metrics() { return metrics_; }
+  LabQueue& lab() { return *lab_; }
 
   /// What a token makes of who has it; without `--token` everybody is an operator.
   Role role_of(const std::string& token) const;
@@ -55,7 +58,7 @@ class Hub {
 
   /// Takes in what the sessions have put out.
   void pump();
-  /// Stops every session's thread and waits for them.
+  /// Stops every session's thread and the lab's, and waits for them.
   void stop_sessions();
   /// Why the session `main` could not start, once it is known.
   const std::optional<Failed>& main_failure() const { return main_failure_; }
@@ -64,12 +67,16 @@ class Hub {
   bool all_sessions_beat() const;
 
  private:
+  LabQueue::Port lab_port();
+  std::uint64_t steps() const;
   void retire(const std::string& name);
   std::string sleeping_room() const;
 
   Options options_;
   std::function<void()> wake_;
   Metrics metrics_;
+  lab::Cache lab_cache_;
+  std::unique_ptr<LabQueue> lab_;
   std::map<std::string, std::unique_ptr<Room>> rooms_;
   std::map<std::uint64_t, Client*> clients_;
   std::map<std::uint64_t, HttpRequest*> waiting_;

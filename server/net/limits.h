@@ -19,6 +19,11 @@ inline constexpr double min_rate = 0.1, max_rate = 120;     ///< frames a second
 inline constexpr int max_in_flight = 8;                     ///< unacknowledged frames a viewer may ask for
 inline constexpr std::int64_t max_steps = 1'000'000;        ///< of one sim.step
 inline constexpr double min_speed = 0.01, max_speed = 100;  ///< of sim.speed
+inline constexpr int max_lab_jobs = 8, max_lab_jobs_a_client = 2;   ///< that wait; beyond: -32002
+inline constexpr int max_lab_outcomes_a_client = 8;                 ///< kept for lab.export, the newest
+inline constexpr double max_lab_seconds = 1800;                     ///< a job may take; beyond: it fails
+inline constexpr double min_lab_time = 0.01, max_lab_time = 60;     ///< simulated by a job [s]
+inline constexpr double min_lab_budget = 1, max_lab_budget = 1200;  ///< of a chart [s]
 inline constexpr int auth_seconds = 5;          ///< a client without a role is closed with 1008 after this
 inline constexpr int max_snapshot_side = 4096;  ///< [pixels]
 inline constexpr double status_rate = 10;       ///< sim.status a second

@@ -37,6 +37,13 @@ struct Method {
 
 constexpr std::array methods{
     Method{"auth", false, auth},
+    Method{"lab.cancel", true, lab_cancel},
+    Method{"lab.chart", true, lab_chart},
+    Method{"lab.choose", true, lab_choose},
+    Method{"lab.export", true, lab_export},
+    Method{"lab.jobs", true, lab_jobs},
+    Method{"lab.simplify", true, lab_simplify},
+    Method{"lab.stability", true, lab_stability},
     Method{"ping", false, ping},
     Method{"scene.get", false, scene_get},
     Method{"scene.load", true, scene_load},
@@ -53,8 +60,7 @@ constexpr std::array methods{
 };
 
 // Of the protocol, but not of this version of the server.
-constexpr std::array later{"mesh.upload", "lab.chart",  "lab.stability", "lab.choose",
-                           "lab.cancel",  "grab.start", "grab.move",     "grab.end"};
+constexpr std::array later{"mesh.upload", "grab.start", "grab.move", "grab.end"};
 
 RpcError unknown(const std::string& method) {
   const bool known = std::find(later.begin(), later.end(), method) != later.end();

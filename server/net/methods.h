@@ -38,5 +38,12 @@ Outcome sim_speed(Client& client, const Request& request);
 Outcome stream_subscribe(Client& client, const Request& request);
 Outcome stream_unsubscribe(Client& client, const Request& request);
 Outcome stream_ack(Client& client, const Request& request);
+Outcome lab_cancel(Client& client, const Request& request);
+Outcome lab_chart(Client& client, const Request& request);
+Outcome lab_choose(Client& client, const Request& request);
+Outcome lab_export(Client& client, const Request& request);
+Outcome lab_jobs(Client& client, const Request& request);
+Outcome lab_simplify(Client& client, const Request& request);
+Outcome lab_stability(Client& client, const Request& request);
 
 }  // namespace clothlab::net

@@ -61,6 +61,8 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
     family(out, name, type, help, std::to_string(value));
   };
   count("clothlab_sessions", "gauge", "sessions open", gauges.sessions);
+  count("clothlab_sessions_asleep", "gauge", "sessions that play and do not step, their cloth at rest",
+        gauges.asleep);
   count("clothlab_clients", "gauge", "WebSocket connections", gauges.clients);
   count("clothlab_viewers", "gauge", "connections subscribed to frames", gauges.viewers);
   count("clothlab_steps_total", "counter", "simulation steps of the open sessions", gauges.steps);
@@ -70,6 +72,14 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
   count("clothlab_bytes_sent_total", "counter", "bytes of WebSocket messages sent", metrics.bytes_sent);
   count("clothlab_messages_received_total", "counter", "messages received", metrics.messages_received);
   count("clothlab_refused_total", "counter", "WebSocket handshakes refused", metrics.refused);
+  count("clothlab_lab_queued", "gauge", "jobs of the lab that wait", gauges.lab.queued);
+  count("clothlab_lab_running", "gauge", "jobs of the lab that run", gauges.lab.running);
+  count("clothlab_lab_finished_total", "counter", "jobs of the lab that finished", gauges.lab.finished);
+  count("clothlab_lab_cancelled_total", "counter", "jobs of the lab that were cancelled, or left behind",
+        gauges.lab.cancelled);
+  count("clothlab_lab_failed_total", "counter", "jobs of the lab that failed", gauges.lab.failed);
+  family(out, "clothlab_lab_seconds_total", "counter", "seconds that jobs of the lab that have ended ran",
+         number(gauges.lab.seconds));
   metrics.latency.write(out, "clothlab_frame_latency_seconds");
   family(out, "clothlab_frame_latency_p95_seconds", "gauge",
          "95th percentile of clothlab_frame_latency_seconds", number(metrics.latency.quantile(0.95)));

@@ -35,10 +35,19 @@ struct Metrics {
   LatencyHistogram latency;
 };
 
+/// The lab's jobs by state, those that have ended in all, and what they took.
+struct LabGauges {
+  std::size_t queued = 0, running = 0;
+  std::uint64_t finished = 0, cancelled = 0, failed = 0;
+  double seconds = 0;
+};
+
 /// What is counted elsewhere and asked for at the moment.
 struct Gauges {
   std::size_t sessions = 0, clients = 0, viewers = 0;
   std::uint64_t steps = 0;
+  LabGauges lab;
+  std::size_t asleep = 0;  ///< sessions whose cloth is at rest
 };
 
 std::string metrics_text(const Metrics& metrics, const Gauges& gauges);

@@ -51,6 +51,7 @@ void Room::enter(Client& client) {
 
 void Room::leave(Client& client) {
   clients_.erase(std::remove(clients_.begin(), clients_.end(), &client), clients_.end());
+  hub_.lab().client_left(client.id());
   if (clients_.empty()) unwatched_since_ = now_us();
   post({{}, Watchers{static_cast<int>(clients_.size())}});
   demand_changed(std::nullopt);
@@ -80,7 +81,11 @@ void Room::pump() {
   exchange.take_events(events_);
   for (Event& event : events_) std::visit([&](auto& what) { take(what); }, event);
   Status status;
-  if (exchange.take_status(status) && !clients_.empty() && started()) {
+  const bool told = exchange.take_status(status);
+  if (told) asleep_ = status.asleep;
+  if (told && status.real_time_factor > 0)
+    hub_.lab().session_reaches(name_, status.real_time_factor / status.speed, now_us());
+  if (told && !clients_.empty() && started()) {
     const SharedText text = make_text(notification_text("sim.status", status_params(status)));
     for (Client* client : clients_) client->send_status(text);
   }
@@ -124,10 +129,11 @@ void Room::take(Reply& reply) {
 void Room::take(SceneChanged& changed) {
   document_ = changed.document;
   revision_ = changed.revision;
+  hub_.lab().scene_changed(name_, *document_);
   if (changed.patch)
     broadcast("scene.changed", {{"revision", revision_}, {"patch", *changed.patch}, {"by", changed.by}});
   else if (started())
-    broadcast("scene", {{"document", *document_}, {"revision", revision_}});
+    broadcast("scene", {{"document", document()}, {"revision", revision_}});
 }
 
 void Room::take(TopologyChanged& changed) {
@@ -162,9 +168,21 @@ void Room::take(Exported& exported) {
   hub_.deliver(std::move(exported));
 }
 
+void Room::take(SceneReached& reached) {
+  hub_.lab().scene_taken(reached.job, document_, revision_);
+}
+
+void Room::take(Held& held) {
+  hub_.lab().held(held.job);
+}
+
+void Room::take(ChoiceWanted&) {
+  hub_.lab().choose_for(name_, document_);
+}
+
 void Room::greet(Client& client) {
   client.greet(notification_text("hello", hello_params(hub_, *this, client)));
-  client.send(notification_text("scene", {{"document", *document_}, {"revision", revision_}}));
+  client.send(notification_text("scene", {{"document", document()}, {"revision", revision_}}));
 }
 
 void Room::broadcast(const char* method, const json& params) {
@@ -194,7 +212,7 @@ json Room::status_params(const Status& status) const {
            {{"dt_limit", std::isfinite(status.dt_limit) ? json(status.dt_limit) : json(nullptr)},
             {"margin", status.margin ? json(*status.margin) : json(nullptr)}}},
           {"solver", solver_},
-          {"asleep", false},
+          {"asleep", status.asleep},
           {"diverged", status.diverged}};
 }
 

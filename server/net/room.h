@@ -30,7 +30,7 @@ class Room {
   const std::string& name() const { return name_; }
   bool started() const { return !renderer_.empty(); }
   const std::string& renderer() const { return renderer_; }
-  const std::shared_ptr<const json>& document() const { return document_; }
+  const json& document() const { return document_->value; }
   const stream::SharedMessage& topology() const { return topology_; }
   /// The latest frame, or null: none yet, or only one that the present topology does not fit.
   stream::SharedMessage frame(stream::Encoding encoding) const;
@@ -52,6 +52,7 @@ class Room {
   void stop();
   std::unique_ptr<Session> give_up_session() { return std::move(session_); }
   bool beats() const { return !session_ || session_->beats(); }
+  bool asleep() const { return asleep_; }  ///< as last told
   std::uint64_t steps() const { return session_ ? session_->exchange().steps() : 0; }
 
  private:
@@ -65,6 +66,9 @@ class Room {
   void take(Diverged& diverged);
   void take(Notice& notice);
   void take(Exported& exported);
+  void take(SceneReached& reached);
+  void take(Held& held);
+  void take(ChoiceWanted&);
   void greet(Client& client);
   void broadcast(const char* method, const json& params);
   void broadcast_viewers();
@@ -76,7 +80,7 @@ class Room {
   std::vector<Client*> clients_;
   std::vector<Event> events_;
   std::string renderer_;
-  std::shared_ptr<const json> document_;
+  std::shared_ptr<const scene::Document> document_;
   std::uint64_t revision_ = 0;
   stream::SharedMessage topology_;
   json passes_ = json::array(), skipped_ = json::array(), solver_ = json::object();
@@ -85,6 +89,7 @@ class Room {
       seen_{};  ///< sequence number of the last frame offered to viewers
   std::optional<Failed> failure_;
   std::int64_t unwatched_since_ = 0;
+  bool asleep_ = false;
 };
 
 }  // namespace clothlab::net

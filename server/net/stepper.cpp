@@ -23,6 +23,8 @@ Clock::duration period(double rate) {
 Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Exchange& exchange,
                                                  double patience) {
   auto stepper = std::unique_ptr<Stepper>(new Stepper(std::move(document), exchange, patience));
+  if (clothlab::Status settled = stepper->automatic_.settle(stepper->document_, Clock::now()); !settled)
+    return settled.error();
   Result<std::unique_ptr<sim::Simulation>> simulation = sim::Simulation::create(stepper->document_.scene);
   if (!simulation) return simulation.error();
   stepper->simulation_ = std::move(*simulation);
@@ -34,6 +36,7 @@ Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Excha
   stepper->announce_passes();
   stepper->announce_solver();
   stepper->step_limit_.follow(stepper->simulation_->model(), stepper->document_.scene);
+  stepper->rest_.follow(stepper->document_.scene, stepper->simulation_->model());
   stepper->watch_anew();
   return stepper;
 }
@@ -98,6 +101,9 @@ void Stepper::follow_diagnostics(Clock::time_point now) {
   if (diagnosing_ && simulation_->poll_diagnostics(arrived)) {
     diagnosing_ = false;
     accept(arrived);
+    if (running(now) &&
+        rest_.look(arrived.time, arrived.max_speed, [&] { return simulation_->read_state().position; }))
+      fall_asleep();
   }
   request_diagnosis(now);
   if (now < next_status_) return;
@@ -136,13 +142,27 @@ void Stepper::watch_anew() {
   blow_up_.start(allowance(), diagnostics_);
 }
 
+void Stepper::fall_asleep() {
+  asleep_ = true;
+  frames_->asleep(true);
+  announce_passes();
+}
+
+void Stepper::wake_up() {
+  rest_.disturb();
+  if (!std::exchange(asleep_, false)) return;
+  frames_->asleep(false);
+  announce_passes();
+}
+
 void Stepper::diverge() {
   const std::string reason = blow_up_.reason();
   const scene::Solver& solver = document_.scene.solver;
   const double limit = step_limit_.dt_limit();
   const model::Remedy remedy = model::remedy(simulation_->model(), document_.scene, limit);
   json change{{"dt", remedy.dt}};
-  if (remedy.method) change["method"] = scene::name(*remedy.method);
+  if (remedy.method || solver.automatic)
+    change["method"] = scene::name(remedy.method.value_or(solver.method));
   simulation_->go_back();
   ++state_version_;
   watch_anew();
@@ -163,10 +183,12 @@ void Stepper::go_on() {
 }
 
 void Stepper::publish_status(Clock::time_point now) {
+  if (automatic_.wants_choice(now)) exchange_.emit(ChoiceWanted{});
   if (was_running_) real_time_.sample(now, simulation_->time());
   Status status;
   status.playing = playing_;
   status.diverged = diverged_;
+  status.asleep = asleep_ && playing_;
   status.speed = real_time_.speed();
   status.real_time_factor = was_running_ ? real_time_.factor() : 0;
   follow_step_limit();

@@ -9,11 +9,13 @@
 #include <optional>
 #include <vector>
 
+#include "server/net/automatic.h"
 #include "server/net/exchange.h"
 #include "server/net/frame_maker.h"
 #include "server/net/gpu_backlog.h"
 #include "server/net/limits.h"
 #include "server/net/real_time.h"
+#include "server/net/rest.h"
 #include "server/net/step_limit.h"
 #include "server/render/renderer.h"
 #include "server/scene/document.h"
@@ -55,6 +57,10 @@ class Stepper {
   void perform(Demand& demand, const Ticket& ticket);
   void perform(Watchers& watchers, const Ticket& ticket);
   void perform(Export& what, const Ticket& ticket);
+  void perform(ReachScene& reach, const Ticket& ticket);
+  void perform(Hold& hold, const Ticket& ticket);
+  void perform(Release&, const Ticket& ticket);
+  void perform(Chosen& chosen, const Ticket& ticket);
   void reply(const Ticket& ticket, Answer answer);
   Result<render::Image> picture(const Export& what);
   void encode_picture(render::Image image, std::uint64_t asker);
@@ -62,6 +68,7 @@ class Stepper {
   RpcError diverged_error() const;
   Result<sim::ChangeDepth> change(const scene::Scene& scene);
   void adopt(scene::Document document, sim::ChangeDepth depth);
+  void take_over(scene::Document document, sim::ChangeDepth depth);
   void restart();
   void state_replaced();
   void announce_scene(std::optional<json> patch, std::uint64_t by);
@@ -76,6 +83,8 @@ class Stepper {
   void accept(const sim::Diagnostics& diagnostics);
   void watch_anew();
   sim::Allowance allowance() const;
+  void fall_asleep();
+  void wake_up();
   void diverge();
   void go_on();
   void publish_status(Clock::time_point now);
@@ -84,7 +93,7 @@ class Stepper {
   void warn_if_crowded();
   void warn_if_unconverged();
   bool suspended(Clock::time_point now) const;
-  bool running(Clock::time_point now) const { return playing_ && !diverged_ && !suspended(now); }
+  bool running(Clock::time_point now) const { return playing_ && !diverged_ && !asleep_ && !suspended(now); }
   Clock::time_point next_turn(Clock::time_point now) const;
 
   scene::Document document_;
@@ -97,11 +106,15 @@ class Stepper {
   GpuBacklog backlog_;
   RealTime real_time_;
   StepLimit step_limit_;
+  Rest rest_;
+  Automatic automatic_;
 
   std::uint64_t revision_ = 1;
   std::uint32_t topology_revision_ = 0;
   bool playing_ = true, diverged_ = false;
   bool resume_ = false;  ///< it was playing when it diverged
+  bool asleep_ = false;  ///< it plays, but the cloth is at rest: no steps until something happens
+  bool held_ = false;    ///< the lab has paused it, and nobody has said anything about that since
   bool was_running_ = false;
   std::vector<Waiting> waiting_;
   std::uint64_t pending_steps_ = 0;  ///< of sim.step

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <utility>
 
 #include "server/model/mesh_file.h"
 #include "server/model/spring_gains.h"
@@ -34,6 +35,8 @@ void Stepper::perform(LoadScene& load, const Ticket& ticket) {
   if (!document && !load.preset.empty())
     return reply(ticket, invalid_params("/preset", json(load.preset).dump(), document.error().remedy));
   if (!document) return reply(ticket, invalid_params(document.error()));
+  if (clothlab::Status settled = automatic_.settle(*document, Clock::now()); !settled)
+    return reply(ticket, invalid_params(settled.error()));
   const Result<sim::ChangeDepth> depth = simulation_->change(document->scene);
   if (!depth) return reply(ticket, invalid_params(depth.error()));
   playing_ = playing_ || (diverged_ && resume_);
@@ -52,6 +55,8 @@ void Stepper::perform(PatchScene& patch, const Ticket& ticket) {
                                   {{"revision", revision_}}});
   Result<scene::Document> document = scene::apply_patch(document_, patch.patch);
   if (!document) return reply(ticket, invalid_params(document.error()));
+  if (clothlab::Status settled = automatic_.settle(*document, Clock::now()); !settled)
+    return reply(ticket, invalid_params(settled.error()));
   const Result<sim::ChangeDepth> depth = change(document->scene);
   if (!depth) return reply(ticket, invalid_params(depth.error()));
   adopt(std::move(*document), *depth);
@@ -73,8 +78,14 @@ Result<sim::ChangeDepth> Stepper::change(const scene::Scene& scene) {
 }
 
 void Stepper::adopt(scene::Document document, sim::ChangeDepth depth) {
-  document_ = std::move(document);
   ++revision_;
+  take_over(std::move(document), depth);
+}
+
+void Stepper::take_over(scene::Document document, sim::ChangeDepth depth) {
+  document_ = std::move(document);
+  wake_up();
+  rest_.follow(document_.scene, simulation_->model());
   if (depth == sim::ChangeDepth::cloth)
     state_replaced();
   else
@@ -99,6 +110,7 @@ void Stepper::restart() {
 
 void Stepper::state_replaced() {
   finish_waiting(true);
+  wake_up();
   diverged_ = slow_announced_ = crowded_announced_ = unconverged_announced_ = false;
   ++state_version_;
   real_time_.restart(Clock::now());
@@ -108,19 +120,23 @@ void Stepper::state_replaced() {
 void Stepper::perform(Play&, const Ticket& ticket) {
   if (diverged_) return reply(ticket, diverged_error());
   finish_waiting(true);
+  wake_up();
   playing_ = true;
+  held_ = false;
   reply(ticket, where_we_are());
 }
 
 void Stepper::perform(Pause&, const Ticket& ticket) {
   finish_waiting(true);
-  playing_ = resume_ = false;
+  wake_up();
+  playing_ = resume_ = held_ = false;
   reply(ticket, where_we_are());
 }
 
 void Stepper::perform(Step& step, const Ticket& ticket) {
   if (diverged_) return reply(ticket, diverged_error());
-  playing_ = false;
+  wake_up();
+  playing_ = held_ = false;
   pending_steps_ += step.steps;
   waiting_.push_back({ticket, simulation_->step_index() + pending_steps_});
 }
@@ -131,6 +147,7 @@ void Stepper::perform(Reset&, const Ticket& ticket) {
 }
 
 void Stepper::perform(Speed& speed, const Ticket& ticket) {
+  wake_up();
   real_time_.set_speed(speed.factor);
   real_time_.restart(Clock::now());
   reply(ticket, json{{"factor", speed.factor}});
@@ -143,6 +160,24 @@ void Stepper::perform(Demand& demand, const Ticket&) {
 void Stepper::perform(Watchers& watchers, const Ticket&) {
   watchers_ = watchers.count;
   last_watched_ = Clock::now();
+}
+
+void Stepper::perform(ReachScene& reach, const Ticket&) {
+  exchange_.emit(SceneReached{reach.job});
+}
+
+void Stepper::perform(Hold& hold, const Ticket&) {
+  if (playing_) {
+    playing_ = false;
+    held_ = true;
+    simulation_->finish();  // what is queued already would run beside the job
+    exchange_.emit(Notice{"info", "paused while the lab measures"});
+  }
+  exchange_.emit(Held{hold.job});
+}
+
+void Stepper::perform(Release&, const Ticket&) {
+  if (std::exchange(held_, false)) playing_ = true;
 }
 
 // On this thread, where the simulation's buffers are: it costs this session's viewers a hiccup, nobody else.
@@ -183,6 +218,21 @@ void Stepper::encode_picture(render::Image image, std::uint64_t asker) {
       }));
 }
 
+// The document stays what it is; what steps it is shown by sim.status.
+void Stepper::perform(Chosen& chosen, const Ticket&) {
+  automatic_.take(*chosen.measured, chosen.choice);
+  scene::Document document = document_;
+  if (!document.scene.solver.automatic || !automatic_.settle(document, Clock::now())) return;
+  const Result<sim::ChangeDepth> depth = change(document.scene);
+  if (!depth) return exchange_.emit(Notice{"warning", "method auto: " + depth.error().text()});
+  take_over(std::move(document), *depth);
+  if (!chosen.choice)
+    exchange_.emit(Notice{"warning", "method auto: nothing better than a stable step can be chosen: " +
+                                         chosen.choice.error().text()});
+  else
+    exchange_.emit(Notice{"info", "method auto: " + chosen.choice->why});
+}
+
 void Stepper::announce_scene(std::optional<json> patch, std::uint64_t by) {
   // A topology precedes the frames that need it, so it goes out with the scene that changed it.
   if (const std::uint32_t revision = simulation_->topology_revision(); revision != topology_revision_) {
@@ -190,11 +240,14 @@ void Stepper::announce_scene(std::optional<json> patch, std::uint64_t by) {
     exchange_.emit(TopologyChanged{stream::encode_topology(simulation_->model(), revision)});
   }
   exchange_.emit(
-      SceneChanged{std::make_shared<const json>(document_.value), revision_, std::move(patch), by});
+      SceneChanged{std::make_shared<const scene::Document>(document_), revision_, std::move(patch), by});
 }
 
 void Stepper::announce_passes() {
-  exchange_.emit(PassesChanged{simulation_->passes()});
+  std::vector<sim::Simulation::Pass> passes = simulation_->passes();
+  for (sim::Simulation::Pass& pass : passes)
+    if (asleep_ && pass.skipped.empty()) pass.skipped = "asleep: the cloth is at rest";
+  exchange_.emit(PassesChanged{std::move(passes)});
 }
 
 // Stiffness in N/m means the same under every method but PBD, which says what it makes of it.
@@ -212,7 +265,7 @@ void Stepper::announce_solver() {
                         {"bend", share(model::SpringKind::bend)}});
     }
   }
-  exchange_.emit(SolverChanged{{{"pbd_stiffness", shares}}});
+  exchange_.emit(SolverChanged{{{"pbd_stiffness", shares}, {"auto", automatic_.facts()}}});
 }
 
 }  // namespace clothlab::net

@@ -42,7 +42,9 @@ test("a viewer reads and watches; whatever changes something answers -32001", as
   assert.deepEqual(await client.request("auth", { token: "look" }), { role: "viewer" });
   assert.equal((await client.notification("hello")).role, "viewer");
   for (const [method, params] of [["scene.load", { preset: "seed" }], ["scene.patch", { patch: {} }], ["sim.play", {}],
-                                  ["sim.pause", {}], ["sim.step", {}], ["sim.reset", {}], ["sim.speed", { factor: 1 }]])
+                                  ["sim.pause", {}], ["sim.step", {}], ["sim.reset", {}], ["sim.speed", { factor: 1 }],
+                                  ["lab.chart", {}], ["lab.stability", {}], ["lab.choose", { tolerance: 0.01 }], ["lab.simplify", {}],
+                                  ["lab.cancel", { job: 1 }], ["lab.jobs", {}], ["lab.export", { job: 1, format: "json" }]])
     assert.equal((await client.refusal(method, params)).code, -32001, method);
   assert.equal((await client.request("scene.get")).document.name, "seed");
   assert.ok((await client.request("scene.presets")).presets.length > 0);

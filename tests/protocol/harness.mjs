@@ -1,7 +1,10 @@
 // A server process and clients of it, over real sockets.
 import { spawn } from "node:child_process";
 import { once } from "node:events";
+import { mkdtempSync, rmSync } from "node:fs";
 import http from "node:http";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 import WebSocket from "ws";
 import { decode } from "./decode.mjs";
 
@@ -34,11 +37,18 @@ export async function runProgram(args) {
   return { code, stdout, stderr };
 }
 
+/// What the lab keeps of its results is each test's own.
+const cacheHome = mkdtempSync(join(tmpdir(), "clothlab-cache-"));
+process.on("exit", () => rmSync(cacheHome, { recursive: true, force: true }));
+
 export class Server {
   static async start(...args) {
     const server = new Server();
     server.startedAt = performance.now();
-    server.child = spawn(program, ["serve", ...(args.includes("--port") ? [] : ["--port", "0"]), ...args], { stdio: ["ignore", "pipe", "pipe"] });
+    server.child = spawn(program, ["serve", ...(args.includes("--port") ? [] : ["--port", "0"]), ...args], {
+      stdio: ["ignore", "pipe", "pipe"],
+      env: { ...process.env, XDG_CACHE_HOME: cacheHome },
+    });
     server.closed = once(server.child, "close");
     server.stdout = server.stderr = "";
     server.child.stderr.on("data", (data) => (server.stderr += data));
@@ -161,8 +171,8 @@ export class Client {
     throw new Error(`${method} was not refused`);
   }
 
-  /// The first item of `list()` that satisfies `predicate`, now or later.
-  until(list, predicate, what) {
+  /// The first item of `list()` that satisfies `predicate`, now or later; `patience` as of withTimeout.
+  until(list, predicate, what, patience) {
     let check;
     const found = new Promise((resolve) => {
       check = () => {
@@ -172,7 +182,7 @@ export class Client {
       this.waiting.add(check);
       check();
     });
-    return withTimeout(found, what).finally(() => this.waiting.delete(check));
+    return withTimeout(found, what, patience).finally(() => this.waiting.delete(check));
   }
 
   /// The parameters of a notification that has come or will come.
@@ -181,9 +191,9 @@ export class Client {
     return message.params;
   }
   /// The same, but only one that comes from now on.
-  nextNotification(method, predicate = () => true) {
+  nextNotification(method, predicate = () => true, patience = undefined) {
     const before = new Set(this.messages);
-    return this.until(() => this.messages, (m) => !before.has(m) && m.method === method && predicate(m.params), method)
+    return this.until(() => this.messages, (m) => !before.has(m) && m.method === method && predicate(m.params), method, patience)
       .then((message) => message.params);
   }
   /// An answer with id null: to what could not be read.

@@ -1,0 +1,139 @@
+// The lab's jobs, from the request to the last word about them: who asked, for which scene, what has come of
+// it. Only the service thread touches it; the jobs themselves run on the LabWorker's, one after another.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "server/net/exchange.h"
+#include "server/net/lab_worker.h"
+#include "server/net/metrics.h"
+
+namespace clothlab::net {
+
+class LabQueue {
+ public:
+  /// What the queue needs of the server around it.
+  struct Port {
+    /// A message to a client, who may be gone.
+    std::function<void(std::uint64_t client, const char* method, const json& params)> notify;
+    std::function<void(const Ticket& ticket, json answer)> answer;
+    /// Pauses a session if it plays; it answers with `held`.
+    std::function<void(const std::string& session, std::uint64_t job)> hold;
+    /// Lets it play on, if it was paused by `hold` and nobody has played, paused or stepped it since.
+    std::function<void(const std::string& session)> release;
+    /// Steps of all sessions so far: whether anything ran beside a job.
+    std::function<std::uint64_t()> steps;
+    /// What such a job found before, if that is known; and for the next one what it found with nothing
+    /// stepping beside it.
+    std::function<std::optional<lab::Outcome>(const scene::Document&, const lab::Job&)> known;
+    std::function<void(const scene::Document&, const lab::Job&, const lab::Outcome&)> keep;
+    /// What has come of `choose_for`.
+    std::function<void(const std::string& session, SharedDocument measured, Result<lab::Choice> choice)>
+        chosen;
+    /// Calls `pump` soon.
+    std::function<void()> wake;
+  };
+  struct Wishes {
+    bool pause = false;  ///< the session stands still while the job runs
+    bool fresh = false;  ///< measured again, even if the outcome is known
+  };
+
+  LabQueue(Port port, LabWorker::Open open);
+
+  /// A job and the ticket to answer, or why not: too many wait. The caller then makes sure that `scene_taken`
+  /// comes, or calls `withdraw`.
+  std::variant<std::uint64_t, RpcError> admit(const Ticket& ticket, std::string session, lab::Job job,
+                                              Wishes wishes);
+  void withdraw(std::uint64_t job) { entries_.erase(job); }
+  /// A choice for a session whose scene has the method `auto`; an earlier one that has not ended is dropped.
+  void choose_for(const std::string& session, SharedDocument document);
+  /// The session is no more: what is to be chosen for it is dropped.
+  void session_left(const std::string& session);
+  /// What the asker saw when asking: the job is answered, and waits for its turn.
+  void scene_taken(std::uint64_t job, SharedDocument document, std::uint64_t revision);
+  /// Whether the session's jobs are of its present scene.
+  void scene_changed(const std::string& session, const scene::Document& present);
+  /// The session stands still now.
+  void held(std::uint64_t job);
+
+  /// A session plays and reaches `share` of the speed it should have: if its own job keeps it below 50 of 60
+  /// frames, whoever asked for that is told once, and what can be done.
+  void session_reaches(const std::string& session, double share, std::int64_t now);
+
+  /// False: it had ended before; an error where the client has no such job.
+  std::variant<bool, RpcError> cancel(std::uint64_t client, std::uint64_t job);
+  /// The client's own, oldest first.
+  json jobs(std::uint64_t client) const;
+  /// What there is of a job so far, null where there is nothing; an error where the client has no such job.
+  std::variant<SharedOutcome, RpcError> outcome(std::uint64_t client, std::uint64_t job) const;
+  /// Its jobs end and are forgotten.
+  void client_left(std::uint64_t client);
+
+  /// Takes in what the worker has put out, tells who asked, and starts what is next. Now and then as `now`
+  /// [us] passes: at least ten times a second while a job runs.
+  void pump(std::int64_t now);
+
+  /// Ends all jobs and waits for the one that runs; nothing may be asked of the queue after it.
+  void stop();
+
+  LabGauges gauges() const;
+
+  static constexpr std::int64_t progress_period = 200'000, result_period = 500'000;  ///< [us] at least
+  static constexpr double least_share = 50.0 / 60;
+  static constexpr std::int64_t slow_before_said = 1'500'000;  ///< [us]
+
+ private:
+  enum class State { asked, queued, holding, running, finished, cancelled, failed };
+  struct Entry {
+    std::uint64_t id = 0;
+    Ticket ticket;          ///< asker 0: has left, or nobody has asked
+    bool for_auto = false;  ///< asked for by the session itself, whose method is `auto`
+    std::string session;
+    lab::Job job;
+    Wishes wishes;
+    State state = State::asked;
+    SharedDocument document;
+    std::uint64_t revision = 0;
+    bool cached = false, stale = false, cancelling = false, overdue = false;
+    bool beside = false;  ///< something stepped while it ran
+    int ahead = 0;
+    lab::Progress progress;
+    SharedOutcome outcome;
+    std::optional<Error> error;
+    std::int64_t began = 0, slow_since = 0;  ///< [us]
+    bool said_slow = false;
+    bool progress_due = false, result_due = false;
+    std::int64_t progress_sent = 0, result_sent = 0;  ///< [us]
+  };
+
+  static const char* name(State state);
+  static bool ended(const Entry& entry) { return entry.state >= State::finished; }
+  static bool waits(const Entry& entry) { return entry.state < State::running; }
+  const Entry* find(std::uint64_t client, std::uint64_t job) const;
+  void follow_running(std::int64_t now);
+  void end_cancelled(std::int64_t now);
+  void start_next(std::int64_t now);
+  void begin(Entry& entry, std::int64_t now);
+  bool answer_from_cache(Entry& entry);
+  void finish(Entry& entry, Result<lab::Outcome> outcome, std::int64_t now);
+  void close(Entry& entry, State state, std::int64_t now);
+  void count_ahead();
+  void tell(Entry& entry, std::int64_t now);
+  void send_result(Entry& entry, std::int64_t now);
+  void forget_oldest(std::uint64_t client);
+
+  Port port_;
+  std::unique_ptr<LabWorker> worker_;
+  std::map<std::uint64_t, Entry> entries_;  ///< by id, and so in the order in which they were asked for
+  std::uint64_t last_id_ = 0;
+  std::uint64_t current_ = 0;  ///< the job that has its turn (holding or running); 0: none
+  std::uint64_t steps_seen_ = 0;
+  LabGauges totals_;
+};
+
+}  // namespace clothlab::net

@@ -1,0 +1,115 @@
+#include "server/net/lab_worker.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <exception>
+#include <utility>
+
+#include "server/gl/context.h"
+
+namespace clothlab::net {
+
+LabWorker::~LabWorker() {
+  if (!thread_.joinable()) return;
+  stop_.request_stop();
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+  }
+  task_arrived_.notify_one();
+  thread_.join();
+}
+
+void LabWorker::begin(Task task) {
+  busy_ = true;
+  stop_ = std::stop_source();
+  {
+    const std::lock_guard lock(mutex_);
+    mail_ = {};
+    task_ = std::move(task);
+    task_stop_ = stop_.get_token();
+  }
+  if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
+  task_arrived_.notify_one();
+}
+
+LabWorker::Mail LabWorker::take() {
+  Mail mail;
+  {
+    const std::lock_guard lock(mutex_);
+    std::swap(mail, mail_);
+    mail_waits_ = false;
+  }
+  if (mail.ended) busy_ = false;
+  return mail;
+}
+
+/// One wake covers all that comes until it is taken: a job may report far more often than anybody looks.
+template <class Put>
+void LabWorker::put(Put into_mail) {
+  bool wake = false;
+  {
+    const std::lock_guard lock(mutex_);
+    into_mail(mail_);
+    wake = !std::exchange(mail_waits_, true);
+  }
+  if (wake) wake_();
+}
+
+void LabWorker::run() {
+  std::optional<Run> job;
+  while (true) {
+    Task task;
+    std::stop_token stop;
+    {
+      std::unique_lock lock(mutex_);
+      task_arrived_.wait(lock, [&] { return ending_ || task_; });
+      if (ending_) return;
+      task = *std::exchange(task_, std::nullopt);
+      stop = task_stop_;
+    }
+    Result<lab::Outcome> outcome = carry_out(task, stop, job);
+    put([&](Mail& mail) { mail.ended.emplace(Ended{task.id, std::move(outcome)}); });
+  }
+}
+
+Result<lab::Outcome> LabWorker::carry_out(const Task& task, const std::stop_token& stop,
+                                          std::optional<Run>& job) {
+  try {
+    if (!job) {
+      Result<Run> opened = open_();
+      if (!opened) return opened.error();
+      job = std::move(*opened);
+    }
+    if (stop.stop_requested()) return lab::cancelled;
+    lab::Control<lab::Outcome> control;
+    control.stop = stop;
+    control.progress = [this](const lab::Progress& progress) {
+      put([&](Mail& mail) { mail.progress = progress; });
+    };
+    control.arrived = [this](const lab::Outcome& partial) {
+      auto copy = std::make_shared<const lab::Outcome>(partial);
+      put([&](Mail& mail) { mail.partial.swap(copy); });
+    };
+    return (*job)(*task.document, task.job, control);
+  } catch (const std::exception& error) {
+    return Error{"lab", error.what(), "ask again; please report it if it happens twice"};
+  }
+}
+
+Result<LabWorker::Run> open_lab(std::optional<int> gpu) {
+  // Linux counts priorities by thread, and threads that a thread makes inherit its own. A failure costs the
+  // sessions some speed and the lab nothing.
+  constexpr int lowest = 19;
+  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), lowest);
+  Result<std::unique_ptr<gl::Context>> context = gl::Context::create(gpu, gl::HelperThreads::own);
+  if (!context) return context.error();
+  return LabWorker::Run(
+      [context = std::shared_ptr<gl::Context>(std::move(*context))](
+          const scene::Document& document, const lab::Job& job, const lab::Control<lab::Outcome>& control) {
+        return lab::run(document, job, control);
+      });
+}
+
+}  // namespace clothlab::net

@@ -1,0 +1,169 @@
+// lab.*: jobs that measure the session's scene. The queue answers once the session has told which scene that
+// is; what the jobs find comes as notifications, lab.progress and lab.result.
+#include <algorithm>
+
+#include "server/lab/exports.h"
+#include "server/net/client.h"
+#include "server/net/methods.h"
+#include "server/scene/method.h"
+#include "server/scene/ranges.h"
+
+namespace clothlab::net {
+
+namespace {
+
+template <class Name, class List>
+std::string names_of(const List& list, Name name) {
+  std::string text;
+  for (const auto item : list) text += (text.empty() ? "" : ", ") + std::string(name(item));
+  return text;
+}
+
+/// Empty: all of them.
+std::vector<scene::Method> methods_in(Params& params) {
+  std::vector<scene::Method> methods;
+  const json& value = params.value("methods");
+  bool good = value.is_null() || value.is_array();
+  for (const json& item : value.is_array() ? value : json::array()) {
+    const std::optional<scene::Method> method =
+        item.is_string() ? scene::method_of(item.get<std::string>()) : std::nullopt;
+    good = good && method;
+    if (method && std::find(methods.begin(), methods.end(), *method) == methods.end())
+      methods.push_back(*method);
+  }
+  if (!good)
+    params.refuse("methods", "a list of methods, of " + names_of(scene::methods, [](scene::Method method) {
+                               return scene::name(method);
+                             }));
+  return methods;
+}
+
+/// Empty: the usual ones.
+std::vector<int> iterations_in(Params& params) {
+  constexpr std::size_t most = 16;
+  constexpr int least_value = static_cast<int>(scene::ranges::iterations.minimum),
+                most_value = static_cast<int>(scene::ranges::iterations.maximum);
+  std::vector<int> iterations;
+  const json& value = params.value("iterations");
+  bool good = value.is_null() || (value.is_array() && value.size() <= most);
+  for (const json& item : value.is_array() ? value : json::array()) {
+    good = good && item.is_number_integer() && item >= least_value && item <= most_value;
+    if (good) iterations.push_back(item.get<int>());
+  }
+  if (!good)
+    params.refuse("iterations", "a list of at most " + std::to_string(most) + " whole numbers in [" +
+                                    std::to_string(least_value) + ", " + std::to_string(most_value) + "]");
+  return iterations;
+}
+
+std::optional<double> number_in(Params& params, const char* name, double least, double most) {
+  const double number = params.number(name, least, most, least);
+  return params.has(name) ? std::optional(number) : std::nullopt;
+}
+
+std::optional<double> time_in(Params& params) {
+  return number_in(params, "time", min_lab_time, max_lab_time);
+}
+
+constexpr double least_tolerance = 1e-9;
+
+bool flag(Params& params, const char* name) {
+  const json& value = params.value(name);
+  if (!value.is_null() && !value.is_boolean()) params.refuse(name, "true or false");
+  return value.is_boolean() && value.get<bool>();
+}
+
+std::uint64_t job_in(Params& params) {
+  constexpr std::int64_t most = (std::int64_t{1} << 53) - 1;  // what a JSON number holds exactly
+  return static_cast<std::uint64_t>(params.integer("job", 1, most, std::nullopt));
+}
+
+Outcome ask_lab(Client& client, const Request& request, Params& params, lab::Job job) {
+  const LabQueue::Wishes wishes{flag(params, "pause"), flag(params, "fresh")};
+  if (auto error = params.check()) return *error;
+  LabQueue& lab = client.hub().lab();
+  const auto admitted = lab.admit({client.id(), request.id}, client.room()->name(), std::move(job), wishes);
+  if (const auto* refusal = std::get_if<RpcError>(&admitted)) return *refusal;
+  const std::uint64_t id = std::get<std::uint64_t>(admitted);
+  Outcome asked = ask_session(client, request, ReachScene{id});
+  if (!std::holds_alternative<Later>(asked)) lab.withdraw(id);
+  return asked;
+}
+
+}  // namespace
+
+Outcome lab_chart(Client& client, const Request& request) {
+  Params params(request.params);
+  lab::ChartRequest job;
+  job.methods = methods_in(params);
+  job.iterations = iterations_in(params);
+  job.time = time_in(params);
+  job.budget = params.number("budget", min_lab_budget, max_lab_budget, job.budget);
+  return ask_lab(client, request, params, std::move(job));
+}
+
+Outcome lab_stability(Client& client, const Request& request) {
+  Params params(request.params);
+  constexpr double least = -1e12, most = 1e12;  // of any number of a scene; the job knows the field's own
+  constexpr int least_columns = 2, most_columns = 41;
+  lab::MapRequest job;
+  job.methods = methods_in(params);
+  job.field = params.text("field", job.field);
+  job.from = number_in(params, "from", least, most);
+  job.to = number_in(params, "to", least, most);
+  job.columns = static_cast<int>(params.integer("columns", least_columns, most_columns, job.columns));
+  return ask_lab(client, request, params, std::move(job));
+}
+
+Outcome lab_choose(Client& client, const Request& request) {
+  Params params(request.params);
+  lab::ChooseRequest job;
+  job.tolerance = params.number("tolerance", least_tolerance, 1, std::nullopt);
+  job.methods = methods_in(params);
+  job.time = time_in(params);
+  return ask_lab(client, request, params, std::move(job));
+}
+
+Outcome lab_simplify(Client& client, const Request& request) {
+  Params params(request.params);
+  lab::SimplifyRequest job;
+  job.tolerance = params.number("tolerance", least_tolerance, 1, job.tolerance);
+  job.time = time_in(params);
+  return ask_lab(client, request, params, std::move(job));
+}
+
+Outcome lab_cancel(Client& client, const Request& request) {
+  Params params(request.params);
+  const std::uint64_t job = job_in(params);
+  if (auto error = params.check()) return *error;
+  const auto cancelled = client.hub().lab().cancel(client.id(), job);
+  if (const auto* error = std::get_if<RpcError>(&cancelled)) return *error;
+  return json{{"job", job}, {"cancelled", std::get<bool>(cancelled)}};
+}
+
+Outcome lab_jobs(Client& client, const Request& request) {
+  Params params(request.params);
+  if (auto error = params.check()) return *error;
+  return json{{"jobs", client.hub().lab().jobs(client.id())}};
+}
+
+Outcome lab_export(Client& client, const Request& request) {
+  Params params(request.params);
+  const std::uint64_t job = job_in(params);
+  const std::string format = params.text("format", std::nullopt);
+  if (format != "json" && format != "csv" && format != "svg") params.refuse("format", "json, csv or svg");
+  const std::optional<lab::Axis> axis = lab::axis_of(params.text("axis", lab::name(lab::Axis::position)));
+  if (!axis) params.refuse("axis", names_of(lab::all_axes, [](lab::Axis item) { return lab::name(item); }));
+  if (auto error = params.check()) return *error;
+  const auto found = client.hub().lab().outcome(client.id(), job);
+  if (const auto* error = std::get_if<RpcError>(&found)) return *error;
+  const SharedOutcome& outcome = std::get<SharedOutcome>(found);
+  if (!outcome)
+    return invalid_params("/job", std::to_string(job) + " has no results yet", "wait for a lab.result of it");
+  std::string text = format == "svg"   ? lab::svg(*outcome, *axis)
+                     : format == "csv" ? lab::csv(*outcome)
+                                       : lab::to_json(*outcome).dump(2) + "\n";
+  return json{{"job", job}, {"format", format}, {"text", std::move(text)}};
+}
+
+}  // namespace clothlab::net

@@ -1,0 +1,72 @@
+// The method "auto" in a session, without its threads: when a choice is due, and what becomes of one.
+#include "server/net/automatic.h"
+
+#include "tests/catch.h"
+
+using namespace clothlab;
+using net::Automatic;
+
+namespace {
+
+scene::Document seed_with(const scene::json& patch = scene::json::object()) {
+  scene::json whole{{"solver", {{"method", "auto"}, {"tolerance", 1e-2}}}};
+  whole.merge_patch(patch);
+  const Result<scene::Document> changed = scene::apply_patch(*scene::load_preset("seed"), whole);
+  if (!changed) FAIL(changed.error().text());
+  return *changed;
+}
+
+lab::Choice choice_of(const lab::Setting& setting) {
+  lab::Choice choice;
+  choice.met = true;
+  choice.chosen.setting = setting;
+  choice.chosen.largest_position_error = 4e-3;
+  choice.why = "because";
+  return choice;
+}
+
+}  // namespace
+
+TEST_CASE("a choice is due once, when the scene has been left alone for a while") {
+  Automatic automatic;
+  const Automatic::Clock::time_point start{};
+  scene::Document document = seed_with();
+  REQUIRE(automatic.settle(document, start));
+  CHECK(document.scene.solver.method == scene::Method::verlet);
+  CHECK_FALSE(automatic.wants_choice(start + Automatic::quiet / 2));
+  REQUIRE(automatic.settle(document = seed_with({{"air_drag", 1}}), start + Automatic::quiet / 2));
+  CHECK_FALSE(automatic.wants_choice(start + Automatic::quiet));
+  CHECK(automatic.wants_choice(start + 2 * Automatic::quiet));
+  CHECK_FALSE(automatic.wants_choice(start + 3 * Automatic::quiet));
+  CHECK(automatic.facts()["state"] == "measuring");
+}
+
+TEST_CASE("what was chosen is used as long as it covers the scene, and without a choice what is stable") {
+  Automatic automatic;
+  const Automatic::Clock::time_point now{};
+  const lab::Setting rk4{scene::Method::rk4, 2e-3, 1, 1e-4};
+  const scene::Document measured = seed_with();
+  automatic.take(measured, choice_of(rk4));
+  scene::Document document = seed_with({{"gravity", {0, -9.5, 0}}});
+  REQUIRE(automatic.settle(document, now));
+  CHECK(lab::setting_of(document.scene) == rk4);
+  CHECK(document.value["solver"]["method"] == "auto");
+  CHECK(automatic.facts()["why"] == "because");
+  CHECK_FALSE(automatic.wants_choice(now + 2 * Automatic::quiet));
+
+  document = seed_with({{"gravity", {0, -5, 0}}});
+  REQUIRE(automatic.settle(document, now));
+  CHECK(document.scene.solver.method == scene::Method::verlet);
+  CHECK(automatic.wants_choice(now + Automatic::quiet));
+
+  // Nothing could be chosen for it: not asked again before something changes.
+  automatic.take(document, Error{"choose", "chaotic", "the chart"});
+  REQUIRE(automatic.settle(document, now));
+  CHECK(automatic.facts()["state"] == "failed");
+  CHECK_FALSE(automatic.wants_choice(now + 2 * Automatic::quiet));
+
+  scene::Document other = seed_with({{"solver", {{"method", "xpbd"}}}});
+  REQUIRE(automatic.settle(other, now));
+  CHECK(other.scene.solver.method == scene::Method::xpbd);
+  CHECK(automatic.facts().is_null());
+}
