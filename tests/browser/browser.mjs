@@ -65,11 +65,12 @@ export function withServer(...args) {
   const browser = withBrowser();
   const here = {
     server: null,
-    open: (options) => browser.open(here.server, options),
+    /// `options.server`: another one than the file's.
+    open: (options = {}) => browser.open(options.server ?? here.server, options),
     /// A page and a script on the same session, and the scene as the server has it.
     async both(session, options) {
       const viewer = await here.open({ session, width: 1280, height: 800, ...options });
-      const client = await Client.connect(here.server, { session });
+      const client = await Client.connect(options?.server ?? here.server, { session });
       return { viewer, client, scene: async () => (await client.request("scene.get", {})).document };
     },
   };

@@ -1,11 +1,13 @@
 // What the panel offers for a scene: a list of sections and fields, each tied to JSON Pointers of the document.
-import { methodText, type MethodText, type Setting } from "./methods";
+import { automatic, methodText, type MethodText, type Setting } from "./methods";
 import { readable, type Scale } from "./slider";
 import { valueAt } from "./json_patch";
 import type { At, Motion, Operation, SceneDocument, Vec3 } from "./scene_types";
 
 /// What `sim.status` says of the solver.
 export interface SolverFacts {
+  /// Under the method `auto`: what steps the scene, and why.
+  auto?: { state: "measuring" | "chosen" | "failed"; method: string; dt_s: number; iterations: number | null; tolerance: number | null; why: string } | null;
   /// Of a spring's stretch the share that a visit takes away, for each cloth; only under PBD.
   pbd_stiffness?: Record<(typeof kinds)[number], number | null>[] | null;
 }
@@ -196,10 +198,30 @@ function suggestion(suits: Setting | null, values: Record<string, unknown>): Not
   };
 }
 
+/// What the lab has chosen for the method `auto`, and a way to keep it.
+function choiceNote({ auto }: SolverFacts): Note {
+  const says = methodText(automatic).says;
+  if (!auto) return { text: says };
+  if (auto.state === "measuring") return { text: `Measuring. Until then ${methodText(auto.method).name}, ${secondsText(auto.dt_s)}, which is stable.` };
+  const kept: [string, unknown][] = [["method", auto.method], ["dt", auto.dt_s], ["iterations", auto.iterations], ["tolerance", auto.tolerance]];
+  const operations: Operation[] = kept.flatMap(([key, value]) => (value == null ? [] : [{ op: "replace" as const, path: `/solver/${key}`, value }]));
+  return { text: auto.why, offer: { text: "Keep these settings", operations } };
+}
+
+function automaticSection(method: Field): Section {
+  const tolerance = number("tolerance", ["/solver/tolerance"], { min: 1e-5, max: 0.1, log: true },
+    { hint: "How far the vertices may be from the truth (RMS), as a share of the cloth's size" });
+  return { key: "solver", title: "Solver", open: true, sections: [],
+    fields: [{ ...method, note: (_, facts) => choiceNote(facts) }, tolerance] };
+}
+
 function solverSection(document: SceneDocument, methods: string[]): Section {
   const { method } = document.solver;
   const choices = methods.includes(method) ? methods : [method, ...methods];
   const names = Object.fromEntries(choices.map((id) => [id, methodText(id).name]));
+  const choice: Field = { key: methodChoice, label: "method", paths: [methodChoice], kind: "choice", choices, names,
+    note: (values) => ({ text: methodOf(values).says }) };
+  if (method === automatic) return automaticSection(choice);
   const { iterations } = methodText(method);
   const iterating: Field[] = iterations ? [
     number("iterations", [iterationCount], { min: 1, max: iterations.most, step: 1, whole: true }, {
@@ -210,8 +232,7 @@ function solverSection(document: SceneDocument, methods: string[]): Section {
   return {
     key: "solver", title: "Solver", open: true, sections: [],
     fields: [
-      { key: methodChoice, label: "method", paths: [methodChoice], kind: "choice", choices, names,
-        note: (values) => ({ text: methodOf(values).says }) },
+      choice,
       number("time step", [timeStep], { min: 1e-5, max: 0.05, log: true, unit: "s" }),
       ...iterating,
     ],

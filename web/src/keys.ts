@@ -1,9 +1,9 @@
 // The keyboard: one key, one command; silent while something is being typed or a dialog is open.
 
-export type Commands = Record<"toggle" | "step" | "reset" | "fit" | "hide" | "help", () => void>;
+export type Commands = Record<"toggle" | "step" | "reset" | "fit" | "hide" | "help" | "lab", () => void>;
 
 const bindings: Record<string, keyof Commands> = {
-  " ": "toggle", ".": "step", r: "reset", f: "fit", h: "hide", "?": "help",
+  " ": "toggle", ".": "step", r: "reset", f: "fit", h: "hide", l: "lab", "?": "help",
 };
 
 /// Whether the focused element needs this key itself.

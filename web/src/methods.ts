@@ -21,6 +21,7 @@ const frame = 1 / 60;
 const sweeps = (trade: string, suits: Setting | null): Iterations => ({ most: 50, trade, suits, solves: false });
 
 const texts: Record<string, MethodText> = {
+  auto: { name: "Auto", says: "The lab measures every method on this scene and takes the cheapest that keeps the tolerance.", iterations: null },
   explicit_euler: { name: "Explicit Euler", says: "First order, one force a step. Gains energy unless damping takes it away.", iterations: null },
   symplectic_euler: { name: "Symplectic Euler", says: "First order, one force a step. Keeps the energy bounded below its limit.", iterations: null },
   verlet: { name: "Verlet", says: "Second order, one force a step. Keeps the energy bounded below its limit.", iterations: null },
@@ -49,6 +50,9 @@ const texts: Record<string, MethodText> = {
     iterations: sweeps("Many short steps with one or two iterations beat one long step with many. Too few for the step let the cloth stretch like rubber.", { dt: 0.001, iterations: 2 }),
   },
 };
+
+/// The lab chooses; see SolverFacts.
+export const automatic = "auto";
 
 /// One the page does not know yet is shown as the server spells it.
 export function methodText(id: string): MethodText {

@@ -5,6 +5,7 @@ import type { SolverFacts } from "./fields";
 import { saferStep, type Stability } from "./gauge";
 import { Hud, type Status } from "./hud";
 import { bindKeys } from "./keys";
+import { Lab } from "./lab_drawer";
 import { Layout } from "./layout";
 import { LinkView } from "./link_view";
 import { clearDiverged, notice, noticeError, showApplied, showDiverged, type Diverged, type Level } from "./notices";
@@ -28,7 +29,9 @@ export class Page {
   private readonly transport = new Transport({ request: (method, params) => this.request(method, params) });
   private readonly store = this.makeStore();
   private readonly panel = this.makePanel();
+  private readonly lab = this.makeLab();
   private readonly notifications = this.makeNotifications();
+  private layout: Layout | null = null;
   private latest: Frame | null = null;
   private sceneName = "";
   private toldOfDivergence = false;
@@ -40,7 +43,7 @@ export class Page {
   /// Draws on this stage from now on.
   show(stage: Stage): void {
     this.stage = hook.stage = stage;
-    const layout = new Layout(() => stage.resize(layout.freeArea()));
+    const layout: Layout = this.layout = new Layout(() => stage.resize(layout.freeArea()));
     const theme = new ThemeSwitch(() => stage.setTheme());
     this.bind(layout, theme);
     stage.onLost = () => notice("warning", {
@@ -62,7 +65,7 @@ export class Page {
     const help = element("help-dialog", HTMLDialogElement);
     bindKeys({
       toggle: () => this.transport.toggle(), step: () => this.transport.step(), reset: () => this.transport.reset(),
-      fit, hide: () => layout.toggleInterface(), help: () => help.showModal(),
+      fit, hide: () => layout.toggleInterface(), help: () => help.showModal(), lab: () => this.lab.toggle(),
     });
     button("fit").onclick = fit;
     button("help").onclick = () => help.showModal();
@@ -93,6 +96,7 @@ export class Page {
       state: (state, retryIn, why) => {
         this.link.show(state, retryIn, why);
         this.transport.enable(state === "open" && this.mayEdit);
+        this.lab.link(state === "open");
         if (state !== "open") this.store.forget();
         else if (!this.store.document) void this.fetchScene();
       },
@@ -134,6 +138,16 @@ export class Page {
     });
   }
 
+  private makeLab(): Lab {
+    return new Lab({
+      request: (method, params) => this.connection.request(method, params),
+      document: () => this.store.document,
+      mayEdit: () => this.mayEdit,
+      applied: showApplied,
+      toggled: (open) => this.layout?.labToggled(open),
+    });
+  }
+
   private makeNotifications(): Record<string, (params: Params) => void> {
     return {
       hello: (params) => this.greeted(params),
@@ -147,6 +161,8 @@ export class Page {
         this.followDivergence(params as Status);
       },
       "sim.diverged": (params) => this.tellDivergence(params as unknown as Diverged),
+      "lab.progress": (params) => this.lab.progress(params),
+      "lab.result": (params) => this.lab.arrived(params),
       viewers: (params) => this.hud.set("viewers", String(params.count)),
       notice: (params) => notice(params.level as Level, { title: String(params.text) }),
     };
@@ -156,6 +172,8 @@ export class Page {
     this.hud.setRenderer(String(params.renderer));
     this.mayEdit = params.role !== "viewer";
     this.panel.setMethods((params.methods as string[] | undefined) ?? []);
+    this.lab.setMethods((params.methods as string[] | undefined) ?? []);
+    this.lab.roleChanged();
     document.body.classList.toggle("viewer", !this.mayEdit);
     this.transport.enable(this.connection.open && this.mayEdit);
     this.connection.request<{ presets: string[] }>("scene.presets").then(({ presets }) => this.panel.setPresets(presets), () => undefined);
@@ -168,6 +186,7 @@ export class Page {
     element("scene-name", HTMLElement).textContent = document.name;
     this.stage.setDocument(document, newScene);
     this.panel.show(document);
+    this.lab.sceneChanged();
   }
 
   private async fetchScene(): Promise<void> {

@@ -1,0 +1,83 @@
+// The page's pure code: where the present setting lies on a chart, and the way back from a patch. Needs no browser.
+import assert from "node:assert/strict";
+import { rmSync } from "node:fs";
+import { test } from "node:test";
+import { fileURLToPath, pathToFileURL } from "node:url";
+import { build } from "../../web/node_modules/esbuild/lib/main.js";
+
+async function load(name) {
+  const outfile = fileURLToPath(new URL(`../../build/${name}-${process.pid}.mjs`, import.meta.url));
+  await build({ entryPoints: [fileURLToPath(new URL(`../../web/src/${name}.ts`, import.meta.url))], bundle: true, format: "esm", outfile });
+  try {
+    return await import(pathToFileURL(outfile));
+  } finally {
+    rmSync(outfile);
+  }
+}
+
+const { placeOf } = await load("lab_present");
+const { formerly, reverseOf } = await load("lab_apply");
+const { applyPatch } = await load("json_patch");
+const { numbersOf } = await load("lab_numbers");
+
+const setting = (method, dt_s, iterations = null, tolerance = null) => ({ method, dt_s, iterations, tolerance });
+const point = (of, error, cost, blew_up_at_s = null) => ({
+  ...of, error: { position: error, energy: null, strain: null, rest: null }, largest_position_error: error,
+  ms_a_simulated_s: cost === null ? null : { median: cost, minimum: cost, runs: 3 }, blew_up_at_s, dt_over_limit: null, patch: {},
+});
+const near = (a, b) => assert.ok(Math.abs(a - b) <= 1e-9 * Math.abs(b), `${a} is not ${b}`);
+
+// An error of second order and a cost per step: powers of dt, which straight lines on logarithmic paper meet exactly.
+const verlet = [0.0005, 0.001, 0.004].map((dt) => point(setting("verlet", dt), 100 * dt ** 2, 0.05 / dt));
+
+test("between two points of its curve a setting lies on a straight line of logarithms, on a point it is that point", () => {
+  const between = placeOf(setting("verlet", 0.002), verlet, "position");
+  near(between.error, 100 * 0.002 ** 2);
+  near(between.cost, 25);
+  const on = placeOf(setting("verlet", 0.001), [...verlet].reverse(), "position");
+  near(on.error, 1e-4);
+  near(on.cost, 50);
+});
+
+test("nothing is guessed beyond what was measured: another method, another step, other iterations or tolerances", () => {
+  const vbd = [1, 4].flatMap((n) => [0.001, 0.01].map((dt) => point(setting("vbd", dt, n), dt, n / dt)));
+  const implicit = [0.001, 0.01].map((dt) => point(setting("implicit_euler", dt, 1, 1e-4), dt, 1 / dt));
+  const all = [...verlet, ...vbd, ...implicit];
+  const why = (...of) => placeOf(setting(...of), all, "position").reason;
+  assert.match(why("rk4", 0.001), /method is not on the chart/);
+  assert.match(why("verlet", 0.0004), /shorter than the shortest step measured, 0.5 ms/);
+  assert.match(why("verlet", 0.005), /longer than the longest step measured, 4 ms/);
+  assert.match(why("vbd", 0.002, 7), /measured with 1, 4 iterations/);
+  assert.match(why("implicit_euler", 0.002, 1, 1e-6), /tolerance 0.0001/);
+  near(placeOf(setting("vbd", 0.001, 4), all, "position").cost, 4000);
+  assert.match(placeOf(setting("verlet", 0.001), all, "energy").reason, /no point of its curve has this error/);
+});
+
+test("a step between the longest that held and one that blew up has no place, and one beyond it is told so", () => {
+  const points = [...verlet, point(setting("verlet", 0.006), null, null, 0.1)];
+  assert.match(placeOf(setting("verlet", 0.005), points, "position").reason, /longer than the longest/);
+  assert.match(placeOf(setting("verlet", 0.007), points, "position").reason, /blew up/);
+  assert.ok(placeOf(setting("verlet", 0.003), points, "position").error > 0);
+});
+
+const scene = {
+  name: "seed", air_drag: 0, self_collision: { thickness: 0.01, friction: 0.2 }, gravity: [0, -9.8, 0], colliders: [],
+  cloths: [{ name: "cloth", mesh: { grid: { columns: 25 } }, mass: { per_vertex: 0.1 }, material: { structural: 20000, bend: 0, strain_limit: null } }],
+  solver: { method: "verlet", dt: 0.001, iterations: 10, tolerance: 1e-4 },
+};
+
+test("the way back undoes every kind of patch that the lab applies", () => {
+  const merge = { solver: { method: "xpbd", dt: 0.01 }, self_collision: null, cloths: [{ ...scene.cloths[0], mesh: { grid: { columns: 13 } } }] };
+  const rfc6902 = [{ op: "replace", path: "/solver/dt", value: 0.01 }, { op: "replace", path: "/cloths/0/material/structural", value: 5 }];
+  for (const patch of [merge, rfc6902]) {
+    const changed = applyPatch(scene, patch);
+    assert.notDeepEqual(changed, scene);
+    assert.deepEqual(applyPatch(changed, reverseOf(scene, patch)), scene);
+  }
+  assert.equal(formerly(scene, { solver: { method: "xpbd", dt: 0.01, iterations: 10 } }), "method was verlet, dt was 0.001");
+});
+
+test("a stability map is offered over the scene's quantities that are above zero, not over its solver or its mesh", () => {
+  const paths = numbersOf(scene).map(({ path }) => path);
+  assert.deepEqual(paths, ["/cloths/0/mass/per_vertex", "/cloths/0/material/structural", "/self_collision/thickness", "/self_collision/friction"]);
+});

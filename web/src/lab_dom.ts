@@ -1,0 +1,61 @@
+// Elements made by the lab's drawer.
+
+type Child = Node | string;
+
+export function make<K extends keyof HTMLElementTagNameMap>(tag: K, className = "", ...children: Child[]): HTMLElementTagNameMap[K] {
+  const made = document.createElement(tag);
+  if (className !== "") made.className = className;
+  made.append(...children);
+  return made;
+}
+
+export function makeButton(text: string, className: string, run: () => void): HTMLButtonElement {
+  const made = make("button", className, text);
+  made.type = "button";
+  made.onclick = run;
+  return made;
+}
+
+/// Says it only when it changed: a status that is rewritten is read out again.
+export function say(place: HTMLElement, text: string): void {
+  place.hidden = text === "";
+  if (place.textContent !== text) place.textContent = text;
+}
+
+/// A checkbox with its text.
+export function makeCheck(text: string, checked: boolean, changed: (checked: boolean) => void = () => undefined): { label: HTMLLabelElement; input: HTMLInputElement } {
+  const input = make("input");
+  input.type = "checkbox";
+  input.checked = checked;
+  input.onchange = () => changed(input.checked);
+  return { label: make("label", "lab-check", input, text), input };
+}
+
+/// A labelled control in a row of options.
+export function labelled(text: string, control: HTMLElement, title = ""): HTMLLabelElement {
+  const label = make("label", "lab-field", make("span", "", text), control);
+  label.title = title;
+  return label;
+}
+
+/// A field for a number; what is not typed is undefined.
+export function makeNumber(placeholder: string, value = ""): HTMLInputElement {
+  const input = make("input", "lab-number");
+  input.type = "text";
+  input.inputMode = "decimal";
+  input.spellcheck = false;
+  input.placeholder = placeholder;
+  input.value = value;
+  return input;
+}
+
+export function numberIn(input: HTMLInputElement): number | undefined {
+  const typed = input.value.trim().replace(",", ".");
+  return typed === "" ? undefined : Number(typed);
+}
+
+export function makeSelect(choices: [value: string, text: string][], value: string): HTMLSelectElement {
+  const select = make("select");
+  for (const [of, text] of choices) select.add(new Option(text, of, false, of === value));
+  return select;
+}
