@@ -1,0 +1,172 @@
+// Whether the lab's choice keeps its word. For each scene and tolerance: the choice; its error again, in a
+// simulation of its own, at more times, against a reference with half the step; its cost again, in longer
+// runs; and every setting of a fine grid that would cost less, run to see whether it keeps the tolerance too.
+// Prints a JSON document. bench_choose [SCENE...], where 17x17 is the swinging cloth of physics.md; by
+// default four.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "server/gl/context.h"
+#include "server/lab/choice.h"
+#include "server/lab/trial.h"
+#include "server/lab/truth.h"
+#include "server/model/spring_operator.h"
+#include "server/model/stability.h"
+#include "server/reference/trajectory.h"
+#include "server/scene/document.h"
+#include "server/scene/method.h"
+#include "server/sim/colliders.h"
+#include "tests/bench/seed.h"
+#include "tests/small_scenes.h"
+
+using namespace clothlab;
+using lab::Setting;
+using scene::Method;
+
+namespace {
+
+constexpr int looks = 24;            // at the error of the choice
+constexpr double finer = 1.08;       // the grid's steps, each over the next
+constexpr double long_enough = 0.4;  // wall time of one timing [s]
+constexpr int rounds = 9, glances = 5;
+
+struct Case {
+  std::string name;
+  scene::Scene scene;
+  double time = 1.0;
+};
+
+Case named(const std::string& name) {
+  if (name == "17x17")
+    return {name, test::swinging_cloth(Method::symplectic_euler, 0.6 * test::cloth_unit), 0.3};
+  const auto document = scene::load(name);
+  if (!document) std::fprintf(stderr, "%s\n", document.error().text().c_str()), std::exit(2);
+  return {name, document->scene};
+}
+
+/// The largest error of a setting over `looks` times up to the horizon, over the size.
+double independent_error(const Case& of, const Setting& setting, const lab::Truth& truth) {
+  const int steps = lab::steps_to_horizon(setting.dt, truth);
+  std::vector<int> at;
+  std::vector<double> times;
+  for (int k = 1; k <= looks; ++k) {
+    const int step = static_cast<int>(std::lround(double(k) * steps / looks));
+    if (step < 1 || (!at.empty() && step == at.back())) continue;
+    at.push_back(step);
+    times.push_back(step * setting.dt);
+  }
+  const auto exact = reference::trajectory(truth.world, times, truth.dt);  // its states: at half of this
+  if (!exact) std::fprintf(stderr, "%s\n", exact.error().text().c_str()), std::exit(1);
+  auto made = sim::Simulation::create(lab::with(of.scene, setting));
+  const auto simulation = std::move(*made);
+  double worst = 0.0;
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    simulation->step(static_cast<std::uint32_t>(at[k] - (k ? at[k - 1] : 0)));
+    const sim::State read = simulation->read_state();
+    worst = std::max(worst, reference::rms_distance({read.position.begin(), read.position.end()},
+                                                    exact->states[k].position));
+  }
+  return worst / truth.size;
+}
+
+struct Grid {
+  int tried = 0;
+  std::vector<Setting> better;  // cheaper by estimate, and within the tolerance
+};
+
+std::vector<int> iterations_of(Method method) {
+  if (scene::sweeps(method)) return {1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32};
+  if (method == Method::implicit_euler) return {1, 2, 3, 4};
+  return {1};
+}
+
+Grid search(const Case& of, const lab::Choice& choice, const lab::Truth& truth, lab::Bench& bench) {
+  Grid grid;
+  const model::Model& model = truth.world.model;
+  for (const Method method : scene::methods) {
+    const double limit = model::dt_limit(method, model::SpringOperator(model, of.scene, model.rest_position));
+    if (limit == 0.0) continue;
+    for (const int iterations : iterations_of(method)) {
+      Setting setting{method, std::min({model::margin_to_warn * limit, truth.horizon / 8, 1.0 / 30}),
+                      iterations, 1e-4};
+      setting.dt = lab::fitted_dt(setting.dt, truth);
+      // The least of several: what is cheaper at a quiet moment counts as cheaper.
+      const auto glance = *bench.time({lab::with(of.scene, setting)}, truth.horizon, 0.03, glances, {});
+      double step_cost = lab::cost_of(glance.front()).minimum * setting.dt;
+      for (; step_cost / setting.dt < choice.chosen.cost->median;
+           setting.dt = lab::fitted_dt(setting.dt / finer, truth)) {
+        const auto trial = *bench.run(lab::with(of.scene, setting), truth, truth.horizon, {});
+        ++grid.tried;
+        step_cost = std::min(step_cost, 1000.0 * trial.wall / trial.simulated * setting.dt);
+        if (trial.largest_position_error && *trial.largest_position_error <= choice.tolerance) {
+          grid.better.push_back(setting);
+          break;  // shorter ones cost more
+        }
+      }
+    }
+  }
+  return grid;
+}
+
+void print(const Case& of, double tolerance, bool last) {
+  lab::ChooseRequest request;
+  request.tolerance = tolerance;
+  request.time = of.time;
+  const double begun = bench::seconds();
+  const auto choice = lab::choose(of.scene, request, {});
+  const double spent = bench::seconds() - begun;
+  std::printf("  {\"scene\": \"%s\", \"tolerance\": %g, ", of.name.c_str(), tolerance);
+  if (!choice) {
+    std::printf("\"refused\": \"%s\"}%s\n", choice.error().text().c_str(), last ? "" : ",");
+    return;
+  }
+  const auto truth =
+      *lab::truth(of.scene, {of.time, 1e-3 * std::min(1e-4, tolerance), 60.0}, {}, [](double) {});
+  const Setting& chosen = choice->chosen.setting;
+  const double error = independent_error(of, chosen, truth);
+  lab::Bench bench;
+  const Grid grid = search(of, *choice, truth, bench);
+  std::vector<scene::Scene> scenes{lab::with(of.scene, chosen), of.scene};
+  for (const Setting& setting : grid.better) scenes.push_back(lab::with(of.scene, setting));
+  const auto times = *bench.time(scenes, truth.horizon, long_enough, rounds, {});
+  const double cost = lab::cost_of(times[0]).median;
+  double best = cost;
+  std::string best_name = lab::text(chosen);
+  for (std::size_t i = 0; i < grid.better.size(); ++i) {
+    const double of_grid = lab::cost_of(times[i + 2]).median;
+    if (of_grid < best) best = of_grid, best_name = lab::text(grid.better[i]);
+  }
+  std::printf(
+      "\"choose_s\": %.1f, \"runs\": %zu, \"met\": %s, \"chosen\": \"%s\",\n   \"promised_error\": %.3e, "
+      "\"error\": %.3e, \"error_ratio\": %.3f, \"promised_ms\": %.2f, \"ms\": %.2f, \"cost_ratio\": %.3f,\n"
+      "   \"grid_points\": %d, \"grid_best\": \"%s\", \"grid_best_ms\": %.2f, \"over_grid_best\": %.3f,\n"
+      "   \"scenes_own\": \"%s\", \"scenes_own_ms\": %.2f, \"times_cheaper\": %.2f,\n   \"why\": \"%s\"}%s\n",
+      spent, choice->tried.size(), choice->met ? "true" : "false", lab::text(chosen).c_str(),
+      *choice->chosen.largest_position_error, error, error / *choice->chosen.largest_position_error,
+      choice->chosen.cost->median, cost, cost / choice->chosen.cost->median, grid.tried, best_name.c_str(),
+      best, cost / best, lab::text(lab::setting_of(of.scene)).c_str(), lab::cost_of(times[1]).median,
+      lab::cost_of(times[1]).median / cost, choice->why.c_str(), last ? "" : ",");
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  const auto context = gl::Context::create();
+  if (!context) return std::fprintf(stderr, "%s\n", context.error().text().c_str()), 3;
+  std::vector<std::string> names(arguments + 1, arguments + count);
+  if (names.empty()) names = {"seed", "17x17", "hanging-strip", "flag"};
+  constexpr double tolerances[] = {1e-2, 1e-3, 1e-4};
+  std::printf(
+      "{\n \"what\": \"the lab's choices against a second look and a full grid\",\n \"renderer\": \"%s\",\n"
+      " \"choices\": [\n",
+      (*context)->device().name.c_str());
+  for (const std::string& name : names)
+    for (const double tolerance : tolerances)
+      print(named(name), tolerance, name == names.back() && tolerance == tolerances[2]);
+  std::printf(" ]\n}\n");
+}
