@@ -4,6 +4,7 @@
 #include <iostream>
 #include <memory>
 
+#include "server/base/text.h"
 #include "server/cli/commands.h"
 #include "server/cli/state_files.h"
 #include "server/cli/stepping.h"
@@ -25,12 +26,6 @@ struct Options {
 
 constexpr double default_every = 0.01;  // [s], of a trace
 
-std::string text(double value) {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.9g", value);
-  return digits;
-}
-
 /// The `--trace` file: written row by row, so that a run that ends early leaves what it had.
 class Trace {
  public:
@@ -40,13 +35,15 @@ class Trace {
   Status add(const sim::Diagnostics& state) {
     for (const double value :
          {state.time, state.kinetic, state.elastic, state.gravitational, state.max_strain, state.max_speed})
-      file_ << text(value) << ',';
+      file_ << significant(value, 9) << ',';
     file_ << state.contacts << '\n' << std::flush;
     if (!file_)
       return Error{path_, "could not be written", "check the disk's space and the file's permissions"};
     return ok();
   }
-  void mark_diverged(double time) { file_ << "# diverged by " << text(time) << " s\n" << std::flush; }
+  void mark_diverged(double time) {
+    file_ << "# diverged by " << significant(time, 9) << " s\n" << std::flush;
+  }
 
  private:
   std::string path_;
@@ -98,9 +95,7 @@ Report make_report(const Prepared& prepared, const Progress& progress, double wa
     report["diverged_by"] = progress.diverged_by;
     report["diverged_reason"] = progress.reason;
   }
-  char hash[17];
-  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(sim::state_hash(state)));
-  report["state_hash"] = hash;
+  report["state_hash"] = formatted("%016llx", static_cast<unsigned long long>(sim::state_hash(state)));
   return report;
 }
 
@@ -108,11 +103,11 @@ void print_summary(const Report& report, double simulated) {
   const double step_seconds = report["step_s"];
   std::printf("%s: %llu steps to %s s, stepping took %s s", report["scene"].get<std::string>().c_str(),
               static_cast<unsigned long long>(report["steps"].get<std::uint64_t>()),
-              text(report["sim_time"]).c_str(), text(step_seconds).c_str());
+              significant(report["sim_time"], 9).c_str(), significant(step_seconds, 9).c_str());
   if (step_seconds > 0)
     std::printf(" (%.1f times real time, %.1f ns per vertex and step)", simulated / step_seconds,
                 report["ns_per_vertex_step"].get<double>());
-  std::printf("\nlargest strain %s, state %s, on %s\n", text(report["max_strain"]).c_str(),
+  std::printf("\nlargest strain %s, state %s, on %s\n", significant(report["max_strain"], 9).c_str(),
               report["state_hash"].get<std::string>().c_str(), report["renderer"].get<std::string>().c_str());
   std::fflush(stdout);
 }
@@ -135,7 +130,7 @@ struct Outputs {
 
 Result<Outputs> open_outputs(const Options& options) {
   if (options.every && options.out.empty() && options.trace.empty())
-    return Error{"--every", text(*options.every), "needs --out or --trace"};
+    return Error{"--every", significant(*options.every, 9), "needs --out or --trace"};
   Outputs outputs;
   if (!options.out.empty()) {
     Result<StateFiles> states = StateFiles::create(options.out, options.every.has_value());
@@ -150,8 +145,8 @@ Result<Outputs> open_outputs(const Options& options) {
 }
 
 std::string comment(const sim::Diagnostics& state, const std::string& scene, bool diverged) {
-  return "Clothlab " CLOTHLAB_VERSION ", scene " + scene + " at " + text(state.time) + " s, in metres" +
-         (diverged ? "; the simulation diverged after this" : "");
+  return "Clothlab " CLOTHLAB_VERSION ", scene " + scene + " at " + significant(state.time, 9) +
+         " s, in metres" + (diverged ? "; the simulation diverged after this" : "");
 }
 
 /// Whole steps between two stops; without --every of a trace the default, without either the whole run.
@@ -160,7 +155,8 @@ Result<std::uint64_t> stop_interval(const Options& options, std::uint64_t steps,
   if (!options.every)
     return std::max<std::uint64_t>(static_cast<std::uint64_t>(std::llround(default_every / dt)), 1);
   if (*options.every < dt / 2)
-    return Error{"--every", text(*options.every), "one step (" + text(dt) + " s) or more"};
+    return Error{"--every", significant(*options.every, 9),
+                 "one step (" + significant(dt, 9) + " s) or more"};
   return whole_steps("--every", *options.every, dt);
 }
 

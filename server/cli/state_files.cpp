@@ -3,10 +3,10 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 
+#include "server/base/text.h"
 #include "server/model/mesh_file.h"
 
 namespace clothlab::cli {
@@ -69,8 +69,7 @@ Result<StateFiles> StateFiles::create(const std::string& path, bool series) {
 
 std::string StateFiles::next_path() const {
   if (!series_) return path_;
-  char number[16];
-  std::snprintf(number, sizeof number, "-%04u", samples_);
+  const std::string number = formatted("-%04u", samples_);
   const fs::path path(path_);
   return (path.parent_path() / (path.stem().string() + number + path.extension().string())).string();
 }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "server/base/text.h"
 #include "server/lab/automatic.h"
 #include "server/lab/choice.h"
 #include "server/model/stability.h"
@@ -21,12 +22,6 @@ constexpr double most_steps = 1e12;
 /// that a look costs little; fewer where a blow-up is expected, so that more of the good part is kept.
 std::uint64_t steps_between_looks(double dt, double limit) {
   return dt > model::margin_to_warn * limit ? sim::batch_steps / 8 : sim::batch_steps;
-}
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
 }
 
 /// Steps `count` times and waits for the GPU; returns the seconds that took.
@@ -52,7 +47,7 @@ void end_diverged(Progress& progress, sim::Simulation& simulation, const sim::Bl
 /// choose, what is stable, and why.
 Result<scene::Scene> settle_method(scene::Scene scene, std::string& chosen) {
   if (!scene.solver.automatic) return scene;
-  note("method auto: measuring what keeps a tolerance of " + number(scene.solver.tolerance) +
+  note("method auto: measuring what keeps a tolerance of " + significant(scene.solver.tolerance, 9) +
        " at the least cost");
   const Result<lab::Choice> choice = lab::choose(scene, {scene.solver.tolerance, {}, {}}, {});
   if (choice) {
@@ -106,13 +101,14 @@ std::optional<Prepared> prepare(const SceneChoice& choice, std::optional<int> gp
 
 Result<std::uint64_t> whole_steps(const std::string& option, double seconds, double dt) {
   if (!std::isfinite(seconds) || seconds < 0)
-    return Error{option, number(seconds), "a time in seconds, 0 or more"};
+    return Error{option, significant(seconds, 9), "a time in seconds, 0 or more"};
   const double steps = std::round(seconds / dt);
   if (steps > most_steps)
-    return Error{option, number(seconds), "at most " + number(most_steps * dt) + " s at this dt"};
+    return Error{option, significant(seconds, 9),
+                 "at most " + significant(most_steps * dt, 9) + " s at this dt"};
   if (std::abs(steps * dt - seconds) > 1e-6 * dt)
-    note(option + " " + number(seconds) + " is not a whole number of steps of " + number(dt) +
-         " s; taken as " + number(steps * dt));
+    note(option + " " + significant(seconds, 9) + " is not a whole number of steps of " + significant(dt, 9) +
+         " s; taken as " + significant(steps * dt, 9));
   return static_cast<std::uint64_t>(steps);
 }
 
@@ -151,10 +147,10 @@ Result<Progress> advance(sim::Simulation& simulation, std::uint64_t steps, std::
 
 void note_diverged(const Progress& progress) {
   const model::Remedy& remedy = progress.remedy;
-  note("the simulation diverged: " + progress.reason +
-       "; what was good, up to t = " + number(progress.state.time) + " s, is kept. " + remedy.text + ": " +
+  note("the simulation diverged: " + progress.reason + "; what was good, up to t = " +
+       significant(progress.state.time, 9) + " s, is kept. " + remedy.text + ": " +
        (remedy.method ? std::string("--set /solver/method=") + scene::name(*remedy.method) + " " : "") +
-       "--set /solver/dt=" + number(remedy.dt));
+       "--set /solver/dt=" + significant(remedy.dt, 9));
 }
 
 }  // namespace clothlab::cli

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "server/base/text.h"
 #include "server/lab/coarsen.h"
 #include "server/model/stability.h"
 #include "server/reference/trajectory.h"
@@ -19,12 +19,6 @@ constexpr double truth_budget = 20.0, timed = 0.25;  // wall time [s]
 constexpr int rounds = 5;
 /// Of a copy that tells whether a motion without a reference is chaotic, and by how much it may grow.
 constexpr double heavier = 1e-4, most_amplified = 100.0;
-
-std::string format(const char* form, double value) {
-  char text[160];
-  std::snprintf(text, sizeof text, form, value);
-  return text;
-}
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -80,9 +74,9 @@ Status Beside::compare_without_truth(std::vector<std::string>& notes) {
   const double apart = copy.variant.change.value_or(1.0);
   if (copy.variant.measured && apart <= most_amplified * heavier) return ok();
   notes.push_back(
-      format("A copy whose masses are %.3g %% larger", 100 * heavier) +
-      format(" is %.3g %% of the size elsewhere", 100 * apart) +
-      format(" after %.3g s: positions cannot be compared, and nothing is recommended.", truth_.time));
+      formatted("A copy whose masses are %.3g %% larger", 100 * heavier) +
+      formatted(" is %.3g %% of the size elsewhere", 100 * apart) +
+      formatted(" after %.3g s: positions cannot be compared, and nothing is recommended.", truth_.time));
   without_truth_ = 0.0;
   whole_.variant.change.reset();
   return ok();
@@ -135,7 +129,7 @@ Status Beside::run(Candidate& candidate) {
   const Result<Trial> trial = bench_.run(scene, candidate.coarser() ? others : truth_, truth_.time, stop_);
   if (!trial) return trial.error();
   if (trial->blew_up_at) {
-    variant.reason = "it blew up at " + format("%.3g s", *trial->blew_up_at);
+    variant.reason = "it blew up at " + formatted("%.3g s", *trial->blew_up_at);
     return ok();
   }
   variant.error = trial->error;

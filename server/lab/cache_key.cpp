@@ -1,9 +1,9 @@
 // What a result of the lab depends on, as one hash.
 #include <algorithm>
-#include <cstdio>
 #include <vector>
 
 #include "server/base/data_files.h"
+#include "server/base/text.h"
 #include "server/lab/cache.h"
 #include "server/scene/method.h"
 
@@ -30,10 +30,8 @@ class Hash {
     second_ = (second_ ^ bytes.size()) * 0x9e3779b97f4a7c15ull;
   }
   std::string text() const {
-    char digits[33];
-    std::snprintf(digits, sizeof digits, "%016llx%016llx", static_cast<unsigned long long>(first_),
-                  static_cast<unsigned long long>(second_));
-    return digits;
+    return formatted("%016llx%016llx", static_cast<unsigned long long>(first_),
+                     static_cast<unsigned long long>(second_));
   }
 
  private:

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 
+#include "server/base/text.h"
 #include "server/gl/context.h"
 #include "server/lab/floor.h"
 #include "server/lab/ladder.h"
@@ -27,12 +27,6 @@ constexpr double far_dearer = 20.0;            // than the same method with othe
 constexpr double share_of_a_point = 1.0 / 25;  // of the budget, at most
 constexpr double timed = 0.15;                 // wall time of one timing at most [s]
 constexpr int rounds_at_once = 3, rounds_later = 2;
-
-std::string number(double value, const char* format = "%.3g") {
-  char text[32];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 class Maker {
  public:
@@ -136,10 +130,10 @@ class Maker {
       if (ladder.done) continue;
       const double least = ladder.price(horizon());
       if (least > most_a_point())
-        leave_out(ladder, "a run takes about " + number(least) + " s, more than the " +
-                              number(most_a_point()) + " s a point may take of this budget");
+        leave_out(ladder, "a run takes about " + significant(least, 3) + " s, more than the " +
+                              significant(most_a_point(), 3) + " s a point may take of this budget");
       else if (least > left() - (settling_ ? share_of_rest * request_.budget : 0.0))
-        leave_out(ladder, "the budget of " + number(request_.budget) + " s is spent");
+        leave_out(ladder, "the budget of " + significant(request_.budget, 3) + " s is spent");
       else if (dominated(ladder))
         leave_out(ladder, "other iterations of the method reach this error for a twentieth of the cost");
       if (!ladder.done && (!best || least < best->price(horizon()))) best = &ladder;
@@ -250,8 +244,9 @@ class Maker {
       control_.arrived(chart_);
     }
     if (without > 0)
-      chart_.notes.push_back("Of " + std::to_string(without) + " points the shape of rest is not known: " +
-                             number(settling_->time) + " s until they rest take too long for this budget.");
+      chart_.notes.push_back("Of " + std::to_string(without) +
+                             " points the shape of rest is not known: " + significant(settling_->time, 3) +
+                             " s until they rest take too long for this budget.");
     return ok();
   }
 

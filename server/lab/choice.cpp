@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
+#include "server/base/text.h"
 #include "server/gl/context.h"
 #include "server/lab/step_search.h"
 #include "server/lab/trial.h"
@@ -22,16 +22,8 @@ constexpr int rounds = 7;
 constexpr double timed = 0.2;                                  // wall time of one timing at most [s]
 constexpr double share_of_truth = 0.3, share_of_search = 0.9;  // of the progress
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
 std::string times(double ratio) {
-  char text[32];
-  std::snprintf(text, sizeof text, ratio < 10 ? "%.1f times" : "%.0f times", ratio);
-  return text;
+  return formatted("%.*f times", ratio < 10 ? 1 : 0, ratio);
 }
 
 class Chooser {
@@ -85,11 +77,12 @@ class Chooser {
           "choose", "positions cannot be compared: " + truth_.horizon_reason,
           "the chart still compares energy, the largest strain and, where there is one, the shape of rest"};
     if (choice_.reference_error > 0.3 * request_.tolerance)
-      return Error{"choose",
-                   "the reference itself is known to " + number(choice_.reference_error) +
-                       " of the cloth's size only, a tolerance of " + number(request_.tolerance) +
-                       " was asked for",
-                   "a tolerance of " + number(choice_.reference_error / 0.3) + " or more, or a shorter time"};
+      return Error{
+          "choose",
+          "the reference itself is known to " + significant(choice_.reference_error, 3) +
+              " of the cloth's size only, a tolerance of " + significant(request_.tolerance, 3) +
+              " was asked for",
+          "a tolerance of " + significant(choice_.reference_error / 0.3, 3) + " or more, or a shorter time"};
     return ok();
   }
 
@@ -172,7 +165,7 @@ class Chooser {
       if (!trial->blew_up_at) continue;
       choice_.notes.push_back(text(candidate.best->setting) + " keeps the tolerance, but blows up " +
                               (dt == steps.front() ? "later" : "with a step a ninth longer") + ", at " +
-                              number(*trial->blew_up_at) + " s.");
+                              significant(*trial->blew_up_at, 3) + " s.");
       return false;
     }
     return true;
@@ -187,23 +180,24 @@ class Chooser {
     if (!best)
       return Error{"choose", "everything that was tried blew up", "a stabler method, a shorter time"};
     choice_.chosen = *best;
-    choice_.why = "Nothing that was tried keeps " + number(request_.tolerance) + "; nearest came " +
-                  text(best->setting) + " with an error of " + number(*best->largest_position_error) + ".";
+    choice_.why = "Nothing that was tried keeps " + significant(request_.tolerance, 3) + "; nearest came " +
+                  text(best->setting) + " with an error of " + significant(*best->largest_position_error, 3) +
+                  ".";
     return ok();
   }
 
   std::string explain() const {
     const Point& chosen = choice_.chosen;
     const double cost = chosen.cost->median, error = *chosen.largest_position_error;
-    std::string why = text(chosen.setting) + " costs " + number(cost) + " ms a simulated second";
+    std::string why = text(chosen.setting) + " costs " + significant(cost, 3) + " ms a simulated second";
     if (choice_.runner_up)
       why += ", " + times(choice_.runner_up->cost->median / cost) + " less than the next best (" +
              text(choice_.runner_up->setting) + ")";
     if (chosen.dt_over_limit && *chosen.dt_over_limit > model::margin_to_warn / near_enough)
-      why += "; its step is as long as stability allows, where its error of " + number(error) +
+      why += "; its step is as long as stability allows, where its error of " + significant(error, 3) +
              " is already " + times(request_.tolerance / error) + " below the tolerance";
     else
-      why += "; with an error of " + number(error) + ", a longer step would miss the tolerance";
+      why += "; with an error of " + significant(error, 3) + ", a longer step would miss the tolerance";
     if (choice_.present.cost)
       why += ". The scene's own setting costs " + times(choice_.present.cost->median / cost) + " as much";
     return why + ".";
@@ -223,7 +217,8 @@ class Chooser {
 Result<Choice> choose(const scene::Scene& scene, const ChooseRequest& request,
                       const Control<Choice>& control) {
   if (!(request.tolerance > 0.0 && request.tolerance <= 1.0))
-    return Error{"tolerance", number(request.tolerance), "above 0, at most 1: a share of the cloth's size"};
+    return Error{"tolerance", significant(request.tolerance, 3),
+                 "above 0, at most 1: a share of the cloth's size"};
   return Chooser(scene, request, control).choose();
 }
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <glm/geometric.hpp>
 
+#include "server/base/text.h"
 #include "server/lab/mode_growth.h"
 #include "server/model/stability.h"
 #include "server/scene/method.h"
@@ -18,13 +18,6 @@ using scene::Method;
 /// How far the least limit about the shapes that the cloth takes may lie above the measured boundary and
 /// still be its cause: the shapes are looked at now and then only.
 constexpr double between_looks = 1.1;
-
-template <class... Values>
-std::string format(const char* form, Values... values) {
-  char text[400];
-  std::snprintf(text, sizeof text, form, values...);
-  return text;
-}
 
 /// The limits about the shapes that a run takes.
 struct Shapes {
@@ -79,15 +72,16 @@ Result<bool> holds_bare(const Evidence& evidence, double dt, Runner& bare, const
 
 Explanation too_short(const MapColumn& column, const Evidence& evidence, double measured) {
   if (*column.theory == 0.0)
-    return {Cause::too_short,
-            format("without damping no step is stable, but slow growth does not show: %d steps of less than "
-                   "%.3g s multiply an amplitude by less than e^%.3g",
-                   evidence.steps, evidence.visible, e_folds_to_show)};
+    return {
+        Cause::too_short,
+        formatted("without damping no step is stable, but slow growth does not show: %d steps of less than "
+                  "%.3g s multiply an amplitude by less than e^%.3g",
+                  evidence.steps, evidence.visible, e_folds_to_show)};
   const Method method = evidence.scene.solver.method;
   const double limit = std::max(*column.theory, model::dt_limit(method, evidence.mode));
   return {
       Cause::too_short,
-      format(
+      formatted(
           "5 %% beyond the limit an amplitude grows by e^%.2g a step, and %d steps show it only from about "
           "%.3g s on; measured %.3g s",
           growth_a_step(method, evidence.mode, 1.05 * limit), evidence.steps, evidence.visible, measured)};
@@ -101,19 +95,19 @@ Result<Explanation> held_too_long(const MapColumn& column, const Evidence& evide
   const Result<Shapes> shapes = shapes_of(evidence.scene, *column.held, longer, runner, stop);
   if (!shapes) return shapes.error();
   if (shapes->blew_up)
-    return Explanation{Cause::too_short, format("in twice as many steps %.3g s fails, too", *column.held)};
+    return Explanation{Cause::too_short, formatted("in twice as many steps %.3g s fails, too", *column.held)};
   if (shapes->median > (1.0 + agreement) * theory && shapes->median != model::no_limit)
     return Explanation{Cause::shape,
-                       format("about the shapes that the cloth takes the limit is %.3g s more often "
-                              "than not",
-                              shapes->median)};
+                       formatted("about the shapes that the cloth takes the limit is %.3g s more often "
+                                 "than not",
+                                 shapes->median)};
   const auto cell = std::find_if(column.cells.begin(), column.cells.end(),
                                  [&](const MapCell& each) { return each.dt == *column.held; });
   return Explanation{
       Cause::bounded,
-      format("at %.3g s it comes to %.3g times the energy of a stable step and in twice as many "
-             "steps does not blow up",
-             *column.held, std::pow(10.0, cell->growth))};
+      formatted("at %.3g s it comes to %.3g times the energy of a stable step and in twice as many "
+                "steps does not blow up",
+                *column.held, std::pow(10.0, cell->growth))};
 }
 
 Result<Explanation> failed_too_soon(const MapColumn& column, const Evidence& evidence, double measured,
@@ -124,9 +118,9 @@ Result<Explanation> failed_too_soon(const MapColumn& column, const Evidence& evi
         shapes_of(evidence.scene, *column.held, evidence.steps_of(*column.held), runner, stop);
     if (!shapes) return shapes.error();
     const std::string tension =
-        format("springs are stretched to %.3g times their length", shapes->longest) +
+        formatted("springs are stretched to %.3g times their length", shapes->longest) +
         (shapes->least > 0.0
-             ? format(": about that shape the limit is %.3g s", shapes->least)
+             ? formatted(": about that shape the limit is %.3g s", shapes->least)
              : ", and nothing damps what moves across them: about that shape no step is stable");
     const bool shorter = shapes->least < (1.0 - agreement) * *column.theory;
     if (shorter && shapes->least < between_looks * measured) return Explanation{Cause::tension, tension};
@@ -138,7 +132,7 @@ Result<Explanation> failed_too_soon(const MapColumn& column, const Evidence& evi
     if (*holds)
       return Explanation{
           Cause::contacts,
-          format("contacts: without colliders and self-collision %.3g s holds", *column.failed)};
+          formatted("contacts: without colliders and self-collision %.3g s holds", *column.failed)};
   }
   return Explanation{Cause::unknown, seen};
 }

@@ -3,16 +3,13 @@
 #include <array>
 #include <cmath>
 
+#include "server/base/text.h"
+
 namespace clothlab::lab {
 
 namespace {
 constexpr double line_height = 1.35;  // of the font's size
 
-std::string digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
 }  // namespace
 
 const char* colour(scene::Method method) {
@@ -76,10 +73,10 @@ void write_over(Svg& svg, double x, double y, const std::string& words, double f
 }
 
 Attributes scale_attributes(const Scale& x, const Scale& y) {
-  return {{"data-x0", digits(x.low)},
-          {"data-x1", digits(x.high)},
-          {"data-y0", digits(y.low)},
-          {"data-y1", digits(y.high)},
+  return {{"data-x0", significant(x.low, 9)},
+          {"data-x1", significant(x.high, 9)},
+          {"data-y0", significant(y.low, 9)},
+          {"data-y1", significant(y.high, 9)},
           {"data-left", x.from},
           {"data-right", x.to},
           {"data-top", y.to},
@@ -127,10 +124,8 @@ void draw_axes(Svg& svg, const Scale& x, const Scale& y, const std::string& x_la
     below += line_height * text_size;
   }
   const double middle = (y.from + y.to) / 2;
-  char turned[48];
-  std::snprintf(turned, sizeof turned, "rotate(-90 %g %.1f)", 20.0, middle);
   svg.text(20, middle, y_label, text_size, "middle",
-           {{"class", "text label"}, {"fill", ink}, {"transform", turned}});
+           {{"class", "text label"}, {"fill", ink}, {"transform", formatted("rotate(-90 20 %.1f)", middle)}});
   svg.close();
 }
 

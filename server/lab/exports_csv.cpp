@@ -1,8 +1,8 @@
 // Results of the lab as CSV (RFC 4180, but with plain line feeds): a header with the units, then a row a
 // point, cell, trial or variant. What there is no number for is left empty.
 #include <cmath>
-#include <cstdio>
 
+#include "server/base/text.h"
 #include "server/lab/exports.h"
 #include "server/scene/method.h"
 
@@ -32,11 +32,7 @@ class Table {
     return *this;
   }
   Table& add(const char* words) { return add(std::string(words)); }
-  Table& add(double value) {
-    char digits[32] = "";
-    if (std::isfinite(value)) std::snprintf(digits, sizeof digits, "%.9g", value);
-    return add(std::string(digits));
-  }
+  Table& add(double value) { return add(std::isfinite(value) ? significant(value, 9) : ""); }
   Table& add(const std::optional<double>& value) { return value ? add(*value) : add(""); }
   Table& add(int value) { return add(std::to_string(value)); }
   Table& add(bool value) { return add(value ? "yes" : "no"); }

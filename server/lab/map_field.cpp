@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "server/base/text.h"
 #include "server/scene/pointer.h"
 
 namespace clothlab::lab {
@@ -13,12 +14,6 @@ namespace {
 using scene::json;
 
 const char* const stiffness = "stiffness";
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 /// The value a pointer names, or null.
 json* find_value(json& document, const std::string& pointer) {
@@ -111,8 +106,8 @@ Result<std::vector<double>> MapField::values(std::optional<double> from, std::op
            : nearest_allowed(present_ > 0 ? std::min(present_, to.value_or(present_)) / reach : 2 * present_);
   const double high = to ? *to : nearest_allowed(present_ > 0 ? std::max(present_, low) * reach : 0.0);
   if (!(low < high))
-    return Error{to ? "to" : "from", number(to ? high : low),
-                 to ? "above " + number(low) : "below " + number(high)};
+    return Error{to ? "to" : "from", significant(to ? high : low, 6),
+                 to ? "above " + significant(low, 6) : "below " + significant(high, 6)};
   std::vector<double> values;
   for (int i = 0; i < columns; ++i) {
     const double share = static_cast<double>(i) / (columns - 1);
@@ -122,7 +117,8 @@ Result<std::vector<double>> MapField::values(std::optional<double> from, std::op
     if (!scene) return scene.error();
     if (values.empty() || value > values.back()) values.push_back(value);
   }
-  if (values.size() < 2) return Error{"to", number(high), "at least one more than from, in whole numbers"};
+  if (values.size() < 2)
+    return Error{"to", significant(high, 6), "at least one more than from, in whole numbers"};
   return values;
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "server/base/text.h"
+
 namespace clothlab::lab {
 
 namespace {
@@ -227,10 +229,8 @@ std::string shade(double growth) {
   const auto mix = [share](double from, double to) {
     return static_cast<unsigned>(std::lround(from + share * (to - from)));
   };
-  char text[8];
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", mix(low.red, high.red) & 0xFF,
-                mix(low.green, high.green) & 0xFF, mix(low.blue, high.blue) & 0xFF);
-  return text;
+  return formatted("#%02x%02x%02x", mix(low.red, high.red), mix(low.green, high.green),
+                   mix(low.blue, high.blue));
 }
 
 PanelScales panel_scales(const StabilityMap& map, double width) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/base/text.h"
 #include "server/lab/map_panel.h"
 
 namespace clothlab::lab {
@@ -110,10 +111,8 @@ std::string draw(const StabilityMap& map) {
   svg.text((panels_left + picture_width - margin) / 2, labels, x_label, text_size, "middle",
            {{"class", "text label"}, {"fill", ink}});
   const double middle = top + rows * row_height / 2;
-  char turned[48];
-  std::snprintf(turned, sizeof turned, "rotate(-90 %g %.1f)", 20.0, middle);
   svg.text(20, middle, "dt [ms]", text_size, "middle",
-           {{"class", "text label"}, {"fill", ink}, {"transform", turned}});
+           {{"class", "text label"}, {"fill", ink}, {"transform", formatted("rotate(-90 20 %.1f)", middle)}});
   draw_legend(svg, legend_top, loses_energy(map));
   write_notes(svg, notes_top, map.notes, 2);
   return svg.finish();

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
+
+#include "server/base/text.h"
 
 namespace clothlab::lab {
 
@@ -11,9 +12,7 @@ namespace {
 
 /// A place in the view box: a hundredth of a unit is less than a screen shows.
 std::string place(double value) {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.2f", value);
-  std::string text = digits;
+  std::string text = formatted("%.2f", value);
   text.erase(text.find_last_not_of('0') + 1);
   if (text.back() == '.') text.pop_back();
   return text == "-0" ? "0" : text;

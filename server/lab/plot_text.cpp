@@ -1,9 +1,9 @@
 // The words of a picture: numbers, entities, and how much room they take.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 
+#include "server/base/text.h"
 #include "server/lab/plot.h"
 
 namespace clothlab::lab {
@@ -37,17 +37,12 @@ std::string cut(std::string text, double width, double font_size) {
 
 std::string brief(double value, int digits) {
   if (!std::isfinite(value)) return "-";
-  char written[48];
-  std::snprintf(written, sizeof written, "%.*g", digits, value);
-  std::string text = written;
+  const std::string text = significant(value, digits);
   const std::size_t exponent = text.find('e');
   if (exponent == std::string::npos) return text;
   const int power = std::atoi(text.c_str() + exponent + 1);
   // 5.7e4 is shorter than 57000, but nobody reads milliseconds that way.
-  if (power >= 0 && power < 6) {
-    std::snprintf(written, sizeof written, "%.0f", std::atof(text.c_str()));
-    return written;
-  }
+  if (power >= 0 && power < 6) return formatted("%.0f", std::atof(text.c_str()));
   return text.substr(0, exponent) + "e" + std::to_string(power);
 }
 

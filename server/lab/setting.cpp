@@ -1,7 +1,6 @@
 #include "server/lab/setting.h"
 
-#include <cstdio>
-
+#include "server/base/text.h"
 #include "server/scene/method.h"
 
 namespace clothlab::lab {
@@ -44,9 +43,7 @@ json to_json(const Setting& setting) {
 }
 
 std::string text(const Setting& setting) {
-  char step[48];
-  std::snprintf(step, sizeof step, ", dt %.3g ms", 1000.0 * setting.dt);
-  std::string text = scene::name(setting.method) + std::string(step);
+  std::string text = formatted("%s, dt %.3g ms", scene::name(setting.method), 1000.0 * setting.dt);
   if (iterates(setting.method))
     text +=
         ", " + std::to_string(setting.iterations) + (setting.iterations == 1 ? " iteration" : " iterations");

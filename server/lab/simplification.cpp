@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "server/base/text.h"
 #include "server/gl/context.h"
 #include "server/lab/beside.h"
 
@@ -16,13 +16,8 @@ using scene::Document;
 constexpr double worth_it = 0.95;  // of the whole's cost: what saves less is not worth a change of the model
 constexpr double share_of_truth = 0.4;  // of the job, for its progress
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 std::string percent(double share) {
-  return number(100.0 * share) + " %";
+  return significant(100.0 * share, 3) + " %";
 }
 
 /// "a", "a and b", "a, b and c".
@@ -163,7 +158,7 @@ class Maker {
     found_.recommended.drop = true;
     if (std::any_of(going.begin(), going.end(),
                     [](const Candidate* each) { return each->variant.name == without_damping; }))
-      found_.notes.push_back("Damping was judged within " + number(found_.time) +
+      found_.notes.push_back("Damping was judged within " + significant(found_.time, 3) +
                              " s: in the long run it is what brings a cloth to rest.");
   }
 
@@ -189,10 +184,11 @@ class Maker {
       const Variant& best = found_.recommended;
       const double dt = best.patch.contains("solver") ? best.patch["solver"]["dt"].get<double>()
                                                       : document_.scene.solver.dt;
-      found_.why = "The scene can do with this: " + best.name +
-                   (dt > document_.scene.solver.dt ? ", with a step of " + number(1000 * dt) + " ms" : "") +
-                   "; that takes " + number(best.cost_ratio) + " times the time and changes positions by " +
-                   percent(*best.change) + " of the size" + allowed + ".";
+      found_.why =
+          "The scene can do with this: " + best.name +
+          (dt > document_.scene.solver.dt ? ", with a step of " + significant(1000 * dt, 3) + " ms" : "") +
+          "; that takes " + significant(best.cost_ratio, 3) + " times the time and changes positions by " +
+          percent(*best.change) + " of the size" + allowed + ".";
     } else if (found_.horizon == 0.0) {
       found_.why = std::string("Nothing is recommended, because positions cannot be compared; ") +
                    (beside_.truth().missing.empty() ? "energy and the largest strain are."
@@ -228,9 +224,9 @@ class Maker {
 Result<Simplification> simplify(const Document& document, const SimplifyRequest& request,
                                 const Control<Simplification>& control) {
   if (!(request.tolerance > 0.0) || request.tolerance > 1.0)
-    return Error{"tolerance", number(request.tolerance), "above 0, at most 1"};
+    return Error{"tolerance", significant(request.tolerance, 3), "above 0, at most 1"};
   if (request.time && !(*request.time > 0.0 && std::isfinite(*request.time)))
-    return Error{"time", number(*request.time), "a time in seconds, above 0"};
+    return Error{"time", significant(*request.time, 3), "a time in seconds, above 0"};
   return Maker(document, request, control).make();
 }
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "server/base/text.h"
 #include "server/gl/context.h"
 #include "server/lab/disagreement.h"
 #include "server/lab/map_column.h"
@@ -17,16 +17,10 @@ namespace {
 
 using scene::Method;
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
 /// "0.01", or "0.01 to 3.2".
 std::string span(const std::vector<const MeasuredColumn*>& columns) {
-  const std::string first = number(columns.front()->column.value);
-  return columns.size() == 1 ? first : first + " to " + number(columns.back()->column.value);
+  const std::string first = significant(columns.front()->column.value, 3);
+  return columns.size() == 1 ? first : first + " to " + significant(columns.back()->column.value, 3);
 }
 
 /// Measured over theory, least and most.
@@ -37,7 +31,9 @@ std::string ratio(const std::vector<const MeasuredColumn*>& columns) {
     least = std::min(least, share);
     most = std::max(most, share);
   }
-  return number(least) + (number(most) == number(least) ? "" : " to " + number(most)) + " times theory's";
+  return significant(least, 3) +
+         (significant(most, 3) == significant(least, 3) ? "" : " to " + significant(most, 3)) +
+         " times theory's";
 }
 
 /// A sentence about neighbouring columns that disagree for the same reason.
@@ -46,13 +42,14 @@ std::string disagreement(const StabilityMap& map, Method method,
   const MapColumn& first = columns.front()->column;
   std::string text = std::string(scene::name(method)) + ", " + map.field + " " + span(columns) + ": ";
   if (!first.theory)
-    text += "no step should be unstable, but " + number(*first.failed) + " s failed";
+    text += "no step should be unstable, but " + significant(*first.failed, 3) + " s failed";
   else if (*first.theory == 0.0)
-    text += "theory allows no step at all, yet steps up to " + number(first.held.value_or(0.0)) + " s held";
+    text += "theory allows no step at all, yet steps up to " + significant(first.held.value_or(0.0), 3) +
+            " s held";
   else
     text += "the measured limit is " + ratio(columns);
   text += std::string("; ") + phrase(columns.front()->cause);
-  return text + " (at " + number(first.value) + ": " + first.reason + ").";
+  return text + " (at " + significant(first.value, 3) + ": " + first.reason + ").";
 }
 
 /// What is worth saying of one method's columns.
@@ -68,10 +65,10 @@ class Notes {
       if (!alike.empty() && alike.back()->cause != column.cause) flush();
       if (column.column.disagrees) alike.push_back(&column);
       if (column.held_beyond)
-        others_.push_back(std::string(scene::name(method)) + ", " + map.field + " " +
-                          number(column.column.value) +
-                          ": some steps longer than the shortest that failed (" +
-                          number(*column.column.failed) + " s) held; the boundary shown is the lower end.");
+        others_.push_back(
+            std::string(scene::name(method)) + ", " + map.field + " " + significant(column.column.value, 3) +
+            ": some steps longer than the shortest that failed (" + significant(*column.column.failed, 3) +
+            " s) held; the boundary shown is the lower end.");
     }
     flush();
     if (std::all_of(columns.begin(), columns.end(),
@@ -87,7 +84,8 @@ class Notes {
       notes.push_back(
           "Nothing failed up to 0.1 s with " + unlimited_ +
           ", as theory has it: no step makes them unstable. That says nothing of how right they are.");
-    notes.push_back("A trial runs " + std::to_string(map.steps) + " steps at most, " + number(map.time) +
+    notes.push_back("A trial runs " + std::to_string(map.steps) + " steps at most, " +
+                    significant(map.time, 3) +
                     " s at most; what grows more slowly than that shows is taken to hold.");
     return notes;
   }
@@ -147,7 +145,7 @@ Result<StabilityMap> stability_map(const scene::Document& document, const MapReq
       const auto at_trial = [&](double dt, double share) {
         control.progress({done + share, total,
                           text(Setting{method, dt, scene.solver.iterations}) + ", " + map.field + " " +
-                              number(column.value)});
+                              significant(column.value, 3)});
       };
       Result<MeasuredColumn> found =
           measure_column(scene, column.value, runner, bare, control.stop, at_trial);

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <numeric>
 
+#include "server/base/text.h"
 #include "server/model/stability.h"
 #include "server/reference/trajectory.h"
 #include "server/sim/blow_up.h"
@@ -109,10 +109,8 @@ int steps_to_horizon(double dt, const Truth& truth) {
 }
 
 double fitted_dt(double dt, const Truth& truth) {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.6g",
-                truth.spacing * samples_to_horizon / steps_to_horizon(dt, truth));
-  return std::strtod(digits, nullptr);
+  const double fitted = truth.spacing * samples_to_horizon / steps_to_horizon(dt, truth);
+  return std::strtod(significant(fitted, 6).c_str(), nullptr);
 }
 
 Result<sim::Simulation*> Bench::prepare(const scene::Scene& scene) {

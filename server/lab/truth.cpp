@@ -8,6 +8,7 @@
 #include <optional>
 #include <random>
 
+#include "server/base/text.h"
 #include "server/lab/control.h"
 #include "server/reference/methods.h"
 #include "server/reference/trajectory.h"
@@ -122,12 +123,6 @@ bool finite(const State& state) {
                      [](const glm::dvec3& x) { return std::isfinite(x.x + x.y + x.z); });
 }
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
 class Search {
  public:
   Search(Truth& truth, const TruthRequest& request, const std::stop_token& stop,
@@ -157,13 +152,13 @@ class Search {
     const double affordable = 0.6 * request_.budget / (5.0 * cost) * step_;
     truth_.time = std::min(request_.time, affordable);
     if (truth_.time == request_.time) return ok();
-    const std::string work = "a second of the reference takes " + number(1.0 / step_) + " steps of " +
-                             number(1000.0 * cost) + " ms";
+    const std::string work = "a second of the reference takes " + significant(1.0 / step_, 3) + " steps of " +
+                             significant(1000.0 * cost, 3) + " ms";
     if (truth_.time < fewest_steps * step_ || truth_.time < 0.02 * request_.time)
-      truth_.missing = work + ", more than fits into " + number(request_.budget) +
+      truth_.missing = work + ", more than fits into " + significant(request_.budget, 3) +
                        " s; softer or heavier springs, a coarser mesh or a shorter time would bring it back";
     else
-      truth_.notes.push_back("The reference ends at " + number(truth_.time) + " s: " + work + ".");
+      truth_.notes.push_back("The reference ends at " + significant(truth_.time, 3) + " s: " + work + ".");
     return ok();
   }
 
@@ -176,7 +171,7 @@ class Search {
       const double from = truth_.time * (look - 1) / looks, to = truth_.time * look / looks;
       if (!follower.follow(state, from, to) || !follower.follow(copy, from, to)) return cancelled;
       if (!finite(state)) {
-        truth_.missing = "the reference's own motion is not finite after " + number(to) + " s";
+        truth_.missing = "the reference's own motion is not finite after " + significant(to, 3) + " s";
         return ok();
       }
       most = std::max(most, reference::rms_distance(state.position, copy.position) / begun);
@@ -190,20 +185,22 @@ class Search {
   }
 
   void explain_horizon(double most) {
-    const std::string copy = "a copy that starts " + number(perturbation) + " of the size away";
+    const std::string copy = "a copy that starts " + significant(perturbation, 3) + " of the size away";
     if (truth_.horizon < 4.0 * truth_.time / looks) {
       truth_.horizon = 0.0;
       truth_.horizon_reason = "The motion is chaotic at once: " + copy + " is more than " +
-                              number(most_amplified) + " times as far away after " +
-                              number(4.0 * truth_.time / looks) + " s.";
+                              significant(most_amplified, 3) + " times as far away after " +
+                              significant(4.0 * truth_.time / looks, 3) + " s.";
     } else if (truth_.horizon < truth_.time) {
-      truth_.horizon_reason = "Positions are compared at " + number(truth_.horizon) + " s: " + copy +
-                              " is up to " + number(amplified_) + " times as far away until then, and over " +
-                              number(most_amplified) + " times soon after.";
+      truth_.horizon_reason = "Positions are compared at " + significant(truth_.horizon, 3) + " s: " + copy +
+                              " is up to " + significant(amplified_, 3) +
+                              " times as far away until then, and over " + significant(most_amplified, 3) +
+                              " times soon after.";
     } else {
       truth_.horizon_reason =
-          "Positions are compared at " + number(truth_.horizon) + " s, the whole time: " + copy +
-          (most < 1.5 ? " stays as near." : " comes no more than " + number(most) + " times as far away.");
+          "Positions are compared at " + significant(truth_.horizon, 3) + " s, the whole time: " + copy +
+          (most < 1.5 ? " stays as near."
+                      : " comes no more than " + significant(most, 3) + " times as far away.");
     }
   }
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "server/base/text.h"
 #include "server/model/stability.h"
 #include "server/scene/method.h"
 #include "server/scene/ranges.h"
@@ -15,12 +15,6 @@ namespace {
 constexpr double safe_share = 0.8;
 constexpr double too_slow = 0.1;   // of the present step: what a user would not wait for
 constexpr double a_frame = 0.016;  // [s]
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
 
 double within_safe_share(double limit) {
   return std::max(rounded_down(safe_share * limit), scene::ranges::dt.minimum);
@@ -48,32 +42,33 @@ Remedy remedy(const Model& model, const scene::Scene& scene, double limit) {
     if (solver.dt > safe_share * holds) remedy.dt = within_safe_share(holds);
     remedy.method = other.solver.method;
     remedy.text = std::string("use symplectic_euler, which costs the same") +
-                  (remedy.dt < solver.dt ? ", with dt = " + number(remedy.dt) + " s" : "");
+                  (remedy.dt < solver.dt ? ", with dt = " + significant(remedy.dt, 4) + " s" : "");
   } else if (safe_share * limit < std::max(too_slow * solver.dt, scene::ranges::dt.minimum)) {
     remedy.dt = std::min(solver.dt, a_frame);
     remedy.method = scene::Method::implicit_euler;
-    remedy.text = "use implicit_euler, which has no such limit, with dt = " + number(remedy.dt) + " s; " +
-                  scene::name(solver.method) + " would need a step below " + number(limit) + " s";
+    remedy.text = "use implicit_euler, which has no such limit, with dt = " + significant(remedy.dt, 4) +
+                  " s; " + scene::name(solver.method) + " would need a step below " + significant(limit, 4) +
+                  " s";
   } else if (solver.dt > margin_to_warn * limit) {
     remedy.dt = within_safe_share(limit);
-    remedy.text = "set dt to " + number(remedy.dt) + " s, 80 % of the limit";
+    remedy.text = "set dt to " + significant(remedy.dt, 4) + " s, 80 % of the limit";
   } else {
     remedy.dt = std::max(rounded_down(0.5 * solver.dt), scene::ranges::dt.minimum);
-    remedy.text = "halve the time step, to dt = " + number(remedy.dt) + " s";
+    remedy.text = "halve the time step, to dt = " + significant(remedy.dt, 4) + " s";
   }
   return remedy;
 }
 
 std::string against_limit(const scene::Solver& solver, double limit) {
-  const std::string step = ": dt = " + number(solver.dt) + " s", method = scene::name(solver.method);
+  const std::string step = ": dt = " + significant(solver.dt, 4) + " s", method = scene::name(solver.method);
   const std::optional<double> share = margin(solver.dt, limit);
   if (limit <= 0.0) return ": " + method + " without damping is stable at no step";
   if (!share) return step + ", for which " + method + " has no limit of stability";
   if (*share <= 1.0)
-    return step + " is only " + number(*share) + " of the longest stable step of " + method +
-           " about the rest shape, " + number(limit) + " s; here the cloth is stiffer than that";
-  return step + " is " + number(*share) + " times the longest stable step of " + method + ", " +
-         number(limit) + " s";
+    return step + " is only " + significant(*share, 4) + " of the longest stable step of " + method +
+           " about the rest shape, " + significant(limit, 4) + " s; here the cloth is stiffer than that";
+  return step + " is " + significant(*share, 4) + " times the longest stable step of " + method + ", " +
+         significant(limit, 4) + " s";
 }
 
 }  // namespace clothlab::model

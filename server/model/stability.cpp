@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <cstdio>
 
+#include "server/base/text.h"
 #include "server/scene/method.h"
 
 namespace clothlab::model {
@@ -99,7 +99,8 @@ double omega_max(const Model& model, const scene::Scene& scene, const Field& sha
 
 double dt_limit_bound(Method method, const SpringOperator& springs) {
   if (!springs.any_free()) return no_limit;
-  if (springs.empty() || scene::any_step_is_stable(method)) return dt_limit(method, {0.0, springs.air_drag()});
+  if (springs.empty() || scene::any_step_is_stable(method))
+    return dt_limit(method, {0.0, springs.air_drag()});
   const Mode worst{springs.stiffness_bound(), springs.damping_bound()};
   if (one_worst(method)) return dt_limit(method, worst);
   // Both need roots that are no farther from 0 than this.
@@ -157,18 +158,15 @@ std::string step_warning(const scene::Solver& solver, double limit) {
            "symplectic_euler costs the same and is not";
   const std::optional<double> share = margin(solver.dt, limit);
   if (!share || *share <= margin_to_warn) return {};
-  char text[200];
   if (*share <= 1.0)
-    std::snprintf(text, sizeof text,
-                  "dt = %.4g s is %.0f %% of %.4g s, the longest stable step of %s for this stiffness and "
-                  "mass; stay below 90 %%",
-                  solver.dt, 100.0 * *share, limit, method.c_str());
-  else
-    std::snprintf(text, sizeof text,
-                  "dt = %.4g s is beyond %.4g s, the longest stable step of %s for this stiffness and mass: "
-                  "the cloth will blow up",
-                  solver.dt, limit, method.c_str());
-  return text;
+    return formatted(
+        "dt = %.4g s is %.0f %% of %.4g s, the longest stable step of %s for this stiffness and "
+        "mass; stay below 90 %%",
+        solver.dt, 100.0 * *share, limit, method.c_str());
+  return formatted(
+      "dt = %.4g s is beyond %.4g s, the longest stable step of %s for this stiffness and mass: "
+      "the cloth will blow up",
+      solver.dt, limit, method.c_str());
 }
 
 }  // namespace clothlab::model

@@ -1,17 +1,12 @@
 #include "server/net/metrics.h"
 
 #include <algorithm>
-#include <cstdio>
+
+#include "server/base/text.h"
 
 namespace clothlab::net {
 
 namespace {
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
 
 void family(std::string& out, const std::string& name, const char* type, const char* help,
             const std::string& value) {
@@ -48,11 +43,11 @@ void LatencyHistogram::write(std::string& out, const std::string& name) const {
   std::uint64_t below = 0;
   for (std::size_t i = 0; i < edges.size(); ++i) {
     below += counts_[i];
-    out += name + "_bucket{le=\"" + number(1e-6 * static_cast<double>(edges[i])) + "\"} " +
+    out += name + "_bucket{le=\"" + significant(1e-6 * static_cast<double>(edges[i]), 9) + "\"} " +
            std::to_string(below) + "\n";
   }
   out += name + "_bucket{le=\"+Inf\"} " + std::to_string(count_) + "\n";
-  out += name + "_sum " + number(sum_) + "\n" + name + "_count " + std::to_string(count_) + "\n";
+  out += name + "_sum " + significant(sum_, 9) + "\n" + name + "_count " + std::to_string(count_) + "\n";
 }
 
 std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
@@ -79,10 +74,10 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
         gauges.lab.cancelled);
   count("clothlab_lab_failed_total", "counter", "jobs of the lab that failed", gauges.lab.failed);
   family(out, "clothlab_lab_seconds_total", "counter", "seconds that jobs of the lab that have ended ran",
-         number(gauges.lab.seconds));
+         significant(gauges.lab.seconds, 9));
   metrics.latency.write(out, "clothlab_frame_latency_seconds");
   family(out, "clothlab_frame_latency_p95_seconds", "gauge",
-         "95th percentile of clothlab_frame_latency_seconds", number(metrics.latency.quantile(0.95)));
+         "95th percentile of clothlab_frame_latency_seconds", significant(metrics.latency.quantile(0.95), 9));
   return out;
 }
 

@@ -4,9 +4,9 @@
 
 #include <array>
 #include <cstdint>
-#include <cstdio>
 
 #include "server/base/data_files.h"
+#include "server/base/text.h"
 
 namespace clothlab::net {
 
@@ -65,9 +65,7 @@ std::string gzip(const std::string& body) {
 std::string etag_of(const std::string& body) {
   std::uint64_t hash = 14695981039346656037ull;  // FNV-1a
   for (const char c : body) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-  char text[24];
-  std::snprintf(text, sizeof text, "\"%016llx\"", static_cast<unsigned long long>(hash));
-  return text;
+  return formatted("\"%016llx\"", static_cast<unsigned long long>(hash));
 }
 
 }  // namespace

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <glm/geometric.hpp>
 
+#include "server/base/text.h"
 #include "server/scene/pointer.h"
 
 namespace clothlab::scene {
@@ -46,9 +46,8 @@ std::string suggestion(const std::string& word, const Words& words) {
 }
 
 std::string range_text(const char* kind, const Range& range) {
-  char text[96];
-  std::snprintf(text, sizeof text, "%s from %g to %g", kind, range.minimum, range.maximum);
-  return *range.unit ? std::string(text) + " [" + range.unit + "]" : text;
+  const std::string text = formatted("%s from %g to %g", kind, range.minimum, range.maximum);
+  return *range.unit ? text + " [" + range.unit + "]" : text;
 }
 
 bool inside(double x, const Range& range) {

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 #include <numbers>
 
+#include "server/base/text.h"
 #include "server/scene/method.h"
 
 namespace clothlab::sim {
@@ -162,19 +162,16 @@ BlowUp::Verdict BlowUp::doubt(const Diagnostics& state) {
 }
 
 std::string BlowUp::reason() const {
-  char text[300];
   if (!finite(last_))
-    std::snprintf(text, sizeof text,
-                  "positions and velocities stopped being finite numbers between t = %.4g s and t = %.4g s",
-                  last_good_.time, last_.time);
-  else
-    std::snprintf(text, sizeof text,
-                  "the energy of motion%s grew from %.3g J at t = %.4g s to %.3g J at t = %.4g s, "
-                  "with at most %.3g J of work done on the cloth and %.3g J of fall",
-                  allowance_.stretch ? " and stretch" : "", growing_energy(last_good_), last_good_.time,
-                  growing_energy(last_), last_.time, work_,
-                  std::max(0.0, last_good_.gravitational - last_.gravitational));
-  return text;
+    return formatted(
+        "positions and velocities stopped being finite numbers between t = %.4g s and t = %.4g s",
+        last_good_.time, last_.time);
+  return formatted(
+      "the energy of motion%s grew from %.3g J at t = %.4g s to %.3g J at t = %.4g s, "
+      "with at most %.3g J of work done on the cloth and %.3g J of fall",
+      allowance_.stretch ? " and stretch" : "", growing_energy(last_good_), last_good_.time,
+      growing_energy(last_), last_.time, work_,
+      std::max(0.0, last_good_.gravitational - last_.gravitational));
 }
 
 }  // namespace clothlab::sim
