@@ -1,42 +1,21 @@
 #include "server/net/lab_queue.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 #include <vector>
 
-#include "server/lab/exports.h"
+#include "server/base/text.h"
 #include "server/net/limits.h"
 #include "server/net/log.h"
-#include "server/sim/simulation.h"
 
 namespace clothlab::net {
 
 namespace {
 
-/// The scene without what the job does not look at: charts and choices go through methods, steps and
-/// iterations of their own, a map through methods and steps.
-scene::Scene as_seen_by(const lab::Job& job, scene::Scene scene) {
-  if (std::holds_alternative<lab::SimplifyRequest>(job)) return scene;
-  const scene::Solver usual;
-  scene.solver.method = usual.method;
-  scene.solver.dt = usual.dt;
-  if (!std::holds_alternative<lab::MapRequest>(job)) scene.solver.iterations = usual.iterations;
-  return scene;
-}
+using State = LabEntry::State;
 
 RpcError no_such_job(std::uint64_t job) {
   return invalid_params("/job", std::to_string(job), "a job of yours; see lab.jobs");
-}
-
-json error_json(const Error& error) {
-  return {{"path", error.where}, {"found", error.what}, {"allowed", error.remedy}};
-}
-
-std::string seconds_text(double seconds) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f s", seconds);
-  return text;
 }
 
 }  // namespace
@@ -44,29 +23,11 @@ std::string seconds_text(double seconds) {
 LabQueue::LabQueue(Port port, LabWorker::Open open)
     : port_(std::move(port)), worker_(std::make_unique<LabWorker>(std::move(open), port_.wake)) {}
 
-const char* LabQueue::name(State state) {
-  switch (state) {
-    case State::asked:
-    case State::queued:
-    case State::holding:
-      return "queued";
-    case State::running:
-      return "running";
-    case State::finished:
-      return "finished";
-    case State::cancelled:
-      return "cancelled";
-    case State::failed:
-      return "failed";
-  }
-  return "";
-}
-
 std::variant<std::uint64_t, RpcError> LabQueue::admit(const Ticket& ticket, std::string session, lab::Job job,
-                                                      Wishes wishes) {
+                                                      LabWishes wishes) {
   const auto waiting = [&](auto counts) {
     return std::count_if(entries_.begin(), entries_.end(),
-                         [&](const auto& item) { return waits(item.second) && counts(item.second); });
+                         [&](const auto& item) { return item.second.waits() && counts(item.second); });
   };
   const auto refusal = [](const std::string& whose, int most) {
     return RpcError{error_over_limit,
@@ -74,10 +35,11 @@ std::variant<std::uint64_t, RpcError> LabQueue::admit(const Ticket& ticket, std:
                         " jobs waiting, which is the most; wait for one to end, or cancel one (lab.cancel)",
                     nullptr};
   };
-  if (waiting([](const Entry&) { return true; }) >= max_lab_jobs) return refusal("the lab has", max_lab_jobs);
-  if (waiting([&](const Entry& e) { return e.ticket.asker == ticket.asker; }) >= max_lab_jobs_a_client)
+  if (waiting([](const LabEntry&) { return true; }) >= max_lab_jobs)
+    return refusal("the lab has", max_lab_jobs);
+  if (waiting([&](const LabEntry& e) { return e.ticket.asker == ticket.asker; }) >= max_lab_jobs_a_client)
     return refusal("you have", max_lab_jobs_a_client);
-  Entry entry;
+  LabEntry entry;
   entry.id = ++last_id_;
   entry.ticket = ticket;
   entry.session = std::move(session);
@@ -92,7 +54,11 @@ void LabQueue::choose_for(const std::string& session, SharedDocument document) {
   lab::ChooseRequest request;
   // The scene's own tolerance has made way for that of the setting it is stepped with.
   request.tolerance = document->value["solver"]["tolerance"].get<double>();
-  Entry entry;
+  if (const std::optional<lab::Outcome> known = port_.known(*document, request)) {
+    port_.chosen(session, std::move(document), std::get<lab::Choice>(*known));
+    return;
+  }
+  LabEntry entry;
   entry.id = ++last_id_;
   entry.session = session;
   entry.job = request;
@@ -105,7 +71,7 @@ void LabQueue::choose_for(const std::string& session, SharedDocument document) {
 
 void LabQueue::session_left(const std::string& session) {
   for (auto& [id, entry] : entries_)
-    if (entry.for_auto && entry.session == session && !ended(entry)) {
+    if (entry.for_auto && entry.session == session && !entry.ended()) {
       entry.for_auto = false;
       entry.cancelling = true;
       if (entry.state == State::running) worker_->stop_job();
@@ -116,7 +82,7 @@ void LabQueue::session_left(const std::string& session) {
 void LabQueue::scene_taken(std::uint64_t job, SharedDocument document, std::uint64_t revision) {
   const auto found = entries_.find(job);
   if (found == entries_.end()) return;  // its asker has left
-  Entry& entry = found->second;
+  LabEntry& entry = found->second;
   entry.document = std::move(document);
   entry.revision = revision;
   if (!entry.wishes.fresh && answer_from_cache(entry)) return;
@@ -126,7 +92,7 @@ void LabQueue::scene_taken(std::uint64_t job, SharedDocument document, std::uint
   port_.answer(entry.ticket, {{"job", job}, {"ahead", entry.ahead}, {"cached", false}});
 }
 
-bool LabQueue::answer_from_cache(Entry& entry) {
+bool LabQueue::answer_from_cache(LabEntry& entry) {
   std::optional<lab::Outcome> known = port_.known(*entry.document, entry.job);
   if (!known) return false;
   entry.outcome = std::make_shared<const lab::Outcome>(std::move(*known));
@@ -139,8 +105,7 @@ bool LabQueue::answer_from_cache(Entry& entry) {
 void LabQueue::scene_changed(const std::string& session, const scene::Document& present) {
   for (auto& [id, entry] : entries_)
     if (entry.session == session && entry.document) {
-      const bool stale = sim::change_depth(as_seen_by(entry.job, entry.document->scene),
-                                           as_seen_by(entry.job, present.scene)) != sim::ChangeDepth::none;
+      const bool stale = entry.stale_if(present.scene);
       if (std::exchange(entry.stale, stale) != stale) entry.progress_due = true;
     }
 }
@@ -154,7 +119,7 @@ void LabQueue::held(std::uint64_t job) {
 void LabQueue::session_reaches(const std::string& session, double share, std::int64_t now) {
   const auto running = entries_.find(current_);
   if (running == entries_.end()) return;
-  Entry& entry = running->second;
+  LabEntry& entry = running->second;
   const bool concerns = entry.state == State::running && entry.session == session && !entry.said_slow;
   if (!concerns || share >= least_share) {
     entry.slow_since = 0;
@@ -171,15 +136,15 @@ void LabQueue::session_reaches(const std::string& session, double share, std::in
                              "measure with `pause`, and it plays on afterwards"}});
 }
 
-const LabQueue::Entry* LabQueue::find(std::uint64_t client, std::uint64_t job) const {
+const LabEntry* LabQueue::find(std::uint64_t client, std::uint64_t job) const {
   const auto found = entries_.find(job);
   return found == entries_.end() || found->second.ticket.asker != client ? nullptr : &found->second;
 }
 
 std::variant<bool, RpcError> LabQueue::cancel(std::uint64_t client, std::uint64_t job) {
   if (!find(client, job)) return no_such_job(job);
-  Entry& entry = entries_.at(job);
-  if (ended(entry)) return false;
+  LabEntry& entry = entries_.at(job);
+  if (entry.ended()) return false;
   entry.cancelling = true;
   if (entry.state == State::running) worker_->stop_job();
   port_.wake();
@@ -189,24 +154,19 @@ std::variant<bool, RpcError> LabQueue::cancel(std::uint64_t client, std::uint64_
 json LabQueue::jobs(std::uint64_t client) const {
   json list = json::array();
   for (const auto& [id, entry] : entries_)
-    if (entry.ticket.asker == client && entry.state != State::asked)
-      list.push_back({{"job", id},
-                      {"kind", lab::name(entry.job)},
-                      {"state", name(entry.state)},
-                      {"stale", entry.stale},
-                      {"revision", entry.revision}});
+    if (entry.ticket.asker == client && entry.state != State::asked) list.push_back(entry.summary());
   return list;
 }
 
 std::variant<SharedOutcome, RpcError> LabQueue::outcome(std::uint64_t client, std::uint64_t job) const {
-  const Entry* entry = find(client, job);
+  const LabEntry* entry = find(client, job);
   if (!entry) return no_such_job(job);
   return entry->outcome;
 }
 
 void LabQueue::client_left(std::uint64_t client) {
   for (auto item = entries_.begin(); item != entries_.end();) {
-    Entry& entry = item->second;
+    LabEntry& entry = item->second;
     const bool leaves = entry.ticket.asker == client;
     if (leaves && entry.id == current_) {
       entry.ticket = {};
@@ -229,7 +189,7 @@ void LabQueue::pump(std::int64_t now) {
 void LabQueue::follow_running(std::int64_t now) {
   const std::uint64_t steps = port_.steps(), before = std::exchange(steps_seen_, steps);
   if (current_ == 0 || worker_->idle()) return;
-  Entry& entry = entries_.at(current_);
+  LabEntry& entry = entries_.at(current_);
   LabWorker::Mail mail = worker_->take();
   entry.beside = entry.beside || steps > before;
   if (mail.progress) {
@@ -246,7 +206,7 @@ void LabQueue::follow_running(std::int64_t now) {
   worker_->stop_job();
 }
 
-void LabQueue::finish(Entry& entry, Result<lab::Outcome> outcome, std::int64_t now) {
+void LabQueue::finish(LabEntry& entry, Result<lab::Outcome> outcome, std::int64_t now) {
   // A job that is stopped may hand over what it has.
   if (outcome) entry.outcome = std::make_shared<const lab::Outcome>(std::move(*outcome));
   if (entry.cancelling) return close(entry, State::cancelled, now);
@@ -255,7 +215,7 @@ void LabQueue::finish(Entry& entry, Result<lab::Outcome> outcome, std::int64_t n
     if (!entry.beside) port_.keep(*entry.document, entry.job, *entry.outcome);
     return close(entry, State::finished, now);
   }
-  entry.error = entry.overdue ? Error{"lab", "it took more than " + seconds_text(max_lab_seconds),
+  entry.error = entry.overdue ? Error{"lab", "it took more than " + formatted("%.1f s", max_lab_seconds),
                                       "a smaller scene, a shorter time or fewer methods"}
                               : outcome.error();
   close(entry, State::failed, now);
@@ -270,7 +230,7 @@ void LabQueue::end_cancelled(std::int64_t now) {
   for (const std::uint64_t id : over) close(entries_.at(id), State::cancelled, now);
 }
 
-void LabQueue::close(Entry& entry, State state, std::int64_t now) {
+void LabQueue::close(LabEntry& entry, LabEntry::State state, std::int64_t now) {
   const double seconds = entry.began == 0 ? 0 : 1e-6 * static_cast<double>(now - entry.began);
   if (entry.id == current_) {
     current_ = 0;
@@ -282,8 +242,8 @@ void LabQueue::close(Entry& entry, State state, std::int64_t now) {
                             : totals_.cancelled)++;
   totals_.seconds += seconds;
   log("lab: job " + std::to_string(entry.id) + " (" + lab::name(entry.job) + ", session " + entry.session +
-      ") " + name(state) + " after " + seconds_text(seconds) + (entry.cached ? ", known from before" : "") +
-      (entry.beside ? ", beside a session that played" : "") +
+      ") " + name(state) + " after " + formatted("%.1f s", seconds) +
+      (entry.cached ? ", known from before" : "") + (entry.beside ? ", beside a session that played" : "") +
       (entry.error ? ": " + entry.error->text() : ""));
   const std::uint64_t client = entry.ticket.asker;
   if (entry.for_auto && state == State::finished)
@@ -300,7 +260,7 @@ void LabQueue::close(Entry& entry, State state, std::int64_t now) {
 
 void LabQueue::forget_oldest(std::uint64_t client) {
   const auto kept = [&](const auto& item) {
-    return item.second.ticket.asker == client && ended(item.second);
+    return item.second.ticket.asker == client && item.second.ended();
   };
   if (std::count_if(entries_.begin(), entries_.end(), kept) > max_lab_outcomes_a_client)
     entries_.erase(std::find_if(entries_.begin(), entries_.end(), kept));
@@ -310,14 +270,14 @@ void LabQueue::start_next(std::int64_t now) {
   const auto next = std::find_if(entries_.begin(), entries_.end(),
                                  [](const auto& item) { return item.second.state == State::queued; });
   if (next == entries_.end()) return;
-  Entry& entry = next->second;
+  LabEntry& entry = next->second;
   current_ = entry.id;
   if (!entry.wishes.pause) return begin(entry, now);
   entry.state = State::holding;
   port_.hold(entry.session, entry.id);
 }
 
-void LabQueue::begin(Entry& entry, std::int64_t now) {
+void LabQueue::begin(LabEntry& entry, std::int64_t now) {
   entry.state = State::running;
   entry.began = now;
   entry.progress = {0, 1, "starts"};
@@ -329,43 +289,26 @@ void LabQueue::begin(Entry& entry, std::int64_t now) {
 void LabQueue::count_ahead() {
   int ahead = 0;
   for (auto& [id, entry] : entries_) {
-    if (ended(entry) || entry.state == State::asked) continue;
-    if (std::exchange(entry.ahead, ahead) != ahead && waits(entry)) entry.progress_due = true;
+    if (entry.ended() || entry.state == State::asked) continue;
+    if (std::exchange(entry.ahead, ahead) != ahead && entry.waits()) entry.progress_due = true;
     ++ahead;
   }
 }
 
-void LabQueue::tell(Entry& entry, std::int64_t now) {
-  if (ended(entry) || entry.ticket.asker == 0) return;
+void LabQueue::tell(LabEntry& entry, std::int64_t now) {
+  if (entry.ended() || entry.ticket.asker == 0) return;
   if (entry.progress_due && now - entry.progress_sent >= progress_period) {
     entry.progress_due = false;
     entry.progress_sent = now;
-    port_.notify(entry.ticket.asker, "lab.progress",
-                 {{"job", entry.id},
-                  {"kind", lab::name(entry.job)},
-                  {"state", name(entry.state)},
-                  {"ahead", entry.ahead},
-                  {"done", entry.progress.done},
-                  {"total", entry.progress.total},
-                  {"doing", entry.progress.doing},
-                  {"stale", entry.stale}});
+    port_.notify(entry.ticket.asker, "lab.progress", entry.progress_message());
   }
   if (entry.result_due && now - entry.result_sent >= result_period) send_result(entry, now);
 }
 
-void LabQueue::send_result(Entry& entry, std::int64_t now) {
+void LabQueue::send_result(LabEntry& entry, std::int64_t now) {
   entry.result_due = false;
   entry.result_sent = now;
-  json params{{"job", entry.id},
-              {"kind", lab::name(entry.job)},
-              {"state", name(entry.state)},
-              {"stale", entry.stale},
-              {"revision", entry.revision},
-              {"cached", entry.cached},
-              {"beside", entry.beside},
-              {"result", entry.outcome ? lab::to_json(*entry.outcome) : json(nullptr)}};
-  if (entry.error) params["error"] = error_json(*entry.error);
-  port_.notify(entry.ticket.asker, "lab.result", params);
+  port_.notify(entry.ticket.asker, "lab.result", entry.result_message());
 }
 
 void LabQueue::stop() {
@@ -377,7 +320,7 @@ void LabQueue::stop() {
 LabGauges LabQueue::gauges() const {
   LabGauges gauges = totals_;
   for (const auto& [id, entry] : entries_) {
-    gauges.queued += waits(entry) ? 1u : 0u;
+    gauges.queued += entry.waits() ? 1u : 0u;
     gauges.running += entry.state == State::running ? 1u : 0u;
   }
   return gauges;

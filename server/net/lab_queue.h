@@ -1,5 +1,5 @@
-// The lab's jobs, from the request to the last word about them: who asked, for which scene, what has come of
-// it. Only the service thread touches it; the jobs themselves run on the LabWorker's, one after another.
+// The lab's jobs in the order in which they were asked for, from the request to the last word about them.
+// Only the service thread touches it; the jobs themselves run on the LabWorker's, one after another.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 #include <string>
 #include <variant>
 
-#include "server/net/exchange.h"
+#include "server/net/lab_entry.h"
 #include "server/net/lab_worker.h"
 #include "server/net/metrics.h"
 
@@ -38,17 +38,12 @@ class LabQueue {
     /// Calls `pump` soon.
     std::function<void()> wake;
   };
-  struct Wishes {
-    bool pause = false;  ///< the session stands still while the job runs
-    bool fresh = false;  ///< measured again, even if the outcome is known
-  };
-
   LabQueue(Port port, LabWorker::Open open);
 
   /// A job and the ticket to answer, or why not: too many wait. The caller then makes sure that `scene_taken`
   /// comes, or calls `withdraw`.
   std::variant<std::uint64_t, RpcError> admit(const Ticket& ticket, std::string session, lab::Job job,
-                                              Wishes wishes);
+                                              LabWishes wishes);
   void withdraw(std::uint64_t job) { entries_.erase(job); }
   /// A choice for a session whose scene has the method `auto`; an earlier one that has not ended is dropped.
   void choose_for(const std::string& session, SharedDocument document);
@@ -88,48 +83,22 @@ class LabQueue {
   static constexpr std::int64_t slow_before_said = 1'500'000;  ///< [us]
 
  private:
-  enum class State { asked, queued, holding, running, finished, cancelled, failed };
-  struct Entry {
-    std::uint64_t id = 0;
-    Ticket ticket;          ///< asker 0: has left, or nobody has asked
-    bool for_auto = false;  ///< asked for by the session itself, whose method is `auto`
-    std::string session;
-    lab::Job job;
-    Wishes wishes;
-    State state = State::asked;
-    SharedDocument document;
-    std::uint64_t revision = 0;
-    bool cached = false, stale = false, cancelling = false, overdue = false;
-    bool beside = false;  ///< something stepped while it ran
-    int ahead = 0;
-    lab::Progress progress;
-    SharedOutcome outcome;
-    std::optional<Error> error;
-    std::int64_t began = 0, slow_since = 0;  ///< [us]
-    bool said_slow = false;
-    bool progress_due = false, result_due = false;
-    std::int64_t progress_sent = 0, result_sent = 0;  ///< [us]
-  };
-
-  static const char* name(State state);
-  static bool ended(const Entry& entry) { return entry.state >= State::finished; }
-  static bool waits(const Entry& entry) { return entry.state < State::running; }
-  const Entry* find(std::uint64_t client, std::uint64_t job) const;
+  const LabEntry* find(std::uint64_t client, std::uint64_t job) const;
   void follow_running(std::int64_t now);
   void end_cancelled(std::int64_t now);
   void start_next(std::int64_t now);
-  void begin(Entry& entry, std::int64_t now);
-  bool answer_from_cache(Entry& entry);
-  void finish(Entry& entry, Result<lab::Outcome> outcome, std::int64_t now);
-  void close(Entry& entry, State state, std::int64_t now);
+  void begin(LabEntry& entry, std::int64_t now);
+  bool answer_from_cache(LabEntry& entry);
+  void finish(LabEntry& entry, Result<lab::Outcome> outcome, std::int64_t now);
+  void close(LabEntry& entry, LabEntry::State state, std::int64_t now);
   void count_ahead();
-  void tell(Entry& entry, std::int64_t now);
-  void send_result(Entry& entry, std::int64_t now);
+  void tell(LabEntry& entry, std::int64_t now);
+  void send_result(LabEntry& entry, std::int64_t now);
   void forget_oldest(std::uint64_t client);
 
   Port port_;
   std::unique_ptr<LabWorker> worker_;
-  std::map<std::uint64_t, Entry> entries_;  ///< by id, and so in the order in which they were asked for
+  std::map<std::uint64_t, LabEntry> entries_;  ///< by id, and so in the order in which they were asked for
   std::uint64_t last_id_ = 0;
   std::uint64_t current_ = 0;  ///< the job that has its turn (holding or running); 0: none
   std::uint64_t steps_seen_ = 0;

@@ -79,7 +79,7 @@ std::uint64_t job_in(Params& params) {
 }
 
 Outcome ask_lab(Client& client, const Request& request, Params& params, lab::Job job) {
-  const LabQueue::Wishes wishes{flag(params, "pause"), flag(params, "fresh")};
+  const LabWishes wishes{flag(params, "pause"), flag(params, "fresh")};
   if (auto error = params.check()) return *error;
   LabQueue& lab = client.hub().lab();
   const auto admitted = lab.admit({client.id(), request.id}, client.room()->name(), std::move(job), wishes);

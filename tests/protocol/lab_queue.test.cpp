@@ -1,143 +1,8 @@
-// The lab's queue and its worker, with jobs made for the test instead of measurements.
-#include "server/net/lab_queue.h"
-
-#include <algorithm>
-#include <atomic>
-#include <map>
-#include <stdexcept>
-#include <thread>
-
-#include "server/net/limits.h"
-#include "tests/catch.h"
+// The lab's queue: whose turn it is, who may ask for what, and how jobs end.
+#include "tests/protocol/lab_stage.h"
 
 using namespace clothlab;
-using net::json;
-using net::LabQueue;
-using net::now_us;
-
-namespace {
-
-struct Message {
-  std::uint64_t client = 0;
-  std::string method;
-  json params;
-  std::int64_t at = 0;
-};
-
-/// What the jobs of a test do; they look at their stop token every millisecond.
-struct Jobs {
-  std::atomic<bool> may_end{false};
-  std::atomic<int> started{0}, ended{0}, opened{0};
-  std::atomic<int> reports{0};  ///< partial results and progress so far, of all jobs
-  std::atomic<bool> fails_to_open{false}, throws{false}, talks{false}, hands_over{false};
-
-  Result<lab::Outcome> run(const lab::Control<lab::Outcome>& control) {
-    ++started;
-    if (throws) throw std::runtime_error("the job fell over");
-    while (!may_end && !control.stop.stop_requested()) {
-      if (talks) report(control);
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    ++ended;
-    if (!control.stop.stop_requested()) return lab::Outcome(chart(true));
-    if (hands_over) return lab::Outcome(chart(false));
-    return lab::cancelled;
-  }
-
- private:
-  static lab::Chart chart(bool complete) {
-    lab::Chart chart;
-    chart.complete = complete;
-    return chart;
-  }
-  void report(const lab::Control<lab::Outcome>& control) {
-    ++reports;
-    control.progress({0.001 * reports, 1, "report " + std::to_string(reports.load())});
-    control.arrived(chart(false));
-  }
-};
-
-struct Lab {
-  Jobs jobs;
-  std::vector<Message> messages;
-  std::map<std::string, json> answers;  ///< by the request's id
-  std::vector<std::uint64_t> holds;
-  int releases = 0;
-  std::optional<lab::Outcome> known;
-  std::uint64_t steps = 0;
-  net::SharedDocument seed = std::make_shared<const scene::Document>(*scene::load_preset("seed"));
-  LabQueue queue{port(), [this]() -> Result<net::LabWorker::Run> {
-                   ++jobs.opened;
-                   if (jobs.fails_to_open) return Error{"OpenGL", "nothing there", "install it"};
-                   return net::LabWorker::Run(
-                       [this](const scene::Document&, const lab::Job&,
-                              const lab::Control<lab::Outcome>& control) { return jobs.run(control); });
-                 }};
-
-  LabQueue::Port port() {
-    return {.notify =
-                [this](std::uint64_t client, const char* method, const json& params) {
-                  messages.push_back({client, method, params, now_us()});
-                },
-            .answer = [this](const net::Ticket& ticket,
-                             const json& answer) { answers[ticket.id->get<std::string>()] = answer; },
-            .hold = [this](const std::string&, std::uint64_t job) { holds.push_back(job); },
-            .release = [this](const std::string&) { ++releases; },
-            .steps = [this] { return steps; },
-            .known = [this](const scene::Document&, const lab::Job&) { return known; },
-            .keep = [this](const scene::Document&, const lab::Job&,
-                           const lab::Outcome& outcome) { known = outcome; },
-            .chosen = {},
-            .wake = [] {}};
-  }
-
-  /// As a session that answers at once.
-  std::uint64_t ask(std::uint64_t client, lab::Job job = lab::ChartRequest{}, LabQueue::Wishes wishes = {},
-                    const std::string& request = "request") {
-    const auto admitted = queue.admit({client, json(request)}, "main", std::move(job), wishes);
-    REQUIRE(std::holds_alternative<std::uint64_t>(admitted));
-    const std::uint64_t id = std::get<std::uint64_t>(admitted);
-    queue.scene_taken(id, seed, 1);
-    return id;
-  }
-
-  template <class Predicate>
-  bool until(Predicate predicate) {
-    for (const std::int64_t end = now_us() + 10'000'000; now_us() < end;) {
-      queue.pump(now_us());
-      if (predicate()) return true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    return false;
-  }
-  std::string state(std::uint64_t client, std::uint64_t job) const {
-    for (const json& item : queue.jobs(client))
-      if (item["job"] == job) return item["state"];
-    return "unknown";
-  }
-  bool reaches(std::uint64_t client, std::uint64_t job, const std::string& wanted) {
-    return until([&] { return state(client, job) == wanted; });
-  }
-  std::vector<Message> sent(const std::string& method, std::uint64_t job) const {
-    std::vector<Message> found;
-    for (const Message& message : messages)
-      if (message.method == method && message.params["job"] == job) found.push_back(message);
-    return found;
-  }
-  json last_result(std::uint64_t job) const {
-    const std::vector<Message> results = sent("lab.result", job);
-    return results.empty() ? json() : results.back().params;
-  }
-};
-
-/// The seed with one value of it changed.
-scene::Document seed_with(const std::string& assignment) {
-  Result<scene::Document> document = scene::set_value(*scene::load_preset("seed"), assignment);
-  REQUIRE(document);
-  return *document;
-}
-
-}  // namespace
+using namespace clothlab::test;
 
 TEST_CASE("jobs of the lab run one at a time as they were asked for, and those that wait hear how long") {
   Lab lab;
@@ -250,31 +115,6 @@ TEST_CASE("a request whose asker leaves before its session has told the scene is
   CHECK(lab.jobs.started == 0);
 }
 
-TEST_CASE("a job is stale while what it measures is not what the scene is: its looks do not count") {
-  Lab lab;
-  const std::uint64_t chart = lab.ask(1), simplify = lab.ask(2, lab::SimplifyRequest{});
-  const auto stale = [&](std::uint64_t client) { return lab.queue.jobs(client)[0]["stale"].get<bool>(); };
-  lab.queue.scene_changed("main", seed_with("/cloths/0/color=\"#123456\""));
-  CHECK_FALSE(stale(1));
-  CHECK_FALSE(stale(2));
-  lab.queue.scene_changed("main", seed_with("/solver/dt=0.0005"));
-  CHECK_FALSE(stale(1));  // a chart goes through time steps of its own
-  CHECK(stale(2));
-  lab.queue.scene_changed("other", seed_with("/gravity/1=-1"));
-  CHECK_FALSE(stale(1));
-  lab.queue.scene_changed("main", seed_with("/gravity/1=-1"));
-  CHECK(stale(1));
-  REQUIRE(lab.until([&] { return !lab.sent("lab.progress", chart).empty(); }));
-  CHECK(lab.sent("lab.progress", chart).back().params["stale"] == true);
-  lab.queue.scene_changed("main", *lab.seed);
-  CHECK_FALSE(stale(1));
-  CHECK_FALSE(stale(2));
-  lab.queue.scene_changed("main", seed_with("/gravity/1=-1"));
-  lab.jobs.may_end = true;
-  REQUIRE(lab.reaches(2, simplify, "finished"));
-  CHECK(lab.last_result(simplify)["stale"] == true);
-}
-
 TEST_CASE(
     "a job that wants the session paused starts when it stands still, and lets it play on however it ends") {
   Lab lab;
@@ -297,62 +137,6 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a result says whether anything was stepped beside its job") {
-  for (const bool beside : {false, true}) {
-    Lab lab;
-    lab.steps = 100;
-    const std::uint64_t job = lab.ask(1);
-    REQUIRE(lab.until([&] { return lab.jobs.started == 1; }));
-    if (beside) lab.steps += 1;
-    lab.queue.pump(now_us());
-    lab.jobs.may_end = true;
-    REQUIRE(lab.reaches(1, job, "finished"));
-    CHECK(lab.last_result(job)["beside"] == beside);
-    CHECK(lab.known.has_value() == !beside);
-  }
-}
-
-TEST_CASE("who asked for a job that slows the session below 50 of 60 frames is told so, once") {
-  Lab lab;
-  const std::uint64_t job = lab.ask(1);
-  REQUIRE(lab.until([&] { return lab.jobs.started == 1; }));
-  const auto notices = [&] {
-    return std::count_if(lab.messages.begin(), lab.messages.end(),
-                         [](const Message& message) { return message.method == "notice"; });
-  };
-  const auto reaches = [&](const char* session, double share, double seconds) {
-    static std::int64_t now = now_us();
-    for (int i = 0; i < 10 * seconds; ++i) lab.queue.session_reaches(session, share, now += 100'000);
-  };
-  reaches("main", 0.84, 10);
-  reaches("other", 0.2, 10);
-  reaches("main", 0.5, 1);  // a hiccup
-  reaches("main", 0.9, 1);
-  CHECK(notices() == 0);
-  reaches("main", 0.5, 10);
-  REQUIRE(notices() == 1);
-  CHECK(lab.messages.back().params["text"].get<std::string>().find("50 %") != std::string::npos);
-  CHECK(std::get<bool>(lab.queue.cancel(1, job)));
-  REQUIRE(lab.reaches(1, job, "cancelled"));
-  reaches("main", 0.5, 10);
-  CHECK(notices() == 1);
-}
-
-TEST_CASE(
-    "what was measured with nothing beside it answers the same request at once, unless it is to be fresh") {
-  Lab lab;
-  lab.jobs.may_end = true;
-  REQUIRE(lab.reaches(1, lab.ask(1), "finished"));
-  CHECK(lab.last_result(1)["cached"] == false);
-  const std::uint64_t again = lab.ask(1, lab::ChartRequest{}, {}, "again");
-  CHECK(lab.answers["again"] == json{{"job", again}, {"ahead", 0}, {"cached", true}});
-  CHECK(lab.last_result(again)["state"] == "finished");
-  CHECK(lab.last_result(again)["cached"] == true);
-  CHECK(lab.jobs.started == 1);
-  REQUIRE(lab.reaches(1, lab.ask(1, lab::ChartRequest{}, {false, true}), "finished"));
-  CHECK(lab.jobs.started == 2);
-}
-
 TEST_CASE("a job that throws and a lab without OpenGL fail with the reason, and the lab lives on") {
   Lab lab;
   lab.jobs.fails_to_open = true;
@@ -368,41 +152,6 @@ TEST_CASE("a job that throws and a lab without OpenGL fail with the reason, and 
   lab.jobs.throws = false;
   lab.jobs.may_end = true;
   CHECK(lab.reaches(1, lab.ask(1), "finished"));
-}
-
-TEST_CASE(
-    "however much a job reports, its asker hears of it at most 5 and 2 times a second, and the end at once") {
-  Lab lab;
-  lab.jobs.talks = true;
-  const std::uint64_t job = lab.ask(1);
-  const std::int64_t begun = now_us();
-  REQUIRE(lab.until([&] { return now_us() - begun > 2'100'000; }));
-  CHECK(lab.jobs.reports > 100);
-  const auto paced = [&](const char* method, std::int64_t period) {
-    const std::vector<Message> sent = lab.sent(method, job);
-    for (std::size_t i = 1; i < sent.size(); ++i) CHECK(sent[i].at - sent[i - 1].at > period - 20'000);
-    return sent.size();
-  };
-  CHECK(paced("lab.progress", LabQueue::progress_period) >= 5);
-  CHECK(paced("lab.result", LabQueue::result_period) >= 3);
-  CHECK(lab.last_result(job)["state"] == "running");
-  lab.jobs.may_end = true;
-  REQUIRE(lab.reaches(1, job, "finished"));
-  CHECK(lab.last_result(job)["state"] == "finished");
-}
-
-TEST_CASE("what a job found can be had until its asker has had as many newer ones as are kept") {
-  Lab lab;
-  lab.jobs.may_end = true;
-  const std::uint64_t oldest = lab.ask(1);
-  REQUIRE(lab.reaches(1, oldest, "finished"));
-  std::uint64_t newest = oldest;
-  for (int i = 1; i < net::max_lab_outcomes_a_client; ++i)
-    REQUIRE(lab.reaches(1, newest = lab.ask(1), "finished"));
-  CHECK(std::get<net::SharedOutcome>(lab.queue.outcome(1, oldest)));
-  REQUIRE(lab.reaches(1, newest = lab.ask(1), "finished"));
-  CHECK(std::holds_alternative<net::RpcError>(lab.queue.outcome(1, oldest)));
-  CHECK(std::get<net::SharedOutcome>(lab.queue.outcome(1, newest)));
 }
 
 TEST_CASE("a job that takes longer than any may is stopped and says so") {
@@ -422,4 +171,66 @@ TEST_CASE("a server that ends stops the job that runs and waits for it") {
   lab->queue.stop();
   CHECK(lab->jobs.ended == 1);
   CHECK(now_us() - begun < 500'000);
+}
+
+TEST_CASE(
+    "what a session with the method auto is to be stepped with is chosen once, without a word to clients") {
+  Lab lab;
+  lab.choose_for("main", "/solver/tolerance=0.02");
+  REQUIRE(lab.until([&] { return lab.jobs.started == 1; }));
+  CHECK(lab.chosen.empty());
+  lab.jobs.may_end = true;
+  REQUIRE(lab.until([&] { return !lab.chosen.empty(); }));
+  CHECK(lab.chosen[0].first == "main");
+  REQUIRE(lab.chosen[0].second);
+  CHECK(lab.chosen[0].second->tolerance == 0.02);
+  CHECK(lab.messages.empty());
+  // The same is known now.
+  lab.choose_for("other", "/solver/tolerance=0.02");
+  CHECK(lab.chosen.size() == 2);
+  CHECK(lab.chosen.back().first == "other");
+  CHECK(lab.jobs.started == 1);
+}
+
+TEST_CASE(
+    "a choice for a session whose scene has changed since makes way for the next one, running or waiting") {
+  for (const bool runs : {true, false}) {
+    Lab lab;
+    if (!runs) lab.ask(1);
+    lab.choose_for("main", "/solver/tolerance=0.02");
+    REQUIRE(lab.until([&] { return lab.jobs.started == 1; }));
+    lab.choose_for("other", "/solver/tolerance=0.03");
+    lab.choose_for("main", "/solver/tolerance=0.04");
+    lab.jobs.may_end = true;
+    REQUIRE(lab.until([&] { return lab.chosen.size() == 2; }));
+    const auto tolerance = [&](std::size_t i) { return lab.chosen[i].second->tolerance; };
+    CHECK(tolerance(0) == 0.03);
+    CHECK(tolerance(1) == 0.04);
+    CHECK(lab.chosen[1].first == "main");
+    CHECK(lab.queue.gauges().cancelled == 1);
+    CHECK(lab.queue.gauges().queued + lab.queue.gauges().running == 0);
+  }
+}
+
+TEST_CASE("a session that is no more leaves no choice behind, but others' jobs") {
+  Lab lab;
+  lab.jobs.hands_over = true;
+  lab.choose_for("main", "/solver/tolerance=0.02");
+  const std::uint64_t job = lab.ask(1);
+  REQUIRE(lab.until([&] { return lab.jobs.started == 1; }));
+  lab.queue.session_left("main");
+  REQUIRE(lab.reaches(1, job, "running"));
+  CHECK(lab.jobs.ended == 1);
+  lab.jobs.may_end = true;
+  REQUIRE(lab.reaches(1, job, "finished"));
+  CHECK(lab.chosen.empty());
+}
+
+TEST_CASE("a choice that fails is told to its session with the reason") {
+  Lab lab;
+  lab.jobs.throws = true;
+  lab.choose_for("main", "/solver/tolerance=0.02");
+  REQUIRE(lab.until([&] { return !lab.chosen.empty(); }));
+  REQUIRE_FALSE(lab.chosen[0].second);
+  CHECK(lab.chosen[0].second.error().what == "the job fell over");
 }
