@@ -4,8 +4,10 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <string>
 
 #include "server/gl/context.h"
+#include "server/scene/document.h"
 #include "server/sim/simulation.h"
 #include "tests/catch.h"
 
@@ -25,6 +27,14 @@ inline std::unique_ptr<sim::Simulation> simulation(const scene::Scene& scene) {
   INFO((made ? "" : made.error().text()));
   REQUIRE(made);
   return std::move(*made);
+}
+
+/// Fails the test with the reason where the text is no scene.
+inline scene::Document document_of(const std::string& text) {
+  Result<scene::json> value = scene::parse_json(text, "test", true);
+  Result<scene::Document> document = value ? scene::validate(*value) : value.error();
+  if (!document) FAIL(document.error().text());
+  return *document;
 }
 
 /// A free 1 m x 1 m grid at y = 1 with the seed's material; nothing to collide with.

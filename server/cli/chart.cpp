@@ -120,9 +120,7 @@ void add_chart(CLI::App& app, int& exit_code) {
       ->add_option("--iterations", options->iterations,
                    "only these, of methods that iterate, e.g. 1,4,16 (else several)")
       ->type_name("N,M");
-  command->add_option("--time", options->time, "how long each setting simulates [s]")
-      ->type_name("T")
-      ->capture_default_str();
+  add_time(*command, options->time, "how long each setting simulates [s]");
   command
       ->add_option("--budget", options->budget,
                    "wall time for all of it [s]; what comes too late is left out")

@@ -67,11 +67,7 @@ void add_choose(CLI::App& app, int& exit_code) {
                    "the largest error: RMS distance to the reference over the cloth's size, (0, 1]")
       ->required()
       ->type_name("E");
-  command
-      ->add_option("--time", options->time,
-                   "how long it has to be kept [s], as far as motions can be compared")
-      ->type_name("T")
-      ->capture_default_str();
+  add_time(*command, options->time, "how long it has to be kept [s], as far as motions can be compared");
   command->footer(std::string(R"(Examples:
   clothlab choose seed --tolerance 0.01
   clothlab choose curtain --tolerance 1e-3 --methods verlet,rk4 --json

@@ -15,6 +15,7 @@
 #include <memory>
 #include <thread>
 
+#include "server/base/text.h"
 #include "server/cli/state_files.h"
 #include "server/cli/stepping.h"
 #include "server/gl/context.h"
@@ -29,12 +30,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int exit_interrupted = 128 + SIGINT;  // what shells say of a program that Ctrl-C ended
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 /// Asks the job to stop at the first Ctrl-C; the second ends the program as it always would. Made before any
 /// other thread, which would not be spared the signal otherwise.
@@ -174,6 +169,10 @@ void add_methods(CLI::App& command, LabOptions& options) {
       ->type_name("A,B");
 }
 
+void add_time(CLI::App& command, double& seconds, const std::string& help) {
+  command.add_option("--time", seconds, help)->type_name("T")->capture_default_str();
+}
+
 Result<std::vector<scene::Method>> methods_of(const LabOptions& options) {
   std::vector<scene::Method> methods;
   std::string known;
@@ -193,7 +192,7 @@ Result<std::vector<scene::Method>> methods_of(const LabOptions& options) {
 
 Status check_positive(const std::string& option, double value, double most) {
   if (std::isfinite(value) && value > 0 && value <= most) return ok();
-  return Error{option, number(value), "above 0, at most " + number(most)};
+  return Error{option, significant(value, 6), "above 0, at most " + significant(most, 6)};
 }
 
 int run_lab(const LabOptions& options, const lab::Job& job, void (*print)(const lab::Outcome&)) {
@@ -260,7 +259,7 @@ void print_notes(const std::vector<std::string>& notes) {
 }
 
 void print_heading(const std::string& what, double time, const std::string& renderer, bool complete) {
-  std::cout << what << ", " << number(time) << " s simulated on " << renderer
+  std::cout << what << ", " << significant(time, 6) << " s simulated on " << renderer
             << (complete ? "" : ", NOT COMPLETE") << "\n";
 }
 

@@ -24,6 +24,8 @@ struct LabOptions {
 void add_lab_options(CLI::App& command, LabOptions& options);
 /// --methods.
 void add_methods(CLI::App& command, LabOptions& options);
+/// --time, whose default is what `seconds` is.
+void add_time(CLI::App& command, double& seconds, const std::string& help);
 /// The methods named, empty for all. Error: one that there is not.
 Result<std::vector<scene::Method>> methods_of(const LabOptions& options);
 /// `value` if it is a number above 0 and at most `most`. Error: says so of `option`.

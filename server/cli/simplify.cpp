@@ -69,9 +69,7 @@ void add_simplify(CLI::App& app, int& exit_code) {
                    "what a part may change: RMS distance over the cloth's size, (0, 1]")
       ->type_name("E")
       ->capture_default_str();
-  command->add_option("--time", options->time, "how long is compared [s], as far as motions can be")
-      ->type_name("T")
-      ->capture_default_str();
+  add_time(*command, options->time, "how long is compared [s], as far as motions can be");
   command->footer(std::string(R"(Examples:
   clothlab simplify seed
   clothlab simplify tablecloth --tolerance 0.05 --out results

@@ -65,23 +65,30 @@ json of(const AxisFacts& facts) {
           {"float32_floor", number(facts.float32_floor)}};
 }
 
+/// What every result of the lab begins with.
+template <class Result>
+json heading(const char* kind, const Result& result) {
+  return {{"kind", kind},
+          {"scene", result.scene},
+          {"renderer", result.renderer},
+          {"time_s", number(result.time)},
+          {"complete", result.complete},
+          {"notes", result.notes}};
+}
+
 json of(const Chart& chart) {
   json axes = json::object();
   for (const Axis axis : all_axes) axes[name(axis)] = of(chart.axes[static_cast<std::size_t>(axis)]);
-  return {{"kind", "chart"},
-          {"scene", chart.scene},
-          {"renderer", chart.renderer},
-          {"size_m", number(chart.size)},
-          {"time_s", number(chart.time)},
-          {"horizon_s", number(chart.horizon)},
-          {"horizon_reason", chart.horizon_reason},
-          {"complete", chart.complete},
-          {"present", to_json(chart.present)},
-          {"axes", axes},
-          {"lines", {{"real_time_ms", real_time}, {"one_pixel", one_pixel}}},
-          {"points", list_of(chart.points)},
-          {"left_out", list_of(chart.left_out)},
-          {"notes", chart.notes}};
+  json result = heading("chart", chart);
+  result.update({{"size_m", number(chart.size)},
+                 {"horizon_s", number(chart.horizon)},
+                 {"horizon_reason", chart.horizon_reason},
+                 {"present", to_json(chart.present)},
+                 {"axes", axes},
+                 {"lines", {{"real_time_ms", real_time}, {"one_pixel", one_pixel}}},
+                 {"points", list_of(chart.points)},
+                 {"left_out", list_of(chart.left_out)}});
+  return result;
 }
 
 json of(const MapCell& cell) {
@@ -100,39 +107,31 @@ json of(const MethodMap& map) {
 }
 
 json of(const StabilityMap& map) {
-  return {{"kind", "stability"},
-          {"scene", map.scene},
-          {"renderer", map.renderer},
-          {"field", map.field},
-          {"unit", map.unit},
-          {"present",
-           {{"value", number(map.present_value)},
-            {"dt_s", number(map.present_dt)},
-            {"method", scene::name(map.present_method)}}},
-          {"time_s", number(map.time)},
-          {"steps", map.steps},
-          {"complete", map.complete},
-          {"methods", list_of(map.methods)},
-          {"notes", map.notes}};
+  json result = heading("stability", map);
+  result.update({{"field", map.field},
+                 {"unit", map.unit},
+                 {"present",
+                  {{"value", number(map.present_value)},
+                   {"dt_s", number(map.present_dt)},
+                   {"method", scene::name(map.present_method)}}},
+                 {"steps", map.steps},
+                 {"methods", list_of(map.methods)}});
+  return result;
 }
 
 json of(const Choice& choice) {
-  return {{"kind", "choose"},
-          {"scene", choice.scene},
-          {"renderer", choice.renderer},
-          {"tolerance", number(choice.tolerance)},
-          {"time_s", number(choice.time)},
-          {"horizon_s", number(choice.horizon)},
-          {"reference_error", number(choice.reference_error)},
-          {"met", choice.met},
-          {"complete", choice.complete},
-          {"chosen", of(choice.chosen)},
-          {"runner_up", choice.runner_up ? of(*choice.runner_up) : json()},
-          {"present", of(choice.present)},
-          {"why", choice.why},
-          {"patch", patch(choice.chosen.setting)},
-          {"tried", list_of(choice.tried)},
-          {"notes", choice.notes}};
+  json result = heading("choose", choice);
+  result.update({{"tolerance", number(choice.tolerance)},
+                 {"horizon_s", number(choice.horizon)},
+                 {"reference_error", number(choice.reference_error)},
+                 {"met", choice.met},
+                 {"chosen", of(choice.chosen)},
+                 {"runner_up", choice.runner_up ? of(*choice.runner_up) : json()},
+                 {"present", of(choice.present)},
+                 {"why", choice.why},
+                 {"patch", patch(choice.chosen.setting)},
+                 {"tried", list_of(choice.tried)}});
+  return result;
 }
 
 json of(const Variant& variant) {
@@ -149,20 +148,16 @@ json of(const Variant& variant) {
 }
 
 json of(const Simplification& simplification) {
-  return {{"kind", "simplify"},
-          {"scene", simplification.scene},
-          {"renderer", simplification.renderer},
-          {"tolerance", number(simplification.tolerance)},
-          {"time_s", number(simplification.time)},
-          {"horizon_s", number(simplification.horizon)},
-          {"size_m", number(simplification.size)},
-          {"setting", to_json(simplification.setting)},
-          {"complete", simplification.complete},
-          {"whole", of(simplification.whole)},
-          {"variants", list_of(simplification.variants)},
-          {"recommended", of(simplification.recommended)},
-          {"why", simplification.why},
-          {"notes", simplification.notes}};
+  json result = heading("simplify", simplification);
+  result.update({{"tolerance", number(simplification.tolerance)},
+                 {"horizon_s", number(simplification.horizon)},
+                 {"size_m", number(simplification.size)},
+                 {"setting", to_json(simplification.setting)},
+                 {"whole", of(simplification.whole)},
+                 {"variants", list_of(simplification.variants)},
+                 {"recommended", of(simplification.recommended)},
+                 {"why", simplification.why}});
+  return result;
 }
 
 }  // namespace

@@ -76,15 +76,22 @@ LeftOut left_out(const json& value) {
   return left_out;
 }
 
+/// What every result of the lab begins with.
+template <class Result>
+void read_heading(Result& result, const json& value) {
+  result.scene = value.at("scene");
+  result.renderer = value.at("renderer");
+  result.time = number(value.at("time_s"));
+  result.complete = value.at("complete").get<bool>();
+  result.notes = texts(value.at("notes"));
+}
+
 Chart chart(const json& value) {
   Chart chart;
-  chart.scene = value.at("scene");
-  chart.renderer = value.at("renderer");
+  read_heading(chart, value);
   chart.size = number(value.at("size_m"));
-  chart.time = number(value.at("time_s"));
   chart.horizon = number(value.at("horizon_s"));
   chart.horizon_reason = value.at("horizon_reason");
-  chart.complete = value.at("complete").get<bool>();
   chart.present = setting(value.at("present"));
   for (const Axis axis : all_axes) {
     const json& facts = value.at("axes").at(name(axis));
@@ -94,7 +101,6 @@ Chart chart(const json& value) {
   }
   chart.points = list(value.at("points"), point);
   chart.left_out = list(value.at("left_out"), left_out);
-  chart.notes = texts(value.at("notes"));
   return chart;
 }
 
@@ -114,37 +120,29 @@ MethodMap method_map(const json& value) {
 
 StabilityMap stability(const json& value) {
   StabilityMap map;
-  map.scene = value.at("scene");
-  map.renderer = value.at("renderer");
+  read_heading(map, value);
   map.field = value.at("field");
   map.unit = value.at("unit");
   map.present_value = number(value.at("present").at("value"));
   map.present_dt = number(value.at("present").at("dt_s"));
   map.present_method = method(value.at("present").at("method"));
-  map.time = number(value.at("time_s"));
   map.steps = value.at("steps").get<int>();
-  map.complete = value.at("complete").get<bool>();
   map.methods = list(value.at("methods"), method_map);
-  map.notes = texts(value.at("notes"));
   return map;
 }
 
 Choice choice(const json& value) {
   Choice choice;
-  choice.scene = value.at("scene");
-  choice.renderer = value.at("renderer");
+  read_heading(choice, value);
   choice.tolerance = number(value.at("tolerance"));
-  choice.time = number(value.at("time_s"));
   choice.horizon = number(value.at("horizon_s"));
   choice.reference_error = number(value.at("reference_error"));
   choice.met = value.at("met").get<bool>();
-  choice.complete = value.at("complete").get<bool>();
   choice.chosen = point(value.at("chosen"));
   if (!value.at("runner_up").is_null()) choice.runner_up = point(value.at("runner_up"));
   choice.present = point(value.at("present"));
   choice.why = value.at("why");
   choice.tried = list(value.at("tried"), point);
-  choice.notes = texts(value.at("notes"));
   return choice;
 }
 
@@ -165,19 +163,15 @@ Variant variant(const json& value) {
 
 Simplification simplification(const json& value) {
   Simplification simplification;
-  simplification.scene = value.at("scene");
-  simplification.renderer = value.at("renderer");
+  read_heading(simplification, value);
   simplification.tolerance = number(value.at("tolerance"));
-  simplification.time = number(value.at("time_s"));
   simplification.horizon = number(value.at("horizon_s"));
   simplification.size = number(value.at("size_m"));
   simplification.setting = setting(value.at("setting"));
-  simplification.complete = value.at("complete").get<bool>();
   simplification.whole = variant(value.at("whole"));
   simplification.variants = list(value.at("variants"), variant);
   simplification.recommended = variant(value.at("recommended"));
   simplification.why = value.at("why");
-  simplification.notes = texts(value.at("notes"));
   return simplification;
 }
 

@@ -6,26 +6,18 @@
 #include "tests/scenes.h"
 
 using namespace clothlab;
+using namespace clothlab::test;
 using lab::Simplification;
 using lab::Variant;
 
 namespace {
 
-scene::Document document(const std::string& text) {
-  Result<scene::json> value = scene::parse_json(text, "test");
-  REQUIRE(value);
-  Result<scene::Document> made = scene::validate(*value);
-  INFO((made ? "" : made.error().text()));
-  REQUIRE(made);
-  return *made;
-}
-
 /// A sheet pulled a little in its plane, which swings by less than a thousandth and never meets itself.
 scene::Document pulled(const std::string& material, const std::string& more) {
-  return document(R"({"version": 1, "name": "pulled", "gravity": [0, 0, 0.5],
+  return document_of(R"({"version": 1, "name": "pulled", "gravity": [0, 0, 0.5],
     "cloths": [{"mesh": {"grid": {"columns": 33, "rows": 33, "width": 1, "height": 1}}, "mass": {"per_vertex": 0.001},
                 "material": )" +
-                  material + R"(, "pins": [{"at": "edge:row:0"}]}])" + more + "}");
+                     material + R"(, "pins": [{"at": "edge:row:0"}]}])" + more + "}");
 }
 
 const Variant& variant(const Simplification& result, const std::string& name) {

@@ -5,17 +5,13 @@
 #include <string>
 
 #include "server/reference/reference.h"
-#include "server/scene/document.h"
 #include "server/sim/colliders.h"
 #include "tests/scenes.h"
 
 namespace clothlab {
 
 inline scene::Scene scene_of(const std::string& text) {
-  Result<scene::json> value = scene::parse_json(text, "test", true);
-  Result<scene::Document> document = value ? scene::validate(*value) : value.error();
-  if (!document) FAIL(document.error().text());
-  return document->scene;
+  return test::document_of(text).scene;
 }
 
 inline scene::Scene preset(const std::string& name) {

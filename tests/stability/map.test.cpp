@@ -15,19 +15,10 @@ using scene::Method;
 
 namespace {
 
-scene::Document document(const std::string& text) {
-  Result<scene::json> value = scene::parse_json(text, "test");
-  REQUIRE(value);
-  Result<scene::Document> made = scene::validate(*value);
-  INFO((made ? "" : made.error().text()));
-  REQUIRE(made);
-  return *made;
-}
-
 /// One spring of 16 N/m with 1 kg at its end, omega = 4 / s, as in small_scenes.h; so little amplitude that
 /// it is linear until growth is proved.
 scene::Document one_spring() {
-  return document(R"({"version": 1, "name": "one spring", "gravity": [0, 0, 0.016],
+  return document_of(R"({"version": 1, "name": "one spring", "gravity": [0, 0, 0.016],
     "cloths": [{"mesh": {"grid": {"columns": 2, "rows": 3, "width": 1, "height": 1}}, "mass": {"per_vertex": 1},
                 "material": {"structural": 0, "shear": 0, "bend": 16, "damping": 0},
                 "pins": [{"at": "edge:row:0"}, {"at": "edge:row:1"}]}]})");
@@ -35,7 +26,7 @@ scene::Document one_spring() {
 
 /// A sheet that lies still in its plane but for a pull of a ten thousandth.
 scene::Document grid(double gravity) {
-  return document(R"({"version": 1, "name": "grid", "gravity": [0, 0, )" + std::to_string(gravity) + R"(],
+  return document_of(R"({"version": 1, "name": "grid", "gravity": [0, 0, )" + std::to_string(gravity) + R"(],
     "cloths": [{"mesh": {"grid": {"columns": 9, "rows": 7, "width": 0.8, "height": 0.6}}, "mass": {"per_vertex": 0.001},
                 "material": {"structural": 100, "shear": 100, "bend": 100, "damping": 0},
                 "pins": [{"at": "edge:row:0"}]}]})");

@@ -6,20 +6,14 @@
 
 #include "server/lab/parts.h"
 #include "server/reference/rest_shape.h"
-#include "tests/catch.h"
+#include "tests/scenes.h"
 
 using namespace clothlab;
 
 namespace {
 
 scene::Document document(const std::string& cloth) {
-  Result<scene::json> value =
-      scene::parse_json(R"({"version": 1, "gravity": [0, 0, 0.5], "cloths": [)" + cloth + "]}", "test");
-  REQUIRE(value);
-  Result<scene::Document> made = scene::validate(*value);
-  INFO((made ? "" : made.error().text()));
-  REQUIRE(made);
-  return *made;
+  return test::document_of(R"({"version": 1, "gravity": [0, 0, 0.5], "cloths": [)" + cloth + "]}");
 }
 
 /// A sheet of a square meter, 1 kg, hung by its first row in its plane.
