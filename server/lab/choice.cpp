@@ -190,9 +190,11 @@ class Chooser {
     const Point& chosen = choice_.chosen;
     const double cost = chosen.cost->median, error = *chosen.largest_position_error;
     std::string why = text(chosen.setting) + " costs " + significant(cost, 3) + " ms a simulated second";
-    if (choice_.runner_up)
-      why += ", " + times(choice_.runner_up->cost->median / cost) + " less than the next best (" +
+    if (choice_.runner_up) {
+      const double ratio = choice_.runner_up->cost->median / cost;
+      why += (ratio < 1.05 ? ", about as much as" : ", " + times(ratio) + " less than") + " the next best (" +
              text(choice_.runner_up->setting) + ")";
+    }
     if (chosen.dt_over_limit && *chosen.dt_over_limit > model::margin_to_warn / near_enough)
       why += "; its step is as long as stability allows, where its error of " + significant(error, 3) +
              " is already " + times(request_.tolerance / error) + " below the tolerance";

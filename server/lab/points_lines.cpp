@@ -1,5 +1,6 @@
 // The lines of a plot of error against cost, and the names of its points: what has to find room.
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "server/lab/points_layout.h"
@@ -17,39 +18,46 @@ struct LineName {
   std::size_t row = 0;
 };
 
-/// Whether one's words are over the other's, or on its line on the way up.
-bool collide(const LineName& a, const LineName& b) {
+/// What it costs the reader that two names are where they are: words over words, or a line through words.
+std::size_t collision(const LineName& a, const LineName& b) {
   constexpr double gap = 6;
-  if (a.row == b.row) return a.left < b.right + gap && b.left < a.right + gap;
+  constexpr std::size_t words = 100, through = 30;
+  if (a.row == b.row) return a.left < b.right + gap && b.left < a.right + gap ? words : 0;
   const LineName &upper = a.row > b.row ? a : b, &lower = a.row > b.row ? b : a;
-  return upper.inside && upper.x > lower.left - 2 && upper.x < lower.right + 2;
+  return upper.inside && upper.x > lower.left - 2 && upper.x < lower.right + 2 ? through : 0;
 }
 
-/// Puts the names into rows so that as few as can be collide, in as low rows as can be.
+/// A name stands over the middle of its line, or to one side of its end.
+constexpr std::array<double, 3> alignments{-0.5, -1.0, 0.0};  ///< of its width, from the line
+
+/// Puts the names into rows and beside their lines so that as few as can be collide, as low and as much in
+/// the middle as can be.
 std::vector<LineName> line_names(const Layout& layout, std::size_t rows) {
   std::vector<LineName> names;
   for (const PointsPlot::Line& line : layout.plot->lines) {
     LineName name{&line, line.words, layout.x(line.value), 0, 0, line.value >= layout.x.low, 0};
     if (!name.inside) name.words = "◂ " + line.words + " " + brief(line.value, 2);
-    const double width = text_width(name.words, small_size);
-    name.left = std::clamp(name.x - width / 2, margin, picture_width - margin - width);
-    name.right = name.left + width;
     names.push_back(name);
   }
+  const std::size_t choices = rows * alignments.size();
   std::size_t ways = 1;
-  for (std::size_t index = 0; index < names.size(); ++index) ways *= rows;
+  for (std::size_t index = 0; index < names.size(); ++index) ways *= choices;
   std::vector<LineName> best = names;
   std::size_t least = std::numeric_limits<std::size_t>::max();
   for (std::size_t way = 0; way < ways; ++way) {
     std::size_t left = way, cost = 0;
     for (LineName& name : names) {
-      name.row = left % rows;
-      left /= rows;
-      cost += name.row;
+      const std::size_t alignment = left % alignments.size();
+      name.row = left % choices / alignments.size();
+      left /= choices;
+      const double width = text_width(name.words, small_size);
+      name.left = std::clamp(name.x + alignments[alignment] * width, margin, picture_width - margin - width);
+      name.right = name.left + width;
+      cost += 2 * name.row + (alignment == 0 ? 0 : 1);
     }
     for (std::size_t one = 0; one < names.size(); ++one)
       for (std::size_t other = one + 1; other < names.size(); ++other)
-        if (collide(names[one], names[other])) cost += 100;
+        cost += collision(names[one], names[other]);
     if (cost >= least) continue;
     least = cost;
     best = names;
