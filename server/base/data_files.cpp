@@ -1,7 +1,6 @@
 #include "server/base/data_files.h"
 
 #include <cstdlib>
-#include <fstream>
 #include <iterator>
 #include <vector>
 
@@ -20,12 +19,6 @@ Result<fs::path> data_path(const std::string& relative) {
     if (fs::exists(root / relative, failure)) return root / relative;
   return Error{relative, "not found below " + roots.back().string(),
                "set CLOTHLAB_DATA to the folder that holds Clothlab's shaders/ and web/"};
-}
-
-Result<std::string> read_file(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return Error{path.string(), "cannot be read", "check that the file exists and is readable"};
-  return std::string(std::istreambuf_iterator<char>(file), {});
 }
 
 }  // namespace clothlab

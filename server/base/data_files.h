@@ -12,7 +12,4 @@ namespace clothlab {
 /// <program>/../share/clothlab, the source tree this program was built from.
 Result<std::filesystem::path> data_path(const std::string& relative);
 
-/// The whole of a file as bytes.
-Result<std::string> read_file(const std::filesystem::path& path);
-
 }  // namespace clothlab

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "server/base/data_files.h"
+#include "server/base/files.h"
 #include "server/gl/buffer.h"
 
 namespace clothlab::gl {

@@ -1,13 +1,10 @@
 #include "server/lab/cache.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 #include <vector>
 
-#include "server/base/data_files.h"
+#include "server/base/files.h"
 #include "server/lab/exports.h"
 
 namespace clothlab::lab {
@@ -17,7 +14,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::uintmax_t most_bytes_a_file = 16 * 1024 * 1024;
-constexpr const char *suffix = ".json", *unfinished_suffix = ".part";
+constexpr const char* suffix = ".json";
 
 bool complete(const Outcome& outcome) {
   return std::visit([](const auto& result) { return result.complete; }, outcome);
@@ -76,7 +73,7 @@ std::optional<Outcome> Cache::read(const std::string& hash) const {
   const Result<std::string> text = read_file(path);
   if (!text) return std::nullopt;
   // With limits on depth and size, and errors as values: anybody may have written to that folder.
-  const Result<json> file = scene::parse_json(*text, path.string(), false, most_bytes_a_file);
+  const Result<json> file = scene::parse_json(*text, path.string(), false, {most_bytes_a_file});
   if (!file || !file->is_object() || !file->contains("key") || !file->contains("result") ||
       file->at("key") != hash)
     return std::nullopt;
@@ -92,19 +89,8 @@ void Cache::write(const std::string& hash, const Outcome& outcome) const {
   const std::string text =
       json{{"key", hash}, {"result", to_json(outcome)}}.dump(-1, ' ', false, json::error_handler_t::replace);
   if (text.size() > most_bytes_a_file) return;
-  // Whole or not at all, whoever reads or dies meanwhile.
-  const fs::path unfinished = folder_ / (hash + "-" + std::to_string(getpid()) + unfinished_suffix);
-  {
-    std::ofstream file(unfinished, std::ios::binary | std::ios::trunc);
-    file << text << std::flush;
-    if (!file) {
-      file.close();
-      fs::remove(unfinished, failure);
-      return;
-    }
-  }
-  fs::rename(unfinished, folder_ / (hash + suffix), failure);
-  if (failure) fs::remove(unfinished, failure);
+  // A folder that cannot be written is no error: it is a cache.
+  if (!replace_file(folder_ / (hash + suffix), text)) return;
   remove_oldest();
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "server/base/data_files.h"
+#include "server/base/files.h"
 #include "server/base/text.h"
 #include "server/lab/cache.h"
 #include "server/scene/method.h"

@@ -28,10 +28,15 @@ inline constexpr std::size_t max_json_depth = 32;
 /// Operations in one RFC 6902 patch.
 inline constexpr std::size_t max_patch_operations = 1024;
 
-/// Parses JSON text (comments allowed when `comments`), refusing repeated keys and anything deeper than
-/// max_json_depth. Error: where = `source`, line and column.
+struct TextLimits {
+  std::size_t bytes = max_json_bytes;
+  std::size_t depth = max_json_depth;
+};
+
+/// Parses JSON text (comments allowed when `comments`), refusing repeated keys and anything beyond `limits`.
+/// Error: where = `source`, line and column.
 Result<json> parse_json(const std::string& text, const std::string& source, bool comments = false,
-                        std::size_t max_bytes = max_json_bytes);
+                        TextLimits limits = {});
 
 /// Validates the whole document and fills in defaults. Error: JSON Pointer, found, allowed.
 Result<Document> validate(json value);

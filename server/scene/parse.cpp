@@ -38,7 +38,7 @@ struct CountingIterator {
 
 class Builder : public nlohmann::json_sax<json> {
  public:
-  explicit Builder(const std::size_t& position) : position_(position) {}
+  Builder(const std::size_t& position, std::size_t deepest) : position_(position), deepest_(deepest) {}
 
   json value;
   std::string problem, remedy;  ///< empty: none
@@ -86,9 +86,9 @@ class Builder : public nlohmann::json_sax<json> {
   bool put(json&& item) { return put(std::move(item), true) != nullptr; }
 
   bool open(json&& container) {
-    if (open_.size() == max_json_depth)
-      return refuse("more than " + std::to_string(max_json_depth) + " levels of nesting",
-                    "at most " + std::to_string(max_json_depth));
+    if (open_.size() == deepest_)
+      return refuse("more than " + std::to_string(deepest_) + " levels of nesting",
+                    "at most " + std::to_string(deepest_));
     open_.push_back(put(std::move(container), true));
     return true;
   }
@@ -104,6 +104,7 @@ class Builder : public nlohmann::json_sax<json> {
   }
 
   const std::size_t& position_;
+  const std::size_t deepest_;
   std::vector<json*> open_;  // a parent does not grow while its child is open, so these stay where they are
   std::string key_;
 };
@@ -118,12 +119,12 @@ std::string line_and_column(const std::string& text, std::size_t at) {
 }  // namespace
 
 Result<json> parse_json(const std::string& text, const std::string& source, bool comments,
-                        std::size_t max_bytes) {
-  if (text.size() > max_bytes)
+                        TextLimits limits) {
+  if (text.size() > limits.bytes)
     return Error{source, std::to_string(text.size()) + " bytes of JSON",
-                 "at most " + std::to_string(max_bytes)};
+                 "at most " + std::to_string(limits.bytes)};
   std::size_t position = 0;
-  Builder builder(position);
+  Builder builder(position, limits.depth);
   const CountingIterator begin{text.data(), &position}, end{text.data() + text.size(), &position};
   if (json::sax_parse(begin, end, &builder, json::input_format_t::json, true, comments))
     return std::move(builder.value);

@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "server/base/data_files.h"
+#include "server/base/files.h"
 #include "server/scene/document.h"
 #include "server/scene/reader.h"
 
@@ -38,7 +39,7 @@ Result<Document> load_file(const std::filesystem::path& path) {
                  "a scene file, or one of the presets " + quoted(preset_names())};
   const Result<std::string> text = read_file(path);
   if (!text) return text.error();
-  Result<json> value = parse_json(*text, path.string(), true, max_file_bytes);
+  Result<json> value = parse_json(*text, path.string(), true, {max_file_bytes});
   if (!value) return value.error();
   Result<Document> document = validate(std::move(*value));
   if (document) return document;

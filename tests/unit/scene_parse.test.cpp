@@ -29,10 +29,12 @@ TEST_CASE("32 levels of nesting parse and 33 do not, nor do a million") {
   CHECK(parse_json(nested(32), "test"));
   const Error error = parse_json(nested(33), "test").error();
   CHECK(error.where == "test, line 1, column 33");
-  CHECK_FALSE(parse_json(std::string(1000000, '['), "test", false, 2000000));
+  CHECK_FALSE(parse_json(std::string(1000000, '['), "test", false, {2000000}));
   std::string objects;
   for (int i = 0; i < 33; ++i) objects += "{\"a\":";
   CHECK(parse_json(objects, "test").error().what == "more than 32 levels of nesting");
+  CHECK(parse_json(nested(9), "test", false, {scene::max_json_bytes, 8}).error().remedy == "at most 8");
+  CHECK(parse_json(nested(8), "test", false, {scene::max_json_bytes, 8}));
 }
 
 TEST_CASE("a text of just the allowed size parses and one byte more does not") {

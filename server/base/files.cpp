@@ -1,0 +1,39 @@
+#include "server/base/files.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+namespace clothlab {
+
+namespace fs = std::filesystem;
+
+Result<std::string> read_file(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return Error{path.string(), "cannot be read", "check that the file exists and is readable"};
+  return std::string(std::istreambuf_iterator<char>(file), {});
+}
+
+Status replace_file(const fs::path& path, const std::string& bytes) {
+  fs::path unfinished = path;
+  unfinished += "." + std::to_string(getpid()) + unfinished_suffix;
+  std::error_code failure;
+  errno = 0;
+  {
+    std::ofstream file(unfinished, std::ios::binary | std::ios::trunc);
+    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    file.close();
+    if (!file) failure.assign(errno == 0 ? EIO : errno, std::generic_category());
+  }
+  if (!failure) fs::rename(unfinished, path, failure);
+  if (!failure) return ok();
+  std::error_code ignored;
+  fs::remove(unfinished, ignored);
+  return Error{path.string(), "could not be written: " + failure.message(),
+               "check the disk's space and the folder's permissions"};
+}
+
+}  // namespace clothlab

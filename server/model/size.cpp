@@ -1,0 +1,55 @@
+#include "server/model/size.h"
+
+#include <variant>
+
+#include "server/scene/sections.h"
+
+namespace clothlab::model {
+
+namespace {
+
+/// Pairs of vertices of a grid that lie so many columns and rows apart.
+std::size_t pairs(const scene::Grid& grid, int columns_on, int rows_on) {
+  const int columns = grid.columns - columns_on, rows = grid.rows - rows_on;
+  return columns > 0 && rows > 0 ? static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows) : 0;
+}
+
+std::size_t springs(const scene::Grid& grid, const scene::Springs& material) {
+  std::size_t count = 0;
+  if (material.structural != 0.0) count += pairs(grid, 1, 0) + pairs(grid, 0, 1);
+  if (material.shear != 0.0) count += 2 * pairs(grid, 1, 1);
+  if (material.bend != 0.0) count += pairs(grid, 2, 0) + pairs(grid, 0, 2);
+  return count;
+}
+
+/// No edge shared, each across another: the most there can be.
+std::size_t springs(const scene::TriangleMesh& mesh, const scene::Springs& material) {
+  const std::size_t edges = 3 * mesh.triangles.size();
+  return (material.structural != 0.0 ? edges : 0) + (material.bend != 0.0 ? edges / 2 : 0);
+}
+
+Error too_large(const char* what, std::size_t found, std::size_t most, const char* flag) {
+  return {"/cloths", std::to_string(found) + " " + what + " in all cloths together",
+          "at most " + std::to_string(most) + " here (" + flag + "): a coarser mesh, or fewer cloths"};
+}
+
+}  // namespace
+
+Size size_of(const scene::Scene& scene) {
+  Size size;
+  for (const scene::Cloth& cloth : scene.cloths) {
+    size.vertices += scene::vertex_count(cloth.mesh);
+    size.triangles += scene::triangle_count(cloth.mesh);
+    size.springs += std::visit([&](const auto& mesh) { return springs(mesh, cloth.material); }, cloth.mesh);
+  }
+  return size;
+}
+
+Status within(const Size& size, std::size_t most_vertices, std::size_t most_springs) {
+  if (size.vertices > most_vertices)
+    return too_large("vertices", size.vertices, most_vertices, "--max-vertices");
+  if (size.springs > most_springs) return too_large("springs", size.springs, most_springs, "--max-springs");
+  return ok();
+}
+
+}  // namespace clothlab::model
