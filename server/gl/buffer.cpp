@@ -1,13 +1,20 @@
 #include "server/gl/buffer.h"
 
 #include <cstdlib>
+#include <new>
 #include <string_view>
 
 namespace clothlab::gl {
 
 Buffer::Buffer(std::size_t bytes, const void* data, GLbitfield flags) : bytes_(bytes) {
   glCreateBuffers(1, &id_);
+  while (glGetError() == GL_OUT_OF_MEMORY) {
+  }  // what is left of before is not ours
   glNamedBufferStorage(id_, static_cast<GLsizeiptr>(bytes), data, flags);
+  if (glGetError() == GL_OUT_OF_MEMORY) {
+    glDeleteBuffers(1, &id_);
+    throw std::bad_alloc();
+  }
   if (!data && (flags & GL_MAP_PERSISTENT_BIT) == 0) fill(0);
 }
 

@@ -16,7 +16,8 @@ namespace clothlab::gl {
 class Buffer {
  public:
   Buffer() = default;
-  /// `flags` as for glNamedBufferStorage; dynamic storage lets `upload` work.
+  /// `flags` as for glNamedBufferStorage; dynamic storage lets `upload` work. Throws std::bad_alloc where the
+  /// device has no room, as containers do.
   explicit Buffer(std::size_t bytes, const void* data = nullptr, GLbitfield flags = GL_DYNAMIC_STORAGE_BIT);
   template <class T>
   explicit Buffer(const std::vector<T>& items)

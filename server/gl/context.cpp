@@ -68,15 +68,17 @@ EGLDisplay open_display(const Candidate& candidate) {
 }
 
 EGLContext open_context(EGLDisplay display) {
-  const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                               4,
-                               EGL_CONTEXT_MINOR_VERSION,
-                               5,
-                               EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                               EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+  const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
+                               EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                               // Last, as not every driver tells of a reset: then `lost` is never true.
+                               EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET,
                                EGL_NONE};
   if (!eglBindAPI(EGL_OPENGL_API)) return EGL_NO_CONTEXT;
-  return eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+  EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+  if (context != EGL_NO_CONTEXT) return context;
+  std::vector<EGLint> without(std::begin(attributes), std::end(attributes) - 3);
+  without.push_back(EGL_NONE);
+  return eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, without.data());
 }
 
 struct Opened {
@@ -192,6 +194,10 @@ Context::~Context() {
   if (eglGetCurrentContext() == context_)
     eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
   eglDestroyContext(display_, context_);
+}
+
+bool Context::lost() const {
+  return glGetGraphicsResetStatus() != GL_NO_ERROR;
 }
 
 Status Context::make_current() {

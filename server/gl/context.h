@@ -50,6 +50,9 @@ class Context {
   Context& operator=(const Context&) = delete;
 
   const Device& device() const { return device_; }
+  /// Whether the device was reset, and all that was on it is gone: nothing of this context works any more.
+  /// The context must be current here.
+  bool lost() const;
   /// Moves the context to the calling thread (it must be current on no other).
   Status make_current();
   void release_current();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "server/model/size.h"
 #include "server/sim/colliders.h"
 #include "server/sim/diagnose.h"
 #include "server/sim/kernels.h"
@@ -20,6 +21,20 @@ gl::TextureBuffer rest_positions(const model::Model& model) {
     words.push_back(static_cast<float>(model.vertex_cloth[i]));
   }
   return {gl::Buffer(words), GL_RGBA32F};
+}
+
+/// Whether the device can hold the scene's largest buffer: known before anything is made.
+Status fits_device(const scene::Scene& scene) {
+  GLint texels = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
+  const model::Size size = model::size_of(scene);
+  // Each spring is in the lists of both its ends.
+  const std::size_t wanted = std::max(size.vertices, 2 * size.springs);
+  if (wanted <= static_cast<std::size_t>(texels)) return ok();
+  return Error{"/cloths",
+               std::to_string(size.vertices) + " vertices and " + std::to_string(size.springs) + " springs",
+               "lists of at most " + std::to_string(texels) +
+                   " entries on this device (GL_MAX_TEXTURE_BUFFER_SIZE): a coarser mesh, or fewer springs"};
 }
 
 template <class Part>
@@ -115,6 +130,7 @@ Simulation::~Simulation() = default;
 Result<std::unique_ptr<Simulation>> Simulation::create(const scene::Scene& scene) {
   std::unique_ptr<Simulation> made(new Simulation);
   Implementation& self = *made->implementation_;
+  if (Status fits = fits_device(scene); !fits) return fits.error();
   Result<Kernels> kernels = Kernels::create(scene);
   if (!kernels) return kernels.error();
   self.kernels = std::move(*kernels);
@@ -229,6 +245,13 @@ Diagnostics Simulation::diagnose() {
   implementation_->diagnostics.poll(result, true);
   implementation_->diagnosed_step = result.step;
   return result;
+}
+
+void Simulation::restore(const State& state, double time, std::uint64_t step) {
+  Implementation& self = *implementation_;
+  self.state.write(state, self.kernels.model, self.kernels.motions);
+  self.state_replaced(time, step);
+  self.keep_start();
 }
 
 State Simulation::read_state() {

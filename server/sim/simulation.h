@@ -111,6 +111,9 @@ class Simulation {
 
   /// Positions and velocities, waiting for the GPU.
   State read_state();
+  /// The inverse: goes on from there. `state` has the model's vertex count. What a method remembers between
+  /// steps is not in it and starts anew, so that the next step is not bit for bit what it would have been.
+  void restore(const State& state, double time, std::uint64_t step);
 
   /// Waits until the GPU has finished every queued step.
   void finish();

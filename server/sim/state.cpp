@@ -51,6 +51,15 @@ void StateBuffers::reset(const model::Model& model, const MotionTable& motions) 
   velocity_[current_].buffer.upload(arrays.velocity.data(), bytes(model));
 }
 
+void StateBuffers::write(const State& state, const model::Model& model, const MotionTable& motions) {
+  Arrays arrays;
+  for (const glm::vec3& position : state.position) arrays.position.emplace_back(position, 0.0f);
+  for (const glm::vec3& velocity : state.velocity) arrays.velocity.emplace_back(velocity, 0.0f);
+  set_constants(arrays, model, motions);
+  position_[current_].buffer.upload(arrays.position.data(), bytes(model));
+  velocity_[current_].buffer.upload(arrays.velocity.data(), bytes(model));
+}
+
 void StateBuffers::rewrite_constants(const model::Model& model, const MotionTable& motions) {
   Arrays arrays{std::vector<glm::vec4>(model.vertex_count()), std::vector<glm::vec4>(model.vertex_count())};
   position().buffer.download(arrays.position.data(), bytes(model));

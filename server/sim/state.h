@@ -32,6 +32,8 @@ class StateBuffers {
   void save(gl::Buffer& position, gl::Buffer& velocity) const;
   void load(const gl::Buffer& position, const gl::Buffer& velocity);
   State read() const;
+  /// The inverse; masses and pins are the model's.
+  void write(const State& state, const model::Model& model, const MotionTable& motions);
 
  private:
   gl::TextureBuffer position_[2];  ///< xyz [m], w inverse mass [1/kg], 0 if pinned

@@ -78,9 +78,10 @@ struct Packer::Implementation {
 Packer::Packer() : implementation_(std::make_unique<Implementation>()) {}
 Packer::~Packer() = default;
 
-Result<std::unique_ptr<Packer>> Packer::create() {
+Result<std::unique_ptr<Packer>> Packer::create(std::uint32_t last) {
   std::unique_ptr<Packer> packer(new Packer);
   Implementation& self = *packer->implementation_;
+  self.requested = self.delivered = last;
   const std::string group = std::to_string(group_size);
   const auto load = [&group](gl::Program& into, const char* path, gl::Defines defines) -> Status {
     defines.emplace_back("GROUP_SIZE", group);

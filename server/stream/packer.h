@@ -13,7 +13,8 @@ namespace clothlab::stream {
 
 class Packer {
  public:
-  static Result<std::unique_ptr<Packer>> create();
+  /// Its frames are numbered from after `last`.
+  static Result<std::unique_ptr<Packer>> create(std::uint32_t last = 0);
   ~Packer();
 
   /// Queues the packing of the present state after the steps queued so far. False if the readback ring is
