@@ -4,8 +4,10 @@
 #include <iostream>
 #include <thread>
 
+#include "server/base/files.h"
 #include "server/cli/commands.h"
 #include "server/model/model.h"
+#include "server/model/size.h"
 #include "server/net/log.h"
 #include "server/net/server.h"
 
@@ -16,7 +18,7 @@ namespace {
 struct ServeArguments {
   SceneChoice scene{"seed", {}};
   net::Options options;
-  std::string asset_root;
+  std::string asset_root, log_level = "info";
   int gpu = -1;
 };
 
@@ -69,6 +71,14 @@ Status check(const ServeArguments& arguments) {
       return Error{file, "is not a file", "give a PEM file"};
   if (!arguments.asset_root.empty() && !std::filesystem::is_directory(arguments.asset_root))
     return Error{"--asset-root " + arguments.asset_root, "is not a folder", "give a folder that exists"};
+  if (options.state_folder.empty()) return ok();
+  std::error_code failure;
+  std::filesystem::create_directories(options.state_folder, failure);
+  const std::filesystem::path trial = options.state_folder / "trial";
+  if (const Status writable = replace_file(trial, ""); !writable)
+    return Error{"--state-dir " + options.state_folder.string(), writable.error().what,
+                 "give a folder that can be written"};
+  std::filesystem::remove(trial, failure);
   return ok();
 }
 
@@ -76,10 +86,17 @@ int serve(ServeArguments& arguments) {
   if (const Status checked = check(arguments); !checked) return fail(checked.error(), exit_usage);
   Result<scene::Document> document = arguments.scene.load();
   if (!document) return fail(document.error(), exit_usage);
+  const net::Limits& limits = arguments.options.limits;
+  if (const Status small =
+          model::within(model::size_of(document->scene), static_cast<std::size_t>(limits.vertices),
+                        static_cast<std::size_t>(limits.springs));
+      !small)
+    return fail(small.error(), exit_usage);
   if (const Result<model::Model> model = model::build(document->scene); !model)
     return fail(model.error(), exit_usage);
   arguments.options.document = std::move(*document);
   if (arguments.gpu >= 0) arguments.options.gpu = arguments.gpu;
+  net::set_log_level(*net::log_level(arguments.log_level));
   StopOnSignal::block();
   Result<std::unique_ptr<net::Server>> server = net::Server::listen(std::move(arguments.options));
   if (!server) return fail(server.error(), exit_internal);
@@ -88,6 +105,33 @@ int serve(ServeArguments& arguments) {
       (*server)->run([&] { std::cout << "listening on " << (*server)->url() << std::endl; });
   if (!failed) return exit_done;
   return fail(failed->error, failed->no_opengl ? exit_no_opengl : exit_internal);
+}
+
+void add_limits(CLI::App& command, net::Limits& limits) {
+  const auto add = [&](const char* flag, int& value, int least, int most, const char* help) {
+    command.add_option(flag, value, help)
+        ->type_name("N")
+        ->check(CLI::Range(least, most))
+        ->capture_default_str()
+        ->group("Limits");
+  };
+  const net::Limits usual;
+  add("--max-sessions", limits.sessions, 1, 1000, "scenes that run side by side (/?session=NAME)");
+  add("--max-clients", limits.clients, 1, 100000, "WebSocket connections, over all sessions");
+  add("--max-clients-per-address", limits.clients_per_address, 1, 100000,
+      "of them from one address; behind a proxy everybody has the proxy's");
+  add("--max-message-bytes", limits.message_bytes, 1024, 8 << 20, "of one message to the server");
+  add("--max-message-rate", limits.message_rate, 10, 1000000,
+      "messages a second from one client, twice that in a burst");
+  add("--max-json-depth", limits.json_depth, 8, usual.json_depth, "levels of nesting in a message");
+  add("--max-vertices", limits.vertices, 4, usual.vertices, "of a scene");
+  add("--max-springs", limits.springs, 4, usual.springs, "of a scene");
+  add("--max-lab-seconds", limits.lab_seconds, 1, 86400, "that one measurement of the lab may take");
+  add("--header-timeout", limits.header_seconds, 1, 3600,
+      "seconds from connecting to the last of a request's headers, TLS included");
+  add("--auth-timeout", limits.auth_seconds, 1, 3600, "seconds until a client's token must have come");
+  add("--idle-timeout", limits.idle_seconds, 2, 3600,
+      "seconds after which a connection that says nothing, not even pong, is closed");
 }
 
 }  // namespace
@@ -105,27 +149,27 @@ void add_serve(CLI::App& app, int& exit_code) {
       ->type_name("PORT")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
+  // From the environment, other users of the machine cannot read them.
   command->add_option("--token", options.token, "what operators must send first (auth), or as a Bearer token")
-      ->type_name("T");
+      ->type_name("T")
+      ->envname("CLOTHLAB_TOKEN");
   command->add_option("--view-token", options.view_token, "the same for viewers, who change nothing")
-      ->type_name("T");
+      ->type_name("T")
+      ->envname("CLOTHLAB_VIEW_TOKEN");
   command
       ->add_option("--allow-origin", options.allow_origin,
                    "an origin whose pages may connect besides this server's own")
       ->type_name("ORIGIN")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->add_option("--max-sessions", options.max_sessions, "scenes that run side by side (/?session=NAME)")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command->add_option("--max-clients", options.max_clients, "connections, over all sessions")
-      ->type_name("N")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
+  add_limits(*command, options.limits);
   command
       ->add_option("--asset-root", arguments->asset_root,
                    "the folder for meshes a scene names; no scene can name one yet")
+      ->type_name("FOLDER");
+  command
+      ->add_option("--state-dir", options.state_folder,
+                   "a folder that keeps each session's scene and state, and brings them back after a restart")
       ->type_name("FOLDER");
   command->add_option("--gpu", arguments->gpu, "the device by its number in `clothlab info`")
       ->type_name("N")
@@ -133,6 +177,10 @@ void add_serve(CLI::App& app, int& exit_code) {
   command->add_option("--tls-cert", options.tls_certificate, "PEM file; with --tls-key: HTTPS and WSS")
       ->type_name("FILE");
   command->add_option("--tls-key", options.tls_key, "PEM file")->type_name("FILE");
+  command->add_option("--log-level", arguments->log_level, "the least urgent events that are logged")
+      ->type_name("error|warning|info|debug")
+      ->check(CLI::IsMember({"error", "warning", "info", "debug"}))
+      ->capture_default_str();
   command->footer(R"(Examples:
   clothlab serve                                              open http://127.0.0.1:8080
   clothlab serve --scene my-scene.json --port 0               on a free port

@@ -21,6 +21,7 @@ namespace {
 // What libwebsockets keeps for each connection (zeroed by it): who handles the connection.
 struct HttpSlot {
   HttpRequest* request;
+  bool asked;  ///< a first request has come whole
 };
 struct ClientSlot {
   Client* client;
@@ -38,10 +39,37 @@ int finish_http(HttpSlot& slot, lws* wsi, int result) {
   return lws_http_transaction_completed(wsi) ? -1 : 0;
 }
 
+/// Before a socket becomes a connection: libwebsockets has only its number yet.
+int on_socket(lws* wsi, int socket) {
+  Hub& hub = server_of(wsi).hub();
+  const std::string address = peer_address(socket);
+  if (!hub.connections().full(address)) return 0;
+  ++hub.metrics().refused;
+  log(LogLevel::debug, "connection_refused", {{"address", address}, {"why", "too many connections"}});
+  return -1;
+}
+
+int on_connection(lws* wsi) {
+  Hub& hub = server_of(wsi).hub();
+  hub.connections().opened(wsi, peer_address(lws_get_socket_fd(wsi)));
+  lws_set_timer_usecs(wsi, lws_usec_t{hub.limits().header_seconds} * LWS_USEC_PER_SEC);
+  return 0;
+}
+
 int on_http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size) {
   auto* slot = static_cast<HttpSlot*>(user);
   switch (reason) {
+    case LWS_CALLBACK_FILTER_NETWORK_CONNECTION:
+      return on_socket(wsi, static_cast<int>(reinterpret_cast<std::intptr_t>(in)));
+    case LWS_CALLBACK_SERVER_NEW_CLIENT_INSTANTIATED:
+      return on_connection(wsi);
+    case LWS_CALLBACK_WSI_DESTROY:
+      server_of(wsi).hub().connections().closed(wsi);
+      return 0;
+    case LWS_CALLBACK_TIMER:
+      return slot && slot->asked ? 0 : -1;  // its headers have not come in time
     case LWS_CALLBACK_HTTP:
+      slot->asked = true;
       delete slot->request;
       slot->request = new HttpRequest(server_of(wsi).hub(), server_of(wsi).files(), wsi);
       slot->request->begin(std::string(static_cast<const char*>(in), size));
@@ -66,6 +94,8 @@ int on_http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::si
 
 int refuse(lws* wsi, unsigned status, const char* why) {
   ++server_of(wsi).hub().metrics().refused;
+  log(LogLevel::warning, "client_refused",
+      {{"address", peer_address(wsi)}, {"status", std::to_string(status)}, {"why", why}});
   lws_return_http_status(wsi, status, why);
   return -1;
 }
@@ -91,6 +121,9 @@ int on_client(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::
   switch (reason) {
     case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
       return on_handshake(wsi);
+    case LWS_CALLBACK_WSI_DESTROY:
+      server_of(wsi).hub().connections().closed(wsi);
+      return 0;
     case LWS_CALLBACK_ESTABLISHED:
       set_socket_options(wsi);
       slot->client = new Client(server_of(wsi).hub(), wsi, query(wsi, "session", main_session));
@@ -119,7 +152,7 @@ int guarded(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::si
   try {
     return handler(wsi, reason, user, in, size);
   } catch (const std::exception& error) {
-    log(std::string("a connection is closed: ") + error.what());
+    log(LogLevel::error, "connection_failed", {{"why", error.what()}});
     return -1;
   }
 }
@@ -128,7 +161,7 @@ int guarded(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::si
 
 const lws_protocols* protocols() {
   // A frame leaves in one piece, not in slices of the receive buffer's size.
-  constexpr std::size_t receive_bytes = max_message_bytes, send_bytes = 8 * 1024 * 1024;
+  constexpr std::size_t receive_bytes = 64 * 1024, send_bytes = 8 * 1024 * 1024;
   static const lws_protocols list[] = {
       {"http", guarded<on_http>, sizeof(HttpSlot), 4096, 0, nullptr, send_bytes},
       {subprotocol, guarded<on_client>, sizeof(ClientSlot), receive_bytes, 0, nullptr, send_bytes},

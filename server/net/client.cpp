@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "server/base/text.h"
+#include "server/net/log.h"
 #include "server/net/methods.h"
+#include "server/net/request_headers.h"
 
 namespace clothlab::net {
 
@@ -14,16 +17,24 @@ Client::Client(Hub& hub, lws* wsi, std::string session)
       wsi_(wsi),
       id_(hub.next_id()),
       session_(std::move(session)),
+      address_(peer_address(wsi)),
       role_(hub.role_of("")),
-      messages_(messages_per_second, message_burst, now_us()) {
+      messages_(hub.limits().message_rate, burst_of(hub.limits()), now_us()) {
   hub_.add(*this);
+  log(LogLevel::info, "client_connected",
+      {{"client", std::to_string(id_)}, {"address", address_}, {"session", session_}, {"role", name(role_)}});
   if (role_ == Role::none)
-    lws_set_timer_usecs(wsi_, lws_usec_t{auth_seconds} * LWS_USEC_PER_SEC);
+    lws_set_timer_usecs(wsi_, lws_usec_t{hub.limits().auth_seconds} * LWS_USEC_PER_SEC);
   else if (!enter_room())
     close(close_policy, "too many sessions");
 }
 
 Client::~Client() {
+  log(LogLevel::info, "client_left",
+      {{"client", std::to_string(id_)},
+       {"seconds", formatted("%.1f", 1e-6 * static_cast<double>(now_us() - since_))},
+       {"bytes", std::to_string(bytes_sent_)},
+       {"closed", close_reason_}});
   leave_room();
   hub_.remove(*this);
 }
@@ -45,6 +56,7 @@ void Client::leave_room() {
 bool Client::admit(Role role) {
   if (role_ == Role::none) lws_set_timer_usecs(wsi_, LWS_SET_TIMER_USEC_CANCEL);
   role_ = role;
+  log(LogLevel::info, "client_admitted", {{"client", std::to_string(id_)}, {"role", name(role)}});
   if (role != Role::operator_) hub_.lab().client_left(id_);
   return room_ || enter_room();
 }
@@ -60,8 +72,9 @@ int Client::receive(const char* data, std::size_t size) {
     incoming_.clear();
     incoming_text_ = !lws_frame_is_binary(wsi_);
   }
-  if (incoming_.size() + size + lws_remaining_packet_payload(wsi_) > max_message_bytes) {
-    close(close_too_big, "a message may have 64 KiB");
+  if (incoming_.size() + size + lws_remaining_packet_payload(wsi_) >
+      static_cast<std::size_t>(hub_.limits().message_bytes)) {
+    close(close_too_big, "a message may have " + std::to_string(hub_.limits().message_bytes) + " bytes");
     return 0;
   }
   incoming_.append(data, size);
@@ -77,7 +90,9 @@ int Client::receive(const char* data, std::size_t size) {
 }
 
 void Client::handle(const std::string& text) {
-  std::variant<Request, BadRequest> parsed = parse_request(text);
+  std::variant<Request, BadRequest> parsed =
+      parse_request(text, {static_cast<std::size_t>(hub_.limits().message_bytes),
+                           static_cast<std::size_t>(hub_.limits().json_depth)});
   if (const auto* bad = std::get_if<BadRequest>(&parsed)) return send(error_text(bad->id, bad->error));
   const auto& request = std::get<Request>(parsed);
   const Outcome outcome = call(*this, request);
@@ -131,6 +146,10 @@ void Client::acknowledge(std::uint32_t sequence) {
   const std::int64_t now = now_us();
   pacing_.acknowledge(sequence, now);
   schedule_frame(now);
+}
+
+void Client::session_replaced() {
+  topology_sent_ = false;
 }
 
 void Client::frame_arrived(stream::Encoding encoding, std::int64_t now) {
@@ -212,6 +231,7 @@ int Client::send_frame(const stream::SharedMessage& frame) {
 
 int Client::write(unsigned char* data, std::size_t size, bool text) {
   hub_.metrics().bytes_sent += size;
+  bytes_sent_ += size;
   return lws_write(wsi_, data, size, text ? LWS_WRITE_TEXT : LWS_WRITE_BINARY) < 0 ? -1 : 0;
 }
 

@@ -23,6 +23,7 @@ class Client {
 
   std::uint64_t id() const { return id_; }
   Role role() const { return role_; }
+  const std::string& address() const { return address_; }
   Hub& hub() { return hub_; }
   Room* room() { return room_; }
   FramePacing& pacing() { return pacing_; }
@@ -49,6 +50,8 @@ class Client {
   void send(const std::string& text) { send(make_text(text)); }
   void send(SharedText text);
   void send_status(SharedText text);
+  /// Its session was brought back: the topology is to be sent again, and no frame waits for an answer.
+  void session_replaced();
   void frame_arrived(stream::Encoding encoding, std::int64_t now);
 
   /// Closes the connection with a code of RFC 6455 as soon as it can be told.
@@ -68,6 +71,9 @@ class Client {
   lws* wsi_;
   std::uint64_t id_;
   std::string session_;
+  std::string address_;
+  std::int64_t since_ = now_us();
+  std::uint64_t bytes_sent_ = 0;
   Role role_;
   Room* room_ = nullptr;
   bool greeted_ = false;

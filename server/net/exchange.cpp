@@ -1,5 +1,7 @@
 #include "server/net/exchange.h"
 
+#include <algorithm>
+
 #include "server/net/limits.h"
 
 namespace clothlab::net {
@@ -8,10 +10,57 @@ std::int64_t now_us() {
   return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch()).count();
 }
 
+void Exchange::await(const Command& command) {
+  const auto* reach = std::get_if<ReachScene>(&command.what);
+  if (command.ticket.id || reach || std::holds_alternative<Export>(command.what))
+    awaited_.push_back({command.ticket, reach ? std::optional(reach->job) : std::nullopt});
+}
+
+void Exchange::settle(const Event& event) {
+  const auto erase = [&](auto is_it) {
+    const auto found = std::find_if(awaited_.begin(), awaited_.end(), is_it);
+    if (found != awaited_.end()) awaited_.erase(found);
+  };
+  if (const auto* reply = std::get_if<Reply>(&event))
+    erase([&](const Awaited& awaited) {
+      return !awaited.job && awaited.ticket.asker == reply->ticket.asker &&
+             awaited.ticket.id == reply->ticket.id;
+    });
+  else if (const auto* exported = std::get_if<Exported>(&event))
+    erase([&](const Awaited& awaited) {
+      return !awaited.ticket.id && awaited.ticket.asker == exported->asker;
+    });
+  else if (const auto* reached = std::get_if<SceneReached>(&event))
+    erase([&](const Awaited& awaited) { return awaited.job == reached->job; });
+}
+
+void Exchange::give_up(const Error& error, std::vector<Event>& out) {
+  const std::lock_guard lock(mutex_);
+  for (const Awaited& awaited : awaited_) {
+    if (awaited.job) out.push_back(SceneLost{*awaited.job});
+    if (awaited.ticket.id)
+      out.push_back(Reply{awaited.ticket, RpcError{error_internal, error.text(), nullptr}});
+    else if (!awaited.job)
+      out.push_back(Exported{awaited.ticket.asker, "", error});
+  }
+  awaited_.clear();
+}
+
+void Exchange::keep(std::shared_ptr<const Saved> saved) {
+  const std::lock_guard lock(mutex_);
+  kept_.swap(saved);  // the older one is freed after the lock
+}
+
+std::shared_ptr<const Saved> Exchange::kept() const {
+  const std::lock_guard lock(mutex_);
+  return kept_;
+}
+
 bool Exchange::offer(Command command) {
   {
     const std::lock_guard lock(mutex_);
     if (commands_.size() >= max_waiting_commands) return false;
+    await(command);
     commands_.push_back(std::move(command));
   }
   commands_changed_.notify_one();
@@ -67,6 +116,7 @@ bool Exchange::take_commands(std::vector<Command>& out, Clock::time_point until)
 void Exchange::emit(Event event) {
   {
     const std::lock_guard lock(mutex_);
+    settle(event);
     events_.push_back(std::move(event));
   }
   wake_();

@@ -18,6 +18,7 @@
 
 #include "server/lab/choice.h"
 #include "server/net/json_rpc.h"
+#include "server/net/saved.h"
 #include "server/scene/document.h"
 #include "server/sim/simulation.h"
 #include "server/stream/frame.h"
@@ -133,13 +134,18 @@ struct Exported {
 struct SceneReached {
   std::uint64_t job = 0;
 };
+/// There is no scene to measure: the session has failed.
+struct SceneLost {
+  std::uint64_t job = 0;
+};
 struct Held {
   std::uint64_t job = 0;
 };
 /// The scene's method is `auto`, and the lab is to choose for it.
 struct ChoiceWanted {};
-using Event = std::variant<Started, Failed, Reply, SceneChanged, TopologyChanged, PassesChanged,
-                           SolverChanged, Diverged, Notice, Exported, SceneReached, Held, ChoiceWanted>;
+using Event =
+    std::variant<Started, Failed, Reply, SceneChanged, TopologyChanged, PassesChanged, SolverChanged,
+                 Diverged, Notice, Exported, SceneReached, SceneLost, Held, ChoiceWanted>;
 
 /// What sim.status is made of; plain data, so that the session's thread allocates nothing for it.
 struct Status {
@@ -166,6 +172,10 @@ class Exchange {
   void take_events(std::vector<Event>& out);  ///< `out` is emptied first
   bool take_status(Status& out);              ///< false: nothing new
   stream::SharedMessage frame(stream::Encoding encoding) const;
+  /// The latest that the session kept of itself, null before the first time.
+  std::shared_ptr<const Saved> kept() const;
+  /// Who waits for an answer that a session which has failed will not give: answered with `error`, as events.
+  void give_up(const Error& error, std::vector<Event>& out);
   std::int64_t heartbeat_us() const { return heartbeat_us_.load(std::memory_order_relaxed); }
   std::uint64_t steps() const { return steps_.load(std::memory_order_relaxed); }
 
@@ -179,15 +189,27 @@ class Exchange {
   void forget_frames();  ///< what is in the mailbox no longer shows the present
   void forget_frame(stream::Encoding encoding);
   void beat();
+  /// What the session could be brought back from.
+  void keep(std::shared_ptr<const Saved> saved);
   void count_steps(std::uint64_t steps) { steps_.fetch_add(steps, std::memory_order_relaxed); }
 
  private:
+  /// An answer that is still to be given: to a request, for a picture or mesh, or to the lab.
+  struct Awaited {
+    Ticket ticket;
+    std::optional<std::uint64_t> job;
+  };
+  void await(const Command& command);
+  void settle(const Event& event);
+
   std::function<void()> wake_;
   mutable std::mutex mutex_;
   std::condition_variable commands_changed_;
   std::deque<Command> commands_;
   std::vector<Event> events_;
   std::array<stream::SharedMessage, encoding_count> frames_;
+  std::vector<Awaited> awaited_;
+  std::shared_ptr<const Saved> kept_;
   Status status_;
   bool status_new_ = false, stopping_ = false;
   std::atomic<std::int64_t> heartbeat_us_{0};

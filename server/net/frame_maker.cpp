@@ -17,14 +17,14 @@ bool finite(const glm::vec3& v) {
 
 }  // namespace
 
-Result<std::unique_ptr<FrameMaker>> FrameMaker::create(Exchange& exchange) {
-  Result<std::unique_ptr<stream::Packer>> packer = stream::Packer::create();
+Result<std::unique_ptr<FrameMaker>> FrameMaker::create(Exchange& exchange, std::uint32_t last) {
+  Result<std::unique_ptr<stream::Packer>> packer = stream::Packer::create(last);
   if (!packer) return packer.error();
-  return std::unique_ptr<FrameMaker>(new FrameMaker(exchange, std::move(*packer)));
+  return std::unique_ptr<FrameMaker>(new FrameMaker(exchange, std::move(*packer), last));
 }
 
-FrameMaker::FrameMaker(Exchange& exchange, std::unique_ptr<stream::Packer> packer)
-    : exchange_(exchange), packer_(std::move(packer)) {}
+FrameMaker::FrameMaker(Exchange& exchange, std::unique_ptr<stream::Packer> packer, std::uint32_t last)
+    : exchange_(exchange), packer_(std::move(packer)), requested_(last), arrived_(last), void_until_(last) {}
 
 void FrameMaker::demand(const Demand& demand, Clock::time_point now) {
   for (std::size_t i = 0; i < lanes_.size(); ++i) {

@@ -14,7 +14,8 @@ namespace clothlab::net {
 
 class FrameMaker {
  public:
-  static Result<std::unique_ptr<FrameMaker>> create(Exchange& exchange);
+  /// Its frames are numbered from after `last`.
+  static Result<std::unique_ptr<FrameMaker>> create(Exchange& exchange, std::uint32_t last);
 
   void demand(const Demand& demand, Clock::time_point now);
   /// The state has changed: the next frame due is worth making.
@@ -51,7 +52,7 @@ class FrameMaker {
     std::uint64_t packed_version = 0;
     Clock::time_point due{};
   };
-  FrameMaker(Exchange& exchange, std::unique_ptr<stream::Packer> packer);
+  FrameMaker(Exchange& exchange, std::unique_ptr<stream::Packer> packer, std::uint32_t last);
   bool request(std::size_t lane, const sim::Simulation& simulation);
   void publish(stream::SharedMessage frame);
 

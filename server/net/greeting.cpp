@@ -20,6 +20,7 @@ nlohmann::json method_list() {
 }  // namespace
 
 nlohmann::json hello_params(const Hub& hub, const Room& room, const Client& client) {
+  const Limits& limits = hub.limits();
   return {{"server", "clothlab"},
           {"version", CLOTHLAB_VERSION},
           {"session", room.name()},
@@ -30,18 +31,23 @@ nlohmann::json hello_params(const Hub& hub, const Room& room, const Client& clie
           {"requests", method_names()},
           {"encodings", {"f32", "q16"}},
           {"limits",
-           {{"message_bytes", max_message_bytes},
-            {"json_depth", scene::max_json_depth},
-            {"messages_per_second", messages_per_second},
-            {"message_burst", message_burst},
-            {"sessions", hub.options().max_sessions},
-            {"clients", hub.options().max_clients},
+           {{"message_bytes", limits.message_bytes},
+            {"json_depth", limits.json_depth},
+            {"messages_per_second", limits.message_rate},
+            {"message_burst", burst_of(limits)},
+            {"sessions", limits.sessions},
+            {"clients", limits.clients},
+            {"clients_per_address", limits.clients_per_address},
+            {"vertices", limits.vertices},
+            {"springs", limits.springs},
+            {"idle_seconds", limits.idle_seconds},
             {"rate", max_rate},
             {"in_flight", max_in_flight},
             {"steps", max_steps},
             {"speed", {min_speed, max_speed}},
             {"lab",
              {{"jobs", max_lab_jobs},
+              {"seconds", limits.lab_seconds},
               {"jobs_a_client", max_lab_jobs_a_client},
               {"time", {min_lab_time, max_lab_time}},
               {"budget", {min_lab_budget, max_lab_budget}}}}}}};

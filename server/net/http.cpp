@@ -12,12 +12,21 @@ namespace clothlab::net {
 
 namespace {
 
-// The page runs only its own scripts; lil-gui brings its style as an element.
+// The page runs only its own scripts and styles, and talks to this server alone.
 constexpr const char* content_security_policy =
-    "default-src 'self'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
-    "connect-src 'self' ws: wss:; worker-src 'self' blob:; object-src 'none'; base-uri 'none'; form-action "
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
+    "connect-src 'self'; worker-src 'self' blob:; base-uri 'none'; form-action "
     "'none'; "
     "frame-ancestors 'self'";
+
+constexpr std::pair<const char*, const char*> security_headers[] = {
+    {"x-content-type-options:", "nosniff"},
+    {"x-frame-options:", "SAMEORIGIN"},
+    {"referrer-policy:", "no-referrer"},
+    {"cross-origin-opener-policy:", "same-origin"},
+    {"cross-origin-resource-policy:", "same-origin"},
+    {"permissions-policy:", "camera=(), display-capture=(), geolocation=(), microphone=(), usb=()"},
+};
 
 HttpAnswer plain(unsigned status, const std::string& text) {
   return {status, "text/plain; charset=utf-8", text + "\n", {}};
@@ -144,8 +153,7 @@ int HttpRequest::send_headers() {
   failed |= add("content-type:", answer_.type);
   failed |= lws_add_http_header_content_length(wsi_, answer_.body.size(), &at, end);
   failed |= add("content-security-policy:", content_security_policy);
-  failed |= add("x-content-type-options:", "nosniff");
-  failed |= add("referrer-policy:", "no-referrer");
+  for (const auto& [name, value] : security_headers) failed |= add(name, value);
   for (const auto& [name, value] : answer_.headers) failed |= add(name.c_str(), value);
   if (failed || lws_finalize_http_header(wsi_, &at, end)) return -1;
   headers_sent_ = true;

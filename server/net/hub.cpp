@@ -1,5 +1,7 @@
 #include "server/net/hub.h"
 
+#include <algorithm>
+
 #include "server/net/client.h"
 #include "server/net/http.h"
 
@@ -25,7 +27,8 @@ const char* name(Role role) {
 Hub::Hub(Options options, std::function<void()> wake)
     : options_(std::move(options)),
       wake_(std::move(wake)),
-      lab_(std::make_unique<LabQueue>(lab_port(), [gpu = options_.gpu] { return open_lab(gpu); })) {}
+      lab_(std::make_unique<LabQueue>(
+          lab_port(), [gpu = options_.gpu] { return open_lab(gpu); }, options_.limits.lab_seconds)) {}
 
 Hub::~Hub() {
   stop_sessions();
@@ -77,14 +80,14 @@ Room* Hub::find_room(const std::string& name) {
 }
 
 bool Hub::has_place_for(const std::string& name) {
-  return find_room(name) || rooms_.size() < static_cast<std::size_t>(options_.max_sessions) ||
+  return find_room(name) || rooms_.size() < static_cast<std::size_t>(limits().sessions) ||
          !sleeping_room().empty();
 }
 
 Room* Hub::open_room(const std::string& name) {
   if (Room* room = find_room(name)) return room;
   if (!has_place_for(name)) return nullptr;
-  if (rooms_.size() >= static_cast<std::size_t>(options_.max_sessions)) retire(sleeping_room());
+  if (rooms_.size() >= static_cast<std::size_t>(limits().sessions)) retire(sleeping_room());
   return (rooms_[name] = std::make_unique<Room>(*this, name, wake_)).get();
 }
 
@@ -106,6 +109,12 @@ void Hub::retire(const std::string& name) {
   retiring_.push_back(std::async(
       std::launch::async, [session = found->second->give_up_session()]() mutable { session.reset(); }));
   rooms_.erase(found);
+}
+
+bool Hub::full(const std::string& address) const {
+  return std::count_if(clients_.begin(), clients_.end(), [&](const auto& item) {
+           return item.second->address() == address;
+         }) >= limits().clients_per_address;
 }
 
 void Hub::add(Client& client) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "server/lab/cache.h"
+#include "server/net/connections.h"
 #include "server/net/lab_queue.h"
 #include "server/net/metrics.h"
 #include "server/net/options.h"
@@ -31,8 +32,10 @@ class Hub {
   ~Hub();
 
   const Options& options() const { return options_; }
+  const Limits& limits() const { return options_.limits; }
   Metrics& metrics() { return metrics_; }
   LabQueue& lab() { return *lab_; }
+  Connections& connections() { return connections_; }
 
   /// What a token makes of who has it; without `--token` everybody is an operator.
   Role role_of(const std::string& token) const;
@@ -47,7 +50,9 @@ class Hub {
   void add(Client& client);
   void remove(Client& client);
   Client* find_client(std::uint64_t id);
-  bool full() const { return clients_.size() >= static_cast<std::size_t>(options_.max_clients); }
+  bool full() const { return clients_.size() >= static_cast<std::size_t>(options_.limits.clients); }
+  /// As many clients as one address may have.
+  bool full(const std::string& address) const;
   bool empty() const { return clients_.empty(); }
   void close_all(int code, const std::string& reason);
   std::uint64_t next_id() { return ++last_id_; }
@@ -75,6 +80,7 @@ class Hub {
   Options options_;
   std::function<void()> wake_;
   Metrics metrics_;
+  Connections connections_{options_.limits};
   lab::Cache lab_cache_;
   std::unique_ptr<LabQueue> lab_;
   std::map<std::string, std::unique_ptr<Room>> rooms_;

@@ -50,8 +50,8 @@ RpcError invalid_params(const Error& error) {
   return invalid_params(error.where, error.what, error.remedy);
 }
 
-std::variant<Request, BadRequest> parse_request(const std::string& text) {
-  Result<json> parsed = scene::parse_json(text, "message");
+std::variant<Request, BadRequest> parse_request(const std::string& text, scene::TextLimits limits) {
+  Result<json> parsed = scene::parse_json(text, "message", false, limits);
   if (!parsed) return BadRequest{{error_parse, parsed.error().text(), nullptr}};
   json& message = *parsed;
   if (message.is_array())

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "server/base/result.h"
+#include "server/scene/document.h"
 
 namespace clothlab::net {
 
@@ -52,7 +53,7 @@ struct BadRequest {
 
 /// Reads one text message. Too deep or not JSON: -32700; a batch or no request: -32600; positional
 /// parameters: -32602.
-std::variant<Request, BadRequest> parse_request(const std::string& text);
+std::variant<Request, BadRequest> parse_request(const std::string& text, scene::TextLimits limits = {});
 
 // Messages to the client, as text.
 std::string result_text(const json& id, const json& result);

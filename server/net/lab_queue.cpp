@@ -20,8 +20,10 @@ RpcError no_such_job(std::uint64_t job) {
 
 }  // namespace
 
-LabQueue::LabQueue(Port port, LabWorker::Open open)
-    : port_(std::move(port)), worker_(std::make_unique<LabWorker>(std::move(open), port_.wake)) {}
+LabQueue::LabQueue(Port port, LabWorker::Open open, int most_seconds)
+    : port_(std::move(port)),
+      most_seconds_(most_seconds),
+      worker_(std::make_unique<LabWorker>(std::move(open), port_.wake)) {}
 
 std::variant<std::uint64_t, RpcError> LabQueue::admit(const Ticket& ticket, std::string session, lab::Job job,
                                                       LabWishes wishes) {
@@ -116,6 +118,12 @@ void LabQueue::held(std::uint64_t job) {
   begin(found->second, now_us());
 }
 
+void LabQueue::session_replaced(const std::string& session) {
+  const auto found = entries_.find(current_);
+  if (found == entries_.end() || found->second.session != session) return;
+  if (found->second.state == State::holding) begin(found->second, now_us());
+}
+
 void LabQueue::session_reaches(const std::string& session, double share, std::int64_t now) {
   const auto running = entries_.find(current_);
   if (running == entries_.end()) return;
@@ -201,7 +209,7 @@ void LabQueue::follow_running(std::int64_t now) {
     entry.result_due = true;
   }
   if (mail.ended) return finish(entry, std::move(mail.ended->outcome), now);
-  if (static_cast<double>(now - entry.began) * 1e-6 < max_lab_seconds || entry.overdue) return;
+  if (static_cast<double>(now - entry.began) * 1e-6 < most_seconds_ || entry.overdue) return;
   entry.overdue = true;
   worker_->stop_job();
 }
@@ -215,7 +223,7 @@ void LabQueue::finish(LabEntry& entry, Result<lab::Outcome> outcome, std::int64_
     if (!entry.beside) port_.keep(*entry.document, entry.job, *entry.outcome);
     return close(entry, State::finished, now);
   }
-  entry.error = entry.overdue ? Error{"lab", "it took more than " + formatted("%.1f s", max_lab_seconds),
+  entry.error = entry.overdue ? Error{"lab", "it took more than " + formatted("%d s", most_seconds_),
                                       "a smaller scene, a shorter time or fewer methods"}
                               : outcome.error();
   close(entry, State::failed, now);
@@ -241,10 +249,15 @@ void LabQueue::close(LabEntry& entry, LabEntry::State state, std::int64_t now) {
    : state == State::failed ? totals_.failed
                             : totals_.cancelled)++;
   totals_.seconds += seconds;
-  log("lab: job " + std::to_string(entry.id) + " (" + lab::name(entry.job) + ", session " + entry.session +
-      ") " + name(state) + " after " + formatted("%.1f s", seconds) +
-      (entry.cached ? ", known from before" : "") + (entry.beside ? ", beside a session that played" : "") +
-      (entry.error ? ": " + entry.error->text() : ""));
+  std::vector<LogField> fields{{"job", std::to_string(entry.id)},
+                               {"kind", lab::name(entry.job)},
+                               {"session", entry.session},
+                               {"state", name(state)},
+                               {"seconds", formatted("%.1f", seconds)}};
+  if (entry.cached) fields.push_back({"cached", "true"});
+  if (entry.beside) fields.push_back({"beside", "true"});
+  if (entry.error) fields.push_back({"why", entry.error->text()});
+  log(state == State::failed ? LogLevel::warning : LogLevel::info, "lab_job_ended", fields);
   const std::uint64_t client = entry.ticket.asker;
   if (entry.for_auto && state == State::finished)
     port_.chosen(entry.session, entry.document, std::get<lab::Choice>(*entry.outcome));

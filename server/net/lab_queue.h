@@ -38,7 +38,8 @@ class LabQueue {
     /// Calls `pump` soon.
     std::function<void()> wake;
   };
-  LabQueue(Port port, LabWorker::Open open);
+  /// A job that takes longer than `most_seconds` is stopped, and fails.
+  LabQueue(Port port, LabWorker::Open open, int most_seconds);
 
   /// A job and the ticket to answer, or why not: too many wait. The caller then makes sure that `scene_taken`
   /// comes, or calls `withdraw`.
@@ -53,6 +54,8 @@ class LabQueue {
   void scene_taken(std::uint64_t job, SharedDocument document, std::uint64_t revision);
   /// Whether the session's jobs are of its present scene.
   void scene_changed(const std::string& session, const scene::Document& present);
+  /// It was brought back after it failed: whoever waits for it to stand still need not.
+  void session_replaced(const std::string& session);
   /// The session stands still now.
   void held(std::uint64_t job);
 
@@ -97,6 +100,7 @@ class LabQueue {
   void forget_oldest(std::uint64_t client);
 
   Port port_;
+  int most_seconds_;
   std::unique_ptr<LabWorker> worker_;
   std::map<std::uint64_t, LabEntry> entries_;  ///< by id, and so in the order in which they were asked for
   std::uint64_t last_id_ = 0;

@@ -6,14 +6,33 @@
 #include <cstdint>
 
 #include "server/scene/document.h"
+#include "server/scene/ranges.h"
 
 namespace clothlab::net {
 
-inline constexpr std::size_t max_message_bytes = scene::max_json_bytes;  ///< larger: closed with 1009
+/// What whoever starts the server may set: one flag of `clothlab serve` each.
+struct Limits {
+  int sessions = 8;
+  int clients = 64;                                             ///< WebSocket connections; beyond: 503
+  int clients_per_address = 32;                                 ///< of them; as many again for plain HTTP
+  int message_bytes = static_cast<int>(scene::max_json_bytes);  ///< larger: closed with 1009
+  int message_rate = 2000;  ///< messages a second, twice that in a burst; beyond: a flood, closed with 1008
+  int json_depth = static_cast<int>(scene::max_json_depth);
+  int vertices = static_cast<int>(scene::max_vertices);  ///< of a scene
+  int springs = 16 * static_cast<int>(scene::max_vertices);
+  int lab_seconds = 1800;   ///< a job may take; beyond: it fails
+  int header_seconds = 10;  ///< from connecting to the end of the request's headers, TLS included
+  int auth_seconds = 5;     ///< a client without a role is closed with 1008 after this
+  int idle_seconds = 60;    ///< a connection that says nothing, not even pong, is closed after this
+};
+
+/// Messages that may come at once.
+inline int burst_of(const Limits& limits) {
+  return 2 * limits.message_rate;
+}
+
 inline constexpr std::size_t max_unsent_text_bytes =
-    4 * 1024 * 1024;  ///< control text a client may let pile up
-inline constexpr double messages_per_second = 2000,
-                        message_burst = 4000;               ///< beyond: a flood, closed with 1008
+    4 * 1024 * 1024;                                        ///< control text a client may let pile up
 inline constexpr std::size_t max_waiting_commands = 1024;   ///< of a session; beyond: -32002
 inline constexpr double min_rate = 0.1, max_rate = 120;     ///< frames a second a viewer may ask for
 inline constexpr int max_in_flight = 8;                     ///< unacknowledged frames a viewer may ask for
@@ -21,13 +40,11 @@ inline constexpr std::int64_t max_steps = 1'000'000;        ///< of one sim.step
 inline constexpr double min_speed = 0.01, max_speed = 100;  ///< of sim.speed
 inline constexpr int max_lab_jobs = 8, max_lab_jobs_a_client = 2;   ///< that wait; beyond: -32002
 inline constexpr int max_lab_outcomes_a_client = 8;                 ///< kept for lab.export, the newest
-inline constexpr double max_lab_seconds = 1800;                     ///< a job may take; beyond: it fails
 inline constexpr double min_lab_time = 0.01, max_lab_time = 60;     ///< simulated by a job [s]
 inline constexpr double min_lab_budget = 1, max_lab_budget = 1200;  ///< of a chart [s]
-inline constexpr int auth_seconds = 5;          ///< a client without a role is closed with 1008 after this
-inline constexpr int max_snapshot_side = 4096;  ///< [pixels]
-inline constexpr double status_rate = 10;       ///< sim.status a second
-inline constexpr double diagnosis_rate = 60;    ///< looks a second at whether a session blows up
+inline constexpr int max_snapshot_side = 4096;                      ///< [pixels]
+inline constexpr double status_rate = 10;                           ///< sim.status a second
+inline constexpr double diagnosis_rate = 60;  ///< looks a second at whether a session blows up
 /// A session that nobody has watched for this long stops stepping until somebody does again [s].
 inline constexpr double unwatched_seconds = 30;
 /// Unsent bytes the kernel may hold for a client: what lies there can no longer be replaced by something

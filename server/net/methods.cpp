@@ -4,6 +4,7 @@
 #include <array>
 
 #include "server/net/client.h"
+#include "server/net/log.h"
 
 namespace clothlab::net {
 
@@ -21,6 +22,9 @@ Outcome auth(Client& client, const Request& request) {
   const std::string token = params.text("token", std::nullopt);
   if (auto error = params.check()) return *error;
   const Role role = client.hub().role_of(token);
+  if (role == Role::none)
+    log(LogLevel::warning, "token_refused",
+        {{"client", std::to_string(client.id())}, {"address", client.address()}});
   if (role == Role::none)
     return RpcError{error_not_allowed, "this token opens nothing here; see --token and --view-token",
                     nullptr};

@@ -66,7 +66,9 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
         metrics.frames_skipped);
   count("clothlab_bytes_sent_total", "counter", "bytes of WebSocket messages sent", metrics.bytes_sent);
   count("clothlab_messages_received_total", "counter", "messages received", metrics.messages_received);
-  count("clothlab_refused_total", "counter", "WebSocket handshakes refused", metrics.refused);
+  count("clothlab_refused_total", "counter", "WebSocket handshakes and connections refused", metrics.refused);
+  count("clothlab_sessions_brought_back_total", "counter", "sessions that failed and went on",
+        metrics.sessions_brought_back);
   count("clothlab_lab_queued", "gauge", "jobs of the lab that wait", gauges.lab.queued);
   count("clothlab_lab_running", "gauge", "jobs of the lab that run", gauges.lab.running);
   count("clothlab_lab_finished_total", "counter", "jobs of the lab that finished", gauges.lab.finished);

@@ -31,7 +31,8 @@ struct Metrics {
   std::uint64_t frames_skipped = 0;  ///< replaced by a newer one before the viewer could have it
   std::uint64_t bytes_sent = 0;      ///< WebSocket payloads
   std::uint64_t messages_received = 0;
-  std::uint64_t refused = 0;  ///< handshakes
+  std::uint64_t refused = 0;  ///< handshakes and connections
+  std::uint64_t sessions_brought_back = 0;
   LatencyHistogram latency;
 };
 

@@ -1,10 +1,12 @@
 // What `clothlab serve` is told on its command line.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "server/net/limits.h"
 #include "server/scene/document.h"
 
 namespace clothlab::net {
@@ -16,7 +18,8 @@ struct Options {
   std::string token;                      ///< empty: everybody is an operator
   std::string view_token;                 ///< for viewers, who change nothing
   std::vector<std::string> allow_origin;  ///< besides the server's own, e.g. "https://example.org"
-  int max_sessions = 8, max_clients = 64;
+  Limits limits;
+  std::filesystem::path state_folder;  ///< where sessions are kept; empty: nowhere
   std::optional<int> gpu;
   std::string tls_certificate, tls_key;  ///< PEM files; empty: plain HTTP
 };

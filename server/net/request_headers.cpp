@@ -1,5 +1,9 @@
 #include "server/net/request_headers.h"
 
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
 #include <algorithm>
 #include <cctype>
 
@@ -13,6 +17,28 @@ std::string lower(std::string text) {
   return text;
 }
 }  // namespace
+
+std::string peer_address(int socket) {
+  sockaddr_storage peer{};
+  socklen_t size = sizeof peer;
+  if (getpeername(socket, reinterpret_cast<sockaddr*>(&peer), &size) != 0) return {};
+  char text[INET6_ADDRSTRLEN] = "";
+  if (peer.ss_family == AF_INET) {
+    inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in&>(peer).sin_addr, text, sizeof text);
+  } else if (peer.ss_family == AF_INET6) {
+    const in6_addr& address = reinterpret_cast<const sockaddr_in6&>(peer).sin6_addr;
+    // An IPv4 address that reached an IPv6 socket is that address.
+    if (IN6_IS_ADDR_V4MAPPED(&address))
+      inet_ntop(AF_INET, address.s6_addr + 12, text, sizeof text);
+    else
+      inet_ntop(AF_INET6, &address, text, sizeof text);
+  }
+  return text;
+}
+
+std::string peer_address(lws* wsi) {
+  return peer_address(lws_get_socket_fd(wsi));
+}
 
 std::string header(lws* wsi, lws_token_indexes token) {
   const int length = lws_hdr_total_length(wsi, token);

@@ -8,6 +8,9 @@
 
 namespace clothlab::net {
 
+/// Who is at the other end of a socket: an IPv4 or IPv6 address, empty where there is nobody any more.
+std::string peer_address(int socket);
+std::string peer_address(lws* wsi);
 /// A header's value, empty if it is missing or longer than 4 KiB.
 std::string header(lws* wsi, lws_token_indexes token);
 /// An argument of the query, `fallback` if it is missing.

@@ -6,6 +6,7 @@
 #include "server/net/client.h"
 #include "server/net/greeting.h"
 #include "server/net/hub.h"
+#include "server/net/keeper.h"
 #include "server/net/log.h"
 
 namespace clothlab::net {
@@ -18,10 +19,19 @@ bool is_session_name(const std::string& name) {
 }
 
 Room::Room(Hub& hub, std::string name, const std::function<void()>& wake)
-    : hub_(hub),
-      name_(std::move(name)),
-      session_(std::make_unique<Session>(hub.options().document, hub.options().gpu, wake)),
-      unwatched_since_(now_us()) {}
+    : hub_(hub), name_(std::move(name)), wake_(wake), unwatched_since_(now_us()) {
+  begin_session(nullptr);
+}
+
+/// Frames that viewers may have had of a session that failed, since its room last looked.
+constexpr std::uint32_t frames_unseen = 64;
+
+void Room::begin_session(std::shared_ptr<const Saved> saved) {
+  const Options& options = hub_.options();
+  Beginning beginning{name_, options.document, std::move(saved), {}, last_frame_ + frames_unseen};
+  if (!options.state_folder.empty()) beginning.file = session_file(options.state_folder, name_);
+  session_ = std::make_unique<Session>(std::move(beginning), options.limits, options.gpu, wake_);
+}
 
 stream::SharedMessage Room::frame(stream::Encoding encoding) const {
   stream::SharedMessage frame = session_ ? session_->exchange().frame(encoding) : nullptr;
@@ -77,11 +87,10 @@ void Room::demand_changed(std::optional<stream::Encoding> fresh) {
 
 void Room::pump() {
   if (!session_) return;
-  Exchange& exchange = session_->exchange();
-  exchange.take_events(events_);
+  session_->exchange().take_events(events_);
   for (Event& event : events_) std::visit([&](auto& what) { take(what); }, event);
   Status status;
-  const bool told = exchange.take_status(status);
+  const bool told = session_->exchange().take_status(status);
   if (told) asleep_ = status.asleep;
   if (told && status.real_time_factor > 0)
     hub_.lab().session_reaches(name_, status.real_time_factor / status.speed, now_us());
@@ -94,19 +103,50 @@ void Room::pump() {
     const auto encoding = static_cast<stream::Encoding>(i);
     const stream::SharedMessage latest = demanded_[i] > 0 ? frame(encoding) : nullptr;
     if (!latest || latest->header.sequence == seen_[i]) continue;
-    seen_[i] = latest->header.sequence;
+    seen_[i] = last_frame_ = latest->header.sequence;
     for (Client* client : clients_) client->frame_arrived(encoding, now);
   }
 }
 
 void Room::take(Started& started) {
+  const bool again = this->started();
   renderer_ = started.renderer;
-  log("session " + name_ + " runs on " + renderer_);
+  log(LogLevel::info, "session_started", {{"session", name_}, {"renderer", renderer_}});
+  if (again) return;  // they have been greeted
   for (Client* client : clients_) greet(*client);
 }
 
+/// A session that had begun goes on from what it kept; one that fails again and again does not.
+bool Room::bring_back(const Failed& failed) {
+  constexpr std::int64_t a_while = 60'000'000;
+  constexpr std::size_t most = 3;
+  const std::int64_t now = now_us();
+  std::erase_if(failed_at_, [&](std::int64_t at) { return now - at > a_while; });
+  const std::shared_ptr<const Saved> saved = session_->exchange().kept();
+  if (!started() || !saved || failed_at_.size() >= most) return false;
+  failed_at_.push_back(now);
+  ++hub_.metrics().sessions_brought_back;
+  session_->exchange().give_up(failed.error, late_);
+  begin_session(saved);
+  for (Event& event : late_) std::visit([&](auto& what) { take(what); }, event);
+  late_.clear();
+  for (Client* client : clients_) client->session_replaced();
+  post({{}, Watchers{static_cast<int>(clients_.size())}});
+  for (std::size_t i = 0; i < encoding_count; ++i) demand_changed(static_cast<stream::Encoding>(i));
+  hub_.lab().session_replaced(name_);
+  broadcast("notice", {{"level", "warning"},
+                       {"text", "the session failed and goes on from where it was a second ago: " +
+                                    failed.error.text()}});
+  return true;
+}
+
+void Room::take(SceneLost& lost) {
+  hub_.lab().withdraw(lost.job);
+}
+
 void Room::take(Failed& failed) {
-  log("session " + name_ + ": " + failed.error.text());
+  log(LogLevel::error, "session_failed", {{"session", name_}, {"why", failed.error.text()}});
+  if (bring_back(failed)) return;
   broadcast("notice", {{"level", "error"}, {"text", failed.error.text()}});
   while (!clients_.empty()) {
     Client* client = clients_.back();

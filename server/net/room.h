@@ -67,8 +67,11 @@ class Room {
   void take(Notice& notice);
   void take(Exported& exported);
   void take(SceneReached& reached);
+  void take(SceneLost& lost);
   void take(Held& held);
   void take(ChoiceWanted&);
+  void begin_session(std::shared_ptr<const Saved> saved);
+  bool bring_back(const Failed& failed);
   void greet(Client& client);
   void broadcast(const char* method, const json& params);
   void broadcast_viewers();
@@ -76,9 +79,10 @@ class Room {
 
   Hub& hub_;
   std::string name_;
+  std::function<void()> wake_;
   std::unique_ptr<Session> session_;
   std::vector<Client*> clients_;
-  std::vector<Event> events_;
+  std::vector<Event> events_, late_;
   std::string renderer_;
   std::shared_ptr<const scene::Document> document_;
   std::uint64_t revision_ = 0;
@@ -86,7 +90,9 @@ class Room {
   json passes_ = json::array(), skipped_ = json::array(), solver_ = json::object();
   std::array<double, encoding_count> demanded_{};
   std::array<std::uint32_t, encoding_count>
-      seen_{};  ///< sequence number of the last frame offered to viewers
+      seen_{};                           ///< sequence number of the last frame offered to viewers
+  std::uint32_t last_frame_ = 0;         ///< the number of the newest one
+  std::vector<std::int64_t> failed_at_;  ///< [us] when the session was brought back
   std::optional<Failed> failure_;
   std::int64_t unwatched_since_ = 0;
   bool asleep_ = false;

@@ -1,6 +1,9 @@
 #include "server/net/server.h"
 
 #include <libwebsockets.h>
+#include <openssl/ssl.h>
+
+#include <algorithm>
 
 #include "server/net/callbacks.h"
 #include "server/net/log.h"
@@ -14,17 +17,21 @@ bool is_ipv6(const std::string& address) {
   return address.find(':') != std::string::npos;
 }
 
-// A client that is gone without a word is noticed by a ping it does not answer.
-constexpr lws_retry_bo_t keep_alive{nullptr, 0, 0, 30, 60, 0};
-
 }  // namespace
 
 bool is_loopback(const std::string& address) {
   return address == "localhost" || address == "::1" || address.rfind("127.", 0) == 0;
 }
 
+// A client that is gone without a word is noticed by a ping it does not answer.
 Server::Server(Options options)
-    : hub_(std::move(options), [this] {
+    : keep_alive_{nullptr,
+                  0,
+                  0,
+                  static_cast<std::uint16_t>((options.limits.idle_seconds + 1) / 2),
+                  static_cast<std::uint16_t>(options.limits.idle_seconds),
+                  0},
+      hub_(std::move(options), [this] {
         if (lws_context* context = context_.load()) lws_cancel_service(context);
       }) {}
 
@@ -34,7 +41,11 @@ Server::~Server() {
 }
 
 Result<std::unique_ptr<Server>> Server::listen(Options options) {
-  lws_set_log_level(LLL_ERR, [](int, const char* line) { std::cerr << "clothlab: libwebsockets: " << line; });
+  lws_set_log_level(LLL_ERR, [](int, const char* line) {
+    std::string text = line;
+    while (!text.empty() && text.back() == '\n') text.pop_back();
+    log(LogLevel::error, "libwebsockets", {{"text", text}});
+  });
   auto server = std::unique_ptr<Server>(new Server(std::move(options)));
   const Options& with = server->hub_.options();
   const std::string address = with.bind == "localhost" ? "127.0.0.1" : with.bind;
@@ -46,14 +57,16 @@ Result<std::unique_ptr<Server>> Server::listen(Options options) {
   info.options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_EXPLICIT_VHOSTS;
   if (!is_ipv6(address)) info.options |= LWS_SERVER_OPTION_DISABLE_IPV6;
   info.pt_serv_buf_size = 256 * 1024;
-  info.timeout_secs = 20;
-  info.keepalive_timeout = 30;
-  info.retry_and_idle_policy = &keep_alive;
+  info.timeout_secs = static_cast<unsigned>(with.limits.header_seconds);
+  info.timeout_secs_ah_idle = info.timeout_secs;
+  info.keepalive_timeout = std::min(30, with.limits.idle_seconds);
+  info.retry_and_idle_policy = &server->keep_alive_;
   info.alpn = "http/1.1";
   if (!with.tls_certificate.empty()) {
     info.options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
     info.ssl_cert_filepath = with.tls_certificate.c_str();
     info.ssl_private_key_filepath = with.tls_key.c_str();
+    info.ssl_options_set = SSL_OP_NO_SSLv3 | SSL_OP_NO_TLSv1 | SSL_OP_NO_TLSv1_1;
   }
   lws_context* context = lws_create_context(&info);
   if (!context) return Error{"serve", "libwebsockets could not start", "see the lines above"};
@@ -77,7 +90,8 @@ std::string Server::url() const {
 
 std::optional<Failed> Server::run(const std::function<void()>& ready) {
   if (!files_.built())
-    log("the page is not built; run `npm --prefix web ci && npm --prefix web run build`, or server/run");
+    log(LogLevel::warning, "page_not_built",
+        {{"remedy", "npm --prefix web ci && npm --prefix web run build, or server/run"}});
   hub_.open_room(main_session);
   bool announced = false;
   while (!stopping_) {
@@ -116,6 +130,9 @@ unsigned Server::refusal(lws* wsi, const char*& why) {
   if (!origin_allowed(header(wsi, WSI_TOKEN_ORIGIN), header(wsi, WSI_TOKEN_HOST),
                       hub_.options().allow_origin))
     return why = "pages of this origin may not connect; see --allow-origin", HTTP_STATUS_FORBIDDEN;
+  if (hub_.full(peer_address(wsi)))
+    return why = "this address has as many clients as it may; see --max-clients-per-address",
+           HTTP_STATUS_SERVICE_UNAVAILABLE;
   if (hub_.full())
     return why = "the server has as many clients as it may; see --max-clients",
            HTTP_STATUS_SERVICE_UNAVAILABLE;

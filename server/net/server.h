@@ -2,6 +2,8 @@
 // it.
 #pragma once
 
+#include <libwebsockets.h>
+
 #include <atomic>
 #include <functional>
 #include <memory>
@@ -9,10 +11,6 @@
 
 #include "server/net/hub.h"
 #include "server/net/web_files.h"
-
-struct lws;
-struct lws_context;
-struct lws_vhost;
 
 namespace clothlab::net {
 
@@ -41,6 +39,7 @@ class Server {
   explicit Server(Options options);
   void say_goodbye();
 
+  lws_retry_bo_t keep_alive_;
   WebFiles files_ = WebFiles::load();
   std::atomic<bool> stopping_{false};
   std::atomic<lws_context*> context_{nullptr};

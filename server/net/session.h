@@ -2,20 +2,31 @@
 // thread's handle.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <thread>
 
 #include "server/net/exchange.h"
+#include "server/net/limits.h"
 #include "server/scene/document.h"
 
 namespace clothlab::net {
 
+/// What a session begins with.
+struct Beginning {
+  std::string name;
+  scene::Document document;                   ///< unless it is brought back from:
+  std::shared_ptr<const Saved> saved;         ///< what it kept of itself before it failed, else from
+  std::optional<std::filesystem::path> file;  ///< where it keeps itself, if anywhere
+  std::uint32_t last_frame = 0;               ///< the number of the last frame that viewers have had
+};
+
 class Session {
  public:
   /// Starts the thread; what becomes of it arrives as an event (Started or Failed).
-  Session(scene::Document document, std::optional<int> gpu, std::function<void()> wake);
+  Session(Beginning beginning, const Limits& limits, std::optional<int> gpu, std::function<void()> wake);
   /// Ends the thread and waits for it: a turn at most.
   ~Session();
   Session(const Session&) = delete;
@@ -30,7 +41,7 @@ class Session {
   }
 
  private:
-  static void run(Exchange& exchange, scene::Document document, std::optional<int> gpu);
+  void run(Beginning& beginning, const Limits& limits, std::optional<int> gpu);
 
   Exchange exchange_;
   std::thread thread_;

@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "server/model/remedy.h"
+#include "server/model/size.h"
+#include "server/net/fault.h"
 #include "server/scene/method.h"
 
 namespace clothlab::net {
@@ -21,14 +23,14 @@ Clock::duration period(double rate) {
 }  // namespace
 
 Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Exchange& exchange,
+                                                 const Limits& limits, std::uint32_t last_frame,
                                                  double patience) {
-  auto stepper = std::unique_ptr<Stepper>(new Stepper(std::move(document), exchange, patience));
-  if (clothlab::Status settled = stepper->automatic_.settle(stepper->document_, Clock::now()); !settled)
-    return settled.error();
+  auto stepper = std::unique_ptr<Stepper>(new Stepper(std::move(document), exchange, limits, patience));
+  if (clothlab::Status prepared = stepper->prepare(stepper->document_); !prepared) return prepared.error();
   Result<std::unique_ptr<sim::Simulation>> simulation = sim::Simulation::create(stepper->document_.scene);
   if (!simulation) return simulation.error();
   stepper->simulation_ = std::move(*simulation);
-  Result<std::unique_ptr<FrameMaker>> frames = FrameMaker::create(exchange);
+  Result<std::unique_ptr<FrameMaker>> frames = FrameMaker::create(exchange, last_frame);
   if (!frames) return frames.error();
   stepper->frames_ = std::move(*frames);
   stepper->last_watched_ = stepper->next_status_ = Clock::now();
@@ -39,6 +41,38 @@ Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Excha
   stepper->rest_.follow(stepper->document_.scene, stepper->simulation_->model());
   stepper->watch_anew();
   return stepper;
+}
+
+clothlab::Status Stepper::bring_back(const Saved& saved) {
+  if (saved.state.position.size() != simulation_->model().vertex_count())
+    return Error{"saved session",
+                 std::to_string(saved.state.position.size()) + " vertices of a scene that has " +
+                     std::to_string(simulation_->model().vertex_count()),
+                 "what this version of the program wrote"};
+  simulation_->restore(saved.state, saved.time, saved.step);
+  playing_ = saved.playing;
+  real_time_.set_speed(std::clamp(saved.speed, min_speed, max_speed));
+  state_replaced();
+  watch_anew();
+  revision_ = saved.revision;
+  announce_scene(std::nullopt, 0);
+  return ok();
+}
+
+Saved Stepper::saved() {
+  return {document_.value,          revision_,           playing_ || held_ || (diverged_ && resume_),
+          real_time_.speed(),       simulation_->time(), simulation_->step_index(),
+          simulation_->read_state()};
+}
+
+clothlab::Status Stepper::prepare(scene::Document& document) {
+  const model::Size size = model::size_of(document.scene);
+  if (clothlab::Status fits = model::within(size, static_cast<std::size_t>(limits_.vertices),
+                                            static_cast<std::size_t>(limits_.springs));
+      !fits)
+    return fits;
+  if (fault_due(Fault::change_fails, "", simulation_ ? simulation_->step_index() : 0)) throw std::bad_alloc();
+  return automatic_.settle(document, Clock::now());
 }
 
 Clock::time_point Stepper::turn(std::vector<Command>& commands) {

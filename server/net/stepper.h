@@ -27,8 +27,17 @@ class Stepper {
  public:
   /// `document` is loaded and plays at once. Unwatched for `patience` [s], it stops until it is watched
   /// again.
+  /// Its frames are numbered from after `last_frame`.
   static Result<std::unique_ptr<Stepper>> create(scene::Document document, Exchange& exchange,
+                                                 const Limits& limits, std::uint32_t last_frame = 0,
                                                  double patience = unwatched_seconds);
+
+  /// Goes on from where a session of this document was. Error: it is of another mesh.
+  clothlab::Status bring_back(const Saved& saved);
+  /// What it can be brought back from; waits for the GPU.
+  Saved saved();
+  /// Rises with every change of what `saved` says.
+  std::uint64_t version() const { return state_version_ + revision_; }
 
   /// Handles `commands`, then does the work that is due; returns when the next turn is, if no command comes
   /// before.
@@ -41,8 +50,10 @@ class Stepper {
   };
   using Answer = std::variant<json, RpcError>;
 
-  Stepper(scene::Document document, Exchange& exchange, double patience)
-      : document_(std::move(document)), exchange_(exchange), patience_(patience) {}
+  Stepper(scene::Document document, Exchange& exchange, const Limits& limits, double patience)
+      : document_(std::move(document)), exchange_(exchange), limits_(limits), patience_(patience) {}
+  /// What a scene must pass before anything is made for it.
+  clothlab::Status prepare(scene::Document& document);
 
   // stepper_commands.cpp; each answers its ticket where it has one.
   void handle(Command& command);
@@ -98,6 +109,7 @@ class Stepper {
 
   scene::Document document_;
   Exchange& exchange_;
+  Limits limits_;
   double patience_;  ///< [s]
   std::unique_ptr<sim::Simulation> simulation_;
   std::unique_ptr<FrameMaker> frames_;

@@ -8,7 +8,16 @@
 namespace clothlab::net {
 
 void Stepper::handle(Command& command) {
-  std::visit([&](auto& what) { perform(what, command.ticket); }, command.what);
+  try {
+    std::visit([&](auto& what) { perform(what, command.ticket); }, command.what);
+  } catch (const std::bad_alloc&) {
+    // What was to be made is gone again; what was there is as it was.
+    const Error error{"session", "there is not enough memory for that", "a smaller scene, or fewer sessions"};
+    if (command.ticket.id)
+      reply(command.ticket, RpcError{error_internal, error.text(), nullptr});
+    else if (std::holds_alternative<Export>(command.what))
+      exchange_.emit(Exported{command.ticket.asker, "", error});
+  }
 }
 
 void Stepper::reply(const Ticket& ticket, Answer answer) {
@@ -35,8 +44,8 @@ void Stepper::perform(LoadScene& load, const Ticket& ticket) {
   if (!document && !load.preset.empty())
     return reply(ticket, invalid_params("/preset", json(load.preset).dump(), document.error().remedy));
   if (!document) return reply(ticket, invalid_params(document.error()));
-  if (clothlab::Status settled = automatic_.settle(*document, Clock::now()); !settled)
-    return reply(ticket, invalid_params(settled.error()));
+  if (clothlab::Status prepared = prepare(*document); !prepared)
+    return reply(ticket, invalid_params(prepared.error()));
   const Result<sim::ChangeDepth> depth = simulation_->change(document->scene);
   if (!depth) return reply(ticket, invalid_params(depth.error()));
   playing_ = playing_ || (diverged_ && resume_);
@@ -55,8 +64,8 @@ void Stepper::perform(PatchScene& patch, const Ticket& ticket) {
                                   {{"revision", revision_}}});
   Result<scene::Document> document = scene::apply_patch(document_, patch.patch);
   if (!document) return reply(ticket, invalid_params(document.error()));
-  if (clothlab::Status settled = automatic_.settle(*document, Clock::now()); !settled)
-    return reply(ticket, invalid_params(settled.error()));
+  if (clothlab::Status prepared = prepare(*document); !prepared)
+    return reply(ticket, invalid_params(prepared.error()));
   const Result<sim::ChangeDepth> depth = change(document->scene);
   if (!depth) return reply(ticket, invalid_params(depth.error()));
   adopt(std::move(*document), *depth);
@@ -121,6 +130,7 @@ void Stepper::perform(Play&, const Ticket& ticket) {
   if (diverged_) return reply(ticket, diverged_error());
   finish_waiting(true);
   wake_up();
+  ++state_version_;
   playing_ = true;
   held_ = false;
   reply(ticket, where_we_are());
@@ -129,6 +139,7 @@ void Stepper::perform(Play&, const Ticket& ticket) {
 void Stepper::perform(Pause&, const Ticket& ticket) {
   finish_waiting(true);
   wake_up();
+  ++state_version_;
   playing_ = resume_ = held_ = false;
   reply(ticket, where_we_are());
 }
@@ -148,6 +159,7 @@ void Stepper::perform(Reset&, const Ticket& ticket) {
 
 void Stepper::perform(Speed& speed, const Ticket& ticket) {
   wake_up();
+  ++state_version_;
   real_time_.set_speed(speed.factor);
   real_time_.restart(Clock::now());
   reply(ticket, json{{"factor", speed.factor}});

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "server/base/data_files.h"
+#include "server/base/files.h"
 #include "server/base/text.h"
 
 namespace clothlab::net {
@@ -84,7 +85,7 @@ WebFiles WebFiles::load() {
   std::error_code failure;
   if (root) {
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(*root, failure)) {
-      if (!entry.is_regular_file(failure)) continue;
+      if (entry.is_symlink(failure) || !entry.is_regular_file(failure)) continue;
       if (Result<std::string> body = read_file(entry.path()))
         files.add((fs::path("/") / entry.path().lexically_relative(*root)).generic_string(),
                   std::move(*body));

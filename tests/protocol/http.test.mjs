@@ -1,5 +1,9 @@
 import assert from "node:assert/strict";
+import { cpSync, mkdtempSync, rmSync, symlinkSync } from "node:fs";
 import net from "node:net";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { fileURLToPath } from "node:url";
 import { once } from "node:events";
 import { after, before, test } from "node:test";
 import { gunzipSync } from "node:zlib";
@@ -16,9 +20,13 @@ test("the page comes as HTML, with the headers that keep it to itself", async ()
   assert.match(body.toString(), /<html/i);
   const policy = headers["content-security-policy"];
   assert.match(policy, /script-src 'self'(;|$)/);
-  assert.doesNotMatch(/script-src[^;]*/.exec(policy)[0], /unsafe/);
-  assert.equal(headers["x-content-type-options"], "nosniff");
-  assert.equal(headers["referrer-policy"], "no-referrer");
+  assert.match(policy, /default-src 'none'/);
+  assert.doesNotMatch(policy, /unsafe|\*|https?:|wss?:/, "nothing inline, nothing from elsewhere");
+  for (const [name, value] of [["x-content-type-options", "nosniff"], ["x-frame-options", "SAMEORIGIN"], ["referrer-policy", "no-referrer"],
+                               ["cross-origin-opener-policy", "same-origin"], ["cross-origin-resource-policy", "same-origin"]])
+    assert.equal(headers[name], value);
+  assert.match(headers["permissions-policy"], /camera=\(\)/);
+  assert.doesNotMatch(body.toString(), /<script(?![^>]*src=)|<style|\son\w+=|\sstyle=/i, "the page has no inline code or style");
 });
 
 test("the page comes compressed to who understands it, and not again to who has it", async () => {
@@ -39,7 +47,7 @@ test("HEAD answers as GET does, without the body", async () => {
 });
 
 test("what is not there is a readable 404; nothing outside the page's folder can be reached", async () => {
-  for (const path of ["/nothing", "/web", "/assets/", "/..%2f..%2fetc/passwd", "/%2e%2e/%2e%2e/CMakeLists.txt", "/.git/config"]) {
+  for (const path of ["/nothing", "/web", "/assets/", "/..%2f..%2fetc/passwd", "/%2e%2e/%2e%2e/CMakeLists.txt", "/%252e%252e/etc/passwd", "/..%5c..%5cetc/passwd", "/%00/etc/passwd", "//etc/passwd", "/.git/config"]) {
     const { status, body } = await server.get(path);
     assert.equal(status, 404, path);
     assert.ok(body.length > 0);
@@ -51,6 +59,23 @@ test("what is not there is a readable 404; nothing outside the page's folder can
   socket.on("data", (data) => (text += data));
   await withTimeout(once(socket, "close"), "the answer");
   assert.doesNotMatch(text, /root:/);
+});
+
+test("a symbolic link in the page's folder is not followed", async () => {
+  const data = mkdtempSync(join(tmpdir(), "clothlab-data-"));
+  try {
+    const root = fileURLToPath(new URL("../../", import.meta.url));
+    for (const part of ["shaders", "server/scene/presets", "web/dist"]) cpSync(join(root, part), join(data, part), { recursive: true });
+    symlinkSync("/etc/passwd", join(data, "web/dist/passwd.txt"));
+    symlinkSync("/etc", join(data, "web/dist/etc"));
+    process.env.CLOTHLAB_DATA = data;
+    const linked = await Server.start().finally(() => delete process.env.CLOTHLAB_DATA);
+    for (const path of ["/passwd.txt", "/etc/passwd", "/etc/hostname"]) assert.equal((await linked.get(path)).status, 404, path);
+    assert.equal((await linked.get("/")).status, 200);
+    await linked.stop();
+  } finally {
+    rmSync(data, { recursive: true });
+  }
 });
 
 test("other verbs than GET and HEAD answer 405 with what is allowed", async () => {

@@ -158,7 +158,7 @@ TEST_CASE("a job that takes longer than any may is stopped and says so") {
   Lab lab;
   const std::uint64_t job = lab.ask(1);
   REQUIRE(lab.until([&] { return lab.jobs.started == 1; }));
-  lab.queue.pump(now_us() + static_cast<std::int64_t>(net::max_lab_seconds * 1e6) + 1'000'000);
+  lab.queue.pump(now_us() + static_cast<std::int64_t>(net::Limits().lab_seconds * 1e6) + 1'000'000);
   REQUIRE(lab.reaches(1, job, "failed"));
   CHECK(lab.last_result(job)["error"]["found"].get<std::string>().find("it took more than") == 0);
 }

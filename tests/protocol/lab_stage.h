@@ -80,13 +80,15 @@ struct Lab {
   std::vector<std::pair<std::string, Result<lab::Choice>>> chosen;  ///< for sessions whose method is auto
   std::uint64_t steps = 0;
   net::SharedDocument seed = std::make_shared<const scene::Document>(*scene::load_preset("seed"));
-  LabQueue queue{port(), [this]() -> Result<net::LabWorker::Run> {
+  LabQueue queue{port(),
+                 [this]() -> Result<net::LabWorker::Run> {
                    ++jobs.opened;
                    if (jobs.fails_to_open) return Error{"OpenGL", "nothing there", "install it"};
                    return net::LabWorker::Run(
                        [this](const scene::Document&, const lab::Job& job,
                               const lab::Control<lab::Outcome>& control) { return jobs.run(job, control); });
-                 }};
+                 },
+                 net::Limits().lab_seconds};
 
   LabQueue::Port port() {
     return {.notify =

@@ -1,8 +1,4 @@
 import assert from "node:assert/strict";
-import { spawnSync } from "node:child_process";
-import { mkdtemp, rm } from "node:fs/promises";
-import { tmpdir } from "node:os";
-import { join } from "node:path";
 import { test } from "node:test";
 import { Client, runProgram, Server } from "./harness.mjs";
 
@@ -63,23 +59,4 @@ test("a device that does not exist ends with 3", async () => {
   const { code, stderr } = await runProgram(["serve", "--port", "0", "--gpu", "99"]);
   assert.equal(code, 3);
   assert.ok(stderr.length > 0);
-});
-
-test("with --tls-cert and --tls-key it serves HTTPS and WSS", async (context) => {
-  const folder = await mkdtemp(join(tmpdir(), "clothlab-"));
-  try {
-    const [key, certificate] = [join(folder, "key.pem"), join(folder, "certificate.pem")];
-    const made = spawnSync("openssl", ["req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", key, "-out", certificate,
-                                       "-days", "2", "-subj", "/CN=localhost"]);
-    if (made.error) return context.skip("there is no openssl to make a certificate with");
-    const server = await Server.start("--tls-cert", certificate, "--tls-key", key);
-    assert.match(server.stdout, /^listening on https:/);
-    const client = await Client.connect(server, { scheme: "wss" });
-    await client.request("stream.subscribe");
-    await client.frame();
-    await client.close();
-    assert.equal(await server.stop(), 0);
-  } finally {
-    await rm(folder, { recursive: true });
-  }
 });

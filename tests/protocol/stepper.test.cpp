@@ -62,7 +62,7 @@ struct Fixture {
     Result<scene::Document> seed = scene::load_preset("seed");
     REQUIRE(seed);
     Result<std::unique_ptr<net::Stepper>> created =
-        net::Stepper::create(std::move(*seed), exchange, patience);
+        net::Stepper::create(std::move(*seed), exchange, net::Limits(), 0, patience);
     REQUIRE(created);
     stepper = std::move(*created);
   }

@@ -1,0 +1,167 @@
+// What goes wrong in one session: it says so and goes on where it can, and the other sessions never notice.
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { after, test } from "node:test";
+import { Client, runProgram, Server, sleep } from "./harness.mjs";
+
+const root = fileURLToPath(new URL("../../", import.meta.url));
+const folders = [];
+after(() => folders.forEach((folder) => rmSync(folder, { recursive: true, force: true })));
+
+function folder() {
+  folders.push(mkdtempSync(join(tmpdir(), "clothlab-faults-")));
+  return folders.at(-1);
+}
+
+/// A server that meets a fault, or has its data elsewhere.
+async function startWith(environment, ...args) {
+  const before = { ...process.env };
+  Object.assign(process.env, environment);
+  try {
+    return await Server.start(...args);
+  } finally {
+    for (const name of Object.keys(environment)) {
+      if (name in before) process.env[name] = before[name];
+      else delete process.env[name];
+    }
+  }
+}
+
+async function watch(server, session) {
+  const client = await Client.connect(server, { session });
+  await client.request("stream.subscribe", { encoding: "q16" });
+  return client;
+}
+
+const notices = (client) => client.messages.filter((message) => message.method === "notice");
+
+for (const [kind, why] of [["exception", /a fault on purpose/], ["no-memory", /not enough memory/], ["context-lost", /the device was reset/]])
+  test(`a session whose thread ends by ${kind} goes on from within the last second, its viewers still there, and others never notice`, async () => {
+    const server = await startWith({ CLOTHLAB_FAULT: `${kind}:hurt:2000` });
+    const [hurt, other] = [await watch(server, "hurt"), await watch(server, "other")];
+    await hurt.request("scene.patch", { patch: { name: "patched" } });
+    const { text } = await hurt.notification("notice", ({ level }) => level === "warning");
+    assert.match(text, why);
+    assert.match(text, /goes on from where it was/);
+    const failed = hurt.binary.findLast((message) => message.kind === 2);
+    assert.ok(failed.time > 1.5, `it met the fault at ${failed.time} s`);
+    const next = await hurt.nextFrame((frame) => frame.sequence > failed.sequence);
+    assert.ok(next.time > failed.time - 1, `back from ${failed.time} s to ${next.time} s`);
+    assert.equal((await hurt.request("scene.get")).document.name, "patched");
+    await hurt.nextFrame((frame) => frame.time > failed.time + 0.5);
+    const frames = other.binary.filter((message) => message.kind === 2);
+    assert.ok(frames.every((frame, i) => i === 0 || frame.time >= frames[i - 1].time), "the other session's time only rises");
+    assert.deepEqual(notices(other), []);
+    assert.match((await server.get("/metrics")).body.toString(), /^clothlab_sessions_brought_back_total 1$/m);
+    assert.equal((await server.get("/healthz")).status, 200);
+    await server.stop();
+  });
+
+test("a request that a session fails to answer is answered all the same, with -32603", async () => {
+  const server = await startWith({ CLOTHLAB_FAULT: "exception:main:500" });
+  const client = await watch(server);
+  const error = await client.refusal("sim.step", { steps: 100_000 });
+  assert.equal(error.code, -32603);
+  assert.match(error.message, /a fault on purpose/);
+  assert.ok((await client.request("sim.step", { steps: 2 })).step > 0);
+  await server.stop();
+});
+
+test("a change for which there is not enough memory is refused, and the scene goes on as it was", async () => {
+  const server = await startWith({ CLOTHLAB_FAULT: "change-fails::1" });
+  const client = await watch(server);
+  const { time } = await client.frame((frame) => frame.step > 1);
+  const error = await client.refusal("scene.patch", { patch: { gravity: [0, -1, 0] } });
+  assert.equal(error.code, -32603);
+  assert.match(error.message, /not enough memory.*smaller scene/);
+  assert.deepEqual((await client.request("scene.get")).document.gravity, [0, -9.8, 0]);
+  await client.nextFrame((frame) => frame.time > time);
+  await client.request("scene.patch", { patch: { gravity: [0, -1, 0] } });
+  await server.stop();
+});
+
+test("a shader that does not compile after an edit refuses the change that needs it, with file and line; the cloth goes on, and once it is mended the change works", async () => {
+  const data = folder();
+  for (const part of ["shaders", "server/scene/presets", "web/dist"]) cpSync(join(root, part), join(data, part), { recursive: true });
+  const server = await startWith({ CLOTHLAB_DATA: data });
+  const client = await watch(server);
+  const { time } = await client.frame();
+  const shader = join(data, "shaders/methods/rk4.comp");
+  const sound = readFileSync(shader, "utf8");
+  writeFileSync(shader, sound.replace("void main()", "void main() { no_such_thing(); }\nvoid unused()"));
+  const error = await client.refusal("scene.patch", { patch: { solver: { method: "rk4" } } });
+  assert.match(error.message, /rk4\.comp/);
+  assert.match(error.message, /no_such_thing/);
+  await client.nextFrame((frame) => frame.time > time);
+  assert.equal((await client.request("scene.get")).document.solver.method, "symplectic_euler");
+  writeFileSync(shader, sound);
+  await client.request("scene.patch", { patch: { solver: { method: "rk4" } } });
+  await server.stop();
+});
+
+/// A file system of 256 KiB; null where none can be mounted.
+function tinyDisk() {
+  const where = folder();
+  if (spawnSync("mount", ["-t", "tmpfs", "-o", "size=256k", "tmpfs", where]).status !== 0) return null;
+  return { where, remove: () => spawnSync("umount", ["-l", where]) };
+}
+
+test("a full disk: the session says that it cannot be saved, goes on, and is saved again when there is room", async (context) => {
+  const disk = tinyDisk();
+  if (!disk) return context.skip("no tmpfs can be mounted here: it needs root");
+  try {
+    const server = await Server.start("--state-dir", disk.where);
+    const client = await watch(server);
+    await client.frame((frame) => frame.time > 0.2);
+    const ballast = join(disk.where, "ballast");
+    for (let size = 256; size > 0; size -= 4)
+      try {
+        writeFileSync(ballast, Buffer.alloc(size * 1024));
+        break;
+      } catch { /* a little less */ }
+    const { text } = await client.nextNotification("notice", ({ level }) => level === "error");
+    assert.match(text, /cannot be saved: .*No space left on device.*goes on/);
+    const { time } = await client.nextFrame();
+    await client.nextFrame((frame) => frame.time > time + 1.5);
+    assert.equal(notices(client).length, 1, "told once");
+    rmSync(ballast);
+    await client.until(() => [server.stderr], (text) => text.includes("event=session_saved_again"), "the session to be saved");
+    await server.stop();
+  } finally {
+    disk.remove();
+  }
+});
+
+test("a full disk: an export of the command line ends with an error that names the file, and exit code 1", async (context) => {
+  const disk = tinyDisk();
+  if (!disk) return context.skip("no tmpfs can be mounted here: it needs root");
+  try {
+    for (const name of ["cloth.obj", "cloth.ply", "cloth.pc2"]) {
+      const { code, stderr } = await runProgram(["run", "seed", "--time", "0.004", "--every", "0.001", "--set", "/cloths/0/mesh/grid/columns=200", "--set",
+                                                 "/cloths/0/mesh/grid/rows=100", "--set", "/cloths/0/pins=[]", "--out", join(disk.where, name)]);
+      assert.equal(code, 1, `${name}: ${stderr}`);
+      assert.match(stderr, /cloth[-\d]*\.(obj|ply|pc2).*could not be written.*disk/);
+    }
+  } finally {
+    disk.remove();
+  }
+});
+
+test("a process that is stopped for two seconds, as by a sleeping machine, does not leap through the time it missed", async () => {
+  const server = await Server.start();
+  const client = await watch(server);
+  const { time } = await client.frame((frame) => frame.time > 0.3);
+  server.child.kill("SIGSTOP");
+  await sleep(2000);
+  server.child.kill("SIGCONT");
+  const seen = client.binary.length;
+  await client.nextFrame((frame) => frame.time > time + 0.3);
+  const frames = client.binary.slice(seen - 1).filter((message) => message.kind === 2);
+  // A step of the eye: at most what a frame or two may lag, not the seconds that were missed.
+  for (let i = 1; i < frames.length; ++i) assert.ok(frames[i].time - frames[i - 1].time < 0.5, `from ${frames[i - 1].time} to ${frames[i].time} s`);
+  await server.stop();
+});

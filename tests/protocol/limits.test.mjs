@@ -1,0 +1,181 @@
+// The limits that whoever starts the server may set: what each refuses, in which words, and what lives on.
+import assert from "node:assert/strict";
+import { once } from "node:events";
+import net from "node:net";
+import { after, test } from "node:test";
+import { Client, patience, runProgram, Server, sleep, withTimeout } from "./harness.mjs";
+
+const servers = [];
+after(() => Promise.all(servers.map((server) => server.stop())));
+
+async function start(...args) {
+  const server = await Server.start(...args);
+  servers.push(server);
+  return server;
+}
+
+/// A bare connection, and whether the server has closed it.
+async function socketTo(server, options = {}) {
+  const socket = net.connect({ port: server.port, host: "127.0.0.1", ...options });
+  socket.over = new Promise((resolve) => {
+    socket.on("close", resolve);
+    socket.on("error", () => {});
+  });
+  await once(socket, "connect");
+  return socket;
+}
+
+const upgrade = "GET /ws HTTP/1.1\r\nHost: x\r\nConnection: upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n" +
+                "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Protocol: clothlab.v1\r\n\r\n";
+
+const limits = {
+  "--max-sessions": 1, "--max-clients": 1, "--max-clients-per-address": 1, "--max-message-bytes": 1024, "--max-message-rate": 10,
+  "--max-json-depth": 8, "--max-vertices": 4, "--max-springs": 4, "--max-lab-seconds": 1, "--header-timeout": 1, "--auth-timeout": 1,
+  "--idle-timeout": 2,
+};
+
+test("each limit has a flag with a default in the help, and refuses less than its least value with what is allowed", async () => {
+  const { stdout } = await runProgram(["serve", "--help"]);
+  for (const [flag, least] of Object.entries(limits)) {
+    assert.match(stdout, new RegExp(`${flag} N\\b.*\\d`), flag);
+    const { code, stderr } = await runProgram(["serve", "--port", "0", flag, String(least - 1)]);
+    assert.equal(code, 2, flag);
+    assert.match(stderr, new RegExp(`${flag}: .*${least} to`), flag);
+  }
+});
+
+test("one client more than --max-clients-per-address is refused, another address is not", async () => {
+  const server = await start("--max-clients-per-address", "2");
+  const clients = [await Client.connect(server), await Client.connect(server)];
+  assert.equal((await clients[0].notification("hello")).limits.clients_per_address, 2);
+  await assert.rejects(Client.connect(server), { status: 503 });
+  const elsewhere = await socketTo(server, { localAddress: "127.0.0.2" });
+  elsewhere.write(upgrade);
+  const [answer] = await withTimeout(once(elsewhere, "data"), "the handshake's answer");
+  assert.match(answer.toString(), /^HTTP\/1.1 101/);
+  elsewhere.destroy();
+  await clients[0].close();
+  clients[0] = await Client.connect(server);
+  for (const client of clients) await client.close();
+});
+
+test("an address may have twice as many connections as clients; those beyond are closed unread, and room is made by those that end", async () => {
+  const server = await start("--max-clients-per-address", "2");
+  const sockets = [];
+  for (let i = 0; i < 4; ++i) sockets.push(await socketTo(server));
+  const beyond = await socketTo(server);
+  await withTimeout(beyond.over, "the fifth to be closed");
+  assert.ok(sockets.every((socket) => !socket.destroyed));
+  const other = await socketTo(server, { localAddress: "127.0.0.2" });
+  other.write("GET /healthz HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  assert.match((await withTimeout(once(other, "data"), "an answer elsewhere")).toString(), /200/);
+  for (const socket of [...sockets, other]) socket.destroy();
+  for (const until = Date.now() + patience; ;) {
+    const answer = await server.get("/healthz").catch(() => null);
+    if (answer?.status === 200) break;
+    assert.ok(Date.now() < until, "no room was made");
+    await sleep(50);
+  }
+});
+
+test("a message larger than --max-message-bytes closes with 1009, one as large is answered", async () => {
+  const server = await start("--max-message-bytes", "2048");
+  const client = await Client.connect(server);
+  assert.equal((await client.notification("hello")).limits.message_bytes, 2048);
+  const frame = (size) => {
+    const empty = JSON.stringify({ jsonrpc: "2.0", id: 1, method: "ping", params: { t: "" } });
+    return JSON.stringify({ jsonrpc: "2.0", id: 1, method: "ping", params: { t: "x".repeat(size - empty.length) } });
+  };
+  client.socket.send(frame(2048));
+  await client.request("ping", { t: 2 });
+  client.socket.send(frame(2049));
+  const { code, reason } = await withTimeout(client.closed, "the close");
+  assert.equal(code, 1009);
+  assert.match(reason, /2048 bytes/);
+});
+
+test("more messages than --max-message-rate allows are a flood, closed with 1008; a burst of twice as many is not", async () => {
+  const server = await start("--max-message-rate", "10");
+  const client = await Client.connect(server);
+  await Promise.all(Array.from({ length: 19 }, (_, t) => client.request("ping", { t })));
+  for (let i = 0; i < 30; ++i) client.notify("ping", { t: i });
+  assert.equal((await withTimeout(client.closed, "the close")).code, 1008);
+});
+
+test("a message nested deeper than --max-json-depth answers -32700 and the connection lives", async () => {
+  const server = await start("--max-json-depth", "8");
+  const client = await Client.connect(server);
+  // The message and its params are two of the levels.
+  const nested = (depth) => JSON.parse("[".repeat(depth) + "]".repeat(depth));
+  await client.request("ping", { t: nested(6) });
+  client.notify("ping", { t: nested(7) });
+  const { error } = await client.until(() => client.messages, (m) => m.error, "the refusal");
+  assert.equal(error.code, -32700);
+  assert.match(error.message, /8 levels/);
+  await client.request("ping", { t: 1 });
+  await client.close();
+});
+
+test("a scene beyond --max-vertices or --max-springs is refused with the number it has, and the one that runs is kept", async () => {
+  const springs = 2 * 25 * 24 + 2 * 24 * 24 + 2 * 25 * 23;  // of the seed
+  const server = await start("--max-vertices", "625", "--max-springs", String(springs));
+  const client = await Client.connect(server);
+  const columns = (count) => client.refusal("scene.patch", { patch: [{ op: "replace", path: "/cloths/0/mesh/grid/columns", value: count }] });
+  const error = await columns(26);
+  assert.equal(error.code, -32602);
+  assert.deepEqual([error.data.path, error.data.found], ["/cloths", "650 vertices in all cloths together"]);
+  assert.match(error.data.allowed, /at most 625 here \(--max-vertices\)/);
+  const mesh = { vertices: [[0, 0, 0], [1, 0, 0], [0, 0, 1], [1, 0, 1]], triangles: Array.from({ length: 1000 }, () => [0, 1, 2]) };
+  const many = await client.refusal("scene.load", { scene: { version: 1, cloths: [{ mesh, material: { shear: 0 } }] } });
+  assert.match(many.data.allowed, /--max-springs/);
+  assert.equal((await client.request("scene.get")).document.cloths[0].mesh.grid.columns, 25);
+  await client.nextNotification("sim.status", (status) => status.playing);
+  await client.close();
+
+  for (const [flag, most] of [["--max-vertices", 624], ["--max-springs", springs - 1]]) {
+    const { code, stderr } = await runProgram(["serve", "--port", "0", flag, String(most)]);
+    assert.equal(code, 2, flag);
+    assert.match(stderr, new RegExp(`/cloths: .* at most ${most} here \\(${flag}\\)`));
+  }
+});
+
+test("a measurement that takes longer than --max-lab-seconds ends with what it found and why", async () => {
+  const server = await start("--max-lab-seconds", "1");
+  const client = await Client.connect(server);
+  const { job } = await client.request("lab.chart", { budget: 600, time: 1 });
+  const { state, error } = await client.notification("lab.result", (result) => result.job === job && result.state !== "running");
+  assert.equal(state, "failed");
+  assert.match(error.found, /more than 1 s/);
+  await client.close();
+});
+
+test("a connection whose headers do not come within --header-timeout is closed, however it dribbles; one that has asked lives on", async () => {
+  const server = await start("--header-timeout", "1");
+  const client = await Client.connect(server);
+  const [silent, slow] = [await socketTo(server), await socketTo(server)];
+  slow.write("GET / HTTP/1.1\r\n");
+  const dribble = setInterval(() => slow.destroyed || slow.write("X-Slow: 1\r\n"), 200);
+  await withTimeout(Promise.all([silent.over, slow.over]), "both to be closed");
+  clearInterval(dribble);
+  await sleep(1500);
+  await client.request("ping", { t: 1 });
+  await client.close();
+});
+
+test("who sends no token within --auth-timeout is closed with 1008", async () => {
+  const server = await start("--token", "secret", "--auth-timeout", "1");
+  const client = await Client.connect(server);
+  assert.equal((await withTimeout(client.closed, "the close")).code, 1008);
+});
+
+test("a viewer that answers no ping within --idle-timeout is closed; one that only answers pings stays", async () => {
+  const server = await start("--idle-timeout", "2");
+  const client = await Client.connect(server);
+  const deaf = await socketTo(server, { localAddress: "127.0.0.2" });
+  deaf.write(upgrade);
+  deaf.resume();
+  await withTimeout(deaf.over, "the deaf one to be closed");
+  await sleep(3000);
+  await client.request("ping", { t: 1 });
+  await client.close();
+});

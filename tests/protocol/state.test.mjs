@@ -1,0 +1,102 @@
+// --state-dir: what a session was is there again after the server's end, whatever that was.
+import assert from "node:assert/strict";
+import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, test } from "node:test";
+import { Client, patience, runProgram, Server, sleep } from "./harness.mjs";
+
+const folders = [];
+after(() => folders.forEach((folder) => rmSync(folder, { recursive: true, force: true })));
+
+function folder() {
+  folders.push(mkdtempSync(join(tmpdir(), "clothlab-state-")));
+  return folders.at(-1);
+}
+
+async function watch(server, session) {
+  const client = await Client.connect(server, { session });
+  await client.request("stream.subscribe", { encoding: "f32" });
+  return client;
+}
+
+test("after kill -9 a restart brings each session's scene and state back to within the last second", async () => {
+  const kept = folder();
+  let server = await Server.start("--state-dir", kept);
+  const [main, other] = [await watch(server), await watch(server, "other")];
+  await main.request("scene.patch", { patch: { gravity: [0, -3, 0], name: "moon" } });
+  await other.request("scene.load", { preset: "curtain" });
+  await other.request("sim.speed", { factor: 0.5 });
+  const before = [await main.frame((frame) => frame.time > 2), await other.nextFrame((frame) => frame.time > 1 && frame.time < 100)];
+  const scenes = await Promise.all([main, other].map((client) => client.request("scene.get")));
+  await server.stop("SIGKILL");
+  const last = [main, other].map((client) => client.binary.findLast((message) => message.kind === 2).time);
+
+  server = await Server.start("--state-dir", kept);
+  for (const [i, session] of [[0, "main"], [1, "other"]]) {
+    const client = await Client.connect(server, { session });
+    // What it was at first, before it goes on.
+    const { document, revision } = await client.notification("scene");
+    assert.deepEqual(document, scenes[i].document, session);
+    assert.ok(revision >= scenes[i].revision, session);
+    const status = await client.notification("sim.status");
+    assert.ok(status.time > last[i] - 1, `${session}: back to ${status.time} s from ${last[i]} s`);
+    assert.ok(before[i].time > 0 && status.playing);
+    assert.equal(status.speed, i === 0 ? 1 : 0.5);
+    await client.close();
+  }
+  assert.equal(await server.stop(), 0);
+});
+
+test("a session that was paused is as it was, vertex by vertex, after SIGTERM", async () => {
+  const kept = folder();
+  let server = await Server.start("--state-dir", kept);
+  let client = await watch(server);
+  await client.frame((frame) => frame.time > 0.3);
+  await client.request("sim.pause");
+  const { time, step } = await client.request("sim.step", { steps: 7 });
+  const before = await client.frame((frame) => frame.step === step);
+  assert.equal(await server.stop(), 0);
+  server = await Server.start("--state-dir", kept);
+  client = await watch(server);
+  const after = await client.frame();
+  assert.equal(after.step, step);
+  assert.ok(Math.abs(after.time - time) < 1e-12);
+  assert.deepEqual(after.positions, before.positions);
+  assert.equal((await client.notification("sim.status")).playing, false);
+  // And it can go on.
+  assert.equal((await client.request("sim.step", { steps: 3 })).step, step + 3);
+  await server.stop();
+});
+
+test("a file that is damaged is moved aside, never deleted; its session starts anew and says so", async () => {
+  const kept = folder();
+  const server = await Server.start("--state-dir", kept);
+  await (await watch(server)).frame((frame) => frame.time > 0.1);
+  await server.stop();
+  const file = join(kept, "main.session");
+  const bytes = readFileSync(file);
+  bytes[bytes.length - 5] ^= 1;
+  writeFileSync(file, bytes);
+  const again = await Server.start("--state-dir", kept);
+  const client = await Client.connect(again);
+  assert.equal((await client.request("scene.get")).document.name, "seed");
+  assert.deepEqual(readFileSync(`${file}.unreadable`), bytes);
+  assert.match(again.stderr, /level=error event=session_not_restored session=main why=".*damaged; it was moved to .*main\.session\.unreadable"/);
+  await again.stop();
+});
+
+test("nothing unfinished is left in the folder, and one that cannot be written is refused at the start", async () => {
+  const kept = folder();
+  const server = await Server.start("--state-dir", join(kept, "made", "anew"));
+  const client = await watch(server);
+  for (const until = Date.now() + patience; !existsSync(join(kept, "made", "anew", "main.session")); await sleep(50))
+    assert.ok(Date.now() < until);
+  await client.close();
+  await server.stop();
+  assert.deepEqual(readdirSync(join(kept, "made", "anew")), ["main.session"]);
+  writeFileSync(join(kept, "a-file"), "");
+  const { code, stderr } = await runProgram(["serve", "--port", "0", "--state-dir", join(kept, "a-file")]);
+  assert.equal(code, 2);
+  assert.match(stderr, /--state-dir .*a-file: .*; give a folder/);
+});

@@ -1,0 +1,62 @@
+// HTTPS and WSS: with which certificate, from which version on, and no HTTP/2.
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import tls from "node:tls";
+import { Client, runProgram, Server, withTimeout } from "./harness.mjs";
+
+const folder = mkdtempSync(join(tmpdir(), "clothlab-tls-"));
+const [key, certificate] = [join(folder, "key.pem"), join(folder, "certificate.pem")];
+const made = spawnSync("openssl", ["req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", key, "-out", certificate, "-days", "2", "-subj", "/CN=localhost"]);
+const skip = made.error ? "there is no openssl to make a certificate with" : false;
+
+let server;
+before(async () => { if (!skip) server = await Server.start("--tls-cert", certificate, "--tls-key", key); });
+after(async () => {
+  await server?.stop();
+  rmSync(folder, { recursive: true });
+});
+
+/// What a TLS client with these options agrees on with the server; rejects if they agree on nothing.
+function handshake(options) {
+  const agreed = new Promise((resolve, reject) => {
+    const socket = tls.connect({ host: "127.0.0.1", port: server.port, rejectUnauthorized: false, ...options }, () => {
+      resolve({ version: socket.getProtocol(), alpn: socket.alpnProtocol });
+      socket.destroy();
+    });
+    socket.on("error", reject);
+  });
+  return withTimeout(agreed, "the TLS handshake");
+}
+
+test("with --tls-cert and --tls-key it serves HTTPS and WSS", { skip }, async () => {
+  assert.match(server.stdout, /^listening on https:/);
+  const client = await Client.connect(server, { scheme: "wss" });
+  await client.request("stream.subscribe");
+  await client.frame();
+  await client.close();
+});
+
+test("TLS 1.2 and 1.3 are spoken, 1.0 and 1.1 are not", { skip }, async () => {
+  for (const version of ["TLSv1.2", "TLSv1.3"]) assert.equal((await handshake({ minVersion: version, maxVersion: version })).version, version);
+  // SECLEVEL=0, so that it is the server that refuses.
+  for (const version of ["TLSv1", "TLSv1.1"])
+    await assert.rejects(handshake({ minVersion: version, maxVersion: version, ciphers: "DEFAULT@SECLEVEL=0" }), /protocol version/i, version);
+});
+
+test("HTTP/2 is not agreed on, HTTP/1.1 is", { skip }, async () => {
+  assert.equal((await handshake({ ALPNProtocols: ["h2", "http/1.1"] })).alpn, "http/1.1");
+  const alone = await handshake({ ALPNProtocols: ["h2"] }).catch((error) => ({ alpn: false, error }));
+  assert.equal(alone.alpn, false);
+});
+
+test("a certificate that is none is an error that names the flags", { skip }, async () => {
+  const wrong = join(folder, "wrong.pem");
+  writeFileSync(wrong, "not a certificate");
+  const { code, stderr } = await runProgram(["serve", "--port", "0", "--tls-cert", wrong, "--tls-key", key]);
+  assert.equal(code, 1);
+  assert.match(stderr, /--tls-cert and --tls-key are PEM files/);
+});

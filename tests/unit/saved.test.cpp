@@ -1,0 +1,54 @@
+// What a session is brought back from, as bytes.
+#include "server/net/saved.h"
+
+#include "server/scene/document.h"
+#include "tests/catch.h"
+
+using namespace clothlab;
+
+namespace {
+
+net::Saved some() {
+  net::Saved saved;
+  saved.document = scene::load_preset("seed")->value;
+  saved.revision = 7;
+  saved.playing = false;
+  saved.speed = 0.25;
+  saved.time = 1.0 / 3.0;
+  saved.step = 1234567890123;
+  for (int i = 0; i < 5; ++i) {
+    saved.state.position.emplace_back(0.1f * static_cast<float>(i), -1e-30f, 3.0f);
+    saved.state.velocity.emplace_back(-1.0f, 1e20f, static_cast<float>(i));
+  }
+  return saved;
+}
+
+}  // namespace
+
+TEST_CASE("a saved session is read back as it was, to the last bit") {
+  const net::Saved before = some();
+  const Result<net::Saved> after = net::saved_from(net::to_bytes(before));
+  REQUIRE(after);
+  CHECK(after->document == before.document);
+  CHECK(after->revision == before.revision);
+  CHECK(after->playing == before.playing);
+  CHECK(after->speed == before.speed);
+  CHECK(after->time == before.time);
+  CHECK(after->step == before.step);
+  CHECK(after->state.position == before.state.position);
+  CHECK(after->state.velocity == before.state.velocity);
+}
+
+TEST_CASE(
+    "a saved session of any other length is refused, and so is one with a changed bit among its floats") {
+  const std::string bytes = net::to_bytes(some());
+  for (std::size_t length = 0; length < bytes.size(); ++length)
+    if (net::saved_from(bytes.substr(0, length))) FAIL("taken with " << length << " bytes");
+  CHECK_FALSE(net::saved_from(bytes + '\0'));
+  for (std::size_t at = bytes.size() - 2 * 5 * sizeof(glm::vec3); at < bytes.size(); ++at)
+    for (int bit = 0; bit < 8; ++bit) {
+      std::string flipped = bytes;
+      flipped[at] = static_cast<char>(flipped[at] ^ (1 << bit));
+      if (net::saved_from(flipped)) FAIL("taken with bit " << bit << " of byte " << at << " changed");
+    }
+}
