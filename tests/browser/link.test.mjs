@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { Server } from "../protocol/harness.mjs";
-import { browserTest, withBrowser } from "./browser.mjs";
+import { browserTest, eventually, withBrowser } from "./browser.mjs";
 
 const { open } = withBrowser();
 
@@ -39,6 +39,47 @@ browserTest("a server with a token asks for it, refuses a wrong one, and lets th
     assert.equal(await dialog.isVisible(), false);
     await viewer.page.reload();
     await viewer.until(() => window.clothlab.framesDrawn > 2);  // kept for this tab
+  } finally {
+    await server.stop();
+  }
+});
+
+browserTest("a message that is none of the protocol's ends the connection with a reason, and the page goes on with the next one", async () => {
+  const server = await Server.start();
+  const viewer = await open(server);
+  const closed = [];
+  let spoil = null;  // what is sent in place of the next frame
+  await viewer.page.routeWebSocket("**/ws**", (page) => {
+    const link = page.connectToServer();
+    link.onMessage((message) => {
+      const spoiled = spoil && Buffer.isBuffer(message) && message[0] === 2 ? spoil(message) : message;
+      if (spoiled !== message) spoil = null;
+      page.send(spoiled);
+    });
+    page.onClose((code, reason) => {
+      closed.push({ code, reason });
+      link.close();
+    });
+  });
+  try {
+    await viewer.page.reload();
+    const cases = [
+      [(frame) => frame.subarray(0, 100), /announces 5000 bytes, 36 came/],
+      [(frame) => Buffer.from(frame).fill(9, 0, 1), /unknown kind 9/],
+      [() => "no JSON", /no JSON object/],
+    ];
+    for (const [spoiling, reason] of cases) {
+      await viewer.until(() => window.clothlab?.framesDrawn > 3);
+      spoil = spoiling;
+      const banner = viewer.page.locator("#banner", { hasText: reason });
+      await banner.waitFor({ state: "visible" });
+      await eventually("told the server why", () => closed.filter((close) => reason.test(close.reason)).map(({ code }) => code),
+                       (codes) => codes.length === 1 && codes[0] === 4002);
+      const drawn = await viewer.read("framesDrawn");
+      await viewer.page.getByRole("button", { name: "Try now" }).click();
+      await viewer.until((count) => window.clothlab.framesDrawn > count + 3, drawn);
+      await viewer.page.locator("#banner").waitFor({ state: "hidden" });
+    }
   } finally {
     await server.stop();
   }

@@ -1,11 +1,30 @@
-// Reads the binary messages of the protocol, written from contract and not from the server's code.
+// Reads the binary messages of the protocol, written from the contract and not from the server's code. What is not exactly
+// such a message is a BadMessage; nothing outside the message is ever read.
 
 const headerBytes = 64;
+const topology = 1, frame = 2;
+const f32 = 0, q16 = 1;
+const knownFlags = 3;  // asleep, diverged
 
-export function decode(buffer) {
-  const view = new DataView(buffer.buffer, buffer.byteOffset, buffer.byteLength);
+export class BadMessage extends Error {}
+
+function demand(condition, what) {
+  if (!condition) throw new BadMessage(what);
+}
+
+/// Of the bytes of one message; throws a BadMessage.
+export function decode(bytes) {
+  demand(bytes.byteLength >= headerBytes, `${bytes.byteLength} bytes are no header`);
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  const header = readHeader(view);
+  checkHeader(header, view.byteLength);
+  if (header.kind === topology) return { ...header, ...readTopology(view, header) };
+  return { ...header, ...(header.encoding === f32 ? readFloat32(view, header) : readQuantised(view, header)) };
+}
+
+function readHeader(view) {
   const floats = (at, count) => Array.from({ length: count }, (_, i) => view.getFloat32(at + 4 * i, true));
-  const header = {
+  return {
     kind: view.getUint8(0),
     encoding: view.getUint8(1),
     flags: view.getUint16(2, true),
@@ -19,45 +38,55 @@ export function decode(buffer) {
     payloadBytes: view.getUint32(56, true),
     zero: view.getUint32(60, true),
   };
-  if (header.payloadBytes !== view.byteLength - headerBytes)
-    throw new Error(`the header says ${header.payloadBytes} payload bytes, ${view.byteLength - headerBytes} came`);
-  if (header.kind === 1) return { ...header, ...topology(view, header) };
-  if (header.encoding === 0) return { ...header, ...float32(view, header) };
-  if (header.encoding === 1) return { ...header, ...quantised(view, header) };
-  throw new Error(`unknown encoding ${header.encoding}`);
 }
 
-function topology(view, header) {
+function checkHeader(header, byteLength) {
+  const { kind, encoding, flags } = header;
+  demand(kind === topology || kind === frame, `there is no kind ${kind}`);
+  demand(encoding === f32 || (encoding === q16 && kind === frame), `kind ${kind} has no encoding ${encoding}`);
+  demand((flags & ~(kind === frame ? knownFlags : 0)) === 0, `kind ${kind} has no flags ${flags}`);
+  demand(header.time >= 0 && header.time < Infinity, `the time is ${header.time}`);
+  demand(header.boxMinimum.every(Number.isFinite), `the box begins at ${header.boxMinimum}`);
+  demand(header.boxExtent.every((extent) => extent >= 0 && extent < Infinity), `the box has the extent ${header.boxExtent}`);
+  demand(header.zero === 0, `the reserved word is ${header.zero}`);
+  demand(header.payloadBytes === byteLength - headerBytes,
+         `the header says ${header.payloadBytes} payload bytes, ${byteLength - headerBytes} came`);
+}
+
+function readTopology(view, { payloadBytes, vertexCount }) {
+  demand(payloadBytes >= 8, "the topology has no counts");
   let at = headerBytes;
   const u32 = () => view.getUint32((at += 4) - 4, true);
-  const triangleCount = u32();
-  const clothCount = u32();
+  const triangleCount = u32(), clothCount = u32();
+  const expected = 8 + 8 * clothCount + 12 * triangleCount + 8 * vertexCount;
+  demand(payloadBytes === expected, `the topology's counts ask for ${expected} bytes, it has ${payloadBytes}`);
   const cloths = Array.from({ length: clothCount }, () => ({ firstVertex: u32(), vertexCount: u32() }));
+  const covered = cloths.reduce((next, cloth) => (cloth.firstVertex === next ? next + cloth.vertexCount : NaN), 0);
+  demand(covered === vertexCount, `the cloths do not share out ${vertexCount} vertices, one after another`);
   const triangles = Array.from({ length: triangleCount }, () => [u32(), u32(), u32()]);
-  const texture = Array.from({ length: header.vertexCount }, () =>
+  demand(triangles.every((corners) => corners.every((corner) => corner < vertexCount)), `a triangle's corner is not below ${vertexCount}`);
+  const texture = Array.from({ length: vertexCount }, () =>
     [view.getFloat32((at += 4) - 4, true), view.getFloat32((at += 4) - 4, true)]);
-  if (at !== view.byteLength) throw new Error(`the topology has ${view.byteLength - at} bytes too many`);
   return { cloths, triangles, texture };
 }
 
-function float32(view, header) {
-  if (header.payloadBytes !== 24 * header.vertexCount) throw new Error("an f32 frame has 24 bytes a vertex");
+function readFloat32(view, { payloadBytes, vertexCount }) {
+  demand(payloadBytes === 24 * vertexCount, "an f32 frame has 24 bytes a vertex");
   const triple = (at) => [0, 4, 8].map((offset) => view.getFloat32(at + offset, true));
   const positions = [], normals = [];
-  for (let i = 0; i < header.vertexCount; ++i) {
+  for (let i = 0; i < vertexCount; ++i) {
     positions.push(triple(headerBytes + 24 * i));
     normals.push(triple(headerBytes + 24 * i + 12));
   }
   return { positions, normals };
 }
 
-function quantised(view, header) {
-  if (header.payloadBytes !== 8 * header.vertexCount) throw new Error("a q16 frame has 8 bytes a vertex");
+function readQuantised(view, { payloadBytes, vertexCount, boxMinimum, boxExtent }) {
+  demand(payloadBytes === 8 * vertexCount, "a q16 frame has 8 bytes a vertex");
   const positions = [], normals = [];
-  for (let i = 0; i < header.vertexCount; ++i) {
+  for (let i = 0; i < vertexCount; ++i) {
     const at = headerBytes + 8 * i;
-    positions.push([0, 1, 2].map((axis) =>
-      header.boxMinimum[axis] + (header.boxExtent[axis] * view.getUint16(at + 2 * axis, true)) / 65535));
+    positions.push([0, 1, 2].map((axis) => boxMinimum[axis] + (boxExtent[axis] * view.getUint16(at + 2 * axis, true)) / 65535));
     normals.push(octahedral(view.getInt8(at + 6), view.getInt8(at + 7)));
   }
   return { positions, normals };

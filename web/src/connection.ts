@@ -1,5 +1,5 @@
 // The link to the server: connects, authenticates, subscribes, measures, and comes back by itself after a loss.
-import { decodeHeader, decodeTopology, encodingQ16, kindFrame, kindTopology, type Frame, type Topology } from "./protocol";
+import { BadMessage, decode, type Frame, type Topology } from "./protocol";
 import { errorNotAllowed, Rpc, RpcError } from "./rpc";
 
 export type LinkState = "connecting" | "open" | "waiting" | "unauthorised";
@@ -18,6 +18,7 @@ const firstDelay = 0.25;  // [s]: a restarted server is usually back at once
 const longestDelay = 8;   // [s]
 const pingEvery = 1000;   // [ms]
 const silenceLimit = 8000;  // [ms] without one byte: sim.status alone comes 10 times a second
+const closeBadMessage = 4002;  // 1002, "protocol error", is not a page's to use
 
 export class Connection {
   bytesReceived = 0;
@@ -93,12 +94,20 @@ export class Connection {
         return;
       }
       this.bytesReceived += data.byteLength;
-      const header = decodeHeader(data);
-      if (header.kind === kindTopology) this.events.topology(decodeTopology(header, data));
-      else if (header.kind === kindFrame && header.encoding === encodingQ16) this.events.frame({ header, buffer: data });
+      const message = decode(data);
+      if ("topology" in message) this.events.topology(message.topology);
+      else this.events.frame(message.frame);
     } catch (error) {
-      this.events.problem(error as Error);
+      if (error instanceof BadMessage) this.distrust(error);
+      else this.events.problem(error as Error);
     }
+  }
+
+  // What follows might be misread, too: it begins anew, but not at once, as the server may well say the same again.
+  private distrust(error: BadMessage): void {
+    this.abandon(closeBadMessage, error.message);
+    this.delay = longestDelay;
+    this.retry(`the server sent something unexpected: ${error.message}`);
   }
 
   private beat(): void {
@@ -119,10 +128,10 @@ export class Connection {
     this.abandon();
   }
 
-  private abandon(): void {
+  private abandon(code = 1000, reason = ""): void {
     if (!this.socket) return;
     this.socket.onopen = this.socket.onmessage = this.socket.onclose = null;
-    this.socket.close();
+    this.socket.close(code, reason.slice(0, 123));  // the most a close frame holds
     this.rpc?.close();
     this.socket = this.rpc = null;
   }

@@ -1,9 +1,11 @@
 // The binary messages of contract.md, section 4: 64-byte header, then the payload, little-endian.
 
-export const headerBytes = 64;
-export const kindTopology = 1;
-export const kindFrame = 2;
-export const encodingQ16 = 1;
+const headerBytes = 64;
+const kindTopology = 1;
+const kindFrame = 2;
+const encodingF32 = 0;
+const encodingQ16 = 1;
+const q16Bytes = 8;  ///< a vertex
 const flagAsleep = 1;
 const flagDiverged = 2;
 
@@ -34,15 +36,31 @@ export interface Topology {
   textureCoordinates: Float32Array; ///< [vertex_count * 2]
 }
 
-export function decodeHeader(buffer: ArrayBuffer): Header {
-  if (buffer.byteLength < headerBytes) throw new Error(`a binary message of ${buffer.byteLength} bytes has no room for a header`);
+/// A message that is not what the protocol says; nothing of it may be used.
+export class BadMessage extends Error {}
+
+function demand(condition: boolean, what: string): asserts condition {
+  if (!condition) throw new BadMessage(what);
+}
+
+/// Throws a BadMessage; reads nothing outside the buffer. Frames are q16: this page asks for no others.
+export function decode(buffer: ArrayBuffer): { topology: Topology } | { frame: Frame } {
+  const header = decodeHeader(buffer);
+  if (header.kind === kindTopology) return { topology: decodeTopology(header, buffer) };
+  demand(header.payloadBytes === q16Bytes * header.vertexCount,
+         `a frame of ${header.vertexCount} vertices has ${header.payloadBytes} bytes`);
+  return { frame: { header, buffer } };
+}
+
+function decodeHeader(buffer: ArrayBuffer): Header {
+  demand(buffer.byteLength >= headerBytes, `a binary message of ${buffer.byteLength} bytes has no room for a header`);
   const view = new DataView(buffer);
-  const flags = view.getUint16(2, true);
+  const kind = view.getUint8(0), encoding = view.getUint8(1), flags = view.getUint16(2, true), reserved = view.getUint32(60, true);
   const triple = (at: number): [number, number, number] =>
     [view.getFloat32(at, true), view.getFloat32(at + 4, true), view.getFloat32(at + 8, true)];
   const header: Header = {
-    kind: view.getUint8(0),
-    encoding: view.getUint8(1),
+    kind,
+    encoding,
     asleep: (flags & flagAsleep) !== 0,
     diverged: (flags & flagDiverged) !== 0,
     topologyRevision: view.getUint32(4, true),
@@ -54,27 +72,43 @@ export function decodeHeader(buffer: ArrayBuffer): Header {
     boxExtent: triple(44),
     payloadBytes: view.getUint32(56, true),
   };
-  if (headerBytes + header.payloadBytes > buffer.byteLength) {
-    throw new Error(`the header announces ${header.payloadBytes} bytes, ${buffer.byteLength - headerBytes} came`);
-  }
+  const isFrame = kind === kindFrame;
+  demand(isFrame || kind === kindTopology, `a binary message is of the unknown kind ${kind}`);
+  demand(encoding === (isFrame ? encodingQ16 : encodingF32), `a binary message of kind ${kind} has the encoding ${encoding}`);
+  demand((flags & ~(isFrame ? flagAsleep | flagDiverged : 0)) === 0, `a binary message of kind ${kind} has the flags ${flags}`);
+  demand(header.time >= 0 && header.time < Infinity, `the time of a frame is ${header.time}`);
+  demand(header.boxMinimum.every(Number.isFinite) && header.boxExtent.every((extent) => extent >= 0 && extent < Infinity),
+         `the box of a frame is ${header.boxMinimum} + ${header.boxExtent}`);
+  demand(reserved === 0, `the reserved word of a binary message is ${reserved}`);
+  demand(headerBytes + header.payloadBytes === buffer.byteLength,
+         `the header announces ${header.payloadBytes} bytes, ${buffer.byteLength - headerBytes} came`);
   return header;
 }
 
-export function decodeTopology(header: Header, buffer: ArrayBuffer): Topology {
-  const counts = new Uint32Array(buffer, headerBytes, 2);
-  const triangleCount = counts[0] ?? 0;
-  const clothCount = counts[1] ?? 0;
-  const ranges = new Uint32Array(buffer, headerBytes + 8, clothCount * 2);
-  const trianglesAt = headerBytes + 8 + clothCount * 8;
+function decodeTopology(header: Header, buffer: ArrayBuffer): Topology {
+  const { vertexCount, payloadBytes } = header;
+  demand(payloadBytes >= 8, "a topology has no counts");
+  const [triangleCount = 0, clothCount = 0] = new Uint32Array(buffer, headerBytes, 2);
+  const trianglesAt = headerBytes + 8 + 8 * clothCount;
+  const textureAt = trianglesAt + 12 * triangleCount;
+  demand(textureAt + 8 * vertexCount === buffer.byteLength,
+         `a topology of ${clothCount} cloths, ${triangleCount} triangles and ${vertexCount} vertices has ${payloadBytes} bytes`);
+  const ranges = new Uint32Array(buffer, headerBytes + 8, 2 * clothCount);
+  const cloths: ClothRange[] = [];
+  let next = 0;
+  for (let i = 0; i < ranges.length; i += 2) {
+    const range = { firstVertex: ranges[i] ?? 0, vertexCount: ranges[i + 1] ?? 0 };
+    demand(range.firstVertex === next, `cloth ${cloths.length} begins at vertex ${range.firstVertex} instead of ${next}`);
+    next += range.vertexCount;
+    cloths.push(range);
+  }
+  demand(next === vertexCount, `the cloths have ${next} vertices, the topology ${vertexCount}`);
+  const triangles = new Uint32Array(buffer, trianglesAt, 3 * triangleCount);
+  const stray = triangles.find((corner) => corner >= vertexCount);
+  demand(stray === undefined, `a triangle has vertex ${stray} of ${vertexCount}`);
   return {
-    revision: header.topologyRevision,
-    vertexCount: header.vertexCount,
-    cloths: Array.from({ length: clothCount }, (_, i) => ({
-      firstVertex: ranges[2 * i] ?? 0,
-      vertexCount: ranges[2 * i + 1] ?? 0,
-    })),
-    triangles: new Uint32Array(buffer, trianglesAt, triangleCount * 3),
-    textureCoordinates: new Float32Array(buffer, trianglesAt + triangleCount * 12, header.vertexCount * 2),
+    revision: header.topologyRevision, vertexCount, cloths, triangles,
+    textureCoordinates: new Float32Array(buffer, textureAt, 2 * vertexCount),
   };
 }
 

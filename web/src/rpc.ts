@@ -1,4 +1,5 @@
 // JSON-RPC 2.0 over one WebSocket: requests as promises, notifications to a handler.
+import { BadMessage } from "./protocol";
 
 export interface RpcErrorData { path?: string; found?: string; allowed?: string; revision?: number }
 
@@ -20,6 +21,17 @@ interface Incoming {
   params?: Params;
   result?: unknown;
   error?: { code: number; message: string; data?: RpcErrorData };
+}
+
+function parsed(text: string): Incoming {
+  let message: unknown = null;
+  try {
+    message = JSON.parse(text);
+  } catch {
+    // What is no JSON is no object either.
+  }
+  if (typeof message !== "object" || message === null) throw new BadMessage("a text message is no JSON object");
+  return message;
 }
 
 export class Rpc {
@@ -45,9 +57,9 @@ export class Rpc {
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify({ jsonrpc: "2.0", method, params }));
   }
 
-  /// Takes one text frame of the server.
+  /// Takes one text frame of the server; throws a BadMessage if it is none.
   receive(text: string): void {
-    const message = JSON.parse(text) as Incoming;
+    const message = parsed(text);
     if (message.method !== undefined) {
       this.onNotification(message.method, message.params ?? {});
       return;

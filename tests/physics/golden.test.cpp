@@ -1,0 +1,71 @@
+// The bytes of the protocol, committed in tests/golden: what the server makes of a fixed scene is these and
+// no others. The files were written from contract.md section 4, not by this code. The scenes are all pinned,
+// and their numbers such that no step of the way rounds: f32 has only normals along axes (no other unit
+// vector is exact in binary), and in q16 positions are whole quanta and normals far from a half of one.
+#include <algorithm>
+
+#include "server/base/data_files.h"
+#include "server/stream/packer.h"
+#include "tests/scenes.h"
+
+using namespace clothlab;
+using stream::Encoding;
+
+namespace {
+
+std::string golden(const std::string& name) {
+  const Result<std::string> bytes = read_file(std::string(CLOTHLAB_SOURCE_DIR "/tests/golden/") + name);
+  if (!bytes) FAIL(bytes.error().text());
+  return *bytes;
+}
+
+/// After three steps of 1/8 s, so that time and step are not 0; all is pinned, so nothing else changes.
+std::unique_ptr<sim::Simulation> stepped(const std::string& scene) {
+  auto simulation = test::simulation(test::document_of(golden(scene)).scene);
+  simulation->step(3);
+  return simulation;
+}
+
+void require_golden(const stream::SharedMessage& message, const std::string& name) {
+  REQUIRE(message);
+  const std::string made(reinterpret_cast<const char*>(message->data()), message->size());
+  const std::string expected = golden(name);
+  const auto [differs, in_expected] =
+      std::mismatch(made.begin(), made.end(), expected.begin(), expected.end());
+  INFO(name << " differs first at byte " << differs - made.begin() << " (the header has 64)");
+  REQUIRE(made.size() == expected.size());
+  REQUIRE(differs == made.end());
+}
+
+/// The frames of one packer, one for each of `flags`: numbered from 1.
+void require_frames(const sim::Simulation& simulation, Encoding encoding, std::vector<std::uint16_t> flags,
+                    const std::vector<std::string>& names) {
+  auto packer = stream::Packer::create();
+  INFO((packer ? "" : packer.error().text()));
+  REQUIRE(packer);
+  for (std::size_t i = 0; i < flags.size(); ++i) {
+    REQUIRE((*packer)->request(simulation, encoding, flags[i]));
+    require_golden((*packer)->wait(), names[i]);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a topology message is the committed bytes") {
+  const auto context = test::context();
+  const auto simulation = stepped("cloths.scene.json");
+  require_golden(stream::encode_topology(simulation->model(), simulation->topology_revision()),
+                 "topology.bin");
+}
+
+TEST_CASE("f32 frames are the committed bytes, with the diverged flag and without") {
+  const auto context = test::context();
+  require_frames(*stepped("axes.scene.json"), Encoding::f32, {0, stream::flag_diverged},
+                 {"frame-f32.bin", "frame-f32-diverged.bin"});
+}
+
+TEST_CASE("q16 frames are the committed bytes, with the asleep flag and without") {
+  const auto context = test::context();
+  require_frames(*stepped("cloths.scene.json"), Encoding::q16, {0, stream::flag_asleep},
+                 {"frame-q16.bin", "frame-q16-asleep.bin"});
+}
