@@ -1,0 +1,40 @@
+// Values of a parameter that its schema in server/net/asyncapi.yaml takes, up to its limits, and values just beyond them.
+import { lookUp } from "./asyncapi.mjs";
+
+export function resolved(schema) {
+  return schema.$ref ? { ...resolved(lookUp(schema.$ref)), ...schema, $ref: undefined } : schema;
+}
+
+const numbers = ({ type, minimum, maximum }) => ({
+  good: [minimum, maximum].filter((value) => value !== undefined),
+  bad: [minimum === undefined ? [] : [minimum - (type === "integer" ? 1 : Math.abs(minimum) * 1e-6 + 1e-9)],
+        maximum === undefined ? [] : [maximum + (type === "integer" ? 1 : Math.abs(maximum) * 1e-6)],
+        type === "integer" ? [minimum + 0.5] : [], "1", true, []].flat(),
+});
+
+/// { good, bad }
+export function candidates(given) {
+  const schema = resolved(given);
+  if (schema.enum) return { good: schema.enum, bad: ["no such", 5, ...schema.enum.map((value) => value.toUpperCase())] };
+  switch (schema.type) {
+    case "integer":
+    case "number":
+      return numbers(schema);
+    case "boolean":
+      return { good: [true, false], bad: [0, "true", []] };
+    case "string":
+      return { good: ["x".repeat(schema.minLength ?? 0), "anything"], bad: [5, {}, ...(schema.minLength ? [""] : [])] };
+    case "array": {
+      const item = candidates(schema.items);
+      const full = (length) => Array.from({ length }, (_, i) => item.good[i % item.good.length]);
+      return {
+        good: [[], item.good, ...(schema.maxItems ? [full(schema.maxItems)] : [])],
+        bad: ["x", {}, ...item.bad.map((value) => [value]), ...(schema.maxItems ? [full(schema.maxItems + 1)] : [])],
+      };
+    }
+    case undefined:
+      return { good: [null, 1, "x", [{}]], bad: [] };
+    default:  // several types
+      return { good: schema.type.map((type) => ({ object: {}, array: [] })[type]), bad: [5, "x", true] };
+  }
+}
