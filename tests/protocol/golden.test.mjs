@@ -211,6 +211,13 @@ test("a triangle with a vertex that is not there is refused, and so are cloths t
   }
 });
 
-test("c16, which this version does not speak, is refused", () => {
-  forEach((decoder, { name, bytes }) => refuses(decoder, changed(bytes, (view) => view.setUint8(1, 2)), `${name} as c16`));
+test("a kind or an encoding that there is not, c16 among them, is refused, whatever the rest is like", () => {
+  forEach((decoder, { name, bytes }) => {
+    for (let kind = 0; kind < 256; ++kind)
+      for (const encoding of [0, 1, 2, 3, 255]) {
+        if (kind === bytes[0] && encoding === bytes[1]) continue;
+        const what = `${name} as kind ${kind}, encoding ${encoding}`;
+        refuses(decoder, changed(bytes, (_, copy) => copy.set([kind, encoding])), what);
+      }
+  });
 });
