@@ -272,6 +272,16 @@ test("with a token, who may do what is as it says, and why connections are close
   assert.equal((await viewer.closed).code, 1001);
 });
 
+test("what the server cannot do it refuses as it says", async () => {
+  process.env.CLOTHLAB_FAULT = "change-fails::1";
+  const poor = await Server.start().finally(() => delete process.env.CLOTHLAB_FAULT);
+  const client = await enter(null, { session: "main", at: poor });
+  await inTime(client, "sim.status", ({ step }) => step > 1);
+  assert.equal((await client.refusal("scene.patch", { patch: { gravity: [0, -1, 0] } })).code, -32603);
+  await client.close();
+  await poor.stop();
+});
+
 test("a session's name is what the document takes for one", async () => {
   const { pattern } = document.channels.session.bindings.ws.query.properties.session;
   for (const session of ["a", "A-z_0", "x".repeat(64), "x".repeat(65), "a.b", "a b", "a/b", "é", "%00"]) {
