@@ -4,7 +4,7 @@
 // vector is exact in binary), and in q16 positions are whole quanta and normals far from a half of one.
 #include <algorithm>
 
-#include "server/base/data_files.h"
+#include "server/base/files.h"
 #include "server/stream/packer.h"
 #include "tests/scenes.h"
 
