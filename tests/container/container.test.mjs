@@ -46,6 +46,7 @@ test("the server is process 1, not root, without any capability, on a root it ca
   for (const capabilities of [CapEff, CapPrm, CapBnd]) assert.equal(BigInt(`0x${capabilities}`), 0n);
   assert.equal(NoNewPrivs, "1");
   assert.equal(NSpid.split("\t").at(-1), "1");
+  assert.equal(container.exec("id").stdout, `uid=${user}(clothlab) gid=${user}(clothlab) groups=${user}(clothlab)\n`);
   const { stdout } = container.exec("find", "/", "-xdev", "-writable", "!", "-type", "l");
   assert.equal(stdout, "/tmp\n/var/lib/clothlab\n");
 });
@@ -142,15 +143,7 @@ test("the health check succeeds while the server answers, and fails when it does
   listener.close();
 });
 
-test("Mesa's threads are as many as a limit in processor time lets run", async () => {
-  for (const [cpuMax, threads] of [["max 100000", undefined], ["150000 100000", "1"], ["50000 100000", "1"], ["400000 100000", "4"]]) {
-    const other = await Container.start({ args: ["--port", "8081"], env: { CLOTHLAB_TOKEN: token }, cpuMax });
-    assert.equal(other.environment.LP_NUM_THREADS, threads, cpuMax);
-    await other.stop();
-  }
-});
-
-test("SIGTERM: every viewer is told with 1001, and it ends with 0 within 5 s, even while the lab measures", async () => {
+test("SIGTERM: every viewer is told with 1001, and it ends with 0 within 5 s, even while the lab measures", async (context) => {
   const other = await Container.start({ args: ["--port", "8081"], env: { CLOTHLAB_TOKEN: token } });
   const viewers = [await operator(other), await operator(other), await operator(other, "second")];
   for (const viewer of viewers) await viewer.request("stream.subscribe");
@@ -160,6 +153,7 @@ test("SIGTERM: every viewer is told with 1001, and it ends with 0 within 5 s, ev
   const closes = viewers.map((viewer) => withTimeout(viewer.closed, "a viewer's close"));
   const { code, seconds } = await other.stop();
   assert.equal(code, 0, other.stderr);
+  context.diagnostic(`${seconds.toFixed(2)} s`);
   assert.ok(seconds < 5, `${seconds} s`);
   for (const close of closes) assert.equal((await close).code, 1001);
 });

@@ -24,23 +24,20 @@ const confined = `set -eu
   done
   mount -t tmpfs -o mode=1777,size=64m,nosuid,nodev,noexec tmp "$ROOT/tmp"
   mount --bind "$VOLUME" "$ROOT/var/lib/clothlab"
-  mount -t tmpfs -o mode=755 cgroup "$ROOT/sys/fs/cgroup"
-  if [ -n "$CPU_MAX" ]; then echo "$CPU_MAX" >"$ROOT/sys/fs/cgroup/cpu.max"; fi
   mount -o remount,bind,ro "$ROOT"
   exec chroot "$ROOT" setpriv --reuid "$USER_ID" --regid "$USER_ID" --clear-groups --bounding-set=-all \\
     --inh-caps=-all --no-new-privs env -i --chdir="$FOLDER" "$@"`;
 
 export class Container extends Server {
-  /// Starts the image's entrypoint with `args` (none: the image's own), or `command` instead of it. `cpuMax` is what
-  /// the kernel would tell of a limit in processor time.
-  static run({ args = config.Cmd, command = [...config.Entrypoint, ...args], env = {}, volume, cpuMax = "" } = {}) {
+  /// Starts the image's entrypoint with `args` (none: the image's own), or `command` instead of it.
+  static run({ args = config.Cmd, command = [...config.Entrypoint, ...args], env = {}, volume } = {}) {
     const container = new Container();
     container.volume = volume ?? newVolume();
     const variables = [...config.Env, ...Object.entries(env).map(([name, value]) => `${name}=${value}`)];
     const inside = ["bash", "-c", confined, "confined", ...variables, ...command];
     container.child = spawn("unshare", ["--mount", "--pid", "--fork", "--kill-child", "--", ...inside], {
       stdio: ["ignore", "pipe", "pipe"],
-      env: { PATH: process.env.PATH, ROOT: root, VOLUME: container.volume, USER_ID: user, CPU_MAX: cpuMax, FOLDER: config.WorkingDir },
+      env: { PATH: process.env.PATH, ROOT: root, VOLUME: container.volume, USER_ID: user, FOLDER: config.WorkingDir },
     });
     container.stdout = container.stderr = "";
     container.child.stdout.on("data", (data) => (container.stdout += data));
