@@ -2,6 +2,7 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
+#include "server/base/text.h"
 #include "server/model/mesh_arrays.h"
 #include "server/model/start.h"
 
@@ -10,6 +11,9 @@ namespace clothlab::model {
 namespace {
 
 using Index = std::uint32_t;
+
+/// Of a vertex [kg]: the shaders multiply its inverse by stiffnesses up to 1e12 N/m, in float32.
+constexpr double least_mass = 1e-15;
 
 dvec3 turn(const dvec3& point, int axis, double degrees) {
   const double angle = glm::radians(degrees), c = std::cos(angle), s = std::sin(angle);
@@ -118,10 +122,13 @@ Status add_cloth(Model& model, const scene::Cloth& cloth) {
   for (const dvec3& point : arrays.position) position.push_back(place(cloth.transform, point));
 
   std::vector<double> mass = masses(cloth, arrays, position);
-  const auto massless = std::find_if(mass.begin(), mass.end(), [](double m) { return !(m > 0.0); });
+  const auto massless = std::find_if(mass.begin(), mass.end(), [](double m) { return !(m >= least_mass); });
   if (massless != mass.end())
-    return Error{where + "/mass", "vertex " + std::to_string(massless - mass.begin()) + " would have no mass",
-                 "with area_density every vertex belongs to a triangle with an area above 0"};
+    return Error{where + "/mass",
+                 "vertex " + std::to_string(massless - mass.begin()) + " would " +
+                     (*massless > 0.0 ? "weigh " + significant(*massless, 3) + " kg" : "have no mass"),
+                 "with area_density every vertex belongs to triangles with an area, and weighs " +
+                     significant(least_mass, 3) + " kg or more"};
 
   std::vector<std::int32_t> pin_motion(position.size(), not_pinned);
   for (std::size_t i = 0; i < cloth.pins.size(); ++i) {

@@ -11,8 +11,9 @@ namespace clothlab::scene {
 namespace {
 
 /// Values an RFC 6902 patch may copy: without a bound, copying the whole into itself doubles it at every
-/// operation.
-constexpr std::size_t max_copied_values = 1u << 20;
+/// operation. Values it may move: they are looked at each time, and a thousand moves of a large part are as
+/// many looks.
+constexpr std::size_t max_copied_values = 1u << 20, max_moved_values = 1u << 23;
 
 std::size_t value_count(const json& value) {
   std::size_t count = 1;
@@ -139,10 +140,14 @@ class Operations {
     if (move && path == *from) return ok();
     if (move && from->size() < path.size() && std::equal(from->begin(), from->end(), path.begin()))
       return problem("/from", compact(joined(*from)), "a value that does not contain the place it moves to");
-    copied_ += move ? 0 : value_count(*source);
-    if (copied_ > max_copied_values)
-      return problem("", "copies of more than " + std::to_string(max_copied_values) + " values", "fewer");
-    json value = *source;
+    std::size_t& taken = move ? moved_ : copied_;
+    const std::size_t most = move ? max_moved_values : max_copied_values;
+    taken += value_count(*source);
+    if (taken > most)
+      return problem(
+          "", std::string(move ? "moves" : "copies") + " of more than " + std::to_string(most) + " values",
+          "fewer");
+    json value = move ? std::move(*source) : *source;
     if (move) {
       const Status removed = remove(*from, "/from");
       if (!removed) return removed;
@@ -152,7 +157,7 @@ class Operations {
 
   json& target_;
   std::string where_;
-  std::size_t copied_ = 0;
+  std::size_t copied_ = 0, moved_ = 0;
 };
 
 }  // namespace

@@ -115,6 +115,20 @@ TEST_CASE("copying the scene into itself again and again is stopped before memor
   CHECK(apply_patch(seed(), patch).error().where == "/patch");
 }
 
+TEST_CASE("moving a large part is allowed, moving it a thousand times is stopped before it takes minutes") {
+  json patch = json::array();
+  // Each copy holds the ones before: some hundred thousand values in all.
+  for (int i = 0; i < 12; ++i)
+    patch.push_back({{"op", "copy"}, {"from", ""}, {"path", "/a" + std::to_string(i)}});
+  patch.push_back({{"op", "move"}, {"from", "/a11"}, {"path", "/b"}});
+  CHECK(apply_patch(seed(), patch).error().where.rfind("/patch", 0) == std::string::npos);
+  for (int i = 0; i < 1000; ++i)
+    patch.push_back({{"op", "move"}, {"from", i % 2 ? "/c" : "/b"}, {"path", i % 2 ? "/b" : "/c"}});
+  const auto refused = apply_patch(seed(), patch);
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().what.rfind("moves of more than", 0) == 0);
+}
+
 TEST_CASE("a patch cannot nest values deeper than a message may") {
   json patch = json::array({{{"op", "add"}, {"path", "/a"}, {"value", json::object()}}});
   std::string path = "/a";

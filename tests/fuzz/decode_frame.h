@@ -1,0 +1,56 @@
+// Reads the binary messages of the protocol (contract, section 4; README), strictly and written from that
+// table alone: what the server sends is held against it. Nothing is lost in reading, so `encode_frame` gives
+// the same bytes back.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "server/base/result.h"
+
+namespace clothlab::fuzz {
+
+struct FrameHeader {
+  std::uint8_t kind = 2;      ///< 1 topology, 2 frame
+  std::uint8_t encoding = 0;  ///< 0 f32, 1 q16
+  std::uint16_t flags = 0;    ///< bit 0 asleep, bit 1 diverged
+  std::uint32_t topology_revision = 0, sequence = 0, vertex_count = 0;
+  double time = 0;  ///< [s]
+  std::uint64_t step = 0;
+  std::array<float, 3> box_minimum{}, box_extent{};  ///< [m]
+};
+
+struct Topology {
+  std::vector<std::array<std::uint32_t, 2>> cloths;  ///< first vertex, vertex count
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::array<float, 2>> texture_coordinates;  ///< [vertex_count]
+};
+struct Float32 {
+  std::vector<std::array<float, 6>> vertices;  ///< position [m], normal
+};
+struct Quantised {
+  struct Vertex {
+    std::array<std::uint16_t, 3> position{};
+    std::array<std::int8_t, 2> normal{};  ///< octahedral
+    bool operator==(const Vertex&) const = default;
+  };
+  std::vector<Vertex> vertices;
+  /// Where a vertex is: minimum + extent * u / 65535 [m].
+  static std::array<double, 3> position(const FrameHeader& header, const Vertex& vertex);
+};
+
+struct Decoded {
+  FrameHeader header;
+  std::variant<Topology, Float32, Quantised> payload;
+};
+
+/// Error: where = "byte OFFSET".
+Result<Decoded> decode_frame(std::span<const std::uint8_t> bytes);
+
+std::vector<std::uint8_t> encode_frame(const Decoded& message);
+
+}  // namespace clothlab::fuzz

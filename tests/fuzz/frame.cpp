@@ -1,0 +1,93 @@
+// Any bytes as a binary message: refused with the byte that is wrong, or read so that nothing is lost. What
+// is read, the server's own code would have written in the same bytes.
+#include <algorithm>
+#include <cstring>
+
+#include "server/stream/frame.h"
+#include "tests/fuzz/decode_frame.h"
+#include "tests/fuzz/fuzz.h"
+
+using namespace clothlab;
+
+namespace {
+
+stream::Header server_header(const fuzz::FrameHeader& header, std::size_t payload) {
+  stream::Header same;
+  same.kind = static_cast<stream::MessageKind>(header.kind);
+  same.encoding = static_cast<stream::Encoding>(header.encoding);
+  same.flags = header.flags;
+  same.topology_revision = header.topology_revision;
+  same.sequence = header.sequence;
+  same.vertex_count = header.vertex_count;
+  same.time = header.time;
+  same.step = header.step;
+  for (int axis = 0; axis < 3; ++axis) {
+    same.box_minimum[axis] = header.box_minimum[static_cast<std::size_t>(axis)];
+    same.box_extent[axis] = header.box_extent[static_cast<std::size_t>(axis)];
+  }
+  same.payload_bytes = static_cast<std::uint32_t>(payload);
+  return same;
+}
+
+model::Model server_model(const fuzz::FrameHeader& header, const fuzz::Topology& topology) {
+  model::Model model;
+  model.rest_position.resize(header.vertex_count);
+  model.triangles = topology.triangles;
+  for (const auto& [first, count] : topology.cloths) model.cloths.push_back({first, count, 0, 0, 0.0});
+  for (const auto& texture : topology.texture_coordinates)
+    model.texture_coordinates.emplace_back(texture[0], texture[1]);
+  return model;
+}
+
+void require_in_box(const fuzz::FrameHeader& header, const fuzz::Quantised& frame) {
+  for (const fuzz::Quantised::Vertex& vertex : frame.vertices) {
+    const std::array<double, 3> place = fuzz::Quantised::position(header, vertex);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double low = static_cast<double>(header.box_minimum[axis]);
+      fuzz::require(place[axis] >= low && place[axis] <= low + static_cast<double>(header.box_extent[axis]),
+                    "a quantised vertex lies in the box");
+    }
+  }
+}
+
+/// False: refused.
+bool check(std::span<const std::uint8_t> bytes) {
+  const Result<fuzz::Decoded> message = fuzz::decode_frame(bytes);
+  if (!message) {
+    fuzz::require_complete(message.error());
+    return false;
+  }
+  const std::vector<std::uint8_t> again = fuzz::encode_frame(*message);
+  fuzz::require(std::equal(again.begin(), again.end(), bytes.begin(), bytes.end()),
+                "what is read is written again");
+  std::array<std::uint8_t, stream::header_bytes> header{};
+  stream::write_header(server_header(message->header, bytes.size() - header.size()), header.data());
+  fuzz::require(std::equal(header.begin(), header.end(), bytes.begin()), "the server writes the same header");
+  if (const auto* frame = std::get_if<fuzz::Quantised>(&message->payload))
+    require_in_box(message->header, *frame);
+  if (const auto* topology = std::get_if<fuzz::Topology>(&message->payload)) {
+    const stream::SharedMessage same = stream::encode_topology(server_model(message->header, *topology), 1);
+    fuzz::require(std::equal(same->data() + header.size(), same->data() + same->size(),
+                             bytes.begin() + header.size(), bytes.end()),
+                  "the server writes the same topology");
+  }
+  return true;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  std::vector<std::uint8_t> bytes(data, data + size);
+  check(bytes);
+  if (size < stream::header_bytes) return 0;
+  // The same with a length that is right, which a mutation seldom leaves: no part of it is a message.
+  const auto payload = static_cast<std::uint32_t>(size - stream::header_bytes);
+  std::memcpy(bytes.data() + 56, &payload, sizeof payload);
+  std::memset(bytes.data() + 60, 0, 4);
+  if (!check(bytes)) return 0;
+  for (std::size_t part = 0; part < std::min<std::size_t>(size, 256); ++part)
+    fuzz::require(!check({bytes.data(), part}), "a message that ends too soon is refused");
+  bytes.push_back(0);
+  fuzz::require(!check(bytes), "a message with a byte too many is refused");
+  return 0;
+}

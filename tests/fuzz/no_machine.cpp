@@ -1,0 +1,202 @@
+// These definitions take the place of those in server/net/session.cpp and lab_worker.cpp (whose objects the
+// linker then leaves in their library) and of libwebsockets' own.
+#include "tests/fuzz/no_machine.h"
+
+#include <libwebsockets.h>
+
+#include <algorithm>
+#include <map>
+
+#include "server/net/lab_worker.h"
+#include "server/net/session.h"
+#include "server/sim/simulation.h"
+
+namespace clothlab {
+
+// The network.
+namespace fuzz {
+
+namespace {
+
+struct Connection {
+  std::vector<std::string> sent;
+  bool close_said = false;
+};
+std::map<const lws*, Connection>& connections() {
+  static std::map<const lws*, Connection> all;
+  return all;
+}
+Arrival arrival;
+
+std::vector<net::Session*>& sessions() {
+  static std::vector<net::Session*> all;
+  return all;
+}
+
+}  // namespace
+
+void set_arrival(const Arrival& next) {
+  arrival = next;
+}
+
+lws* connect() {
+  auto* handle = reinterpret_cast<lws*>(new char);  // an address of its own, never looked into
+  connections()[handle];
+  return handle;
+}
+
+void disconnect(lws* wsi) {
+  connections().erase(wsi);
+  delete reinterpret_cast<char*>(wsi);
+}
+
+std::vector<std::string> take_sent(const lws* wsi) {
+  return std::exchange(connections().at(wsi).sent, {});
+}
+
+bool close_was_said(const lws* wsi) {
+  return connections().at(wsi).close_said;
+}
+
+}  // namespace fuzz
+
+// The session.
+namespace net {
+
+namespace {
+
+/// What a session keeps, and what it makes of commands: the document is patched and told, nothing is stepped.
+class Scribe {
+ public:
+  Scribe(scene::Document document, Exchange& exchange)
+      : document_(std::move(document)), exchange_(&exchange) {
+    tell({}, 0);
+    exchange_->emit(Started{"none"});
+    exchange_->emit(SolverChanged{json::object()});
+  }
+
+  void perform(const Command& command) {
+    const Ticket& ticket = command.ticket;
+    if (std::holds_alternative<GetScene>(command.what))
+      return reply(ticket, json{{"document", document_.value}, {"revision", revision_}});
+    if (const auto* load = std::get_if<LoadScene>(&command.what))
+      return take(ticket,
+                  load->preset.empty() ? scene::validate(load->document) : scene::load_preset(load->preset),
+                  {});
+    if (const auto* patch = std::get_if<PatchScene>(&command.what)) {
+      if (patch->revision && *patch->revision != revision_)
+        return reply(ticket, RpcError{error_revision_conflict, "conflict", {{"revision", revision_}}});
+      return take(ticket, scene::apply_patch(document_, patch->patch), patch->patch);
+    }
+    if (const auto* reach = std::get_if<ReachScene>(&command.what))
+      return exchange_->emit(SceneReached{reach->job});
+    if (const auto* hold = std::get_if<Hold>(&command.what)) return exchange_->emit(Held{hold->job});
+    reply(ticket, json::object());  // Demand, Watchers, ... come without an id
+  }
+
+ private:
+  void reply(const Ticket& ticket, std::variant<json, RpcError> answer) {
+    if (ticket.id) exchange_->emit(Reply{ticket, std::move(answer)});
+  }
+  void take(const Ticket& ticket, Result<scene::Document> document, std::optional<json> patch) {
+    if (!document) return reply(ticket, invalid_params(document.error()));
+    document_ = std::move(*document);
+    ++revision_;
+    reply(ticket, json{{"revision", revision_}});
+    tell(std::move(patch), ticket.asker);
+  }
+  void tell(std::optional<json> patch, std::uint64_t by) {
+    exchange_->emit(
+        SceneChanged{std::make_shared<const scene::Document>(document_), revision_, std::move(patch), by});
+  }
+
+  scene::Document document_;
+  Exchange* exchange_;
+  std::uint64_t revision_ = 0;
+};
+
+std::map<const Session*, Scribe>& scribes() {
+  static std::map<const Session*, Scribe> all;
+  return all;
+}
+
+}  // namespace
+
+Session::Session(scene::Document document, std::optional<int>, std::function<void()> wake)
+    : exchange_(std::move(wake)) {
+  exchange_.beat();
+  scribes().emplace(this, Scribe(std::move(document), exchange_));
+  fuzz::sessions().push_back(this);
+}
+
+Session::~Session() {
+  scribes().erase(this);
+  std::erase(fuzz::sessions(), this);
+}
+
+// The lab.
+LabWorker::~LabWorker() = default;
+
+void LabWorker::begin(Task task) {
+  busy_ = true;
+  mail_.ended = Ended{task.id, Error{"lab", "nothing is measured here", "a machine"}};
+}
+
+LabWorker::Mail LabWorker::take() {
+  if (mail_.ended) busy_ = false;
+  return std::exchange(mail_, {});
+}
+
+Result<LabWorker::Run> open_lab(std::optional<int>) {
+  return Error{"lab", "no OpenGL", "a machine"};
+}
+
+}  // namespace net
+
+bool fuzz::answer_commands() {
+  bool any = false;
+  std::vector<net::Command> commands;
+  for (net::Session* session : sessions()) {
+    while (true) {
+      session->exchange().take_commands(commands, net::Clock::time_point{});
+      if (commands.empty()) break;
+      any = true;
+      for (const net::Command& command : commands) net::scribes().at(session).perform(command);
+    }
+  }
+  return any;
+}
+
+}  // namespace clothlab
+
+// libwebsockets, as far as a Client calls it.
+extern "C" {
+
+void lws_set_timer_usecs(lws*, lws_usec_t) {}
+void lws_set_timeout(lws*, enum pending_timeout, int) {}
+int lws_callback_on_writable(lws*) {
+  return 1;
+}
+int lws_is_first_fragment(lws*) {
+  return clothlab::fuzz::arrival.first ? 1 : 0;
+}
+int lws_is_final_fragment(lws*) {
+  return clothlab::fuzz::arrival.last ? 1 : 0;
+}
+int lws_frame_is_binary(lws*) {
+  return clothlab::fuzz::arrival.binary ? 1 : 0;
+}
+size_t lws_remaining_packet_payload(lws*) {
+  return 0;
+}
+lws_sockfd_type lws_get_socket_fd(lws*) {
+  return -1;
+}
+int lws_write(lws* wsi, unsigned char* data, size_t size, enum lws_write_protocol protocol) {
+  auto& connection = clothlab::fuzz::connections().at(wsi);
+  const std::string bytes(reinterpret_cast<const char*>(data), size);
+  if (protocol == LWS_WRITE_TEXT) connection.sent.push_back(bytes);
+  if (protocol == LWS_WRITE_RAW) connection.close_said = true;
+  return static_cast<int>(size);
+}
+}
