@@ -6,12 +6,12 @@
 // in another session). A line may begin with ">" (the second client says it), "%" (as a binary message);
 // "\x1f" within a line ends a fragment.
 #include <algorithm>
-#include <iostream>
 #include <memory>
 #include <set>
 
 #include "server/net/client.h"
 #include "server/net/hub.h"
+#include "server/net/log.h"
 #include "tests/fuzz/document.h"
 #include "tests/fuzz/no_machine.h"
 
@@ -145,11 +145,8 @@ void converse(net::Hub& hub, Peer& first, Peer& second, std::string_view rest) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const bool quiet = [] {
-    std::cerr.setstate(std::ios::failbit);  // the server's log
-    return true;
-  }();
-  if (size == 0 || size > scene::max_json_bytes || !quiet) return 0;
+  net::set_log_level(net::LogLevel::error);
+  if (size == 0 || size > scene::max_json_bytes) return 0;
   const int setup = data[0];
   net::Hub hub(options(setup & 1), [] {});
   {

@@ -122,10 +122,10 @@ std::map<const Session*, Scribe>& scribes() {
 
 }  // namespace
 
-Session::Session(scene::Document document, std::optional<int>, std::function<void()> wake)
+Session::Session(Beginning beginning, const Limits&, std::optional<int>, std::function<void()> wake)
     : exchange_(std::move(wake)) {
   exchange_.beat();
-  scribes().emplace(this, Scribe(std::move(document), exchange_));
+  scribes().emplace(this, Scribe(std::move(beginning.document), exchange_));
   fuzz::sessions().push_back(this);
 }
 
