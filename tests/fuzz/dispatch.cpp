@@ -121,7 +121,7 @@ void without_fragments(std::string& line) {
 }
 
 void converse(net::Hub& hub, Peer& first, Peer& second, std::string_view rest) {
-  for (int messages = 0; !rest.empty() && messages < 64; ++messages) {
+  for (int messages = 0; !rest.empty() && messages < 24; ++messages) {
     std::string line = fuzz::next_line(rest);
     const auto marked = [&line](char mark) {
       const bool found = !line.empty() && line[0] == mark;
