@@ -244,8 +244,9 @@ test("the method auto tells what it measures, what it chose, and why where it ca
   await leave(client);
 });
 
-test("with a token, who may do what is as it says, and why connections are closed", async () => {
+test("with a token, who may do what is as it says, and why connections are closed", async (t) => {
   const guarded = await Server.start("--token", "secret", "--view-token", "look", "--max-sessions", "2");
+  t.after(() => guarded.child.kill());
   const [viewer, stranger, owner] = await Promise.all([1, 2, 3].map(() => Client.connect(guarded)));
   assert.equal((await viewer.request("auth", { token: "look" })).role, "viewer");
   assert.equal((await owner.request("auth", { token: "secret" })).role, "operator");
