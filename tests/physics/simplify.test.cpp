@@ -57,7 +57,9 @@ TEST_CASE("a flat pulled sheet needs neither bend springs nor self-collision nor
     CHECK(part.drop == (part.cost_ratio <= 0.95 && name != std::string("half the mesh resolution")));
   }
   CHECK(*variant(result, "without self-collision").change < 1e-7);
-  CHECK(variant(result, "without self-collision").drop);
+  // How much it saves depends on the machine's other work; what follows from that does not.
+  const bool saves = variant(result, "without self-collision").cost_ratio <= 0.95;
+  CHECK(variant(result, "without self-collision").drop == saves);
   const Variant& half = variant(result, "half the mesh resolution");
   const Variant& quarter = variant(result, "a quarter of the mesh resolution");
   CHECK(half.cost_ratio < 0.5);
@@ -70,10 +72,11 @@ TEST_CASE("a flat pulled sheet needs neither bend springs nor self-collision nor
   REQUIRE(result.recommended.drop);
   CHECK(*result.recommended.change <= result.tolerance);
   CHECK(result.recommended.cost_ratio < 0.2);
-  CHECK(result.why.find("without self-collision") != std::string::npos);
+  const bool advised = result.why.find("without self-collision") != std::string::npos;
+  CHECK((saves || !advised));
   const auto patched = scene::apply_patch(whole, result.recommended.patch);
   REQUIRE(patched);
-  CHECK_FALSE(patched->scene.self_collision);
+  CHECK(patched->scene.self_collision.has_value() == !advised);
   CHECK(std::get<scene::Grid>(patched->scene.cloths[0].mesh).columns == 9);
 }
 
