@@ -6,6 +6,7 @@
 
 #include "server/base/files.h"
 #include "server/stream/packer.h"
+#include "tests/fuzz/decode_frame.h"
 #include "tests/scenes.h"
 
 using namespace clothlab;
@@ -68,4 +69,35 @@ TEST_CASE("q16 frames are the committed bytes, with the asleep flag and without"
   const auto context = test::context();
   require_frames(*stepped("cloths.scene.json"), Encoding::q16, {0, stream::flag_asleep},
                  {"frame-q16.bin", "frame-q16-asleep.bin"});
+}
+
+TEST_CASE(
+    "the fuzz targets' decoder reads the committed bytes, no part of them, and no flip as anything but "
+    "that") {
+  for (const char* name :
+       {"topology.bin", "frame-q16.bin", "frame-q16-asleep.bin", "frame-f32.bin", "frame-f32-diverged.bin"}) {
+    const std::string text = golden(name);
+    const std::vector<std::uint8_t> bytes(text.begin(), text.end());
+    const auto same = [](const std::vector<std::uint8_t>& given) {
+      const Result<fuzz::Decoded> message = fuzz::decode_frame(given);
+      return message && fuzz::encode_frame(*message) == given;
+    };
+    INFO(name);
+    REQUIRE(same(bytes));
+    // Each in memory of its own size, so that AddressSanitizer sees what is read behind it.
+    for (auto end = bytes.begin(); end != bytes.end(); ++end)
+      REQUIRE_FALSE(fuzz::decode_frame(std::vector<std::uint8_t>(bytes.begin(), end)));
+    int refused = 0;
+    for (std::size_t bit = 0; bit < 8 * stream::header_bytes; ++bit) {
+      std::vector<std::uint8_t> flipped = bytes;
+      flipped[bit / 8] ^= static_cast<std::uint8_t>(1u << bit % 8);
+      INFO("bit " << bit % 8 << " of byte " << bit / 8);
+      if (!fuzz::decode_frame(flipped))
+        ++refused;
+      else
+        REQUIRE(same(flipped));
+    }
+    // Vertex count, payload bytes and the reserved word alone.
+    REQUIRE(refused >= 3 * 32);
+  }
 }
