@@ -49,7 +49,7 @@ test("a chart arrives point by point, is finished, and can be exported as JSON, 
   const partial = client.messages.filter((m) => m.method === "lab.result" && m.params.job === job).map((m) => m.params);
   for (const { result } of partial.slice(0, -1)) assert.equal(result.complete, false);
   const counts = partial.map(({ result }) => result.points.length);
-  assert.deepEqual(counts, counts.toSorted((a, b) => a - b));
+  assert.deepEqual(counts, [...counts].sort((a, b) => a - b));
   const exported = async (format, more) => (await client.request("lab.export", { job, format, ...more })).text;
   assert.deepEqual(JSON.parse(await exported("json")), end.result);
   assert.ok((await exported("csv")).split("\n").length > end.result.points.length);
