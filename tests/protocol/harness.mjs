@@ -47,7 +47,8 @@ export class Server {
     server.startedAt = performance.now();
     server.child = spawn(program, ["serve", ...(args.includes("--port") ? [] : ["--port", "0"]), ...args], {
       stdio: ["ignore", "pipe", "pipe"],
-      env: { ...process.env, XDG_CACHE_HOME: cacheHome },
+      // A token of the shell's is none of the tests'.
+      env: { ...process.env, XDG_CACHE_HOME: cacheHome, CLOTHLAB_TOKEN: undefined, CLOTHLAB_VIEW_TOKEN: undefined },
     });
     server.closed = once(server.child, "close");
     server.stdout = server.stderr = "";
