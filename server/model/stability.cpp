@@ -64,7 +64,9 @@ double overdamped_limit(const Mode& mode) {
 
 }  // namespace
 
-double dt_limit(Method method, const Mode& mode) {
+double dt_limit(Method method, const Mode& found) {
+  // Both are sums of squares; what rounding leaves below 0 is 0.
+  const Mode mode{std::max(0.0, found.omega_squared), std::max(0.0, found.damping)};
   if (!(mode.omega_squared > 0.0) && !(mode.damping > 0.0)) return no_limit;
   switch (method) {
     case Method::explicit_euler:
