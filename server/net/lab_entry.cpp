@@ -1,6 +1,8 @@
 #include "server/net/lab_entry.h"
 
+#include "server/base/text.h"
 #include "server/lab/exports.h"
+#include "server/net/log.h"
 #include "server/sim/simulation.h"
 
 namespace clothlab::net {
@@ -70,6 +72,18 @@ json LabEntry::result_message() const {
   message["result"] = outcome ? lab::to_json(*outcome) : json(nullptr);
   if (error) message["error"] = {{"path", error->where}, {"found", error->what}, {"allowed", error->remedy}};
   return message;
+}
+
+void LabEntry::log_end(double seconds) const {
+  std::vector<LogField> fields{{"job", std::to_string(id)},
+                               {"kind", lab::name(job)},
+                               {"session", session},
+                               {"state", name(state)},
+                               {"seconds", formatted("%.1f", seconds)}};
+  if (cached) fields.push_back({"cached", "true"});
+  if (beside) fields.push_back({"beside", "true"});
+  if (error) fields.push_back({"why", error->text()});
+  log(state == State::failed ? LogLevel::warning : LogLevel::info, "lab_job_ended", fields);
 }
 
 }  // namespace clothlab::net

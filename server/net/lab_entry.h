@@ -48,6 +48,8 @@ struct LabEntry {
   json summary() const;
   /// What lab.progress and lab.result say of it.
   json progress_message() const, result_message() const;
+  /// What the log says of a job that has ended after so many seconds.
+  void log_end(double seconds) const;
 };
 
 /// As clients are told it: what comes before running is all "queued" to them.

@@ -6,7 +6,6 @@
 
 #include "server/base/text.h"
 #include "server/net/limits.h"
-#include "server/net/log.h"
 
 namespace clothlab::net {
 
@@ -249,15 +248,7 @@ void LabQueue::close(LabEntry& entry, LabEntry::State state, std::int64_t now) {
    : state == State::failed ? totals_.failed
                             : totals_.cancelled)++;
   totals_.seconds += seconds;
-  std::vector<LogField> fields{{"job", std::to_string(entry.id)},
-                               {"kind", lab::name(entry.job)},
-                               {"session", entry.session},
-                               {"state", name(state)},
-                               {"seconds", formatted("%.1f", seconds)}};
-  if (entry.cached) fields.push_back({"cached", "true"});
-  if (entry.beside) fields.push_back({"beside", "true"});
-  if (entry.error) fields.push_back({"why", entry.error->text()});
-  log(state == State::failed ? LogLevel::warning : LogLevel::info, "lab_job_ended", fields);
+  entry.log_end(seconds);
   const std::uint64_t client = entry.ticket.asker;
   if (entry.for_auto && state == State::finished)
     port_.chosen(entry.session, entry.document, std::get<lab::Choice>(*entry.outcome));
