@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "server/model/size.h"
+#include "server/scene/method.h"
 #include "server/sim/colliders.h"
 #include "server/sim/diagnose.h"
 #include "server/sim/kernels.h"
@@ -84,15 +86,29 @@ struct Simulation::Implementation {
     kernels.motions.bind(unit_motion_table);
   }
 
-  void run_batch(std::uint32_t count) {
+  void run_step(int row, gl::StageTimer* timer) {
+    const auto passed = [timer](const char* pass) {
+      if (timer) timer->stage(pass);
+    };
+    state.position().bind(unit_position);
+    if (kernels.self_collision) {
+      kernels.self_collision->update_lists();
+      passed("neighbour_search");
+    }
+    kernels.integrator->step(state, row);
+    passed(scene::name(kernels.plan.method));
+    if (!kernels.strain_limit) return;
+    kernels.strain_limit->apply(state);
+    passed("strain_limit");
+  }
+
+  void run_batch(std::uint32_t count, gl::StageTimer* timer) {
     bind_constants();
     upload_poses(count);
-    for (std::uint32_t step = 0; step < count; ++step) {
-      state.position().bind(unit_position);
-      if (kernels.self_collision) kernels.self_collision->update_lists();
-      kernels.integrator->step(state, static_cast<int>(step) * kernels.plan.pose_rows());
-      if (kernels.strain_limit) kernels.strain_limit->apply(state);
-    }
+    if (timer) timer->begin();
+    for (std::uint32_t step = 0; step < count; ++step)
+      run_step(static_cast<int>(step) * kernels.plan.pose_rows(), step == 0 ? timer : nullptr);
+    if (timer) timer->end();
     step_index += count;
   }
 
@@ -167,10 +183,10 @@ Result<ChangeDepth> Simulation::change(const scene::Scene& scene) {
   return depth;
 }
 
-void Simulation::step(std::uint32_t count) {
+void Simulation::step(std::uint32_t count, gl::StageTimer* timer) {
   while (count > 0) {
     const std::uint32_t batch = std::min(count, batch_steps);
-    implementation_->run_batch(batch);
+    implementation_->run_batch(batch, std::exchange(timer, nullptr));
     count -= batch;
   }
 }

@@ -9,6 +9,7 @@
 
 #include "server/base/result.h"
 #include "server/gl/context.h"
+#include "server/gl/stage_timer.h"
 #include "server/model/model.h"
 #include "server/scene/scene.h"
 
@@ -70,8 +71,10 @@ class Simulation {
   /// Applies a changed scene live; on error the old one goes on.
   Result<ChangeDepth> change(const scene::Scene& scene);
 
-  /// Queues `count` fixed steps of dt on the GPU; returns without waiting for them.
-  void step(std::uint32_t count);
+  /// Queues `count` fixed steps of dt on the GPU; returns without waiting for them. `timer` times the passes
+  /// of the first: neighbour_search, the method with all that its dispatches do (forces, contacts, pins), and
+  /// strain_limit.
+  void step(std::uint32_t count, gl::StageTimer* timer = nullptr);
 
   /// Back to the start positions, at rest, at time 0.
   void reset();
