@@ -94,11 +94,21 @@ void Client::handle(const std::string& text) {
       parse_request(text, {static_cast<std::size_t>(hub_.limits().message_bytes),
                            static_cast<std::size_t>(hub_.limits().json_depth)});
   if (const auto* bad = std::get_if<BadRequest>(&parsed)) return send(error_text(bad->id, bad->error));
-  const auto& request = std::get<Request>(parsed);
+  auto& request = std::get<Request>(parsed);
+  request.received_us = now_us();
   const Outcome outcome = call(*this, request);
-  if (!request.id) return;
-  if (const json* result = std::get_if<json>(&outcome)) send(result_text(*request.id, *result));
-  if (const auto* error = std::get_if<RpcError>(&outcome)) send(error_text(*request.id, *error));
+  if (const json* result = std::get_if<json>(&outcome)) answer(ticket(*this, request), *result);
+  if (const auto* error = std::get_if<RpcError>(&outcome)) answer(ticket(*this, request), *error);
+}
+
+void Client::answer(const Ticket& ticket, const std::variant<json, RpcError>& answer) {
+  if (!ticket.id) return;
+  const auto* result = std::get_if<json>(&answer);
+  const auto* error = std::get_if<RpcError>(&answer);
+  // A method that is none would be a label of the client's choice.
+  if (is_method(ticket.method))
+    hub_.metrics().requests[ticket.method].add(1e-6 * static_cast<double>(now_us() - ticket.asked_us));
+  send(result ? result_text(*ticket.id, *result) : error_text(*ticket.id, *error));
 }
 
 void Client::greet(const std::string& hello) {
@@ -225,7 +235,7 @@ int Client::send_frame(const stream::SharedMessage& frame) {
   pacing_.sent(frame->header.sequence, now);
   frame_waits_ = false;
   ++hub_.metrics().frames_sent;
-  hub_.metrics().latency.add(now - std::max(frame->made_at_us, held_until));
+  hub_.metrics().latency.add(1e-6 * static_cast<double>(now - std::max(frame->made_at_us, held_until)));
   return result;
 }
 

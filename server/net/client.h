@@ -49,6 +49,8 @@ class Client {
   void greet(const std::string& hello);  ///< goes before anything that waits
   void send(const std::string& text) { send(make_text(text)); }
   void send(SharedText text);
+  /// Unless it asked for none.
+  void answer(const Ticket& ticket, const std::variant<json, RpcError>& answer);
   void send_status(SharedText text);
   /// Its session was brought back: the topology is to be sent again, and no frame waits for an answer.
   void session_replaced();

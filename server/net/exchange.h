@@ -16,6 +16,7 @@
 #include <variant>
 #include <vector>
 
+#include "server/gl/stage_timer.h"
 #include "server/lab/choice.h"
 #include "server/net/json_rpc.h"
 #include "server/net/saved.h"
@@ -32,6 +33,8 @@ using stream::encoding_count;
 struct Ticket {
   std::uint64_t asker = 0;
   std::optional<json> id;
+  std::string method{};
+  std::int64_t asked_us = 0;  ///< when it came
 };
 
 // Commands to a session.
@@ -154,6 +157,7 @@ struct Status {
   double dt_limit = 0;           ///< [s]; infinite: none, 0: no step is stable
   std::optional<double> margin;  ///< dt over dt_limit; none where that says nothing
   sim::Diagnostics diagnostics;
+  gl::StageTimes pass_times;  ///< those that have arrived since the last status
 };
 
 class Exchange {

@@ -49,8 +49,12 @@ void FrameMaker::restart() {
 
 bool FrameMaker::request(std::size_t index, const sim::Simulation& simulation) {
   const auto flags = (diverged_ ? stream::flag_diverged : 0) | (asleep_ ? stream::flag_asleep : 0);
-  if (!packer_->request(simulation, static_cast<stream::Encoding>(index), static_cast<std::uint16_t>(flags)))
-    return false;
+  timer_.begin();
+  const bool queued =
+      packer_->request(simulation, static_cast<stream::Encoding>(index), static_cast<std::uint16_t>(flags));
+  if (queued) timer_.stage("pack_frame");
+  timer_.end();
+  if (!queued) return false;
   ++requested_;
   lanes_[index].packed_version = version_;
   return true;

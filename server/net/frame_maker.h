@@ -31,6 +31,8 @@ class FrameMaker {
   void make_due(const sim::Simulation& simulation, Clock::time_point now);
   /// Publishes what has arrived.
   void poll();
+  /// Appends what packing a frame took lately.
+  void poll_times(gl::StageTimes& out) { timer_.poll(out); }
 
   /// The state is the last good one again, after a blow-up: frames say so, and those on their way are void.
   void diverge();
@@ -58,6 +60,7 @@ class FrameMaker {
 
   Exchange& exchange_;
   std::unique_ptr<stream::Packer> packer_;
+  gl::StageTimer timer_;
   std::array<Lane, encoding_count> lanes_{};
   std::uint32_t requested_ = 0;   ///< sequence number of the newest frame under way: the packer counts by one
   std::uint32_t arrived_ = 0;     ///< of the newest that came back, or that is void

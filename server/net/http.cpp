@@ -62,15 +62,12 @@ void HttpRequest::begin(const std::string& path) {
   if (path == "/healthz")
     return answer(hub_.all_sessions_beat() ? plain(200, "ok")
                                            : plain(503, "a session's thread does not answer"));
-  if (path == "/metrics")
-    return answer(
-        {200, "text/plain; version=0.0.4; charset=utf-8", metrics_text(hub_.metrics(), hub_.gauges()), {}});
   if (path == "/ws") {
     HttpAnswer refusal = plain(426, "connect with a WebSocket, subprotocol clothlab.v1");
     refusal.headers = {{"upgrade:", "websocket"}};
     return answer(std::move(refusal));
   }
-  if (path.rfind("/api/", 0) == 0) return api(path);
+  if (path == "/metrics" || path.rfind("/api/", 0) == 0) return authorised() ? inside(path) : refuse();
   answer(file(path));
 }
 
@@ -99,12 +96,16 @@ bool HttpRequest::authorised() const {
   return given.rfind(scheme, 0) == 0 && hub_.role_of(given.substr(scheme.size())) != Role::none;
 }
 
-void HttpRequest::api(const std::string& path) {
-  if (!authorised()) {
-    HttpAnswer refusal = plain(401, "send the server's token as `Authorization: Bearer TOKEN`");
-    refusal.headers = {{"www-authenticate:", "Bearer"}};
-    return answer(std::move(refusal));
-  }
+void HttpRequest::refuse() {
+  HttpAnswer refusal = plain(401, "send the server's token as `Authorization: Bearer TOKEN`");
+  refusal.headers = {{"www-authenticate:", "Bearer"}};
+  answer(std::move(refusal));
+}
+
+void HttpRequest::inside(const std::string& path) {
+  if (path == "/metrics")
+    return answer(
+        {200, "text/plain; version=0.0.4; charset=utf-8", metrics_text(hub_.metrics(), hub_.gauges()), {}});
   const std::string session = query(wsi_, "session", main_session);
   const bool mesh = path == "/api/mesh.obj", picture = path == "/api/snapshot.png";
   if (!mesh && !picture && path != "/api/scene")

@@ -38,7 +38,9 @@ class HttpRequest {
 
  private:
   HttpAnswer file(const std::string& path) const;
-  void api(const std::string& path);
+  /// What only those see who have a token: /metrics and the API.
+  void inside(const std::string& path);
+  void refuse();
   void ask_session(const std::string& session, Export what);
   void answer(HttpAnswer answer);
   int send_headers();

@@ -40,8 +40,7 @@ LabQueue::Port Hub::lab_port() {
     if (Client* client = find_client(id)) client->send(notification_text(method, params));
   };
   port.answer = [this](const Ticket& ticket, const json& answer) {
-    if (Client* client = ticket.id ? find_client(ticket.asker) : nullptr)
-      client->send(result_text(*ticket.id, answer));
+    if (Client* client = find_client(ticket.asker)) client->answer(ticket, answer);
   };
   port.hold = [this](const std::string& session, std::uint64_t job) {
     if (Room* room = find_room(session)) room->post({{}, Hold{job}});

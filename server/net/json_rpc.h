@@ -43,6 +43,7 @@ struct Request {
   std::string method;
   json params = json::object();
   std::optional<json> id;
+  std::int64_t received_us = 0;  ///< steady clock
 };
 
 /// What a message could not be read as, and the id to answer to (null where it is unknown).

@@ -81,8 +81,17 @@ std::vector<std::string> method_names() {
   return names;
 }
 
+bool is_method(const std::string& name) {
+  return std::any_of(methods.begin(), methods.end(),
+                     [&](const Method& method) { return name == method.name; });
+}
+
+Ticket ticket(const Client& client, const Request& request) {
+  return {client.id(), request.id, request.method, request.received_us};
+}
+
 Outcome ask_session(Client& client, const Request& request, decltype(Command::what) what) {
-  if (client.room()->offer({{client.id(), request.id}, std::move(what)})) return Later{};
+  if (client.room()->offer({ticket(client, request), std::move(what)})) return Later{};
   return RpcError{error_over_limit, "the session has too many requests waiting; wait for its answers",
                   nullptr};
 }

@@ -21,6 +21,9 @@ Outcome call(Client& client, const Request& request);
 
 /// What a client may call.
 std::vector<std::string> method_names();
+bool is_method(const std::string& name);
+
+Ticket ticket(const Client& client, const Request& request);
 
 /// Leaves it to the client's session, or says that it is too busy.
 Outcome ask_session(Client& client, const Request& request, decltype(Command::what) what);

@@ -82,7 +82,7 @@ Outcome ask_lab(Client& client, const Request& request, Params& params, lab::Job
   const LabWishes wishes{flag(params, "pause"), flag(params, "fresh")};
   if (auto error = params.check()) return *error;
   LabQueue& lab = client.hub().lab();
-  const auto admitted = lab.admit({client.id(), request.id}, client.room()->name(), std::move(job), wishes);
+  const auto admitted = lab.admit(ticket(client, request), client.room()->name(), std::move(job), wishes);
   if (const auto* refusal = std::get_if<RpcError>(&admitted)) return *refusal;
   const std::uint64_t id = std::get<std::uint64_t>(admitted);
   Outcome asked = ask_session(client, request, ReachScene{id});

@@ -8,47 +8,62 @@ namespace clothlab::net {
 
 namespace {
 
+void head(std::string& out, const std::string& name, const char* type, const char* help) {
+  out += "# HELP " + name + " " + help + "\n# TYPE " + name + " " + type + "\n";
+}
+
 void family(std::string& out, const std::string& name, const char* type, const char* help,
             const std::string& value) {
-  out += "# HELP " + name + " " + help + "\n# TYPE " + name + " " + type + "\n" + name + " " + value + "\n";
+  head(out, name, type, help);
+  out += name + " " + value + "\n";
 }
 
 }  // namespace
 
-void LatencyHistogram::add(std::int64_t microseconds) {
-  const auto edge = std::lower_bound(edges.begin(), edges.end(), microseconds);
-  ++counts_[static_cast<std::size_t>(edge - edges.begin())];
+Histogram::Histogram(std::vector<double> edges) : edges_(std::move(edges)), counts_(edges_.size() + 1) {}
+
+void Histogram::add(double seconds) {
+  const auto edge = std::lower_bound(edges_.begin(), edges_.end(), seconds);
+  ++counts_[static_cast<std::size_t>(edge - edges_.begin())];
   ++count_;
-  sum_ += 1e-6 * static_cast<double>(microseconds);
+  sum_ += seconds;
 }
 
-double LatencyHistogram::quantile(double p) const {
+double Histogram::quantile(double p) const {
   if (count_ == 0) return 0;
   const double rank = p * static_cast<double>(count_);
   double below = 0;
-  for (std::size_t i = 0; i < edges.size(); ++i) {
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
     const double here = static_cast<double>(counts_[i]);
     if (below + here >= rank && here > 0) {
-      const double low = i == 0 ? 0 : static_cast<double>(edges[i - 1]);
-      return 1e-6 * (low + (static_cast<double>(edges[i]) - low) * (rank - below) / here);
+      const double low = i == 0 ? 0 : edges_[i - 1];
+      return low + (edges_[i] - low) * (rank - below) / here;
     }
     below += here;
   }
-  return 1e-6 * static_cast<double>(edges.back());
+  return edges_.back();
 }
 
-void LatencyHistogram::write(std::string& out, const std::string& name) const {
-  out += "# HELP " + name + " from the end of a step to its frame's bytes leaving\n# TYPE " + name +
-         " histogram\n";
+void Histogram::write(std::string& out, const std::string& name, const std::string& label) const {
+  const std::string first = label.empty() ? "" : label + ",", alone = label.empty() ? "" : "{" + label + "}";
   std::uint64_t below = 0;
-  for (std::size_t i = 0; i < edges.size(); ++i) {
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
     below += counts_[i];
-    out += name + "_bucket{le=\"" + significant(1e-6 * static_cast<double>(edges[i]), 9) + "\"} " +
-           std::to_string(below) + "\n";
+    out += name + "_bucket{" + first + "le=\"" + significant(edges_[i], 9) + "\"} " + std::to_string(below) + "\n";
   }
-  out += name + "_bucket{le=\"+Inf\"} " + std::to_string(count_) + "\n";
-  out += name + "_sum " + significant(sum_, 9) + "\n" + name + "_count " + std::to_string(count_) + "\n";
+  out += name + "_bucket{" + first + "le=\"+Inf\"} " + std::to_string(count_) + "\n";
+  out += name + "_sum" + alone + " " + significant(sum_, 9) + "\n";
+  out += name + "_count" + alone + " " + std::to_string(count_) + "\n";
 }
+
+void Histograms::write(std::string& out, const std::string& name, const std::string& label) const {
+  for (const auto& [value, histogram] : by_value_) histogram.write(out, name, label + "=\"" + value + "\"");
+}
+
+Metrics::Metrics()
+    : latency({1e-4, 2e-4, 5e-4, 1e-3, 1.5e-3, 2e-3, 3e-3, 4e-3, 5e-3, 7.5e-3, 0.01, 0.015, 0.02, 0.05, 0.1, 1}),
+      requests({1e-4, 1e-3, 5e-3, 0.01, 0.02, 0.05, 0.1, 0.5, 1, 5}),
+      gpu_passes({1e-6, 2e-6, 5e-6, 1e-5, 2e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 0.01, 0.1}) {}
 
 std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
   std::string out;
@@ -60,7 +75,8 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
         gauges.asleep);
   count("clothlab_clients", "gauge", "WebSocket connections", gauges.clients);
   count("clothlab_viewers", "gauge", "connections subscribed to frames", gauges.viewers);
-  count("clothlab_steps_total", "counter", "simulation steps of the open sessions", gauges.steps);
+  count("clothlab_steps_total", "counter", "simulation steps",
+        gauges.steps + metrics.steps_of_closed_sessions);
   count("clothlab_frames_sent_total", "counter", "frames sent", metrics.frames_sent);
   count("clothlab_frames_skipped_total", "counter", "frames replaced by newer ones before they could be sent",
         metrics.frames_skipped);
@@ -77,9 +93,15 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
   count("clothlab_lab_failed_total", "counter", "jobs of the lab that failed", gauges.lab.failed);
   family(out, "clothlab_lab_seconds_total", "counter", "seconds that jobs of the lab that have ended ran",
          significant(gauges.lab.seconds, 9));
+  head(out, "clothlab_frame_latency_seconds", "histogram", "from the end of a step to its frame's bytes leaving");
   metrics.latency.write(out, "clothlab_frame_latency_seconds");
   family(out, "clothlab_frame_latency_p95_seconds", "gauge",
          "95th percentile of clothlab_frame_latency_seconds", significant(metrics.latency.quantile(0.95), 9));
+  head(out, "clothlab_request_seconds", "histogram", "from a request's arrival to its answer, by method");
+  metrics.requests.write(out, "clothlab_request_seconds", "method");
+  head(out, "clothlab_gpu_pass_seconds", "histogram",
+       "what a pass takes on the GPU, of one step, diagnosis or frame in about ten a second and session");
+  metrics.gpu_passes.write(out, "clothlab_gpu_pass_seconds", "pass");
   return out;
 }
 

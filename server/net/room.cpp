@@ -30,6 +30,7 @@ void Room::begin_session(std::shared_ptr<const Saved> saved) {
   const Options& options = hub_.options();
   Beginning beginning{name_, options.document, std::move(saved), {}, last_frame_ + frames_unseen};
   if (!options.state_folder.empty()) beginning.file = session_file(options.state_folder, name_);
+  give_up_session().reset();
   session_ = std::make_unique<Session>(std::move(beginning), options.limits, options.gpu, wake_);
 }
 
@@ -46,6 +47,11 @@ void Room::post(Command command) {
 
 bool Room::offer(Command command) {
   return session_ && session_->exchange().offer(std::move(command));
+}
+
+std::unique_ptr<Session> Room::give_up_session() {
+  hub_.metrics().steps_of_closed_sessions += steps();
+  return std::move(session_);
 }
 
 void Room::stop() {
@@ -92,6 +98,7 @@ void Room::pump() {
   Status status;
   const bool told = session_->exchange().take_status(status);
   if (told) asleep_ = status.asleep;
+  if (told) take(status.pass_times);
   if (told && status.real_time_factor > 0)
     hub_.lab().session_reaches(name_, status.real_time_factor / status.speed, now_us());
   if (told && !clients_.empty() && started()) {
@@ -158,12 +165,7 @@ void Room::take(Failed& failed) {
 
 void Room::take(Reply& reply) {
   Client* client = hub_.find_client(reply.ticket.asker);
-  if (!client || !reply.ticket.id) return;
-  const json& id = *reply.ticket.id;
-  if (const json* result = std::get_if<json>(&reply.answer))
-    client->send(result_text(id, *result));
-  else
-    client->send(error_text(id, std::get<RpcError>(reply.answer)));
+  if (client) client->answer(reply.ticket, reply.answer);
 }
 
 void Room::take(SceneChanged& changed) {
@@ -181,8 +183,17 @@ void Room::take(TopologyChanged& changed) {
   for (Client* client : clients_) client->wake();
 }
 
+void Room::take(const gl::StageTimes& times) {
+  for (const auto& [pass, seconds] : times) {
+    hub_.metrics().gpu_passes[pass].add(seconds);
+    // It may be of a pass that has been replaced since.
+    if (std::find(passes_.begin(), passes_.end(), pass) != passes_.end()) pass_seconds_[pass] = seconds;
+  }
+}
+
 void Room::take(PassesChanged& changed) {
   passes_ = skipped_ = json::array();
+  pass_seconds_ = json::object();
   for (const sim::Simulation::Pass& pass : changed.passes) {
     if (pass.skipped.empty())
       passes_.push_back(pass.name);
@@ -248,6 +259,7 @@ json Room::status_params(const Status& status) const {
           {"contacts", d.contacts},
           {"passes", passes_},
           {"skipped", skipped_},
+          {"pass_seconds", pass_seconds_},
           {"stability",
            {{"dt_limit", std::isfinite(status.dt_limit) ? json(status.dt_limit) : json(nullptr)},
             {"margin", status.margin ? json(*status.margin) : json(nullptr)}}},

@@ -50,7 +50,8 @@ class Room {
   const std::optional<Failed>& failure() const { return failure_; }
 
   void stop();
-  std::unique_ptr<Session> give_up_session() { return std::move(session_); }
+  /// Its steps stay counted.
+  std::unique_ptr<Session> give_up_session();
   bool beats() const { return !session_ || session_->beats(); }
   bool asleep() const { return asleep_; }  ///< as last told
   std::uint64_t steps() const { return session_ ? session_->exchange().steps() : 0; }
@@ -62,6 +63,7 @@ class Room {
   void take(SceneChanged& changed);
   void take(TopologyChanged& changed);
   void take(PassesChanged& changed);
+  void take(const gl::StageTimes& times);
   void take(SolverChanged& changed);
   void take(Diverged& diverged);
   void take(Notice& notice);
@@ -87,7 +89,7 @@ class Room {
   std::shared_ptr<const scene::Document> document_;
   std::uint64_t revision_ = 0;
   stream::SharedMessage topology_;
-  json passes_ = json::array(), skipped_ = json::array(), solver_ = json::object();
+  json passes_ = json::array(), skipped_ = json::array(), pass_seconds_ = json::object(), solver_ = json::object();
   std::array<double, encoding_count> demanded_{};
   std::array<std::uint32_t, encoding_count>
       seen_{};                           ///< sequence number of the last frame offered to viewers

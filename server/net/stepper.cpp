@@ -105,7 +105,7 @@ void Stepper::advance(Clock::time_point now) {
     steps = real_time_.due(now, document_.scene.solver.dt);
   if (steps == 0) return;
   const Clock::time_point begun = Clock::now();
-  simulation_->step(steps);
+  simulation_->step(steps, &step_timer_);
   backlog_.push(steps, begun);
   backlog_.poll(Clock::now(), spent);
   ++state_version_;
@@ -150,7 +150,10 @@ void Stepper::follow_diagnostics(Clock::time_point now) {
 // Of a state that stands still once is enough.
 void Stepper::request_diagnosis(Clock::time_point now) {
   if (diagnosing_ || diagnosed_version_ == state_version_ || now < next_diagnosis_) return;
+  diagnosis_timer_.begin();
   simulation_->request_diagnostics();
+  diagnosis_timer_.stage("diagnose");
+  diagnosis_timer_.end();
   diagnosing_ = true;
   diagnosed_version_ = state_version_;
   next_diagnosis_ = std::max(next_diagnosis_ + period(diagnosis_rate), now);
@@ -229,6 +232,10 @@ void Stepper::publish_status(Clock::time_point now) {
   status.dt_limit = step_limit_.dt_limit();
   status.margin = step_limit_.margin();
   status.diagnostics = diagnostics_;
+  // The timers begin again once their times are taken: a few samples a second.
+  step_timer_.poll(status.pass_times);
+  diagnosis_timer_.poll(status.pass_times);
+  frames_->poll_times(status.pass_times);
   exchange_.publish(status);
   warn_if_slow(now);
 }

@@ -115,6 +115,7 @@ class Stepper {
   std::unique_ptr<FrameMaker> frames_;
   std::unique_ptr<render::Renderer> renderer_;  ///< made for the first picture
   std::vector<std::future<void>> encoders_;     ///< pictures being compressed; they end before this object
+  gl::StageTimer step_timer_, diagnosis_timer_;
   GpuBacklog backlog_;
   RealTime real_time_;
   StepLimit step_limit_;

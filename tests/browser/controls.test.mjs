@@ -56,6 +56,18 @@ browserTest("self-collision is switched off and on", async () => {
   await client.close();
 });
 
+browserTest("the passes say what they take on the GPU, and those left out say why", async () => {
+  const { viewer, client } = await both("passes");
+  await viewer.page.locator(".passes summary").click();
+  const time = (pass) => viewer.page.locator(`.passes li:has-text("${pass}") b`).textContent();
+  for (const pass of ["neighbour search", "symplectic euler"]) await eventually(pass, () => time(pass), (text) => /^[\d.]+ (µs|ms)$/.test(text));
+  assert.equal(await time("pins"), "", "it has no dispatch of its own");
+  await client.request("scene.patch", { patch: { self_collision: null } });
+  await eventually("why", () => viewer.page.locator('.passes li.skipped:has-text("neighbour search") span').allTextContents(),
+                   (texts) => texts.length === 1 && /self_collision is null/.test(texts[0]));
+  await client.close();
+});
+
 browserTest("a strain limit is set in percent, and its slider's left end takes it away", async () => {
   const { viewer, client, scene } = await both("strain-limit");
   const limit = async () => (await scene()).cloths[0].material.strain_limit;

@@ -25,9 +25,12 @@ test("before auth, and with a wrong token, everything answers -32001", async () 
   for (const [method, params] of [["ping", {}], ["scene.get", {}], ["sim.pause", {}], ["stream.subscribe", {}],
                                   ["auth", { token: "wrong" }], ["auth", { token: "" }], ["auth", { token: "secretx" }]])
     assert.equal((await client.refusal(method, params)).code, -32001, method);
+  assert.equal((await client.refusal('a"label')).code, -32001);
   assert.deepEqual(client.messages, []);
   await client.request("auth", { token: "secret" });
   await client.close();
+  // Nobody chooses a metric's label.
+  assert.ok(!(await server.get("/metrics", { authorization: "Bearer secret" })).body.includes('a"label'));
 });
 
 test("who does not authenticate is closed with 1008 after 5 s", async () => {
@@ -62,15 +65,16 @@ test("auth into one session more than --max-sessions answers -32002, and the nex
   await second.close();
 });
 
-test("the HTTP API wants the token as a Bearer token; the page and /healthz do not", async () => {
-  for (const path of ["/api/scene", "/api/mesh.obj", "/api/snapshot.png"]) {
+test("the HTTP API and /metrics want the token as a Bearer token; the page and /healthz do not", async () => {
+  for (const path of ["/api/scene", "/api/mesh.obj", "/api/snapshot.png", "/metrics"]) {
     const refused = await server.get(path);
     assert.equal(refused.status, 401);
     assert.equal(refused.headers["www-authenticate"], "Bearer");
     assert.equal((await server.get(path, { authorization: "Bearer wrong" })).status, 401);
   }
   for (const token of ["secret", "look"])
-    assert.equal((await server.get("/api/scene", { authorization: `Bearer ${token}` })).status, 200);
+    for (const path of ["/api/scene", "/metrics"])
+      assert.equal((await server.get(path, { authorization: `Bearer ${token}` })).status, 200);
   assert.equal((await server.get("/")).status, 200);
   assert.equal((await server.get("/healthz")).status, 200);
 });

@@ -86,6 +86,11 @@ export class Server {
     });
     return withTimeout(answer, path);
   }
+
+  /// What /metrics says of one that has no labels; NaN: nothing.
+  async metric(name) {
+    return Number(new RegExp(`^${name} (\\S+)$`, "m").exec((await this.get("/metrics")).body)?.[1]);
+  }
 }
 
 export class RpcError extends Error {

@@ -7,7 +7,7 @@ import { fileURLToPath } from "node:url";
 import { once } from "node:events";
 import { after, before, test } from "node:test";
 import { gunzipSync } from "node:zlib";
-import { Client, Server, withTimeout } from "./harness.mjs";
+import { Client, Server, sleep, withTimeout } from "./harness.mjs";
 
 let server;
 before(async () => (server = await Server.start()));
@@ -116,6 +116,71 @@ test("/metrics counts sessions, clients, viewers, steps, frames and bytes, and t
   await client.close();
 });
 
+/// The samples of a metrics text, by name: [{labels, value}]; fails where the text breaks a rule of Prometheus' format or naming.
+function readMetrics(text) {
+  const types = new Map(), samples = new Map();
+  for (const line of text.trimEnd().split("\n")) {
+    const comment = /^# (HELP|TYPE) ([a-z][a-z0-9_]*) (.+)$/.exec(line);
+    if (comment) {
+      const [, what, name, rest] = comment;
+      if (what === "TYPE") types.set(name, rest);
+      assert.ok(name.startsWith("clothlab_"), name);
+      assert.equal(types.get(name) === "counter" || what === "HELP", name.endsWith("_total") || what === "HELP", `${name}: only counters end in _total`);
+      assert.doesNotMatch(name, /_(ms|us|milliseconds|microseconds|count|sum|bucket)(_|$)/, "base units, and no name of a histogram's own");
+      continue;
+    }
+    const sample = /^([a-z_0-9]+)(?:\{([^}]*)\})? (\S+)$/.exec(line);
+    assert.ok(sample, line);
+    const [, name, labels = "", value] = sample;
+    const family = types.has(name) ? name : name.replace(/_(bucket|sum|count)$/, "");
+    assert.ok(types.has(family), `${name} has a TYPE`);
+    assert.ok(Number.isFinite(Number(value)), line);
+    if (!samples.has(name)) samples.set(name, []);
+    samples.get(name).push({ labels: Object.fromEntries([...labels.matchAll(/([a-z_]+)="([^"]*)"/g)].map(([, key, of]) => [key, of])), value: Number(value) });
+  }
+  for (const [name, type] of types) {
+    if (type !== "histogram") continue;
+    const of = (labels) => JSON.stringify({ ...labels, le: undefined });
+    for (const { labels, value } of samples.get(`${name}_count`) ?? []) {
+      const buckets = samples.get(`${name}_bucket`).filter((bucket) => of(bucket.labels) === of(labels));
+      const edges = buckets.map((bucket) => Number(bucket.labels.le.replace("+Inf", "Infinity"))), counts = buckets.map((bucket) => bucket.value);
+      assert.deepEqual(edges, [...new Set(edges)].sort((a, b) => a - b));
+      assert.deepEqual(counts, [...counts].sort((a, b) => a - b), "buckets are cumulative");
+      assert.deepEqual([edges.at(-1), counts.at(-1)], [Infinity, value]);
+    }
+  }
+  return samples;
+}
+
+test("/metrics follows Prometheus' format, and has what each pass takes on the GPU and each method to its answer", async () => {
+  const client = await Client.connect(server);
+  await client.request("stream.subscribe");
+  await client.request("ping", { t: 1 });
+  assert.equal((await client.refusal("no.such.method")).code, -32601);
+  const told = await client.notification("sim.status", ({ pass_seconds }) => pass_seconds.symplectic_euler > 0 && pass_seconds.neighbour_search > 0);
+  for (const pass of Object.keys(told.pass_seconds)) assert.ok(told.passes.includes(pass), pass);
+  const counts = async (name, label) => {
+    const samples = readMetrics((await server.get("/metrics")).body.toString());
+    return Object.fromEntries((samples.get(`${name}_count`) ?? []).map(({ labels, value }) => [labels[label], value]));
+  };
+  const requests = await counts("clothlab_request_seconds", "method");
+  assert.ok(requests.ping >= 1 && requests["stream.subscribe"] >= 1);
+  assert.ok(!("no.such.method" in requests), "no label of a client's choice");
+  let passes = {};
+  for (let tries = 0; tries < 100 && !(passes.diagnose && passes.pack_frame); ++tries) {
+    passes = await counts("clothlab_gpu_pass_seconds", "pass");
+    await sleep(100);
+  }
+  for (const pass of ["symplectic_euler", "neighbour_search", "diagnose", "pack_frame"]) assert.ok(passes[pass] >= 1, pass);
+  assert.ok(!("strain_limit" in passes), "the seed has none");
+  // What is not in the scene any more is not timed any more.
+  await client.request("scene.patch", { patch: { self_collision: null } });
+  await client.notification("sim.status", ({ passes, pass_seconds }) =>
+    !passes.includes("neighbour_search") && !("neighbour_search" in pass_seconds) && pass_seconds.symplectic_euler > 0);
+  await client.request("scene.load", { preset: "seed" });
+  await client.close();
+});
+
 test("/api/scene is the document as scene.get answers it", async () => {
   const client = await Client.connect(server);
   const { document } = await client.request("scene.get");
@@ -146,7 +211,7 @@ test("/api/mesh.obj is the present cloth", async () => {
 test("the API of a session that is not open answers 404 and opens none", async () => {
   for (const path of ["/api/scene", "/api/mesh.obj", "/api/snapshot.png"])
     assert.equal((await server.get(`${path}?session=nobody`)).status, 404);
-  assert.match((await server.get("/metrics")).body.toString(), /^clothlab_sessions 1$/m);
+  assert.equal(await server.metric("clothlab_sessions"), 1);
 });
 
 test("/api/snapshot.png is a picture of the size asked for", async () => {

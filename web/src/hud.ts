@@ -18,6 +18,7 @@ export interface Status {
   stability?: Stability | null;
   passes?: string[];
   skipped?: { name: string; reason: string }[];
+  pass_seconds?: Record<string, number>;
 }
 
 const rows = [
@@ -41,6 +42,8 @@ export class Hud {
   private bytes = 0;
   private since = performance.now();
   private passes = "";
+  private readonly passTimes = new Map<string, HTMLElement>();
+  private passSeconds: Record<string, number> = {};
   private timeShownAt = 0;
 
   constructor() {
@@ -95,6 +98,7 @@ export class Hud {
     }
     if (status.max_strain !== undefined) this.set("strain", `${(100 * status.max_strain).toFixed(1)} %`);
     if (status.passes) this.showPasses(status.passes, status.skipped ?? []);
+    if (status.pass_seconds) this.passSeconds = status.pass_seconds;
   }
 
   /// Turns the counts since the last call into rates; call it about once a second.
@@ -107,6 +111,10 @@ export class Hud {
     element("headline-fps", HTMLElement).textContent = rate(this.drawn);
     const kilobits = (8 * (bytesReceived - this.bytes)) / seconds / 1000;
     this.set("rate", kilobits < 10000 ? `${kilobits.toFixed(0)} kbit/s` : `${(kilobits / 1000).toFixed(1)} Mbit/s`);
+    for (const [pass, cell] of this.passTimes) {
+      const spent = this.passSeconds[pass];
+      cell.textContent = spent === undefined ? "" : spent < 1e-3 ? `${(1e6 * spent).toFixed(0)} µs` : `${(1e3 * spent).toFixed(1)} ms`;
+    }
     this.drawn = this.received = 0;
     this.bytes = bytesReceived;
     this.since = now;
@@ -117,10 +125,17 @@ export class Hud {
     if (text === this.passes) return;
     this.passes = text;
     element("passes-count", HTMLElement).textContent = `${running.length} of ${running.length + skipped.length} run`;
+    this.passTimes.clear();
     const item = (name: string, reason: string): HTMLLIElement => {
       const entry = document.createElement("li");
       entry.textContent = name.replaceAll("_", " ");
-      if (reason === "") return entry;
+      if (reason === "") {
+        const time = document.createElement("b");
+        time.title = "what the GPU spends on it in a step; the method's has forces, contacts and pins in it";
+        entry.append(time);
+        this.passTimes.set(name, time);
+        return entry;
+      }
       entry.className = "skipped";
       const why = document.createElement("span");
       why.textContent = reason;
