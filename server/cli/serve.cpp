@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "server/base/files.h"
+#include "server/base/memory.h"
 #include "server/cli/commands.h"
 #include "server/model/model.h"
 #include "server/model/size.h"
@@ -97,6 +98,7 @@ int serve(ServeArguments& arguments) {
   arguments.options.document = std::move(*document);
   if (arguments.gpu >= 0) arguments.options.gpu = arguments.gpu;
   net::set_log_level(*net::log_level(arguments.log_level));
+  share_free_memory();
   StopOnSignal::block();
   Result<std::unique_ptr<net::Server>> server = net::Server::listen(std::move(arguments.options));
   if (!server) return fail(server.error(), exit_internal);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "server/base/memory.h"
 #include "server/net/client.h"
 #include "server/net/http.h"
 
@@ -104,9 +105,16 @@ std::string Hub::sleeping_room() const {
 void Hub::retire(const std::string& name) {
   const auto found = rooms_.find(name);
   lab_->session_left(name);
-  // Its thread may need a turn to end: not on this thread's time.
-  retiring_.push_back(std::async(
-      std::launch::async, [session = found->second->give_up_session()]() mutable { session.reset(); }));
+  // Its thread may need a turn to end: not on this thread's time. A future that is kept keeps its thread's stack.
+  retiring_.erase(std::remove_if(retiring_.begin(), retiring_.end(),
+                                 [](const std::future<void>& end) {
+                                   return end.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+                                 }),
+                  retiring_.end());
+  retiring_.push_back(std::async(std::launch::async, [session = found->second->give_up_session()]() mutable {
+    session.reset();
+    release_free_memory();
+  }));
   rooms_.erase(found);
 }
 
