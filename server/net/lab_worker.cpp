@@ -4,9 +4,11 @@
 #include <unistd.h>
 
 #include <exception>
+#include <new>
 #include <utility>
 
 #include "server/gl/context.h"
+#include "server/net/fault.h"
 
 namespace clothlab::net {
 
@@ -70,6 +72,8 @@ void LabWorker::run() {
       stop = task_stop_;
     }
     Result<lab::Outcome> outcome = carry_out(task, stop, job);
+    // What it ran on may be what failed: the next job has another.
+    if (!outcome && !lab::was_cancelled(outcome.error())) job.reset();
     put([&](Mail& mail) { mail.ended.emplace(Ended{task.id, std::move(outcome)}); });
   }
 }
@@ -92,7 +96,10 @@ Result<lab::Outcome> LabWorker::carry_out(const Task& task, const std::stop_toke
       auto copy = std::make_shared<const lab::Outcome>(partial);
       put([&](Mail& mail) { mail.partial.swap(copy); });
     };
+    provoke_fault(fault_in_lab, task.id);
     return (*job)(*task.document, task.job, control);
+  } catch (const std::bad_alloc&) {
+    return Error{"lab", "there was not enough memory", "ask for fewer methods, or of a smaller scene"};
   } catch (const std::exception& error) {
     return Error{"lab", error.what(), "ask again; please report it if it happens twice"};
   }
@@ -107,8 +114,12 @@ Result<LabWorker::Run> open_lab(std::optional<int> gpu) {
   if (!context) return context.error();
   return LabWorker::Run(
       [context = std::shared_ptr<gl::Context>(std::move(*context))](
-          const scene::Document& document, const lab::Job& job, const lab::Control<lab::Outcome>& control) {
-        return lab::run(document, job, control);
+          const scene::Document& document, const lab::Job& job,
+          const lab::Control<lab::Outcome>& control) -> Result<lab::Outcome> {
+        Result<lab::Outcome> outcome = lab::run(document, job, control);
+        if (context->lost() || fault_due(Fault::context_lost, fault_in_lab, 0))
+          return Error{"OpenGL", "the device was reset while it measured, and nothing on it can be trusted", "ask again"};
+        return outcome;
       });
 }
 

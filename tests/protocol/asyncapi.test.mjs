@@ -6,18 +6,9 @@ import { document, messages, operations } from "./asyncapi.mjs";
 import { Audit } from "./audit.mjs";
 import { candidates, resolved } from "./candidates.mjs";
 import { Client, Server, sleep, withTimeout } from "./harness.mjs";
+import { strip as stripOf } from "./strip.mjs";
 
-const strip = {
-  version: 1,
-  name: "strip",
-  solver: { dt: 0.0002 },
-  cloths: [{
-    mesh: { grid: { columns: 3, rows: 5, width: 0.1, height: 0.2 } },
-    mass: { area_density: 0.2 },
-    material: { structural: 200, shear: 50, bend: 1, damping: 0.01 },
-    pins: [{ at: "edge:row:0" }],
-  }],
-};
+const strip = stripOf(5);
 /// It is at rest from the start, as good as.
 const plumb = { ...strip, name: "plumb", air_drag: 5, cloths: [{ ...strip.cloths[0], transform: { rotate: [90, 0, 0] } }] };
 

@@ -1,12 +1,13 @@
 // What goes wrong in one session: it says so and goes on where it can, and the other sessions never notice.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { cpSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { join } from "node:path";
+import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { after, test } from "node:test";
 import { Client, runProgram, Server, sleep } from "./harness.mjs";
+import { strip } from "./strip.mjs";
 
 const root = fileURLToPath(new URL("../../", import.meta.url));
 const folders = [];
@@ -56,10 +57,24 @@ for (const [kind, why] of [["exception", /a fault on purpose/], ["no-memory", /n
     const frames = other.binary.filter((message) => message.kind === 2);
     assert.ok(frames.every((frame, i) => i === 0 || frame.time >= frames[i - 1].time), "the other session's time only rises");
     assert.deepEqual(notices(other), []);
-    assert.match((await server.get("/metrics")).body.toString(), /^clothlab_sessions_brought_back_total 1$/m);
+    assert.equal(await server.metric("clothlab_sessions_brought_back_total"), 1);
     assert.equal((await server.get("/healthz")).status, 200);
     await server.stop();
   });
+
+test("the steps of a session that failed stay counted", async () => {
+  const server = await startWith({ CLOTHLAB_FAULT: "exception:hurt:2000" });
+  const hurt = await watch(server, "hurt");
+  const steps = [];
+  for (let back = 0; back < 3;) {  // two looks more once it is back
+    steps.push(await server.metric("clothlab_steps_total"));
+    back += await server.metric("clothlab_sessions_brought_back_total");
+    await sleep(20);
+  }
+  assert.deepEqual(steps, [...steps].sort((a, b) => a - b));
+  await hurt.close();
+  await server.stop();
+});
 
 test("a request that a session fails to answer is answered all the same, with -32603", async () => {
   const server = await startWith({ CLOTHLAB_FAULT: "exception:main:500" });
@@ -165,3 +180,61 @@ test("a process that is stopped for two seconds, as by a sleeping machine, does 
   for (let i = 1; i < frames.length; ++i) assert.ok(frames[i].time - frames[i - 1].time < 0.5, `from ${frames[i - 1].time} to ${frames[i].time} s`);
   await server.stop();
 });
+
+// Built with the tests, unless with sanitizers (tests/CMakeLists.txt).
+const jumpingClock = join(dirname(process.env.CLOTHLAB), "tests/libjumping_clock.so");
+
+test("a clock that jumps an hour ahead and two back: nobody is sent away, time goes on, and the session is kept", async (context) => {
+  if (!existsSync(jumpingClock)) return context.skip("the library that makes the clock jump was not built");
+  const state = folder();
+  const server = await startWith({ LD_PRELOAD: jumpingClock }, "--state-dir", state, "--idle-timeout", "4", "--log-level", "debug");
+  const client = await watch(server);
+  const { job } = await client.request("lab.chart", { methods: ["verlet"], time: 0.2, budget: 20, fresh: true });
+  const { time } = await client.frame();
+  await client.frame((frame) => frame.time > time + 4.5);
+  const late = await Client.connect(server);  // so that there is a line of the log after the last jump
+  await late.close();
+  await client.until(() => [server.stderr], (text) => hours(text).has(-1), "the log to show that the clock has jumped");
+  const frames = client.frames;
+  for (let i = 1; i < frames.length; ++i)
+    assert.ok(frames[i].time > frames[i - 1].time && frames[i].time - frames[i - 1].time < 0.5, `from ${frames[i - 1].time} to ${frames[i].time} s`);
+  assert.deepEqual(notices(client).filter(({ params }) => !/cannot keep up/.test(params.text)), []);
+  const { state: end } = await client.notification("lab.result", (result) => result.job === job && result.state !== "running");
+  assert.equal(end, "finished");
+  assert.equal((await server.get("/healthz")).status, 200);
+  await server.stop("SIGKILL");
+  const again = await Server.start("--state-dir", state);
+  const back = await watch(again);
+  assert.ok((await back.frame()).time > time + 3, "what it kept is from after the jumps");
+  await again.stop();
+});
+
+/// The whole hours by which the times of log lines differ from the first one's.
+function hours(log) {
+  const times = [...log.matchAll(/^time=(\S+)/gm)].map(([, text]) => Date.parse(text));
+  return new Set(times.map((time) => Math.round((time - times[0]) / 3_600_000)));
+}
+
+const chart = { methods: ["verlet", "symplectic_euler"], time: 0.2, budget: 5, fresh: true };
+const measured = async (client, params = chart) => {
+  const { job } = await client.request("lab.chart", params);
+  return client.notification("lab.result", (result) => result.job === job && result.state !== "running");
+};
+
+for (const [kind, why] of [["exception", /a fault on purpose/], ["no-memory", /not enough memory/], ["context-lost", /the device was reset/]])
+  test(`a measurement of the lab that meets ${kind} fails and says why; the next one is whole, and the session never notices`, async () => {
+    const server = await startWith({ CLOTHLAB_FAULT: `${kind}:/lab:0` });
+    const client = await watch(server);
+    await client.request("scene.load", { scene: strip() });
+    const failed = await measured(client);
+    assert.equal(failed.state, "failed");
+    assert.match(JSON.stringify(failed), why);
+    const next = await measured(client);
+    assert.equal(next.state, "finished");
+    assert.equal(next.result.complete, true);
+    assert.deepEqual(notices(client).filter(({ params }) => !/cannot keep up/.test(params.text)), []);
+    const { time } = await client.nextFrame();
+    await client.nextFrame((frame) => frame.time > time);
+    assert.equal(await server.metric("clothlab_sessions_brought_back_total"), 0);
+    await server.stop();
+  });

@@ -2,18 +2,9 @@
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { Client, Server, sleep } from "./harness.mjs";
+import { strip as stripOf } from "./strip.mjs";
 
-const strip = {
-  version: 1,
-  name: "strip",
-  solver: { dt: 0.0002 },
-  cloths: [{
-    mesh: { grid: { columns: 3, rows: 9, width: 0.1, height: 0.4 } },
-    mass: { area_density: 0.2 },
-    material: { structural: 200, shear: 50, bend: 1, damping: 0.01 },
-    pins: [{ at: "edge:row:0" }],
-  }],
-};
+const strip = stripOf();
 // Longer than any test waits: jobs that are to be cancelled, left or waited for.
 const long = { methods: ["explicit_euler", "symplectic_euler", "verlet", "rk4", "implicit_euler"], time: 20, budget: 600, fresh: true };
 const short = { methods: ["verlet", "symplectic_euler"], time: 0.3, budget: 5, fresh: true };
@@ -32,7 +23,7 @@ async function enter({ at = server, session = `lab-${++sessions}` } = {}) {
 }
 const ends = (client, job) => client.notification("lab.result", (r) => r.job === job && r.state !== "running");
 const runs = (client, job) => client.notification("lab.progress", (p) => p.job === job && p.state === "running");
-const gauge = async (name) => Number(new RegExp(`^clothlab_lab_${name} (\\d+)$`, "m").exec((await server.get("/metrics")).body)[1]);
+const gauge = (name) => server.metric(`clothlab_lab_${name}`);
 
 test("a chart arrives point by point, is finished, and can be exported as JSON, CSV and SVG", async () => {
   const client = await enter();
