@@ -21,7 +21,7 @@ namespace {
 // What libwebsockets keeps for each connection (zeroed by it): who handles the connection.
 struct HttpSlot {
   HttpRequest* request;
-  bool asked;  ///< a first request has come whole
+  bool asked;  ///< the request has come whole; false again once it is answered
 };
 struct ClientSlot {
   Client* client;
@@ -31,12 +31,18 @@ Server& server_of(lws* wsi) {
   return *static_cast<Server*>(lws_context_user(lws_get_context(wsi)));
 }
 
+/// The next request is to be there whole by then.
+void await_request(lws* wsi) {
+  lws_set_timer_usecs(wsi, lws_usec_t{server_of(wsi).hub().limits().header_seconds} * LWS_USEC_PER_SEC);
+}
+
 int finish_http(HttpSlot& slot, lws* wsi, int result) {
   if (result == 0) return 0;
   delete slot.request;
   slot.request = nullptr;
-  if (result < 0) return -1;
-  return lws_http_transaction_completed(wsi) ? -1 : 0;
+  if (result < 0 || lws_http_transaction_completed(wsi)) return -1;  // the slot is another from here on
+  await_request(wsi);
+  return 0;
 }
 
 /// Before a socket becomes a connection: libwebsockets has only its number yet.
@@ -52,7 +58,7 @@ int on_socket(lws* wsi, int socket) {
 int on_connection(lws* wsi) {
   Hub& hub = server_of(wsi).hub();
   hub.connections().opened(wsi, peer_address(lws_get_socket_fd(wsi)));
-  lws_set_timer_usecs(wsi, lws_usec_t{hub.limits().header_seconds} * LWS_USEC_PER_SEC);
+  await_request(wsi);
   return 0;
 }
 

@@ -162,6 +162,25 @@ test("a connection whose headers do not come within --header-timeout is closed, 
   await client.close();
 });
 
+test("a connection that is kept for one request after the other lives as long as it asks, and no request may dribble", async () => {
+  const server = await start("--header-timeout", "1");
+  const socket = await socketTo(server);
+  let answers = "";
+  socket.on("data", (data) => (answers += data));
+  const answered = () => answers.split("HTTP/1.1 200 OK").length - 1;
+  for (let asked = 1; asked <= 8; ++asked) {  // for twice the timeout
+    socket.write("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n");
+    for (const until = Date.now() + patience; answered() < asked && !socket.destroyed && Date.now() < until;) await sleep(20);
+    assert.equal(answered(), asked);
+    await sleep(250);
+  }
+  socket.write("GET /healthz HTTP/1.1\r\n");
+  const dribble = setInterval(() => socket.destroyed || socket.write("X-Slow: 1\r\n"), 200);
+  await withTimeout(socket.over, "it to be closed");
+  clearInterval(dribble);
+  assert.equal(answered(), 8);
+});
+
 test("who sends no token within --auth-timeout is closed with 1008", async () => {
   const server = await start("--token", "secret", "--auth-timeout", "1");
   const client = await Client.connect(server);
@@ -178,4 +197,27 @@ test("a viewer that answers no ping within --idle-timeout is closed; one that on
   await sleep(3000);
   await client.request("ping", { t: 1 });
   await client.close();
+});
+
+test("a client that asks and does not read is cut off once 4 MiB of answers wait for it; the others go on", async () => {
+  const server = await start();
+  const other = await Client.connect(server);
+  const deaf = await Client.connect(server, { session: "large" });
+  const clients = () => server.metric("clothlab_clients");
+  // A document of some 40 kB: twenty times as much as a client's and the kernel's buffers hold when asked for 2000 times.
+  const vertices = Array.from({ length: 1000 }, (_, i) => [i % 40 + 0.123456789, 1.123456789, Math.floor(i / 40) + 0.123456789]);
+  const triangles = Array.from({ length: 900 }, (_, i) => [i, i + 40, i + 41]).filter(([a]) => a % 40 < 39);
+  await deaf.request("scene.patch", { patch: [{ op: "replace", path: "/cloths/0/mesh", value: { vertices, triangles } },
+                                              { op: "replace", path: "/cloths/0/pins", value: [] }] });
+  assert.equal(await clients(), 2);
+  deaf.socket.pause();
+  for (let asked = 0; asked < 2000 && (await clients()) === 2; asked += 100) {
+    for (let i = 0; i < 100 && !deaf.over; ++i) deaf.send(JSON.stringify({ jsonrpc: "2.0", id: asked + i, method: "scene.get" }));
+    await other.request("scene.get");
+  }
+  for (const until = Date.now() + patience; (await clients()) === 2 && Date.now() < until;) await sleep(100);
+  assert.equal(await clients(), 1);
+  assert.equal((await other.request("ping", { t: 1 })).t, 1);
+  deaf.socket.terminate();
+  await other.close();
 });
