@@ -1,4 +1,5 @@
 import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
 import { once } from "node:events";
 import { chmodSync, chownSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import net from "node:net";
@@ -127,13 +128,16 @@ test("any other command of clothlab runs too", async () => {
 test("the health check succeeds while the server answers, and fails when it does not", async () => {
   const check = ["/usr/local/bin/healthcheck"];
   const well = container.exec(...check);
-  assert.deepEqual([well.code, well.stdout], [0, "HTTP/1.1 200 OK\n"]);
+  assert.deepEqual([well.code, well.stdout], [0, "HTTP/1.1 200 OK\n"], well.stderr);
 
   const gone = await Container.finish({ command: [...check, "8082"] });
   assert.notEqual(gone.code, 0);
 
   // Answers what /healthz does when a session's thread stands still; then nothing at all.
-  const listener = net.createServer((socket) => socket.end("HTTP/1.1 503 Service Unavailable\r\n\r\n")).listen(8082);
+  const listener = net.createServer((socket) => {
+    socket.on("error", () => {});  // who reads one line and leaves resets the connection
+    socket.end("HTTP/1.1 503 Service Unavailable\r\n\r\n");
+  }).listen(8082);
   await once(listener, "listening");
   assert.equal((await Container.finish({ command: [...check, "8082"] })).code, 1);
   listener.removeAllListeners("connection");
@@ -141,6 +145,23 @@ test("the health check succeeds while the server answers, and fails when it does
   assert.equal(silent.code, 1);
   assert.match(silent.stderr, /no answer within 3 s/);
   listener.close();
+});
+
+test("with --tls-cert the health check asks by HTTPS", async () => {
+  const volume = newVolume(), [key, certificate] = ["key.pem", "certificate.pem"].map((name) => join(volume, name));
+  const made = spawnSync("openssl", ["req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", key, "-out", certificate, "-days", "2", "-subj", "/CN=localhost"]);
+  assert.equal(made.status, 0, "openssl makes a certificate");
+  for (const file of [key, certificate]) chownSync(file, user, user);
+  const inside = "/var/lib/clothlab";
+  const other = await Container.start({ args: ["--port", "8081", "--tls-cert", `${inside}/certificate.pem`, "--tls-key", `${inside}/key.pem`],
+                                        env: { CLOTHLAB_TOKEN: token }, volume });
+  assert.equal(other.stdout, "listening on https://0.0.0.0:8081/\n");
+  const well = other.exec("/usr/local/bin/healthcheck", "8081");
+  assert.deepEqual([well.code, well.stdout], [0, "HTTP/1.1 200 OK\n"], well.stderr);
+  const client = await Client.connect(other, { scheme: "wss" });
+  await client.request("auth", { token });
+  await client.close();
+  assert.equal((await other.stop()).code, 0);
 });
 
 test("what a session was is there again in another container with the same volume", async () => {
@@ -158,6 +179,7 @@ test("what a session was is there again in another container with the same volum
 test("without a volume that can be written it serves, and says that sessions are not kept", async () => {
   const volume = newVolume();
   chownSync(volume, 0, 0);
+  chmodSync(volume, 0o755);
   const other = await Container.start({ args: ["--port", "8081"], volume });
   assert.match(other.stderr, /\/var\/lib\/clothlab cannot be written, so sessions are not kept/);
   assert.equal((await other.get("/healthz")).status, 200);

@@ -53,7 +53,7 @@ export class Container extends Server {
       container.child.stdout.on("data", () => container.stdout.includes("\n") && resolve(container.stdout));
       container.child.on("close", (code) => reject(new Error(`it ended with ${code}: ${container.stderr}`)));
     });
-    const match = /^listening on http:\/\/([^:]+):(\d+)\/\n/.exec(await withTimeout(listening, "the container to listen"));
+    const match = /^listening on https?:\/\/([^:]+):(\d+)\/\n/.exec(await withTimeout(listening, "the container to listen"));
     if (!match) throw new Error(`serve said ${JSON.stringify(container.stdout)}`);
     container.address = match[1];
     container.port = Number(match[2]);
