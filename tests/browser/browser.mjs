@@ -21,9 +21,9 @@ export function browserTest(name, body) {
   });
 }
 
-/// Reads until it is as it should be.
-export async function eventually(what, read, good) {
-  const until = Date.now() + 30_000;
+/// Reads until it is as it should be, for `milliseconds` at most.
+export async function eventually(what, read, good, milliseconds = patience) {
+  const until = Date.now() + milliseconds;
   for (;;) {
     const value = await read();
     if (good(value)) return value;
