@@ -123,7 +123,7 @@ void Client::send(SharedText text) {
 }
 
 void Client::send_status(SharedText text) {
-  outbox_.set_status(std::move(text));
+  if (!outbox_.push_status(std::move(text))) close(close_policy, "messages are not being read");
   wake();
 }
 

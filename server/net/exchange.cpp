@@ -89,14 +89,6 @@ void Exchange::take_events(std::vector<Event>& out) {
   out.swap(events_);
 }
 
-bool Exchange::take_status(Status& out) {
-  const std::lock_guard lock(mutex_);
-  if (!status_new_) return false;
-  out = status_;
-  status_new_ = false;
-  return true;
-}
-
 stream::SharedMessage Exchange::frame(stream::Encoding encoding) const {
   const std::lock_guard lock(mutex_);
   return frames_[static_cast<std::size_t>(encoding)];
@@ -125,8 +117,8 @@ void Exchange::emit(Event event) {
 void Exchange::publish(const Status& status) {
   {
     const std::lock_guard lock(mutex_);
-    status_ = status;
-    status_new_ = true;
+    std::erase_if(events_, [](const Event& event) { return std::holds_alternative<Status>(event); });
+    events_.push_back(status);
   }
   wake_();
 }

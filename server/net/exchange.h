@@ -146,10 +146,6 @@ struct Held {
 };
 /// The scene's method is `auto`, and the lab is to choose for it.
 struct ChoiceWanted {};
-using Event =
-    std::variant<Started, Failed, Reply, SceneChanged, TopologyChanged, PassesChanged, SolverChanged,
-                 Diverged, Notice, Exported, SceneReached, SceneLost, Held, ChoiceWanted>;
-
 /// What sim.status is made of; plain data, so that the session's thread allocates nothing for it.
 struct Status {
   bool playing = false, diverged = false, asleep = false;
@@ -159,6 +155,9 @@ struct Status {
   sim::Diagnostics diagnostics;
   gl::StageTimes pass_times;  ///< those that have arrived since the last status
 };
+using Event =
+    std::variant<Started, Failed, Reply, SceneChanged, TopologyChanged, PassesChanged, SolverChanged,
+                 Diverged, Notice, Exported, SceneReached, SceneLost, Held, ChoiceWanted, Status>;
 
 class Exchange {
  public:
@@ -174,7 +173,6 @@ class Exchange {
   void post(Command command);
   void stop();
   void take_events(std::vector<Event>& out);  ///< `out` is emptied first
-  bool take_status(Status& out);              ///< false: nothing new
   stream::SharedMessage frame(stream::Encoding encoding) const;
   /// The latest that the session kept of itself, null before the first time.
   std::shared_ptr<const Saved> kept() const;
@@ -188,6 +186,7 @@ class Exchange {
   /// more than `commands_a_turn`, so that a session with much to do still ends, beats and shows frames.
   bool take_commands(std::vector<Command>& out, Clock::time_point until);
   void emit(Event event);
+  /// An event, of which only the newest waits: it says what was before it, and nothing of what comes after.
   void publish(const Status& status);
   void publish(stream::SharedMessage frame);
   void forget_frames();  ///< what is in the mailbox no longer shows the present
@@ -214,8 +213,7 @@ class Exchange {
   std::array<stream::SharedMessage, encoding_count> frames_;
   std::vector<Awaited> awaited_;
   std::shared_ptr<const Saved> kept_;
-  Status status_;
-  bool status_new_ = false, stopping_ = false;
+  bool stopping_ = false;
   std::atomic<std::int64_t> heartbeat_us_{0};
   std::atomic<std::uint64_t> steps_{0};
 };

@@ -2,6 +2,9 @@
 
 #include <libwebsockets.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "server/net/limits.h"
 #include "server/stream/frame.h"
 
@@ -36,15 +39,21 @@ void Outbox::push_first(SharedText text) {
   texts_.push_front(std::move(text));
 }
 
-SharedText Outbox::pop() {
-  SharedText next;
-  if (texts_.empty()) {
-    next.swap(status_);
-    return next;
+bool Outbox::push_status(SharedText text) {
+  if (status_) {
+    texts_.erase(std::find(texts_.begin(), texts_.end(), status_));
+    bytes_ -= status_->size();
   }
-  next = std::move(texts_.front());
+  status_ = text;
+  return push(std::move(text));
+}
+
+SharedText Outbox::pop() {
+  if (texts_.empty()) return nullptr;
+  SharedText next = std::move(texts_.front());
   texts_.pop_front();
   bytes_ -= next->size();
+  if (next == status_) status_.reset();
   return next;
 }
 

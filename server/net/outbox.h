@@ -1,4 +1,4 @@
-// Text on its way to a client: control messages in order and never dropped; of the status only the newest.
+// Text on its way to a client, in order: nothing is dropped but a status that a newer one follows.
 #pragma once
 
 #include <cstddef>
@@ -28,13 +28,14 @@ class Outbox {
   /// False: the client lets more than max_unsent_text_bytes pile up.
   [[nodiscard]] bool push(SharedText text);
   void push_first(SharedText text);
-  void set_status(SharedText text) { status_ = std::move(text); }
-  bool empty() const { return texts_.empty() && !status_; }
+  /// In place of the status that waits, but behind what was said since.
+  [[nodiscard]] bool push_status(SharedText text);
+  bool empty() const { return texts_.empty(); }
   SharedText pop();  ///< null if empty
 
  private:
   std::deque<SharedText> texts_;
-  SharedText status_;
+  SharedText status_;  ///< the one among them, null: none
   std::size_t bytes_ = 0;
 };
 

@@ -95,16 +95,6 @@ void Room::pump() {
   if (!session_) return;
   session_->exchange().take_events(events_);
   for (Event& event : events_) std::visit([&](auto& what) { take(what); }, event);
-  Status status;
-  const bool told = session_->exchange().take_status(status);
-  if (told) asleep_ = status.asleep;
-  if (told) take(status.pass_times);
-  if (told && status.real_time_factor > 0)
-    hub_.lab().session_reaches(name_, status.real_time_factor / status.speed, now_us());
-  if (told && !clients_.empty() && started()) {
-    const SharedText text = make_text(notification_text("sim.status", status_params(status)));
-    for (Client* client : clients_) client->send_status(text);
-  }
   const std::int64_t now = now_us();
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     const auto encoding = static_cast<stream::Encoding>(i);
@@ -181,6 +171,16 @@ void Room::take(SceneChanged& changed) {
 void Room::take(TopologyChanged& changed) {
   topology_ = changed.message;
   for (Client* client : clients_) client->wake();
+}
+
+void Room::take(const Status& status) {
+  asleep_ = status.asleep;
+  take(status.pass_times);
+  if (status.real_time_factor > 0)
+    hub_.lab().session_reaches(name_, status.real_time_factor / status.speed, now_us());
+  if (clients_.empty() || !started()) return;
+  const SharedText text = make_text(notification_text("sim.status", status_params(status)));
+  for (Client* client : clients_) client->send_status(text);
 }
 
 void Room::take(const gl::StageTimes& times) {

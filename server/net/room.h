@@ -63,7 +63,6 @@ class Room {
   void take(SceneChanged& changed);
   void take(TopologyChanged& changed);
   void take(PassesChanged& changed);
-  void take(const gl::StageTimes& times);
   void take(SolverChanged& changed);
   void take(Diverged& diverged);
   void take(Notice& notice);
@@ -72,6 +71,8 @@ class Room {
   void take(SceneLost& lost);
   void take(Held& held);
   void take(ChoiceWanted&);
+  void take(const Status& status);
+  void take(const gl::StageTimes& times);
   void begin_session(std::shared_ptr<const Saved> saved);
   bool bring_back(const Failed& failed);
   void greet(Client& client);

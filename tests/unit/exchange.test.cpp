@@ -61,6 +61,27 @@ TEST_CASE("events arrive once and in order, and each wakes the service thread") 
   CHECK(events.empty());
 }
 
+TEST_CASE("of the statuses only the newest waits, after the events before it and before those after it") {
+  Exchange exchange([] {});
+  const auto status = [](double speed) {
+    net::Status status;
+    status.speed = speed;
+    return status;
+  };
+  exchange.publish(status(1));
+  exchange.emit(net::Notice{"info", "between"});
+  exchange.publish(status(2));
+  exchange.emit(net::Notice{"info", "after"});
+  std::vector<net::Event> events;
+  exchange.take_events(events);
+  REQUIRE(events.size() == 3);
+  CHECK(std::get<net::Notice>(events[0]).text == "between");
+  CHECK(std::get<net::Status>(events[1]).speed == 2);
+  CHECK(std::get<net::Notice>(events[2]).text == "after");
+  exchange.take_events(events);
+  CHECK(events.empty());
+}
+
 TEST_CASE("a session that is told to stop does not wait for commands") {
   Exchange exchange([] {});
   exchange.stop();

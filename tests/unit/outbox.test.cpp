@@ -1,0 +1,42 @@
+// What waits for a client goes out in order, and no status is told once there is a newer one.
+#include "server/net/outbox.h"
+
+#include "server/net/limits.h"
+#include "tests/catch.h"
+
+using namespace clothlab;
+using net::make_text;
+using net::Outbox;
+
+namespace {
+
+std::string next(Outbox& outbox) {
+  const net::SharedText text = outbox.pop();
+  return text ? std::string(reinterpret_cast<const char*>(text->data()), text->size()) : "";
+}
+
+}  // namespace
+
+TEST_CASE("a status takes the place of the one that waits, behind what was said since") {
+  Outbox outbox;
+  CHECK(outbox.empty());
+  REQUIRE(outbox.push(make_text("first")));
+  REQUIRE(outbox.push_status(make_text("old status")));
+  REQUIRE(outbox.push(make_text("second")));
+  REQUIRE(outbox.push_status(make_text("status")));
+  REQUIRE(outbox.push(make_text("third")));
+  outbox.push_first(make_text("hello"));
+  for (const char* text : {"hello", "first", "second", "status", "third"}) CHECK(next(outbox) == text);
+  CHECK(outbox.empty());
+  // One that has gone is not looked for.
+  REQUIRE(outbox.push_status(make_text("a status again")));
+  CHECK(next(outbox) == "a status again");
+  CHECK(next(outbox).empty());
+}
+
+TEST_CASE("statuses never pile up, what must not be lost does: up to max_unsent_text_bytes") {
+  Outbox outbox;
+  for (int i = 0; i < 100; ++i) REQUIRE(outbox.push_status(make_text(std::string(1000, ' '))));
+  REQUIRE(outbox.push(make_text(std::string(net::max_unsent_text_bytes - 2000, ' '))));
+  CHECK_FALSE(outbox.push(make_text(std::string(2000, ' '))));
+}
