@@ -38,7 +38,7 @@ const answerTo = (client, id) => client.until(() => client.messages, (message) =
 /// What the lab tells, which gives way to everything else on the machine.
 async function inTime(client, method, predicate) {
   const fits = (message) => message.method === method && predicate(message.params);
-  return (await client.until(() => client.messages, fits, method, 100_000)).params;
+  return (await client.until(() => client.messages, fits, method, 240_000)).params;
 }
 const receives = operations.filter(({ action }) => action === "receive");
 const there = receives.filter((asked) => !asked["x-not-yet"]);

@@ -3,18 +3,9 @@
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { Client, Server } from "./harness.mjs";
+import { strip as stripOf } from "./strip.mjs";
 
-const strip = {
-  version: 1,
-  name: "strip",
-  solver: { method: "auto", tolerance: 0.01 },
-  cloths: [{
-    mesh: { grid: { columns: 3, rows: 9, width: 0.1, height: 0.4 } },
-    mass: { area_density: 0.2 },
-    material: { structural: 200, shear: 50, bend: 1, damping: 0.01 },
-    pins: [{ at: "edge:row:0" }],
-  }],
-};
+const strip = { ...stripOf(), solver: { method: "auto", tolerance: 0.01 } };
 
 let server;
 before(async () => (server = await Server.start()));
@@ -22,7 +13,7 @@ after(() => server.stop());
 
 // Choosing takes seconds, on a busy machine many.
 const auto = (client, accept) =>
-  client.nextNotification("sim.status", ({ solver }) => solver?.auto && accept(solver.auto), 120_000);
+  client.nextNotification("sim.status", ({ solver }) => solver?.auto && accept(solver.auto), 240_000);
 
 test("a session with the method auto plays stably at once, then with what the lab has chosen, and says so", async () => {
   const client = await Client.connect(server, { session: "auto" });
