@@ -99,9 +99,13 @@ int on_http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::si
 }
 
 int refuse(lws* wsi, unsigned status, const char* why) {
+  constexpr std::size_t longest = 200;  // of an origin: nobody fills the log with it
   ++server_of(wsi).hub().metrics().refused;
   log(LogLevel::warning, "client_refused",
-      {{"address", peer_address(wsi)}, {"status", std::to_string(status)}, {"why", why}});
+      {{"address", peer_address(wsi)},
+       {"origin", header(wsi, WSI_TOKEN_ORIGIN).substr(0, longest)},
+       {"status", std::to_string(status)},
+       {"why", why}});
   lws_return_http_status(wsi, status, why);
   return -1;
 }
