@@ -21,8 +21,10 @@ constexpr double share_of_good = 0.1;  // of what is allowed
 double total(const Diagnostics& state) {
   return state.kinetic + state.elastic + state.gravitational;
 }
+/// Forces overflow before energies do, and no work of an infinite force excuses a growth.
 bool finite(const Diagnostics& state) {
-  return state.finite && std::isfinite(total(state));
+  return state.finite && std::isfinite(total(state)) && std::isfinite(state.pin_force) &&
+         std::isfinite(state.contact_force);
 }
 
 /// The largest speed of a motion within `reach` [m] of `where`, at any time.
@@ -164,7 +166,7 @@ BlowUp::Verdict BlowUp::doubt(const Diagnostics& state) {
 std::string BlowUp::reason() const {
   if (!finite(last_))
     return formatted(
-        "positions and velocities stopped being finite numbers between t = %.4g s and t = %.4g s",
+        "positions, velocities or forces stopped being finite numbers between t = %.4g s and t = %.4g s",
         last_good_.time, last_.time);
   return formatted(
       "the energy of motion%s grew from %.3g J at t = %.4g s to %.3g J at t = %.4g s, "

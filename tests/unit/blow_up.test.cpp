@@ -178,6 +178,25 @@ TEST_CASE("what is not finite has blown up, and the reason says between which ti
   CHECK(blow_up.last_good().time == 0.25);
 }
 
+TEST_CASE("a force that overflows before the energies do excuses nothing, at pins and colliders that move or stand") {
+  const double infinite = std::numeric_limits<double>::infinity();
+  for (const double pin_speed : {0.0, 0.5})
+    for (const bool pins : {true, false}) {
+      sim::Allowance allowance = allowed(1.5, pin_speed);
+      allowance.collider_speed = pin_speed;
+      sim::Diagnostics state;
+      sim::BlowUp blow_up;
+      blow_up.start(allowance, state);
+      state.time = 0.06;
+      state.kinetic = 2e37;  // within float32
+      (pins ? state.pin_force : state.contact_force) = infinite;
+      CHECK(blow_up.judge(state) == Verdict::blown_up);
+      CHECK(blow_up.last_good().time == 0.0);
+      CHECK(blow_up.reason() ==
+            "positions, velocities or forces stopped being finite numbers between t = 0 s and t = 0.06 s");
+    }
+}
+
 TEST_CASE("a change of scene under the state is no growth, and hides none") {
   Oscillator run;
   run.dt = 0.201;  // just over the limit
