@@ -46,10 +46,13 @@ Result<Size> check_outputs(const Options& options) {
   return size;
 }
 
-Status draw(const sim::Simulation& simulation, Size size, const std::string& path) {
+Status draw(sim::Simulation& simulation, Size size, const std::string& path) {
   Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create();
   if (!renderer) return renderer.error();
-  const Result<render::Image> image = (*renderer)->render(simulation, size.width, size.height);
+  const std::vector<glm::vec3> positions = simulation.read_state().position;
+  const std::vector<scene::Collider> colliders = simulation.colliders_now();
+  const Result<render::Image> image = (*renderer)->render(
+      {simulation.scene(), simulation.model(), positions, colliders}, size.width, size.height);
   if (!image) return image.error();
   const Result<std::vector<std::uint8_t>> png = render::encode_png(*image);
   if (!png) return png.error();

@@ -26,9 +26,9 @@ void Exchange::settle(const Event& event) {
       return !awaited.job && awaited.ticket.asker == reply->ticket.asker &&
              awaited.ticket.id == reply->ticket.id;
     });
-  else if (const auto* exported = std::get_if<Exported>(&event))
+  else if (const auto* captured = std::get_if<Captured>(&event))
     erase([&](const Awaited& awaited) {
-      return !awaited.ticket.id && awaited.ticket.asker == exported->asker;
+      return !awaited.ticket.id && awaited.ticket.asker == captured->asker;
     });
   else if (const auto* reached = std::get_if<SceneReached>(&event))
     erase([&](const Awaited& awaited) { return awaited.job == reached->job; });
@@ -41,7 +41,7 @@ void Exchange::give_up(const Error& error, std::vector<Event>& out) {
     if (awaited.ticket.id)
       out.push_back(Reply{awaited.ticket, RpcError{error_internal, error.text(), nullptr}});
     else if (!awaited.job)
-      out.push_back(Exported{awaited.ticket.asker, "", error});
+      out.push_back(Captured{awaited.ticket.asker, {}, error});
   }
   awaited_.clear();
 }

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <glm/vec3.hpp>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -65,7 +66,8 @@ struct Demand {
 struct Watchers {
   int count = 0;
 };
-/// A picture (width > 0) or a mesh for the HTTP API; `Ticket::asker` is the HTTP request.
+/// For a picture (width > 0) or a mesh for the HTTP API: answered by Captured; `Ticket::asker` is the HTTP
+/// request.
 struct Export {
   int width = 0, height = 0;  ///< [pixels]
 };
@@ -129,10 +131,17 @@ struct Notice {
   const char* level = "info";  ///< info | warning | error
   std::string text;
 };
-struct Exported {
+/// All that is needed to draw a moment of a simulation elsewhere.
+struct Moment {
+  std::shared_ptr<const scene::Document> document;
+  double time = 0;                           ///< [s]
+  std::vector<glm::vec3> positions{};        ///< [vertex] [m]
+  std::vector<scene::Collider> colliders{};  ///< where they are then
+};
+struct Captured {
   std::uint64_t asker = 0;
-  const char* content_type = "";
-  Result<std::string> body;
+  Export what;
+  Result<Moment> moment;
 };
 struct SceneReached {
   std::uint64_t job = 0;
@@ -157,7 +166,7 @@ struct Status {
 };
 using Event =
     std::variant<Started, Failed, Reply, SceneChanged, TopologyChanged, PassesChanged, SolverChanged,
-                 Diverged, Notice, Exported, SceneReached, SceneLost, Held, ChoiceWanted, Status>;
+                 Diverged, Notice, Captured, SceneReached, SceneLost, Held, ChoiceWanted, Status>;
 
 class Exchange {
  public:

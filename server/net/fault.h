@@ -14,8 +14,9 @@ enum class Fault {
   context_lost   ///< "context-lost": the OpenGL context is reset
 };
 
-/// The lab's place among the sessions: a name that no session can have. STEPS is then a job's number.
-inline constexpr const char* fault_in_lab = "/lab";
+/// The lab's and the exporter's place among the sessions: names that no session can have. STEPS is then a
+/// job's number, or 0.
+inline constexpr const char *fault_in_lab = "/lab", *fault_in_exporter = "/export";
 
 /// True once, where the environment asks for it.
 bool fault_due(Fault fault, const std::string& session, std::uint64_t steps);

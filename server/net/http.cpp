@@ -1,6 +1,7 @@
 #include "server/net/http.h"
 
 #include <libwebsockets.h>
+#include <poll.h>
 
 #include <charconv>
 
@@ -125,10 +126,20 @@ void HttpRequest::inside(const std::string& path) {
 }
 
 void HttpRequest::ask_session(const std::string& session, Export what) {
+  if (hub_.exports_full() || !hub_.find_room(session)->capture(id_, what)) {
+    HttpAnswer refusal =
+        plain(503, "the server has as many pictures and meshes to make as it may; ask again");
+    refusal.headers = {{"retry-after:", "1"}};
+    return answer(std::move(refusal));
+  }
   constexpr int patience = 30;  // [s]
   lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, patience);
-  if (!hub_.find_room(session)->offer({{id_, std::nullopt}, what}))
-    answer(plain(503, "the session has too many requests waiting"));
+}
+
+// libwebsockets does not look at a connection's end until it has written the answer.
+bool HttpRequest::hung_up() const {
+  pollfd socket{lws_get_socket_fd(wsi_), POLLRDHUP, 0};
+  return poll(&socket, 1, 0) > 0 && (socket.revents & (POLLRDHUP | POLLHUP | POLLERR)) != 0;
 }
 
 void HttpRequest::deliver(Exported exported) {

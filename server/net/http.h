@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/net/exchange.h"
+#include "server/net/exporter.h"
 #include "server/net/web_files.h"
 
 struct lws;
@@ -33,8 +33,10 @@ class HttpRequest {
   void begin(const std::string& path);
   /// Sends the next part; -1 closes the connection, 1: the answer is complete.
   int writeable();
-  /// The session's answer.
+  /// What it asked to be made.
   void deliver(Exported exported);
+  /// Who asked is no longer there to be answered.
+  bool hung_up() const;
 
  private:
   HttpAnswer file(const std::string& path) const;

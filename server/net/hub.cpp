@@ -29,7 +29,10 @@ Hub::Hub(Options options, std::function<void()> wake)
     : options_(std::move(options)),
       wake_(std::move(wake)),
       lab_(std::make_unique<LabQueue>(
-          lab_port(), [gpu = options_.gpu] { return open_lab(gpu); }, options_.limits.lab_seconds)) {}
+          lab_port(), [gpu = options_.gpu] { return open_lab(gpu); }, options_.limits.lab_seconds)),
+      exporter_([gpu = options_.gpu](const Moment& moment,
+                                     const Export& what) { return make_export(gpu, moment, what); },
+                wake_) {}
 
 Hub::~Hub() {
   stop_sessions();
@@ -105,7 +108,8 @@ std::string Hub::sleeping_room() const {
 void Hub::retire(const std::string& name) {
   const auto found = rooms_.find(name);
   lab_->session_left(name);
-  // Its thread may need a turn to end: not on this thread's time. A future that is kept keeps its thread's stack.
+  // Its thread may need a turn to end: not on this thread's time. A future that is kept keeps its thread's
+  // stack.
   retiring_.erase(std::remove_if(retiring_.begin(), retiring_.end(),
                                  [](const std::future<void>& end) {
                                    return end.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
@@ -140,6 +144,31 @@ void Hub::close_all(int code, const std::string& reason) {
   for (const auto& [id, client] : clients_) client->close(code, reason);
 }
 
+std::size_t Hub::exports_waiting() const {
+  std::size_t count = captured_.size() + (exporter_.idle() ? 0 : 1);
+  for (const auto& [name, room] : rooms_) count += room->capturing();
+  return count;
+}
+
+void Hub::captured(Captured captured) {
+  if (!captured.moment) return deliver({captured.asker, "", captured.moment.error()});
+  captured_.push_back(std::move(captured));
+}
+
+void Hub::pump_exports() {
+  if (std::optional<Exported> exported = exporter_.take()) {
+    ++metrics_.exports;
+    deliver(std::move(*exported));
+  }
+  while (exporter_.idle() && !captured_.empty()) {
+    Captured next = std::move(captured_.front());
+    captured_.pop_front();
+    const auto asker = waiting_.find(next.asker);
+    if (asker == waiting_.end() || asker->second->hung_up()) continue;
+    exporter_.begin(next.asker, next.what, std::move(*next.moment));
+  }
+}
+
 void Hub::deliver(Exported exported) {
   const auto found = waiting_.find(exported.asker);
   if (found != waiting_.end()) found->second->deliver(std::move(exported));
@@ -154,6 +183,7 @@ void Hub::pump() {
     failed.push_back(name);
   }
   for (const std::string& name : failed) retire(name);
+  pump_exports();
   lab_->pump(now_us());
 }
 
@@ -162,10 +192,11 @@ void Hub::stop_sessions() {
   lab_->stop();
   for (const auto& [name, room] : rooms_) room->give_up_session().reset();
   retiring_.clear();  // waits for each
+  exporter_.stop();
 }
 
 Gauges Hub::gauges() const {
-  Gauges gauges{rooms_.size(), clients_.size(), 0, steps(), lab_->gauges(), 0};
+  Gauges gauges{rooms_.size(), clients_.size(), 0, steps(), lab_->gauges(), 0, exports_waiting()};
   for (const auto& [name, room] : rooms_) gauges.asleep += room->asleep() ? 1u : 0u;
   for (const auto& [id, client] : clients_) gauges.viewers += client->pacing().subscribed() ? 1u : 0u;
   return gauges;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <future>
 #include <map>
@@ -12,6 +13,7 @@
 
 #include "server/lab/cache.h"
 #include "server/net/connections.h"
+#include "server/net/exporter.h"
 #include "server/net/lab_queue.h"
 #include "server/net/metrics.h"
 #include "server/net/options.h"
@@ -59,7 +61,11 @@ class Hub {
 
   void add(std::uint64_t id, HttpRequest& request) { waiting_[id] = &request; }
   void remove_request(std::uint64_t id) { waiting_.erase(id); }
-  void deliver(Exported exported);
+  /// Pictures and meshes that wait or are being made, what sessions have yet to hand over included.
+  std::size_t exports_waiting() const;
+  bool exports_full() const { return exports_waiting() >= max_exports; }
+  /// What a session has handed over for one of them, or why it did not.
+  void captured(Captured captured);
 
   /// Takes in what the sessions have put out.
   void pump();
@@ -73,6 +79,8 @@ class Hub {
 
  private:
   LabQueue::Port lab_port();
+  void deliver(Exported exported);
+  void pump_exports();
   std::uint64_t steps() const;
   void retire(const std::string& name);
   std::string sleeping_room() const;
@@ -83,6 +91,8 @@ class Hub {
   Connections connections_{options_.limits};
   lab::Cache lab_cache_;
   std::unique_ptr<LabQueue> lab_;
+  Exporter exporter_;
+  std::deque<Captured> captured_;  ///< what it is to make next
   std::map<std::string, std::unique_ptr<Room>> rooms_;
   std::map<std::uint64_t, Client*> clients_;
   std::map<std::uint64_t, HttpRequest*> waiting_;

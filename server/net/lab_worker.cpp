@@ -1,14 +1,12 @@
 #include "server/net/lab_worker.h"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <exception>
 #include <new>
 #include <utility>
 
 #include "server/gl/context.h"
 #include "server/net/fault.h"
+#include "server/net/priority.h"
 
 namespace clothlab::net {
 
@@ -106,21 +104,18 @@ Result<lab::Outcome> LabWorker::carry_out(const Task& task, const std::stop_toke
 }
 
 Result<LabWorker::Run> open_lab(std::optional<int> gpu) {
-  // Linux counts priorities by thread, and threads that a thread makes inherit its own. A failure costs the
-  // sessions some speed and the lab nothing.
-  constexpr int lowest = 19;
-  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), lowest);
+  lower_priority(19);
   Result<std::unique_ptr<gl::Context>> context = gl::Context::create(gpu, gl::HelperThreads::own);
   if (!context) return context.error();
-  return LabWorker::Run(
-      [context = std::shared_ptr<gl::Context>(std::move(*context))](
-          const scene::Document& document, const lab::Job& job,
-          const lab::Control<lab::Outcome>& control) -> Result<lab::Outcome> {
-        Result<lab::Outcome> outcome = lab::run(document, job, control);
-        if (context->lost() || fault_due(Fault::context_lost, fault_in_lab, 0))
-          return Error{"OpenGL", "the device was reset while it measured, and nothing on it can be trusted", "ask again"};
-        return outcome;
-      });
+  return LabWorker::Run([context = std::shared_ptr<gl::Context>(std::move(*context))](
+                            const scene::Document& document, const lab::Job& job,
+                            const lab::Control<lab::Outcome>& control) -> Result<lab::Outcome> {
+    Result<lab::Outcome> outcome = lab::run(document, job, control);
+    if (context->lost() || fault_due(Fault::context_lost, fault_in_lab, 0))
+      return Error{"OpenGL", "the device was reset while it measured, and nothing on it can be trusted",
+                   "ask again"};
+    return outcome;
+  });
 }
 
 }  // namespace clothlab::net

@@ -43,8 +43,9 @@ inline constexpr int max_lab_outcomes_a_client = 8;                 ///< kept fo
 inline constexpr double min_lab_time = 0.01, max_lab_time = 60;     ///< simulated by a job [s]
 inline constexpr double min_lab_budget = 1, max_lab_budget = 1200;  ///< of a chart [s]
 inline constexpr int max_snapshot_side = 4096;                      ///< [pixels]
-inline constexpr double status_rate = 10;                           ///< sim.status a second
-inline constexpr double diagnosis_rate = 60;  ///< looks a second at whether a session blows up
+inline constexpr std::size_t max_exports = 8;  ///< pictures and meshes that wait or are made; beyond: 503
+inline constexpr double status_rate = 10;      ///< sim.status a second
+inline constexpr double diagnosis_rate = 60;   ///< looks a second at whether a session blows up
 /// A session that nobody has watched for this long stops stepping until somebody does again [s].
 inline constexpr double unwatched_seconds = 30;
 /// Unsent bytes the kernel may hold for a client: what lies there can no longer be replaced by something

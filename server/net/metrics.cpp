@@ -85,6 +85,9 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
   count("clothlab_refused_total", "counter", "WebSocket handshakes and connections refused", metrics.refused);
   count("clothlab_sessions_brought_back_total", "counter", "sessions that failed and went on",
         metrics.sessions_brought_back);
+  count("clothlab_exports_waiting", "gauge", "pictures and meshes that wait or are being made",
+        gauges.exports_waiting);
+  count("clothlab_exports_total", "counter", "pictures and meshes made, or failed", metrics.exports);
   count("clothlab_lab_queued", "gauge", "jobs of the lab that wait", gauges.lab.queued);
   count("clothlab_lab_running", "gauge", "jobs of the lab that run", gauges.lab.running);
   count("clothlab_lab_finished_total", "counter", "jobs of the lab that finished", gauges.lab.finished);

@@ -48,6 +48,7 @@ struct Metrics {
   std::uint64_t messages_received = 0;
   std::uint64_t refused = 0;  ///< handshakes and connections
   std::uint64_t sessions_brought_back = 0;
+  std::uint64_t exports = 0;  ///< pictures and meshes made, or failed
   std::uint64_t steps_of_closed_sessions = 0;
   /// How long frames lay in the server: from the end of the step they show to their bytes leaving, without
   /// the time in which the viewer itself held them back.
@@ -68,7 +69,8 @@ struct Gauges {
   std::size_t sessions = 0, clients = 0, viewers = 0;
   std::uint64_t steps = 0;  ///< of the sessions that are open
   LabGauges lab;
-  std::size_t asleep = 0;  ///< sessions whose cloth is at rest
+  std::size_t asleep = 0;           ///< sessions whose cloth is at rest
+  std::size_t exports_waiting = 0;  ///< pictures and meshes that wait or are being made
 };
 
 std::string metrics_text(const Metrics& metrics, const Gauges& gauges);

@@ -49,6 +49,12 @@ bool Room::offer(Command command) {
   return session_ && session_->exchange().offer(std::move(command));
 }
 
+bool Room::capture(std::uint64_t asker, const Export& what) {
+  if (!offer({{asker, std::nullopt}, what})) return false;
+  ++capturing_;
+  return true;
+}
+
 std::unique_ptr<Session> Room::give_up_session() {
   hub_.metrics().steps_of_closed_sessions += steps();
   return std::move(session_);
@@ -215,8 +221,9 @@ void Room::take(Notice& notice) {
   broadcast("notice", {{"level", notice.level}, {"text", notice.text}});
 }
 
-void Room::take(Exported& exported) {
-  hub_.deliver(std::move(exported));
+void Room::take(Captured& captured) {
+  --capturing_;
+  hub_.captured(std::move(captured));
 }
 
 void Room::take(SceneReached& reached) {

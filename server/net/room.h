@@ -45,6 +45,9 @@ class Room {
   void post(Command command);
   /// The same for what a client asks for. False: too much waits already.
   [[nodiscard]] bool offer(Command command);
+  /// For a picture or mesh; hub.captured() gets the moment. False: too much waits already.
+  [[nodiscard]] bool capture(std::uint64_t asker, const Export& what);
+  std::size_t capturing() const { return capturing_; }  ///< how many of those are still to come
   /// Takes in what the session has put out and passes it on.
   void pump();
   const std::optional<Failed>& failure() const { return failure_; }
@@ -66,7 +69,7 @@ class Room {
   void take(SolverChanged& changed);
   void take(Diverged& diverged);
   void take(Notice& notice);
-  void take(Exported& exported);
+  void take(Captured& captured);
   void take(SceneReached& reached);
   void take(SceneLost& lost);
   void take(Held& held);
@@ -90,13 +93,15 @@ class Room {
   std::shared_ptr<const scene::Document> document_;
   std::uint64_t revision_ = 0;
   stream::SharedMessage topology_;
-  json passes_ = json::array(), skipped_ = json::array(), pass_seconds_ = json::object(), solver_ = json::object();
+  json passes_ = json::array(), skipped_ = json::array(), pass_seconds_ = json::object(),
+       solver_ = json::object();
   std::array<double, encoding_count> demanded_{};
   std::array<std::uint32_t, encoding_count>
       seen_{};                           ///< sequence number of the last frame offered to viewers
   std::uint32_t last_frame_ = 0;         ///< the number of the newest one
   std::vector<std::int64_t> failed_at_;  ///< [us] when the session was brought back
   std::optional<Failed> failure_;
+  std::size_t capturing_ = 0;
   std::int64_t unwatched_since_ = 0;
   bool asleep_ = false;
 };

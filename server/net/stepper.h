@@ -4,7 +4,6 @@
 // session goes on at all.
 #pragma once
 
-#include <future>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -17,7 +16,6 @@
 #include "server/net/real_time.h"
 #include "server/net/rest.h"
 #include "server/net/step_limit.h"
-#include "server/render/renderer.h"
 #include "server/scene/document.h"
 #include "server/sim/blow_up.h"
 
@@ -73,8 +71,6 @@ class Stepper {
   void perform(Release&, const Ticket& ticket);
   void perform(Chosen& chosen, const Ticket& ticket);
   void reply(const Ticket& ticket, Answer answer);
-  Result<render::Image> picture(const Export& what);
-  void encode_picture(render::Image image, std::uint64_t asker);
   json where_we_are() const;
   RpcError diverged_error() const;
   Result<sim::ChangeDepth> change(const scene::Scene& scene);
@@ -113,8 +109,6 @@ class Stepper {
   double patience_;  ///< [s]
   std::unique_ptr<sim::Simulation> simulation_;
   std::unique_ptr<FrameMaker> frames_;
-  std::unique_ptr<render::Renderer> renderer_;  ///< made for the first picture
-  std::vector<std::future<void>> encoders_;     ///< pictures being compressed; they end before this object
   gl::StageTimer step_timer_, diagnosis_timer_;
   GpuBacklog backlog_;
   RealTime real_time_;

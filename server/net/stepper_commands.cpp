@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "server/model/mesh_file.h"
 #include "server/model/spring_gains.h"
 #include "server/net/stepper.h"
 
@@ -15,8 +14,8 @@ void Stepper::handle(Command& command) {
     const Error error{"session", "there is not enough memory for that", "a smaller scene, or fewer sessions"};
     if (command.ticket.id)
       reply(command.ticket, RpcError{error_internal, error.text(), nullptr});
-    else if (std::holds_alternative<Export>(command.what))
-      exchange_.emit(Exported{command.ticket.asker, "", error});
+    else if (const auto* what = std::get_if<Export>(&command.what))
+      exchange_.emit(Captured{command.ticket.asker, *what, error});
   }
 }
 
@@ -192,42 +191,11 @@ void Stepper::perform(Release&, const Ticket&) {
   if (std::exchange(held_, false)) playing_ = true;
 }
 
-// On this thread, where the simulation's buffers are: it costs this session's viewers a hiccup, nobody else.
 void Stepper::perform(Export& what, const Ticket& ticket) {
   last_watched_ = Clock::now();
-  if (what.width == 0) {
-    const std::string comment = "t = " + json(simulation_->time()).dump() + " s";
-    exchange_.emit(
-        Exported{ticket.asker, "text/plain; charset=utf-8",
-                 model::obj_text(simulation_->model(), simulation_->read_state().position, comment)});
-    return;
-  }
-  Result<render::Image> image = picture(what);
-  if (!image) return exchange_.emit(Exported{ticket.asker, "", image.error()});
-  encode_picture(std::move(*image), ticket.asker);
-}
-
-Result<render::Image> Stepper::picture(const Export& what) {
-  if (!renderer_) {
-    Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create();
-    if (!renderer) return renderer.error();
-    renderer_ = std::move(*renderer);
-  }
-  return renderer_->render(*simulation_, what.width, what.height);
-}
-
-// Compression takes as long as the drawing, and needs no GL: off this thread.
-void Stepper::encode_picture(render::Image image, std::uint64_t asker) {
-  const auto done = [](const std::future<void>& encoder) {
-    return encoder.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-  };
-  encoders_.erase(std::remove_if(encoders_.begin(), encoders_.end(), done), encoders_.end());
-  encoders_.push_back(
-      std::async(std::launch::async, [image = std::move(image), asker, &exchange = exchange_] {
-        const Result<std::vector<std::uint8_t>> png = render::encode_png(image);
-        if (!png) return exchange.emit(Exported{asker, "", png.error()});
-        exchange.emit(Exported{asker, "image/png", std::string(png->begin(), png->end())});
-      }));
+  exchange_.emit(Captured{ticket.asker, what,
+                          Moment{std::make_shared<const scene::Document>(document_), simulation_->time(),
+                                 simulation_->read_state().position, simulation_->colliders_now()}});
 }
 
 // The document stays what it is; what steps it is shown by sim.status.

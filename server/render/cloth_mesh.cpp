@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <glm/vec4.hpp>
 #include <string>
 
 namespace clothlab::render {
@@ -28,14 +29,25 @@ void attribute(GLuint vertex_array, GLuint index, GLint components) {
   glVertexArrayAttribBinding(vertex_array, index, index);
 }
 
+/// As the kernels read them.
+std::vector<glm::vec4> padded(const std::vector<glm::vec3>& positions) {
+  std::vector<glm::vec4> all;
+  all.reserve(positions.size());
+  for (const glm::vec3& position : positions) all.emplace_back(position, 1.0f);
+  return all;
+}
+
 }  // namespace
 
-ClothMesh::ClothMesh(const sim::Simulation& simulation, const gl::Program& normals_program)
-    : triangles_(simulation.model().triangles),
-      texture_coordinates_(simulation.model().texture_coordinates),
-      normals_(simulation.model().vertex_count() * 4 * sizeof(float)),
-      vertex_count_(simulation.model().vertex_count()),
-      triangle_count_(static_cast<GLsizei>(simulation.model().triangle_count())) {
+ClothMesh::ClothMesh(const model::Model& model, const std::vector<glm::vec3>& positions,
+                     const gl::Program& normals_program)
+    : positions_(gl::Buffer(padded(positions)), GL_RGBA32F),
+      triangles_(model.triangles),
+      texture_coordinates_(model.texture_coordinates),
+      normals_(model.vertex_count() * 4 * sizeof(float)),
+      ranges_(model.cloths),
+      vertex_count_(model.vertex_count()),
+      triangle_count_(static_cast<GLsizei>(model.triangle_count())) {
   glCreateVertexArrays(1, &vertex_array_);
   attribute(vertex_array_, 0, 3);
   attribute(vertex_array_, 1, 3);
@@ -43,20 +55,20 @@ ClothMesh::ClothMesh(const sim::Simulation& simulation, const gl::Program& norma
   glVertexArrayVertexBuffer(vertex_array_, 1, normals_.id(), 0, 4 * sizeof(float));
   glVertexArrayVertexBuffer(vertex_array_, 2, texture_coordinates_.id(), 0, 2 * sizeof(float));
   glVertexArrayElementBuffer(vertex_array_, triangles_.id());
-  glVertexArrayVertexBuffer(vertex_array_, 0, simulation.position_buffer(), 0, 4 * sizeof(float));
-  compute_normals(simulation, normals_program);
+  glVertexArrayVertexBuffer(vertex_array_, 0, positions_.buffer.id(), 0, 4 * sizeof(float));
+  compute_normals(model, normals_program);
 }
 
 ClothMesh::~ClothMesh() {
   glDeleteVertexArrays(1, &vertex_array_);
 }
 
-void ClothMesh::compute_normals(const sim::Simulation& simulation, const gl::Program& program) const {
-  const gl::TextureBuffer fan_offsets(gl::Buffer(simulation.model().vertex_triangles.offsets), GL_R32UI);
-  const gl::TextureBuffer fans(gl::Buffer(model::vertex_fans(simulation.model())), GL_RG32UI);
+void ClothMesh::compute_normals(const model::Model& model, const gl::Program& program) const {
+  const gl::TextureBuffer fan_offsets(gl::Buffer(model.vertex_triangles.offsets), GL_R32UI);
+  const gl::TextureBuffer fans(gl::Buffer(model::vertex_fans(model)), GL_RG32UI);
   program.use();
   glUniform1i(0, static_cast<GLint>(vertex_count_));
-  simulation.bind_positions(0);
+  positions_.bind(0);
   fan_offsets.bind(2);
   fans.bind(3);
   normals_.bind_storage(0);
@@ -65,16 +77,15 @@ void ClothMesh::compute_normals(const sim::Simulation& simulation, const gl::Pro
   glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
 }
 
-void ClothMesh::draw(const sim::Simulation& simulation) const {
+void ClothMesh::draw(const scene::Scene& scene) const {
   glBindVertexArray(vertex_array_);
-  const std::vector<model::ClothRange>& ranges = simulation.model().cloths;
-  for (std::size_t index = 0; index < ranges.size(); ++index) {
-    const scene::Cloth& cloth = simulation.scene().cloths[index];
+  for (std::size_t index = 0; index < ranges_.size(); ++index) {
+    const scene::Cloth& cloth = scene.cloths[index];
     glUniform3f(0, linear_channel(cloth.color, 1), linear_channel(cloth.color, 3),
                 linear_channel(cloth.color, 5));
     glUniform1i(1, pattern_number(cloth.texture));
-    const std::uintptr_t first_byte = ranges[index].first_triangle * 3 * sizeof(std::uint32_t);
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * ranges[index].triangle_count), GL_UNSIGNED_INT,
+    const std::uintptr_t first_byte = ranges_[index].first_triangle * 3 * sizeof(std::uint32_t);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * ranges_[index].triangle_count), GL_UNSIGNED_INT,
                    reinterpret_cast<const void*>(first_byte));
   }
 }

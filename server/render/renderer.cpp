@@ -88,10 +88,9 @@ struct Renderer::Implementation {
   Implementation& operator=(const Implementation&) = delete;
 
   Status load_programs();
-  void set_frame(const sim::Simulation& simulation, float aspect);
+  void set_frame(const Subject& subject, float aspect);
   void draw_shadow_map(const ClothMesh& cloth_mesh, const std::vector<scene::Collider>& colliders);
-  void draw_picture(const sim::Simulation& simulation, const ClothMesh& cloth_mesh,
-                    const std::vector<scene::Collider>& colliders);
+  void draw_picture(const Subject& subject, const ClothMesh& cloth_mesh);
   void draw_planes(const std::vector<scene::Collider>& colliders);
 };
 
@@ -111,14 +110,10 @@ Status Renderer::Implementation::load_programs() {
   return status;
 }
 
-void Renderer::Implementation::set_frame(const sim::Simulation& simulation, float aspect) {
+void Renderer::Implementation::set_frame(const Subject& subject, float aspect) {
   Box box;
-  std::vector<glm::vec4> positions(simulation.model().vertex_count());
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  glGetNamedBufferSubData(simulation.position_buffer(), 0,
-                          static_cast<GLsizeiptr>(positions.size() * sizeof(glm::vec4)), positions.data());
-  for (const glm::vec4& position : positions) box.add(glm::vec3(position));
-  for (const scene::Collider& collider : simulation.colliders_now())
+  for (const glm::vec3& position : subject.positions) box.add(position);
+  for (const scene::Collider& collider : subject.colliders)
     if (const auto* sphere = std::get_if<scene::Sphere>(&collider.shape))
       box.add(glm::vec3(sphere->center), static_cast<float>(sphere->radius));
   const Camera camera = frame(box, aspect);
@@ -157,20 +152,19 @@ void Renderer::Implementation::draw_planes(const std::vector<scene::Collider>& c
   glDisable(GL_BLEND);
 }
 
-void Renderer::Implementation::draw_picture(const sim::Simulation& simulation, const ClothMesh& cloth_mesh,
-                                            const std::vector<scene::Collider>& colliders) {
+void Renderer::Implementation::draw_picture(const Subject& subject, const ClothMesh& cloth_mesh) {
   shadow_map.bind_texture();
   glDisable(GL_DEPTH_TEST);
   background.use();
   glBindVertexArray(empty_vertex_array);
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glEnable(GL_DEPTH_TEST);
-  draw_planes(colliders);
+  draw_planes(subject.colliders);
   glEnable(GL_CULL_FACE);
   sphere.use();
-  sphere_mesh.draw(colliders);
+  sphere_mesh.draw(subject.colliders);
   cloth.use();
-  cloth_mesh.draw(simulation);
+  cloth_mesh.draw(subject.scene);
   glDisable(GL_CULL_FACE);
 }
 
@@ -183,22 +177,21 @@ Result<std::unique_ptr<Renderer>> Renderer::create() {
   return renderer;
 }
 
-Result<Image> Renderer::render(const sim::Simulation& simulation, int width, int height) {
+Result<Image> Renderer::render(const Subject& subject, int width, int height) {
   if (Status size = check_size(width, height); !size) return size.error();
   Result<Target> target = Target::create(width, height);
   if (!target) return target.error();
 
   Implementation& self = *implementation_;
-  const std::vector<scene::Collider> colliders = simulation.colliders_now();
-  self.set_frame(simulation, static_cast<float>(width) / static_cast<float>(height));
-  const ClothMesh cloth_mesh(simulation, self.normals);
+  self.set_frame(subject, static_cast<float>(width) / static_cast<float>(height));
+  const ClothMesh cloth_mesh(subject.model, subject.positions, self.normals);
   glEnable(GL_DEPTH_TEST);
-  self.draw_shadow_map(cloth_mesh, colliders);
+  self.draw_shadow_map(cloth_mesh, subject.colliders);
   target->bind();
-  self.draw_picture(simulation, cloth_mesh, colliders);
+  self.draw_picture(subject, cloth_mesh);
   Image image = target->read();
 
-  // Nothing of this is left bound for the passes of the simulation.
+  // Nothing of this is left bound for who else computes in this context.
   glDisable(GL_DEPTH_TEST);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glBindVertexArray(0);

@@ -1,15 +1,26 @@
-// Draws a simulation's present state to a picture without a window: normals by a compute pass, then the cloth
-// by vertex, geometry and fragment shader, the colliders, a shadow. Uses the GL context that is current on
-// the calling thread.
+// Draws a moment of a scene to a picture without a window: normals by a compute pass, then the cloth by
+// vertex, geometry and fragment shader, the colliders, a shadow. Uses the GL context that is current on the
+// calling thread, whichever one the moment was simulated in.
 #pragma once
 
+#include <glm/vec3.hpp>
 #include <memory>
+#include <vector>
 
 #include "server/base/result.h"
+#include "server/model/model.h"
 #include "server/render/image.h"
-#include "server/sim/simulation.h"
+#include "server/scene/scene.h"
 
 namespace clothlab::render {
+
+/// What is drawn; all of it outlives the drawing.
+struct Subject {
+  const scene::Scene& scene;                      ///< for the cloths' colours and textures
+  const model::Model& model;                      ///< of that scene
+  const std::vector<glm::vec3>& positions;        ///< [vertex_count] [m]
+  const std::vector<scene::Collider>& colliders;  ///< where they are at that moment
+};
 
 class Renderer {
  public:
@@ -17,9 +28,9 @@ class Renderer {
   static Result<std::unique_ptr<Renderer>> create();
   ~Renderer();
 
-  /// The present state, `width` x `height` pixels, each in [1, max_image_side], framed so that all of it is
+  /// `width` x `height` pixels, each in [1, max_image_side], framed so that all of it is
   /// seen. Waits for the GPU. A vertex that is not finite is left out of the framing.
-  Result<Image> render(const sim::Simulation& simulation, int width, int height);
+  Result<Image> render(const Subject& subject, int width, int height);
 
  private:
   Renderer();

@@ -276,13 +276,6 @@ State Simulation::read_state() {
 void Simulation::finish() {
   glFinish();
 }
-unsigned Simulation::position_buffer() const {
-  return implementation_->state.position().buffer.id();
-}
-unsigned Simulation::velocity_buffer() const {
-  return implementation_->state.velocity().buffer.id();
-}
-
 void Simulation::bind_positions(unsigned unit) const {
   implementation_->state.position().bind(unit);
 }

@@ -121,9 +121,6 @@ class Simulation {
   /// Waits until the GPU has finished every queued step.
   void finish();
 
-  /// GL buffers of the present state: vec4 a vertex, xyz position [m] and xyz velocity [m/s].
-  unsigned position_buffer() const;
-  unsigned velocity_buffer() const;
   /// Binds the positions for reading as READ_VEC4(name, unit).
   void bind_positions(unsigned unit) const;
   /// Colliders' poses at the present time, for drawing: center of each sphere, point of each plane [m].

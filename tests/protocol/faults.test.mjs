@@ -238,3 +238,17 @@ for (const [kind, why] of [["exception", /a fault on purpose/], ["no-memory", /n
     assert.equal(await server.metric("clothlab_sessions_brought_back_total"), 0);
     await server.stop();
   });
+
+for (const [kind, why] of [["exception", /a fault on purpose/], ["no-memory", /not enough memory/], ["context-lost", /the device was reset/]])
+  test(`a picture that meets ${kind} is answered with 500 and why; the next one is drawn, and the session never notices`, async () => {
+    const server = await startWith({ CLOTHLAB_FAULT: `${kind}:/export:0` });
+    const client = await watch(server);
+    const failed = await server.get("/api/snapshot.png?width=64&height=48");
+    assert.equal(failed.status, 500);
+    assert.match(failed.body.toString(), why);
+    assert.equal((await server.get("/api/snapshot.png?width=64&height=48")).status, 200);
+    const { time } = await client.nextFrame();
+    await client.nextFrame((frame) => frame.time > time);
+    assert.deepEqual(notices(client).filter(({ params }) => !/cannot keep up/.test(params.text)), []);
+    await server.stop();
+  });

@@ -1,5 +1,6 @@
 import assert from "node:assert/strict";
 import { cpSync, mkdtempSync, rmSync, symlinkSync } from "node:fs";
+import http from "node:http";
 import net from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -8,6 +9,14 @@ import { once } from "node:events";
 import { after, before, test } from "node:test";
 import { gunzipSync } from "node:zlib";
 import { Client, Server, sleep, withTimeout } from "./harness.mjs";
+
+async function eventually(look, good, what) {
+  for (let tries = 0; tries < 3000; ++tries) {
+    if (good(await look())) return;
+    await sleep(10);
+  }
+  assert.fail(`waited for ${what}`);
+}
 
 let server;
 before(async () => (server = await Server.start()));
@@ -223,4 +232,39 @@ test("/api/snapshot.png is a picture of the size asked for", async () => {
   assert.equal(body.readUInt32BE(20), 200);
   for (const query of ["width=0&height=10", "width=10&height=5000", "width=x&height=10", "width=1e2&height=10"])
     assert.equal((await server.get(`/api/snapshot.png?${query}`)).status, 400, query);
+});
+
+/// Asks for so many pictures at once; `answers` has what came so far.
+function askForPictures(count, side) {
+  const answers = [];
+  const requests = Array.from({ length: count }, () =>
+    http.get({ host: "127.0.0.1", port: server.port, path: `/api/snapshot.png?width=${side}&height=${side}` }, (response) => {
+      answers.push({ status: response.statusCode, again: response.headers["retry-after"] });
+      response.resume();
+    }));
+  for (const request of requests) request.on("error", () => {});
+  return { answers, abandon: () => requests.forEach((request) => request.destroy()) };
+}
+const exportsWaiting = () => server.metric("clothlab_exports_waiting");
+
+test("pictures keep nobody waiting: the session answers while they are made, and of twelve at once four are refused", async () => {
+  const client = await Client.connect(server);
+  const { answers, abandon } = askForPictures(12, 2048);
+  await eventually(() => answers.length, (count) => count >= 4, "the refusals");
+  await client.request("scene.patch", { patch: { name: "beside pictures" } });
+  assert.deepEqual(answers, Array(4).fill({ status: 503, again: "1" }), "the session answered before the first picture was made");
+  abandon();
+  await eventually(exportsWaiting, (count) => count === 0, "the pictures to be dropped");
+  await client.close();
+});
+
+test("a picture that nobody waits for any more is not made", async () => {
+  const before = await server.metric("clothlab_exports_total");
+  const { abandon } = askForPictures(8, 1024);
+  await eventually(exportsWaiting, (count) => count >= 4, "the pictures to wait");
+  abandon();
+  await eventually(exportsWaiting, (count) => count === 0, "the pictures to be dropped");
+  const made = await server.metric("clothlab_exports_total") - before;
+  assert.ok(made < 8, `${made} were made`);
+  assert.equal((await server.get("/api/mesh.obj")).status, 200);
 });
