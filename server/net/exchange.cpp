@@ -2,18 +2,17 @@
 
 #include <algorithm>
 
-#include "server/net/limits.h"
-
 namespace clothlab::net {
 
 std::int64_t now_us() {
   return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch()).count();
 }
 
-void Exchange::await(const Command& command) {
+std::optional<Exchange::Awaited> Exchange::answer_to(const Command& command) {
   const auto* reach = std::get_if<ReachScene>(&command.what);
   if (command.ticket.id || reach || std::holds_alternative<Export>(command.what))
-    awaited_.push_back({command.ticket, reach ? std::optional(reach->job) : std::nullopt});
+    return Awaited{command.ticket, reach ? std::optional(reach->job) : std::nullopt};
+  return std::nullopt;
 }
 
 void Exchange::settle(const Event& event) {
@@ -59,9 +58,9 @@ std::shared_ptr<const Saved> Exchange::kept() const {
 bool Exchange::offer(Command command) {
   {
     const std::lock_guard lock(mutex_);
-    if (commands_.size() >= max_waiting_commands) return false;
-    await(command);
-    commands_.push_back(std::move(command));
+    std::optional<Awaited> answer = answer_to(command);
+    if (!commands_.offer(std::move(command))) return false;
+    if (answer) awaited_.push_back(std::move(*answer));
   }
   commands_changed_.notify_one();
   return true;
@@ -70,7 +69,7 @@ bool Exchange::offer(Command command) {
 void Exchange::post(Command command) {
   {
     const std::lock_guard lock(mutex_);
-    commands_.push_back(std::move(command));
+    commands_.post(std::move(command));
   }
   commands_changed_.notify_one();
 }
@@ -98,10 +97,7 @@ bool Exchange::take_commands(std::vector<Command>& out, Clock::time_point until)
   out.clear();
   std::unique_lock lock(mutex_);
   commands_changed_.wait_until(lock, until, [&] { return stopping_ || !commands_.empty(); });
-  while (!commands_.empty() && out.size() < commands_a_turn) {
-    out.push_back(std::move(commands_.front()));
-    commands_.pop_front();
-  }
+  while (!commands_.empty() && out.size() < commands_a_turn) out.push_back(commands_.pop());
   return !stopping_;
 }
 

@@ -7,9 +7,9 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <glm/vec3.hpp>
+#include <list>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -19,6 +19,7 @@
 
 #include "server/gl/stage_timer.h"
 #include "server/lab/choice.h"
+#include "server/net/command_queue.h"
 #include "server/net/json_rpc.h"
 #include "server/net/saved.h"
 #include "server/scene/document.h"
@@ -28,70 +29,6 @@
 namespace clothlab::net {
 
 using Clock = std::chrono::steady_clock;
-using stream::encoding_count;
-
-/// Who asked, and the request's id (none: a notification, or the server itself). 0 is nobody.
-struct Ticket {
-  std::uint64_t asker = 0;
-  std::optional<json> id;
-  std::string method{};
-  std::int64_t asked_us = 0;  ///< when it came
-};
-
-// Commands to a session.
-struct GetScene {};
-struct LoadScene {
-  std::string preset;  ///< or, where empty:
-  json document;
-};
-struct PatchScene {
-  json patch;
-  std::optional<std::uint64_t> revision;  ///< the one the patch was made for
-};
-struct Play {};
-struct Pause {};
-struct Step {
-  std::uint64_t steps = 1;
-};
-struct Reset {};
-struct Speed {
-  double factor = 1;
-};
-/// What viewers want: the highest rate of each encoding, and which are wanted at once, even while nothing
-/// moves.
-struct Demand {
-  std::array<double, encoding_count> rate{};  ///< [1/s], 0: nobody
-  std::array<bool, encoding_count> fresh{};
-};
-struct Watchers {
-  int count = 0;
-};
-/// For a picture (width > 0) or a mesh for the HTTP API: answered by Captured; `Ticket::asker` is the HTTP
-/// request.
-struct Export {
-  int width = 0, height = 0;  ///< [pixels]
-};
-/// For a job of the lab: answered by SceneReached, after what the commands before it have changed.
-struct ReachScene {
-  std::uint64_t job = 0;
-};
-/// Stands still if it plays, for a job of the lab to measure: answered by Held.
-struct Hold {
-  std::uint64_t job = 0;
-};
-/// Plays on, unless somebody has played, paused or stepped it since it was held.
-struct Release {};
-/// What the lab says to a scene with the method `auto`.
-struct Chosen {
-  std::shared_ptr<const scene::Document> measured;
-  Result<lab::Choice> choice;
-};
-struct Command {
-  Ticket ticket;
-  std::variant<GetScene, LoadScene, PatchScene, Play, Pause, Step, Reset, Speed, Demand, Watchers, Export,
-               ReachScene, Hold, Release, Chosen>
-      what;
-};
 
 // Events from a session.
 struct Started {
@@ -176,9 +113,9 @@ class Exchange {
   explicit Exchange(std::function<void()> wake) : wake_(std::move(wake)) {}
 
   // The service thread's side.
-  /// What a client asks for. False: max_waiting_commands wait already.
+  /// What a client asks for. False: it has max_waiting_commands waiting already.
   [[nodiscard]] bool offer(Command command);
-  /// What the server itself has to say; never refused.
+  /// What the server itself has to say; see CommandQueue::post.
   void post(Command command);
   void stop();
   void take_events(std::vector<Event>& out);  ///< `out` is emptied first
@@ -211,16 +148,16 @@ class Exchange {
     Ticket ticket;
     std::optional<std::uint64_t> job;
   };
-  void await(const Command& command);
+  static std::optional<Awaited> answer_to(const Command& command);
   void settle(const Event& event);
 
   std::function<void()> wake_;
   mutable std::mutex mutex_;
   std::condition_variable commands_changed_;
-  std::deque<Command> commands_;
+  CommandQueue commands_;
   std::vector<Event> events_;
   std::array<stream::SharedMessage, encoding_count> frames_;
-  std::vector<Awaited> awaited_;
+  std::list<Awaited> awaited_;  ///< as asked; settled near its front
   std::shared_ptr<const Saved> kept_;
   bool stopping_ = false;
   std::atomic<std::int64_t> heartbeat_us_{0};

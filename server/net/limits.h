@@ -26,14 +26,17 @@ struct Limits {
   int idle_seconds = 60;    ///< a connection that says nothing, not even pong, is closed after this
 };
 
+/// A message counts once for each of these begun.
+inline constexpr int message_unit_bytes = 256;
 /// Messages that may come at once.
 inline int burst_of(const Limits& limits) {
   return 2 * limits.message_rate;
 }
 
+inline constexpr int max_unadmitted_bytes = 4096;  ///< of a message before its sender has a role
 inline constexpr std::size_t max_unsent_text_bytes =
     4 * 1024 * 1024;                                        ///< control text a client may let pile up
-inline constexpr std::size_t max_waiting_commands = 1024;   ///< of a session; beyond: -32002
+inline constexpr std::size_t max_waiting_commands = 1024;   ///< of a client at its session; beyond: -32002
 inline constexpr double min_rate = 0.1, max_rate = 120;     ///< frames a second a viewer may ask for
 inline constexpr int max_in_flight = 8;                     ///< unacknowledged frames a viewer may ask for
 inline constexpr std::int64_t max_steps = 1'000'000;        ///< of one sim.step

@@ -92,8 +92,10 @@ Ticket ticket(const Client& client, const Request& request) {
 
 Outcome ask_session(Client& client, const Request& request, decltype(Command::what) what) {
   if (client.room()->offer({ticket(client, request), std::move(what)})) return Later{};
-  return RpcError{error_over_limit, "the session has too many requests waiting; wait for its answers",
-                  nullptr};
+  return RpcError{
+      error_over_limit,
+      std::to_string(max_waiting_commands) + " of your requests wait already; wait for their answers",
+      nullptr};
 }
 
 Outcome call(Client& client, const Request& request) {
