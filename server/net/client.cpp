@@ -3,6 +3,7 @@
 #include <libwebsockets.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "server/base/text.h"
@@ -72,15 +73,18 @@ int Client::receive(const char* data, std::size_t size) {
     incoming_.clear();
     incoming_text_ = !lws_frame_is_binary(wsi_);
   }
-  if (incoming_.size() + size + lws_remaining_packet_payload(wsi_) >
-      static_cast<std::size_t>(hub_.limits().message_bytes)) {
-    close(close_too_big, "a message may have " + std::to_string(hub_.limits().message_bytes) + " bytes");
+  const int most = role_ == Role::none ? std::min(max_unadmitted_bytes, hub_.limits().message_bytes)
+                                       : hub_.limits().message_bytes;
+  if (incoming_.size() + size + lws_remaining_packet_payload(wsi_) > static_cast<std::size_t>(most)) {
+    close(close_too_big, "a message may have " + std::to_string(most) + " bytes" +
+                             (role_ == Role::none ? " before auth" : ""));
     return 0;
   }
   incoming_.append(data, size);
   if (!lws_is_final_fragment(wsi_) || lws_remaining_packet_payload(wsi_) > 0) return 0;
   ++hub_.metrics().messages_received;
-  if (!messages_.take(now_us()))
+  // A long one takes as long to read as many short ones.
+  if (!messages_.take(now_us(), std::ceil(static_cast<double>(incoming_.size()) / message_unit_bytes)))
     close(close_policy, "too many messages");
   else if (incoming_text_)
     handle(incoming_);

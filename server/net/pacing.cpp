@@ -44,11 +44,11 @@ void FramePacing::acknowledge(std::uint32_t sequence, std::int64_t now) {
   if (blocked && count_ < in_flight_) unblocked_ = now;
 }
 
-bool TokenBucket::take(std::int64_t now) {
+bool TokenBucket::take(std::int64_t now, double cost) {
   tokens_ = std::min(burst_, tokens_ + rate_ * 1e-6 * static_cast<double>(now - last_));
   last_ = now;
   if (tokens_ < 1) return false;
-  tokens_ -= 1;
+  tokens_ -= cost;
   return true;
 }
 

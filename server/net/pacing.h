@@ -51,8 +51,8 @@ class TokenBucket {
  public:
   TokenBucket(double rate, double burst, std::int64_t now)
       : rate_(rate), burst_(burst), tokens_(burst), last_(now) {}
-  /// False: too many.
-  bool take(std::int64_t now);
+  /// False: too many. What costs more than is left is let through, and paid off before the next.
+  bool take(std::int64_t now, double cost = 1);
 
  private:
   double rate_, burst_, tokens_;

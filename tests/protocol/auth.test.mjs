@@ -33,6 +33,19 @@ test("before auth, and with a wrong token, everything answers -32001", async () 
   assert.ok(!(await server.get("/metrics", { authorization: "Bearer secret" })).body.includes('a"label'));
 });
 
+test("before auth a message may have 4 KiB, after it as much as the others'", async () => {
+  const client = await Client.connect(server);
+  assert.equal((await client.refusal("ping", { t: "x".repeat(4000) })).code, -32001);
+  await client.request("auth", { token: "look" });
+  await client.request("ping", { t: "x".repeat(5000) });
+  await client.close();
+  const stranger = await Client.connect(server);
+  stranger.notify("ping", { t: "x".repeat(5000) });
+  const { code, reason } = await withTimeout(stranger.closed, "the close");
+  assert.equal(code, 1009);
+  assert.match(reason, /4096 bytes before auth/);
+});
+
 test("who does not authenticate is closed with 1008 after 5 s", async () => {
   const client = await Client.connect(server);
   const from = performance.now();

@@ -102,6 +102,17 @@ test("more messages than --max-message-rate allows are a flood, closed with 1008
   assert.equal((await withTimeout(client.closed, "the close")).code, 1008);
 });
 
+test("a long message counts as many short ones: it is answered, and the next one is too many", async () => {
+  const server = await start("--max-message-rate", "10");
+  const client = await Client.connect(server);
+  const t = "x".repeat(50_000);  // two hundred times 256 bytes: paid off in 18 s
+  assert.deepEqual(await client.request("ping", { t }), { t });
+  client.notify("ping", {});
+  const { code, reason } = await withTimeout(client.closed, "the close");
+  assert.equal(code, 1008);
+  assert.match(reason, /too many messages/);
+});
+
 test("a message nested deeper than --max-json-depth answers -32700 and the connection lives", async () => {
   const server = await start("--max-json-depth", "8");
   const client = await Client.connect(server);

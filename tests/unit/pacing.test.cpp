@@ -122,3 +122,10 @@ TEST_CASE("a bucket lets its burst through, then its rate") {
   for (int i = 0; i < 100; ++i) taken += bucket.take(100 * second) ? 1 : 0;
   CHECK(taken == 5);
 }
+
+TEST_CASE("what costs more than is left of a bucket is let through, and paid off before the next") {
+  net::TokenBucket bucket(10, 5, 0);
+  CHECK(bucket.take(0, 25));  // 20 short: two seconds, and a tenth for the next
+  CHECK_FALSE(bucket.take(2 * second));
+  CHECK(bucket.take(2 * second + second / 10 + 1));
+}
