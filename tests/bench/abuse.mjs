@@ -1,0 +1,170 @@
+// What one viewer, or somebody without a token, can take from another by every means the protocol leaves: a bystander's frames and the
+// session's real-time factor, alone and beside each kind of abuse. By hand, on a quiet machine:
+//   CLOTHLAB=build/release/clothlab node tests/bench/abuse.mjs [SECONDS] [--only NAME] [--out FILE]
+// Who abuses is a process of its own, which asks for as much as it can of the same cores. Prints (and writes) JSON.
+import { fork } from "node:child_process";
+import { once } from "node:events";
+import { readFileSync } from "node:fs";
+import { writeFile } from "node:fs/promises";
+import http from "node:http";
+import net from "node:net";
+import { cpus } from "node:os";
+import { Client, Server, sleep } from "../protocol/harness.mjs";
+
+const token = "operator-of-this", viewToken = "viewer-of-this";
+const bearer = { authorization: `Bearer ${viewToken}` };
+
+const asViewer = async (server, options = {}) => {
+  const client = await Client.connect(server, options);
+  await client.request("auth", { token: viewToken });
+  return client;
+};
+
+/// Sends `frame` over and over as fast as the socket takes it, and drops what comes back.
+function pour(socket, frame) {
+  const many = Buffer.concat(Array(Math.ceil(65536 / frame.length)).fill(frame));
+  socket.removeAllListeners("data");
+  socket.resume();
+  const more = () => {
+    while (socket.writable && socket.write(many));
+    if (socket.writable) socket.once("drain", more);
+  };
+  more();
+}
+const masked = (first, length = 0) => Buffer.concat([Buffer.from([first, 0x80 | length, 0, 0, 0, 0]), Buffer.alloc(length)]);
+
+/// `lanes` requests at any time, one after the other in each.
+function keepAsking(lanes, ask) {
+  const lane = async () => {
+    for (;;) await ask().catch(() => sleep(10));
+  };
+  for (let i = 0; i < lanes; ++i) lane();
+}
+const get = (server, path, headers = bearer) => server.get(path, headers);
+
+/// Asks and hangs up before the answer, at most `rate` times a second.
+const askAndLeave = (server, path, rate) => setInterval(() => {
+  const socket = net.connect(server.port, "127.0.0.1", () => {
+    socket.write(`GET ${path} HTTP/1.1\r\nhost: ${server.host}\r\nauthorization: ${bearer.authorization}\r\n\r\n`);
+    setTimeout(() => socket.destroy(), 20);
+  });
+  socket.on("error", () => {});
+}, 1000 / rate);
+
+/// Ten viewers that each say `text` over and over, just within the rate that is allowed: 1900 a second if it is short.
+async function chatter(server, text) {
+  const rate = 1900 / Math.ceil(text.length / 256);
+  for (let i = 0; i < 10; ++i) {
+    const client = await asViewer(server);
+    client.receive = () => {};
+    let due = 0;
+    setInterval(() => {
+      for (due += rate / 100; due >= 1 && client.socket.bufferedAmount < 1e6; --due) client.send(text);
+    }, 10);
+  }
+}
+const call = (method, params = {}) => JSON.stringify({ jsonrpc: "2.0", id: 1, method, params });
+
+const abuses = {
+  nothing: async () => {},
+  "scene.get": async (server) => chatter(server, call("scene.get")),
+  "stream.subscribe": async (server) => chatter(server, call("stream.subscribe", { encoding: "f32", rate: 120 })),
+  "messages of 64 kB": async (server) => chatter(server, call("ping", { t: "x".repeat(65000) })),
+  "messages of 64 kB that are no JSON": async (server) => chatter(server, "[".repeat(65000)),
+  "messages of 64 kB of numbers": async (server) => chatter(server, call("ping", { t: Array(16000).fill(1.5) })),
+  "coming and going": async (server) => keepAsking(16, async () => {
+    const client = await asViewer(server);
+    await client.request("stream.subscribe", { encoding: "f32", rate: 120 });
+    client.socket.terminate();
+  }),
+  "pings": async (server) => pour((await asViewer(server)).socket._socket, masked(0x89)),
+  "pings, ten clients": async (server) => {
+    for (let i = 0; i < 10; ++i) await abuses.pings(server);
+  },
+  "empty fragments": async (server) => {
+    const { _socket: socket } = (await asViewer(server)).socket;
+    socket.write(masked(0x01));
+    pour(socket, masked(0x00));
+  },
+  "empty fragments, ten clients": async (server) => {
+    for (let i = 0; i < 10; ++i) await abuses["empty fragments"](server);
+  },
+  "pictures of 4096x4096": async (server) => keepAsking(16, () => get(server, "/api/snapshot.png?width=4096&height=4096")),
+  "pictures of 4096x4096, not waited for": async (server) => askAndLeave(server, "/api/snapshot.png?width=4096&height=4096", 50),
+  "meshes": async (server) => keepAsking(16, () => get(server, "/api/mesh.obj")),
+  "the page, over and over": async (server) => keepAsking(16, () => get(server, "/", {})),
+  "metrics, over and over": async (server) => keepAsking(16, () => get(server, "/metrics")),
+  "wrong tokens, WebSocket": async (server) => keepAsking(8, async () => {
+    const client = await Client.connect(server);
+    for (let i = 0; i < 1000 && !client.over; ++i) await client.refusal("auth", { token: `guess ${i}` });
+    client.socket.terminate();
+  }),
+  "wrong tokens, HTTP": async (server) => keepAsking(16, () => get(server, "/metrics", { authorization: "Bearer guess" })),
+  "connections that say nothing": async (server) => setInterval(() => {
+    const socket = net.connect(server.port, "127.0.0.1");
+    socket.on("error", () => {});
+  }, 1),
+};
+
+/// In a process of its own: one abuse for as long as it lives.
+if (process.send) {
+  process.on("message", async ({ name, port }) => {
+    const agent = new http.Agent({ keepAlive: true, maxSockets: 64 });
+    http.globalAgent = agent;
+    const server = Object.assign(new Server(), { port, host: `127.0.0.1:${port}` });
+    process.on("unhandledRejection", () => {});
+    await abuses[name](server);
+    process.send("begun");
+  });
+} else {
+  const args = process.argv.slice(2);
+  const option = (flag) => (args.includes(flag) ? args.splice(args.indexOf(flag), 2)[1] : null);
+  const out = option("--out"), only = option("--only");
+  const [seconds = 8] = args.map(Number);
+  const names = Object.keys(abuses).filter((name) => !only || name === only);
+  const cases = [];
+  for (const name of names) cases.push(await measure(name, seconds));
+  const result = { benchmark: "abuse", machine: `${cpus()[0].model.trim()}, ${cpus().length} cores`, rate_asked: 30, seconds, cases };
+  console.log(JSON.stringify(result, null, 2));
+  if (out) await writeFile(out, JSON.stringify(result, null, 2) + "\n");
+  process.exit(0);
+}
+
+async function measure(name, seconds) {
+  const round = (value, digits = 2) => Number(value.toFixed(digits));
+  const server = await Server.start("--token", token, "--view-token", viewToken, "--log-level", "error");
+  const resident = () => Number(/VmHWM:\s+(\d+)/.exec(readFileSync(`/proc/${server.child.pid}/status`, "utf8"))[1]);  // [kB]
+  const abuser = fork(new URL(import.meta.url).pathname);
+  try {
+    const bystander = await asViewer(server);
+    await bystander.request("stream.subscribe", { encoding: "q16", rate: 30, in_flight: 2 });
+    await bystander.frame();
+    const before = resident();
+    abuser.send({ name, port: server.port });
+    await once(abuser, "message");
+    await sleep(2000);
+    const from = bystander.frames.length, begun = performance.now(), answers = [];
+    while (performance.now() - begun < seconds * 1000) {
+      const asked = performance.now();
+      await bystander.request("scene.get");
+      answers.push(performance.now() - asked);
+      await sleep(100);
+    }
+    const elapsed = (performance.now() - begun) / 1000;
+    const frames = bystander.frames.slice(from);
+    const gaps = frames.slice(1).map((frame, i) => frame.receivedAt - frames[i].receivedAt);
+    return {
+      abuse: name,
+      frames_per_second: round(frames.length / elapsed, 1),
+      longest_gap_ms: round(Math.max(...gaps), 0),
+      real_time_factor: frames.length > 1 ? round((frames.at(-1).time - frames[0].time) / ((frames.at(-1).receivedAt - frames[0].receivedAt) / 1000), 3) : 0,
+      answer_ms: { median: round(answers.sort((a, b) => a - b)[answers.length >> 1], 1), longest: round(answers.at(-1), 0) },
+      memory_grown_MB: round((resident() - before) / 1024, 0),
+    };
+  } catch (error) {
+    return { abuse: name, failed: error.message };
+  } finally {
+    abuser.kill("SIGKILL");
+    await server.stop("SIGKILL");
+  }
+}
