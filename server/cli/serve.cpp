@@ -159,8 +159,9 @@ void add_serve(CLI::App& app, int& exit_code) {
       ->type_name("T")
       ->envname("CLOTHLAB_VIEW_TOKEN");
   command
-      ->add_option("--allow-origin", options.allow_origin,
-                   "an origin whose pages may connect besides this server's own")
+      ->add_option(
+          "--allow-origin", options.allow_origin,
+          "an origin whose pages may connect besides this server's own, and whose host it answers as")
       ->type_name("ORIGIN")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

@@ -98,7 +98,7 @@ int on_http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::si
   }
 }
 
-int refuse(lws* wsi, unsigned status, const char* why) {
+int refuse(lws* wsi, unsigned status, const std::string& why) {
   constexpr std::size_t longest = 200;  // of an origin: nobody fills the log with it
   ++server_of(wsi).hub().metrics().refused;
   log(LogLevel::warning, "client_refused",
@@ -106,14 +106,14 @@ int refuse(lws* wsi, unsigned status, const char* why) {
        {"origin", header(wsi, WSI_TOKEN_ORIGIN).substr(0, longest)},
        {"status", std::to_string(status)},
        {"why", why}});
-  lws_return_http_status(wsi, status, why);
+  lws_return_http_status(wsi, status, why.c_str());
   return -1;
 }
 
 int on_handshake(lws* wsi) {
   if (header(wsi, WSI_TOKEN_PROTOCOL).empty())
     return refuse(wsi, HTTP_STATUS_BAD_REQUEST, "ask for the subprotocol clothlab.v1");
-  const char* why = "";
+  std::string why;
   const unsigned status = server_of(wsi).refusal(wsi, why);
   return status == 0 ? 0 : refuse(wsi, status, why);
 }

@@ -63,6 +63,8 @@ void HttpRequest::begin(const std::string& path) {
   if (path == "/healthz")
     return answer(hub_.all_sessions_beat() ? plain(200, "ok")
                                            : plain(503, "a session's thread does not answer"));
+  if (const std::string why = hub_.host_refusal(header(wsi_, WSI_TOKEN_HOST)); !why.empty())
+    return answer(plain(403, why));
   if (path == "/ws") {
     HttpAnswer refusal = plain(426, "connect with a WebSocket, subprotocol clothlab.v1");
     refusal.headers = {{"upgrade:", "websocket"}};

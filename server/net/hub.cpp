@@ -5,6 +5,7 @@
 #include "server/base/memory.h"
 #include "server/net/client.h"
 #include "server/net/http.h"
+#include "server/net/request_headers.h"
 
 namespace clothlab::net {
 
@@ -75,6 +76,14 @@ Role Hub::role_of(const std::string& token) const {
   if (!needs_token() || same(token, options_.token)) return Role::operator_;
   if (!options_.view_token.empty() && same(token, options_.view_token)) return Role::viewer;
   return Role::none;
+}
+
+std::string Hub::host_refusal(const std::string& host) const {
+  if (needs_token() || host_trusted(host, options_.allow_origin)) return {};
+  const std::string name = host_text(host);
+  const std::string scheme = options_.tls_certificate.empty() ? "http://" : "https://";
+  return "this server wants no token, and so answers under an address or localhost only, not as " + name +
+         ": open it as 127.0.0.1 or localhost, or start it with --allow-origin " + scheme + name + ", or with --token";
 }
 
 Room* Hub::find_room(const std::string& name) {

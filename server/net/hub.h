@@ -42,6 +42,8 @@ class Hub {
   /// What a token makes of who has it; without `--token` everybody is an operator.
   Role role_of(const std::string& token) const;
   bool needs_token() const { return !options_.token.empty(); }
+  /// Why a request with this Host header is refused; empty: it is not. Who knows a token may use any name.
+  std::string host_refusal(const std::string& host) const;
 
   Room* find_room(const std::string& name);
   /// The room, opened if it is new; null over --max-sessions. The longest unwatched session, if it sleeps,

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <string_view>
 
 namespace clothlab::net {
 
@@ -15,6 +16,32 @@ constexpr int longest = 4096;
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
   return text;
+}
+
+bool is_digit(unsigned char c) {
+  return c >= '0' && c <= '9';
+}
+
+bool is_of_host(unsigned char c) {
+  return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+         std::string_view("-_.:[]").find(static_cast<char>(c)) != std::string_view::npos;
+}
+
+/// `host` may end with a port, or be all kinds of garbage: then nothing.
+std::string without_port(const std::string& host) {
+  const std::size_t bracket = host.rfind(']');  // the colons before it are an IPv6 address's own
+  const std::size_t colon = host.find(':', bracket == std::string::npos ? 0 : bracket);
+  if (colon == std::string::npos) return host;
+  const bool port = colon + 1 < host.size() &&
+                    std::all_of(host.begin() + static_cast<std::ptrdiff_t>(colon) + 1, host.end(), is_digit);
+  return port ? host.substr(0, colon) : std::string();
+}
+
+bool is_address(const std::string& name) {
+  in6_addr parsed{};  // has room for either
+  if (name.starts_with('[') && name.ends_with(']'))
+    return inet_pton(AF_INET6, name.substr(1, name.size() - 2).c_str(), &parsed) == 1;
+  return inet_pton(AF_INET, name.c_str(), &parsed) == 1;
 }
 }  // namespace
 
@@ -63,6 +90,29 @@ bool origin_allowed(const std::string& origin, const std::string& host,
   const auto same = [&](const std::string& candidate) { return lower(candidate) == asked; };
   if (std::any_of(allowed.begin(), allowed.end(), same)) return true;
   return !host.empty() && (same("http://" + host) || same("https://" + host));
+}
+
+bool host_trusted(const std::string& host, const std::vector<std::string>& allowed) {
+  if (host.empty()) return true;
+  const std::string asked = lower(host);
+  const auto is_host_of = [&](const std::string& origin) {
+    const std::size_t scheme = origin.find("://");
+    return scheme != std::string::npos && lower(origin.substr(scheme + 3)) == asked;
+  };
+  if (std::any_of(allowed.begin(), allowed.end(), is_host_of)) return true;
+  if (!std::all_of(asked.begin(), asked.end(), is_of_host)) return false;
+  std::string name = without_port(asked);
+  if (is_address(name)) return true;
+  if (name.ends_with('.')) name.pop_back();  // the same name, written in full
+  return name == "localhost" || name.ends_with(".localhost");
+}
+
+std::string host_text(const std::string& host) {
+  constexpr std::size_t longest = 200;
+  std::string text = host.substr(0, longest);
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return !is_of_host(c); }, '?');
+  return text;
 }
 
 }  // namespace clothlab::net

@@ -21,4 +21,11 @@ std::string query(lws* wsi, const std::string& name, const std::string& fallback
 bool origin_allowed(const std::string& origin, const std::string& host,
                     const std::vector<std::string>& allowed);
 
+/// Whether this Host header cannot be a hostile site's: an address, localhost, a name below that, or the host
+/// of one of the `allowed` origins. A site may have any other name point at this machine (DNS rebinding), and
+/// its pages then come from the "page's own server". No Host is no browser.
+bool host_trusted(const std::string& host, const std::vector<std::string>& allowed);
+/// A Host header for people to read: at most 200 characters, `?` for those that no name has.
+std::string host_text(const std::string& host);
+
 }  // namespace clothlab::net

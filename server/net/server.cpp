@@ -121,12 +121,14 @@ void Server::stop() {
   if (lws_context* context = context_.load()) lws_cancel_service(context);
 }
 
-unsigned Server::refusal(lws* wsi, const char*& why) {
+unsigned Server::refusal(lws* wsi, std::string& why) {
   const std::string path = header(wsi, WSI_TOKEN_GET_URI);
   const std::string session = query(wsi, "session", main_session);
   if (path != "/ws") return why = "the WebSocket is at /ws", HTTP_STATUS_NOT_FOUND;
   if (!is_session_name(session))
     return why = "a session's name has 1 to 64 letters, digits, - or _", HTTP_STATUS_BAD_REQUEST;
+  why = hub_.host_refusal(header(wsi, WSI_TOKEN_HOST));
+  if (!why.empty()) return HTTP_STATUS_FORBIDDEN;
   if (!origin_allowed(header(wsi, WSI_TOKEN_ORIGIN), header(wsi, WSI_TOKEN_HOST),
                       hub_.options().allow_origin))
     return why = "pages of this origin may not connect; see --allow-origin", HTTP_STATUS_FORBIDDEN;

@@ -33,7 +33,7 @@ class Server {
   Hub& hub() { return hub_; }
   const WebFiles& files() const { return files_; }
   /// 0: this handshake may go on; else the HTTP status to refuse it with.
-  unsigned refusal(lws* wsi, const char*& why);
+  unsigned refusal(lws* wsi, std::string& why);
 
  private:
   explicit Server(Options options);

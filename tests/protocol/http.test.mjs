@@ -63,7 +63,7 @@ test("what is not there is a readable 404; nothing outside the page's folder can
   }
   const socket = net.connect(server.port, "127.0.0.1");
   await once(socket, "connect");
-  socket.write("GET /../../../../etc/passwd HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  socket.write("GET /../../../../etc/passwd HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
   let text = "";
   socket.on("data", (data) => (text += data));
   await withTimeout(once(socket, "close"), "the answer");
@@ -85,6 +85,51 @@ test("a symbolic link in the page's folder is not followed", async () => {
   } finally {
     rmSync(data, { recursive: true });
   }
+});
+
+const everywhere = ["/", "/ws", "/nothing", "/metrics", "/api/scene", "/api/mesh.obj", "/api/snapshot.png"];
+
+test("without a token nothing but /healthz is answered under another name than an address, localhost or an --allow-origin's", async (t) => {
+  const friendly = await Server.start("--allow-origin", "https://Friend.example", "--allow-origin", "http://near.example:81");
+  t.after(() => friendly.stop());
+  const ask = async (host, path = "/") => (await friendly.get(path, { host })).status;
+  for (const path of everywhere) {
+    const { status, headers, body } = await friendly.get(path, { host: "rebound.example:8080" });
+    assert.equal(status, 403, path);
+    assert.equal(headers["content-type"], "text/plain; charset=utf-8");
+    assert.match(body.toString(), /not as rebound\.example:8080: .*localhost.*--allow-origin http:\/\/rebound\.example:8080.*--token/);
+  }
+  assert.equal(await ask("rebound.example", "/healthz"), 200);
+  for (const host of ["127.0.0.1", "127.0.0.1:8080", "192.0.2.7:1", "[::1]", "[::1]:8080", "[2001:DB8::7]", "localhost", "LocalHost:8080",
+                      "localhost.", "cloth.localhost", "a.b.localhost.:80", "friend.example", "FRIEND.example", "near.example:81"])
+    assert.equal(await ask(host), 200, host);
+  for (const host of ["127.0.0.1.evil.example", "127.0.0.1.", "localhost.evil.example", "evil-localhost", "localhost..", "localhost:80:80", "localhost:",
+                      "localhost:x", ":80", ".", "[::1", "::1", "[::1]x", "x[::1]", "[::1]:x", "[]", "[127.0.0.1]", "[fe80::1%25lo]", "127.1", "1.2.3.4.5",
+                      "0x7f000001", "2130706433", "user@127.0.0.1", "user@cloth.localhost", "evil.example/.localhost", "localhost, evil.example",
+                      "friend.example:80", "friend.example.", "x.friend.example", "near.example", "https://friend.example"])
+    assert.equal(await ask(host), 403, host);
+  const { body } = await friendly.get("/", { host: `<b>${"x".repeat(1000)}` });
+  assert.match(body.toString(), /not as \?b\?x{197}: /);
+});
+
+test("who sends no Host is no browser, and is answered", async () => {
+  const socket = net.connect(server.port, "127.0.0.1");
+  socket.end("GET /api/scene HTTP/1.0\r\n\r\n");
+  const [data] = await withTimeout(once(socket, "data"), "the answer");
+  assert.match(data.toString(), /^HTTP\/1.\d 200/);
+  socket.destroy();
+});
+
+test("with a token any name will do: a hostile site's page does not know it", async (t) => {
+  const guarded = await Server.start("--token", "secret");
+  t.after(() => guarded.stop());
+  const headers = { host: "cloth.example" };
+  assert.equal((await guarded.get("/", headers)).status, 200);
+  assert.equal((await guarded.get("/api/scene", headers)).status, 401);
+  assert.equal((await guarded.get("/api/scene", { ...headers, authorization: "Bearer secret" })).status, 200);
+  const client = await Client.connect(guarded, { headers: { ...headers, origin: "http://cloth.example" } });
+  assert.equal((await client.request("auth", { token: "secret" })).role, "operator");
+  await client.close();
 });
 
 test("other verbs than GET and HEAD answer 405 with what is allowed", async () => {
