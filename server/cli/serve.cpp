@@ -132,6 +132,8 @@ void add_limits(CLI::App& command, net::Limits& limits) {
   add("--header-timeout", limits.header_seconds, 1, 3600,
       "seconds from connecting to the last of a request's headers, TLS included");
   add("--auth-timeout", limits.auth_seconds, 1, 3600, "seconds until a client's token must have come");
+  add("--max-wrong-tokens", limits.wrong_tokens, 1, 1000000,
+      "a minute from one address; beyond them none of it is looked at for a while");
   add("--idle-timeout", limits.idle_seconds, 2, 3600,
       "seconds after which a connection that says nothing, not even pong, is closed");
 }

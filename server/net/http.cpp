@@ -70,8 +70,9 @@ void HttpRequest::begin(const std::string& path) {
     refusal.headers = {{"upgrade:", "websocket"}};
     return answer(std::move(refusal));
   }
-  if (path == "/metrics" || path.rfind("/api/", 0) == 0) return authorised() ? inside(path) : refuse();
-  answer(file(path));
+  if (path != "/metrics" && path.rfind("/api/", 0) != 0) return answer(file(path));
+  if (std::optional<HttpAnswer> why = refusal()) return answer(std::move(*why));
+  inside(path);
 }
 
 HttpAnswer HttpRequest::file(const std::string& path) const {
@@ -92,17 +93,21 @@ HttpAnswer HttpRequest::file(const std::string& path) const {
   return answer;
 }
 
-bool HttpRequest::authorised() const {
-  if (!hub_.needs_token()) return true;
+std::optional<HttpAnswer> HttpRequest::refusal() const {
+  if (!hub_.needs_token()) return std::nullopt;
   const std::string given = header(wsi_, WSI_TOKEN_HTTP_AUTHORIZATION);
   const std::string scheme = "Bearer ";
-  return given.rfind(scheme, 0) == 0 && hub_.role_of(given.substr(scheme.size())) != Role::none;
-}
-
-void HttpRequest::refuse() {
-  HttpAnswer refusal = plain(401, "send the server's token as `Authorization: Bearer TOKEN`");
-  refusal.headers = {{"www-authenticate:", "Bearer"}};
-  answer(std::move(refusal));
+  Verdict verdict;
+  if (given.rfind(scheme, 0) == 0) verdict = hub_.judge(given.substr(scheme.size()), peer_address(wsi_), {});
+  if (verdict.role != Role::none) return std::nullopt;
+  if (verdict.wait == 0) {
+    HttpAnswer refusal = plain(401, "send the server's token as `Authorization: Bearer TOKEN`");
+    refusal.headers = {{"www-authenticate:", "Bearer"}};
+    return refusal;
+  }
+  HttpAnswer refusal = plain(429, not_looked_at(verdict.wait));
+  refusal.headers = {{"retry-after:", std::to_string(verdict.wait)}};
+  return refusal;
 }
 
 void HttpRequest::inside(const std::string& path) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,11 +43,11 @@ class HttpRequest {
   HttpAnswer file(const std::string& path) const;
   /// What only those see who have a token: /metrics and the API.
   void inside(const std::string& path);
-  void refuse();
   void ask_session(const std::string& session, Export what);
   void answer(HttpAnswer answer);
   int send_headers();
-  bool authorised() const;
+  /// Why who asks may not see that, if so.
+  std::optional<HttpAnswer> refusal() const;
 
   Hub& hub_;
   const WebFiles& files_;

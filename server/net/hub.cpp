@@ -78,6 +78,17 @@ Role Hub::role_of(const std::string& token) const {
   return Role::none;
 }
 
+Verdict Hub::judge(const std::string& token, const std::string& address, std::vector<LogField> who) {
+  const std::int64_t now = now_us();
+  if (const int wait = token_guard_.wait(address, now)) return {Role::none, wait};
+  const Role role = role_of(token);
+  if (role != Role::none) return {role, 0};
+  token_guard_.was_wrong(address, now);
+  who.push_back({"address", address});
+  log(LogLevel::warning, "token_refused", who);
+  return {};
+}
+
 std::string Hub::host_refusal(const std::string& host) const {
   if (needs_token() || host_trusted(host, options_.allow_origin)) return {};
   const std::string name = host_text(host);

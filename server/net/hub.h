@@ -15,9 +15,11 @@
 #include "server/net/connections.h"
 #include "server/net/exporter.h"
 #include "server/net/lab_queue.h"
+#include "server/net/log.h"
 #include "server/net/metrics.h"
 #include "server/net/options.h"
 #include "server/net/room.h"
+#include "server/net/token_guard.h"
 
 namespace clothlab::net {
 
@@ -26,6 +28,11 @@ class HttpRequest;
 
 enum class Role { none, viewer, operator_ };
 const char* name(Role role);
+
+struct Verdict {
+  Role role = Role::none;
+  int wait = 0;  ///< more than 0: the token was not looked at, and none of its address is for so long [s]
+};
 
 class Hub {
  public:
@@ -41,6 +48,8 @@ class Hub {
 
   /// What a token makes of who has it; without `--token` everybody is an operator.
   Role role_of(const std::string& token) const;
+  /// The same of one that came from this address, whose wrong ones are counted and logged, with `who`.
+  Verdict judge(const std::string& token, const std::string& address, std::vector<LogField> who);
   bool needs_token() const { return !options_.token.empty(); }
   /// Why a request with this Host header is refused; empty: it is not. Who knows a token may use any name.
   std::string host_refusal(const std::string& host) const;
@@ -91,6 +100,7 @@ class Hub {
   std::function<void()> wake_;
   Metrics metrics_;
   Connections connections_{options_.limits};
+  TokenGuard token_guard_{options_.limits.wrong_tokens};
   lab::Cache lab_cache_;
   std::unique_ptr<LabQueue> lab_;
   Exporter exporter_;

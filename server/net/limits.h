@@ -23,6 +23,7 @@ struct Limits {
   int lab_seconds = 1800;   ///< a job may take; beyond: it fails
   int header_seconds = 10;  ///< from connecting to the end of the request's headers, TLS included
   int auth_seconds = 5;     ///< a client without a role is closed with 1008 after this
+  int wrong_tokens = 10;    ///< a minute from one address, as many at once; beyond: none is looked at
   int idle_seconds = 60;    ///< a connection that says nothing, not even pong, is closed after this
 };
 

@@ -4,7 +4,6 @@
 #include <array>
 
 #include "server/net/client.h"
-#include "server/net/log.h"
 
 namespace clothlab::net {
 
@@ -21,10 +20,9 @@ Outcome auth(Client& client, const Request& request) {
   Params params(request.params);
   const std::string token = params.text("token", std::nullopt);
   if (auto error = params.check()) return *error;
-  const Role role = client.hub().role_of(token);
-  if (role == Role::none)
-    log(LogLevel::warning, "token_refused",
-        {{"client", std::to_string(client.id())}, {"address", client.address()}});
+  const auto [role, wait] =
+      client.hub().judge(token, client.address(), {{"client", std::to_string(client.id())}});
+  if (wait > 0) return RpcError{error_over_limit, not_looked_at(wait), nullptr};
   if (role == Role::none)
     return RpcError{error_not_allowed, "this token opens nothing here; see --token and --view-token",
                     nullptr};

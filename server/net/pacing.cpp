@@ -1,6 +1,7 @@
 #include "server/net/pacing.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace clothlab::net {
 
@@ -44,8 +45,17 @@ void FramePacing::acknowledge(std::uint32_t sequence, std::int64_t now) {
   if (blocked && count_ < in_flight_) unblocked_ = now;
 }
 
+double TokenBucket::left(std::int64_t now) const {
+  return std::min(burst_, tokens_ + rate_ * 1e-6 * static_cast<double>(now - last_));
+}
+
+std::int64_t TokenBucket::wait(std::int64_t now) const {
+  const double missing = 1 - left(now);
+  return missing > 0 ? std::max<std::int64_t>(1, std::llround(1e6 * missing / rate_)) : 0;
+}
+
 bool TokenBucket::take(std::int64_t now, double cost) {
-  tokens_ = std::min(burst_, tokens_ + rate_ * 1e-6 * static_cast<double>(now - last_));
+  tokens_ = left(now);
   last_ = now;
   if (tokens_ < 1) return false;
   tokens_ -= cost;

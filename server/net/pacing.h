@@ -1,4 +1,4 @@
-// When a viewer gets its next frame, and when a client talks too much. Pure arithmetic on given times [us].
+// When a viewer gets its next frame, and when somebody talks too much. Pure arithmetic on given times [us].
 #pragma once
 
 #include <array>
@@ -53,8 +53,14 @@ class TokenBucket {
       : rate_(rate), burst_(burst), tokens_(burst), last_(now) {}
   /// False: too many. What costs more than is left is let through, and paid off before the next.
   bool take(std::int64_t now, double cost = 1);
+  /// Until one may be taken [us]; 0: now.
+  std::int64_t wait(std::int64_t now) const;
+  /// Whether the whole burst may be taken.
+  bool full(std::int64_t now) const { return left(now) >= burst_; }
 
  private:
+  double left(std::int64_t now) const;
+
   double rate_, burst_, tokens_;
   std::int64_t last_;
 };

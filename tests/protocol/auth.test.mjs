@@ -91,3 +91,25 @@ test("the HTTP API and /metrics want the token as a Bearer token; the page and /
   assert.equal((await server.get("/")).status, 200);
   assert.equal((await server.get("/healthz")).status, 200);
 });
+
+test("wrong tokens over HTTP and the WebSocket count together, then both refuse even the right one; a request without one is no guess", async (t) => {
+  const guarded = await Server.start("--token", "secret", "--max-wrong-tokens", "2", "--auth-timeout", "1");
+  t.after(() => guarded.stop());
+  const ask = (authorization, path = "/api/scene") => guarded.get(path, authorization ? { authorization } : {});
+  for (let i = 0; i < 5; ++i) assert.equal((await ask()).status, 401);
+  assert.equal((await ask("Basic c2VjcmV0OnNlY3JldA==")).status, 401);
+  assert.equal((await ask("Bearer wrong")).status, 401);
+  const client = await Client.connect(guarded);
+  assert.equal((await client.refusal("auth", { token: "wrong" })).code, -32001);
+  for (const [token, path] of [["wrong", "/api/scene"], ["secret", "/api/scene"], ["secret", "/metrics"], ["secret", "/api/mesh.obj"]]) {
+    const { status, headers, body } = await ask(`Bearer ${token}`, path);
+    assert.equal(status, 429, path);
+    const seconds = Number(headers["retry-after"]);
+    assert.ok(seconds >= 1 && seconds <= 30, headers["retry-after"]);
+    assert.match(body.toString(), new RegExp(`for ${seconds} s`));
+  }
+  assert.equal((await client.refusal("auth", { token: "secret" })).code, -32002);
+  assert.equal((await ask()).status, 401);
+  assert.equal((await guarded.get("/")).status, 200);
+  assert.equal((await withTimeout(client.closed, "the close")).code, 1008);
+});

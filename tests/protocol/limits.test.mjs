@@ -31,7 +31,7 @@ const upgrade = "GET /ws HTTP/1.1\r\nHost: localhost\r\nConnection: upgrade\r\nU
 const limits = {
   "--max-sessions": 1, "--max-clients": 1, "--max-clients-per-address": 1, "--max-message-bytes": 1024, "--max-message-rate": 10,
   "--max-json-depth": 8, "--max-vertices": 4, "--max-springs": 4, "--max-lab-seconds": 1, "--header-timeout": 1, "--auth-timeout": 1,
-  "--idle-timeout": 2,
+  "--max-wrong-tokens": 1, "--idle-timeout": 2,
 };
 
 test("each limit has a flag with a default in the help, and refuses less than its least value with what is allowed", async () => {
@@ -196,6 +196,35 @@ test("who sends no token within --auth-timeout is closed with 1008", async () =>
   const server = await start("--token", "secret", "--auth-timeout", "1");
   const client = await Client.connect(server);
   assert.equal((await withTimeout(client.closed, "the close")).code, 1008);
+});
+
+test("of an address that sent --max-wrong-tokens none is looked at for the seconds it is told; another address and who is in never notice", async () => {
+  const server = await start("--token", "secret", "--max-wrong-tokens", "20", "--auth-timeout", "60");
+  const [inside, guesser] = [await Client.connect(server), await Client.connect(server)];
+  await inside.request("auth", { token: "secret" });
+  const right = { authorization: "Bearer secret" };
+  for (let i = 0; i < 30; ++i) assert.equal((await server.get("/api/scene", right)).status, 200, "right ones cost nothing");
+
+  const from = performance.now();
+  let heard = 0, error;
+  while ((error = await guesser.refusal("auth", { token: `guess ${heard}` })).code === -32001) ++heard;
+  const due = Math.floor((performance.now() - from) / 3000);  // one more each 3 s
+  assert.ok(heard >= 20 && heard <= 20 + due, `${heard} were looked at`);
+  assert.equal(error.code, -32002);
+  const seconds = Number(/ for (\d+) s; see --max-wrong-tokens$/.exec(error.message)[1]);
+  assert.ok(seconds >= 1 && seconds <= 3, error.message);
+  assert.equal((await guesser.refusal("auth", { token: "secret" })).code, -32002, "not the right one either");
+
+  const elsewhere = await socketTo(server, { localAddress: "127.0.0.2" });
+  elsewhere.write("GET /api/scene HTTP/1.1\r\nHost: x\r\nAuthorization: Bearer secret\r\nConnection: close\r\n\r\n");
+  assert.match((await withTimeout(once(elsewhere, "data"), "an answer elsewhere")).toString(), /^HTTP\/1.1 200/);
+  elsewhere.destroy();
+  await inside.request("sim.pause");
+
+  await sleep(1000 * seconds);
+  assert.equal((await guesser.request("auth", { token: "secret" })).role, "operator");
+  assert.equal((await guesser.refusal("auth", { token: "wrong" })).code, -32001);
+  for (const client of [inside, guesser]) await client.close();
 });
 
 test("a viewer that answers no ping within --idle-timeout is closed; one that only answers pings stays", async () => {

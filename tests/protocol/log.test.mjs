@@ -13,6 +13,7 @@ async function told(...args) {
   await assert.rejects(Client.connect(server, { headers: { origin: String.raw`https://e"v=i\l example` } }), { status: 403 });
   const client = await Client.connect(server, { session: "looked-at" });
   await client.refusal("auth", { token: 'a "guess"' });
+  for (const headers of [{}, { authorization: "Bearer guess" }]) assert.equal((await server.get("/metrics", headers)).status, 401);
   await client.request("auth", { token: tokens[1] });
   await client.notification("scene");
   await client.close();
@@ -25,17 +26,18 @@ async function told(...args) {
   });
 }
 
-const ofClients = (lines) => lines.filter(({ event }) => /^(client|token)_/.test(event)).map(({ event }) => event);
+const ofClients = (lines) => lines.filter(({ event }) => /^(client|token)_/.test(event));
 
 test("each event is one line of logfmt, whatever a client sends, and no token is in it", async () => {
   const lines = await told();
-  assert.deepEqual(ofClients(lines), ["client_refused", "client_connected", "token_refused", "client_admitted", "client_left"]);
-  const [refused, connected, guessed, admitted, left] = ofClients(lines).map((event) => lines.find((one) => one.event === event));
+  assert.deepEqual(ofClients(lines).map(({ event }) => event), ["client_refused", "client_connected", "token_refused", "token_refused", "client_admitted", "client_left"]);
+  const [refused, connected, guessed, guessedByHttp, admitted, left] = ofClients(lines);
   assert.deepEqual([refused.status, refused.origin], ["403", String.raw`"https://e\"v=i\\l example"`]);
   assert.deepEqual([connected.session, connected.role, connected.address], ["looked-at", "none", "127.0.0.1"]);
   assert.equal(admitted.role, "viewer");
   assert.ok(Number(left.seconds) >= 0 && Number(left.bytes) > 0, left.text);
   assert.deepEqual([guessed, admitted, left].map(({ client }) => client), Array(3).fill(connected.client));
+  assert.deepEqual([guessed.address, guessedByHttp.address, guessedByHttp.client], ["127.0.0.1", "127.0.0.1", undefined]);
   for (const { text } of lines) for (const secret of [...tokens, "guess"]) assert.ok(!text.includes(secret), text);
   for (const session of ["main", "looked-at"])
     assert.equal(lines.filter((one) => one.event === "session_started" && one.session === session).length, 1);
@@ -44,7 +46,7 @@ test("each event is one line of logfmt, whatever a client sends, and no token is
 test("--log-level leaves out what is less urgent", async () => {
   assert.deepEqual(await told("--log-level", "error"), []);
   const warnings = await told("--log-level", "warning");
-  assert.deepEqual(warnings.map(({ level, event }) => [level, event]), [["warning", "client_refused"], ["warning", "token_refused"]]);
+  assert.deepEqual(warnings.map(({ level, event }) => [level, event]), [["warning", "client_refused"], ["warning", "token_refused"], ["warning", "token_refused"]]);
   const all = await told("--log-level", "debug");
   assert.ok(all.some(({ level }) => level === "info"));
 });
