@@ -24,6 +24,7 @@ class Client {
   std::uint64_t id() const { return id_; }
   Role role() const { return role_; }
   const std::string& address() const { return address_; }
+  const std::string& session() const { return session_; }
   Hub& hub() { return hub_; }
   Room* room() { return room_; }
   FramePacing& pacing() { return pacing_; }

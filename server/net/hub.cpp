@@ -1,10 +1,12 @@
 #include "server/net/hub.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "server/base/memory.h"
 #include "server/net/client.h"
 #include "server/net/http.h"
+#include "server/net/keeper.h"
 #include "server/net/request_headers.h"
 
 namespace clothlab::net {
@@ -112,6 +114,13 @@ Room* Hub::open_room(const std::string& name) {
   if (!has_place_for(name)) return nullptr;
   if (rooms_.size() >= static_cast<std::size_t>(limits().sessions)) retire(sleeping_room());
   return (rooms_[name] = std::make_unique<Room>(*this, name, wake_)).get();
+}
+
+bool Hub::knows_session(const std::string& name) {
+  if (find_room(name)) return true;
+  std::error_code failure;
+  return !options_.state_folder.empty() &&
+         std::filesystem::exists(session_file(options_.state_folder, name), failure);
 }
 
 std::string Hub::sleeping_room() const {

@@ -59,6 +59,9 @@ class Hub {
   /// makes room.
   Room* open_room(const std::string& name);
   bool has_place_for(const std::string& name);
+  /// Whether it is open or kept in the state folder: another one would be made, which is not a viewer's to
+  /// do.
+  bool knows_session(const std::string& name);
 
   void add(Client& client);
   void remove(Client& client);

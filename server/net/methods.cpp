@@ -26,6 +26,10 @@ Outcome auth(Client& client, const Request& request) {
   if (role == Role::none)
     return RpcError{error_not_allowed, "this token opens nothing here; see --token and --view-token",
                     nullptr};
+  if (role == Role::viewer && !client.hub().knows_session(client.session()))
+    return RpcError{error_not_allowed,
+                    "no session " + client.session() + " is open; an operator opens it by connecting to it",
+                    nullptr};
   if (!client.admit(role))
     return RpcError{error_over_limit, "too many sessions; see --max-sessions", nullptr};
   return json{{"role", name(role)}};

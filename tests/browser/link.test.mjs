@@ -44,6 +44,18 @@ browserTest("a server with a token asks for it, refuses a wrong one, and lets th
   }
 });
 
+browserTest("a viewer whose session nobody has opened is told who opens it", async () => {
+  const server = await Server.start("--token", "spun gold", "--view-token", "look");
+  try {
+    const viewer = await open(server, { session: "early", drawn: 0 });
+    await viewer.page.getByLabel("Token", { exact: true }).fill("look");
+    await viewer.page.getByRole("button", { name: "Connect" }).click();
+    await viewer.page.getByText("no session early is open; an operator opens it by connecting to it").waitFor();
+  } finally {
+    await server.stop();
+  }
+});
+
 browserTest("a message that is none of the protocol's ends the connection with a reason, and the page goes on with the next one", async () => {
   const server = await Server.start();
   const viewer = await open(server);

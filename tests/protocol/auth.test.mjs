@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { Client, Server, sleep, withTimeout } from "./harness.mjs";
+import { Client, patience, Server, sleep, withTimeout } from "./harness.mjs";
 
 let server;
 before(async () => (server = await Server.start("--token", "secret", "--view-token", "look", "--max-sessions", "2")));
@@ -112,4 +112,46 @@ test("wrong tokens over HTTP and the WebSocket count together, then both refuse 
   assert.equal((await ask()).status, 401);
   assert.equal((await guarded.get("/")).status, 200);
   assert.equal((await withTimeout(client.closed, "the close")).code, 1008);
+});
+
+test("a viewer opens no session: auth answers -32001 until an operator has opened it, and the operator's token may come on the same connection", async (t) => {
+  const guarded = await Server.start("--token", "secret", "--view-token", "look", "--max-sessions", "3");
+  t.after(() => guarded.stop());
+  const [first, second, third] = await Promise.all(["new", "other", "third"].map((session) => Client.connect(guarded, { session })));
+  for (const [client, session] of [[first, "new"], [second, "other"], [third, "third"], [first, "new"]]) {
+    const error = await client.refusal("auth", { token: "look" });
+    assert.equal(error.code, -32001);
+    assert.equal(error.message, `no session ${session} is open; an operator opens it by connecting to it`);
+  }
+  assert.match((await first.refusal("scene.get")).message, /call auth/, "it has no role");
+  assert.deepEqual(first.messages, []);
+  assert.match((await guarded.get("/metrics", { authorization: "Bearer look" })).body.toString(), /^clothlab_sessions 1$/m);
+  assert.deepEqual(await second.request("auth", { token: "secret" }), { role: "operator" });
+  const operator = await Client.connect(guarded, { session: "new" });
+  await operator.request("auth", { token: "secret" });
+  assert.deepEqual(await first.request("auth", { token: "look" }), { role: "viewer" });
+  assert.equal((await first.notification("hello")).session, "new");
+  // Open is open, also while nobody is there.
+  for (const client of [first, operator]) await client.close();
+  const again = await Client.connect(guarded, { session: "new" });
+  assert.deepEqual(await again.request("auth", { token: "look" }), { role: "viewer" });
+  assert.equal((await withTimeout(third.closed, "the close")).code, 1008);
+  for (const client of [second, again]) await client.close();
+});
+
+test("where all places are taken, no session makes room for a viewer, however long unwatched; the longest makes room for an operator", async (t) => {
+  const guarded = await Server.start("--token", "secret", "--view-token", "look", "--max-sessions", "2");
+  t.after(() => guarded.stop());
+  const enter = async (session, token) => {
+    const client = await Client.connect(guarded, { session });
+    return client.request("auth", { token }).then(({ role }) => role, ({ code }) => code).finally(() => client.close());
+  };
+  const open = async (session) => (await guarded.get(`/api/scene?session=${session}`, { authorization: "Bearer look" })).status === 200;
+  assert.equal(await enter("left", "secret"), "operator");
+  for (const until = Date.now() + patience; !(await open("left")); await sleep(50)) assert.ok(Date.now() < until);
+  await sleep(30_500);
+  assert.equal(await enter("new", "look"), -32001);
+  assert.deepEqual([await open("left"), await open("new")], [true, false]);
+  assert.equal(await enter("new", "secret"), "operator");
+  assert.equal(await open("left"), false);
 });

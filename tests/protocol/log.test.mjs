@@ -14,7 +14,7 @@ async function told(...args) {
   const client = await Client.connect(server, { session: "looked-at" });
   await client.refusal("auth", { token: 'a "guess"' });
   for (const headers of [{}, { authorization: "Bearer guess" }]) assert.equal((await server.get("/metrics", headers)).status, 401);
-  await client.request("auth", { token: tokens[1] });
+  for (const token of tokens) await client.request("auth", { token });
   await client.notification("scene");
   await client.close();
   assert.equal(await server.stop(), 0);
@@ -30,11 +30,12 @@ const ofClients = (lines) => lines.filter(({ event }) => /^(client|token)_/.test
 
 test("each event is one line of logfmt, whatever a client sends, and no token is in it", async () => {
   const lines = await told();
-  assert.deepEqual(ofClients(lines).map(({ event }) => event), ["client_refused", "client_connected", "token_refused", "token_refused", "client_admitted", "client_left"]);
-  const [refused, connected, guessed, guessedByHttp, admitted, left] = ofClients(lines);
+  assert.deepEqual(ofClients(lines).map(({ event }) => event), ["client_refused", "client_connected", "token_refused", "token_refused", "client_admitted",
+                                                                    "client_admitted", "client_left"]);
+  const [refused, connected, guessed, guessedByHttp, opened, admitted, left] = ofClients(lines);
   assert.deepEqual([refused.status, refused.origin], ["403", String.raw`"https://e\"v=i\\l example"`]);
   assert.deepEqual([connected.session, connected.role, connected.address], ["looked-at", "none", "127.0.0.1"]);
-  assert.equal(admitted.role, "viewer");
+  assert.deepEqual([opened.role, admitted.role], ["operator", "viewer"]);
   assert.ok(Number(left.seconds) >= 0 && Number(left.bytes) > 0, left.text);
   assert.deepEqual([guessed, admitted, left].map(({ client }) => client), Array(3).fill(connected.client));
   assert.deepEqual([guessed.address, guessedByHttp.address, guessedByHttp.client], ["127.0.0.1", "127.0.0.1", undefined]);

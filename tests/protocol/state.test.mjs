@@ -100,3 +100,25 @@ test("nothing unfinished is left in the folder, and one that cannot be written i
   assert.equal(code, 2);
   assert.match(stderr, /--state-dir .*a-file: .*; give a folder/);
 });
+
+test("a viewer may open what is kept, after a restart too, and nothing else", async (t) => {
+  const kept = folder(), guarded = ["--state-dir", kept, "--token", "secret", "--view-token", "look"];
+  const enter = async (server, session, token) => {
+    const client = await Client.connect(server, { session });
+    await client.request("auth", { token });
+    return client;
+  };
+  let server = await Server.start(...guarded);
+  t.after(() => server.child.kill());
+  await assert.rejects(enter(server, "other", "look"), { code: -32001 });
+  const operator = await enter(server, "other", "secret");
+  await operator.request("scene.patch", { patch: { name: "kept" } });
+  assert.equal(await server.stop(), 0);
+  server = await Server.start(...guarded);
+  const viewer = await enter(server, "other", "look");
+  assert.equal((await viewer.notification("hello")).role, "viewer");
+  assert.equal((await viewer.notification("scene")).document.name, "kept");
+  await assert.rejects(enter(server, "another", "look"), { code: -32001 });
+  assert.deepEqual(readdirSync(kept).sort(), ["main.session", "other.session"]);
+  assert.equal(await server.stop(), 0);
+});

@@ -73,16 +73,17 @@ export class Connection {
       this.delay = firstDelay;
       this.events.state("open", 0, "");
     } catch (error) {
-      if (error instanceof RpcError && error.code === errorNotAllowed) this.refuse(token !== null);
+      if (error instanceof RpcError && error.code === errorNotAllowed)
+        this.refuse(token === null ? "This server asks for a token." : `The server did not accept this token: ${error.message}.`);
       else if (error instanceof RpcError) this.events.problem(error);
     }
   }
 
-  private refuse(hadToken: boolean): void {
+  private refuse(why: string): void {
     sessionStorage.removeItem("clothlab-token");
     this.refused = true;
     this.abandon();
-    this.events.state("unauthorised", 0, hadToken ? "The server did not accept this token." : "This server asks for a token.");
+    this.events.state("unauthorised", 0, why);
   }
 
   private receive(data: string | ArrayBuffer): void {
