@@ -49,7 +49,7 @@ int finish_http(HttpSlot& slot, lws* wsi, int result) {
 int on_socket(lws* wsi, int socket) {
   Hub& hub = server_of(wsi).hub();
   const std::string address = peer_address(socket);
-  if (!hub.connections().full(address)) return 0;
+  if (!hub.connections().full(network_of(address))) return 0;
   ++hub.metrics().refused;
   log(LogLevel::debug, "connection_refused", {{"address", address}, {"why", "too many connections"}});
   return -1;
@@ -57,7 +57,7 @@ int on_socket(lws* wsi, int socket) {
 
 int on_connection(lws* wsi) {
   Hub& hub = server_of(wsi).hub();
-  hub.connections().opened(wsi, peer_address(lws_get_socket_fd(wsi)));
+  hub.connections().opened(wsi, network_of(peer_address(wsi)));
   await_request(wsi);
   return 0;
 }

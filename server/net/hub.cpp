@@ -82,10 +82,11 @@ Role Hub::role_of(const std::string& token) const {
 
 Verdict Hub::judge(const std::string& token, const std::string& address, std::vector<LogField> who) {
   const std::int64_t now = now_us();
-  if (const int wait = token_guard_.wait(address, now)) return {Role::none, wait};
+  const std::string network = network_of(address);
+  if (const int wait = token_guard_.wait(network, now)) return {Role::none, wait};
   const Role role = role_of(token);
   if (role != Role::none) return {role, 0};
-  token_guard_.was_wrong(address, now);
+  token_guard_.was_wrong(network, now);
   who.push_back({"address", address});
   log(LogLevel::warning, "token_refused", who);
   return {};
@@ -96,7 +97,8 @@ std::string Hub::host_refusal(const std::string& host) const {
   const std::string name = host_text(host);
   const std::string scheme = options_.tls_certificate.empty() ? "http://" : "https://";
   return "this server wants no token, and so answers under an address or localhost only, not as " + name +
-         ": open it as 127.0.0.1 or localhost, or start it with --allow-origin " + scheme + name + ", or with --token";
+         ": open it as 127.0.0.1 or localhost, or start it with --allow-origin " + scheme + name +
+         ", or with --token";
 }
 
 Room* Hub::find_room(const std::string& name) {
@@ -139,11 +141,9 @@ void Hub::retire(const std::string& name) {
   lab_->session_left(name);
   // Its thread may need a turn to end: not on this thread's time. A future that is kept keeps its thread's
   // stack.
-  retiring_.erase(std::remove_if(retiring_.begin(), retiring_.end(),
-                                 [](const std::future<void>& end) {
-                                   return end.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-                                 }),
-                  retiring_.end());
+  std::erase_if(retiring_, [](const std::future<void>& end) {
+    return end.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  });
   retiring_.push_back(std::async(std::launch::async, [session = found->second->give_up_session()]() mutable {
     session.reset();
     release_free_memory();
@@ -152,8 +152,9 @@ void Hub::retire(const std::string& name) {
 }
 
 bool Hub::full(const std::string& address) const {
+  const std::string network = network_of(address);
   return std::count_if(clients_.begin(), clients_.end(), [&](const auto& item) {
-           return item.second->address() == address;
+           return network_of(item.second->address()) == network;
          }) >= limits().clients_per_address;
 }
 

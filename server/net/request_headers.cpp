@@ -67,6 +67,15 @@ std::string peer_address(lws* wsi) {
   return peer_address(lws_get_socket_fd(wsi));
 }
 
+std::string network_of(const std::string& address) {
+  in6_addr network{};
+  if (inet_pton(AF_INET6, address.c_str(), &network) != 1) return address;
+  std::fill(network.s6_addr + 8, network.s6_addr + 16, std::uint8_t{0});
+  char text[INET6_ADDRSTRLEN] = "";
+  inet_ntop(AF_INET6, &network, text, sizeof text);
+  return std::string(text) + "/64";
+}
+
 std::string header(lws* wsi, lws_token_indexes token) {
   const int length = lws_hdr_total_length(wsi, token);
   if (length <= 0 || length > longest) return {};

@@ -11,6 +11,9 @@ namespace clothlab::net {
 /// Who is at the other end of a socket: an IPv4 or IPv6 address, empty where there is nobody any more.
 std::string peer_address(int socket);
 std::string peer_address(lws* wsi);
+/// What limits count as one address: an IPv6 host has a network of 64 bits to itself, and any number of
+/// addresses in it.
+std::string network_of(const std::string& address);
 /// A header's value, empty if it is missing or longer than 4 KiB.
 std::string header(lws* wsi, lws_token_indexes token);
 /// An argument of the query, `fallback` if it is missing.
