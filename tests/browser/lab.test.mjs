@@ -152,6 +152,21 @@ browserTest("the points are walked with the arrow keys, and Enter applies one; t
   assert.equal(root, "svg");
 });
 
+browserTest("while a chart grows, the point that has the keyboard's focus keeps it, and its tooltip", async () => {
+  const { panel, page, marks, drawer } = await lab("lab-focus");
+  await start(panel, "Measure the chart", { methods: ["Verlet", "XPBD", "VBD", "PBD", "Implicit Euler"], most: "600", seconds: "5" });
+  await eventually("a first point", () => marks.count(), (count) => count >= 1, 180_000);
+  await panel.locator('.lab-picture [data-index][tabindex="0"]').focus();
+  const key = await page.evaluate(() => document.activeElement.dataset.index);
+  for (let redrawn = 0; redrawn < 2; ++redrawn) {
+    await panel.locator(".lab-picture svg").evaluate((drawing) => { drawing.dataset.old = "yes"; });
+    await eventually("a new drawing", () => panel.locator(".lab-picture svg[data-old]").count(), (count) => count === 0, 180_000);
+    assert.equal(await page.evaluate(() => document.activeElement.dataset.index), key);
+    assert.ok(await page.getByRole("tooltip").isVisible());
+  }
+  await drawer.getByRole("button", { name: "Cancel" }).click();
+});
+
 browserTest("the present setting's marker moves with the time step, or says that nothing was measured there; another scene makes the chart stale", async () => {
   const { client, panel } = await charted("lab-marker");
   const marker = panel.locator(".lab-present circle").first();

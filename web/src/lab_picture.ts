@@ -35,6 +35,7 @@ export class Picture {
   private shown = "";    // key of the mark whose tooltip is up
   private pinned = false;  // by a finger: it stays until one touches elsewhere
   private focused = "";
+  private redrawing = false;
   private place: Place | null = null;  // of the present setting
 
   /// `moves`: the present setting is marked here, not where it was when the drawing was made.
@@ -58,8 +59,10 @@ export class Picture {
     const drawing = document.importNode(root, true) as unknown as SVGSVGElement;
     this.prepare(drawing, title);
     const hadFocus = this.drawing?.contains(document.activeElement) ?? false;
+    this.redrawing = true;  // a mark that is taken away loses the focus, before it is gone
     if (this.drawing) this.drawing.replaceWith(drawing);
     else this.scroller.append(drawing);
+    this.redrawing = false;
     this.drawing = drawing;
     this.marks = new Map([...drawing.querySelectorAll<SVGElement>(markSelector)].map((mark) => [keyOf(mark), mark]));
     this.makeReachable(hadFocus);
@@ -110,7 +113,7 @@ export class Picture {
         this.point(key, false);
       });
       mark.addEventListener("blur", () => {
-        if (!mark.isConnected) return;  // it was redrawn
+        if (this.redrawing) return;
         this.focused = "";
         this.point("", false);
       });
