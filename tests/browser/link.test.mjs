@@ -44,6 +44,22 @@ browserTest("a server with a token asks for it, refuses a wrong one, and lets th
   }
 });
 
+browserTest("where too many wrong tokens were tried, the page says so, waits, and gets in by itself", async () => {
+  const server = await Server.start("--token", "spun gold", "--max-wrong-tokens", "6");
+  try {
+    const viewer = await open(server, { drawn: 0 });
+    await viewer.page.getByRole("dialog").waitFor();
+    for (let guess = 0; guess < 6; ++guess) await server.get("/metrics", { authorization: `Bearer straw ${guess}` });
+    await viewer.page.getByLabel("Token", { exact: true }).fill("spun gold");
+    await viewer.page.getByRole("button", { name: "Connect" }).click();
+    await viewer.page.getByText("Not connected (too many wrong tokens came from this address").waitFor();
+    await viewer.until(() => window.clothlab.framesDrawn > 2);  // one is looked at every ten seconds
+    assert.equal(await viewer.page.locator("#banner").isVisible(), false);
+  } finally {
+    await server.stop();
+  }
+});
+
 browserTest("a viewer whose session nobody has opened is told who opens it", async () => {
   const server = await Server.start("--token", "spun gold", "--view-token", "look");
   try {

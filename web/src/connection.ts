@@ -75,8 +75,13 @@ export class Connection {
     } catch (error) {
       if (error instanceof RpcError && error.code === errorNotAllowed)
         this.refuse(token === null ? "This server asks for a token." : `The server did not accept this token: ${error.message}.`);
-      else if (error instanceof RpcError) this.events.problem(error);
+      else if (error instanceof RpcError) this.tryLater(error.message);  // too many of something: it passes
     }
+  }
+
+  private tryLater(why: string): void {
+    this.abandon();
+    this.retry(why);
   }
 
   private refuse(why: string): void {

@@ -39,7 +39,7 @@ export class LinkView {
     const say = (): void => {
       const left = Math.max(0, Math.ceil((until - performance.now()) / 1000));
       const soon = left > 0 ? `trying again in ${left} s` : "trying again";
-      this.text.textContent = `${this.everDrawn ? "Connection lost" : "No server answers"}${why ? ` (${why})` : ""}: ${soon}.`;
+      this.text.textContent = `${this.everDrawn ? "Connection lost" : why ? "Not connected" : "No server answers"}${why ? ` (${why})` : ""}: ${soon}.`;
     };
     say();
     this.banner.hidden = false;
