@@ -19,7 +19,7 @@ std::mutex egl_mutex;
 struct Candidate {
   EGLDeviceEXT handle = nullptr;  ///< null: the surfaceless platform, where devices cannot be listed
   Device device;
-  bool apart = false;  ///< as the surfaceless platform's default display, not as a device
+  HelperThreads threads = HelperThreads::shared;  ///< other than that: as the surfaceless platform's display
 };
 
 std::string text(const char* value) {
@@ -62,9 +62,12 @@ std::vector<Candidate> candidates() {
 
 EGLDisplay open_display(const Candidate& candidate) {
   if (!eglGetPlatformDisplayEXT) return EGL_NO_DISPLAY;
-  return candidate.handle && !candidate.apart
-             ? eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, candidate.handle, nullptr)
-             : eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+  if (candidate.handle && candidate.threads == HelperThreads::shared)
+    return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, candidate.handle, nullptr);
+  // An empty list of attributes is another display to Mesa than no list.
+  const EGLint nothing[] = {EGL_NONE};
+  return eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY,
+                                  candidate.threads == HelperThreads::own_too ? nothing : nullptr);
 }
 
 EGLContext open_context(EGLDisplay display) {
@@ -122,9 +125,9 @@ void close(const Opened& opened) {
 
 /// The same software device through a display of its own: Mesa has its helper threads by display. Nothing
 /// where that is another device.
-std::optional<Opened> open_apart(Candidate candidate) {
+std::optional<Opened> open_apart(Candidate candidate, HelperThreads threads) {
   const std::string wanted = candidate.device.name;
-  candidate.apart = true;
+  candidate.threads = threads;
   const Opened opened = open(candidate);
   if (candidate.device.usable && candidate.device.name == wanted) return opened;
   if (candidate.device.usable) close(opened);
@@ -175,9 +178,9 @@ Result<std::unique_ptr<Context>> Context::create(std::optional<int> gpu, HelperT
                     ": " + candidate.device.problem;
         continue;
       }
-      if (threads == HelperThreads::own && candidate.handle && candidate.device.software) {
+      if (threads != HelperThreads::shared && candidate.handle && candidate.device.software) {
         close(opened);
-        const std::optional<Opened> apart = open_apart(candidate);
+        const std::optional<Opened> apart = open_apart(candidate, threads);
         opened = apart ? *apart : open(candidate);
       }
       std::unique_ptr<Context> context(new Context);

@@ -34,7 +34,10 @@ Result<std::vector<Device>> list_devices();
 /// the priority of whoever made the first one.
 enum class HelperThreads {
   shared,
-  own  ///< made by, and with the priority of, the thread that makes the context; where that cannot be: shared
+  /// Made by, and with the priority of, the thread that first makes a context of this kind; where that cannot
+  /// be: shared.
+  own,
+  own_too  ///< the same, apart from those as well
 };
 
 /// A context that belongs to the thread that made it current. Order of devices: `gpu` if given; else the

@@ -1,4 +1,4 @@
-// The thread the lab measures on, as the server sets it up.
+// The threads beside the sessions', as the server sets them up.
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -8,7 +8,9 @@
 #include <thread>
 
 #include "server/gl/context.h"
+#include "server/net/exporter.h"
 #include "server/net/lab_worker.h"
+#include "server/net/priority.h"
 #include "tests/catch.h"
 
 using namespace clothlab;
@@ -22,17 +24,35 @@ std::set<int> threads() {
   return found;
 }
 
+/// A picture as the exporter draws it; ends with its thread, not with its OpenGL's.
+void draw() {
+  Result<scene::Document> document = scene::load_preset("seed");
+  REQUIRE(document);
+  net::Moment moment;
+  moment.positions.assign(625, glm::vec3(0.5f));
+  moment.document = std::make_shared<const scene::Document>(std::move(*document));
+  std::thread([&] {
+    net::lower_priority(10);
+    REQUIRE(net::make_export(std::nullopt, moment, {64, 48}));
+  }).join();
+}
+
 int niceness(int thread) {
   return getpriority(PRIO_PROCESS, static_cast<id_t>(thread));
 }
 
 }  // namespace
 
-TEST_CASE("the lab's thread and those of its OpenGL have the lowest priority, the sessions' keep theirs") {
+TEST_CASE("the lab's thread and those of its OpenGL have the lowest priority, the others keep theirs") {
   Result<std::unique_ptr<gl::Context>> session = gl::Context::create();
   REQUIRE(session);
+  const std::set<int> of_session = threads();
+  draw();
   std::map<int, int> before;  // thread, niceness: Mesa has a thread of low priority itself
-  for (const int thread : threads()) before[thread] = niceness(thread);
+  for (const int thread : threads()) {
+    before[thread] = niceness(thread);
+    if (!of_session.contains(thread)) CHECK(niceness(thread) >= 10);
+  }
   std::thread([&] {
     const Result<net::LabWorker::Run> lab = net::open_lab(std::nullopt);
     REQUIRE(lab);
@@ -42,7 +62,8 @@ TEST_CASE("the lab's thread and those of its OpenGL have the lowest priority, th
       CHECK(niceness(thread) == (known == before.end() ? 19 : known->second));
       added += known == before.end() ? 1u : 0u;
     }
-    // Software OpenGL computes on threads besides the one that asks it to, and these are the lab's alone.
+    // Software OpenGL computes on threads besides the one that asks it to, and these are the lab's alone: not
+    // those that draw pictures either.
     if ((*session)->device().software) CHECK(added > 1);
   }).join();
 }
