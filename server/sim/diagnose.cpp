@@ -40,8 +40,8 @@ bool DiagnosticsPass::request(const StateBuffers& state, const SelfCollision* se
   program_.use();
   glUniform4f(3, static_cast<float>(gravity.x), static_cast<float>(gravity.y), static_cast<float>(gravity.z),
               0.0f);
-  state.position().bind(unit_position);
-  state.velocity().bind(unit_velocity);
+  state.shown_position().bind(unit_position);
+  state.shown_velocity().bind(unit_velocity);
   results_.bind_storage(0);
   glDispatchCompute(groups_, 1, 1);
   if (self_collision) {

@@ -44,7 +44,7 @@ class GaussSeidel : public Integrator {
     gains_ = {gl::Buffer(springs.gains), GL_RG32UI};
   }
 
-  void step(StateBuffers& state, int row) override {
+  Work step(StateBuffers& state, int row) override {
     state.bind_for_step();
     remainders_.bind_storage(slot_remainders);
     if (by_vertex_) {
@@ -59,7 +59,7 @@ class GaussSeidel : public Integrator {
     if (lanes_ > 0)
       step_in_one_group(row);
     else
-      step_in_phases(row);
+      co_await step_in_phases(row);
     state.swap();
   }
 
@@ -149,7 +149,7 @@ class GaussSeidel : public Integrator {
     wait_for_writes();
   }
 
-  void step_in_phases(int row) {
+  Work step_in_phases(int row) {
     std::size_t current = 0;
     const auto run = [&](const gl::Program& program, std::uint32_t first, std::uint32_t end) {
       glUniform1i(program.uniform("first"), static_cast<GLint>(first));
@@ -168,12 +168,15 @@ class GaussSeidel : public Integrator {
     for (int sweep = 0; sweep < sweeps_; ++sweep) {
       use(visit_, current, current);
       glUniform1i(visit_.uniform("sweep"), sweep);
-      for (std::uint32_t colour = 0; colour < work_.colours(); ++colour)
+      for (std::uint32_t colour = 0; colour < work_.colours(); ++colour) {
         run(visit_, work_.offsets[colour], work_.offsets[colour + 1]);
+        co_await may_stop;
+      }
       if (!contacts_) continue;
       use(meet_, current, 1 - current);
       run(meet_, 0, vertex_count_);
       current = 1 - current;
+      co_await may_stop;
     }
     use(finish_, current, current);
     run(finish_, 0, vertex_count_);

@@ -51,12 +51,13 @@ class ImplicitEuler : public Integrator {
                        static_cast<float>(around.scene.solver.tolerance));
   }
 
-  void step(StateBuffers& state, int row) override {
+  Work step(StateBuffers& state, int row) override {
     begin(state, row);
     const Vectors* last = nullptr;
     for (int newton = 0; newton < most_newton_steps_; ++newton) {
       set_up(newton == 0 ? start_position_ : position_);
-      const Control solved = solve();
+      Control solved;
+      co_await solve(solved);
       ++work_.newton_steps;
       work_.linear_iterations += solved.iterations;
       work_.unconverged += solved.converged ? 0 : 1;
@@ -69,6 +70,7 @@ class ImplicitEuler : public Integrator {
                                  static_cast<GLsizeiptr>(guess_.buffer.bytes()));
       last = &vectors_[solved.iterations % 2];
       advance(*last, row);
+      co_await may_stop;
     }
     finish(state, *last, row);
   }
@@ -128,15 +130,18 @@ class ImplicitEuler : public Integrator {
     run(system_);
   }
 
-  Control solve() {
-    Control control;
+  /// By conjugate gradients; `control`: how that ended.
+  Work solve(Control& control) {
+    control = Control{};
     control.groups = groups_;
     control_.upload(&control, sizeof control);
     for (int done = 0; done < most_iterations && control.groups > 0; done += iterations_between_looks) {
-      for (int i = 0; i < iterations_between_looks; ++i) iterate(done + i);
+      for (int i = 0; i < iterations_between_looks; ++i) {
+        iterate(done + i);
+        co_await may_stop;
+      }
       control_.download(&control, sizeof control);
     }
-    return control;
   }
 
   void iterate(int iteration) {

@@ -13,6 +13,7 @@
 #include "server/sim/plan.h"
 #include "server/sim/self_collision.h"
 #include "server/sim/state.h"
+#include "server/sim/work.h"
 
 namespace clothlab::sim {
 
@@ -31,11 +32,13 @@ class Integrator {
   /// Takes over what may change without new kernels.
   virtual void set_parameters(const Surroundings& around) = 0;
 
-  /// Queues one step: reads the state, writes its other copy, swaps the two. `row` is the step's first in the
-  /// pose table. Springs, slices, rest positions, poses and neighbour lists must be bound.
-  virtual void step(StateBuffers& state, int row) = 0;
+  /// One step: reads the state, writes its other copy, swaps the two. `row` is the step's first in the pose
+  /// table. Springs, slices, rest positions, poses and neighbour lists must be bound. A step of many
+  /// dispatches may stop between them; the state must outlive it.
+  virtual Work step(StateBuffers& state, int row) = 0;
 
-  /// The state was not made by this object's last step: forget what was carried over from it.
+  /// The state was not made by this object's last step, or that was given up half-way: forget what was
+  /// carried over from it.
   virtual void restart() {}
 
   virtual SolverWork work() const { return {}; }

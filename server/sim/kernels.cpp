@@ -31,7 +31,8 @@ Result<Kernels> Kernels::create(const scene::Scene& scene) {
     Result<SelfCollision> self_collision = SelfCollision::create(kernels.model.vertex_count());
     if (!self_collision) return self_collision.error();
     kernels.self_collision = std::move(*self_collision);
-    kernels.self_collision->set_parameters(*scene.self_collision, kernels.model);
+    if (Status set = kernels.self_collision->set_parameters(*scene.self_collision, kernels.model); !set)
+      return set.error();
   }
   const std::size_t entries = upload_springs(kernels, scene);
   Result<std::unique_ptr<Integrator>> integrator = make_integrator(kernels.surroundings(scene), kernels.plan);
@@ -50,10 +51,12 @@ Status Kernels::update(const scene::Scene& scene, bool springs_changed) {
   // Masses and pins live in the model; building it again is cheap and cannot change its shape here.
   Result<model::Model> rebuilt = model::build(scene);
   if (!rebuilt) return rebuilt.error();
+  if (self_collision)
+    if (Status set = self_collision->set_parameters(*scene.self_collision, *rebuilt); !set)
+      return set.error();
   model = std::move(*rebuilt);
   motions = motion_table(scene, plan);
   if (springs_changed) upload_springs(*this, scene);
-  if (self_collision) self_collision->set_parameters(*scene.self_collision, model);
   integrator->set_parameters(surroundings(scene));
   if (strain_limit) strain_limit->set_parameters(surroundings(scene));
   return ok();

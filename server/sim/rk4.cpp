@@ -25,7 +25,7 @@ class Rk4 : public Integrator {
     for (const gl::Program& stage : stages_) set_step_uniforms(stage, around);
   }
 
-  void step(StateBuffers& state, int row) override {
+  Work step(StateBuffers& state, int row) override {
     state.bind_for_step();
     state.position().bind(unit_start_position);
     state.velocity().bind(unit_start_velocity);
@@ -44,6 +44,7 @@ class Rk4 : public Integrator {
       glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
     }
     state.swap();
+    return {};
   }
 
  private:

@@ -4,10 +4,35 @@
 #include <array>
 #include <bit>
 
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+
+#include "server/base/text.h"
+#include "server/model/crowding.h"
 #include "server/sim/plan.h"
 #include "server/sim/state.h"
 
 namespace clothlab::sim {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// As in neighbours.glsl.
+struct Control {
+  std::array<std::uint32_t, 3> rebuild{0, 1, 1};
+  std::uint32_t rebuilds = 0, dropped = 0;
+  std::array<std::uint32_t, 3> search{0, 0, 1};
+};
+
+/// Pairs that one search may look at: some ten seconds on a slow processor.
+constexpr double most_pairs = 4e9;
+/// Pairs of one dispatch: a few milliseconds there.
+constexpr double pairs_a_dispatch = 2e6;
+constexpr std::chrono::milliseconds long_dispatch{10};
+
+}  // namespace
 
 Result<SelfCollision> SelfCollision::create(std::uint32_t vertex_count) {
   SelfCollision made;
@@ -24,7 +49,7 @@ Result<SelfCollision> SelfCollision::create(std::uint32_t vertex_count) {
     *program = std::move(*loaded);
     glProgramUniform1i(program->id(), 0, static_cast<GLint>(vertex_count));
   }
-  made.control_ = gl::Buffer(5 * sizeof(std::uint32_t));
+  made.control_ = gl::Buffer(sizeof(Control));
   made.heads_ = {gl::Buffer(cells * sizeof(std::uint32_t)), GL_R32UI};
   made.chains_ = {gl::Buffer(vertex_count * sizeof(std::uint32_t)), GL_R32UI};
   made.counts_ = {gl::Buffer(vertex_count * sizeof(std::uint32_t)), GL_R32UI};
@@ -33,24 +58,45 @@ Result<SelfCollision> SelfCollision::create(std::uint32_t vertex_count) {
   return made;
 }
 
-void SelfCollision::set_parameters(const scene::SelfCollision& parameters, const model::Model& model) {
+Status SelfCollision::set_parameters(const scene::SelfCollision& parameters, const model::Model& model) {
   // The skin trades rebuilds against list length: one edge of the mesh keeps a flat cloth's lists empty while
   // its contact distance is below an edge, since everything that near is joined by a spring.
   double edge = 0.0;
   for (const model::ClothRange& cloth : model.cloths) edge = std::max(edge, cloth.mean_edge_length);
-  skin_ = static_cast<float>(std::max(edge, 0.5 * parameters.thickness));
-  reach_ = static_cast<float>(parameters.thickness) + skin_;
+  const double skin = std::max(edge, 0.5 * parameters.thickness), reach = parameters.thickness + skin;
+  const bool same = static_cast<float>(reach) == reach_;
+  const double candidates = same ? candidates_ : model::crowding(model.start_position, 2.0 * reach);
+  const double pairs = candidates * vertex_count_;
+  if (pairs > most_pairs)
+    return Error{"/self_collision/thickness",
+                 significant(parameters.thickness, 3) + " m on a mesh with edges of " + significant(edge, 3) +
+                     " m: to find what may touch, each of " + std::to_string(vertex_count_) +
+                     " vertices would be held against " + formatted("%.0f", candidates) + " others",
+                 "at most " + formatted("%.0e", most_pairs) +
+                     " pairs in a search: a thickness of about one edge, or a coarser mesh"};
+  candidates_ = candidates;
+  skin_ = static_cast<float>(skin);
+  reach_ = static_cast<float>(reach);
   for (const gl::Program* program : {&insert_, &find_}) glProgramUniform1f(program->id(), 2, reach_);
   glProgramUniform1f(find_.id(), 3, static_cast<float>(parameters.thickness));
+  if (!same)
+    limit_range(static_cast<std::uint32_t>(
+        std::clamp(pairs_a_dispatch / std::max(candidates * group_size, 1.0), 1.0, 1e6)));
   invalidate();
+  return ok();
+}
+
+void SelfCollision::limit_range(std::uint32_t groups) {
+  range_groups_ = std::clamp(groups, 1u, vertex_groups(vertex_count_));
 }
 
 void SelfCollision::invalidate() {
-  const std::array<std::uint32_t, 3> dispatch{vertex_groups(vertex_count_), 1, 1};
-  control_.upload(dispatch.data(), sizeof(dispatch));
+  const Control control{{vertex_groups(vertex_count_), 1, 1}, 0, 0, {range_groups_, 0, 1}};
+  control_.upload(&control.rebuild, sizeof control.rebuild, offsetof(Control, rebuild));
+  control_.upload(&control.search, sizeof control.search, offsetof(Control, search));
 }
 
-void SelfCollision::update_lists() {
+Work SelfCollision::update_lists() {
   control_.bind_storage(2);
   heads_.buffer.bind_storage(3);
   chains_.buffer.bind_storage(4);
@@ -60,10 +106,28 @@ void SelfCollision::update_lists() {
   heads_.bind(unit_neighbour_count);  // the search reads its hash where the step reads its lists
   chains_.bind(unit_neighbours);
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, control_.id());
-  for (const gl::Program* program : {&clear_, &insert_, &find_}) {
-    program->use();
+  const auto dispatch = [](std::size_t arguments) {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
-    glDispatchComputeIndirect(0);
+    glDispatchComputeIndirect(static_cast<GLintptr>(arguments));
+  };
+  for (const gl::Program* program : {&clear_, &insert_}) {
+    program->use();
+    dispatch(offsetof(Control, rebuild));
+  }
+  find_.use();
+  const auto range = static_cast<GLint>(range_groups_) * group_size;
+  Clock::duration longest{};
+  for (GLint first = 0; first < static_cast<GLint>(vertex_count_); first += range) {
+    glUniform1i(4, first);
+    const Clock::time_point begun = Clock::now();
+    dispatch(offsetof(Control, search));
+    longest = std::max(longest, Clock::now() - begun);
+    if (range < static_cast<GLint>(vertex_count_)) co_await may_stop;
+  }
+  // Software OpenGL is done when the call returns: a cloth that has crumpled since its start is told by that.
+  if (longest > long_dispatch && range_groups_ > 1) {
+    limit_range(range_groups_ / 2);
+    control_.upload(&range_groups_, sizeof range_groups_, offsetof(Control, search));
   }
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   counts_.bind(unit_neighbour_count);

@@ -1,6 +1,6 @@
-// Keeps the neighbour lists that self-collision reads: three dispatches that run only in the steps in which a
+// Keeps the neighbour lists that self-collision reads: a few dispatches that run only in the steps in which a
 // vertex has moved half the skin, which the GPU finds out by itself (indirect dispatch), so nothing waits and
-// nothing is guessed.
+// nothing is guessed. The search is dispatched in ranges of vertices, short enough to stop between.
 #pragma once
 
 #include "server/base/result.h"
@@ -8,6 +8,7 @@
 #include "server/gl/program.h"
 #include "server/model/model.h"
 #include "server/scene/scene.h"
+#include "server/sim/work.h"
 
 namespace clothlab::sim {
 
@@ -18,12 +19,16 @@ class SelfCollision {
  public:
   static Result<SelfCollision> create(std::uint32_t vertex_count);
 
-  /// The distances for this scene; the lists are rebuilt before the next step.
-  void set_parameters(const scene::SelfCollision& parameters, const model::Model& model);
+  /// The distances for this scene; the lists are rebuilt before the next step. Error: far too many vertices
+  /// start within reach of each other for a search to end in bearable time.
+  Status set_parameters(const scene::SelfCollision& parameters, const model::Model& model);
+
+  /// Other vertices that the search looks at for one vertex, in the mean over a sample of the start.
+  double candidates() const { return candidates_; }
 
   /// Rebuilds the lists if a vertex has moved too far since. Needs position, springs, slices and rest
   /// positions bound; leaves bound what the step kernel reads and writes of the lists.
-  void update_lists();
+  Work update_lists();
   /// Rebuilds them before the next step whatever has moved.
   void invalidate();
 
@@ -47,7 +52,11 @@ class SelfCollision {
   static constexpr std::size_t counters_offset = 3 * sizeof(std::uint32_t);
 
  private:
+  void limit_range(std::uint32_t groups);
+
   std::uint32_t vertex_count_ = 0;
+  std::uint32_t range_groups_ = 1;  ///< work groups of one dispatch of the search
+  double candidates_ = 0;
   float skin_ = 0;   ///< [m]
   float reach_ = 0;  ///< contact distance + skin: how far the lists look [m]
   gl::Program clear_, insert_, find_;

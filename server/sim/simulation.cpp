@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "server/gl/bindings.h"
 #include "server/model/size.h"
 #include "server/scene/method.h"
 #include "server/sim/colliders.h"
@@ -62,6 +63,11 @@ struct Simulation::Implementation {
   double start_time = 0.0;
   std::uint64_t start_step = 0;
   std::vector<double> batch_times;
+  std::uint32_t wanted = 0;  ///< steps to do
+  bool in_step = false;
+  gl::StageTimer* next_timer = nullptr;
+  gl::Bindings bound;  ///< where `work` has stopped
+  Work work;           ///< a batch of steps under way; the last member: it refers to the others
 
   /// Of a step, or of a point `share` of a step after it.
   double time_of(std::uint64_t step, double share = 0.0) const {
@@ -86,37 +92,72 @@ struct Simulation::Implementation {
     kernels.motions.bind(unit_motion_table);
   }
 
-  void run_step(int row, gl::StageTimer* timer) {
+  Work run_step(int row, gl::StageTimer* timer) {
     const auto passed = [timer](const char* pass) {
       if (timer) timer->stage(pass);
     };
     state.position().bind(unit_position);
     if (kernels.self_collision) {
-      kernels.self_collision->update_lists();
+      co_await kernels.self_collision->update_lists();
       passed("neighbour_search");
     }
-    kernels.integrator->step(state, row);
+    co_await kernels.integrator->step(state, row);
     passed(scene::name(kernels.plan.method));
-    if (!kernels.strain_limit) return;
-    kernels.strain_limit->apply(state);
+    if (!kernels.strain_limit) co_return;
+    co_await kernels.strain_limit->apply(state);
     passed("strain_limit");
   }
 
-  void run_batch(std::uint32_t count, gl::StageTimer* timer) {
+  /// Ends after `count` steps, or as soon as no more are wanted.
+  Work run_batch(std::uint32_t count) {
+    gl::StageTimer* timer = std::exchange(next_timer, nullptr);
     bind_constants();
     upload_poses(count);
-    if (timer) timer->begin();
-    for (std::uint32_t step = 0; step < count; ++step)
-      run_step(static_cast<int>(step) * kernels.plan.pose_rows(), step == 0 ? timer : nullptr);
-    if (timer) timer->end();
-    step_index += count;
+    for (std::uint32_t step = 0; step < count && wanted > 0; ++step) {
+      if (timer) timer->begin();
+      in_step = true;
+      co_await run_step(static_cast<int>(step) * kernels.plan.pose_rows(), timer);
+      if (timer) std::exchange(timer, nullptr)->end();
+      in_step = false;
+      state.show();
+      ++step_index;
+      --wanted;
+      co_await may_stop;
+    }
+  }
+
+  void resume(Pace& pace) {
+    while (wanted > 0) {
+      if (work.done())
+        work = run_batch(std::min(wanted, batch_steps));
+      else
+        bound.restore();
+      work.resume(pace);
+      if (work.done()) continue;
+      bound = gl::Bindings::now();
+      return;
+    }
+  }
+
+  /// Nothing is under way any more, and nothing is wanted.
+  void give_up_work() {
+    wanted = 0;
+    work = Work();
+    if (!std::exchange(in_step, false)) return;
+    state.give_up_step();
+    forget();
+  }
+
+  /// What the passes carry over from step to step is not of this state.
+  void forget() {
+    if (kernels.self_collision) kernels.self_collision->invalidate();
+    kernels.integrator->restart();
+    if (kernels.strain_limit) kernels.strain_limit->restart();
   }
 
   /// The state was put there, by no step: nothing carried over from steps holds.
   void state_replaced(double time, std::uint64_t step) {
-    if (kernels.self_collision) kernels.self_collision->invalidate();
-    kernels.integrator->restart();
-    if (kernels.strain_limit) kernels.strain_limit->restart();
+    forget();
     start_time = time;
     step_index = start_step = step;
   }
@@ -174,8 +215,10 @@ Result<ChangeDepth> Simulation::change(const scene::Scene& scene) {
   if (depth == ChangeDepth::kernel) {
     Result<Kernels> kernels = Kernels::create(scene);
     if (!kernels) return kernels.error();
+    self.give_up_work();
     self.kernels = std::move(*kernels);
   } else if (depth == ChangeDepth::uniform) {
+    self.give_up_work();
     const bool springs = differs(self.scene, scene, &scene::Cloth::material);
     if (Status updated = self.kernels.update(scene, springs); !updated) return updated.error();
   }
@@ -184,15 +227,27 @@ Result<ChangeDepth> Simulation::change(const scene::Scene& scene) {
 }
 
 void Simulation::step(std::uint32_t count, gl::StageTimer* timer) {
-  while (count > 0) {
-    const std::uint32_t batch = std::min(count, batch_steps);
-    implementation_->run_batch(batch, std::exchange(timer, nullptr));
-    count -= batch;
-  }
+  want(count, timer);
+  Pace unlimited;
+  while (wanted() > 0) resume(unlimited);
+}
+
+void Simulation::want(std::uint32_t count, gl::StageTimer* timer) {
+  implementation_->wanted = count;
+  implementation_->next_timer = timer;
+}
+
+std::uint32_t Simulation::wanted() const {
+  return implementation_->wanted;
+}
+
+void Simulation::resume(Pace& pace) {
+  implementation_->resume(pace);
 }
 
 void Simulation::reset() {
   Implementation& self = *implementation_;
+  self.give_up_work();
   self.state.reset(self.kernels.model, self.kernels.motions);
   self.state_replaced(0.0, 0);
   self.keep_start();
@@ -204,6 +259,7 @@ void Simulation::keep_diagnosed() {
 
 void Simulation::go_back() {
   Implementation& self = *implementation_;
+  self.give_up_work();
   const LastGood::When when = self.last_good.restore(self.state);
   self.state.rewrite_constants(self.kernels.model, self.kernels.motions);  // they may have changed since
   self.state_replaced(when.time, when.step);
@@ -265,6 +321,7 @@ Diagnostics Simulation::diagnose() {
 
 void Simulation::restore(const State& state, double time, std::uint64_t step) {
   Implementation& self = *implementation_;
+  self.give_up_work();
   self.state.write(state, self.kernels.model, self.kernels.motions);
   self.state_replaced(time, step);
   self.keep_start();
@@ -277,7 +334,7 @@ void Simulation::finish() {
   glFinish();
 }
 void Simulation::bind_positions(unsigned unit) const {
-  implementation_->state.position().bind(unit);
+  implementation_->state.shown_position().bind(unit);
 }
 
 std::vector<scene::Collider> Simulation::colliders_now() const {

@@ -12,6 +12,7 @@
 #include "server/gl/stage_timer.h"
 #include "server/model/model.h"
 #include "server/scene/scene.h"
+#include "server/sim/work.h"
 
 namespace clothlab::sim {
 
@@ -75,6 +76,15 @@ class Simulation {
   /// of the first: neighbour_search, the method with all that its dispatches do (forces, contacts, pins), and
   /// strain_limit.
   void step(std::uint32_t count, gl::StageTimer* timer = nullptr);
+
+  // The same in pieces, for who has other things to do while a step takes long. Between two pieces all other
+  // calls are allowed, and see the state of the last step that has ended; those that change the state, or how
+  // it is stepped, give up the step that is under way.
+  /// So many steps are to be done, the one under way counted: 0 leaves it where it is. `timer` lives on.
+  void want(std::uint32_t count, gl::StageTimer* timer = nullptr);
+  std::uint32_t wanted() const;
+  /// Queues what is wanted until `pace` has enough.
+  void resume(Pace& pace);
 
   /// Back to the start positions, at rest, at time 0.
   void reset();

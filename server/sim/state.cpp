@@ -70,8 +70,8 @@ void StateBuffers::rewrite_constants(const model::Model& model, const MotionTabl
 }
 
 void StateBuffers::save(gl::Buffer& position, gl::Buffer& velocity) const {
-  position.copy_from(position_[current_].buffer);
-  velocity.copy_from(velocity_[current_].buffer);
+  position.copy_from(shown_position().buffer);
+  velocity.copy_from(shown_velocity().buffer);
 }
 
 void StateBuffers::load(const gl::Buffer& position, const gl::Buffer& velocity) {
@@ -91,12 +91,12 @@ void StateBuffers::bind_outputs() const {
 }
 
 State StateBuffers::read() const {
-  const std::size_t count = position().buffer.bytes() / sizeof(glm::vec4);
+  const std::size_t count = shown_position().buffer.bytes() / sizeof(glm::vec4);
   std::vector<glm::vec4> words(count);
   State state;
-  position().buffer.download(words.data(), count * sizeof(glm::vec4));
+  shown_position().buffer.download(words.data(), count * sizeof(glm::vec4));
   for (const glm::vec4& word : words) state.position.emplace_back(word);
-  velocity().buffer.download(words.data(), count * sizeof(glm::vec4));
+  shown_velocity().buffer.download(words.data(), count * sizeof(glm::vec4));
   for (const glm::vec4& word : words) state.velocity.emplace_back(word);
   return state;
 }

@@ -75,7 +75,7 @@ void StrainLimit::set_parameters(const Surroundings& around) {
   dt_ = around.scene.solver.dt;
 }
 
-void StrainLimit::apply(StateBuffers& state) {
+Work StrainLimit::apply(StateBuffers& state) {
   state.position().bind(unit_position);
   state.previous_position().bind(10);
   position_[0].buffer.bind_storage(0);
@@ -101,6 +101,7 @@ void StrainLimit::apply(StateBuffers& state) {
       glUniform1i(sweep_location, sweep);
       glDispatchComputeIndirect(0);
       wait_for_writes();
+      co_await may_stop;
     }
     control_.download(&control, sizeof control);
   }

@@ -17,8 +17,8 @@ class StrainLimit {
   void set_parameters(const Surroundings& around);
 
   /// Shortens what is too long in the state that a step has just made. Springs, slices and rest positions
-  /// must be bound.
-  void apply(StateBuffers& state);
+  /// must be bound; it may stop between sweeps.
+  Work apply(StateBuffers& state);
 
   /// The state was not made by the last step: forget what the limits pulled in it.
   void restart() { pulls_.fill(0); }

@@ -26,7 +26,7 @@ class WholeStep : public Integrator {
     start_row_ = program_.uniform("start_row");
   }
 
-  void step(StateBuffers& state, int row) override {
+  Work step(StateBuffers& state, int row) override {
     program_.use();
     glUniform1i(start_row_, row);
     state.bind_for_step();
@@ -38,6 +38,7 @@ class WholeStep : public Integrator {
     dispatch(groups_);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
     state.swap();
+    return {};
   }
 
   /// Nothing carried: the velocity is the velocity now.

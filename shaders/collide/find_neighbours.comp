@@ -11,6 +11,7 @@ READ_UINT(head, 4);
 READ_UINT(next, 5);
 READ_VEC4(rest_position, 7);  // w: the cloth
 layout(location = 3) uniform float thickness;
+layout(location = 4) uniform int first_vertex;  // of the range that this dispatch looks at
 layout(std430, binding = 6) writeonly buffer NeighbourCounts { uint neighbour_count[]; };
 layout(std430, binding = 7) buffer Neighbours { uvec2 neighbours[]; };  // (vertex, distance): vertex i's slot s at i * SLOTS + s
 
@@ -20,9 +21,9 @@ float rest_distance(int i, int j) {
 }
 
 void main() {
-  int i = int(gl_GlobalInvocationID.x);
-  if (gl_GlobalInvocationID.x == 0) {  // this rebuild is under way: no other until a vertex asks again
-    rebuild_groups = 0;
+  int i = first_vertex + int(gl_GlobalInvocationID.x);
+  if (i == vertex_count - 1) {  // the last range: no other rebuild until a vertex asks again
+    rebuild_groups = search_on = 0;
     ++rebuilds;
   }
   if (i >= vertex_count) return;

@@ -2,6 +2,7 @@
 layout(local_size_x = GROUP_SIZE) in;
 #include "../access.glsl"
 #include "cells.glsl"
+#include "neighbours.glsl"
 
 READ_VEC4(position, 0);
 layout(std430, binding = 3) buffer CellHeads { uint head[]; };
@@ -10,6 +11,7 @@ layout(std430, binding = 5) writeonly buffer PositionWhenBuilt { vec4 position_w
 
 void main() {
   int i = int(gl_GlobalInvocationID.x);
+  if (i == 0) search_on = 1;
   if (i >= vertex_count) return;
   vec4 x = FETCH(position, i);
   next[i] = atomicExchange(head[bucket_of(cell_of(x.xyz))], uint(i));

@@ -33,7 +33,7 @@ struct Search {
     INFO((made ? "" : made.error().text()));
     REQUIRE(made);
     self_collision = std::move(*made);
-    self_collision.set_parameters({thickness, 0.0}, model);
+    REQUIRE(self_collision.set_parameters({thickness, 0.0}, model));
     std::vector<glm::vec4> home;
     for (std::uint32_t i = 0; i < model.vertex_count(); ++i)
       home.emplace_back(glm::vec3(model.rest_position[i]), static_cast<float>(model.vertex_cloth[i]));
@@ -48,7 +48,8 @@ struct Search {
     rest.bind(sim::unit_rest_position);
     springs.bind(sim::unit_springs);
     slices.bind(sim::unit_spring_slices);
-    self_collision.update_lists();
+    sim::Pace unlimited;
+    self_collision.update_lists().resume(unlimited);
     return self_collision.read_lists();
   }
 };

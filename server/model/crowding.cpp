@@ -1,0 +1,50 @@
+#include "server/model/crowding.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace clothlab::model {
+
+namespace {
+
+using Cell = std::array<std::int64_t, 3>;
+
+/// `shift`: 0 for the cell that x lies in; -1/2 for the lowest of the eight nearest.
+Cell cell_of(const glm::dvec3& x, double cell, double shift) {
+  Cell result;
+  for (int axis = 0; axis < 3; ++axis)
+    result[static_cast<std::size_t>(axis)] =
+        static_cast<std::int64_t>(std::floor(std::clamp(x[axis] / cell, -1e12, 1e12) + shift));
+  return result;
+}
+
+}  // namespace
+
+double crowding(const std::vector<glm::dvec3>& positions, double cell) {
+  constexpr std::size_t sample = 1000;
+  if (positions.empty()) return 0.0;
+  std::vector<Cell> cells;
+  cells.reserve(positions.size());
+  for (const glm::dvec3& x : positions) cells.push_back(cell_of(x, cell, 0.0));
+  std::sort(cells.begin(), cells.end());
+  // Golden-ratio steps fall into no rhythm with the rows of a grid.
+  const double size = static_cast<double>(positions.size());
+  const std::size_t looks = std::min(sample, positions.size());
+  std::size_t looked_at = 0;
+  for (std::size_t k = 0; k < looks; ++k) {
+    const double place = 0.6180339887498949 * static_cast<double>(k);
+    const auto i = static_cast<std::size_t>((place - std::floor(place)) * size);
+    const Cell corner = cell_of(positions[i], cell, -0.5);
+    for (int at = 0; at < 8; ++at) {
+      const Cell near{corner[0] + (at & 1), corner[1] + (at >> 1 & 1), corner[2] + (at >> 2)};
+      const auto [first, end] = std::equal_range(cells.begin(), cells.end(), near);
+      looked_at += static_cast<std::size_t>(end - first);
+    }
+  }
+  return static_cast<double>(looked_at) / static_cast<double>(looks) - 1.0;
+}
+
+}  // namespace clothlab::model
