@@ -1,7 +1,10 @@
 // `clothlab serve`: a scene live in the browser, and for scripts over its WebSocket.
+#include <atomic>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <mutex>
 #include <thread>
 
 #include "server/base/files.h"
@@ -24,16 +27,32 @@ struct ServeArguments {
 };
 
 /// Ends the server on SIGINT and SIGTERM, which must be blocked in every thread: this one waits for them.
+/// What does not end in time then, as where a driver hangs, ends with the process; so it does on a second
+/// signal. Sessions keep themselves once a second, so no more than that is lost.
 class StopOnSignal {
  public:
   explicit StopOnSignal(net::Server& server)
-      : thread_([&server] {
+      : server_(&server), thread_([this] {
           const sigset_t signals = stop_signals();
           int received = 0;
           sigwait(&signals, &received);
-          server.stop();
+          if (ended_) return;
+          stop_server();
+          constexpr timespec patience{3, 0};
+          sigtimedwait(&signals, nullptr, &patience);
+          if (ended_) return;
+          net::log(net::LogLevel::warning, "cut_short",
+                   {{"why", "something did not end in time; sessions are what they were a second ago"}});
+          std::_Exit(exit_done);
         }) {}
+  /// Before the server is destroyed: it is not told to stop any more.
+  void forget_server() {
+    const std::lock_guard lock(mutex_);
+    server_ = nullptr;
+  }
+  /// After that.
   ~StopOnSignal() {
+    ended_ = true;
     pthread_kill(thread_.native_handle(), SIGTERM);
     thread_.join();
   }
@@ -48,6 +67,10 @@ class StopOnSignal {
   }
 
  private:
+  void stop_server() {
+    const std::lock_guard lock(mutex_);
+    if (server_) server_->stop();
+  }
   static sigset_t stop_signals() {
     sigset_t signals;
     sigemptyset(&signals);
@@ -55,7 +78,10 @@ class StopOnSignal {
     sigaddset(&signals, SIGTERM);
     return signals;
   }
-  std::thread thread_;
+  std::mutex mutex_;
+  net::Server* server_;
+  std::atomic<bool> ended_{false};
+  std::thread thread_;  ///< the last member: it reads the others
 };
 
 Status check(const ServeArguments& arguments) {
@@ -102,9 +128,11 @@ int serve(ServeArguments& arguments) {
   StopOnSignal::block();
   Result<std::unique_ptr<net::Server>> server = net::Server::listen(std::move(arguments.options));
   if (!server) return fail(server.error(), exit_internal);
-  const StopOnSignal stop(**server);
+  StopOnSignal stop(**server);
   const std::optional<net::Failed> failed =
       (*server)->run([&] { std::cout << "listening on " << (*server)->url() << std::endl; });
+  stop.forget_server();
+  server->reset();  // before `stop`, which sees to it that this ends
   if (!failed) return exit_done;
   return fail(failed->error, failed->no_opengl ? exit_no_opengl : exit_internal);
 }

@@ -19,7 +19,7 @@ std::mutex egl_mutex;
 struct Candidate {
   EGLDeviceEXT handle = nullptr;  ///< null: the surfaceless platform, where devices cannot be listed
   Device device;
-  HelperThreads threads = HelperThreads::shared;  ///< other than that: as the surfaceless platform's display
+  HelperThreads threads = HelperThreads::light_sessions;
 };
 
 std::string text(const char* value) {
@@ -62,12 +62,14 @@ std::vector<Candidate> candidates() {
 
 EGLDisplay open_display(const Candidate& candidate) {
   if (!eglGetPlatformDisplayEXT) return EGL_NO_DISPLAY;
-  if (candidate.handle && candidate.threads == HelperThreads::shared)
-    return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, candidate.handle, nullptr);
+  const auto is = [&](HelperThreads threads) { return candidate.threads == threads; };
   // An empty list of attributes is another display to Mesa than no list.
   const EGLint nothing[] = {EGL_NONE};
-  return eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY,
-                                  candidate.threads == HelperThreads::own_too ? nothing : nullptr);
+  const EGLint* attributes =
+      is(HelperThreads::heavy_sessions) || is(HelperThreads::pictures) ? nothing : nullptr;
+  if (candidate.handle && (is(HelperThreads::light_sessions) || is(HelperThreads::heavy_sessions)))
+    return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, candidate.handle, attributes);
+  return eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, attributes);
 }
 
 EGLContext open_context(EGLDisplay display) {
@@ -178,7 +180,7 @@ Result<std::unique_ptr<Context>> Context::create(std::optional<int> gpu, HelperT
                     ": " + candidate.device.problem;
         continue;
       }
-      if (threads != HelperThreads::shared && candidate.handle && candidate.device.software) {
+      if (threads != HelperThreads::light_sessions && candidate.handle && candidate.device.software) {
         close(opened);
         const std::optional<Opened> apart = open_apart(candidate, threads);
         opened = apart ? *apart : open(candidate);

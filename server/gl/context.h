@@ -30,24 +30,20 @@ std::string renderer_name();
 /// Every EGL device in the driver's order; opens a context on each to ask its name.
 Result<std::vector<Device>> list_devices();
 
-/// Software OpenGL computes on threads of its own, which contexts of a device share: they work in turns, at
-/// the priority of whoever made the first one.
-enum class HelperThreads {
-  shared,
-  /// Made by, and with the priority of, the thread that first makes a context of this kind; where that cannot
-  /// be: shared.
-  own,
-  own_too  ///< the same, apart from those as well
-};
+/// Software OpenGL computes on helper threads, which all contexts of one display share: they work in turns,
+/// one dispatch after another, however long, at the priority of whoever made the first context there. Mesa
+/// tells as many displays of its software device apart as there are names here; who shares each:
+enum class HelperThreads { light_sessions, heavy_sessions, lab, pictures };
 
 /// A context that belongs to the thread that made it current. Order of devices: `gpu` if given; else the
 /// first usable one that is not software; else Mesa's software rasteriser.
 class Context {
  public:
-  /// Makes a context and makes it current on the calling thread. Error: what is missing and the package to
+  /// Makes a context and makes it current on the calling thread. `threads` means nothing to a GPU, and where
+  /// Mesa has no further display they are those of light sessions. Error: what is missing and the package to
   /// install.
   static Result<std::unique_ptr<Context>> create(std::optional<int> gpu = std::nullopt,
-                                                 HelperThreads threads = HelperThreads::shared);
+                                                 HelperThreads threads = HelperThreads::light_sessions);
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;

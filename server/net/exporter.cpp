@@ -22,7 +22,7 @@ bool is_picture(const Export& what) {
 /// In a context of its own for each: Mesa frees all that a picture took, up to 0.8 GB, only with its context.
 Result<std::string> picture(std::optional<int> gpu, const Moment& moment, const model::Model& model,
                             const Export& what) {
-  const Result<std::unique_ptr<gl::Context>> context = gl::Context::create(gpu, gl::HelperThreads::own_too);
+  const Result<std::unique_ptr<gl::Context>> context = gl::Context::create(gpu, gl::HelperThreads::pictures);
   if (!context) return context.error();
   const Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create();
   if (!renderer) return renderer.error();

@@ -26,6 +26,14 @@ Result<std::unique_ptr<FrameMaker>> FrameMaker::create(Exchange& exchange, std::
 FrameMaker::FrameMaker(Exchange& exchange, std::unique_ptr<stream::Packer> packer, std::uint32_t last)
     : exchange_(exchange), packer_(std::move(packer)), requested_(last), arrived_(last), void_until_(last) {}
 
+void FrameMaker::take_over(const FrameMaker& other) {
+  lanes_ = other.lanes_;
+  version_ = other.version_;
+  diverged_ = other.diverged_;
+  asleep_ = other.asleep_;
+  touch_now();
+}
+
 void FrameMaker::demand(const Demand& demand, Clock::time_point now) {
   for (std::size_t i = 0; i < lanes_.size(); ++i) {
     Lane& lane = lanes_[i];

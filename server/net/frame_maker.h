@@ -17,6 +17,10 @@ class FrameMaker {
   /// Its frames are numbered from after `last`.
   static Result<std::unique_ptr<FrameMaker>> create(Exchange& exchange, std::uint32_t last);
 
+  /// Goes on where another, in another context, ends: with its viewers, its numbers and what its frames say.
+  void take_over(const FrameMaker& other);
+  std::uint32_t last() const { return requested_; }  ///< the number of its newest frame
+
   void demand(const Demand& demand, Clock::time_point now);
   /// The state has changed: the next frame due is worth making.
   void touch() { ++version_; }

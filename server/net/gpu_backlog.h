@@ -1,4 +1,4 @@
-// Batches of steps queued on the GPU and not finished yet: their number is bounded, and what they took is
+// Pieces of work queued on the GPU and not finished yet: their number is bounded, and what they took is
 // measured.
 #pragma once
 
@@ -20,17 +20,22 @@ class GpuBacklog {
   GpuBacklog(const GpuBacklog&) = delete;
   GpuBacklog& operator=(const GpuBacklog&) = delete;
 
-  bool full() const { return count_ == batches_.size(); }
+  bool full() const { return count_ == queued_.size(); }
   bool empty() const { return count_ == 0; }
-  /// A batch has been queued, the work for it begun at `begun`. The backlog must not be full.
-  void push(std::uint32_t steps, Time begun);
-  /// Calls `spent(steps, seconds)` for each batch that has finished by `now`. Never waits.
+  struct Piece {
+    std::uint32_t steps = 0;   ///< that end in it
+    std::uint32_t places = 0;  ///< at which it might have ended (sim::Pace)
+    Time begun{};              ///< when it began to be queued
+  };
+  /// A piece has been queued. The backlog must not be full.
+  void push(const Piece& piece);
+  /// Calls `spent(piece, seconds)` for each piece that has finished by `now`. Never waits.
   template <class Spent>
   void poll(Time now, Spent spent) {
     while (finished()) {
-      const Batch& batch = batches_[first_];
-      const Time begun = batch.begun > last_end_ ? batch.begun : last_end_;
-      spent(batch.steps, std::chrono::duration<double>(now - begun).count());
+      const Piece& piece = queued_[first_].piece;
+      const Time begun = piece.begun > last_end_ ? piece.begun : last_end_;
+      spent(piece, std::chrono::duration<double>(now - begun).count());
       last_end_ = now;
       pop();
     }
@@ -40,12 +45,11 @@ class GpuBacklog {
   bool finished();
   void pop();
 
-  struct Batch {
+  struct Queued {
     GLsync fence = nullptr;
-    std::uint32_t steps = 0;
-    Time begun;
+    Piece piece;
   };
-  std::array<Batch, 3> batches_{};
+  std::array<Queued, 3> queued_{};
   std::size_t first_ = 0, count_ = 0;
   Time last_end_{};
 };

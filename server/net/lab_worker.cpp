@@ -105,7 +105,7 @@ Result<lab::Outcome> LabWorker::carry_out(const Task& task, const std::stop_toke
 
 Result<LabWorker::Run> open_lab(std::optional<int> gpu) {
   lower_priority(19);
-  Result<std::unique_ptr<gl::Context>> context = gl::Context::create(gpu, gl::HelperThreads::own);
+  Result<std::unique_ptr<gl::Context>> context = gl::Context::create(gpu, gl::HelperThreads::lab);
   if (!context) return context.error();
   return LabWorker::Run([context = std::shared_ptr<gl::Context>(std::move(*context))](
                             const scene::Document& document, const lab::Job& job,

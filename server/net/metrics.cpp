@@ -49,7 +49,8 @@ void Histogram::write(std::string& out, const std::string& name, const std::stri
   std::uint64_t below = 0;
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     below += counts_[i];
-    out += name + "_bucket{" + first + "le=\"" + significant(edges_[i], 9) + "\"} " + std::to_string(below) + "\n";
+    out += name + "_bucket{" + first + "le=\"" + significant(edges_[i], 9) + "\"} " + std::to_string(below) +
+           "\n";
   }
   out += name + "_bucket{" + first + "le=\"+Inf\"} " + std::to_string(count_) + "\n";
   out += name + "_sum" + alone + " " + significant(sum_, 9) + "\n";
@@ -61,7 +62,8 @@ void Histograms::write(std::string& out, const std::string& name, const std::str
 }
 
 Metrics::Metrics()
-    : latency({1e-4, 2e-4, 5e-4, 1e-3, 1.5e-3, 2e-3, 3e-3, 4e-3, 5e-3, 7.5e-3, 0.01, 0.015, 0.02, 0.05, 0.1, 1}),
+    : latency(
+          {1e-4, 2e-4, 5e-4, 1e-3, 1.5e-3, 2e-3, 3e-3, 4e-3, 5e-3, 7.5e-3, 0.01, 0.015, 0.02, 0.05, 0.1, 1}),
       requests({1e-4, 1e-3, 5e-3, 0.01, 0.02, 0.05, 0.1, 0.5, 1, 5}),
       gpu_passes({1e-6, 2e-6, 5e-6, 1e-5, 2e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 0.01, 0.1}) {}
 
@@ -96,7 +98,8 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
   count("clothlab_lab_failed_total", "counter", "jobs of the lab that failed", gauges.lab.failed);
   family(out, "clothlab_lab_seconds_total", "counter", "seconds that jobs of the lab that have ended ran",
          significant(gauges.lab.seconds, 9));
-  head(out, "clothlab_frame_latency_seconds", "histogram", "from the end of a step to its frame's bytes leaving");
+  head(out, "clothlab_frame_latency_seconds", "histogram",
+       "from the end of a step to its frame's bytes leaving");
   metrics.latency.write(out, "clothlab_frame_latency_seconds");
   family(out, "clothlab_frame_latency_p95_seconds", "gauge",
          "95th percentile of clothlab_frame_latency_seconds", significant(metrics.latency.quantile(0.95), 9));

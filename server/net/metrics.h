@@ -32,7 +32,9 @@ class Histogram {
 class Histograms {
  public:
   explicit Histograms(std::vector<double> edges) : edges_(std::move(edges)) {}
-  Histogram& operator[](const std::string& value) { return by_value_.try_emplace(value, edges_).first->second; }
+  Histogram& operator[](const std::string& value) {
+    return by_value_.try_emplace(value, edges_).first->second;
+  }
   void write(std::string& out, const std::string& name, const std::string& label) const;
 
  private:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace clothlab::net {
 
@@ -36,8 +37,9 @@ std::uint32_t RealTime::due(Time now, double dt) {
 }
 
 void RealTime::spent(std::uint32_t steps, double wall) {
+  unfinished_ += wall;
   if (steps == 0) return;
-  const double cost = std::max(wall, 1e-9) / steps;
+  const double cost = std::max(std::exchange(unfinished_, 0.0), 1e-9) / steps;
   // Up at once, down slowly: a turn that overruns delays every command and frame.
   step_cost_ = cost > step_cost_ ? 0.5 * (step_cost_ > 0 ? step_cost_ : cost) + 0.5 * cost
                                  : 0.9 * step_cost_ + 0.1 * cost;

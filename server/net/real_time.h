@@ -1,6 +1,7 @@
 // How many fixed steps are due: an accumulator that lets simulated time slow down rather than work pile up.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstddef>
@@ -26,8 +27,11 @@ class RealTime {
   std::uint32_t affordable() const;
   /// Whether the last `due` left steps undone.
   bool behind(double dt) const { return owed_ >= dt; }
-  /// What `steps` steps took [s].
+  /// What a piece of work took [s], in which `steps` steps ended; of a step that takes several pieces, with
+  /// those before it.
   void spent(std::uint32_t steps, double seconds);
+  /// Of a step [s]; one that has not ended counts as far as it has come.
+  double step_cost() const { return std::max(step_cost_, unfinished_); }
 
   /// Notes that simulated time was `simulated` [s] at `now`; about `status_rate` times a second.
   void sample(Time now, double simulated);
@@ -46,6 +50,7 @@ class RealTime {
   double owed_ = 0;  ///< simulated time [s]
   double speed_ = 1;
   double step_cost_ = 0;              ///< smoothed [s]; 0: not measured yet
+  double unfinished_ = 0;             ///< spent on a step that has not ended yet [s]
   std::array<Sample, 11> samples_{};  ///< a ring
   std::size_t newest_ = 0, sample_count_ = 0;
 };

@@ -23,11 +23,12 @@ std::shared_ptr<const Saved> kept(const Beginning& beginning, Exchange& exchange
 }
 
 Result<std::unique_ptr<Stepper>> bring_back(const Saved& saved, const Beginning& beginning,
-                                            const Limits& limits, Exchange& exchange) {
+                                            const Limits& limits, std::optional<int> gpu,
+                                            Exchange& exchange) {
   Result<scene::Document> document = scene::validate(saved.document);
   if (!document) return document.error();
   Result<std::unique_ptr<Stepper>> stepper =
-      Stepper::create(std::move(*document), exchange, limits, beginning.last_frame);
+      Stepper::create(std::move(*document), exchange, limits, gpu, beginning.last_frame);
   if (!stepper) return stepper.error();
   if (clothlab::Status back = (*stepper)->bring_back(saved); !back) return back.error();
   log(LogLevel::info, "session_restored",
@@ -37,15 +38,16 @@ Result<std::unique_ptr<Stepper>> bring_back(const Saved& saved, const Beginning&
   return stepper;
 }
 
-Result<std::unique_ptr<Stepper>> begin(Beginning& beginning, const Limits& limits, Exchange& exchange) {
+Result<std::unique_ptr<Stepper>> begin(Beginning& beginning, const Limits& limits, std::optional<int> gpu,
+                                       Exchange& exchange) {
   if (const std::shared_ptr<const Saved> saved = kept(beginning, exchange)) {
-    Result<std::unique_ptr<Stepper>> stepper = bring_back(*saved, beginning, limits, exchange);
+    Result<std::unique_ptr<Stepper>> stepper = bring_back(*saved, beginning, limits, gpu, exchange);
     if (stepper) return stepper;
     log(LogLevel::error, "session_not_restored",
         {{"session", beginning.name}, {"why", stepper.error().text()}});
     exchange.emit(Notice{"error", "what this session was cannot go on: " + stepper.error().text()});
   }
-  return Stepper::create(std::move(beginning.document), exchange, limits, beginning.last_frame);
+  return Stepper::create(std::move(beginning.document), exchange, limits, gpu, beginning.last_frame);
 }
 
 }  // namespace
@@ -73,18 +75,19 @@ Session::~Session() {
 }
 
 void Session::run(Beginning& beginning, const Limits& limits, std::optional<int> gpu) {
-  Result<std::unique_ptr<gl::Context>> context = gl::Context::create(gpu);
-  if (!context) return exchange_.emit(Failed{context.error(), true});
-  Result<std::unique_ptr<Stepper>> stepper = begin(beginning, limits, exchange_);
+  // Tried apart, so that no scene is blamed where there is no OpenGL.
+  if (const Result<std::unique_ptr<gl::Context>> any = gl::Context::create(gpu); !any)
+    return exchange_.emit(Failed{any.error(), true});
+  Result<std::unique_ptr<Stepper>> stepper = begin(beginning, limits, gpu, exchange_);
   if (!stepper) return exchange_.emit(Failed{stepper.error()});
-  exchange_.emit(Started{(*context)->device().name});
+  exchange_.emit(Started{(*stepper)->renderer()});
   Keeper keeper(exchange_, beginning.file);
   std::vector<Command> commands;
   Clock::time_point next = Clock::now();
   while (exchange_.take_commands(commands, next)) {
     next = (*stepper)->turn(commands);
     provoke_fault(beginning.name, exchange_.steps());
-    if ((*context)->lost() || fault_due(Fault::context_lost, beginning.name, exchange_.steps()))
+    if ((*stepper)->lost() || fault_due(Fault::context_lost, beginning.name, exchange_.steps()))
       return exchange_.emit(Failed{{"OpenGL", "the device was reset, and all that was on it is lost",
                                     "if it happens again, see the driver's log"}});
     keeper.look(**stepper, Clock::now());

@@ -1,5 +1,7 @@
 #include "server/net/step_limit.h"
 
+#include "server/net/priority.h"
+
 #include <chrono>
 #include <utility>
 
@@ -20,9 +22,11 @@ void StepLimit::follow(const model::Model& model, const scene::Scene& scene) {
   stop_ = std::stop_source();
   model::SpringOperator springs(model, scene, model.rest_position);
   dt_limit_ = model::dt_limit_bound(scene.solver.method, springs);
-  search_ = std::async(std::launch::async,
-                       [springs = std::move(springs), method = scene.solver.method,
-                        stop = stop_.get_token()] { return model::dt_limit(method, springs, stop); });
+  search_ = std::async(std::launch::async, [springs = std::move(springs), method = scene.solver.method,
+                                            stop = stop_.get_token()] {
+    lower_priority(10);  // of a large mesh it takes many seconds
+    return model::dt_limit(method, springs, stop);
+  });
   search_.wait_for(worth_waiting);
   poll();
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "server/base/text.h"
 #include "server/model/remedy.h"
 #include "server/model/size.h"
 #include "server/net/fault.h"
@@ -23,33 +24,32 @@ Clock::duration period(double rate) {
 }  // namespace
 
 Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Exchange& exchange,
-                                                 const Limits& limits, std::uint32_t last_frame,
-                                                 double patience) {
-  auto stepper = std::unique_ptr<Stepper>(new Stepper(std::move(document), exchange, limits, patience));
+                                                 const Limits& limits, std::optional<int> gpu,
+                                                 std::uint32_t last_frame, double patience) {
+  auto stepper = std::unique_ptr<Stepper>(new Stepper(std::move(document), exchange, limits, gpu, patience));
   if (clothlab::Status prepared = stepper->prepare(stepper->document_); !prepared) return prepared.error();
-  Result<std::unique_ptr<sim::Simulation>> simulation = sim::Simulation::create(stepper->document_.scene);
-  if (!simulation) return simulation.error();
-  stepper->simulation_ = std::move(*simulation);
-  Result<std::unique_ptr<FrameMaker>> frames = FrameMaker::create(exchange, last_frame);
-  if (!frames) return frames.error();
-  stepper->frames_ = std::move(*frames);
+  const scene::Scene& scene = stepper->document_.scene;
+  Result<std::unique_ptr<Engine>> engine =
+      Engine::create(scene, exchange, {gpu, Engine::threads_for(scene), last_frame});
+  if (!engine) return engine.error();
+  stepper->engine_ = std::move(*engine);
   stepper->last_watched_ = stepper->next_status_ = Clock::now();
   stepper->announce_scene(std::nullopt, 0);
   stepper->announce_passes();
   stepper->announce_solver();
-  stepper->step_limit_.follow(stepper->simulation_->model(), stepper->document_.scene);
-  stepper->rest_.follow(stepper->document_.scene, stepper->simulation_->model());
+  stepper->step_limit_.follow(stepper->simulation().model(), stepper->document_.scene);
+  stepper->rest_.follow(stepper->document_.scene, stepper->simulation().model());
   stepper->watch_anew();
   return stepper;
 }
 
 clothlab::Status Stepper::bring_back(const Saved& saved) {
-  if (saved.state.position.size() != simulation_->model().vertex_count())
+  if (saved.state.position.size() != simulation().model().vertex_count())
     return Error{"saved session",
                  std::to_string(saved.state.position.size()) + " vertices of a scene that has " +
-                     std::to_string(simulation_->model().vertex_count()),
+                     std::to_string(simulation().model().vertex_count()),
                  "what this version of the program wrote"};
-  simulation_->restore(saved.state, saved.time, saved.step);
+  simulation().restore(saved.state, saved.time, saved.step);
   playing_ = saved.playing;
   real_time_.set_speed(std::clamp(saved.speed, min_speed, max_speed));
   state_replaced();
@@ -61,8 +61,8 @@ clothlab::Status Stepper::bring_back(const Saved& saved) {
 
 Saved Stepper::saved() {
   return {document_.value,          revision_,           playing_ || held_ || (diverged_ && resume_),
-          real_time_.speed(),       simulation_->time(), simulation_->step_index(),
-          simulation_->read_state()};
+          real_time_.speed(),       simulation().time(), simulation().step_index(),
+          simulation().read_state()};
 }
 
 clothlab::Status Stepper::prepare(scene::Document& document) {
@@ -71,7 +71,7 @@ clothlab::Status Stepper::prepare(scene::Document& document) {
                                             static_cast<std::size_t>(limits_.springs));
       !fits)
     return fits;
-  if (fault_due(Fault::change_fails, "", simulation_ ? simulation_->step_index() : 0)) throw std::bad_alloc();
+  if (fault_due(Fault::change_fails, "", engine_ ? simulation().step_index() : 0)) throw std::bad_alloc();
   return automatic_.settle(document, Clock::now());
 }
 
@@ -80,46 +80,61 @@ Clock::time_point Stepper::turn(std::vector<Command>& commands) {
   for (Command& command : commands) handle(command);
   const Clock::time_point now = Clock::now();
   if (watchers_ > 0) last_watched_ = now;
-  frames_->make_urgent(*simulation_, now);
+  frames().make_urgent(simulation(), now);
   advance(now);
-  frames_->make_urgent(*simulation_, now);
-  frames_->make_due(*simulation_, Clock::now());
-  frames_->poll();
+  frames().make_urgent(simulation(), now);
+  frames().make_due(simulation(), Clock::now());
+  frames().poll();
   follow_diagnostics(Clock::now());
   return next_turn(Clock::now());
 }
 
 void Stepper::advance(Clock::time_point now) {
-  const auto spent = [&](std::uint32_t steps, double wall) { real_time_.spent(steps, wall); };
-  backlog_.poll(now, spent);
+  note_finished(now);
   const bool run = running(now);
   if (run && !was_running_) real_time_.restart(now);
   was_running_ = run;
-  if (backlog_.full()) return;
-  std::uint32_t steps = 0;
-  if (pending_steps_ > 0)
-    // No further than the next answer, which tells the step it was asked for.
-    steps = static_cast<std::uint32_t>(std::min<std::uint64_t>(
-        waiting_.front().until_step - simulation_->step_index(), real_time_.affordable()));
-  else if (run)
-    steps = real_time_.due(now, document_.scene.solver.dt);
-  if (steps == 0) return;
+  if (engine_->backlog.full()) return;
+  want_steps(now, run);
+  if (simulation().wanted() == 0) return;
+  const std::uint64_t before = simulation().step_index();
   const Clock::time_point begun = Clock::now();
-  simulation_->step(steps, &step_timer_);
-  backlog_.push(steps, begun);
-  backlog_.poll(Clock::now(), spent);
+  sim::Pace pace = piece_size_.pace(begun);
+  simulation().resume(pace);
+  const auto steps = static_cast<std::uint32_t>(simulation().step_index() - before);
+  engine_->backlog.push({steps, pace.passed, begun});
+  note_finished(Clock::now());
+  if (steps == 0) return;
   ++state_version_;
   exchange_.count_steps(steps);
-  if (pending_steps_ == 0) return frames_->touch();
-  pending_steps_ -= steps;
-  frames_->touch();
-  if (pending_steps_ == 0) frames_->touch_now();
+  frames().touch();
+  if (waiting_.empty()) return;
   finish_waiting(false);
+  if (waiting_.empty()) frames().touch_now();
+}
+
+void Stepper::want_steps(Clock::time_point now, bool run) {
+  if (!waiting_.empty())
+    // No further than the next answer, which tells the step it was asked for.
+    simulation().want(static_cast<std::uint32_t>(std::min<std::uint64_t>(
+                          waiting_.front().until_step - simulation().step_index(), real_time_.affordable())),
+                      &engine_->step_timer);
+  else if (!run)
+    simulation().want(0);
+  else if (simulation().wanted() == 0)
+    simulation().want(real_time_.due(now, document_.scene.solver.dt), &engine_->step_timer);
+}
+
+void Stepper::note_finished(Clock::time_point now) {
+  engine_->backlog.poll(now, [&](const GpuBacklog::Piece& piece, double seconds) {
+    real_time_.spent(piece.steps, seconds);
+    piece_size_.measured(piece.places, seconds);
+  });
 }
 
 void Stepper::finish_waiting(bool all) {
   const auto done = [&](const Waiting& waiting) {
-    if (!all && waiting.until_step > simulation_->step_index()) return false;
+    if (!all && waiting.until_step > simulation().step_index()) return false;
     if (diverged_)
       reply(waiting.ticket, diverged_error());
     else
@@ -127,22 +142,21 @@ void Stepper::finish_waiting(bool all) {
     return true;
   };
   waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(), done), waiting_.end());
-  if (all) pending_steps_ = 0;
 }
 
 void Stepper::follow_diagnostics(Clock::time_point now) {
   sim::Diagnostics arrived;
-  if (diagnosing_ && simulation_->poll_diagnostics(arrived)) {
+  if (diagnosing_ && simulation().poll_diagnostics(arrived)) {
     diagnosing_ = false;
     accept(arrived);
     if (running(now) &&
-        rest_.look(arrived.time, arrived.max_speed, [&] { return simulation_->read_state().position; }))
+        rest_.look(arrived.time, arrived.max_speed, [&] { return simulation().read_state().position; }))
       fall_asleep();
   }
   request_diagnosis(now);
   if (now < next_status_) return;
   // The first status of a state that has come to rest tells of that one and no earlier.
-  if (!running(now) && pending_steps_ == 0 && (diagnosing_ || diagnosed_version_ != state_version_)) return;
+  if (!running(now) && waiting_.empty() && (diagnosing_ || diagnosed_version_ != state_version_)) return;
   next_status_ = std::max(next_status_ + period(status_rate), now);
   publish_status(now);
 }
@@ -150,10 +164,10 @@ void Stepper::follow_diagnostics(Clock::time_point now) {
 // Of a state that stands still once is enough.
 void Stepper::request_diagnosis(Clock::time_point now) {
   if (diagnosing_ || diagnosed_version_ == state_version_ || now < next_diagnosis_) return;
-  diagnosis_timer_.begin();
-  simulation_->request_diagnostics();
-  diagnosis_timer_.stage("diagnose");
-  diagnosis_timer_.end();
+  engine_->diagnosis_timer.begin();
+  simulation().request_diagnostics();
+  engine_->diagnosis_timer.stage("diagnose");
+  engine_->diagnosis_timer.end();
   diagnosing_ = true;
   diagnosed_version_ = state_version_;
   next_diagnosis_ = std::max(next_diagnosis_ + period(diagnosis_rate), now);
@@ -162,33 +176,33 @@ void Stepper::request_diagnosis(Clock::time_point now) {
 void Stepper::accept(const sim::Diagnostics& diagnostics) {
   const sim::BlowUp::Verdict verdict = blow_up_.judge(diagnostics);
   if (verdict == sim::BlowUp::Verdict::blown_up) return diverge();
-  if (verdict == sim::BlowUp::Verdict::good) simulation_->keep_diagnosed();
+  if (verdict == sim::BlowUp::Verdict::good) simulation().keep_diagnosed();
   diagnostics_ = diagnostics;
   warn_if_crowded();
   warn_if_unconverged();
 }
 
 sim::Allowance Stepper::allowance() const {
-  return sim::allowance(document_.scene, simulation_->model(), step_limit_.dt_limit());
+  return sim::allowance(document_.scene, simulation().model(), step_limit_.dt_limit());
 }
 
 // The state is a new one, and taken for sound.
 void Stepper::watch_anew() {
-  diagnostics_ = simulation_->diagnose();
+  diagnostics_ = simulation().diagnose();
   diagnosing_ = false;
   blow_up_.start(allowance(), diagnostics_);
 }
 
 void Stepper::fall_asleep() {
   asleep_ = true;
-  frames_->asleep(true);
+  frames().asleep(true);
   announce_passes();
 }
 
 void Stepper::wake_up() {
   rest_.disturb();
   if (!std::exchange(asleep_, false)) return;
-  frames_->asleep(false);
+  frames().asleep(false);
   announce_passes();
 }
 
@@ -196,18 +210,18 @@ void Stepper::diverge() {
   const std::string reason = blow_up_.reason();
   const scene::Solver& solver = document_.scene.solver;
   const double limit = step_limit_.dt_limit();
-  const model::Remedy remedy = model::remedy(simulation_->model(), document_.scene, limit);
+  const model::Remedy remedy = model::remedy(simulation().model(), document_.scene, limit);
   json change{{"dt", remedy.dt}};
   if (remedy.method || solver.automatic)
     change["method"] = scene::name(remedy.method.value_or(solver.method));
-  simulation_->go_back();
+  simulation().go_back();
   ++state_version_;
   watch_anew();
   diverged_ = true;
   resume_ = playing_;
   playing_ = false;
   finish_waiting(true);
-  frames_->diverge();
+  frames().diverge();
   exchange_.emit(Diverged{reason + model::against_limit(solver, limit), remedy.text, {{"solver", change}}});
 }
 
@@ -216,12 +230,12 @@ void Stepper::go_on() {
   if (!diverged_) return;
   diverged_ = false;
   real_time_.restart(Clock::now());
-  frames_->go_on();
+  frames().go_on();
 }
 
 void Stepper::publish_status(Clock::time_point now) {
   if (automatic_.wants_choice(now)) exchange_.emit(ChoiceWanted{});
-  if (was_running_) real_time_.sample(now, simulation_->time());
+  if (was_running_) real_time_.sample(now, simulation().time());
   Status status;
   status.playing = playing_;
   status.diverged = diverged_;
@@ -233,9 +247,9 @@ void Stepper::publish_status(Clock::time_point now) {
   status.margin = step_limit_.margin();
   status.diagnostics = diagnostics_;
   // The timers begin again once their times are taken: a few samples a second.
-  step_timer_.poll(status.pass_times);
-  diagnosis_timer_.poll(status.pass_times);
-  frames_->poll_times(status.pass_times);
+  engine_->step_timer.poll(status.pass_times);
+  engine_->diagnosis_timer.poll(status.pass_times);
+  frames().poll_times(status.pass_times);
   exchange_.publish(status);
   warn_if_slow(now);
 }
@@ -247,8 +261,8 @@ void Stepper::follow_step_limit() {
 }
 
 void Stepper::warn_if_slow(Clock::time_point now) {
-  const double factor = real_time_.factor();
-  if (!was_running_ || factor <= 0 || factor > 0.9 * real_time_.speed()) {
+  // No factor at all: not one step has ended of late.
+  if (!was_running_ || real_time_.factor() > 0.9 * real_time_.speed()) {
     slow_since_ = now;
     return;
   }
@@ -256,10 +270,17 @@ void Stepper::warn_if_slow(Clock::time_point now) {
   slow_announced_ = true;
   const scene::Method method = document_.scene.solver.method;
   const bool iterates = method == scene::Method::implicit_euler || scene::sweeps(method);
-  exchange_.emit(
-      Notice{"warning",
-             std::string("this machine cannot keep up: time runs slower than asked for; a smaller cloth, ") +
-                 (iterates ? "fewer iterations, " : "") + "a longer time step or a lower speed helps"});
+  const double others = simulation().search_candidates();
+  exchange_.emit(Notice{
+      "warning",
+      "this machine cannot keep up" +
+          (real_time_.step_cost() >= 0.1 ? ": a step takes " + significant(real_time_.step_cost(), 2) + " s"
+                                         : std::string(": time runs slower than asked for")) +
+          "; a smaller cloth, " + (iterates ? "fewer iterations, " : "") +
+          (others >= 500 ? "a smaller self_collision thickness (each vertex is held against " +
+                               formatted("%.0f", others) + " others), "
+                         : std::string()) +
+          "a longer time step or a lower speed helps"});
 }
 
 void Stepper::warn_if_crowded() {
@@ -274,8 +295,8 @@ void Stepper::warn_if_crowded() {
 // A few such steps are no news: a cloth that falls into its limit takes them.
 void Stepper::warn_if_unconverged() {
   constexpr std::uint64_t many = 50;
-  const bool limit = simulation_->strain_limit_work().unconverged > many;
-  const bool solver = simulation_->solver_work().unconverged > many;
+  const bool limit = simulation().strain_limit_work().unconverged > many;
+  const bool solver = simulation().solver_work().unconverged > many;
   if (unconverged_announced_ || !(limit || solver)) return;
   unconverged_announced_ = true;
   exchange_.emit(
@@ -290,12 +311,12 @@ bool Stepper::suspended(Clock::time_point now) const {
 }
 
 Clock::time_point Stepper::next_turn(Clock::time_point now) const {
-  if (pending_steps_ > 0 && !backlog_.full()) return now;
-  if (frames_->urgent() || frames_->in_flight() || diagnosing_ || !backlog_.empty())
+  if ((simulation().wanted() > 0 || !waiting_.empty()) && !engine_->backlog.full()) return now;
+  if (frames().urgent() || frames().in_flight() || diagnosing_ || !engine_->backlog.empty())
     return now + microseconds(500);
   if (!running(now)) return suspended(now) ? now + milliseconds(250) : std::max(next_status_, now);
   if (real_time_.behind(document_.scene.solver.dt)) return now;
-  return std::min({now + milliseconds(10), next_status_, std::max(frames_->next_due(), now)});
+  return std::min({now + milliseconds(10), next_status_, std::max(frames().next_due(), now)});
 }
 
 }  // namespace clothlab::net

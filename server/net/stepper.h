@@ -1,7 +1,7 @@
-// What a session's thread does, turn by turn: commands, steps, frames, diagnostics. It owns the simulation,
-// and the GL context must be current on the thread that calls it. The state after N steps depends on the
-// scene alone, never on who watches: viewers only decide when frames are packed, and whether an unwatched
-// session goes on at all.
+// What a session's thread does, turn by turn: commands, a piece of a step or some steps, frames, diagnostics.
+// It owns the simulation and its GL context, which is current on the thread that calls it. The state after N
+// steps depends on the scene alone, never on who watches: viewers only decide when frames are packed, and
+// whether an unwatched session goes on at all.
 #pragma once
 
 #include <memory>
@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "server/net/automatic.h"
+#include "server/net/engine.h"
 #include "server/net/exchange.h"
-#include "server/net/frame_maker.h"
-#include "server/net/gpu_backlog.h"
 #include "server/net/limits.h"
+#include "server/net/piece_size.h"
 #include "server/net/real_time.h"
 #include "server/net/rest.h"
 #include "server/net/step_limit.h"
@@ -27,8 +27,14 @@ class Stepper {
   /// again.
   /// Its frames are numbered from after `last_frame`.
   static Result<std::unique_ptr<Stepper>> create(scene::Document document, Exchange& exchange,
-                                                 const Limits& limits, std::uint32_t last_frame = 0,
+                                                 const Limits& limits, std::optional<int> gpu = std::nullopt,
+                                                 std::uint32_t last_frame = 0,
                                                  double patience = unwatched_seconds);
+
+  /// GL_RENDERER.
+  const std::string& renderer() const { return engine_->context->device().name; }
+  /// The device was reset: nothing of this works any more.
+  bool lost() const { return engine_->context->lost(); }
 
   /// Goes on from where a session of this document was. Error: it is of another mesh.
   clothlab::Status bring_back(const Saved& saved);
@@ -48,8 +54,15 @@ class Stepper {
   };
   using Answer = std::variant<json, RpcError>;
 
-  Stepper(scene::Document document, Exchange& exchange, const Limits& limits, double patience)
-      : document_(std::move(document)), exchange_(exchange), limits_(limits), patience_(patience) {}
+  Stepper(scene::Document document, Exchange& exchange, const Limits& limits, std::optional<int> gpu,
+          double patience)
+      : document_(std::move(document)),
+        exchange_(exchange),
+        limits_(limits),
+        gpu_(gpu),
+        patience_(patience) {}
+  sim::Simulation& simulation() const { return *engine_->simulation; }
+  FrameMaker& frames() const { return *engine_->frames; }
   /// What a scene must pass before anything is made for it.
   clothlab::Status prepare(scene::Document& document);
 
@@ -74,6 +87,8 @@ class Stepper {
   json where_we_are() const;
   RpcError diverged_error() const;
   Result<sim::ChangeDepth> change(const scene::Scene& scene);
+  Result<sim::ChangeDepth> change_engine(const scene::Scene& scene);
+  Result<sim::ChangeDepth> move_to(const scene::Scene& scene, gl::HelperThreads threads);
   void adopt(scene::Document document, sim::ChangeDepth depth);
   void take_over(scene::Document document, sim::ChangeDepth depth);
   void restart();
@@ -84,6 +99,8 @@ class Stepper {
 
   // stepper.cpp
   void advance(Clock::time_point now);
+  void want_steps(Clock::time_point now, bool run);
+  void note_finished(Clock::time_point now);
   void finish_waiting(bool all);
   void follow_diagnostics(Clock::time_point now);
   void request_diagnosis(Clock::time_point now);
@@ -106,11 +123,10 @@ class Stepper {
   scene::Document document_;
   Exchange& exchange_;
   Limits limits_;
+  std::optional<int> gpu_;
   double patience_;  ///< [s]
-  std::unique_ptr<sim::Simulation> simulation_;
-  std::unique_ptr<FrameMaker> frames_;
-  gl::StageTimer step_timer_, diagnosis_timer_;
-  GpuBacklog backlog_;
+  std::unique_ptr<Engine> engine_;
+  PieceSize piece_size_;
   RealTime real_time_;
   StepLimit step_limit_;
   Rest rest_;
@@ -124,7 +140,6 @@ class Stepper {
   bool held_ = false;    ///< the lab has paused it, and nobody has said anything about that since
   bool was_running_ = false;
   std::vector<Waiting> waiting_;
-  std::uint64_t pending_steps_ = 0;  ///< of sim.step
   int watchers_ = 0;
   Clock::time_point last_watched_{};
 

@@ -24,7 +24,7 @@ void Stepper::reply(const Ticket& ticket, Answer answer) {
 }
 
 json Stepper::where_we_are() const {
-  return {{"playing", playing_}, {"time", simulation_->time()}, {"step", simulation_->step_index()}};
+  return {{"playing", playing_}, {"time", simulation().time()}, {"step", simulation().step_index()}};
 }
 
 RpcError Stepper::diverged_error() const {
@@ -45,7 +45,7 @@ void Stepper::perform(LoadScene& load, const Ticket& ticket) {
   if (!document) return reply(ticket, invalid_params(document.error()));
   if (clothlab::Status prepared = prepare(*document); !prepared)
     return reply(ticket, invalid_params(prepared.error()));
-  const Result<sim::ChangeDepth> depth = simulation_->change(document->scene);
+  const Result<sim::ChangeDepth> depth = change_engine(document->scene);
   if (!depth) return reply(ticket, invalid_params(depth.error()));
   playing_ = playing_ || (diverged_ && resume_);
   adopt(std::move(*document), *depth);
@@ -77,11 +77,39 @@ void Stepper::perform(PatchScene& patch, const Ticket& ticket) {
 // The energies before and after the change, of the same state: what it adds is no growth, and growth cannot
 // hide behind one change after another.
 Result<sim::ChangeDepth> Stepper::change(const scene::Scene& scene) {
-  if (!sim::changes_energy(document_.scene, scene)) return simulation_->change(scene);
-  accept(simulation_->diagnose());
+  if (!sim::changes_energy(document_.scene, scene)) return change_engine(scene);
+  accept(simulation().diagnose());
   diagnosing_ = false;
-  const Result<sim::ChangeDepth> depth = simulation_->change(scene);
-  if (depth && *depth != sim::ChangeDepth::cloth) blow_up_.rebase(simulation_->diagnose());
+  const Result<sim::ChangeDepth> depth = change_engine(scene);
+  if (depth && *depth != sim::ChangeDepth::cloth) blow_up_.rebase(simulation().diagnose());
+  return depth;
+}
+
+/// Where the scene becomes heavy or light it moves, and nothing of a step that is under way is kept.
+Result<sim::ChangeDepth> Stepper::change_engine(const scene::Scene& scene) {
+  const gl::HelperThreads threads = Engine::threads_for(scene, engine_->threads);
+  return engine_->software() && threads != engine_->threads ? move_to(scene, threads)
+                                                            : simulation().change(scene);
+}
+
+Result<sim::ChangeDepth> Stepper::move_to(const scene::Scene& scene, gl::HelperThreads threads) {
+  struct Current {  // whatever happens
+    std::unique_ptr<Engine>& engine;
+    ~Current() { (void)engine->context->make_current(); }
+  } current{engine_};
+  const sim::ChangeDepth depth = sim::change_depth(simulation().scene(), scene);
+  const bool anew = depth == sim::ChangeDepth::cloth;
+  sim::State state;
+  if (!anew) state = simulation().read_state();
+  Result<std::unique_ptr<Engine>> made =
+      Engine::create(scene, exchange_,
+                     {gpu_, threads, frames().last(), simulation().topology_revision() + (anew ? 1u : 0u)});
+  if (!made) return made.error();
+  if (!anew) (*made)->simulation->restore(state, simulation().time(), simulation().step_index());
+  (*made)->frames->take_over(frames());
+  engine_.swap(*made);
+  made->reset();
+  diagnosing_ = false;
   return depth;
 }
 
@@ -93,17 +121,17 @@ void Stepper::adopt(scene::Document document, sim::ChangeDepth depth) {
 void Stepper::take_over(scene::Document document, sim::ChangeDepth depth) {
   document_ = std::move(document);
   wake_up();
-  rest_.follow(document_.scene, simulation_->model());
+  rest_.follow(document_.scene, simulation().model());
   if (depth == sim::ChangeDepth::cloth)
     state_replaced();
   else
-    frames_->touch_now();
+    frames().touch_now();
   ++state_version_;
   announce_passes();
   announce_solver();
   if (depth == sim::ChangeDepth::none) return;
   playing_ = playing_ || (diverged_ && resume_);
-  step_limit_.follow(simulation_->model(), document_.scene);
+  step_limit_.follow(simulation().model(), document_.scene);
   follow_step_limit();  // at once: the next change may come before the next status
   if (depth == sim::ChangeDepth::cloth) return watch_anew();
   blow_up_.allow(allowance());
@@ -111,7 +139,7 @@ void Stepper::take_over(scene::Document document, sim::ChangeDepth depth) {
 }
 
 void Stepper::restart() {
-  simulation_->reset();
+  simulation().reset();
   state_replaced();
   watch_anew();
 }
@@ -122,7 +150,7 @@ void Stepper::state_replaced() {
   diverged_ = slow_announced_ = crowded_announced_ = unconverged_announced_ = false;
   ++state_version_;
   real_time_.restart(Clock::now());
-  frames_->restart();
+  frames().restart();
 }
 
 void Stepper::perform(Play&, const Ticket& ticket) {
@@ -147,8 +175,8 @@ void Stepper::perform(Step& step, const Ticket& ticket) {
   if (diverged_) return reply(ticket, diverged_error());
   wake_up();
   playing_ = held_ = false;
-  pending_steps_ += step.steps;
-  waiting_.push_back({ticket, simulation_->step_index() + pending_steps_});
+  const std::uint64_t from = waiting_.empty() ? simulation().step_index() : waiting_.back().until_step;
+  waiting_.push_back({ticket, from + step.steps});
 }
 
 void Stepper::perform(Reset&, const Ticket& ticket) {
@@ -165,7 +193,7 @@ void Stepper::perform(Speed& speed, const Ticket& ticket) {
 }
 
 void Stepper::perform(Demand& demand, const Ticket&) {
-  frames_->demand(demand, Clock::now());
+  frames().demand(demand, Clock::now());
 }
 
 void Stepper::perform(Watchers& watchers, const Ticket&) {
@@ -181,7 +209,7 @@ void Stepper::perform(Hold& hold, const Ticket&) {
   if (playing_) {
     playing_ = false;
     held_ = true;
-    simulation_->finish();  // what is queued already would run beside the job
+    simulation().finish();  // what is queued already would run beside the job
     exchange_.emit(Notice{"info", "paused while the lab measures"});
   }
   exchange_.emit(Held{hold.job});
@@ -194,8 +222,8 @@ void Stepper::perform(Release&, const Ticket&) {
 void Stepper::perform(Export& what, const Ticket& ticket) {
   last_watched_ = Clock::now();
   exchange_.emit(Captured{ticket.asker, what,
-                          Moment{std::make_shared<const scene::Document>(document_), simulation_->time(),
-                                 simulation_->read_state().position, simulation_->colliders_now()}});
+                          Moment{std::make_shared<const scene::Document>(document_), simulation().time(),
+                                 simulation().read_state().position, simulation().colliders_now()}});
 }
 
 // The document stays what it is; what steps it is shown by sim.status.
@@ -215,16 +243,16 @@ void Stepper::perform(Chosen& chosen, const Ticket&) {
 
 void Stepper::announce_scene(std::optional<json> patch, std::uint64_t by) {
   // A topology precedes the frames that need it, so it goes out with the scene that changed it.
-  if (const std::uint32_t revision = simulation_->topology_revision(); revision != topology_revision_) {
+  if (const std::uint32_t revision = simulation().topology_revision(); revision != topology_revision_) {
     topology_revision_ = revision;
-    exchange_.emit(TopologyChanged{stream::encode_topology(simulation_->model(), revision)});
+    exchange_.emit(TopologyChanged{stream::encode_topology(simulation().model(), revision)});
   }
   exchange_.emit(
       SceneChanged{std::make_shared<const scene::Document>(document_), revision_, std::move(patch), by});
 }
 
 void Stepper::announce_passes() {
-  std::vector<sim::Simulation::Pass> passes = simulation_->passes();
+  std::vector<sim::Simulation::Pass> passes = simulation().passes();
   for (sim::Simulation::Pass& pass : passes)
     if (asleep_ && pass.skipped.empty()) pass.skipped = "asleep: the cloth is at rest";
   exchange_.emit(PassesChanged{std::move(passes)});
@@ -235,7 +263,7 @@ void Stepper::announce_solver() {
   json shares = nullptr;
   if (document_.scene.solver.method == scene::Method::pbd) {
     shares = json::array();
-    for (const model::PbdStiffness& of : model::pbd_stiffness(simulation_->model(), document_.scene)) {
+    for (const model::PbdStiffness& of : model::pbd_stiffness(simulation().model(), document_.scene)) {
       const auto share = [&](model::SpringKind kind) {
         const std::optional<double>& value = of[static_cast<std::size_t>(kind)];
         return value ? json(*value) : json(nullptr);

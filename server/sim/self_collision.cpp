@@ -26,8 +26,8 @@ struct Control {
   std::array<std::uint32_t, 3> search{0, 0, 1};
 };
 
-/// Pairs that one search may look at: some ten seconds on a slow processor.
-constexpr double most_pairs = 4e9;
+/// Pairs that one search may look at: some three seconds on a slow processor.
+constexpr double most_pairs = 1e9;
 /// Pairs of one dispatch: a few milliseconds there.
 constexpr double pairs_a_dispatch = 2e6;
 constexpr std::chrono::milliseconds long_dispatch{10};

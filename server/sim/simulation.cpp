@@ -56,7 +56,7 @@ struct Simulation::Implementation {
   DiagnosticsPass diagnostics;
   std::uint64_t diagnosed_step = 0;  ///< of the diagnosis that came last
   LastGood last_good;
-  std::uint32_t topology_revision = 1;
+  std::uint32_t topology_revision = 0;
   std::uint64_t step_index = 0;
   // Time is start_time + (step_index - start_step) dt: no sum that rounding could let drift. A change of dt
   // starts anew.
@@ -184,7 +184,8 @@ struct Simulation::Implementation {
 Simulation::Simulation() : implementation_(std::make_unique<Implementation>()) {}
 Simulation::~Simulation() = default;
 
-Result<std::unique_ptr<Simulation>> Simulation::create(const scene::Scene& scene) {
+Result<std::unique_ptr<Simulation>> Simulation::create(const scene::Scene& scene,
+                                                       std::uint32_t topology_revision) {
   std::unique_ptr<Simulation> made(new Simulation);
   Implementation& self = *made->implementation_;
   if (Status fits = fits_device(scene); !fits) return fits.error();
@@ -195,6 +196,7 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const scene::Scene& scene
   if (!diagnostics) return diagnostics.error();
   self.diagnostics = std::move(*diagnostics);
   self.scene = scene;
+  self.topology_revision = topology_revision;
   self.rest = rest_positions(self.kernels.model);
   self.state = StateBuffers(self.kernels.model, self.kernels.motions);
   self.last_good = LastGood(self.kernels.model.vertex_count());
@@ -206,9 +208,8 @@ Result<ChangeDepth> Simulation::change(const scene::Scene& scene) {
   Implementation& self = *implementation_;
   const ChangeDepth depth = change_depth(self.scene, scene);
   if (depth == ChangeDepth::cloth) {
-    Result<std::unique_ptr<Simulation>> fresh = create(scene);
+    Result<std::unique_ptr<Simulation>> fresh = create(scene, self.topology_revision + 1);
     if (!fresh) return fresh.error();
-    (*fresh)->implementation_->topology_revision = self.topology_revision + 1;
     implementation_ = std::move((*fresh)->implementation_);
     return depth;
   }
@@ -282,6 +283,11 @@ std::uint32_t Simulation::topology_revision() const {
 }
 std::vector<Simulation::Pass> Simulation::passes() const {
   return sim::passes(implementation_->kernels.plan);
+}
+
+double Simulation::search_candidates() const {
+  const std::optional<SelfCollision>& self_collision = implementation_->kernels.self_collision;
+  return self_collision ? self_collision->candidates() : 0.0;
 }
 
 SolverWork Simulation::solver_work() const {

@@ -66,7 +66,8 @@ struct StrainLimitWork {
 
 class Simulation {
  public:
-  static Result<std::unique_ptr<Simulation>> create(const scene::Scene& scene);
+  static Result<std::unique_ptr<Simulation>> create(const scene::Scene& scene,
+                                                    std::uint32_t topology_revision = 1);
   ~Simulation();
 
   /// Applies a changed scene live; on error the old one goes on.
@@ -103,6 +104,9 @@ class Simulation {
   StrainLimitWork strain_limit_work() const;
   /// Dispatches that the present method has queued since the kernels were made, without self-collision's.
   std::uint64_t dispatches() const;
+
+  /// Others that self-collision's search holds each vertex against, in the mean at the start; 0 without.
+  double search_candidates() const;
 
   /// The passes a step runs, in order, and the ones left out with the reason.
   struct Pass {

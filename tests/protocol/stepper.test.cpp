@@ -50,19 +50,15 @@ using net::Clock;
 namespace {
 
 struct Fixture {
-  std::unique_ptr<gl::Context> context;
   net::Exchange exchange{[] {}};
   std::unique_ptr<net::Stepper> stepper;
   std::vector<net::Command> commands;
 
   explicit Fixture(double patience = net::unwatched_seconds) {
-    Result<std::unique_ptr<gl::Context>> made = gl::Context::create();
-    REQUIRE(made);
-    context = std::move(*made);
     Result<scene::Document> seed = scene::load_preset("seed");
     REQUIRE(seed);
     Result<std::unique_ptr<net::Stepper>> created =
-        net::Stepper::create(std::move(*seed), exchange, net::Limits(), 0, patience);
+        net::Stepper::create(std::move(*seed), exchange, net::Limits(), std::nullopt, 0, patience);
     REQUIRE(created);
     stepper = std::move(*created);
   }

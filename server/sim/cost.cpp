@@ -1,0 +1,57 @@
+#include "server/sim/cost.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "server/model/size.h"
+#include "server/scene/method.h"
+#include "server/scene/sections.h"
+
+namespace clothlab::sim {
+
+namespace {
+
+// [s] a vertex, measured with tests/bench/step.mjs and methods.mjs.
+constexpr double gather = 50e-9;     ///< one evaluation of the forces
+constexpr double contacts = 150e-9;  ///< self-collision, a step
+constexpr double sweep = 210e-9;     ///< one sweep of PBD, XPBD or VBD
+constexpr double newton = 3.4e-6;    ///< one Newton step of implicit Euler, which rarely takes more than two
+constexpr double limit = 20 * gather;  ///< the strain limit's sweeps
+constexpr double pair = 3e-9;          ///< one pair of a neighbour search
+constexpr double searches = 0.05;      ///< of them a step, while a cloth moves
+
+/// Others that a neighbour search looks at for each vertex (crowding.h), from the grid's spacing; of another
+/// mesh, and of a cloth that does not start flat, as of one that lies in a heap.
+double candidates(const scene::Cloth& cloth, double thickness) {
+  const double vertices = static_cast<double>(scene::vertex_count(cloth.mesh));
+  const auto* grid = std::get_if<scene::Grid>(&cloth.mesh);
+  if (!grid || cloth.start != scene::Cloth().start) return vertices;
+  const double edge = cloth.transform.scale * std::max(grid->width / std::max(grid->columns - 1, 1),
+                                                       grid->height / std::max(grid->rows - 1, 1));
+  const double reach = thickness + std::max(edge, 0.5 * thickness);
+  return std::min(vertices, std::pow(4.0 * reach / edge, 2));
+}
+
+double evaluations(scene::Method method) {
+  return method == scene::Method::rk4 ? 4.0 : 1.0;
+}
+
+}  // namespace
+
+double expected_step_seconds(const scene::Scene& scene) {
+  const double iterations = scene.solver.iterations;
+  double a_vertex = evaluations(scene.solver.method) * gather;
+  if (scene::sweeps(scene.solver.method)) a_vertex += iterations * sweep;
+  if (scene.solver.method == scene::Method::implicit_euler) a_vertex += std::min(iterations, 2.0) * newton;
+  double total = 0.0;
+  for (const scene::Cloth& cloth : scene.cloths) {
+    double cost = a_vertex;
+    if (cloth.material.strain_limit) cost += limit;
+    if (scene.self_collision)
+      cost += contacts + searches * pair * candidates(cloth, scene.self_collision->thickness);
+    total += cost * static_cast<double>(scene::vertex_count(cloth.mesh));
+  }
+  return total;
+}
+
+}  // namespace clothlab::sim
