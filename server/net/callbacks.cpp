@@ -6,6 +6,7 @@
 #include <strings.h>
 #include <sys/socket.h>
 
+#include <exception>
 #include <new>
 
 #include "server/net/client.h"

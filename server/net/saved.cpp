@@ -1,6 +1,7 @@
 #include "server/net/saved.h"
 
 #include <cstring>
+#include <exception>
 
 #include "server/base/text.h"
 #include "server/scene/document.h"

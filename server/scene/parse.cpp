@@ -1,6 +1,7 @@
 // Text to JSON, with size, depth and repeated keys checked while it is read: a value that nlohmann_json could
 // not copy or print without running out of stack never comes into being.
 #include <algorithm>
+#include <cstddef>
 #include <iterator>
 
 #include "server/scene/document.h"
