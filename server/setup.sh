@@ -1,10 +1,11 @@
+# shellcheck shell=bash disable=SC2034,SC2154  # sourced: some names are set here and used there, or the other way round
 # What server/run and tests/run share: the packages each needs, and how they are installed and built.
 # Sourced by bash from the repository's root, with `script` set to the name to show. Says little: what apt, npm
 # and cmake print goes to build/setup-*.log and is shown only when they fail.
 
 build_packages=(g++ cmake ninja-build pkg-config python3-glad libegl1 libgl1-mesa-dri libwebsockets-dev
   nlohmann-json3-dev libstb-dev libglm-dev libeigen3-dev libcli11-dev zlib1g-dev)
-test_packages=(catch2)
+test_packages=(catch2 shellcheck)
 
 say() { echo "$script: $*"; }
 die() { echo "$script: error: $*" >&2; exit 1; }
