@@ -5,7 +5,7 @@
 
 build_packages=(g++ cmake ninja-build pkg-config python3-glad libegl1 libgl1-mesa-dri libwebsockets-dev
   nlohmann-json3-dev libstb-dev libglm-dev libeigen3-dev libcli11-dev zlib1g-dev)
-test_packages=(catch2 shellcheck)
+test_packages=(catch2)
 
 say() { echo "$script: $*"; }
 die() { echo "$script: error: $*" >&2; exit 1; }
