@@ -109,7 +109,7 @@ extern "C" {
 
 ssize_t recv(int socket, void* buffer, size_t size, int flags) {
   const ssize_t got = recvfrom(socket, buffer, size, flags, nullptr, nullptr);
-  return clothlab::net::look(socket, buffer, got, size);
+  return (flags & MSG_PEEK) != 0 ? got : clothlab::net::look(socket, buffer, got, size);
 }
 
 int SSL_read(SSL* ssl, void* buffer, int size) {
