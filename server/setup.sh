@@ -1,3 +1,4 @@
+# shellcheck shell=bash disable=SC2034,SC2154  # sourced: some names are set here and used there, or the other way round
 # What server/run and tests/run share: the packages each needs, and how they are installed and built.
 # Sourced by bash from the repository's root, with `script` set to the name to show. Says little: what apt, npm
 # and cmake print goes to build/setup-*.log and is shown only when they fail.

@@ -1,4 +1,5 @@
 // `clothlab chart S`: every method's speed against its accuracy on one scene.
+#include <algorithm>
 #include <iostream>
 #include <map>
 #include <memory>

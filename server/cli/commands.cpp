@@ -1,6 +1,9 @@
 #include "server/cli/commands.h"
 
+#include <charconv>
 #include <iostream>
+#include <string>
+#include <system_error>
 
 #include "server/model/stability.h"
 
@@ -15,6 +18,17 @@ int fail(const Error& error, ExitCode code) {
 void note(const std::string& text) {
   std::cout.flush();
   std::cerr << "clothlab: note: " << text << std::endl;
+}
+
+CLI::Validator whole_number(int least, int most) {
+  const auto check = [least, most](const std::string& text) -> std::string {
+    int value = 0;
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (failure == std::errc() && end == text.data() + text.size() && value >= least && value <= most)
+      return {};
+    return text + ", which is no whole number from " + std::to_string(least) + " to " + std::to_string(most);
+  };
+  return CLI::Validator(check, std::string());
 }
 
 void warn_of_step(const model::Model& model, const scene::Scene& scene, const std::string& about) {

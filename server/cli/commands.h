@@ -39,6 +39,9 @@ int fail(const Error& error, ExitCode code);
 /// Prints "clothlab: note: ..." on stderr.
 void note(const std::string& text);
 
+/// What an option's value must be. CLI::Range's words differ from one version of CLI11 to the next.
+CLI::Validator whole_number(int least, int most);
+
 /// Prints a warning on stderr if the scene's step is near or beyond the longest stable one.
 void warn_of_step(const model::Model& model, const scene::Scene& scene, const std::string& about = "");
 

@@ -1,4 +1,5 @@
 // `clothlab render S --time T --out F.png`: simulates up to a moment and draws it, without a window.
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <iostream>

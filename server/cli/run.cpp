@@ -1,5 +1,7 @@
 // `clothlab run S --time T`: steps a scene as fast as it goes and writes meshes, a trace and a report.
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <memory>

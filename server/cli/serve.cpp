@@ -6,8 +6,10 @@
 #include <iostream>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "server/base/files.h"
+#include "server/base/folder_lock.h"
 #include "server/base/memory.h"
 #include "server/cli/commands.h"
 #include "server/model/model.h"
@@ -98,15 +100,24 @@ Status check(const ServeArguments& arguments) {
       return Error{file, "is not a file", "give a PEM file"};
   if (!arguments.asset_root.empty() && !std::filesystem::is_directory(arguments.asset_root))
     return Error{"--asset-root " + arguments.asset_root, "is not a folder", "give a folder that exists"};
-  if (options.state_folder.empty()) return ok();
+  return ok();
+}
+
+/// Makes the folder where it is not there yet, and keeps other servers out of it for as long as this process
+/// lives: two would write over each other's sessions.
+Result<FolderLock> claim_state_folder(const net::Options& options) {
+  if (options.state_folder.empty()) return FolderLock();
   std::error_code failure;
   std::filesystem::create_directories(options.state_folder, failure);
+  Result<FolderLock> lock = FolderLock::take(options.state_folder);
+  if (!lock)
+    return Error{"--state-dir " + options.state_folder.string(), lock.error().what, lock.error().remedy};
   const std::filesystem::path trial = options.state_folder / "trial";
   if (const Status writable = replace_file(trial, ""); !writable)
     return Error{"--state-dir " + options.state_folder.string(), writable.error().what,
                  "give a folder that can be written"};
   std::filesystem::remove(trial, failure);
-  return ok();
+  return std::move(*lock);
 }
 
 int serve(ServeArguments& arguments) {
@@ -121,6 +132,8 @@ int serve(ServeArguments& arguments) {
     return fail(small.error(), exit_usage);
   if (const Result<model::Model> model = model::build(document->scene); !model)
     return fail(model.error(), exit_usage);
+  const Result<FolderLock> state_folder = claim_state_folder(arguments.options);
+  if (!state_folder) return fail(state_folder.error(), exit_usage);
   arguments.options.document = std::move(*document);
   if (arguments.gpu >= 0) arguments.options.gpu = arguments.gpu;
   net::set_log_level(*net::log_level(arguments.log_level));
@@ -141,7 +154,7 @@ void add_limits(CLI::App& command, net::Limits& limits) {
   const auto add = [&](const char* flag, int& value, int least, int most, const char* help) {
     command.add_option(flag, value, help)
         ->type_name("N")
-        ->check(CLI::Range(least, most))
+        ->check(whole_number(least, most))
         ->capture_default_str()
         ->group("Limits");
   };
@@ -179,7 +192,7 @@ void add_serve(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--port", options.port, "the port to listen on; 0 picks a free one")
       ->type_name("PORT")
-      ->check(CLI::Range(0, 65535))
+      ->check(whole_number(0, 65535))
       ->capture_default_str();
   // From the environment, other users of the machine cannot read them.
   command->add_option("--token", options.token, "what operators must send first (auth), or as a Bearer token")
@@ -206,7 +219,7 @@ void add_serve(CLI::App& app, int& exit_code) {
       ->type_name("FOLDER");
   command->add_option("--gpu", arguments->gpu, "the device by its number in `clothlab info`")
       ->type_name("N")
-      ->check(CLI::Range(0, 1000));
+      ->check(whole_number(0, 1000));
   command->add_option("--tls-cert", options.tls_certificate, "PEM file; with --tls-key: HTTPS and WSS")
       ->type_name("FILE");
   command->add_option("--tls-key", options.tls_key, "PEM file")->type_name("FILE");

@@ -1,5 +1,6 @@
 #include "server/lab/drawings.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 

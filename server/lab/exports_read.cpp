@@ -1,6 +1,7 @@
 // Results of the lab back from their JSON. What is not as to_json writes it throws within this file and is an
 // Error outside.
 #include <algorithm>
+#include <exception>
 #include <limits>
 #include <stdexcept>
 

@@ -1,6 +1,7 @@
 // The words of a picture: numbers, entities, and how much room they take.
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 
 #include "server/base/text.h"

@@ -1,5 +1,6 @@
 #include "server/lab/settling.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <glm/geometric.hpp>

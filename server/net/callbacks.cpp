@@ -6,11 +6,17 @@
 #include <strings.h>
 #include <sys/socket.h>
 
-#include <new>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <optional>
+#include <string>
 
 #include "server/net/client.h"
+#include "server/net/frame_watch.h"
 #include "server/net/http.h"
 #include "server/net/log.h"
+#include "server/net/request_checks.h"
 #include "server/net/request_headers.h"
 #include "server/net/server.h"
 
@@ -25,10 +31,31 @@ struct HttpSlot {
 };
 struct ClientSlot {
   Client* client;
+  bool ending;  ///< libwebsockets says the close
 };
 
 Server& server_of(lws* wsi) {
   return *static_cast<Server*>(lws_context_user(lws_get_context(wsi)));
+}
+
+/// The words of a status, which only people read.
+std::string reason(unsigned status) {
+  switch (status) {
+    case 400:
+      return "Bad Request";
+    case 403:
+      return "Forbidden";
+    case 404:
+      return "Not Found";
+    case 426:
+      return "Upgrade Required";
+    case 431:
+      return "Request Header Fields Too Large";
+    case 503:
+      return "Service Unavailable";
+    default:
+      return "Refused";
+  }
 }
 
 /// The next request is to be there whole by then.
@@ -57,9 +84,46 @@ int on_socket(lws* wsi, int socket) {
 
 int on_connection(lws* wsi) {
   Hub& hub = server_of(wsi).hub();
+  watch_connection(lws_get_socket_fd(wsi));
   hub.connections().opened(wsi, network_of(peer_address(wsi)));
   await_request(wsi);
   return 0;
+}
+
+/// Answers in place of a handshake; the connection is to be closed then.
+int refuse(lws* wsi, const RequestFault& fault) {
+  constexpr std::size_t longest = 200;  // of an origin: nobody fills the log with it
+  ++server_of(wsi).hub().metrics().refused;
+  log(LogLevel::warning, "client_refused",
+      {{"address", peer_address(wsi)},
+       {"origin", header(wsi, WSI_TOKEN_ORIGIN).substr(0, longest)},
+       {"status", std::to_string(fault.status)},
+       {"why", fault.why}});
+  const std::string body = fault.why + "\n";
+  std::string text(LWS_PRE, '\0');
+  text += "HTTP/1.1 " + std::to_string(fault.status) + " " + reason(fault.status) +
+          "\r\ncontent-type: text/plain; charset=utf-8\r\nx-content-type-options: nosniff\r\n"
+          "connection: close\r\ncontent-length: " +
+          std::to_string(body.size()) + "\r\n" + fault.also + "\r\n" + body;
+  lws_write(wsi, reinterpret_cast<unsigned char*>(text.data()) + LWS_PRE, text.size() - LWS_PRE,
+            LWS_WRITE_HTTP_HEADERS);
+  return -1;
+}
+
+/// libwebsockets would answer h2c too, and take a handshake for whatever protocol is its first.
+int on_upgrade(lws* wsi, const char* to) {
+  if (strcasecmp(to, "websocket") != 0) return -1;
+  if (const std::optional<RequestFault> fault = request_fault(wsi)) return refuse(wsi, *fault);
+  if (const std::optional<RequestFault> fault = handshake_fault(wsi)) return refuse(wsi, *fault);
+  if (!watch_frames(wsi))
+    return refuse(wsi, {400, "something came after the handshake; wait for its answer", {}});
+  return 0;
+}
+
+int on_handshake(lws* wsi) {
+  std::string why;
+  const unsigned status = server_of(wsi).refusal(wsi, why);
+  return status == 0 ? 0 : refuse(wsi, {status, why, {}});
 }
 
 int on_http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size) {
@@ -86,36 +150,18 @@ int on_http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::si
       if (slot) finish_http(*slot, wsi, -1);
       return 0;
     case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
-      // libwebsockets would answer h2c too.
-      return strcasecmp(static_cast<const char*>(in), "websocket") == 0 ? 0 : -1;
+      return on_upgrade(wsi, static_cast<const char*>(in));
     case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
       return -1;  // a WebSocket that asks for this protocol by name
+    case LWS_CALLBACK_RAW_ADOPT:
+    case LWS_CALLBACK_RAW_RX:
+      return -1;  // after CONNECT libwebsockets would speak no HTTP any more
     case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
       server_of(wsi).hub().pump();
       return 0;
     default:
       return 0;
   }
-}
-
-int refuse(lws* wsi, unsigned status, const std::string& why) {
-  constexpr std::size_t longest = 200;  // of an origin: nobody fills the log with it
-  ++server_of(wsi).hub().metrics().refused;
-  log(LogLevel::warning, "client_refused",
-      {{"address", peer_address(wsi)},
-       {"origin", header(wsi, WSI_TOKEN_ORIGIN).substr(0, longest)},
-       {"status", std::to_string(status)},
-       {"why", why}});
-  lws_return_http_status(wsi, status, why.c_str());
-  return -1;
-}
-
-int on_handshake(lws* wsi) {
-  if (header(wsi, WSI_TOKEN_PROTOCOL).empty())
-    return refuse(wsi, HTTP_STATUS_BAD_REQUEST, "ask for the subprotocol clothlab.v1");
-  std::string why;
-  const unsigned status = server_of(wsi).refusal(wsi, why);
-  return status == 0 ? 0 : refuse(wsi, status, why);
 }
 
 /// What the kernel has not sent can no longer be replaced by something newer: keep that little.
@@ -126,12 +172,23 @@ void set_socket_options(lws* wsi) {
   setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
 }
 
+constexpr const char* why_masked = "a client's frames are to be masked (RFC 6455, 5.1)";
+
+/// Where the frame was the client's close, libwebsockets wants to answer it itself.
+int refuse_unmasked(lws* wsi) {
+  std::string why = why_masked;
+  lws_close_reason(wsi, LWS_CLOSE_STATUS_PROTOCOL_ERR, reinterpret_cast<unsigned char*>(why.data()),
+                   why.size());
+  return -1;
+}
+
 int on_client(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size) {
   auto* slot = static_cast<ClientSlot*>(user);
   switch (reason) {
     case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
       return on_handshake(wsi);
     case LWS_CALLBACK_WSI_DESTROY:
+      watch_no_longer(wsi);
       server_of(wsi).hub().connections().closed(wsi);
       return 0;
     case LWS_CALLBACK_ESTABLISHED:
@@ -139,10 +196,14 @@ int on_client(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::
       slot->client = new Client(server_of(wsi).hub(), wsi, query(wsi, "session", main_session));
       return 0;
     case LWS_CALLBACK_RECEIVE:
+      if (sent_unmasked(wsi)) return 0;
       return slot->client ? slot->client->receive(static_cast<const char*>(in), size) : -1;
     case LWS_CALLBACK_SERVER_WRITEABLE:
+      if (slot->ending) return 0;
+      if (slot->client && sent_unmasked(wsi)) slot->client->close(close_protocol, why_masked);
       return slot->client ? slot->client->writeable() : -1;
     case LWS_CALLBACK_WS_PEER_INITIATED_CLOSE:
+      if (sent_unmasked(wsi)) return slot->ending = true, refuse_unmasked(wsi);
       return slot->client && slot->client->close_said() ? -1 : 0;
     case LWS_CALLBACK_TIMER:
       if (slot && slot->client) slot->client->timer();

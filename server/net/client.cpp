@@ -97,7 +97,10 @@ void Client::handle(const std::string& text) {
   std::variant<Request, BadRequest> parsed =
       parse_request(text, {static_cast<std::size_t>(hub_.limits().message_bytes),
                            static_cast<std::size_t>(hub_.limits().json_depth)});
-  if (const auto* bad = std::get_if<BadRequest>(&parsed)) return send(error_text(bad->id, bad->error));
+  if (const auto* bad = std::get_if<BadRequest>(&parsed)) {
+    if (!bad->notification) send(error_text(bad->id, bad->error));
+    return;
+  }
   auto& request = std::get<Request>(parsed);
   request.received_us = now_us();
   const Outcome outcome = call(*this, request);

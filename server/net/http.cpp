@@ -7,6 +7,7 @@
 
 #include "server/net/hub.h"
 #include "server/net/limits.h"
+#include "server/net/request_checks.h"
 #include "server/net/request_headers.h"
 
 namespace clothlab::net {
@@ -53,11 +54,16 @@ HttpRequest::~HttpRequest() {
 }
 
 void HttpRequest::begin(const std::string& path) {
+  if (const std::optional<RequestFault> fault = request_fault(wsi_)) {
+    last_ = true;
+    return answer(plain(fault->status, fault->why));
+  }
   head_ = lws_hdr_total_length(wsi_, WSI_TOKEN_HEAD_URI) > 0;
   if (!head_ && lws_hdr_total_length(wsi_, WSI_TOKEN_GET_URI) <= 0) {
     HttpAnswer refusal =
         plain(405, "only GET and HEAD are answered here; changes go over the WebSocket at /ws");
     refusal.headers = {{"allow:", "GET, HEAD"}};
+    last_ = true;  // it may have a body
     return answer(std::move(refusal));
   }
   if (path == "/healthz")
@@ -82,12 +88,12 @@ HttpAnswer HttpRequest::file(const std::string& path) const {
                     file->type,
                     {},
                     {{"etag:", file->etag}, {"cache-control:", "no-cache"}, {"vary:", "accept-encoding"}}};
-  if (header(wsi_, WSI_TOKEN_HTTP_IF_NONE_MATCH).find(file->etag) != std::string::npos) {
+  const std::string known = header(wsi_, WSI_TOKEN_HTTP_IF_NONE_MATCH);
+  if (known == "*" || known.find(file->etag) != std::string::npos) {
     answer.status = 304;
     return answer;
   }
-  const bool zip = !file->gzipped.empty() &&
-                   header(wsi_, WSI_TOKEN_HTTP_ACCEPT_ENCODING).find("gzip") != std::string::npos;
+  const bool zip = !file->gzipped.empty() && prefers_gzip(header(wsi_, WSI_TOKEN_HTTP_ACCEPT_ENCODING));
   if (zip) answer.headers.emplace_back("content-encoding:", "gzip");
   answer.body = zip ? file->gzipped : file->body;
   return answer;
@@ -172,6 +178,7 @@ int HttpRequest::send_headers() {
   failed |= add("content-type:", answer_.type);
   failed |= lws_add_http_header_content_length(wsi_, answer_.body.size(), &at, end);
   failed |= add("content-security-policy:", content_security_policy);
+  if (last_) failed |= add("connection:", "close");
   for (const auto& [name, value] : security_headers) failed |= add(name, value);
   for (const auto& [name, value] : answer_.headers) failed |= add(name.c_str(), value);
   if (failed || lws_finalize_http_header(wsi_, &at, end)) return -1;
@@ -179,7 +186,7 @@ int HttpRequest::send_headers() {
   const bool alone = head_ || answer_.body.empty();
   const auto size = static_cast<std::size_t>(at - start);
   if (lws_write(wsi_, start, size, LWS_WRITE_HTTP_HEADERS) < 0) return -1;
-  if (alone) return 1;
+  if (alone) return last_ ? -1 : 1;
   lws_callback_on_writable(wsi_);
   return 0;
 }
@@ -188,7 +195,8 @@ int HttpRequest::writeable() {
   if (!answered_) return 0;
   if (!headers_sent_) return send_headers();
   auto* body = reinterpret_cast<unsigned char*>(answer_.body.data());
-  return lws_write(wsi_, body, answer_.body.size(), LWS_WRITE_HTTP_FINAL) < 0 ? -1 : 1;
+  const bool sent = lws_write(wsi_, body, answer_.body.size(), LWS_WRITE_HTTP_FINAL) >= 0;
+  return sent && !last_ ? 1 : -1;
 }
 
 }  // namespace clothlab::net

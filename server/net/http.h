@@ -54,6 +54,7 @@ class HttpRequest {
   lws* wsi_;
   std::uint64_t id_;
   bool head_ = false;
+  bool last_ = false;  ///< the connection is closed once this is answered
   bool answered_ = false, headers_sent_ = false;
   HttpAnswer answer_;
 };

@@ -74,7 +74,12 @@ std::variant<Request, BadRequest> parse_request(const std::string& text, scene::
   request.method = method->get<std::string>();
   if (const auto params = message.find("params"); params != message.end() && !params->is_null()) {
     if (!params->is_object())
-      return BadRequest{invalid_params("", compact(*params), "an object of named parameters"), id};
+      return BadRequest{
+          {error_invalid_params,
+           "invalid params: " + compact(*params) + "; an object of named parameters",
+           {{"path", ""}, {"found", compact(*params)}, {"allowed", "an object of named parameters"}}},
+          id,
+          !request.id};
     request.params = std::move(*params);
   }
   return request;

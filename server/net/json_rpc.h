@@ -50,6 +50,7 @@ struct Request {
 struct BadRequest {
   RpcError error;
   json id = nullptr;
+  bool notification = false;  ///< of one that has all else a notification has: nobody waits for an answer
 };
 
 /// Reads one text message. Too deep or not JSON: -32700; a batch or no request: -32600; positional

@@ -24,6 +24,10 @@ Result<std::shared_ptr<const Saved>> load_session(const fs::path& file) {
   fs::path aside = file;
   aside += ".unreadable";
   fs::rename(file, aside, failure);
+  if (failure)
+    return Error{file.string(), saved.error().what,
+                 "it could not be moved to " + aside.string() + " (" + failure.message() +
+                     "): move it away if it is to be kept"};
   return Error{file.string(), saved.error().what, "it was moved to " + aside.string()};
 }
 

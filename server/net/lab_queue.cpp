@@ -1,6 +1,7 @@
 #include "server/net/lab_queue.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 #include <vector>
 

@@ -57,6 +57,6 @@ inline constexpr double unwatched_seconds = 30;
 inline constexpr int unsent_kernel_bytes = 64 * 1024;
 
 // Close codes of RFC 6455.
-inline constexpr int close_policy = 1008, close_too_big = 1009, close_internal = 1011;
+inline constexpr int close_protocol = 1002, close_policy = 1008, close_too_big = 1009, close_internal = 1011;
 
 }  // namespace clothlab::net

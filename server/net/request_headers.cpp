@@ -6,13 +6,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstddef>
+#include <cstdint>
 #include <string_view>
 
 namespace clothlab::net {
 
 namespace {
-constexpr int longest = 4096;
-
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
   return text;
@@ -78,7 +78,7 @@ std::string network_of(const std::string& address) {
 
 std::string header(lws* wsi, lws_token_indexes token) {
   const int length = lws_hdr_total_length(wsi, token);
-  if (length <= 0 || length > longest) return {};
+  if (length <= 0) return {};
   std::string text(static_cast<std::size_t>(length) + 1, '\0');
   const int copied = lws_hdr_copy(wsi, text.data(), length + 1, token);
   text.resize(copied > 0 ? static_cast<std::size_t>(copied) : 0);

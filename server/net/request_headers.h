@@ -14,7 +14,7 @@ std::string peer_address(lws* wsi);
 /// What limits count as one address: an IPv6 host has a network of 64 bits to itself, and any number of
 /// addresses in it.
 std::string network_of(const std::string& address);
-/// A header's value, empty if it is missing or longer than 4 KiB.
+/// A header's value, empty if it is missing; those of the same name are joined by commas.
 std::string header(lws* wsi, lws_token_indexes token);
 /// An argument of the query, `fallback` if it is missing.
 std::string query(lws* wsi, const std::string& name, const std::string& fallback);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "server/net/client.h"
 #include "server/net/greeting.h"

@@ -1,6 +1,9 @@
 #include "server/net/saved.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstring>
+#include <exception>
 
 #include "server/base/text.h"
 #include "server/scene/document.h"
@@ -10,7 +13,8 @@ namespace clothlab::net {
 
 namespace {
 
-const std::string title = "clothlab session 1\n";
+const std::string kind = "clothlab session ";
+const std::string title = kind + "1\n";
 
 std::string hash_text(const sim::State& state) {
   return formatted("%016llx", static_cast<unsigned long long>(sim::state_hash(state)));
@@ -18,6 +22,20 @@ std::string hash_text(const sim::State& state) {
 
 Error unreadable(const std::string& what) {
   return {"saved session", what, "what this version of the program wrote"};
+}
+
+/// Of a file that is not one of this version's: what its first line is, as far as it can be shown.
+Error other_file(const std::string& bytes) {
+  if (bytes.empty()) return unreadable("it is empty");
+  constexpr std::size_t longest = 40;
+  std::string line = bytes.substr(0, std::min(bytes.find('\n'), longest));
+  std::replace_if(
+      line.begin(), line.end(), [](unsigned char c) { return c < ' ' || c > '~' || c == '"'; }, '?');
+  const std::string expected = title.substr(0, title.size() - 1);
+  if (line.starts_with(kind))
+    return unreadable("another version of the program wrote it: it begins with \"" + line +
+                      "\", and this one reads \"" + expected + "\"");
+  return unreadable("it is no saved session: it begins with \"" + line + "\", not with \"" + expected + "\"");
 }
 
 void append(std::string& bytes, const std::vector<glm::vec3>& values) {
@@ -42,7 +60,7 @@ std::string to_bytes(const Saved& saved) {
 }
 
 Result<Saved> saved_from(const std::string& bytes) {
-  if (!bytes.starts_with(title)) return unreadable("no such file: it begins otherwise");
+  if (!bytes.starts_with(title)) return other_file(bytes);
   const std::size_t end = bytes.find('\n', title.size());
   if (end == std::string::npos) return unreadable("it ends too early");
   const Result<json> head = scene::parse_json(bytes.substr(title.size(), end - title.size()), "saved session",

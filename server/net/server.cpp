@@ -7,6 +7,7 @@
 
 #include "server/net/callbacks.h"
 #include "server/net/log.h"
+#include "server/net/request_checks.h"
 #include "server/net/request_headers.h"
 
 namespace clothlab::net {
@@ -57,6 +58,7 @@ Result<std::unique_ptr<Server>> Server::listen(Options options) {
   info.options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_EXPLICIT_VHOSTS;
   if (!is_ipv6(address)) info.options |= LWS_SERVER_OPTION_DISABLE_IPV6;
   info.pt_serv_buf_size = 256 * 1024;
+  info.max_http_header_data2 = header_room_bytes;
   info.timeout_secs = static_cast<unsigned>(with.limits.header_seconds);
   info.timeout_secs_ah_idle = info.timeout_secs;
   info.keepalive_timeout = std::min(30, with.limits.idle_seconds);

@@ -1,6 +1,7 @@
 #include "server/net/session.h"
 
 #include <exception>
+#include <new>
 
 #include "server/gl/context.h"
 #include "server/net/fault.h"

@@ -1,6 +1,7 @@
 #include "server/net/stepper.h"
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
 #include "server/base/text.h"

@@ -1,6 +1,7 @@
 // Text to JSON, with size, depth and repeated keys checked while it is read: a value that nlohmann_json could
 // not copy or print without running out of stack never comes into being.
 #include <algorithm>
+#include <cstddef>
 #include <iterator>
 
 #include "server/scene/document.h"
@@ -126,8 +127,15 @@ Result<json> parse_json(const std::string& text, const std::string& source, bool
   std::size_t position = 0;
   Builder builder(position, limits.depth);
   const CountingIterator begin{text.data(), &position}, end{text.data() + text.size(), &position};
-  if (json::sax_parse(begin, end, &builder, json::input_format_t::json, true, comments))
-    return std::move(builder.value);
+  const bool read = json::sax_parse(begin, end, &builder, json::input_format_t::json, true, comments);
+  // nlohmann_json takes a zero byte for the end, and never looks at what follows.
+  const std::size_t zero = text.find('\0');
+  if (read && zero == std::string::npos) return std::move(builder.value);
+  if (read) {
+    builder.problem = "a zero byte";
+    builder.remedy = "JSON text (RFC 8259)";
+    builder.problem_at = zero;
+  }
   const std::string place = line_and_column(text, builder.problem_at);
   return Error{source.empty() ? place : source + ", " + place, builder.problem, builder.remedy};
 }

@@ -1,6 +1,7 @@
 // Patches of the scene document: RFC 7396 (merge) and RFC 6902 (a list of operations, each carried out on a
 // copy).
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 #include "server/scene/document.h"

@@ -1,6 +1,7 @@
 #include "server/sim/strain_limit.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/mat3x3.hpp>
 
 namespace clothlab::sim {

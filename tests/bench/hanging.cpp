@@ -6,6 +6,7 @@
 // with many nothing. PBD: the same with one; with many a / ln(1 + a) - 1, a = 2 (dt / u)^2, but for the
 // springs next to the pin, since its visits do not know of one another. VBD: nothing, since a cloth at rest
 // starts its sweeps where it is. The air takes 2 % of a step, and so of what is predicted.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <vector>

@@ -8,6 +8,7 @@
 // is at most the largest row sum. A share of 1 / (springs at the end with more of them) brings every row sum
 // to 1 or less, since a row has at most the springs of its two ends, each with at most half of the diagonal:
 // it converges always.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <glm/geometric.hpp>

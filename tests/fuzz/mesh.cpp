@@ -1,5 +1,6 @@
 // A triangle mesh from raw bytes, with indices and coordinates that a text would seldom hit upon: as a
 // document, so that validation sees them, then as a model, as files and as a topology message.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 

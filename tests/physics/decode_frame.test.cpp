@@ -2,6 +2,7 @@
 #include "tests/fuzz/decode_frame.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
 
 #include "server/stream/packer.h"

@@ -1,4 +1,5 @@
 // Scenes at the edge of what the laws define: no direction, no length, no time to react.
+#include <algorithm>
 #include <cmath>
 
 #include "tests/physics/stage.h"

@@ -1,4 +1,5 @@
 // Frames as packed on the GPU against the state they show.
+#include <cmath>
 #include <cstring>
 
 #include "server/stream/packer.h"

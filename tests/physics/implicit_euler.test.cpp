@@ -1,5 +1,6 @@
 // Implicit Euler on the GPU against the double-precision reference: Newton step by Newton step, and where it
 // comes to rest.
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 

@@ -1,4 +1,5 @@
 // The lab's truth, chart and choice, mostly on the swinging cloth, whose errors are known (physics.md).
+#include <algorithm>
 #include <cmath>
 
 #include "server/lab/choice.h"

@@ -1,5 +1,6 @@
 // The neighbour lists of self-collision against brute force over all pairs.
 #include <algorithm>
+#include <cmath>
 #include <glm/vec4.hpp>
 #include <numeric>
 #include <random>

@@ -1,4 +1,5 @@
 // What the lab says of leaving parts of a scene out.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 

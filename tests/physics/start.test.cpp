@@ -1,4 +1,6 @@
 // Starts and weights on the GPU: where a cloth begins, what reset goes back to, what a weight weighs.
+#include <algorithm>
+
 #include "server/scene/method.h"
 #include "tests/physics/stage.h"
 

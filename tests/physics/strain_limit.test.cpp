@@ -1,4 +1,7 @@
 // Provot's strain limit after a step of every method.
+#include <cmath>
+#include <tuple>
+
 #include "server/scene/method.h"
 #include "tests/scenes.h"
 #include "tests/stretch.h"

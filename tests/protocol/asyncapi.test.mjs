@@ -128,7 +128,7 @@ test("requests and their answers are as it says, with and without parameters, fo
 test("what is no request is answered as it says", async () => {
   const client = await enter();
   const cases = [["{", -32700], ["[".repeat(50), -32700], ["[]", -32600], ["5", -32600], ['{"id":1}', -32600], [Buffer.from("{}"), -32600],
-                 ['{"jsonrpc":"2.0","method":"ping","params":[1]}', -32602]];
+                 ['{"jsonrpc":"2.0","id":null,"method":"ping","params":[1]}', -32602]];
   for (const [text, code] of cases) {
     const from = client.messages.length;
     client.send(text);

@@ -105,7 +105,7 @@ test("without a token nothing but /healthz is answered under another name than a
     assert.equal(await ask(host), 200, host);
   for (const host of ["127.0.0.1.evil.example", "127.0.0.1.", "localhost.evil.example", "evil-localhost", "localhost..", "localhost:80:80", "localhost:",
                       "localhost:x", ":80", ".", "[::1", "::1", "[::1]x", "x[::1]", "[::1]:x", "[]", "[127.0.0.1]", "[fe80::1%25lo]", "127.1", "1.2.3.4.5",
-                      "0x7f000001", "2130706433", "user@127.0.0.1", "user@cloth.localhost", "evil.example/.localhost", "localhost, evil.example",
+                      "0x7f000001", "2130706433", "user@127.0.0.1", "user@cloth.localhost", "evil.example/.localhost",
                       "friend.example:80", "friend.example.", "x.friend.example", "near.example", "https://friend.example"])
     assert.equal(await ask(host), 403, host);
   const { body } = await friendly.get("/", { host: `<b>${"x".repeat(1000)}` });

@@ -24,7 +24,7 @@ test("ping answers with what it was sent", async () => {
 });
 
 test("text that is not JSON answers -32700 and the connection lives", async () => {
-  for (const text of ["", "{", "hello", '{"a":1}}', "NaN", '{"jsonrpc":"2.0","id":1,"method":"ping","params":{"t":NaN}}'])
+  for (const text of ["", "{", "hello", '{"a":1}}', "NaN", "{}garbage", "{}\0garbage", request({}) + "\0", request({}) + "\0{}", request({}) + " x", '{"jsonrpc":"2.0","id":1,"method":"ping","params":{"t":NaN}}'])
     assert.equal((await errorFor(text)).code, -32700, text);
   await stillAlive();
 });
@@ -93,11 +93,25 @@ test("bad parameters answer -32602 with where, what was found and what is allowe
   await stillAlive();
 });
 
+test("positional parameters answer -32602, which says that they are to be named", async () => {
+  for (const params of [[], [1], 3, "x"]) {
+    const error = await client.refusal("ping", params);
+    assert.equal(error.code, -32602);
+    assert.match(error.message, /^invalid params: .*; an object of named parameters$/);
+    assert.doesNotMatch(error.message, /document/);
+  }
+  // Beside an id, even null, it is a request.
+  assert.equal((await errorFor(request({ id: null, params: [1] }))).code, -32602);
+});
+
 test("a notification is never answered, not even with an error", async () => {
   const before = client.messages.length;
   client.notify("no.such.method");
   client.notify("stream.ack", { frame: "x" });
   client.notify("ping");
+  client.notify("ping", [1]);
+  client.notify("no.such.method", [1]);
+  client.notify("sim.step", 3);
   await stillAlive();
   assert.ok(client.messages.slice(before).every((message) => message.method !== undefined));
 });

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { join } from "node:path";
+import { basename, join } from "node:path";
 import { after, test } from "node:test";
 import { Client, patience, runProgram, Server, sleep } from "./harness.mjs";
 
@@ -84,6 +84,37 @@ test("a file that is damaged is moved aside, never deleted; its session starts a
   assert.deepEqual(readFileSync(`${file}.unreadable`), bytes);
   assert.match(again.stderr, /level=error event=session_not_restored session=main why=".*damaged; it was moved to .*main\.session\.unreadable"/);
   await again.stop();
+});
+
+test("a file that is none of this program's, or of another version's, is moved aside with what it begins with", async () => {
+  for (const [bytes, found] of [["hello, world\nmore", /it is no saved session: it begins with .*hello, world.*, not with .*clothlab session 1/],
+                                ["clothlab session 2\n{}", /another version of the program wrote it: it begins with .*clothlab session 2.*, and this one reads .*clothlab session 1/],
+                                ["", /it is empty/]]) {
+    const kept = folder();
+    writeFileSync(join(kept, "main.session"), bytes);
+    const server = await Server.start("--state-dir", kept);
+    const client = await Client.connect(server);
+    assert.equal((await client.request("scene.get")).document.name, "seed");
+    assert.match(server.stderr, found);
+    assert.match(server.stderr, /it was moved to .*main\.session\.unreadable/);
+    assert.equal(readFileSync(join(kept, "main.session.unreadable"), "utf8"), bytes);
+    assert.equal(await server.stop(), 0);
+  }
+});
+
+test("a folder belongs to one server: another is refused until that one has ended, however it ended", async () => {
+  const kept = folder();
+  for (const end of ["SIGKILL", "SIGTERM"]) {
+    const first = await Server.start("--state-dir", kept);
+    for (const path of [kept, join(kept, ".", "..", basename(kept))]) {
+      const { code, stderr } = await runProgram(["serve", "--port", "0", "--state-dir", path]);
+      assert.equal(code, 2);
+      assert.match(stderr, /^clothlab: error: --state-dir .*clothlab-state-.*: another process has it in use; end that one, or give this one a folder of its own\n$/);
+    }
+    const beside = await Server.start("--state-dir", join(kept, "below"));
+    assert.equal(await beside.stop(), 0);
+    await first.stop(end);
+  }
 });
 
 test("nothing unfinished is left in the folder, and one that cannot be written is refused at the start", async () => {

@@ -1,6 +1,7 @@
 // Of the session's thread, in this process: what it allocates.
 #include "server/net/stepper.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <new>
 #include <thread>

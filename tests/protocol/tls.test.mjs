@@ -47,6 +47,22 @@ test("TLS 1.2 and 1.3 are spoken, 1.0 and 1.1 are not", { skip }, async () => {
     await assert.rejects(handshake({ minVersion: version, maxVersion: version, ciphers: "DEFAULT@SECLEVEL=0" }), /protocol version/i, version);
 });
 
+test("under TLS too an unmasked frame closes its connection with 1002", { skip }, async () => {
+  const socket = tls.connect({ host: "127.0.0.1", port: server.port, rejectUnauthorized: false });
+  socket.on("error", () => {});
+  let bytes = Buffer.alloc(0);
+  const heard = (what) => withTimeout(new Promise((resolve) => socket.on("data", () => bytes.includes(what) && resolve())), what.toString());
+  socket.on("data", (data) => (bytes = Buffer.concat([bytes, data])));
+  socket.write("GET /ws HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n" +
+               "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Protocol: clothlab.v1\r\n\r\n");
+  await heard("hello");
+  socket.write(Buffer.concat([Buffer.from([0x81, 2]), Buffer.from("{}")]));
+  await heard(Buffer.from([0x03, 0xea]));
+  assert.ok(bytes.includes("are to be masked"));
+  assert.ok(!bytes.includes('"id":null'), "the message is not answered");
+  socket.destroy();
+});
+
 test("HTTP/2 is not agreed on, HTTP/1.1 is", { skip }, async () => {
   assert.equal((await handshake({ ALPNProtocols: ["h2", "http/1.1"] })).alpn, "http/1.1");
   const alone = await handshake({ ALPNProtocols: ["h2"] }).catch((error) => ({ alpn: false, error }));

@@ -1,5 +1,6 @@
 // The largest stable dt of each method, found by bisection on the total energy, on both sides, against
 // theory.
+#include <algorithm>
 #include <cmath>
 
 #include "server/model/stability.h"

@@ -1,4 +1,5 @@
 // The stability map: where measured and theory must be one, where they cannot be, and how it ends early.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 

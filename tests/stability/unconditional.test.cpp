@@ -1,4 +1,5 @@
 // The two ends: explicit Euler without damping is stable at no dt, implicit Euler at any.
+#include <algorithm>
 #include <cmath>
 
 #include "server/model/stability.h"

@@ -1,6 +1,7 @@
 // A coarser mesh that means the same cloth, and the other parts of a scene that can be left out.
 #include "server/lab/coarsen.h"
 
+#include <algorithm>
 #include <glm/geometric.hpp>
 #include <numeric>
 

@@ -1,6 +1,7 @@
 // PBD, XPBD and VBD in double precision: what they converge to, their order, what they keep.
 #include "server/reference/gauss_seidel.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 

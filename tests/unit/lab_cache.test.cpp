@@ -4,7 +4,9 @@
 
 #include <unistd.h>
 
+#include <chrono>
 #include <fstream>
+#include <iterator>
 
 #include "server/lab/exports.h"
 #include "server/scene/method.h"

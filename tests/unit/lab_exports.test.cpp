@@ -1,4 +1,5 @@
 // What the lab's results look like as JSON, CSV and SVG, with made-up results.
+#include <iterator>
 #include <regex>
 
 #include "server/lab/exports.h"

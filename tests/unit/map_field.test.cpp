@@ -1,4 +1,6 @@
 // The number that a stability map varies: found, checked, spaced.
+#include <cmath>
+
 #include "server/lab/map_field.h"
 #include "tests/catch.h"
 

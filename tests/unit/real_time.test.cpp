@@ -1,5 +1,7 @@
 #include "server/net/real_time.h"
 
+#include <algorithm>
+
 #include "tests/catch.h"
 
 using clothlab::net::RealTime;

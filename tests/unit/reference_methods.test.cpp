@@ -1,5 +1,6 @@
 // The double-precision reference: one step of each method on a spring is the linear map that theory gives, so
 // every later step is too; and laws that hold for whole cloths.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>

@@ -1,6 +1,7 @@
 // The reference's rest shape against statics, and its errors where there is none.
 #include "server/reference/rest_shape.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 

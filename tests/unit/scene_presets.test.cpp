@@ -1,4 +1,5 @@
 // The scenes that come with the program, and scene files.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 

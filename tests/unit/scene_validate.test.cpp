@@ -1,4 +1,6 @@
 // The scene document, rule by rule: what just passes and what just does not.
+#include <limits>
+
 #include "server/scene/document.h"
 #include "server/scene/method.h"
 #include "server/scene/ranges.h"

@@ -2,6 +2,7 @@
 // it.
 #include "server/model/stability.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>

@@ -1,0 +1,143 @@
+#include "server/net/request_checks.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "server/net/callbacks.h"
+#include "server/net/request_headers.h"
+
+namespace clothlab::net {
+
+namespace {
+
+constexpr std::size_t longest_list = 120;  ///< of Connection's and the subprotocols' that libwebsockets reads
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+/// Cuts off and returns what stands before the first `separator`.
+std::string_view take(std::string_view& text, char separator) {
+  const std::size_t at = text.find(separator);
+  const std::string_view part = text.substr(0, at);
+  text = at == std::string_view::npos ? std::string_view() : text.substr(at + 1);
+  return trimmed(part);
+}
+
+char lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+bool same(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](char x, char y) { return lower(x) == lower(y); });
+}
+
+/// In [0, 1]; what is no weight counts as 0, as who cannot be understood is best sent what anybody reads.
+double weight(std::string_view parameters) {
+  while (!parameters.empty()) {
+    const std::string_view parameter = take(parameters, ';');
+    if (parameter.size() < 2 || lower(parameter[0]) != 'q' || parameter[1] != '=') continue;
+    double q = 0;
+    const auto [end, failure] = std::from_chars(parameter.data() + 2, parameter.data() + parameter.size(), q);
+    const bool whole = failure == std::errc() && end == parameter.data() + parameter.size();
+    return whole && q >= 0 && q <= 1 ? q : 0;
+  }
+  return 1;
+}
+
+int header_bytes(lws* wsi) {
+  int bytes = 0;
+  for (int token = 0; token < WSI_TOKEN_COUNT; ++token)
+    bytes += std::max(0, lws_hdr_total_length(wsi, static_cast<lws_token_indexes>(token)));
+  return bytes;
+}
+
+bool has(lws* wsi, lws_token_indexes token) {
+  return lws_hdr_total_length(wsi, token) > 0;
+}
+
+bool is_key(const std::string& text) {
+  constexpr std::size_t length = 24;  // of 16 bytes in base64
+  const auto of_base64 = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '+' || c == '/';
+  };
+  return text.size() == length && text.ends_with("==") &&
+         std::all_of(text.begin(), text.end() - 2, of_base64);
+}
+
+bool names(std::string_view list, std::string_view wanted) {
+  while (!list.empty())
+    if (take(list, ',') == wanted) return true;
+  return false;
+}
+
+}  // namespace
+
+std::optional<RequestFault> request_fault(lws* wsi) {
+  if (const int bytes = header_bytes(wsi); bytes > max_header_bytes)
+    return RequestFault{431,
+                        "the request's headers have " + std::to_string(bytes) + " bytes, and may have " +
+                            std::to_string(max_header_bytes) +
+                            "; cookies of other programs on this host count: remove some, or use 127.0.0.1 "
+                            "instead of localhost",
+                        {}};
+  if (header(wsi, WSI_TOKEN_HTTP) == "HTTP/1.1" && !has(wsi, WSI_TOKEN_HOST))
+    return RequestFault{400, "the request has no Host header; HTTP/1.1 asks for one", {}};
+  if (header(wsi, WSI_TOKEN_HOST).find(',') != std::string::npos)
+    return RequestFault{400, "the request has several hosts; send one Host header", {}};
+  const std::string length = header(wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH);
+  if (has(wsi, WSI_TOKEN_HTTP_TRANSFER_ENCODING) || length.find_first_not_of('0') != std::string::npos)
+    if (has(wsi, WSI_TOKEN_GET_URI) || has(wsi, WSI_TOKEN_HEAD_URI))
+      return RequestFault{
+          400, "the request has a body; send it without Content-Length and Transfer-Encoding", {}};
+  return std::nullopt;
+}
+
+std::optional<RequestFault> handshake_fault(lws* wsi) {
+  const std::string wanted = std::string("; connect with the subprotocol ") + subprotocol;
+  const std::string offered = header(wsi, WSI_TOKEN_PROTOCOL);
+  if (offered.empty()) return RequestFault{400, "the handshake has no Sec-WebSocket-Protocol" + wanted, {}};
+  if (!names(offered, subprotocol))
+    return RequestFault{400, "the handshake offers other subprotocols only" + wanted, {}};
+  if (offered.size() > longest_list)
+    return RequestFault{400,
+                        "the handshake offers " + std::to_string(offered.size()) +
+                            " bytes of subprotocols, and may offer " + std::to_string(longest_list) + wanted,
+                        {}};
+  if (header(wsi, WSI_TOKEN_VERSION) != "13")
+    return RequestFault{426, "this server speaks version 13 of the WebSocket protocol (RFC 6455)",
+                        "sec-websocket-version: 13\r\n"};
+  if (!is_key(header(wsi, WSI_TOKEN_KEY)))
+    return RequestFault{400, "the handshake has no Sec-WebSocket-Key of 16 bytes in base64", {}};
+  std::string connection = header(wsi, WSI_TOKEN_CONNECTION);
+  std::transform(connection.begin(), connection.end(), connection.begin(), lower);
+  if (connection.size() > longest_list || !names(connection, "upgrade"))
+    return RequestFault{400, "the handshake has no `Connection: Upgrade`, or much else beside it", {}};
+  return std::nullopt;
+}
+
+bool prefers_gzip(const std::string& accept_encoding) {
+  std::optional<double> gzip, identity, any;
+  std::string_view rest = accept_encoding;
+  while (!rest.empty()) {
+    std::string_view item = take(rest, ',');
+    const std::string_view coding = take(item, ';');
+    const double q = weight(item);
+    if (same(coding, "gzip") || same(coding, "x-gzip")) gzip = q;
+    if (same(coding, "identity")) identity = q;
+    if (coding == "*") any = q;
+  }
+  const double wish = gzip.value_or(any.value_or(0));
+  // Who does not name it takes it, but would rather have what was named.
+  return wish > 0 && wish >= identity.value_or(0);
+}
+
+}  // namespace clothlab::net

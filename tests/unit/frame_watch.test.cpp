@@ -1,0 +1,75 @@
+// What of a client's bytes libwebsockets gets to see.
+#include "server/net/frame_watch.h"
+
+#include <cstddef>
+#include <string>
+
+#include "tests/catch.h"
+
+using namespace clothlab::net;
+
+namespace {
+
+std::string frame(int opcode, std::size_t payload, bool masked) {
+  const unsigned mask = masked ? 0x80 : 0;
+  std::string bytes(1, static_cast<char>(0x80 | opcode));
+  const auto put = [&](std::size_t value) { bytes += static_cast<char>(value); };
+  if (payload < 126) put(mask | payload);
+  if (payload >= 126 && payload < 65536) put(mask | 126), put(payload >> 8), put(payload & 255);
+  if (payload >= 65536) {
+    put(mask | 127);
+    for (int shift = 56; shift >= 0; shift -= 8) put(payload >> shift & 255);
+  }
+  return bytes + (masked ? "mask" : "") +
+         std::string(payload, '\x01');  // as payload: heads of unmasked frames
+}
+
+/// What is passed on of bytes that come in pieces of this size.
+std::string passed(FrameWatch& watch, const std::string& bytes, std::size_t piece) {
+  std::string all;
+  for (std::size_t at = 0; at < bytes.size(); at += piece) {
+    std::string part = bytes.substr(at, piece);
+    const std::size_t size = part.size();
+    part.resize(1000000);
+    all += part.substr(0, watch.pass(reinterpret_cast<unsigned char*>(part.data()), size, part.size()));
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("masked frames of every length pass unchanged, however they are cut into pieces") {
+  std::string bytes;
+  for (const std::size_t payload : {0u, 1u, 125u, 126u, 127u, 65535u, 65536u, 100000u})
+    bytes += frame(1, payload, true);
+  for (const std::size_t piece : {1u, 2u, 3u, 7u, 1000u, 1000000u}) {
+    FrameWatch watch;
+    CHECK(passed(watch, bytes, piece) == bytes);
+    CHECK_FALSE(watch.unmasked());
+  }
+}
+
+TEST_CASE("of an unmasked frame and of what follows nothing passes but masked frames of nothing") {
+  for (const std::size_t payload : {0u, 5u, 126u, 70000u}) {
+    for (const std::size_t piece : {1u, 2u, 3u, 7u, 1000000u}) {
+      const std::string good = frame(1, 200, true);
+      const std::string all = good + frame(1, payload, false) + frame(1, 10, true) + "anything";
+      FrameWatch watch;
+      const std::string seen = passed(watch, all, piece);
+      CHECK(watch.unmasked());
+      REQUIRE(seen.size() >= good.size() + 6);
+      CHECK(seen.substr(0, good.size()) == good);
+      for (std::size_t at = good.size(); at < seen.size(); at += 6)
+        CHECK(seen.substr(at, 6) ==
+              std::string(at == good.size() ? "\x81" : "\x8A") + std::string("\x80\0\0\0\0", 5));
+    }
+  }
+}
+
+TEST_CASE("a replacement is never longer than the room there is") {
+  FrameWatch watch;
+  unsigned char data[3] = {0x81, 0x01, 'x'};
+  CHECK(watch.pass(data, 3, 3) == 3);
+  unsigned char more[2] = {1, 2};
+  CHECK(watch.pass(more, 2, 2) == 2);
+}
