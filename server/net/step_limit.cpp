@@ -1,9 +1,9 @@
 #include "server/net/step_limit.h"
 
-#include "server/net/priority.h"
-
 #include <chrono>
 #include <utility>
+
+#include "server/net/priority.h"
 
 namespace clothlab::net {
 

@@ -1,5 +1,6 @@
 // What one viewer, or somebody without a token, can take from another by every means the protocol leaves: a bystander's frames and the
-// session's real-time factor, alone and beside each kind of abuse. By hand, on a quiet machine:
+// session's real-time factor, alone and beside each kind of abuse. Then what a session takes from another by each valid patch that is
+// more than the machine has, and how soon it is undone and the server ends. By hand, on a quiet machine:
 //   CLOTHLAB=build/release/clothlab node tests/bench/abuse.mjs [SECONDS] [--only NAME] [--out FILE]
 // Who abuses is a process of its own, which asks for as much as it can of the same cores. Prints (and writes) JSON.
 import { fork } from "node:child_process";
@@ -10,6 +11,7 @@ import http from "node:http";
 import net from "node:net";
 import { cpus } from "node:os";
 import { Client, Server, sleep } from "../protocol/harness.mjs";
+import { heavyPatches } from "../protocol/heavy.mjs";
 
 const token = "operator-of-this", viewToken = "viewer-of-this";
 const bearer = { authorization: `Bearer ${viewToken}` };
@@ -121,17 +123,42 @@ if (process.send) {
   const option = (flag) => (args.includes(flag) ? args.splice(args.indexOf(flag), 2)[1] : null);
   const out = option("--out"), only = option("--only");
   const [seconds = 8] = args.map(Number);
-  const names = Object.keys(abuses).filter((name) => !only || name === only);
-  const cases = [];
-  for (const name of names) cases.push(await measure(name, seconds));
-  const result = { benchmark: "abuse", machine: `${cpus()[0].model.trim()}, ${cpus().length} cores`, rate_asked: 30, seconds, cases };
+  const chosen = (list) => Object.keys(list).filter((name) => !only || name === only);
+  const cases = [], heavy = [];
+  for (const name of chosen(abuses)) cases.push(await measure(name, seconds));
+  for (const name of chosen(heavyPatches)) heavy.push(await measureHeavy(name, seconds));
+  const result = { benchmark: "abuse", machine: `${cpus()[0].model.trim()}, ${cpus().length} cores`, seconds, rate_asked: 30, cases,
+                   heavy_patches: { rate_asked: 60, cases: heavy } };
   console.log(JSON.stringify(result, null, 2));
   if (out) await writeFile(out, JSON.stringify(result, null, 2) + "\n");
   process.exit(0);
 }
 
+function round(value, digits = 2) {
+  return Number(value.toFixed(digits));
+}
+
+/// What a subscribed bystander gets within so many seconds.
+async function watch(bystander, seconds) {
+  const from = bystander.frames.length, begun = performance.now(), answers = [];
+  while (performance.now() - begun < seconds * 1000) {
+    const asked = performance.now();
+    await bystander.request("scene.get");
+    answers.push(performance.now() - asked);
+    await sleep(100);
+  }
+  const elapsed = (performance.now() - begun) / 1000;
+  const frames = bystander.frames.slice(from);
+  const gaps = frames.slice(1).map((frame, i) => frame.receivedAt - frames[i].receivedAt);
+  return {
+    frames_per_second: round(frames.length / elapsed, 1),
+    longest_gap_ms: round(Math.max(...gaps), 0),
+    real_time_factor: frames.length > 1 ? round((frames.at(-1).time - frames[0].time) / ((frames.at(-1).receivedAt - frames[0].receivedAt) / 1000), 3) : 0,
+    answer_ms: { median: round(answers.sort((a, b) => a - b)[answers.length >> 1], 1), longest: round(answers.at(-1), 0) },
+  };
+}
+
 async function measure(name, seconds) {
-  const round = (value, digits = 2) => Number(value.toFixed(digits));
   const server = await Server.start("--token", token, "--view-token", viewToken, "--log-level", "error");
   const resident = () => Number(/VmHWM:\s+(\d+)/.exec(readFileSync(`/proc/${server.child.pid}/status`, "utf8"))[1]);  // [kB]
   const abuser = fork(new URL(import.meta.url).pathname);
@@ -143,28 +170,43 @@ async function measure(name, seconds) {
     abuser.send({ name, port: server.port });
     await once(abuser, "message");
     await sleep(2000);
-    const from = bystander.frames.length, begun = performance.now(), answers = [];
-    while (performance.now() - begun < seconds * 1000) {
-      const asked = performance.now();
-      await bystander.request("scene.get");
-      answers.push(performance.now() - asked);
-      await sleep(100);
-    }
-    const elapsed = (performance.now() - begun) / 1000;
-    const frames = bystander.frames.slice(from);
-    const gaps = frames.slice(1).map((frame, i) => frame.receivedAt - frames[i].receivedAt);
-    return {
-      abuse: name,
-      frames_per_second: round(frames.length / elapsed, 1),
-      longest_gap_ms: round(Math.max(...gaps), 0),
-      real_time_factor: frames.length > 1 ? round((frames.at(-1).time - frames[0].time) / ((frames.at(-1).receivedAt - frames[0].receivedAt) / 1000), 3) : 0,
-      answer_ms: { median: round(answers.sort((a, b) => a - b)[answers.length >> 1], 1), longest: round(answers.at(-1), 0) },
-      memory_grown_MB: round((resident() - before) / 1024, 0),
-    };
+    return { abuse: name, ...(await watch(bystander, seconds)), memory_grown_MB: round((resident() - before) / 1024, 0) };
   } catch (error) {
     return { abuse: name, failed: error.message };
   } finally {
     abuser.kill("SIGKILL");
     await server.stop("SIGKILL");
+  }
+}
+
+/// The patch is made, undone, made again; then the server is told to end.
+async function measureHeavy(name, seconds) {
+  const server = await Server.start("--log-level", "error");
+  const patient = 60_000;
+  const timed = async (what) => {
+    const begun = performance.now();
+    await what();
+    return round(performance.now() - begun, 0);
+  };
+  try {
+    const bystander = await Client.connect(server);
+    await bystander.request("stream.subscribe", { encoding: "q16", rate: 60, in_flight: 2 });
+    await bystander.frame();
+    const heavy = await Client.connect(server, { session: "heavy" });
+    const { document: light } = await heavy.notification("scene");
+    await heavy.request("stream.subscribe", { encoding: "q16", rate: 60, in_flight: 2 });
+    const patch = { patch: heavyPatches[name] };
+    const made = timed(() => heavy.request("scene.patch", patch, patient));
+    const meanwhile = await watch(bystander, seconds);
+    const answered_ms = await made;
+    await sleep(2000);
+    const undone_ms = await timed(() => heavy.request("scene.load", { scene: light }, patient));
+    await heavy.request("scene.patch", patch, patient);
+    await sleep(2000);
+    const ended_ms = await timed(() => server.stop());
+    return { patch: name, ...meanwhile, answered_ms, undone_ms, ended_ms };
+  } catch (error) {
+    await server.stop("SIGKILL");
+    return { patch: name, failed: error.message };
   }
 }

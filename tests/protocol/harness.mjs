@@ -159,11 +159,11 @@ export class Client {
   send(text) { this.socket.send(text); }
   notify(method, params = {}) { if (!this.over) this.send(JSON.stringify({ jsonrpc: "2.0", method, params })); }
 
-  request(method, params) {
+  request(method, params, patience = undefined) {
     const id = this.nextId++;
     const answer = new Promise((resolve, reject) => this.pending.set(id, { resolve, reject }));
     this.send(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
-    return withTimeout(answer, `the answer to ${method}`);
+    return withTimeout(answer, `the answer to ${method}`, patience);
   }
 
   /// The error a request is answered with.

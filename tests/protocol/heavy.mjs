@@ -20,7 +20,7 @@ export const heavyPatches = {
   "100 iterations of vbd on 300x300": { cloths: [grid(300)], ...solver("vbd", 100) },
   "a strain limit that cannot be met on 200x200": {
     cloths: [grid(200, { pins: [{ at: "edge:row:0" }, { at: "edge:row:199", motion: { linear: { velocity: [0, 0, 0.5] } } }] })
-             ].map((cloth) => ({ ...cloth, material: { ...cloth.material, strain_limit: 0.001 } })) },
+     ].map((cloth) => ({ ...cloth, material: { ...cloth.material, strain_limit: 0.001 } })) },
   "RK4 on 400x400 at a microsecond": { cloths: [grid(400)], ...solver("rk4", 10, 1e-6) },
   "steps of a nanosecond": solver("symplectic_euler", 10, 1e-9),
   "128x128 in one point": { cloths: [grid(128, { start: { scale: [0, 0, 0] } })] },
