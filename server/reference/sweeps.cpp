@@ -67,8 +67,10 @@ dvec3 stopped_move(SweepState& step, std::uint32_t i, const dmat3& inverse, dvec
   const double distance = glm::length(sliding);
   if (!(distance > 0.0)) return move;
   const dvec3 along = sliding / distance;
-  const double give = glm::dot(along, inverse * along);
-  return move - along * (give * std::min(distance / give, met.friction * impulse));
+  dvec3 rubbed = inverse * along;  // what friction moves stays on the surface
+  rubbed -= response * (glm::dot(n, rubbed) / glm::dot(n, response));
+  const double most = met.friction * impulse;
+  return move - (glm::dot(along, rubbed) * most < distance ? rubbed * most : sliding);
 }
 
 /// What self-collision pushes vertex i by, and how many vertices it touches.

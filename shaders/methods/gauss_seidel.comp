@@ -7,6 +7,10 @@
 #include "step_end.glsl"
 #include "../collide/colliders.glsl"
 #include "deviation.glsl"
+
+/// Whether velocity v is that of an impact on the surface met last: what gravity gives in two steps is none.
+bool hits(vec3 v) { return dot(met_velocity - v, met_normal) > 2.0 * dt * length(gravity.xyz); }
+
 #ifdef BY_VERTEX
 #include "vertex_descent.glsl"
 #else
@@ -18,7 +22,7 @@ void begin(int i) {
   vec4 x = FETCH(position, i), v = FETCH(velocity, i);
   vec3 there, moving;
   if (x.w > 0.0) {
-    set_deviation(i, vec4(remainder(i) + first_deviation(i, v.xyz), v.w));
+    set_deviation(i, vec4(remainder(i) + first_deviation(i, x.xyz, v.xyz), v.w));
   } else {
     follow_motion(i, v.w, END_ROW, there, moving);
     set_deviation(i, vec4((there - x.xyz) - free_displacement(v.xyz), 0.0));
@@ -37,13 +41,12 @@ void advance(int i, vec3 x, vec3 v, vec3 d, out vec3 x_next, out vec3 v_next) {
   v_next = then;
 }
 
-/// A vertex that hits a surface leaves it with its share of the velocity; what gravity gives in two steps is no impact.
+/// A vertex that hits a surface leaves it with its share of the velocity.
 vec3 rebound(vec3 x, vec3 v_start, vec3 v) {
   vec3 free = x + free_displacement(v_start), unused = v_start;
   RARELY(resolve_colliders(x, free, unused, 0.0) > 0) {
-    float approach = dot(met_velocity - v_start, met_normal);
-    if (met_surface.y > 0.0 && approach > 2.0 * dt * length(gravity.xyz))
-      v += met_normal * (met_surface.y * approach - dot(v - met_velocity, met_normal));
+    if (met_surface.y > 0.0 && hits(v_start))
+      v += met_normal * (met_surface.y * dot(met_velocity - v_start, met_normal) - dot(v - met_velocity, met_normal));
   }
   return v;
 }
