@@ -117,6 +117,7 @@ void gauss_seidel_step(const World& world, State& state, double t, double t_next
     by_vertices ? sweep_vertices(step) : sweep_springs(step);
     if (passes) contact_pass(step);
   }
+  if (by_vertices) balance_momentum(step);
 
   State next;
   next.step = state.step + 1;

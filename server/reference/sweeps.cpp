@@ -151,4 +151,21 @@ void contact_pass(SweepState& step) {
   step.contacts = contacts;
 }
 
+void balance_momentum(SweepState& step) {
+  const World& world = step.world;
+  if (!world.scene.colliders.empty()) return;
+  for (const model::ClothRange& cloth : world.model.cloths) {
+    dvec3 lacking(0.0);
+    double mass = 0.0;
+    bool free = true;
+    const std::uint32_t first = cloth.first_vertex, end = first + cloth.vertex_count;
+    for (std::uint32_t i = first; i < end; ++i) {
+      free = free && !world.pinned(i);
+      lacking += world.model.mass[i] * (step.free[i] + step.pushed[i] - step.displacement[i]);
+      mass += world.model.mass[i];
+    }
+    for (std::uint32_t i = first; free && i < end; ++i) step.displacement[i] += lacking / mass;
+  }
+}
+
 }  // namespace clothlab::reference

@@ -46,6 +46,27 @@ Result<Kernels> Kernels::create(const scene::Scene& scene) {
   return kernels;
 }
 
+bool Kernels::update_lists(const scene::Scene& scene) {
+  if (!self_collision) return false;
+  self_collision->update_lists();
+  const std::uint32_t slots = self_collision->slots_needed();
+  if (slots == self_collision->slots()) return true;
+  Plan larger = plan;
+  larger.neighbour_slots = slots;
+  Result<SelfCollision> grown = SelfCollision::create(model.vertex_count(), slots);
+  Result<std::unique_ptr<Integrator>> adapted = make_integrator(surroundings(scene), larger);
+  if (!grown || !adapted) return true;  // go on with what there is
+  grown->take_counters(*self_collision);
+  *self_collision = std::move(*grown);
+  plan = larger;
+  integrator = std::move(*adapted);
+  self_collision->set_parameters(*scene.self_collision, model);
+  integrator->set_parameters(surroundings(scene));
+  integrator->restart();
+  self_collision->update_lists();
+  return true;
+}
+
 Status Kernels::update(const scene::Scene& scene, bool springs_changed) {
   // Masses and pins live in the model; building it again is cheap and cannot change its shape here.
   Result<model::Model> rebuilt = model::build(scene);

@@ -91,10 +91,7 @@ struct Simulation::Implementation {
       if (timer) timer->stage(pass);
     };
     state.position().bind(unit_position);
-    if (kernels.self_collision) {
-      kernels.self_collision->update_lists();
-      passed("neighbour_search");
-    }
+    if (kernels.update_lists(scene)) passed("neighbour_search");
     kernels.integrator->step(state, row);
     passed(scene::name(kernels.plan.method));
     if (!kernels.strain_limit) return;
@@ -193,6 +190,9 @@ void Simulation::step(std::uint32_t count, gl::StageTimer* timer) {
 
 void Simulation::reset() {
   Implementation& self = *implementation_;
+  // As in the beginning, so that the same steps follow.
+  if (self.kernels.plan != sim::plan(self.scene))
+    if (Result<Kernels> kernels = Kernels::create(self.scene)) self.kernels = std::move(*kernels);
   self.state.reset(self.kernels.model, self.kernels.motions);
   self.state_replaced(0.0, 0);
   self.keep_start();

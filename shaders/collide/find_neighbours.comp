@@ -1,4 +1,4 @@
-// Neighbour search, 3 of 3: lists for each vertex the others within reach that no spring joins to it, the nearest
+// Neighbour search, 2 of 3: lists for each vertex the others within reach that no spring joins to it, the nearest
 // NEIGHBOUR_SLOTS of them, with the distance that self-collision keeps between the two: min(thickness, rest distance).
 layout(local_size_x = GROUP_SIZE) in;
 #include "../access.glsl"
@@ -23,6 +23,7 @@ void main() {
   int i = int(gl_GlobalInvocationID.x);
   if (gl_GlobalInvocationID.x == 0) {  // this rebuild is under way: no other until a vertex asks again
     rebuild_groups = 0;
+    finish_groups = gl_NumWorkGroups.x;
     ++rebuilds;
   }
   if (i >= vertex_count) return;
@@ -64,5 +65,6 @@ void main() {
     neighbours[first + slot].y = floatBitsToUint(min(thickness, rest_distance(i, j)));
   }
   neighbour_count[i] = uint(count);
+  if (2 * count > NEIGHBOUR_SLOTS) atomicMax(longest, uint(count) + lost);
   if (lost > 0) atomicAdd(dropped, lost);
 }
