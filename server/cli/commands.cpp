@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "server/model/stability.h"
+#include "server/model/thickness.h"
 
 namespace clothlab::cli {
 
@@ -17,12 +18,15 @@ void note(const std::string& text) {
   std::cerr << "clothlab: note: " << text << std::endl;
 }
 
-void warn_of_step(const model::Model& model, const scene::Scene& scene, const std::string& about) {
-  if (scene.solver.automatic) return;  // its step is not the user's
-  const std::string warning = model::step_warning(scene.solver, model::dt_limit_if_near(model, scene));
-  if (warning.empty()) return;
-  std::cout.flush();
-  std::cerr << "clothlab: warning: " << about << warning << std::endl;
+void warn_of(const model::Model& model, const scene::Scene& scene, const std::string& about) {
+  std::vector<std::string> warnings{model::thickness_warning(model, scene)};
+  if (!scene.solver.automatic)  // else its step is not the user's
+    warnings.push_back(model::step_warning(scene.solver, model::dt_limit_if_near(model, scene)));
+  for (const std::string& warning : warnings) {
+    if (warning.empty()) continue;
+    std::cout.flush();
+    std::cerr << "clothlab: warning: " << about << warning << std::endl;
+  }
 }
 
 void SceneChoice::add_positional(CLI::App& command) {

@@ -39,8 +39,9 @@ int fail(const Error& error, ExitCode code);
 /// Prints "clothlab: note: ..." on stderr.
 void note(const std::string& text);
 
-/// Prints a warning on stderr if the scene's step is near or beyond the longest stable one.
-void warn_of_step(const model::Model& model, const scene::Scene& scene, const std::string& about = "");
+/// Prints warnings on stderr: of a step near or beyond the longest stable one, of self-collision too thin for
+/// the mesh.
+void warn_of(const model::Model& model, const scene::Scene& scene, const std::string& about = "");
 
 /// The scene a command works on: a preset's name or a file, then `--set POINTER=VALUE` in the order given.
 struct SceneChoice {
