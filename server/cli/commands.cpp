@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "server/model/stability.h"
+#include "server/model/thickness.h"
 
 namespace clothlab::cli {
 
@@ -31,12 +32,15 @@ CLI::Validator whole_number(int least, int most) {
   return CLI::Validator(check, std::string());
 }
 
-void warn_of_step(const model::Model& model, const scene::Scene& scene, const std::string& about) {
-  if (scene.solver.automatic) return;  // its step is not the user's
-  const std::string warning = model::step_warning(scene.solver, model::dt_limit_if_near(model, scene));
-  if (warning.empty()) return;
-  std::cout.flush();
-  std::cerr << "clothlab: warning: " << about << warning << std::endl;
+void warn_of(const model::Model& model, const scene::Scene& scene, const std::string& about) {
+  std::vector<std::string> warnings{model::thickness_warning(model, scene)};
+  if (!scene.solver.automatic)  // else its step is not the user's
+    warnings.push_back(model::step_warning(scene.solver, model::dt_limit_if_near(model, scene)));
+  for (const std::string& warning : warnings) {
+    if (warning.empty()) continue;
+    std::cout.flush();
+    std::cerr << "clothlab: warning: " << about << warning << std::endl;
+  }
 }
 
 void SceneChoice::add_positional(CLI::App& command) {

@@ -42,8 +42,9 @@ void note(const std::string& text);
 /// What an option's value must be. CLI::Range's words differ from one version of CLI11 to the next.
 CLI::Validator whole_number(int least, int most);
 
-/// Prints a warning on stderr if the scene's step is near or beyond the longest stable one.
-void warn_of_step(const model::Model& model, const scene::Scene& scene, const std::string& about = "");
+/// Prints warnings on stderr: of a step near or beyond the longest stable one, of self-collision too thin for
+/// the mesh.
+void warn_of(const model::Model& model, const scene::Scene& scene, const std::string& about = "");
 
 /// The scene a command works on: a preset's name or a file, then `--set POINTER=VALUE` in the order given.
 struct SceneChoice {

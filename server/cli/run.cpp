@@ -88,6 +88,8 @@ Report make_report(const Prepared& prepared, const Progress& progress, double wa
                         {"unconverged", work.unconverged}};
   if (const sim::StrainLimitWork work = simulation.strain_limit_work(); work.sweeps > 0)
     report["strain_limit"] = {{"sweeps", work.sweeps}, {"unconverged", work.unconverged}};
+  if (simulation.scene().self_collision)
+    report["self_collision"] = {{"neighbours_dropped", progress.state.neighbours_dropped}};
   report["max_strain"] = progress.state.max_strain;
   report["energy"] = {{"kinetic", progress.state.kinetic},
                       {"elastic", progress.state.elastic},
@@ -114,8 +116,12 @@ void print_summary(const Report& report, double simulated) {
   std::fflush(stdout);
 }
 
-/// What the methods' own iterations did not reach.
-void note_unconverged(const sim::Simulation& simulation) {
+/// What the methods' own iterations did not reach, and what had no room.
+void note_left_out(const sim::Simulation& simulation, const sim::Diagnostics& state) {
+  if (state.neighbours_dropped > 0)
+    note("self-collision left out " + std::to_string(state.neighbours_dropped) +
+         " neighbours, counted at each search, that had no room in a vertex's list: a smaller thickness or a "
+         "coarser mesh helps");
   if (const std::uint64_t solves = simulation.solver_work().unconverged; solves > 0)
     note(std::to_string(solves) +
          " linear solves ended before they met solver.tolerance; a smaller dt or a larger tolerance helps");
@@ -201,7 +207,7 @@ int run(const Options& options) {
     if (Status written = write_file(options.report, report.dump(2) + "\n"); !written)
       return fail(written.error(), exit_internal);
   print_summary(report, static_cast<double>(progress->steps) * dt);
-  note_unconverged(simulation);
+  note_left_out(simulation, progress->state);
   if (progress->diverged) note_diverged(*progress);
   return progress->diverged ? exit_diverged : exit_done;
 }

@@ -95,7 +95,7 @@ std::optional<Prepared> prepare(const SceneChoice& choice, std::optional<int> gp
         fail(simulation.error(), simulation.error().where.starts_with("/") ? exit_usage : exit_internal);
     return std::nullopt;
   }
-  warn_of_step((*simulation)->model(), *settled);
+  warn_of((*simulation)->model(), *settled);
   return Prepared{std::move(*context), std::move(*simulation), chosen};
 }
 

@@ -13,7 +13,7 @@ std::string counted(std::size_t count, const std::string& one, const std::string
   return std::to_string(count) + " " + (count == 1 ? one : more);
 }
 
-/// "seed.json: valid (...)" on stdout, or why not on stderr; there too a step that will not hold.
+/// "seed.json: valid (...)" on stdout, or why not on stderr; there too what is valid and will not hold.
 bool report(const std::string& name) {
   const Result<scene::Document> document = scene::load(name);
   if (!document) {
@@ -30,7 +30,7 @@ bool report(const std::string& name) {
             << counted(model->vertex_count(), "vertex", "vertices") << ", "
             << counted(model->springs.size(), "spring", "springs") << ", "
             << counted(document->scene.colliders.size(), "collider", "colliders") << ")\n";
-  warn_of_step(*model, document->scene, name + ": ");
+  warn_of(*model, document->scene, name + ": ");
   return true;
 }
 

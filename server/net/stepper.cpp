@@ -7,6 +7,7 @@
 #include "server/base/text.h"
 #include "server/model/remedy.h"
 #include "server/model/size.h"
+#include "server/model/thickness.h"
 #include "server/net/fault.h"
 #include "server/scene/method.h"
 
@@ -38,6 +39,7 @@ Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Excha
   stepper->announce_scene(std::nullopt, 0);
   stepper->announce_passes();
   stepper->announce_solver();
+  stepper->thin_ = !model::thickness_warning(stepper->simulation().model(), stepper->document_.scene).empty();
   stepper->step_limit_.follow(stepper->simulation().model(), stepper->document_.scene);
   stepper->rest_.follow(stepper->document_.scene, stepper->simulation().model());
   stepper->watch_anew();
@@ -287,10 +289,10 @@ void Stepper::warn_if_slow(Clock::time_point now) {
 void Stepper::warn_if_crowded() {
   if (crowded_announced_ || diagnostics_.neighbours_dropped == 0) return;
   crowded_announced_ = true;
-  exchange_.emit(Notice{
-      "warning",
-      "self-collision: some vertices have more neighbours than are looked at, the nearest 64; a smaller "
-      "thickness or a coarser mesh helps"});
+  exchange_.emit(Notice{"warning",
+                        "self-collision: some vertices have more neighbours than there is room for, and the "
+                        "farthest are left out; "
+                        "a smaller thickness or a coarser mesh helps"});
 }
 
 // A few such steps are no news: a cloth that falls into its limit takes them.

@@ -116,6 +116,7 @@ class Stepper {
   void warn_if_slow(Clock::time_point now);
   void warn_if_crowded();
   void warn_if_unconverged();
+  void warn_if_thin();
   bool suspended(Clock::time_point now) const;
   bool running(Clock::time_point now) const { return playing_ && !diverged_ && !asleep_ && !suspended(now); }
   Clock::time_point next_turn(Clock::time_point now) const;
@@ -151,6 +152,7 @@ class Stepper {
   Clock::time_point next_status_{}, next_diagnosis_{};
   Clock::time_point slow_since_{};
   bool slow_announced_ = false, crowded_announced_ = false, unconverged_announced_ = false;
+  bool thin_ = false;  ///< layers of cloth can pass through each other
 };
 
 }  // namespace clothlab::net

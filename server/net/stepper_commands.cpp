@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "server/model/spring_gains.h"
+#include "server/model/thickness.h"
 #include "server/net/stepper.h"
 
 namespace clothlab::net {
@@ -132,6 +133,7 @@ void Stepper::take_over(scene::Document document, sim::ChangeDepth depth) {
   announce_solver();
   if (depth == sim::ChangeDepth::none) return;
   playing_ = playing_ || (diverged_ && resume_);
+  warn_if_thin();
   step_limit_.follow(simulation().model(), document_.scene);
   follow_step_limit();  // at once: the next change may come before the next status
   if (depth == sim::ChangeDepth::cloth) return watch_anew();
@@ -274,7 +276,16 @@ void Stepper::announce_solver() {
                         {"bend", share(model::SpringKind::bend)}});
     }
   }
-  exchange_.emit(SolverChanged{{{"pbd_stiffness", shares}, {"auto", automatic_.facts()}}});
+  json thickness = nullptr;
+  if (document_.scene.self_collision) thickness = model::thickness_that_holds(simulation().model());
+  exchange_.emit(SolverChanged{
+      {{"pbd_stiffness", shares}, {"auto", automatic_.facts()}, {"thickness_that_holds", thickness}}});
+}
+
+// Said once, when a change of scene made it so.
+void Stepper::warn_if_thin() {
+  const std::string warning = model::thickness_warning(simulation().model(), document_.scene);
+  if (!std::exchange(thin_, !warning.empty()) && thin_) exchange_.emit(Notice{"warning", warning});
 }
 
 }  // namespace clothlab::net

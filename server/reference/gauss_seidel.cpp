@@ -7,6 +7,7 @@
 #include "server/reference/contacts.h"
 #include "server/reference/strain_limit.h"
 #include "server/reference/sweeps.h"
+#include "shaders/elements/elements.h"
 
 namespace clothlab::reference {
 
@@ -14,13 +15,52 @@ namespace {
 
 using Vectors = std::vector<dvec3>;
 
-/// How much of gravity a vertex fell with in the step before (Chen et al. 2024, section 3.7): none at rest,
-/// so that a cloth at rest starts where it stays; all of it in free fall, in air too. Nearly all counts as
-/// all, for the sake of float32.
-dvec3 felt_gravity(const dvec3& gravity, const dvec3& acceleration) {
-  const double squared = glm::dot(gravity, gravity);
-  if (!(squared > 0.0)) return dvec3(0.0);
-  return gravity * std::clamp(1.02 * glm::dot(acceleration, gravity) / squared, 0.0, 1.0);
+/// How much of `pull` a vertex followed in the step before (Chen et al. 2024, section 3.7): none at rest, so
+/// that a cloth at rest starts where it stays; all of it in free fall, in air too. Nearly all counts as all,
+/// for the sake of float32.
+double followed(const dvec3& acceleration, const dvec3& pull) {
+  const double squared = glm::dot(pull, pull);
+  return squared > 0.0 ? std::clamp(1.02 * glm::dot(acceleration, pull) / squared, 0.0, 1.0) : 1.0;
+}
+
+/// Whether a vertex with velocity v hits that surface: faster than it could fall to it in a step or two.
+bool hits(const SweepState& step, const Surface& met, const dvec3& v) {
+  return glm::dot(met.velocity - v, met.normal) > 2.0 * step.dt * glm::length(step.world.scene.gravity);
+}
+
+/// Where VBD starts: inertia's displacement and the followed share of gravity; where the free motion meets a
+/// collider, that motion as far as the surface and friction let it go.
+dvec3 first_guess(const SweepState& step, std::uint32_t i, const std::optional<dvec3>& velocity_before) {
+  const World& world = step.world;
+  const double dt = step.dt, drag = model::mobility(world.scene);
+  const dvec3 &v = step.v[i], &free = step.free[i];
+  dvec3 pull = world.scene.gravity, felt(0.0);
+  if (velocity_before) felt = (v / drag - *velocity_before) / dt;
+  const auto not_followed = [&] {
+    return velocity_before ? (1.0 - followed(felt, pull)) * drag * dt * dt * pull : dvec3(0.0);
+  };
+  dvec3 stopped = step.x[i] + free;
+  Surface met;
+  if (stop_on_way(world, step.t, step.x[i], stopped, met) == 0) return free - not_followed();
+  const dvec3& n = met.normal;
+  const double depth = glm::dot(stopped - (step.x[i] + free), n);
+  const dvec3 on_surface = free + n * depth, carried = dt * met.velocity;
+  pull -= n * glm::dot(pull, n);
+  felt += elements::friction_displacement(on_surface - carried, n, met.friction, depth) / (drag * dt * dt);
+  const dvec3 moved = on_surface - not_followed();
+  return moved - elements::friction_displacement(moved - carried, n, met.friction, depth);
+}
+
+/// The velocities at this step's start that the next one may compare its own with.
+std::vector<std::optional<dvec3>> to_remember(const SweepState& step) {
+  std::vector<std::optional<dvec3>> before(step.v.begin(), step.v.end());
+  for (std::uint32_t i = 0; i < before.size(); ++i) {
+    dvec3 stopped = step.x[i] + step.free[i];
+    Surface met;
+    if (stop_on_way(step.world, step.t, step.x[i], stopped, met) > 0 && hits(step, met, step.v[i]))
+      before[i].reset();
+  }
+  return before;
 }
 
 SweepState begin(const World& world, const State& state, double t, double t_next) {
@@ -42,7 +82,7 @@ SweepState begin(const World& world, const State& state, double t, double t_next
   step.contacts.resize(count, 0);
   Vectors end = state.position, unused(count);
   place_pins(world, t_next, end, unused);
-  const bool guesses = world.scene.solver.method == scene::Method::vbd && !state.velocity_before.empty();
+  const bool guesses = world.scene.solver.method == scene::Method::vbd;
   for (std::uint32_t i = 0; i < count; ++i) {
     const dvec3& v = state.velocity[i];
     step.mobility[i] = drag * inverse_mass(world, i);
@@ -50,19 +90,19 @@ SweepState begin(const World& world, const State& state, double t, double t_next
         world.pinned(i) ? end[i] - state.position[i] : drag * (dt * v + dt * dt * gravity);
     if (guesses && !world.pinned(i))
       step.displacement[i] =
-          drag * (dt * v + dt * dt * felt_gravity(gravity, (v / drag - state.velocity_before[i]) / dt));
+          first_guess(step, i, state.velocity_before.empty() ? std::nullopt : state.velocity_before[i]);
   }
   return step;
 }
 
-/// The velocity of a vertex that the step's free motion brings to a surface faster than it could fall to it
-/// in a step or two: turned back by the surface's restitution.
+/// The velocity of a vertex that the step's free motion brings to a surface in an impact: turned back by the
+/// surface's restitution.
 dvec3 bounced(const SweepState& step, std::uint32_t i, const dvec3& v) {
   dvec3 stopped = step.x[i] + step.free[i];
   Surface met;
   if (stop_on_way(step.world, step.t, step.x[i], stopped, met) == 0 || !(met.restitution > 0.0)) return v;
+  if (!hits(step, met, step.v[i])) return v;
   const double approach = glm::dot(met.velocity - step.v[i], met.normal);
-  if (!(approach > 2.0 * step.dt * glm::length(step.world.scene.gravity))) return v;
   return v + met.normal * (met.restitution * approach - glm::dot(v - met.velocity, met.normal));
 }
 
@@ -77,11 +117,12 @@ void gauss_seidel_step(const World& world, State& state, double t, double t_next
     by_vertices ? sweep_vertices(step) : sweep_springs(step);
     if (passes) contact_pass(step);
   }
+  if (by_vertices) balance_momentum(step);
 
   State next;
   next.step = state.step + 1;
   next.contacts = step.contacts;
-  if (by_vertices) next.velocity_before = state.velocity;
+  if (by_vertices) next.velocity_before = to_remember(step);
   for (std::uint32_t i = 0; i < step.x.size(); ++i) {
     next.position.push_back(step.now(i));
     next.velocity.push_back(bounced(step, i, step.displacement[i] / step.dt));

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -41,8 +42,8 @@ struct State {
   std::vector<dvec3> half_velocity = {};
   std::vector<double> half_dt = {};
   /// VBD's own, [vertex_count] or empty before its first step: the velocity at the start of the last step
-  /// [m/s].
-  std::vector<dvec3> velocity_before = {};
+  /// [m/s]; none where that was one of an impact.
+  std::vector<std::optional<dvec3>> velocity_before = {};
   /// What an implicit method left unsolved, as a share of the largest momentum in its equation; 0 after
   /// others.
   double residual = 0;

@@ -67,8 +67,10 @@ dvec3 stopped_move(SweepState& step, std::uint32_t i, const dmat3& inverse, dvec
   const double distance = glm::length(sliding);
   if (!(distance > 0.0)) return move;
   const dvec3 along = sliding / distance;
-  const double give = glm::dot(along, inverse * along);
-  return move - along * (give * std::min(distance / give, met.friction * impulse));
+  dvec3 rubbed = inverse * along;  // what friction moves stays on the surface
+  rubbed -= response * (glm::dot(n, rubbed) / glm::dot(n, response));
+  const double most = met.friction * impulse;
+  return move - (glm::dot(along, rubbed) * most < distance ? rubbed * most : sliding);
 }
 
 /// What self-collision pushes vertex i by, and how many vertices it touches.
@@ -147,6 +149,23 @@ void contact_pass(SweepState& step) {
                                          glm::dot(stopped - trial, met.normal));
   }
   step.contacts = contacts;
+}
+
+void balance_momentum(SweepState& step) {
+  const World& world = step.world;
+  if (!world.scene.colliders.empty()) return;
+  for (const model::ClothRange& cloth : world.model.cloths) {
+    dvec3 lacking(0.0);
+    double mass = 0.0;
+    bool free = true;
+    const std::uint32_t first = cloth.first_vertex, end = first + cloth.vertex_count;
+    for (std::uint32_t i = first; i < end; ++i) {
+      free = free && !world.pinned(i);
+      lacking += world.model.mass[i] * (step.free[i] + step.pushed[i] - step.displacement[i]);
+      mass += world.model.mass[i];
+    }
+    for (std::uint32_t i = first; free && i < end; ++i) step.displacement[i] += lacking / mass;
+  }
 }
 
 }  // namespace clothlab::reference

@@ -32,4 +32,8 @@ void sweep_vertices(SweepState& step);
 /// what self-collision pushes, so that the next sweep does not take it back.
 void contact_pass(SweepState& step);
 
+/// VBD, where nothing but its own springs and self-collision acts on a cloth: they only pass momentum on, so
+/// what its vertices lack of it in all after the sweeps is given to them alike.
+void balance_momentum(SweepState& step);
+
 }  // namespace clothlab::reference

@@ -13,8 +13,8 @@ namespace clothlab::sim {
 namespace {
 
 constexpr GLuint unit_deviation = 9, unit_projected = 10, unit_gains = 11, unit_visited = 12;
-constexpr GLuint slot_deviation = 3, slot_spring_pushes = 4, slot_targets = 5, slot_velocity_before = 6,
-                 slot_remainders = 7;
+constexpr GLuint slot_deviation = 3, slot_spring_pushes = 4, slot_lacking = 4, slot_targets = 5,
+                 slot_velocity_before = 6, slot_remainders = 7;
 
 gl::TextureBuffer per_vertex(std::uint32_t vertex_count) {
   return {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
@@ -32,12 +32,13 @@ class GaussSeidel : public Integrator {
   void set_parameters(const Surroundings& around) override {
     sweeps_ = around.scene.solver.iterations;
     const float mobility = static_cast<float>(model::mobility(around.scene));
-    for (const gl::Program* program : {&whole_, &begin_, &visit_, &meet_, &finish_}) {
+    for (const gl::Program* program : {&whole_, &begin_, &visit_, &meet_, &balance_, &finish_}) {
       if (!program->id()) continue;
       set_step_uniforms(*program, around);
       glProgramUniform1f(program->id(), program->uniform("mobility"), mobility);
       glProgramUniform1i(program->id(), program->uniform("last_sweep"), sweeps_ - 1);
     }
+    if (balanced_) set_free_vertices(around);
     if (by_vertex_) return;
     const ProjectedSprings springs = projected_springs(work_, around.model, around.scene);
     projected_ = {gl::Buffer(springs.entries), GL_RGBA32UI};
@@ -51,6 +52,7 @@ class GaussSeidel : public Integrator {
       visited_.bind(unit_visited);
       velocity_before_.bind_storage(slot_velocity_before);
       targets_.bind_storage(slot_targets);
+      if (balanced_) lacking_.bind_storage(slot_lacking);
     } else {
       projected_.bind(unit_projected);
       gains_.bind(unit_gains);
@@ -73,7 +75,9 @@ class GaussSeidel : public Integrator {
   GaussSeidel(const Surroundings& around, const Plan& plan)
       : by_vertex_(plan.method == scene::Method::vbd),
         contacts_(plan.self_collision || (!by_vertex_ && plan.spheres + plan.planes > 0)),
+        balanced_(by_vertex_ && plan.spheres + plan.planes == 0),
         vertex_count_(around.model.vertex_count()),
+        cloths_(static_cast<std::uint32_t>(around.model.cloths.size())),
         work_(by_vertex_ ? visited_vertices(around.model, around.scene)
                          : visited_springs(around.model, around.scene)) {
     lanes_ = lanes_of_one_group(vertex_count_, plan.self_collision,
@@ -83,6 +87,8 @@ class GaussSeidel : public Integrator {
       visited_ = {gl::Buffer(work_.order), GL_R32UI};
       velocity_before_ = gl::Buffer(vertex_count_ * 4 * sizeof(float));
       targets_ = gl::Buffer(vertex_count_ * 4 * sizeof(float));
+      if (balanced_)
+        lacking_ = gl::Buffer(cloths_ * std::max<std::size_t>(lanes_, group_size) * 4 * sizeof(float));
     } else if (plan.method == scene::Method::xpbd) {
       spring_pushes_ = gl::Buffer(std::max<std::size_t>(work_.order.size(), 1) * 4 * sizeof(float));
     }
@@ -101,8 +107,11 @@ class GaussSeidel : public Integrator {
     std::uint64_t sweep = 0;
     for (std::uint32_t colour = 0; colour < work_.colours(); ++colour)
       sweep += 1 + rounds(work_.offsets[colour + 1] - work_.offsets[colour]) * visit;
-    if (contacts_) sweep += rounds(vertex_count_) * (colliders + (plan.self_collision ? neighbour_slots : 0));
-    return static_cast<std::uint64_t>(plan.most_sweeps) * sweep + 2 * rounds(vertex_count_) * colliders;
+    const std::uint64_t balance = balanced_ ? cloths_ * (2 * rounds(vertex_count_) + lanes) : 0;
+    if (contacts_)
+      sweep += rounds(vertex_count_) * (colliders + (plan.self_collision ? plan.neighbour_slots : 0));
+    return static_cast<std::uint64_t>(plan.most_sweeps) * sweep + balance +
+           2 * rounds(vertex_count_) * colliders;
   }
 
   gl::Defines defines(const Plan& plan) const {
@@ -110,6 +119,10 @@ class GaussSeidel : public Integrator {
     if (by_vertex_) list.emplace_back("BY_VERTEX", "1");
     if (plan.method == scene::Method::xpbd) list.emplace_back("MEMORY", "1");
     if (contacts_) list.emplace_back("CONTACTS", "1");
+    if (balanced_) {
+      list.emplace_back("BALANCED", "1");
+      list.emplace_back("CLOTH_COUNT", std::to_string(cloths_));
+    }
     return list;
   }
 
@@ -139,7 +152,28 @@ class GaussSeidel : public Integrator {
       if (!loaded) return loaded.error();
       *program = std::move(*loaded);
     }
+    if (!balanced_) return ok();
+    gl::Defines list = defines(plan);
+    list.emplace_back("EACH_CLOTH", "1");
+    Result<gl::Program> loaded = gl::Program::load({"methods/gauss_seidel.comp"}, list);
+    if (!loaded) return loaded.error();
+    balance_ = std::move(*loaded);
     return ok();
+  }
+
+  /// Of each cloth that nothing holds, as first and end.
+  void set_free_vertices(const Surroundings& around) {
+    std::vector<GLint> ranges;
+    for (const model::ClothRange& cloth : around.model.cloths) {
+      const auto first = around.model.pin_motion.begin() + cloth.first_vertex,
+                 end = first + cloth.vertex_count;
+      const bool free = std::all_of(first, end, [](std::int32_t pin) { return pin == model::not_pinned; });
+      ranges.push_back(static_cast<GLint>(cloth.first_vertex));
+      ranges.push_back(static_cast<GLint>(cloth.first_vertex + (free ? cloth.vertex_count : 0)));
+    }
+    const gl::Program& program = lanes_ > 0 ? whole_ : balance_;
+    glProgramUniform2iv(program.id(), program.uniform("free_vertices"),
+                        static_cast<GLsizei>(ranges.size() / 2), ranges.data());
   }
 
   void step_in_one_group(int row) {
@@ -178,19 +212,25 @@ class GaussSeidel : public Integrator {
       current = 1 - current;
       co_await may_stop;
     }
+    if (balanced_) {
+      use(balance_, current, current);
+      dispatch(cloths_);
+      wait_for_writes();
+    }
     use(finish_, current, current);
     run(finish_, 0, vertex_count_);
   }
 
   bool by_vertex_, contacts_;
+  bool balanced_;            ///< cloths that nothing holds get back the momentum that sweeps left out
   std::uint32_t lanes_ = 0;  ///< of the one work group; 0: many dispatches instead
-  std::uint32_t vertex_count_;
+  std::uint32_t vertex_count_, cloths_;
   int sweeps_ = 1;
   model::Colouring work_;  ///< springs, or vertices, to visit
-  gl::Program whole_, begin_, visit_, meet_, finish_;
+  gl::Program whole_, begin_, visit_, meet_, balance_, finish_;
   std::array<gl::TextureBuffer, 2> deviation_;  ///< a pass of contacts reads one and writes the other
   gl::TextureBuffer projected_, gains_, visited_;
-  gl::Buffer spring_pushes_, targets_, velocity_before_, remainders_;
+  gl::Buffer spring_pushes_, targets_, velocity_before_, lacking_, remainders_;
 };
 
 }  // namespace

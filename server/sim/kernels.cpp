@@ -47,6 +47,25 @@ Result<Kernels> Kernels::create(const scene::Scene& scene) {
   return kernels;
 }
 
+Work Kernels::update_lists(const scene::Scene& scene) {
+  co_await self_collision->update_lists();
+  const std::uint32_t slots = self_collision->slots_needed();
+  if (slots == self_collision->slots()) co_return;
+  Plan larger = plan;
+  larger.neighbour_slots = slots;
+  Result<SelfCollision> grown = SelfCollision::create(model.vertex_count(), slots);
+  Result<std::unique_ptr<Integrator>> adapted = make_integrator(surroundings(scene), larger);
+  // Else it goes on with what there is.
+  if (!grown || !adapted || !grown->set_parameters(*scene.self_collision, model)) co_return;
+  grown->take_counters(*self_collision);
+  *self_collision = std::move(*grown);
+  plan = larger;
+  integrator = std::move(*adapted);
+  integrator->set_parameters(surroundings(scene));
+  integrator->restart();
+  co_await self_collision->update_lists();
+}
+
 Status Kernels::update(const scene::Scene& scene, bool springs_changed) {
   // Masses and pins live in the model; building it again is cheap and cannot change its shape here.
   Result<model::Model> rebuilt = model::build(scene);

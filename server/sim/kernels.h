@@ -25,6 +25,10 @@ struct Kernels {
   /// Takes over the numbers of a scene with the same structure; `springs_changed`: a material is another.
   Status update(const scene::Scene& scene, bool springs_changed);
 
+  /// Brings the neighbour lists up to date, with more room where they need it: none of a step's pairs is left
+  /// out as long as that is to be had. There must be lists; may stop on its way.
+  Work update_lists(const scene::Scene& scene);
+
   Surroundings surroundings(const scene::Scene& scene) const {
     return {scene, model, motions, self_collision ? &*self_collision : nullptr};
   }

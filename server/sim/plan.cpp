@@ -51,7 +51,10 @@ gl::Defines step_defines(const Plan& plan) {
                       {"END_ROW", std::to_string(plan.pose_rows())},
                       {"SPHERE_COUNT", std::to_string(plan.spheres)},
                       {"PLANE_COUNT", std::to_string(plan.planes)}};
-  if (plan.self_collision) defines.emplace_back("SELF_COLLISION", "1");
+  if (plan.self_collision) {
+    defines.emplace_back("SELF_COLLISION", "1");
+    defines.emplace_back("NEIGHBOUR_SLOTS", std::to_string(plan.neighbour_slots));
+  }
   return defines;
 }
 

@@ -27,8 +27,9 @@ struct Plan {
   int moving = 0;  ///< distinct motions of pins and colliders that are not null
   int spheres = 0, planes = 0;
   bool self_collision = false;
-  bool strain_limit = false;  ///< of any cloth
-  int most_sweeps = 0;        ///< at least the iterations of PBD, XPBD or VBD: 16, 64, 256, ...
+  std::uint32_t neighbour_slots = 64;  ///< of each vertex, for self-collision; not the scene's to say
+  bool strain_limit = false;           ///< of any cloth
+  int most_sweeps = 0;                 ///< at least the iterations of PBD, XPBD or VBD: 16, 64, 256, ...
   /// Rows that a step has in the table of poses after the one at its start: its end, and before that its
   /// middle if the method looks at it.
   int pose_rows() const { return method == scene::Method::rk4 ? 2 : 1; }

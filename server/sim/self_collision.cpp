@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-
 #include <chrono>
-#include <cmath>
 #include <cstddef>
+#include <cstring>
+#include <span>
 
 #include "server/base/text.h"
 #include "server/model/crowding.h"
@@ -22,9 +22,11 @@ using Clock = std::chrono::steady_clock;
 /// As in neighbours.glsl.
 struct Control {
   std::array<std::uint32_t, 3> rebuild{0, 1, 1};
-  std::uint32_t rebuilds = 0, dropped = 0;
+  SelfCollision::Counters counters;
   std::array<std::uint32_t, 3> search{0, 0, 1};
+  std::array<std::uint32_t, 3> finish{0, 1, 1};
 };
+static_assert(offsetof(Control, counters) == SelfCollision::counters_offset);
 
 /// Pairs that one search may look at: some three seconds on a slow processor.
 constexpr double most_pairs = 1e9;
@@ -32,28 +34,38 @@ constexpr double most_pairs = 1e9;
 constexpr double pairs_a_dispatch = 2e6;
 constexpr std::chrono::milliseconds long_dispatch{10};
 
+constexpr std::uint64_t updates_between_looks = 8;
+constexpr std::uint32_t most_slots = 256;
+constexpr std::uint64_t most_entries = std::uint64_t{1} << 22;  // 32 MiB, and what walking them takes
+constexpr std::uint32_t chain_end = 0xffffffffu;                // as in cells.glsl
+
 }  // namespace
 
-Result<SelfCollision> SelfCollision::create(std::uint32_t vertex_count) {
+Result<SelfCollision> SelfCollision::create(std::uint32_t vertex_count, std::uint32_t slots) {
   SelfCollision made;
   made.vertex_count_ = vertex_count;
+  made.slots_ = slots;
   // Two cells a vertex keep the chains short.
   const std::uint32_t cells = std::bit_ceil(2 * vertex_count);
   const gl::Defines defines{{"GROUP_SIZE", std::to_string(group_size)},
-                            {"CELL_COUNT", std::to_string(cells)}};
-  for (auto [program, path] : {std::pair{&made.clear_, "collide/clear_cells.comp"},
-                               {&made.insert_, "collide/insert_cells.comp"},
-                               {&made.find_, "collide/find_neighbours.comp"}}) {
+                            {"CELL_COUNT", std::to_string(cells)},
+                            {"NEIGHBOUR_SLOTS", std::to_string(slots)}};
+  for (auto [program, path] : {std::pair{&made.insert_, "collide/insert_cells.comp"},
+                               {&made.find_, "collide/find_neighbours.comp"},
+                               {&made.finish_, "collide/finish_lists.comp"}}) {
     Result<gl::Program> loaded = gl::Program::load({path}, defines);
     if (!loaded) return loaded.error();
     *program = std::move(*loaded);
     glProgramUniform1i(program->id(), 0, static_cast<GLint>(vertex_count));
   }
-  made.control_ = gl::Buffer(sizeof(Control));
+  const Control nothing;
+  made.control_ = gl::Buffer(sizeof(Control), &nothing);
+  made.seen_ = gl::ReadbackRing(sizeof(Control), 1);
   made.heads_ = {gl::Buffer(cells * sizeof(std::uint32_t)), GL_R32UI};
+  made.heads_.buffer.fill(chain_end);  // later each search leaves them empty
   made.chains_ = {gl::Buffer(vertex_count * sizeof(std::uint32_t)), GL_R32UI};
   made.counts_ = {gl::Buffer(vertex_count * sizeof(std::uint32_t)), GL_R32UI};
-  made.lists_ = {gl::Buffer(vertex_count * neighbour_slots * 2 * sizeof(std::uint32_t)), GL_RG32UI};
+  made.lists_ = {gl::Buffer(std::size_t{vertex_count} * slots * 2 * sizeof(std::uint32_t)), GL_RG32UI};
   made.built_position_ = {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
   return made;
 }
@@ -91,9 +103,11 @@ void SelfCollision::limit_range(std::uint32_t groups) {
 }
 
 void SelfCollision::invalidate() {
-  const Control control{{vertex_groups(vertex_count_), 1, 1}, 0, 0, {range_groups_, 0, 1}};
+  const Control control{{vertex_groups(vertex_count_), 1, 1}, {}, {range_groups_, 0, 1}, {0, 1, 1}};
   control_.upload(&control.rebuild, sizeof control.rebuild, offsetof(Control, rebuild));
-  control_.upload(&control.search, sizeof control.search, offsetof(Control, search));
+  control_.upload(&control.search, sizeof control.search + sizeof control.finish, offsetof(Control, search));
+  heads_.buffer.fill(chain_end);  // a search that was given up has left vertices in it
+  updates_ = 0;
 }
 
 Work SelfCollision::update_lists() {
@@ -110,10 +124,8 @@ Work SelfCollision::update_lists() {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
     glDispatchComputeIndirect(static_cast<GLintptr>(arguments));
   };
-  for (const gl::Program* program : {&clear_, &insert_}) {
-    program->use();
-    dispatch(offsetof(Control, rebuild));
-  }
+  insert_.use();
+  dispatch(offsetof(Control, rebuild));
   find_.use();
   const auto range = static_cast<GLint>(range_groups_) * group_size;
   Clock::duration longest{};
@@ -124,25 +136,59 @@ Work SelfCollision::update_lists() {
     longest = std::max(longest, Clock::now() - begun);
     if (range < static_cast<GLint>(vertex_count_)) co_await may_stop;
   }
+  finish_.use();
+  dispatch(offsetof(Control, finish));
   // Software OpenGL is done when the call returns: a cloth that has crumpled since its start is told by that.
   if (longest > long_dispatch && range_groups_ > 1) {
     limit_range(range_groups_ / 2);
     control_.upload(&range_groups_, sizeof range_groups_, offsetof(Control, search));
   }
+  if (updates_++ % updates_between_looks == 0) look();
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   counts_.bind(unit_neighbour_count);
   lists_.bind(unit_neighbours);
   built_position_.bind(unit_position_when_built);
 }
 
+/// What the lists were like at the look before; lists that somebody has just asked for at once.
+void SelfCollision::look() {
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  const auto take = [&] {
+    const std::span<const std::byte> seen = seen_.front(true);
+    Control control;
+    if (seen.size() < sizeof control) return;  // the device is lost
+    std::memcpy(&control, seen.data(), sizeof control);
+    longest_ = control.counters.longest;
+    seen_.pop();
+  };
+  if (!seen_.empty()) take();
+  if (seen_.full()) return;
+  seen_.push(control_, sizeof(Control));
+  if (updates_ == 1) take();
+}
+
+std::uint32_t SelfCollision::slots_needed() const {
+  if (4 * std::uint64_t{longest_} <= 3 * std::uint64_t{slots_}) return slots_;
+  const std::uint64_t wanted = std::bit_ceil(std::uint64_t{longest_} * 3 / 2);
+  const bool too_many = wanted > most_slots || wanted * vertex_count_ > most_entries;
+  return too_many ? slots_ : std::max(slots_, static_cast<std::uint32_t>(wanted));
+}
+
+void SelfCollision::take_counters(const SelfCollision& other) {
+  Counters counters;
+  other.control_.download(&counters, sizeof counters, counters_offset);
+  counters.longest = 0;
+  control_.upload(&counters, sizeof counters, counters_offset);
+}
+
 std::vector<std::vector<SelfCollision::Neighbour>> SelfCollision::read_lists() const {
   std::vector<std::uint32_t> counts(vertex_count_);
-  std::vector<Neighbour> slots(vertex_count_ * neighbour_slots);
+  std::vector<Neighbour> slots(std::size_t{vertex_count_} * slots_);
   counts_.buffer.download(counts.data(), counts.size() * sizeof(std::uint32_t));
   lists_.buffer.download(slots.data(), slots.size() * sizeof(Neighbour));
   std::vector<std::vector<Neighbour>> lists;
   for (std::size_t i = 0; i < vertex_count_; ++i) {
-    const auto first = slots.begin() + static_cast<std::ptrdiff_t>(i * neighbour_slots);
+    const auto first = slots.begin() + static_cast<std::ptrdiff_t>(i * slots_);
     lists.emplace_back(first, first + counts[i]);
   }
   return lists;

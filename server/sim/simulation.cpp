@@ -98,7 +98,7 @@ struct Simulation::Implementation {
     };
     state.position().bind(unit_position);
     if (kernels.self_collision) {
-      co_await kernels.self_collision->update_lists();
+      co_await kernels.update_lists(scene);
       passed("neighbour_search");
     }
     co_await kernels.integrator->step(state, row);
@@ -249,6 +249,9 @@ void Simulation::resume(Pace& pace) {
 void Simulation::reset() {
   Implementation& self = *implementation_;
   self.give_up_work();
+  // As in the beginning, so that the same steps follow.
+  if (self.kernels.plan != sim::plan(self.scene))
+    if (Result<Kernels> kernels = Kernels::create(self.scene)) self.kernels = std::move(*kernels);
   self.state.reset(self.kernels.model, self.kernels.motions);
   self.state_replaced(0.0, 0);
   self.keep_start();

@@ -58,6 +58,7 @@ Result<StrainLimit> StrainLimit::create(const Surroundings& around, const Plan& 
   for (gl::TextureBuffer& excess : made.group_excess_)
     excess = {gl::Buffer(made.groups_ * 4 * sizeof(float)), GL_RGBA32F};
   made.pulls_ = gl::Buffer(std::max<std::size_t>(entries, 1) * sizeof(float));
+  made.given_ = gl::Buffer(count * 4 * sizeof(float));
   made.control_ = gl::Buffer(sizeof(Control));
   glProgramUniform1f(made.sweep_.id(), made.sweep_.uniform("relaxation"), relaxation(around.model));
   made.set_parameters(around);
@@ -81,6 +82,7 @@ Work StrainLimit::apply(StateBuffers& state) {
   state.previous_position().bind(10);
   position_[0].buffer.bind_storage(0);
   pulls_.bind_storage(3);
+  given_.bind_storage(5);
   start_.use();
   glDispatchCompute(groups_, 1, 1);
   wait_for_writes();

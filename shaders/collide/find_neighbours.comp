@@ -1,4 +1,4 @@
-// Neighbour search, 3 of 3: lists for each vertex the others within reach that no spring joins to it, the nearest
+// Neighbour search, 2 of 3: lists for each vertex the others within reach that no spring joins to it, the nearest
 // NEIGHBOUR_SLOTS of them, with the distance that self-collision keeps between the two: min(thickness, rest distance).
 layout(local_size_x = GROUP_SIZE) in;
 #include "../access.glsl"
@@ -24,6 +24,7 @@ void main() {
   int i = first_vertex + int(gl_GlobalInvocationID.x);
   if (i == vertex_count - 1) {  // the last range: no other rebuild until a vertex asks again
     rebuild_groups = search_on = 0;
+    finish_groups = uint((vertex_count + GROUP_SIZE - 1) / GROUP_SIZE);
     ++rebuilds;
   }
   if (i >= vertex_count) return;
@@ -65,5 +66,6 @@ void main() {
     neighbours[first + slot].y = floatBitsToUint(min(thickness, rest_distance(i, j)));
   }
   neighbour_count[i] = uint(count);
+  if (2 * count > NEIGHBOUR_SLOTS) atomicMax(longest, uint(count) + lost);
   if (lost > 0) atomicAdd(dropped, lost);
 }

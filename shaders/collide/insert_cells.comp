@@ -1,4 +1,4 @@
-// Neighbour search, 2 of 3: hangs each vertex into the chain of its cell and notes where it was.
+// Neighbour search, 1 of 3: hangs each vertex into the chain of its cell and notes where it was.
 layout(local_size_x = GROUP_SIZE) in;
 #include "../access.glsl"
 #include "cells.glsl"

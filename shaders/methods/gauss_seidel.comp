@@ -7,6 +7,10 @@
 #include "step_end.glsl"
 #include "../collide/colliders.glsl"
 #include "deviation.glsl"
+
+/// Whether velocity v is that of an impact on the surface met last: what gravity gives in two steps is none.
+bool hits(vec3 v) { return dot(met_velocity - v, met_normal) > 2.0 * dt * length(gravity.xyz); }
+
 #ifdef BY_VERTEX
 #include "vertex_descent.glsl"
 #else
@@ -18,7 +22,7 @@ void begin(int i) {
   vec4 x = FETCH(position, i), v = FETCH(velocity, i);
   vec3 there, moving;
   if (x.w > 0.0) {
-    set_deviation(i, vec4(remainder(i) + first_deviation(i, v.xyz), v.w));
+    set_deviation(i, vec4(remainder(i) + first_deviation(i, x.xyz, v.xyz), v.w));
   } else {
     follow_motion(i, v.w, END_ROW, there, moving);
     set_deviation(i, vec4((there - x.xyz) - free_displacement(v.xyz), 0.0));
@@ -37,16 +41,45 @@ void advance(int i, vec3 x, vec3 v, vec3 d, out vec3 x_next, out vec3 v_next) {
   v_next = then;
 }
 
-/// A vertex that hits a surface leaves it with its share of the velocity; what gravity gives in two steps is no impact.
+/// A vertex that hits a surface leaves it with its share of the velocity.
 vec3 rebound(vec3 x, vec3 v_start, vec3 v) {
   vec3 free = x + free_displacement(v_start), unused = v_start;
   RARELY(resolve_colliders(x, free, unused, 0.0) > 0) {
-    float approach = dot(met_velocity - v_start, met_normal);
-    if (met_surface.y > 0.0 && approach > 2.0 * dt * length(gravity.xyz))
-      v += met_normal * (met_surface.y * approach - dot(v - met_velocity, met_normal));
+    if (met_surface.y > 0.0 && hits(v_start))
+      v += met_normal * (met_surface.y * dot(met_velocity - v_start, met_normal) - dot(v - met_velocity, met_normal));
   }
   return v;
 }
+
+/// Until all of the work group are here, and what they wrote is there.
+void wait() {
+  groupMemoryBarrier();
+  barrier();
+}
+
+#ifdef BALANCED
+// Sweeps that move one vertex after another leave a cloth that nothing holds with some momentum that it should not have, as much
+// as they have not converged. Springs and self-collision only pass it on: what its vertices lack or have too much of it in all is
+// given to them alike.
+uniform ivec2 free_vertices[CLOTH_COUNT];  // first, end; none of a cloth that has pins
+layout(std430, binding = 4) coherent buffer Lacking { vec4 lacking[]; };  // of each thread, xyz [kg m], w [kg]
+
+/// By one work group; each thread adds up the sums of all, in the same order.
+void balance(int cloth) {
+  int first_sum = cloth * GROUP_SIZE, lane = int(gl_LocalInvocationID.x), end = free_vertices[cloth].y;
+  vec4 sum = vec4(0.0);
+  for (int i = free_vertices[cloth].x + lane; i < end; i += GROUP_SIZE)
+    sum += vec4(targets[i].xyz - deviation(i).xyz, 1.0) / FETCH(position, i).w;
+  lacking[first_sum + lane] = sum;
+  wait();
+  sum = vec4(0.0);
+  for (int k = 0; k < GROUP_SIZE; ++k) sum += lacking[first_sum + k];
+  for (int i = free_vertices[cloth].x + lane; i < end; i += GROUP_SIZE) {
+    vec4 d = deviation(i);
+    set_deviation(i, vec4(d.xyz + sum.xyz / sum.w, d.w));
+  }
+}
+#endif
 
 void finish(int i) {
   vec4 x = FETCH(position, i), v = FETCH(velocity, i), d = deviation(i);
@@ -68,11 +101,6 @@ void finish(int i) {
 uniform int colour_first[COLOUR_COUNT + 1];  // item
 
 #define EACH(item, first, end) int item = first + int(gl_LocalInvocationID.x); item < end; item += GROUP_SIZE
-void wait() {
-  groupMemoryBarrier();
-  barrier();
-}
-
 void main() {
   for (EACH(i, 0, VERTEX_COUNT)) begin(i);
   wait();
@@ -88,8 +116,15 @@ void main() {
     wait();
 #endif
   }
+#ifdef BALANCED
+  copy_written = copy_read;
+  for (int cloth = 0; cloth < CLOTH_COUNT; ++cloth) balance(cloth);
+  wait();
+#endif
   for (EACH(i, 0, VERTEX_COUNT)) finish(i);
 }
+#elif defined(EACH_CLOTH)
+void main() { balance(int(gl_WorkGroupID.x)); }
 #else
 uniform int first, end;  // items
 

@@ -6,7 +6,7 @@ READ_UVEC2(gains, 11);      // (damping gain [kg], memory)
 layout(std430, binding = 4) buffer Pushed { vec4 pushed[]; };  // by each spring since the step's start [kg m]
 #endif
 
-vec3 first_deviation(int i, vec3 v) { return vec3(0.0); }
+vec3 first_deviation(int i, vec3 x, vec3 v) { return vec3(0.0); }
 
 void visit(int item) {
   uvec4 s = FETCH(projected, item);

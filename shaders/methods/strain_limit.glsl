@@ -16,6 +16,9 @@ READ_VEC4(rest_position, 7);  // w: the cloth
 READ_VEC4(start_position, 10);  // at the step's start
 /// Of each entry of the spring lists, its own vertex's alone: impulse times dt, 0 or more [kg m].
 layout(std430, binding = 3) buffer Pulls { float pulls[]; };
+/// What the pulls have given to each vertex since the step ended, times dt [kg m]. The velocities follow from it: a difference of
+/// positions would give them what float32 took from those, and with that momentum.
+layout(std430, binding = 5) buffer Given { vec4 given[]; };
 uniform int vertex_count;
 uniform float limit[CLOTH_COUNT];  // largest strain of each cloth's springs; negative: none
 

@@ -12,5 +12,5 @@ void main() {
   vec4 x = FETCH(position, i), v = FETCH(velocity, i);
   vec3 corrected = FETCH(corrected_position, i).xyz;
   next_position[i] = vec4(corrected, x.w);
-  next_velocity[i] = vec4(v.xyz + (corrected - x.xyz) / dt, v.w);
+  next_velocity[i] = vec4(v.xyz + x.w * given[i].xyz / dt, v.w);
 }

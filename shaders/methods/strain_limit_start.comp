@@ -17,4 +17,5 @@ void main() {
     }
   }
   next_position[i] = vec4(x.xyz + x.w * moved, x.w);
+  given[i] = vec4(moved, 0.0);
 }

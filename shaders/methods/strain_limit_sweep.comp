@@ -59,6 +59,7 @@ void main() {
       }
     }
     next_position[i] = vec4(x.xyz + x.w * moved, x.w);
+    RARELY(moved != vec3(0.0)) given[i].xyz += moved;
   }
   most = largest_of_group(most);
   if (gl_LocalInvocationID.x == 0) next_group_excess[gl_WorkGroupID.x] = vec4(most, 0.0, 0.0, 0.0);

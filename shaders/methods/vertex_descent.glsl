@@ -3,22 +3,41 @@
 // met with the vertex's own block: it pushes as hard as it must, and friction follows from that.
 #include "blocks.glsl"
 READ_UINT(visited, 12);  // free vertices, colour after colour
-layout(std430, binding = 6) buffer VelocityBefore { vec4 velocity_before[]; };  // at the last step's start; w: 0 if there was none
+layout(std430, binding = 6) buffer VelocityBefore { vec4 velocity_before[]; };  // at the last step's start; w: 0 if none counts
 /// Where inertia would have each vertex, in the terms of its deviation: pushed by self-collision since the step's start [m];
 /// w: colliders met at the last visit.
 layout(std430, binding = 5) coherent buffer Targets { vec4 targets[]; };
 
+/// The share of `pull` that an acceleration has followed. Nearly all counts as all: what rounding cuts off at 1 would brake
+/// a falling cloth, step after step.
+float followed(vec3 acceleration, vec3 pull) {
+  float squared = dot(pull, pull);
+  return squared > 0.0 ? clamp(1.02 * dot(acceleration, pull) / squared, 0.0, 1.0) : 1.0;
+}
+
 /// Their adaptive guess (section 3.7): as much of gravity as the vertex has followed of late, so that a cloth at rest starts
-/// from rest. Nearly all counts as all: what rounding cuts off at 1 would brake a falling cloth, step after step.
-vec3 first_deviation(int i, vec3 v) {
+/// from rest. Where its free motion meets a collider, the guess is that motion stopped there, with friction, and of gravity
+/// what is along the surface: sweeps move what is stiff so little that a sheet on a slope would stay where it was put first.
+vec3 first_deviation(int i, vec3 x, vec3 v) {
   vec4 before = velocity_before[i];
   velocity_before[i] = vec4(v, 1.0);
   targets[i] = vec4(remainder(i), 0.0);
-  float squared = dot(gravity.xyz, gravity.xyz);
-  if (before.w == 0.0 || squared == 0.0) return vec3(0.0);
-  float share = dot(v / mobility - before.xyz, gravity.xyz) / (dt * squared);
-  float followed = clamp(1.02 * share, 0.0, 1.0);
-  return drift(dt * (followed - 1.0) * gravity.xyz);
+  vec3 felt = (v / mobility - before.xyz) / dt, pull = gravity.xyz, back = vec3(0.0), sliding = vec3(0.0);
+  vec3 free = free_displacement(v), stopped = x + free, unused = v;
+  int met = resolve_colliders(x, stopped, unused, 0.0);
+  RARELY(met > 0) {
+    back = met_normal * dot(stopped - (x + free), met_normal);
+    pull -= met_normal * dot(pull, met_normal);
+    sliding = free + back - dt * met_velocity;
+    vec3 taken = friction_displacement(sliding, met_normal, met_surface.x, dot(back, met_normal));
+    felt += taken / (mobility * dt * dt);  // without friction it would have followed by that much more
+    // What a blow does to the velocity says nothing of the next step.
+    if (hits(v)) velocity_before[i].w = 0.0;
+  }
+  float share = before.w == 0.0 ? 1.0 : followed(felt, pull);
+  vec3 less = drift(dt * (share - 1.0) * pull);
+  RARELY(met > 0) back -= friction_displacement(sliding + less, met_normal, met_surface.x, dot(back, met_normal));
+  return less + back;
 }
 
 /// Stops the step of a vertex, x + d to x + d + descent, at the colliders; a, b: its block. Returns how many it meets.
@@ -34,8 +53,11 @@ int stop(vec3 x, vec3 d, vec3 a, vec3 b, inout vec3 descent) {
     sliding -= met_normal * dot(met_normal, sliding);
     float distance_slid = length(sliding);
     vec3 along = sliding / max(distance_slid, 1e-30);
-    float taken = min(distance_slid, met_surface.x * impulse * dot(along, solve_block(a, b, along)));
-    descent -= along * taken;
+    // What friction moves stays on the surface.
+    vec3 response = solve_block(a, b, along);
+    response -= give * (dot(met_normal, response) / dot(met_normal, give));
+    float most = met_surface.x * impulse;
+    descent -= dot(along, response) * most < distance_slid ? response * most : sliding;
   }
   return met;
 }

@@ -43,7 +43,7 @@ for (const [width, height] of [[1280, 800], [360, 740]]) {
         await viewer.page.screenshot({ path: `${screenshots}${width}x${height}-${colorScheme}-parameters.png` });
       }
       await viewer.page.getByRole("combobox", { name: "method" }).selectOption("PBD");  // it has most to say
-      await eventually("notes", () => viewer.page.locator(".note:visible").count(), (count) => count === 3);
+      await eventually("notes", () => viewer.page.locator(".note:visible").count(), (count) => count === 4);
       assert.deepEqual(await viewer.page.evaluate(cutOff), []);
       await viewer.page.screenshot({ path: `${screenshots}${width}x${height}-${colorScheme}-pbd.png` });
       const forbidden = viewer.complaints.filter((text) => !/GPU stall|GL Driver Message/.test(text));

@@ -70,7 +70,7 @@ browserTest("another method is chosen from the panel, says what to expect of it,
   const offered = await choice.locator("option").allInnerTexts();
   assert.equal(offered.length, methods.length);
   const before = await eventually("the gauge", gauge, ({ value }) => value > 0);
-  const note = viewer.page.locator(".note:visible");
+  const note = viewer.page.locator(".note:visible").filter({ hasNotText: "Thinner than" });
   const notes = new Set([await note.innerText()]);
   await choice.selectOption("Runge–Kutta 4");
   await eventually("the method", async () => (await solver()).method, (method) => method === "rk4");
@@ -93,7 +93,7 @@ browserTest("another method is chosen from the panel, says what to expect of it,
 browserTest("PBD, XPBD and VBD have no limit and no tolerance, say what iterations are good for, and PBD what its stiffness is", async () => {
   const { viewer, client, gauge, solver } = await both("sweeps");
   const choice = viewer.page.getByRole("combobox", { name: "method" });
-  const notes = () => viewer.page.locator(".note:visible").allInnerTexts();
+  const notes = () => viewer.page.locator(".note:visible").filter({ hasNotText: "Thinner than" }).allInnerTexts();
   const trades = new Set();
   for (const name of ["VBD", "XPBD", "PBD"]) {
     await choice.selectOption(name);
@@ -173,6 +173,17 @@ for (const [name, section, label] of [["time step", "Solver", "time step"], ["st
     await client.close();
   });
 }
+
+browserTest("a self-collision too thin for the mesh says so below its thickness, and one click sets what holds", async () => {
+  const client = await Client.connect(here.server, { session: "thin" });
+  const viewer = await here.open({ session: "thin", drawn: 1 });
+  const note = viewer.page.locator(".note:visible").filter({ hasText: "Thinner than" });
+  await note.getByRole("button").click();
+  await note.waitFor({ state: "detached" });
+  const { document } = await client.request("scene.get");
+  assert.equal(document.self_collision.thickness, 0.0354);  // 0.85 of the spacing, 1 m / 24
+  await client.close();
+});
 
 browserTest("a page opened on a session that has blown up says so, and no page does once somebody has seen to it", async () => {
   const client = await Client.connect(here.server, { session: "late" });

@@ -31,8 +31,8 @@ const wrong = {
   "no --time": [["run", "seed"], /--time/],
   "no scene": [["run", "--time", "1"], /scene/],
   "a time that is no number": [["run", "seed", "--time", "soon"], /--time/],
-  "a negative time": [["run", "seed", "--time", "-1"], /0 or more/],
-  "a time that is not finite": [["run", "seed", "--time", "inf"], /0 or more/],
+  "a negative time": [["run", "flag", "--time", "-1"], /0 or more/],
+  "a time that is not finite": [["run", "flag", "--time", "inf"], /0 or more/],
   "a preset that is not there": [["run", "sead", "--time", "1"], /seed/],
   "a value out of range": [["run", "seed", "--time", "1", "--set", "/solver/dt=-1"], /\/solver\/dt/],
   "a key that is not there": [["run", "seed", "--time", "1", "--set", "/solver/dd=1"], /\/solver\/dd/],
@@ -40,7 +40,7 @@ const wrong = {
   "an unknown kind of mesh file": [["run", "seed", "--time", "1", "--out", "a.stl"], /\.obj, \.ply, \.pc2/],
   "a point cache of one state": [["run", "seed", "--time", "1", "--out", "a.pc2"], /--every/],
   "--every for nothing": [["run", "seed", "--time", "1", "--every", "0.1"], /--out or --trace/],
-  "--every below a step": [["run", "seed", "--time", "1", "--every", "1e-5", "--trace", "t.csv"], /one step/],
+  "--every below a step": [["run", "flag", "--time", "1", "--every", "1e-5", "--trace", "t.csv"], /one step/],
   "a size without a height": [["render", "seed", "--time", "0", "--out", "a.png", "--size", "100"], /WIDTHxHEIGHT/],
   "a size with more after it": [["render", "seed", "--time", "0", "--out", "a.png", "--size", "10x10x10"], /WIDTHxHEIGHT/],
   "a size of nothing": [["render", "seed", "--time", "0", "--out", "a.png", "--size", "0x100"], /from 1 to/],
@@ -101,12 +101,23 @@ test("info names a usable device, the one that is used, the methods, and the fol
 });
 
 test("a step near or beyond the longest stable one is said on stderr, in one line, and is no error", () => {
-  for (const args of [["validate", "blowup"], ["run", "seed", "--time", "0", "--set", "/solver/dt=0.0025"]]) {
+  const thick = ["--set", "/self_collision/thickness=0.036"];  // else that is told of too
+  for (const args of [["validate", "blowup"], ["run", "seed", "--time", "0", ...thick, "--set", "/solver/dt=0.0025"]]) {
     const { status, stderr } = clothlab(args);
     assert.equal(status, 0);
     assert.match(stderr, /^clothlab: warning: .*0\.0025 s is beyond 0\.001701 s.*symplectic_euler.*\n$/);
   }
-  const near = clothlab(["run", "seed", "--time", "0", "--set", "/solver/dt=0.0016"]);
+  const near = clothlab(["run", "seed", "--time", "0", ...thick, "--set", "/solver/dt=0.0016"]);
   assert.match(near.stderr, /^clothlab: warning: dt = 0\.0016 s is 94 % of 0\.001701 s.*\n$/);
-  for (const args of [["validate", "seed"], ["run", "seed", "--time", "0"]]) assert.equal(clothlab(args).stderr, "");
+  for (const args of [["validate", "flag"], ["run", "seed", "--time", "0", ...thick]]) assert.equal(clothlab(args).stderr, "");
+});
+
+test("a self-collision too thin for the mesh is said on stderr with the thickness that holds, and is no error", () => {
+  // 0.85 of the seed's spacing, 1 m / 24.
+  for (const args of [["validate", "seed"], ["run", "seed", "--time", "0"], ["run", "seed", "--time", "0", "--set", "/self_collision/thickness=0.03"]]) {
+    const { status, stderr } = clothlab(args);
+    assert.equal(status, 0);
+    assert.match(stderr, /^clothlab: warning: .*self_collision\.thickness = 0\.0[13] m is too thin .*0\.0354 m.*\n$/);
+  }
+  for (const preset of ["flag", "curtain", "drape", "tablecloth", "twist", "trampoline"]) assert.equal(clothlab(["validate", preset]).stderr, "");
 });

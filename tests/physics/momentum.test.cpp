@@ -88,8 +88,7 @@ TEST_CASE("a free sheet keeps its linear momentum to 1e-5 under every method") {
       INFO(scene::name(method) << ", " << name(side) << ": " << change);
       // Every spring's two forces cancel: 400 steps' rounding is left. Implicit Euler's linear solver on the
       // GPU ends at a tolerance of 1e-4, and what it leaves of the momentum is given back. VBD moves one
-      // vertex at a time: it keeps momentum as far as it has converged, which at this dt ten iterations have;
-      // one, or ten at 10 times the dt, lose 5e-4 of it (tests/unit/gauss_seidel.test.cpp).
+      // vertex at a time, and gives back what of the momentum that leaves out.
       CHECK(change < (side == Side::gpu ? 1e-5 : 1e-12));
     }
   }

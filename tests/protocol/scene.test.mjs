@@ -132,6 +132,21 @@ test("a contact distance that crowds the neighbour lists is told by a notice", a
   assert.match(text, /thickness/);
 });
 
+test("a self-collision too thin for the mesh is told by a notice once, and what would hold with every status", async () => {
+  const cloths = [{ mesh: { grid: { columns: 11, rows: 11, width: 0.5, height: 0.5 } } }];
+  await client.request("scene.load", { scene: { version: 1, cloths, self_collision: { thickness: 0.045 } } });
+  const { solver } = await client.nextNotification("sim.status", (status) => status.solver.thickness_that_holds !== null);
+  assert.ok(Math.abs(solver.thickness_that_holds / 0.05 - 0.8485) < 0.001, "of the spacing");
+  const before = client.messages.length;
+  const notice = client.nextNotification("notice", ({ text }) => /too thin/.test(text));
+  await client.request("scene.patch", { patch: { self_collision: { thickness: 0.02 } } });
+  assert.match((await notice).text, /0\.02 m .*0\.0424 m/);
+  await client.request("scene.patch", { patch: { self_collision: { thickness: 0.01 } } });
+  await client.request("scene.patch", { patch: { self_collision: null } });
+  await client.nextNotification("sim.status", (status) => status.solver.thickness_that_holds === null);
+  assert.equal(client.messages.slice(before).filter((m) => m.method === "notice" && /too thin/.test(m.params.text)).length, 1);
+});
+
 test("a strain limit that the pins leave no room for is told by a notice", async () => {
   const notice = client.nextNotification("notice", ({ text }) => /strain_limit/.test(text));
   const cloths = [{

@@ -167,8 +167,7 @@ TEST_CASE("a free light sheet falls flat under PBD, XPBD and VBD at any step, as
   }
 }
 
-TEST_CASE(
-    "every spring keeps momentum under PBD and XPBD whatever the iterations, under VBD as it converges") {
+TEST_CASE("a free sheet keeps its momentum under PBD, XPBD and VBD whatever the iterations") {
   // A sheet that vibrates, bends and turns, let go of without gravity.
   scene::Scene held = test::swinging_cloth(Method::implicit_euler, test::cloth_unit);
   const reference::State shaken = stepped(held, reference::at_rest(world_of(held)), 60);
@@ -190,15 +189,6 @@ TEST_CASE(
   for (const int iterations : {1, 3, 10}) {
     CHECK(change(Method::pbd, iterations) < 1e-13);
     CHECK(change(Method::xpbd, iterations) < 1e-13);
+    CHECK(change(Method::vbd, iterations) < 1e-13);
   }
-  double coarse = change(Method::vbd, 1);
-  INFO("VBD, 1 iteration: " << coarse);
-  CHECK(coarse > 1e-4);
-  for (const int iterations : {10, 100}) {
-    const double fine = change(Method::vbd, iterations);
-    INFO("VBD, " << iterations << " iterations: " << fine);
-    CHECK(fine < 0.2 * coarse);
-    coarse = fine;
-  }
-  CHECK(coarse < 1e-10);
 }

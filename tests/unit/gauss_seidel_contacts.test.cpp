@@ -60,19 +60,16 @@ TEST_CASE(
   for (const Method method : methods) {
     for (const double degrees : {0.8 * angle_of_friction, 1.5 * angle_of_friction}) {
       const int steps = 200;
-      scene::Scene scene = on_slope(method, degrees, friction);
-      // VBD's neighbours drag a vertex on that friction holds back: it has to converge. What then is left: it
-      // moves a vertex along its slide only, as a force (t.H t)(t.H^-1 t) times as large would: 2 % at
-      // corners.
-      if (method == Method::vbd) scene.solver.iterations = 60;
+      const scene::Scene scene = on_slope(method, degrees, friction);
       const reference::State state = after(scene, steps);
       const double angle = degrees * std::acos(-1.0) / 180.0, time = steps * scene.solver.dt;
       const double expected = std::max(0.0, g * (std::sin(angle) - friction * std::cos(angle)) * time);
       INFO(scene::name(method) << " at " << degrees << " degrees: " << mean_velocity(state).x << " m/s");
       // All vertices slide alike, so springs do not act; each step presses by dt^2 g cos and rubs by friction
-      // of that: exact.
+      // of that: exact. VBD finds a vertex's friction through its own matrix, which at the corners turns it a
+      // little; five sweeps leave some millionths of that.
       CHECK(std::abs(mean_velocity(state).x - expected) <
-            (method == Method::vbd ? 0.01 * expected : 0.0) + 1e-9);
+            (method == Method::vbd ? 1e-5 * expected : 0.0) + 1e-9);
       CHECK(lowest(state) > -1e-12);
     }
   }

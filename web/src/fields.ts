@@ -10,6 +10,8 @@ export interface SolverFacts {
   auto?: { state: "measuring" | "chosen" | "failed"; method: string; dt_s: number; iterations: number | null; tolerance: number | null; why: string } | null;
   /// Of a spring's stretch the share that a visit takes away, for each cloth; only under PBD.
   pbd_stiffness?: Record<(typeof kinds)[number], number | null>[] | null;
+  /// The least thickness of self-collision at which no vertex slips between those of a triangle [m].
+  thickness_that_holds?: number | null;
 }
 
 /// A line below a control, and what a click in it would change.
@@ -239,6 +241,16 @@ function solverSection(document: SceneDocument, methods: string[]): Section {
   };
 }
 
+/// Self-collision keeps vertices apart; thinner than the gaps between them, layers pass through each other.
+function thinNote(values: Record<string, unknown>, { thickness_that_holds: holds }: SolverFacts): Note {
+  if (holds == null || Number(values["/self_collision/thickness"]) >= holds) return { text: "" };
+  const enough = Number((Math.ceil(holds * 1e4) / 1e4).toPrecision(6));
+  return {
+    text: `Thinner than the gaps between this mesh's vertices: layers can pass through each other below ${readable(enough)}\u00a0m.`,
+    offer: { text: `Set ${readable(enough)}\u00a0m`, operations: [{ op: "replace", path: "/self_collision/thickness", value: enough }] },
+  };
+}
+
 function selfCollisionSection(document: SceneDocument): Section {
   const base = "/self_collision";
   const toggle: Field = {
@@ -247,7 +259,7 @@ function selfCollisionSection(document: SceneDocument): Section {
     write: (value) => (value ? { thickness: 0.01, friction: 0.2 } : null),
   };
   const more: Field[] = document.self_collision ? [
-    number("thickness", [`${base}/thickness`], { min: 0.001, max: 0.05, log: true, ...meter }),
+    number("thickness", [`${base}/thickness`], { min: 0.001, max: 0.1, log: true, ...meter }, { note: thinNote }),
     number("friction", [`${base}/friction`], { min: 0, max: 2, step: 0.01 })] : [];
   return { key: base, title: "Self-collision", open: true, fields: [toggle, ...more], sections: [] };
 }
