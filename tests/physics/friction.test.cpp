@@ -33,9 +33,11 @@ TEST_CASE(
   const auto context = test::context();
   for (const Side side : sides) {
     for (const int columns : {2, 9, 33}) {
-      if (columns == 33 && side == Side::reference) continue;
+      const bool large = columns == 33;
+      if (large && side == Side::reference) continue;
       for (const double dt : {0.001, 0.004, 0.008, 0.016}) {
         for (const double degrees : {5.0, 15.0, 30.0}) {
+          if (large && (degrees != 15.0 || dt < 0.008)) continue;  // it takes long
           for (const double friction : {0.0, 0.1, 0.3, 0.6, 1.0}) {
             const double angle = degrees * std::numbers::pi / 180.0, seconds = 0.48;
             const double pull =
