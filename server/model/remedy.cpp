@@ -52,6 +52,14 @@ Remedy remedy(const Model& model, const scene::Scene& scene, double limit) {
   } else if (solver.dt > margin_to_warn * limit) {
     remedy.dt = within_safe_share(limit);
     remedy.text = "set dt to " + significant(remedy.dt, 4) + " s, 80 % of the limit";
+  } else if (solver.method != scene::Method::implicit_euler) {
+    // Not the limit about the rest shape: the cloth is stiffer as it lies, or something else feeds it. A
+    // shorter step would be tried again and again.
+    remedy.dt = std::min(solver.dt, a_frame);
+    remedy.method = scene::Method::implicit_euler;
+    remedy.text = "use implicit_euler, which holds whatever stiffens the cloth, with dt = " +
+                  significant(remedy.dt, 4) + " s; that of " + scene::name(solver.method) +
+                  " was short enough for the cloth at rest";
   } else {
     remedy.dt = std::max(rounded_down(0.5 * solver.dt), scene::ranges::dt.minimum);
     remedy.text = "halve the time step, to dt = " + significant(remedy.dt, 4) + " s";

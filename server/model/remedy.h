@@ -16,8 +16,9 @@ struct Remedy {
 };
 
 /// 0.8 of the limit where the step is near or beyond it, implicit Euler where that would be less than a tenth
-/// of the step, the half of the step where the limit cannot be the cause; for explicit Euler, which gains
-/// energy at nearly every step, symplectic Euler. `limit` [s] is the one of the scene's own method.
+/// of the step or where the limit cannot be the cause, and of implicit Euler itself half the step; for
+/// explicit Euler, which gains energy at nearly every step, symplectic Euler. `limit` [s] is the one of the
+/// scene's own method.
 Remedy remedy(const Model& model, const scene::Scene& scene, double limit);
 
 /// How dt stands to its limit, for after the reason: ": dt = 0.0025 s is 1.47 times 0.001701 s, ...".

@@ -60,11 +60,23 @@ int meet_each(const World& world, double t, const dvec3& from, dvec3& x, Touch t
 
 }  // namespace
 
-int meet_colliders(const World& world, double t, const dvec3& from, dvec3& x, dvec3& v) {
-  return meet_each(world, t, from, x, [&](const Surface& met) {
-    v = met.velocity +
-        elements::contact_velocity(v - met.velocity, met.normal, met.friction, met.restitution);
+int meet_colliders(const World& world, double t, const dvec3& from, dvec3& x, dvec3& v, dvec3* second) {
+  dvec3 braking(0.0);
+  // Verlet moves with its second velocity.
+  const dvec3* moves = second ? second : &v;
+  const int count = meet_each(world, t, from, x, [&](const Surface& met) {
+    const dvec3 moved = x - braking - from - world.scene.solver.dt * met.velocity;
+    braking +=
+        elements::contact_braking(moved, *moves - met.velocity, met.normal, met.friction, met.restitution);
+    const auto after = [&](const dvec3& velocity) {
+      return met.velocity +
+             elements::contact_velocity(velocity - met.velocity, met.normal, met.friction, met.restitution);
+    };
+    v = after(v);
+    if (second) *second = after(*second);
   });
+  x -= braking;
+  return count;
 }
 
 int stop_on_way(const World& world, double t, const dvec3& from, dvec3& x, Surface& last) {

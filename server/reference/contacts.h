@@ -8,8 +8,11 @@
 namespace clothlab::reference {
 
 /// Stops the step from -> x of a vertex with end velocity v at the colliders, as they move from time t to t +
-/// dt. Returns the number of colliders met.
-int meet_colliders(const World& world, double t, const dvec3& from, dvec3& x, dvec3& v);
+/// dt. Returns the number of colliders met. `second`, if there is one, is another velocity of the vertex,
+/// the one with which it has moved, and the contacts change it likewise. Friction takes as large a share of
+/// the displacement as of the sliding.
+int meet_colliders(const World& world, double t, const dvec3& from, dvec3& x, dvec3& v,
+                   dvec3* second = nullptr);
 
 /// What a vertex met: the unit normal there, the surface's velocity [m/s], friction, restitution.
 struct Surface {

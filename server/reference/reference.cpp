@@ -20,11 +20,11 @@ using Vectors = std::vector<dvec3>;
 void stop_at_colliders(const World& world, const State& before, double t, State& next) {
   for (std::size_t i = 0; i < next.position.size(); ++i) {
     if (world.pinned(i)) continue;
-    const int met = meet_colliders(world, t, before.position[i], next.position[i], next.velocity[i]);
-    next.contacts[i] += met;
-    if (met == 0 || next.half_dt.empty()) continue;
-    next.half_velocity[i] = next.velocity[i];  // the velocity after a contact is of the step's end
-    next.half_dt[i] = 0.0;
+    // Verlet's contact is an impulse within the step: it changes the velocity in the middle of it as the one
+    // at its end.
+    dvec3* half = next.half_dt.empty() ? nullptr : &next.half_velocity[i];
+    next.contacts[i] +=
+        meet_colliders(world, t, before.position[i], next.position[i], next.velocity[i], half);
   }
 }
 

@@ -12,6 +12,8 @@ namespace {
 /// early end costs accuracy, not stability.
 constexpr int most_iterations = 1000;
 constexpr int iterations_between_looks = 8;
+/// Of self-collision after the solve, each of which leaves half of an approach, or less.
+constexpr int contact_passes = 4;
 
 /// As in implicit_update.comp.
 struct Control {
@@ -39,12 +41,20 @@ class ImplicitEuler : public Integrator {
       if (!loaded) return loaded.error();
       *program = std::move(*loaded);
     }
+    if (plan.self_collision) {
+      Result<gl::Program> loaded = gl::Program::load({"methods/implicit_contacts.comp"}, defines);
+      if (!loaded) return loaded.error();
+      made->contacts_ = std::move(*loaded);
+    }
     return std::unique_ptr<Integrator>(std::move(made));
   }
 
   void set_parameters(const Surroundings& around) override {
-    for (const gl::Program* program : {&start_, &system_, &multiply_, &update_, &search_, &advance_, &end_})
-      set_step_uniforms(*program, around);
+    for (const gl::Program* program :
+         {&start_, &system_, &multiply_, &update_, &search_, &advance_, &end_, &contacts_})
+      if (program->id()) set_step_uniforms(*program, around);
+    if (around.scene.solver.dt != dt_) restart();  // the contacts' impulses are forces times dt
+    dt_ = around.scene.solver.dt;
     iteration_location_ = update_.uniform("iteration");
     most_newton_steps_ = around.scene.solver.iterations;
     glProgramUniform1f(system_.id(), system_.uniform("tolerance"),
@@ -69,14 +79,18 @@ class ImplicitEuler : public Integrator {
         glCopyNamedBufferSubData(guess_.buffer.id(), vectors_[0].change.buffer.id(), 0, 0,
                                  static_cast<GLsizeiptr>(guess_.buffer.bytes()));
       last = &vectors_[solved.iterations % 2];
-      advance(*last, row);
+      advance(*last, row, newton + 1 < most_newton_steps_);
       co_await may_stop;
     }
+    if (contacts_.id()) keep_apart();
     finish(state, *last, row);
   }
 
-  /// No contact was found to pull.
-  void restart() override { constraint_.buffer.fill(0); }
+  /// No contact is known.
+  void restart() override {
+    const std::vector<float> untouched(grip_.bytes() / sizeof(float), -1.0F);
+    grip_.upload(untouched.data(), grip_.bytes());
+  }
 
   SolverWork work() const override { return work_; }
 
@@ -94,6 +108,7 @@ class ImplicitEuler : public Integrator {
       for (gl::TextureBuffer* vector :
            {&set.change, &set.residual, &set.preconditioned, &set.direction, &set.direction_product})
         *vector = {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
+    grip_ = gl::Buffer(vertex_count * 4 * sizeof(float));
     sums_ = {gl::Buffer(groups_ * 12 * sizeof(float)), GL_RGBA32F};  // three vec4 at most
     control_ = gl::Buffer(sizeof(Control) + most_iterations * 2 * sizeof(float));
   }
@@ -112,6 +127,7 @@ class ImplicitEuler : public Integrator {
     guess_.buffer.bind_storage(4);
     constraint_.buffer.bind_storage(5);
     surface_.buffer.bind_storage(6);
+    grip_.bind_storage(7);
     glProgramUniform1i(start_.id(), start_.uniform("start_row"), row);
     run(start_);
   }
@@ -178,7 +194,7 @@ class ImplicitEuler : public Integrator {
   }
 
   /// Line search, then the estimate takes its share of the change.
-  void advance(const Vectors& solved, int row) {
+  void advance(const Vectors& solved, int row, bool another) {
     start_velocity_.bind(9);
     solved.change.bind(11);
     sums_.buffer.bind_storage(1);
@@ -191,8 +207,23 @@ class ImplicitEuler : public Integrator {
     guess_.buffer.bind_storage(4);
     constraint_.buffer.bind_storage(5);
     surface_.buffer.bind_storage(6);
+    start_velocity_.buffer.bind_storage(1);
+    grip_.bind_storage(7);
     glProgramUniform1i(advance_.id(), advance_.uniform("start_row"), row);
+    glProgramUniform1i(advance_.id(), advance_.uniform("another"), another ? 1 : 0);
     run(advance_);
+  }
+
+  /// The velocities go back and forth between two buffers, and end in the one they came from.
+  void keep_apart() {
+    static_assert(contact_passes % 2 == 0);
+    start_position_.bind(9);
+    position_.buffer.bind_storage(0);
+    for (int pass = 0; pass < contact_passes; ++pass) {
+      (pass % 2 == 0 ? velocity_ : guess_).bind(unit_velocity);
+      (pass % 2 == 0 ? guess_ : velocity_).buffer.bind_storage(3);
+      run(contacts_);
+    }
   }
 
   void finish(StateBuffers& state, const Vectors& solved, int row) {
@@ -204,8 +235,7 @@ class ImplicitEuler : public Integrator {
     solved.residual.bind(12);
     surface_.bind(13);
     constraint_.bind(14);
-    block_a_.bind(4);
-    block_b_.bind(5);
+    grip_.bind_storage(7);
     state.bind_outputs();
     glProgramUniform1i(end_.id(), end_.uniform("start_row"), row);
     run(end_);
@@ -213,13 +243,15 @@ class ImplicitEuler : public Integrator {
   }
 
   GLuint groups_;
+  double dt_ = 0;
   int most_newton_steps_ = 1;
   GLint iteration_location_ = -1;
-  gl::Program start_, system_, multiply_, update_, search_, advance_, end_;
+  gl::Program start_, system_, multiply_, update_, search_, advance_, end_, contacts_;
   gl::TextureBuffer start_position_, start_velocity_;  ///< where the step starts, with self-collision's share
   gl::TextureBuffer position_, velocity_;              ///< estimate of where it ends
   gl::TextureBuffer guess_;                            ///< of the change of velocity that is solved for
   gl::TextureBuffer constraint_, surface_;             ///< of the contacts with colliders
+  gl::Buffer grip_;                                    ///< of these, kept from step to step
   gl::TextureBuffer block_a_, block_b_, product_, sums_;
   std::array<Vectors, 2> vectors_;  ///< each iteration reads one set and writes the other
   gl::Buffer control_;

@@ -15,6 +15,12 @@ uniform vec3 plane_surface[PLANE_COUNT];
 // Of the surface met last: its unit normal, its velocity [m/s] there, friction, restitution.
 vec3 met_normal, met_velocity;
 vec2 met_surface;
+/// What friction takes from the step's displacement [m]: left to the caller, as not all go by the velocity given.
+vec3 met_braking;
+
+#ifdef SECOND_VELOCITY
+vec3 second_velocity;  // of the same vertex: what a contact does to the one it does to this, too
+#endif
 
 vec3 at_step(int motion, int row, vec3 home) {
   vec3 there = home;
@@ -22,18 +28,23 @@ vec3 at_step(int motion, int row, vec3 home) {
   return there;
 }
 
-void meet_surface(int motion, vec3 surface, vec3 normal, vec3 x, inout vec3 v) {
+void meet_surface(int motion, vec3 surface, vec3 normal, vec3 from, vec3 x, inout vec3 v) {
   vec3 moving = vec3(0.0);
   RARELY(motion >= 0) moving = velocity_at(motion, END_ROW, x);
   met_normal = normal;
   met_velocity = moving;
   met_surface = surface.xy;
+  met_braking += contact_braking(x - met_braking - from - dt * moving, v - moving, normal, surface.x, surface.y);
   v = moving + contact_velocity(v - moving, normal, surface.x, surface.y);
+#ifdef SECOND_VELOCITY
+  second_velocity = moving + contact_velocity(second_velocity - moving, normal, surface.x, surface.y);
+#endif
 }
 
 /// Mends the step from -> x with end velocity v; colliders are thicker by `reach` [m]. Returns the number of them met.
 int resolve_colliders(vec3 from, inout vec3 x, inout vec3 v, float reach) {
   int contacts = 0;
+  met_braking = vec3(0.0);
 #if SPHERE_COUNT > 0
   for (int i = 0; i < SPHERE_COUNT; ++i) {
     int motion = int(sphere_surface[i].z);
@@ -44,7 +55,7 @@ int resolve_colliders(vec3 from, inout vec3 x, inout vec3 v, float reach) {
       vec3 stopped, normal;
       if (sphere_contact(start, end, radius, stopped, normal)) {
         x = centre + stopped;
-        meet_surface(motion, sphere_surface[i], normal, x, v);
+        meet_surface(motion, sphere_surface[i], normal, from, x, v);
         ++contacts;
       }
     }
@@ -57,7 +68,7 @@ int resolve_colliders(vec3 from, inout vec3 x, inout vec3 v, float reach) {
     float depth = plane_point[i].w + reach - dot(x - at_step(motion, END_ROW, plane_point[i].xyz), normal);
     if (!(depth > 0.0)) continue;
     x += depth * normal;
-    meet_surface(motion, plane_surface[i], normal, x, v);
+    meet_surface(motion, plane_surface[i], normal, from, x, v);
     ++contacts;
   }
 #endif

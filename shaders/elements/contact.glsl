@@ -2,16 +2,31 @@
 // Bridson, Fedkiw & Anderson 2002, sections 4 and 6 (velocity-level contact, Coulomb friction as an impulse).
 // In the common subset of GLSL and C++ (see types.glsl, elements.h).
 
+/// The share of its sliding, along a surface with unit normal n, that friction (Coulomb coefficient) leaves a vertex that
+/// meets it with the relative velocity v.
+FUNCTION real sliding_kept(vec3 v, vec3 n, real friction, real restitution) {
+  real approach = -dot(v, n);
+  if (!(approach > real(0.0))) return real(1.0);
+  vec3 sliding = v + n * approach;
+  real speed = sqrt(dot(sliding, sliding));
+  real lost = friction * (real(1.0) + restitution) * approach;
+  return speed > lost ? real(1.0) - lost / speed : real(0.0);
+}
+
 /// What a contact leaves of the velocity v relative to the surface with unit normal n: the approaching part is
 /// turned back by restitution [0, 1]; friction (Coulomb coefficient) takes at most that impulse from the sliding part.
 FUNCTION vec3 contact_velocity(vec3 v, vec3 n, real friction, real restitution) {
   real approach = -dot(v, n);
   if (!(approach > real(0.0))) return v;
   vec3 sliding = v + n * approach;
-  real speed = sqrt(dot(sliding, sliding));
-  real lost = friction * (real(1.0) + restitution) * approach;
-  real kept = speed > lost ? real(1.0) - lost / speed : real(0.0);
-  return sliding * kept + n * (restitution * approach);
+  return sliding * sliding_kept(v, n, friction, restitution) + n * (restitution * approach);
+}
+
+/// What friction takes from the displacement `moved` [m] of a step whose end velocity was v, both relative to the surface:
+/// as large a share as of the sliding. What is not taken would be a creep of what should stand, and, as the force of a
+/// stiff spring moves a vertex that friction stops in every step, a vibration that grows below the step limit.
+FUNCTION vec3 contact_braking(vec3 moved, vec3 v, vec3 n, real friction, real restitution) {
+  return (moved - n * dot(moved, n)) * (real(1.0) - sliding_kept(v, n, friction, restitution));
 }
 
 /// The path from -> to, relative to a sphere's centre at either time, against the sphere: a swept test, so that a

@@ -7,7 +7,6 @@ void integrate(int i, vec4 x, vec3 v, vec3 a, vec3 push, vec3 impulse, out vec3 
   x_next = x.xyz + push + dt * (v + impulse);  // an impulse acts at the step's start
   v_next = v + dt * a + impulse;
 }
-void touched() {}
-void end(int i) {}
+void end(int i, int met, inout vec3 v_next) {}
 
 #include "whole_step.glsl"

@@ -1,8 +1,9 @@
 // Implicit Euler, after each solve: the estimates of velocity and position take the change, or the share of it that the line
 // search found best. What the filter kept out of the solution is the impulse of the contact: a collider that would have to
-// pull lets go, in the next Newton step if there is one and in the next time step. One that the estimate has entered gets
-// hold of the vertex for the next Newton step.
+// pull lets go, one that would have to hold more than friction can lets slide, in the next Newton step if there is one and in
+// the next time step. One that the estimate has entered gets hold of the vertex for the next Newton step.
 #include "implicit_euler.glsl"
+#include "implicit_friction.glsl"
 #include "group_sums.glsl"
 #include "../collide/colliders.glsl"
 READ_VEC4(start_position, 9);
@@ -10,10 +11,13 @@ READ_VEC4(group_sums, 10);
 READ_VEC4(change, 11);
 READ_VEC4(residual, 12);
 layout(std430, binding = 0) writeonly buffer NextPosition { vec4 next_position[]; };
-layout(std430, binding = 3) buffer Estimate { vec4 estimate[]; };
+layout(std430, binding = 3) buffer Estimate { vec4 estimate[]; };  // w: vertices touched
 layout(std430, binding = 4) writeonly buffer Guess { vec4 guess[]; };  // of the next change
 layout(std430, binding = 5) buffer Constraint { vec4 constraint[]; };
 layout(std430, binding = 6) buffer Surface { vec4 surface[]; };
+uniform bool another;  // Newton step follows in this time step
+layout(std430, binding = 1) buffer Inertia { vec4 start_velocity[]; };
+layout(std430, binding = 7) buffer Grip { vec4 grip[]; };
 
 /// The total of one of the sums that the line search made.
 vec4 total(int sum) {
@@ -47,16 +51,35 @@ vec3 drift() {
 #endif
 }
 
-/// The change of velocity with which the next Newton step begins.
-vec3 update_constraint(int i, vec3 start, vec3 x, vec3 u) {
-  if (dot(FETCH(residual, i).xyz, constraint[i].xyz) > 0.0) constraint[i] = vec4(vec3(0.0), -1.0);
-  vec3 first = vec3(0.0), stopped = x, after = u;
-  RARELY(constraint[i] == vec4(0.0) && resolve_colliders(start, stopped, after, 0.0) > 0) {
-    constraint[i] = vec4(met_normal, 0.0);
+/// The contact as the solve found it. Returns the change of velocity with which the next Newton step begins.
+vec3 follow_contact(int i, float inverse_mass, vec3 u) {
+  vec4 before = grip[i], under = surface[i];
+  vec3 overshot;
+  vec4 now = grip_after(before, constraint[i], FETCH(residual, i).xyz, u, under, inverse_mass, overshot);
+  start_velocity[i].xyz += braked(before, under.w, inverse_mass) - braked(now, under.w, inverse_mass);
+  grip[i] = now;
+  float rebound = sticks(constraint[i]) ? -1.0 - constraint[i].w : constraint[i].w;
+  bool slides = now.xyz != vec3(0.0) || under.w == 0.0;
+  constraint[i].w = slides ? rebound : -1.0 - rebound;
+  if (now.w == pulled_away) constraint[i] = vec4(0.0);
+  return -overshot;
+}
+
+/// One that the estimate has entered.
+vec3 meet_contact(int i, float inverse_mass, vec3 start, vec3 x, vec3 u) {
+  vec3 stopped = x, after = u, change = vec3(0.0);
+  RARELY(resolve_colliders(start, stopped, after, 0.0) > 0) {
+    change = met_normal * (dot(stopped - x, met_normal) / dt);
+    vec3 sliding = along_surface(u - met_velocity, met_normal);
+    vec4 first = first_grip(sliding, length(change) / inverse_mass, met_surface.x, inverse_mass);
+    bool slides = first.xyz != vec3(0.0) || met_surface.x == 0.0;
+    if (slides) start_velocity[i].xyz -= braked(first, met_surface.x, inverse_mass);
+    else change -= sliding;
+    constraint[i] = vec4(met_normal, slides ? 0.0 : -1.0);
     surface[i] = vec4(met_velocity, met_surface.x);
-    first = met_normal * (dot(stopped - x, met_normal) / dt);
+    grip[i] = first;
   }
-  return first;
+  return change;
 }
 
 void main() {
@@ -68,7 +91,13 @@ void main() {
   vec3 u = estimate[i].xyz + (start.w == 0.0 ? 1.0 : share) * FETCH(change, i).xyz;
   if (share == 1.0) u += regained;  // the sum was made for the whole change
   vec3 x = start.xyz + dt * u;
-  estimate[i] = vec4(u, 0.0);
-  guess[i] = vec4(start.w == 0.0 ? vec3(0.0) : update_constraint(i, start.xyz, x, u), 0.0);
+  estimate[i] = vec4(u, start.w > 0.0 ? start_velocity[i].w : 0.0);
+  vec3 first = vec3(0.0);
+  if (another && start.w > 0.0) {
+    bool kept = constraint[i].xyz != vec3(0.0);
+    RARELY(kept) first = follow_contact(i, start.w, u);
+    if (!kept && grip[i].w != pulled_away) first = meet_contact(i, start.w, start.xyz, x, u);
+  }
+  guess[i] = vec4(first, 0.0);
   next_position[i] = vec4(x, start.w);
 }

@@ -1,6 +1,7 @@
-// Implicit Euler, once a step: the new state, after friction from the impulse that the contacts' filter kept out of the
-// solution, and after colliders that nobody foresaw.
+// Implicit Euler, once a step: the new state, after rebounds, and after colliders that nobody foresaw; and how each contact
+// begins the next step.
 #include "implicit_euler.glsl"
+#include "implicit_friction.glsl"
 #include "step_end.glsl"
 #include "../collide/colliders.glsl"
 READ_VEC4(before_position, 9);  // the state at the step's start
@@ -9,23 +10,19 @@ READ_VEC4(start_velocity, 11);  // w: vertices touched
 READ_VEC4(residual, 12);
 READ_VEC4(surface, 13);
 READ_VEC4(constraint, 14);
-READ_VEC4(block_a, 4);
-READ_VEC4(block_b, 5);
+layout(std430, binding = 7) buffer Grip { vec4 grip[]; };
 
-/// Friction and rebound of a vertex that was kept on a surface. Stopping it takes the impulse J sliding, the springs to its
-/// neighbours included; friction has the contact's impulse times the coefficient. In a long step what friction takes must
-/// not be travelled.
-void rub(int i, inout vec3 x, inout vec3 v) {
-  vec4 contact = FETCH(constraint, i);
-  vec3 normal = contact.xyz;
-  float impulse = max(-dot(FETCH(residual, i).xyz, normal) , 0.0);  // [kg m/s]
-  vec4 under = FETCH(surface, i);
-  vec3 sliding = v - under.xyz;
-  sliding -= normal * dot(normal, sliding);
-  float needed = length(block_times(FETCH(block_a, i).xyz, FETCH(block_b, i).xyz, sliding));
-  vec3 taken = sliding * min(1.0, under.w * impulse / max(needed, 1e-30));
-  x -= dt * taken;
-  v += normal * contact.w - taken;
+/// Of a vertex that was kept on a surface.
+void leave_contact(int i, float inverse_mass, inout vec3 x, inout vec3 v) {
+  vec4 held = FETCH(constraint, i), under = FETCH(surface, i);
+  vec3 overshot;
+  vec4 now = grip_after(grip[i], held, FETCH(residual, i).xyz, v, under, inverse_mass, overshot);
+  // What it took to stop the vertex on its way in will not be there in the next step.
+  float impact = max(-dot(FETCH(before_velocity, i).xyz - under.xyz, held.xyz), 0.0) / inverse_mass;
+  if (now.w >= 0.0) now.w = max(now.w - impact, 0.0);
+  grip[i] = now;
+  x -= dt * overshot;
+  v += held.xyz * ((sticks(held) ? -1.0 - held.w : held.w) - leaving(v, under, held.xyz)) - overshot;
 }
 
 void main() {
@@ -40,8 +37,9 @@ void main() {
     bool kept = FETCH(constraint, i).xyz != vec3(0.0);
     x_next = x.xyz;
     v_next = FETCH(velocity, i).xyz;
-    RARELY(kept) rub(i, x_next, v_next);
+    RARELY(kept) leave_contact(i, x.w, x_next, v_next);
     int met = resolve_colliders(FETCH(before_position, i).xyz, x_next, v_next, 0.0);
+    x_next -= met_braking;
     tag = FETCH(start_velocity, i).w + float(kept ? max(met, 1) : met);
   }
   end_step(i, vec4(x_next, x.w), vec4(v_next, tag));

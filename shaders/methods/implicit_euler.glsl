@@ -17,9 +17,13 @@ void spring_matrix(vec3 x, vec3 y, uvec4 s, out vec3 n, out float along, out flo
   across = dt * dt * max(across, 0.0);
 }
 
-/// Without the part along the normal of a contact, which is 0 where there is none; nothing is left of a pinned vertex.
-vec3 filtered(vec3 v, float inverse_mass, vec3 normal) {
-  return inverse_mass > 0.0 ? v - normal * dot(normal, v) : vec3(0.0);
+// What a collider leaves a vertex, `constraint`: xyz the unit normal of the contact, or 0 where there is none; w the speed of
+// the rebound [m/s], or -1 less that where the vertex sticks to the surface.
+bool sticks(vec4 constraint) { return constraint.w < 0.0; }
+
+/// Without the part along the normal of a contact; nothing is left of a vertex that is pinned or sticks.
+vec3 filtered(vec3 v, float inverse_mass, vec4 constraint) {
+  return inverse_mass > 0.0 && !sticks(constraint) ? v - constraint.xyz * dot(constraint.xyz, v) : vec3(0.0);
 }
 
 /// Sums that the line search makes, each a vec4. With FREE, where nothing but its own springs acts on the cloth, one more:

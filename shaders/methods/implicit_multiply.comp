@@ -28,7 +28,7 @@ void main() {
     vec4 x = FETCH(position, i), r = FETCH(residual, i);
     vec3 w = vec3(0.0);
     if (x.w > 0.0) {
-      vec3 z = FETCH(preconditioned, i).xyz, left = filtered(r.xyz, x.w, FETCH(constraint, i).xyz);
+      vec3 z = FETCH(preconditioned, i).xyz, left = filtered(r.xyz, x.w, FETCH(constraint, i));
       w = multiply(i, x, z);  // z is filtered, so its products with w and r are, too
       sum = vec4(dot(r.xyz, z), dot(w, z), x.w * dot(left, left), r.w);
     }

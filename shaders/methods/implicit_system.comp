@@ -45,7 +45,8 @@ void main() {
     return;
   }
   float m = 1.0 / x.w, inertia = m * (1.0 + dt * gravity.w);
-  vec3 v = FETCH(start_velocity, i).xyz, normal = FETCH(constraint, i).xyz;
+  vec3 v = FETCH(start_velocity, i).xyz;
+  vec4 held = FETCH(constraint, i);
   vec3 r = m * (v - u + dt * (gravity.xyz - gravity.w * u)) + dt * force - inertia * d - product;
 
   vec3 a, b;
@@ -53,5 +54,5 @@ void main() {
   block_a[i] = vec4(a, 0.0);
   block_b[i] = vec4(b, 0.0);
   residual[i] = vec4(r, good_enough(x.w, v, force, stiffness, x.xyz, d));
-  preconditioned[i] = vec4(filtered(solve_block(a, b, filtered(r, x.w, normal)), x.w, normal), 0.0);
+  preconditioned[i] = vec4(filtered(solve_block(a, b, filtered(r, x.w, held)), x.w, held), 0.0);
 }

@@ -74,11 +74,11 @@ void main() {
   vec4 r = FETCH(residual, i);
   r.xyz -= along * q;
   float inverse_mass = FETCH(position, i).w;
-  vec3 normal = FETCH(constraint, i).xyz;
-  vec3 z = solve_block(FETCH(block_a, i).xyz, FETCH(block_b, i).xyz, filtered(r.xyz, inverse_mass, normal));
+  vec4 held = FETCH(constraint, i);
+  vec3 z = solve_block(FETCH(block_a, i).xyz, FETCH(block_b, i).xyz, filtered(r.xyz, inverse_mass, held));
   next_change[i] = vec4(FETCH(change, i).xyz + along * p, 0.0);
   next_direction[i] = vec4(p, 0.0);
   next_direction_product[i] = vec4(q, 0.0);
   next_residual[i] = r;
-  next_preconditioned[i] = vec4(filtered(z, inverse_mass, normal), 0.0);
+  next_preconditioned[i] = vec4(filtered(z, inverse_mass, held), 0.0);
 }

@@ -6,7 +6,6 @@ void integrate(int i, vec4 x, vec3 v, vec3 a, vec3 push, vec3 impulse, out vec3 
   v_next = v + dt * a + impulse;
   x_next = x.xyz + push + dt * v_next;
 }
-void touched() {}
-void end(int i) {}
+void end(int i, int met, inout vec3 v_next) {}
 
 #include "whole_step.glsl"

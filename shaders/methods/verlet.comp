@@ -2,23 +2,32 @@
 // Forces that depend on the velocity need it at the step's end before that is known: a first-order prediction there,
 // w = v + a dt, keeps the method second order, damping included. So the state holds x and w; what a vertex alone needs to
 // find the velocity in the middle of the last step is carried beside it.
+// A contact is an impulse within the step: it changes the velocity in the middle of it, with which the vertex has moved, and
+// the prediction likewise. Were the step after a contact begun anew from the velocity at its start, what slides or rests
+// would be stepped by explicit Euler.
 #include "gather.glsl"
 #include "step_end.glsl"
+#define SECOND_VELOCITY
 
 /// xyz: how much w is ahead of the velocity in the middle of the last step [m/s]; w: the dt of that step [s]. Both 0 after a
-/// start or a contact: then w is the velocity now. Kept as a difference, so that who changes w changes both.
+/// start: then w is the velocity now. Kept as a difference, so that who changes w changes both.
 READ_VEC4(carried, 9);
 layout(std430, binding = 3) writeonly buffer Carried { vec4 next_carried[]; };
 vec4 carry;
 
+#include "whole_step.glsl"
+
+/// v_next: the velocity in the middle of the step, the second velocity the one at its end.
 void integrate(int i, vec4 x, vec3 v, vec3 a, vec3 push, vec3 impulse, out vec3 x_next, out vec3 v_next) {
   vec4 before = FETCH(carried, i);
   vec3 now = v - before.xyz + (0.5 * before.w) * a + impulse;
-  x_next = x.xyz + push + dt * (now + (0.5 * dt) * a);
-  v_next = now + dt * a;
+  v_next = now + (0.5 * dt) * a;
+  x_next = x.xyz + push + dt * v_next;
+  second_velocity = now + dt * a;
   carry = vec4((0.5 * dt) * a, dt);
 }
-void touched() { carry = vec4(0.0); }
-void end(int i) { next_carried[i] = carry; }
-
-#include "whole_step.glsl"
+void end(int i, int met, inout vec3 v_next) {
+  RARELY(met > 0) carry.xyz = second_velocity - v_next;
+  next_carried[i] = carry;
+  v_next = second_velocity;
+}

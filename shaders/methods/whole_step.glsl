@@ -2,12 +2,14 @@
 // neighbour lists, then pins, and colliders on the way to the new position. The method supplies
 //   void integrate(int i, vec4 x, vec3 v, vec3 a, vec3 push, vec3 impulse, out vec3 x_next, out vec3 v_next)
 // from the acceleration a and what self-collision adds to position and velocity, and
-//   void touched()     which is called after a collider has changed the step, and
-//   void end(int i)    which is called at the end of it.
+//   void end(int i, int met, inout vec3 v_next)    which is called at the end of it, after `met` colliders.
 #include "../collide/colliders.glsl"
 #ifdef SELF_COLLISION
 #include "../collide/self_contact.glsl"
 #endif
+
+void integrate(int i, vec4 x, vec3 v, vec3 a, vec3 push, vec3 impulse, out vec3 x_next, out vec3 v_next);
+void end(int i, int met, inout vec3 v_next);
 
 /// Returns how many things the vertex touches.
 int move_freely(int i, vec4 x, vec4 v, out vec3 x_next, out vec3 v_next) {
@@ -19,8 +21,8 @@ int move_freely(int i, vec4 x, vec4 v, out vec3 x_next, out vec3 v_next) {
 #endif
   integrate(i, x, v.xyz, a, push, impulse, x_next, v_next);
   int met = resolve_colliders(x.xyz, x_next, v_next, 0.0);
-  if (met > 0) touched();
-  end(i);
+  x_next -= met_braking;
+  end(i, met, v_next);
   return contacts + met;
 }
 

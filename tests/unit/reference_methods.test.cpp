@@ -114,7 +114,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("Verlet starts anew where its half step is of length 0, as after a contact") {
+TEST_CASE("Verlet starts anew where its half step is of length 0, as after a start") {
   const double dt = 0.05;
   const reference::World world = world_of(test::one_spring(Method::verlet, dt));
   reference::State state = reference::at_rest(world), fresh;

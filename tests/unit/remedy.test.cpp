@@ -16,7 +16,8 @@ TEST_CASE("a number is rounded down to two digits, at any size") {
 }
 
 TEST_CASE(
-    "beyond the limit the remedy is four fifths of it, below it half the step, never longer than the step") {
+    "beyond the limit the remedy is four fifths of it, below it, where no shorter step is sure to hold, "
+    "implicit Euler") {
   scene::Scene seed = test::seed();
   const model::Model cloth = *model::build(seed);
   for (const Method method : {Method::symplectic_euler, Method::verlet, Method::rk4}) {
@@ -29,8 +30,12 @@ TEST_CASE(
       CHECK(remedy.dt <= 0.8 * limit);
       CHECK(remedy.dt > 0.7 * limit);
     }
-    seed.solver.dt = 0.001;
-    CHECK(model::remedy(cloth, seed, limit).dt == Approx(0.0005));
+    for (const double share : {0.05, 0.5, 0.89}) {
+      seed.solver.dt = share * limit;
+      const model::Remedy remedy = model::remedy(cloth, seed, limit);
+      CHECK(remedy.method == Method::implicit_euler);
+      CHECK(remedy.dt == seed.solver.dt);
+    }
   }
 }
 
@@ -62,9 +67,13 @@ TEST_CASE("for explicit Euler the remedy is symplectic Euler, at a step that hol
   }
 }
 
-TEST_CASE("what has no limit gets half its step") {
+TEST_CASE("implicit Euler, which has no limit, gets half its step, and what sweeps gets implicit Euler") {
   scene::Scene seed = test::seed();
   seed.solver.method = Method::implicit_euler;
   seed.solver.dt = 0.02;
   CHECK(model::remedy(*model::build(seed), seed, model::no_limit).dt == Approx(0.01));
+  for (const Method method : {Method::pbd, Method::xpbd, Method::vbd}) {
+    seed.solver.method = method;
+    CHECK(model::remedy(*model::build(seed), seed, model::no_limit).method == Method::implicit_euler);
+  }
 }
