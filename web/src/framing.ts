@@ -1,83 +1,73 @@
-// Where the camera stands so that the whole scene fits into the part of the window no panel covers.
-import { Box3, MathUtils, PerspectiveCamera, Sphere, Vector3 } from "three";
-import { extremes, moved } from "./motion";
-import { heldVertices, restPositions } from "./pins";
-import type { Cloth, SceneDocument } from "./scene_types";
+// Where the camera stands so that all it is to show lies in the part of the window that no card covers.
+import { MathUtils, PerspectiveCamera, Vector3 } from "three";
 
-/// The part of the window that panels leave free [CSS pixels].
+/// The part of the window that cards leave free [CSS pixels].
 export interface FreeArea { left: number; top: number; width: number; height: number }
 
 const viewFrom = new Vector3(1, 0.34, 0.5).normalize();  // from the side: the seed's cloth hides its sphere from the front
+const right = new Vector3(0, 1, 0).cross(viewFrom).normalize();
+const above = viewFrom.clone().cross(right);
+// Slopes of the four sides of a view: of any between them the farthest point is one of these, nearly.
+const slopes = [0, 0.1, 0.25, 0.5];
 
-/// How far a cloth can hang from its pins [m]: the largest distance from a vertex to the nearest pin, at rest.
-function hangingLength(rest: Vector3[], pins: Vector3[]): number {
-  const every = (points: Vector3[], most: number) => points.filter((_, i) => i % Math.ceil(points.length / most) === 0);
-  const some = every(pins, 64);
-  return Math.max(...every(rest, 400).map((point) => Math.min(...some.map((pin) => pin.distanceTo(point)))));
-}
+/// What is to be seen, as the farthest points towards each side of a view from that direction.
+export class Outline {
+  private readonly sides = slopes.flatMap((slope) => [right, right.clone().negate(), above, above.clone().negate()].map(
+    (across) => ({ along: across.clone().addScaledVector(viewFrom, slope), farthest: null as Vector3 | null, far: -Infinity })));
 
-function clothBox(cloth: Cloth, falls: boolean): Box3 {
-  const rest = restPositions(cloth);
-  const box = new Box3().setFromPoints(rest);
-  const held = [...heldVertices(cloth)].filter(([vertex]) => rest[vertex]);
-  if (held.length === 0) return box;
-  const pins = held.map(([vertex]) => rest[vertex] as Vector3);
-  const swept = new Box3().setFromPoints(held.flatMap(([vertex, motion]) =>
-    extremes(motion).map((time) => moved((rest[vertex] as Vector3).toArray(), motion, time))));
-  if (!falls) return box.union(swept);
-  const length = hangingLength(rest, pins);
-  // What hangs far from its pins leaves its rest shape within a second: not all of the way out there counts.
-  const hold = new Box3().setFromPoints(pins);
-  const share = 0.42 * Math.min(1, length / box.getSize(new Vector3()).length());
-  box.min.lerp(hold.min, share);
-  box.max.lerp(hold.max, share);
-  swept.min.y = Math.min(swept.min.y, hold.min.y - length);
-  return box.union(swept);
-}
+  get empty(): boolean { return this.sides[0]?.farthest === null; }
 
-/// The space a scene is going to use [m]: known before the first frame, and the same whenever F is pressed.
-export function sceneBox(document: SceneDocument): Box3 {
-  const falls = document.gravity[1] < 0;
-  const box = new Box3();
-  for (const cloth of document.cloths) box.union(clothBox(cloth, falls));
-  for (const { sphere, motion } of document.colliders) {
-    if (!sphere) continue;
-    for (const time of extremes(motion)) {
-      box.union(new Sphere(moved(sphere.center, motion, time), sphere.radius).getBoundingBox(new Box3()));
+  add(points: Vector3[]): void {
+    for (const side of this.sides) {
+      for (const point of points) {
+        const far = side.along.dot(point);
+        if (far <= side.far) continue;
+        side.far = far;
+        side.farthest = point;
+      }
     }
   }
-  for (const { plane } of document.colliders) {
-    if (plane && plane.normal[1] > 0.7) box.min.y = Math.max(Math.min(box.min.y, box.max.y), plane.point[1]);
-  }
-  return box;
+
+  points(): Vector3[] { return this.sides.flatMap(({ farthest }) => (farthest ? [farthest] : [])); }
 }
 
-/// Half of the width of what is in the box along a direction [m]. Corners of a bulky box are empty and those of a thin
-/// one are not: between the box itself and the ellipsoid that touches its sides.
-function halfWidth(box: Box3, along: Vector3): number {
-  const parts = box.getSize(new Vector3()).multiplyScalar(0.5).multiply(along).toArray().map(Math.abs);
-  return 0.4 * parts.reduce((sum, part) => sum + part, 0) + 0.6 * Math.hypot(...parts);
-}
+/// Where a camera stands: across and up the view, and along it, away from what it sees [m].
+export interface Stand { across: number; up: number; away: number; middle: number }
 
-/// Distance at which the box just fits a view of these half-angle tangents, seen along `direction`.
-function distanceToFit(box: Box3, direction: Vector3, tangentX: number, tangentY: number): number {
-  const right = new Vector3(0, 1, 0).cross(direction).normalize();
-  const above = direction.clone().cross(right);
-  const flat = Math.max(halfWidth(box, right) / tangentX, halfWidth(box, above) / tangentY, 0.05);
-  return flat + 0.6 * halfWidth(box, direction);
+const padding = (area: FreeArea): number => 6 + 0.025 * Math.min(area.width, area.height);  // [CSS pixels]
+
+/// The nearest place from which every point of the outline falls into the area, in a window of this height.
+export function standFor(outline: Outline, area: FreeArea, windowHeight: number, fov: number): Stand {
+  const perPixel = Math.tan(MathUtils.degToRad(fov / 2)) / (windowHeight / 2);
+  const tangent = (pixels: number): number => (perPixel * Math.max(pixels - 2 * padding(area), 24)) / 2;
+  const wide = tangent(area.width);
+  const high = tangent(area.height);
+  const points = outline.points();
+  // A point at depth z, x to the right of the camera, is inside while |x| < wide (away - z).
+  const most = (along: Vector3, sign: number, slope: number): number =>
+    Math.max(...points.map((point) => sign * along.dot(point) + slope * viewFrom.dot(point)));
+  const [toRight, toLeft, toTop, toBottom] = [most(right, 1, wide), most(right, -1, wide), most(above, 1, high), most(above, -1, high)];
+  const depths = points.map((point) => viewFrom.dot(point));
+  const nearest = Math.max(...depths);
+  const away = Math.max((toRight + toLeft) / (2 * wide), (toTop + toBottom) / (2 * high), nearest + 0.05);
+  return { across: (toRight - toLeft) / 2, up: (toTop - toBottom) / 2, away, middle: (nearest + Math.min(...depths)) / 2 };
 }
 
 /// Places the camera; returns the point it should orbit around.
-export function frame(camera: PerspectiveCamera, box: Box3, area: FreeArea, windowHeight: number): Vector3 {
-  const perPixel = Math.tan(MathUtils.degToRad(camera.fov / 2)) / (windowHeight / 2);
-  const margin = 1.04;
-  const distance = margin * distanceToFit(box, viewFrom, (perPixel * area.width) / 2, (perPixel * area.height) / 2);
-  const center = box.getCenter(new Vector3());
-  camera.position.copy(center).addScaledVector(viewFrom, distance);
+export function place(camera: PerspectiveCamera, stand: Stand): Vector3 {
+  const foot = new Vector3().addScaledVector(right, stand.across).addScaledVector(above, stand.up);
+  camera.position.copy(foot).addScaledVector(viewFrom, stand.away);
+  const distance = stand.away - stand.middle;
   camera.near = distance / 100;
   camera.far = distance * 40;
   camera.updateProjectionMatrix();
-  return center;
+  return foot.addScaledVector(viewFrom, stand.middle);
+}
+
+/// Between two stands, `share` of the way.
+export function between(from: Stand, to: Stand, share: number): Stand {
+  const mix = (key: keyof Stand): number => from[key] + share * (to[key] - from[key]);
+  return { across: mix("across"), up: mix("up"), away: mix("away"), middle: mix("middle") };
 }
 
 /// Shifts the picture so that its middle is the middle of the free area.

@@ -61,7 +61,7 @@ export class Page {
   close(): void { this.connection.close(); }
 
   private bind(layout: Layout, theme: ThemeSwitch): void {
-    const fit = (): void => { if (this.store.document) this.stage.fit(this.store.document); };
+    const fit = (): void => this.stage.fit();
     const help = element("help-dialog", HTMLDialogElement);
     bindKeys({
       toggle: () => this.transport.toggle(), step: () => this.transport.step(), reset: () => this.transport.reset(),

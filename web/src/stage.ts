@@ -1,14 +1,16 @@
 // The renderer, light, camera and the views on it. Draws only when something changed.
 import {
-  Color, DirectionalLight, HemisphereLight, PCFShadowMap, PerspectiveCamera, Scene, ShaderChunk, Vector3, Vector4, WebGLRenderer,
+  Box3, Color, DirectionalLight, HemisphereLight, PCFShadowMap, PerspectiveCamera, Scene, ShaderChunk, Vector3, Vector4, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { ClothView } from "./cloth_view";
 import { ColliderView } from "./collider_view";
-import { centerIn, frame as frameCamera, sceneBox, type FreeArea } from "./framing";
+import { CameraKeeper } from "./camera_keeper";
+import type { FreeArea } from "./framing";
 import { GroundShadow } from "./ground_shadow";
 import type { Frame, Topology } from "./protocol";
 import { Quality } from "./quality";
+import { framePoints, scenePoints } from "./reach";
 import type { SceneDocument } from "./scene_types";
 import type { Graphics } from "./webgl";
 
@@ -41,9 +43,11 @@ export class Stage {
   };
   private area: FreeArea = { left: 0, top: 0, width: 1, height: 1 };
   private dirty = true;
-  private framed = true;  // until the user moves the camera it stays fitted to the scene
-  private fitted: SceneDocument | null = null;
+  private readonly keeper = new CameraKeeper(this.camera);
+  private document: SceneDocument | null = null;
+  private latest: Frame | null = null;  // on screen
   private lastDrawn = 0;
+  private lastLook = 0;
   private scale = 1;      // resolution of the picture on screen: one at rest is sharp, whatever the quality level
   private readonly stillScale: number;
   private lastTime = 0;
@@ -73,7 +77,7 @@ export class Stage {
     this.controls.dampingFactor = 0.12;
     this.controls.maxPolarAngle = Math.PI * 0.56;
     this.controls.addEventListener("change", () => this.invalidate());
-    this.controls.addEventListener("start", () => { this.framed = false; });
+    this.controls.addEventListener("start", () => { this.keeper.fitted = false; });
     canvas.addEventListener("webglcontextlost", () => this.onLost());
     canvas.addEventListener("webglcontextrestored", () => this.invalidate());
     this.quality = new Quality(() => this.resize(this.area), software ? 1 : 0);
@@ -83,22 +87,32 @@ export class Stage {
   invalidate(): void { this.dirty = true; }
 
   setDocument(document: SceneDocument, newScene: boolean): void {
-    const box = sceneBox(document);
+    const box = new Box3().setFromPoints(scenePoints(document));
+    const fresh = newScene || !this.document;
+    this.document = document;
     const radius = this.radius = box.getSize(new Vector3()).length() / 2;
     this.cloth.setDocument(document);
     this.colliders.setDocument(document, radius);
     this.colliders.update(this.lastTime, this.cloth.box.isEmpty() ? 0 : this.cloth.box.min.y);
     this.aimLight(box.getCenter(new Vector3()), radius);
-    if (newScene || !this.fitted) this.fit(document);
+    if (fresh) this.fit(false);
     this.invalidate();
   }
 
-  setTopology(topology: Topology): void { this.cloth.setTopology(topology); }
+  setTopology(topology: Topology): void {
+    this.cloth.setTopology(topology);
+    this.latest = null;
+    if (this.keeper.fitted) this.fit(false);  // what was seen of another mesh need not be seen any more
+  }
 
   show(frame: Frame): boolean {
     // A cloth that has blown up would fill the window many times over: its last sane shape stays.
     if (Math.max(...frame.header.boxExtent) > explodedAt * this.radius) return true;
     if (!this.cloth.show(frame)) return false;
+    const first = this.latest === null;
+    this.latest = frame;
+    this.keeper.see(framePoints(frame));
+    if (first && this.keeper.fitted) this.orbit(this.keeper.jump());
     this.lastTime = frame.header.time;
     this.colliders.update(frame.header.time, this.cloth.box.min.y);
     this.invalidate();
@@ -115,14 +129,19 @@ export class Stage {
     this.invalidate();
   }
 
-  fit(document: SceneDocument): void {
-    this.framed = true;
-    this.fitted = document;
+  /// All of the scene into view; `seen`: what is on screen now too, wherever it has got to.
+  fit(seen = true): void {
+    if (!this.document) return;
     const damped = this.controls.enableDamping;
     this.controls.enableDamping = false;  // an update without damping ends the swing of the last drag
     this.controls.update();
     this.controls.enableDamping = damped;
-    this.controls.target.copy(frameCamera(this.camera, sceneBox(document), this.area, this.canvas.clientHeight));
+    this.orbit(this.keeper.fit(scenePoints(this.document), seen && this.latest ? framePoints(this.latest) : []));
+  }
+
+  private orbit(target: Vector3 | null): void {
+    if (!target) return;
+    this.controls.target.copy(target);
     this.controls.minDistance = this.camera.near * 4;
     this.controls.maxDistance = this.camera.far / 6;
     this.controls.update();
@@ -136,16 +155,18 @@ export class Stage {
     this.renderer.setSize(width, height, false);
     this.setScale(scale);
     if (this.light.shadow.mapSize.x !== shadow) this.light.shadow.mapSize.setScalar(shadow);
-    centerIn(this.camera, area, width, height);
-    if (this.framed && this.fitted) this.fit(this.fitted);
+    this.keeper.resize(area, width, height);
+    if (this.keeper.fitted) this.orbit(this.keeper.jump());
     this.invalidate();
   }
 
   /// Called for every animation frame; true if it drew.
   draw(): boolean {
     if (this.cloth.vertices === 0) return false;  // an empty stage is not worth the time before the first frame
-    this.controls.update();
     const now = performance.now();
+    this.orbit(this.keeper.follow(Math.min(now - this.lastLook, 100) / 1000));
+    this.lastLook = now;
+    this.controls.update();
     const sinceLast = now - this.lastDrawn;
     if (!this.dirty && (this.scale === this.stillScale || sinceLast < stillAfter)) return false;
     const scale = this.dirty ? this.quality.level.scale : this.stillScale;
