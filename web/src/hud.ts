@@ -35,6 +35,9 @@ const rows = [
 ] as const;
 type Row = (typeof rows)[number][0];
 
+/// ×1.00; ×0.004: what is slow is not nothing.
+const factorText = (factor: number): string => `×${factor >= 0.1 || factor === 0 ? factor.toFixed(2) : factor.toPrecision(1)}`;
+
 export class Hud {
   private readonly cells = new Map<Row, HTMLElement>();
   private drawn = 0;
@@ -54,6 +57,7 @@ export class Hud {
       const name = document.createElement("dt");
       name.textContent = label;
       const value = document.createElement("dd");
+      value.className = key;
       value.textContent = "–";
       row.append(name, value);
       list.append(row);
@@ -92,7 +96,7 @@ export class Hud {
   showStatus(status: Status): void {
     if (status.playing === false && status.time !== undefined) this.showTime(status.time);  // the last frame came too soon to be shown
     if (status.real_time_factor !== undefined) {
-      const text = status.playing === false ? "paused" : `×${status.real_time_factor.toFixed(2)}`;
+      const text = status.playing === false ? "paused" : factorText(status.real_time_factor);
       this.set("rtf", status.asleep ? "at rest" : text);
       element("headline-rtf", HTMLElement).textContent = status.asleep ? "at rest" : text;
     }

@@ -12,6 +12,7 @@ import { clearDiverged, notice, noticeError, showApplied, showDiverged, type Div
 import { Panel } from "./panel";
 import type { Frame } from "./protocol";
 import { RpcError } from "./rpc";
+import { SlowWatch } from "./slow_watch";
 import { SceneStore } from "./scene_store";
 import type { Patch, SceneDocument } from "./scene_types";
 import type { Stage } from "./stage";
@@ -27,7 +28,8 @@ export class Page {
   private readonly connection = new Connection(new URLSearchParams(location.search).get("session") ?? "main", this.linkEvents());
   private readonly link = new LinkView(this.connection);
   private readonly transport = new Transport({ request: (method, params) => this.request(method, params) });
-  private readonly store = this.makeStore();
+  private readonly slow = new SlowWatch((operations) => this.store.edit(operations));
+  private readonly store: SceneStore = this.makeStore();
   private readonly panel = this.makePanel();
   private readonly lab = this.makeLab();
   private readonly notifications = this.makeNotifications();
@@ -97,6 +99,7 @@ export class Page {
         this.link.show(state, retryIn, why);
         this.transport.enable(state === "open" && this.mayEdit);
         this.lab.link(state === "open");
+        this.slow.link(state === "open");
         if (state !== "open") this.store.forget();
         else if (!this.store.document) void this.fetchScene();
       },
@@ -105,6 +108,7 @@ export class Page {
       frame: (frame) => {
         hook.framesReceived++;
         this.hud.countReceived();
+        this.slow.picture();
         const replaced = this.latest;  // before it was drawn
         if (replaced && !document.hidden) this.connection.acknowledge(replaced.header.sequence);
         this.latest = frame;
@@ -120,6 +124,7 @@ export class Page {
       fetch: () => this.fetchScene(),
       changed: (document, whole) => this.sceneChanged(document, whole),
       applied: showApplied,
+      wayBack: (operations) => this.slow.changed(operations),
       rejected: (error) => {
         if (error instanceof RpcError) noticeError("Not applied", error);
         this.panel.snapBack();
@@ -156,6 +161,7 @@ export class Page {
       "sim.status": (params) => {
         this.hud.showStatus(params as Status);
         this.transport.status(params as Status);
+        this.slow.told(params as Status);
         if (params.stability) this.panel.showStability(params.stability as Stability);
         if (params.solver) this.panel.showSolver(params.solver as SolverFacts);
         this.followDivergence(params as Status);
@@ -181,6 +187,7 @@ export class Page {
 
   private sceneChanged(document: SceneDocument, whole: boolean): void {
     hook.document = document;
+    this.slow.dt = document.solver.dt;
     const newScene = whole && document.name !== this.sceneName;
     this.sceneName = document.name;
     element("scene-name", HTMLElement).textContent = document.name;

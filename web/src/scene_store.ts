@@ -1,15 +1,17 @@
 // The page's copy of the scene: what the server last said, and the edits on their way to it.
 // Edits to the same place are coalesced to one message per `sendEvery`; the last value is always sent.
-import { applyPatch } from "./json_patch";
+import { applyPatch, valueAt } from "./json_patch";
 import type { Operation, Patch, SceneDocument } from "./scene_types";
 
 const sendEvery = 50;  // [ms]
+const oneChange = 2000;  // [ms] between edits that are one change to a person: a slider that is dragged
 
 export interface StoreEvents {
   send(patch: Patch): Promise<{ revision?: number; applies?: string }>;
   fetch(): Promise<void>;
   changed(document: SceneDocument, whole: boolean): void;
   applied(depth: string): void;
+  wayBack(operations: Operation[]): void;  ///< of the changes that this page made last
   rejected(error: Error): void;
 }
 
@@ -20,6 +22,7 @@ export class SceneStore {
   private inFlight: Operation[] | null = null;
   private timer = 0;
   private lastSent = -Infinity;
+  private readonly before = new Map<string, Operation>();  // the last change, undone
 
   constructor(private readonly events: StoreEvents) {}
 
@@ -72,23 +75,42 @@ export class SceneStore {
     this.timer = window.setTimeout(() => void this.flush(), wait);
   }
 
+  private remember(operations: Operation[]): void {
+    for (const operation of operations) {
+      if (!this.document || this.before.has(operation.path)) continue;
+      const back = inverse(this.document, operation);
+      if (back) this.before.set(operation.path, back);
+    }
+  }
+
   private async flush(): Promise<void> {
     this.timer = 0;
+    if (performance.now() - this.lastSent > oneChange) this.before.clear();
     this.lastSent = performance.now();
     const operations = [...this.queue.values()];
     this.queue.clear();
     this.inFlight = operations;
+    this.remember(operations);
     try {
       const answer = await this.events.send(operations);
       this.inFlight = null;
       if (answer.revision !== undefined) this.patched(answer.revision, operations);
       if (answer.applies) this.events.applied(answer.applies);
+      this.events.wayBack([...this.before.values()].reverse());
     } catch (error) {
       this.inFlight = null;
       this.events.rejected(error as Error);
     }
     this.schedule();
   }
+}
+
+/// The operation that brings back what one changes; null where it cannot be told.
+function inverse(document: SceneDocument, { op, path }: Operation): Operation | null {
+  if (op !== "replace" && op !== "add" && op !== "remove") return null;
+  const value = valueAt(document, path);
+  if (value === undefined) return { op: "remove", path };
+  return { op: op === "remove" ? "add" : "replace", path, value };
 }
 
 const isScalar = (value: unknown): boolean => typeof value !== "object" || value === null;
