@@ -37,6 +37,7 @@ class RealTime {
   void sample(Time now, double simulated);
   /// Simulated seconds a second over the last second of samples; 0 before there are two.
   double factor() const;
+  bool sampled() const { return sample_count_ >= 2; }
 
   static constexpr double turn_budget = 0.010;  ///< wall time one turn may spend stepping [s]
   static constexpr double most_owed = 0.050;    ///< [s] of wall time

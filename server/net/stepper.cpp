@@ -264,8 +264,7 @@ void Stepper::follow_step_limit() {
 }
 
 void Stepper::warn_if_slow(Clock::time_point now) {
-  // No factor at all: not one step has ended of late.
-  if (!was_running_ || real_time_.factor() > 0.9 * real_time_.speed()) {
+  if (!was_running_ || !real_time_.sampled() || real_time_.factor() > 0.9 * real_time_.speed()) {
     slow_since_ = now;
     return;
   }
@@ -273,17 +272,15 @@ void Stepper::warn_if_slow(Clock::time_point now) {
   slow_announced_ = true;
   const scene::Method method = document_.scene.solver.method;
   const bool iterates = method == scene::Method::implicit_euler || scene::sweeps(method);
-  const double others = simulation().search_candidates();
-  exchange_.emit(Notice{
-      "warning",
-      "this machine cannot keep up" +
-          (real_time_.step_cost() >= 0.1 ? ": a step takes " + significant(real_time_.step_cost(), 2) + " s"
-                                         : std::string(": time runs slower than asked for")) +
-          "; a smaller cloth, " + (iterates ? "fewer iterations, " : "") +
-          (others >= 500 ? "a smaller self_collision thickness (each vertex is held against " +
-                               formatted("%.0f", others) + " others), "
-                         : std::string()) +
-          "a longer time step or a lower speed helps"});
+  std::string text = "this machine cannot keep up: ";
+  text += real_time_.step_cost() >= 0.1 ? formatted("a step takes %.2g s", real_time_.step_cost())
+                                        : std::string("time runs slower than asked for");
+  text += "; a smaller cloth, ";
+  if (iterates) text += "fewer iterations, ";
+  if (const double others = simulation().search_candidates(); others >= 500)
+    text +=
+        formatted("a smaller self_collision thickness (each vertex is held against %.0f others), ", others);
+  exchange_.emit(Notice{"warning", text + "a longer time step or a lower speed helps"});
 }
 
 void Stepper::warn_if_crowded() {

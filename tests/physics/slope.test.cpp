@@ -1,5 +1,6 @@
 // What lies on a slope slides down it as Newton and Coulomb say, however few sweeps a step has and however
 // long it is.
+#include <algorithm>
 #include <array>
 #include <cmath>
 

@@ -11,8 +11,8 @@ const patience = 60_000;  // to build a million vertices takes its time
 const subscription = { encoding: "q16", rate: 60, in_flight: 2 };
 
 /// One of each kind: many vertices, a dense search, sweeps in many dispatches, sweeps over many vertices, a solver, a limit.
-const kinds = ["512x512 with self-collision", "100x100 with a thickness of 10 m", "1024x1024 without self-collision", "10,000 iterations of xpbd",
-               "100 iterations of vbd on 300x300", "10,000 Newton steps to 1e-12", "a strain limit that cannot be met on 200x200"];
+const kinds = ["512x512 with self-collision", "100x100 with a thickness of 10 m", "10,000 iterations of xpbd", "100 iterations of vbd on 300x300",
+               "10,000 Newton steps to 1e-12", "a strain limit that cannot be met on 200x200"];
 
 for (const name of kinds)
   test(`${name}: another session's frames come, this one answers and is undone, and the server ends`, async () => {

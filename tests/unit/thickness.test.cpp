@@ -1,4 +1,5 @@
 // How thick self-collision must be for a mesh, and what is told where it is less.
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <random>
