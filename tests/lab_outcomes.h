@@ -139,7 +139,8 @@ inline lab::Simplification made_up_simplification() {
     made.error = {change + 1e-4, 1e-3, 2e-3, std::nullopt};
     made.change = change;
     made.cost = lab::Cost{57 * ratio, 55 * ratio, 3};
-    made.cost_ratio = ratio;
+    made.cost_ratio = {ratio, 0.96 * ratio, 1.03 * ratio};
+    made.saving = lab::saving(made.cost_ratio);
     made.dt_limit = 1.9e-3;
     made.drop = drop;
     return made;

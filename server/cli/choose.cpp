@@ -1,4 +1,5 @@
 // `clothlab choose S --tolerance E`: the cheapest way to step a scene that is good enough.
+#include <cmath>
 #include <iostream>
 #include <memory>
 
@@ -16,12 +17,21 @@ struct Options {
   double tolerance = 0.01, time = 1;
 };
 
+/// " [0.9..1.1]"; nothing where there is no interval.
+std::string range(std::optional<double> low, std::optional<double> high) {
+  if (!low || !high || !std::isfinite(*high)) return "";
+  return " [" + brief(*low) + ".." + brief(*high) + "]";
+}
+
 std::vector<std::string> row(const char* what, const lab::Point& point) {
   return {what, lab::text(point.setting),
-          point.blew_up_at               ? "blew up at " + brief(*point.blew_up_at) + " s"
-          : point.largest_position_error ? "error " + brief(*point.largest_position_error)
-                                         : "error unknown",
-          point.cost ? brief(point.cost->median) + " ms per simulated second" : ""};
+          point.blew_up_at ? "blew up at " + brief(*point.blew_up_at) + " s"
+          : point.largest_position_error
+              ? "error " + brief(*point.largest_position_error) + range(point.error_low, point.error_high)
+              : "error unknown",
+          point.cost ? brief(point.cost->median) + range(point.cost->low, point.cost->high) +
+                           " ms per simulated second"
+                     : ""};
 }
 
 void print(const lab::Outcome& outcome) {

@@ -19,10 +19,17 @@ struct Options {
   double tolerance = 0.01, time = 1;
 };
 
+std::string verdict(const lab::Variant& variant, double tolerance) {
+  if (variant.drop) return "can go";
+  if (!variant.change || *variant.change > tolerance || variant.saving != lab::Saving::cannot_tell)
+    return "keep";
+  return "keep: within the noise";
+}
+
 std::vector<std::string> row(const lab::Variant& variant, const std::string& verdict) {
   if (!variant.measured) return {variant.name, "-", "-", "-", "-", variant.reason};
   return {variant.name,
-          brief(variant.cost_ratio, 2),
+          lab::text(variant.cost_ratio),
           variant.change ? brief(*variant.change, 2) : "-",
           variant.error[0] ? brief(*variant.error[0], 2) : "-",
           std::isfinite(variant.dt_limit) ? brief(1000 * variant.dt_limit) : "none",
@@ -37,8 +44,8 @@ void print(const lab::Outcome& outcome) {
   std::vector<std::vector<std::string>> rows{{"", "cost", "change", "error", "longest dt [ms]", ""},
                                              row(result.whole, "")};
   for (const lab::Variant& variant : result.variants)
-    rows.push_back(row(variant, variant.drop ? "can go" : "keep"));
-  if (result.recommended.measured) rows.push_back(row(result.recommended, "recommended"));
+    rows.push_back(row(variant, verdict(variant, result.tolerance)));
+  if (result.together()) rows.push_back(row(result.recommended, "recommended"));
   print_table(rows);
   std::cout << "\n";
   if (!result.why.empty()) std::cout << result.why << "\n";

@@ -1,6 +1,7 @@
 #include "server/lab/beside.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "server/base/text.h"
@@ -15,24 +16,15 @@ namespace {
 
 using scene::Document;
 
-constexpr double truth_budget = 20.0, timed = 0.25;  // wall time [s]
-constexpr int rounds = 5;
+constexpr double truth_budget = 20.0;  // wall time [s]
+constexpr double timed = 0.15;  // of one timing at most, so that a round has one state of the machine [s]
+constexpr double timing_budget = 40.0;  // of what goes on after the first look [s]
 /// Of a copy that tells whether a motion without a reference is chaotic, and by how much it may grow.
 constexpr double heavier = 1e-4, most_amplified = 100.0;
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
-
-double least(const std::vector<double>& values) {
-  return *std::min_element(values.begin(), values.end());
-}
-
 }  // namespace
 
-bool Candidate::coarser() const {
+bool Substitute::coarser() const {
   return std::any_of(parts.begin(), parts.end(), [](const Part* part) { return part->coarser > 1; });
 }
 
@@ -68,7 +60,7 @@ Status Beside::start(double time, const std::function<void(double share)>& progr
 
 /// Nothing has said until when the motion can be compared: a copy that starts almost alike does.
 Status Beside::compare_without_truth(std::vector<std::string>& notes) {
-  Candidate copy = whole_;
+  Substitute copy = whole_;
   for (scene::Cloth& cloth : copy.document.scene.cloths) cloth.mass.value *= 1.0 + heavier;
   if (Status measured = run(copy); !measured) return measured;
   const double apart = copy.variant.change.value_or(1.0);
@@ -82,7 +74,7 @@ Status Beside::compare_without_truth(std::vector<std::string>& notes) {
   return ok();
 }
 
-Status Beside::measure(Candidate& candidate, Document document) {
+Status Beside::measure(Substitute& candidate, Document document) {
   candidate.document = std::move(document);
   if (candidate.coarser())
     if (Status stepped = same_share_of_limit(candidate); !stepped) return stepped;
@@ -92,7 +84,7 @@ Status Beside::measure(Candidate& candidate, Document document) {
 
 /// A coarser mesh allows longer steps, which is where most of its saving is: its step is the same share of
 /// its limit.
-Status Beside::same_share_of_limit(Candidate& candidate) {
+Status Beside::same_share_of_limit(Substitute& candidate) {
   const Result<double> limit = limit_of(candidate.document.scene);
   if (!limit) return limit.error();
   const double before = whole_.variant.dt_limit;
@@ -117,7 +109,7 @@ Result<double> Beside::limit_of(const scene::Scene& scene) const {
 }
 
 /// Errors, change and step limit; the cost comes later, taking turns.
-Status Beside::run(Candidate& candidate) {
+Status Beside::run(Substitute& candidate) {
   Variant& variant = candidate.variant;
   const scene::Scene& scene = candidate.document.scene;
   const Result<double> limit = limit_of(scene);
@@ -137,7 +129,7 @@ Status Beside::run(Candidate& candidate) {
   return compared_at() > 0.0 ? compare(candidate, *trial) : ok();
 }
 
-Status Beside::compare(Candidate& candidate, const Trial& trial) {
+Status Beside::compare(Substitute& candidate, const Trial& trial) {
   if (!trial.at_horizon.empty()) {
     candidate.at_horizon.assign(trial.at_horizon.begin(), trial.at_horizon.end());
   } else {
@@ -156,24 +148,52 @@ Status Beside::compare(Candidate& candidate, const Trial& trial) {
   return ok();
 }
 
-/// The whole and these, taking turns; ratios are of the same turn, so that a slow minute of the machine is
-/// nobody's.
-Status Beside::time(const std::vector<Candidate*>& candidates) {
-  std::vector<scene::Scene> scenes{whole_.document.scene};
-  for (const Candidate* candidate : candidates) scenes.push_back(candidate->document.scene);
-  const auto times = bench_.time(scenes, truth_.time, timed, rounds, stop_);
+Result<std::vector<std::vector<double>>> Beside::turns(const std::vector<const scene::Scene*>& scenes,
+                                                       std::vector<CostComparison>& comparisons) {
+  const auto time = [&](std::size_t thing) -> Result<double> {
+    if (stop_.stop_requested()) return cancelled;
+    if (timer_) return timer_(*scenes[thing]);
+    const auto times = bench_.time({*scenes[thing]}, truth_.time, timed, 1, stop_);
+    if (!times) return times.error();
+    return times->front().front();
+  };
+  const auto begun = std::chrono::steady_clock::now();
+  const auto more = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count() < timing_budget;
+  };
+  return take_turns(scenes.size(), comparisons, time, more);
+}
+
+Status Beside::time(const std::vector<Substitute*>& candidates, double tolerance) {
+  std::vector<const scene::Scene*> scenes{&whole_.document.scene};
+  std::vector<CostComparison> comparisons;
+  for (const Substitute* candidate : candidates) {
+    scenes.push_back(&candidate->document.scene);
+    const std::optional<double>& change = candidate->variant.change;
+    comparisons.push_back({comparisons.size() + 1, 0, change && *change <= tolerance});
+  }
+  const auto times = turns(scenes, comparisons);
   if (!times) return times.error();
-  const std::vector<double>& whole = times->front();
-  whole_.variant.cost = cost_of(whole);
+  whole_.variant.cost = cost_of(times->front());
+  whole_.variant.cost_ratio = {1.0, 1.0, 1.0};
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const std::vector<double>& own = (*times)[i + 1];
-    std::vector<double> ratios;
-    for (std::size_t round = 0; round < own.size(); ++round) ratios.push_back(own[round] / whole[round]);
-    candidates[i]->variant.cost = cost_of(own);
-    // Noise only ever makes a run longer, and an odd turn may flatter either: what saves does so in both.
-    candidates[i]->variant.cost_ratio = std::max(median(ratios), least(own) / least(whole));
+    Variant& variant = candidates[i]->variant;
+    variant.cost = cost_of((*times)[i + 1]);
+    variant.cost_ratio = comparisons[i].ratio;
+    variant.saving = comparisons[i].saving;
   }
   return ok();
+}
+
+Result<CostComparison> Beside::time_over(Substitute& candidate, const Substitute& other) {
+  std::vector<CostComparison> comparisons{{2, 1, true}, {2, 0, false}};
+  const auto times =
+      turns({&whole_.document.scene, &other.document.scene, &candidate.document.scene}, comparisons);
+  if (!times) return times.error();
+  candidate.variant.cost = cost_of(times->back());
+  candidate.variant.cost_ratio = comparisons[1].ratio;
+  candidate.variant.saving = comparisons[1].saving;
+  return comparisons[0];
 }
 
 }  // namespace clothlab::lab

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,12 +39,17 @@ inline constexpr double real_time = 1000.0;
 struct Cost {
   double median = 0, minimum = 0;  ///< stepping alone [ms per simulated second]
   int runs = 0;                    ///< timed, after a warm-up that is not
+  /// Where the median lies, as far as these runs tell; infinite: they were too few. The machine may be
+  /// another one tomorrow.
+  double low = 0, high = std::numeric_limits<double>::infinity();
 };
 
 struct Point {
   Setting setting;
   Errors error;
   std::optional<double> largest_position_error;  ///< at any sample time up to the horizon
+  /// Of a choice: between what the largest error at any step lies, see LargestError.
+  std::optional<double> error_low, error_high;
   std::optional<Cost> cost;
   std::optional<double> blew_up_at;  ///< [s]; it has no errors then
   std::optional<double>

@@ -10,11 +10,12 @@ namespace clothlab::lab {
 
 struct Choice {
   std::string scene, renderer;
-  double tolerance = 0;            ///< asked for: RMS position error over the cloth's size
-  double time = 0, horizon = 0;    ///< [s]
-  double reference_error = 0;      ///< of the reference itself, in the same terms
-  bool met = false;                ///< else `chosen` is the most accurate that was found
-  Point chosen;                    ///< expected error: largest_position_error; expected cost: cost
+  double tolerance = 0;          ///< asked for: RMS position error over the cloth's size
+  double time = 0, horizon = 0;  ///< [s]
+  double reference_error = 0;    ///< of the reference itself, in the same terms
+  bool met = false;              ///< else `chosen` is the most accurate that was found
+  Point
+      chosen;  ///< expected error: largest_position_error, from error_low to error_high; expected cost: cost
   std::optional<Point> runner_up;  ///< the cheapest of another method that keeps the tolerance
   Point present;                   ///< the scene's own setting, measured the same way
   std::string why;                 ///< one sentence

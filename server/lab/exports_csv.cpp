@@ -57,13 +57,18 @@ const std::string cost_header = "median_ms_per_simulated_s,minimum_ms_per_simula
 
 std::string of_points(const std::vector<Point>& points) {
   Table table("method,dt_s,iterations,linear_tolerance," + errors_header +
-              ",largest_position_error_over_size," + cost_header + ",blew_up_at_s,dt_over_limit");
+              ",largest_position_error_over_size,largest_position_error_low,largest_position_error_high," +
+              cost_header + ",blew_up_at_s,dt_over_limit");
   for (const Point& point : points) {
     const Setting& setting = point.setting;
     table.row().add(scene::name(setting.method)).add(setting.dt);
     iterates(setting.method) ? table.add(setting.iterations) : table.add("");
     setting.method == scene::Method::implicit_euler ? table.add(setting.tolerance) : table.add("");
-    table.add(point.error).add(point.largest_position_error).add(point.cost);
+    table.add(point.error)
+        .add(point.largest_position_error)
+        .add(point.error_low)
+        .add(point.error_high)
+        .add(point.cost);
     table.add(point.blew_up_at).add(point.dt_over_limit);
   }
   return table.finish();
@@ -97,16 +102,19 @@ std::string of(const StabilityMap& map) {
 
 std::string of(const Simplification& simplification) {
   Table table("variant,measured,reason," + errors_header + ",change_over_size," + cost_header +
-              ",cost_ratio,dt_limit_s,drop,patch");
+              ",cost_ratio,cost_ratio_low,cost_ratio_high,saves,dt_limit_s,drop,patch");
   const auto row = [&](const Variant& variant) {
     table.row().add(variant.name).add(variant.measured).add(variant.reason).add(variant.error);
     table.add(variant.change).add(variant.cost);
-    variant.measured ? table.add(variant.cost_ratio) : table.add("");
+    table.add(variant.cost ? std::optional(variant.cost_ratio.median) : std::nullopt);
+    const bool tells = std::isfinite(variant.cost_ratio.high);
+    table.add(tells ? std::optional(variant.cost_ratio.low) : std::nullopt);
+    table.add(tells ? std::optional(variant.cost_ratio.high) : std::nullopt).add(name(variant.saving));
     table.add(variant.dt_limit).add(variant.drop).add(variant.patch.dump());
   };
   row(simplification.whole);
   for (const Variant& variant : simplification.variants) row(variant);
-  if (!simplification.recommended.name.empty()) row(simplification.recommended);
+  if (simplification.together()) row(simplification.recommended);
   return table.finish();
 }
 

@@ -16,6 +16,11 @@ json number(const std::optional<double>& value) {
   return value ? number(*value) : json();
 }
 
+/// An end of an interval; null where too few values make none.
+json end_of(const Spread& spread, double end) {
+  return std::isfinite(spread.high) ? number(end) : json();
+}
+
 json of(const Errors& errors) {
   json object = json::object();
   for (const Axis axis : all_axes) object[name(axis)] = number(errors[static_cast<std::size_t>(axis)]);
@@ -24,13 +29,20 @@ json of(const Errors& errors) {
 
 json of(const std::optional<Cost>& cost) {
   if (!cost) return {};
-  return {{"median", number(cost->median)}, {"minimum", number(cost->minimum)}, {"runs", cost->runs}};
+  const bool tells = std::isfinite(cost->high);
+  return {{"median", number(cost->median)},
+          {"minimum", number(cost->minimum)},
+          {"runs", cost->runs},
+          {"low", tells ? number(cost->low) : json()},
+          {"high", number(cost->high)}};
 }
 
 json of(const Point& point) {
   json object = to_json(point.setting);
   object["error"] = of(point.error);
   object["largest_position_error"] = number(point.largest_position_error);
+  object["largest_position_error_low"] = number(point.error_low);
+  object["largest_position_error_high"] = number(point.error_high);
   object["ms_a_simulated_s"] = of(point.cost);
   object["blew_up_at_s"] = number(point.blew_up_at);
   object["dt_over_limit"] = number(point.dt_over_limit);
@@ -142,7 +154,10 @@ json of(const Variant& variant) {
           {"error", of(variant.error)},
           {"change", number(variant.change)},
           {"ms_a_simulated_s", of(variant.cost)},
-          {"cost_ratio", number(variant.cost_ratio)},
+          {"cost_ratio", variant.cost ? number(variant.cost_ratio.median) : json()},
+          {"cost_ratio_low", end_of(variant.cost_ratio, variant.cost_ratio.low)},
+          {"cost_ratio_high", end_of(variant.cost_ratio, variant.cost_ratio.high)},
+          {"saves", variant.saving == Saving::unknown ? json() : json(name(variant.saving))},
           {"dt_limit_s", number(variant.dt_limit)},
           {"drop", variant.drop}};
 }

@@ -45,7 +45,12 @@ Errors errors(const json& value) {
 
 std::optional<Cost> cost(const json& value) {
   if (value.is_null()) return std::nullopt;
-  return Cost{number(value.at("median")), number(value.at("minimum")), value.at("runs").get<int>()};
+  Cost cost{number(value.at("median")), number(value.at("minimum")), value.at("runs").get<int>()};
+  if (!value.at("high").is_null()) {
+    cost.low = number(value.at("low"));
+    cost.high = number(value.at("high"));
+  }
+  return cost;
 }
 
 Point point(const json& value) {
@@ -53,6 +58,8 @@ Point point(const json& value) {
   point.setting = setting(value);
   point.error = errors(value.at("error"));
   point.largest_position_error = maybe(value.at("largest_position_error"));
+  point.error_low = maybe(value.at("largest_position_error_low"));
+  point.error_high = maybe(value.at("largest_position_error_high"));
   point.cost = cost(value.at("ms_a_simulated_s"));
   point.blew_up_at = maybe(value.at("blew_up_at_s"));
   point.dt_over_limit = maybe(value.at("dt_over_limit"));
@@ -147,6 +154,13 @@ Choice choice(const json& value) {
   return choice;
 }
 
+Saving saving_of(const json& value) {
+  if (value.is_null()) return Saving::unknown;
+  for (const Saving saving : {Saving::yes, Saving::no, Saving::cannot_tell})
+    if (value == name(saving)) return saving;
+  throw std::invalid_argument("unknown saving " + value.dump());
+}
+
 Variant variant(const json& value) {
   Variant variant;
   variant.name = value.at("name");
@@ -156,7 +170,11 @@ Variant variant(const json& value) {
   variant.error = errors(value.at("error"));
   variant.change = maybe(value.at("change"));
   variant.cost = cost(value.at("ms_a_simulated_s"));
-  variant.cost_ratio = number(value.at("cost_ratio"));
+  variant.cost_ratio.median = maybe(value.at("cost_ratio")).value_or(1.0);
+  if (!value.at("cost_ratio_low").is_null())
+    variant.cost_ratio = {variant.cost_ratio.median, number(value.at("cost_ratio_low")),
+                          number(value.at("cost_ratio_high"))};
+  variant.saving = saving_of(value.at("saves"));
   variant.dt_limit = maybe(value.at("dt_limit_s")).value_or(std::numeric_limits<double>::infinity());
   variant.drop = value.at("drop").get<bool>();
   return variant;

@@ -13,7 +13,6 @@ namespace {
 
 using scene::Document;
 
-constexpr double worth_it = 0.95;  // of the whole's cost: what saves less is not worth a change of the model
 constexpr double share_of_truth = 0.4;  // of the job, for its progress
 
 std::string percent(double share) {
@@ -31,7 +30,10 @@ std::string list(const std::vector<std::string>& names) {
 class Maker {
  public:
   Maker(const Document& document, const SimplifyRequest& request, const Control<Simplification>& control)
-      : document_(document), request_(request), control_(control), beside_(document, control.stop) {}
+      : document_(document),
+        request_(request),
+        control_(control),
+        beside_(document, control.stop, request.timer) {}
 
   Result<Simplification> make() {
     found_.scene = document_.scene.name;
@@ -68,7 +70,7 @@ class Maker {
   Status measure_parts() {
     for (const Part& part : parts()) {
       control_.progress({progress(), 1.0, part.name});
-      Candidate candidate;
+      Substitute candidate;
       candidate.variant.name = part.name;
       candidate.variant.patch = scene::json::object();
       candidate.parts = {&part};
@@ -84,80 +86,103 @@ class Maker {
       found_.variants.push_back(candidates_.back().variant);
       control_.arrived(found_);
     }
-    std::vector<Candidate*> timed;
-    for (Candidate& candidate : candidates_)
+    std::vector<Substitute*> timed;
+    for (Substitute& candidate : candidates_)
       if (candidate.variant.measured) timed.push_back(&candidate);
     control_.progress({progress(), 1.0, "timing, taking turns"});
-    if (Status done = beside_.time(timed); !done) return done;
+    if (Status done = beside_.time(timed, request_.tolerance); !done) return done;
     show();
     return ok();
   }
 
-  bool can_go(const Variant& variant) const {
-    return variant.measured && variant.change && *variant.change <= request_.tolerance &&
-           variant.cost_ratio <= worth_it;
+  bool keeps_tolerance(const Variant& variant) const {
+    return variant.measured && variant.change && *variant.change <= request_.tolerance;
   }
 
+  /// From the part that saves most, one more at a time, as long as the next saves something besides.
   Status recommend() {
-    std::vector<Candidate*> going;
-    Candidate* mesh = nullptr;  // one resolution, the cheapest
-    for (Candidate& candidate : candidates_) {
-      if (!can_go(candidate.variant)) continue;
-      if (!candidate.coarser())
-        going.push_back(&candidate);
-      else if (!mesh || candidate.variant.cost_ratio < mesh->variant.cost_ratio)
-        mesh = &candidate;
-    }
-    if (mesh) going.push_back(mesh);
-    while (!going.empty()) {
-      Candidate together;
-      if (Status measured = measure_together(going, together); !measured) return measured;
-      if (together.variant.change && *together.variant.change <= request_.tolerance) {
-        recommended(going, together);
-        return ok();
+    std::vector<Substitute*> saving;
+    for (Substitute& candidate : candidates_)
+      if (keeps_tolerance(candidate.variant) && candidate.variant.saving == Saving::yes)
+        saving.push_back(&candidate);
+    std::sort(saving.begin(), saving.end(), [](const Substitute* a, const Substitute* b) {
+      return a->variant.cost_ratio.median < b->variant.cost_ratio.median;
+    });
+    std::vector<Substitute*> going;
+    Substitute best;
+    for (Substitute* next : saving) {
+      if (going.empty()) {
+        best = *next;
+        going.push_back(next);
+        continue;
       }
-      const auto least =
-          std::max_element(going.begin(), going.end(), [](const Candidate* a, const Candidate* b) {
-            return a->variant.cost_ratio < b->variant.cost_ratio;
-          });
-      found_.notes.push_back(
-          together.variant.name + ": together they " +
-          (together.variant.change ? "change " + percent(*together.variant.change) + " of the size"
-                                   : "cannot be had, " + together.variant.reason) +
-          ", so \"" + (*least)->variant.name + "\", which saves least, is not recommended.");
-      going.erase(least);
+      if (next->coarser() && best.coarser()) continue;  // one resolution
+      if (Status tried = try_besides(best, going, next); !tried) return tried;
+    }
+    if (!going.empty()) recommended(going, best);
+    return ok();
+  }
+
+  /// Whether `next` can go too: together they keep the tolerance, and cost less than without it.
+  Status try_besides(Substitute& best, std::vector<Substitute*>& going, Substitute* next) {
+    std::vector<Substitute*> all = going;
+    all.push_back(next);
+    Substitute together;
+    if (Status measured = measure_together(all, together); !measured) return measured;
+    const Variant& variant = together.variant;
+    std::string why_not;
+    if (!variant.change) {
+      why_not = "together they cannot be had, " + variant.reason;
+    } else if (*variant.change > request_.tolerance) {
+      why_not = "together they change " + percent(*variant.change) + " of the size";
+    } else {
+      const Result<CostComparison> over = beside_.time_over(together, best);
+      if (!over) return over.error();
+      if (over->saving != Saving::yes)
+        why_not = "that costs " + text(over->ratio) + " times " + best.variant.name + " alone" +
+                  (over->saving == Saving::no ? "" : ", within the noise");
+    }
+    if (why_not.empty()) {
+      best = std::move(together);
+      going = std::move(all);
+    } else {
+      found_.notes.push_back(variant.name + ": " + why_not + ", so \"" + next->variant.name +
+                             "\" is not recommended besides.");
     }
     return ok();
   }
 
-  /// What the recommended ones do when all are gone. One alone has been measured.
-  Status measure_together(const std::vector<Candidate*>& going, Candidate& together) {
-    if (going.size() == 1) {
-      together = *going.front();
-      return ok();
-    }
+  /// What these do when all are gone.
+  Status measure_together(const std::vector<Substitute*>& going, Substitute& together) {
     std::vector<std::string> names;
     Document document = document_;
-    for (const Candidate* candidate : going) {
+    for (const Substitute* candidate : going) {
       names.push_back(candidate->variant.name);
       together.parts.push_back(candidate->parts.front());
-      Result<Document> without = candidate->parts.front()->without(document);
-      if (!without) return without.error();
-      document = std::move(*without);
     }
     together.variant.name = list(names);
-    control_.progress({progress(), 1.0, "all that can go, together"});
-    if (Status measured = beside_.measure(together, std::move(document)); !measured) return measured;
-    return together.variant.measured ? beside_.time({&together}) : ok();
+    // Meshes are made coarser last, of what is left.
+    for (const bool coarser : {false, true})
+      for (const Part* part : together.parts) {
+        if ((part->coarser > 1) != coarser) continue;
+        Result<Document> without = part->without(document);
+        if (!without) {
+          together.variant.reason = without.error().what;
+          return ok();
+        }
+        document = std::move(*without);
+      }
+    control_.progress({progress(), 1.0, "what can go, together"});
+    return beside_.measure(together, std::move(document));
   }
 
-  void recommended(const std::vector<Candidate*>& going, const Candidate& together) {
-    for (Candidate* candidate : going) candidate->variant.drop = true;
+  void recommended(const std::vector<Substitute*>& going, const Substitute& together) {
+    for (Substitute* candidate : going) candidate->variant.drop = true;
     show();
     found_.recommended = together.variant;
     found_.recommended.drop = true;
     if (std::any_of(going.begin(), going.end(),
-                    [](const Candidate* each) { return each->variant.name == without_damping; }))
+                    [](const Substitute* each) { return each->variant.name == without_damping; }))
       found_.notes.push_back("Damping was judged within " + significant(found_.time, 3) +
                              " s: in the long run it is what brings a cloth to rest.");
   }
@@ -165,7 +190,7 @@ class Maker {
   void show() {
     found_.whole = beside_.whole().variant;
     found_.variants.clear();
-    for (const Candidate& candidate : candidates_) found_.variants.push_back(candidate.variant);
+    for (const Substitute& candidate : candidates_) found_.variants.push_back(candidate.variant);
     control_.arrived(found_);
   }
 
@@ -187,7 +212,7 @@ class Maker {
       found_.why =
           "The scene can do with this: " + best.name +
           (dt > document_.scene.solver.dt ? ", with a step of " + significant(1000 * dt, 3) + " ms" : "") +
-          "; that takes " + significant(best.cost_ratio, 3) + " times the time and changes positions by " +
+          "; that takes " + text(best.cost_ratio) + " times the time and changes positions by " +
           percent(*best.change) + " of the size" + allowed + ".";
     } else if (found_.horizon == 0.0) {
       found_.why = std::string("Nothing is recommended, because positions cannot be compared; ") +
@@ -200,13 +225,24 @@ class Maker {
 
   std::string nothing_can_go(const std::string& allowed) const {
     const Variant* least = nullptr;
-    for (const Candidate& candidate : candidates_)
+    for (const Substitute& candidate : candidates_)
       if (candidate.variant.change && (!least || *candidate.variant.change < *least->change))
         least = &candidate.variant;
     if (!least) return "Nothing can go: no part could be measured without.";
     if (*least->change > request_.tolerance)
       return "Nothing can go: the least that a part changes is " + percent(*least->change) +
              " of the size, " + least->name + allowed + ".";
+    const Variant* unclear = nullptr;
+    for (const Substitute& candidate : candidates_)
+      if (keeps_tolerance(candidate.variant) && candidate.variant.saving == Saving::cannot_tell &&
+          (!unclear || candidate.variant.cost_ratio.median < unclear->cost_ratio.median))
+        unclear = &candidate.variant;
+    if (unclear)
+      return "Nothing is recommended: whether any part that changes little enough saves 5 % or more cannot "
+             "be "
+             "told from these timings; " +
+             unclear->name + " takes " + text(unclear->cost_ratio) +
+             " times the time, within the noise. A quieter machine may tell.";
     return "Nothing is worth dropping: what changes little enough, such as " + least->name + " (" +
            percent(*least->change) + " of the size" + allowed + "), saves less than 5 %.";
   }
@@ -215,11 +251,17 @@ class Maker {
   const SimplifyRequest& request_;
   const Control<Simplification>& control_;
   Beside beside_;
-  std::vector<Candidate> candidates_;
+  std::vector<Substitute> candidates_;
   Simplification found_;
 };
 
 }  // namespace
+
+bool Simplification::together() const {
+  return recommended.measured && std::none_of(variants.begin(), variants.end(), [&](const Variant& each) {
+           return each.name == recommended.name;
+         });
+}
 
 Result<Simplification> simplify(const Document& document, const SimplifyRequest& request,
                                 const Control<Simplification>& control) {

@@ -1,11 +1,13 @@
 // What a scene's parts are worth: what leaving one out, or making it coarser, does to error and cost.
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "server/lab/chart.h"
+#include "server/lab/spread.h"
 #include "server/scene/document.h"
 
 namespace clothlab::lab {
@@ -19,9 +21,10 @@ struct Variant {
   std::optional<double>
       change;  ///< RMS distance to the whole scene stepped alike, at the horizon, over the size
   std::optional<Cost> cost;
-  double cost_ratio = 1;  ///< median cost over the whole scene's, timed taking turns
-  double dt_limit = 0;    ///< [s]; infinite: none
-  bool drop = false;      ///< recommended
+  Spread cost_ratio;  ///< over the whole scene's, timed taking turns
+  Saving saving = Saving::unknown;
+  double dt_limit = 0;  ///< [s]; infinite: none
+  bool drop = false;    ///< recommended
 };
 
 struct Simplification {
@@ -31,7 +34,9 @@ struct Simplification {
   Variant whole;    ///< the scene as it is
   std::vector<Variant> variants;
   Variant recommended;  ///< all that can go, together, measured; its patch is empty where nothing can
-  std::string why;      ///< one sentence
+  /// Whether `recommended` is none of the variants alone.
+  bool together() const;
+  std::string why;  ///< one sentence
   std::vector<std::string> notes;
   bool complete = false;
 };
@@ -39,6 +44,9 @@ struct Simplification {
 struct SimplifyRequest {
   double tolerance = 1e-2;     ///< what a part may change, RMS position over size
   std::optional<double> time;  ///< [s]; none: 1
+  /// Times a scene once, in ms a simulated second; none: a stopwatch. For tests, which no machine's other
+  /// work is to decide.
+  std::function<double(const scene::Scene&)> timer = {};
 };
 
 /// Needs a current GL context.

@@ -31,11 +31,15 @@ Plot plot_of(const Simplification& simplification, double top) {
   plot.rows.push_back({&simplification.whole, 0, false});
   for (std::size_t index = 0; index < simplification.variants.size(); ++index)
     plot.rows.push_back({&simplification.variants[index], index, true});
-  if (!simplification.recommended.name.empty()) plot.rows.push_back({&simplification.recommended, 0, false});
+  if (simplification.together()) plot.rows.push_back({&simplification.recommended, 0, false});
   double dearest = 1.1, least = simplification.tolerance, most = simplification.tolerance;
   for (const Row& row : plot.rows) {
     if (!row.variant->measured) continue;
-    if (std::isfinite(row.variant->cost_ratio)) dearest = std::max(dearest, 1.05 * row.variant->cost_ratio);
+    const Spread& ratio = row.variant->cost_ratio;
+    if (std::isfinite(ratio.median)) dearest = std::max(dearest, 1.05 * ratio.median);
+    // A wild round is not worth all of the axis.
+    if (std::isfinite(ratio.high))
+      dearest = std::max(dearest, 1.02 * std::min(ratio.high, 1.5 * ratio.median));
     if (const auto change = row.variant->change; change && *change > 0 && std::isfinite(*change)) {
       least = std::min(least, *change);
       most = std::max(most, *change);
@@ -70,18 +74,29 @@ void draw_axis(Svg& svg, const Plot& plot, const Scale& scale, int most, const s
 
 std::string title_of(const Variant& variant) {
   if (!variant.measured) return variant.name + ": " + variant.reason;
-  std::string title = variant.name + ": " + brief(variant.cost_ratio, 2) + " of the cost";
+  std::string title = variant.name + ": " + text(variant.cost_ratio) + " of the cost";
   if (variant.cost) title += " (" + brief(variant.cost->median) + " ms/s)";
   if (variant.change) title += ", changes " + brief(*variant.change, 2) + " of the size";
   if (variant.error[0]) title += ", error " + brief(*variant.error[0], 2);
   if (std::isfinite(variant.dt_limit) && variant.dt_limit > 0)
     title += ", steps up to " + brief(1000 * variant.dt_limit) + " ms";
+  if (variant.saving == Saving::cannot_tell) title += "; whether it saves 5 % is within the noise";
   return title + (variant.drop ? "; recommended" : "");
 }
 
 std::string one_line(const std::string& words, double width) {
   const std::vector<std::string> lines = wrapped(words, width, small_size, 1);
   return lines.empty() ? "" : lines.front();
+}
+
+/// From end to end of where the ratio may lie; one that goes on beyond the axis has no end there.
+void draw_interval(Svg& svg, const Scale& cost, const Spread& ratio, double middle) {
+  if (!std::isfinite(ratio.high) || ratio.high <= ratio.low) return;
+  const double low = cost(std::min(ratio.low, cost.high)), high = cost(std::min(ratio.high, cost.high));
+  const Attributes look{{"class", "interval"}, {"stroke", ink}, {"stroke-width", 1.5}};
+  svg.line(low, middle, high, middle, look);
+  svg.line(low, middle - 4, low, middle + 4, look);
+  if (ratio.high <= cost.high) svg.line(high, middle - 4, high, middle + 4, look);
 }
 
 void draw_row(Svg& svg, const Plot& plot, std::size_t place) {
@@ -105,13 +120,14 @@ void draw_row(Svg& svg, const Plot& plot, std::size_t place) {
     svg.close();
     return;
   }
-  const double end = plot.cost(variant.cost_ratio);
+  const double end = plot.cost(variant.cost_ratio.median);
   svg.add("rect", {{"class", recommended ? "bar drop" : "bar"},
                    {"x", plot.cost.from},
                    {"y", middle - 7},
                    {"width", end - plot.cost.from},
                    {"height", 14.0},
                    {"fill", fill}});
+  draw_interval(svg, plot.cost, variant.cost_ratio, middle);
   if (variant.change && &variant != &plot.of->whole) {
     const double at = plot.change(*variant.change > 0 ? *variant.change : plot.change.low);
     svg.add("path", {{"class", recommended ? "dot drop" : "dot"},

@@ -165,6 +165,16 @@ Status StepSearch::search(Candidate& candidate) {
   return ok();
 }
 
+Result<double> StepSearch::shorten(Candidate& candidate, double too_large) {
+  const double dt =
+      candidate.best->setting.dt *
+      std::clamp(0.97 * std::pow(tolerance_ / too_large, 1.0 / order(candidate.setting.method)), 0.25, 0.97);
+  Point point;
+  const Result<double> error = error_at(candidate, dt, point);
+  if (error && *error < unknown) keep(candidate, point);
+  return error;
+}
+
 void StepSearch::keep(Candidate& candidate, const Point& point) const {
   candidate.best = point;
   candidate.best->cost = Cost{candidate.cost(point.setting.dt), candidate.cost(point.setting.dt), 1};

@@ -17,6 +17,7 @@ struct Candidate {
   double limit = 0;      ///< of the step [s]
   double step_cost = 0;  ///< wall time of a step [s]
   std::optional<Point> best;
+  std::vector<double> times = {};  ///< of the rounds of the last race [ms per simulated second]
 
   double cost(double dt) const { return 1000.0 * step_cost / dt; }  ///< [ms per simulated second]
 };
@@ -47,6 +48,9 @@ class StepSearch {
   /// Runs the candidate at a step; its largest position error, or `unknown` if it blew up. `point` gets what
   /// there is to tell.
   Result<double> error_at(Candidate& candidate, double dt, Point& point);
+
+  /// The candidate at a step that is short enough, so it is hoped, for `too_large` to become the tolerance.
+  Result<double> shorten(Candidate& candidate, double too_large);
 
   /// The sharp step limit about the rest shape [s].
   double limit_of(scene::Method method) const;

@@ -10,7 +10,7 @@
 
 #include "server/base/text.h"
 #include "server/lab/control.h"
-#include "server/reference/methods.h"
+#include "server/lab/follower.h"
 #include "server/reference/trajectory.h"
 #include "server/sim/colliders.h"
 
@@ -77,33 +77,6 @@ reference::Energy energy_of_free(const World& world, const State& state) {
 struct Run {
   std::vector<std::vector<glm::dvec3>> position;
   std::vector<double> energy, moving, strain;
-};
-
-/// Steps the scene on, and knows when to stop.
-class Follower {
- public:
-  Follower(World world, double largest_step, const std::stop_token& stop)
-      : world_(std::move(world)), largest_step_(largest_step), stop_(stop) {}
-
-  World& world() { return world_; }
-
-  /// From `from` to `to` [s] by equal steps; false: cancelled.
-  bool follow(State& state, double from, double to) {
-    const auto steps = static_cast<std::int64_t>(std::ceil((to - from) / largest_step_ - 1e-9));
-    const double dt = (to - from) / static_cast<double>(steps);
-    world_.scene.solver.dt = dt;
-    for (std::int64_t n = 0; n < steps; ++n) {
-      if (stop_.stop_requested()) return false;
-      const double at = static_cast<double>(n);
-      reference::advance(reference::rk4, world_, state, from + at * dt, from + (at + 1) * dt);
-    }
-    return true;
-  }
-
- private:
-  World world_;
-  double largest_step_;
-  std::stop_token stop_;
 };
 
 /// The start with every free vertex moved a little, the same way at every run.

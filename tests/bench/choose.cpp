@@ -149,15 +149,19 @@ void print(const Case& of, double tolerance, bool last) {
           : "null";
   std::printf(
       "\"choose_s\": %.1f, \"runs\": %zu, \"met\": %s, \"chosen\": \"%s\",\n   \"promised_error\": %.3e, "
-      "\"error\": %.3e, \"error_ratio\": %.3f, \"promised_ms\": %.2f, \"ms\": %.2f, \"cost_ratio\": %.3f, "
+      "\"promised_low\": %.3e, \"promised_high\": %.3e, \"error\": %.3e, \"within_promise\": %s, "
+      "\"error_ratio\": %.3f, \"promised_ms\": %.2f, \"ms\": %.2f, \"cost_ratio\": %.3f, "
       "\"cost_ratio_to_own\": %s,\n"
       "   \"grid_points\": %d, \"grid_best\": \"%s\", \"grid_best_ms\": %.2f, \"over_grid_best\": %.3f,\n"
       "   \"scenes_own\": \"%s\", \"scenes_own_ms\": %.2f, \"times_cheaper\": %.2f,\n   \"why\": \"%s\"}%s\n",
       spent, choice->tried.size(), choice->met ? "true" : "false", lab::text(chosen).c_str(),
-      *choice->chosen.largest_position_error, error, error / *choice->chosen.largest_position_error,
-      choice->chosen.cost->median, cost, cost / choice->chosen.cost->median, against_own.c_str(), grid.tried,
-      best_name.c_str(), best, cost / best, lab::text(lab::setting_of(of.scene)).c_str(), own, own / cost,
-      choice->why.c_str(), last ? "" : ",");
+      *choice->chosen.largest_position_error, choice->chosen.error_low.value_or(NAN),
+      choice->chosen.error_high.value_or(NAN), error,
+      error <= choice->chosen.error_high.value_or(0.0) ? "true" : "false",
+      error / *choice->chosen.largest_position_error, choice->chosen.cost->median, cost,
+      cost / choice->chosen.cost->median, against_own.c_str(), grid.tried, best_name.c_str(), best,
+      cost / best, lab::text(lab::setting_of(of.scene)).c_str(), own, own / cost, choice->why.c_str(),
+      last ? "" : ",");
   std::fflush(stdout);
 }
 

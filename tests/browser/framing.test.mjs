@@ -33,7 +33,9 @@ const hiddenPoints = (margin) => {
     hidden++;
     if (where === "" || depth > worst) worst = depth, where = by;
   }
-  return { hidden, of: points.length, worst: Math.round(worst), where, scene: scene.name, time: header.time,
+  // Nor may a card stick out itself.
+  const cut = cards.filter(([, box]) => box.left < 0 || box.right > innerWidth + 0.5).map(([id]) => id).join();
+  return { cut, hidden, of: points.length, worst: Math.round(worst), where, scene: scene.name, time: header.time,
     box: [left, top, right, bottom].map(Math.round), fill: Math.max((right - left) / innerWidth, (bottom - top) / innerHeight) };
 };
 
@@ -50,9 +52,10 @@ async function check(viewer, moment, found = []) {
     const seen = await eventually(`${moment} at ${width}x${height}`, async () => {
       await viewer.page.waitForTimeout(60);
       return viewer.page.evaluate(hiddenPoints, margin);
-    }, ({ hidden }) => hidden === 0, 12_000).catch(async () => viewer.page.evaluate(hiddenPoints, margin));
+    }, ({ hidden, cut }) => hidden === 0 && cut === "", 12_000).catch(async () => viewer.page.evaluate(hiddenPoints, margin));
     if (process.env.FRAMING_PICTURES) await viewer.page.screenshot({ path: `${screenshots}framing-${seen.scene}-${moment}-${width}x${height}.png` });
     if (seen.hidden) found.push(`${seen.scene} ${moment} at ${width}x${height}: ${seen.hidden} of ${seen.of} vertices, up to ${seen.worst} px into ${seen.where}; cloth ${seen.box}`);
+    else if (seen.cut) found.push(`at ${width}x${height} ${seen.cut} is cut off`);
     else if (seen.fill < 0.15) found.push(`${seen.scene} ${moment} at ${width}x${height}: it fills ${seen.fill.toFixed(2)} of the window only`);
   }
   return found;

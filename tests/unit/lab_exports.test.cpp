@@ -79,6 +79,35 @@ TEST_CASE("a CSV has a row a point, cell, trial or variant, each with as many fi
   }
 }
 
+TEST_CASE("what is recommended alone is listed once, and several together in a row of their own") {
+  Simplification simplification = tests::made_up_simplification();
+  const auto listed = [&](const std::string& text) {
+    return count_of(text, simplification.recommended.name);
+  };
+  CHECK(listed(csv(simplification)) == 1);
+  CHECK(simplification.together());
+  simplification.recommended = simplification.variants[0];
+  CHECK_FALSE(simplification.together());
+  CHECK(listed(csv(simplification)) == 1);
+  CHECK(listed(svg(simplification)) == 2);  // its name, and its title
+}
+
+TEST_CASE("a saving that timings leave open says so, with its interval, in every form") {
+  Simplification simplification = tests::made_up_simplification();
+  Variant& open = simplification.variants[1];
+  open.cost_ratio = {0.97, 0.85, 1.08};
+  open.saving = saving(open.cost_ratio);
+  const json variant = to_json(simplification)["variants"][1];
+  CHECK(variant["cost_ratio_low"] == 0.85);
+  CHECK(variant["cost_ratio_high"] == 1.08);
+  CHECK(variant["saves"] == "cannot tell");
+  CHECK(csv(simplification).find(",0.97,0.85,1.08,cannot tell,") != std::string::npos);
+  CHECK(svg(simplification).find("0.97 [0.85..1.08] of the cost") != std::string::npos);
+  CHECK(svg(simplification).find("within the noise") != std::string::npos);
+  open.cost_ratio = {0.97};
+  CHECK(to_json(simplification)["variants"][1]["cost_ratio_high"].is_null());
+}
+
 TEST_CASE("a picture has a mark for every setting with an error and a cross for each that blew up") {
   const Chart chart = tests::made_up_chart();
   std::size_t blown = 0;

@@ -115,7 +115,7 @@ export class ChartTab extends Tab<"chart"> {
     this.picture.showPresent(known ? { x: place.error, y: place.cost } : null);
     this.present.classList.toggle("unknown", !known);
     say(this.present, known
-      ? `Now: ${settingText(setting)}: error ${errorText(place.error)}, ${costText({ median: place.cost, minimum: place.cost, runs: 0 })} a simulated second.`
+      ? `Now: ${settingText(setting)}: error ${errorText(place.error)}, ${costText({ median: place.cost, minimum: place.cost, runs: 0, low: null, high: null })} a simulated second.`
       : `Now: ${settingText(setting)}. Not measured: ${place.reason}.`);
   }
 

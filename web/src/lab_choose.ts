@@ -4,7 +4,7 @@ import { Drawing } from "./lab_drawing";
 import { Picture } from "./lab_picture";
 import { applyButton, curveOf, largestOnTheWay, pointTip, PointTable } from "./lab_points";
 import { Tab, type Surroundings } from "./lab_tab";
-import { comparedText, costText, errorText, settingText } from "./lab_text";
+import { comparedText, costRange, costText, errorText, settingText } from "./lab_text";
 import type { Choice, Point } from "./lab_types";
 
 const presets = ["1e-2", "1e-3", "1e-4"];
@@ -24,6 +24,9 @@ export function toleranceField(input: HTMLInputElement): HTMLElement {
   const buttons = presets.map((text) => makeButton(text, "lab-small", () => { input.value = text; }));
   return make("div", "lab-tolerance", labelled("Tolerance", input, "RMS position error over the cloth's size"), ...buttons);
 }
+
+/// How far the error may turn out to be larger.
+const atMost = ({ largest_position_error_high: high }: Point): string => (high === null ? "" : ` (at most ${errorText(high)})`);
 
 export class ChooseTab extends Tab<"choose"> {
   private readonly tolerance = makeNumber("1e-2", "1e-2");
@@ -88,7 +91,7 @@ export class ChooseTab extends Tab<"choose"> {
     const error = point.largest_position_error ?? point.error.position;
     const compared = against ? comparedText(point.ms_a_simulated_s, against.ms_a_simulated_s) : "";
     const facts = blewUp ? `blew up after ${Number(point.blew_up_at_s?.toPrecision(2))} s`
-      : `expected error ${errorText(error)}, ${costText(point.ms_a_simulated_s)} a simulated second${compared ? `: ${compared}` : ""}`;
+      : `expected error ${errorText(error)}${atMost(point)}, ${costText(point.ms_a_simulated_s)}${costRange(point.ms_a_simulated_s)} a simulated second${compared ? `: ${compared}` : ""}`;
     const card = make("div", `lab-card ${className}`, make("h3", "", title), make("b", "", settingText(point)), make("span", "", facts));
     if (className !== "present") {
       const button = applyButton(`Apply ${settingText(point)}`, () => this.applyPoint(point));

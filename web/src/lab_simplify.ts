@@ -16,6 +16,15 @@ function savedText(ratio: number | null): string {
   return change === 0 ? "±0 %" : change < 0 ? `−${-change} %` : `+${change} %`;
 }
 
+/// Of the whole's cost, and between what that may lie.
+function costNode(variant: Variant): Node {
+  const cell = make("span", "", variant.measured ? savedText(variant.cost_ratio) : "–");
+  if (variant.cost_ratio_low !== null && variant.cost_ratio_high !== null && variant.cost_ratio_low < variant.cost_ratio_high) {
+    cell.append(make("small", "", `${savedText(variant.cost_ratio_low)} … ${savedText(variant.cost_ratio_high)}`));
+  }
+  return cell;
+}
+
 const isEmpty = (patch: object): boolean => Object.keys(patch).length === 0;
 
 export class SimplifyTab extends Tab<"simplify"> {
@@ -30,7 +39,7 @@ export class SimplifyTab extends Tab<"simplify"> {
     { title: "Part", text: (variant) => this.nameOf(variant) },
     { title: "Changes", hint: "RMS distance to the whole scene stepped alike, over the cloth's size", text: ({ change }) => errorText(change),
       order: ({ change }) => change, className: "number" },
-    { title: "Cost", hint: "against the whole scene", text: (variant) => (variant.measured ? savedText(variant.cost_ratio) : "–"),
+    { title: "Cost", hint: "against the whole scene, and between what it lies as far as the timings tell", text: costNode,
       order: (variant) => (variant.measured ? variant.cost_ratio : null), className: "number" },
     { title: "Verdict", text: (variant) => this.verdict(variant), className: "verdict" },
     { title: "", text: (variant) => this.buttonOf(variant), className: "action" },
@@ -39,7 +48,7 @@ export class SimplifyTab extends Tab<"simplify"> {
     tip: (key) => {
       const variant = this.result?.variants[Number(key)];
       if (!variant?.measured) return null;
-      return { title: variant.name, lines: [`changes the motion by ${errorText(variant.change)}`, `cost ${savedText(variant.cost_ratio)}`],
+      return { title: variant.name, lines: [`changes the motion by ${errorText(variant.change)}`, `cost ${savedText(variant.cost_ratio)}${variant.saves === "cannot tell" ? ", within the noise" : ""}`],
         action: this.around.mayEdit() ? "Apply" : null };
     },
     choose: (key) => this.applyVariant(this.result?.variants[Number(key)]),
@@ -82,7 +91,10 @@ export class SimplifyTab extends Tab<"simplify"> {
 
   private verdict(variant: Variant): string {
     if (!variant.measured || variant === this.result?.recommended) return "";
-    return variant.drop ? "drop" : "keep";
+    if (variant.drop) return "drop";
+    // Only what could go at all is worth a quieter machine.
+    const small = variant.change !== null && this.result !== null && variant.change <= this.result.tolerance;
+    return small && variant.saves === "cannot tell" ? "within the noise" : "keep";
   }
 
   private nameOf(variant: Variant): Node {

@@ -36,6 +36,13 @@ export function costText(cost: Cost | null): string {
   return cost.median >= 1000 ? `${digits(cost.median / 1000, 3)}\u00a0s` : `${digits(cost.median, cost.median < 10 ? 2 : 3)}\u00a0ms`;
 }
 
+/// Between what the timings put it: " (55 … 60 ms)".
+export function costRange(cost: Cost | null): string {
+  if (!cost || cost.low === null || cost.high === null) return "";
+  const [low, high] = [cost.low, cost.high].map((end) => costText({ ...cost, median: end }));
+  return low === high ? "" : ` (${low} … ${high})`;
+}
+
 export function limitText(share: number | null): string {
   if (share === null) return "–";
   return share < 10 ? `${digits(100 * share, 2)}\u00a0%` : `${digits(share, 2)}\u00a0×`;

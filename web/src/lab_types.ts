@@ -10,11 +10,14 @@ export type Axis = (typeof axes)[number];
 export interface Setting { method: string; dt_s: number; iterations: number | null; tolerance: number | null }
 
 export type Errors = Record<Axis, number | null>;  ///< shares: 0.01 is one percent
-export interface Cost { median: number; minimum: number; runs: number }  ///< [ms per simulated second]
+/// [ms per simulated second]; the median lies between low and high, null where too few runs tell.
+export interface Cost { median: number; minimum: number; runs: number; low: number | null; high: number | null }
 
 export interface Point extends Setting {
   error: Errors;
   largest_position_error: number | null;
+  largest_position_error_low: number | null;  ///< of what a choice answers; null: not known
+  largest_position_error_high: number | null;
   ms_a_simulated_s: Cost | null;
   blew_up_at_s: number | null;
   dt_over_limit: number | null;
@@ -82,6 +85,9 @@ export interface Variant {
   change: number | null;
   ms_a_simulated_s: Cost | null;
   cost_ratio: number | null;
+  cost_ratio_low: number | null;  ///< it lies between these; null: too few timings to tell
+  cost_ratio_high: number | null;
+  saves: "yes" | "no" | "cannot tell" | null;
   dt_limit_s: number | null;
   drop: boolean;
 }
