@@ -17,7 +17,7 @@ constexpr double most_positions = 2e6;             // kept of all of them
 /// What one setting does, at the times that are looked at.
 struct Path {
   std::vector<double> time;                      ///< [s]
-  std::vector<std::vector<glm::vec3>> position;  ///< [look][vertex] [m]; empty: it blew up
+  std::vector<std::vector<glm::vec3>> position;  ///< [look][vertex] [m]
   std::vector<double> error;                     ///< [look]
   bool every_step = true;
 };
@@ -40,9 +40,6 @@ Result<Path> record(scene::Scene scene, const Truth& truth, int looks, Bench& be
     done += count;
     path.time.push_back(horizon * done / steps);
     path.position.push_back((*simulation)->read_state().position);
-    if (std::isfinite(glm::dot(path.position.back().front(), glm::vec3(1.0f)))) continue;
-    path.position.clear();
-    break;
   }
   return path;
 }
@@ -74,10 +71,12 @@ bool compare(std::vector<Path>& paths, const Truth& truth, const std::stop_token
   }
 }
 
-LargestError largest(const Path& path, const Truth& truth) {
+/// None: it blew up.
+std::optional<LargestError> largest(const Path& path, const Truth& truth) {
   LargestError result;
   double before = 0.0, jump = 0.0;  // nothing is wrong at the start
   for (const double error : path.error) {
+    if (!std::isfinite(error)) return std::nullopt;
     result.seen = std::max(result.seen, error);
     jump = std::max(jump, std::abs(error - before));
     before = error;
@@ -106,8 +105,7 @@ Result<std::vector<std::optional<LargestError>>> look_again(const scene::Scene& 
   }
   if (!compare(paths, truth, stop)) return cancelled;
   std::vector<std::optional<LargestError>> errors;
-  for (const Path& path : paths)
-    errors.push_back(path.position.empty() ? std::nullopt : std::optional(largest(path, truth)));
+  for (const Path& path : paths) errors.push_back(largest(path, truth));
   return errors;
 }
 

@@ -28,9 +28,12 @@ Spread spread_of(std::vector<double> values, double doubt) {
 }
 
 std::string text(const Spread& ratio) {
-  const std::string median = significant(ratio.median, 2);
-  if (!std::isfinite(ratio.high)) return median;
-  return median + " [" + significant(ratio.low, 2) + ".." + significant(ratio.high, 2) + "]";
+  // Hundredths, or two digits of what is smaller.
+  const auto written = [](double value) {
+    return value >= 0.1 ? formatted("%.2f", value) : significant(value, 2);
+  };
+  if (!std::isfinite(ratio.high)) return written(ratio.median);
+  return written(ratio.median) + " [" + written(ratio.low) + ".." + written(ratio.high) + "]";
 }
 
 const char* name(Saving saving) {
