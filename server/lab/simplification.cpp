@@ -238,9 +238,8 @@ class Maker {
           (!unclear || candidate.variant.cost_ratio.median < unclear->cost_ratio.median))
         unclear = &candidate.variant;
     if (unclear)
-      return "Nothing is recommended: whether any part that changes little enough saves 5 % or more cannot "
-             "be "
-             "told from these timings; " +
+      return "Nothing is recommended: these timings cannot tell whether any part that changes little enough "
+             "saves 5 % or more; " +
              unclear->name + " takes " + text(unclear->cost_ratio) +
              " times the time, within the noise. A quieter machine may tell.";
     return "Nothing is worth dropping: what changes little enough, such as " + least->name + " (" +

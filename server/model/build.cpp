@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
+#include <utility>
 
 #include "server/base/text.h"
 #include "server/model/mesh_arrays.h"
@@ -16,19 +18,31 @@ using Index = std::uint32_t;
 /// Of a vertex [kg]: the shaders multiply its inverse by stiffnesses up to 1e12 N/m, in float32.
 constexpr double least_mass = 1e-15;
 
-dvec3 turn(const dvec3& point, int axis, double degrees) {
-  const double angle = glm::radians(degrees), c = std::cos(angle), s = std::sin(angle);
-  const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-  dvec3 turned = point;
-  turned[a] = c * point[a] - s * point[b];
-  turned[b] = s * point[a] + c * point[b];
-  return turned;
-}
+/// Turns points about an axis.
+struct Turn {
+  int axis = 0;
+  double cosine = 1, sine = 0;
+  Turn(int about, double degrees)
+      : axis(about), cosine(std::cos(glm::radians(degrees))), sine(std::sin(glm::radians(degrees))) {}
 
-dvec3 place(const scene::Transform& transform, dvec3 point) {
-  point *= transform.scale;
-  for (int axis = 0; axis < 3; ++axis) point = turn(point, axis, transform.rotate[axis]);
-  return point + transform.translate;
+  dvec3 operator()(const dvec3& point) const {
+    const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+    dvec3 turned = point;
+    turned[a] = cosine * point[a] - sine * point[b];
+    turned[b] = sine * point[a] + cosine * point[b];
+    return turned;
+  }
+};
+
+std::vector<dvec3> placed(const scene::Transform& transform, std::vector<dvec3> points) {
+  const std::array turns{Turn(0, transform.rotate[0]), Turn(1, transform.rotate[1]),
+                         Turn(2, transform.rotate[2])};
+  for (dvec3& point : points) {
+    point *= transform.scale;
+    for (const Turn& turn : turns) point = turn(point);
+    point += transform.translate;
+  }
+  return points;
 }
 
 /// The vertices of a cloth, numbered within it, that a pin or a weight names.
@@ -119,9 +133,7 @@ Status add_cloth(Model& model, const scene::Cloth& cloth) {
   const auto* grid = std::get_if<scene::Grid>(&cloth.mesh);
   MeshArrays arrays = grid ? grid_arrays(*grid, cloth.material)
                            : triangle_mesh_arrays(std::get<scene::TriangleMesh>(cloth.mesh), cloth.material);
-  std::vector<dvec3> position;
-  for (const dvec3& point : arrays.position) position.push_back(place(cloth.transform, point));
-
+  const std::vector<dvec3> position = placed(cloth.transform, std::move(arrays.position));
   std::vector<double> mass = masses(cloth, arrays, position);
   const auto massless = std::find_if(mass.begin(), mass.end(), [](double m) { return !(m >= least_mass); });
   if (massless != mass.end())
@@ -149,6 +161,7 @@ Status add_cloth(Model& model, const scene::Cloth& cloth) {
   const Index first = model.vertex_count();
   ClothRange range{first, static_cast<Index>(position.size()), model.triangle_count(),
                    static_cast<Index>(arrays.triangles.size()), mean_edge_length(arrays, position)};
+  model.springs.reserve(model.springs.size() + arrays.springs.size());
   for (Spring spring : arrays.springs) {
     spring.rest_length = glm::distance(position[spring.a], position[spring.b]);
     spring.a += first;

@@ -40,6 +40,7 @@ MeshArrays grid_arrays(const scene::Grid& grid, const scene::Springs& material) 
     }
   }
 
+  arrays.springs.reserve(6 * arrays.position.size());
   const auto connect = [&](SpringKind kind, double stiffness, int columns_on, int rows_on) {
     if (stiffness == 0.0) return;
     for (int row = 0; row < rows; ++row) {

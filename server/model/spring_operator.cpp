@@ -12,6 +12,8 @@ namespace clothlab::model {
 
 SpringOperator::SpringOperator(const Model& model, const scene::Scene& scene, const Field& shape)
     : air_drag_(scene.air_drag) {
+  scale_.reserve(model.mass.size());
+  links_.reserve(model.springs.size());
   for (std::size_t i = 0; i < model.mass.size(); ++i)
     scale_.push_back(model.pin_motion[i] == not_pinned ? 1.0 / std::sqrt(model.mass[i]) : 0.0);
   for (const Spring& spring : model.springs) {

@@ -17,9 +17,7 @@ void StepLimit::follow(const model::Model& model, const scene::Scene& scene) {
                           scene_.solver.method == scene.solver.method;
   scene_ = scene;
   if (same_limit) return;
-  stop_.request_stop();
-  if (search_.valid()) search_.wait();  // an iteration at most
-  stop_ = std::stop_source();
+  give_up_search();
   model::SpringOperator springs(model, scene, model.rest_position);
   dt_limit_ = model::dt_limit_bound(scene.solver.method, springs);
   search_ = std::async(std::launch::async, [springs = std::move(springs), method = scene.solver.method,
@@ -29,6 +27,14 @@ void StepLimit::follow(const model::Model& model, const scene::Scene& scene) {
   });
   search_.wait_for(worth_waiting);
   poll();
+}
+
+/// Of a large mesh an iteration takes long: the search before ends by itself, beside what follows. One at
+/// most does, as each holds the whole mesh.
+void StepLimit::give_up_search() {
+  stop_.request_stop();
+  stop_ = std::stop_source();
+  if (search_.valid()) given_up_ = std::move(search_);  // waits for the one before
 }
 
 bool StepLimit::poll() {

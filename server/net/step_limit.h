@@ -31,12 +31,15 @@ class StepLimit {
   std::optional<std::string> take_warning();
 
  private:
+  void give_up_search();
+
   scene::Scene scene_;  ///< the one that was followed last
   double dt_limit_ = model::no_limit;
   bool looked_ = false;  ///< at the present value
   int risk_ = 0;         ///< when last looked at: 0 none, 1 near the limit, 2 beyond it
   std::stop_source stop_;
-  std::future<double> search_;  ///< ends before this object
+  std::future<double> given_up_;  ///< a search that nobody needs any more, and that is about to end
+  std::future<double> search_;    ///< both end before this object
 };
 
 }  // namespace clothlab::net

@@ -9,6 +9,7 @@ namespace clothlab::sim {
 SpringLists spring_lists(const model::Model& model, const scene::Scene& scene) {
   SpringLists lists;
   lists.slices.push_back(0);
+  lists.entries.reserve(model.vertex_springs.items.size());
   const std::vector<std::uint32_t>& offsets = model.vertex_springs.offsets;
   for (std::uint32_t first = 0; first < model.vertex_count(); first += group_size) {
     const std::uint32_t last = std::min<std::uint32_t>(first + group_size, model.vertex_count());

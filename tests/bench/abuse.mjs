@@ -1,7 +1,7 @@
 // What one viewer, or somebody without a token, can take from another by every means the protocol leaves: a bystander's frames and the
 // session's real-time factor, alone and beside each kind of abuse. Then what a session takes from another by each valid patch that is
 // more than the machine has, and how soon it is undone and the server ends. By hand, on a quiet machine:
-//   CLOTHLAB=build/release/clothlab node tests/bench/abuse.mjs [SECONDS] [--only NAME] [--out FILE]
+//   CLOTHLAB=build/release/clothlab node tests/bench/abuse.mjs [SECONDS] [--only NAME|heavy] [--out FILE]
 // Who abuses is a process of its own, which asks for as much as it can of the same cores. Prints (and writes) JSON.
 import { fork } from "node:child_process";
 import { once } from "node:events";
@@ -14,6 +14,7 @@ import { Client, Server, sleep } from "../protocol/harness.mjs";
 import { heavyPatches } from "../protocol/heavy.mjs";
 
 const token = "operator-of-this", viewToken = "viewer-of-this";
+const patience = 60_000;  // [ms] for a heavy patch
 const bearer = { authorization: `Bearer ${viewToken}` };
 
 const asViewer = async (server, options = {}) => {
@@ -108,22 +109,39 @@ const abuses = {
   }, 1),
 };
 
-/// In a process of its own: one abuse for as long as it lives.
+/// In a process of its own: one abuse for as long as it lives, or a session with a heavy patch that is made and undone when the parent
+/// says so. (What such a session gets takes this process seconds to read, in which a bystander here would see nothing.)
 if (process.send) {
-  process.on("message", async ({ name, port }) => {
-    const agent = new http.Agent({ keepAlive: true, maxSockets: 64 });
-    http.globalAgent = agent;
-    const server = Object.assign(new Server(), { port, host: `127.0.0.1:${port}` });
-    process.on("unhandledRejection", () => {});
+  const begin = async ({ name, server }) => {
+    http.globalAgent = new http.Agent({ keepAlive: true, maxSockets: 64 });
     await abuses[name](server);
-    process.send("begun");
+  };
+  let heavy, light;
+  const open = async ({ server }) => {
+    heavy = await Client.connect(server, { session: "heavy" });
+    // Frames are acknowledged and dropped: a page does not look at a million vertices one by one either.
+    heavy.receive = (data, isBinary) => {
+      if (!isBinary) Client.prototype.receive.call(heavy, data, false);
+      else if (data[0] === 2) heavy.notify("stream.ack", { frame: data.readUInt32LE(8) });
+    };
+    ({ document: light } = await heavy.notification("scene"));
+    await heavy.request("stream.subscribe", { encoding: "q16", rate: 60, in_flight: 2 });
+  };
+  const make = ({ name }) => heavy.request("scene.patch", { patch: heavyPatches[name] }, patience);
+  const undo = () => heavy.request("scene.load", { scene: light }, patience);
+  const tasks = { begin, open, make, undo };
+  process.on("unhandledRejection", () => {});
+  process.on("message", async ({ task, name, port }) => {
+    const begun = performance.now();
+    const failed = await tasks[task]({ name, server: Object.assign(new Server(), { port, host: `127.0.0.1:${port}` }) }).then(() => null, (error) => error.message);
+    process.send({ failed, took_ms: round(performance.now() - begun, 0) });
   });
 } else {
   const args = process.argv.slice(2);
   const option = (flag) => (args.includes(flag) ? args.splice(args.indexOf(flag), 2)[1] : null);
   const out = option("--out"), only = option("--only");
   const [seconds = 8] = args.map(Number);
-  const chosen = (list) => Object.keys(list).filter((name) => !only || name === only);
+  const chosen = (list) => Object.keys(list).filter((name) => !only || name === only || (only === "heavy" && list === heavyPatches));
   const cases = [], heavy = [];
   for (const name of chosen(abuses)) cases.push(await measure(name, seconds));
   for (const name of chosen(heavyPatches)) heavy.push(await measureHeavy(name, seconds));
@@ -167,8 +185,7 @@ async function measure(name, seconds) {
     await bystander.request("stream.subscribe", { encoding: "q16", rate: 30, in_flight: 2 });
     await bystander.frame();
     const before = resident();
-    abuser.send({ name, port: server.port });
-    await once(abuser, "message");
+    await ask(abuser, { task: "begin", name, port: server.port });
     await sleep(2000);
     return { abuse: name, ...(await watch(bystander, seconds)), memory_grown_MB: round((resident() - before) / 1024, 0) };
   } catch (error) {
@@ -179,34 +196,37 @@ async function measure(name, seconds) {
   }
 }
 
+/// What a process that was forked took for a task [ms].
+async function ask(child, task) {
+  child.send(task);
+  const [{ failed, took_ms }] = await once(child, "message");
+  if (failed) throw new Error(failed);
+  return took_ms;
+}
+
 /// The patch is made, undone, made again; then the server is told to end.
 async function measureHeavy(name, seconds) {
   const server = await Server.start("--log-level", "error");
-  const patient = 60_000;
-  const timed = async (what) => {
-    const begun = performance.now();
-    await what();
-    return round(performance.now() - begun, 0);
-  };
+  const heavy = fork(new URL(import.meta.url).pathname);
   try {
     const bystander = await Client.connect(server);
     await bystander.request("stream.subscribe", { encoding: "q16", rate: 60, in_flight: 2 });
     await bystander.frame();
-    const heavy = await Client.connect(server, { session: "heavy" });
-    const { document: light } = await heavy.notification("scene");
-    await heavy.request("stream.subscribe", { encoding: "q16", rate: 60, in_flight: 2 });
-    const patch = { patch: heavyPatches[name] };
-    const made = timed(() => heavy.request("scene.patch", patch, patient));
+    await ask(heavy, { task: "open", port: server.port });
+    const made = ask(heavy, { task: "make", name });
     const meanwhile = await watch(bystander, seconds);
     const answered_ms = await made;
     await sleep(2000);
-    const undone_ms = await timed(() => heavy.request("scene.load", { scene: light }, patient));
-    await heavy.request("scene.patch", patch, patient);
+    const undone_ms = await ask(heavy, { task: "undo" });
+    await ask(heavy, { task: "make", name });
     await sleep(2000);
-    const ended_ms = await timed(() => server.stop());
-    return { patch: name, ...meanwhile, answered_ms, undone_ms, ended_ms };
+    const told = performance.now();
+    await server.stop();
+    return { patch: name, ...meanwhile, answered_ms, undone_ms, ended_ms: round(performance.now() - told, 0) };
   } catch (error) {
     await server.stop("SIGKILL");
     return { patch: name, failed: error.message };
+  } finally {
+    heavy.kill("SIGKILL");
   }
 }
