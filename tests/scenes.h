@@ -47,7 +47,7 @@ inline scene::Scene sheet(int columns, int rows) {
   return scene;
 }
 
-/// The seed scene of contract.md.
+/// The seed scene.
 inline scene::Scene seed() {
   scene::Scene scene = sheet(25, 25);
   const scene::Oscillate swing{{0.0, 0.0, 1.0}, 0.2, 0.5};

@@ -65,8 +65,8 @@ inline scene::Scene pendulum(scene::Method method, double dt, double degrees, do
   return scene;
 }
 
-/// The cloth of physics.md's work-precision table: 17 x 17 over 0.5 m, 1.4648e-4 kg a vertex, 100 N/m
-/// everywhere, two pinned corners, no damping. Its unit of time is sqrt(m/k).
+/// The cloth of the work-precision table (tests/README.md): 17 x 17 over 0.5 m, 1.4648e-4 kg a vertex, 100
+/// N/m everywhere, two pinned corners, no damping. Its unit of time is sqrt(m/k).
 inline scene::Scene swinging_cloth(scene::Method method, double dt) {
   scene::Scene scene = bare_scene(method, dt);
   scene.gravity = {0.0, -9.81, 0.0};

@@ -9,7 +9,7 @@
 
 namespace clothlab::lab {
 
-/// Every number there is, with its unit in its name; see README.
+/// Every number there is, with its unit in its name; see README.md here.
 json to_json(const Outcome& outcome);
 
 /// The result that to_json wrote; numbers that were not finite are NaN, limits of dt infinite. Error: it is

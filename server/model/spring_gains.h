@@ -1,4 +1,4 @@
-// What PBD and XPBD multiply a spring's stretch with when they visit it (elements/spring.glsl,
+// What PBD and XPBD multiply a spring's stretch with when they visit it (shaders/elements/spring.glsl,
 // spring_projection): where stiffness in N/m and damping in N s/m become numbers for one dt.
 #pragma once
 

@@ -24,7 +24,7 @@ class SpringOperator {
   /// stiff = M^-1/2 K M^-1/2 y [1/s^2], damped = M^-1/2 C M^-1/2 y [1/s], air drag included.
   void apply(const Field& y, Field& stiff, Field& damped) const;
 
-  /// No eigenvalue of M^-1 K [1/s^2], or of M^-1 C [1/s], is larger. See physics.md, step limit.
+  /// No eigenvalue of M^-1 K [1/s^2], or of M^-1 C [1/s], is larger. See dt_limit_bound.
   double stiffness_bound() const;
   double damping_bound() const;
   /// The smallest damping over stiffness of any spring [s]: y.Cy >= this y.Ky for every y, air drag apart.

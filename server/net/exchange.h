@@ -55,7 +55,7 @@ struct TopologyChanged {
 struct PassesChanged {
   std::vector<sim::Simulation::Pass> passes;
 };
-/// What sim.status says of the solver; see README.
+/// What sim.status says of the solver; see server/net/asyncapi.yaml.
 struct SolverChanged {
   json facts;
 };

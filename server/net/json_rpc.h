@@ -1,4 +1,4 @@
-// JSON-RPC 2.0 as contract.md section 4 narrows it: named parameters, no batches, errors that carry their
+// JSON-RPC 2.0, narrowed (README.md here): named parameters, no batches, errors that carry their
 // remedy.
 #pragma once
 

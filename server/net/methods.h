@@ -1,4 +1,4 @@
-// The methods of the protocol: what each needs and what it does. See contract.md, section 4.
+// The methods of the protocol: what each needs and what it does. See README.md here.
 #pragma once
 
 #include <string>

@@ -15,8 +15,8 @@ struct Shares {
   double mass, damping, stiffness;
 };
 
-/// What becomes of the part of a compressed spring's stiffness that is negative (elements/spring.glsl,
-/// `across`).
+/// What becomes of the part of a compressed spring's stiffness that is negative
+/// (shaders/elements/spring.glsl, `across`).
 enum class Across { kept, dropped };
 
 /// mass M + damping C(x) + stiffness K(x), of all vertices. [3 vertex_count]^2. C leaves out how the springs'

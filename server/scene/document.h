@@ -15,7 +15,7 @@ using nlohmann::json;
 
 /// A valid scene as JSON and as plain data, always in step with each other.
 struct Document {
-  json value;  ///< every key of contract.md present, defaults filled in, the user's numbers as they were
+  json value;  ///< every key of the schema present, defaults filled in, the user's numbers as they were
                ///< written
   Scene scene;
   bool operator==(const Document&) const = default;

@@ -1,5 +1,5 @@
-// The scene as typed, validated plain data: what every other part of the server reads. See contract.md,
-// section 1. Made only by `validate` (scene/document.h); a Scene in hand is a valid one. All quantities SI.
+// The scene as typed, validated plain data: what every other part of the server reads. See README.md here.
+// Made only by `validate` (scene/document.h); a Scene in hand is a valid one. All quantities SI.
 #pragma once
 
 #include <array>

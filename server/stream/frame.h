@@ -1,4 +1,4 @@
-// What goes over the wire: the 64-byte header of contract.md section 4 and a payload, encoded once for all
+// What goes over the wire: the 64-byte header of server/net/README.md and a payload, encoded once for all
 // viewers.
 #pragma once
 

@@ -1,5 +1,5 @@
 // A damped spring between two vertices: Hooke's law, and damping along the spring only.
-// physics.md, "Laws"; Provot 1995, section 2. In the common subset of GLSL and C++ (see types.glsl, elements.h).
+// Provot 1995, section 2. In the common subset of GLSL and C++ (see types.glsl, elements.h).
 
 /// Force [N] on the vertex at x with velocity v, from a spring to the vertex at y with velocity w.
 /// rest_length [m], stiffness [N/m], damping [N s/m]. A spring without length has no direction and gives no force.

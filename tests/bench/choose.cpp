@@ -2,7 +2,7 @@
 // simulation of its own, at more times, against a reference with half the step; its cost again, in longer
 // runs, as it is and over that of the scene's own setting; and every setting of a fine grid that would cost
 // less, run to see whether it keeps the tolerance too. Prints a JSON document. bench_choose [SCENE...], where
-// 17x17 is the swinging cloth of physics.md; by default four.
+// 17x17 is the swinging cloth of tests/README.md; by default four.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

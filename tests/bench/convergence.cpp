@@ -1,4 +1,4 @@
-// Error against dt, the table of physics.md: the swinging 17 x 17 cloth at 0.3 s under symplectic Euler,
+// Error against dt, the table of tests/README.md: the swinging 17 x 17 cloth at 0.3 s under symplectic Euler,
 // Verlet, RK4, PBD, XPBD and VBD, by the reference in double precision and by the GPU in float32, against RK4
 // in double precision at u/200 (u = sqrt(m/k)). XPBD also as float32 is usually made to do it, by differences
 // of positions: what the GPU's displacements are for. Prints a JSON document.

@@ -1,5 +1,5 @@
-// What the same accuracy costs under each method: for the swinging cloth of physics.md (17 x 17, 0.3 s) the
-// cheapest dt and iterations whose RMS position error is 1e-2, 1e-3 and 1e-4 of the cloth's size, and the
+// What the same accuracy costs under each method: for the swinging cloth of tests/README.md (17 x 17, 0.3 s)
+// the cheapest dt and iterations whose RMS position error is 1e-2, 1e-3 and 1e-4 of the cloth's size, and the
 // milliseconds of stepping a simulated second takes with them. Errors are the same at every run, so they are
 // searched first; what comes near the cheapest is then timed, all taking turns. Prints a JSON document.
 #include <algorithm>

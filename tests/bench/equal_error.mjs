@@ -1,4 +1,4 @@
-// What the same accuracy costs under each method, beside what it ran on, and as the README's table.
+// What the same accuracy costs under each method, beside what it ran on, and as the table of tests/README.md.
 // node tests/bench/equal_error.mjs [MACHINE]   ->   tests/bench/results/equal_error-MACHINE.json
 import { execFileSync } from 'node:child_process'
 import { readFileSync, writeFileSync } from 'node:fs'

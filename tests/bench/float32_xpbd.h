@@ -1,5 +1,5 @@
 // XPBD in float32 as it is usually written: it moves positions, and takes the velocity from their difference,
-// v = (x - x_prev) / dt. What Clothlab's kernel does not do (shaders/methods/displacement.glsl), to show the
+// v = (x - x_prev) / dt. What Clothlab's kernel does not do (shaders/methods/deviation.glsl), to show the
 // difference. On the CPU, one iteration, no contacts.
 #pragma once
 

@@ -44,7 +44,7 @@ test("NVIDIA's EGL is found where the host adds it", () => {
   assert.ok(config.Env.includes("NVIDIA_DRIVER_CAPABILITIES=graphics,compute,utility"));
 });
 
-test("it takes no more room than the README says: 300 MB", (context) => {
+test("it takes no more room than docker/README.md says: 300 MB", (context) => {
   const [bytes] = spawnSync("du", ["--summarize", "--apparent-size", "--bytes", "--one-file-system", root], { encoding: "utf8" }).stdout.split("\t");
   context.diagnostic(`${(bytes / 1e6).toFixed(1)} MB`);
   assert.ok(bytes < 300e6);

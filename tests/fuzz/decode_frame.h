@@ -1,4 +1,4 @@
-// Reads the binary messages of the protocol (contract, section 4; README), strictly and written from that
+// Reads the binary messages of the protocol (server/net/README.md), strictly and written from that
 // table alone: what the server sends is held against it. Nothing is lost in reading, so `encode_frame` gives
 // the same bytes back.
 #pragma once

@@ -1,5 +1,5 @@
 // The bytes of the protocol, committed in tests/golden: what the server makes of a fixed scene is these and
-// no others. The files were written from contract.md section 4, not by this code. The scenes are all pinned,
+// no others. The files were written from server/net/README.md, not by this code. The scenes are all pinned,
 // and their numbers such that no step of the way rounds: f32 has only normals along axes (no other unit
 // vector is exact in binary), and in q16 positions are whole quanta and normals far from a half of one.
 #include <algorithm>

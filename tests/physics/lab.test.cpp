@@ -1,4 +1,4 @@
-// The lab's truth, chart and choice, mostly on the swinging cloth, whose errors are known (physics.md).
+// The lab's truth, chart and choice, mostly on the swinging cloth, whose errors are known (tests/README.md).
 #include <algorithm>
 #include <cmath>
 
@@ -130,7 +130,8 @@ TEST_CASE("the chart of the swinging cloth shows each method's order, float32's 
     CAPTURE(scene::name(method));
     CHECK(std::abs(order(points[0], points[1]) - of_theory) < 0.15);
   }
-  // At dt = 0.6 u: 7.8e-4 and 3.4e-5 m in physics.md, of a size of 0.5 m. The step here is up to 4 % shorter.
+  // At dt = 0.6 u: 7.8e-4 and 3.4e-5 m (tests/README.md), of a size of 0.5 m. The step here is up to 4 %
+  // shorter.
   CHECK(std::abs(*points_of(made, Method::symplectic_euler)[0].error[0] / 1.56e-3 - 1.0) < 0.05);
   CHECK(std::abs(*points_of(made, Method::verlet)[0].error[0] / 6.8e-5 - 1.0) < 0.09);
   // Verlet keeps the energy: what swings is of the order of (omega dt)^2 in the fastest modes, which carry

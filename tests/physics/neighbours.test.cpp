@@ -265,6 +265,6 @@ TEST_CASE("two free sheets that collide keep their momentum and gain no energy")
     REQUIRE(now.kinetic + now.elastic < energy * 1.001);
   }
   REQUIRE(most_contacts > 20);
-  // physics.md: |dp| / sum |m v| < 1e-5.
+  // Rounding alone: |dp| / sum |m v| < 1e-5.
   REQUIRE(glm::length(momentum() - before) < 1e-5 * 16.9 * std::sqrt(1.13));
 }

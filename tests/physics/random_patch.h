@@ -1,5 +1,5 @@
 // Random patches of a scene that are valid by construction: each is drawn for the document as it is, numbers
-// from the ranges of scene/ranges.h, mostly where users are, sometimes at their very ends. Grids and
+// from the ranges of server/scene/ranges.h, mostly where users are, sometimes at their very ends. Grids and
 // iterations are kept small, so that many patches are tried in little time.
 #pragma once
 

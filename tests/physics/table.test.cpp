@@ -1,4 +1,4 @@
-// Part of the work-precision table of physics.md: RMS position error of the swinging cloth at 0.3 s. The
+// The work-precision table of tests/README.md: RMS position error of the swinging cloth at 0.3 s. The
 // whole of it: tests/bench/convergence.cpp and its results.
 #include "tests/bench/float32_xpbd.h"
 #include "tests/physics/orders.h"
@@ -64,8 +64,8 @@ TEST_CASE(
     INFO("dt " << entry.share << " u: " << theirs.error << " m, of float32 " << theirs.floor
                << " m; by differences " << differences << " m");
     CHECK(theirs.error == Approx(entry.float64).epsilon(0.04));  // two digits are given
-    // What rounding takes is carried on, so that nothing adds up: a few times the rounding of the positions as
-    // they are read, half a unit in the last place below 0.5 m, 1.5e-8 m. Verlet's is 1e-6 to 4e-6 m here.
+    // What rounding takes is carried on, so that nothing adds up: a few times the rounding of the positions
+    // as they are read, half a unit in the last place below 0.5 m, 1.5e-8 m. Verlet's is 1e-6 to 4e-6 m here.
     CHECK(theirs.floor < 1e-7);
     // The size of what rounding does is reproduced, its digits hang on the order of the operations.
     CHECK(differences == Approx(entry.differences).epsilon(0.1));

@@ -1,4 +1,4 @@
-// The README's scripts are run as they stand there, but for the port.
+// The scripts and scenes that the documents show are run as they stand there, but for the port.
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
 import { readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -6,7 +6,10 @@ import { createInterface } from "node:readline";
 import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
 
-const readme = readFileSync(new URL("../../README.md", import.meta.url), "utf8");
+const program = process.env.CLOTHLAB ?? "build/release/clothlab";
+/// The first piece of code of a language in a document.
+const shown = (document, language) =>
+  readFileSync(new URL(`../../${document}`, import.meta.url), "utf8").match(new RegExp("```" + language + "\n(.*?)```", "s"))[1];
 const scripts = [];
 let server, address;
 
@@ -25,7 +28,7 @@ function firstLines(child, pattern, count) {
 }
 
 before(async () => {
-  server = spawn(process.env.CLOTHLAB ?? "build/release/clothlab", ["serve", "--port", "0"]);
+  server = spawn(program, ["serve", "--port", "0"]);
   const [line] = await firstLines(server, /^listening on /, 1);
   address = new URL(line.replace("listening on ", "")).host;
 });
@@ -34,14 +37,14 @@ after(() => {
   for (const path of scripts) rmSync(path, { force: true });
 });
 
-async function runs(language, extension, program) {
-  const code = readme.match(new RegExp("```" + language + "\n(.*?)```", "s"))[1];
+async function runs(document, language, extension, interpreter) {
+  const code = shown(document, language);
   assert.match(code, /127\.0\.0\.1:8080/);
   // Below tests/, where Node finds the packages.
   const path = fileURLToPath(new URL(`readme-${process.pid}.${extension}`, import.meta.url));
   scripts.push(path);
   writeFileSync(path, code.replaceAll("127.0.0.1:8080", address));
-  const child = spawn(program, [path]);
+  const child = spawn(interpreter, [path]);
   try {
     const lines = await firstLines(child, /^\d+\.\d+ s: lowest vertex at -?\d+\.\d+ m$/, 3);
     const times = lines.map(parseFloat);
@@ -51,8 +54,17 @@ async function runs(language, extension, program) {
   }
 }
 
-test("the script for Node prints a line a frame", () => runs("js", "mjs", process.execPath));
+test("the script for Node prints a line a frame", () => runs("README.md", "js", "mjs", process.execPath));
 
 const python = ["/usr/bin/python3", "python3"].find((program) => spawnSync(program, ["-c", "import websockets"]).status === 0);
 test("the script for Python prints a line a frame", { skip: python ? false : "Python has no websockets here" },
-     () => runs("python", "py", python));
+     () => runs("server/net/README.md", "python", "py", python));
+
+for (const document of ["README.md", "server/scene/README.md"])
+  test(`the scene in ${document} is valid`, () => {
+    const path = fileURLToPath(new URL(`readme-${process.pid}.json`, import.meta.url));
+    scripts.push(path);
+    writeFileSync(path, shown(document, "json"));
+    const { status, stderr } = spawnSync(program, ["validate", path], { encoding: "utf8" });
+    assert.equal(status, 0, stderr);
+  });

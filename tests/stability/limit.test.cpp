@@ -69,7 +69,7 @@ void check_limit(const scene::Scene& scene, double expected, double omega) {
 /// So small an amplitude [m] that the spring is linear until it has grown enough to be told.
 constexpr double small = 1e-3;
 
-/// The closed form of a method's limit, in 1/omega, at damping ratio z (physics.md).
+/// The closed form of a method's limit, in 1/omega, at damping ratio z (shaders/README.md).
 double limit_of(Method method, double z) {
   if (method == Method::explicit_euler) return 2 * z;
   if (method == Method::symplectic_euler) return 2 * (std::sqrt(1 + z * z) - z);

@@ -41,7 +41,7 @@ StabilityMap map_of(const scene::Document& document, const lab::MapRequest& requ
   return *map;
 }
 
-/// The closed form of a method's limit, in 1/omega, at damping ratio z (physics.md).
+/// The closed form of a method's limit, in 1/omega, at damping ratio z (shaders/README.md).
 double closed_form(Method method, double z) {
   if (method == Method::symplectic_euler) return 2 * (std::sqrt(1 + z * z) - z);
   if (method == Method::verlet) return 2 * (std::sqrt(1 + 4 * z * z) - 2 * z);

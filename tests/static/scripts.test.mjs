@@ -1,22 +1,12 @@
 // Every shell script of the repository: bash reads it, and shellcheck has nothing to warn of.
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
-import { readFileSync, readdirSync } from "node:fs";
+import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { fileURLToPath } from "node:url";
+import { files, root } from "./files.mjs";
 
-const root = fileURLToPath(new URL("../../", import.meta.url));
-const elsewhere = new Set(["build", "node_modules", "dist", ".git"]);
-
-function* files(folder = "") {
-  for (const entry of readdirSync(join(root, folder), { withFileTypes: true })) {
-    const path = join(folder, entry.name);
-    if (entry.isDirectory() && !elsewhere.has(entry.name)) yield* files(path);
-    else if (entry.isFile()) yield path;
-  }
-}
-const scripts = [...files()].filter((path) => path.endsWith(".sh") || (!/\.\w+$/.test(path) && /^#!.*\b(ba)?sh\b/.test(readFileSync(join(root, path), "latin1").slice(0, 60))));
+const scripts = files.filter((path) => path.endsWith(".sh") || (!/\.\w+$/.test(path) && /^#!.*\b(ba)?sh\b/.test(readFileSync(join(root, path), "latin1").slice(0, 60))));
 
 test("bash can read every shell script", () => {
   assert.ok(scripts.includes("tests/run") && scripts.includes("server/setup.sh") && scripts.includes(".ci/run"));

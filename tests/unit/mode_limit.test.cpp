@@ -67,7 +67,7 @@ TEST_CASE("for one vibration the limits are those of the theory") {
     CHECK(limit(Method::symplectic_euler, z) == Approx(2 * (std::sqrt(1 + z * z) - z)));
     CHECK(limit(Method::verlet, z) == Approx(2 * (std::sqrt(1 + 4 * z * z) - 2 * z)));
   }
-  // physics.md, to the digits it gives.
+  // Solved by hand, to the digits that are given.
   CHECK(limit(Method::symplectic_euler, 0.1) == Approx(1.81).margin(0.005));
   CHECK(limit(Method::symplectic_euler, 1.0) == Approx(0.83).margin(0.005));
   CHECK(limit(Method::rk4, 0.1) == Approx(2.95).margin(0.005));

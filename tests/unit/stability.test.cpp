@@ -115,7 +115,7 @@ double energy_gain(const Sheet& sheet, double dt, int steps) {
 
 TEST_CASE(
     "on the grid of equal stiffness the limit tends to that of the infinite grid, the bound says 0.577") {
-  // physics.md: dt_limit in sqrt(m/k), for structural springs, with shear, with bend too.
+  // dt_limit in sqrt(m/k), for structural springs, with shear, with bend too.
   const std::array<double, 3> infinite{1.0, std::numbers::sqrt2 / 2, 0.6285};
   const std::array<std::array<double, 3>, 3> stiffness{{{1, 0, 0}, {1, 1, 0}, {1, 1, 1}}};
   for (std::size_t kinds = 0; kinds < 3; ++kinds) {

@@ -1,4 +1,4 @@
-// What the lab of the server answers (README, "The lab"), as far as the page reads it.
+// What the lab of the server answers (server/lab/result.schema.json), as far as the page reads it.
 import type { RpcErrorData } from "./rpc";
 import type { Patch } from "./scene_types";
 

@@ -1,4 +1,4 @@
-// Where a moving collider is at a simulated time, by the formulas of contract.md.
+// Where a moving collider is at a simulated time, by the formulas of server/scene/README.md.
 import { MathUtils, Vector3 } from "three";
 import type { Motion, Vec3 } from "./scene_types";
 

@@ -69,7 +69,7 @@ export function noticeError(title: string, error: Error): void {
 
 const asText = (value: unknown): string => (typeof value === "string" ? value : JSON.stringify(value));
 
-/// `sim.diverged` of contract.md.
+/// `sim.diverged`.
 export interface Diverged { reason: string; remedy?: { text: string; patch?: Patch } }
 
 const blewUp = "The simulation blew up";

@@ -1,4 +1,4 @@
-// Which vertices the pins of a scene hold, by the rules of contract.md, for the small markers.
+// Which vertices the pins of a scene hold, by the rules of server/scene/README.md, for the small markers.
 import { Euler, MathUtils, Vector3 } from "three";
 import type { At, Cloth, Motion, Vec3 } from "./scene_types";
 

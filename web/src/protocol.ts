@@ -1,4 +1,4 @@
-// The binary messages of contract.md, section 4: 64-byte header, then the payload, little-endian.
+// The binary messages (server/net/README.md): 64-byte header, then the payload, little-endian.
 
 const headerBytes = 64;
 const kindTopology = 1;

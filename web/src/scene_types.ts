@@ -1,4 +1,4 @@
-// The scene document (contract.md, section 1) as far as the page shows it. The server fills in every default.
+// The scene document (server/scene/README.md) as far as the page shows it. The server fills in every default.
 
 export type Vec3 = [number, number, number];
 

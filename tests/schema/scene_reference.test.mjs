@@ -1,0 +1,12 @@
+// The tables of server/scene/README.md say what the schema says.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { test } from "node:test";
+import { updated } from "./scene_reference.mjs";
+
+const folder = new URL("../../server/scene/", import.meta.url);
+
+test("the scene's README has every key of the schema, with its range and default (else: node tests/schema/scene_reference.mjs)", () => {
+  const readme = readFileSync(new URL("README.md", folder), "utf8");
+  assert.equal(readme, updated(readme, JSON.parse(readFileSync(new URL("scene.schema.json", folder)))));
+});
