@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "server/lab/job.h"
+#include "server/scene/method.h"
 
 namespace clothlab::tests {
 
@@ -22,7 +23,7 @@ inline lab::Point made_up_point(Method method, double dt, int iterations, double
   point.largest_position_error = 1.3 * error;
   const double cost = ms_a_step / dt;
   point.cost = {cost, 0.95 * cost, 3};
-  if (!lab::iterates(method)) point.dt_over_limit = dt / 1.9e-3;
+  if (!scene::iterates(method)) point.dt_over_limit = dt / 1.9e-3;
   return point;
 }
 

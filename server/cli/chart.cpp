@@ -25,7 +25,7 @@ struct Options {
 /// "57 ms (dt 1.6 ms ×4)"
 std::string words(const lab::Point& point) {
   std::string words = brief(point.cost->median) + " (dt " + brief(1000 * point.setting.dt) + " ms";
-  if (lab::iterates(point.setting.method)) words += " ×" + std::to_string(point.setting.iterations);
+  if (scene::iterates(point.setting.method)) words += " ×" + std::to_string(point.setting.iterations);
   return words + ")";
 }
 

@@ -32,7 +32,8 @@ std::string times(double ratio) {
 /// "3.4e-04, at most 3.6e-04".
 std::string error_text(const Point& point) {
   const std::string seen = significant(point.largest_position_error.value_or(unknown), 3);
-  return point.error_high ? seen + " (at most " + significant(*point.error_high, 3) + ")" : seen;
+  if (!point.error_high || significant(*point.error_high, 3) == seen) return seen;
+  return seen + " (at most " + significant(*point.error_high, 3) + ")";
 }
 
 class Chooser {
@@ -261,7 +262,7 @@ class Chooser {
     if (choice_.runner_up) {
       const double ratio = choice_.runner_up->cost->median / cost;
       const bool cheaper = ratio_to_runner_up().low > 1.0;
-      why += (!cheaper       ? ", within the noise as much as"
+      why += (!cheaper       ? ", too near to tell from"
               : ratio < 1.05 ? ", about as much as"
                              : ", " + times(ratio) + " less than") +
              " the next best (" + text(choice_.runner_up->setting) + ")";

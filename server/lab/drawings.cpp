@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "server/base/text.h"
+#include "server/scene/method.h"
 
 namespace clothlab::lab {
 

@@ -63,7 +63,7 @@ std::string of_points(const std::vector<Point>& points) {
     const Setting& setting = point.setting;
     table.row().add(scene::name(setting.method)).add(setting.dt);
     iterates(setting.method) ? table.add(setting.iterations) : table.add("");
-    setting.method == scene::Method::implicit_euler ? table.add(setting.tolerance) : table.add("");
+    solves(setting.method) ? table.add(setting.tolerance) : table.add("");
     table.add(point.error)
         .add(point.largest_position_error)
         .add(point.error_low)

@@ -21,7 +21,7 @@ constexpr int most_unknown = 6;    // steps without a known error: they show wha
 std::vector<int> iterations_of(Method method, const ChartRequest& request) {
   if (!iterates(method)) return {1};
   if (!request.iterations.empty()) return request.iterations;
-  if (method == Method::implicit_euler) return {1, 4};
+  if (scene::solves(method)) return {1, 4};
   return {1, 4, 16};
 }
 
@@ -61,12 +61,11 @@ std::vector<Ladder> make_ladders(const scene::Scene& scene, const ChartRequest& 
     for (const int iterations : iterations_of(method, request)) {
       Ladder ladder;
       // Small steps are met by no iteration at all with 1e-4, which adds up.
-      ladder.next = {method, longest_step(truth), iterations, method == Method::implicit_euler ? 1e-6 : 1e-4};
+      ladder.next = {method, longest_step(truth), iterations, scene::solves(method) ? 1e-6 : 1e-4};
       ladder.limit = limit_of(method, scene, truth);
-      ladder.step_cost = a_step * (method == Method::rk4              ? 4.0
-                                   : method == Method::implicit_euler ? 100.0 * iterations
-                                   : scene::sweeps(method)            ? 1.0 + 1.5 * iterations
-                                                                      : 1.0);
+      ladder.step_cost = a_step * (scene::solves(method)   ? 100.0 * iterations
+                                   : scene::sweeps(method) ? 1.0 + 1.5 * iterations
+                                                           : scene::facts(method).evaluations);
       if (ladder.limit == 0.0) {  // it grows at any step: as long as the growth stays small, it is of use
         const double omega = 2.0 / limit_of(Method::symplectic_euler, scene, truth);
         ladder.next.dt = std::min(24.0 / (omega * omega * truth.time), longest_step(truth));

@@ -1,4 +1,5 @@
 #include "server/lab/points_layout.h"
+#include "server/scene/method.h"
 
 #include <algorithm>
 #include <cmath>

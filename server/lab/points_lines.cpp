@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "server/lab/points_layout.h"
+#include "server/scene/method.h"
 
 namespace clothlab::lab {
 

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "server/lab/points_layout.h"
+#include "server/scene/method.h"
 
 namespace clothlab::lab {
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "server/lab/points_layout.h"
+#include "server/scene/method.h"
 
 namespace clothlab::lab {
 

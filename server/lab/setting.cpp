@@ -5,13 +5,11 @@
 
 namespace clothlab::lab {
 
-using scene::Method;
-
 Setting setting_of(const scene::Scene& scene) {
   const scene::Solver& solver = scene.solver;
   Setting setting{solver.method, solver.dt, 1, 1e-4};
   if (iterates(solver.method)) setting.iterations = solver.iterations;
-  if (solver.method == Method::implicit_euler) setting.tolerance = solver.tolerance;
+  if (scene::solves(solver.method)) setting.tolerance = solver.tolerance;
   return setting;
 }
 
@@ -23,19 +21,15 @@ scene::Scene with(scene::Scene scene, const Setting& setting) {
   return scene;
 }
 
-bool iterates(Method method) {
-  return method == Method::implicit_euler || scene::sweeps(method);
-}
-
 json patch(const Setting& setting) {
   json solver{{"method", scene::name(setting.method)}, {"dt", setting.dt}};
   if (iterates(setting.method)) solver["iterations"] = setting.iterations;
-  if (setting.method == Method::implicit_euler) solver["tolerance"] = setting.tolerance;
+  if (scene::solves(setting.method)) solver["tolerance"] = setting.tolerance;
   return {{"solver", solver}};
 }
 
 json to_json(const Setting& setting) {
-  const bool iterating = iterates(setting.method), solving = setting.method == Method::implicit_euler;
+  const bool iterating = iterates(setting.method), solving = scene::solves(setting.method);
   return {{"method", scene::name(setting.method)},
           {"dt_s", setting.dt},
           {"iterations", iterating ? json(setting.iterations) : json()},

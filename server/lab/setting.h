@@ -24,9 +24,6 @@ Setting setting_of(const scene::Scene& scene);
 /// The scene stepped that way.
 scene::Scene with(scene::Scene scene, const Setting& setting);
 
-/// Whether `iterations` means anything to the method.
-bool iterates(scene::Method method);
-
 /// {"solver": {"method", "dt", ...}}, a merge patch for the scene; without what the method does not look at.
 json patch(const Setting& setting);
 

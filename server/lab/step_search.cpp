@@ -21,12 +21,8 @@ constexpr double most_a_run = 8.0;  // wall time of one run [s]
 constexpr int glances = 3;
 constexpr double glanced = 0.03;  // wall time of one timing at most [s]
 
-double order(Method method) {
-  return method == Method::rk4 ? 4.0 : method == Method::verlet ? 2.0 : 1.0;
-}
-
 std::vector<Setting> settings_of(Method method) {
-  if (method == Method::implicit_euler)
+  if (scene::solves(method))
     return {{method, 0, 1, 1e-4}, {method, 0, 1, 1e-6}, {method, 0, 2, 1e-4}, {method, 0, 4, 1e-4}};
   if (!scene::sweeps(method)) return {{method, 0, 1, 1e-4}};
   std::vector<Setting> settings;
@@ -140,14 +136,15 @@ Status StepSearch::search(Candidate& candidate) {
       break;
     }
     missed = point.setting.dt;
-    const double hoped = missed * 0.95 * std::pow(tolerance_ / *error, 1.0 / order(candidate.setting.method));
+    const double hoped =
+        missed * 0.95 * std::pow(tolerance_ / *error, 1.0 / scene::facts(candidate.setting.method).order);
     if (hoped * far_off < dearest || dt <= dearest) return ok();
     dt = std::clamp(hoped, missed / 16, missed / 1.3);
   }
   if (missed == unknown && kept < longest) missed = near_enough * longest;  // which itself may keep it
   // From a step that keeps the tolerance towards one that misses it: where the order says, then halfway.
   double dt = kept * std::pow(tolerance_ / *candidate.best->largest_position_error,
-                              1.0 / order(candidate.setting.method));
+                              1.0 / scene::facts(candidate.setting.method).order);
   while (kept < longest / near_enough && missed > near_enough * kept) {
     if (!(dt > kept * std::sqrt(near_enough) && dt < missed / std::sqrt(near_enough)))
       dt = std::sqrt(kept * missed);
@@ -168,7 +165,8 @@ Status StepSearch::search(Candidate& candidate) {
 Result<double> StepSearch::shorten(Candidate& candidate, double too_large) {
   const double dt =
       candidate.best->setting.dt *
-      std::clamp(0.97 * std::pow(tolerance_ / too_large, 1.0 / order(candidate.setting.method)), 0.25, 0.97);
+      std::clamp(0.97 * std::pow(tolerance_ / too_large, 1.0 / scene::facts(candidate.setting.method).order),
+                 0.25, 0.97);
   Point point;
   const Result<double> error = error_at(candidate, dt, point);
   if (error && *error < unknown) keep(candidate, point);

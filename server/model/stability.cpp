@@ -50,11 +50,6 @@ double rk4_limit(const Mode& mode) {
 
 constexpr double symplectic_lag = 2.0, verlet_lag = 4.0;
 
-/// Whether the worst vibration is one of the largest of a single matrix: then any start finds it.
-bool one_worst(Method method) {
-  return method == Method::symplectic_euler || method == Method::verlet;
-}
-
 double undamped_limit(const Mode& mode) {
   return 1.0 / std::sqrt(mode.omega_squared);
 }
@@ -63,6 +58,10 @@ double overdamped_limit(const Mode& mode) {
 }
 
 }  // namespace
+
+bool one_worst(Method method) {
+  return method == Method::symplectic_euler || method == Method::verlet;
+}
 
 double dt_limit(Method method, const Mode& found) {
   // Both are sums of squares; what rounding leaves below 0 is 0.

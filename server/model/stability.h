@@ -22,6 +22,9 @@ inline constexpr double no_limit = std::numeric_limits<double>::infinity();
 /// former takes the velocity of the step before, the latter one that it predicts.
 double dt_limit(scene::Method method, const Mode& mode);
 
+/// Whether the worst vibration is one of the largest of a single matrix: then any start of a search finds it.
+bool one_worst(scene::Method method);
+
 /// The largest angular frequency [rad/s] of the springs about the rest shape, without damping: no less, at
 /// the cost of a pass over the springs ...
 double omega_bound(const Model& model, const scene::Scene& scene);

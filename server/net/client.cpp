@@ -235,6 +235,12 @@ int Client::send_next() {
 }
 
 int Client::send_frame(const stream::SharedMessage& frame) {
+  if (!frame->colliders.empty() && colliders_said_ != frame->header.sequence) {
+    colliders_said_ = frame->header.sequence;
+    wake();  // for the frame itself
+    return write(const_cast<unsigned char*>(frame->colliders.data()) + stream::front_room,
+                 frame->colliders.size() - stream::front_room, true);
+  }
   const std::int64_t held_until = pacing_.ready_since(now_us());
   // libwebsockets writes its header into the room in front, the same bytes for every viewer.
   const int result = write(const_cast<unsigned char*>(frame->data()), frame->size(), false);

@@ -87,6 +87,7 @@ class Client {
   TokenBucket messages_;
   bool topology_sent_ = false;
   std::uint32_t topology_revision_ = 0;
+  std::uint32_t colliders_said_ = 0;  ///< number of the frame whose colliders were told last
   bool frame_waits_ = false;
   int close_code_ = 0;
   bool close_said_ = false;

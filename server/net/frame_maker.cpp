@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/net/collider_text.h"
+
 namespace clothlab::net {
 
 namespace {
@@ -59,7 +61,8 @@ bool FrameMaker::request(std::size_t index, const sim::Simulation& simulation) {
   const auto flags = (diverged_ ? stream::flag_diverged : 0) | (asleep_ ? stream::flag_asleep : 0);
   timer_.begin();
   const bool queued =
-      packer_->request(simulation, static_cast<stream::Encoding>(index), static_cast<std::uint16_t>(flags));
+      packer_->request(simulation, static_cast<stream::Encoding>(index), static_cast<std::uint16_t>(flags),
+                       collider_text(simulation));
   if (queued) timer_.stage("pack_frame");
   timer_.end();
   if (!queued) return false;

@@ -5,6 +5,7 @@
 #include "server/net/limits.h"
 #include "server/net/methods.h"
 #include "server/scene/method.h"
+#include "server/stream/encoding.h"
 
 namespace clothlab::net {
 
@@ -14,6 +15,12 @@ nlohmann::json method_list() {
   auto list = nlohmann::json::array();
   for (const scene::Method method : scene::methods) list.push_back(scene::name(method));
   list.push_back(scene::automatic_method);
+  return list;
+}
+
+nlohmann::json encoding_list() {
+  auto list = nlohmann::json::array();
+  for (const stream::EncodingFacts& encoding : stream::encodings) list.push_back(encoding.name);
   return list;
 }
 
@@ -29,7 +36,7 @@ nlohmann::json hello_params(const Hub& hub, const Room& room, const Client& clie
           {"renderer", room.renderer()},
           {"methods", method_list()},
           {"requests", method_names()},
-          {"encodings", {"f32", "q16"}},
+          {"encodings", encoding_list()},
           {"limits",
            {{"message_bytes", limits.message_bytes},
             {"json_depth", limits.json_depth},

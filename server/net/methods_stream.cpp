@@ -1,22 +1,33 @@
 // stream.*: which frames this client gets. Answered here: they concern nobody else.
 #include <limits>
+#include <optional>
+#include <string>
 
 #include "server/net/client.h"
 #include "server/net/methods.h"
 
 namespace clothlab::net {
 
+namespace {
+/// "f32 or q16".
+std::string allowed() {
+  std::string list;
+  for (const stream::EncodingFacts& encoding : stream::encodings)
+    list += (list.empty() ? "" : " or ") + std::string(encoding.name);
+  return list;
+}
+}  // namespace
+
 Outcome stream_subscribe(Client& client, const Request& request) {
   Params params(request.params);
-  const std::string encoding = params.text("encoding", "q16");
-  if (encoding != "f32" && encoding != "q16")
-    params.refuse("encoding", encoding == "c16" ? "f32 or q16; c16 is not supported yet" : "f32 or q16");
+  const std::string name = params.text("encoding", "q16");
+  const std::optional<stream::Encoding> encoding = stream::encoding_of(name);
+  if (!encoding) params.refuse("encoding", allowed() + (name == "c16" ? "; c16 is not supported yet" : ""));
   const double rate = params.number("rate", min_rate, max_rate, 60);
   const std::int64_t in_flight = params.integer("in_flight", 1, max_in_flight, 2);
   if (auto error = params.check()) return *error;
-  client.subscribe(encoding == "f32" ? stream::Encoding::f32 : stream::Encoding::q16, rate,
-                   static_cast<int>(in_flight));
-  return json{{"encoding", encoding}, {"rate", rate}, {"in_flight", in_flight}};
+  client.subscribe(*encoding, rate, static_cast<int>(in_flight));
+  return json{{"encoding", name}, {"rate", rate}, {"in_flight", in_flight}};
 }
 
 Outcome stream_unsubscribe(Client& client, const Request& request) {

@@ -270,13 +270,11 @@ void Stepper::warn_if_slow(Clock::time_point now) {
   }
   if (slow_announced_ || now - slow_since_ < seconds(3)) return;
   slow_announced_ = true;
-  const scene::Method method = document_.scene.solver.method;
-  const bool iterates = method == scene::Method::implicit_euler || scene::sweeps(method);
   std::string text = "this machine cannot keep up: ";
   text += real_time_.step_cost() >= 0.1 ? formatted("a step takes %.2g s", real_time_.step_cost())
                                         : std::string("time runs slower than asked for");
   text += "; a smaller cloth, ";
-  if (iterates) text += "fewer iterations, ";
+  if (scene::iterates(document_.scene.solver.method)) text += "fewer iterations, ";
   if (const double others = simulation().search_candidates(); others >= 500)
     text +=
         formatted("a smaller self_collision thickness (each vertex is held against %.0f others), ", others);

@@ -7,6 +7,7 @@
 #include "server/reference/contacts.h"
 #include "server/reference/strain_limit.h"
 #include "server/reference/sweeps.h"
+#include "server/scene/method.h"
 #include "shaders/elements/elements.h"
 
 namespace clothlab::reference {
@@ -82,7 +83,7 @@ SweepState begin(const World& world, const State& state, double t, double t_next
   step.contacts.resize(count, 0);
   Vectors end = state.position, unused(count);
   place_pins(world, t_next, end, unused);
-  const bool guesses = world.scene.solver.method == scene::Method::vbd;
+  const bool guesses = scene::sweeps_vertices(world.scene.solver.method);
   for (std::uint32_t i = 0; i < count; ++i) {
     const dvec3& v = state.velocity[i];
     step.mobility[i] = drag * inverse_mass(world, i);
@@ -110,7 +111,7 @@ dvec3 bounced(const SweepState& step, std::uint32_t i, const dvec3& v) {
 
 void gauss_seidel_step(const World& world, State& state, double t, double t_next) {
   const scene::Scene& scene = world.scene;
-  const bool by_vertices = scene.solver.method == scene::Method::vbd;
+  const bool by_vertices = scene::sweeps_vertices(scene.solver.method);
   const bool passes = scene.self_collision || (!by_vertices && !scene.colliders.empty());
   SweepState step = begin(world, state, t, t_next);
   for (int n = 0; n < scene.solver.iterations; ++n) {

@@ -7,6 +7,7 @@
 
 #include "server/model/spring_gains.h"
 #include "server/reference/contacts.h"
+#include "server/scene/method.h"
 #include "shaders/elements/elements.h"
 
 namespace clothlab::reference {
@@ -128,7 +129,7 @@ void sweep_vertices(SweepState& step) {
 
 void contact_pass(SweepState& step) {
   const World& world = step.world;
-  const bool remembers = world.scene.solver.method == scene::Method::vbd;
+  const bool remembers = scene::sweeps_vertices(world.scene.solver.method);
   std::vector<dvec3> push(step.x.size(), dvec3(0.0));
   std::vector<int> contacts(step.x.size(), 0);
   for (std::uint32_t i = 0; world.scene.self_collision && i < push.size(); ++i)

@@ -4,35 +4,14 @@
 
 namespace clothlab::scene {
 
-const char* name(Method method) {
-  switch (method) {
-    case Method::explicit_euler:
-      return "explicit_euler";
-    case Method::symplectic_euler:
-      return "symplectic_euler";
-    case Method::verlet:
-      return "verlet";
-    case Method::rk4:
-      return "rk4";
-    case Method::implicit_euler:
-      return "implicit_euler";
-    case Method::pbd:
-      return "pbd";
-    case Method::xpbd:
-      return "xpbd";
-    case Method::vbd:
-      return "vbd";
-  }
-  return "";
+namespace {
+constexpr bool in_order() {
+  for (std::size_t i = 0; i < methods.size(); ++i)
+    if (methods[i] != static_cast<Method>(i)) return false;
+  return true;
 }
-
-bool sweeps(Method method) {
-  return method == Method::pbd || method == Method::xpbd || method == Method::vbd;
-}
-
-bool any_step_is_stable(Method method) {
-  return method == Method::implicit_euler || sweeps(method);
-}
+static_assert(in_order(), "`facts` looks a method up by its place");
+}  // namespace
 
 std::optional<Method> method_of(const std::string& wanted) {
   const auto found =

@@ -32,17 +32,13 @@ double candidates(const scene::Cloth& cloth, double thickness) {
   return std::min(vertices, std::pow(4.0 * reach / edge, 2));
 }
 
-double evaluations(scene::Method method) {
-  return method == scene::Method::rk4 ? 4.0 : 1.0;
-}
-
 }  // namespace
 
 double expected_step_seconds(const scene::Scene& scene) {
   const double iterations = scene.solver.iterations;
-  double a_vertex = evaluations(scene.solver.method) * gather;
+  double a_vertex = scene::facts(scene.solver.method).evaluations * gather;
   if (scene::sweeps(scene.solver.method)) a_vertex += iterations * sweep;
-  if (scene.solver.method == scene::Method::implicit_euler) a_vertex += std::min(iterations, 2.0) * newton;
+  if (scene::solves(scene.solver.method)) a_vertex += std::min(iterations, 2.0) * newton;
   double total = 0.0;
   for (const scene::Cloth& cloth : scene.cloths) {
     double cost = a_vertex;

@@ -5,6 +5,7 @@
 
 #include "server/model/colouring.h"
 #include "server/model/spring_gains.h"
+#include "server/scene/method.h"
 #include "server/sim/coloured_work.h"
 #include "server/sim/integrator.h"
 
@@ -73,7 +74,7 @@ class GaussSeidel : public Integrator {
 
  private:
   GaussSeidel(const Surroundings& around, const Plan& plan)
-      : by_vertex_(plan.method == scene::Method::vbd),
+      : by_vertex_(scene::sweeps_vertices(plan.method)),
         contacts_(plan.self_collision || (!by_vertex_ && plan.spheres + plan.planes > 0)),
         balanced_(by_vertex_ && plan.spheres + plan.planes == 0),
         vertex_count_(around.model.vertex_count()),

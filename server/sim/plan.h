@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "server/gl/program.h"
+#include "server/scene/method.h"
 #include "server/sim/simulation.h"
 
 namespace clothlab::sim {
@@ -32,7 +33,7 @@ struct Plan {
   int most_sweeps = 0;                 ///< at least the iterations of PBD, XPBD or VBD: 16, 64, 256, ...
   /// Rows that a step has in the table of poses after the one at its start: its end, and before that its
   /// middle if the method looks at it.
-  int pose_rows() const { return method == scene::Method::rk4 ? 2 : 1; }
+  int pose_rows() const { return scene::facts(method).looks_at_the_middle ? 2 : 1; }
   bool operator==(const Plan&) const = default;
 };
 

@@ -9,19 +9,13 @@
 #include <vector>
 
 #include "server/model/model.h"
+#include "server/stream/encoding.h"
 
 namespace clothlab::stream {
 
 enum class MessageKind : std::uint8_t { topology = 1, frame = 2 };
-enum class Encoding : std::uint8_t { f32 = 0, q16 = 1 };
-inline constexpr int encoding_count = 2;
 inline constexpr std::size_t header_bytes = 64;
 inline constexpr std::uint16_t flag_asleep = 1, flag_diverged = 2;
-
-/// Bytes a vertex takes in a frame of this encoding.
-constexpr std::size_t bytes_per_vertex(Encoding encoding) {
-  return encoding == Encoding::f32 ? 24 : 8;
-}
 
 struct Header {
   MessageKind kind = MessageKind::frame;
@@ -44,6 +38,9 @@ inline constexpr std::size_t front_room = 64;
 struct Message {
   Header header;
   std::vector<std::uint8_t> bytes;
+  /// Text that goes before it, with front_room spare bytes in front: where its colliders are. Empty: as the
+  /// scene says.
+  std::vector<std::uint8_t> colliders;
   std::int64_t made_at_us = 0;  ///< steady clock when its packing was asked for, its steps queued before [us]
   const std::uint8_t* data() const { return bytes.data() + front_room; }
   std::size_t size() const { return bytes.size() - front_room; }

@@ -1,5 +1,6 @@
 #include "server/stream/packer.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstring>
@@ -34,6 +35,7 @@ struct Packer::Implementation {
   gl::ReadbackRing ring;
   std::array<std::int64_t, ring_slots> requested_at_us{};
   std::array<Header, ring_slots> headers;  ///< of the frames in the ring, by sequence number
+  std::array<std::vector<std::uint8_t>, ring_slots> colliders;
   std::uint32_t requested = 0, delivered = 0;
   std::uint32_t topology_revision = 0, vertex_count = 0;
 
@@ -43,9 +45,13 @@ struct Packer::Implementation {
     vertex_count = model.vertex_count();
     fan_offsets = {gl::Buffer(model.vertex_triangles.offsets), GL_R32UI};
     fans = {gl::Buffer(model::vertex_fans(model)), GL_RG32UI};
-    for (std::size_t i = 0; i < encoding_count; ++i)
-      packed[i] = gl::Buffer(box_bytes + vertex_count * bytes_per_vertex(static_cast<Encoding>(i)));
-    ring = gl::ReadbackRing(box_bytes + vertex_count * bytes_per_vertex(Encoding::f32), ring_slots);
+    std::size_t most = 0;
+    for (std::size_t i = 0; i < encoding_count; ++i) {
+      const std::size_t bytes = box_bytes + vertex_count * encodings[i].bytes_per_vertex;
+      packed[i] = gl::Buffer(bytes);
+      most = std::max(most, bytes);
+    }
+    ring = gl::ReadbackRing(most, ring_slots);
     delivered = requested;
   }
 
@@ -62,6 +68,7 @@ struct Packer::Implementation {
     auto message = std::make_shared<Message>();
     message->header = headers[delivered % ring_slots];
     message->made_at_us = requested_at_us[delivered % ring_slots];
+    message->colliders = std::move(colliders[delivered % ring_slots]);
     Header& header = message->header;
     std::memcpy(&header.box_minimum, bytes.data(), sizeof(glm::vec3));
     std::memcpy(&header.box_extent, bytes.data() + 16, sizeof(glm::vec3));
@@ -91,18 +98,15 @@ Result<std::unique_ptr<Packer>> Packer::create(std::uint32_t last) {
     return ok();
   };
   if (Status status = load(self.bounds, "stream/bounds.comp", {}); !status) return status.error();
-  for (const Encoding encoding : {Encoding::f32, Encoding::q16}) {
-    gl::Defines defines;
-    if (encoding == Encoding::f32) defines.emplace_back("ENCODING_F32", "1");
-    if (Status status = load(self.pack[static_cast<std::size_t>(encoding)], "stream/pack.comp", defines);
-        !status)
+  for (std::size_t i = 0; i < encoding_count; ++i)
+    if (Status status = load(self.pack[i], "stream/pack.comp", {{encodings[i].define, "1"}}); !status)
       return status.error();
-  }
   self.box = gl::Buffer(8 * sizeof(std::uint32_t));
   return packer;
 }
 
-bool Packer::request(const sim::Simulation& simulation, Encoding encoding, std::uint16_t flags) {
+bool Packer::request(const sim::Simulation& simulation, Encoding encoding, std::uint16_t flags,
+                     std::string_view colliders) {
   const std::int64_t begun_us = now_us();
   Implementation& self = *implementation_;
   if (self.topology_revision != simulation.topology_revision() || self.vertex_count == 0)
@@ -121,6 +125,12 @@ bool Packer::request(const sim::Simulation& simulation, Encoding encoding, std::
   self.dispatch(self.pack[index]);
 
   self.requested_at_us[self.requested % ring_slots] = begun_us;
+  std::vector<std::uint8_t>& text = self.colliders[self.requested % ring_slots];
+  text.clear();
+  if (!colliders.empty()) {
+    text.resize(front_room);
+    text.insert(text.end(), colliders.begin(), colliders.end());
+  }
   Header& header = self.headers[self.requested % ring_slots];
   header.encoding = encoding;
   header.flags = flags;
@@ -129,7 +139,7 @@ bool Packer::request(const sim::Simulation& simulation, Encoding encoding, std::
   header.vertex_count = self.vertex_count;
   header.time = simulation.time();
   header.step = simulation.step_index();
-  header.payload_bytes = static_cast<std::uint32_t>(self.vertex_count * bytes_per_vertex(encoding));
+  header.payload_bytes = static_cast<std::uint32_t>(self.vertex_count * facts(encoding).bytes_per_vertex);
   self.ring.push(self.packed[index], box_bytes + header.payload_bytes);
   return true;
 }

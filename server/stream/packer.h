@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string_view>
 
 #include "server/base/result.h"
 #include "server/sim/simulation.h"
@@ -17,9 +18,10 @@ class Packer {
   static Result<std::unique_ptr<Packer>> create(std::uint32_t last = 0);
   ~Packer();
 
-  /// Queues the packing of the present state after the steps queued so far. False if the readback ring is
-  /// full (the newest frames are still in flight): try again after the next poll.
-  bool request(const sim::Simulation& simulation, Encoding encoding, std::uint16_t flags);
+  /// Queues the packing of the present state after the steps queued so far; `colliders` goes with it. False if
+  /// the readback ring is full (the newest frames are still in flight): try again after the next poll.
+  bool request(const sim::Simulation& simulation, Encoding encoding, std::uint16_t flags,
+               std::string_view colliders = {});
 
   /// The oldest finished frame, or null if none has finished. Never waits. Sequence numbers rise by one a
   /// frame.

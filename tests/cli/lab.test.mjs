@@ -72,7 +72,7 @@ test("a cache that cannot be written changes nothing", () => {
 
 test("the choice prints its settings as options that `run` takes, and as a patch", () => {
   const { stdout } = lab("choose", "small.json", "--tolerance", "0.01", "--methods", "verlet,symplectic_euler", "--time", "0.2");
-  assert.match(stdout, /^chosen +(verlet|symplectic_euler), dt [\d.]+ ms +error [\d.e-]+ +[\d.]+ ms per simulated second$/m);
+  assert.match(stdout, /^chosen +(verlet|symplectic_euler), dt [\d.]+ ms +error [\d.e-]+ \[[\d.e-]+\.\.[\d.e-]+\] +[\d.]+ \[[\d.]+\.\.[\d.]+\] ms per simulated second$/m);
   assert.match(stdout, /^now +symplectic_euler, dt 2 ms/m);
   const options = stdout.match(/^options: (.*)$/m)[1].split(" ");
   assert.equal(clothlab(["run", "small.json", "--time", "0.1", ...options]).status, 0);

@@ -99,6 +99,15 @@ test("the server takes each parameter up to the limits that the document gives, 
   await leave(client);
 });
 
+test("where what moves is, is told as it says, before a frame", async () => {
+  const client = await enter();
+  await client.request("scene.load", { preset: "curtain" });
+  await client.request("stream.subscribe", {});
+  await client.nextNotification("colliders");
+  await client.frame();
+  await leave(client);
+});
+
 test("requests and their answers are as it says, with and without parameters, for every kind of id", async () => {
   const client = await enter(strip);
   const { revision } = await client.request("scene.get", {});

@@ -1,4 +1,5 @@
 // What the lab makes of noisy timings, with timings made up: nobody's machine decides whether these pass.
+#include <algorithm>
 #include <cmath>
 #include <random>
 

@@ -1,13 +1,12 @@
-// Spheres and planes of the scene, and the studio floor where a scene has none. They follow simulated time.
+// Spheres and planes of the scene, and the studio floor where a scene has none. Where they are now, the session says.
 import {
-  CircleGeometry, Color, DoubleSide, Group, Mesh, MeshLambertMaterial, Quaternion, ShaderMaterial, SphereGeometry, Vector3, type IUniform, type Object3D,
+  CircleGeometry, Color, DoubleSide, Group, Mesh, MeshLambertMaterial, ShaderMaterial, SphereGeometry, Vector3, type IUniform, type Object3D,
 } from "three";
 import { casterMaterial, type StageUniforms } from "./fabric_material";
-import { moved } from "./motion";
-import type { Collider, SceneDocument } from "./scene_types";
+import type { Collider, MovedCollider, Plane, SceneDocument } from "./scene_types";
 import { groundFragment, groundVertex, porcelain } from "./shaders";
 
-const up = new Vector3(0, 1, 0);
+const up = new Vector3(0, 1, 0), forward = new Vector3(0, 0, 1);
 
 /// Colours of the ground, set by the theme.
 export interface GroundUniforms {
@@ -33,7 +32,12 @@ function groundMaterial(uniforms: Record<string, IUniform>, solid: boolean): Sha
   });
 }
 
-interface Shown { collider: Collider; mesh: Mesh; caster: Mesh | null }
+interface Shown { collider: Collider; index: number; mesh: Mesh; caster: Mesh | null }
+
+function layPlane(mesh: Mesh, { point, normal }: Plane): void {
+  mesh.position.set(...point);
+  mesh.quaternion.setFromUnitVectors(forward, new Vector3(...normal).normalize());
+}
 
 export class ColliderView {
   readonly object = new Group();
@@ -55,7 +59,7 @@ export class ColliderView {
     const uniforms = { ...ground, ...shadow, fadeRadius: this.radius };
     this.planeMaterial = groundMaterial(uniforms, true);
     this.studio = new Mesh(this.disc, groundMaterial(uniforms, false));
-    this.studio.quaternion.setFromUnitVectors(new Vector3(0, 0, 1), up);
+    this.studio.quaternion.setFromUnitVectors(forward, up);
     this.studio.frustumCulled = false;
   }
 
@@ -63,9 +67,9 @@ export class ColliderView {
     this.object.clear();
     this.caster.clear();
     this.radius.value = sceneRadius * 2.8;
-    this.shown = document.colliders.flatMap((collider) => {
+    this.shown = document.colliders.flatMap((collider, index) => {
       const mesh = this.meshOf(collider);
-      return mesh ? [{ collider, mesh, caster: this.casterOf(collider) }] : [];
+      return mesh ? [{ collider, index, mesh, caster: this.casterOf(collider) }] : [];
     });
     for (const { mesh, caster } of this.shown) {
       this.object.add(mesh);
@@ -79,17 +83,17 @@ export class ColliderView {
     this.studio.position.y = this.lowest;
   }
 
-  /// Moves everything to where it is at `time` [s]; `clothBottom` [m] pushes the studio floor down, it is no collider.
-  update(time: number, clothBottom: number): void {
+  /// Puts everything where it is now, by `moved` or else by the scene; `clothBottom` [m] pushes the studio floor down, it is no
+  /// collider.
+  update(moved: MovedCollider[], clothBottom: number): void {
     let spheres = 0;
-    for (const { collider, mesh, caster } of this.shown) {
-      const home = collider.sphere?.center ?? collider.plane?.point ?? [0, 0, 0];
-      mesh.position.copy(moved(home, collider.motion, time));
+    for (const { collider, index, mesh, caster } of this.shown) {
+      const { sphere, plane } = moved.find((one) => one.index === index) ?? collider;
+      if (plane) layPlane(mesh, plane);
+      if (!sphere) continue;
+      mesh.position.set(...sphere.center);
       caster?.position.copy(mesh.position);
-      if (collider.sphere && spheres < this.stage.occluders.value.length) {
-        const { x, y, z } = mesh.position;
-        this.stage.occluders.value[spheres++]?.set(x, y, z, collider.sphere.radius);
-      }
+      this.stage.occluders.value[spheres++]?.set(...sphere.center, sphere.radius);
     }
     for (; spheres < this.stage.occluders.value.length; ++spheres) this.stage.occluders.value[spheres]?.set(0, 0, 0, 0);
     this.studio.position.y = Math.min(this.lowest, clothBottom - 0.01);
@@ -110,7 +114,6 @@ export class ColliderView {
     }
     if (!collider.plane) return null;
     const mesh = new Mesh(this.disc, this.planeMaterial);
-    mesh.quaternion.copy(new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), new Vector3(...collider.plane.normal).normalize()));
     mesh.scale.setScalar(this.radius.value);
     return mesh;
   }

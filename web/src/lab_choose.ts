@@ -26,7 +26,9 @@ export function toleranceField(input: HTMLInputElement): HTMLElement {
 }
 
 /// How far the error may turn out to be larger.
-const atMost = ({ largest_position_error_high: high }: Point): string => (high === null ? "" : ` (at most ${errorText(high)})`);
+function atMost({ largest_position_error: seen, largest_position_error_high: high }: Point): string {
+  return high === null || errorText(high) === errorText(seen) ? "" : ` (at most ${errorText(high)})`;
+}
 
 export class ChooseTab extends Tab<"choose"> {
   private readonly tolerance = makeNumber("1e-2", "1e-2");

@@ -10,11 +10,11 @@ import { Layout } from "./layout";
 import { LinkView } from "./link_view";
 import { clearDiverged, notice, noticeError, showApplied, showDiverged, type Diverged, type Level } from "./notices";
 import { Panel } from "./panel";
-import type { Frame } from "./protocol";
+import type { ShownFrame } from "./protocol";
 import { RpcError } from "./rpc";
 import { SlowWatch } from "./slow_watch";
 import { SceneStore } from "./scene_store";
-import type { Patch, SceneDocument } from "./scene_types";
+import type { MovedCollider, Patch, SceneDocument } from "./scene_types";
 import type { Stage } from "./stage";
 import { hook } from "./test_hook";
 import { ThemeSwitch } from "./theme";
@@ -34,7 +34,8 @@ export class Page {
   private readonly lab = this.makeLab();
   private readonly notifications = this.makeNotifications();
   private layout: Layout | null = null;
-  private latest: Frame | null = null;
+  private latest: ShownFrame | null = null;
+  private moved: MovedCollider[] = [];  // before the next frame
   private sceneName = "";
   private toldOfDivergence = false;
   private diverged = false;  // by the last status
@@ -111,7 +112,7 @@ export class Page {
         this.slow.picture();
         const replaced = this.latest;  // before it was drawn
         if (replaced && !document.hidden) this.connection.acknowledge(replaced.header.sequence);
-        this.latest = frame;
+        this.latest = { ...frame, moved: this.moved };
       },
       latency: (milliseconds) => this.hud.set("latency", `${milliseconds.toFixed(milliseconds < 10 ? 1 : 0)} ms`),
       problem: (error) => noticeError("The server sent something unexpected", error),
@@ -158,6 +159,7 @@ export class Page {
       hello: (params) => this.greeted(params),
       scene: (params) => this.store.replace(params.document as SceneDocument, Number(params.revision)),
       "scene.changed": (params) => this.store.patched(Number(params.revision), params.patch as Patch),
+      colliders: (params) => { this.moved = params.moving as MovedCollider[]; },
       "sim.status": (params) => {
         this.hud.showStatus(params as Status);
         this.transport.status(params as Status);
@@ -188,6 +190,7 @@ export class Page {
   private sceneChanged(document: SceneDocument, whole: boolean): void {
     hook.document = document;
     this.slow.dt = document.solver.dt;
+    this.moved = [];
     const newScene = whole && document.name !== this.sceneName;
     this.sceneName = document.name;
     element("scene-name", HTMLElement).textContent = document.name;

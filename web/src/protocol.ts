@@ -1,4 +1,5 @@
 // The binary messages (server/net/README.md): 64-byte header, then the payload, little-endian.
+import type { MovedCollider } from "./scene_types";
 
 const headerBytes = 64;
 const kindTopology = 1;
@@ -25,6 +26,8 @@ export interface Header {
 }
 
 export interface Frame { header: Header; buffer: ArrayBuffer }
+/// With what the session told before it: where its colliders are.
+export interface ShownFrame extends Frame { moved: MovedCollider[] }
 
 export interface ClothRange { firstVertex: number; vertexCount: number }
 

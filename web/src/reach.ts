@@ -1,6 +1,6 @@
 // How far a scene reaches: what is known of it before the first frame, and what frames show besides.
 import { Box3, Sphere, Vector3 } from "three";
-import { extremes, moved } from "./motion";
+import { sweep } from "./motion";
 import { heldVertices, restPositions } from "./pins";
 import { q16Words, type Frame } from "./protocol";
 import type { Cloth, SceneDocument } from "./scene_types";
@@ -17,7 +17,7 @@ function every<T>(items: T[], most: number): T[] {
 function clothPoints(cloth: Cloth, falls: boolean): Vector3[] {
   const rest = restPositions(cloth);
   const held = [...heldVertices(cloth)].filter(([vertex]) => rest[vertex]);
-  const swept = held.flatMap(([vertex, motion]) => extremes(motion).map((time) => moved((rest[vertex] as Vector3).toArray(), motion, time)));
+  const swept = held.flatMap(([vertex, motion]) => sweep((rest[vertex] as Vector3).toArray(), motion));
   const points = [...rest, ...swept];
   if (!falls || held.length === 0) return points;
   const pins = every(held, 64).map(([vertex]) => rest[vertex] as Vector3);
@@ -49,7 +49,7 @@ export function scenePoints(document: SceneDocument): Vector3[] {
   for (const point of points) point.y = Math.max(point.y, floor);
   for (const { sphere, motion } of document.colliders) {
     if (!sphere) continue;
-    for (const time of extremes(motion)) points.push(...ballPoints(moved(sphere.center, motion, time), sphere.radius));
+    for (const center of sweep(sphere.center, motion)) points.push(...ballPoints(center, sphere.radius));
   }
   // What nothing holds falls to the floor.
   const loose = document.cloths.filter(({ pins }) => pins.length === 0);

@@ -42,6 +42,9 @@ export interface Collider {
   motion: Motion;
 }
 
+/// Where a collider that moves is at the time of a frame, by its place in the document's list.
+export interface MovedCollider { index: number; sphere?: Sphere; plane?: Plane }
+
 export interface SceneDocument {
   version: number;
   name: string;

@@ -8,7 +8,7 @@ import { ColliderView } from "./collider_view";
 import { CameraKeeper } from "./camera_keeper";
 import type { FreeArea } from "./framing";
 import { GroundShadow } from "./ground_shadow";
-import type { Frame, Topology } from "./protocol";
+import type { ShownFrame, Topology } from "./protocol";
 import { Quality } from "./quality";
 import { framePoints, scenePoints } from "./reach";
 import type { SceneDocument } from "./scene_types";
@@ -45,12 +45,11 @@ export class Stage {
   private dirty = true;
   private readonly keeper = new CameraKeeper(this.camera);
   private document: SceneDocument | null = null;
-  private latest: Frame | null = null;  // on screen
+  private latest: ShownFrame | null = null;  // on screen
   private lastDrawn = 0;
   private lastLook = 0;
   private scale = 1;      // resolution of the picture on screen: one at rest is sharp, whatever the quality level
   private readonly stillScale: number;
-  private lastTime = 0;
   private radius = 1;  // of the scene [m]
 
   constructor({ canvas, context, software }: Graphics) {
@@ -93,7 +92,7 @@ export class Stage {
     const radius = this.radius = box.getSize(new Vector3()).length() / 2;
     this.cloth.setDocument(document);
     this.colliders.setDocument(document, radius);
-    this.colliders.update(this.lastTime, this.cloth.box.isEmpty() ? 0 : this.cloth.box.min.y);
+    this.colliders.update([], this.cloth.box.isEmpty() ? 0 : this.cloth.box.min.y);
     this.aimLight(box.getCenter(new Vector3()), radius);
     if (fresh) this.fit(false);
     this.invalidate();
@@ -105,7 +104,7 @@ export class Stage {
     if (this.keeper.fitted) this.fit(false);  // what was seen of another mesh need not be seen any more
   }
 
-  show(frame: Frame): boolean {
+  show(frame: ShownFrame): boolean {
     // A cloth that has blown up would fill the window many times over: its last sane shape stays.
     if (Math.max(...frame.header.boxExtent) > explodedAt * this.radius) return true;
     if (!this.cloth.show(frame)) return false;
@@ -113,8 +112,7 @@ export class Stage {
     this.latest = frame;
     this.keeper.see(framePoints(frame));
     if (first && this.keeper.fitted) this.orbit(this.keeper.jump());
-    this.lastTime = frame.header.time;
-    this.colliders.update(frame.header.time, this.cloth.box.min.y);
+    this.colliders.update(frame.moved, this.cloth.box.min.y);
     this.invalidate();
     return true;
   }

@@ -1,0 +1,39 @@
+// The encodings of a frame's vertices: all that sets them apart on this side of the wire. The page's decoders
+// are in web/src, the layouts in server/net/README.md, the packing in shaders/stream/pack.comp.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace clothlab::stream {
+
+enum class Encoding : std::uint8_t { f32 = 0, q16 = 1 };
+
+struct EncodingFacts {
+  Encoding encoding;
+  const char* name;  ///< as stream.subscribe spells it
+  std::size_t bytes_per_vertex;
+  const char* define;  ///< what pack.comp is compiled with
+};
+
+/// In the order of `Encoding`, whose numbers are on the wire.
+inline constexpr std::array encodings{
+    EncodingFacts{Encoding::f32, "f32", 24, "ENCODING_F32"},
+    EncodingFacts{Encoding::q16, "q16", 8, "ENCODING_Q16"},
+};
+inline constexpr std::size_t encoding_count = encodings.size();
+
+constexpr const EncodingFacts& facts(Encoding encoding) {
+  return encodings[static_cast<std::size_t>(encoding)];
+}
+
+constexpr std::optional<Encoding> encoding_of(std::string_view name) {
+  for (const EncodingFacts& each : encodings)
+    if (each.name == name) return each.encoding;
+  return std::nullopt;
+}
+
+}  // namespace clothlab::stream
