@@ -10,6 +10,7 @@ const worthMoving = 1e-3;   // of the distance
 export class CameraKeeper {
   fitted = true;  ///< until the user moves the camera
   private area: FreeArea = { left: 0, top: 0, width: 1, height: 1 };
+  private height = 1;  // of the window [CSS pixels]
   private foreseen = new Outline();
   private seen = new Outline();
   private stand: Stand | null = null;
@@ -17,13 +18,12 @@ export class CameraKeeper {
 
   constructor(private readonly camera: PerspectiveCamera) {}
 
-  /// Another window, or another part of it; true: the camera has to be placed again.
+  /// Another window, or another part of it.
   resize(area: FreeArea, width: number, height: number): void {
     this.area = area;
     this.height = height;
     centerIn(this.camera, area, width, height);
   }
-  private height = 1;
 
   /// Only these are to be seen, from now on. Returns what to orbit around.
   fit(points: Vector3[], now: Vector3[] = []): Vector3 | null {
