@@ -1,5 +1,5 @@
-// How a process that runs for months keeps no more memory than it needs: glibc by itself keeps what each thread
-// has freed for that thread (malloc(3), arenas), and the threads of sessions come and go.
+// How a process that runs for months keeps no more memory than it needs: glibc by itself keeps what each
+// thread has freed for that thread (malloc(3), arenas), and the threads of sessions come and go.
 #pragma once
 
 namespace clothlab {

@@ -38,9 +38,10 @@ std::string collider_text(const sim::Simulation& simulation) {
     moving.push_back(std::move(of));
   }
   if (moving.empty()) return {};
-  return json{{"jsonrpc", "2.0"},
-              {"method", "colliders"},
-              {"params", {{"step", simulation.step_index()}, {"time", simulation.time()}, {"moving", moving}}}}
+  return json{
+      {"jsonrpc", "2.0"},
+      {"method", "colliders"},
+      {"params", {{"step", simulation.step_index()}, {"time", simulation.time()}, {"moving", moving}}}}
       .dump();
 }
 

@@ -18,8 +18,8 @@ class Packer {
   static Result<std::unique_ptr<Packer>> create(std::uint32_t last = 0);
   ~Packer();
 
-  /// Queues the packing of the present state after the steps queued so far; `colliders` goes with it. False if
-  /// the readback ring is full (the newest frames are still in flight): try again after the next poll.
+  /// Queues the packing of the present state after the steps queued so far; `colliders` goes with it. False
+  /// if the readback ring is full (the newest frames are still in flight): try again after the next poll.
   bool request(const sim::Simulation& simulation, Encoding encoding, std::uint16_t flags,
                std::string_view colliders = {});
 

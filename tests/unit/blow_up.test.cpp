@@ -178,7 +178,9 @@ TEST_CASE("what is not finite has blown up, and the reason says between which ti
   CHECK(blow_up.last_good().time == 0.25);
 }
 
-TEST_CASE("a force that overflows before the energies do excuses nothing, at pins and colliders that move or stand") {
+TEST_CASE(
+    "a force that overflows before the energies do excuses nothing, at pins and colliders that move or "
+    "stand") {
   const double infinite = std::numeric_limits<double>::infinity();
   for (const double pin_speed : {0.0, 0.5})
     for (const bool pins : {true, false}) {
