@@ -8,8 +8,7 @@ StageTimer::~StageTimer() {
 
 void StageTimer::begin() {
   if (state_ != State::idle) return;
-  if (marks_[0] == 0)
-    glCreateQueries(GL_TIMESTAMP, static_cast<GLsizei>(marks_.size()), marks_.data());
+  if (marks_[0] == 0) glCreateQueries(GL_TIMESTAMP, static_cast<GLsizei>(marks_.size()), marks_.data());
   stages_ = 0;
   state_ = State::running;
   glQueryCounter(marks_[0], GL_TIMESTAMP);

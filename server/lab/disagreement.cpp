@@ -166,8 +166,7 @@ model::Mode fastest_growing(Method method, const model::SpringOperator& springs,
   const auto of_mode = [&](const model::Mode& mode) { return model::dt_limit(method, mode); };
   const auto stiffest = [](const model::Mode& mode) { return 1.0 / std::sqrt(mode.omega_squared); };
   const model::Field scattered = model::scattered_start(springs);
-  if (model::one_worst(method))
-    return model::extreme_mode(springs, of_mode, scattered, stop).mode;
+  if (model::one_worst(method)) return model::extreme_mode(springs, of_mode, scattered, stop).mode;
   const model::ExtremeMode first = model::extreme_mode(springs, stiffest, scattered, stop);
   // Under explicit Euler many vibrations share the limit, and the fastest of them grows the fastest.
   if (method == Method::explicit_euler) return first.mode;

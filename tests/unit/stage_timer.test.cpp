@@ -79,5 +79,6 @@ TEST_CASE("a simulation's step is timed pass by pass, as its scene has them") {
   using Names = std::vector<std::string>;
   CHECK(names(test::seed(), scene::Method::rk4, false) == Names{"neighbour_search", "rk4"});
   CHECK(names(test::sheet(5, 5), scene::Method::verlet, false) == Names{"verlet"});
-  CHECK(names(test::seed(), scene::Method::verlet, true) == Names{"neighbour_search", "verlet", "strain_limit"});
+  CHECK(names(test::seed(), scene::Method::verlet, true) ==
+        Names{"neighbour_search", "verlet", "strain_limit"});
 }
