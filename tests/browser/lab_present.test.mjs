@@ -6,7 +6,7 @@ import { fileURLToPath, pathToFileURL } from "node:url";
 import { build } from "../../web/node_modules/esbuild/lib/main.js";
 
 async function load(name) {
-  const outfile = fileURLToPath(new URL(`../../build/${name}-${process.pid}.mjs`, import.meta.url));
+  const outfile = fileURLToPath(new URL(`../../build/${name.replace("/", "-")}-${process.pid}.mjs`, import.meta.url));
   await build({ entryPoints: [fileURLToPath(new URL(`../../web/src/${name}.ts`, import.meta.url))], bundle: true, format: "esm", outfile });
   try {
     return await import(pathToFileURL(outfile));
@@ -15,10 +15,10 @@ async function load(name) {
   }
 }
 
-const { placeOf } = await load("lab_present");
-const { formerly, reverseOf } = await load("lab_apply");
-const { applyPatch } = await load("json_patch");
-const { numbersOf } = await load("lab_numbers");
+const { placeOf } = await load("lab/present");
+const { formerly, reverseOf } = await load("lab/apply");
+const { applyPatch } = await load("link/json_patch");
+const { numbersOf } = await load("lab/numbers");
 
 const setting = (method, dt_s, iterations = null, tolerance = null) => ({ method, dt_s, iterations, tolerance });
 const point = (of, error, cost, blew_up_at_s = null) => ({

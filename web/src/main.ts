@@ -1,8 +1,8 @@
 // Starts the page: the connection first, since its handshake needs no processor while WebGL starts.
-import { element } from "./dom";
+import { element } from "./panel/dom";
 import { Page } from "./page";
-import { Stage } from "./stage";
-import { openWebGl } from "./webgl";
+import { Stage } from "./view/stage";
+import { openWebGl } from "./view/webgl";
 
 const page = new Page();
 const graphics = openWebGl(element("view", HTMLCanvasElement));

@@ -1,24 +1,24 @@
 // Wires the connection, the scene's document, the stage and the controls to each other.
-import { Connection, type LinkEvents } from "./connection";
-import { button, element } from "./dom";
-import type { SolverFacts } from "./fields";
-import { saferStep, type Stability } from "./gauge";
-import { Hud, type Status } from "./hud";
-import { bindKeys } from "./keys";
-import { Lab } from "./lab_drawer";
-import { Layout } from "./layout";
-import { LinkView } from "./link_view";
-import { clearDiverged, notice, noticeError, showApplied, showDiverged, type Diverged, type Level } from "./notices";
-import { Panel } from "./panel";
-import type { ShownFrame } from "./protocol";
-import { RpcError } from "./rpc";
-import { SlowWatch } from "./slow_watch";
-import { SceneStore } from "./scene_store";
-import type { MovedCollider, Patch, SceneDocument } from "./scene_types";
-import type { Stage } from "./stage";
+import { Connection, type LinkEvents } from "./link/connection";
+import { button, element } from "./panel/dom";
+import type { SolverFacts } from "./panel/fields";
+import { saferStep, type Stability } from "./panel/gauge";
+import { Hud, type Status } from "./panel/hud";
+import { bindKeys } from "./panel/keys";
+import { Lab } from "./lab/drawer";
+import { Layout } from "./panel/layout";
+import { LinkView } from "./panel/link_view";
+import { clearDiverged, notice, noticeError, showApplied, showDiverged, type Diverged, type Level } from "./panel/notices";
+import { Panel } from "./panel/panel";
+import type { ShownFrame } from "./link/protocol";
+import { RpcError } from "./link/rpc";
+import { SlowWatch } from "./panel/slow_watch";
+import { SceneStore } from "./link/scene_store";
+import type { MovedCollider, Patch, SceneDocument } from "./link/scene_types";
+import type { Stage } from "./view/stage";
 import { hook } from "./test_hook";
-import { ThemeSwitch } from "./theme";
-import { Transport } from "./transport";
+import { ThemeSwitch } from "./view/theme";
+import { Transport } from "./panel/transport";
 
 type Params = Record<string, unknown>;
 

@@ -1,7 +1,7 @@
 // What browser tests read; nothing in the page depends on it.
-import type { Frame } from "./protocol";
-import type { SceneDocument } from "./scene_types";
-import type { Stage } from "./stage";
+import type { Frame } from "./link/protocol";
+import type { SceneDocument } from "./link/scene_types";
+import type { Stage } from "./view/stage";
 
 interface TestHook {
   framesReceived: number;

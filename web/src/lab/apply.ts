@@ -1,0 +1,41 @@
+// Applying what the lab found: the way back, and what was changed in words.
+import { valueAt } from "../link/json_patch";
+import type { Operation, Patch } from "../link/scene_types";
+
+type Tree = Record<string, unknown>;
+
+const isTree = (value: unknown): value is Tree => typeof value === "object" && value !== null && !Array.isArray(value);
+
+/// The patch that brings `document` back after `patch`. Arrays are restored whole.
+export function reverseOf(document: unknown, patch: Patch): Patch {
+  if (Array.isArray(patch)) {
+    return patch.map(({ path }): Operation => ({ op: "replace", path, value: valueAt(document, path) })).reverse();
+  }
+  return mergeBack(document as Tree, patch);
+}
+
+function mergeBack(document: Tree, patch: Tree): Tree {
+  return Object.fromEntries(Object.entries(patch).map(([key, value]) => {
+    const before = document[key];
+    return [key, isTree(value) && isTree(before) ? mergeBack(before, value) : before ?? null];
+  }));
+}
+
+const written = (value: unknown): string => (typeof value === "number" ? String(Number(value.toPrecision(4))) : String(value).replaceAll("_", " "));
+
+/// "method was symplectic euler, dt was 0.001": the plain values that `patch` changes, as they were.
+export function formerly(document: unknown, patch: Patch): string {
+  const places = Array.isArray(patch) ? patch.map(({ path, value }) => ({ path, value })) : leaves(patch, "");
+  const changed = places.filter(({ path, value }) => valueAt(document, path) !== value && !isContainer(value));
+  return changed.map(({ path }) => {
+    const before = valueAt(document, path);
+    return isContainer(before) ? "" : `${path.split("/").at(-1)} was ${written(before)}`;
+  }).filter((part) => part !== "").join(", ");
+}
+
+const isContainer = (value: unknown): boolean => typeof value === "object" && value !== null;
+
+function leaves(patch: Tree, path: string): { path: string; value: unknown }[] {
+  return Object.entries(patch).flatMap(([key, value]) =>
+    isTree(value) ? leaves(value, `${path}/${key}`) : [{ path: `${path}/${key}`, value }]);
+}

@@ -1,0 +1,112 @@
+// The tab that asks for a tolerance and answers with the cheapest way to step that keeps it.
+import { labelled, make, makeButton, makeNumber, numberIn, say } from "./dom";
+import { Drawing } from "./drawing";
+import { Picture } from "./picture";
+import { applyButton, curveOf, largestOnTheWay, pointTip, PointTable } from "./points";
+import { Tab, type Surroundings } from "./tab";
+import { comparedText, costRange, costText, errorText, settingText } from "./text";
+import type { Choice, Point } from "./types";
+
+const presets = ["1e-2", "1e-3", "1e-4"];
+
+/// A tolerance as the lab takes it; what it is else, in words.
+export function readTolerance(input: HTMLInputElement): number {
+  const tolerance = numberIn(input);
+  if (tolerance === undefined || !(tolerance > 0 && tolerance <= 1)) {
+    throw new Error(`The tolerance is ${input.value.trim() === "" ? "empty" : input.value.trim()}; allowed is more than 0, up to 1: 0.01 is one percent of the cloth's size.`);
+  }
+  return tolerance;
+}
+
+/// A field for a tolerance, with buttons for the usual ones.
+export function toleranceField(input: HTMLInputElement): HTMLElement {
+  input.setAttribute("aria-label", "Tolerance");
+  const buttons = presets.map((text) => makeButton(text, "lab-small", () => { input.value = text; }));
+  return make("div", "lab-tolerance", labelled("Tolerance", input, "RMS position error over the cloth's size"), ...buttons);
+}
+
+/// How far the error may turn out to be larger.
+function atMost({ largest_position_error: seen, largest_position_error_high: high }: Point): string {
+  return high === null || errorText(high) === errorText(seen) ? "" : ` (at most ${errorText(high)})`;
+}
+
+export class ChooseTab extends Tab<"choose"> {
+  private readonly tolerance = makeNumber("1e-2", "1e-2");
+  private readonly time = makeNumber("1", "1");
+  private readonly answer = make("p", "lab-answer");
+  private readonly cards = make("div", "lab-cards");
+  private readonly picture = new Picture({
+    tip: (key) => {
+      const point = this.point(key);
+      return point ? pointTip(point, largestOnTheWay, this.around.mayEdit()) : null;
+    },
+    choose: (key) => this.applyPoint(this.point(key)),
+    order: (key) => {
+      const point = this.point(key) as Point;
+      return { curve: curveOf(point), along: point.dt_s };
+    },
+  });
+  private readonly drawing = new Drawing("choose", this.around.jobs, this.picture, "What was tried: arrow keys go from point to point, Enter applies one",
+                                         (error) => this.around.problem("The picture could not be drawn", error));
+  private readonly table = new PointTable((point) => this.applyPoint(point), "All that was tried");
+  private result: Choice | null = null;
+
+  constructor(around: Surroundings) {
+    super("choose", around, {
+      lead: "Say how exact the motion has to be; the lab finds the cheapest method and time step that keep it, with a margin of stability.",
+      start: "Find the cheapest", file: "choice",
+      awaits: "The answer: a setting, the error and the cost to expect of it, the runner-up, and why.",
+    });
+    this.addMethods();
+    this.addOptions(labelled("simulate [s]", this.time, "how much of the motion is judged"));
+    this.element.querySelector(".lab-start")?.before(toleranceField(this.tolerance));
+    this.content.append(this.answer, this.cards, this.picture.element, this.table.element);
+  }
+
+  protected override drawn(): string | null { return this.drawing.text; }
+
+  protected override params(): Record<string, unknown> {
+    const time = numberIn(this.time);
+    return { tolerance: readTolerance(this.tolerance), ...(time === undefined ? {} : { time }) };
+  }
+
+  protected override show(choice: Choice): void {
+    this.result = choice;
+    this.answer.classList.toggle("unmet", choice.complete && !choice.met);
+    say(this.answer, choice.complete ? choice.why : "");
+    this.cards.hidden = !choice.complete;
+    if (choice.complete) this.showCards(choice);
+    this.drawing.want(choice, "position");
+    this.table.show(choice.tried, largestOnTheWay);
+  }
+
+  private showCards(choice: Choice): void {
+    const { chosen, runner_up: runnerUp, present } = choice;
+    this.cards.replaceChildren(
+      this.card(choice.met ? `The cheapest within ${errorText(choice.tolerance)}` : "The most accurate found", chosen, present, "chosen"),
+      ...(runnerUp ? [this.card("Runner-up", runnerUp, present, "")] : []),
+      this.card("Present", present, null, "present"));
+  }
+
+  private card(title: string, point: Point, against: Point | null, className: string): HTMLElement {
+    const blewUp = point.blew_up_at_s !== null;
+    const error = point.largest_position_error ?? point.error.position;
+    const compared = against ? comparedText(point.ms_a_simulated_s, against.ms_a_simulated_s) : "";
+    const facts = blewUp ? `blew up after ${Number(point.blew_up_at_s?.toPrecision(2))} s`
+      : `expected error ${errorText(error)}${atMost(point)}, ${costText(point.ms_a_simulated_s)}${costRange(point.ms_a_simulated_s)} a simulated second${compared ? `: ${compared}` : ""}`;
+    const card = make("div", `lab-card ${className}`, make("h3", "", title), make("b", "", settingText(point)), make("span", "", facts));
+    if (className !== "present") {
+      const button = applyButton(`Apply ${settingText(point)}`, () => this.applyPoint(point));
+      if (className === "chosen") button.className = "lab-primary";
+      button.disabled = !this.around.mayEdit();
+      card.append(button);
+    }
+    return card;
+  }
+
+  private point(key: string): Point | undefined { return this.result?.tried[Number(key)]; }
+
+  private applyPoint(point: Point | undefined): void {
+    if (point) this.around.apply(point.patch, settingText(point));
+  }
+}

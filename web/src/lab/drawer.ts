@@ -1,0 +1,162 @@
+// The lab: a drawer beside the cloth with four tabs. It remembers nothing beyond this page.
+import { button, element } from "../panel/dom";
+import { formerly, reverseOf } from "./apply";
+import { ChartTab } from "./chart";
+import { ChooseTab } from "./choose";
+import { make } from "./dom";
+import { Jobs } from "./jobs";
+import { SimplifyTab } from "./simplify";
+import { StabilityTab } from "./stability";
+import type { Surroundings } from "./tab";
+import type { Arrival, Kind, Progress } from "./types";
+import { notice, noticeError } from "../panel/notices";
+import type { Patch, SceneDocument } from "../link/scene_types";
+
+export interface LabEvents {
+  request<T>(method: string, params: Record<string, unknown>): Promise<T>;
+  document(): SceneDocument | null;
+  mayEdit(): boolean;
+  applied(depth: string): void;
+  toggled(open: boolean): void;  ///< the picture's free part of the window is another
+}
+
+const titles: Record<Kind, string> = { chart: "Chart", stability: "Stability", choose: "Choose", simplify: "Simplify" };
+
+export class Lab {
+  private readonly drawer = element("lab", HTMLElement);
+  private readonly opener = button("lab-open");
+  private readonly jobs = new Jobs({
+    request: (method, params) => this.events.request(method, params),
+    changed: (kind) => this.changed(kind),
+    refused: (error) => noticeError("The lab refused this", error),
+  });
+  private readonly around: Surroundings = {
+    jobs: this.jobs,
+    apply: (patch, what) => void this.apply(patch, what),
+    problem: (title, error) => noticeError(title, error),
+    mayEdit: () => this.events.mayEdit(),
+    document: () => this.events.document(),
+  };
+  private readonly tabs = {
+    chart: new ChartTab(this.around), stability: new StabilityTab(this.around),
+    choose: new ChooseTab(this.around), simplify: new SimplifyTab(this.around),
+  };
+  private readonly heads = new Map<Kind, HTMLButtonElement>();
+  private active: Kind = "chart";
+  private connected = false;
+
+  constructor(private readonly events: LabEvents) {
+    const list = element("lab-tabs", HTMLElement);
+    const body = element("lab-body", HTMLElement);
+    for (const kind of Object.keys(titles) as Kind[]) {
+      list.append(this.head(kind));
+      const tab = this.tabs[kind].element;
+      tab.id = `lab-${kind}`;
+      tab.setAttribute("role", "tabpanel");
+      tab.setAttribute("aria-labelledby", `lab-head-${kind}`);
+      body.append(tab);
+    }
+    list.addEventListener("keydown", (event) => this.walk(event));
+    this.opener.onclick = () => this.toggle();
+    button("lab-close").onclick = () => this.toggle();
+    this.drawer.addEventListener("keydown", (event) => { if (event.key === "Escape") this.toggle(); });
+    this.select("chart");
+  }
+
+  get open(): boolean { return !this.drawer.hidden; }
+
+  toggle(): void {
+    const open = !this.open;
+    this.drawer.hidden = !open;
+    document.body.classList.toggle("lab-open", open);
+    this.opener.setAttribute("aria-expanded", String(open));
+    this.events.toggled(open);
+    if (open) this.tabs[this.active].sceneChanged();
+    (open ? this.heads.get(this.active) : this.opener)?.focus({ preventScroll: true });
+  }
+
+  setMethods(methods: string[]): void {
+    for (const tab of Object.values(this.tabs)) tab.setMethods(methods);
+  }
+
+  /// The role is known, or another one.
+  roleChanged(): void {
+    for (const kind of Object.keys(titles) as Kind[]) this.changed(kind);
+  }
+
+  sceneChanged(): void {
+    this.jobs.sceneChanged();
+    for (const tab of Object.values(this.tabs)) tab.sceneChanged();
+  }
+
+  link(open: boolean): void {
+    if (this.connected && !open) this.jobs.lost();
+    this.connected = open;
+  }
+
+  progress(params: Record<string, unknown>): void { this.jobs.progress(params as unknown as Progress); }
+  arrived(params: Record<string, unknown>): void { this.jobs.arrived(params as unknown as Arrival); }
+
+  private head(kind: Kind): HTMLButtonElement {
+    const head = make("button", "", titles[kind], make("i"));
+    head.type = "button";
+    head.id = `lab-head-${kind}`;
+    head.setAttribute("role", "tab");
+    head.setAttribute("aria-controls", `lab-${kind}`);
+    head.onclick = () => this.select(kind);
+    this.heads.set(kind, head);
+    return head;
+  }
+
+  private select(kind: Kind): void {
+    this.active = kind;
+    for (const [other, head] of this.heads) {
+      head.setAttribute("aria-selected", String(other === kind));
+      head.tabIndex = other === kind ? 0 : -1;
+      this.tabs[other].element.hidden = other !== kind;
+    }
+    this.tabs[kind].update();
+    this.tabs[kind].sceneChanged();
+  }
+
+  private walk(event: KeyboardEvent): void {
+    const kinds = [...this.heads.keys()];
+    const at = kinds.indexOf(this.active);
+    const to = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: kinds.length - 1 }[event.key];
+    if (to === undefined) return;
+    event.preventDefault();
+    this.select(kinds[(to + kinds.length) % kinds.length] as Kind);
+    this.heads.get(this.active)?.focus();
+  }
+
+  private changed(kind: Kind): void {
+    const { state } = this.jobs.of(kind);
+    const head = this.heads.get(kind);
+    if (head) head.dataset.state = state;
+    this.tabs[kind].update();
+  }
+
+  // Says what was changed, and offers the way back.
+  private async apply(patch: Patch, what: string): Promise<void> {
+    const before = this.events.document();
+    if (!before || !this.events.mayEdit()) return;
+    const undo = reverseOf(before, patch);
+    const was = formerly(before, patch);
+    if (!await this.send(patch)) return;
+    notice("info", {
+      title: `Applied: ${what}`, lines: was === "" ? [] : [`Before: ${was}.`],
+      action: { label: "Undo", run: () => void this.send(undo) },
+    });
+  }
+
+  private async send(patch: Patch): Promise<boolean> {
+    try {
+      const { applies } = await this.events.request<{ applies?: string }>("scene.patch", { patch });
+      if (applies) this.events.applied(applies);
+      return true;
+    } catch (error) {
+      noticeError("Not applied", error as Error);
+      return false;
+    }
+  }
+}

@@ -1,0 +1,75 @@
+// Which part of the window is free for the picture, and the bottom sheet that the panel becomes on a narrow window.
+import { button, element } from "./dom";
+import type { FreeArea } from "../view/framing";
+
+const narrow = matchMedia("(max-width: 760px)");
+const low = matchMedia("(max-height: 560px)");  // no room for figures below each other, beside a picture
+const leastSide = 120;  // [px] of a picture worth the name
+
+/// The largest rectangle of a window that none of these covers.
+function largestFree(covered: DOMRect[], width: number, height: number): FreeArea {
+  const cuts = (ends: number[], most: number) => [...new Set([0, most, ...ends.filter((end) => end > 0 && end < most)])].sort((a, b) => a - b);
+  const across = cuts(covered.flatMap((box) => [box.left, box.right]), width);
+  const down = cuts(covered.flatMap((box) => [box.top, box.bottom]), height);
+  let best: FreeArea = { left: 0, top: 0, width: 0, height: 0 };
+  for (const left of across) for (const right of across) for (const top of down) for (const bottom of down) {
+    if (Math.min(right - left, bottom - top) < leastSide || (right - left) * (bottom - top) <= best.width * best.height) continue;
+    const meets = (box: DOMRect): boolean => box.left < right && box.right > left && box.top < bottom && box.bottom > top;
+    if (!covered.some(meets)) best = { left, top, width: right - left, height: bottom - top };
+  }
+  return best.width > 0 ? best : { left: 0, top: 0, width, height };
+}
+
+export class Layout {
+  private readonly handle = button("sheet-handle");
+  private readonly hud = element("hud", HTMLDetailsElement);
+  private readonly lab = element("lab", HTMLElement);
+  private foldedForLab = false;
+
+  constructor(private readonly changed: () => void) {
+    this.foldFigures();
+    this.handle.onclick = () => this.showSheet(!document.body.classList.contains("sheet-open"));
+    narrow.addEventListener("change", () => {
+      this.foldFigures();
+      this.showSheet(false);
+    });
+    low.addEventListener("change", () => this.foldFigures());
+    this.hud.addEventListener("toggle", () => this.changed());
+    addEventListener("resize", () => this.changed());
+    element("transport", HTMLElement).addEventListener("transitionend", () => this.changed());  // it rides on the sheet
+  }
+
+  toggleInterface(): void {
+    document.body.classList.toggle("bare");
+    this.changed();
+  }
+
+  /// The lab's drawer came or went: beside it there is room for the figures' headline only.
+  labToggled(open: boolean): void {
+    if (open) this.foldedForLab = this.hud.open;
+    if (this.foldedForLab) this.hud.open = !open;
+    if (open && narrow.matches) this.showSheet(false);
+    this.changed();
+  }
+
+  freeArea(): FreeArea {
+    if (document.body.classList.contains("bare")) return { left: 0, top: 0, width: innerWidth, height: innerHeight };
+    return largestFree(this.covered(), innerWidth, innerHeight);
+  }
+
+  private covered(): DOMRect[] {
+    return [...document.querySelectorAll<HTMLElement>(".card")].flatMap((card) => {
+      if (card.hidden || getComputedStyle(card).visibility === "hidden") return [];
+      // The lab slides in: it counts where it comes to rest.
+      return [card === this.lab ? new DOMRect(card.offsetLeft, card.offsetTop, card.offsetWidth, card.offsetHeight) : card.getBoundingClientRect()];
+    });
+  }
+
+  private foldFigures(): void { this.hud.open = !narrow.matches && !low.matches; }
+
+  private showSheet(open: boolean): void {
+    document.body.classList.toggle("sheet-open", open);
+    this.handle.setAttribute("aria-expanded", String(open));
+    this.changed();
+  }
+}

@@ -1,0 +1,106 @@
+// Notices: what went wrong or changed, in words, with the remedy as a button where there is one.
+import { element } from "./dom";
+import { RpcError } from "../link/rpc";
+import type { Patch } from "../link/scene_types";
+
+export type Level = "info" | "warning" | "error";
+export interface Action { label: string; run(): void }
+
+const narrow = matchMedia("(max-width: 760px)");  // room for one
+const shownAtOnce = (): number => (narrow.matches ? 1 : 3);
+const lifetime: Record<Level, number> = { info: 5000, warning: 9000, error: 14000 };  // [ms]
+
+interface Content { title: string; lines?: string[]; action?: Action | undefined; stays?: boolean }
+
+export function notice(level: Level, content: Content): void {
+  const holder = element("notices", HTMLElement);
+  const box = document.createElement("div");
+  box.className = `notice ${level}`;
+  box.setAttribute("role", level === "error" ? "alert" : "status");
+  const title = document.createElement("strong");
+  title.textContent = capitalised(content.title);
+  box.append(title);
+  for (const line of content.lines ?? []) {
+    const paragraph = document.createElement("p");
+    paragraph.textContent = line;
+    box.append(paragraph);
+  }
+  const close = document.createElement("button");
+  close.className = "close";
+  close.setAttribute("aria-label", "Dismiss");
+  close.textContent = "×";
+  close.onclick = () => box.remove();
+  if (content.action) box.append(actionButton(content.action, box));
+  box.append(close);
+  // The same trouble again replaces its notice instead of piling up.
+  for (const old of [...holder.children]) if (old.querySelector("strong")?.textContent === title.textContent) old.remove();
+  holder.append(box);
+  box.dataset.stays = String(content.stays === true);
+  while (holder.children.length > shownAtOnce()) (holder.querySelector('[data-stays="false"]') ?? holder.firstElementChild)?.remove();
+  if (!content.stays) setTimeout(() => box.remove(), lifetime[level]);
+}
+
+const capitalised = (text: string): string => text.replace(/^[a-z](?=[a-z]{2})/, (letter) => letter.toUpperCase());  // but not dt
+const sentence = (text: string): string => capitalised(text).replace(/\.?$/, ".");
+
+function actionButton(action: Action, box: HTMLElement): HTMLButtonElement {
+  const run = document.createElement("button");
+  run.className = "action";
+  run.textContent = action.label;
+  run.onclick = () => {
+    box.remove();
+    action.run();
+  };
+  return run;
+}
+
+/// An error as a notice: where, what was found, what is allowed.
+export function noticeError(title: string, error: Error): void {
+  if (!(error instanceof RpcError)) {
+    notice("error", { title, lines: [error.message] });
+    return;
+  }
+  const { path, found, allowed } = error.data;
+  const lines = path ? [`at ${path}`] : [error.message];
+  if (found !== undefined) lines.push(`found: ${asText(found)}`);
+  if (allowed !== undefined) lines.push(`allowed: ${asText(allowed)}`);
+  notice("error", { title, lines });
+}
+
+const asText = (value: unknown): string => (typeof value === "string" ? value : JSON.stringify(value));
+
+/// `sim.diverged`.
+export interface Diverged { reason: string; remedy?: { text: string; patch?: Patch } }
+
+const blewUp = "The simulation blew up";
+
+/// It goes on, whoever has seen to that: the notice has done its duty.
+export function clearDiverged(): void {
+  for (const box of element("notices", HTMLElement).querySelectorAll(".notice")) {
+    if (box.querySelector("strong")?.textContent === blewUp) box.remove();
+  }
+}
+
+/// Says why the simulation blew up, with its remedy as a button.
+export function showDiverged({ reason, remedy }: Diverged, apply: (patch: Patch) => Promise<void>): void {
+  const patch = remedy?.patch;
+  const run = (fix: Patch): void => void apply(fix).catch((error: Error) => noticeError("The remedy was refused", error));
+  notice("error", {
+    title: blewUp, lines: [sentence(reason), ...(remedy ? [sentence(`Remedy: ${remedy.text}`)] : [])], stays: true,
+    action: patch ? { label: "Apply the remedy", run: () => run(patch) } : undefined,
+  });
+}
+
+const depths: Record<string, string> = {
+  none: "nothing to change", uniform: "applied live", kernel: "applied live, kernel rebuilt", cloth: "cloth rebuilt, time reset",
+};
+let appliedTimer = 0;
+
+/// How deep an edit cut, in a line at the foot of the panel.
+export function showApplied(depth: string): void {
+  const place = element("applied", HTMLElement);
+  place.textContent = depths[depth] ?? `applied (${depth})`;
+  place.classList.add("shown");
+  clearTimeout(appliedTimer);
+  appliedTimer = window.setTimeout(() => place.classList.remove("shown"), 1600);
+}

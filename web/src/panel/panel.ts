@@ -1,0 +1,188 @@
+// The panel: generated from the scene document, kept in step with it, and turning what is moved into patches.
+import GUI, { type Controller } from "lil-gui";
+import { operationsFor, readField, sectionsOf, timeStep, type Field, type Note, type Section, type SolverFacts } from "./fields";
+import { Gauge, type Stability } from "./gauge";
+import type { Operation, SceneDocument } from "../link/scene_types";
+import { SliderController } from "./slider";
+
+export interface PanelEvents {
+  edit(operations: Operation[]): void;
+  busy(path: string): boolean;
+  loadPreset(name: string): void;
+}
+
+interface Control { field: Field; controller: Controller; held: boolean }
+
+export class Panel {
+  private gui: GUI | null = null;
+  private shape = "";
+  private controls: Control[] = [];
+  private values: Record<string, unknown> = {};
+  private presets: string[] = [];
+  private methods: string[] = [];
+  private stability: Stability | null = null;
+  private facts: SolverFacts = {};
+  private notes: (() => void)[] = [];
+  private readonly gauge = new Gauge((dt) => this.events.edit([{ op: "replace", path: timeStep, value: dt }]));
+  private document: SceneDocument | null = null;
+  private readonly folded = new Map<string, boolean>();
+  private preset: Controller | null = null;
+
+  constructor(private readonly container: HTMLElement, private readonly events: PanelEvents) {}
+
+  setPresets(presets: string[]): void {
+    this.presets = presets;
+    this.rebuildIfNeeded();
+  }
+
+  setMethods(methods: string[]): void {
+    this.methods = methods;
+    this.rebuildIfNeeded();
+  }
+
+  /// The largest stable time step, as the server last computed it.
+  showStability(stability: Stability): void {
+    this.stability = stability;
+    this.moveGauge();
+  }
+
+  /// What the server makes of the solver's settings.
+  showSolver(facts: SolverFacts): void {
+    this.facts = facts;
+    this.accompany();
+  }
+
+  /// Moves the controls to the document, except those the user is ahead with.
+  show(document: SceneDocument): void {
+    this.document = document;
+    this.rebuildIfNeeded();
+    for (const { field, controller, held } of this.controls) {
+      if (held || field.paths.some((path) => this.events.busy(path))) continue;
+      const value = readField(field, document);
+      if (this.values[field.key] === value) continue;
+      this.values[field.key] = value;
+      controller.updateDisplay();
+    }
+    this.values.preset = this.presets.includes(document.name) ? document.name : "";
+    this.preset?.updateDisplay();
+    this.accompany();
+  }
+
+  /// After a rejected edit: back to what the server has.
+  snapBack(): void {
+    for (const control of this.controls) control.held = false;
+    if (this.document) this.show(this.document);
+  }
+
+  private rebuildIfNeeded(): void {
+    if (!this.document) return;
+    const sections = sectionsOf(this.document, this.methods);
+    const shape = JSON.stringify([sections, this.presets], (key, value: unknown) => (key === "open" ? undefined : value));
+    if (shape === this.shape) return;
+    this.shape = shape;
+    const scroll = this.container.scrollTop;
+    const focused = (document.activeElement as HTMLElement | null)?.getAttribute("aria-label");
+    this.gui?.destroy();
+    this.controls = [];
+    this.notes = [];
+    this.values = { preset: this.presets.includes(this.document.name) ? this.document.name : "" };
+    this.gui = new GUI({ container: this.container, title: "Scene", injectStyles: false });
+    this.addPresets(this.gui);
+    for (const section of sections) this.addSection(this.gui, section);
+    this.accompany();
+    this.container.scrollTop = scroll;
+    if (focused) this.container.querySelector<HTMLElement>(`[aria-label="${CSS.escape(focused)}"]`)?.focus();
+  }
+
+  private addPresets(gui: GUI): void {
+    this.preset = null;
+    if (this.presets.length === 0) return;
+    const choices = this.values.preset === "" ? ["", ...this.presets] : this.presets;
+    this.preset = gui.add(this.values, "preset", choices).name("preset");
+    this.preset.onChange((name: string) => name && this.events.loadPreset(name));
+  }
+
+  private addSection(parent: GUI, section: Section): void {
+    const folder = parent.addFolder(section.title);
+    if (!(this.folded.get(section.key) ?? section.open)) folder.close();
+    folder.onOpenClose((changed) => {
+      if (changed === folder) this.folded.set(section.key, !folder._closed);
+    });
+    for (const field of section.fields) this.addField(folder, field);
+    for (const inner of section.sections) this.addSection(folder, inner);
+  }
+
+  private addField(folder: GUI, field: Field): void {
+    this.values[field.key] = readField(field, this.document as SceneDocument);
+    const controller = this.controllerFor(folder, field);
+    const control: Control = { field, controller, held: false };
+    this.controls.push(control);
+    if (field.hint) controller.domElement.title = field.hint;
+    if (field.note) this.addNote(folder, field.note);
+    if (field.key === timeStep) folder.$children.append(this.gauge.element);
+    controller.onChange((value: unknown) => {
+      control.held = field.onRelease === true;
+      if (!field.onRelease) this.events.edit(operationsFor(field, value));
+      this.accompany();
+    });
+    controller.onFinishChange((value: unknown) => {
+      if (field.onRelease && control.held) this.events.edit(operationsFor(field, value));
+      control.held = false;
+    });
+  }
+
+  private controllerFor(folder: GUI, field: Field): Controller {
+    switch (field.kind) {
+      case "number": return new SliderController(folder, this.values, field.key, field.label, field.scale);
+      case "color": return folder.addColor(this.values, field.key).name(field.label);
+      case "toggle": return folder.add(this.values, field.key).name(field.label);
+      case "choice": return this.choice(folder, field);
+    }
+  }
+
+  private choice(folder: GUI, field: Field & { kind: "choice" }): Controller {
+    const choices = Object.fromEntries(field.choices.map((value) => [field.names?.[value] ?? value, value]));
+    const controller = folder.add(this.values, field.key, choices).name(field.label);
+    controller.domElement.querySelector("select")?.setAttribute("aria-label", field.label);
+    return controller;
+  }
+
+  /// A line below a control that says what its present value means.
+  private addNote(folder: GUI, says: NonNullable<Field["note"]>): void {
+    const line = document.createElement("p");
+    line.className = "note";
+    folder.$children.append(line);
+    let shown = "";
+    this.notes.push(() => {
+      const note = says(this.values, this.facts);
+      const now = JSON.stringify(note);
+      if (now === shown) return;
+      shown = now;
+      line.hidden = note.text === "";
+      line.replaceChildren(note.text, ...this.offer(note));
+    });
+  }
+
+  private offer({ offer }: Note): HTMLElement[] {
+    if (!offer) return [];
+    const button = document.createElement("button");
+    button.type = "button";
+    button.className = "offer";
+    button.textContent = offer.text;
+    button.onclick = () => this.events.edit(offer.operations);
+    return [button];
+  }
+
+  /// What stands beside the controls follows them.
+  private accompany(): void {
+    for (const update of this.notes) update();
+    this.moveGauge();
+  }
+
+  private moveGauge(): void {
+    if (!this.stability) return;
+    this.gauge.show(Number(this.values[timeStep]), this.stability);
+    const control = this.controls.find(({ field }) => field.key === timeStep);
+    if (control?.controller instanceof SliderController) control.controller.mark(this.stability.dt_limit);
+  }
+}

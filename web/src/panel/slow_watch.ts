@@ -1,0 +1,75 @@
+// Says so, for as long as it lasts, when the scene is too much for the server: time that creeps, or no picture at all.
+// The way back is beside it: what this page changed last.
+import { button, element } from "./dom";
+import type { Status } from "./hud";
+import type { Operation } from "../link/scene_types";
+
+const creeping = 0.1;        // of the speed asked for: slower than that nobody sees a motion
+const creepingFor = 3000;    // [ms] before it is said: a kernel that is compiled takes a while too
+const noPictureFor = 2000;   // [ms]
+const lookEvery = 250;       // [ms]
+
+export class SlowWatch {
+  dt = 0;  ///< of the scene [s]
+  private status: Status = {};
+  private pictureAt = performance.now();
+  private fastAt = performance.now();
+  private open = false;
+  private wayBack: Operation[] = [];
+  private readonly box = element("slow", HTMLElement);
+  private readonly text = element("slow-text", HTMLElement);
+  private readonly undo = button("slow-undo");
+
+  constructor(private readonly edit: (operations: Operation[]) => void) {
+    this.undo.onclick = () => {
+      const back = this.wayBack;
+      this.wayBack = [];
+      this.edit(back);
+      this.look();
+    };
+    document.addEventListener("visibilitychange", () => this.startAgain());  // a hidden page takes no pictures
+    setInterval(() => this.look(), lookEvery);
+  }
+
+  link(open: boolean): void {
+    this.open = open;
+    this.startAgain();
+  }
+
+  picture(): void { this.pictureAt = performance.now(); }
+
+  /// What would undo the last change that this page made.
+  changed(wayBack: Operation[]): void { this.wayBack = wayBack; }
+
+  told(status: Status): void {
+    if (status.playing !== this.status.playing) this.startAgain();
+    this.status = status;
+    if ((status.real_time_factor ?? 1) >= creeping * (this.status.speed ?? 1)) this.fastAt = performance.now();
+  }
+
+  private startAgain(): void { this.pictureAt = this.fastAt = performance.now(); }
+
+  private look(): void {
+    const said = this.say();
+    document.body.classList.toggle("slow", said !== "");
+    this.box.hidden = said === "";
+    if (this.text.textContent !== said) this.text.textContent = said;
+    this.undo.hidden = this.wayBack.length === 0;
+  }
+
+  private say(): string {
+    const { playing, asleep, diverged, real_time_factor: factor = 0 } = this.status;
+    if (!this.open || document.hidden || playing !== true || asleep || diverged) return "";
+    const now = performance.now();
+    const still = now - this.pictureAt;
+    if (still > noPictureFor) return `No new picture for ${Math.floor(still / 1000)} s: this scene is too much for the server${this.aStep(factor)}. Make it smaller, or undo.`;
+    if (now - this.fastAt > creepingFor) return `Only ×${Number(factor.toPrecision(2))} of real time: this scene is too much for the server${this.aStep(factor)}. Make it smaller, or undo.`;
+    return "";
+  }
+
+  // By what the server says of the last seconds.
+  private aStep(factor: number): string {
+    const seconds = factor > 0 ? this.dt / factor : 0;
+    return seconds >= 0.01 ? `, a step takes it ${Number(seconds.toPrecision(2))} s` : "";
+  }
+}

@@ -1,0 +1,69 @@
+// How far a scene reaches: what is known of it before the first frame, and what frames show besides.
+import { Box3, Sphere, Vector3 } from "three";
+import { sweep } from "./motion";
+import { heldVertices, restPositions } from "./pins";
+import { q16Words, type Frame } from "../link/protocol";
+import type { Cloth, SceneDocument } from "../link/scene_types";
+
+const mostLooked = 400;  // points of a cloth: more say nothing new of its outline
+const swung = 0.6;       // of the way that a falling cloth goes beyond its pins, air and springs take the rest
+
+function every<T>(items: T[], most: number): T[] {
+  const stride = Math.ceil(items.length / most);
+  return items.filter((_, i) => i % stride === 0);
+}
+
+/// Where a cloth starts, where its pins go, and where what hangs on them comes to.
+function clothPoints(cloth: Cloth, falls: boolean): Vector3[] {
+  const rest = restPositions(cloth);
+  const held = [...heldVertices(cloth)].filter(([vertex]) => rest[vertex]);
+  const swept = held.flatMap(([vertex, motion]) => sweep((rest[vertex] as Vector3).toArray(), motion));
+  const points = [...rest, ...swept];
+  if (!falls || held.length === 0) return points;
+  const pins = every(held, 64).map(([vertex]) => rest[vertex] as Vector3);
+  for (const point of every(rest, mostLooked)) {
+    const pin = pins.reduce((near, other) => (other.distanceToSquared(point) < near.distanceToSquared(point) ? other : near));
+    const length = pin.distanceTo(point);
+    points.push(new Vector3(pin.x, pin.y - length, pin.z));
+    const beyond = new Vector3(pin.x - point.x, 0, pin.z - point.z).multiplyScalar(swung);
+    points.push(beyond.add(pin).setY(pin.y - Math.sqrt(Math.max(0, length * length - beyond.lengthSq()))));
+  }
+  return points;
+}
+
+const corners = (box: Box3): Vector3[] => Array.from({ length: 8 }, (_, i) =>
+  new Vector3((i & 1 ? box.max : box.min).x, (i & 2 ? box.max : box.min).y, (i & 4 ? box.max : box.min).z));
+
+/// A ball's outline, nearly: the corners of a box around it stick out of it.
+function ballPoints(center: Vector3, radius: number): Vector3[] {
+  const box = corners(new Sphere(center, radius).getBoundingBox(new Box3()));
+  return box.map((corner) => corner.sub(center).multiplyScalar(0.75).add(center));
+}
+
+/// Points that a scene is going to use [m]: known before the first frame, and the same whenever F is pressed.
+export function scenePoints(document: SceneDocument): Vector3[] {
+  const falls = document.gravity[1] < 0;
+  const points = document.cloths.flatMap((cloth) => clothPoints(cloth, falls));
+  const floors = document.colliders.flatMap(({ plane }) => (plane && plane.normal[1] > 0.7 ? [plane.point[1]] : []));
+  const floor = Math.max(-Infinity, ...floors.filter((height) => points.some(({ y }) => y >= height)));
+  for (const point of points) point.y = Math.max(point.y, floor);
+  for (const { sphere, motion } of document.colliders) {
+    if (!sphere) continue;
+    for (const center of sweep(sphere.center, motion)) points.push(...ballPoints(center, sphere.radius));
+  }
+  // What nothing holds falls to the floor.
+  const loose = document.cloths.filter(({ pins }) => pins.length === 0);
+  if (falls && Number.isFinite(floor)) points.push(...loose.flatMap((cloth) => every(restPositions(cloth), mostLooked).map((point) => point.setY(floor))));
+  return points;
+}
+
+/// Some of a frame's vertices [m].
+export function framePoints({ header, buffer }: Frame): Vector3[] {
+  const words = q16Words({ header, buffer });
+  const stride = Math.ceil(header.vertexCount / mostLooked);
+  const [minimum, extent] = [header.boxMinimum, header.boxExtent];
+  const points: Vector3[] = [];
+  const at = (vertex: number, axis: 0 | 1 | 2): number => minimum[axis] + (extent[axis] * (words[4 * vertex + axis] ?? 0)) / 65535;
+  for (let i = 0; i < header.vertexCount; i += stride) points.push(new Vector3(at(i, 0), at(i, 1), at(i, 2)));
+  return points;
+}

@@ -1,0 +1,208 @@
+// The renderer, light, camera and the views on it. Draws only when something changed.
+import {
+  Box3, Color, DirectionalLight, HemisphereLight, PCFShadowMap, PerspectiveCamera, Scene, ShaderChunk, Vector3, Vector4, WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { ClothView } from "./cloth_view";
+import { ColliderView } from "./collider_view";
+import { CameraKeeper } from "./camera_keeper";
+import type { FreeArea } from "./framing";
+import { GroundShadow } from "./ground_shadow";
+import type { ShownFrame, Topology } from "../link/protocol";
+import { Quality } from "./quality";
+import { framePoints, scenePoints } from "./reach";
+import type { SceneDocument } from "../link/scene_types";
+import type { Graphics } from "./webgl";
+
+const stillAfter = 300;  // [ms] without a change: a picture at rest is worth its full resolution
+const explodedAt = 12;   // times the scene's radius
+const lightFrom = new Vector3(0.55, 1, 0.62).normalize();
+
+// Five filtered reads of the shadow map a pixel are most of what a software renderer spends on the cloth: one will do.
+function readShadowsOnce(): void {
+  const fiveReads = /shadow = \(\s*texture\( shadowMap, vec3\( shadowCoord\.xy \+ vogelDiskSample[\s\S]*?\) \* 0\.2;/;
+  ShaderChunk.shadowmap_pars_fragment = ShaderChunk.shadowmap_pars_fragment.replace(fiveReads, "shadow = texture( shadowMap, shadowCoord.xyz );");
+}
+
+export class Stage {
+  readonly controls: OrbitControls;
+  readonly cloth: ClothView;
+  onLost = (): void => undefined;  ///< the WebGL context is gone; three.js restores what it can when it comes back
+  private readonly canvas: HTMLCanvasElement;
+  private readonly renderer: WebGLRenderer;
+  private readonly scene = new Scene();
+  private readonly camera = new PerspectiveCamera(32, 1, 0.05, 100);
+  private readonly light = new DirectionalLight(0xfff4e6, 2.25);
+  private readonly sky = new HemisphereLight(0xf2f6ff, 0x8c8378, 1.25);
+  private readonly colliders: ColliderView;
+  private readonly groundShadow: GroundShadow;
+  private readonly quality: Quality;
+  private readonly pixelRatio = { value: 1 };
+  private readonly ground = {
+    groundColor: { value: new Color() }, shadowColor: { value: new Color() }, lineColor: { value: new Color() },
+  };
+  private area: FreeArea = { left: 0, top: 0, width: 1, height: 1 };
+  private dirty = true;
+  private readonly keeper = new CameraKeeper(this.camera);
+  private document: SceneDocument | null = null;
+  private latest: ShownFrame | null = null;  // on screen
+  private lastDrawn = 0;
+  private lastLook = 0;
+  private scale = 1;      // resolution of the picture on screen: one at rest is sharp, whatever the quality level
+  private readonly stillScale: number;
+  private radius = 1;  // of the scene [m]
+
+  constructor({ canvas, context, software }: Graphics) {
+    this.canvas = canvas;
+    if (software) readShadowsOnce();
+    this.stillScale = software ? 1.5 : 1;  // more pixels smooth the edges that nothing else smooths there
+    this.renderer = new WebGLRenderer({ canvas, context, alpha: true });
+    this.renderer.setClearColor(0, 0);
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = PCFShadowMap;
+    const stage = {
+      lightDirection: { value: lightFrom },
+      occluders: { value: Array.from({ length: 4 }, () => new Vector4()) },
+    };
+    this.cloth = new ClothView(stage, this.pixelRatio);
+    this.groundShadow = new GroundShadow(this.renderer, this.cloth.caster);
+    this.colliders = new ColliderView(stage, this.ground, this.groundShadow.uniforms);
+    this.groundShadow.casters.add(this.colliders.caster);
+    this.light.castShadow = true;
+    this.light.shadow.radius = 3;
+    this.scene.add(this.light, this.light.target, this.sky, this.colliders.object, this.cloth.object);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = !matchMedia("(prefers-reduced-motion: reduce)").matches;
+    this.controls.dampingFactor = 0.12;
+    this.controls.maxPolarAngle = Math.PI * 0.56;
+    this.controls.addEventListener("change", () => this.invalidate());
+    this.controls.addEventListener("start", () => { this.keeper.fitted = false; });
+    canvas.addEventListener("webglcontextlost", () => this.onLost());
+    canvas.addEventListener("webglcontextrestored", () => this.invalidate());
+    this.quality = new Quality(() => this.resize(this.area), software ? 1 : 0);
+    this.compileAhead();
+  }
+
+  invalidate(): void { this.dirty = true; }
+
+  setDocument(document: SceneDocument, newScene: boolean): void {
+    const box = new Box3().setFromPoints(scenePoints(document));
+    const fresh = newScene || !this.document;
+    this.document = document;
+    const radius = this.radius = box.getSize(new Vector3()).length() / 2;
+    this.cloth.setDocument(document);
+    this.colliders.setDocument(document, radius);
+    this.colliders.update([], this.cloth.box.isEmpty() ? 0 : this.cloth.box.min.y);
+    this.aimLight(box.getCenter(new Vector3()), radius);
+    if (fresh) this.fit(false);
+    this.invalidate();
+  }
+
+  setTopology(topology: Topology): void {
+    this.cloth.setTopology(topology);
+    this.latest = null;
+    if (this.keeper.fitted) this.fit(false);  // what was seen of another mesh need not be seen any more
+  }
+
+  show(frame: ShownFrame): boolean {
+    // A cloth that has blown up would fill the window many times over: its last sane shape stays.
+    if (Math.max(...frame.header.boxExtent) > explodedAt * this.radius) return true;
+    if (!this.cloth.show(frame)) return false;
+    const first = this.latest === null;
+    this.latest = frame;
+    this.keeper.see(framePoints(frame));
+    if (first && this.keeper.fitted) this.orbit(this.keeper.jump());
+    this.colliders.update(frame.moved, this.cloth.box.min.y);
+    this.invalidate();
+    return true;
+  }
+
+  /// Takes the theme's colours from the style sheet.
+  setTheme(): void {
+    const style = getComputedStyle(document.documentElement);
+    for (const [uniform, name] of [["groundColor", "--ground"], ["shadowColor", "--ground-shadow"], ["lineColor", "--ground-line"]] as const) {
+      this.ground[uniform].value.set(style.getPropertyValue(name).trim()).convertLinearToSRGB();  // the shader writes it as it is
+    }
+    this.sky.intensity = Number(style.getPropertyValue("--sky"));
+    this.invalidate();
+  }
+
+  /// All of the scene into view; `seen`: what is on screen now too, wherever it has got to.
+  fit(seen = true): void {
+    if (!this.document) return;
+    const damped = this.controls.enableDamping;
+    this.controls.enableDamping = false;  // an update without damping ends the swing of the last drag
+    this.controls.update();
+    this.controls.enableDamping = damped;
+    this.orbit(this.keeper.fit(scenePoints(this.document), seen && this.latest ? framePoints(this.latest) : []));
+  }
+
+  private orbit(target: Vector3 | null): void {
+    if (!target) return;
+    this.controls.target.copy(target);
+    this.controls.minDistance = this.camera.near * 4;
+    this.controls.maxDistance = this.camera.far / 6;
+    this.controls.update();
+    this.invalidate();
+  }
+
+  resize(area: FreeArea): void {
+    this.area = area;
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    const { scale, shadow } = this.quality.level;
+    this.renderer.setSize(width, height, false);
+    this.setScale(scale);
+    if (this.light.shadow.mapSize.x !== shadow) this.light.shadow.mapSize.setScalar(shadow);
+    this.keeper.resize(area, width, height);
+    if (this.keeper.fitted) this.orbit(this.keeper.jump());
+    this.invalidate();
+  }
+
+  /// Called for every animation frame; true if it drew.
+  draw(): boolean {
+    if (this.cloth.vertices === 0) return false;  // an empty stage is not worth the time before the first frame
+    const now = performance.now();
+    this.orbit(this.keeper.follow(Math.min(now - this.lastLook, 100) / 1000));
+    this.lastLook = now;
+    this.controls.update();
+    const sinceLast = now - this.lastDrawn;
+    if (!this.dirty && (this.scale === this.stillScale || sinceLast < stillAfter)) return false;
+    const scale = this.dirty ? this.quality.level.scale : this.stillScale;
+    if (scale !== this.scale) this.setScale(scale);
+    if (this.dirty) this.quality.sample(sinceLast);
+    this.dirty = false;
+    this.lastDrawn = now;
+    this.groundShadow.draw();
+    this.renderer.render(this.scene, this.camera);
+    return true;
+  }
+
+  // The driver compiles while the connection is made: the first frame need not wait for it.
+  private compileAhead(): void {
+    const samples = [this.cloth.samples(), this.colliders.samples()];
+    const shown = samples.flatMap((sample) => sample.shown);
+    this.scene.add(...shown);
+    this.renderer.compile(this.scene, this.camera);
+    this.scene.remove(...shown);
+    this.groundShadow.compile(samples.flatMap((sample) => sample.cast));
+  }
+
+  // Also the size of the drawing buffer: three.js keeps the size in CSS pixels.
+  private setScale(scale: number): void {
+    this.scale = scale;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * scale);
+    this.pixelRatio.value = this.renderer.getPixelRatio();
+  }
+
+  private aimLight(center: Vector3, radius: number): void {
+    const reach = radius * 1.15;
+    this.groundShadow.aim(center, lightFrom, reach);
+    this.light.target.position.copy(center);
+    this.light.position.copy(center).addScaledVector(lightFrom, reach * 3);
+    const { shadow } = this.light;
+    Object.assign(shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: reach, far: reach * 6 });
+    shadow.camera.updateProjectionMatrix();
+    shadow.normalBias = 0.012 * radius;
+    shadow.bias = -0.0006;
+  }
+}
