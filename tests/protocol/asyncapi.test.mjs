@@ -5,7 +5,7 @@ import { after, afterEach, before, test } from "node:test";
 import { document, messages, operations } from "./asyncapi.mjs";
 import { Audit } from "./audit.mjs";
 import { candidates, resolved } from "./candidates.mjs";
-import { Client, Server, sleep, withTimeout } from "./harness.mjs";
+import { Client, Server, withTimeout } from "./harness.mjs";
 import { strip as stripOf } from "./strip.mjs";
 
 const strip = stripOf(5);

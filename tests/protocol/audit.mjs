@@ -48,7 +48,7 @@ export class Audit {
     const about = this.of(client);
     const message = read(text);
     const asked = operation(message?.method);
-    if (!asked || asked.action !== "receive") return;
+    if (asked?.action !== "receive") return;
     const complaints = payloadComplaints(asked.name, message);
     const request = { asked, message, complaints };
     if (message.id !== undefined) about.pending.set(message.id, request);

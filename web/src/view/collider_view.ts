@@ -1,6 +1,6 @@
 // Spheres and planes of the scene, and the studio floor where a scene has none. Where they are now, the session says.
 import {
-  CircleGeometry, Color, DoubleSide, Group, Mesh, MeshLambertMaterial, ShaderMaterial, SphereGeometry, Vector3, type IUniform, type Object3D,
+  CircleGeometry, type Color, DoubleSide, Group, Mesh, MeshLambertMaterial, ShaderMaterial, SphereGeometry, Vector3, type IUniform, type Object3D,
 } from "three";
 import { casterMaterial, type StageUniforms } from "./fabric_material";
 import type { Collider, MovedCollider, Plane, SceneDocument } from "../link/scene_types";

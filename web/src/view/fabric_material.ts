@@ -1,5 +1,5 @@
 // The cloth's materials: three.js' Lambert shading with vertices decoded from q16 words, woven colour and sheen.
-import { Color, DoubleSide, MeshLambertMaterial, ShaderMaterial, Vector2, Vector3, type IUniform, type Vector4 } from "three";
+import { Color, DoubleSide, MeshLambertMaterial, ShaderMaterial, Vector2, type Vector3, type IUniform, type Vector4 } from "three";
 import {
   casterFragment, decodeParameters, fabricFragmentParameters, fabricShadowNormal, fabricSheen, fabricVertexParameters,
 } from "./shaders";

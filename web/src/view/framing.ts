@@ -1,5 +1,5 @@
 // Where the camera stands so that all it is to show lies in the part of the window that no card covers.
-import { MathUtils, PerspectiveCamera, Vector3 } from "three";
+import { MathUtils, type PerspectiveCamera, Vector3 } from "three";
 
 /// The part of the window that cards leave free [CSS pixels].
 export interface FreeArea { left: number; top: number; width: number; height: number }
