@@ -13,8 +13,9 @@ import { cpus } from "node:os";
 import { Client, Server, sleep } from "../protocol/harness.mjs";
 import { heavyPatches } from "../protocol/heavy.mjs";
 
-const token = "operator-of-this", viewToken = "viewer-of-this";
-const patience = 60_000;  // [ms] for a heavy patch
+const token = "operator-of-this",
+  viewToken = "viewer-of-this";
+const patience = 60_000; // [ms] for a heavy patch
 const bearer = { authorization: `Bearer ${viewToken}` };
 
 const asViewer = async (server, options = {}) => {
@@ -34,7 +35,8 @@ function pour(socket, frame) {
   };
   more();
 }
-const masked = (first, length = 0) => Buffer.concat([Buffer.from([first, 0x80 | length, 0, 0, 0, 0]), Buffer.alloc(length)]);
+const masked = (first, length = 0) =>
+  Buffer.concat([Buffer.from([first, 0x80 | length, 0, 0, 0, 0]), Buffer.alloc(length)]);
 
 /// `lanes` requests at any time, one after the other in each.
 function keepAsking(lanes, ask) {
@@ -46,13 +48,14 @@ function keepAsking(lanes, ask) {
 const get = (server, path, headers = bearer) => server.get(path, headers);
 
 /// Asks and hangs up before the answer, at most `rate` times a second.
-const askAndLeave = (server, path, rate) => setInterval(() => {
-  const socket = net.connect(server.port, "127.0.0.1", () => {
-    socket.write(`GET ${path} HTTP/1.1\r\nhost: ${server.host}\r\nauthorization: ${bearer.authorization}\r\n\r\n`);
-    setTimeout(() => socket.destroy(), 20);
-  });
-  socket.on("error", () => {});
-}, 1000 / rate);
+const askAndLeave = (server, path, rate) =>
+  setInterval(() => {
+    const socket = net.connect(server.port, "127.0.0.1", () => {
+      socket.write(`GET ${path} HTTP/1.1\r\nhost: ${server.host}\r\nauthorization: ${bearer.authorization}\r\n\r\n`);
+      setTimeout(() => socket.destroy(), 20);
+    });
+    socket.on("error", () => {});
+  }, 1000 / rate);
 
 /// Ten viewers that each say `text` over and over, just within the rate that is allowed: 1900 a second if it is short.
 async function chatter(server, text) {
@@ -75,12 +78,13 @@ const abuses = {
   "messages of 64 kB": async (server) => chatter(server, call("ping", { t: "x".repeat(65000) })),
   "messages of 64 kB that are no JSON": async (server) => chatter(server, "[".repeat(65000)),
   "messages of 64 kB of numbers": async (server) => chatter(server, call("ping", { t: Array(16000).fill(1.5) })),
-  "coming and going": async (server) => keepAsking(16, async () => {
-    const client = await asViewer(server);
-    await client.request("stream.subscribe", { encoding: "f32", rate: 120 });
-    client.socket.terminate();
-  }),
-  "pings": async (server) => pour((await asViewer(server)).socket._socket, masked(0x89)),
+  "coming and going": async (server) =>
+    keepAsking(16, async () => {
+      const client = await asViewer(server);
+      await client.request("stream.subscribe", { encoding: "f32", rate: 120 });
+      client.socket.terminate();
+    }),
+  pings: async (server) => pour((await asViewer(server)).socket._socket, masked(0x89)),
   "pings, ten clients": async (server) => {
     for (let i = 0; i < 10; ++i) await abuses.pings(server);
   },
@@ -92,21 +96,26 @@ const abuses = {
   "empty fragments, ten clients": async (server) => {
     for (let i = 0; i < 10; ++i) await abuses["empty fragments"](server);
   },
-  "pictures of 4096x4096": async (server) => keepAsking(16, () => get(server, "/api/snapshot.png?width=4096&height=4096")),
-  "pictures of 4096x4096, not waited for": async (server) => askAndLeave(server, "/api/snapshot.png?width=4096&height=4096", 50),
-  "meshes": async (server) => keepAsking(16, () => get(server, "/api/mesh.obj")),
+  "pictures of 4096x4096": async (server) =>
+    keepAsking(16, () => get(server, "/api/snapshot.png?width=4096&height=4096")),
+  "pictures of 4096x4096, not waited for": async (server) =>
+    askAndLeave(server, "/api/snapshot.png?width=4096&height=4096", 50),
+  meshes: async (server) => keepAsking(16, () => get(server, "/api/mesh.obj")),
   "the page, over and over": async (server) => keepAsking(16, () => get(server, "/", {})),
   "metrics, over and over": async (server) => keepAsking(16, () => get(server, "/metrics")),
-  "wrong tokens, WebSocket": async (server) => keepAsking(8, async () => {
-    const client = await Client.connect(server);
-    for (let i = 0; i < 1000 && !client.over; ++i) await client.refusal("auth", { token: `guess ${i}` });
-    client.socket.terminate();
-  }),
-  "wrong tokens, HTTP": async (server) => keepAsking(16, () => get(server, "/metrics", { authorization: "Bearer guess" })),
-  "connections that say nothing": async (server) => setInterval(() => {
-    const socket = net.connect(server.port, "127.0.0.1");
-    socket.on("error", () => {});
-  }, 1),
+  "wrong tokens, WebSocket": async (server) =>
+    keepAsking(8, async () => {
+      const client = await Client.connect(server);
+      for (let i = 0; i < 1000 && !client.over; ++i) await client.refusal("auth", { token: `guess ${i}` });
+      client.socket.terminate();
+    }),
+  "wrong tokens, HTTP": async (server) =>
+    keepAsking(16, () => get(server, "/metrics", { authorization: "Bearer guess" })),
+  "connections that say nothing": async (server) =>
+    setInterval(() => {
+      const socket = net.connect(server.port, "127.0.0.1");
+      socket.on("error", () => {});
+    }, 1),
 };
 
 /// In a process of its own: one abuse for as long as it lives, or a session with a heavy patch that is made and undone when the parent
@@ -133,20 +142,35 @@ if (process.send) {
   process.on("unhandledRejection", () => {});
   process.on("message", async ({ task, name, port }) => {
     const begun = performance.now();
-    const failed = await tasks[task]({ name, server: Object.assign(new Server(), { port, host: `127.0.0.1:${port}` }) }).then(() => null, (error) => error.message);
+    const failed = await tasks[task]({
+      name,
+      server: Object.assign(new Server(), { port, host: `127.0.0.1:${port}` }),
+    }).then(
+      () => null,
+      (error) => error.message,
+    );
     process.send({ failed, took_ms: round(performance.now() - begun, 0) });
   });
 } else {
   const args = process.argv.slice(2);
   const option = (flag) => (args.includes(flag) ? args.splice(args.indexOf(flag), 2)[1] : null);
-  const out = option("--out"), only = option("--only");
+  const out = option("--out"),
+    only = option("--only");
   const [seconds = 8] = args.map(Number);
-  const chosen = (list) => Object.keys(list).filter((name) => !only || name === only || (only === "heavy" && list === heavyPatches));
-  const cases = [], heavy = [];
+  const chosen = (list) =>
+    Object.keys(list).filter((name) => !only || name === only || (only === "heavy" && list === heavyPatches));
+  const cases = [],
+    heavy = [];
   for (const name of chosen(abuses)) cases.push(await measure(name, seconds));
   for (const name of chosen(heavyPatches)) heavy.push(await measureHeavy(name, seconds));
-  const result = { benchmark: "abuse", machine: `${cpus()[0].model.trim()}, ${cpus().length} cores`, seconds, rate_asked: 30, cases,
-                   heavy_patches: { rate_asked: 60, cases: heavy } };
+  const result = {
+    benchmark: "abuse",
+    machine: `${cpus()[0].model.trim()}, ${cpus().length} cores`,
+    seconds,
+    rate_asked: 30,
+    cases,
+    heavy_patches: { rate_asked: 60, cases: heavy },
+  };
   console.log(JSON.stringify(result, null, 2));
   if (out) await writeFile(out, JSON.stringify(result, null, 2) + "\n");
   process.exit(0);
@@ -158,7 +182,9 @@ function round(value, digits = 2) {
 
 /// What a subscribed bystander gets within so many seconds.
 async function watch(bystander, seconds) {
-  const from = bystander.frames.length, begun = performance.now(), answers = [];
+  const from = bystander.frames.length,
+    begun = performance.now(),
+    answers = [];
   while (performance.now() - begun < seconds * 1000) {
     const asked = performance.now();
     await bystander.request("scene.get");
@@ -171,14 +197,20 @@ async function watch(bystander, seconds) {
   return {
     frames_per_second: round(frames.length / elapsed, 1),
     longest_gap_ms: round(Math.max(...gaps), 0),
-    real_time_factor: frames.length > 1 ? round((frames.at(-1).time - frames[0].time) / ((frames.at(-1).receivedAt - frames[0].receivedAt) / 1000), 3) : 0,
-    answer_ms: { median: round(answers.sort((a, b) => a - b)[answers.length >> 1], 1), longest: round(answers.at(-1), 0) },
+    real_time_factor:
+      frames.length > 1
+        ? round((frames.at(-1).time - frames[0].time) / ((frames.at(-1).receivedAt - frames[0].receivedAt) / 1000), 3)
+        : 0,
+    answer_ms: {
+      median: round(answers.sort((a, b) => a - b)[answers.length >> 1], 1),
+      longest: round(answers.at(-1), 0),
+    },
   };
 }
 
 async function measure(name, seconds) {
   const server = await Server.start("--token", token, "--view-token", viewToken, "--log-level", "error");
-  const resident = () => Number(/VmHWM:\s+(\d+)/.exec(readFileSync(`/proc/${server.child.pid}/status`, "utf8"))[1]);  // [kB]
+  const resident = () => Number(/VmHWM:\s+(\d+)/.exec(readFileSync(`/proc/${server.child.pid}/status`, "utf8"))[1]); // [kB]
   const abuser = fork(new URL(import.meta.url).pathname);
   try {
     const bystander = await asViewer(server);
@@ -187,7 +219,11 @@ async function measure(name, seconds) {
     const before = resident();
     await ask(abuser, { task: "begin", name, port: server.port });
     await sleep(2000);
-    return { abuse: name, ...(await watch(bystander, seconds)), memory_grown_MB: round((resident() - before) / 1024, 0) };
+    return {
+      abuse: name,
+      ...(await watch(bystander, seconds)),
+      memory_grown_MB: round((resident() - before) / 1024, 0),
+    };
   } catch (error) {
     return { abuse: name, failed: error.message };
   } finally {

@@ -1,24 +1,29 @@
 // What the same accuracy costs under each method, beside what it ran on, and as the table of tests/README.md.
 // node tests/bench/equal_error.mjs [MACHINE]   ->   tests/bench/results/equal_error-MACHINE.json
-import { execFileSync } from 'node:child_process'
-import { readFileSync, writeFileSync } from 'node:fs'
-import { cpus, loadavg } from 'node:os'
-import { dirname, join } from 'node:path'
-import { fileURLToPath } from 'node:url'
+import { execFileSync } from "node:child_process";
+import { readFileSync, writeFileSync } from "node:fs";
+import { cpus, loadavg } from "node:os";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
 
-const here = dirname(fileURLToPath(import.meta.url))
-const build = join(here, '../../build/release')
-const machine = process.argv[2] ?? `${cpus().length}-cores`
-execFileSync('cmake', ['--build', build, '--target', 'bench_equal_error'], { stdio: 'ignore' })
-const load = loadavg()[0]
-const measured = execFileSync(join(build, 'tests/bench_equal_error'), { encoding: 'utf8', stdio: ['ignore', 'pipe', 'inherit'] })
-const about = { machine, cpu: cpus()[0].model, cores: cpus().length, load_average: load }
-const out = join(here, `results/equal_error-${machine}.json`)
+const here = dirname(fileURLToPath(import.meta.url));
+const build = join(here, "../../build/release");
+const machine = process.argv[2] ?? `${cpus().length}-cores`;
+execFileSync("cmake", ["--build", build, "--target", "bench_equal_error"], { stdio: "ignore" });
+const load = loadavg()[0];
+const measured = execFileSync(join(build, "tests/bench_equal_error"), {
+  encoding: "utf8",
+  stdio: ["ignore", "pipe", "inherit"],
+});
+const about = { machine, cpu: cpus()[0].model, cores: cpus().length, load_average: load };
+const out = join(here, `results/equal_error-${machine}.json`);
 // In between, so that the rows stay one a line.
-writeFileSync(out, measured.replace(' "methods": [', `${JSON.stringify(about, null, 1).slice(2, -2)},\n "methods": [`))
+writeFileSync(out, measured.replace(' "methods": [', `${JSON.stringify(about, null, 1).slice(2, -2)},\n "methods": [`));
 
-const { methods } = JSON.parse(readFileSync(out, 'utf8'))
-const cell = (t) => t.reached
-  ? `${Number(t.ms_a_simulated_s.median.toPrecision(3))} (${Number((1000 * t.dt_s).toPrecision(2))} ms${t.iterations > 1 ? `, ${t.iterations}` : ''})` : 'not reached'
-for (const { method, targets } of methods) console.log(`| \`${method}\` | ${targets.map(cell).join(' | ')} |`)
-console.log(`written: ${out}`)
+const { methods } = JSON.parse(readFileSync(out, "utf8"));
+const cell = (t) =>
+  t.reached
+    ? `${Number(t.ms_a_simulated_s.median.toPrecision(3))} (${Number((1000 * t.dt_s).toPrecision(2))} ms${t.iterations > 1 ? `, ${t.iterations}` : ""})`
+    : "not reached";
+for (const { method, targets } of methods) console.log(`| \`${method}\` | ${targets.map(cell).join(" | ")} |`);
+console.log(`written: ${out}`);

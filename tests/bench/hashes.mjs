@@ -15,42 +15,86 @@ const option = (flag) => (args.includes(flag) ? args[args.indexOf(flag) + 1] : n
 const methods = ["explicit_euler", "symplectic_euler", "verlet", "rk4", "implicit_euler", "pbd", "xpbd", "vbd"];
 
 const springs = { model: "springs", structural: 300, shear: 150, bend: 20, damping: 0.02 };
-const grid = (columns, rows, more = {}) => ({ mesh: { grid: { columns, rows, width: 0.8, height: 0.8 * rows / columns } }, mass: { per_vertex: 0.0007 },
-                                              material: springs, transform: { translate: [0, 1, -0.4] }, ...more });
+const grid = (columns, rows, more = {}) => ({
+  mesh: { grid: { columns, rows, width: 0.8, height: (0.8 * rows) / columns } },
+  mass: { per_vertex: 0.0007 },
+  material: springs,
+  transform: { translate: [0, 1, -0.4] },
+  ...more,
+});
 
 /// A disc of triangles: one vertex, then rings of 6, 12, 18, ... around it.
 function disc(rings, radius) {
-  const vertices = [[0, 0, 0]], triangles = [];
+  const vertices = [[0, 0, 0]],
+    triangles = [];
   const at = (ring, i) => (ring === 0 ? 0 : 1 + 3 * ring * (ring - 1) + (i % (6 * ring)));
   for (let ring = 1; ring <= rings; ++ring)
     for (let i = 0; i < 6 * ring; ++i) {
-      const angle = 2 * Math.PI * i / (6 * ring);
-      vertices.push([radius * ring / rings * Math.cos(angle), 0, radius * ring / rings * Math.sin(angle)]);
+      const angle = (2 * Math.PI * i) / (6 * ring);
+      vertices.push([((radius * ring) / rings) * Math.cos(angle), 0, ((radius * ring) / rings) * Math.sin(angle)]);
     }
   for (let ring = 1; ring <= rings; ++ring)
     for (let side = 0; side < 6; ++side)
       for (let i = 0; i < ring; ++i) {
-        const outer = side * ring + i, inner = side * (ring - 1) + i;
+        const outer = side * ring + i,
+          inner = side * (ring - 1) + i;
         triangles.push([at(ring, outer), at(ring - 1, inner), at(ring, outer + 1)]);
         if (i + 1 < ring) triangles.push([at(ring - 1, inner), at(ring - 1, inner + 1), at(ring, outer + 1)]);
       }
   return { triangles: { vertices, triangles } };
 }
 const round = (mesh) => ({ mesh, mass: { area_density: 0.3 }, material: springs, transform: { translate: [0, 1, 0] } });
-const sphere = (center, radius, motion = null) => ({ sphere: { center, radius }, friction: 0.3, restitution: 0, motion });
+const sphere = (center, radius, motion = null) => ({
+  sphere: { center, radius },
+  friction: 0.3,
+  restitution: 0,
+  motion,
+});
 const plane = (point, normal, motion = null) => ({ plane: { point, normal }, friction: 0.4, restitution: 0.2, motion });
 const made = {
-  "a disc on a moving sphere": { cloths: [round(disc(8, 0.5))], self_collision: { thickness: 0.06, friction: 0.2 },
-    colliders: [sphere([0, 0.6, 0], 0.25, { linear: { velocity: [0.3, 0, 0] } })] },
-  "a pinned disc with a weight and a strain limit": { cloths: [{ ...round(disc(6, 0.4)), pins: [{ at: "vertex:0" }], weights: [{ at: "vertex:60", mass: 0.05 }],
-    material: { ...springs, strain_limit: 0.1 } }], air_drag: 0.4 },
-  "three cloths over a plane that oscillates": { cloths: [0, 1, 2].map((i) => grid(13 + 2 * i, 11, { name: `cloth-${i}`, transform: { translate: [0.1 * i, 0.3 + 0.12 * i, -0.3], rotate: [0, 20 * i, 0] } })),
-    colliders: [plane([0, 0.1, 0], [0, 1, 0], { oscillate: { axis: [0, 1, 0], amplitude: 0.05, frequency: 1 } })], self_collision: { thickness: 0.055, friction: 0.3 } },
-  "a grid and a disc between spheres and a plane that spins": { cloths: [grid(17, 13), { ...round(disc(5, 0.3)), transform: { translate: [0, 0.7, 0] } }],
-    colliders: [sphere([0.2, 0.5, 0], 0.15, { spin: { axis: [0, 1, 0], center: [0, 0.5, 0], degrees_per_second: 90 } }), sphere([-0.3, 0.4, 0.1], 0.2),
-                plane([0, 0.1, 0], [0, 1, 0], { spin: { axis: [0, 0, 1], center: [0, 0.1, 0], degrees_per_second: 15 } })] },
-  "a scattered cloth, pinned to what spins": { cloths: [grid(15, 15, { start: { scatter: { size: 0.5, seed: 3 } },
-    pins: [{ at: "edge:row:0", motion: { spin: { axis: [0, 1, 0], center: [0, 1, 0], degrees_per_second: 60 } } }] })], self_collision: { thickness: 0.05, friction: 0.1 } },
+  "a disc on a moving sphere": {
+    cloths: [round(disc(8, 0.5))],
+    self_collision: { thickness: 0.06, friction: 0.2 },
+    colliders: [sphere([0, 0.6, 0], 0.25, { linear: { velocity: [0.3, 0, 0] } })],
+  },
+  "a pinned disc with a weight and a strain limit": {
+    cloths: [
+      {
+        ...round(disc(6, 0.4)),
+        pins: [{ at: "vertex:0" }],
+        weights: [{ at: "vertex:60", mass: 0.05 }],
+        material: { ...springs, strain_limit: 0.1 },
+      },
+    ],
+    air_drag: 0.4,
+  },
+  "three cloths over a plane that oscillates": {
+    cloths: [0, 1, 2].map((i) =>
+      grid(13 + 2 * i, 11, {
+        name: `cloth-${i}`,
+        transform: { translate: [0.1 * i, 0.3 + 0.12 * i, -0.3], rotate: [0, 20 * i, 0] },
+      }),
+    ),
+    colliders: [plane([0, 0.1, 0], [0, 1, 0], { oscillate: { axis: [0, 1, 0], amplitude: 0.05, frequency: 1 } })],
+    self_collision: { thickness: 0.055, friction: 0.3 },
+  },
+  "a grid and a disc between spheres and a plane that spins": {
+    cloths: [grid(17, 13), { ...round(disc(5, 0.3)), transform: { translate: [0, 0.7, 0] } }],
+    colliders: [
+      sphere([0.2, 0.5, 0], 0.15, { spin: { axis: [0, 1, 0], center: [0, 0.5, 0], degrees_per_second: 90 } }),
+      sphere([-0.3, 0.4, 0.1], 0.2),
+      plane([0, 0.1, 0], [0, 1, 0], { spin: { axis: [0, 0, 1], center: [0, 0.1, 0], degrees_per_second: 15 } }),
+    ],
+  },
+  "a scattered cloth, pinned to what spins": {
+    cloths: [
+      grid(15, 15, {
+        start: { scatter: { size: 0.5, seed: 3 } },
+        pins: [{ at: "edge:row:0", motion: { spin: { axis: [0, 1, 0], center: [0, 1, 0], degrees_per_second: 60 } } }],
+      }),
+    ],
+    self_collision: { thickness: 0.05, friction: 0.1 },
+  },
 };
 
 const folder = mkdtempSync(join(tmpdir(), "clothlab-hashes-"));
@@ -62,7 +106,7 @@ async function hashOf(scene, method, place) {
   try {
     await run(program, ["run", scene, "--time", "1", "--set", `/solver/method="${method}"`, "--report", report]);
   } catch (error) {
-    if (error.code !== 4) throw error;  // 4: it blew up, which is an answer too
+    if (error.code !== 4) throw error; // 4: it blew up, which is an answer too
   }
   const { state_hash, diverged, renderer } = JSON.parse(readFileSync(report, "utf8"));
   result.renderer = renderer;
@@ -70,35 +114,53 @@ async function hashOf(scene, method, place) {
 }
 
 const { stdout } = await run(program, ["presets"]);
-const presets = stdout.trim().split("\n").map((line) => line.split(/\s+/)[0]);
+const presets = stdout
+  .trim()
+  .split("\n")
+  .map((line) => line.split(/\s+/)[0]);
 const scenes = presets.map((name) => [name, name]);
 for (const [name, scene] of Object.entries(made)) {
   const file = join(folder, `${scenes.length}.json`);
-  writeFileSync(file, JSON.stringify({ version: 1, name, gravity: [0, -9.8, 0], solver: { method: "symplectic_euler", dt: 0.0008, iterations: 10, tolerance: 1e-4 }, ...scene }));
+  writeFileSync(
+    file,
+    JSON.stringify({
+      version: 1,
+      name,
+      gravity: [0, -9.8, 0],
+      solver: { method: "symplectic_euler", dt: 0.0008, iterations: 10, tolerance: 1e-4 },
+      ...scene,
+    }),
+  );
   scenes.push([name, file]);
 }
 
 const result = { benchmark: "hashes", renderer: "", hashes: {} };
 const todo = scenes.flatMap(([name, file]) => methods.map((method) => ({ what: `${name}, ${method}`, file, method })));
-for (const { what } of todo) result.hashes[what] = "";  // in this order, whoever ends first
+for (const { what } of todo) result.hashes[what] = ""; // in this order, whoever ends first
 let next = 0;
-await Promise.all(Array.from({ length: cpus().length }, async () => {
-  while (next < todo.length) {
-    const place = next++;
-    const { what, file, method } = todo[place];
-    result.hashes[what] = await hashOf(file, method, place);
-  }
-}));
+await Promise.all(
+  Array.from({ length: cpus().length }, async () => {
+    while (next < todo.length) {
+      const place = next++;
+      const { what, file, method } = todo[place];
+      result.hashes[what] = await hashOf(file, method, place);
+    }
+  }),
+);
 
 const text = JSON.stringify(result, null, 2) + "\n";
-const out = option("--out"), against = option("--compare");
+const out = option("--out"),
+  against = option("--compare");
 if (out) writeFileSync(out, text);
 if (!against) {
   process.stdout.write(text);
 } else {
   const before = JSON.parse(readFileSync(against, "utf8"));
-  if (before.renderer !== result.renderer) console.log(`not comparable: ${before.renderer} before, ${result.renderer} now`);
-  const changed = Object.keys({ ...before.hashes, ...result.hashes }).filter((what) => before.hashes[what] !== result.hashes[what]);
+  if (before.renderer !== result.renderer)
+    console.log(`not comparable: ${before.renderer} before, ${result.renderer} now`);
+  const changed = Object.keys({ ...before.hashes, ...result.hashes }).filter(
+    (what) => before.hashes[what] !== result.hashes[what],
+  );
   for (const what of changed) console.log(`${what}: ${before.hashes[what]} before, ${result.hashes[what]} now`);
   console.log(`${changed.length} of ${todo.length} differ`);
   process.exitCode = changed.length > 0 ? 1 : 0;

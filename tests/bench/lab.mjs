@@ -22,11 +22,19 @@ async function stretch(name) {
   await sleep(seconds * 1000);
   const frames = client.frames.slice(mark.frames);
   const elapsed = (performance.now() - mark.at) / 1000;
-  const factors = client.messages.slice(mark.messages).filter((m) => m.method === "sim.status").map((m) => m.params.real_time_factor);
-  const gaps = frames.slice(1).map((frame, i) => frame.receivedAt - frames[i].receivedAt).sort((a, b) => a - b);
+  const factors = client.messages
+    .slice(mark.messages)
+    .filter((m) => m.method === "sim.status")
+    .map((m) => m.params.real_time_factor);
+  const gaps = frames
+    .slice(1)
+    .map((frame, i) => frame.receivedAt - frames[i].receivedAt)
+    .sort((a, b) => a - b);
   // The slowest second tells more than the mean of all.
-  const inSecond = Array.from({ length: seconds }, (_, i) =>
-    frames.filter((frame) => Math.floor((frame.receivedAt - mark.at) / 1000) === i).length);
+  const inSecond = Array.from(
+    { length: seconds },
+    (_, i) => frames.filter((frame) => Math.floor((frame.receivedAt - mark.at) / 1000) === i).length,
+  );
   return {
     name,
     frames_per_second: round(frames.length / elapsed, 2),
@@ -41,18 +49,30 @@ async function stretch(name) {
 /// A chart that is asked for, is doing `what`, and is measured and cancelled.
 async function beside(name, what, params) {
   const { job } = await client.request("lab.chart", { ...params, fresh: true });
-  await withTimeout(client.notification("lab.progress", (p) => p.job === job && what.test(p.doing)), name, 120_000);
+  await withTimeout(
+    client.notification("lab.progress", (p) => p.job === job && what.test(p.doing)),
+    name,
+    120_000,
+  );
   const measured = await stretch(name);
   const last = client.messages.findLast((m) => m.method === "lab.progress").params;
   const asked = performance.now();
   await client.request("lab.cancel", { job });
   const { state, result } = await client.notification("lab.result", (r) => r.job === job && r.state !== "running");
-  return { ...measured, job: { doing: last.doing, state, points: result?.points.length ?? 0, cancel_ms: round(performance.now() - asked, 1) } };
+  return {
+    ...measured,
+    job: {
+      doing: last.doing,
+      state,
+      points: result?.points.length ?? 0,
+      cancel_ms: round(performance.now() - asked, 1),
+    },
+  };
 }
 
 const stretches = [];
 try {
-  await sleep(2000);  // warm
+  await sleep(2000); // warm
   stretches.push(await stretch("alone"));
   stretches.push(await beside("beside the reference of a chart", /^the reference/, { budget: 600 }));
   stretches.push(await beside("beside the trials of a chart", /, dt /, { time: 0.1, budget: 600 }));
@@ -62,14 +82,18 @@ try {
   await server.stop();
 }
 
-const text = JSON.stringify({
-  benchmark: "lab",
-  machine: `${cpus()[0].model.trim()}, ${cpus().length} cores`,
-  renderer,
-  scene: args.includes("--scene") ? args[args.indexOf("--scene") + 1] : "seed",
-  vertices: first.vertexCount,
-  seconds_a_stretch: seconds,
-  stretches,
-}, null, 2);
+const text = JSON.stringify(
+  {
+    benchmark: "lab",
+    machine: `${cpus()[0].model.trim()}, ${cpus().length} cores`,
+    renderer,
+    scene: args.includes("--scene") ? args[args.indexOf("--scene") + 1] : "seed",
+    vertices: first.vertexCount,
+    seconds_a_stretch: seconds,
+    stretches,
+  },
+  null,
+  2,
+);
 console.log(text);
 if (out) await writeFile(out, text + "\n");

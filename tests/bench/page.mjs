@@ -12,10 +12,12 @@ import { Server } from "../protocol/harness.mjs";
 const args = process.argv.slice(2);
 const seconds = /^\d+$/.test(args[0] ?? "") ? Number(args.shift()) : 10;
 const out = args[0] === "--out" ? args[1] : null;
-const load = loadavg()[0];  // of the others: one that is not near 0 spoils every time below
+const load = loadavg()[0]; // of the others: one that is not near 0 spoils every time below
 
 const dist = fileURLToPath(new URL("../../web/dist/", import.meta.url));
-const bytes = Object.fromEntries(readdirSync(dist).map((name) => [name, gzipSync(readFileSync(dist + name), { level: 6 }).length]));
+const bytes = Object.fromEntries(
+  readdirSync(dist).map((name) => [name, gzipSync(readFileSync(dist + name), { level: 6 }).length]),
+);
 
 const server = await Server.start();
 const browser = await launch();
@@ -31,11 +33,12 @@ for (let i = 0; i < 6; ++i) {
 
 async function rates(width, height) {
   const viewer = await Viewer.open(browser, server, { width, height });
-  await viewer.page.waitForTimeout(4000);  // the resolution settles
-  const count = () => viewer.page.evaluate(() => {
-    const { framesDrawn: drawn, framesReceived: received } = window.clothlab;
-    return { at: performance.now(), drawn, received };
-  });
+  await viewer.page.waitForTimeout(4000); // the resolution settles
+  const count = () =>
+    viewer.page.evaluate(() => {
+      const { framesDrawn: drawn, framesReceived: received } = window.clothlab;
+      return { at: performance.now(), drawn, received };
+    });
   const before = await count();
   await viewer.page.waitForTimeout(seconds * 1000);
   const after = await count();
@@ -43,7 +46,13 @@ async function rates(width, height) {
   const scale = await viewer.page.evaluate(() => window.clothlab.stage.scale);
   const latency = await viewer.page.locator("#stats div", { hasText: "Latency" }).locator("dd").innerText();
   await viewer.page.close();
-  return { window: `${width}x${height}`, drawn_per_s: per("drawn"), received_per_s: per("received"), resolution_scale: scale, latency };
+  return {
+    window: `${width}x${height}`,
+    drawn_per_s: per("drawn"),
+    received_per_s: per("received"),
+    resolution_scale: scale,
+    latency,
+  };
 }
 
 const frameRates = [await rates(1280, 800), await rates(360, 740)];

@@ -20,7 +20,8 @@ const metric = (text, name) => Number(new RegExp(`^${name} (\\S+)$`, "m").exec(t
 const metrics = async () => (await server.get("/metrics")).body.toString();
 /// The p95 of what was added to the histogram between two readings [s].
 function p95(before, after) {
-  const buckets = (text) => [...text.matchAll(/latency_seconds_bucket\{le="([^"]+)"\} (\d+)/g)].map((m) => [Number(m[1]), Number(m[2])]);
+  const buckets = (text) =>
+    [...text.matchAll(/latency_seconds_bucket\{le="([^"]+)"\} (\d+)/g)].map((m) => [Number(m[1]), Number(m[2])]);
   const earlier = buckets(before);
   const added = buckets(after).map(([edge, count], i) => [edge, count - earlier[i][1]]);
   const rank = 0.95 * added.at(-1)[1];
@@ -29,15 +30,21 @@ function p95(before, after) {
   return low + ((added[i][0] - low) * (rank - below)) / (added[i][1] - below);
 }
 
-await sleep(2000);  // warm
+await sleep(2000); // warm
 const before = await metrics();
 const mark = { frames: client.frames.length, messages: client.messages.length, at: performance.now() };
 await sleep(seconds * 1000);
 const frames = client.frames.slice(mark.frames);
 const elapsed = (performance.now() - mark.at) / 1000;
-const statuses = client.messages.slice(mark.messages).filter((m) => m.method === "sim.status").map((m) => m.params);
+const statuses = client.messages
+  .slice(mark.messages)
+  .filter((m) => m.method === "sim.status")
+  .map((m) => m.params);
 const after = await metrics();
-const gaps = frames.slice(1).map((frame, i) => frame.receivedAt - frames[i].receivedAt).sort((a, b) => a - b);
+const gaps = frames
+  .slice(1)
+  .map((frame, i) => frame.receivedAt - frames[i].receivedAt)
+  .sort((a, b) => a - b);
 
 const round = (value, digits) => Number(value.toFixed(digits));
 const result = {
@@ -52,7 +59,10 @@ const result = {
   real_time_factor_mean: round(statuses.reduce((sum, s) => sum + s.real_time_factor, 0) / statuses.length, 4),
   real_time_factor_min: round(Math.min(...statuses.map((s) => s.real_time_factor)), 4),
   server_latency_p95_ms: round(p95(before, after) * 1000, 3),
-  bytes_per_second: round((metric(after, "clothlab_bytes_sent_total") - metric(before, "clothlab_bytes_sent_total")) / elapsed, 0),
+  bytes_per_second: round(
+    (metric(after, "clothlab_bytes_sent_total") - metric(before, "clothlab_bytes_sent_total")) / elapsed,
+    0,
+  ),
   listening_after_s: round((listening - server.startedAt) / 1000, 3),
   first_frame_after_s: round((first.receivedAt - server.startedAt) / 1000, 3),
 };

@@ -17,7 +17,9 @@ const args = process.argv.slice(2);
 const outAt = args.indexOf("--out");
 const out = outAt < 0 ? null : args.splice(outAt, 2)[1];
 const minutes = Number(args[0] ?? 120);
-const busySeconds = Math.min(180, 60 * minutes), unwatchedSeconds = 32, places = 4;
+const busySeconds = Math.min(180, 60 * minutes),
+  unwatchedSeconds = 32,
+  places = 4;
 
 let seed = 20261122;
 /// mulberry32: the same soak each time, as far as sockets allow.
@@ -31,7 +33,16 @@ const pick = (list) => list[Math.floor(random() * list.length)];
 const between = (low, high) => low + (high - low) * random();
 
 const stateDir = mkdtempSync(join(tmpdir(), "clothlab-soak-"));
-const server = await Server.start("--max-sessions", String(places), "--state-dir", stateDir, "--header-timeout", "3", "--idle-timeout", "20");
+const server = await Server.start(
+  "--max-sessions",
+  String(places),
+  "--state-dir",
+  stateDir,
+  "--header-timeout",
+  "3",
+  "--idle-timeout",
+  "20",
+);
 const pid = server.child.pid;
 let ended = null;
 server.child.on("exit", (code, signal) => (ended = { code, signal }));
@@ -39,7 +50,7 @@ server.child.on("exit", (code, signal) => (ended = { code, signal }));
 const begun = performance.now();
 const counts = {};
 const count = (what) => (counts[what] = (counts[what] ?? 0) + 1);
-let busy = true;  // false: everybody leaves
+let busy = true; // false: everybody leaves
 
 /// A pause that ends early when the round does.
 async function dwell(seconds) {
@@ -47,12 +58,12 @@ async function dwell(seconds) {
   while (busy && performance.now() < until) await sleep(Math.min(200, until - performance.now()));
 }
 
-const sessions = ["main", "a", "b", "c", "d", "e"];  // two more than there are places for
+const sessions = ["main", "a", "b", "c", "d", "e"]; // two more than there are places for
 
 async function enter(session) {
   try {
     const client = await Client.connect(server, { session });
-    client.messages.push = () => 0;  // nobody reads them, and hours of them are many
+    client.messages.push = () => 0; // nobody reads them, and hours of them are many
     client.binary.push = () => 0;
     count("connections");
     return client;
@@ -99,15 +110,44 @@ async function viewer() {
 }
 
 const methods = ["explicit_euler", "symplectic_euler", "verlet", "rk4", "implicit_euler", "pbd", "xpbd", "vbd"];
-const presets = ["seed", "flag", "curtain", "tablecloth", "drape", "twist", "hanging-strip", "cantilever", "trampoline", "blowup"];
+const presets = [
+  "seed",
+  "flag",
+  "curtain",
+  "tablecloth",
+  "drape",
+  "twist",
+  "hanging-strip",
+  "cantilever",
+  "trampoline",
+  "blowup",
+];
 const patches = [
   () => ({ solver: { method: pick(methods), dt: pick([0.0005, 0.001, 0.002]) } }),
   () => ({ gravity: [0, between(-20, 0), 0] }),
   () => ({ wind: pick([null, { velocity: [between(0, 8), 0, 0], drag: 1 }]) }),
   () => ({ self_collision: pick([null, { thickness: 0.01, friction: 0.2 }]) }),
-  () => [{ op: "replace", path: "/cloths/0/mesh", value: { grid: { columns: 25, rows: Math.floor(between(9, 41)), width: 1, height: 1 } } }],
-  () => [{ op: "add", path: "/colliders/-", value: { sphere: { center: [between(-1, 1), 0.3, 0], radius: 0.2 }, friction: 0.3 } }],
-  () => [{ op: "replace", path: "/cloths/0/material", value: { structural: between(100, 20000), shear: 1000, bend: 10, damping: 0.5 } }],
+  () => [
+    {
+      op: "replace",
+      path: "/cloths/0/mesh",
+      value: { grid: { columns: 25, rows: Math.floor(between(9, 41)), width: 1, height: 1 } },
+    },
+  ],
+  () => [
+    {
+      op: "add",
+      path: "/colliders/-",
+      value: { sphere: { center: [between(-1, 1), 0.3, 0], radius: 0.2 }, friction: 0.3 },
+    },
+  ],
+  () => [
+    {
+      op: "replace",
+      path: "/cloths/0/material",
+      value: { structural: between(100, 20000), shear: 1000, bend: 10, damping: 0.5 },
+    },
+  ],
   () => [{ op: "replace", path: "/nowhere", value: 1 }],
 ];
 
@@ -120,7 +160,10 @@ async function operator() {
       () => ask(client, "scene.patch", { patch: pick(patches)() }),
       () => ask(client, "scene.patch", { patch: pick(patches)() }),
       () => ask(client, "scene.get", {}),
-      () => ask(client, "sim.pause", {}).then(() => ask(client, "sim.step", { steps: 10 })).then(() => ask(client, "sim.play", {})),
+      () =>
+        ask(client, "sim.pause", {})
+          .then(() => ask(client, "sim.step", { steps: 10 }))
+          .then(() => ask(client, "sim.play", {})),
       () => ask(client, "sim.reset", {}),
       () => ask(client, "sim.speed", { factor: pick([0.25, 1, 2]) }),
       async () => {
@@ -143,12 +186,15 @@ async function measurer() {
     if (method === "lab.result" && params.state !== "running") ends.get(params.job)?.(params.state);
   };
   if (random() < 0.8) await ask(client, "scene.load", { scene: strip() });
-  const job = await ask(client, ...pick([
-    ["lab.chart", { methods: ["verlet", "xpbd"], time: 0.2, budget: 8, fresh: true }],
-    ["lab.stability", { methods: ["verlet"], columns: 2, fresh: true }],
-    ["lab.choose", { tolerance: 0.01, time: 0.2, fresh: true }],
-    ["lab.simplify", { tolerance: 0.01, time: 0.2, fresh: true }],
-  ]));
+  const job = await ask(
+    client,
+    ...pick([
+      ["lab.chart", { methods: ["verlet", "xpbd"], time: 0.2, budget: 8, fresh: true }],
+      ["lab.stability", { methods: ["verlet"], columns: 2, fresh: true }],
+      ["lab.choose", { tolerance: 0.01, time: 0.2, fresh: true }],
+      ["lab.simplify", { tolerance: 0.01, time: 0.2, fresh: true }],
+    ]),
+  );
   if (job) {
     const end = new Promise((resolve) => ends.set(job.job, resolve));
     const left = dwell(random() < 0.3 ? between(0.5, 4) : 40).then(() => null);
@@ -160,14 +206,24 @@ async function measurer() {
     }
     count(`a measurement ${state ?? "left or cancelled"}`);
   }
-  await client.close();  // what still runs is nobody's then
+  await client.close(); // what still runs is nobody's then
 }
 
 async function nuisance() {
   await pick([
     async () => {
       const client = await enter("main");
-      client.send(pick(["", "{", "[]", "null", '{"jsonrpc":"2.0","id":1}', "\u0000", '{"jsonrpc":"2.0","id":1,"method":"nothing"}']));
+      client.send(
+        pick([
+          "",
+          "{",
+          "[]",
+          "null",
+          '{"jsonrpc":"2.0","id":1}',
+          "\u0000",
+          '{"jsonrpc":"2.0","id":1,"method":"nothing"}',
+        ]),
+      );
       await dwell(0.5);
       await client.close();
     },
@@ -182,15 +238,28 @@ async function nuisance() {
       await Promise.race([client.closed, dwell(5)]);
       if (!client.over) client.socket.terminate();
     },
-    () => Client.connect(server, { protocols: [] }).then((client) => client.socket.terminate(), () => count("no subprotocol, refused")),
-    async () => {  // a request that never ends
+    () =>
+      Client.connect(server, { protocols: [] }).then(
+        (client) => client.socket.terminate(),
+        () => count("no subprotocol, refused"),
+      ),
+    async () => {
+      // a request that never ends
       const socket = net.connect(server.port, "127.0.0.1", () => socket.write("GET / HTTP/1.1\r\nHost: x\r\n"));
       socket.on("error", () => {});
       await new Promise((resolve) => socket.on("close", resolve));
       count("slow requests closed");
     },
-    ...["/", "/metrics", "/healthz", "/nowhere", "/../../etc/passwd", "/api/scene?session=main", "/api/mesh.obj?session=main",
-      "/api/snapshot.png?session=main&width=320&height=200"].map((path) => async () => {
+    ...[
+      "/",
+      "/metrics",
+      "/healthz",
+      "/nowhere",
+      "/../../etc/passwd",
+      "/api/scene?session=main",
+      "/api/mesh.obj?session=main",
+      "/api/snapshot.png?session=main&width=320&height=200",
+    ].map((path) => async () => {
       const { status } = await server.get(path);
       if (status >= 500) throw new Error(`${path} answered ${status}`);
       count("HTTP requests");
@@ -205,14 +274,16 @@ const troubles = [];
 async function round() {
   busy = true;
   const over = sleep(1000 * busySeconds).then(() => (busy = false));
-  await Promise.all(actors.map(async (act) => {
-    while (busy && !ended)
-      await act().catch((error) => {
-        // A session that was given up, or the end of the round, may come in between; the server's own end may not.
-        troubles.push(`${((performance.now() - begun) / 60_000).toFixed(1)} min, ${act.name}: ${error.message}`);
-        return dwell(1);
-      });
-  }));
+  await Promise.all(
+    actors.map(async (act) => {
+      while (busy && !ended)
+        await act().catch((error) => {
+          // A session that was given up, or the end of the round, may come in between; the server's own end may not.
+          troubles.push(`${((performance.now() - begun) / 60_000).toFixed(1)} min, ${act.name}: ${error.message}`);
+          return dwell(1);
+        });
+    }),
+  );
   await over;
 }
 
@@ -246,7 +317,8 @@ function slope(points, x, y) {
   return slopes.sort((a, b) => a - b)[slopes.length >> 1] ?? 0;
 }
 
-const samples = [], rests = [];
+const samples = [],
+  rests = [];
 const sampler = setInterval(() => ended || samples.push(held()), 10_000);
 
 let result;
@@ -261,22 +333,33 @@ try {
     if (out) await writeFile(`${out}.partial.json`, JSON.stringify({ samples, rests, counts, troubles }));
   }
   clearInterval(sampler);
-  const later = rests.slice(1);  // the first round is what the server had not needed before
-  const spread = (what) => ({ first: rests[0]?.[what], least: Math.min(...later.map((r) => r[what])), most: Math.max(...later.map((r) => r[what])), last: rests.at(-1)?.[what] });
+  const later = rests.slice(1); // the first round is what the server had not needed before
+  const spread = (what) => ({
+    first: rests[0]?.[what],
+    least: Math.min(...later.map((r) => r[what])),
+    most: Math.max(...later.map((r) => r[what])),
+    last: rests.at(-1)?.[what],
+  });
   result = {
     benchmark: "soak",
     machine: `${cpus()[0].model.trim()}, ${cpus().length} cores`,
     minutes: Number(((performance.now() - begun) / 60_000).toFixed(1)),
     rounds: rests.length,
-    server: ended ?? { health: (await server.get("/healthz")).status, steps: await server.metric("clothlab_steps_total"),
-                       brought_back: await server.metric("clothlab_sessions_brought_back_total"), megabytes_sent: Math.round((await server.metric("clothlab_bytes_sent_total")) / 1e6) },
+    server: ended ?? {
+      health: (await server.get("/healthz")).status,
+      steps: await server.metric("clothlab_steps_total"),
+      brought_back: await server.metric("clothlab_sessions_brought_back_total"),
+      megabytes_sent: Math.round((await server.metric("clothlab_bytes_sent_total")) / 1e6),
+    },
     at_rest: {
       resident_MB: spread("resident_MB"),
       resident_MB_per_hour: Number((60 * slope(later, "minute", "resident_MB")).toFixed(2)),
       descriptors: spread("descriptors"),
       threads: spread("threads"),
     },
-    busy_most: Object.fromEntries(["resident_MB", "descriptors", "threads"].map((what) => [what, Math.max(...samples.map((s) => s[what]))])),
+    busy_most: Object.fromEntries(
+      ["resident_MB", "descriptors", "threads"].map((what) => [what, Math.max(...samples.map((s) => s[what]))]),
+    ),
     done: Object.fromEntries(Object.entries(counts).sort(([a], [b]) => (a < b ? -1 : 1))),
     troubles,
     logged: server.stderr.split("\n").reduce((events, line) => {
@@ -300,5 +383,6 @@ if (out) {
 }
 // Some threads come late and stay, such as Mesa's writers of its shader cache, up to four a screen: so half is compared with half.
 const half = rests.length >> 1;
-const grows = (what) => Math.max(...rests.slice(half).map((r) => r[what])) > Math.max(...rests.slice(0, half).map((r) => r[what]));
+const grows = (what) =>
+  Math.max(...rests.slice(half).map((r) => r[what])) > Math.max(...rests.slice(0, half).map((r) => r[what]));
 process.exit(ended || (half > 0 && (grows("descriptors") || grows("threads"))) ? 1 : 0);

@@ -12,11 +12,17 @@ const args = process.argv.slice(2);
 const outAt = args.indexOf("--out");
 const out = outAt < 0 ? null : args.splice(outAt, 2)[1];
 const [viewers = 100, seconds = 20] = args.map(Number);
-const rate = 30, slowRate = 64_000;
+const rate = 30,
+  slowRate = 64_000;
 const round = (value, digits = 2) => Number(value.toFixed(digits));
 
-const server = await Server.start("--max-clients", String(viewers + 10), "--max-clients-per-address", String(viewers + 10));
-const resident = () => Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${server.child.pid}/status`, "utf8"))[1]);  // [kB]
+const server = await Server.start(
+  "--max-clients",
+  String(viewers + 10),
+  "--max-clients-per-address",
+  String(viewers + 10),
+);
+const resident = () => Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${server.child.pid}/status`, "utf8"))[1]); // [kB]
 
 /// Counts frames without decoding them: the measuring must not be what is measured.
 class Viewer {
@@ -69,11 +75,16 @@ try {
   const stop = throttle(slow.client.socket._socket, slowRate);
   await sleep(3000);
   slow.onFrame = (time) => ages.push(1000 * (first.time - time));
-  const counts = all.map((viewer) => viewer.frames), slowBefore = slow.frames;
-  const simulated = first.time, begun = performance.now();
+  const counts = all.map((viewer) => viewer.frames),
+    slowBefore = slow.frames;
+  const simulated = first.time,
+    begun = performance.now();
   await sleep(seconds * 1000);
   const elapsed = (performance.now() - begun) / 1000;
-  const rates = all.map((viewer, i) => (viewer.frames - counts[i]) / elapsed).filter((_, i) => !all[i].stalled).sort((a, b) => a - b);
+  const rates = all
+    .map((viewer, i) => (viewer.frames - counts[i]) / elapsed)
+    .filter((_, i) => !all[i].stalled)
+    .sort((a, b) => a - b);
   ages.sort((a, b) => a - b);
   result = {
     benchmark: "viewers",
@@ -86,7 +97,11 @@ try {
     slow_viewer: {
       bytes_per_second: slowRate,
       frames_per_second: round((slow.frames - slowBefore) / elapsed),
-      frame_age_ms: { median: round(ages[ages.length >> 1] ?? NaN, 0), p95: round(ages[Math.floor(0.95 * ages.length)] ?? NaN, 0), longest: round(ages.at(-1) ?? NaN, 0) },
+      frame_age_ms: {
+        median: round(ages[ages.length >> 1] ?? NaN, 0),
+        p95: round(ages[Math.floor(0.95 * ages.length)] ?? NaN, 0),
+        longest: round(ages.at(-1) ?? NaN, 0),
+      },
     },
     server_memory_kB_a_viewer: round((resident() - before) / viewers, 0),
   };

@@ -6,7 +6,12 @@ import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
 import { Client, patience, Server } from "../protocol/harness.mjs";
 
-const candidates = [process.env.CLOTHLAB_BROWSER, "/usr/bin/chromium", "/usr/bin/google-chrome", "/usr/bin/google-chrome-stable"];
+const candidates = [
+  process.env.CLOTHLAB_BROWSER,
+  "/usr/bin/chromium",
+  "/usr/bin/google-chrome",
+  "/usr/bin/google-chrome-stable",
+];
 const executablePath = candidates.find((path) => path && existsSync(path));
 
 /// A test that needs a browser; skipped, and said so, only where there is none.
@@ -16,7 +21,7 @@ export function browserTest(name, body) {
     try {
       await body();
     } finally {
-      await Promise.all((running?.contexts() ?? []).map((context) => context.close()));  // pages left open would draw on
+      await Promise.all((running?.contexts() ?? []).map((context) => context.close())); // pages left open would draw on
     }
   });
 }
@@ -43,8 +48,17 @@ export async function launch() {
   running = await chromium.launch({
     executablePath,
     headless: true,
-    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--disable-quic",
-      "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+    args: [
+      "--no-sandbox",
+      "--use-angle=swiftshader",
+      "--enable-unsafe-swiftshader",
+      "--ignore-gpu-blocklist",
+      "--disable-quic",
+      "--no-first-run",
+      "--disable-background-networking",
+      "--disable-component-update",
+      "--disable-sync",
+    ],
   });
   return running;
 }
@@ -55,7 +69,9 @@ export function withBrowser() {
     browser: null,
     open: (server, options) => Viewer.open(here.browser, server, options),
   };
-  before(async () => { here.browser = await launch(); });
+  before(async () => {
+    here.browser = await launch();
+  });
   after(() => here.browser?.close());
   return here;
 }
@@ -74,14 +90,20 @@ export function withServer(...args) {
       return { viewer, client, scene: async () => (await client.request("scene.get", {})).document };
     },
   };
-  before(async () => { here.server = await Server.start("--max-sessions", "16", ...args); });
+  before(async () => {
+    here.server = await Server.start("--max-sessions", "16", ...args);
+  });
   after(() => here.server?.stop());
   return here;
 }
 
 export class Viewer {
   /// Opens the page on a session of its own, and waits until it has drawn.
-  static async open(browser, server, { session = "main", width = 900, height = 600, colorScheme = "light", drawn = 3 } = {}) {
+  static async open(
+    browser,
+    server,
+    { session = "main", width = 900, height = 600, colorScheme = "light", drawn = 3 } = {},
+  ) {
     const viewer = new Viewer();
     viewer.page = await browser.newPage({ viewport: { width, height }, colorScheme });
     viewer.page.setDefaultTimeout(patience);
@@ -95,9 +117,13 @@ export class Viewer {
     return viewer;
   }
 
-  until(condition, argument) { return this.page.waitForFunction(condition, argument, { timeout: patience }); }
+  until(condition, argument) {
+    return this.page.waitForFunction(condition, argument, { timeout: patience });
+  }
 
-  read(name) { return this.page.evaluate((key) => window.clothlab[key], name); }
+  read(name) {
+    return this.page.evaluate((key) => window.clothlab[key], name);
+  }
 
   input(type, section, label) {
     const folder = this.page.locator(`.lil-gui:has(> .lil-title:text-is("${section}")) > .lil-children`);
@@ -113,7 +139,9 @@ export class Viewer {
   }
 
   /// The number beside a slider.
-  number(section, label) { return this.input("text", section, label); }
+  number(section, label) {
+    return this.input("text", section, label);
+  }
 
   /// Vertex positions [m] of the frame on screen, decoded here from the bytes that were uploaded.
   positions() {
@@ -121,7 +149,8 @@ export class Viewer {
       const { header, buffer } = window.clothlab.lastFrame;
       const words = new Uint16Array(buffer, 64, header.vertexCount * 4);
       return Array.from({ length: header.vertexCount }, (_, i) =>
-        [0, 1, 2].map((axis) => header.boxMinimum[axis] + (header.boxExtent[axis] * words[4 * i + axis]) / 65535));
+        [0, 1, 2].map((axis) => header.boxMinimum[axis] + (header.boxExtent[axis] * words[4 * i + axis]) / 65535),
+      );
     });
   }
 
@@ -143,9 +172,14 @@ async function countRed(png) {
   const context = new OffscreenCanvas(image.width, image.height).getContext("2d");
   context.drawImage(image, 0, 0);
   // The middle of the window: no panel, no red button.
-  const left = Math.round(image.width * 0.26), width = Math.round(image.width * 0.4), height = Math.round(image.height * 0.86);
+  const left = Math.round(image.width * 0.26),
+    width = Math.round(image.width * 0.4),
+    height = Math.round(image.height * 0.86);
   const { data } = context.getImageData(left, 0, width, height);
-  let count = 0, sumX = 0, sumY = 0, checksum = 0;
+  let count = 0,
+    sumX = 0,
+    sumY = 0,
+    checksum = 0;
   const shades = new Set();
   for (let i = 0; i < data.length; i += 4) {
     const [r, g, b] = [data[i], data[i + 1], data[i + 2]];

@@ -3,24 +3,31 @@ import { browserTest, eventually, withServer } from "./browser.mjs";
 
 const { both } = withServer();
 
-browserTest("a slider dragged by mouse changes the server's scene; the last value arrives, few messages are sent", async () => {
-  const { viewer, client, scene } = await both("slider");
-  const slider = await viewer.slider("Cloth", "structural");
-  const box = await slider.boundingBox();
-  const at = (share) => [box.x + box.width * share, box.y + box.height / 2];
-  const started = Date.now();
-  await viewer.page.mouse.move(...at(0.75));
-  await viewer.page.mouse.down();
-  for (let i = 0; i < 60; ++i) await viewer.page.mouse.move(...at(0.75 - i * 0.005));
-  await viewer.page.mouse.up();
-  const seconds = (Date.now() - started) / 1000;
-  const shown = Number(await viewer.number("Cloth", "structural").inputValue());
-  assert.ok(shown < 20000, `the number beside the slider is ${shown}`);
-  await eventually("structural on the server", async () => (await scene()).cloths[0].material.structural, (value) => value === shown);
-  const sent = client.messages.filter((message) => message.method === "scene.changed").length;
-  assert.ok(sent >= 1 && sent <= 20 * seconds + 3, `${sent} patches in ${seconds} s`);
-  await client.close();
-});
+browserTest(
+  "a slider dragged by mouse changes the server's scene; the last value arrives, few messages are sent",
+  async () => {
+    const { viewer, client, scene } = await both("slider");
+    const slider = await viewer.slider("Cloth", "structural");
+    const box = await slider.boundingBox();
+    const at = (share) => [box.x + box.width * share, box.y + box.height / 2];
+    const started = Date.now();
+    await viewer.page.mouse.move(...at(0.75));
+    await viewer.page.mouse.down();
+    for (let i = 0; i < 60; ++i) await viewer.page.mouse.move(...at(0.75 - i * 0.005));
+    await viewer.page.mouse.up();
+    const seconds = (Date.now() - started) / 1000;
+    const shown = Number(await viewer.number("Cloth", "structural").inputValue());
+    assert.ok(shown < 20000, `the number beside the slider is ${shown}`);
+    await eventually(
+      "structural on the server",
+      async () => (await scene()).cloths[0].material.structural,
+      (value) => value === shown,
+    );
+    const sent = client.messages.filter((message) => message.method === "scene.changed").length;
+    assert.ok(sent >= 1 && sent <= 20 * seconds + 3, `${sent} patches in ${seconds} s`);
+    await client.close();
+  },
+);
 
 browserTest("a slider moved by keyboard changes the server's scene", async () => {
   const { viewer, client, scene } = await both("keyboard");
@@ -28,7 +35,11 @@ browserTest("a slider moved by keyboard changes the server's scene", async () =>
   const slider = await viewer.slider("Cloth", "damping");
   await slider.focus();
   for (let i = 0; i < 5; ++i) await viewer.page.keyboard.press("ArrowRight");
-  await eventually("damping", async () => (await scene()).cloths[0].material.damping, (value) => value > before);
+  await eventually(
+    "damping",
+    async () => (await scene()).cloths[0].material.damping,
+    (value) => value > before,
+  );
   await client.close();
 });
 
@@ -37,12 +48,19 @@ browserTest("both pins are edited together, and the sphere by its own fields", a
   const amplitude = await viewer.slider("2 pins", "amplitude");
   await amplitude.focus();
   await viewer.page.keyboard.press("Home");
-  await eventually("amplitudes", async () => (await scene()).cloths[0].pins.map((pin) => pin.motion.oscillate.amplitude),
-                   (all) => all.every((value) => value === 0));
+  await eventually(
+    "amplitudes",
+    async () => (await scene()).cloths[0].pins.map((pin) => pin.motion.oscillate.amplitude),
+    (all) => all.every((value) => value === 0),
+  );
   const radius = await viewer.slider("Collider: ball", "radius");
   await radius.focus();
   await viewer.page.keyboard.press("ArrowRight");
-  await eventually("radius", async () => (await scene()).colliders[0].sphere.radius, (value) => value > 0.25);
+  await eventually(
+    "radius",
+    async () => (await scene()).colliders[0].sphere.radius,
+    (value) => value > 0.25,
+  );
   await client.close();
 });
 
@@ -50,9 +68,17 @@ browserTest("self-collision is switched off and on", async () => {
   const { viewer, client, scene } = await both("toggle");
   const box = viewer.page.locator('.lil-gui:has(> .lil-title:text-is("Self-collision")) input[type=checkbox]').first();
   await box.uncheck();
-  await eventually("self_collision", async () => (await scene()).self_collision, (value) => value === null);
+  await eventually(
+    "self_collision",
+    async () => (await scene()).self_collision,
+    (value) => value === null,
+  );
   await box.check();
-  await eventually("self_collision", async () => (await scene()).self_collision, (value) => value?.thickness > 0);
+  await eventually(
+    "self_collision",
+    async () => (await scene()).self_collision,
+    (value) => value?.thickness > 0,
+  );
   await client.close();
 });
 
@@ -60,11 +86,19 @@ browserTest("the passes say what they take on the GPU, and those left out say wh
   const { viewer, client } = await both("passes");
   await viewer.page.locator(".passes summary").click();
   const time = (pass) => viewer.page.locator(`.passes li:has-text("${pass}") b`).textContent();
-  for (const pass of ["neighbour search", "symplectic euler"]) await eventually(pass, () => time(pass), (text) => /^[\d.]+ (µs|ms)$/.test(text));
+  for (const pass of ["neighbour search", "symplectic euler"])
+    await eventually(
+      pass,
+      () => time(pass),
+      (text) => /^[\d.]+ (µs|ms)$/.test(text),
+    );
   assert.equal(await time("pins"), "", "it has no dispatch of its own");
   await client.request("scene.patch", { patch: { self_collision: null } });
-  await eventually("why", () => viewer.page.locator('.passes li.skipped:has-text("neighbour search") span').allTextContents(),
-                   (texts) => texts.length === 1 && /self_collision is null/.test(texts[0]));
+  await eventually(
+    "why",
+    () => viewer.page.locator('.passes li.skipped:has-text("neighbour search") span').allTextContents(),
+    (texts) => texts.length === 1 && /self_collision is null/.test(texts[0]),
+  );
   await client.close();
 });
 
@@ -81,7 +115,11 @@ browserTest("a strain limit is set in percent, and its slider's left end takes i
   await slider.focus();
   await viewer.page.keyboard.press("Home");
   await eventually("strain_limit", limit, (value) => value === null);
-  await eventually("the number", () => number.inputValue(), (text) => text === "off");
+  await eventually(
+    "the number",
+    () => number.inputValue(),
+    (text) => text === "off",
+  );
   await client.close();
 });
 
@@ -89,10 +127,22 @@ browserTest("another viewer's edit moves the panel", async () => {
   const { viewer, client } = await both("other");
   await viewer.slider("Cloth", "bend");
   await client.request("scene.patch", { patch: [{ op: "replace", path: "/cloths/0/material/bend", value: 777 }] });
-  await eventually("the number in the panel", () => viewer.number("Cloth", "bend").inputValue(), (text) => text === "777");
+  await eventually(
+    "the number in the panel",
+    () => viewer.number("Cloth", "bend").inputValue(),
+    (text) => text === "777",
+  );
   await client.request("scene.patch", { patch: { gravity: [0, -3.5, 0], solver: { dt: 0.0005 } } });
-  await eventually("gravity in the panel", () => viewer.number("World", "gravity y").inputValue(), (text) => text === "-3.5");
-  await eventually("dt in the panel", () => viewer.number("Solver", "time step").inputValue(), (text) => text === "0.0005");
+  await eventually(
+    "gravity in the panel",
+    () => viewer.number("World", "gravity y").inputValue(),
+    (text) => text === "-3.5",
+  );
+  await eventually(
+    "dt in the panel",
+    () => viewer.number("Solver", "time step").inputValue(),
+    (text) => text === "0.0005",
+  );
   // No echo: the panel sends nothing back.
   const { revision } = await client.request("scene.get", {});
   await viewer.page.waitForTimeout(500);
@@ -112,7 +162,11 @@ browserTest("a refused edit is explained by a notice, and the control goes back"
   const text = await notice.innerText();
   for (const part of ["/solver/dt", "-4"]) assert.ok(text.includes(part), `the notice says ${JSON.stringify(text)}`);
   assert.match(text, /allowed: \S/);
-  await eventually("the control", () => number.inputValue(), (value) => value === before);
+  await eventually(
+    "the control",
+    () => number.inputValue(),
+    (value) => value === before,
+  );
   assert.equal(String((await scene()).solver.dt), before);
   await client.close();
 });
@@ -123,21 +177,41 @@ browserTest("pause pauses, step steps once, reset goes back to 0, and keys do th
   // The page comes to show the step at which the server stopped, however late it draws its last frame.
   const stopped = async () => {
     const { step } = await client.nextNotification("sim.status", (status) => status.playing === false);
-    await eventually("the last frame", () => viewer.read("step"), (shown) => shown === step);
+    await eventually(
+      "the last frame",
+      () => viewer.read("step"),
+      (shown) => shown === step,
+    );
     return step;
   };
   await page.getByRole("button", { name: "Pause" }).click();
   await page.getByRole("button", { name: "Play" }).waitFor();
   const at = await stopped();
   await page.getByRole("button", { name: "Step", exact: true }).click();
-  await eventually("one step", () => viewer.read("step"), (step) => step === at + 1);
+  await eventually(
+    "one step",
+    () => viewer.read("step"),
+    (step) => step === at + 1,
+  );
   await page.locator("#view").click({ position: { x: 640, y: 300 } });
   await page.keyboard.press(".");
-  await eventually("another step", () => viewer.read("step"), (step) => step === at + 2);
+  await eventually(
+    "another step",
+    () => viewer.read("step"),
+    (step) => step === at + 2,
+  );
   await page.keyboard.press("r");
-  await eventually("reset", () => viewer.read("step"), (step) => step === 0);
+  await eventually(
+    "reset",
+    () => viewer.read("step"),
+    (step) => step === 0,
+  );
   await page.keyboard.press(" ");
-  await eventually("playing", () => viewer.read("step"), (step) => step > 10);
+  await eventually(
+    "playing",
+    () => viewer.read("step"),
+    (step) => step > 10,
+  );
   await page.keyboard.press(" ");
   await stopped();
   await client.close();
@@ -158,17 +232,24 @@ browserTest("speed, help, fit and hiding: the remaining controls do what they sa
   await page.keyboard.press("h");
   await page.locator("#panel").waitFor({ state: "visible" });
   // From where it looks; how near it is depends on where the cloth has got to (framing.test.mjs).
-  const camera = () => page.evaluate(() => {
-    const { object, target } = window.clothlab.stage.controls;
-    return object.position.clone().sub(target).normalize().toArray().map((v) => v.toFixed(3)).join();
-  });
+  const camera = () =>
+    page.evaluate(() => {
+      const { object, target } = window.clothlab.stage.controls;
+      return object.position
+        .clone()
+        .sub(target)
+        .normalize()
+        .toArray()
+        .map((v) => v.toFixed(3))
+        .join();
+    });
   const home = await camera();
   await page.mouse.move(500, 400);
   await page.mouse.down();
   await page.mouse.move(620, 380, { steps: 5 });
   await page.mouse.up();
   await eventually("the orbited camera", camera, (now) => now !== home);
-  await page.waitForTimeout(600);  // the swing of the damped controls ends
+  await page.waitForTimeout(600); // the swing of the damped controls ends
   await page.keyboard.press("f");
   await eventually("the fitted camera", camera, (now) => now === home);
   await client.close();
@@ -178,14 +259,26 @@ browserTest("a preset is loaded from the panel, and a divergence is told with it
   const { viewer, client, scene } = await both("preset");
   const preset = viewer.page.locator('.lil-controller:has(.lil-name:text-is("preset")) select');
   await preset.selectOption("drape");
-  await eventually("the scene's name", async () => (await scene()).name, (name) => name === "drape");
-  await eventually("the page's name", () => viewer.page.locator("#scene-name").innerText(), (name) => name === "drape");
+  await eventually(
+    "the scene's name",
+    async () => (await scene()).name,
+    (name) => name === "drape",
+  );
+  await eventually(
+    "the page's name",
+    () => viewer.page.locator("#scene-name").innerText(),
+    (name) => name === "drape",
+  );
   await preset.selectOption("blowup");
   const notice = viewer.page.locator(".notice.error");
   await notice.waitFor();
   assert.match(await notice.innerText(), /blew up/);
   const { dt } = (await scene()).solver;
   await notice.getByRole("button", { name: "Apply the remedy" }).click();
-  await eventually("the time step", async () => (await scene()).solver.dt, (value) => value < dt);
+  await eventually(
+    "the time step",
+    async () => (await scene()).solver.dt,
+    (value) => value < dt,
+  );
   await client.close();
 });

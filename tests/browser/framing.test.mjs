@@ -4,39 +4,73 @@ import assert from "node:assert/strict";
 import { browserTest, eventually, screenshots, withServer } from "./browser.mjs";
 
 const here = withServer();
-const sizes = [[390, 844], [844, 390], [1280, 720], [1920, 1080], [320, 568]];
-const moments = process.env.FRAMING_PICTURES ? [0.4, 0.8, 1.4, 2.2, 3] : [0.5, 1.4];  // [s] simulated
-const margin = 4;  // [CSS pixels] between the cloth and an edge or a card
+const sizes = [
+  [390, 844],
+  [844, 390],
+  [1280, 720],
+  [1920, 1080],
+  [320, 568],
+];
+const moments = process.env.FRAMING_PICTURES ? [0.4, 0.8, 1.4, 2.2, 3] : [0.5, 1.4]; // [s] simulated
+const margin = 4; // [CSS pixels] between the cloth and an edge or a card
 
 /// What of the frame on screen, and of its spheres, lies outside the window or behind a card: how many points, and the
 /// farthest. Projected here, by the camera's matrices alone.
 const hiddenPoints = (margin) => {
-  const { stage, lastFrame: { header, buffer }, document: scene } = window.clothlab;
+  const {
+    stage,
+    lastFrame: { header, buffer },
+    document: scene,
+  } = window.clothlab;
   const words = new Uint16Array(buffer, 64, header.vertexCount * 4);
   const points = Array.from({ length: header.vertexCount }, (_, i) =>
-    [0, 1, 2].map((axis) => header.boxMinimum[axis] + (header.boxExtent[axis] * words[4 * i + axis]) / 65535));
+    [0, 1, 2].map((axis) => header.boxMinimum[axis] + (header.boxExtent[axis] * words[4 * i + axis]) / 65535),
+  );
   const { camera } = stage;
   camera.updateMatrixWorld();
-  const times = (m, [x, y, z, w]) => [0, 1, 2, 3].map((row) => m[row] * x + m[row + 4] * y + m[row + 8] * z + m[row + 12] * w);
-  const cards = [...document.querySelectorAll(".card")].filter((card) => card.checkVisibility({ visibilityProperty: true }))
+  const times = (m, [x, y, z, w]) =>
+    [0, 1, 2, 3].map((row) => m[row] * x + m[row + 4] * y + m[row + 8] * z + m[row + 12] * w);
+  const cards = [...document.querySelectorAll(".card")]
+    .filter((card) => card.checkVisibility({ visibilityProperty: true }))
     .map((card) => [card.id, card.getBoundingClientRect()]);
-  let hidden = 0, worst = 0, where = "", left = 1e9, right = -1e9, top = 1e9, bottom = -1e9;
+  let hidden = 0,
+    worst = 0,
+    where = "",
+    left = 1e9,
+    right = -1e9,
+    top = 1e9,
+    bottom = -1e9;
   for (const point of points) {
     const eye = times(camera.matrixWorldInverse.elements, [...point, 1]);
     const clip = times(camera.projectionMatrix.elements, eye);
-    const x = (clip[0] / clip[3] + 1) / 2 * innerWidth, y = (1 - clip[1] / clip[3]) / 2 * innerHeight;
-    left = Math.min(left, x), right = Math.max(right, x), top = Math.min(top, y), bottom = Math.max(bottom, y);
-    const out = [["the window", Math.max(-x, x - innerWidth, -y, y - innerHeight)], ...cards.map(([id, box]) =>
-      [id, Math.min(x - box.left, box.right - x, y - box.top, box.bottom - y)])];
+    const x = ((clip[0] / clip[3] + 1) / 2) * innerWidth,
+      y = ((1 - clip[1] / clip[3]) / 2) * innerHeight;
+    (left = Math.min(left, x)), (right = Math.max(right, x)), (top = Math.min(top, y)), (bottom = Math.max(bottom, y));
+    const out = [
+      ["the window", Math.max(-x, x - innerWidth, -y, y - innerHeight)],
+      ...cards.map(([id, box]) => [id, Math.min(x - box.left, box.right - x, y - box.top, box.bottom - y)]),
+    ];
     const [by, depth] = out.reduce((a, b) => (b[1] > a[1] ? b : a));
     if (depth <= -margin) continue;
     hidden++;
-    if (where === "" || depth > worst) worst = depth, where = by;
+    if (where === "" || depth > worst) (worst = depth), (where = by);
   }
   // Nor may a card stick out itself.
-  const cut = cards.filter(([, box]) => box.left < 0 || box.right > innerWidth + 0.5).map(([id]) => id).join();
-  return { cut, hidden, of: points.length, worst: Math.round(worst), where, scene: scene.name, time: header.time,
-    box: [left, top, right, bottom].map(Math.round), fill: Math.max((right - left) / innerWidth, (bottom - top) / innerHeight) };
+  const cut = cards
+    .filter(([, box]) => box.left < 0 || box.right > innerWidth + 0.5)
+    .map(([id]) => id)
+    .join();
+  return {
+    cut,
+    hidden,
+    of: points.length,
+    worst: Math.round(worst),
+    where,
+    scene: scene.name,
+    time: header.time,
+    box: [left, top, right, bottom].map(Math.round),
+    fill: Math.max((right - left) / innerWidth, (bottom - top) / innerHeight),
+  };
 };
 
 /// Where things stand is looked at, not the picture: a software renderer would take most of the time for that.
@@ -49,14 +83,24 @@ async function check(viewer, moment, found = []) {
   for (const [width, height] of moment === "start" ? sizes : sizes.filter(([width]) => width < 1920)) {
     await viewer.page.setViewportSize({ width, height });
     // The layout follows at once, a sheet or a camera on its way a little later.
-    const seen = await eventually(`${moment} at ${width}x${height}`, async () => {
-      await viewer.page.waitForTimeout(60);
-      return viewer.page.evaluate(hiddenPoints, margin);
-    }, ({ hidden, cut }) => hidden === 0 && cut === "", 12_000).catch(async () => viewer.page.evaluate(hiddenPoints, margin));
-    if (process.env.FRAMING_PICTURES) await viewer.page.screenshot({ path: `${screenshots}framing-${seen.scene}-${moment}-${width}x${height}.png` });
-    if (seen.hidden) found.push(`${seen.scene} ${moment} at ${width}x${height}: ${seen.hidden} of ${seen.of} vertices, up to ${seen.worst} px into ${seen.where}; cloth ${seen.box}`);
+    const seen = await eventually(
+      `${moment} at ${width}x${height}`,
+      async () => {
+        await viewer.page.waitForTimeout(60);
+        return viewer.page.evaluate(hiddenPoints, margin);
+      },
+      ({ hidden, cut }) => hidden === 0 && cut === "",
+      12_000,
+    ).catch(async () => viewer.page.evaluate(hiddenPoints, margin));
+    if (process.env.FRAMING_PICTURES)
+      await viewer.page.screenshot({ path: `${screenshots}framing-${seen.scene}-${moment}-${width}x${height}.png` });
+    if (seen.hidden)
+      found.push(
+        `${seen.scene} ${moment} at ${width}x${height}: ${seen.hidden} of ${seen.of} vertices, up to ${seen.worst} px into ${seen.where}; cloth ${seen.box}`,
+      );
     else if (seen.cut) found.push(`at ${width}x${height} ${seen.cut} is cut off`);
-    else if (seen.fill < 0.15) found.push(`${seen.scene} ${moment} at ${width}x${height}: it fills ${seen.fill.toFixed(2)} of the window only`);
+    else if (seen.fill < 0.15)
+      found.push(`${seen.scene} ${moment} at ${width}x${height}: it fills ${seen.fill.toFixed(2)} of the window only`);
   }
   return found;
 }
@@ -65,54 +109,83 @@ async function check(viewer, moment, found = []) {
 async function stepTo(viewer, client, dt, time) {
   const now = await viewer.read("simTime");
   await client.request("sim.step", { steps: Math.max(1, Math.round((time - now) / dt)) });
-  await eventually(`the page at ${time} s`, () => viewer.read("simTime"), (shown) => shown > time - dt, 120_000);
+  await eventually(
+    `the page at ${time} s`,
+    () => viewer.read("simTime"),
+    (shown) => shown > time - dt,
+    120_000,
+  );
 }
 
-const presets = ["seed", "curtain", "flag", "drape", "tablecloth", "trampoline", "twist", "hanging-strip", "cantilever"];
+const presets = [
+  "seed",
+  "curtain",
+  "flag",
+  "drape",
+  "tablecloth",
+  "trampoline",
+  "twist",
+  "hanging-strip",
+  "cantilever",
+];
 for (const preset of presets) {
-  browserTest(`all of the cloth of ${preset} is seen on phones and screens, at the start and while it moves`, async () => {
-    const { viewer, client, scene } = await here.both(`framing-${preset}`, { width: 390, height: 844 });
-    await client.request("sim.pause", {});
-    await client.request("scene.load", { preset });
+  browserTest(
+    `all of the cloth of ${preset} is seen on phones and screens, at the start and while it moves`,
+    async () => {
+      const { viewer, client, scene } = await here.both(`framing-${preset}`, { width: 390, height: 844 });
+      await client.request("sim.pause", {});
+      await client.request("scene.load", { preset });
+      await client.request("sim.pause", {});
+      await client.request("sim.reset", {});
+      await viewer.until((name) => window.clothlab.document?.name === name && window.clothlab.simTime === 0, preset);
+      if (!process.env.FRAMING_PICTURES) await viewer.page.evaluate(onlyPlace);
+      const found = await check(viewer, "start");
+      const { dt } = (await scene()).solver;
+      for (const time of moments) {
+        await stepTo(viewer, client, dt, time);
+        await check(viewer, `${time} s`, found);
+      }
+      assert.deepEqual(found, []);
+    },
+  );
+}
+
+browserTest(
+  "a camera that somebody moved stays when the phone is turned, and F brings all of the cloth back",
+  async () => {
+    const { viewer, client } = await here.both("framing-moved", { width: 390, height: 844 });
     await client.request("sim.pause", {});
     await client.request("sim.reset", {});
-    await viewer.until((name) => window.clothlab.document?.name === name && window.clothlab.simTime === 0, preset);
-    if (!process.env.FRAMING_PICTURES) await viewer.page.evaluate(onlyPlace);
-    const found = await check(viewer, "start");
-    const { dt } = (await scene()).solver;
-    for (const time of moments) {
-      await stepTo(viewer, client, dt, time);
-      await check(viewer, `${time} s`, found);
-    }
-    assert.deepEqual(found, []);
-  });
-}
-
-browserTest("a camera that somebody moved stays when the phone is turned, and F brings all of the cloth back", async () => {
-  const { viewer, client } = await here.both("framing-moved", { width: 390, height: 844 });
-  await client.request("sim.pause", {});
-  await client.request("sim.reset", {});
-  await viewer.until(() => window.clothlab.simTime === 0);
-  const stand = () => viewer.page.evaluate(() => window.clothlab.stage.camera.position.toArray());
-  await viewer.page.mouse.move(195, 400);
-  await viewer.page.mouse.wheel(0, -1200);
-  await viewer.page.mouse.down();
-  await viewer.page.mouse.move(320, 430, { steps: 4 });
-  await viewer.page.mouse.up();
-  const apart = (a, b) => Math.hypot(...a.map((value, axis) => value - b[axis]));
-  // A drag swings out, for as many pictures as that takes.
-  let last = await stand();
-  await eventually("the camera at rest", async () => {
+    await viewer.until(() => window.clothlab.simTime === 0);
+    const stand = () => viewer.page.evaluate(() => window.clothlab.stage.camera.position.toArray());
+    await viewer.page.mouse.move(195, 400);
+    await viewer.page.mouse.wheel(0, -1200);
+    await viewer.page.mouse.down();
+    await viewer.page.mouse.move(320, 430, { steps: 4 });
+    await viewer.page.mouse.up();
+    const apart = (a, b) => Math.hypot(...a.map((value, axis) => value - b[axis]));
+    // A drag swings out, for as many pictures as that takes.
+    let last = await stand();
+    await eventually(
+      "the camera at rest",
+      async () => {
+        await viewer.page.waitForTimeout(300);
+        const before = last;
+        last = await stand();
+        return apart(last, before);
+      },
+      (way) => way < 1e-3,
+    );
+    const moved = last;
+    await viewer.page.setViewportSize({ width: 844, height: 390 });
     await viewer.page.waitForTimeout(300);
-    const before = last;
-    last = await stand();
-    return apart(last, before);
-  }, (way) => way < 1e-3);
-  const moved = last;
-  await viewer.page.setViewportSize({ width: 844, height: 390 });
-  await viewer.page.waitForTimeout(300);
-  const turned = await stand();
-  assert.ok(apart(turned, moved) < 0.02, `${moved} became ${turned}`);
-  await viewer.page.keyboard.press("f");
-  await eventually("all in view after F", () => viewer.page.evaluate(hiddenPoints, margin), ({ hidden }) => hidden === 0);
-});
+    const turned = await stand();
+    assert.ok(apart(turned, moved) < 0.02, `${moved} became ${turned}`);
+    await viewer.page.keyboard.press("f");
+    await eventually(
+      "all in view after F",
+      () => viewer.page.evaluate(hiddenPoints, margin),
+      ({ hidden }) => hidden === 0,
+    );
+  },
+);

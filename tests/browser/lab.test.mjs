@@ -8,12 +8,19 @@ const here = withServer();
 
 /// Hangs from its upper corners, nothing to collide with.
 const small = {
-  version: 1, name: "small", gravity: [0, -9.8, 0],
-  cloths: [{
-    name: "cloth", mesh: { grid: { columns: 7, rows: 7, width: 1, height: 1 } }, mass: { per_vertex: 0.1 },
-    transform: { translate: [0, 1, 0] }, material: { model: "springs", structural: 400, shear: 200, bend: 20, damping: 0.2 },
-    pins: [{ at: "corner:0,0" }, { at: "corner:6,0" }],
-  }],
+  version: 1,
+  name: "small",
+  gravity: [0, -9.8, 0],
+  cloths: [
+    {
+      name: "cloth",
+      mesh: { grid: { columns: 7, rows: 7, width: 1, height: 1 } },
+      mass: { per_vertex: 0.1 },
+      transform: { translate: [0, 1, 0] },
+      material: { model: "springs", structural: 400, shear: 200, bend: 20, damping: 0.2 },
+      pins: [{ at: "corner:0,0" }, { at: "corner:6,0" }],
+    },
+  ],
   solver: { method: "symplectic_euler", dt: 0.004 },
 };
 
@@ -37,25 +44,35 @@ const chosen = ["Symplectic Euler", "Verlet"];
 /// room for the points that the tests look for.
 async function start(panel, button, { methods = chosen, most = "120", seconds = "0.1" } = {}) {
   const options = panel.getByRole("button", { name: "Options" });
-  if (await options.getAttribute("aria-expanded") === "false") await options.click();
+  if ((await options.getAttribute("aria-expanded")) === "false") await options.click();
   for (const box of await panel.locator(".lab-methods input").all()) {
     const name = (await box.locator("xpath=..").innerText()).trim();
     await box.setChecked(methods.includes(name));
   }
   const time = panel.getByLabel("simulate [s]");
-  if (await time.count() > 0) await time.fill(seconds);
+  if ((await time.count()) > 0) await time.fill(seconds);
   const budget = panel.getByLabel("take at most");
-  if (await budget.count() > 0) await budget.selectOption(most);
+  if ((await budget.count()) > 0) await budget.selectOption(most);
   await panel.getByRole("button", { name: button }).click();
 }
 
-const finished = (panel) => eventually("the measurement", () => panel.getAttribute("data-state"), (state) => state === "finished", 180_000);
+const finished = (panel) =>
+  eventually(
+    "the measurement",
+    () => panel.getAttribute("data-state"),
+    (state) => state === "finished",
+    180_000,
+  );
 
 async function charted(session, options) {
   const all = await lab(session, options);
   await start(all.panel, "Measure the chart");
   await finished(all.panel);
-  await eventually("marks", () => all.marks.count(), (count) => count >= 4);
+  await eventually(
+    "marks",
+    () => all.marks.count(),
+    (count) => count >= 4,
+  );
   return all;
 }
 
@@ -65,135 +82,221 @@ function step(text) {
   return value * (unit === "µs" ? 1e-6 : 1e-3);
 }
 
-const silent = (viewer) => assert.deepEqual(viewer.complaints.filter((text) => !/GPU stall|GL Driver Message/.test(text)), []);
+const silent = (viewer) =>
+  assert.deepEqual(
+    viewer.complaints.filter((text) => !/GPU stall|GL Driver Message/.test(text)),
+    [],
+  );
 
-browserTest("the drawer opens by key and by button beside the panel, and closes by key, button and Escape", async () => {
-  const { viewer, client } = await here.both("main");
-  const { page } = viewer;
-  await client.request("sim.pause");  // the session that every server has would play for half a minute beside the next tests
-  const drawer = page.locator("#lab");
-  assert.ok(await drawer.isHidden());
-  await page.getByRole("button", { name: "Lab", exact: true }).click();
-  const [box, panel, transport] = await Promise.all([drawer, page.locator("#panel"), page.locator("#transport")].map((part) => part.boundingBox()));
-  assert.ok(box.x + box.width + 200 < panel.x, "there is room for the cloth");
-  assert.ok(transport.x > box.x + box.width && transport.x + transport.width < panel.x, "its buttons are in that room");
-  await page.keyboard.press("Escape");
-  await drawer.waitFor({ state: "hidden" });
-  await page.keyboard.press("l");
-  await drawer.waitFor();
-  await page.keyboard.press("ArrowRight");
-  assert.equal(await page.getByRole("tab", { selected: true }).innerText(), "Stability");
-  await page.getByRole("button", { name: "Close the lab" }).click();
-  await drawer.waitFor({ state: "hidden" });
-});
-
-browserTest("a chart is measured and drawn; a point tells its settings, and a click applies them, with a way back", async () => {
-  const { viewer, page, scene, panel, marks } = await charted("lab-chart");
-  const { solver } = await scene();
-  const mark = panel.locator('.lab-picture .mark[data-method="verlet"]:not(.blown)').first();
-  await mark.hover();
-  const tip = page.getByRole("tooltip");
-  const told = await tip.innerText();
-  assert.match(told, /^Verlet, dt [\d.]+\s(ms|µs)[^]*position error \d[^]*simulated second[^]*of the stability limit[^]*Click: apply$/);
-  await mark.click();
-  const now = await eventually("the scene", async () => (await scene()).solver, ({ method }) => method === "verlet");
-  assert.ok(Math.abs(now.dt / step(told) - 1) < 0.01, `${now.dt} s applied, ${told}`);
-  await eventually("the panel", () => page.getByRole("combobox", { name: "method" }).inputValue(), (value) => value === "Verlet");
-  const notice = page.locator(".notice", { hasText: "Applied: Verlet" });
-  const before = await notice.innerText();
-  for (const part of ["Before: ", "method was symplectic euler", "dt was 0.004"]) assert.ok(before.includes(part), before);
-  await notice.getByRole("button", { name: "Undo" }).click();
-  await eventually("the scene as it was", async () => (await scene()).solver, (back) => back.method === solver.method && back.dt === solver.dt);
-  assert.ok(await marks.count() > 0);
-  silent(viewer);
-});
-
-browserTest("the points are walked with the arrow keys, and Enter applies one; the table and the files say the same", async () => {
-  const { page, scene, panel, marks } = await charted("lab-keys");
-  const tip = page.getByRole("tooltip");
-  await panel.locator('.lab-picture [data-index][tabindex="0"]').focus();
-  // From wherever Tab comes in, to the end of its curve and back one.
-  for (let told = await tip.innerText(), before = ""; told !== before;) {
-    before = told;
+browserTest(
+  "the drawer opens by key and by button beside the panel, and closes by key, button and Escape",
+  async () => {
+    const { viewer, client } = await here.both("main");
+    const { page } = viewer;
+    await client.request("sim.pause"); // the session that every server has would play for half a minute beside the next tests
+    const drawer = page.locator("#lab");
+    assert.ok(await drawer.isHidden());
+    await page.getByRole("button", { name: "Lab", exact: true }).click();
+    const [box, panel, transport] = await Promise.all(
+      [drawer, page.locator("#panel"), page.locator("#transport")].map((part) => part.boundingBox()),
+    );
+    assert.ok(box.x + box.width + 200 < panel.x, "there is room for the cloth");
+    assert.ok(
+      transport.x > box.x + box.width && transport.x + transport.width < panel.x,
+      "its buttons are in that room",
+    );
+    await page.keyboard.press("Escape");
+    await drawer.waitFor({ state: "hidden" });
+    await page.keyboard.press("l");
+    await drawer.waitFor();
     await page.keyboard.press("ArrowRight");
-    told = await tip.innerText();
-  }
-  const first = await tip.innerText();
-  await page.keyboard.press("ArrowLeft");
-  const second = await tip.innerText();
-  assert.ok(step(second) < step(first), `along its curve to shorter steps: from ${first} to ${second}`);
-  await page.keyboard.press("ArrowDown");
-  const other = await tip.innerText();
-  assert.notEqual(other.split(",")[0], second.split(",")[0], "another method");
-  await page.keyboard.press("Enter");
-  await eventually("the scene", async () => (await scene()).solver.dt, (dt) => Math.abs(dt / step(other) - 1) < 0.01);
+    assert.equal(await page.getByRole("tab", { selected: true }).innerText(), "Stability");
+    await page.getByRole("button", { name: "Close the lab" }).click();
+    await drawer.waitFor({ state: "hidden" });
+  },
+);
 
-  await panel.locator("summary", { hasText: "All points as a table" }).click();
-  const rows = panel.locator("tbody tr:not(.blown)");
-  const cells = async (row) => (await row.locator("th, td").allInnerTexts()).map((text) => text.trim());
-  const milliseconds = ([, , , , cost]) => Number.parseFloat(cost) * (/\ss$/.test(cost) ? 1000 : 1);
-  const costs = await Promise.all((await rows.all()).map(async (row) => milliseconds(await cells(row))));
-  assert.ok(costs.length >= 4 && costs.every((cost, i) => i === 0 || !(cost < costs[i - 1])), `by rising cost: ${costs}`);
-  const [method, dt] = await cells(rows.last());
-  await rows.last().getByRole("button", { name: "Apply" }).click();
-  await eventually("the scene", async () => (await scene()).solver.dt, (now) => Math.abs(now / step(`dt ${dt}`) - 1) < 0.01);
-  assert.ok(chosen.includes(method));
+browserTest(
+  "a chart is measured and drawn; a point tells its settings, and a click applies them, with a way back",
+  async () => {
+    const { viewer, page, scene, panel, marks } = await charted("lab-chart");
+    const { solver } = await scene();
+    const mark = panel.locator('.lab-picture .mark[data-method="verlet"]:not(.blown)').first();
+    await mark.hover();
+    const tip = page.getByRole("tooltip");
+    const told = await tip.innerText();
+    assert.match(
+      told,
+      /^Verlet, dt [\d.]+\s(ms|µs)[^]*position error \d[^]*simulated second[^]*of the stability limit[^]*Click: apply$/,
+    );
+    await mark.click();
+    const now = await eventually(
+      "the scene",
+      async () => (await scene()).solver,
+      ({ method }) => method === "verlet",
+    );
+    assert.ok(Math.abs(now.dt / step(told) - 1) < 0.01, `${now.dt} s applied, ${told}`);
+    await eventually(
+      "the panel",
+      () => page.getByRole("combobox", { name: "method" }).inputValue(),
+      (value) => value === "Verlet",
+    );
+    const notice = page.locator(".notice", { hasText: "Applied: Verlet" });
+    const before = await notice.innerText();
+    for (const part of ["Before: ", "method was symplectic euler", "dt was 0.004"])
+      assert.ok(before.includes(part), before);
+    await notice.getByRole("button", { name: "Undo" }).click();
+    await eventually(
+      "the scene as it was",
+      async () => (await scene()).solver,
+      (back) => back.method === solver.method && back.dt === solver.dt,
+    );
+    assert.ok((await marks.count()) > 0);
+    silent(viewer);
+  },
+);
 
-  const download = async (format) => {
-    const [file] = await Promise.all([page.waitForEvent("download"), panel.getByRole("button", { name: format, exact: true }).click()]);
-    assert.equal(file.suggestedFilename(), `small-chart.${format.toLowerCase()}`);
-    return readFileSync(await file.path(), "utf8");
-  };
-  const { points } = JSON.parse(await download("JSON"));
-  assert.ok(points.length >= await marks.count() && points.every(({ patch }) => patch.solver.dt > 0));
-  const lines = (await download("CSV")).trim().split(/\r?\n/);
-  assert.equal(lines.length, points.length + 1);
-  const root = await page.evaluate((text) => new DOMParser().parseFromString(text, "image/svg+xml").documentElement.localName, await download("SVG"));
-  assert.equal(root, "svg");
-});
+browserTest(
+  "the points are walked with the arrow keys, and Enter applies one; the table and the files say the same",
+  async () => {
+    const { page, scene, panel, marks } = await charted("lab-keys");
+    const tip = page.getByRole("tooltip");
+    await panel.locator('.lab-picture [data-index][tabindex="0"]').focus();
+    // From wherever Tab comes in, to the end of its curve and back one.
+    for (let told = await tip.innerText(), before = ""; told !== before; ) {
+      before = told;
+      await page.keyboard.press("ArrowRight");
+      told = await tip.innerText();
+    }
+    const first = await tip.innerText();
+    await page.keyboard.press("ArrowLeft");
+    const second = await tip.innerText();
+    assert.ok(step(second) < step(first), `along its curve to shorter steps: from ${first} to ${second}`);
+    await page.keyboard.press("ArrowDown");
+    const other = await tip.innerText();
+    assert.notEqual(other.split(",")[0], second.split(",")[0], "another method");
+    await page.keyboard.press("Enter");
+    await eventually(
+      "the scene",
+      async () => (await scene()).solver.dt,
+      (dt) => Math.abs(dt / step(other) - 1) < 0.01,
+    );
+
+    await panel.locator("summary", { hasText: "All points as a table" }).click();
+    const rows = panel.locator("tbody tr:not(.blown)");
+    const cells = async (row) => (await row.locator("th, td").allInnerTexts()).map((text) => text.trim());
+    const milliseconds = ([, , , , cost]) => Number.parseFloat(cost) * (/\ss$/.test(cost) ? 1000 : 1);
+    const costs = await Promise.all((await rows.all()).map(async (row) => milliseconds(await cells(row))));
+    assert.ok(
+      costs.length >= 4 && costs.every((cost, i) => i === 0 || !(cost < costs[i - 1])),
+      `by rising cost: ${costs}`,
+    );
+    const [method, dt] = await cells(rows.last());
+    await rows.last().getByRole("button", { name: "Apply" }).click();
+    await eventually(
+      "the scene",
+      async () => (await scene()).solver.dt,
+      (now) => Math.abs(now / step(`dt ${dt}`) - 1) < 0.01,
+    );
+    assert.ok(chosen.includes(method));
+
+    const download = async (format) => {
+      const [file] = await Promise.all([
+        page.waitForEvent("download"),
+        panel.getByRole("button", { name: format, exact: true }).click(),
+      ]);
+      assert.equal(file.suggestedFilename(), `small-chart.${format.toLowerCase()}`);
+      return readFileSync(await file.path(), "utf8");
+    };
+    const { points } = JSON.parse(await download("JSON"));
+    assert.ok(points.length >= (await marks.count()) && points.every(({ patch }) => patch.solver.dt > 0));
+    const lines = (await download("CSV")).trim().split(/\r?\n/);
+    assert.equal(lines.length, points.length + 1);
+    const root = await page.evaluate(
+      (text) => new DOMParser().parseFromString(text, "image/svg+xml").documentElement.localName,
+      await download("SVG"),
+    );
+    assert.equal(root, "svg");
+  },
+);
 
 browserTest("while a chart grows, the point that has the keyboard's focus keeps it, and its tooltip", async () => {
   const { panel, page, marks, drawer } = await lab("lab-focus");
-  await start(panel, "Measure the chart", { methods: ["Verlet", "XPBD", "VBD", "PBD", "Implicit Euler"], most: "600", seconds: "5" });
-  await eventually("a first point", () => marks.count(), (count) => count >= 1, 180_000);
+  await start(panel, "Measure the chart", {
+    methods: ["Verlet", "XPBD", "VBD", "PBD", "Implicit Euler"],
+    most: "600",
+    seconds: "5",
+  });
+  await eventually(
+    "a first point",
+    () => marks.count(),
+    (count) => count >= 1,
+    180_000,
+  );
   await panel.locator('.lab-picture [data-index][tabindex="0"]').focus();
   const key = await page.evaluate(() => document.activeElement.dataset.index);
   for (let redrawn = 0; redrawn < 2; ++redrawn) {
-    await panel.locator(".lab-picture svg").evaluate((drawing) => { drawing.dataset.old = "yes"; });
-    await eventually("a new drawing", () => panel.locator(".lab-picture svg[data-old]").count(), (count) => count === 0, 180_000);
+    await panel.locator(".lab-picture svg").evaluate((drawing) => {
+      drawing.dataset.old = "yes";
+    });
+    await eventually(
+      "a new drawing",
+      () => panel.locator(".lab-picture svg[data-old]").count(),
+      (count) => count === 0,
+      180_000,
+    );
     assert.equal(await page.evaluate(() => document.activeElement.dataset.index), key);
     assert.ok(await page.getByRole("tooltip").isVisible());
   }
   await drawer.getByRole("button", { name: "Cancel" }).click();
 });
 
-browserTest("the present setting's marker moves with the time step, or says that nothing was measured there; another scene makes the chart stale", async () => {
-  const { client, panel } = await charted("lab-marker");
-  const marker = panel.locator(".lab-present circle").first();
-  const says = panel.locator(".lab-now");
-  const place = async () => [Number(await marker.getAttribute("cx")), Number(await marker.getAttribute("cy"))];
-  await panel.locator(".lab-present").waitFor({ state: "attached" });
-  assert.match(await says.innerText(), /Now: Symplectic Euler, dt 4\sms: error \S+, \S+\s(ms|s) a simulated second/);
-  const [x, y] = await place();
-  await client.request("scene.patch", { patch: { solver: { dt: 0.002 } } });
-  // Half the step, first order: half the error. What it costs is measured, and so short a run may come out either way.
-  await eventually("the sentence", () => says.innerText(), (text) => /Now: Symplectic Euler, dt 2\sms: error \S+, \S+\s(ms|s) a simulated second/.test(text));
-  await eventually("further left, at another cost", place, ([nowX, nowY]) => nowX < x && nowY !== y);
-  await client.request("scene.patch", { patch: { solver: { method: "vbd", iterations: 7 } } });
-  await eventually("no place", () => says.innerText(), (text) => /VBD, dt 2\sms, 7 iterations. Not measured: /.test(text));
-  assert.equal(await panel.locator(".lab-present").count(), 0);
-  assert.equal(await panel.getByText("Measured for an earlier scene").count(), 0, "the chart does not depend on how the scene is stepped");
-  // What moves the cloth otherwise makes it stale, until it is taken back.
-  await client.request("scene.patch", { patch: { gravity: [0, -3, 0] } });
-  const badge = panel.getByText("Measured for an earlier scene");
-  await badge.waitFor();
-  await client.request("scene.patch", { patch: { gravity: [0, -9.8, 0] } });
-  await badge.waitFor({ state: "detached" });
-});
+browserTest(
+  "the present setting's marker moves with the time step, or says that nothing was measured there; another scene makes the chart stale",
+  async () => {
+    const { client, panel } = await charted("lab-marker");
+    const marker = panel.locator(".lab-present circle").first();
+    const says = panel.locator(".lab-now");
+    const place = async () => [Number(await marker.getAttribute("cx")), Number(await marker.getAttribute("cy"))];
+    await panel.locator(".lab-present").waitFor({ state: "attached" });
+    assert.match(await says.innerText(), /Now: Symplectic Euler, dt 4\sms: error \S+, \S+\s(ms|s) a simulated second/);
+    const [x, y] = await place();
+    await client.request("scene.patch", { patch: { solver: { dt: 0.002 } } });
+    // Half the step, first order: half the error. What it costs is measured, and so short a run may come out either way.
+    await eventually(
+      "the sentence",
+      () => says.innerText(),
+      (text) => /Now: Symplectic Euler, dt 2\sms: error \S+, \S+\s(ms|s) a simulated second/.test(text),
+    );
+    await eventually("further left, at another cost", place, ([nowX, nowY]) => nowX < x && nowY !== y);
+    await client.request("scene.patch", { patch: { solver: { method: "vbd", iterations: 7 } } });
+    await eventually(
+      "no place",
+      () => says.innerText(),
+      (text) => /VBD, dt 2\sms, 7 iterations. Not measured: /.test(text),
+    );
+    assert.equal(await panel.locator(".lab-present").count(), 0);
+    assert.equal(
+      await panel.getByText("Measured for an earlier scene").count(),
+      0,
+      "the chart does not depend on how the scene is stepped",
+    );
+    // What moves the cloth otherwise makes it stale, until it is taken back.
+    await client.request("scene.patch", { patch: { gravity: [0, -3, 0] } });
+    const badge = panel.getByText("Measured for an earlier scene");
+    await badge.waitFor();
+    await client.request("scene.patch", { patch: { gravity: [0, -9.8, 0] } });
+    await badge.waitFor({ state: "detached" });
+  },
+);
 
 browserTest("a measurement is cancelled, and a second one waits for the first", async () => {
   const { panel, drawer, page } = await lab("lab-cancel");
-  await start(panel, "Measure the chart", { methods: ["Verlet", "XPBD", "VBD", "PBD", "Implicit Euler"], most: "600", seconds: "5" });
+  await start(panel, "Measure the chart", {
+    methods: ["Verlet", "XPBD", "VBD", "PBD", "Implicit Euler"],
+    most: "600",
+    seconds: "5",
+  });
   await panel.getByRole("progressbar").waitFor();
   await page.getByRole("tab", { name: "Stability" }).click();
   await drawer.getByRole("button", { name: "Measure the map" }).click();
@@ -202,7 +305,10 @@ browserTest("a measurement is cancelled, and a second one waits for the first", 
   await panel.getByText("Cancelled before anything was measured").waitFor();
   await page.getByRole("tab", { name: "Chart" }).click();
   await drawer.getByRole("button", { name: "Cancel" }).click();
-  await panel.locator(".lab-badges").getByText(/^Cancelled/).waitFor();
+  await panel
+    .locator(".lab-badges")
+    .getByText(/^Cancelled/)
+    .waitFor();
 });
 
 browserTest("when the connection is lost the drawer keeps what it has, and says so", async () => {
@@ -214,85 +320,133 @@ browserTest("when the connection is lost the drawer keeps what it has, and says 
   assert.equal(await marks.count(), count);
 });
 
-browserTest("the stability map has a panel a method, and a trial that is clicked becomes the scene's setting", async () => {
-  const { viewer, page, panel, scene } = await lab("lab-map", { tab: "Stability" });
-  await start(panel, "Measure the map", { methods: ["Verlet"] });
-  await finished(panel);
-  const cells = panel.locator('.panel[data-method="verlet"] [data-cell]');
-  await eventually("trials", () => cells.count(), (count) => count >= 9);
-  assert.equal(await panel.locator(".panel").count(), 1);
-  await panel.locator('.panel [data-cell][tabindex="0"]').focus();
-  const told = await page.getByRole("tooltip").innerText();
-  assert.match(told, /^Verlet, dt \S+\s(ms|µs), stiffness × 0.01\n(blew up|held)[^]*theory's limit: /);
-  const before = (await scene()).cloths[0].material;
-  await page.keyboard.press("Enter");
-  const { cloths: [{ material }] } = await eventually("the scene", scene, ({ solver }) => solver.method === "verlet");
-  for (const kind of ["structural", "shear", "bend"]) assert.ok(Math.abs(material[kind] / before[kind] - 0.01) < 1e-6, `${kind} is ${material[kind]} N/m`);
-  await panel.locator("summary", { hasText: "All boundaries as a table (9)" }).click();
-  assert.equal(await panel.locator("tbody tr").count(), 9);
-  silent(viewer);
-});
+browserTest(
+  "the stability map has a panel a method, and a trial that is clicked becomes the scene's setting",
+  async () => {
+    const { viewer, page, panel, scene } = await lab("lab-map", { tab: "Stability" });
+    await start(panel, "Measure the map", { methods: ["Verlet"] });
+    await finished(panel);
+    const cells = panel.locator('.panel[data-method="verlet"] [data-cell]');
+    await eventually(
+      "trials",
+      () => cells.count(),
+      (count) => count >= 9,
+    );
+    assert.equal(await panel.locator(".panel").count(), 1);
+    await panel.locator('.panel [data-cell][tabindex="0"]').focus();
+    const told = await page.getByRole("tooltip").innerText();
+    assert.match(told, /^Verlet, dt \S+\s(ms|µs), stiffness × 0.01\n(blew up|held)[^]*theory's limit: /);
+    const before = (await scene()).cloths[0].material;
+    await page.keyboard.press("Enter");
+    const {
+      cloths: [{ material }],
+    } = await eventually("the scene", scene, ({ solver }) => solver.method === "verlet");
+    for (const kind of ["structural", "shear", "bend"])
+      assert.ok(Math.abs(material[kind] / before[kind] - 0.01) < 1e-6, `${kind} is ${material[kind]} N/m`);
+    await panel.locator("summary", { hasText: "All boundaries as a table (9)" }).click();
+    assert.equal(await panel.locator("tbody tr").count(), 9);
+    silent(viewer);
+  },
+);
 
-browserTest("a tolerance is answered with a sentence, a setting to expect an error and a cost of, and a button that applies it", async () => {
-  const { viewer, page, panel, scene } = await lab("lab-choose", { tab: "Choose" });
-  await panel.getByLabel("Tolerance").fill("2");
-  await panel.getByRole("button", { name: "Find the cheapest" }).click();
-  await page.getByText(/The tolerance is 2; allowed is/).waitFor();
-  await panel.getByRole("button", { name: "1e-2" }).click();
-  await start(panel, "Find the cheapest");
-  await finished(panel);
-  assert.match(await panel.locator(".lab-answer").innerText(), /^\S.{20,}/);
-  const card = panel.locator(".lab-card.chosen");
-  const text = await card.innerText();
-  const [, name, error, atMost] = /\n(Verlet|Symplectic Euler), dt [^]*expected error ([^\s,]+)(?: \(at most (\S+)\))?, \S+\s(?:ms|s)(?: \(\S+\s\S+ … \S+\s\S+\))? a simulated second/.exec(text) ?? assert.fail(text);
-  assert.ok(Number(error) <= Number(atMost ?? error) && Number(atMost ?? error) <= 1e-2, `${error}, at most ${atMost}, is expected`);
-  await card.getByRole("button", { name: "Apply" }).click();
-  await eventually("the scene", async () => (await scene()).solver, (solver) =>
-    solver.method === name.toLowerCase().replace(" ", "_") && Math.abs(solver.dt / step(text) - 1) < 0.01);
-  silent(viewer);
-});
+browserTest(
+  "a tolerance is answered with a sentence, a setting to expect an error and a cost of, and a button that applies it",
+  async () => {
+    const { viewer, page, panel, scene } = await lab("lab-choose", { tab: "Choose" });
+    await panel.getByLabel("Tolerance").fill("2");
+    await panel.getByRole("button", { name: "Find the cheapest" }).click();
+    await page.getByText(/The tolerance is 2; allowed is/).waitFor();
+    await panel.getByRole("button", { name: "1e-2" }).click();
+    await start(panel, "Find the cheapest");
+    await finished(panel);
+    assert.match(await panel.locator(".lab-answer").innerText(), /^\S.{20,}/);
+    const card = panel.locator(".lab-card.chosen");
+    const text = await card.innerText();
+    const [, name, error, atMost] =
+      /\n(Verlet|Symplectic Euler), dt [^]*expected error ([^\s,]+)(?: \(at most (\S+)\))?, \S+\s(?:ms|s)(?: \(\S+\s\S+ … \S+\s\S+\))? a simulated second/.exec(
+        text,
+      ) ?? assert.fail(text);
+    assert.ok(
+      Number(error) <= Number(atMost ?? error) && Number(atMost ?? error) <= 1e-2,
+      `${error}, at most ${atMost}, is expected`,
+    );
+    await card.getByRole("button", { name: "Apply" }).click();
+    await eventually(
+      "the scene",
+      async () => (await scene()).solver,
+      (solver) => solver.method === name.toLowerCase().replace(" ", "_") && Math.abs(solver.dt / step(text) - 1) < 0.01,
+    );
+    silent(viewer);
+  },
+);
 
-browserTest("each part of the scene has a row that says what it is worth, and one of them is taken out by its button", async () => {
-  const { viewer, page, panel, scene } = await lab("lab-simplify", { tab: "Simplify" });
-  await start(panel, "Measure the parts");
-  await finished(panel);
-  const row = panel.locator("tbody tr", { hasText: "bend" }).first();
-  assert.match(await row.innerText(), /bend springs\s+\S+\s+[+−±]\d+ %\s+(?:[+−±]\d+ % … [+−±]\d+ %\s+)?(keep|drop|within the noise)/);
-  await row.getByRole("button", { name: "Apply" }).click();
-  await eventually("the scene", async () => (await scene()).cloths[0].material.bend, (bend) => bend === 0);
-  await page.locator(".notice").getByRole("button", { name: "Undo" }).click();
-  await eventually("the scene as it was", async () => (await scene()).cloths[0].material.bend, (bend) => bend === 20);
-  silent(viewer);
-});
+browserTest(
+  "each part of the scene has a row that says what it is worth, and one of them is taken out by its button",
+  async () => {
+    const { viewer, page, panel, scene } = await lab("lab-simplify", { tab: "Simplify" });
+    await start(panel, "Measure the parts");
+    await finished(panel);
+    const row = panel.locator("tbody tr", { hasText: "bend" }).first();
+    assert.match(
+      await row.innerText(),
+      /bend springs\s+\S+\s+[+−±]\d+ %\s+(?:[+−±]\d+ % … [+−±]\d+ %\s+)?(keep|drop|within the noise)/,
+    );
+    await row.getByRole("button", { name: "Apply" }).click();
+    await eventually(
+      "the scene",
+      async () => (await scene()).cloths[0].material.bend,
+      (bend) => bend === 0,
+    );
+    await page.locator(".notice").getByRole("button", { name: "Undo" }).click();
+    await eventually(
+      "the scene as it was",
+      async () => (await scene()).cloths[0].material.bend,
+      (bend) => bend === 20,
+    );
+    silent(viewer);
+  },
+);
 
 /// Parts of the drawer that stick out of it or of the window, and words that are cut off.
 const cutOff = () => {
   const problems = [];
   const drawer = document.getElementById("lab").getBoundingClientRect();
-  if (drawer.left < 0 || drawer.right > innerWidth || drawer.bottom > innerHeight + 1) problems.push("the drawer sticks out");
-  for (const node of document.querySelectorAll("#lab button, #lab p, #lab .lab-picture, #lab select, #lab label, #lab .lab-table")) {
+  if (drawer.left < 0 || drawer.right > innerWidth || drawer.bottom > innerHeight + 1)
+    problems.push("the drawer sticks out");
+  for (const node of document.querySelectorAll(
+    "#lab button, #lab p, #lab .lab-picture, #lab select, #lab label, #lab .lab-table",
+  )) {
     if (!node.checkVisibility({ visibilityProperty: true, opacityProperty: true })) continue;
     const { left, right } = node.getBoundingClientRect();
-    if (left < drawer.left - 1 || right > drawer.right + 1) problems.push(`${node.className || node.textContent} from ${left} to ${right}`);
-    if (!node.matches("select, .lab-table") && node.scrollWidth > node.clientWidth + 1) problems.push(`"${node.textContent}" is cut off`);
+    if (left < drawer.left - 1 || right > drawer.right + 1)
+      problems.push(`${node.className || node.textContent} from ${left} to ${right}`);
+    if (!node.matches("select, .lab-table") && node.scrollWidth > node.clientWidth + 1)
+      problems.push(`"${node.textContent}" is cut off`);
   }
   return problems;
 };
 
-browserTest("on a wide window and on a phone, light and dark, nothing of the drawer is cut off, and each tab has its say", async () => {
-  const { viewer, page, panel } = await charted("lab-looks");
-  for (const [width, height, colorSchemes] of [[1280, 800, ["light", "dark"]], [900, 700, ["light"]], [360, 740, ["dark", "light"]]]) {
-    await page.setViewportSize({ width, height });
-    for (const colorScheme of colorSchemes) {
-      await page.emulateMedia({ colorScheme });
-      for (const tab of ["Stability", "Choose", "Simplify", "Chart"]) {
-        await page.getByRole("tab", { name: tab }).click();
-        await panel.getByRole("button", { name: "Options" }).click();
-        assert.deepEqual(await page.evaluate(cutOff), [], `${tab} at ${width}x${height}`);
-        await panel.getByRole("button", { name: "Options" }).click();
+browserTest(
+  "on a wide window and on a phone, light and dark, nothing of the drawer is cut off, and each tab has its say",
+  async () => {
+    const { viewer, page, panel } = await charted("lab-looks");
+    for (const [width, height, colorSchemes] of [
+      [1280, 800, ["light", "dark"]],
+      [900, 700, ["light"]],
+      [360, 740, ["dark", "light"]],
+    ]) {
+      await page.setViewportSize({ width, height });
+      for (const colorScheme of colorSchemes) {
+        await page.emulateMedia({ colorScheme });
+        for (const tab of ["Stability", "Choose", "Simplify", "Chart"]) {
+          await page.getByRole("tab", { name: tab }).click();
+          await panel.getByRole("button", { name: "Options" }).click();
+          assert.deepEqual(await page.evaluate(cutOff), [], `${tab} at ${width}x${height}`);
+          await panel.getByRole("button", { name: "Options" }).click();
+        }
+        await page.screenshot({ path: `${screenshots}lab-${width}x${height}-${colorScheme}.png` });
       }
-      await page.screenshot({ path: `${screenshots}lab-${width}x${height}-${colorScheme}.png` });
     }
-  }
-  silent(viewer);
-});
+    silent(viewer);
+  },
+);

@@ -7,7 +7,12 @@ import { build } from "../../web/node_modules/esbuild/lib/main.js";
 
 async function load(name) {
   const outfile = fileURLToPath(new URL(`../../build/${name.replace("/", "-")}-${process.pid}.mjs`, import.meta.url));
-  await build({ entryPoints: [fileURLToPath(new URL(`../../web/src/${name}.ts`, import.meta.url))], bundle: true, format: "esm", outfile });
+  await build({
+    entryPoints: [fileURLToPath(new URL(`../../web/src/${name}.ts`, import.meta.url))],
+    bundle: true,
+    format: "esm",
+    outfile,
+  });
   try {
     return await import(pathToFileURL(outfile));
   } finally {
@@ -22,8 +27,13 @@ const { numbersOf } = await load("lab/numbers");
 
 const setting = (method, dt_s, iterations = null, tolerance = null) => ({ method, dt_s, iterations, tolerance });
 const point = (of, error, cost, blew_up_at_s = null) => ({
-  ...of, error: { position: error, energy: null, strain: null, rest: null }, largest_position_error: error,
-  ms_a_simulated_s: cost === null ? null : { median: cost, minimum: cost, runs: 3 }, blew_up_at_s, dt_over_limit: null, patch: {},
+  ...of,
+  error: { position: error, energy: null, strain: null, rest: null },
+  largest_position_error: error,
+  ms_a_simulated_s: cost === null ? null : { median: cost, minimum: cost, runs: 3 },
+  blew_up_at_s,
+  dt_over_limit: null,
+  patch: {},
 });
 const near = (a, b) => assert.ok(Math.abs(a - b) <= 1e-9 * Math.abs(b), `${a} is not ${b}`);
 
@@ -61,23 +71,49 @@ test("a step between the longest that held and one that blew up has no place, an
 });
 
 const scene = {
-  name: "seed", air_drag: 0, self_collision: { thickness: 0.01, friction: 0.2 }, gravity: [0, -9.8, 0], colliders: [],
-  cloths: [{ name: "cloth", mesh: { grid: { columns: 25 } }, mass: { per_vertex: 0.1 }, material: { structural: 20000, bend: 0, strain_limit: null } }],
+  name: "seed",
+  air_drag: 0,
+  self_collision: { thickness: 0.01, friction: 0.2 },
+  gravity: [0, -9.8, 0],
+  colliders: [],
+  cloths: [
+    {
+      name: "cloth",
+      mesh: { grid: { columns: 25 } },
+      mass: { per_vertex: 0.1 },
+      material: { structural: 20000, bend: 0, strain_limit: null },
+    },
+  ],
   solver: { method: "verlet", dt: 0.001, iterations: 10, tolerance: 1e-4 },
 };
 
 test("the way back undoes every kind of patch that the lab applies", () => {
-  const merge = { solver: { method: "xpbd", dt: 0.01 }, self_collision: null, cloths: [{ ...scene.cloths[0], mesh: { grid: { columns: 13 } } }] };
-  const rfc6902 = [{ op: "replace", path: "/solver/dt", value: 0.01 }, { op: "replace", path: "/cloths/0/material/structural", value: 5 }];
+  const merge = {
+    solver: { method: "xpbd", dt: 0.01 },
+    self_collision: null,
+    cloths: [{ ...scene.cloths[0], mesh: { grid: { columns: 13 } } }],
+  };
+  const rfc6902 = [
+    { op: "replace", path: "/solver/dt", value: 0.01 },
+    { op: "replace", path: "/cloths/0/material/structural", value: 5 },
+  ];
   for (const patch of [merge, rfc6902]) {
     const changed = applyPatch(scene, patch);
     assert.notDeepEqual(changed, scene);
     assert.deepEqual(applyPatch(changed, reverseOf(scene, patch)), scene);
   }
-  assert.equal(formerly(scene, { solver: { method: "xpbd", dt: 0.01, iterations: 10 } }), "method was verlet, dt was 0.001");
+  assert.equal(
+    formerly(scene, { solver: { method: "xpbd", dt: 0.01, iterations: 10 } }),
+    "method was verlet, dt was 0.001",
+  );
 });
 
 test("a stability map is offered over the scene's quantities that are above zero, not over its solver or its mesh", () => {
   const paths = numbersOf(scene).map(({ path }) => path);
-  assert.deepEqual(paths, ["/cloths/0/mass/per_vertex", "/cloths/0/material/structural", "/self_collision/thickness", "/self_collision/friction"]);
+  assert.deepEqual(paths, [
+    "/cloths/0/mass/per_vertex",
+    "/cloths/0/material/structural",
+    "/self_collision/thickness",
+    "/self_collision/friction",
+  ]);
 });

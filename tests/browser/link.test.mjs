@@ -4,23 +4,26 @@ import { browserTest, eventually, withBrowser } from "./browser.mjs";
 
 const { open } = withBrowser();
 
-browserTest("a server that is killed and started again on its port is reconnected to, and the page says so meanwhile", async () => {
-  const server = await Server.start();
-  const viewer = await open(server);
-  await server.stop("SIGKILL");
-  const banner = viewer.page.locator("#banner");
-  await banner.waitFor({ state: "visible" });
-  assert.match(await banner.innerText(), /Connection lost/);
-  const drawn = await viewer.read("framesDrawn");
-  const again = await Server.start("--port", String(server.port));
-  try {
-    await viewer.until((count) => window.clothlab.framesDrawn > count + 3, drawn);
-    await banner.waitFor({ state: "hidden" });
-    assert.equal(await viewer.page.locator("#link").getAttribute("data-state"), "open");
-  } finally {
-    await again.stop();
-  }
-});
+browserTest(
+  "a server that is killed and started again on its port is reconnected to, and the page says so meanwhile",
+  async () => {
+    const server = await Server.start();
+    const viewer = await open(server);
+    await server.stop("SIGKILL");
+    const banner = viewer.page.locator("#banner");
+    await banner.waitFor({ state: "visible" });
+    assert.match(await banner.innerText(), /Connection lost/);
+    const drawn = await viewer.read("framesDrawn");
+    const again = await Server.start("--port", String(server.port));
+    try {
+      await viewer.until((count) => window.clothlab.framesDrawn > count + 3, drawn);
+      await banner.waitFor({ state: "hidden" });
+      assert.equal(await viewer.page.locator("#link").getAttribute("data-state"), "open");
+    } finally {
+      await again.stop();
+    }
+  },
+);
 
 browserTest("a server with a token asks for it, refuses a wrong one, and lets the right one in", async () => {
   const server = await Server.start("--token", "spun gold");
@@ -38,7 +41,7 @@ browserTest("a server with a token asks for it, refuses a wrong one, and lets th
     await viewer.until(() => window.clothlab.framesDrawn > 2);
     assert.equal(await dialog.isVisible(), false);
     await viewer.page.reload();
-    await viewer.until(() => window.clothlab.framesDrawn > 2);  // kept for this tab
+    await viewer.until(() => window.clothlab.framesDrawn > 2); // kept for this tab
   } finally {
     await server.stop();
   }
@@ -53,7 +56,7 @@ browserTest("where too many wrong tokens were tried, the page says so, waits, an
     await viewer.page.getByLabel("Token", { exact: true }).fill("spun gold");
     await viewer.page.getByRole("button", { name: "Connect" }).click();
     await viewer.page.getByText("Not connected (too many wrong tokens came from this address").waitFor();
-    await viewer.until(() => window.clothlab.framesDrawn > 2);  // one is looked at every ten seconds
+    await viewer.until(() => window.clothlab.framesDrawn > 2); // one is looked at every ten seconds
     assert.equal(await viewer.page.locator("#banner").isVisible(), false);
   } finally {
     await server.stop();
@@ -72,46 +75,52 @@ browserTest("a viewer whose session nobody has opened is told who opens it", asy
   }
 });
 
-browserTest("a message that is none of the protocol's ends the connection with a reason, and the page goes on with the next one", async () => {
-  const server = await Server.start();
-  const viewer = await open(server);
-  const closed = [];
-  let spoil = null;  // what is sent in place of the next frame
-  await viewer.page.routeWebSocket("**/ws**", (page) => {
-    const link = page.connectToServer();
-    link.onMessage((message) => {
-      const spoiled = spoil && Buffer.isBuffer(message) && message[0] === 2 ? spoil(message) : message;
-      if (spoiled !== message) spoil = null;
-      page.send(spoiled);
+browserTest(
+  "a message that is none of the protocol's ends the connection with a reason, and the page goes on with the next one",
+  async () => {
+    const server = await Server.start();
+    const viewer = await open(server);
+    const closed = [];
+    let spoil = null; // what is sent in place of the next frame
+    await viewer.page.routeWebSocket("**/ws**", (page) => {
+      const link = page.connectToServer();
+      link.onMessage((message) => {
+        const spoiled = spoil && Buffer.isBuffer(message) && message[0] === 2 ? spoil(message) : message;
+        if (spoiled !== message) spoil = null;
+        page.send(spoiled);
+      });
+      page.onClose((code, reason) => {
+        closed.push({ code, reason });
+        link.close();
+      });
     });
-    page.onClose((code, reason) => {
-      closed.push({ code, reason });
-      link.close();
-    });
-  });
-  try {
-    await viewer.page.reload();
-    const cases = [
-      [(frame) => frame.subarray(0, 100), /announces 5000 bytes, 36 came/],
-      [(frame) => Buffer.from(frame).fill(9, 0, 1), /unknown kind 9/],
-      [() => "no JSON", /no JSON object/],
-    ];
-    for (const [spoiling, reason] of cases) {
-      await viewer.until(() => window.clothlab?.framesDrawn > 3);
-      spoil = spoiling;
-      const banner = viewer.page.locator("#banner", { hasText: reason });
-      await banner.waitFor({ state: "visible" });
-      await eventually("told the server why", () => closed.filter((close) => reason.test(close.reason)).map(({ code }) => code),
-                       (codes) => codes.length === 1 && codes[0] === 4002);
-      const drawn = await viewer.read("framesDrawn");
-      await viewer.page.getByRole("button", { name: "Try now" }).click();
-      await viewer.until((count) => window.clothlab.framesDrawn > count + 3, drawn);
-      await viewer.page.locator("#banner").waitFor({ state: "hidden" });
+    try {
+      await viewer.page.reload();
+      const cases = [
+        [(frame) => frame.subarray(0, 100), /announces 5000 bytes, 36 came/],
+        [(frame) => Buffer.from(frame).fill(9, 0, 1), /unknown kind 9/],
+        [() => "no JSON", /no JSON object/],
+      ];
+      for (const [spoiling, reason] of cases) {
+        await viewer.until(() => window.clothlab?.framesDrawn > 3);
+        spoil = spoiling;
+        const banner = viewer.page.locator("#banner", { hasText: reason });
+        await banner.waitFor({ state: "visible" });
+        await eventually(
+          "told the server why",
+          () => closed.filter((close) => reason.test(close.reason)).map(({ code }) => code),
+          (codes) => codes.length === 1 && codes[0] === 4002,
+        );
+        const drawn = await viewer.read("framesDrawn");
+        await viewer.page.getByRole("button", { name: "Try now" }).click();
+        await viewer.until((count) => window.clothlab.framesDrawn > count + 3, drawn);
+        await viewer.page.locator("#banner").waitFor({ state: "hidden" });
+      }
+    } finally {
+      await server.stop();
     }
-  } finally {
-    await server.stop();
-  }
-});
+  },
+);
 
 browserTest("a page that finds no server says so instead of staying empty", async () => {
   const server = await Server.start();

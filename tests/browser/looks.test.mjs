@@ -10,10 +10,12 @@ const here = withServer();
 const cutOff = () => {
   const problems = [];
   const visible = (node) => node.checkVisibility({ visibilityProperty: true, opacityProperty: true });
-  for (const node of document.querySelectorAll(".card, .card button, .card select, #headline-fps, #headline-rtf, .brand")) {
+  for (const node of document.querySelectorAll(
+    ".card, .card button, .card select, #headline-fps, #headline-rtf, .brand",
+  )) {
     if (!visible(node)) continue;
     const { left, top, right, bottom } = node.getBoundingClientRect();
-    const inPanel = node.closest(".panel-body");  // which scrolls
+    const inPanel = node.closest(".panel-body"); // which scrolls
     if (left < 0 || right > innerWidth + 0.5 || (!inPanel && (top < 0 || bottom > innerHeight + 1))) {
       problems.push(`${node.id || node.className} at ${[left, top, right, bottom].map(Math.round)}`);
     }
@@ -25,13 +27,16 @@ const cutOff = () => {
   return problems;
 };
 
-for (const [width, height] of [[1280, 800], [360, 740]]) {
+for (const [width, height] of [
+  [1280, 800],
+  [360, 740],
+]) {
   for (const colorScheme of ["dark", "light"]) {
     browserTest(`at ${width}x${height}, ${colorScheme}, nothing is cut off and the console is silent`, async () => {
       const viewer = await here.open({ session: `looks-${width}-${colorScheme}`, width, height, colorScheme });
       await viewer.until(() => window.clothlab.simTime > 1.1);
       await viewer.page.keyboard.press(" ");
-      await viewer.page.waitForTimeout(900);  // a picture at rest is drawn at full resolution
+      await viewer.page.waitForTimeout(900); // a picture at rest is drawn at full resolution
       assert.equal(await viewer.page.evaluate(() => document.documentElement.dataset.theme), colorScheme);
       assert.deepEqual(await viewer.page.evaluate(cutOff), []);
       await viewer.page.screenshot({ path: `${screenshots}${width}x${height}-${colorScheme}.png` });
@@ -42,8 +47,12 @@ for (const [width, height] of [[1280, 800], [360, 740]]) {
         assert.ok(await (await viewer.slider("Cloth", "structural")).isVisible());
         await viewer.page.screenshot({ path: `${screenshots}${width}x${height}-${colorScheme}-parameters.png` });
       }
-      await viewer.page.getByRole("combobox", { name: "method" }).selectOption("PBD");  // it has most to say
-      await eventually("notes", () => viewer.page.locator(".note:visible").count(), (count) => count === 4);
+      await viewer.page.getByRole("combobox", { name: "method" }).selectOption("PBD"); // it has most to say
+      await eventually(
+        "notes",
+        () => viewer.page.locator(".note:visible").count(),
+        (count) => count === 4,
+      );
       assert.deepEqual(await viewer.page.evaluate(cutOff), []);
       await viewer.page.screenshot({ path: `${screenshots}${width}x${height}-${colorScheme}-pbd.png` });
       const forbidden = viewer.complaints.filter((text) => !/GPU stall|GL Driver Message/.test(text));
@@ -57,13 +66,30 @@ browserTest("every control is reachable by Tab, and has a name", async () => {
   const reached = new Set();
   for (let i = 0; i < 90; ++i) {
     await viewer.page.keyboard.press("Tab");
-    reached.add(await viewer.page.evaluate(() => {
-      const node = document.activeElement;
-      return node?.getAttribute("aria-label") ?? node?.getAttribute("aria-labelledby") ?? node?.textContent?.trim() ?? "";
-    }));
+    reached.add(
+      await viewer.page.evaluate(() => {
+        const node = document.activeElement;
+        return (
+          node?.getAttribute("aria-label") ?? node?.getAttribute("aria-labelledby") ?? node?.textContent?.trim() ?? ""
+        );
+      }),
+    );
   }
-  for (const name of ["Pause", "Step", "Reset", "Speed", "Fit the scene", "Dark or light", "Help", "structural [N/m]", "time step [s]"]) {
-    assert.ok([...reached].some((label) => label === name), `${name} is not among ${[...reached].join(", ")}`);
+  for (const name of [
+    "Pause",
+    "Step",
+    "Reset",
+    "Speed",
+    "Fit the scene",
+    "Dark or light",
+    "Help",
+    "structural [N/m]",
+    "time step [s]",
+  ]) {
+    assert.ok(
+      [...reached].some((label) => label === name),
+      `${name} is not among ${[...reached].join(", ")}`,
+    );
   }
 });
 

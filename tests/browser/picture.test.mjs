@@ -6,7 +6,7 @@ const { open } = withServer();
 browserTest("the cloth is on the screen: a large, shaded, red surface where the seed scene hangs", async () => {
   const viewer = await open({ session: "drawn" });
   await viewer.until(() => window.clothlab.simTime > 0.7);
-  await viewer.page.waitForTimeout(400);  // past the fade-in
+  await viewer.page.waitForTimeout(400); // past the fade-in
   const seen = await viewer.cloth();
   assert.ok(seen.share > 0.03 && seen.share < 0.9, `the cloth covers ${(100 * seen.share).toFixed(1)} % of the middle`);
   assert.ok(seen.shades > 50, `light, weave and folds give many shades; there are ${seen.shades}`);
@@ -30,7 +30,7 @@ browserTest("the cloth hits the sphere and lies on it: vertices touch its surfac
   await viewer.until(() => window.clothlab.simTime > 2.9);
   const { center, radius } = (await viewer.read("document")).colliders[0].sphere;
   const distances = (await viewer.positions()).map((p) => Math.hypot(...p.map((v, axis) => v - center[axis])) - radius);
-  const quantum = 2 / 65535;  // of a box two metres wide, the coarsest this scene can have
+  const quantum = 2 / 65535; // of a box two metres wide, the coarsest this scene can have
   assert.ok(Math.min(...distances) > -0.002 - quantum, `the deepest vertex is at ${Math.min(...distances)} m`);
   const touching = distances.filter((d) => d < 0.02).length;
   assert.ok(touching >= 8, `${touching} vertices are within 2 cm of the ball`);

@@ -14,12 +14,15 @@ async function throttled(session) {
       if (Buffer.isBuffer(message)) {
         if (link.frames || message[0] !== 2) return page.send(message);
         // The server sends on as if it had been drawn.
-        server.send(JSON.stringify({ jsonrpc: "2.0", method: "stream.ack", params: { frame: message.readUInt32LE(8) } }));
+        server.send(
+          JSON.stringify({ jsonrpc: "2.0", method: "stream.ack", params: { frame: message.readUInt32LE(8) } }),
+        );
         return;
       }
       const text = JSON.parse(message);
       // A busy machine's own slowness is none of these tests'.
-      if (text.method === "sim.status") Object.assign(text.params, { real_time_factor: link.slow ? link.factor : 1, asleep: false });
+      if (text.method === "sim.status")
+        Object.assign(text.params, { real_time_factor: link.slow ? link.factor : 1, asleep: false });
       page.send(JSON.stringify(text));
     });
   });
@@ -28,35 +31,38 @@ async function throttled(session) {
   return { ...opened, link };
 }
 
-browserTest("a page without pictures says so while that lasts, with what a step takes, and undoes its last change", async () => {
-  const { viewer, scene, link } = await throttled("slow-still");
-  const box = viewer.page.locator("#slow");
-  await box.waitFor({ state: "hidden" });
-  const before = (await scene()).cloths[0].material.structural;
-  const number = viewer.number("Cloth", "structural");
-  await number.fill("12345");
-  await number.press("Enter");
-  await eventually("the change", scene, ({ cloths }) => cloths[0].material.structural === 12345);
-  Object.assign(link, { slow: true, frames: false, factor: 5e-4 });
-  await box.filter({ hasText: /No new picture for \d+ s/ }).waitFor({ state: "visible" });
-  await box.filter({ hasText: "a step takes it 2 s" }).waitFor();  // 1 ms at that factor
-  assert.equal(await viewer.page.locator("#stats .rtf").textContent(), "×0.0005");
-  await viewer.page.waitForTimeout(10_000);  // longer than any notice stays
-  assert.ok(await box.isVisible());
-  await box.getByRole("button", { name: "Undo" }).click();
-  await eventually("the change undone", scene, ({ cloths }) => cloths[0].material.structural === before);
-  Object.assign(link, { slow: false, frames: true });
-  await box.waitFor({ state: "hidden" });
-});
+browserTest(
+  "a page without pictures says so while that lasts, with what a step takes, and undoes its last change",
+  async () => {
+    const { viewer, scene, link } = await throttled("slow-still");
+    const box = viewer.page.locator("#slow");
+    await box.waitFor({ state: "hidden" });
+    const before = (await scene()).cloths[0].material.structural;
+    const number = viewer.number("Cloth", "structural");
+    await number.fill("12345");
+    await number.press("Enter");
+    await eventually("the change", scene, ({ cloths }) => cloths[0].material.structural === 12345);
+    Object.assign(link, { slow: true, frames: false, factor: 5e-4 });
+    await box.filter({ hasText: /No new picture for \d+ s/ }).waitFor({ state: "visible" });
+    await box.filter({ hasText: "a step takes it 2 s" }).waitFor(); // 1 ms at that factor
+    assert.equal(await viewer.page.locator("#stats .rtf").textContent(), "×0.0005");
+    await viewer.page.waitForTimeout(10_000); // longer than any notice stays
+    assert.ok(await box.isVisible());
+    await box.getByRole("button", { name: "Undo" }).click();
+    await eventually("the change undone", scene, ({ cloths }) => cloths[0].material.structural === before);
+    Object.assign(link, { slow: false, frames: true });
+    await box.waitFor({ state: "hidden" });
+  },
+);
 
 browserTest("time that creeps is told of with its factor, a pause and a scene at rest are not", async () => {
   const { viewer, client, link } = await throttled("slow-creeps");
   const box = viewer.page.locator("#slow");
   Object.assign(link, { slow: true, factor: 0.02 });
   await box.filter({ hasText: "Only ×0.02 of real time" }).waitFor({ state: "visible" });
-  assert.equal(await box.getByRole("button", { name: "Undo" }).isVisible(), false);  // this page changed nothing
+  assert.equal(await box.getByRole("button", { name: "Undo" }).isVisible(), false); // this page changed nothing
   await client.request("sim.pause", {});
   await box.waitFor({ state: "hidden" });
-  await viewer.page.waitForTimeout(4000);  // paused: no pictures, and nothing wrong
+  await viewer.page.waitForTimeout(4000); // paused: no pictures, and nothing wrong
   assert.equal(await box.isVisible(), false);
 });

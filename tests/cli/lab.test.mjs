@@ -11,12 +11,22 @@ const environment = { XDG_CACHE_HOME: cache };
 const program = process.env.CLOTHLAB ?? "build/release/clothlab";
 
 // Small enough for seconds: 25 vertices, a corner held.
-writeFileSync(join(folder, "small.json"), JSON.stringify({
-  version: 1, name: "small", self_collision: null,
-  cloths: [{ mesh: { grid: { columns: 5, rows: 5, width: 1, height: 1 } }, pins: [{ at: "corner:0,0" }],
-    material: { model: "springs", structural: 2000, shear: 1000, bend: 200, damping: 2 } }],
-  solver: { method: "symplectic_euler", dt: 0.002 },
-}));
+writeFileSync(
+  join(folder, "small.json"),
+  JSON.stringify({
+    version: 1,
+    name: "small",
+    self_collision: null,
+    cloths: [
+      {
+        mesh: { grid: { columns: 5, rows: 5, width: 1, height: 1 } },
+        pins: [{ at: "corner:0,0" }],
+        material: { model: "springs", structural: 2000, shear: 1000, bend: 200, damping: 2 },
+      },
+    ],
+    solver: { method: "symplectic_euler", dt: 0.002 },
+  }),
+);
 
 function lab(...args) {
   const result = clothlab(args, environment);
@@ -24,7 +34,18 @@ function lab(...args) {
   return result;
 }
 const read = (...path) => readFileSync(join(folder, ...path), "utf8");
-const chart = ["chart", "small.json", "--methods", "verlet,xpbd", "--iterations", "1,4", "--time", "0.2", "--budget", "6"];
+const chart = [
+  "chart",
+  "small.json",
+  "--methods",
+  "verlet,xpbd",
+  "--iterations",
+  "1,4",
+  "--time",
+  "0.2",
+  "--budget",
+  "6",
+];
 
 test("a chart is printed and written as JSON, CSV and SVG of the same points", () => {
   const { stdout } = lab(...chart, "--out", "results");
@@ -67,21 +88,48 @@ test("a cache that cannot be written changes nothing", () => {
   writeFileSync(join(folder, "in-the-way"), "");
   const { status, stderr } = clothlab([...chart.slice(0, -1), "2"], { XDG_CACHE_HOME: join(folder, "in-the-way") });
   assert.equal(status, 0);
-  assert.doesNotMatch(stderr, /clothlab:/);  // Mesa, whose cache of shaders is there too, may say something
+  assert.doesNotMatch(stderr, /clothlab:/); // Mesa, whose cache of shaders is there too, may say something
 });
 
 test("the choice prints its settings as options that `run` takes, and as a patch", () => {
-  const { stdout } = lab("choose", "small.json", "--tolerance", "0.01", "--methods", "verlet,symplectic_euler", "--time", "0.2");
-  assert.match(stdout, /^chosen +(verlet|symplectic_euler), dt [\d.]+ ms +error [\d.e-]+ \[[\d.e-]+\.\.[\d.e-]+\] +[\d.]+ \[[\d.]+\.\.[\d.]+\] ms per simulated second$/m);
+  const { stdout } = lab(
+    "choose",
+    "small.json",
+    "--tolerance",
+    "0.01",
+    "--methods",
+    "verlet,symplectic_euler",
+    "--time",
+    "0.2",
+  );
+  assert.match(
+    stdout,
+    /^chosen +(verlet|symplectic_euler), dt [\d.]+ ms +error [\d.e-]+ \[[\d.e-]+\.\.[\d.e-]+\] +[\d.]+ \[[\d.]+\.\.[\d.]+\] ms per simulated second$/m,
+  );
   assert.match(stdout, /^now +symplectic_euler, dt 2 ms/m);
   const options = stdout.match(/^options: (.*)$/m)[1].split(" ");
   assert.equal(clothlab(["run", "small.json", "--time", "0.1", ...options]).status, 0);
   const patch = JSON.parse(stdout.match(/^patch: +(.*)$/m)[1]);
-  assert.ok(options.includes(`/solver/method=${patch.solver.method}`) && options.includes(`/solver/dt=${patch.solver.dt}`));
+  assert.ok(
+    options.includes(`/solver/method=${patch.solver.method}`) && options.includes(`/solver/dt=${patch.solver.dt}`),
+  );
 });
 
 test("the stability map has a table a method with the measured step next to theory's", () => {
-  const { stdout } = lab("stability", "small.json", "--methods", "verlet", "--columns", "2", "--from", "0.5", "--to", "2", "--out", "results");
+  const { stdout } = lab(
+    "stability",
+    "small.json",
+    "--methods",
+    "verlet",
+    "--columns",
+    "2",
+    "--from",
+    "0.5",
+    "--to",
+    "2",
+    "--out",
+    "results",
+  );
   assert.match(stdout, /^value +held \[ms\] +failed \[ms\] +theory \[ms\]/m);
   const result = JSON.parse(read("results", "stability.json"));
   assert.equal(result.methods[0].columns.length, 2);
@@ -101,17 +149,28 @@ test("what parts are worth is a row each, with what the scene does not have and 
 test("Ctrl-C ends a chart within a second, keeps what there was, and says that it is not complete", async () => {
   mkdirSync(join(folder, "cut"));
   const child = spawn(program, ["chart", "seed", "--budget", "600", "--methods", "verlet,pbd", "--out", "cut"], {
-    cwd: folder, env: { ...process.env, XDG_CACHE_HOME: join(folder, "other-cache") },
+    cwd: folder,
+    env: { ...process.env, XDG_CACHE_HOME: join(folder, "other-cache") },
   });
-  let stderr = "", ended = 0;
+  let stderr = "",
+    ended = 0;
   child.stderr.on("data", (text) => (stderr += text));
   await new Promise((done) => setTimeout(done, 2500));
   const asked = Date.now();
   child.kill("SIGINT");
-  const code = await new Promise((done) => child.on("exit", (status) => { ended = Date.now(); done(status); }));
+  const code = await new Promise((done) =>
+    child.on("exit", (status) => {
+      ended = Date.now();
+      done(status);
+    }),
+  );
   assert.equal(code, 130, stderr);
   assert.ok(ended - asked < 1000, `${ended - asked} ms`);
   assert.match(stderr, /note: interrupted/);
-  if (existsSync(join(folder, "cut", "chart.json"))) assert.equal(JSON.parse(read("cut", "chart.json")).complete, false);
-  assert.ok(!existsSync(join(folder, "other-cache", "clothlab", "lab")) || readdirSync(join(folder, "other-cache", "clothlab", "lab")).length === 0);
+  if (existsSync(join(folder, "cut", "chart.json")))
+    assert.equal(JSON.parse(read("cut", "chart.json")).complete, false);
+  assert.ok(
+    !existsSync(join(folder, "other-cache", "clothlab", "lab")) ||
+      readdirSync(join(folder, "other-cache", "clothlab", "lab")).length === 0,
+  );
 });

@@ -13,7 +13,10 @@ after(() => rmSync(folder, { recursive: true, force: true }));
 
 export function clothlab(args, environment = {}) {
   const { status, stdout, stderr, error } = spawnSync(program, args, {
-    cwd: folder, encoding: "utf8", timeout: 120_000, env: { ...process.env, ...environment },
+    cwd: folder,
+    encoding: "utf8",
+    timeout: 120_000,
+    env: { ...process.env, ...environment },
   });
   if (error) throw error;
   return { status, stdout, stderr };

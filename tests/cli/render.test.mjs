@@ -14,9 +14,11 @@ function decode(path) {
   assert.deepEqual([png[24], png[25]], [8, 2], "8 bits, RGB");
   const chunks = [];
   for (let at = 8; at < png.length; at += 12 + png.readUInt32BE(at))
-    if (png.toString("latin1", at + 4, at + 8) === "IDAT") chunks.push(png.subarray(at + 8, at + 8 + png.readUInt32BE(at)));
+    if (png.toString("latin1", at + 4, at + 8) === "IDAT")
+      chunks.push(png.subarray(at + 8, at + 8 + png.readUInt32BE(at)));
   const packed = inflateSync(Buffer.concat(chunks));
-  const row = 3 * width, pixels = Buffer.alloc(row * height);
+  const row = 3 * width,
+    pixels = Buffer.alloc(row * height);
   const paeth = (a, b, c) => {
     const [pa, pb, pc] = [Math.abs(b - c), Math.abs(a - c), Math.abs(a + b - 2 * c)];
     return pa <= pb && pa <= pc ? a : pb <= pc ? b : c;
@@ -24,7 +26,8 @@ function decode(path) {
   for (let y = 0; y < height; ++y) {
     const filter = packed[y * (row + 1)];
     for (let x = 0; x < row; ++x) {
-      const left = x < 3 ? 0 : pixels[y * row + x - 3], up = y === 0 ? 0 : pixels[(y - 1) * row + x];
+      const left = x < 3 ? 0 : pixels[y * row + x - 3],
+        up = y === 0 ? 0 : pixels[(y - 1) * row + x];
       const corner = x < 3 || y === 0 ? 0 : pixels[(y - 1) * row + x - 3];
       const guess = [0, left, up, (left + up) >> 1, paeth(left, up, corner)][filter];
       pixels[y * row + x] = packed[y * (row + 1) + 1 + x] + guess;
@@ -71,8 +74,15 @@ test("a portrait picture is framed as well", () => {
 test("both sides of the cloth are drawn: turned over, it covers the same pixels", () => {
   const plain = ["seed", "--time", "0", "--size", "160x90", "--set", "/colliders=[]", "--set", "/cloths/0/pins=[]"];
   const centered = [...plain, "--set", "/cloths/0/transform/translate=[0,0,-0.5]"];
-  const turned = [...plain, "--set", "/cloths/0/transform/translate=[0,0,0.5]", "--set", "/cloths/0/transform/rotate=[180,0,0]"];
-  const front = region(render("front.png", ...centered), isRed), back = region(render("back.png", ...turned), isRed);
+  const turned = [
+    ...plain,
+    "--set",
+    "/cloths/0/transform/translate=[0,0,0.5]",
+    "--set",
+    "/cloths/0/transform/rotate=[180,0,0]",
+  ];
+  const front = region(render("front.png", ...centered), isRed),
+    back = region(render("back.png", ...turned), isRed);
   assert.ok(front.count > 500);
   assert.ok(Math.abs(front.count - back.count) < 0.05 * front.count, `${front.count} and ${back.count} pixels`);
 });

@@ -30,8 +30,21 @@ test("the report holds what the contract promises", () => {
 });
 
 test("the report counts what implicit Euler's solver and the strain limit did", () => {
-  run("seed", "--time", "0.1", "--report", "report.json", "--set", "/solver/method=implicit_euler",
-    "--set", "/solver/dt=0.01", "--set", "/solver/iterations=1", "--set", "/cloths/0/material/strain_limit=0.05");
+  run(
+    "seed",
+    "--time",
+    "0.1",
+    "--report",
+    "report.json",
+    "--set",
+    "/solver/method=implicit_euler",
+    "--set",
+    "/solver/dt=0.01",
+    "--set",
+    "/solver/iterations=1",
+    "--set",
+    "/cloths/0/material/strain_limit=0.05",
+  );
   const r = report("report.json");
   assert.ok(r.solver.newton_steps >= 10 && r.solver.linear_iterations > 10 && r.solver.unconverged === 0);
   assert.ok(r.strain_limit.sweeps >= 10);
@@ -42,8 +55,21 @@ test("the report counts what implicit Euler's solver and the strain limit did", 
 
 test("what sweeps a given number of times has nothing to report of its solver, and no limit to warn of", () => {
   for (const method of ["pbd", "xpbd", "vbd"]) {
-    const { stderr } = run("seed", "--time", "0.033", "--report", "report.json", "--set", `/solver/method=${method}`,
-      "--set", "/solver/dt=0.0165", "--set", "/solver/iterations=2", "--set", "/self_collision=null");
+    const { stderr } = run(
+      "seed",
+      "--time",
+      "0.033",
+      "--report",
+      "report.json",
+      "--set",
+      `/solver/method=${method}`,
+      "--set",
+      "/solver/dt=0.0165",
+      "--set",
+      "/solver/iterations=2",
+      "--set",
+      "/self_collision=null",
+    );
     assert.equal(stderr, "");
     const r = report("report.json");
     assert.ok(r.passes.includes(method) && !("solver" in r), JSON.stringify(r));
@@ -73,7 +99,10 @@ test("the trace has a row per --every, the start and the end among them", () => 
   const [header, ...rows] = file("trace.csv").toString().trim().split("\n");
   assert.equal(header, "time,kinetic,elastic,gravitational,max_strain,max_speed,contacts");
   const values = rows.map((row) => row.split(",").map(Number));
-  assert.deepEqual(values.map(([time]) => Math.round(time * 1000)), [0, 20, 40, 50]);
+  assert.deepEqual(
+    values.map(([time]) => Math.round(time * 1000)),
+    [0, 20, 40, 50],
+  );
   assert.ok(values.flat().every(Number.isFinite));
   assert.equal(values[0][1], 0, "it starts at rest");
 });
@@ -102,16 +131,27 @@ test("a PLY holds the same positions as the OBJ", () => {
   assert.match(header, /^ply\nformat binary_little_endian 1\.0\n/);
   assert.match(header, /element vertex 625\n/);
   assert.equal(bytes.length, start + 625 * 20 + 2 * 24 * 24 * 13);
-  const obj = file("same.obj").toString().split("\n").filter((line) => line.startsWith("v "));
+  const obj = file("same.obj")
+    .toString()
+    .split("\n")
+    .filter((line) => line.startsWith("v "));
   obj.forEach((line, vertex) => {
     const position = [0, 4, 8].map((at) => bytes.readFloatLE(start + 20 * vertex + at));
-    assert.deepEqual(line.split(" ").slice(1).map((text) => Math.fround(Number(text))), position);
+    assert.deepEqual(
+      line
+        .split(" ")
+        .slice(1)
+        .map((text) => Math.fround(Number(text))),
+      position,
+    );
   });
 });
 
 test("samples go to numbered files", () => {
   run("seed", "--time", "0.03", "--out", "step.obj", "--every", "0.01");
-  const written = readdirSync(folder).filter((name) => /^step-.*\.obj$/.test(name)).sort();
+  const written = readdirSync(folder)
+    .filter((name) => /^step-.*\.obj$/.test(name))
+    .sort();
   assert.deepEqual(written, ["step-0000.obj", "step-0001.obj", "step-0002.obj", "step-0003.obj"]);
 });
 
@@ -121,14 +161,30 @@ test("a point cache counts its samples and holds them all", () => {
   assert.equal(bytes.subarray(0, 12).toString("latin1"), "POINTCACHE2\0");
   assert.deepEqual([bytes.readInt32LE(12), bytes.readInt32LE(16), bytes.readInt32LE(28)], [1, 625, 4]);
   assert.equal(bytes.length, 32 + 4 * 625 * 12);
-  assert.deepEqual([0, 4, 8].map((at) => bytes.readFloatLE(32 + at)), [-0.5, 1, 0]);
+  assert.deepEqual(
+    [0, 4, 8].map((at) => bytes.readFloatLE(32 + at)),
+    [-0.5, 1, 0],
+  );
 });
 
 test("a run that diverges exits 4, keeps what was good, and marks it", () => {
-  const { status, stderr } = clothlab(
-    ["run", "blowup", "--time", "1", "--report", "blowup.json", "--out", "blowup.obj", "--trace", "blowup.csv"]);
+  const { status, stderr } = clothlab([
+    "run",
+    "blowup",
+    "--time",
+    "1",
+    "--report",
+    "blowup.json",
+    "--out",
+    "blowup.obj",
+    "--trace",
+    "blowup.csv",
+  ]);
   assert.equal(status, 4);
-  assert.match(stderr, /note: the simulation diverged: .* J at t = .*1\.[45]\d* times.*--set \/solver\/dt=0\.001[23]\n/);
+  assert.match(
+    stderr,
+    /note: the simulation diverged: .* J at t = .*1\.[45]\d* times.*--set \/solver\/dt=0\.001[23]\n/,
+  );
   const r = report("blowup.json");
   assert.equal(r.diverged, true);
   assert.ok(r.diverged_by > r.sim_time);

@@ -42,7 +42,10 @@ const wrong = {
   "--every for nothing": [["run", "seed", "--time", "1", "--every", "0.1"], /--out or --trace/],
   "--every below a step": [["run", "flag", "--time", "1", "--every", "1e-5", "--trace", "t.csv"], /one step/],
   "a size without a height": [["render", "seed", "--time", "0", "--out", "a.png", "--size", "100"], /WIDTHxHEIGHT/],
-  "a size with more after it": [["render", "seed", "--time", "0", "--out", "a.png", "--size", "10x10x10"], /WIDTHxHEIGHT/],
+  "a size with more after it": [
+    ["render", "seed", "--time", "0", "--out", "a.png", "--size", "10x10x10"],
+    /WIDTHxHEIGHT/,
+  ],
   "a size of nothing": [["render", "seed", "--time", "0", "--out", "a.png", "--size", "0x100"], /from 1 to/],
   "a size beyond the largest": [["render", "seed", "--time", "0", "--out", "a.png", "--size", "9999x10"], /from 1 to/],
   "a picture that is no PNG": [["render", "seed", "--time", "0", "--out", "a.jpg"], /\.png/],
@@ -71,8 +74,18 @@ for (const [what, [args, message]] of Object.entries(wrong)) {
 test("outputs are checked before anything is simulated, and nothing is left behind", () => {
   mkdirSync(join(folder, "a-folder.csv"));
   const good = { "--out": "early.obj", "--report": "early.json", "--trace": "early.csv" };
-  for (const [option, path] of [["--out", "nowhere/a.obj"], ["--report", "nowhere/a.json"], ["--trace", "a-folder.csv"]]) {
-    const { status, stderr } = clothlab(["run", "seed", "--time", "1e6", ...Object.entries({ ...good, [option]: path }).flat()]);
+  for (const [option, path] of [
+    ["--out", "nowhere/a.obj"],
+    ["--report", "nowhere/a.json"],
+    ["--trace", "a-folder.csv"],
+  ]) {
+    const { status, stderr } = clothlab([
+      "run",
+      "seed",
+      "--time",
+      "1e6",
+      ...Object.entries({ ...good, [option]: path }).flat(),
+    ]);
     assert.equal(status, 2);
     assert.match(stderr, new RegExp(`${option} ${path}`));
     for (const early of Object.values(good)) assert.ok(!existsSync(join(folder, early)), early);
@@ -101,23 +114,35 @@ test("info names a usable device, the one that is used, the methods, and the fol
 });
 
 test("a step near or beyond the longest stable one is said on stderr, in one line, and is no error", () => {
-  const thick = ["--set", "/self_collision/thickness=0.036"];  // else that is told of too
-  for (const args of [["validate", "blowup"], ["run", "seed", "--time", "0", ...thick, "--set", "/solver/dt=0.0025"]]) {
+  const thick = ["--set", "/self_collision/thickness=0.036"]; // else that is told of too
+  for (const args of [
+    ["validate", "blowup"],
+    ["run", "seed", "--time", "0", ...thick, "--set", "/solver/dt=0.0025"],
+  ]) {
     const { status, stderr } = clothlab(args);
     assert.equal(status, 0);
     assert.match(stderr, /^clothlab: warning: .*0\.0025 s is beyond 0\.001701 s.*symplectic_euler.*\n$/);
   }
   const near = clothlab(["run", "seed", "--time", "0", ...thick, "--set", "/solver/dt=0.0016"]);
   assert.match(near.stderr, /^clothlab: warning: dt = 0\.0016 s is 94 % of 0\.001701 s.*\n$/);
-  for (const args of [["validate", "flag"], ["run", "seed", "--time", "0", ...thick]]) assert.equal(clothlab(args).stderr, "");
+  for (const args of [
+    ["validate", "flag"],
+    ["run", "seed", "--time", "0", ...thick],
+  ])
+    assert.equal(clothlab(args).stderr, "");
 });
 
 test("a self-collision too thin for the mesh is said on stderr with the thickness that holds, and is no error", () => {
   // 0.85 of the seed's spacing, 1 m / 24.
-  for (const args of [["validate", "seed"], ["run", "seed", "--time", "0"], ["run", "seed", "--time", "0", "--set", "/self_collision/thickness=0.03"]]) {
+  for (const args of [
+    ["validate", "seed"],
+    ["run", "seed", "--time", "0"],
+    ["run", "seed", "--time", "0", "--set", "/self_collision/thickness=0.03"],
+  ]) {
     const { status, stderr } = clothlab(args);
     assert.equal(status, 0);
     assert.match(stderr, /^clothlab: warning: .*self_collision\.thickness = 0\.0[13] m is too thin .*0\.0354 m.*\n$/);
   }
-  for (const preset of ["flag", "curtain", "drape", "tablecloth", "twist", "trampoline"]) assert.equal(clothlab(["validate", preset]).stderr, "");
+  for (const preset of ["flag", "curtain", "drape", "tablecloth", "twist", "trampoline"])
+    assert.equal(clothlab(["validate", preset]).stderr, "");
 });

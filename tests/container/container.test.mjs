@@ -11,7 +11,9 @@ import { Container, newVolume, user } from "./image.mjs";
 const token = "a-token-of-the-test";
 
 let container;
-before(async () => (container = await Container.start({ env: { CLOTHLAB_TOKEN: token, CLOTHLAB_VIEW_TOKEN: "look" } })));
+before(
+  async () => (container = await Container.start({ env: { CLOTHLAB_TOKEN: token, CLOTHLAB_VIEW_TOKEN: "look" } })),
+);
 after(() => container.stop());
 
 async function operator(from = container, session = undefined) {
@@ -41,7 +43,10 @@ test("it streams frames of the seed scene, computed by Mesa's software OpenGL", 
 
 test("the server is process 1, not root, without any capability, on a root it cannot write", async () => {
   const { Uid, Gid, Groups, CapEff, CapPrm, CapBnd, NoNewPrivs, NSpid } = container.status;
-  assert.deepEqual([Uid, Gid].map((ids) => ids.split("\t")), Array(2).fill(Array(4).fill(String(user))));
+  assert.deepEqual(
+    [Uid, Gid].map((ids) => ids.split("\t")),
+    Array(2).fill(Array(4).fill(String(user))),
+  );
   assert.ok(user > 0);
   assert.equal(Groups.trim(), "");
   for (const capabilities of [CapEff, CapPrm, CapBnd]) assert.equal(BigInt(`0x${capabilities}`), 0n);
@@ -54,7 +59,10 @@ test("the server is process 1, not root, without any capability, on a root it ca
 
 test("what Mesa compiles is kept in the volume", async () => {
   const kept = readdirSync(container.volume, { recursive: true });
-  assert.ok(kept.some((name) => name.startsWith("cache/mesa_shader_cache")), kept.join("\n"));
+  assert.ok(
+    kept.some((name) => name.startsWith("cache/mesa_shader_cache")),
+    kept.join("\n"),
+  );
 });
 
 test("the tokens are in no process's arguments", () => {
@@ -90,7 +98,11 @@ test("without a token one is made, told with the address to open, and another at
 test("a token is read from the file that CLOTHLAB_TOKEN_FILE names, its line break left out", async () => {
   const volume = newVolume();
   writeFileSync(join(volume, "token"), `${token}\n`);
-  const other = await Container.start({ args: ["serve", "--port=8081"], volume, env: { CLOTHLAB_TOKEN_FILE: "/var/lib/clothlab/token" } });
+  const other = await Container.start({
+    args: ["serve", "--port=8081"],
+    volume,
+    env: { CLOTHLAB_TOKEN_FILE: "/var/lib/clothlab/token" },
+  });
   const client = await operator(other);
   await client.close();
   assert.doesNotMatch(other.stderr, /token was given/);
@@ -98,7 +110,8 @@ test("a token is read from the file that CLOTHLAB_TOKEN_FILE names, its line bre
 });
 
 test("a token file that is missing, empty, unreadable, or beside CLOTHLAB_TOKEN, is an error that says so", async () => {
-  const volume = newVolume(), folder = "/var/lib/clothlab";
+  const volume = newVolume(),
+    folder = "/var/lib/clothlab";
   writeFileSync(join(volume, "empty"), "\n");
   writeFileSync(join(volume, "locked"), "x");
   chmodSync(join(volume, "locked"), 0);
@@ -134,10 +147,12 @@ test("the health check succeeds while the server answers, and fails when it does
   assert.notEqual(gone.code, 0);
 
   // Answers what /healthz does when a session's thread stands still; then nothing at all.
-  const listener = net.createServer((socket) => {
-    socket.on("error", () => {});  // who reads one line and leaves resets the connection
-    socket.end("HTTP/1.1 503 Service Unavailable\r\n\r\n");
-  }).listen(8082);
+  const listener = net
+    .createServer((socket) => {
+      socket.on("error", () => {}); // who reads one line and leaves resets the connection
+      socket.end("HTTP/1.1 503 Service Unavailable\r\n\r\n");
+    })
+    .listen(8082);
   await once(listener, "listening");
   assert.equal((await Container.finish({ command: [...check, "8082"] })).code, 1);
   listener.removeAllListeners("connection");
@@ -148,13 +163,31 @@ test("the health check succeeds while the server answers, and fails when it does
 });
 
 test("with --tls-cert the health check asks by HTTPS", async () => {
-  const volume = newVolume(), [key, certificate] = ["key.pem", "certificate.pem"].map((name) => join(volume, name));
-  const made = spawnSync("openssl", ["req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", key, "-out", certificate, "-days", "2", "-subj", "/CN=localhost"]);
+  const volume = newVolume(),
+    [key, certificate] = ["key.pem", "certificate.pem"].map((name) => join(volume, name));
+  const made = spawnSync("openssl", [
+    "req",
+    "-x509",
+    "-newkey",
+    "rsa:2048",
+    "-nodes",
+    "-keyout",
+    key,
+    "-out",
+    certificate,
+    "-days",
+    "2",
+    "-subj",
+    "/CN=localhost",
+  ]);
   assert.equal(made.status, 0, "openssl makes a certificate");
   for (const file of [key, certificate]) chownSync(file, user, user);
   const inside = "/var/lib/clothlab";
-  const other = await Container.start({ args: ["--port", "8081", "--tls-cert", `${inside}/certificate.pem`, "--tls-key", `${inside}/key.pem`],
-                                        env: { CLOTHLAB_TOKEN: token }, volume });
+  const other = await Container.start({
+    args: ["--port", "8081", "--tls-cert", `${inside}/certificate.pem`, "--tls-key", `${inside}/key.pem`],
+    env: { CLOTHLAB_TOKEN: token },
+    volume,
+  });
   assert.equal(other.stdout, "listening on https://0.0.0.0:8081/\n");
   const well = other.exec("/usr/local/bin/healthcheck", "8081");
   assert.deepEqual([well.code, well.stdout], [0, "HTTP/1.1 200 OK\n"], well.stderr);
@@ -165,7 +198,8 @@ test("with --tls-cert the health check asks by HTTPS", async () => {
 });
 
 test("what a session was is there again in another container with the same volume", async () => {
-  const volume = newVolume(), options = { args: ["--port", "8081"], env: { CLOTHLAB_TOKEN: token }, volume };
+  const volume = newVolume(),
+    options = { args: ["--port", "8081"], env: { CLOTHLAB_TOKEN: token }, volume };
   let other = await Container.start(options);
   const before = await operator(other);
   await before.request("scene.patch", { patch: { gravity: [0, -1.6, 0] } });

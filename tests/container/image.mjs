@@ -53,7 +53,9 @@ export class Container extends Server {
       container.child.stdout.on("data", () => container.stdout.includes("\n") && resolve(container.stdout));
       container.child.on("close", (code) => reject(new Error(`it ended with ${code}: ${container.stderr}`)));
     });
-    const match = /^listening on https?:\/\/([^:]+):(\d+)\/\n/.exec(await withTimeout(listening, "the container to listen"));
+    const match = /^listening on https?:\/\/([^:]+):(\d+)\/\n/.exec(
+      await withTimeout(listening, "the container to listen"),
+    );
     if (!match) throw new Error(`serve said ${JSON.stringify(container.stdout)}`);
     container.address = match[1];
     container.port = Number(match[2]);
@@ -87,8 +89,19 @@ export class Container extends Server {
 
   /// Another command in the same container, as `docker exec` does: its exit code and output.
   exec(...command) {
-    const inside = ["--mount", "--pid", "--root", "--wd", "setpriv", `--reuid=${user}`, `--regid=${user}`, "--clear-groups"];
-    const { status, stdout, stderr } = spawnSync("nsenter", ["--target", this.process, ...inside, ...command], { encoding: "utf8" });
+    const inside = [
+      "--mount",
+      "--pid",
+      "--root",
+      "--wd",
+      "setpriv",
+      `--reuid=${user}`,
+      `--regid=${user}`,
+      "--clear-groups",
+    ];
+    const { status, stdout, stderr } = spawnSync("nsenter", ["--target", this.process, ...inside, ...command], {
+      encoding: "utf8",
+    });
     return { code: status, stdout, stderr };
   }
 

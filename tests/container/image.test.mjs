@@ -4,7 +4,9 @@ import { test } from "node:test";
 import { config, root, user } from "./image.mjs";
 
 const find = (...conditions) => {
-  const { status, stdout, stderr } = spawnSync("find", [root, "-xdev", ...conditions, "-printf", "/%P\\n"], { encoding: "utf8" });
+  const { status, stdout, stderr } = spawnSync("find", [root, "-xdev", ...conditions, "-printf", "/%P\\n"], {
+    encoding: "utf8",
+  });
   assert.equal(status, 0, stderr);
   return stdout.split("\n").filter(Boolean).sort();
 };
@@ -18,13 +20,42 @@ test("the image runs as a user who is not root, by number, and says its port and
 test("no token is in the image", () => assert.doesNotMatch(JSON.stringify(config), /token/i));
 
 test("there is no compiler, assembler, linker, build tool, Node or Python in it", () => {
-  const names = "cc|c[+][+]|cpp|gcc|g[+][+]|clang|as|ld|ld[.]bfd|make|cmake|ninja|node|npm|python3?|cc1|cc1plus|collect2|lto1";
-  assert.deepEqual(find("!", "-type", "d", "-regextype", "posix-extended", "-regex", `.*/([a-z0-9_]+-linux-gnu-)?(${names})(-[0-9.]+)?`), []);
-  assert.ok(find("-path", "*/bin/bash").length > 0);  // the search does find what is there
+  const names =
+    "cc|c[+][+]|cpp|gcc|g[+][+]|clang|as|ld|ld[.]bfd|make|cmake|ninja|node|npm|python3?|cc1|cc1plus|collect2|lto1";
+  assert.deepEqual(
+    find(
+      "!",
+      "-type",
+      "d",
+      "-regextype",
+      "posix-extended",
+      "-regex",
+      `.*/([a-z0-9_]+-linux-gnu-)?(${names})(-[0-9.]+)?`,
+    ),
+    [],
+  );
+  assert.ok(find("-path", "*/bin/bash").length > 0); // the search does find what is there
 });
 
 test("its user may write nowhere but in /var/lib/clothlab and the folders for everybody", () => {
-  const writable = find("(", "-uid", user, "-o", "-gid", user, "-o", "-perm", "-0002", ")", "!", "-type", "l", "!", "-path", "*/dev/*");
+  const writable = find(
+    "(",
+    "-uid",
+    user,
+    "-o",
+    "-gid",
+    user,
+    "-o",
+    "-perm",
+    "-0002",
+    ")",
+    "!",
+    "-type",
+    "l",
+    "!",
+    "-path",
+    "*/dev/*",
+  );
   assert.deepEqual(writable, ["/run/lock", "/tmp", "/var/lib/clothlab", "/var/tmp"]);
 });
 
@@ -40,12 +71,17 @@ test("a runtime that only changes the root runs it as its user, too", () => {
 });
 
 test("NVIDIA's EGL is found where the host adds it", () => {
-  assert.deepEqual(find("-path", "*/egl_vendor.d/*.json"), ["/usr/share/glvnd/egl_vendor.d/10_nvidia.json", "/usr/share/glvnd/egl_vendor.d/50_mesa.json"]);
+  assert.deepEqual(find("-path", "*/egl_vendor.d/*.json"), [
+    "/usr/share/glvnd/egl_vendor.d/10_nvidia.json",
+    "/usr/share/glvnd/egl_vendor.d/50_mesa.json",
+  ]);
   assert.ok(config.Env.includes("NVIDIA_DRIVER_CAPABILITIES=graphics,compute,utility"));
 });
 
 test("it takes no more room than docker/README.md says: 300 MB", (context) => {
-  const [bytes] = spawnSync("du", ["--summarize", "--apparent-size", "--bytes", "--one-file-system", root], { encoding: "utf8" }).stdout.split("\t");
+  const [bytes] = spawnSync("du", ["--summarize", "--apparent-size", "--bytes", "--one-file-system", root], {
+    encoding: "utf8",
+  }).stdout.split("\t");
   context.diagnostic(`${(bytes / 1e6).toFixed(1)} MB`);
   assert.ok(bytes < 300e6);
 });

@@ -12,7 +12,8 @@ function fail(why) {
 }
 
 function say(message) {
-  const text = Buffer.from(JSON.stringify({ jsonrpc: "2.0", ...message })), mask = randomBytes(4);
+  const text = Buffer.from(JSON.stringify({ jsonrpc: "2.0", ...message })),
+    mask = randomBytes(4);
   const masked = text.map((byte, i) => byte ^ mask[i & 3]);
   socket.write(Buffer.concat([Buffer.from([0x81, 0x80 | text.length]), mask, masked]));
 }
@@ -20,7 +21,8 @@ function say(message) {
 /// The messages in what has come so far: each a final frame, as this server sends them.
 function* messages(bytes) {
   while (bytes.length >= 2) {
-    const short = bytes[1] & 127, head = short === 126 ? 4 : short === 127 ? 10 : 2;
+    const short = bytes[1] & 127,
+      head = short === 126 ? 4 : short === 127 ? 10 : 2;
     if (bytes.length < head) return;
     const size = short === 126 ? bytes.readUInt16BE(2) : short === 127 ? Number(bytes.readBigUInt64BE(2)) : short;
     if (bytes.length < head + size) return;
@@ -29,12 +31,16 @@ function* messages(bytes) {
   }
 }
 
-let received = Buffer.alloc(0), open = false;
+let received = Buffer.alloc(0),
+  open = false;
 socket.on("error", ({ message }) => fail(message));
 socket.on("close", () => fail("the server closed the connection"));
-socket.on("connect", () => socket.write(
-  `GET /ws HTTP/1.1\r\nHost: ${host}\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n` +
-  `Sec-WebSocket-Key: ${randomBytes(16).toString("base64")}\r\nSec-WebSocket-Protocol: clothlab.v1\r\n\r\n`));
+socket.on("connect", () =>
+  socket.write(
+    `GET /ws HTTP/1.1\r\nHost: ${host}\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n` +
+      `Sec-WebSocket-Key: ${randomBytes(16).toString("base64")}\r\nSec-WebSocket-Protocol: clothlab.v1\r\n\r\n`,
+  ),
+);
 socket.on("data", (data) => {
   received = Buffer.concat([received, data]);
   const end = received.indexOf("\r\n\r\n");

@@ -8,7 +8,7 @@ export const document = parse(readFileSync(place, "utf8"));
 export const messages = document.channels.session.messages;
 
 const ajv = new Ajv2020({ strict: true, strictTypes: false, strictRequired: false, allowUnionTypes: true });
-ajv.addVocabulary(Object.keys(document));  // it holds schemas, but is none
+ajv.addVocabulary(Object.keys(document)); // it holds schemas, but is none
 for (const schema of ["../scene/scene.schema.json", "../lab/result.schema.json"])
   ajv.addSchema(JSON.parse(readFileSync(new URL(schema, place))), new URL(schema, place).href);
 ajv.addSchema(document, place.href);
@@ -16,7 +16,11 @@ ajv.addSchema(document, place.href);
 /// Whether a value is what the schema at a JSON Pointer of the document says; the reasons, empty if it is.
 export function complaints(pointer, value) {
   const validate = ajv.getSchema(`${place.href}#${pointer}`);
-  return validate(value) ? [] : validate.errors.map(({ instancePath, message, params }) => `${instancePath} ${message} ${JSON.stringify(params)}`);
+  return validate(value)
+    ? []
+    : validate.errors.map(
+        ({ instancePath, message, params }) => `${instancePath} ${message} ${JSON.stringify(params)}`,
+      );
 }
 
 export const payloadComplaints = (name, value) => complaints(`/channels/session/messages/${name}/payload`, value);
@@ -26,14 +30,18 @@ export function lookUp(reference, from = place) {
   const [file, pointer] = reference.split("#");
   const at = new URL(file, from);
   const root = at.href === place.href ? document : JSON.parse(readFileSync(at));
-  return (pointer ?? "").split("/").slice(1).reduce((value, key) => value?.[key.replaceAll("~1", "/").replaceAll("~0", "~")], root);
+  return (pointer ?? "")
+    .split("/")
+    .slice(1)
+    .reduce((value, key) => value?.[key.replaceAll("~1", "/").replaceAll("~0", "~")], root);
 }
 
 export const nameOf = ({ $ref }) => $ref.split("/").at(-1);
 
 /// Each with the names of its messages instead of references.
 export const operations = Object.entries(document.operations).map(([name, operation]) => ({
-  ...operation, name,
+  ...operation,
+  name,
   messages: operation.messages.map(nameOf),
   replies: operation.reply?.messages.map(nameOf) ?? [],
 }));
@@ -41,9 +49,13 @@ export const operation = (name) => operations.find((candidate) => candidate.name
 
 const sizes = { u8: 1, i8: 1, u16: 2, u32: 4, u64: 8, f32: 4, f64: 8 };
 const readers = {
-  u8: (view, at) => view.getUint8(at), i8: (view, at) => view.getInt8(at), u16: (view, at) => view.getUint16(at, true),
-  u32: (view, at) => view.getUint32(at, true), u64: (view, at) => Number(view.getBigUint64(at, true)),
-  f32: (view, at) => view.getFloat32(at, true), f64: (view, at) => view.getFloat64(at, true),
+  u8: (view, at) => view.getUint8(at),
+  i8: (view, at) => view.getInt8(at),
+  u16: (view, at) => view.getUint16(at, true),
+  u32: (view, at) => view.getUint32(at, true),
+  u64: (view, at) => Number(view.getBigUint64(at, true)),
+  f32: (view, at) => view.getFloat32(at, true),
+  f64: (view, at) => view.getFloat64(at, true),
 };
 
 /// A binary message, read as `x-binary` says: { header, ...payload }. Throws where the bytes are too few or too many.
@@ -59,7 +71,8 @@ export function readBinary(bytes) {
   const record = (fields, known) => {
     const read = {};
     for (const { name, type, count, times, items } of fields) {
-      const one = () => (items ? record(items, known) : count ? Array.from({ length: count }, () => value(type)) : value(type));
+      const one = () =>
+        items ? record(items, known) : count ? Array.from({ length: count }, () => value(type)) : value(type);
       read[name] = times ? Array.from({ length: { ...known, ...read }[times] }, one) : one();
     }
     return read;

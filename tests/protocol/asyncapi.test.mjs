@@ -10,7 +10,12 @@ import { strip as stripOf } from "./strip.mjs";
 
 const strip = stripOf(5);
 /// It is at rest from the start, as good as.
-const plumb = { ...strip, name: "plumb", air_drag: 5, cloths: [{ ...strip.cloths[0], transform: { rotate: [90, 0, 0] } }] };
+const plumb = {
+  ...strip,
+  name: "plumb",
+  air_drag: 5,
+  cloths: [{ ...strip.cloths[0], transform: { rotate: [90, 0, 0] } }],
+};
 
 const audit = new Audit();
 let server;
@@ -34,7 +39,12 @@ async function leave(client) {
   await client.request("sim.pause");
   await client.close();
 }
-const answerTo = (client, id) => client.until(() => client.messages, (message) => message.id === id, `the answer to ${id}`);
+const answerTo = (client, id) =>
+  client.until(
+    () => client.messages,
+    (message) => message.id === id,
+    `the answer to ${id}`,
+  );
 /// What the lab tells, which gives way to everything else on the machine.
 async function inTime(client, method, predicate) {
   const fits = (message) => message.method === method && predicate(message.params);
@@ -49,17 +59,29 @@ test("the document's methods are those that hello names, and those that are anno
   const { requests } = await client.notification("hello");
   assert.deepEqual(there.map(({ name }) => name).sort(), [...requests].sort());
   assert.deepEqual([...document.components.schemas.requests.items.enum].sort(), [...requests].sort());
-  const notYet = { "grab.start": { cloth: 0, vertex: 0, target: [0, 1, 0] }, "grab.move": { target: [0, 1, 0] }, "grab.end": {},
-                   "mesh.upload": { name: "shirt", obj: "v 0 0 0" } };
-  assert.deepEqual(receives.filter((asked) => asked["x-not-yet"]).map(({ name }) => name).sort(), Object.keys(notYet).sort());
-  for (const [name, params] of Object.entries(notYet)) assert.match((await client.refusal(name, params)).message, /is not supported yet/);
+  const notYet = {
+    "grab.start": { cloth: 0, vertex: 0, target: [0, 1, 0] },
+    "grab.move": { target: [0, 1, 0] },
+    "grab.end": {},
+    "mesh.upload": { name: "shirt", obj: "v 0 0 0" },
+  };
+  assert.deepEqual(
+    receives
+      .filter((asked) => asked["x-not-yet"])
+      .map(({ name }) => name)
+      .sort(),
+    Object.keys(notYet).sort(),
+  );
+  for (const [name, params] of Object.entries(notYet))
+    assert.match((await client.refusal(name, params)).message, /is not supported yet/);
   await leave(client);
 });
 
 test("the limits that hello tells are the document's", async () => {
   const client = await enter();
   const { limits, encodings, methods } = await client.notification("hello");
-  const range = (name, parameter) => (({ minimum, maximum }) => [minimum, maximum])(resolved(paramsOf(name).properties[parameter]));
+  const range = (name, parameter) =>
+    (({ minimum, maximum }) => [minimum, maximum])(resolved(paramsOf(name).properties[parameter]));
   assert.equal(range("stream.subscribe", "rate")[1], limits.rate);
   assert.equal(range("stream.subscribe", "in_flight")[1], limits.in_flight);
   assert.equal(range("sim.step", "steps")[1], limits.steps);
@@ -75,10 +97,13 @@ test("the limits that hello tells are the document's", async () => {
 // taken, and nothing comes of it.
 test("the server takes each parameter up to the limits that the document gives, and refuses it beyond", async (t) => {
   const client = await enter();
-  let taken = 0, refused = 0;
+  let taken = 0,
+    refused = 0;
   for (const { name } of there) {
     const { properties = {}, required = [] } = paramsOf(name) ?? {};
-    const least = Object.fromEntries(required.map((parameter) => [parameter, candidates(properties[parameter]).good[0]]));
+    const least = Object.fromEntries(
+      required.map((parameter) => [parameter, candidates(properties[parameter]).good[0]]),
+    );
     const pathFor = async (params) => {
       const { code, data } = await client.refusal(name, { ...least, ...params, surplus: 1 });
       assert.equal(code, -32602, `${name} ${JSON.stringify(params)}`);
@@ -86,14 +111,25 @@ test("the server takes each parameter up to the limits that the document gives, 
     };
     if (name !== "scene.load") assert.equal(await pathFor({}), "/surplus", name);
     for (const [parameter, schema] of Object.entries(properties)) {
-      if (parameter === "scene") continue;  // tests/schema/scene.test.mjs
+      if (parameter === "scene") continue; // tests/schema/scene.test.mjs
       const { good, bad } = candidates(schema);
-      for (const value of good) assert.equal(await pathFor({ [parameter]: value }), "/surplus", `${name} ${parameter} ${JSON.stringify(value)}`);
-      for (const value of bad) assert.equal(await pathFor({ [parameter]: value }), `/${parameter}`, `${name} ${parameter} ${JSON.stringify(value)}`);
+      for (const value of good)
+        assert.equal(
+          await pathFor({ [parameter]: value }),
+          "/surplus",
+          `${name} ${parameter} ${JSON.stringify(value)}`,
+        );
+      for (const value of bad)
+        assert.equal(
+          await pathFor({ [parameter]: value }),
+          `/${parameter}`,
+          `${name} ${parameter} ${JSON.stringify(value)}`,
+        );
       taken += good.length;
       refused += bad.length;
     }
-    for (const parameter of required) assert.equal(await pathFor({ [parameter]: undefined }), `/${parameter}`, `${name} without ${parameter}`);
+    for (const parameter of required)
+      assert.equal(await pathFor({ [parameter]: undefined }), `/${parameter}`, `${name} without ${parameter}`);
   }
   t.diagnostic(`${taken} taken, ${refused} refused`);
   await leave(client);
@@ -112,12 +148,29 @@ test("requests and their answers are as it says, with and without parameters, fo
   const client = await enter(strip);
   const { revision } = await client.request("scene.get", {});
   const asked = [
-    ["ping"], ["ping", { t: [1, { deep: null }] }], ["scene.get"], ["scene.presets", {}], ["sim.pause"], ["sim.play"], ["sim.pause", {}],
-    ["sim.step"], ["sim.step", { steps: 3 }], ["sim.reset"], ["sim.speed", { factor: 0.5 }], ["auth", { token: "any" }],
-    ["scene.patch", { patch: {} }], ["scene.patch", { patch: { gravity: [0, -1, 0] }, revision: revision + 1 }],
-    ["scene.patch", { patch: { self_collision: {} } }], ["scene.patch", { patch: [{ op: "replace", path: "/cloths/0/mesh/grid/rows", value: 6 }] }],
-    ["scene.patch", { patch: { solver: { method: "pbd" } } }], ["scene.load", { preset: "curtain" }], ["scene.load", { scene: strip }],
-    ["stream.subscribe"], ["stream.ack", { frame: 0 }], ["stream.unsubscribe"], ["stream.subscribe", { encoding: "f32", rate: 120, in_flight: 8 }],
+    ["ping"],
+    ["ping", { t: [1, { deep: null }] }],
+    ["scene.get"],
+    ["scene.presets", {}],
+    ["sim.pause"],
+    ["sim.play"],
+    ["sim.pause", {}],
+    ["sim.step"],
+    ["sim.step", { steps: 3 }],
+    ["sim.reset"],
+    ["sim.speed", { factor: 0.5 }],
+    ["auth", { token: "any" }],
+    ["scene.patch", { patch: {} }],
+    ["scene.patch", { patch: { gravity: [0, -1, 0] }, revision: revision + 1 }],
+    ["scene.patch", { patch: { self_collision: {} } }],
+    ["scene.patch", { patch: [{ op: "replace", path: "/cloths/0/mesh/grid/rows", value: 6 }] }],
+    ["scene.patch", { patch: { solver: { method: "pbd" } } }],
+    ["scene.load", { preset: "curtain" }],
+    ["scene.load", { scene: strip }],
+    ["stream.subscribe"],
+    ["stream.ack", { frame: 0 }],
+    ["stream.unsubscribe"],
+    ["stream.subscribe", { encoding: "f32", rate: 120, in_flight: 8 }],
     ["lab.jobs"],
   ];
   for (const [method, params] of asked) await client.request(method, params);
@@ -136,12 +189,23 @@ test("requests and their answers are as it says, with and without parameters, fo
 
 test("what is no request is answered as it says", async () => {
   const client = await enter();
-  const cases = [["{", -32700], ["[".repeat(50), -32700], ["[]", -32600], ["5", -32600], ['{"id":1}', -32600], [Buffer.from("{}"), -32600],
-                 ['{"jsonrpc":"2.0","id":null,"method":"ping","params":[1]}', -32602]];
+  const cases = [
+    ["{", -32700],
+    ["[".repeat(50), -32700],
+    ["[]", -32600],
+    ["5", -32600],
+    ['{"id":1}', -32600],
+    [Buffer.from("{}"), -32600],
+    ['{"jsonrpc":"2.0","id":null,"method":"ping","params":[1]}', -32602],
+  ];
   for (const [text, code] of cases) {
     const from = client.messages.length;
     client.send(text);
-    const { error } = await client.until(() => client.messages.slice(from), (message) => message.error, `an error for ${text}`);
+    const { error } = await client.until(
+      () => client.messages.slice(from),
+      (message) => message.error,
+      `an error for ${text}`,
+    );
     assert.equal(error.code, code, String(text));
   }
   assert.equal((await client.refusal("no.such")).code, -32601);
@@ -170,11 +234,18 @@ test("a blow-up, its remedy and a cloth at rest are told as it says", async () =
   const client = await enter();
   await client.request("stream.subscribe", {});
   for (const method of ["symplectic_euler", "explicit_euler"]) {
-    await client.request("sim.pause");  // it would have blown up before anybody listens
+    await client.request("sim.pause"); // it would have blown up before anybody listens
     await client.request("scene.load", { preset: "blowup" });
-    const { document: { cloths: [cloth] } } = await client.request("scene.get");
-    if (method === "explicit_euler")  // whose remedy is another method
-      await client.request("scene.patch", { patch: { solver: { method }, cloths: [{ ...cloth, material: { ...cloth.material, damping: 0 } }] } });
+    const {
+      document: {
+        cloths: [cloth],
+      },
+    } = await client.request("scene.get");
+    if (method === "explicit_euler")
+      // whose remedy is another method
+      await client.request("scene.patch", {
+        patch: { solver: { method }, cloths: [{ ...cloth, material: { ...cloth.material, damping: 0 } }] },
+      });
     const told = client.nextNotification("sim.diverged");
     await client.request("sim.play");
     const { remedy } = await told;
@@ -196,7 +267,10 @@ test("the four jobs of the lab, cancelled, failed, waiting and exported, tell of
   const ended = (job) => inTime(client, "lab.result", (result) => result.job === job && result.state !== "running");
   const quick = { time: 0.05, pause: true };
   const jobs = [
-    ["lab.chart", { ...quick, methods: ["verlet", "xpbd", "implicit_euler"], iterations: [1, 2], budget: 3, fresh: true }],
+    [
+      "lab.chart",
+      { ...quick, methods: ["verlet", "xpbd", "implicit_euler"], iterations: [1, 2], budget: 3, fresh: true },
+    ],
     ["lab.stability", { methods: ["verlet", "vbd"], columns: 2, from: 1, to: 4 }],
     ["lab.choose", { ...quick, tolerance: 0.1, methods: ["verlet", "xpbd"] }],
     ["lab.simplify", { ...quick, tolerance: 0.1 }],
@@ -254,7 +328,9 @@ test("with a token, who may do what is as it says, and why connections are close
   const forbidden = [];
   for (const { name } of there.filter(({ name }) => name !== "auth")) {
     const { required = [], properties } = paramsOf(name) ?? {};
-    const params = Object.fromEntries(required.map((parameter) => [parameter, candidates(properties[parameter]).good[0]]));
+    const params = Object.fromEntries(
+      required.map((parameter) => [parameter, candidates(properties[parameter]).good[0]]),
+    );
     if (name === "scene.load") params.preset = "seed";
     assert.equal((await stranger.refusal(name, params)).code, -32001, name);
     await viewer.request(name, params).catch(({ code }) => {
@@ -262,7 +338,10 @@ test("with a token, who may do what is as it says, and why connections are close
       forbidden.push(name);
     });
   }
-  assert.deepEqual(forbidden, there.filter((asked) => asked["x-role"] === "operator").map(({ name }) => name));
+  assert.deepEqual(
+    forbidden,
+    there.filter((asked) => asked["x-role"] === "operator").map(({ name }) => name),
+  );
   assert.equal((await stranger.refusal("auth", { token: "wrong" })).code, -32001);
   const crowd = await Promise.all(["a", "b"].map((session) => Client.connect(guarded, { session })));
   await crowd[0].request("auth", { token: "secret" });
@@ -294,6 +373,9 @@ test("a session's name is what the document takes for one", async () => {
 });
 
 test("everything that the document describes has been seen", async () => {
-  assert.deepEqual(Object.keys(messages).filter((name) => !audit.seen.has(name)), []);
+  assert.deepEqual(
+    Object.keys(messages).filter((name) => !audit.seen.has(name)),
+    [],
+  );
   for (const code of [1001, 1008, 1009]) assert.ok(audit.closeCodes.has(code), `closed with ${code}`);
 });

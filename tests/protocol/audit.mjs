@@ -4,24 +4,30 @@ import { Client } from "./harness.mjs";
 
 const short = (value) => JSON.stringify(value).slice(0, 300);
 const refusals = operation("refuse").messages;
-const told = new Set(operations.filter(({ action, name }) => action === "send" && !["refuse", "stream"].includes(name)).flatMap((o) => o.messages));
+const told = new Set(
+  operations
+    .filter(({ action, name }) => action === "send" && !["refuse", "stream"].includes(name))
+    .flatMap((o) => o.messages),
+);
 
 /// Requests that no schema can tell from right ones, by where their fault is.
 const knownByTheServerOnly = {
-  "scene.load": /^\/preset$/,         // a name that is no preset
-  "scene.patch": /^/,                 // whether the patched scene is one
-  "lab.cancel": /^\/job$/, "lab.export": /^\/job$/,  // somebody else's, or without results yet
+  "scene.load": /^\/preset$/, // a name that is no preset
+  "scene.patch": /^/, // whether the patched scene is one
+  "lab.cancel": /^\/job$/,
+  "lab.export": /^\/job$/, // somebody else's, or without results yet
 };
 
 export class Audit {
   faults = [];
-  seen = new Set();      ///< names of messages, all of them as the document says
+  seen = new Set(); ///< names of messages, all of them as the document says
   closeCodes = new Set();
-  clients = new Map();   ///< { role, pending: id -> what was asked }
+  clients = new Map(); ///< { role, pending: id -> what was asked }
 
   /// From now on every client is listened to.
   begin() {
-    const audit = this, { send, receive } = Client.prototype;
+    const audit = this,
+      { send, receive } = Client.prototype;
     Client.prototype.send = function (text) {
       audit.sent(this, text);
       return send.call(this, text);
@@ -38,7 +44,8 @@ export class Audit {
       this.clients.set(client, { role: null, pending: new Map() });
       client.closed.then(({ code }) => {
         this.closeCodes.add(code);
-        if (code >= 1006 && !(code in document.channels.session["x-close-codes"])) this.faults.push(`closed with ${code}`);
+        if (code >= 1006 && !(code in document.channels.session["x-close-codes"]))
+          this.faults.push(`closed with ${code}`);
       });
     }
     return this.clients.get(client);
@@ -60,10 +67,15 @@ export class Audit {
     if (message.method !== undefined) return this.gotNotification(about, message);
     const request = about.pending.get(message.id);
     about.pending.delete(message.id);
-    const names = [...(request?.asked.replies ?? []), ...refusals].filter((name) => payloadComplaints(name, message).length === 0);
+    const names = [...(request?.asked.replies ?? []), ...refusals].filter(
+      (name) => payloadComplaints(name, message).length === 0,
+    );
     if (names.length !== 1) {
-      const most = request?.asked.replies[0] && message.result ? payloadComplaints(request.asked.replies[0], message) : names;
-      this.faults.push(`to ${short(request?.message)} came ${short(message)}, which is not one of its answers: ${most}`);
+      const most =
+        request?.asked.replies[0] && message.result ? payloadComplaints(request.asked.replies[0], message) : names;
+      this.faults.push(
+        `to ${short(request?.message)} came ${short(message)}, which is not one of its answers: ${most}`,
+      );
       return;
     }
     this.seen.add(names[0]);
@@ -80,7 +92,12 @@ export class Audit {
       if (asked["x-role"] === "operator" && role !== "operator") fault(`is allowed to a ${role}`);
     } else if (answer === "error.invalid_params" && right && !knownByTheServerOnly[asked.name]?.test(error.data.path)) {
       fault("is refused, though the document would have it");
-    } else if (answer === "error.not_allowed" && role !== null && asked["x-role"] !== "operator" && asked.name !== "auth") {
+    } else if (
+      answer === "error.not_allowed" &&
+      role !== null &&
+      asked["x-role"] !== "operator" &&
+      asked.name !== "auth"
+    ) {
       fault(`is not allowed to a ${role}`);
     } else if (answer === "error.unknown_method" && !asked["x-not-yet"]) {
       fault("is unknown");

@@ -12,7 +12,10 @@ test("with --token the server says nothing until auth has succeeded", async () =
   assert.deepEqual(client.messages, []);
   const answer = client.request("auth", { token: "secret" });
   await client.notification("scene");
-  assert.deepEqual(client.messages.slice(0, 2).map((message) => message.method), ["hello", "scene"]);
+  assert.deepEqual(
+    client.messages.slice(0, 2).map((message) => message.method),
+    ["hello", "scene"],
+  );
   assert.deepEqual(await answer, { role: "operator" });
   assert.equal((await client.notification("hello")).role, "operator");
   assert.equal((await client.request("sim.pause")).playing, false);
@@ -22,8 +25,15 @@ test("with --token the server says nothing until auth has succeeded", async () =
 
 test("before auth, and with a wrong token, everything answers -32001", async () => {
   const client = await Client.connect(server);
-  for (const [method, params] of [["ping", {}], ["scene.get", {}], ["sim.pause", {}], ["stream.subscribe", {}],
-                                  ["auth", { token: "wrong" }], ["auth", { token: "" }], ["auth", { token: "secretx" }]])
+  for (const [method, params] of [
+    ["ping", {}],
+    ["scene.get", {}],
+    ["sim.pause", {}],
+    ["stream.subscribe", {}],
+    ["auth", { token: "wrong" }],
+    ["auth", { token: "" }],
+    ["auth", { token: "secretx" }],
+  ])
     assert.equal((await client.refusal(method, params)).code, -32001, method);
   assert.equal((await client.refusal('a"label')).code, -32001);
   assert.deepEqual(client.messages, []);
@@ -57,10 +67,22 @@ test("a viewer reads and watches; whatever changes something answers -32001", as
   const client = await Client.connect(server);
   assert.deepEqual(await client.request("auth", { token: "look" }), { role: "viewer" });
   assert.equal((await client.notification("hello")).role, "viewer");
-  for (const [method, params] of [["scene.load", { preset: "seed" }], ["scene.patch", { patch: {} }], ["sim.play", {}],
-                                  ["sim.pause", {}], ["sim.step", {}], ["sim.reset", {}], ["sim.speed", { factor: 1 }],
-                                  ["lab.chart", {}], ["lab.stability", {}], ["lab.choose", { tolerance: 0.01 }], ["lab.simplify", {}],
-                                  ["lab.cancel", { job: 1 }], ["lab.jobs", {}], ["lab.export", { job: 1, format: "json" }]])
+  for (const [method, params] of [
+    ["scene.load", { preset: "seed" }],
+    ["scene.patch", { patch: {} }],
+    ["sim.play", {}],
+    ["sim.pause", {}],
+    ["sim.step", {}],
+    ["sim.reset", {}],
+    ["sim.speed", { factor: 1 }],
+    ["lab.chart", {}],
+    ["lab.stability", {}],
+    ["lab.choose", { tolerance: 0.01 }],
+    ["lab.simplify", {}],
+    ["lab.cancel", { job: 1 }],
+    ["lab.jobs", {}],
+    ["lab.export", { job: 1, format: "json" }],
+  ])
     assert.equal((await client.refusal(method, params)).code, -32001, method);
   assert.equal((await client.request("scene.get")).document.name, "seed");
   assert.ok((await client.request("scene.presets")).presets.length > 0);
@@ -70,7 +92,10 @@ test("a viewer reads and watches; whatever changes something answers -32001", as
 });
 
 test("auth into one session more than --max-sessions answers -32002, and the next one may", async () => {
-  const [first, second] = [await Client.connect(server, { session: "a" }), await Client.connect(server, { session: "b" })];
+  const [first, second] = [
+    await Client.connect(server, { session: "a" }),
+    await Client.connect(server, { session: "b" }),
+  ];
   await first.request("auth", { token: "secret" });
   assert.equal((await second.refusal("auth", { token: "secret" })).code, -32002);
   assert.equal((await second.refusal("scene.get")).code, -32002);
@@ -101,7 +126,12 @@ test("wrong tokens over HTTP and the WebSocket count together, then both refuse 
   assert.equal((await ask("Bearer wrong")).status, 401);
   const client = await Client.connect(guarded);
   assert.equal((await client.refusal("auth", { token: "wrong" })).code, -32001);
-  for (const [token, path] of [["wrong", "/api/scene"], ["secret", "/api/scene"], ["secret", "/metrics"], ["secret", "/api/mesh.obj"]]) {
+  for (const [token, path] of [
+    ["wrong", "/api/scene"],
+    ["secret", "/api/scene"],
+    ["secret", "/metrics"],
+    ["secret", "/api/mesh.obj"],
+  ]) {
     const { status, headers, body } = await ask(`Bearer ${token}`, path);
     assert.equal(status, 429, path);
     const seconds = Number(headers["retry-after"]);
@@ -117,15 +147,25 @@ test("wrong tokens over HTTP and the WebSocket count together, then both refuse 
 test("a viewer opens no session: auth answers -32001 until an operator has opened it, and the operator's token may come on the same connection", async (t) => {
   const guarded = await Server.start("--token", "secret", "--view-token", "look", "--max-sessions", "3");
   t.after(() => guarded.stop());
-  const [first, second, third] = await Promise.all(["new", "other", "third"].map((session) => Client.connect(guarded, { session })));
-  for (const [client, session] of [[first, "new"], [second, "other"], [third, "third"], [first, "new"]]) {
+  const [first, second, third] = await Promise.all(
+    ["new", "other", "third"].map((session) => Client.connect(guarded, { session })),
+  );
+  for (const [client, session] of [
+    [first, "new"],
+    [second, "other"],
+    [third, "third"],
+    [first, "new"],
+  ]) {
     const error = await client.refusal("auth", { token: "look" });
     assert.equal(error.code, -32001);
     assert.equal(error.message, `no session ${session} is open; an operator opens it by connecting to it`);
   }
   assert.match((await first.refusal("scene.get")).message, /call auth/, "it has no role");
   assert.deepEqual(first.messages, []);
-  assert.match((await guarded.get("/metrics", { authorization: "Bearer look" })).body.toString(), /^clothlab_sessions 1$/m);
+  assert.match(
+    (await guarded.get("/metrics", { authorization: "Bearer look" })).body.toString(),
+    /^clothlab_sessions 1$/m,
+  );
   assert.deepEqual(await second.request("auth", { token: "secret" }), { role: "operator" });
   const operator = await Client.connect(guarded, { session: "new" });
   await operator.request("auth", { token: "secret" });
@@ -144,9 +184,16 @@ test("where all places are taken, no session makes room for a viewer, however lo
   t.after(() => guarded.stop());
   const enter = async (session, token) => {
     const client = await Client.connect(guarded, { session });
-    return client.request("auth", { token }).then(({ role }) => role, ({ code }) => code).finally(() => client.close());
+    return client
+      .request("auth", { token })
+      .then(
+        ({ role }) => role,
+        ({ code }) => code,
+      )
+      .finally(() => client.close());
   };
-  const open = async (session) => (await guarded.get(`/api/scene?session=${session}`, { authorization: "Bearer look" })).status === 200;
+  const open = async (session) =>
+    (await guarded.get(`/api/scene?session=${session}`, { authorization: "Bearer look" })).status === 200;
   assert.equal(await enter("left", "secret"), "operator");
   for (const until = Date.now() + patience; !(await open("left")); await sleep(50)) assert.ok(Date.now() < until);
   await sleep(30_500);

@@ -7,15 +7,21 @@ export function resolved(schema) {
 
 const numbers = ({ type, minimum, maximum }) => ({
   good: [minimum, maximum].filter((value) => value !== undefined),
-  bad: [minimum === undefined ? [] : [minimum - (type === "integer" ? 1 : Math.abs(minimum) * 1e-6 + 1e-9)],
-        maximum === undefined ? [] : [maximum + (type === "integer" ? 1 : Math.abs(maximum) * 1e-6)],
-        type === "integer" ? [minimum + 0.5] : [], "1", true, []].flat(),
+  bad: [
+    minimum === undefined ? [] : [minimum - (type === "integer" ? 1 : Math.abs(minimum) * 1e-6 + 1e-9)],
+    maximum === undefined ? [] : [maximum + (type === "integer" ? 1 : Math.abs(maximum) * 1e-6)],
+    type === "integer" ? [minimum + 0.5] : [],
+    "1",
+    true,
+    [],
+  ].flat(),
 });
 
 /// { good, bad }
 export function candidates(given) {
   const schema = resolved(given);
-  if (schema.enum) return { good: schema.enum, bad: ["no such", 5, ...schema.enum.map((value) => value.toUpperCase())] };
+  if (schema.enum)
+    return { good: schema.enum, bad: ["no such", 5, ...schema.enum.map((value) => value.toUpperCase())] };
   switch (schema.type) {
     case "integer":
     case "number":
@@ -34,7 +40,7 @@ export function candidates(given) {
     }
     case undefined:
       return { good: [null, 1, "x", [{}]], bad: [] };
-    default:  // several types
+    default: // several types
       return { good: schema.type.map((type) => ({ object: {}, array: [] })[type]), bad: [5, "x", true] };
   }
 }

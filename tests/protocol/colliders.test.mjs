@@ -4,18 +4,26 @@ import { after, before, test } from "node:test";
 import { Client, Server } from "./harness.mjs";
 
 let server;
-before(async () => { server = await Server.start(); });
+before(async () => {
+  server = await Server.start();
+});
 after(() => server.stop());
 
 const spin = { axis: [0, 0, 2], center: [0, 1, 0], degrees_per_second: 90 };
 const colliders = [
   { name: "still", sphere: { center: [0, -1, 0], radius: 0.2 } },
   { name: "wheel", plane: { point: [0.5, 1, 0], normal: [0, 3, 0] }, motion: { spin } },
-  { name: "pendulum", sphere: { center: [1, 0, 0], radius: 0.1 }, motion: { oscillate: { axis: [0, 0, 1], amplitude: 0.2, frequency: 0.5 } } },
+  {
+    name: "pendulum",
+    sphere: { center: [1, 0, 0], radius: 0.1 },
+    motion: { oscillate: { axis: [0, 0, 1], amplitude: 0.2, frequency: 0.5 } },
+  },
   { name: "cart", sphere: { center: [2, 0, 0], radius: 0.1 }, motion: { linear: { velocity: [0.5, 0, -0.25] } } },
 ];
 const near = (found, wanted, what) =>
-  found.forEach((value, axis) => assert.ok(Math.abs(value - wanted[axis]) < 1e-9, `${what}: ${found} is not ${wanted}`));
+  found.forEach((value, axis) =>
+    assert.ok(Math.abs(value - wanted[axis]) < 1e-9, `${what}: ${found} is not ${wanted}`),
+  );
 
 for (const encoding of ["f32", "q16"])
   test(`before each ${encoding} frame the session tells where what moves is: a spinning plane has turned, too`, async () => {
@@ -26,9 +34,16 @@ for (const encoding of ["f32", "q16"])
     const told = client.messages.filter(({ method }) => method === "colliders").map(({ params }) => params);
     const { time, step, moving } = told.find((each) => each.step === frame.step);
     assert.equal(time, frame.time);
-    assert.deepEqual(moving.map(({ index }) => index), [1, 2, 3]);  // what stands still is where the scene says
-    const angle = Math.PI / 2 * time;
-    near(moving[0].plane.point, [0.5 * Math.cos(angle), 1 + 0.5 * Math.sin(angle), 0], `the wheel's point after ${step} steps`);
+    assert.deepEqual(
+      moving.map(({ index }) => index),
+      [1, 2, 3],
+    ); // what stands still is where the scene says
+    const angle = (Math.PI / 2) * time;
+    near(
+      moving[0].plane.point,
+      [0.5 * Math.cos(angle), 1 + 0.5 * Math.sin(angle), 0],
+      `the wheel's point after ${step} steps`,
+    );
     near(moving[0].plane.normal, [-Math.sin(angle), Math.cos(angle), 0], "the wheel's normal");
     near(moving[1].sphere.center, [1, 0, 0.2 * Math.sin(Math.PI * time)], "the pendulum");
     near(moving[2].sphere.center, [2 + 0.5 * time, 0, -0.25 * time], "the cart");
@@ -41,6 +56,9 @@ test("a scene in which no collider moves has no such message", async () => {
   await client.request("stream.subscribe", { encoding: "q16", rate: 60, in_flight: 2 });
   const { step } = await client.frame();
   await client.nextFrame((frame) => frame.step > step);
-  assert.deepEqual(client.messages.filter(({ method }) => method === "colliders"), []);
+  assert.deepEqual(
+    client.messages.filter(({ method }) => method === "colliders"),
+    [],
+  );
   await client.close();
 });

@@ -2,9 +2,11 @@
 // such a message is a BadMessage; nothing outside the message is ever read.
 
 const headerBytes = 64;
-const topology = 1, frame = 2;
-const f32 = 0, q16 = 1;
-const knownFlags = 3;  // asleep, diverged
+const topology = 1,
+  frame = 2;
+const f32 = 0,
+  q16 = 1;
+const knownFlags = 3; // asleep, diverged
 
 export class BadMessage extends Error {}
 
@@ -47,33 +49,45 @@ function checkHeader(header, byteLength) {
   demand((flags & ~(kind === frame ? knownFlags : 0)) === 0, `kind ${kind} has no flags ${flags}`);
   demand(header.time >= 0 && header.time < Infinity, `the time is ${header.time}`);
   demand(header.boxMinimum.every(Number.isFinite), `the box begins at ${header.boxMinimum}`);
-  demand(header.boxExtent.every((extent) => extent >= 0 && extent < Infinity), `the box has the extent ${header.boxExtent}`);
+  demand(
+    header.boxExtent.every((extent) => extent >= 0 && extent < Infinity),
+    `the box has the extent ${header.boxExtent}`,
+  );
   demand(header.zero === 0, `the reserved word is ${header.zero}`);
-  demand(header.payloadBytes === byteLength - headerBytes,
-         `the header says ${header.payloadBytes} payload bytes, ${byteLength - headerBytes} came`);
+  demand(
+    header.payloadBytes === byteLength - headerBytes,
+    `the header says ${header.payloadBytes} payload bytes, ${byteLength - headerBytes} came`,
+  );
 }
 
 function readTopology(view, { payloadBytes, vertexCount }) {
   demand(payloadBytes >= 8, "the topology has no counts");
   let at = headerBytes;
   const u32 = () => view.getUint32((at += 4) - 4, true);
-  const triangleCount = u32(), clothCount = u32();
+  const triangleCount = u32(),
+    clothCount = u32();
   const expected = 8 + 8 * clothCount + 12 * triangleCount + 8 * vertexCount;
   demand(payloadBytes === expected, `the topology's counts ask for ${expected} bytes, it has ${payloadBytes}`);
   const cloths = Array.from({ length: clothCount }, () => ({ firstVertex: u32(), vertexCount: u32() }));
   const covered = cloths.reduce((next, cloth) => (cloth.firstVertex === next ? next + cloth.vertexCount : NaN), 0);
   demand(covered === vertexCount, `the cloths do not share out ${vertexCount} vertices, one after another`);
   const triangles = Array.from({ length: triangleCount }, () => [u32(), u32(), u32()]);
-  demand(triangles.every((corners) => corners.every((corner) => corner < vertexCount)), `a triangle's corner is not below ${vertexCount}`);
-  const texture = Array.from({ length: vertexCount }, () =>
-    [view.getFloat32((at += 4) - 4, true), view.getFloat32((at += 4) - 4, true)]);
+  demand(
+    triangles.every((corners) => corners.every((corner) => corner < vertexCount)),
+    `a triangle's corner is not below ${vertexCount}`,
+  );
+  const texture = Array.from({ length: vertexCount }, () => [
+    view.getFloat32((at += 4) - 4, true),
+    view.getFloat32((at += 4) - 4, true),
+  ]);
   return { cloths, triangles, texture };
 }
 
 function readFloat32(view, { payloadBytes, vertexCount }) {
   demand(payloadBytes === 24 * vertexCount, "an f32 frame has 24 bytes a vertex");
   const triple = (at) => [0, 4, 8].map((offset) => view.getFloat32(at + offset, true));
-  const positions = [], normals = [];
+  const positions = [],
+    normals = [];
   for (let i = 0; i < vertexCount; ++i) {
     positions.push(triple(headerBytes + 24 * i));
     normals.push(triple(headerBytes + 24 * i + 12));
@@ -83,10 +97,13 @@ function readFloat32(view, { payloadBytes, vertexCount }) {
 
 function readQuantised(view, { payloadBytes, vertexCount, boxMinimum, boxExtent }) {
   demand(payloadBytes === 8 * vertexCount, "a q16 frame has 8 bytes a vertex");
-  const positions = [], normals = [];
+  const positions = [],
+    normals = [];
   for (let i = 0; i < vertexCount; ++i) {
     const at = headerBytes + 8 * i;
-    positions.push([0, 1, 2].map((axis) => boxMinimum[axis] + (boxExtent[axis] * view.getUint16(at + 2 * axis, true)) / 65535));
+    positions.push(
+      [0, 1, 2].map((axis) => boxMinimum[axis] + (boxExtent[axis] * view.getUint16(at + 2 * axis, true)) / 65535),
+    );
     normals.push(octahedral(view.getInt8(at + 6), view.getInt8(at + 7)));
   }
   return { positions, normals };
@@ -94,7 +111,8 @@ function readQuantised(view, { payloadBytes, vertexCount, boxMinimum, boxExtent 
 
 // The octahedron |x| + |y| + |z| = 1 unfolded to the square, its lower half turned outwards.
 function octahedral(a, b) {
-  let x = Math.max(a / 127, -1), y = Math.max(b / 127, -1);
+  let x = Math.max(a / 127, -1),
+    y = Math.max(b / 127, -1);
   const z = 1 - Math.abs(x) - Math.abs(y);
   if (z < 0) [x, y] = [(1 - Math.abs(y)) * (x < 0 ? -1 : 1), (1 - Math.abs(x)) * (y < 0 ? -1 : 1)];
   const length = Math.hypot(x, y, z) || 1;

@@ -40,7 +40,11 @@ async function watch(server, session) {
 
 const notices = (client) => client.messages.filter((message) => message.method === "notice");
 
-for (const [kind, why] of [["exception", /a fault on purpose/], ["no-memory", /not enough memory/], ["context-lost", /the device was reset/]])
+for (const [kind, why] of [
+  ["exception", /a fault on purpose/],
+  ["no-memory", /not enough memory/],
+  ["context-lost", /the device was reset/],
+])
   test(`a session whose thread ends by ${kind} goes on from within the last second, its viewers still there, and others never notice`, async () => {
     const server = await startWith({ CLOTHLAB_FAULT: `${kind}:hurt:2000` });
     const [hurt, other] = [await watch(server, "hurt"), await watch(server, "other")];
@@ -55,7 +59,10 @@ for (const [kind, why] of [["exception", /a fault on purpose/], ["no-memory", /n
     assert.equal((await hurt.request("scene.get")).document.name, "patched");
     await hurt.nextFrame((frame) => frame.time > failed.time + 0.5);
     const frames = other.binary.filter((message) => message.kind === 2);
-    assert.ok(frames.every((frame, i) => i === 0 || frame.time >= frames[i - 1].time), "the other session's time only rises");
+    assert.ok(
+      frames.every((frame, i) => i === 0 || frame.time >= frames[i - 1].time),
+      "the other session's time only rises",
+    );
     assert.deepEqual(notices(other), []);
     assert.equal(await server.metric("clothlab_sessions_brought_back_total"), 1);
     assert.equal((await server.get("/healthz")).status, 200);
@@ -66,12 +73,16 @@ test("the steps of a session that failed stay counted", async () => {
   const server = await startWith({ CLOTHLAB_FAULT: "exception:hurt:2000" });
   const hurt = await watch(server, "hurt");
   const steps = [];
-  for (let back = 0; back < 3;) {  // two looks more once it is back
+  for (let back = 0; back < 3; ) {
+    // two looks more once it is back
     steps.push(await server.metric("clothlab_steps_total"));
     back += await server.metric("clothlab_sessions_brought_back_total");
     await sleep(20);
   }
-  assert.deepEqual(steps, [...steps].sort((a, b) => a - b));
+  assert.deepEqual(
+    steps,
+    [...steps].sort((a, b) => a - b),
+  );
   await hurt.close();
   await server.stop();
 });
@@ -101,7 +112,8 @@ test("a change for which there is not enough memory is refused, and the scene go
 
 test("a shader that does not compile after an edit refuses the change that needs it, with file and line; the cloth goes on, and once it is mended the change works", async () => {
   const data = folder();
-  for (const part of ["shaders", "server/scene/presets", "web/dist"]) cpSync(join(root, part), join(data, part), { recursive: true });
+  for (const part of ["shaders", "server/scene/presets", "web/dist"])
+    cpSync(join(root, part), join(data, part), { recursive: true });
   const server = await startWith({ CLOTHLAB_DATA: data });
   const client = await watch(server);
   const { time } = await client.frame();
@@ -137,14 +149,20 @@ test("a full disk: the session says that it cannot be saved, goes on, and is sav
       try {
         writeFileSync(ballast, Buffer.alloc(size * 1024));
         break;
-      } catch { /* a little less */ }
+      } catch {
+        /* a little less */
+      }
     const { text } = await client.nextNotification("notice", ({ level }) => level === "error");
     assert.match(text, /cannot be saved: .*No space left on device.*goes on/);
     const { time } = await client.nextFrame();
     await client.nextFrame((frame) => frame.time > time + 1.5);
     assert.equal(notices(client).length, 1, "told once");
     rmSync(ballast);
-    await client.until(() => [server.stderr], (text) => text.includes("event=session_saved_again"), "the session to be saved");
+    await client.until(
+      () => [server.stderr],
+      (text) => text.includes("event=session_saved_again"),
+      "the session to be saved",
+    );
     await server.stop();
   } finally {
     disk.remove();
@@ -156,8 +174,22 @@ test("a full disk: an export of the command line ends with an error that names t
   if (!disk) return context.skip("no tmpfs can be mounted here: it needs root");
   try {
     for (const name of ["cloth.obj", "cloth.ply", "cloth.pc2"]) {
-      const { code, stderr } = await runProgram(["run", "seed", "--time", "0.004", "--every", "0.001", "--set", "/cloths/0/mesh/grid/columns=200", "--set",
-                                                 "/cloths/0/mesh/grid/rows=100", "--set", "/cloths/0/pins=[]", "--out", join(disk.where, name)]);
+      const { code, stderr } = await runProgram([
+        "run",
+        "seed",
+        "--time",
+        "0.004",
+        "--every",
+        "0.001",
+        "--set",
+        "/cloths/0/mesh/grid/columns=200",
+        "--set",
+        "/cloths/0/mesh/grid/rows=100",
+        "--set",
+        "/cloths/0/pins=[]",
+        "--out",
+        join(disk.where, name),
+      ]);
       assert.equal(code, 1, `${name}: ${stderr}`);
       assert.match(stderr, /cloth[-\d]*\.(obj|ply|pc2).*could not be written.*disk/);
     }
@@ -177,7 +209,8 @@ test("a process that is stopped for two seconds, as by a sleeping machine, does 
   await client.nextFrame((frame) => frame.time > time + 0.3);
   const frames = client.binary.slice(seen - 1).filter((message) => message.kind === 2);
   // A step of the eye: at most what a frame or two may lag, not the seconds that were missed.
-  for (let i = 1; i < frames.length; ++i) assert.ok(frames[i].time - frames[i - 1].time < 0.5, `from ${frames[i - 1].time} to ${frames[i].time} s`);
+  for (let i = 1; i < frames.length; ++i)
+    assert.ok(frames[i].time - frames[i - 1].time < 0.5, `from ${frames[i - 1].time} to ${frames[i].time} s`);
   await server.stop();
 });
 
@@ -187,19 +220,40 @@ const jumpingClock = join(dirname(process.env.CLOTHLAB), "tests/libjumping_clock
 test("a clock that jumps an hour ahead and two back: nobody is sent away, time goes on, and the session is kept", async (context) => {
   if (!existsSync(jumpingClock)) return context.skip("the library that makes the clock jump was not built");
   const state = folder();
-  const server = await startWith({ LD_PRELOAD: jumpingClock }, "--state-dir", state, "--idle-timeout", "4", "--log-level", "debug");
+  const server = await startWith(
+    { LD_PRELOAD: jumpingClock },
+    "--state-dir",
+    state,
+    "--idle-timeout",
+    "4",
+    "--log-level",
+    "debug",
+  );
   const client = await watch(server);
   const { job } = await client.request("lab.chart", { methods: ["verlet"], time: 0.2, budget: 20, fresh: true });
   const { time } = await client.frame();
   await client.frame((frame) => frame.time > time + 4.5);
-  const late = await Client.connect(server);  // so that there is a line of the log after the last jump
+  const late = await Client.connect(server); // so that there is a line of the log after the last jump
   await late.close();
-  await client.until(() => [server.stderr], (text) => hours(text).has(-1), "the log to show that the clock has jumped");
+  await client.until(
+    () => [server.stderr],
+    (text) => hours(text).has(-1),
+    "the log to show that the clock has jumped",
+  );
   const frames = client.frames;
   for (let i = 1; i < frames.length; ++i)
-    assert.ok(frames[i].time > frames[i - 1].time && frames[i].time - frames[i - 1].time < 0.5, `from ${frames[i - 1].time} to ${frames[i].time} s`);
-  assert.deepEqual(notices(client).filter(({ params }) => !/cannot keep up/.test(params.text)), []);
-  const { state: end } = await client.notification("lab.result", (result) => result.job === job && result.state !== "running");
+    assert.ok(
+      frames[i].time > frames[i - 1].time && frames[i].time - frames[i - 1].time < 0.5,
+      `from ${frames[i - 1].time} to ${frames[i].time} s`,
+    );
+  assert.deepEqual(
+    notices(client).filter(({ params }) => !/cannot keep up/.test(params.text)),
+    [],
+  );
+  const { state: end } = await client.notification(
+    "lab.result",
+    (result) => result.job === job && result.state !== "running",
+  );
   assert.equal(end, "finished");
   assert.equal((await server.get("/healthz")).status, 200);
   await server.stop("SIGKILL");
@@ -221,7 +275,11 @@ const measured = async (client, params = chart) => {
   return client.notification("lab.result", (result) => result.job === job && result.state !== "running");
 };
 
-for (const [kind, why] of [["exception", /a fault on purpose/], ["no-memory", /not enough memory/], ["context-lost", /the device was reset/]])
+for (const [kind, why] of [
+  ["exception", /a fault on purpose/],
+  ["no-memory", /not enough memory/],
+  ["context-lost", /the device was reset/],
+])
   test(`a measurement of the lab that meets ${kind} fails and says why; the next one is whole, and the session never notices`, async () => {
     const server = await startWith({ CLOTHLAB_FAULT: `${kind}:/lab:0` });
     const client = await watch(server);
@@ -232,14 +290,21 @@ for (const [kind, why] of [["exception", /a fault on purpose/], ["no-memory", /n
     const next = await measured(client);
     assert.equal(next.state, "finished");
     assert.equal(next.result.complete, true);
-    assert.deepEqual(notices(client).filter(({ params }) => !/cannot keep up/.test(params.text)), []);
+    assert.deepEqual(
+      notices(client).filter(({ params }) => !/cannot keep up/.test(params.text)),
+      [],
+    );
     const { time } = await client.nextFrame();
     await client.nextFrame((frame) => frame.time > time);
     assert.equal(await server.metric("clothlab_sessions_brought_back_total"), 0);
     await server.stop();
   });
 
-for (const [kind, why] of [["exception", /a fault on purpose/], ["no-memory", /not enough memory/], ["context-lost", /the device was reset/]])
+for (const [kind, why] of [
+  ["exception", /a fault on purpose/],
+  ["no-memory", /not enough memory/],
+  ["context-lost", /the device was reset/],
+])
   test(`a picture that meets ${kind} is answered with 500 and why; the next one is drawn, and the session never notices`, async () => {
     const server = await startWith({ CLOTHLAB_FAULT: `${kind}:/export:0` });
     const client = await watch(server);
@@ -249,6 +314,9 @@ for (const [kind, why] of [["exception", /a fault on purpose/], ["no-memory", /n
     assert.equal((await server.get("/api/snapshot.png?width=64&height=48")).status, 200);
     const { time } = await client.nextFrame();
     await client.nextFrame((frame) => frame.time > time);
-    assert.deepEqual(notices(client).filter(({ params }) => !/cannot keep up/.test(params.text)), []);
+    assert.deepEqual(
+      notices(client).filter(({ params }) => !/cannot keep up/.test(params.text)),
+      [],
+    );
     await server.stop();
   });

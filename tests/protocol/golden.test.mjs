@@ -54,25 +54,48 @@ function refuses(decoder, bytes, what) {
 }
 /// `body(decoder, message)` for each decoder and each message it can read.
 function forEach(body) {
-  for (const decoder of decoders)
-    for (const message of golden.filter(decoder.reads)) body(decoder, message);
+  for (const decoder of decoders) for (const message of golden.filter(decoder.reads)) body(decoder, message);
 }
 
 test("the tests' decoder reads each golden message to what stands beside it", () => {
-  for (const { name, bytes, content: { header, ...content } } of golden) {
+  for (const {
+    name,
+    bytes,
+    content: { header, ...content },
+  } of golden) {
     const read = decode(embedded(bytes));
-    assert.deepEqual({
-      kind: read.kind, encoding: read.encoding, flags: read.flags, topology_revision: read.topologyRevision, sequence: read.sequence,
-      vertex_count: read.vertexCount, time: read.time, step: read.step, box_minimum: read.boxMinimum, box_extent: read.boxExtent,
-      payload_bytes: read.payloadBytes,
-    }, header, name);
+    assert.deepEqual(
+      {
+        kind: read.kind,
+        encoding: read.encoding,
+        flags: read.flags,
+        topology_revision: read.topologyRevision,
+        sequence: read.sequence,
+        vertex_count: read.vertexCount,
+        time: read.time,
+        step: read.step,
+        box_minimum: read.boxMinimum,
+        box_extent: read.boxExtent,
+        payload_bytes: read.payloadBytes,
+      },
+      header,
+      name,
+    );
     if (header.kind === 1) {
-      assert.deepEqual(read.cloths.map((cloth) => ({ first_vertex: cloth.firstVertex, vertex_count: cloth.vertexCount })), content.cloths);
+      assert.deepEqual(
+        read.cloths.map((cloth) => ({ first_vertex: cloth.firstVertex, vertex_count: cloth.vertexCount })),
+        content.cloths,
+      );
       assert.deepEqual(read.triangles, content.triangles);
       assert.deepEqual(read.texture, content.texture_coordinates);
     } else {
-      assert.deepEqual(read.positions, content.vertices.map(({ position }) => position));
-      content.vertices.forEach(({ normal }, i) => assert.ok(Math.hypot(...normal.map((n, axis) => n - read.normals[i][axis])) < 1e-11));
+      assert.deepEqual(
+        read.positions,
+        content.vertices.map(({ position }) => position),
+      );
+      content.vertices.forEach(({ normal }, i) =>
+        assert.ok(Math.hypot(...normal.map((n, axis) => n - read.normals[i][axis])) < 1e-11),
+      );
     }
   }
 });
@@ -85,18 +108,33 @@ test("the page's decoder reads the golden topology and q16 frames to what stands
     if (header.kind === 1) {
       assert.equal(read.revision, header.topology_revision);
       assert.equal(read.vertexCount, header.vertex_count);
-      assert.deepEqual(read.cloths.map((cloth) => ({ first_vertex: cloth.firstVertex, vertex_count: cloth.vertexCount })), content.cloths);
+      assert.deepEqual(
+        read.cloths.map((cloth) => ({ first_vertex: cloth.firstVertex, vertex_count: cloth.vertexCount })),
+        content.cloths,
+      );
       assert.deepEqual([...read.triangles], content.triangles.flat());
       assert.deepEqual([...read.textureCoordinates], content.texture_coordinates.flat());
       continue;
     }
     const { words, ...rest } = read;
     assert.deepEqual(rest, {
-      kind: 2, encoding: 1, asleep: (header.flags & 1) !== 0, diverged: (header.flags & 2) !== 0,
-      topologyRevision: header.topology_revision, sequence: header.sequence, vertexCount: header.vertex_count, time: header.time,
-      step: header.step, boxMinimum: header.box_minimum, boxExtent: header.box_extent, payloadBytes: header.payload_bytes,
+      kind: 2,
+      encoding: 1,
+      asleep: (header.flags & 1) !== 0,
+      diverged: (header.flags & 2) !== 0,
+      topologyRevision: header.topology_revision,
+      sequence: header.sequence,
+      vertexCount: header.vertex_count,
+      time: header.time,
+      step: header.step,
+      boxMinimum: header.box_minimum,
+      boxExtent: header.box_extent,
+      payloadBytes: header.payload_bytes,
     });
-    const expected = content.vertices.flatMap(({ quantised, octahedral: [a, b] }) => [...quantised, (a & 255) | ((b & 255) << 8)]);
+    const expected = content.vertices.flatMap(({ quantised, octahedral: [a, b] }) => [
+      ...quantised,
+      (a & 255) | ((b & 255) << 8),
+    ]);
     assert.deepEqual([...words], expected);
   }
 });
@@ -107,7 +145,8 @@ test("a frame in an encoding that the page did not ask for is refused by it", ()
 
 test("every truncated length is refused, and so is every longer one", () => {
   forEach((decoder, { name, bytes }) => {
-    for (let length = 0; length < bytes.length; ++length) refuses(decoder, bytes.subarray(0, length), `${length} bytes of ${name}`);
+    for (let length = 0; length < bytes.length; ++length)
+      refuses(decoder, bytes.subarray(0, length), `${length} bytes of ${name}`);
     for (const more of [1, 2, 3, 4, 8, 24, 64]) {
       const longer = new Uint8Array(bytes.length + more);
       longer.set(bytes);
@@ -124,16 +163,31 @@ const fields = [
   { at: 4, end: 8, name: "topologyRevision", legal: () => true },
   { at: 8, end: 12, name: "sequence", legal: () => true },
   { at: 12, end: 16, name: "vertexCount", legal: () => false },
-  { at: 16, end: 24, name: "time", legal: (view) => Number.isFinite(view.getFloat64(16, true)) && view.getFloat64(16, true) >= 0 },
+  {
+    at: 16,
+    end: 24,
+    name: "time",
+    legal: (view) => Number.isFinite(view.getFloat64(16, true)) && view.getFloat64(16, true) >= 0,
+  },
   { at: 24, end: 32, name: "step", legal: () => true },
-  ...[32, 36, 40].map((at) => ({ at, end: at + 4, name: "boxMinimum", legal: (view) => Number.isFinite(view.getFloat32(at, true)) })),
-  ...[44, 48, 52].map((at) => ({ at, end: at + 4, name: "boxExtent",
-                                 legal: (view) => Number.isFinite(view.getFloat32(at, true)) && view.getFloat32(at, true) >= 0 })),
+  ...[32, 36, 40].map((at) => ({
+    at,
+    end: at + 4,
+    name: "boxMinimum",
+    legal: (view) => Number.isFinite(view.getFloat32(at, true)),
+  })),
+  ...[44, 48, 52].map((at) => ({
+    at,
+    end: at + 4,
+    name: "boxExtent",
+    legal: (view) => Number.isFinite(view.getFloat32(at, true)) && view.getFloat32(at, true) >= 0,
+  })),
   { at: 56, end: 64, name: "payloadBytes, zero", legal: () => false },
 ];
 
 test("every flipped bit of a header is refused, or where it makes another legal value, taken as that and nothing else", (t) => {
-  let taken = 0, refused = 0;
+  let taken = 0,
+    refused = 0;
   forEach((decoder, { name, bytes }) => {
     const original = decoder.decode(bytes);
     for (const field of fields)
@@ -157,27 +211,54 @@ test("every flipped bit of a header is refused, or where it makes another legal 
 
 /// What else a decoder makes of a field.
 function mayDiffer(field, key) {
-  const derived = { flags: ["asleep", "diverged"], topologyRevision: ["revision"], boxMinimum: ["positions"], boxExtent: ["positions"] };
+  const derived = {
+    flags: ["asleep", "diverged"],
+    topologyRevision: ["revision"],
+    boxMinimum: ["positions"],
+    boxExtent: ["positions"],
+  };
   return key === field || (derived[field] ?? []).includes(key);
 }
 
 test("a time or a box that is not finite, and a box turned inside out, are refused", () => {
   forEach((decoder, { name, bytes }) => {
     for (const value of [NaN, Infinity, -Infinity, -1])
-      refuses(decoder, changed(bytes, (view) => view.setFloat64(16, value, true)), `${name} at the time ${value}`);
+      refuses(
+        decoder,
+        changed(bytes, (view) => view.setFloat64(16, value, true)),
+        `${name} at the time ${value}`,
+      );
     for (let at = 32; at < 56; at += 4)
       for (const value of at < 44 ? [NaN, Infinity, -Infinity] : [NaN, Infinity, -Infinity, -1e-30])
-        refuses(decoder, changed(bytes, (view) => view.setFloat32(at, value, true)), `${name} with ${value} at byte ${at}`);
+        refuses(
+          decoder,
+          changed(bytes, (view) => view.setFloat32(at, value, true)),
+          `${name} with ${value} at byte ${at}`,
+        );
   });
 });
 
 test("counts that do not match the payload are refused, however large", () => {
-  const others = (count) => [0, count - 1, count + 1, 0x10000, 0x20000000, 0x7fffffff, 0x80000000, 0xfffffffe, 0xffffffff];
+  const others = (count) => [
+    0,
+    count - 1,
+    count + 1,
+    0x10000,
+    0x20000000,
+    0x7fffffff,
+    0x80000000,
+    0xfffffffe,
+    0xffffffff,
+  ];
   forEach((decoder, { name, bytes, content: { header } }) => {
-    const places = header.kind === 1 ? [12, 56, 64, 68] : [12, 56];  // vertices, payload bytes, triangles, cloths
+    const places = header.kind === 1 ? [12, 56, 64, 68] : [12, 56]; // vertices, payload bytes, triangles, cloths
     for (const at of places)
       for (const count of others(new DataView(bytes.buffer).getUint32(at, true)))
-        refuses(decoder, changed(bytes, (view) => view.setUint32(at, count >>> 0, true)), `${name} with the count ${count} at byte ${at}`);
+        refuses(
+          decoder,
+          changed(bytes, (view) => view.setUint32(at, count >>> 0, true)),
+          `${name} with the count ${count} at byte ${at}`,
+        );
   });
 });
 
@@ -185,29 +266,46 @@ test("a topology without counts, or with less than one, is refused", () => {
   const { bytes } = called("topology");
   for (const length of [0, 4])
     for (const decoder of decoders)
-      refuses(decoder, changed(bytes, (view) => view.setUint32(56, length, true)).subarray(0, 64 + length), `a payload of ${length} bytes`);
+      refuses(
+        decoder,
+        changed(bytes, (view) => view.setUint32(56, length, true)).subarray(0, 64 + length),
+        `a payload of ${length} bytes`,
+      );
 });
 
 test("counts that fit the payload's length but not each other are refused", () => {
   // Three cloths fewer bytes than two triangles: 24 bytes moved from one to the other.
   const { bytes } = called("topology");
   for (const decoder of decoders)
-    refuses(decoder, changed(bytes, (view) => {
-      view.setUint32(64, view.getUint32(64, true) - 2, true);
-      view.setUint32(68, view.getUint32(68, true) + 3, true);
-    }), "a topology with three more cloths and two fewer triangles");
+    refuses(
+      decoder,
+      changed(bytes, (view) => {
+        view.setUint32(64, view.getUint32(64, true) - 2, true);
+        view.setUint32(68, view.getUint32(68, true) + 3, true);
+      }),
+      "a topology with three more cloths and two fewer triangles",
+    );
 });
 
 test("a triangle with a vertex that is not there is refused, and so are cloths that overlap or leave a gap", () => {
   const { bytes, content } = called("topology");
-  const firstTriangle = 64 + 8 + 8 * content.cloths.length, corners = 3 * content.triangles.length;
+  const firstTriangle = 64 + 8 + 8 * content.cloths.length,
+    corners = 3 * content.triangles.length;
   for (const decoder of decoders) {
     for (let corner = 0; corner < corners; ++corner)
       for (const vertex of [content.header.vertex_count, 0xffffffff])
-        refuses(decoder, changed(bytes, (view) => view.setUint32(firstTriangle + 4 * corner, vertex, true)), `corner ${corner} at vertex ${vertex}`);
+        refuses(
+          decoder,
+          changed(bytes, (view) => view.setUint32(firstTriangle + 4 * corner, vertex, true)),
+          `corner ${corner} at vertex ${vertex}`,
+        );
     for (let at = 72; at < firstTriangle; at += 4)
       for (const by of [1, -1])
-        refuses(decoder, changed(bytes, (view) => view.setUint32(at, (view.getUint32(at, true) + by) >>> 0, true)), `a range changed at byte ${at}`);
+        refuses(
+          decoder,
+          changed(bytes, (view) => view.setUint32(at, (view.getUint32(at, true) + by) >>> 0, true)),
+          `a range changed at byte ${at}`,
+        );
   }
 });
 
@@ -217,7 +315,11 @@ test("a kind or an encoding that there is not, c16 among them, is refused, whate
       for (const encoding of [0, 1, 2, 3, 255]) {
         if (kind === bytes[0] && encoding === bytes[1]) continue;
         const what = `${name} as kind ${kind}, encoding ${encoding}`;
-        refuses(decoder, changed(bytes, (_, copy) => copy.set([kind, encoding])), what);
+        refuses(
+          decoder,
+          changed(bytes, (_, copy) => copy.set([kind, encoding])),
+          what,
+        );
       }
   });
 });

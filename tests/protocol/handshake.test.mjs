@@ -7,7 +7,17 @@ import { Client, Server, withTimeout } from "./harness.mjs";
 
 const schema = JSON.parse(readFileSync(new URL("../../server/scene/scene.schema.json", import.meta.url)));
 let server;
-before(async () => (server = await Server.start("--allow-origin", "https://friend.example", "--max-clients", "3", "--max-sessions", "2")));
+before(
+  async () =>
+    (server = await Server.start(
+      "--allow-origin",
+      "https://friend.example",
+      "--max-clients",
+      "3",
+      "--max-sessions",
+      "2",
+    )),
+);
 after(() => server.stop());
 
 async function refused(options, status) {
@@ -36,7 +46,10 @@ async function raw(text, enough) {
 test("hello comes first, then the whole scene", async () => {
   const client = await Client.connect(server);
   const scene = await client.notification("scene");
-  assert.deepEqual(client.messages.slice(0, 2).map((message) => message.method), ["hello", "scene"]);
+  assert.deepEqual(
+    client.messages.slice(0, 2).map((message) => message.method),
+    ["hello", "scene"],
+  );
   const hello = await client.notification("hello");
   assert.equal(hello.server, "clothlab");
   assert.match(hello.version, /^\d+\.\d+\.\d+$/);
@@ -59,22 +72,27 @@ test("a handshake for the plain protocol's internal name is refused", () => refu
 test("a handshake anywhere but at /ws is refused", () => refused({ path: "/elsewhere" }, 404));
 test("a foreign Origin is refused", () => refused({ headers: { origin: "http://evil.example" } }, 403));
 test("the null Origin is refused", () => refused({ headers: { origin: "null" } }, 403));
-test("the right host on another port is a foreign Origin", () => refused({ headers: { origin: "http://127.0.0.1:1" } }, 403));
+test("the right host on another port is a foreign Origin", () =>
+  refused({ headers: { origin: "http://127.0.0.1:1" } }, 403));
 
 test("a page whose site's name was made to point at this machine is refused, though its Origin is its Host", async () => {
   const at = `rebound.example:${server.port}`;
   await refused({ headers: { host: at, origin: `http://${at}` } }, 403);
   await refused({ headers: { host: at } }, 403);
   // The name of one that --allow-origin names is known, an address's and localhost's cannot be another's.
-  for (const [host, origin] of [["friend.example", "https://friend.example"], [`localhost:${server.port}`, `http://localhost:${server.port}`],
-                                ["[::1]:80", "http://[::1]:80"]]) {
+  for (const [host, origin] of [
+    ["friend.example", "https://friend.example"],
+    [`localhost:${server.port}`, `http://localhost:${server.port}`],
+    ["[::1]:80", "http://[::1]:80"],
+  ]) {
     const client = await Client.connect(server, { headers: { host, origin } });
     await client.notification("hello");
     await client.close();
   }
 });
 
-test("a session's name with other characters than letters, digits, - and _ is refused", () => refused({ session: "a.b" }, 400));
+test("a session's name with other characters than letters, digits, - and _ is refused", () =>
+  refused({ session: "a.b" }, 400));
 test("a session's name of more than 64 characters is refused", () => refused({ session: "a".repeat(65) }, 400));
 
 test("the server's own Origin and an allowed one may connect", async () => {
@@ -102,14 +120,20 @@ test("one session more than --max-sessions is refused", async () => {
 });
 
 test("an upgrade to h2c is refused", async () => {
-  const answer = await raw("GET / HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade, HTTP2-Settings\r\nUpgrade: h2c\r\n" +
-                           "HTTP2-Settings: AAMAAABkAAQAoAAAAAIAAAAA\r\n\r\n", "\r\n\r\n");
+  const answer = await raw(
+    "GET / HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade, HTTP2-Settings\r\nUpgrade: h2c\r\n" +
+      "HTTP2-Settings: AAMAAABkAAQAoAAAAAIAAAAA\r\n\r\n",
+    "\r\n\r\n",
+  );
   assert.doesNotMatch(answer, /^HTTP\/1.1 101/);
 });
 
 test("the word websocket in the handshake may be written in any case", async () => {
-  const answer = await raw("GET /ws HTTP/1.1\r\nHost: localhost\r\nConnection: upgrade\r\nUpgrade: WebSocket\r\nSec-WebSocket-Version: 13\r\n" +
-                           "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Protocol: clothlab.v1\r\n\r\n", "\r\n\r\n");
+  const answer = await raw(
+    "GET /ws HTTP/1.1\r\nHost: localhost\r\nConnection: upgrade\r\nUpgrade: WebSocket\r\nSec-WebSocket-Version: 13\r\n" +
+      "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Protocol: clothlab.v1\r\n\r\n",
+    "\r\n\r\n",
+  );
   assert.match(answer, /^HTTP\/1.1 101/);
 });
 

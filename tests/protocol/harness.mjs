@@ -27,7 +27,8 @@ export function withTimeout(promise, what, milliseconds = patience) {
 /// Runs the program to its end.
 export async function runProgram(args) {
   const child = spawn(program, args, { stdio: ["ignore", "pipe", "pipe"] });
-  let stdout = "", stderr = "";
+  let stdout = "",
+    stderr = "";
   child.stdout.on("data", (data) => (stdout += data));
   child.stderr.on("data", (data) => (stderr += data));
   const [code] = await withTimeout(once(child, "close"), `clothlab ${args.join(" ")} to end`).catch((error) => {
@@ -103,22 +104,30 @@ export class RpcError extends Error {
 
 export class Client {
   /// Connects and waits for the handshake; a refusal rejects with its HTTP status in `status`.
-  static async connect(server, { session, protocols = ["clothlab.v1"], headers = {}, path, acknowledge = true, scheme = "ws" } = {}) {
+  static async connect(
+    server,
+    { session, protocols = ["clothlab.v1"], headers = {}, path, acknowledge = true, scheme = "ws" } = {},
+  ) {
     const client = new Client();
     client.acknowledge = acknowledge;
     const where = path ?? "/ws" + (session === undefined ? "" : `?session=${session}`);
-    client.socket = new WebSocket(`${scheme}://${server.host}${where}`, protocols,
-                                  { headers, perMessageDeflate: false, rejectUnauthorized: false });
+    client.socket = new WebSocket(`${scheme}://${server.host}${where}`, protocols, {
+      headers,
+      perMessageDeflate: false,
+      rejectUnauthorized: false,
+    });
     client.nextId = 1;
     client.pending = new Map();
-    client.messages = [];  // notifications and errors without an id, as they came
-    client.binary = [];    // decoded topologies and frames
+    client.messages = []; // notifications and errors without an id, as they came
+    client.binary = []; // decoded topologies and frames
     client.waiting = new Set();
-    client.closed = new Promise((resolve) => client.socket.on("close", (code, reason) => {
-      client.over = true;
-      resolve({ code, reason: reason.toString() });
-      for (const { reject } of client.pending.values()) reject(new Error(`closed with ${code} ${reason}`));
-    }));
+    client.closed = new Promise((resolve) =>
+      client.socket.on("close", (code, reason) => {
+        client.over = true;
+        resolve({ code, reason: reason.toString() });
+        for (const { reject } of client.pending.values()) reject(new Error(`closed with ${code} ${reason}`));
+      }),
+    );
     client.socket.on("message", (data, isBinary) => client.receive(data, isBinary));
     const opened = new Promise((resolve, reject) => {
       client.socket.on("open", resolve);
@@ -153,11 +162,19 @@ export class Client {
     for (const check of this.waiting) check();
   }
 
-  get frames() { return this.binary.filter((message) => message.kind === 2); }
-  get topologies() { return this.binary.filter((message) => message.kind === 1); }
+  get frames() {
+    return this.binary.filter((message) => message.kind === 2);
+  }
+  get topologies() {
+    return this.binary.filter((message) => message.kind === 1);
+  }
 
-  send(text) { this.socket.send(text); }
-  notify(method, params = {}) { if (!this.over) this.send(JSON.stringify({ jsonrpc: "2.0", method, params })); }
+  send(text) {
+    this.socket.send(text);
+  }
+  notify(method, params = {}) {
+    if (!this.over) this.send(JSON.stringify({ jsonrpc: "2.0", method, params }));
+  }
 
   request(method, params, patience = undefined) {
     const id = this.nextId++;
@@ -193,21 +210,35 @@ export class Client {
 
   /// The parameters of a notification that has come or will come.
   async notification(method, predicate = () => true) {
-    const message = await this.until(() => this.messages, (m) => m.method === method && predicate(m.params), method);
+    const message = await this.until(
+      () => this.messages,
+      (m) => m.method === method && predicate(m.params),
+      method,
+    );
     return message.params;
   }
   /// The same, but only one that comes from now on.
   nextNotification(method, predicate = () => true, patience = undefined) {
     const before = new Set(this.messages);
-    return this.until(() => this.messages, (m) => !before.has(m) && m.method === method && predicate(m.params), method, patience)
-      .then((message) => message.params);
+    return this.until(
+      () => this.messages,
+      (m) => !before.has(m) && m.method === method && predicate(m.params),
+      method,
+      patience,
+    ).then((message) => message.params);
   }
   /// An answer with id null: to what could not be read.
   errorWithoutId(from = 0) {
-    return this.until(() => this.messages.slice(from), (m) => m.id === null && m.error, "an error").then((m) => m.error);
+    return this.until(
+      () => this.messages.slice(from),
+      (m) => m.id === null && m.error,
+      "an error",
+    ).then((m) => m.error);
   }
 
-  frame(predicate = () => true) { return this.until(() => this.frames, predicate, "a frame"); }
+  frame(predicate = () => true) {
+    return this.until(() => this.frames, predicate, "a frame");
+  }
   nextFrame(predicate = () => true) {
     const count = this.frames.length;
     return this.until(() => this.frames.slice(count), predicate, "a new frame");

@@ -7,12 +7,18 @@ import test from "node:test";
 import { Client, Server, sleep } from "./harness.mjs";
 import { heavyPatches, tooHeavy } from "./heavy.mjs";
 
-const patience = 60_000;  // to build a million vertices takes its time
+const patience = 60_000; // to build a million vertices takes its time
 const subscription = { encoding: "q16", rate: 60, in_flight: 2 };
 
 /// One of each kind: many vertices, a dense search, sweeps in many dispatches, sweeps over many vertices, a solver, a limit.
-const kinds = ["512x512 with self-collision", "100x100 with a thickness of 10 m", "10,000 iterations of xpbd", "100 iterations of vbd on 300x300",
-               "10,000 Newton steps to 1e-12", "a strain limit that cannot be met on 200x200"];
+const kinds = [
+  "512x512 with self-collision",
+  "100x100 with a thickness of 10 m",
+  "10,000 iterations of xpbd",
+  "100 iterations of vbd on 300x300",
+  "10,000 Newton steps to 1e-12",
+  "a strain limit that cannot be met on 200x200",
+];
 
 for (const name of kinds)
   test(`${name}: another session's frames come, this one answers and is undone, and the server ends`, async () => {
@@ -69,7 +75,7 @@ test("a change that was acknowledged in the middle of a step that takes seconds 
     const client = await Client.connect(server);
     await client.request("scene.patch", { patch: heavyPatches["10,000 iterations of vbd"] });
     const { revision } = await client.request("scene.patch", { patch: { name: "kept" } });
-    await sleep(2500);  // twice the second that may be lost, and some to write
+    await sleep(2500); // twice the second that may be lost, and some to write
     await server.stop("SIGKILL");
     const again = await Server.start("--state-dir", folder);
     try {
@@ -91,7 +97,8 @@ test("steps asked for by number are made one for one although each takes many tu
     await client.request("sim.pause");
     await client.request("scene.patch", { patch: { solver: { method: "xpbd", iterations: 2000 } } });
     const { step } = await client.request("sim.pause");
-    const first = client.request("sim.step", { steps: 2 }, patience), second = client.request("sim.step", { steps: 1 }, patience);
+    const first = client.request("sim.step", { steps: 2 }, patience),
+      second = client.request("sim.step", { steps: 1 }, patience);
     assert.equal((await client.request("scene.get")).document.solver.iterations, 2000);
     assert.equal((await first).step, step + 2);
     assert.equal((await second).step, step + 3);

@@ -31,11 +31,20 @@ test("the page comes as HTML, with the headers that keep it to itself", async ()
   assert.match(policy, /script-src 'self'(;|$)/);
   assert.match(policy, /default-src 'none'/);
   assert.doesNotMatch(policy, /unsafe|\*|https?:|wss?:/, "nothing inline, nothing from elsewhere");
-  for (const [name, value] of [["x-content-type-options", "nosniff"], ["x-frame-options", "SAMEORIGIN"], ["referrer-policy", "no-referrer"],
-                               ["cross-origin-opener-policy", "same-origin"], ["cross-origin-resource-policy", "same-origin"]])
+  for (const [name, value] of [
+    ["x-content-type-options", "nosniff"],
+    ["x-frame-options", "SAMEORIGIN"],
+    ["referrer-policy", "no-referrer"],
+    ["cross-origin-opener-policy", "same-origin"],
+    ["cross-origin-resource-policy", "same-origin"],
+  ])
     assert.equal(headers[name], value);
   assert.match(headers["permissions-policy"], /camera=\(\)/);
-  assert.doesNotMatch(body.toString(), /<script(?![^>]*src=)|<style|\son\w+=|\sstyle=/i, "the page has no inline code or style");
+  assert.doesNotMatch(
+    body.toString(),
+    /<script(?![^>]*src=)|<style|\son\w+=|\sstyle=/i,
+    "the page has no inline code or style",
+  );
 });
 
 test("the page comes compressed to who understands it, and not again to who has it", async () => {
@@ -56,7 +65,18 @@ test("HEAD answers as GET does, without the body", async () => {
 });
 
 test("what is not there is a readable 404; nothing outside the page's folder can be reached", async () => {
-  for (const path of ["/nothing", "/web", "/assets/", "/..%2f..%2fetc/passwd", "/%2e%2e/%2e%2e/CMakeLists.txt", "/%252e%252e/etc/passwd", "/..%5c..%5cetc/passwd", "/%00/etc/passwd", "//etc/passwd", "/.git/config"]) {
+  for (const path of [
+    "/nothing",
+    "/web",
+    "/assets/",
+    "/..%2f..%2fetc/passwd",
+    "/%2e%2e/%2e%2e/CMakeLists.txt",
+    "/%252e%252e/etc/passwd",
+    "/..%5c..%5cetc/passwd",
+    "/%00/etc/passwd",
+    "//etc/passwd",
+    "/.git/config",
+  ]) {
     const { status, body } = await server.get(path);
     assert.equal(status, 404, path);
     assert.ok(body.length > 0);
@@ -74,12 +94,14 @@ test("a symbolic link in the page's folder is not followed", async () => {
   const data = mkdtempSync(join(tmpdir(), "clothlab-data-"));
   try {
     const root = fileURLToPath(new URL("../../", import.meta.url));
-    for (const part of ["shaders", "server/scene/presets", "web/dist"]) cpSync(join(root, part), join(data, part), { recursive: true });
+    for (const part of ["shaders", "server/scene/presets", "web/dist"])
+      cpSync(join(root, part), join(data, part), { recursive: true });
     symlinkSync("/etc/passwd", join(data, "web/dist/passwd.txt"));
     symlinkSync("/etc", join(data, "web/dist/etc"));
     process.env.CLOTHLAB_DATA = data;
     const linked = await Server.start().finally(() => delete process.env.CLOTHLAB_DATA);
-    for (const path of ["/passwd.txt", "/etc/passwd", "/etc/hostname"]) assert.equal((await linked.get(path)).status, 404, path);
+    for (const path of ["/passwd.txt", "/etc/passwd", "/etc/hostname"])
+      assert.equal((await linked.get(path)).status, 404, path);
     assert.equal((await linked.get("/")).status, 200);
     await linked.stop();
   } finally {
@@ -90,23 +112,73 @@ test("a symbolic link in the page's folder is not followed", async () => {
 const everywhere = ["/", "/ws", "/nothing", "/metrics", "/api/scene", "/api/mesh.obj", "/api/snapshot.png"];
 
 test("without a token nothing but /healthz is answered under another name than an address, localhost or an --allow-origin's", async (t) => {
-  const friendly = await Server.start("--allow-origin", "https://Friend.example", "--allow-origin", "http://near.example:81");
+  const friendly = await Server.start(
+    "--allow-origin",
+    "https://Friend.example",
+    "--allow-origin",
+    "http://near.example:81",
+  );
   t.after(() => friendly.stop());
   const ask = async (host, path = "/") => (await friendly.get(path, { host })).status;
   for (const path of everywhere) {
     const { status, headers, body } = await friendly.get(path, { host: "rebound.example:8080" });
     assert.equal(status, 403, path);
     assert.equal(headers["content-type"], "text/plain; charset=utf-8");
-    assert.match(body.toString(), /not as rebound\.example:8080: .*localhost.*--allow-origin http:\/\/rebound\.example:8080.*--token/);
+    assert.match(
+      body.toString(),
+      /not as rebound\.example:8080: .*localhost.*--allow-origin http:\/\/rebound\.example:8080.*--token/,
+    );
   }
   assert.equal(await ask("rebound.example", "/healthz"), 200);
-  for (const host of ["127.0.0.1", "127.0.0.1:8080", "192.0.2.7:1", "[::1]", "[::1]:8080", "[2001:DB8::7]", "localhost", "LocalHost:8080",
-                      "localhost.", "cloth.localhost", "a.b.localhost.:80", "friend.example", "FRIEND.example", "near.example:81"])
+  for (const host of [
+    "127.0.0.1",
+    "127.0.0.1:8080",
+    "192.0.2.7:1",
+    "[::1]",
+    "[::1]:8080",
+    "[2001:DB8::7]",
+    "localhost",
+    "LocalHost:8080",
+    "localhost.",
+    "cloth.localhost",
+    "a.b.localhost.:80",
+    "friend.example",
+    "FRIEND.example",
+    "near.example:81",
+  ])
     assert.equal(await ask(host), 200, host);
-  for (const host of ["127.0.0.1.evil.example", "127.0.0.1.", "localhost.evil.example", "evil-localhost", "localhost..", "localhost:80:80", "localhost:",
-                      "localhost:x", ":80", ".", "[::1", "::1", "[::1]x", "x[::1]", "[::1]:x", "[]", "[127.0.0.1]", "[fe80::1%25lo]", "127.1", "1.2.3.4.5",
-                      "0x7f000001", "2130706433", "user@127.0.0.1", "user@cloth.localhost", "evil.example/.localhost",
-                      "friend.example:80", "friend.example.", "x.friend.example", "near.example", "https://friend.example"])
+  for (const host of [
+    "127.0.0.1.evil.example",
+    "127.0.0.1.",
+    "localhost.evil.example",
+    "evil-localhost",
+    "localhost..",
+    "localhost:80:80",
+    "localhost:",
+    "localhost:x",
+    ":80",
+    ".",
+    "[::1",
+    "::1",
+    "[::1]x",
+    "x[::1]",
+    "[::1]:x",
+    "[]",
+    "[127.0.0.1]",
+    "[fe80::1%25lo]",
+    "127.1",
+    "1.2.3.4.5",
+    "0x7f000001",
+    "2130706433",
+    "user@127.0.0.1",
+    "user@cloth.localhost",
+    "evil.example/.localhost",
+    "friend.example:80",
+    "friend.example.",
+    "x.friend.example",
+    "near.example",
+    "https://friend.example",
+  ])
     assert.equal(await ask(host), 403, host);
   const { body } = await friendly.get("/", { host: `<b>${"x".repeat(1000)}` });
   assert.match(body.toString(), /not as \?b\?x{197}: /);
@@ -155,7 +227,11 @@ test("/healthz is 200 while the sessions' threads beat", async () => {
 test("/metrics counts sessions, clients, viewers, steps, frames and bytes, and the latency of frames", async () => {
   const client = await Client.connect(server);
   await client.request("stream.subscribe");
-  await client.until(() => client.frames.slice(10), () => true, "10 frames");
+  await client.until(
+    () => client.frames.slice(10),
+    () => true,
+    "10 frames",
+  );
   const text = (await server.get("/metrics")).body.toString();
   const value = (name) => Number(new RegExp(`^${name} (\\S+)$`, "m").exec(text)[1]);
   assert.equal(value("clothlab_sessions"), 1);
@@ -172,15 +248,24 @@ test("/metrics counts sessions, clients, viewers, steps, frames and bytes, and t
 
 /// The samples of a metrics text, by name: [{labels, value}]; fails where the text breaks a rule of Prometheus' format or naming.
 function readMetrics(text) {
-  const types = new Map(), samples = new Map();
+  const types = new Map(),
+    samples = new Map();
   for (const line of text.trimEnd().split("\n")) {
     const comment = /^# (HELP|TYPE) ([a-z][a-z0-9_]*) (.+)$/.exec(line);
     if (comment) {
       const [, what, name, rest] = comment;
       if (what === "TYPE") types.set(name, rest);
       assert.ok(name.startsWith("clothlab_"), name);
-      assert.equal(types.get(name) === "counter" || what === "HELP", name.endsWith("_total") || what === "HELP", `${name}: only counters end in _total`);
-      assert.doesNotMatch(name, /_(ms|us|milliseconds|microseconds|count|sum|bucket)(_|$)/, "base units, and no name of a histogram's own");
+      assert.equal(
+        types.get(name) === "counter" || what === "HELP",
+        name.endsWith("_total") || what === "HELP",
+        `${name}: only counters end in _total`,
+      );
+      assert.doesNotMatch(
+        name,
+        /_(ms|us|milliseconds|microseconds|count|sum|bucket)(_|$)/,
+        "base units, and no name of a histogram's own",
+      );
       continue;
     }
     const sample = /^([a-z_0-9]+)(?:\{([^}]*)\})? (\S+)$/.exec(line);
@@ -190,16 +275,29 @@ function readMetrics(text) {
     assert.ok(types.has(family), `${name} has a TYPE`);
     assert.ok(Number.isFinite(Number(value)), line);
     if (!samples.has(name)) samples.set(name, []);
-    samples.get(name).push({ labels: Object.fromEntries([...labels.matchAll(/([a-z_]+)="([^"]*)"/g)].map(([, key, of]) => [key, of])), value: Number(value) });
+    samples
+      .get(name)
+      .push({
+        labels: Object.fromEntries([...labels.matchAll(/([a-z_]+)="([^"]*)"/g)].map(([, key, of]) => [key, of])),
+        value: Number(value),
+      });
   }
   for (const [name, type] of types) {
     if (type !== "histogram") continue;
     const of = (labels) => JSON.stringify({ ...labels, le: undefined });
     for (const { labels, value } of samples.get(`${name}_count`) ?? []) {
       const buckets = samples.get(`${name}_bucket`).filter((bucket) => of(bucket.labels) === of(labels));
-      const edges = buckets.map((bucket) => Number(bucket.labels.le.replace("+Inf", "Infinity"))), counts = buckets.map((bucket) => bucket.value);
-      assert.deepEqual(edges, [...new Set(edges)].sort((a, b) => a - b));
-      assert.deepEqual(counts, [...counts].sort((a, b) => a - b), "buckets are cumulative");
+      const edges = buckets.map((bucket) => Number(bucket.labels.le.replace("+Inf", "Infinity"))),
+        counts = buckets.map((bucket) => bucket.value);
+      assert.deepEqual(
+        edges,
+        [...new Set(edges)].sort((a, b) => a - b),
+      );
+      assert.deepEqual(
+        counts,
+        [...counts].sort((a, b) => a - b),
+        "buckets are cumulative",
+      );
       assert.deepEqual([edges.at(-1), counts.at(-1)], [Infinity, value]);
     }
   }
@@ -211,7 +309,10 @@ test("/metrics follows Prometheus' format, and has what each pass takes on the G
   await client.request("stream.subscribe");
   await client.request("ping", { t: 1 });
   assert.equal((await client.refusal("no.such.method")).code, -32601);
-  const told = await client.notification("sim.status", ({ pass_seconds }) => pass_seconds.symplectic_euler > 0 && pass_seconds.neighbour_search > 0);
+  const told = await client.notification(
+    "sim.status",
+    ({ pass_seconds }) => pass_seconds.symplectic_euler > 0 && pass_seconds.neighbour_search > 0,
+  );
   for (const pass of Object.keys(told.pass_seconds)) assert.ok(told.passes.includes(pass), pass);
   const counts = async (name, label) => {
     const samples = readMetrics((await server.get("/metrics")).body.toString());
@@ -225,12 +326,18 @@ test("/metrics follows Prometheus' format, and has what each pass takes on the G
     passes = await counts("clothlab_gpu_pass_seconds", "pass");
     await sleep(100);
   }
-  for (const pass of ["symplectic_euler", "neighbour_search", "diagnose", "pack_frame"]) assert.ok(passes[pass] >= 1, pass);
+  for (const pass of ["symplectic_euler", "neighbour_search", "diagnose", "pack_frame"])
+    assert.ok(passes[pass] >= 1, pass);
   assert.ok(!("strain_limit" in passes), "the seed has none");
   // What is not in the scene any more is not timed any more.
   await client.request("scene.patch", { patch: { self_collision: null } });
-  await client.notification("sim.status", ({ passes, pass_seconds }) =>
-    !passes.includes("neighbour_search") && !("neighbour_search" in pass_seconds) && pass_seconds.symplectic_euler > 0);
+  await client.notification(
+    "sim.status",
+    ({ passes, pass_seconds }) =>
+      !passes.includes("neighbour_search") &&
+      !("neighbour_search" in pass_seconds) &&
+      pass_seconds.symplectic_euler > 0,
+  );
   await client.request("scene.load", { preset: "seed" });
   await client.close();
 });
@@ -283,10 +390,14 @@ test("/api/snapshot.png is a picture of the size asked for", async () => {
 function askForPictures(count, side) {
   const answers = [];
   const requests = Array.from({ length: count }, () =>
-    http.get({ host: "127.0.0.1", port: server.port, path: `/api/snapshot.png?width=${side}&height=${side}` }, (response) => {
-      answers.push({ status: response.statusCode, again: response.headers["retry-after"] });
-      response.resume();
-    }));
+    http.get(
+      { host: "127.0.0.1", port: server.port, path: `/api/snapshot.png?width=${side}&height=${side}` },
+      (response) => {
+        answers.push({ status: response.statusCode, again: response.headers["retry-after"] });
+        response.resume();
+      },
+    ),
+  );
   for (const request of requests) request.on("error", () => {});
   return { answers, abandon: () => requests.forEach((request) => request.destroy()) };
 }
@@ -295,9 +406,17 @@ const exportsWaiting = () => server.metric("clothlab_exports_waiting");
 test("pictures keep nobody waiting: the session answers while they are made, and of twelve at once four are refused", async () => {
   const client = await Client.connect(server);
   const { answers, abandon } = askForPictures(12, 2048);
-  await eventually(() => answers.length, (count) => count >= 4, "the refusals");
+  await eventually(
+    () => answers.length,
+    (count) => count >= 4,
+    "the refusals",
+  );
   await client.request("scene.patch", { patch: { name: "beside pictures" } });
-  assert.deepEqual(answers, Array(4).fill({ status: 503, again: "1" }), "the session answered before the first picture was made");
+  assert.deepEqual(
+    answers,
+    Array(4).fill({ status: 503, again: "1" }),
+    "the session answered before the first picture was made",
+  );
   abandon();
   await eventually(exportsWaiting, (count) => count === 0, "the pictures to be dropped");
   await client.close();
@@ -309,7 +428,7 @@ test("a picture that nobody waits for any more is not made", async () => {
   await eventually(exportsWaiting, (count) => count >= 4, "the pictures to wait");
   abandon();
   await eventually(exportsWaiting, (count) => count === 0, "the pictures to be dropped");
-  const made = await server.metric("clothlab_exports_total") - before;
+  const made = (await server.metric("clothlab_exports_total")) - before;
   assert.ok(made < 8, `${made} were made`);
   assert.equal((await server.get("/api/mesh.obj")).status, 200);
 });

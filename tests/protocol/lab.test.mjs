@@ -6,7 +6,12 @@ import { strip as stripOf } from "./strip.mjs";
 
 const strip = stripOf();
 // Longer than any test waits: jobs that are to be cancelled, left or waited for.
-const long = { methods: ["explicit_euler", "symplectic_euler", "verlet", "rk4", "implicit_euler"], time: 20, budget: 600, fresh: true };
+const long = {
+  methods: ["explicit_euler", "symplectic_euler", "verlet", "rk4", "implicit_euler"],
+  time: 20,
+  budget: 600,
+  fresh: true,
+};
 const short = { methods: ["verlet", "symplectic_euler"], time: 0.3, budget: 5, fresh: true };
 
 let server;
@@ -40,20 +45,28 @@ test("a chart arrives point by point, is finished, and can be exported as JSON, 
   const partial = client.messages.filter((m) => m.method === "lab.result" && m.params.job === job).map((m) => m.params);
   for (const { result } of partial.slice(0, -1)) assert.equal(result.complete, false);
   const counts = partial.map(({ result }) => result.points.length);
-  assert.deepEqual(counts, [...counts].sort((a, b) => a - b));
+  assert.deepEqual(
+    counts,
+    [...counts].sort((a, b) => a - b),
+  );
   const exported = async (format, more) => (await client.request("lab.export", { job, format, ...more })).text;
   assert.deepEqual(JSON.parse(await exported("json")), end.result);
   assert.ok((await exported("csv")).split("\n").length > end.result.points.length);
   assert.match(await exported("svg"), /<svg/);
   assert.notEqual(await exported("svg", { axis: "energy" }), await exported("svg"));
-  assert.deepEqual((await client.request("lab.jobs")).jobs.map(({ job, state }) => ({ job, state })), [{ job, state: "finished" }]);
+  assert.deepEqual(
+    (await client.request("lab.jobs")).jobs.map(({ job, state }) => ({ job, state })),
+    [{ job, state: "finished" }],
+  );
   await client.close();
 });
 
 test("a job measures the scene as the requests before it have left it", async () => {
   const client = await enter();
   const [{ revision }, { job }] = await Promise.all([
-    client.request("scene.patch", { patch: { gravity: [0, -1, 0] } }), client.request("lab.chart", long)]);
+    client.request("scene.patch", { patch: { gravity: [0, -1, 0] } }),
+    client.request("lab.chart", long),
+  ]);
   const { jobs } = await client.request("lab.jobs");
   assert.equal(jobs[0].revision, revision);
   assert.equal(jobs[0].stale, false);
@@ -65,7 +78,8 @@ test("of two jobs the second waits for the first, and a job that is cancelled re
   const client = await enter();
   const waits = [];
   let next = await client.request("lab.chart", long);
-  for (const at of [100, 600, 1500]) {  // from the reference to the trials
+  for (const at of [100, 600, 1500]) {
+    // from the reference to the trials
     const { job } = next;
     await runs(client, job);
     next = await client.request("lab.chart", long);
@@ -112,7 +126,7 @@ test("a client that leaves leaves no job behind", async () => {
 });
 
 test("a job that asks for it pauses the session, tells all who are there, and lets it play on", async () => {
-  const alone = await Server.start();  // any session that plays would be beside the job
+  const alone = await Server.start(); // any session that plays would be beside the job
   const client = await enter({ at: alone, session: "main" });
   const other = await Client.connect(alone, { session: "main" });
   await client.nextNotification("sim.status", (s) => s.playing && s.step > 0);
@@ -145,15 +159,22 @@ test("wrong parameters are refused with what is allowed, and so are other people
   const other = await enter();
   const { job } = await other.request("lab.chart", long);
   const cases = [
-    ["lab.chart", { methods: ["fem"] }, "/methods", /verlet, rk4/], ["lab.chart", { methods: "verlet" }, "/methods", /list/],
-    ["lab.chart", { iterations: [0] }, "/iterations", /\[1, 10000\]/], ["lab.chart", { time: 0 }, "/time", /\[0.01, 60/],
-    ["lab.chart", { budget: 1e6 }, "/budget", /1200/], ["lab.chart", { pause: "yes" }, "/pause", /true or false/],
+    ["lab.chart", { methods: ["fem"] }, "/methods", /verlet, rk4/],
+    ["lab.chart", { methods: "verlet" }, "/methods", /list/],
+    ["lab.chart", { iterations: [0] }, "/iterations", /\[1, 10000\]/],
+    ["lab.chart", { time: 0 }, "/time", /\[0.01, 60/],
+    ["lab.chart", { budget: 1e6 }, "/budget", /1200/],
+    ["lab.chart", { pause: "yes" }, "/pause", /true or false/],
     ["lab.chart", { tolerance: 0.1 }, "/tolerance", /methods, iterations/],
-    ["lab.stability", { columns: 1 }, "/columns", /\[2, 41\]/], ["lab.stability", { from: "low" }, "/from", /number/],
-    ["lab.choose", {}, "/tolerance", /number/], ["lab.choose", { tolerance: 2 }, "/tolerance", /1.0\]/],
+    ["lab.stability", { columns: 1 }, "/columns", /\[2, 41\]/],
+    ["lab.stability", { from: "low" }, "/from", /number/],
+    ["lab.choose", {}, "/tolerance", /number/],
+    ["lab.choose", { tolerance: 2 }, "/tolerance", /1.0\]/],
     ["lab.simplify", { tolerance: 0 }, "/tolerance", /number/],
-    ["lab.cancel", { job: 1e6 }, "/job", /lab.jobs/], ["lab.cancel", { job }, "/job", /lab.jobs/],
-    ["lab.export", { job, format: "json" }, "/job", /lab.jobs/], ["lab.export", { job, format: "png" }, "/format", /json, csv or svg/],
+    ["lab.cancel", { job: 1e6 }, "/job", /lab.jobs/],
+    ["lab.cancel", { job }, "/job", /lab.jobs/],
+    ["lab.export", { job, format: "json" }, "/job", /lab.jobs/],
+    ["lab.export", { job, format: "png" }, "/format", /json, csv or svg/],
     ["lab.export", { job, format: "svg", axis: "speed" }, "/axis", /position, energy, strain, rest/],
   ];
   for (const [method, params, path, allowed] of cases) {

@@ -25,13 +25,24 @@ async function socketTo(server, options = {}) {
   return socket;
 }
 
-const upgrade = "GET /ws HTTP/1.1\r\nHost: localhost\r\nConnection: upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n" +
-                "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Protocol: clothlab.v1\r\n\r\n";
+const upgrade =
+  "GET /ws HTTP/1.1\r\nHost: localhost\r\nConnection: upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n" +
+  "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Protocol: clothlab.v1\r\n\r\n";
 
 const limits = {
-  "--max-sessions": 1, "--max-clients": 1, "--max-clients-per-address": 1, "--max-message-bytes": 1024, "--max-message-rate": 10,
-  "--max-json-depth": 8, "--max-vertices": 4, "--max-springs": 4, "--max-lab-seconds": 1, "--header-timeout": 1, "--auth-timeout": 1,
-  "--max-wrong-tokens": 1, "--idle-timeout": 2,
+  "--max-sessions": 1,
+  "--max-clients": 1,
+  "--max-clients-per-address": 1,
+  "--max-message-bytes": 1024,
+  "--max-message-rate": 10,
+  "--max-json-depth": 8,
+  "--max-vertices": 4,
+  "--max-springs": 4,
+  "--max-lab-seconds": 1,
+  "--header-timeout": 1,
+  "--auth-timeout": 1,
+  "--max-wrong-tokens": 1,
+  "--idle-timeout": 2,
 };
 
 test("each limit has a flag with a default in the help, and refuses less than its least value with what is allowed", async () => {
@@ -70,7 +81,7 @@ test("an address may have twice as many connections as clients; those beyond are
   other.write("GET /healthz HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
   assert.match((await withTimeout(once(other, "data"), "an answer elsewhere")).toString(), /200/);
   for (const socket of [...sockets, other]) socket.destroy();
-  for (const until = Date.now() + patience; ;) {
+  for (const until = Date.now() + patience; ; ) {
     const answer = await server.get("/healthz").catch(() => null);
     if (answer?.status === 200) break;
     assert.ok(Date.now() < until, "no room was made");
@@ -105,7 +116,7 @@ test("more messages than --max-message-rate allows are a flood, closed with 1008
 test("a long message counts as many short ones: it is answered, and the next one is too many", async () => {
   const server = await start("--max-message-rate", "10");
   const client = await Client.connect(server);
-  const t = "x".repeat(50_000);  // two hundred times 256 bytes: paid off in 18 s
+  const t = "x".repeat(50_000); // two hundred times 256 bytes: paid off in 18 s
   assert.deepEqual(await client.request("ping", { t }), { t });
   client.notify("ping", {});
   const { code, reason } = await withTimeout(client.closed, "the close");
@@ -120,7 +131,11 @@ test("a message nested deeper than --max-json-depth answers -32700 and the conne
   const nested = (depth) => JSON.parse("[".repeat(depth) + "]".repeat(depth));
   await client.request("ping", { t: nested(6) });
   client.notify("ping", { t: nested(7) });
-  const { error } = await client.until(() => client.messages, (m) => m.error, "the refusal");
+  const { error } = await client.until(
+    () => client.messages,
+    (m) => m.error,
+    "the refusal",
+  );
   assert.equal(error.code, -32700);
   assert.match(error.message, /8 levels/);
   await client.request("ping", { t: 1 });
@@ -128,22 +143,36 @@ test("a message nested deeper than --max-json-depth answers -32700 and the conne
 });
 
 test("a scene beyond --max-vertices or --max-springs is refused with the number it has, and the one that runs is kept", async () => {
-  const springs = 2 * 25 * 24 + 2 * 24 * 24 + 2 * 25 * 23;  // of the seed
+  const springs = 2 * 25 * 24 + 2 * 24 * 24 + 2 * 25 * 23; // of the seed
   const server = await start("--max-vertices", "625", "--max-springs", String(springs));
   const client = await Client.connect(server);
-  const columns = (count) => client.refusal("scene.patch", { patch: [{ op: "replace", path: "/cloths/0/mesh/grid/columns", value: count }] });
+  const columns = (count) =>
+    client.refusal("scene.patch", { patch: [{ op: "replace", path: "/cloths/0/mesh/grid/columns", value: count }] });
   const error = await columns(26);
   assert.equal(error.code, -32602);
   assert.deepEqual([error.data.path, error.data.found], ["/cloths", "650 vertices in all cloths together"]);
   assert.match(error.data.allowed, /at most 625 here \(--max-vertices\)/);
-  const mesh = { vertices: [[0, 0, 0], [1, 0, 0], [0, 0, 1], [1, 0, 1]], triangles: Array.from({ length: 1000 }, () => [0, 1, 2]) };
-  const many = await client.refusal("scene.load", { scene: { version: 1, cloths: [{ mesh, material: { shear: 0 } }] } });
+  const mesh = {
+    vertices: [
+      [0, 0, 0],
+      [1, 0, 0],
+      [0, 0, 1],
+      [1, 0, 1],
+    ],
+    triangles: Array.from({ length: 1000 }, () => [0, 1, 2]),
+  };
+  const many = await client.refusal("scene.load", {
+    scene: { version: 1, cloths: [{ mesh, material: { shear: 0 } }] },
+  });
   assert.match(many.data.allowed, /--max-springs/);
   assert.equal((await client.request("scene.get")).document.cloths[0].mesh.grid.columns, 25);
   await client.nextNotification("sim.status", (status) => status.playing);
   await client.close();
 
-  for (const [flag, most] of [["--max-vertices", 624], ["--max-springs", springs - 1]]) {
+  for (const [flag, most] of [
+    ["--max-vertices", 624],
+    ["--max-springs", springs - 1],
+  ]) {
     const { code, stderr } = await runProgram(["serve", "--port", "0", flag, String(most)]);
     assert.equal(code, 2, flag);
     assert.match(stderr, new RegExp(`/cloths: .* at most ${most} here \\(${flag}\\)`));
@@ -154,7 +183,10 @@ test("a measurement that takes longer than --max-lab-seconds ends with what it f
   const server = await start("--max-lab-seconds", "1");
   const client = await Client.connect(server);
   const { job } = await client.request("lab.chart", { budget: 600, time: 1 });
-  const { state, error } = await client.notification("lab.result", (result) => result.job === job && result.state !== "running");
+  const { state, error } = await client.notification(
+    "lab.result",
+    (result) => result.job === job && result.state !== "running",
+  );
   assert.equal(state, "failed");
   assert.match(error.found, /more than 1 s/);
   await client.close();
@@ -179,9 +211,11 @@ test("a connection that is kept for one request after the other lives as long as
   let answers = "";
   socket.on("data", (data) => (answers += data));
   const answered = () => answers.split("HTTP/1.1 200 OK").length - 1;
-  for (let asked = 1; asked <= 8; ++asked) {  // for twice the timeout
+  for (let asked = 1; asked <= 8; ++asked) {
+    // for twice the timeout
     socket.write("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n");
-    for (const until = Date.now() + patience; answered() < asked && !socket.destroyed && Date.now() < until;) await sleep(20);
+    for (const until = Date.now() + patience; answered() < asked && !socket.destroyed && Date.now() < until; )
+      await sleep(20);
     assert.equal(answered(), asked);
     await sleep(250);
   }
@@ -203,12 +237,14 @@ test("of an address that sent --max-wrong-tokens none is looked at for the secon
   const [inside, guesser] = [await Client.connect(server), await Client.connect(server)];
   await inside.request("auth", { token: "secret" });
   const right = { authorization: "Bearer secret" };
-  for (let i = 0; i < 30; ++i) assert.equal((await server.get("/api/scene", right)).status, 200, "right ones cost nothing");
+  for (let i = 0; i < 30; ++i)
+    assert.equal((await server.get("/api/scene", right)).status, 200, "right ones cost nothing");
 
   const from = performance.now();
-  let heard = 0, error;
+  let heard = 0,
+    error;
   while ((error = await guesser.refusal("auth", { token: `guess ${heard}` })).code === -32001) ++heard;
-  const due = Math.floor((performance.now() - from) / 3000);  // one more each 3 s
+  const due = Math.floor((performance.now() - from) / 3000); // one more each 3 s
   assert.ok(heard >= 20 && heard <= 20 + due, `${heard} were looked at`);
   assert.equal(error.code, -32002);
   const seconds = Number(/ for (\d+) s; see --max-wrong-tokens$/.exec(error.message)[1]);
@@ -245,17 +281,26 @@ test("a client that asks and does not read is cut off once 4 MiB of answers wait
   const deaf = await Client.connect(server, { session: "large" });
   const clients = () => server.metric("clothlab_clients");
   // A document of some 40 kB: twenty times as much as a client's and the kernel's buffers hold when asked for 2000 times.
-  const vertices = Array.from({ length: 1000 }, (_, i) => [i % 40 + 0.123456789, 1.123456789, Math.floor(i / 40) + 0.123456789]);
+  const vertices = Array.from({ length: 1000 }, (_, i) => [
+    (i % 40) + 0.123456789,
+    1.123456789,
+    Math.floor(i / 40) + 0.123456789,
+  ]);
   const triangles = Array.from({ length: 900 }, (_, i) => [i, i + 40, i + 41]).filter(([a]) => a % 40 < 39);
-  await deaf.request("scene.patch", { patch: [{ op: "replace", path: "/cloths/0/mesh", value: { vertices, triangles } },
-                                              { op: "replace", path: "/cloths/0/pins", value: [] }] });
+  await deaf.request("scene.patch", {
+    patch: [
+      { op: "replace", path: "/cloths/0/mesh", value: { vertices, triangles } },
+      { op: "replace", path: "/cloths/0/pins", value: [] },
+    ],
+  });
   assert.equal(await clients(), 2);
   deaf.socket.pause();
   for (let asked = 0; asked < 2000 && (await clients()) === 2; asked += 100) {
-    for (let i = 0; i < 100 && !deaf.over; ++i) deaf.send(JSON.stringify({ jsonrpc: "2.0", id: asked + i, method: "scene.get" }));
+    for (let i = 0; i < 100 && !deaf.over; ++i)
+      deaf.send(JSON.stringify({ jsonrpc: "2.0", id: asked + i, method: "scene.get" }));
     await other.request("scene.get");
   }
-  for (const until = Date.now() + patience; (await clients()) === 2 && Date.now() < until;) await sleep(100);
+  for (const until = Date.now() + patience; (await clients()) === 2 && Date.now() < until; ) await sleep(100);
   assert.equal(await clients(), 1);
   assert.equal((await other.request("ping", { t: 1 })).t, 1);
   deaf.socket.terminate();

@@ -5,40 +5,64 @@ import { Client, Server } from "./harness.mjs";
 
 const tokens = ["operators-only", "viewers-only"];
 const value = String.raw`(?:"(?:[^"\\\x00-\x1f\x7f]|\\["\\]|\\x[0-9a-f]{2})*"|[^\s"=\\]+)`;
-const line = new RegExp(String.raw`^time=\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z level=(error|warning|info|debug) event=([a-z_]+)((?: [a-z_]+=${value})*)$`);
+const line = new RegExp(
+  String.raw`^time=\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z level=(error|warning|info|debug) event=([a-z_]+)((?: [a-z_]+=${value})*)$`,
+);
 
 /// One who may not come in, one who guesses, and one who looks and leaves; what the server wrote of them.
 async function told(...args) {
   const server = await Server.start("--token", tokens[0], "--view-token", tokens[1], ...args);
-  await assert.rejects(Client.connect(server, { headers: { origin: String.raw`https://e"v=i\l example` } }), { status: 403 });
+  await assert.rejects(Client.connect(server, { headers: { origin: String.raw`https://e"v=i\l example` } }), {
+    status: 403,
+  });
   const client = await Client.connect(server, { session: "looked-at" });
   await client.refusal("auth", { token: 'a "guess"' });
-  for (const headers of [{}, { authorization: "Bearer guess" }]) assert.equal((await server.get("/metrics", headers)).status, 401);
+  for (const headers of [{}, { authorization: "Bearer guess" }])
+    assert.equal((await server.get("/metrics", headers)).status, 401);
   for (const token of tokens) await client.request("auth", { token });
   await client.notification("scene");
   await client.close();
   assert.equal(await server.stop(), 0);
-  return server.stderr.split("\n").slice(0, -1).map((text) => {
-    const [, level, event, fields] = line.exec(text) ?? assert.fail(`no logfmt: ${text}`);
-    const read = [...fields.matchAll(new RegExp(`([a-z_]+)=(${value})`, "g"))].map(([, key, of]) => [key, of]);
-    assert.equal(new Set(read.map(([key]) => key)).size, read.length, `each key once: ${text}`);
-    return { level, event, text, ...Object.fromEntries(read) };
-  });
+  return server.stderr
+    .split("\n")
+    .slice(0, -1)
+    .map((text) => {
+      const [, level, event, fields] = line.exec(text) ?? assert.fail(`no logfmt: ${text}`);
+      const read = [...fields.matchAll(new RegExp(`([a-z_]+)=(${value})`, "g"))].map(([, key, of]) => [key, of]);
+      assert.equal(new Set(read.map(([key]) => key)).size, read.length, `each key once: ${text}`);
+      return { level, event, text, ...Object.fromEntries(read) };
+    });
 }
 
 const ofClients = (lines) => lines.filter(({ event }) => /^(client|token)_/.test(event));
 
 test("each event is one line of logfmt, whatever a client sends, and no token is in it", async () => {
   const lines = await told();
-  assert.deepEqual(ofClients(lines).map(({ event }) => event), ["client_refused", "client_connected", "token_refused", "token_refused", "client_admitted",
-                                                                    "client_admitted", "client_left"]);
+  assert.deepEqual(
+    ofClients(lines).map(({ event }) => event),
+    [
+      "client_refused",
+      "client_connected",
+      "token_refused",
+      "token_refused",
+      "client_admitted",
+      "client_admitted",
+      "client_left",
+    ],
+  );
   const [refused, connected, guessed, guessedByHttp, opened, admitted, left] = ofClients(lines);
   assert.deepEqual([refused.status, refused.origin], ["403", String.raw`"https://e\"v=i\\l example"`]);
   assert.deepEqual([connected.session, connected.role, connected.address], ["looked-at", "none", "127.0.0.1"]);
   assert.deepEqual([opened.role, admitted.role], ["operator", "viewer"]);
   assert.ok(Number(left.seconds) >= 0 && Number(left.bytes) > 0, left.text);
-  assert.deepEqual([guessed, admitted, left].map(({ client }) => client), Array(3).fill(connected.client));
-  assert.deepEqual([guessed.address, guessedByHttp.address, guessedByHttp.client], ["127.0.0.1", "127.0.0.1", undefined]);
+  assert.deepEqual(
+    [guessed, admitted, left].map(({ client }) => client),
+    Array(3).fill(connected.client),
+  );
+  assert.deepEqual(
+    [guessed.address, guessedByHttp.address, guessedByHttp.client],
+    ["127.0.0.1", "127.0.0.1", undefined],
+  );
   for (const { text } of lines) for (const secret of [...tokens, "guess"]) assert.ok(!text.includes(secret), text);
   for (const session of ["main", "looked-at"])
     assert.equal(lines.filter((one) => one.event === "session_started" && one.session === session).length, 1);
@@ -47,7 +71,14 @@ test("each event is one line of logfmt, whatever a client sends, and no token is
 test("--log-level leaves out what is less urgent", async () => {
   assert.deepEqual(await told("--log-level", "error"), []);
   const warnings = await told("--log-level", "warning");
-  assert.deepEqual(warnings.map(({ level, event }) => [level, event]), [["warning", "client_refused"], ["warning", "token_refused"], ["warning", "token_refused"]]);
+  assert.deepEqual(
+    warnings.map(({ level, event }) => [level, event]),
+    [
+      ["warning", "client_refused"],
+      ["warning", "token_refused"],
+      ["warning", "token_refused"],
+    ],
+  );
   const all = await told("--log-level", "debug");
   assert.ok(all.some(({ level }) => level === "info"));
 });

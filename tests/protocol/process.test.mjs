@@ -42,9 +42,13 @@ test("--bind beyond loopback with --token serves", async () => {
 
 test("wrong usage and invalid scenes end with 2 and say what is wrong", async () => {
   const cases = [
-    [["--scene", "no-such-preset"], /no-such-preset/], [["--set", "/solver/dt=-1"], /\/solver\/dt/],
-    [["--set", "/cloths/0/pins/0/at=corner:99,0"], /\/cloths\/0\/pins\/0\/at/], [["--port", "70000"], /port/],
-    [["--view-token", "v"], /--token/], [["--tls-cert", "/no/such"], /--tls-key/], [["--bogus"], /bogus/],
+    [["--scene", "no-such-preset"], /no-such-preset/],
+    [["--set", "/solver/dt=-1"], /\/solver\/dt/],
+    [["--set", "/cloths/0/pins/0/at=corner:99,0"], /\/cloths\/0\/pins\/0\/at/],
+    [["--port", "70000"], /port/],
+    [["--view-token", "v"], /--token/],
+    [["--tls-cert", "/no/such"], /--tls-key/],
+    [["--bogus"], /bogus/],
     [["--asset-root", "/no/such/folder"], /asset-root/],
   ];
   for (const [args, expected] of cases) {

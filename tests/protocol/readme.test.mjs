@@ -9,7 +9,9 @@ import { fileURLToPath } from "node:url";
 const program = process.env.CLOTHLAB ?? "build/release/clothlab";
 /// The first piece of code of a language in a document.
 const shown = (document, language) =>
-  readFileSync(new URL(`../../${document}`, import.meta.url), "utf8").match(new RegExp("```" + language + "\n(.*?)```", "s"))[1];
+  readFileSync(new URL(`../../${document}`, import.meta.url), "utf8").match(
+    new RegExp("```" + language + "\n(.*?)```", "s"),
+  )[1];
 const scripts = [];
 let server, address;
 
@@ -56,9 +58,12 @@ async function runs(document, language, extension, interpreter) {
 
 test("the script for Node prints a line a frame", () => runs("README.md", "js", "mjs", process.execPath));
 
-const python = ["/usr/bin/python3", "python3"].find((program) => spawnSync(program, ["-c", "import websockets"]).status === 0);
-test("the script for Python prints a line a frame", { skip: python ? false : "Python has no websockets here" },
-     () => runs("server/net/README.md", "python", "py", python));
+const python = ["/usr/bin/python3", "python3"].find(
+  (program) => spawnSync(program, ["-c", "import websockets"]).status === 0,
+);
+test("the script for Python prints a line a frame", { skip: python ? false : "Python has no websockets here" }, () =>
+  runs("server/net/README.md", "python", "py", python),
+);
 
 for (const document of ["README.md", "server/scene/README.md"])
   test(`the scene in ${document} is valid`, () => {

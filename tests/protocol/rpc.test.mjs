@@ -24,7 +24,19 @@ test("ping answers with what it was sent", async () => {
 });
 
 test("text that is not JSON answers -32700 and the connection lives", async () => {
-  for (const text of ["", "{", "hello", '{"a":1}}', "NaN", "{}garbage", "{}\0garbage", request({}) + "\0", request({}) + "\0{}", request({}) + " x", '{"jsonrpc":"2.0","id":1,"method":"ping","params":{"t":NaN}}'])
+  for (const text of [
+    "",
+    "{",
+    "hello",
+    '{"a":1}}',
+    "NaN",
+    "{}garbage",
+    "{}\0garbage",
+    request({}) + "\0",
+    request({}) + "\0{}",
+    request({}) + " x",
+    '{"jsonrpc":"2.0","id":1,"method":"ping","params":{"t":NaN}}',
+  ])
     assert.equal((await errorFor(text)).code, -32700, text);
   await stillAlive();
 });
@@ -43,8 +55,15 @@ test("batches answer -32600", async () => {
 });
 
 test("what is no request answers -32600", async () => {
-  for (const text of ["1", "null", '"x"', JSON.stringify({ jsonrpc: "2.0", id: null }), request({ id: {} }),
-                      request({ id: null, jsonrpc: "1.0" }), request({ id: null, method: 5 })])
+  for (const text of [
+    "1",
+    "null",
+    '"x"',
+    JSON.stringify({ jsonrpc: "2.0", id: null }),
+    request({ id: {} }),
+    request({ id: null, jsonrpc: "1.0" }),
+    request({ id: null, method: 5 }),
+  ])
     assert.equal((await errorFor(text)).code, -32600, text);
   await stillAlive();
 });
@@ -70,18 +89,31 @@ test("a method of the protocol that is not there yet says so", async () => {
 
 test("bad parameters answer -32602 with where, what was found and what is allowed", async () => {
   const cases = [
-    ["stream.subscribe", { rate: 0 }, "/rate"], ["stream.subscribe", { rate: "fast" }, "/rate"],
-    ["stream.subscribe", { rate: 1000 }, "/rate"], ["stream.subscribe", { in_flight: 9 }, "/in_flight"],
-    ["stream.subscribe", { in_flight: 1.5 }, "/in_flight"], ["stream.subscribe", { encoding: "jpeg" }, "/encoding"],
-    ["stream.subscribe", { speed: 1 }, "/speed"], ["sim.step", { steps: 0 }, "/steps"],
-    ["sim.step", { steps: -1 }, "/steps"], ["sim.step", { steps: 1e300 }, "/steps"],
-    ["sim.step", { steps: 18446744073709551615 }, "/steps"], ["sim.speed", {}, "/factor"],
-    ["sim.speed", { factor: 0 }, "/factor"], ["sim.speed", { factor: 101 }, "/factor"],
-    ["sim.play", { now: true }, "/now"], ["scene.load", {}, "/preset"], ["scene.load", { preset: 3 }, "/preset"],
-    ["scene.load", { preset: "no-such" }, "/preset"], ["scene.load", { preset: "seed", scene: {} }, "/preset"],
-    ["scene.patch", {}, "/patch"], ["scene.patch", { patch: 4 }, "/patch"],
-    ["scene.patch", { patch: {}, revision: -1 }, "/revision"], ["stream.ack", { frame: -1 }, "/frame"],
-    ["auth", {}, "/token"], ["ping", [1], ""],
+    ["stream.subscribe", { rate: 0 }, "/rate"],
+    ["stream.subscribe", { rate: "fast" }, "/rate"],
+    ["stream.subscribe", { rate: 1000 }, "/rate"],
+    ["stream.subscribe", { in_flight: 9 }, "/in_flight"],
+    ["stream.subscribe", { in_flight: 1.5 }, "/in_flight"],
+    ["stream.subscribe", { encoding: "jpeg" }, "/encoding"],
+    ["stream.subscribe", { speed: 1 }, "/speed"],
+    ["sim.step", { steps: 0 }, "/steps"],
+    ["sim.step", { steps: -1 }, "/steps"],
+    ["sim.step", { steps: 1e300 }, "/steps"],
+    ["sim.step", { steps: 18446744073709551615 }, "/steps"],
+    ["sim.speed", {}, "/factor"],
+    ["sim.speed", { factor: 0 }, "/factor"],
+    ["sim.speed", { factor: 101 }, "/factor"],
+    ["sim.play", { now: true }, "/now"],
+    ["scene.load", {}, "/preset"],
+    ["scene.load", { preset: 3 }, "/preset"],
+    ["scene.load", { preset: "no-such" }, "/preset"],
+    ["scene.load", { preset: "seed", scene: {} }, "/preset"],
+    ["scene.patch", {}, "/patch"],
+    ["scene.patch", { patch: 4 }, "/patch"],
+    ["scene.patch", { patch: {}, revision: -1 }, "/revision"],
+    ["stream.ack", { frame: -1 }, "/frame"],
+    ["auth", {}, "/token"],
+    ["ping", [1], ""],
   ];
   for (const [method, params, path] of cases) {
     const error = await client.refusal(method, params);
@@ -128,7 +160,11 @@ test("a message of 64 KiB is read, a longer one closes the connection with 1009"
   const padding = 65536 - request({ params: { t: "" } }).length;
   const from = client.messages.length;
   client.send(request({ params: { t: "x".repeat(padding) } }));
-  await client.until(() => client.messages.slice(from), (message) => message.id === 1 && message.result, "the answer");
+  await client.until(
+    () => client.messages.slice(from),
+    (message) => message.id === 1 && message.result,
+    "the answer",
+  );
   const other = await Client.connect(server);
   other.send(request({ params: { t: "x".repeat(padding + 1) } }));
   assert.equal((await withTimeout(other.closed, "the close")).code, 1009);

@@ -29,7 +29,17 @@ test("scene.get answers the document and its revision", async () => {
 test("scene.presets lists the presets of the contract, the seed first", async () => {
   const { presets } = await client.request("scene.presets");
   assert.equal(presets[0], "seed");
-  for (const name of ["flag", "curtain", "tablecloth", "drape", "twist", "hanging-strip", "cantilever", "trampoline", "blowup"])
+  for (const name of [
+    "flag",
+    "curtain",
+    "tablecloth",
+    "drape",
+    "twist",
+    "hanging-strip",
+    "cantilever",
+    "trampoline",
+    "blowup",
+  ])
     assert.ok(presets.includes(name), name);
 });
 
@@ -44,12 +54,19 @@ test("a merge patch changes the scene and raises the revision by one", async () 
   assert.deepEqual(await changed, { revision: answer.revision, patch, by: hello.client });
   const after = await client.request("scene.get");
   assert.equal(after.revision, answer.revision);
-  assert.deepEqual(after.document, { ...before.document, gravity: [0, -1.5, 0], solver: { ...before.document.solver, dt: 0.0005 } });
+  assert.deepEqual(after.document, {
+    ...before.document,
+    gravity: [0, -1.5, 0],
+    solver: { ...before.document.solver, dt: 0.0005 },
+  });
 });
 
 test("a JSON patch (RFC 6902) changes the scene, echoed as it was given", async () => {
   const changed = client.nextNotification("scene.changed");
-  const patch = [{ op: "test", path: "/name", value: "seed" }, { op: "replace", path: "/cloths/0/material/damping", value: 1 }];
+  const patch = [
+    { op: "test", path: "/name", value: "seed" },
+    { op: "replace", path: "/cloths/0/material/damping", value: 1 },
+  ];
   await client.request("scene.patch", { patch });
   assert.deepEqual((await changed).patch, patch);
   assert.equal((await client.request("scene.get")).document.cloths[0].material.damping, 1);
@@ -66,8 +83,13 @@ test("a patch says how deep it cuts, and only a rebuilt cloth resets time", asyn
   assert.equal(await apply({ self_collision: null }), "kernel");
   assert.equal(await at(), step);
   const notice = client.nextNotification("notice");
-  assert.equal(await apply([{ op: "replace", path: "/cloths/0/mesh/grid/columns", value: 30 },
-                            { op: "replace", path: "/cloths/0/pins", value: [] }]), "cloth");
+  assert.equal(
+    await apply([
+      { op: "replace", path: "/cloths/0/mesh/grid/columns", value: 30 },
+      { op: "replace", path: "/cloths/0/pins", value: [] },
+    ]),
+    "cloth",
+  );
   assert.equal(await at(), 0);
   assert.match((await notice).text, /rebuilt/);
 });
@@ -75,7 +97,9 @@ test("a patch says how deep it cuts, and only a rebuilt cloth resets time", asyn
 test("an invalid patch answers -32602 with the scene's pointer and changes nothing", async () => {
   const before = await client.request("scene.get");
   const cases = [
-    [{ solver: { dt: -1 } }, "/solver/dt"], [{ solver: { dt: "x" } }, "/solver/dt"], [{ bogus: 1 }, "/bogus"],
+    [{ solver: { dt: -1 } }, "/solver/dt"],
+    [{ solver: { dt: "x" } }, "/solver/dt"],
+    [{ bogus: 1 }, "/bogus"],
     [{ colliders: [{ name: "b", sphere: { center: [0, 0, 0], radius: -1 } }] }, "/colliders/0/sphere/radius"],
     [[{ op: "replace", path: "/solver/dt", value: null }], "/solver/dt"],
     [[{ op: "replace", path: "/cloths/0/pins/0/at", value: "corner:99,0" }], "/cloths/0/pins/0/at"],
@@ -126,7 +150,7 @@ test("scene.load takes a scene of one's own, at time 0", async () => {
 test("a contact distance that crowds the neighbour lists is told by a notice", async () => {
   const notice = client.nextNotification("notice", ({ text }) => /self-collision/.test(text));
   await client.request("scene.patch", { patch: { self_collision: { thickness: 0.5 } } });
-  await client.request("sim.play");  // the lists are built by the next step
+  await client.request("sim.play"); // the lists are built by the next step
   const { level, text } = await notice;
   assert.equal(level, "warning");
   assert.match(text, /thickness/);
@@ -135,7 +159,10 @@ test("a contact distance that crowds the neighbour lists is told by a notice", a
 test("a self-collision too thin for the mesh is told by a notice once, and what would hold with every status", async () => {
   const cloths = [{ mesh: { grid: { columns: 11, rows: 11, width: 0.5, height: 0.5 } } }];
   await client.request("scene.load", { scene: { version: 1, cloths, self_collision: { thickness: 0.045 } } });
-  const { solver } = await client.nextNotification("sim.status", (status) => status.solver.thickness_that_holds !== null);
+  const { solver } = await client.nextNotification(
+    "sim.status",
+    (status) => status.solver.thickness_that_holds !== null,
+  );
   assert.ok(Math.abs(solver.thickness_that_holds / 0.05 - 0.8485) < 0.001, "of the spacing");
   const before = client.messages.length;
   const notice = client.nextNotification("notice", ({ text }) => /too thin/.test(text));
@@ -144,16 +171,21 @@ test("a self-collision too thin for the mesh is told by a notice once, and what 
   await client.request("scene.patch", { patch: { self_collision: { thickness: 0.01 } } });
   await client.request("scene.patch", { patch: { self_collision: null } });
   await client.nextNotification("sim.status", (status) => status.solver.thickness_that_holds === null);
-  assert.equal(client.messages.slice(before).filter((m) => m.method === "notice" && /too thin/.test(m.params.text)).length, 1);
+  assert.equal(
+    client.messages.slice(before).filter((m) => m.method === "notice" && /too thin/.test(m.params.text)).length,
+    1,
+  );
 });
 
 test("a strain limit that the pins leave no room for is told by a notice", async () => {
   const notice = client.nextNotification("notice", ({ text }) => /strain_limit/.test(text));
-  const cloths = [{
-    mesh: { grid: { columns: 3, rows: 3 } },
-    material: { strain_limit: 0.01 },
-    pins: [{ at: "corner:0,0" }, { at: "corner:2,0", motion: { linear: { velocity: [0.2, 0, 0] } } }],
-  }];
+  const cloths = [
+    {
+      mesh: { grid: { columns: 3, rows: 3 } },
+      material: { strain_limit: 0.01 },
+      pins: [{ at: "corner:0,0" }, { at: "corner:2,0", motion: { linear: { velocity: [0.2, 0, 0] } } }],
+    },
+  ];
   await client.request("scene.load", { scene: { version: 1, cloths } });
   await client.request("sim.play");
   assert.equal((await notice).level, "warning");

@@ -64,7 +64,7 @@ test("two sessions share nothing", async () => {
 
 test("a session keeps its state while nobody is there", async () => {
   const first = await enter("kept");
-  const { step: before } = await first.request("sim.step", { steps: 40 });  // it plays until this pauses it
+  const { step: before } = await first.request("sim.step", { steps: 40 }); // it plays until this pauses it
   await first.request("scene.patch", { patch: { name: "kept" } });
   await first.close();
   const again = await enter("kept");
@@ -95,7 +95,8 @@ test("edits of two viewers at once end in one scene that both know", async () =>
   const revisions = (await Promise.all(edits)).map((answer) => answer.revision);
   assert.equal(new Set(revisions).size, 40);
   const last = Math.max(...revisions);
-  for (const client of [first, second]) await client.notification("scene.changed", (change) => change.revision === last);
+  for (const client of [first, second])
+    await client.notification("scene.changed", (change) => change.revision === last);
   const order = (client) => client.messages.filter((m) => m.method === "scene.changed").map((m) => m.params);
   assert.deepEqual(order(first), order(second));
   await sleep(50);

@@ -24,7 +24,7 @@ test("sim.status has every field of the contract, with the passes that run and t
   assert.ok(status.stability.dt_limit > 0 && status.stability.margin > 0);
   const { thickness_that_holds: holds, ...solver } = status.solver;
   assert.deepEqual(solver, { pbd_stiffness: null, auto: null });
-  assert.ok(Math.abs(holds - 1.2 / 24 / Math.SQRT2) < 1e-9, `${holds}`);  // a vertex in the middle of a cell, and a fifth
+  assert.ok(Math.abs(holds - 1.2 / 24 / Math.SQRT2) < 1e-9, `${holds}`); // a vertex in the middle of a cell, and a fifth
   assert.equal(status.asleep, false);
   assert.equal(status.diverged, false);
 });
@@ -42,12 +42,21 @@ test("sim.status comes about 10 times a second, playing or not", async () => {
 test("under PBD sim.status tells for each cloth what it makes of N/m at this dt and these iterations, under the others nothing", async () => {
   const stiffness = async (predicate) =>
     (await client.nextNotification("sim.status", ({ solver }) => predicate(solver.pbd_stiffness))).solver.pbd_stiffness;
-  const { document: { cloths: [cloth] } } = await client.request("scene.get", {});
+  const {
+    document: {
+      cloths: [cloth],
+    },
+  } = await client.request("scene.get", {});
   const material = { ...cloth.material, damping: 0, bend: 0 };
-  await client.request("scene.patch", { patch: { cloths: [{ ...cloth, material }], solver: { method: "pbd", dt: 0.002, iterations: 3 } } });
+  await client.request("scene.patch", {
+    patch: { cloths: [{ ...cloth, material }], solver: { method: "pbd", dt: 0.002, iterations: 3 } },
+  });
   const [{ structural, shear, bend }] = await stiffness((shares) => shares);
   // A lone spring between two vertices of 0.1 kg, after three visits, is where one solve of implicit Euler would put it.
-  for (const [share, k] of [[structural, material.structural], [shear, material.shear]])
+  for (const [share, k] of [
+    [structural, material.structural],
+    [shear, material.shear],
+  ])
     assert.ok(Math.abs((1 - share) ** 3 - 1 / (1 + (2 / 0.1) * k * 0.002 ** 2)) < 1e-12);
   assert.equal(bend, null);
   await client.request("scene.patch", { patch: { solver: { method: "xpbd" } } });
@@ -95,7 +104,10 @@ test("sim.step pauses first and answers when exactly that many steps are done", 
 
 test("several sim.step in a row are all done", async () => {
   const answers = await Promise.all([10, 20, 30].map((steps) => client.request("sim.step", { steps })));
-  assert.deepEqual(answers.map((answer) => answer.step), [10, 30, 60]);
+  assert.deepEqual(
+    answers.map((answer) => answer.step),
+    [10, 30, 60],
+  );
 });
 
 test("sim.reset goes back to the rest shape at time 0 and keeps playing or pausing", async () => {
@@ -167,7 +179,10 @@ test("a blow-up is a state with a remedy: told, stopped, the last good frame kep
   const { reason, remedy } = await told;
   assert.ok(reason.length > 0 && remedy.text.length > 0);
   const flagged = await client.frame((frame) => (frame.flags & 2) !== 0);
-  assert.ok(flagged.positions.flat().every((x) => Math.abs(x) < 100), "that is no good frame");
+  assert.ok(
+    flagged.positions.flat().every((x) => Math.abs(x) < 100),
+    "that is no good frame",
+  );
   assert.ok(client.frames.every((frame) => frame.positions.flat().every(Number.isFinite)));
   for (const method of ["sim.play", "sim.step"]) assert.equal((await client.refusal(method)).code, -32004);
   const status = await client.nextNotification("sim.status", (s) => s.diverged);

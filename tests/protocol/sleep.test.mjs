@@ -8,13 +8,15 @@ import { Client, Server, sleep } from "./harness.mjs";
 const hanging = {
   version: 1,
   name: "hanging",
-  cloths: [{
-    mesh: { grid: { columns: 3, rows: 6, width: 0.1, height: 0.25 } },
-    transform: { translate: [0, 1, 0], rotate: [90, 0, 0] },
-    mass: { per_vertex: 0.01 },
-    material: { structural: 2000, shear: 500, bend: 50, damping: 0.5 },
-    pins: [{ at: "edge:row:0" }],
-  }],
+  cloths: [
+    {
+      mesh: { grid: { columns: 3, rows: 6, width: 0.1, height: 0.25 } },
+      transform: { translate: [0, 1, 0], rotate: [90, 0, 0] },
+      mass: { per_vertex: 0.01 },
+      material: { structural: 2000, shear: 500, bend: 50, damping: 0.5 },
+      pins: [{ at: "edge:row:0" }],
+    },
+  ],
   air_drag: 5,
   solver: { method: "symplectic_euler", dt: 0.001 },
 };
@@ -42,7 +44,10 @@ test("a cloth at rest falls asleep: it plays, time stands still, no pass runs, a
   assert.equal(status.playing, true);
   assert.deepEqual(status.passes, []);
   for (const pass of running.passes)
-    assert.deepEqual(status.skipped.find(({ name }) => name === pass), { name: pass, reason: "asleep: the cloth is at rest" });
+    assert.deepEqual(
+      status.skipped.find(({ name }) => name === pass),
+      { name: pass, reason: "asleep: the cloth is at rest" },
+    );
   assert.equal(status.skipped.length, running.passes.length + running.skipped.length);
   await client.frame((frame) => frame.flags & 1);
   const frames = client.frames.length;
@@ -67,8 +72,13 @@ test("a cloth at rest falls asleep: it plays, time stands still, no pass runs, a
 test("any change wakes a cloth that sleeps: a patch, reset, play, speed, another scene", async () => {
   const client = await enter(hanging);
   await client.request("stream.subscribe", { rate: 30 });
-  const changes = [["scene.patch", { patch: { gravity: [1, -9, 0] } }], ["sim.reset", {}], ["sim.play", {}], ["sim.speed", { factor: 2 }],
-                   ["scene.load", { scene: hanging }]];
+  const changes = [
+    ["scene.patch", { patch: { gravity: [1, -9, 0] } }],
+    ["sim.reset", {}],
+    ["sim.play", {}],
+    ["sim.speed", { factor: 2 }],
+    ["scene.load", { scene: hanging }],
+  ];
   for (const [method, params] of changes) {
     const { step } = await asleep(client);
     const moves = client.nextFrame((frame) => (frame.flags & 1) === 0 && frame.step !== step);
@@ -117,7 +127,8 @@ test("a server whose cloth sleeps uses next to no processor time", async (t) => 
   await client.notification("scene");
   await client.request("scene.load", { scene: hanging });
   await client.request("stream.subscribe", { rate: 60 });
-  const used = async () => {  // of user and system time [s]; the kernel counts in hundredths
+  const used = async () => {
+    // of user and system time [s]; the kernel counts in hundredths
     const fields = (await readFile(`/proc/${own.child.pid}/stat`, "utf8")).split(") ")[1].split(" ");
     return (Number(fields[11]) + Number(fields[12])) / 100;
   };

@@ -44,7 +44,8 @@ test("a patch that moves the margin above 0.9 warns, once, with the limit in num
   await stability((s) => s.margin > 0.945);
   await stability((s) => s.margin > 0.945);
   assert.ok(!client.messages.slice(before).some((m) => m.method === "notice"), "told twice");
-  for (let i = 0; i < 3; ++i) {  // and again each time, however fast it comes and goes
+  for (let i = 0; i < 3; ++i) {
+    // and again each time, however fast it comes and goes
     const beyond = client.nextNotification("notice", (n) => /beyond/.test(n.text));
     await patch({ solver: { dt: 0.002 } });
     await patch({ solver: { dt: 0.001 } });
@@ -53,13 +54,29 @@ test("a patch that moves the margin above 0.9 warns, once, with the limit in num
 });
 
 test("where nothing can move, nothing limits the step: both are null", async () => {
-  await patch([{ op: "add", path: "/cloths/0/pins/-", value: { at: { box: [[-9, -9, -9], [9, 9, 9]] }, motion: null } }]);
+  await patch([
+    {
+      op: "add",
+      path: "/cloths/0/pins/-",
+      value: {
+        at: {
+          box: [
+            [-9, -9, -9],
+            [9, 9, 9],
+          ],
+        },
+        motion: null,
+      },
+    },
+  ]);
   const { margin } = await stability((s) => s.dt_limit === null);
   assert.equal(margin, null);
 });
 
 test("a large cloth gets an answer at once and a sharper one soon", async () => {
-  await client.request("scene.load", { scene: { version: 1, cloths: [{ mesh: { grid: { columns: 200, rows: 200 } } }] } });
+  await client.request("scene.load", {
+    scene: { version: 1, cloths: [{ mesh: { grid: { columns: 200, rows: 200 } } }] },
+  });
   const first = await client.nextNotification("sim.status");
   assert.ok(first.stability.dt_limit > 1.5e-3 && first.stability.dt_limit < 1.7e-3);
   const sharp = await stability((s) => s.dt_limit > 1.65e-3);

@@ -27,13 +27,19 @@ test("after kill -9 a restart brings each session's scene and state back to with
   await main.request("scene.patch", { patch: { gravity: [0, -3, 0], name: "moon" } });
   await other.request("scene.load", { preset: "curtain" });
   await other.request("sim.speed", { factor: 0.5 });
-  const before = [await main.frame((frame) => frame.time > 2), await other.nextFrame((frame) => frame.time > 1 && frame.time < 100)];
+  const before = [
+    await main.frame((frame) => frame.time > 2),
+    await other.nextFrame((frame) => frame.time > 1 && frame.time < 100),
+  ];
   const scenes = await Promise.all([main, other].map((client) => client.request("scene.get")));
   await server.stop("SIGKILL");
   const last = [main, other].map((client) => client.binary.findLast((message) => message.kind === 2).time);
 
   server = await Server.start("--state-dir", kept);
-  for (const [i, session] of [[0, "main"], [1, "other"]]) {
+  for (const [i, session] of [
+    [0, "main"],
+    [1, "other"],
+  ]) {
     const client = await Client.connect(server, { session });
     // What it was at first, before it goes on.
     const { document, revision } = await client.notification("scene");
@@ -82,14 +88,22 @@ test("a file that is damaged is moved aside, never deleted; its session starts a
   const client = await Client.connect(again);
   assert.equal((await client.request("scene.get")).document.name, "seed");
   assert.deepEqual(readFileSync(`${file}.unreadable`), bytes);
-  assert.match(again.stderr, /level=error event=session_not_restored session=main why=".*damaged; it was moved to .*main\.session\.unreadable"/);
+  assert.match(
+    again.stderr,
+    /level=error event=session_not_restored session=main why=".*damaged; it was moved to .*main\.session\.unreadable"/,
+  );
   await again.stop();
 });
 
 test("a file that is none of this program's, or of another version's, is moved aside with what it begins with", async () => {
-  for (const [bytes, found] of [["hello, world\nmore", /it is no saved session: it begins with .*hello, world.*, not with .*clothlab session 1/],
-                                ["clothlab session 2\n{}", /another version of the program wrote it: it begins with .*clothlab session 2.*, and this one reads .*clothlab session 1/],
-                                ["", /it is empty/]]) {
+  for (const [bytes, found] of [
+    ["hello, world\nmore", /it is no saved session: it begins with .*hello, world.*, not with .*clothlab session 1/],
+    [
+      "clothlab session 2\n{}",
+      /another version of the program wrote it: it begins with .*clothlab session 2.*, and this one reads .*clothlab session 1/,
+    ],
+    ["", /it is empty/],
+  ]) {
     const kept = folder();
     writeFileSync(join(kept, "main.session"), bytes);
     const server = await Server.start("--state-dir", kept);
@@ -109,7 +123,10 @@ test("a folder belongs to one server: another is refused until that one has ende
     for (const path of [kept, join(kept, ".", "..", basename(kept))]) {
       const { code, stderr } = await runProgram(["serve", "--port", "0", "--state-dir", path]);
       assert.equal(code, 2);
-      assert.match(stderr, /^clothlab: error: --state-dir .*clothlab-state-.*: another process has it in use; end that one, or give this one a folder of its own\n$/);
+      assert.match(
+        stderr,
+        /^clothlab: error: --state-dir .*clothlab-state-.*: another process has it in use; end that one, or give this one a folder of its own\n$/,
+      );
     }
     const beside = await Server.start("--state-dir", join(kept, "below"));
     assert.equal(await beside.stop(), 0);
@@ -133,7 +150,8 @@ test("nothing unfinished is left in the folder, and one that cannot be written i
 });
 
 test("a viewer may open what is kept, after a restart too, and nothing else", async (t) => {
-  const kept = folder(), guarded = ["--state-dir", kept, "--token", "secret", "--view-token", "look"];
+  const kept = folder(),
+    guarded = ["--state-dir", kept, "--token", "secret", "--view-token", "look"];
   const enter = async (server, session, token) => {
     const client = await Client.connect(server, { session });
     await client.request("auth", { token });

@@ -23,8 +23,11 @@ test("nothing binary comes before stream.subscribe", async () => {
 
 test("subscribe answers what was agreed, with defaults", async () => {
   assert.deepEqual(await client.request("stream.subscribe"), { encoding: "q16", rate: 60, in_flight: 2 });
-  assert.deepEqual(await client.request("stream.subscribe", { encoding: "f32", rate: 30, in_flight: 8 }),
-                   { encoding: "f32", rate: 30, in_flight: 8 });
+  assert.deepEqual(await client.request("stream.subscribe", { encoding: "f32", rate: 30, in_flight: 8 }), {
+    encoding: "f32",
+    rate: 30,
+    in_flight: 8,
+  });
 });
 
 test("the topology comes before the first frame and fits it and the scene", async () => {
@@ -37,7 +40,10 @@ test("the topology comes before the first frame and fits it and the scene", asyn
   assert.equal(topology.triangles.length, 2 * 24 * 24);
   assert.deepEqual(topology.cloths, [{ firstVertex: 0, vertexCount: 625 }]);
   // Cell (0, 0): (c,r) (c,r+1) (c+1,r+1) and (c,r) (c+1,r+1) (c+1,r), vertex = row * columns + column.
-  assert.deepEqual(topology.triangles.slice(0, 2), [[0, 25, 26], [0, 26, 1]]);
+  assert.deepEqual(topology.triangles.slice(0, 2), [
+    [0, 25, 26],
+    [0, 26, 1],
+  ]);
   assert.ok(topology.texture.flat().every((t) => t >= 0 && t <= 1));
   assert.equal(frame.zero, 0);
 });
@@ -55,7 +61,9 @@ test("the rest shape arrives as the scene describes it, in both encodings", asyn
     for (let row = 0; row < 25; ++row) {
       for (let column = 0; column < 25; ++column) {
         const [x, y, z] = frame.positions[row * 25 + column];
-        assert.ok(Math.abs(x - (-0.5 + column / 24)) <= bound && Math.abs(y - 1) <= bound && Math.abs(z - row / 24) <= bound);
+        assert.ok(
+          Math.abs(x - (-0.5 + column / 24)) <= bound && Math.abs(y - 1) <= bound && Math.abs(z - row / 24) <= bound,
+        );
       }
     }
     // A flat sheet, counter-clockwise seen from above: every normal is up. 127 steps a half axis in q16.
@@ -74,7 +82,7 @@ test("both encodings show the same state", async () => {
   for (let i = 0; i < exact.vertexCount; ++i) {
     for (let axis = 0; axis < 3; ++axis) {
       // Half a quantum, and the rounding of float32 in min and extent.
-      const bound = rounded.boxExtent[axis] / 65535 * 0.51 + 1e-6;
+      const bound = (rounded.boxExtent[axis] / 65535) * 0.51 + 1e-6;
       assert.ok(Math.abs(rounded.positions[i][axis] - exact.positions[i][axis]) <= bound);
     }
     const cosine = exact.normals[i].reduce((sum, n, axis) => sum + n * rounded.normals[i][axis], 0);
@@ -84,7 +92,11 @@ test("both encodings show the same state", async () => {
 
 test("sequence numbers, steps and time rise from frame to frame", async () => {
   await client.request("stream.subscribe");
-  await client.until(() => client.frames.slice(20), () => true, "20 frames");
+  await client.until(
+    () => client.frames.slice(20),
+    () => true,
+    "20 frames",
+  );
   const { frames } = client;
   for (let i = 1; i < frames.length; ++i) {
     assert.ok(frames[i].sequence > frames[i - 1].sequence);
@@ -150,16 +162,28 @@ test("a rebuilt cloth sends its topology before the first frame that needs it", 
 test("without acknowledgements only in_flight frames come; one acknowledges all before it", async () => {
   client.acknowledge = false;
   await client.request("stream.subscribe", { in_flight: 3 });
-  await client.until(() => client.frames.slice(2), () => true, "3 frames");
+  await client.until(
+    () => client.frames.slice(2),
+    () => true,
+    "3 frames",
+  );
   await sleep(300);
   assert.equal(client.frames.length, 3);
   client.notify("stream.ack", { frame: client.frames[2].sequence });
-  await client.until(() => client.frames.slice(5), () => true, "3 more frames");
+  await client.until(
+    () => client.frames.slice(5),
+    () => true,
+    "3 more frames",
+  );
   await sleep(300);
   assert.equal(client.frames.length, 6);
   client.notify("stream.ack", { frame: client.frames[4].sequence });
-  await client.until(() => client.frames.slice(7), () => true, "2 more frames");
-  client.notify("stream.ack", { frame: 4_000_000_000 });  // never sent: acknowledges nothing
+  await client.until(
+    () => client.frames.slice(7),
+    () => true,
+    "2 more frames",
+  );
+  client.notify("stream.ack", { frame: 4_000_000_000 }); // never sent: acknowledges nothing
   await sleep(300);
   assert.equal(client.frames.length, 8);
 });
@@ -167,7 +191,11 @@ test("without acknowledgements only in_flight frames come; one acknowledges all 
 test("a viewer that stops acknowledging costs the others nothing, and resumes with a fresh frame", async () => {
   const stuck = await Client.connect(server, { acknowledge: false });
   await stuck.request("stream.subscribe", { in_flight: 2 });
-  await stuck.until(() => stuck.frames.slice(1), () => true, "2 frames");
+  await stuck.until(
+    () => stuck.frames.slice(1),
+    () => true,
+    "2 frames",
+  );
   await client.request("stream.subscribe", { rate: 60, in_flight: 4 });
   await client.frame();
   const from = client.frames.length;

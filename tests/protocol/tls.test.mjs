@@ -10,11 +10,27 @@ import { Client, runProgram, Server, withTimeout } from "./harness.mjs";
 
 const folder = mkdtempSync(join(tmpdir(), "clothlab-tls-"));
 const [key, certificate] = [join(folder, "key.pem"), join(folder, "certificate.pem")];
-const made = spawnSync("openssl", ["req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", key, "-out", certificate, "-days", "2", "-subj", "/CN=localhost"]);
+const made = spawnSync("openssl", [
+  "req",
+  "-x509",
+  "-newkey",
+  "rsa:2048",
+  "-nodes",
+  "-keyout",
+  key,
+  "-out",
+  certificate,
+  "-days",
+  "2",
+  "-subj",
+  "/CN=localhost",
+]);
 const skip = made.error ? "there is no openssl to make a certificate with" : false;
 
 let server;
-before(async () => { if (!skip) server = await Server.start("--tls-cert", certificate, "--tls-key", key); });
+before(async () => {
+  if (!skip) server = await Server.start("--tls-cert", certificate, "--tls-key", key);
+});
 after(async () => {
   await server?.stop();
   rmSync(folder, { recursive: true });
@@ -41,20 +57,28 @@ test("with --tls-cert and --tls-key it serves HTTPS and WSS", { skip }, async ()
 });
 
 test("TLS 1.2 and 1.3 are spoken, 1.0 and 1.1 are not", { skip }, async () => {
-  for (const version of ["TLSv1.2", "TLSv1.3"]) assert.equal((await handshake({ minVersion: version, maxVersion: version })).version, version);
+  for (const version of ["TLSv1.2", "TLSv1.3"])
+    assert.equal((await handshake({ minVersion: version, maxVersion: version })).version, version);
   // SECLEVEL=0, so that it is the server that refuses.
   for (const version of ["TLSv1", "TLSv1.1"])
-    await assert.rejects(handshake({ minVersion: version, maxVersion: version, ciphers: "DEFAULT@SECLEVEL=0" }), /protocol version/i, version);
+    await assert.rejects(
+      handshake({ minVersion: version, maxVersion: version, ciphers: "DEFAULT@SECLEVEL=0" }),
+      /protocol version/i,
+      version,
+    );
 });
 
 test("under TLS too an unmasked frame closes its connection with 1002", { skip }, async () => {
   const socket = tls.connect({ host: "127.0.0.1", port: server.port, rejectUnauthorized: false });
   socket.on("error", () => {});
   let bytes = Buffer.alloc(0);
-  const heard = (what) => withTimeout(new Promise((resolve) => socket.on("data", () => bytes.includes(what) && resolve())), what.toString());
+  const heard = (what) =>
+    withTimeout(new Promise((resolve) => socket.on("data", () => bytes.includes(what) && resolve())), what.toString());
   socket.on("data", (data) => (bytes = Buffer.concat([bytes, data])));
-  socket.write("GET /ws HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n" +
-               "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Protocol: clothlab.v1\r\n\r\n");
+  socket.write(
+    "GET /ws HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n" +
+      "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Protocol: clothlab.v1\r\n\r\n",
+  );
   await heard("hello");
   socket.write(Buffer.concat([Buffer.from([0x81, 2]), Buffer.from("{}")]));
   await heard(Buffer.from([0x03, 0xea]));

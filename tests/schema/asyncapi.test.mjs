@@ -17,8 +17,10 @@ function* objectsIn(value, path = "") {
 }
 
 /// The schema brings that of JSON Schema with it, which must not be there twice.
-const compiled = () => new Ajv({ strict: false, validateFormats: false, meta: false, validateSchema: false, logger: false })
-  .compile(schemas[document.asyncapi]);
+const compiled = () =>
+  new Ajv({ strict: false, validateFormats: false, meta: false, validateSchema: false, logger: false }).compile(
+    schemas[document.asyncapi],
+  );
 
 test("it is a valid AsyncAPI document of the version it names", () => {
   const validate = compiled();
@@ -39,8 +41,10 @@ test("every reference leads somewhere, and nothing that can be referred to is id
     used.add($ref);
   }
   for (const [kind, components] of Object.entries(document.components))
-    for (const name of Object.keys(components)) assert.ok(used.has(`#/components/${kind}/${name}`), `${kind}/${name} is used nowhere`);
-  for (const name of Object.keys(messages)) assert.ok(used.has(`#/channels/session/messages/${name}`), `no operation has ${name}`);
+    for (const name of Object.keys(components))
+      assert.ok(used.has(`#/components/${kind}/${name}`), `${kind}/${name} is used nowhere`);
+  for (const name of Object.keys(messages))
+    assert.ok(used.has(`#/channels/session/messages/${name}`), `no operation has ${name}`);
 });
 
 test("what it does not know it does not take: every object it describes is closed, and no message is empty", () => {
@@ -51,10 +55,20 @@ test("what it does not know it does not take: every object it describes is close
 });
 
 test("a request's operation is named after its method, and is answered by something", () => {
-  for (const { name, action, messages: [message], replies, "x-not-yet": notYet } of operations.filter((o) => o.action === "receive")) {
+  for (const {
+    name,
+    action,
+    messages: [message],
+    replies,
+    "x-not-yet": notYet,
+  } of operations.filter((o) => o.action === "receive")) {
     assert.equal(message, name);
     assert.equal(messages[name].payload.properties.method.const, name);
-    assert.equal(replies.some((reply) => reply.startsWith("result.")), !notYet, `${action} ${name}`);
+    assert.equal(
+      replies.some((reply) => reply.startsWith("result.")),
+      !notYet,
+      `${action} ${name}`,
+    );
   }
 });
 
@@ -63,12 +77,19 @@ test("the golden messages are laid out as it says", () => {
     const file = (ending) => readFileSync(new URL(`../golden/${name}.${ending}`, import.meta.url));
     const bytes = file("bin");
     const { made_from, ...expected } = JSON.parse(file("json"));
-    const { header: { zero, ...header }, triangle_count, cloth_count, ...content } = readBinary(bytes);
+    const {
+      header: { zero, ...header },
+      triangle_count,
+      cloth_count,
+      ...content
+    } = readBinary(bytes);
     assert.equal(zero, 0);
     assert.ok(made_from.length > 0);
-    if (header.kind === 1) assert.deepEqual([triangle_count, cloth_count], [expected.triangles.length, expected.cloths.length]);
+    if (header.kind === 1)
+      assert.deepEqual([triangle_count, cloth_count], [expected.triangles.length, expected.cloths.length]);
     if (header.encoding === 1) for (const vertex of expected.vertices) delete vertex.position, delete vertex.normal;
     assert.deepEqual({ header, ...content }, expected, name);
-    for (const wrong of [bytes.subarray(0, -1), Buffer.concat([bytes, Buffer.alloc(4)])]) assert.throws(() => readBinary(wrong));
+    for (const wrong of [bytes.subarray(0, -1), Buffer.concat([bytes, Buffer.alloc(4)])])
+      assert.throws(() => readBinary(wrong));
   }
 });

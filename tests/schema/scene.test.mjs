@@ -42,15 +42,45 @@ const whole = {
       pins: [
         { at: "corner:0,0", motion: oscillate },
         { at: "edge:row:3", motion: spin },
-        { at: { box: [[-9, -9, -9], [9, 9, 9]] }, motion: linear },
+        {
+          at: {
+            box: [
+              [-9, -9, -9],
+              [9, 9, 9],
+            ],
+          },
+          motion: linear,
+        },
       ],
-      weights: [{ at: "edge:row:3", mass: 0.5 }, { at: { box: [[-9, -9, -9], [9, 9, 9]] }, mass: 1e-3 }],
+      weights: [
+        { at: "edge:row:3", mass: 0.5 },
+        {
+          at: {
+            box: [
+              [-9, -9, -9],
+              [9, 9, 9],
+            ],
+          },
+          mass: 1e-3,
+        },
+      ],
       start: { scatter: { size: 0.5, seed: 1 } },
       color: "#b03a2e",
       texture: "weave",
     },
     {
-      mesh: { vertices: [[0, 0, 0], [0, 0, 1], [1, 0, 0], [1, 0, 1]], triangles: [[0, 1, 2], [2, 1, 3]] },
+      mesh: {
+        vertices: [
+          [0, 0, 0],
+          [0, 0, 1],
+          [1, 0, 0],
+          [1, 0, 1],
+        ],
+        triangles: [
+          [0, 1, 2],
+          [2, 1, 3],
+        ],
+      },
       mass: { area_density: 0.15 },
       pins: [{ at: "vertex:2" }],
       weights: [{ at: "vertex:1", mass: 1 }],
@@ -87,17 +117,56 @@ function changed(base, path, change) {
 /** Every minimum and maximum in the schema, and a little to both sides of each. */
 function boundaries() {
   const ends = new Set();
-  for (const path of paths(schema))
-    if (["minimum", "maximum"].includes(path.at(-1))) ends.add(at(schema, path));
-  return [...ends].flatMap((x) => [x, x - Math.max(1e-13, Math.abs(x) * 1e-9), x + Math.max(1e-13, Math.abs(x) * 1e-9), x + 1]);
+  for (const path of paths(schema)) if (["minimum", "maximum"].includes(path.at(-1))) ends.add(at(schema, path));
+  return [...ends].flatMap((x) => [
+    x,
+    x - Math.max(1e-13, Math.abs(x) * 1e-9),
+    x + Math.max(1e-13, Math.abs(x) * 1e-9),
+    x + 1,
+  ]);
 }
 
 function* mutations() {
   const numbers = [...new Set([...boundaries(), 0.5, 2.5, 25.0, 1e300, -1e300])];
   const others = [null, true, "", "x", 7, -1, [], {}, [0, 1, 0], [0, 0, 0], ["0", 1, 0], { x: 1 }];
-  const texts = ["corner:4,3", "corner:5,0", "corner:01,0", "corner:1", "vertex:19", "vertex:20", "vertex:-1", "edge:column:4",
-    "edge:column:5", "edge:diagonal:1", "edge:row:0 ", "#00FF7f", "#00ff7", "#00ff7g", "plain", "checker", "stripes", "velvet", "fem",
-    "springs", "explicit_euler", "symplectic_euler", "verlet", "rk4", "implicit_euler", "pbd", "xpbd", "vbd", "auto", "first", "cloth-2", "é".repeat(64), "é".repeat(65), "😀".repeat(64), "tab\t", "del\u007f"];
+  const texts = [
+    "corner:4,3",
+    "corner:5,0",
+    "corner:01,0",
+    "corner:1",
+    "vertex:19",
+    "vertex:20",
+    "vertex:-1",
+    "edge:column:4",
+    "edge:column:5",
+    "edge:diagonal:1",
+    "edge:row:0 ",
+    "#00FF7f",
+    "#00ff7",
+    "#00ff7g",
+    "plain",
+    "checker",
+    "stripes",
+    "velvet",
+    "fem",
+    "springs",
+    "explicit_euler",
+    "symplectic_euler",
+    "verlet",
+    "rk4",
+    "implicit_euler",
+    "pbd",
+    "xpbd",
+    "vbd",
+    "auto",
+    "first",
+    "cloth-2",
+    "é".repeat(64),
+    "é".repeat(65),
+    "😀".repeat(64),
+    "tab\t",
+    "del\u007f",
+  ];
   for (const base of [whole, least]) {
     yield base;
     for (const path of paths(base)) {
@@ -106,11 +175,32 @@ function* mutations() {
       if (typeof value === "number") replacements.push(...numbers);
       if (typeof value === "string") replacements.push(...texts);
       for (const replacement of replacements) yield changed(base, path, (parent, key) => (parent[key] = replacement));
-      if (path.length) yield changed(base, path, (parent, key) => (Array.isArray(parent) ? parent.splice(Number(key), 1) : delete parent[key]));
-      if (Array.isArray(value)) yield changed(base, path, (parent, key) => parent[key].push(structuredClone(value[0] ?? 0)));
+      if (path.length)
+        yield changed(base, path, (parent, key) =>
+          Array.isArray(parent) ? parent.splice(Number(key), 1) : delete parent[key],
+        );
+      if (Array.isArray(value))
+        yield changed(base, path, (parent, key) => parent[key].push(structuredClone(value[0] ?? 0)));
       else if (value !== null && typeof value === "object")
-        for (const [key, extra] of Object.entries({ extra: 1, motion: null, grid: grid.grid, obj: "a.obj", fabric: "cotton", per_vertex: 1, scale: [1, 1, 1], scatter: { size: 1 }, mass: 1,
-          box: [[0, 0, 0], [1, 1, 1]], capsule: {}, ...spin, ...linear, sphere: { center: [0, 0, 0], radius: 1 } }))
+        for (const [key, extra] of Object.entries({
+          extra: 1,
+          motion: null,
+          grid: grid.grid,
+          obj: "a.obj",
+          fabric: "cotton",
+          per_vertex: 1,
+          scale: [1, 1, 1],
+          scatter: { size: 1 },
+          mass: 1,
+          box: [
+            [0, 0, 0],
+            [1, 1, 1],
+          ],
+          capsule: {},
+          ...spin,
+          ...linear,
+          sphere: { center: [0, 0, 0], radius: 1 },
+        }))
           yield changed(base, path, (parent, name) => (parent[name][key] = extra));
     }
   }
@@ -131,7 +221,11 @@ function verdicts(texts) {
   const folder = mkdtempSync(join(tmpdir(), "clothlab-schema-"));
   try {
     const names = texts.map((text, i) => (writeFileSync(join(folder, `${i}.json`), text), `${i}.json`));
-    const run = spawnSync(process.env.CLOTHLAB, ["validate", ...names], { cwd: folder, encoding: "utf8", maxBuffer: 1 << 28 });
+    const run = spawnSync(process.env.CLOTHLAB, ["validate", ...names], {
+      cwd: folder,
+      encoding: "utf8",
+      maxBuffer: 1 << 28,
+    });
     assert.ok(run.status === 0 || run.status === 2, `validate ended with ${run.status} ${run.signal}`);
     const said = new Map();
     for (const line of (run.stdout + run.stderr).split("\n")) {
@@ -147,18 +241,27 @@ function verdicts(texts) {
 test("the schema and the program agree on every scene, valid or broken", () => {
   const scenes = [...new Set([...mutations()].map((scene) => JSON.stringify(scene)))];
   const said = verdicts(scenes);
-  const disagreements = [], seen = new Set();
+  const disagreements = [],
+    seen = new Set();
   let valid = 0;
   scenes.forEach((text, i) => {
-    const bySchema = accepts(JSON.parse(text)), byProgram = said[i] === "";
+    const bySchema = accepts(JSON.parse(text)),
+      byProgram = said[i] === "";
     if (byProgram) ++valid;
     if (bySchema === byProgram) return;
     const rule = bySchema && Object.keys(crossFieldRules).find((name) => crossFieldRules[name].test(said[i]));
     if (rule) seen.add(rule);
     else disagreements.push(`${bySchema ? "schema accepts" : "program accepts"}: ${said[i]}\n  ${text.slice(0, 400)}`);
   });
-  assert.equal(disagreements.length, 0, `${disagreements.length} of ${scenes.length}:\n${disagreements.slice(0, 5).join("\n")}`);
-  assert.ok(scenes.length > 1000 && valid > 200 && scenes.length - valid > 500, `${scenes.length} scenes, ${valid} valid`);
+  assert.equal(
+    disagreements.length,
+    0,
+    `${disagreements.length} of ${scenes.length}:\n${disagreements.slice(0, 5).join("\n")}`,
+  );
+  assert.ok(
+    scenes.length > 1000 && valid > 200 && scenes.length - valid > 500,
+    `${scenes.length} scenes, ${valid} valid`,
+  );
   assert.deepEqual([...seen].sort(), Object.keys(crossFieldRules).sort(), "a rule that no scene above breaks");
 });
 

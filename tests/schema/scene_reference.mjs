@@ -4,7 +4,8 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 
 const folder = new URL("../../server/scene/", import.meta.url);
-const begin = "<!-- made by tests/schema/scene_reference.mjs from scene.schema.json -->\n", end = "<!-- end of what is made -->\n";
+const begin = "<!-- made by tests/schema/scene_reference.mjs from scene.schema.json -->\n",
+  end = "<!-- end of what is made -->\n";
 
 /// Each table: its title, the place in the schema, and what is said above it.
 const tables = [
@@ -28,7 +29,10 @@ const tables = [
 ];
 
 const code = (text) => "`" + text + "`";
-const number = (value) => (Math.abs(value) >= 1e5 || (value !== 0 && Math.abs(value) < 1e-3) ? value.toExponential().replace("e+", "e") : String(value));
+const number = (value) =>
+  Math.abs(value) >= 1e5 || (value !== 0 && Math.abs(value) < 1e-3)
+    ? value.toExponential().replace("e+", "e")
+    : String(value);
 
 /// What a value may be.
 function allowed(schema) {
@@ -39,13 +43,17 @@ function allowed(schema) {
   const types = [schema.type].flat();
   if (types.includes("null") && types.length === 1) return "null";
   if (types.includes("array")) {
-    const size = schema.minItems === schema.maxItems ? `${schema.minItems}` : `${schema.minItems ?? 0} to ${schema.maxItems}`;
+    const size =
+      schema.minItems === schema.maxItems ? `${schema.minItems}` : `${schema.minItems ?? 0} to ${schema.maxItems}`;
     const items = allowed(schema.items);
     if (items === "see below") return `list of ${size}`;
     return `list of ${size}, each ${items}`;
   }
   if (types.includes("number") || types.includes("integer")) {
-    const range = schema.maximum === undefined ? `${number(schema.minimum)} or more` : `${number(schema.minimum)} to ${number(schema.maximum)}`;
+    const range =
+      schema.maximum === undefined
+        ? `${number(schema.minimum)} or more`
+        : `${number(schema.minimum)} to ${number(schema.maximum)}`;
     return (types.includes("integer") ? "whole, " : "") + range + (types.includes("null") ? " or null" : "");
   }
   const keys = Object.keys(schema.properties ?? {});
@@ -54,29 +62,51 @@ function allowed(schema) {
 
 /// The markdown between the markers.
 export function reference(schema) {
-  const resolve = (part) => (part.$ref ? { ...schema.$defs[part.$ref.split("/").at(-1)], ...part, $ref: undefined } : part);
+  const resolve = (part) =>
+    part.$ref ? { ...schema.$defs[part.$ref.split("/").at(-1)], ...part, $ref: undefined } : part;
   const deep = (part) => {
     if (Array.isArray(part)) return part.map(deep);
     if (part === null || typeof part !== "object") return part;
-    return Object.fromEntries(Object.entries(resolve(part)).filter(([, value]) => value !== undefined).map(([key, value]) => [key, deep(value)]));
+    return Object.fromEntries(
+      Object.entries(resolve(part))
+        .filter(([, value]) => value !== undefined)
+        .map(([key, value]) => [key, deep(value)]),
+    );
   };
   const find = (path) => deep(path.reduce((part, key) => part[key], schema));
-  const properties = (part) => (part.properties ? Object.entries(part.properties).map(([key, value]) => [key, value, part.required ?? []])
-    : (part.oneOf ?? []).flatMap((choice) => properties(choice).flatMap(([key, value, required]) =>
-        value.properties ? properties(value).map(([inner, ...rest]) => [`${key}.${inner}`, ...rest]) : [[key, value, required]])));
-  const rows = (part) => properties(part).map(([key, value, required]) => {
-    const name = key.split(".").at(-1);
-    const fallback = required.includes(name) ? "required" : value.default === undefined ? "" : code(JSON.stringify(value.default));
-    return `| ${code(key)} | ${allowed(value)} | ${fallback} | ${value.description ?? ""} |`;
-  });
-  const table = (part, title) => (title.startsWith("`at`")
-    ? part.oneOf.map((choice) => `* ${choice.description ?? `${allowed(choice)}: ${choice.properties.box.description}`}`)
-    : ["| key | allowed | default | |", "|---|---|---|---|", ...rows(part)]);
-  return tables.map(([title, path]) => {
-    const part = find(path);
-    const said = path.length > 0 && part.description ? [part.description, ""] : [];
-    return [`### ${title}`, "", ...said, ...table(part, title), ""].join("\n");
-  }).join("\n");
+  const properties = (part) =>
+    part.properties
+      ? Object.entries(part.properties).map(([key, value]) => [key, value, part.required ?? []])
+      : (part.oneOf ?? []).flatMap((choice) =>
+          properties(choice).flatMap(([key, value, required]) =>
+            value.properties
+              ? properties(value).map(([inner, ...rest]) => [`${key}.${inner}`, ...rest])
+              : [[key, value, required]],
+          ),
+        );
+  const rows = (part) =>
+    properties(part).map(([key, value, required]) => {
+      const name = key.split(".").at(-1);
+      const fallback = required.includes(name)
+        ? "required"
+        : value.default === undefined
+          ? ""
+          : code(JSON.stringify(value.default));
+      return `| ${code(key)} | ${allowed(value)} | ${fallback} | ${value.description ?? ""} |`;
+    });
+  const table = (part, title) =>
+    title.startsWith("`at`")
+      ? part.oneOf.map(
+          (choice) => `* ${choice.description ?? `${allowed(choice)}: ${choice.properties.box.description}`}`,
+        )
+      : ["| key | allowed | default | |", "|---|---|---|---|", ...rows(part)];
+  return tables
+    .map(([title, path]) => {
+      const part = find(path);
+      const said = path.length > 0 && part.description ? [part.description, ""] : [];
+      return [`### ${title}`, "", ...said, ...table(part, title), ""].join("\n");
+    })
+    .join("\n");
 }
 
 /// The README with its tables as they should be.
@@ -88,5 +118,8 @@ export function updated(readme, schema) {
 
 if (process.argv[1] === fileURLToPath(import.meta.url)) {
   const file = new URL("README.md", folder);
-  writeFileSync(file, updated(readFileSync(file, "utf8"), JSON.parse(readFileSync(new URL("scene.schema.json", folder)))));
+  writeFileSync(
+    file,
+    updated(readFileSync(file, "utf8"), JSON.parse(readFileSync(new URL("scene.schema.json", folder)))),
+  );
 }

@@ -9,8 +9,14 @@ const read = (file) => readFileSync(join(root, file), "utf8");
 const documents = files.filter((file) => file.endsWith(".md"));
 
 /// As GitHub makes the anchor of a heading.
-const anchors = (text) => [...text.matchAll(/^#+ (.*)$/gm)].map(([, title]) =>
-  title.toLowerCase().replace(/[^\p{Letter}\p{Number}\s_-]/gu, "").trim().replace(/\s/g, "-"));
+const anchors = (text) =>
+  [...text.matchAll(/^#+ (.*)$/gm)].map(([, title]) =>
+    title
+      .toLowerCase()
+      .replace(/[^\p{Letter}\p{Number}\s_-]/gu, "")
+      .trim()
+      .replace(/\s/g, "-"),
+  );
 
 test("the top README has at most 150 lines", () => {
   assert.ok(read("README.md").split("\n").length <= 151);
@@ -26,24 +32,32 @@ test("every link of a document leads to a file, and to a heading in it", () => {
       const target = path === "" ? document : normalize(join(dirname(document), path)).replace(/\/$/, "");
       const known = files.includes(target) || files.some((file) => file.startsWith(`${target}/`));
       if (!known) wrong.push(`${document}: ${link}`);
-      else if (anchor && !anchors(read(target)).includes(anchor)) wrong.push(`${document}: ${link} has no such heading`);
+      else if (anchor && !anchors(read(target)).includes(anchor))
+        wrong.push(`${document}: ${link} has no such heading`);
     }
   }
   assert.deepEqual(wrong, []);
 });
 
 /// A path with a folder, or a document by its name alone, as a comment or a document names it; not one that a program makes.
-const named = /(?<![\w/.<"$~{}-])((?:[\w.-]+\/)+[\w.-]+\.(?:md|h|cpp|glsl|comp|vert|geom|frag|ts|mjs|json|yaml|css|html|sh)|[\w-]+\.md)(?![\w/*])/g;
-const comments = (file, text) => (file.endsWith(".md") ? text.replace(/```[^]*?```/g, "")
-  : /\.(?:sh|yaml)$|\/run$|CMakeLists/.test(file) ? text.split("\n").filter((line) => /^\s*#/.test(line)).join("\n")
-  : [...text.matchAll(/(?:^|[^:"'])\/\/(.*)$/gm)].map(([, comment]) => comment).join("\n"));
+const named =
+  /(?<![\w/.<"$~{}-])((?:[\w.-]+\/)+[\w.-]+\.(?:md|h|cpp|glsl|comp|vert|geom|frag|ts|mjs|json|yaml|css|html|sh)|[\w-]+\.md)(?![\w/*])/g;
+const comments = (file, text) =>
+  file.endsWith(".md")
+    ? text.replace(/```[^]*?```/g, "")
+    : /\.(?:sh|yaml)$|\/run$|CMakeLists/.test(file)
+      ? text
+          .split("\n")
+          .filter((line) => /^\s*#/.test(line))
+          .join("\n")
+      : [...text.matchAll(/(?:^|[^:"'])\/\/(.*)$/gm)].map(([, comment]) => comment).join("\n");
 
 test("every file that a comment or a document names is there", () => {
   const wrong = [];
   for (const file of files) {
     if (!/\.(?:md|h|cpp|glsl|comp|vert|geom|frag|ts|mjs|yaml|sh)$|\/run$|CMakeLists/.test(file)) continue;
     for (const [, path] of comments(file, read(file)).matchAll(named)) {
-      if (/[A-Z]{4,}/.test(path.replace(/README|CMakeLists/g, ""))) continue;  // a placeholder: step-MACHINE.json
+      if (/[A-Z]{4,}/.test(path.replace(/README|CMakeLists/g, ""))) continue; // a placeholder: step-MACHINE.json
       // From the root, from the file's folder, or from a folder above it.
       const places = [path];
       for (let folder = dirname(file); folder !== "."; folder = dirname(folder)) places.push(join(folder, path));

@@ -24,22 +24,42 @@ function* headers(folder) {
 
 const all = [...headers("server"), ...headers("tests")];
 const sourceOf = (header) => header.replace(/h$/, "cpp");
-const [sourced, alone] = [true, false].map((has) => all.filter((header) => existsSync(join(root, sourceOf(header))) === has));
+const [sourced, alone] = [true, false].map((has) =>
+  all.filter((header) => existsSync(join(root, sourceOf(header))) === has),
+);
 
 test("a source includes the header of its name before anything else", () => {
   assert.ok(sourced.length > 100);
   for (const header of sourced)
-    assert.equal(/^#include (.*)$/m.exec(readFileSync(join(root, sourceOf(header)), "utf8"))?.[1], `"${header}"`, sourceOf(header));
+    assert.equal(
+      /^#include (.*)$/m.exec(readFileSync(join(root, sourceOf(header)), "utf8"))?.[1],
+      `"${header}"`,
+      sourceOf(header),
+    );
 });
 
 const skip = compiler ? false : "CLOTHLAB_CXX names no compiler";
 test("a header without a source of its name compiles alone", { skip }, async () => {
-  const waiting = [...alone], failures = [];
+  const waiting = [...alone],
+    failures = [];
   const work = async () => {
-    for (let header; (header = waiting.pop());) {
-      const args = ["-std=c++20", "-fsyntax-only", "-I.", ...folders.flatMap((folder) => ["-isystem", folder]),
-                    '-DCLOTHLAB_VERSION=""', '-DCLOTHLAB_SOURCE_DIR=""', "-include", header, "-x", "c++", "/dev/null"];
-      await promisify(execFile)(compiler, args, { cwd: root }).catch(({ stderr }) => failures.push(`${header}: ${stderr}`));
+    for (let header; (header = waiting.pop()); ) {
+      const args = [
+        "-std=c++20",
+        "-fsyntax-only",
+        "-I.",
+        ...folders.flatMap((folder) => ["-isystem", folder]),
+        '-DCLOTHLAB_VERSION=""',
+        '-DCLOTHLAB_SOURCE_DIR=""',
+        "-include",
+        header,
+        "-x",
+        "c++",
+        "/dev/null",
+      ];
+      await promisify(execFile)(compiler, args, { cwd: root }).catch(({ stderr }) =>
+        failures.push(`${header}: ${stderr}`),
+      );
     }
   };
   await Promise.all(cpus().map(work));

@@ -11,38 +11,71 @@ const root = fileURLToPath(new URL("../../", import.meta.url));
 /// Names of namespace std, and the headers of which any one is good for them.
 const headers = {
   "int8_t|int16_t|int32_t|int64_t|uint8_t|uint16_t|uint32_t|uint64_t|intptr_t|uintptr_t|intmax_t|uintmax_t": "cstdint",
-  "byte|max_align_t|ptrdiff_t": "cstddef", "size_t": "cstddef cstring cstdlib cstdio string vector array string_view span",
-  "string|to_string|stoi|stol|stoul|stoull|stod|stof|getline": "string", "string_view": "string_view",
-  "vector": "vector", "array": "array", "deque": "deque", "list": "list", "map|multimap": "map", "set|multiset": "set",
-  "unordered_map": "unordered_map", "unordered_set": "unordered_set", "span": "span", "tuple|tie|make_tuple|apply": "tuple",
-  "optional|nullopt|nullopt_t": "optional", "variant|visit|get_if|holds_alternative|monostate": "variant",
-  "function": "functional", "greater|hash|invoke|reference_wrapper|ref|cref|plus|multiplies": "functional",
+  "byte|max_align_t|ptrdiff_t": "cstddef",
+  size_t: "cstddef cstring cstdlib cstdio string vector array string_view span",
+  "string|to_string|stoi|stol|stoul|stoull|stod|stof|getline": "string",
+  string_view: "string_view",
+  vector: "vector",
+  array: "array",
+  deque: "deque",
+  list: "list",
+  "map|multimap": "map",
+  "set|multiset": "set",
+  unordered_map: "unordered_map",
+  unordered_set: "unordered_set",
+  span: "span",
+  "tuple|tie|make_tuple|apply": "tuple",
+  "optional|nullopt|nullopt_t": "optional",
+  "variant|visit|get_if|holds_alternative|monostate": "variant",
+  function: "functional",
+  "greater|hash|invoke|reference_wrapper|ref|cref|plus|multiplies": "functional",
   "unique_ptr|shared_ptr|weak_ptr|make_unique|make_shared|addressof": "memory",
-  "move": "utility algorithm", "swap": "utility", "exchange|pair|make_pair|forward|declval|in_place|in_place_type|index_sequence": "utility map",
+  move: "utility algorithm",
+  swap: "utility",
+  "exchange|pair|make_pair|forward|declval|in_place|in_place_type|index_sequence": "utility map",
   "sort|stable_sort|any_of|all_of|none_of|find_if|find|count_if|count|transform|fill|fill_n|copy|copy_n|min|max|clamp|min_element|max_element|minmax_element|lower_bound|upper_bound|reverse|rotate|unique|remove_if|replace_if|equal|nth_element|generate|for_each|shuffle|is_sorted|set_difference|search|adjacent_find|mismatch":
     "algorithm",
   "accumulate|iota|inner_product|reduce|gcd|lcm|partial_sum": "numeric",
   "sqrt|abs|pow|exp|log|log2|log10|sin|cos|tan|asin|acos|atan|atan2|floor|ceil|round|lround|llround|isfinite|isnan|isinf|hypot|fmod|nan|cbrt|signbit|nextafter|ldexp|frexp|trunc|expm1|log1p":
     "cmath",
-  "numeric_limits": "limits", "numbers": "numbers", "bit_cast|bit_ceil|bit_width|popcount|endian|has_single_bit": "bit",
-  "from_chars|to_chars": "charconv", "errc|error_code|error_category": "system_error filesystem charconv",
+  numeric_limits: "limits",
+  numbers: "numbers",
+  "bit_cast|bit_ceil|bit_width|popcount|endian|has_single_bit": "bit",
+  "from_chars|to_chars": "charconv",
+  "errc|error_code|error_category": "system_error filesystem charconv",
   "memcpy|memcmp|memset|strlen|strcmp|strerror|strstr|strchr|memchr": "cstring",
   "tolower|toupper|isdigit|isalpha|isspace|isalnum": "cctype",
   "getenv|strtod|strtol|exit|abort|malloc|free|system|atoi": "cstdlib",
   "snprintf|fprintf|printf|fopen|fclose|fwrite|fputs|puts|rename|remove|FILE|vsnprintf": "cstdio",
-  "cout|cerr|clog|cin": "iostream", "endl|flush": "iostream ostream", "ifstream|ofstream|fstream": "fstream",
-  "ostringstream|istringstream|stringstream": "sstream", "setw|setprecision|setfill": "iomanip",
-  "filesystem": "filesystem", "chrono": "chrono", "thread|this_thread|jthread": "thread", "stop_token|stop_source": "stop_token thread",
-  "mutex|lock_guard|unique_lock|scoped_lock|once_flag|call_once": "mutex", "condition_variable|condition_variable_any": "condition_variable",
-  "future|async|promise|launch|future_status": "future", "atomic|atomic_flag|memory_order_relaxed": "atomic",
-  "exception|current_exception|exception_ptr|rethrow_exception|terminate": "exception", "runtime_error|logic_error|invalid_argument|out_of_range": "stdexcept",
-  "initializer_list": "initializer_list", "regex|smatch|regex_match|regex_search": "regex", "complex": "complex",
+  "cout|cerr|clog|cin": "iostream",
+  "endl|flush": "iostream ostream",
+  "ifstream|ofstream|fstream": "fstream",
+  "ostringstream|istringstream|stringstream": "sstream",
+  "setw|setprecision|setfill": "iomanip",
+  filesystem: "filesystem",
+  chrono: "chrono",
+  "thread|this_thread|jthread": "thread",
+  "stop_token|stop_source": "stop_token thread",
+  "mutex|lock_guard|unique_lock|scoped_lock|once_flag|call_once": "mutex",
+  "condition_variable|condition_variable_any": "condition_variable",
+  "future|async|promise|launch|future_status": "future",
+  "atomic|atomic_flag|memory_order_relaxed": "atomic",
+  "exception|current_exception|exception_ptr|rethrow_exception|terminate": "exception",
+  "runtime_error|logic_error|invalid_argument|out_of_range": "stdexcept",
+  initializer_list: "initializer_list",
+  "regex|smatch|regex_match|regex_search": "regex",
+  complex: "complex",
   "mt19937|mt19937_64|uniform_real_distribution|uniform_int_distribution|normal_distribution": "random",
   "back_inserter|advance|distance|next|prev|ssize|istreambuf_iterator|make_move_iterator": "iterator",
-  "is_same_v|decay_t|is_integral_v|conditional_t|remove_cvref_t|enable_if_t|is_constant_evaluated|invoke_result_t": "type_traits",
-  "signal|raise": "csignal", "time|time_t|tm|gmtime|strftime|clock": "ctime", "bad_alloc|nothrow": "new",
+  "is_same_v|decay_t|is_integral_v|conditional_t|remove_cvref_t|enable_if_t|is_constant_evaluated|invoke_result_t":
+    "type_traits",
+  "signal|raise": "csignal",
+  "time|time_t|tm|gmtime|strftime|clock": "ctime",
+  "bad_alloc|nothrow": "new",
 };
-const declaredBy = new Map(Object.entries(headers).flatMap(([names, of]) => names.split("|").map((name) => [name, of.split(" ")])));
+const declaredBy = new Map(
+  Object.entries(headers).flatMap(([names, of]) => names.split("|").map((name) => [name, of.split(" ")])),
+);
 function* sources(folder) {
   for (const entry of readdirSync(join(root, folder), { withFileTypes: true })) {
     const path = join(folder, entry.name);
@@ -76,11 +109,15 @@ function text(path) {
 }
 
 /// What the code itself says: without comments and the insides of strings.
-const code = (source) => source.replace(/R"(\w*)\([\s\S]*?\)\1"|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])'|\/\/.*|\/\*[\s\S]*?\*\//g, (found) => (found[0] === "/" ? "" : '""'));
+const code = (source) =>
+  source.replace(/R"(\w*)\([\s\S]*?\)\1"|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])'|\/\/.*|\/\*[\s\S]*?\*\//g, (found) =>
+    found[0] === "/" ? "" : '""',
+  );
 
 function missing(source, has) {
   const names = new Set([...code(source).matchAll(/\bstd::(\w+)/g)].map(([, name]) => name));
-  return [...names].filter((name) => declaredBy.has(name) && !declaredBy.get(name).some((header) => has.has(header)))
+  return [...names]
+    .filter((name) => declaredBy.has(name) && !declaredBy.get(name).some((header) => has.has(header)))
     .map((name) => `std::${name} needs <${declaredBy.get(name)[0]}>`);
 }
 
@@ -93,6 +130,8 @@ test("a name of the standard library comes from a header that is included for it
 });
 
 test("the check sees a missing header and none in comments and strings", () => {
-  assert.deepEqual(missing("std::uint8_t a;  // std::vector\nauto b = \"std::map\";", new Set(["cctype"])), ["std::uint8_t needs <cstdint>"]);
+  assert.deepEqual(missing('std::uint8_t a;  // std::vector\nauto b = "std::map";', new Set(["cctype"])), [
+    "std::uint8_t needs <cstdint>",
+  ]);
   assert.deepEqual(missing("std::uint8_t a;", new Set(["cstdint"])), []);
 });

@@ -6,7 +6,11 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { files, root } from "./files.mjs";
 
-const scripts = files.filter((path) => path.endsWith(".sh") || (!/\.\w+$/.test(path) && /^#!.*\b(ba)?sh\b/.test(readFileSync(join(root, path), "latin1").slice(0, 60))));
+const scripts = files.filter(
+  (path) =>
+    path.endsWith(".sh") ||
+    (!/\.\w+$/.test(path) && /^#!.*\b(ba)?sh\b/.test(readFileSync(join(root, path), "latin1").slice(0, 60))),
+);
 
 test("bash can read every shell script", () => {
   assert.ok(scripts.includes("tests/run") && scripts.includes("server/setup.sh") && scripts.includes(".ci/run"));
@@ -15,6 +19,9 @@ test("bash can read every shell script", () => {
 
 const none = spawnSync("shellcheck", ["--version"]).error !== undefined;
 test("shellcheck warns of nothing in any shell script", { skip: none && "shellcheck is not installed" }, () => {
-  const { status, stdout } = spawnSync("shellcheck", ["--external-sources", "--severity=warning", ...scripts], { cwd: root, encoding: "utf8" });
+  const { status, stdout } = spawnSync("shellcheck", ["--external-sources", "--severity=warning", ...scripts], {
+    cwd: root,
+    encoding: "utf8",
+  });
   assert.equal(status, 0, stdout);
 });

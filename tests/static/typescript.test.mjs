@@ -9,6 +9,9 @@ import { root } from "./files.mjs";
 const compiler = join(root, "web/node_modules/typescript/bin/tsc");
 const skip = !existsSync(compiler) && "web/node_modules is not installed: server/run or tests/run do it";
 test("the page's TypeScript has no type error", { skip }, () => {
-  const { status, stdout } = spawnSync(process.execPath, [compiler, "--noEmit", "-p", "web"], { cwd: root, encoding: "utf8" });
+  const { status, stdout } = spawnSync(process.execPath, [compiler, "--noEmit", "-p", "web"], {
+    cwd: root,
+    encoding: "utf8",
+  });
   assert.equal(status, 0, stdout);
 });

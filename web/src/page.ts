@@ -8,7 +8,15 @@ import { bindKeys } from "./panel/keys";
 import { Lab } from "./lab/drawer";
 import { Layout } from "./panel/layout";
 import { LinkView } from "./panel/link_view";
-import { clearDiverged, notice, noticeError, showApplied, showDiverged, type Diverged, type Level } from "./panel/notices";
+import {
+  clearDiverged,
+  notice,
+  noticeError,
+  showApplied,
+  showDiverged,
+  type Diverged,
+  type Level,
+} from "./panel/notices";
 import { Panel } from "./panel/panel";
 import type { ShownFrame } from "./link/protocol";
 import { RpcError } from "./link/rpc";
@@ -23,9 +31,12 @@ import { Transport } from "./panel/transport";
 type Params = Record<string, unknown>;
 
 export class Page {
-  private stage!: Stage;  // given by show(), before any event of the connection can arrive
+  private stage!: Stage; // given by show(), before any event of the connection can arrive
   private readonly hud = new Hud();
-  private readonly connection = new Connection(new URLSearchParams(location.search).get("session") ?? "main", this.linkEvents());
+  private readonly connection = new Connection(
+    new URLSearchParams(location.search).get("session") ?? "main",
+    this.linkEvents(),
+  );
   private readonly link = new LinkView(this.connection);
   private readonly transport = new Transport({ request: (method, params) => this.request(method, params) });
   private readonly slow = new SlowWatch((operations) => this.store.edit(operations));
@@ -35,23 +46,27 @@ export class Page {
   private readonly notifications = this.makeNotifications();
   private layout: Layout | null = null;
   private latest: ShownFrame | null = null;
-  private moved: MovedCollider[] = [];  // before the next frame
+  private moved: MovedCollider[] = []; // before the next frame
   private sceneName = "";
   private toldOfDivergence = false;
-  private diverged = false;  // by the last status
-  private mayEdit = true;  // a viewer's role may only watch
+  private diverged = false; // by the last status
+  private mayEdit = true; // a viewer's role may only watch
 
-  constructor() { this.connection.connect(); }
+  constructor() {
+    this.connection.connect();
+  }
 
   /// Draws on this stage from now on.
   show(stage: Stage): void {
     this.stage = hook.stage = stage;
-    const layout: Layout = this.layout = new Layout(() => stage.resize(layout.freeArea()));
+    const layout: Layout = (this.layout = new Layout(() => stage.resize(layout.freeArea())));
     const theme = new ThemeSwitch(() => stage.setTheme());
     this.bind(layout, theme);
-    stage.onLost = () => notice("warning", {
-      title: "The browser took the graphics away", lines: ["It gives them back by itself; if not, reload the page."],
-    });
+    stage.onLost = () =>
+      notice("warning", {
+        title: "The browser took the graphics away",
+        lines: ["It gives them back by itself; if not, reload the page."],
+      });
     stage.resize(layout.freeArea());
     setInterval(() => this.hud.tick(this.connection.bytesReceived), 1000);
     const animate = (): void => {
@@ -61,14 +76,21 @@ export class Page {
     requestAnimationFrame(animate);
   }
 
-  close(): void { this.connection.close(); }
+  close(): void {
+    this.connection.close();
+  }
 
   private bind(layout: Layout, theme: ThemeSwitch): void {
     const fit = (): void => this.stage.fit();
     const help = element("help-dialog", HTMLDialogElement);
     bindKeys({
-      toggle: () => this.transport.toggle(), step: () => this.transport.step(), reset: () => this.transport.reset(),
-      fit, hide: () => layout.toggleInterface(), help: () => help.showModal(), lab: () => this.lab.toggle(),
+      toggle: () => this.transport.toggle(),
+      step: () => this.transport.step(),
+      reset: () => this.transport.reset(),
+      fit,
+      hide: () => layout.toggleInterface(),
+      help: () => help.showModal(),
+      lab: () => this.lab.toggle(),
     });
     button("fit").onclick = fit;
     button("help").onclick = () => help.showModal();
@@ -110,7 +132,7 @@ export class Page {
         hook.framesReceived++;
         this.hud.countReceived();
         this.slow.picture();
-        const replaced = this.latest;  // before it was drawn
+        const replaced = this.latest; // before it was drawn
         if (replaced && !document.hidden) this.connection.acknowledge(replaced.header.sequence);
         this.latest = { ...frame, moved: this.moved };
       },
@@ -159,7 +181,9 @@ export class Page {
       hello: (params) => this.greeted(params),
       scene: (params) => this.store.replace(params.document as SceneDocument, Number(params.revision)),
       "scene.changed": (params) => this.store.patched(Number(params.revision), params.patch as Patch),
-      colliders: (params) => { this.moved = params.moving as MovedCollider[]; },
+      colliders: (params) => {
+        this.moved = params.moving as MovedCollider[];
+      },
       "sim.status": (params) => {
         this.hud.showStatus(params as Status);
         this.transport.status(params as Status);
@@ -184,7 +208,10 @@ export class Page {
     this.lab.roleChanged();
     document.body.classList.toggle("viewer", !this.mayEdit);
     this.transport.enable(this.connection.open && this.mayEdit);
-    this.connection.request<{ presets: string[] }>("scene.presets").then(({ presets }) => this.panel.setPresets(presets), () => undefined);
+    this.connection.request<{ presets: string[] }>("scene.presets").then(
+      ({ presets }) => this.panel.setPresets(presets),
+      () => undefined,
+    );
   }
 
   private sceneChanged(document: SceneDocument, whole: boolean): void {
@@ -200,14 +227,16 @@ export class Page {
   }
 
   private async fetchScene(): Promise<void> {
-    const answer = await this.connection.request<{ document: SceneDocument; revision: number }>("scene.get").catch(() => null);
+    const answer = await this.connection
+      .request<{ document: SceneDocument; revision: number }>("scene.get")
+      .catch(() => null);
     if (answer) this.store.replace(answer.document, answer.revision);
   }
 
   private tellDivergence(diverged: Diverged): void {
     this.toldOfDivergence = true;
     // The patch applied, the server goes on from the last good state by itself.
-    showDiverged(diverged, async (patch) => void await this.connection.request("scene.patch", { patch }));
+    showDiverged(diverged, async (patch) => void (await this.connection.request("scene.patch", { patch })));
   }
 
   // Somebody else may have seen to it, or it was before this page was opened.

@@ -6,16 +6,27 @@ import type { Stage } from "./view/stage";
 interface TestHook {
   framesReceived: number;
   framesDrawn: number;
-  simTime: number;       ///< of the last frame drawn [s]
+  simTime: number; ///< of the last frame drawn [s]
   step: number;
   lastFrame: Frame | null;
-  firstFrameAt: number;  ///< [ms] since navigation, 0 before
+  firstFrameAt: number; ///< [ms] since navigation, 0 before
   document: SceneDocument | null;
   stage: Stage | null;
 }
 
-declare global { interface Window { clothlab: TestHook } }
+declare global {
+  interface Window {
+    clothlab: TestHook;
+  }
+}
 
-export const hook: TestHook = window.clothlab = {
-  framesReceived: 0, framesDrawn: 0, simTime: 0, step: 0, lastFrame: null, firstFrameAt: 0, document: null, stage: null,
-};
+export const hook: TestHook = (window.clothlab = {
+  framesReceived: 0,
+  framesDrawn: 0,
+  simTime: 0,
+  step: 0,
+  lastFrame: null,
+  firstFrameAt: 0,
+  document: null,
+  stage: null,
+});

@@ -15,27 +15,34 @@ export function reverseOf(document: unknown, patch: Patch): Patch {
 }
 
 function mergeBack(document: Tree, patch: Tree): Tree {
-  return Object.fromEntries(Object.entries(patch).map(([key, value]) => {
-    const before = document[key];
-    return [key, isTree(value) && isTree(before) ? mergeBack(before, value) : before ?? null];
-  }));
+  return Object.fromEntries(
+    Object.entries(patch).map(([key, value]) => {
+      const before = document[key];
+      return [key, isTree(value) && isTree(before) ? mergeBack(before, value) : (before ?? null)];
+    }),
+  );
 }
 
-const written = (value: unknown): string => (typeof value === "number" ? String(Number(value.toPrecision(4))) : String(value).replaceAll("_", " "));
+const written = (value: unknown): string =>
+  typeof value === "number" ? String(Number(value.toPrecision(4))) : String(value).replaceAll("_", " ");
 
 /// "method was symplectic euler, dt was 0.001": the plain values that `patch` changes, as they were.
 export function formerly(document: unknown, patch: Patch): string {
   const places = Array.isArray(patch) ? patch.map(({ path, value }) => ({ path, value })) : leaves(patch, "");
   const changed = places.filter(({ path, value }) => valueAt(document, path) !== value && !isContainer(value));
-  return changed.map(({ path }) => {
-    const before = valueAt(document, path);
-    return isContainer(before) ? "" : `${path.split("/").at(-1)} was ${written(before)}`;
-  }).filter((part) => part !== "").join(", ");
+  return changed
+    .map(({ path }) => {
+      const before = valueAt(document, path);
+      return isContainer(before) ? "" : `${path.split("/").at(-1)} was ${written(before)}`;
+    })
+    .filter((part) => part !== "")
+    .join(", ");
 }
 
 const isContainer = (value: unknown): boolean => typeof value === "object" && value !== null;
 
 function leaves(patch: Tree, path: string): { path: string; value: unknown }[] {
   return Object.entries(patch).flatMap(([key, value]) =>
-    isTree(value) ? leaves(value, `${path}/${key}`) : [{ path: `${path}/${key}`, value }]);
+    isTree(value) ? leaves(value, `${path}/${key}`) : [{ path: `${path}/${key}`, value }],
+  );
 }

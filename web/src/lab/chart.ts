@@ -10,7 +10,15 @@ import { axes, type Axis, type Chart, type Point } from "./types";
 
 export class ChartTab extends Tab<"chart"> {
   private readonly time = makeNumber("1", "1");
-  private readonly budget = makeSelect([["20", "20 s"], ["60", "1 minute"], ["120", "2 minutes"], ["600", "10 minutes"]], "120");
+  private readonly budget = makeSelect(
+    [
+      ["20", "20 s"],
+      ["60", "1 minute"],
+      ["120", "2 minutes"],
+      ["600", "10 minutes"],
+    ],
+    "120",
+  );
   private readonly iterations = makeNumber("1, 2, 4, 8, 16");
   private readonly axisBoxes = new Map<Axis, HTMLInputElement>();
   private readonly axisWhy = make("p", "lab-fine");
@@ -19,19 +27,27 @@ export class ChartTab extends Tab<"chart"> {
   private readonly leftOutTitle = make("summary");
   private readonly leftOutList = make("ul", "lab-list");
   private readonly leftOut = make("details", "lab-more", this.leftOutTitle, this.leftOutList);
-  private readonly picture = new Picture({
-    tip: (key) => {
-      const point = this.point(key);
-      return point ? pointTip(point, this.shown, this.around.mayEdit()) : null;
+  private readonly picture = new Picture(
+    {
+      tip: (key) => {
+        const point = this.point(key);
+        return point ? pointTip(point, this.shown, this.around.mayEdit()) : null;
+      },
+      choose: (key) => this.applyPoint(this.point(key)),
+      order: (key) => {
+        const point = this.point(key) as Point;
+        return { curve: curveOf(point), along: point.dt_s };
+      },
     },
-    choose: (key) => this.applyPoint(this.point(key)),
-    order: (key) => {
-      const point = this.point(key) as Point;
-      return { curve: curveOf(point), along: point.dt_s };
-    },
-  }, true);
-  private readonly drawing = new Drawing("chart", this.around.jobs, this.picture, "Speed against accuracy: arrow keys go from point to point, Enter applies one",
-                                         (error) => this.around.problem("The chart could not be drawn", error));
+    true,
+  );
+  private readonly drawing = new Drawing(
+    "chart",
+    this.around.jobs,
+    this.picture,
+    "Speed against accuracy: arrow keys go from point to point, Enter applies one",
+    (error) => this.around.problem("The chart could not be drawn", error),
+  );
   private readonly table = new PointTable((point) => this.applyPoint(point), "All points as a table");
   private onAxis: Axis = "position";
   private result: Chart | null = null;
@@ -39,39 +55,67 @@ export class ChartTab extends Tab<"chart"> {
   constructor(around: Surroundings) {
     super("chart", around, {
       lead: "What does each method cost on this scene, and how far from the truth does it end? Every method is run with many time steps, against a reference in double precision.",
-      start: "Measure the chart", file: "chart",
-      awaits: "The chart: error from left to right, cost from bottom to top, a curve for each method. A click on a point applies it.",
+      start: "Measure the chart",
+      file: "chart",
+      awaits:
+        "The chart: error from left to right, cost from bottom to top, a curve for each method. A click on a point applies it.",
     });
     this.iterations.classList.add("long");
     this.addMethods();
     this.addOptions(
       labelled("simulate [s]", this.time, "how much of the motion each point is judged by"),
       labelled("take at most", this.budget, "what does not fit is left out, and listed"),
-      labelled("iterations", this.iterations, "for the methods that iterate"));
-    this.content.append(this.axisChoice(), this.axisWhy, this.picture.element, this.present, this.table.element, this.leftOut, this.horizon);
+      labelled("iterations", this.iterations, "for the methods that iterate"),
+    );
+    this.content.append(
+      this.axisChoice(),
+      this.axisWhy,
+      this.picture.element,
+      this.present,
+      this.table.element,
+      this.leftOut,
+      this.horizon,
+    );
   }
 
-  override sceneChanged(): void { this.showPresent(); }
+  override sceneChanged(): void {
+    this.showPresent();
+  }
 
-  protected override axis(): Axis { return this.onAxis; }
-  protected override drawn(): string | null { return this.drawing.text; }
+  protected override axis(): Axis {
+    return this.onAxis;
+  }
+  protected override drawn(): string | null {
+    return this.drawing.text;
+  }
 
   protected override params(): Record<string, unknown> {
-    const iterations = this.iterations.value.split(/[\s,;]+/).filter((part) => part !== "").map(Number);
+    const iterations = this.iterations.value
+      .split(/[\s,;]+/)
+      .filter((part) => part !== "")
+      .map(Number);
     const time = numberIn(this.time);
-    return { budget: Number(this.budget.value), ...(time === undefined ? {} : { time }), ...(iterations.length > 0 ? { iterations } : {}) };
+    return {
+      budget: Number(this.budget.value),
+      ...(time === undefined ? {} : { time }),
+      ...(iterations.length > 0 ? { iterations } : {}),
+    };
   }
 
   protected override show(chart: Chart): void {
     this.result = chart;
-    if (!chart.axes[this.onAxis].available) this.onAxis = axes.find((axis) => chart.axes[axis].available) ?? this.onAxis;
+    if (!chart.axes[this.onAxis].available)
+      this.onAxis = axes.find((axis) => chart.axes[axis].available) ?? this.onAxis;
     this.showAxes(chart);
     this.drawing.want(chart, this.onAxis);
     this.table.show(chart.points, this.shown);
     this.leftOut.hidden = chart.left_out.length === 0;
     this.leftOutTitle.textContent = `Left out (${chart.left_out.length})`;
-    this.leftOutList.replaceChildren(...chart.left_out.map(({ method, dt_s, iterations, reason }) =>
-      make("li", "", leftOutText(method, dt_s, iterations, reason))));
+    this.leftOutList.replaceChildren(
+      ...chart.left_out.map(({ method, dt_s, iterations, reason }) =>
+        make("li", "", leftOutText(method, dt_s, iterations, reason)),
+      ),
+    );
     say(this.horizon, chart.horizon_reason);
     this.showPresent();
   }
@@ -114,14 +158,21 @@ export class ChartTab extends Tab<"chart"> {
     const known = "error" in place;
     this.picture.showPresent(known ? { x: place.error, y: place.cost } : null);
     this.present.classList.toggle("unknown", !known);
-    say(this.present, known
-      ? `Now: ${settingText(setting)}: error ${errorText(place.error)}, ${costText({ median: place.cost, minimum: place.cost, runs: 0, low: null, high: null })} a simulated second.`
-      : `Now: ${settingText(setting)}. Not measured: ${place.reason}.`);
+    say(
+      this.present,
+      known
+        ? `Now: ${settingText(setting)}: error ${errorText(place.error)}, ${costText({ median: place.cost, minimum: place.cost, runs: 0, low: null, high: null })} a simulated second.`
+        : `Now: ${settingText(setting)}. Not measured: ${place.reason}.`,
+    );
   }
 
-  private get shown(): Shown { return onAxis(this.onAxis, this.result?.size_m ?? null); }
+  private get shown(): Shown {
+    return onAxis(this.onAxis, this.result?.size_m ?? null);
+  }
 
-  private point(key: string): Point | undefined { return this.result?.points[Number(key)]; }
+  private point(key: string): Point | undefined {
+    return this.result?.points[Number(key)];
+  }
 
   private applyPoint(point: Point | undefined): void {
     if (point) this.around.apply(point.patch, settingText(point));

@@ -13,7 +13,9 @@ const presets = ["1e-2", "1e-3", "1e-4"];
 export function readTolerance(input: HTMLInputElement): number {
   const tolerance = numberIn(input);
   if (tolerance === undefined || !(tolerance > 0 && tolerance <= 1)) {
-    throw new Error(`The tolerance is ${input.value.trim() === "" ? "empty" : input.value.trim()}; allowed is more than 0, up to 1: 0.01 is one percent of the cloth's size.`);
+    throw new Error(
+      `The tolerance is ${input.value.trim() === "" ? "empty" : input.value.trim()}; allowed is more than 0, up to 1: 0.01 is one percent of the cloth's size.`,
+    );
   }
   return tolerance;
 }
@@ -21,8 +23,17 @@ export function readTolerance(input: HTMLInputElement): number {
 /// A field for a tolerance, with buttons for the usual ones.
 export function toleranceField(input: HTMLInputElement): HTMLElement {
   input.setAttribute("aria-label", "Tolerance");
-  const buttons = presets.map((text) => makeButton(text, "lab-small", () => { input.value = text; }));
-  return make("div", "lab-tolerance", labelled("Tolerance", input, "RMS position error over the cloth's size"), ...buttons);
+  const buttons = presets.map((text) =>
+    makeButton(text, "lab-small", () => {
+      input.value = text;
+    }),
+  );
+  return make(
+    "div",
+    "lab-tolerance",
+    labelled("Tolerance", input, "RMS position error over the cloth's size"),
+    ...buttons,
+  );
 }
 
 /// How far the error may turn out to be larger.
@@ -46,15 +57,21 @@ export class ChooseTab extends Tab<"choose"> {
       return { curve: curveOf(point), along: point.dt_s };
     },
   });
-  private readonly drawing = new Drawing("choose", this.around.jobs, this.picture, "What was tried: arrow keys go from point to point, Enter applies one",
-                                         (error) => this.around.problem("The picture could not be drawn", error));
+  private readonly drawing = new Drawing(
+    "choose",
+    this.around.jobs,
+    this.picture,
+    "What was tried: arrow keys go from point to point, Enter applies one",
+    (error) => this.around.problem("The picture could not be drawn", error),
+  );
   private readonly table = new PointTable((point) => this.applyPoint(point), "All that was tried");
   private result: Choice | null = null;
 
   constructor(around: Surroundings) {
     super("choose", around, {
       lead: "Say how exact the motion has to be; the lab finds the cheapest method and time step that keep it, with a margin of stability.",
-      start: "Find the cheapest", file: "choice",
+      start: "Find the cheapest",
+      file: "choice",
       awaits: "The answer: a setting, the error and the cost to expect of it, the runner-up, and why.",
     });
     this.addMethods();
@@ -63,7 +80,9 @@ export class ChooseTab extends Tab<"choose"> {
     this.content.append(this.answer, this.cards, this.picture.element, this.table.element);
   }
 
-  protected override drawn(): string | null { return this.drawing.text; }
+  protected override drawn(): string | null {
+    return this.drawing.text;
+  }
 
   protected override params(): Record<string, unknown> {
     const time = numberIn(this.time);
@@ -83,18 +102,31 @@ export class ChooseTab extends Tab<"choose"> {
   private showCards(choice: Choice): void {
     const { chosen, runner_up: runnerUp, present } = choice;
     this.cards.replaceChildren(
-      this.card(choice.met ? `The cheapest within ${errorText(choice.tolerance)}` : "The most accurate found", chosen, present, "chosen"),
+      this.card(
+        choice.met ? `The cheapest within ${errorText(choice.tolerance)}` : "The most accurate found",
+        chosen,
+        present,
+        "chosen",
+      ),
       ...(runnerUp ? [this.card("Runner-up", runnerUp, present, "")] : []),
-      this.card("Present", present, null, "present"));
+      this.card("Present", present, null, "present"),
+    );
   }
 
   private card(title: string, point: Point, against: Point | null, className: string): HTMLElement {
     const blewUp = point.blew_up_at_s !== null;
     const error = point.largest_position_error ?? point.error.position;
     const compared = against ? comparedText(point.ms_a_simulated_s, against.ms_a_simulated_s) : "";
-    const facts = blewUp ? `blew up after ${Number(point.blew_up_at_s?.toPrecision(2))} s`
+    const facts = blewUp
+      ? `blew up after ${Number(point.blew_up_at_s?.toPrecision(2))} s`
       : `expected error ${errorText(error)}${atMost(point)}, ${costText(point.ms_a_simulated_s)}${costRange(point.ms_a_simulated_s)} a simulated second${compared ? `: ${compared}` : ""}`;
-    const card = make("div", `lab-card ${className}`, make("h3", "", title), make("b", "", settingText(point)), make("span", "", facts));
+    const card = make(
+      "div",
+      `lab-card ${className}`,
+      make("h3", "", title),
+      make("b", "", settingText(point)),
+      make("span", "", facts),
+    );
     if (className !== "present") {
       const button = applyButton(`Apply ${settingText(point)}`, () => this.applyPoint(point));
       if (className === "chosen") button.className = "lab-primary";
@@ -104,7 +136,9 @@ export class ChooseTab extends Tab<"choose"> {
     return card;
   }
 
-  private point(key: string): Point | undefined { return this.result?.tried[Number(key)]; }
+  private point(key: string): Point | undefined {
+    return this.result?.tried[Number(key)];
+  }
 
   private applyPoint(point: Point | undefined): void {
     if (point) this.around.apply(point.patch, settingText(point));

@@ -2,7 +2,11 @@
 
 type Child = Node | string;
 
-export function make<K extends keyof HTMLElementTagNameMap>(tag: K, className = "", ...children: Child[]): HTMLElementTagNameMap[K] {
+export function make<K extends keyof HTMLElementTagNameMap>(
+  tag: K,
+  className = "",
+  ...children: Child[]
+): HTMLElementTagNameMap[K] {
   const made = document.createElement(tag);
   if (className !== "") made.className = className;
   made.append(...children);
@@ -23,7 +27,11 @@ export function say(place: HTMLElement, text: string): void {
 }
 
 /// A checkbox with its text.
-export function makeCheck(text: string, checked: boolean, changed: (checked: boolean) => void = () => undefined): { label: HTMLLabelElement; input: HTMLInputElement } {
+export function makeCheck(
+  text: string,
+  checked: boolean,
+  changed: (checked: boolean) => void = () => undefined,
+): { label: HTMLLabelElement; input: HTMLInputElement } {
   const input = make("input");
   input.type = "checkbox";
   input.checked = checked;

@@ -17,7 +17,7 @@ export interface LabEvents {
   document(): SceneDocument | null;
   mayEdit(): boolean;
   applied(depth: string): void;
-  toggled(open: boolean): void;  ///< the picture's free part of the window is another
+  toggled(open: boolean): void; ///< the picture's free part of the window is another
 }
 
 const titles: Record<Kind, string> = { chart: "Chart", stability: "Stability", choose: "Choose", simplify: "Simplify" };
@@ -38,8 +38,10 @@ export class Lab {
     document: () => this.events.document(),
   };
   private readonly tabs = {
-    chart: new ChartTab(this.around), stability: new StabilityTab(this.around),
-    choose: new ChooseTab(this.around), simplify: new SimplifyTab(this.around),
+    chart: new ChartTab(this.around),
+    stability: new StabilityTab(this.around),
+    choose: new ChooseTab(this.around),
+    simplify: new SimplifyTab(this.around),
   };
   private readonly heads = new Map<Kind, HTMLButtonElement>();
   private active: Kind = "chart";
@@ -59,11 +61,15 @@ export class Lab {
     list.addEventListener("keydown", (event) => this.walk(event));
     this.opener.onclick = () => this.toggle();
     button("lab-close").onclick = () => this.toggle();
-    this.drawer.addEventListener("keydown", (event) => { if (event.key === "Escape") this.toggle(); });
+    this.drawer.addEventListener("keydown", (event) => {
+      if (event.key === "Escape") this.toggle();
+    });
     this.select("chart");
   }
 
-  get open(): boolean { return !this.drawer.hidden; }
+  get open(): boolean {
+    return !this.drawer.hidden;
+  }
 
   toggle(): void {
     const open = !this.open;
@@ -94,8 +100,12 @@ export class Lab {
     this.connected = open;
   }
 
-  progress(params: Record<string, unknown>): void { this.jobs.progress(params as unknown as Progress); }
-  arrived(params: Record<string, unknown>): void { this.jobs.arrived(params as unknown as Arrival); }
+  progress(params: Record<string, unknown>): void {
+    this.jobs.progress(params as unknown as Progress);
+  }
+  arrived(params: Record<string, unknown>): void {
+    this.jobs.arrived(params as unknown as Arrival);
+  }
 
   private head(kind: Kind): HTMLButtonElement {
     const head = make("button", "", titles[kind], make("i"));
@@ -142,9 +152,10 @@ export class Lab {
     if (!before || !this.events.mayEdit()) return;
     const undo = reverseOf(before, patch);
     const was = formerly(before, patch);
-    if (!await this.send(patch)) return;
+    if (!(await this.send(patch))) return;
     notice("info", {
-      title: `Applied: ${what}`, lines: was === "" ? [] : [`Before: ${was}.`],
+      title: `Applied: ${what}`,
+      lines: was === "" ? [] : [`Before: ${was}.`],
       action: { label: "Undo", run: () => void this.send(undo) },
     });
   }

@@ -3,23 +3,28 @@ import type { Jobs } from "./jobs";
 import type { Axis, Kind } from "./types";
 import type { Picture } from "./picture";
 
-const fetchEvery = 500;  // [ms]
+const fetchEvery = 500; // [ms]
 
 export class Drawing {
-  text: string | null = null;  ///< as it came
-  private wanted = "";         // what the drawing should be of: changes when it is out of date
+  text: string | null = null; ///< as it came
+  private wanted = ""; // what the drawing should be of: changes when it is out of date
   private drawn = "";
   private fetching = false;
   private fetchedAt = -Infinity;
   private timer = 0;
 
-  constructor(private readonly kind: Kind, private readonly jobs: Jobs, private readonly picture: Picture, private readonly title: string,
-              private readonly problem: (error: Error) => void) {}
+  constructor(
+    private readonly kind: Kind,
+    private readonly jobs: Jobs,
+    private readonly picture: Picture,
+    private readonly title: string,
+    private readonly problem: (error: Error) => void,
+  ) {}
 
   /// The drawing of the job's present result, on `axis`.
   want(result: object, axis: Axis): void {
     const { ofJob } = this.jobs.of(this.kind);
-    if (ofJob === null) return;  // gone with the connection: the last drawing stays
+    if (ofJob === null) return; // gone with the connection: the last drawing stays
     this.wanted = `${ofJob} ${axis} ${stamp(result)}`;
     this.axis = axis;
     this.schedule();
@@ -29,7 +34,7 @@ export class Drawing {
 
   private schedule(): void {
     if (this.timer || this.fetching || this.wanted === this.drawn) return;
-    const otherAxis = this.drawn.split(" ")[1] !== this.axis;  // somebody waits for it
+    const otherAxis = this.drawn.split(" ")[1] !== this.axis; // somebody waits for it
     const wait = otherAxis ? 0 : Math.max(0, this.fetchedAt + fetchEvery - performance.now());
     this.timer = window.setTimeout(() => void this.fetch(), wait);
   }

@@ -11,15 +11,15 @@ export interface Job<K extends Kind = Kind> {
   kind: K;
   state: State;
   id: number | null;
-  ahead: number;       ///< jobs before it in the queue
+  ahead: number; ///< jobs before it in the queue
   done: number;
   total: number;
   doing: string;
   stale: boolean;
   cached: boolean;
   beside: boolean;
-  result: Results[K] | null;  ///< while the next one is measured, still that of the last
-  ofJob: number | null;       ///< the job `result` is of
+  result: Results[K] | null; ///< while the next one is measured, still that of the last
+  ofJob: number | null; ///< the job `result` is of
   error: RpcErrorData | null;
 }
 
@@ -32,12 +32,23 @@ export interface JobEvents {
 }
 
 const kinds: Kind[] = ["chart", "stability", "choose", "simplify"];
-const staleDelay = 300;  // [ms] after a change, when sliders rest
+const staleDelay = 300; // [ms] after a change, when sliders rest
 
 function fresh<K extends Kind>(kind: K): Job<K> {
   return {
-    kind, state: "idle", id: null, ahead: 0, done: 0, total: 1, doing: "",
-    stale: false, cached: false, beside: false, result: null, ofJob: null, error: null,
+    kind,
+    state: "idle",
+    id: null,
+    ahead: 0,
+    done: 0,
+    total: 1,
+    doing: "",
+    stale: false,
+    cached: false,
+    beside: false,
+    result: null,
+    ofJob: null,
+    error: null,
   };
 }
 
@@ -47,7 +58,9 @@ export class Jobs {
 
   constructor(private readonly events: JobEvents) {}
 
-  of<K extends Kind>(kind: K): Job<K> { return this.jobs[kind]; }
+  of<K extends Kind>(kind: K): Job<K> {
+    return this.jobs[kind];
+  }
 
   async start(kind: Kind, params: Record<string, unknown>): Promise<void> {
     const job = this.of(kind) as Job;
@@ -55,10 +68,13 @@ export class Jobs {
     Object.assign(job, { state: "asked", id: null, ahead: 0, done: 0, total: 1, doing: "", error: null });
     this.events.changed(kind);
     try {
-      const { job: id, ahead } = await this.events.request<{ job: number; ahead: number; cached: boolean }>(`lab.${kind}`, params);
+      const { job: id, ahead } = await this.events.request<{ job: number; ahead: number; cached: boolean }>(
+        `lab.${kind}`,
+        params,
+      );
       if (job.state === "asked") Object.assign(job, { id, ahead, state: ahead > 0 ? "queued" : "running" });
     } catch (error) {
-      if (job.state !== "asked") return;  // lost with the connection, which says so
+      if (job.state !== "asked") return; // lost with the connection, which says so
       Object.assign(job, before);
       if (error instanceof RpcError) this.events.refused(error);
     }
@@ -69,13 +85,17 @@ export class Jobs {
     const { id } = this.of(kind);
     if (id === null) return;
     await this.events.request("lab.cancel", { job: id }).catch((error: unknown) => {
-      if (error instanceof RpcError && working(this.of(kind) as Job)) this.events.refused(error);  // else it was over before
+      if (error instanceof RpcError && working(this.of(kind) as Job)) this.events.refused(error); // else it was over before
     });
   }
 
   /// The text of what was measured so far.
   async exported(kind: Kind, format: Format, axis: Axis): Promise<string> {
-    const { text } = await this.events.request<{ text: string }>("lab.export", { job: this.of(kind).ofJob, format, axis });
+    const { text } = await this.events.request<{ text: string }>("lab.export", {
+      job: this.of(kind).ofJob,
+      format,
+      axis,
+    });
     return text;
   }
 
@@ -111,7 +131,8 @@ export class Jobs {
   /// Asks, a little later, which results are of an earlier scene.
   sceneChanged(): void {
     clearTimeout(this.timer);
-    if (kinds.some((kind) => this.of(kind).ofJob !== null)) this.timer = window.setTimeout(() => void this.refreshStale(), staleDelay);
+    if (kinds.some((kind) => this.of(kind).ofJob !== null))
+      this.timer = window.setTimeout(() => void this.refreshStale(), staleDelay);
   }
 
   private async refreshStale(): Promise<void> {
@@ -138,9 +159,13 @@ export class Jobs {
 function hasContent({ kind, result, state }: Arrival): boolean {
   if (state === "finished") return true;
   switch (kind) {
-    case "chart": return ((result as Results["chart"]).points ?? []).length > 0;
-    case "stability": return ((result as Results["stability"]).methods ?? []).some(({ columns }) => columns.length > 0);
-    case "choose": return ((result as Results["choose"]).tried ?? []).length > 0;
-    case "simplify": return ((result as Results["simplify"]).variants ?? []).length > 0;
+    case "chart":
+      return ((result as Results["chart"]).points ?? []).length > 0;
+    case "stability":
+      return ((result as Results["stability"]).methods ?? []).some(({ columns }) => columns.length > 0);
+    case "choose":
+      return ((result as Results["choose"]).tried ?? []).length > 0;
+    case "simplify":
+      return ((result as Results["simplify"]).variants ?? []).length > 0;
   }
 }

@@ -1,17 +1,24 @@
 // The numbers of a scene over which a stability map can be drawn, by name.
 import type { SceneDocument } from "../link/scene_types";
 
-export interface SceneNumber { path: string; name: string; value: number }
+export interface SceneNumber {
+  path: string;
+  name: string;
+  value: number;
+}
 
 // What no map varies: names of versions, the axis the map has anyway, and what is no quantity.
-const without = /^\/(version|solver\/|cloths\/\d+\/(mesh|transform|pins|weights|start)\/|colliders\/\d+\/(motion|sphere\/center|plane)\b)/;
+const without =
+  /^\/(version|solver\/|cloths\/\d+\/(mesh|transform|pins|weights|start)\/|colliders\/\d+\/(motion|sphere\/center|plane)\b)/;
 
 function walk(node: unknown, path: string, names: string[], found: SceneNumber[]): void {
   if (without.test(path)) return;
   if (typeof node === "number") found.push({ path, name: names.join(" "), value: node });
-  else if (Array.isArray(node)) node.forEach((child, i) => walk(child, `${path}/${i}`, [...names, nameOf(child, i, names)], found));
+  else if (Array.isArray(node))
+    node.forEach((child, i) => walk(child, `${path}/${i}`, [...names, nameOf(child, i, names)], found));
   else if (typeof node === "object" && node !== null) {
-    for (const [key, child] of Object.entries(node)) walk(child, `${path}/${key}`, [...names, key.replaceAll("_", " ")], found);
+    for (const [key, child] of Object.entries(node))
+      walk(child, `${path}/${key}`, [...names, key.replaceAll("_", " ")], found);
   }
 }
 
@@ -20,15 +27,29 @@ const axes = ["x", "y", "z"];
 function nameOf(child: unknown, i: number, names: string[]): string {
   const own = (child as { name?: unknown } | null)?.name;
   if (typeof own === "string" && own !== "") return own;
-  return typeof child === "number" && names.length > 0 ? axes[i] ?? String(i) : String(i + 1);
+  return typeof child === "number" && names.length > 0 ? (axes[i] ?? String(i)) : String(i + 1);
 }
 
-const plain = (name: string): string => name.replace(/^(cloths|colliders) /, "").replace(/ material /, " ").replace(/ mass /, " mass ");
+const plain = (name: string): string =>
+  name
+    .replace(/^(cloths|colliders) /, "")
+    .replace(/ material /, " ")
+    .replace(/ mass /, " mass ");
 
 /// Every number that makes sense, what is zero left out: a map spans ratios of it.
 export function numbersOf(document: SceneDocument): SceneNumber[] {
   const found: SceneNumber[] = [];
-  walk({ cloths: document.cloths, air_drag: document.air_drag, gravity: document.gravity,
-         self_collision: document.self_collision, colliders: document.colliders }, "", [], found);
+  walk(
+    {
+      cloths: document.cloths,
+      air_drag: document.air_drag,
+      gravity: document.gravity,
+      self_collision: document.self_collision,
+      colliders: document.colliders,
+    },
+    "",
+    [],
+    found,
+  );
   return found.filter(({ value }) => value > 0).map(({ path, name, value }) => ({ path, value, name: plain(name) }));
 }

@@ -2,7 +2,11 @@
 import { make, makeButton } from "./dom";
 
 /// `action`: what a click does.
-export interface Tip { title: string; lines: string[]; action: string | null }
+export interface Tip {
+  title: string;
+  lines: string[];
+  action: string | null;
+}
 
 /// A mark's key is its data-index, its place in the result's list; of a map's cell "METHOD/COLUMN/CELL".
 export interface PictureEvents {
@@ -20,46 +24,60 @@ function keyOf(mark: SVGElement): string {
   return index ?? `${mark.closest<SVGElement>("[data-method]")?.dataset.method}/${column}/${cell}`;
 }
 
-const reach = 18;  // [px] from the pointer to the nearest mark
+const reach = 18; // [px] from the pointer to the nearest mark
 const drawingNamespace = "http://www.w3.org/2000/svg";
 
 /// A place in values; in the panel of a method, where the drawing has one each.
-export interface Place { x: number; y: number; panel?: string }
+export interface Place {
+  x: number;
+  y: number;
+  panel?: string;
+}
 
 export class Picture {
   readonly element = make("div", "lab-picture");
-  private readonly scroller = make("div", "lab-scroller");  // where the window is too narrow for its words
+  private readonly scroller = make("div", "lab-scroller"); // where the window is too narrow for its words
   private readonly tooltip = make("div", "lab-tip");
   private drawing: SVGSVGElement | null = null;
-  private marks = new Map<string, SVGElement>();  // those that have something to tell
-  private shown = "";    // key of the mark whose tooltip is up
-  private pinned = false;  // by a finger: it stays until one touches elsewhere
+  private marks = new Map<string, SVGElement>(); // those that have something to tell
+  private shown = ""; // key of the mark whose tooltip is up
+  private pinned = false; // by a finger: it stays until one touches elsewhere
   private focused = "";
   private redrawing = false;
-  private place: Place | null = null;  // of the present setting
+  private place: Place | null = null; // of the present setting
 
   /// `moves`: the present setting is marked here, not where it was when the drawing was made.
-  constructor(private readonly events: PictureEvents, private readonly moves = false) {
+  constructor(
+    private readonly events: PictureEvents,
+    private readonly moves = false,
+  ) {
     this.tooltip.hidden = true;
     this.tooltip.setAttribute("role", "tooltip");
     this.element.append(this.scroller, this.tooltip);
     this.scroller.addEventListener("scroll", () => this.point(this.shown, this.pinned), { passive: true });
-    this.element.addEventListener("pointermove", (event) => { if (event.pointerType !== "touch") this.point(this.nearest(event), false); });
-    this.element.addEventListener("pointerleave", (event) => { if (event.pointerType !== "touch") this.point(this.focused, false); });
+    this.element.addEventListener("pointermove", (event) => {
+      if (event.pointerType !== "touch") this.point(this.nearest(event), false);
+    });
+    this.element.addEventListener("pointerleave", (event) => {
+      if (event.pointerType !== "touch") this.point(this.focused, false);
+    });
     this.element.addEventListener("click", (event) => this.click(event as PointerEvent));
     this.element.addEventListener("keydown", (event) => this.key(event));
   }
 
-  get empty(): boolean { return this.drawing === null; }
+  get empty(): boolean {
+    return this.drawing === null;
+  }
 
   /// Replaces the drawing; what is pointed at stays so.
   show(text: string, title: string): void {
     const root = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
-    if (root.namespaceURI !== drawingNamespace || root.localName !== "svg") throw new Error("the server's drawing is not SVG");
+    if (root.namespaceURI !== drawingNamespace || root.localName !== "svg")
+      throw new Error("the server's drawing is not SVG");
     const drawing = document.importNode(root, true) as unknown as SVGSVGElement;
     this.prepare(drawing, title);
     const hadFocus = this.drawing?.contains(document.activeElement) ?? false;
-    this.redrawing = true;  // a mark that is taken away loses the focus, before it is gone
+    this.redrawing = true; // a mark that is taken away loses the focus, before it is gone
     if (this.drawing) this.drawing.replaceWith(drawing);
     else this.scroller.append(drawing);
     this.redrawing = false;
@@ -72,12 +90,14 @@ export class Picture {
 
   // What stands around the drawing in words is left out of it here; a pointer is told what the titles say.
   private prepare(drawing: SVGSVGElement, title: string): void {
-    const scripts = "script, foreignObject, style";  // none are expected
-    for (const node of drawing.querySelectorAll(`${scripts}, .heading, .notes, [data-index] title, [data-cell] title`)) node.remove();
+    const scripts = "script, foreignObject, style"; // none are expected
+    for (const node of drawing.querySelectorAll(`${scripts}, .heading, .notes, [data-index] title, [data-cell] title`))
+      node.remove();
     if (this.moves) for (const node of drawing.querySelectorAll(".present:not(.legend *)")) node.remove();
     const { bodyTop, bodyBottom } = drawing.dataset;
     const [left = 0, , width = 0] = (drawing.getAttribute("viewBox") ?? "").split(/[ ,]+/).map(Number);
-    if (bodyTop && bodyBottom) drawing.setAttribute("viewBox", `${left} ${bodyTop} ${width} ${Number(bodyBottom) - Number(bodyTop)}`);
+    if (bodyTop && bodyBottom)
+      drawing.setAttribute("viewBox", `${left} ${bodyTop} ${width} ${Number(bodyBottom) - Number(bodyTop)}`);
     drawing.removeAttribute("width");
     drawing.removeAttribute("height");
     drawing.setAttribute("role", "group");
@@ -139,7 +159,8 @@ export class Picture {
   private click(event: PointerEvent): void {
     if ((event.target as Element).closest(".lab-tip")) return;
     const key = this.nearest(event);
-    if (event.pointerType === "touch") this.point(key, true);  // a finger hides what it points at: look first
+    if (event.pointerType === "touch")
+      this.point(key, true); // a finger hides what it points at: look first
     else if (key !== "") this.events.choose(key);
   }
 
@@ -148,7 +169,8 @@ export class Picture {
     if (!mark || event.ctrlKey || event.metaKey || event.altKey) return;
     const key = keyOf(mark);
     if (event.key === "Enter" || event.key === " ") this.events.choose(key);
-    else if (event.key === "ArrowLeft" || event.key === "ArrowRight") this.walk(key, event.key === "ArrowRight" ? 1 : -1);
+    else if (event.key === "ArrowLeft" || event.key === "ArrowRight")
+      this.walk(key, event.key === "ArrowRight" ? 1 : -1);
     else if (event.key === "ArrowUp" || event.key === "ArrowDown") this.change(key, event.key === "ArrowDown" ? 1 : -1);
     else return;
     event.preventDefault();
@@ -220,7 +242,10 @@ export class Picture {
     this.drawing?.querySelector(".lab-present")?.remove();
     if (!this.drawing || !this.place) return;
     const { panel, x: valueX, y: valueY } = this.place;
-    const holder = panel === undefined ? this.drawing : this.drawing.querySelector<SVGElement>(`.panel[data-method="${CSS.escape(panel)}"]`);
+    const holder =
+      panel === undefined
+        ? this.drawing
+        : this.drawing.querySelector<SVGElement>(`.panel[data-method="${CSS.escape(panel)}"]`);
     const x = holder && along(holder, "x", "left", "right", valueX);
     const y = holder && along(holder, "y", "bottom", "top", valueY);
     if (!holder || x === null || y === null) return;
@@ -239,7 +264,12 @@ export class Picture {
 
 /// Where a value is in the view box, by the attributes that tell the scales; those beyond the range are on its edge.
 function along({ dataset }: SVGElement, axis: "x" | "y", start: string, end: string, value: number): number | null {
-  const [low, high, from, to] = [`${axis}0`, `${axis}1`, start, end].map((name) => Number(dataset[name] ?? NaN)) as [number, number, number, number];
+  const [low, high, from, to] = [`${axis}0`, `${axis}1`, start, end].map((name) => Number(dataset[name] ?? NaN)) as [
+    number,
+    number,
+    number,
+    number,
+  ];
   const scaled = dataset[`${axis}Scale`] === "linear" ? (one: number): number => one : Math.log;
   const share = (scaled(value) - scaled(low)) / (scaled(high) - scaled(low));
   return Number.isFinite(share + from + to) ? from + Math.min(1, Math.max(0, share)) * (to - from) : null;

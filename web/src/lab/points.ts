@@ -7,14 +7,24 @@ import type { Tip } from "./picture";
 import { methodText } from "../panel/methods";
 
 /// Which error of a point is shown, and how it is called; `size` of the cloth [m] where it is a length over that.
-export interface Shown { name: string; size: number | null; of(point: Point): number | null }
+export interface Shown {
+  name: string;
+  size: number | null;
+  of(point: Point): number | null;
+}
 
 export const onAxis = (axis: Axis, size: number | null): Shown => ({
-  name: `${axisNames[axis].toLowerCase()} error`, size: axis === "position" || axis === "rest" ? size : null, of: ({ error }) => error[axis],
+  name: `${axisNames[axis].toLowerCase()} error`,
+  size: axis === "position" || axis === "rest" ? size : null,
+  of: ({ error }) => error[axis],
 });
 
 /// What the choice goes by.
-export const largestOnTheWay: Shown = { name: "largest position error", size: null, of: ({ largest_position_error }) => largest_position_error };
+export const largestOnTheWay: Shown = {
+  name: "largest position error",
+  size: null,
+  of: ({ largest_position_error }) => largest_position_error,
+};
 
 export function pointTip(point: Point, { name, size, of }: Shown, mayApply: boolean): Tip {
   const error = of(point);
@@ -37,19 +47,55 @@ export class PointTable {
   private readonly table: Table<Point>;
   private shown: Shown = largestOnTheWay;
 
-  constructor(apply: (point: Point) => void, private readonly what: string) {
-    this.table = new Table<Point>(what, [
-      { title: "Method", text: (point) => methodText(point.method).name, order: (point) => methodText(point.method).name },
-      { title: "dt", text: (point) => stepText(point.dt_s), order: (point) => point.dt_s, className: "number" },
-      { title: "Iter.", hint: "iterations", text: (point) => String(point.iterations ?? "–"), order: (point) => point.iterations, className: "number" },
-      { title: "Error", text: (point) => (point.blew_up_at_s === null ? errorText(this.shown.of(point)) : "blew up"),
-        order: (point) => (point.blew_up_at_s === null ? this.shown.of(point) : null), className: "number" },
-      { title: "Cost", hint: "of stepping, for a simulated second: the median of the runs", text: (point) => costText(point.ms_a_simulated_s),
-        order: (point) => point.ms_a_simulated_s?.median ?? null, className: "number" },
-      { title: "Limit", hint: "dt over the largest stable one", text: (point) => limitText(point.dt_over_limit),
-        order: (point) => point.dt_over_limit, className: "number wide" },
-      { title: "", text: (point) => applyButton(`Apply ${settingText(point)}`, () => apply(point)), className: "action" },
-    ], 4, (point) => (point.blew_up_at_s === null ? "" : "blown"));
+  constructor(
+    apply: (point: Point) => void,
+    private readonly what: string,
+  ) {
+    this.table = new Table<Point>(
+      what,
+      [
+        {
+          title: "Method",
+          text: (point) => methodText(point.method).name,
+          order: (point) => methodText(point.method).name,
+        },
+        { title: "dt", text: (point) => stepText(point.dt_s), order: (point) => point.dt_s, className: "number" },
+        {
+          title: "Iter.",
+          hint: "iterations",
+          text: (point) => String(point.iterations ?? "–"),
+          order: (point) => point.iterations,
+          className: "number",
+        },
+        {
+          title: "Error",
+          text: (point) => (point.blew_up_at_s === null ? errorText(this.shown.of(point)) : "blew up"),
+          order: (point) => (point.blew_up_at_s === null ? this.shown.of(point) : null),
+          className: "number",
+        },
+        {
+          title: "Cost",
+          hint: "of stepping, for a simulated second: the median of the runs",
+          text: (point) => costText(point.ms_a_simulated_s),
+          order: (point) => point.ms_a_simulated_s?.median ?? null,
+          className: "number",
+        },
+        {
+          title: "Limit",
+          hint: "dt over the largest stable one",
+          text: (point) => limitText(point.dt_over_limit),
+          order: (point) => point.dt_over_limit,
+          className: "number wide",
+        },
+        {
+          title: "",
+          text: (point) => applyButton(`Apply ${settingText(point)}`, () => apply(point)),
+          className: "action",
+        },
+      ],
+      4,
+      (point) => (point.blew_up_at_s === null ? "" : "blown"),
+    );
     this.element = make("details", "lab-more", this.title, this.table.element);
   }
 

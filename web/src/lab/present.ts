@@ -3,35 +3,47 @@ import type { Axis, Point, Setting } from "./types";
 
 export type Place = { error: number; cost: number } | { reason: string };
 
-const sameNumber = (a: number | null, b: number | null): boolean => a === b || (a !== null && b !== null && Math.abs(a - b) <= 1e-9 * Math.abs(b));
+const sameNumber = (a: number | null, b: number | null): boolean =>
+  a === b || (a !== null && b !== null && Math.abs(a - b) <= 1e-9 * Math.abs(b));
 
 /// Between `a` at 0 and `b` at 1, straight on logarithmic paper.
 const between = (a: number, b: number, share: number): number => a * (b / a) ** share;
 
-interface Sample { dt: number; error: number; cost: number }
+interface Sample {
+  dt: number;
+  error: number;
+  cost: number;
+}
 
 /// Error on `axis` and cost [ms per simulated second] of `setting`, interpolated in dt along the curve of its method and
 /// iterations, all in logarithms; or why they are not known.
 export function placeOf(setting: Setting, points: Point[], axis: Axis): Place {
   const ofMethod = points.filter(({ method }) => method === setting.method);
   if (ofMethod.length === 0) return { reason: "the method is not on the chart" };
-  const curve = ofMethod.filter(({ iterations, tolerance }) =>
-    sameNumber(iterations, setting.iterations) && sameNumber(tolerance, setting.tolerance));
+  const curve = ofMethod.filter(
+    ({ iterations, tolerance }) =>
+      sameNumber(iterations, setting.iterations) && sameNumber(tolerance, setting.tolerance),
+  );
   if (curve.length === 0) return { reason: otherwise(setting, ofMethod) };
-  const samples = curve.flatMap(({ dt_s: dt, error, ms_a_simulated_s: cost, blew_up_at_s }): Sample[] => {
-    const value = error[axis];
-    return blew_up_at_s === null && value !== null && value > 0 && cost ? [{ dt, error: value, cost: cost.median }] : [];
-  }).sort((a, b) => a.dt - b.dt);
+  const samples = curve
+    .flatMap(({ dt_s: dt, error, ms_a_simulated_s: cost, blew_up_at_s }): Sample[] => {
+      const value = error[axis];
+      return blew_up_at_s === null && value !== null && value > 0 && cost
+        ? [{ dt, error: value, cost: cost.median }]
+        : [];
+    })
+    .sort((a, b) => a.dt - b.dt);
   const blown = curve.filter(({ blew_up_at_s }) => blew_up_at_s !== null).map(({ dt_s }) => dt_s);
   return along(samples, setting.dt_s, blown);
 }
 
 function along(samples: Sample[], dt: number, blown: number[]): Place {
-  const slack = 1e-6;  // a step is written with some digits less than it has
+  const slack = 1e-6; // a step is written with some digits less than it has
   const above = samples.findIndex((sample) => sample.dt >= dt * (1 - slack));
   const upper = samples[above];
   const lower = samples[above - 1];
-  if (blown.some((failed) => failed <= dt * (1 + slack) && !(upper && failed < upper.dt))) return { reason: "steps as long as this blew up" };
+  if (blown.some((failed) => failed <= dt * (1 + slack) && !(upper && failed < upper.dt)))
+    return { reason: "steps as long as this blew up" };
   if (samples.length === 0) return { reason: "no point of its curve has this error" };
   if (!upper) return { reason: `longer than the longest step measured, ${milliseconds(samples.at(-1)?.dt ?? 0)}` };
   if (Math.abs(upper.dt - dt) <= slack * dt) return { error: upper.error, cost: upper.cost };

@@ -19,7 +19,11 @@ function savedText(ratio: number | null): string {
 /// Of the whole's cost, and between what that may lie.
 function costNode(variant: Variant): Node {
   const cell = make("span", "", variant.measured ? savedText(variant.cost_ratio) : "–");
-  if (variant.cost_ratio_low !== null && variant.cost_ratio_high !== null && variant.cost_ratio_low < variant.cost_ratio_high) {
+  if (
+    variant.cost_ratio_low !== null &&
+    variant.cost_ratio_high !== null &&
+    variant.cost_ratio_low < variant.cost_ratio_high
+  ) {
     cell.append(make("small", "", `${savedText(variant.cost_ratio_low)} … ${savedText(variant.cost_ratio_high)}`));
   }
   return cell;
@@ -35,33 +39,61 @@ export class SimplifyTab extends Tab<"simplify"> {
     if (this.result) this.around.apply(this.result.recommended.patch, this.result.recommended.name);
   });
   private readonly stepped = make("p", "lab-fine");
-  private readonly table = new Table<Variant>("What each part is worth", [
-    { title: "Part", text: (variant) => this.nameOf(variant) },
-    { title: "Changes", hint: "RMS distance to the whole scene stepped alike, over the cloth's size", text: ({ change }) => errorText(change),
-      order: ({ change }) => change, className: "number" },
-    { title: "Cost", hint: "against the whole scene, and between what it lies as far as the timings tell", text: costNode,
-      order: (variant) => (variant.measured ? variant.cost_ratio : null), className: "number" },
-    { title: "Verdict", text: (variant) => this.verdict(variant), className: "verdict" },
-    { title: "", text: (variant) => this.buttonOf(variant), className: "action" },
-  ], null, (variant) => (variant === this.result?.recommended ? "together" : !variant.measured ? "unmeasured" : variant.drop ? "drop" : ""));
+  private readonly table = new Table<Variant>(
+    "What each part is worth",
+    [
+      { title: "Part", text: (variant) => this.nameOf(variant) },
+      {
+        title: "Changes",
+        hint: "RMS distance to the whole scene stepped alike, over the cloth's size",
+        text: ({ change }) => errorText(change),
+        order: ({ change }) => change,
+        className: "number",
+      },
+      {
+        title: "Cost",
+        hint: "against the whole scene, and between what it lies as far as the timings tell",
+        text: costNode,
+        order: (variant) => (variant.measured ? variant.cost_ratio : null),
+        className: "number",
+      },
+      { title: "Verdict", text: (variant) => this.verdict(variant), className: "verdict" },
+      { title: "", text: (variant) => this.buttonOf(variant), className: "action" },
+    ],
+    null,
+    (variant) =>
+      variant === this.result?.recommended ? "together" : !variant.measured ? "unmeasured" : variant.drop ? "drop" : "",
+  );
   private readonly picture = new Picture({
     tip: (key) => {
       const variant = this.result?.variants[Number(key)];
       if (!variant?.measured) return null;
-      return { title: variant.name, lines: [`changes the motion by ${errorText(variant.change)}`, `cost ${savedText(variant.cost_ratio)}${variant.saves === "cannot tell" ? ", within the noise" : ""}`],
-        action: this.around.mayEdit() ? "Apply" : null };
+      return {
+        title: variant.name,
+        lines: [
+          `changes the motion by ${errorText(variant.change)}`,
+          `cost ${savedText(variant.cost_ratio)}${variant.saves === "cannot tell" ? ", within the noise" : ""}`,
+        ],
+        action: this.around.mayEdit() ? "Apply" : null,
+      };
     },
     choose: (key) => this.applyVariant(this.result?.variants[Number(key)]),
     order: (key) => ({ curve: "", along: Number(key) + 1 }),
   });
-  private readonly drawing = new Drawing("simplify", this.around.jobs, this.picture, "What each part is worth: arrow keys go from one to the next",
-                                         (error) => this.around.problem("The picture could not be drawn", error));
+  private readonly drawing = new Drawing(
+    "simplify",
+    this.around.jobs,
+    this.picture,
+    "What each part is worth: arrow keys go from one to the next",
+    (error) => this.around.problem("The picture could not be drawn", error),
+  );
   private result: Simplification | null = null;
 
   constructor(around: Surroundings) {
     super("simplify", around, {
       lead: "Which parts of this scene does its motion need? Each is left out or made coarser in turn: what that changes, and what it saves.",
-      start: "Measure the parts", file: "parts",
+      start: "Measure the parts",
+      file: "parts",
       awaits: "A row for each part: how far the motion changes without it, what that saves, and whether it can go.",
     });
     this.addOptions(labelled("simulate [s]", this.time, "how much of the motion is judged"));
@@ -69,7 +101,9 @@ export class SimplifyTab extends Tab<"simplify"> {
     this.content.append(this.answer, this.applyAll, this.table.element, this.picture.element, this.stepped);
   }
 
-  protected override drawn(): string | null { return this.drawing.text; }
+  protected override drawn(): string | null {
+    return this.drawing.text;
+  }
 
   protected override params(): Record<string, unknown> {
     const time = numberIn(this.time);
@@ -82,11 +116,18 @@ export class SimplifyTab extends Tab<"simplify"> {
     this.applyAll.hidden = !result.complete || isEmpty(result.recommended.patch);
     this.applyAll.disabled = !this.around.mayEdit();
     const { recommended, variants } = result;
-    const together = result.complete && recommended.measured && !isEmpty(recommended.patch) && variants.every(({ name }) => name !== recommended.name);
+    const together =
+      result.complete &&
+      recommended.measured &&
+      !isEmpty(recommended.patch) &&
+      variants.every(({ name }) => name !== recommended.name);
     this.table.show([...variants, ...(together ? [recommended] : [])]);
     this.drawing.want(result, "position");
-    say(this.stepped, `All are stepped by ${settingText(result.setting)}. The whole scene costs ${costText(result.whole.ms_a_simulated_s)} a simulated second` +
-      ` and is ${errorText(result.whole.error.position)} off itself; a part may change the motion by ${errorText(result.tolerance)} of the cloth's size.`);
+    say(
+      this.stepped,
+      `All are stepped by ${settingText(result.setting)}. The whole scene costs ${costText(result.whole.ms_a_simulated_s)} a simulated second` +
+        ` and is ${errorText(result.whole.error.position)} off itself; a part may change the motion by ${errorText(result.tolerance)} of the cloth's size.`,
+    );
   }
 
   private verdict(variant: Variant): string {

@@ -14,57 +14,118 @@ import type { Operation, SceneDocument } from "../link/scene_types";
 const allStiffnesses = "stiffness";
 const stiffnesses = ["structural", "shear", "bend"] as const;
 
-interface Row { method: string; column: MapColumn }
-interface Found { method: string; column: MapColumn; cell: MapCell }
+interface Row {
+  method: string;
+  column: MapColumn;
+}
+interface Found {
+  method: string;
+  column: MapColumn;
+  cell: MapCell;
+}
 
 const near = (a: number, b: number): boolean => Math.abs(a - b) <= 1e-6 * Math.abs(b);
-const limit = (seconds: number | null): string => (seconds === null ? "none" : seconds === 0 ? "no step" : stepText(seconds));
+const limit = (seconds: number | null): string =>
+  seconds === null ? "none" : seconds === 0 ? "no step" : stepText(seconds);
 
 export class StabilityTab extends Tab<"stability"> {
   private readonly field = makeSelect([[allStiffnesses, "all stiffnesses together"]], allStiffnesses);
   private readonly from = makeNumber("÷ 100");
   private readonly to = makeNumber("× 100");
-  private readonly columns = makeSelect([["5", "5"], ["9", "9"], ["17", "17"], ["33", "33"]], "9");
-  private readonly picture = new Picture({
-    tip: (key) => this.tip(key),
-    choose: (key) => this.applyCell(key),
-    order: (key) => {
-      const [method, column, cell] = key.split("/");
-      return { curve: `${method}/${column}`, along: Number(cell) + 1 };
+  private readonly columns = makeSelect(
+    [
+      ["5", "5"],
+      ["9", "9"],
+      ["17", "17"],
+      ["33", "33"],
+    ],
+    "9",
+  );
+  private readonly picture = new Picture(
+    {
+      tip: (key) => this.tip(key),
+      choose: (key) => this.applyCell(key),
+      order: (key) => {
+        const [method, column, cell] = key.split("/");
+        return { curve: `${method}/${column}`, along: Number(cell) + 1 };
+      },
     },
-  }, true);
-  private readonly drawing = new Drawing("stability", this.around.jobs, this.picture, "Stability map: arrow keys go from trial to trial, Enter applies one",
-                                         (error) => this.around.problem("The map could not be drawn", error));
+    true,
+  );
+  private readonly drawing = new Drawing(
+    "stability",
+    this.around.jobs,
+    this.picture,
+    "Stability map: arrow keys go from trial to trial, Enter applies one",
+    (error) => this.around.problem("The map could not be drawn", error),
+  );
   private readonly tableTitle = make("summary");
-  private readonly table = new Table<Row>("Longest stable time step", [
-    { title: "Method", text: ({ method }) => methodText(method).name, order: ({ method }) => methodText(method).name },
-    { title: "Value", text: ({ column }) => this.valueText(column.value), order: ({ column }) => column.value, className: "number" },
-    { title: "Held", hint: "longest step that held", text: ({ column }) => (column.held_s === null ? "–" : stepText(column.held_s)),
-      order: ({ column }) => column.held_s, className: "number" },
-    { title: "Failed", hint: "shortest longer one that failed", text: ({ column }) => (column.failed_s === null ? "none" : stepText(column.failed_s)),
-      order: ({ column }) => column.failed_s, className: "number" },
-    { title: "Theory", text: ({ column }) => limit(column.theory_s), order: ({ column }) => column.theory_s, className: "number" },
-    { title: "", text: ({ column }) => {
-      const sign = make("span", "", column.disagrees ? "≠" : "");
-      sign.title = column.disagrees ? `More than 5 % apart. ${column.reason}` : "";
-      return sign;
-    } },
-  ], null, ({ column }) => (column.disagrees ? "disagrees" : ""));
+  private readonly table = new Table<Row>(
+    "Longest stable time step",
+    [
+      {
+        title: "Method",
+        text: ({ method }) => methodText(method).name,
+        order: ({ method }) => methodText(method).name,
+      },
+      {
+        title: "Value",
+        text: ({ column }) => this.valueText(column.value),
+        order: ({ column }) => column.value,
+        className: "number",
+      },
+      {
+        title: "Held",
+        hint: "longest step that held",
+        text: ({ column }) => (column.held_s === null ? "–" : stepText(column.held_s)),
+        order: ({ column }) => column.held_s,
+        className: "number",
+      },
+      {
+        title: "Failed",
+        hint: "shortest longer one that failed",
+        text: ({ column }) => (column.failed_s === null ? "none" : stepText(column.failed_s)),
+        order: ({ column }) => column.failed_s,
+        className: "number",
+      },
+      {
+        title: "Theory",
+        text: ({ column }) => limit(column.theory_s),
+        order: ({ column }) => column.theory_s,
+        className: "number",
+      },
+      {
+        title: "",
+        text: ({ column }) => {
+          const sign = make("span", "", column.disagrees ? "≠" : "");
+          sign.title = column.disagrees ? `More than 5 % apart. ${column.reason}` : "";
+          return sign;
+        },
+      },
+    ],
+    null,
+    ({ column }) => (column.disagrees ? "disagrees" : ""),
+  );
   private result: StabilityMap | null = null;
   private offered = "";
 
   constructor(around: Surroundings) {
     super("stability", around, {
       lead: "How long may a time step be before a method blows up? Measured by trial on this scene, over one of its numbers, with theory's line beside it.",
-      start: "Measure the map", file: "stability",
+      start: "Measure the map",
+      file: "stability",
       awaits: "The map: a picture for each method, the time step over the stiffness, coloured by what the energy does.",
     });
     this.addMethods();
     this.addOptions(
       labelled("over", this.field, "the number of the scene along the map's axis"),
-      labelled("from", this.from, "empty: a hundredth of what it is"), labelled("to", this.to, "empty: a hundred times what it is"),
-      labelled("values", this.columns, "how many, evenly spaced"));
-    this.field.onchange = () => { this.from.value = this.to.value = ""; };
+      labelled("from", this.from, "empty: a hundredth of what it is"),
+      labelled("to", this.to, "empty: a hundred times what it is"),
+      labelled("values", this.columns, "how many, evenly spaced"),
+    );
+    this.field.onchange = () => {
+      this.from.value = this.to.value = "";
+    };
     this.content.append(this.picture.element, make("details", "lab-more", this.tableTitle, this.table.element));
   }
 
@@ -78,7 +139,10 @@ export class StabilityTab extends Tab<"stability"> {
     if (offered === this.offered) return;
     this.offered = offered;
     const chosen = this.field.value;
-    this.field.replaceChildren(new Option("all stiffnesses together", allStiffnesses), ...numbers.map(({ path, name }) => new Option(name, path)));
+    this.field.replaceChildren(
+      new Option("all stiffnesses together", allStiffnesses),
+      ...numbers.map(({ path, name }) => new Option(name, path)),
+    );
     this.field.value = numbers.some(({ path }) => path === chosen) ? chosen : allStiffnesses;
   }
 
@@ -87,15 +151,21 @@ export class StabilityTab extends Tab<"stability"> {
   }
 
   // The others are meant to hold at any step: one may ask whether they do.
-  protected override byDefault(method: string): boolean { return methodText(method).iterations === null; }
+  protected override byDefault(method: string): boolean {
+    return methodText(method).iterations === null;
+  }
 
-  protected override drawn(): string | null { return this.drawing.text; }
+  protected override drawn(): string | null {
+    return this.drawing.text;
+  }
 
   protected override params(): Record<string, unknown> {
     const [from, to] = [numberIn(this.from), numberIn(this.to)];
     return {
-      field: this.field.value, columns: Number(this.columns.value),
-      ...(from === undefined ? {} : { from }), ...(to === undefined ? {} : { to }),
+      field: this.field.value,
+      columns: Number(this.columns.value),
+      ...(from === undefined ? {} : { from }),
+      ...(to === undefined ? {} : { to }),
     };
   }
 
@@ -135,11 +205,17 @@ export class StabilityTab extends Tab<"stability"> {
     const found = this.found(key);
     if (!found) return null;
     const { method, column, cell } = found;
-    const what = this.result?.field === allStiffnesses ? "stiffness" : this.result?.field.split("/").at(-1)?.replaceAll("_", " ");
+    const what =
+      this.result?.field === allStiffnesses ? "stiffness" : this.result?.field.split("/").at(-1)?.replaceAll("_", " ");
     return {
       title: `${methodText(method).name}, dt ${stepText(cell.dt_s)}, ${what} ${this.valueText(column.value)}`,
-      lines: [cell.blew_up ? "blew up" : `held: energy at most ${Number((10 ** cell.growth).toPrecision(2))} times a stable run's`,
-        `theory's limit: ${limit(column.theory_s)}`, ...(column.disagrees ? [`measured and theory disagree: ${column.reason}`] : [])],
+      lines: [
+        cell.blew_up
+          ? "blew up"
+          : `held: energy at most ${Number((10 ** cell.growth).toPrecision(2))} times a stable run's`,
+        `theory's limit: ${limit(column.theory_s)}`,
+        ...(column.disagrees ? [`measured and theory disagree: ${column.reason}`] : []),
+      ],
       action: this.around.mayEdit() && this.operations(found) ? "Apply" : null,
     };
   }
@@ -147,19 +223,33 @@ export class StabilityTab extends Tab<"stability"> {
   /// What makes the scene that of a cell; null where it was measured for an earlier scene, which the factor is of.
   private operations({ method, column, cell }: Found): Operation[] | null {
     const map = this.result as StabilityMap;
-    const solver: Operation[] = [{ op: "replace", path: "/solver/method", value: method }, { op: "replace", path: "/solver/dt", value: cell.dt_s }];
+    const solver: Operation[] = [
+      { op: "replace", path: "/solver/method", value: method },
+      { op: "replace", path: "/solver/dt", value: cell.dt_s },
+    ];
     if (near(column.value, map.present.value)) return solver;
     if (map.field !== allStiffnesses) return [...solver, { op: "replace", path: map.field, value: column.value }];
     const document = this.around.document();
     if (!document || this.around.jobs.of("stability").stale) return null;
-    const scaled = document.cloths.flatMap(({ material }, i) => stiffnesses.map((kind): Operation =>
-      ({ op: "replace", path: `/cloths/${i}/material/${kind}`, value: Number((material[kind] * column.value).toPrecision(6)) })));
+    const scaled = document.cloths.flatMap(({ material }, i) =>
+      stiffnesses.map(
+        (kind): Operation => ({
+          op: "replace",
+          path: `/cloths/${i}/material/${kind}`,
+          value: Number((material[kind] * column.value).toPrecision(6)),
+        }),
+      ),
+    );
     return [...solver, ...scaled];
   }
 
   private applyCell(key: string): void {
     const found = this.found(key);
     const operations = found && this.operations(found);
-    if (found && operations) this.around.apply(operations, `${methodText(found.method).name}, dt ${stepText(found.cell.dt_s)}, ${this.valueText(found.column.value)}`);
+    if (found && operations)
+      this.around.apply(
+        operations,
+        `${methodText(found.method).name}, dt ${stepText(found.cell.dt_s)}, ${this.valueText(found.column.value)}`,
+      );
   }
 }

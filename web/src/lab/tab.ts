@@ -16,9 +16,14 @@ export interface Surroundings {
 }
 
 /// `awaits`: what will stand where the result is to come; `file`: its name, after the scene's.
-interface Texts { lead: string; start: string; awaits: string; file: string }
+interface Texts {
+  lead: string;
+  start: string;
+  awaits: string;
+  file: string;
+}
 
-const shownNotes = 3;  // more are folded
+const shownNotes = 3; // more are folded
 const pauseHint = "Times are true only while nothing else computes; it plays on afterwards.";
 
 export abstract class Tab<K extends Kind> {
@@ -46,7 +51,11 @@ export abstract class Tab<K extends Kind> {
   private readonly methodList = make("fieldset", "lab-methods", make("legend", "", "Methods"));
   private badgesShown = "";
 
-  constructor(readonly kind: K, protected readonly around: Surroundings, private readonly texts: Texts) {
+  constructor(
+    readonly kind: K,
+    protected readonly around: Surroundings,
+    private readonly texts: Texts,
+  ) {
     this.lead = make("p", "lab-lead", texts.lead);
     this.placeholder = make("p", "lab-placeholder", texts.awaits);
     this.showOptions(false);
@@ -56,9 +65,25 @@ export abstract class Tab<K extends Kind> {
     this.bar.setAttribute("aria-label", `${texts.start}: progress`);
     this.badges.setAttribute("role", "status");
     this.running.append(this.bar, make("div", "lab-running-line", this.doing, this.cancelButton));
-    this.exports.append(make("span", "", "Export"), ...(["svg", "csv", "json"] as Format[]).map((format) =>
-      makeButton(format.toUpperCase(), "lab-small", () => void this.download(format))));
-    this.element.append(this.lead, this.row, this.why, this.options, this.running, this.badges, this.placeholder, this.content, this.about, this.notes, this.exports);
+    this.exports.append(
+      make("span", "", "Export"),
+      ...(["svg", "csv", "json"] as Format[]).map((format) =>
+        makeButton(format.toUpperCase(), "lab-small", () => void this.download(format)),
+      ),
+    );
+    this.element.append(
+      this.lead,
+      this.row,
+      this.why,
+      this.options,
+      this.running,
+      this.badges,
+      this.placeholder,
+      this.content,
+      this.about,
+      this.notes,
+      this.exports,
+    );
   }
 
   /// Follows what the server said; call it once more when the tab comes up.
@@ -69,7 +94,7 @@ export abstract class Tab<K extends Kind> {
     this.startButton.disabled = busy || !this.around.mayEdit();
     this.startButton.title = this.around.mayEdit() ? "" : "A viewer may look at the cloth, not measure it";
     this.startButton.textContent = job.result && !busy ? "Measure again" : this.texts.start;
-    this.lead.hidden = busy || job.result !== null;  // once at the start: nothing moves under a pointer that is about to cancel
+    this.lead.hidden = busy || job.result !== null; // once at the start: nothing moves under a pointer that is about to cancel
     this.row.hidden = busy;
     this.why.hidden = busy || job.state !== "idle";
     this.placeholder.hidden = job.result !== null || job.state === "failed";
@@ -82,7 +107,10 @@ export abstract class Tab<K extends Kind> {
     this.exports.classList.toggle("gone", job.ofJob === null);
     if (!job.result) return;
     const { renderer, complete, notes } = job.result;
-    say(this.about, `${this.extent(job.result as Results[K])}, on ${renderer}.${complete || busy ? "" : " Not complete."}`);
+    say(
+      this.about,
+      `${this.extent(job.result as Results[K])}, on ${renderer}.${complete || busy ? "" : " Not complete."}`,
+    );
     if (notes.length !== this.noteList.childElementCount) this.notes.open = notes.length <= shownNotes;
     this.notesTitle.textContent = `Notes (${notes.length})`;
     this.noteList.replaceChildren(...notes.map((note) => make("li", "", note)));
@@ -90,7 +118,9 @@ export abstract class Tab<K extends Kind> {
   }
 
   /// The scene moved: what stands beside the result follows.
-  sceneChanged(): void { /* most have nothing */ }
+  sceneChanged(): void {
+    /* most have nothing */
+  }
 
   setMethods(methods: string[]): void {
     this.methodList.hidden = methods.length === 0;
@@ -108,16 +138,26 @@ export abstract class Tab<K extends Kind> {
   protected abstract params(): Record<string, unknown>;
 
   /// How much of the motion each of its runs has seen.
-  protected extent({ time_s }: Results[K]): string { return `${Number(time_s.toPrecision(3))} s simulated each time`; }
+  protected extent({ time_s }: Results[K]): string {
+    return `${Number(time_s.toPrecision(3))} s simulated each time`;
+  }
 
   /// Whether a method takes part unless one says otherwise.
-  protected byDefault(_method: string): boolean { return true; }
+  protected byDefault(_method: string): boolean {
+    return true;
+  }
 
-  protected axis(): Axis { return "position"; }
+  protected axis(): Axis {
+    return "position";
+  }
 
-  protected addMethods(): void { this.options.append(this.methodList); }
+  protected addMethods(): void {
+    this.options.append(this.methodList);
+  }
 
-  protected addOptions(...rows: HTMLElement[]): void { this.options.append(...rows); }
+  protected addOptions(...rows: HTMLElement[]): void {
+    this.options.append(...rows);
+  }
 
   protected start(afresh: boolean, paused = this.pause.input.checked): void {
     try {
@@ -148,7 +188,10 @@ export abstract class Tab<K extends Kind> {
     (this.bar.firstElementChild as HTMLElement).style.width = `${100 * share}%`;
     this.bar.classList.toggle("waiting", queued);
     this.bar.setAttribute("aria-valuenow", String(Math.round(100 * share)));
-    const waits = job.ahead > 0 ? `Waits for ${job.ahead === 1 ? "one other measurement" : `${job.ahead} other measurements`}` : "Starting…";
+    const waits =
+      job.ahead > 0
+        ? `Waits for ${job.ahead === 1 ? "one other measurement" : `${job.ahead} other measurements`}`
+        : "Starting…";
     say(this.doing, queued ? waits : job.doing || "Starting…");
     this.cancelButton.disabled = job.id === null;
   }
@@ -164,28 +207,48 @@ export abstract class Tab<K extends Kind> {
       badges.push(line);
     };
     const error = job.error;
-    if (job.state === "failed") badge("bad", ["Not measured:", sentence(error?.found ?? "the server does not say why"), sentence(error?.allowed ?? "")].join(" ").trim());
-    if (job.state === "cancelled") badge("calm", job.result ? "Cancelled: this is what had been measured." : "Cancelled before anything was measured.");
+    if (job.state === "failed")
+      badge(
+        "bad",
+        ["Not measured:", sentence(error?.found ?? "the server does not say why"), sentence(error?.allowed ?? "")]
+          .join(" ")
+          .trim(),
+      );
+    if (job.state === "cancelled")
+      badge(
+        "calm",
+        job.result ? "Cancelled: this is what had been measured." : "Cancelled before anything was measured.",
+      );
     if (job.state === "lost") {
-      badge("warn", job.result ? "The connection was lost, and the measurement with it. What had been found is kept; it may be of another scene."
-        : "The connection was lost, and the measurement with it.");
+      badge(
+        "warn",
+        job.result
+          ? "The connection was lost, and the measurement with it. What had been found is kept; it may be of another scene."
+          : "The connection was lost, and the measurement with it.",
+      );
     }
     if (job.result) this.addCautions(job, badge);
     this.badges.replaceChildren(...badges);
   }
 
   private addCautions(job: Job, badge: (tone: string, text: string, action?: [string, () => void]) => void): void {
-    if (job.stale && job.ofJob !== null) badge("warn", "Measured for an earlier scene.", ["Measure again", () => this.start(false)]);
-    if (job.cached) badge("calm", "From the cache: measured before for this very scene.", ["Measure afresh", () => this.start(true)]);
+    if (job.stale && job.ofJob !== null)
+      badge("warn", "Measured for an earlier scene.", ["Measure again", () => this.start(false)]);
+    if (job.cached)
+      badge("calm", "From the cache: measured before for this very scene.", ["Measure afresh", () => this.start(true)]);
     if (job.beside && !job.cached) {
-      badge("calm", "The cloth played on meanwhile: the times may be too long.", ["Measure with it paused", () => this.start(true, true)]);
+      badge("calm", "The cloth played on meanwhile: the times may be too long.", [
+        "Measure with it paused",
+        () => this.start(true, true),
+      ]);
     }
   }
 
   private async download(format: Format): Promise<void> {
     const job = this.around.jobs.of(this.kind);
     try {
-      const text = job.ofJob !== null ? await this.around.jobs.exported(this.kind, format, this.axis()) : this.kept(format);
+      const text =
+        job.ofJob !== null ? await this.around.jobs.exported(this.kind, format, this.axis()) : this.kept(format);
       const types = { svg: "image/svg+xml", csv: "text/csv", json: "application/json" };
       const address = URL.createObjectURL(new Blob([text], { type: types[format] }));
       const link = make("a");
@@ -200,13 +263,20 @@ export abstract class Tab<K extends Kind> {
 
   // The job is gone with its connection: what the page has.
   private kept(format: Format): string {
-    const text = format === "json" ? JSON.stringify(this.around.jobs.of(this.kind).result, null, 1) : format === "svg" ? this.drawn() : null;
+    const text =
+      format === "json"
+        ? JSON.stringify(this.around.jobs.of(this.kind).result, null, 1)
+        : format === "svg"
+          ? this.drawn()
+          : null;
     if (!text) throw new Error("The measurement is gone with the connection. Measure again to export it in this form.");
     return text;
   }
 
   /// The drawing as it came.
-  protected drawn(): string | null { return null; }
+  protected drawn(): string | null {
+    return null;
+  }
 }
 
 /// The scene's own way to step.

@@ -5,7 +5,7 @@ export interface Column<Row> {
   title: string;
   hint?: string;
   text(row: Row): string | Node;
-  order?(row: Row): number | string | null;  ///< null comes last; without it, not sortable
+  order?(row: Row): number | string | null; ///< null comes last; without it, not sortable
   className?: string;
 }
 
@@ -17,8 +17,12 @@ export class Table<Row> {
   private descending = false;
 
   /// Sorted by the column `sorted` at first; none: as the rows come.
-  constructor(caption: string, private readonly columns: Column<Row>[], private sorted: number | null,
-              private readonly classOf: (row: Row) => string = () => "") {
+  constructor(
+    caption: string,
+    private readonly columns: Column<Row>[],
+    private sorted: number | null,
+    private readonly classOf: (row: Row) => string = () => "",
+  ) {
     const row = make("tr");
     columns.forEach((column, i) => row.append(this.head(column, i)));
     const table = make("table", "", make("caption", "visually-hidden", caption), make("thead", "", row), this.body);
@@ -47,21 +51,26 @@ export class Table<Row> {
   }
 
   private fill(): void {
-    const focused = this.body.contains(document.activeElement) ? document.activeElement?.getAttribute("aria-label") : null;
+    const focused = this.body.contains(document.activeElement)
+      ? document.activeElement?.getAttribute("aria-label")
+      : null;
     this.heads.forEach((head, i) => {
       if (i === this.sorted) head.setAttribute("aria-sort", this.descending ? "descending" : "ascending");
       else head.removeAttribute("aria-sort");
     });
-    this.body.replaceChildren(...this.inOrder().map((row) => {
-      const line = make("tr", this.classOf(row));
-      this.columns.forEach((column, i) => {
-        const cell = make(i === 0 ? "th" : "td", column.className ?? "", column.text(row));
-        if (i === 0) cell.scope = "row";
-        line.append(cell);
-      });
-      return line;
-    }));
-    if (focused) this.body.querySelector<HTMLElement>(`[aria-label="${CSS.escape(focused)}"]`)?.focus({ preventScroll: true });
+    this.body.replaceChildren(
+      ...this.inOrder().map((row) => {
+        const line = make("tr", this.classOf(row));
+        this.columns.forEach((column, i) => {
+          const cell = make(i === 0 ? "th" : "td", column.className ?? "", column.text(row));
+          if (i === 0) cell.scope = "row";
+          line.append(cell);
+        });
+        return line;
+      }),
+    );
+    if (focused)
+      this.body.querySelector<HTMLElement>(`[aria-label="${CSS.escape(focused)}"]`)?.focus({ preventScroll: true });
   }
 
   private inOrder(): Row[] {

@@ -20,7 +20,9 @@ export function iterationsText(iterations: number | null): string {
 
 /// "XPBD, dt 1.1 ms, 4 iterations".
 export function settingText({ method, dt_s, iterations }: Pick<Setting, "method" | "dt_s" | "iterations">): string {
-  return [methodText(method).name, `dt ${stepText(dt_s)}`, iterationsText(iterations)].filter((part) => part !== "").join(", ");
+  return [methodText(method).name, `dt ${stepText(dt_s)}`, iterationsText(iterations)]
+    .filter((part) => part !== "")
+    .join(", ");
 }
 
 /// 1.2e-3: as the tolerances are written.
@@ -33,7 +35,9 @@ export function errorText(error: number | null): string {
 /// 57 ms; of a simulated second.
 export function costText(cost: Cost | null): string {
   if (!cost) return "–";
-  return cost.median >= 1000 ? `${digits(cost.median / 1000, 3)}\u00a0s` : `${digits(cost.median, cost.median < 10 ? 2 : 3)}\u00a0ms`;
+  return cost.median >= 1000
+    ? `${digits(cost.median / 1000, 3)}\u00a0s`
+    : `${digits(cost.median, cost.median < 10 ? 2 : 3)}\u00a0ms`;
 }
 
 /// Between what the timings put it: " (55 … 60 ms)".
@@ -48,7 +52,12 @@ export function limitText(share: number | null): string {
   return share < 10 ? `${digits(100 * share, 2)}\u00a0%` : `${digits(share, 2)}\u00a0×`;
 }
 
-export const axisNames: Record<Axis, string> = { position: "Position", energy: "Energy", strain: "Strain", rest: "Rest shape" };
+export const axisNames: Record<Axis, string> = {
+  position: "Position",
+  energy: "Energy",
+  strain: "Strain",
+  rest: "Rest shape",
+};
 export const axisMeanings: Record<Axis, string> = {
   position: "RMS distance of the vertices to the exact motion, over the cloth's size",
   energy: "error of the total energy, over the most that ever moved or stretched",
@@ -61,5 +70,7 @@ export function comparedText(cost: Cost | null, present: Cost | null): string {
   if (!cost || !present || cost.median <= 0 || present.median <= 0) return "";
   const ratio = present.median / cost.median;
   if (ratio > 0.95 && ratio < 1.05) return "as fast as the present setting";
-  return ratio > 1 ? `${digits(ratio, 2)} times as fast as the present setting` : `takes ${digits(1 / ratio, 2)} times as long as the present setting`;
+  return ratio > 1
+    ? `${digits(ratio, 2)} times as fast as the present setting`
+    : `takes ${digits(1 / ratio, 2)} times as long as the present setting`;
 }

@@ -7,16 +7,27 @@ export const axes = ["position", "energy", "strain", "rest"] as const;
 export type Axis = (typeof axes)[number];
 
 /// A way to step a scene; null for what the method does not look at.
-export interface Setting { method: string; dt_s: number; iterations: number | null; tolerance: number | null }
+export interface Setting {
+  method: string;
+  dt_s: number;
+  iterations: number | null;
+  tolerance: number | null;
+}
 
-export type Errors = Record<Axis, number | null>;  ///< shares: 0.01 is one percent
+export type Errors = Record<Axis, number | null>; ///< shares: 0.01 is one percent
 /// [ms per simulated second]; the median lies between low and high, null where too few runs tell.
-export interface Cost { median: number; minimum: number; runs: number; low: number | null; high: number | null }
+export interface Cost {
+  median: number;
+  minimum: number;
+  runs: number;
+  low: number | null;
+  high: number | null;
+}
 
 export interface Point extends Setting {
   error: Errors;
   largest_position_error: number | null;
-  largest_position_error_low: number | null;  ///< of what a choice answers; null: not known
+  largest_position_error_low: number | null; ///< of what a choice answers; null: not known
   largest_position_error_high: number | null;
   ms_a_simulated_s: Cost | null;
   blew_up_at_s: number | null;
@@ -24,10 +35,25 @@ export interface Point extends Setting {
   patch: Patch;
 }
 
-interface Measured { scene: string; renderer: string; complete: boolean; notes: string[] }
+interface Measured {
+  scene: string;
+  renderer: string;
+  complete: boolean;
+  notes: string[];
+}
 
-export interface AxisFacts { available: boolean; reason: string; reference_error: number | null; float32_floor: number | null }
-export interface LeftOut { method: string; dt_s: number | null; iterations: number | null; reason: string }
+export interface AxisFacts {
+  available: boolean;
+  reason: string;
+  reference_error: number | null;
+  float32_floor: number | null;
+}
+export interface LeftOut {
+  method: string;
+  dt_s: number | null;
+  iterations: number | null;
+  reason: string;
+}
 
 export interface Chart extends Measured {
   kind: "chart";
@@ -41,7 +67,11 @@ export interface Chart extends Measured {
   left_out: LeftOut[];
 }
 
-export interface MapCell { dt_s: number; growth: number; blew_up: boolean }
+export interface MapCell {
+  dt_s: number;
+  growth: number;
+  blew_up: boolean;
+}
 export interface MapColumn {
   value: number;
   theory_s: number | null;
@@ -53,7 +83,7 @@ export interface MapColumn {
 }
 export interface StabilityMap extends Measured {
   kind: "stability";
-  field: string;  ///< JSON Pointer, or "stiffness": a factor on all of them
+  field: string; ///< JSON Pointer, or "stiffness": a factor on all of them
   unit: string;
   present: { value: number; dt_s: number; method: string };
   time_s: number;
@@ -85,7 +115,7 @@ export interface Variant {
   change: number | null;
   ms_a_simulated_s: Cost | null;
   cost_ratio: number | null;
-  cost_ratio_low: number | null;  ///< it lies between these; null: too few timings to tell
+  cost_ratio_low: number | null; ///< it lies between these; null: too few timings to tell
   cost_ratio_high: number | null;
   saves: "yes" | "no" | "cannot tell" | null;
   dt_limit_s: number | null;
@@ -104,7 +134,12 @@ export interface Simplification extends Measured {
   why: string;
 }
 
-export interface Results { chart: Chart; stability: StabilityMap; choose: Choice; simplify: Simplification }
+export interface Results {
+  chart: Chart;
+  stability: StabilityMap;
+  choose: Choice;
+  simplify: Simplification;
+}
 
 /// `lab.progress`.
 export interface Progress {
@@ -126,7 +161,7 @@ export interface Arrival {
   stale: boolean;
   revision: number;
   cached: boolean;
-  beside: boolean;  ///< the session played on meanwhile
+  beside: boolean; ///< the session played on meanwhile
   result: Results[Kind] | null;
   error?: RpcErrorData;
 }

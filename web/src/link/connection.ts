@@ -14,11 +14,11 @@ export interface LinkEvents {
 }
 
 const subprotocol = "clothlab.v1";
-const firstDelay = 0.25;  // [s]: a restarted server is usually back at once
-const longestDelay = 8;   // [s]
-const pingEvery = 1000;   // [ms]
-const silenceLimit = 8000;  // [ms] without one byte: sim.status alone comes 10 times a second
-const closeBadMessage = 4002;  // 1002, "protocol error", is not a page's to use
+const firstDelay = 0.25; // [s]: a restarted server is usually back at once
+const longestDelay = 8; // [s]
+const pingEvery = 1000; // [ms]
+const silenceLimit = 8000; // [ms] without one byte: sim.status alone comes 10 times a second
+const closeBadMessage = 4002; // 1002, "protocol error", is not a page's to use
 
 export class Connection {
   bytesReceived = 0;
@@ -29,18 +29,26 @@ export class Connection {
   private lastHeard = 0;
   private refused = false;
 
-  constructor(private readonly session: string, private readonly events: LinkEvents) {
+  constructor(
+    private readonly session: string,
+    private readonly events: LinkEvents,
+  ) {
     setInterval(() => this.beat(), pingEvery);
   }
 
-  get open(): boolean { return this.socket?.readyState === WebSocket.OPEN; }
+  get open(): boolean {
+    return this.socket?.readyState === WebSocket.OPEN;
+  }
 
   connect(): void {
     clearTimeout(this.retryTimer);
     this.refused = false;
     this.events.state("connecting", 0, "");
     const scheme = location.protocol === "https:" ? "wss:" : "ws:";
-    const socket = new WebSocket(`${scheme}//${location.host}/ws?session=${encodeURIComponent(this.session)}`, subprotocol);
+    const socket = new WebSocket(
+      `${scheme}//${location.host}/ws?session=${encodeURIComponent(this.session)}`,
+      subprotocol,
+    );
     socket.binaryType = "arraybuffer";
     this.socket = socket;
     this.rpc = new Rpc(socket, (method, params) => this.events.notification(method, params));
@@ -54,7 +62,9 @@ export class Connection {
     return this.rpc ? this.rpc.request<T>(method, params) : Promise.reject(new Error("not connected to the server"));
   }
 
-  acknowledge(sequence: number): void { this.rpc?.notify("stream.ack", { frame: sequence }); }
+  acknowledge(sequence: number): void {
+    this.rpc?.notify("stream.ack", { frame: sequence });
+  }
 
   /// Stores the token for this tab and connects with it.
   authenticate(token: string): void {
@@ -74,8 +84,10 @@ export class Connection {
       this.events.state("open", 0, "");
     } catch (error) {
       if (error instanceof RpcError && error.code === errorNotAllowed)
-        this.refuse(token === null ? "This server asks for a token." : `The server did not accept this token: ${error.message}.`);
-      else if (error instanceof RpcError) this.tryLater(error.message);  // too many of something: it passes
+        this.refuse(
+          token === null ? "This server asks for a token." : `The server did not accept this token: ${error.message}.`,
+        );
+      else if (error instanceof RpcError) this.tryLater(error.message); // too many of something: it passes
     }
   }
 
@@ -125,7 +137,10 @@ export class Connection {
       return;
     }
     const sent = performance.now();
-    this.rpc.request("ping", { t: sent }).then(() => this.events.latency(performance.now() - sent), () => undefined);
+    this.rpc.request("ping", { t: sent }).then(
+      () => this.events.latency(performance.now() - sent),
+      () => undefined,
+    );
   }
 
   /// For good: nothing reconnects it.
@@ -137,7 +152,7 @@ export class Connection {
   private abandon(code = 1000, reason = ""): void {
     if (!this.socket) return;
     this.socket.onopen = this.socket.onmessage = this.socket.onclose = null;
-    this.socket.close(code, reason.slice(0, 123));  // the most a close frame holds
+    this.socket.close(code, reason.slice(0, 123)); // the most a close frame holds
     this.rpc?.close();
     this.socket = this.rpc = null;
   }
@@ -149,7 +164,7 @@ export class Connection {
   }
 
   private retry(why: string): void {
-    const wait = this.delay * (0.8 + 0.4 * Math.random());  // spread out: all viewers lost the server together
+    const wait = this.delay * (0.8 + 0.4 * Math.random()); // spread out: all viewers lost the server together
     this.delay = Math.min(this.delay * 1.6, longestDelay);
     this.events.state("waiting", wait, why);
     this.retryTimer = window.setTimeout(() => this.connect(), wait * 1000);

@@ -9,7 +9,10 @@ const isObject = (value: unknown): value is Record<string, unknown> =>
 function keysOf(pointer: string): string[] {
   if (pointer === "") return [];
   if (!pointer.startsWith("/")) throw new Error(`not a JSON Pointer: ${pointer}`);
-  return pointer.slice(1).split("/").map((key) => key.replaceAll("~1", "/").replaceAll("~0", "~"));
+  return pointer
+    .slice(1)
+    .split("/")
+    .map((key) => key.replaceAll("~1", "/").replaceAll("~0", "~"));
 }
 
 function child(node: unknown, key: string): unknown {
@@ -53,8 +56,12 @@ function operate(root: { document: unknown }, operation: Operation): void {
   };
   const [parent, key] = locate(operation.path);
   switch (operation.op) {
-    case "add": insert(parent, key, operation.value); break;
-    case "remove": remove(parent, key); break;
+    case "add":
+      insert(parent, key, operation.value);
+      break;
+    case "remove":
+      remove(parent, key);
+      break;
     case "replace":
       if (Array.isArray(parent)) parent[Number(key)] = operation.value;
       else parent[key] = operation.value;
@@ -68,7 +75,8 @@ function operate(root: { document: unknown }, operation: Operation): void {
       insert(target, targetKey, value);
       break;
     }
-    case "test": break;  // the server has held the test already
+    case "test":
+      break; // the server has held the test already
   }
 }
 

@@ -6,7 +6,7 @@ const kindTopology = 1;
 const kindFrame = 2;
 const encodingF32 = 0;
 const encodingQ16 = 1;
-const q16Bytes = 8;  ///< a vertex
+const q16Bytes = 8; ///< a vertex
 const flagAsleep = 1;
 const flagDiverged = 2;
 
@@ -18,24 +18,32 @@ export interface Header {
   topologyRevision: number;
   sequence: number;
   vertexCount: number;
-  time: number;        ///< simulated time [s]
+  time: number; ///< simulated time [s]
   step: number;
-  boxMinimum: [number, number, number];  ///< [m]
-  boxExtent: [number, number, number];   ///< [m]
+  boxMinimum: [number, number, number]; ///< [m]
+  boxExtent: [number, number, number]; ///< [m]
   payloadBytes: number;
 }
 
-export interface Frame { header: Header; buffer: ArrayBuffer }
+export interface Frame {
+  header: Header;
+  buffer: ArrayBuffer;
+}
 /// With what the session told before it: where its colliders are.
-export interface ShownFrame extends Frame { moved: MovedCollider[] }
+export interface ShownFrame extends Frame {
+  moved: MovedCollider[];
+}
 
-export interface ClothRange { firstVertex: number; vertexCount: number }
+export interface ClothRange {
+  firstVertex: number;
+  vertexCount: number;
+}
 
 export interface Topology {
   revision: number;
   vertexCount: number;
   cloths: ClothRange[];
-  triangles: Uint32Array;           ///< [triangle_count * 3]
+  triangles: Uint32Array; ///< [triangle_count * 3]
   textureCoordinates: Float32Array; ///< [vertex_count * 2]
 }
 
@@ -50,17 +58,25 @@ function demand(condition: boolean, what: string): asserts condition {
 export function decode(buffer: ArrayBuffer): { topology: Topology } | { frame: Frame } {
   const header = decodeHeader(buffer);
   if (header.kind === kindTopology) return { topology: decodeTopology(header, buffer) };
-  demand(header.payloadBytes === q16Bytes * header.vertexCount,
-         `a frame of ${header.vertexCount} vertices has ${header.payloadBytes} bytes`);
+  demand(
+    header.payloadBytes === q16Bytes * header.vertexCount,
+    `a frame of ${header.vertexCount} vertices has ${header.payloadBytes} bytes`,
+  );
   return { frame: { header, buffer } };
 }
 
 function decodeHeader(buffer: ArrayBuffer): Header {
   demand(buffer.byteLength >= headerBytes, `a binary message of ${buffer.byteLength} bytes has no room for a header`);
   const view = new DataView(buffer);
-  const kind = view.getUint8(0), encoding = view.getUint8(1), flags = view.getUint16(2, true), reserved = view.getUint32(60, true);
-  const triple = (at: number): [number, number, number] =>
-    [view.getFloat32(at, true), view.getFloat32(at + 4, true), view.getFloat32(at + 8, true)];
+  const kind = view.getUint8(0),
+    encoding = view.getUint8(1),
+    flags = view.getUint16(2, true),
+    reserved = view.getUint32(60, true);
+  const triple = (at: number): [number, number, number] => [
+    view.getFloat32(at, true),
+    view.getFloat32(at + 4, true),
+    view.getFloat32(at + 8, true),
+  ];
   const header: Header = {
     kind,
     encoding,
@@ -77,14 +93,24 @@ function decodeHeader(buffer: ArrayBuffer): Header {
   };
   const isFrame = kind === kindFrame;
   demand(isFrame || kind === kindTopology, `a binary message is of the unknown kind ${kind}`);
-  demand(encoding === (isFrame ? encodingQ16 : encodingF32), `a binary message of kind ${kind} has the encoding ${encoding}`);
-  demand((flags & ~(isFrame ? flagAsleep | flagDiverged : 0)) === 0, `a binary message of kind ${kind} has the flags ${flags}`);
+  demand(
+    encoding === (isFrame ? encodingQ16 : encodingF32),
+    `a binary message of kind ${kind} has the encoding ${encoding}`,
+  );
+  demand(
+    (flags & ~(isFrame ? flagAsleep | flagDiverged : 0)) === 0,
+    `a binary message of kind ${kind} has the flags ${flags}`,
+  );
   demand(header.time >= 0 && header.time < Infinity, `the time of a frame is ${header.time}`);
-  demand(header.boxMinimum.every(Number.isFinite) && header.boxExtent.every((extent) => extent >= 0 && extent < Infinity),
-         `the box of a frame is ${header.boxMinimum} + ${header.boxExtent}`);
+  demand(
+    header.boxMinimum.every(Number.isFinite) && header.boxExtent.every((extent) => extent >= 0 && extent < Infinity),
+    `the box of a frame is ${header.boxMinimum} + ${header.boxExtent}`,
+  );
   demand(reserved === 0, `the reserved word of a binary message is ${reserved}`);
-  demand(headerBytes + header.payloadBytes === buffer.byteLength,
-         `the header announces ${header.payloadBytes} bytes, ${buffer.byteLength - headerBytes} came`);
+  demand(
+    headerBytes + header.payloadBytes === buffer.byteLength,
+    `the header announces ${header.payloadBytes} bytes, ${buffer.byteLength - headerBytes} came`,
+  );
   return header;
 }
 
@@ -94,14 +120,19 @@ function decodeTopology(header: Header, buffer: ArrayBuffer): Topology {
   const [triangleCount = 0, clothCount = 0] = new Uint32Array(buffer, headerBytes, 2);
   const trianglesAt = headerBytes + 8 + 8 * clothCount;
   const textureAt = trianglesAt + 12 * triangleCount;
-  demand(textureAt + 8 * vertexCount === buffer.byteLength,
-         `a topology of ${clothCount} cloths, ${triangleCount} triangles and ${vertexCount} vertices has ${payloadBytes} bytes`);
+  demand(
+    textureAt + 8 * vertexCount === buffer.byteLength,
+    `a topology of ${clothCount} cloths, ${triangleCount} triangles and ${vertexCount} vertices has ${payloadBytes} bytes`,
+  );
   const ranges = new Uint32Array(buffer, headerBytes + 8, 2 * clothCount);
   const cloths: ClothRange[] = [];
   let next = 0;
   for (let i = 0; i < ranges.length; i += 2) {
     const range = { firstVertex: ranges[i] ?? 0, vertexCount: ranges[i + 1] ?? 0 };
-    demand(range.firstVertex === next, `cloth ${cloths.length} begins at vertex ${range.firstVertex} instead of ${next}`);
+    demand(
+      range.firstVertex === next,
+      `cloth ${cloths.length} begins at vertex ${range.firstVertex} instead of ${next}`,
+    );
     next += range.vertexCount;
     cloths.push(range);
   }
@@ -110,7 +141,10 @@ function decodeTopology(header: Header, buffer: ArrayBuffer): Topology {
   const stray = triangles.find((corner) => corner >= vertexCount);
   demand(stray === undefined, `a triangle has vertex ${stray} of ${vertexCount}`);
   return {
-    revision: header.topologyRevision, vertexCount, cloths, triangles,
+    revision: header.topologyRevision,
+    vertexCount,
+    cloths,
+    triangles,
     textureCoordinates: new Float32Array(buffer, textureAt, 2 * vertexCount),
   };
 }

@@ -1,19 +1,31 @@
 // JSON-RPC 2.0 over one WebSocket: requests as promises, notifications to a handler.
 import { BadMessage } from "./protocol";
 
-export interface RpcErrorData { path?: string; found?: string; allowed?: string; revision?: number }
+export interface RpcErrorData {
+  path?: string;
+  found?: string;
+  allowed?: string;
+  revision?: number;
+}
 
 export const errorNotAllowed = -32001;
 
 export class RpcError extends Error {
-  constructor(readonly code: number, message: string, readonly data: RpcErrorData = {}) {
+  constructor(
+    readonly code: number,
+    message: string,
+    readonly data: RpcErrorData = {},
+  ) {
     super(message);
   }
 }
 
 type Params = Record<string, unknown>;
 
-interface Pending { resolve(result: unknown): void; reject(error: Error): void }
+interface Pending {
+  resolve(result: unknown): void;
+  reject(error: Error): void;
+}
 
 interface Incoming {
   id?: number | string | null;
@@ -38,8 +50,10 @@ export class Rpc {
   private nextId = 1;
   private readonly pending = new Map<number, Pending>();
 
-  constructor(private readonly socket: WebSocket,
-              private readonly onNotification: (method: string, params: Params) => void) {}
+  constructor(
+    private readonly socket: WebSocket,
+    private readonly onNotification: (method: string, params: Params) => void,
+  ) {}
 
   request<T = Params>(method: string, params: Params = {}): Promise<T> {
     return new Promise((resolve, reject) => {
@@ -73,7 +87,8 @@ export class Rpc {
 
   /// The socket is gone: nobody will answer any more.
   close(): void {
-    for (const waiting of this.pending.values()) waiting.reject(new Error("the connection was lost before the server answered"));
+    for (const waiting of this.pending.values())
+      waiting.reject(new Error("the connection was lost before the server answered"));
     this.pending.clear();
   }
 }

@@ -3,15 +3,15 @@
 import { applyPatch, valueAt } from "./json_patch";
 import type { Operation, Patch, SceneDocument } from "./scene_types";
 
-const sendEvery = 50;  // [ms]
-const oneChange = 2000;  // [ms] between edits that are one change to a person: a slider that is dragged
+const sendEvery = 50; // [ms]
+const oneChange = 2000; // [ms] between edits that are one change to a person: a slider that is dragged
 
 export interface StoreEvents {
   send(patch: Patch): Promise<{ revision?: number; applies?: string }>;
   fetch(): Promise<void>;
   changed(document: SceneDocument, whole: boolean): void;
   applied(depth: string): void;
-  wayBack(operations: Operation[]): void;  ///< of the changes that this page made last
+  wayBack(operations: Operation[]): void; ///< of the changes that this page made last
   rejected(error: Error): void;
 }
 
@@ -22,7 +22,7 @@ export class SceneStore {
   private inFlight: Operation[] | null = null;
   private timer = 0;
   private lastSent = -Infinity;
-  private readonly before = new Map<string, Operation>();  // the last change, undone
+  private readonly before = new Map<string, Operation>(); // the last change, undone
 
   constructor(private readonly events: StoreEvents) {}
 
@@ -117,6 +117,8 @@ const isScalar = (value: unknown): boolean => typeof value !== "object" || value
 
 function isPlain(patch: Patch): boolean {
   if (Array.isArray(patch)) return patch.every((operation) => operation.op === "replace" && isScalar(operation.value));
-  return Object.values(patch).every((value) =>
-    value !== null && (Array.isArray(value) ? value.every(isScalar) : isScalar(value) || isPlain(value as Patch)));
+  return Object.values(patch).every(
+    (value) =>
+      value !== null && (Array.isArray(value) ? value.every(isScalar) : isScalar(value) || isPlain(value as Patch)),
+  );
 }

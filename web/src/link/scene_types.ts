@@ -2,21 +2,52 @@
 
 export type Vec3 = [number, number, number];
 
-export interface Oscillate { axis: Vec3; amplitude: number; frequency: number }
-export interface Linear { velocity: Vec3 }
-export interface Spin { axis: Vec3; center: Vec3; degrees_per_second: number }
+export interface Oscillate {
+  axis: Vec3;
+  amplitude: number;
+  frequency: number;
+}
+export interface Linear {
+  velocity: Vec3;
+}
+export interface Spin {
+  axis: Vec3;
+  center: Vec3;
+  degrees_per_second: number;
+}
 export type Motion = null | { oscillate: Oscillate } | { linear: Linear } | { spin: Spin };
 
-export interface Grid { columns: number; rows: number; width: number; height: number }
-export interface InlineMesh { vertices: Vec3[]; triangles: Vec3[] }
+export interface Grid {
+  columns: number;
+  rows: number;
+  width: number;
+  height: number;
+}
+export interface InlineMesh {
+  vertices: Vec3[];
+  triangles: Vec3[];
+}
 export type Mesh = { grid: Grid } | InlineMesh;
 
 export type At = string | { box: [Vec3, Vec3] };
-export interface Pin { at: At; motion: Motion }
-export interface Weight { at: At; mass: number }
+export interface Pin {
+  at: At;
+  motion: Motion;
+}
+export interface Weight {
+  at: At;
+  mass: number;
+}
 export type Start = null | { scatter: { size: number; seed: number } } | { scale: Vec3 };
 
-export interface Springs { model: "springs"; structural: number; shear: number; bend: number; damping: number; strain_limit: number | null }
+export interface Springs {
+  model: "springs";
+  structural: number;
+  shear: number;
+  bend: number;
+  damping: number;
+  strain_limit: number | null;
+}
 
 export interface Cloth {
   name: string;
@@ -31,8 +62,14 @@ export interface Cloth {
   texture: string;
 }
 
-export interface Sphere { center: Vec3; radius: number }
-export interface Plane { point: Vec3; normal: Vec3 }
+export interface Sphere {
+  center: Vec3;
+  radius: number;
+}
+export interface Plane {
+  point: Vec3;
+  normal: Vec3;
+}
 export interface Collider {
   name: string;
   sphere?: Sphere;
@@ -43,7 +80,11 @@ export interface Collider {
 }
 
 /// Where a collider that moves is at the time of a frame, by its place in the document's list.
-export interface MovedCollider { index: number; sphere?: Sphere; plane?: Plane }
+export interface MovedCollider {
+  index: number;
+  sphere?: Sphere;
+  plane?: Plane;
+}
 
 export interface SceneDocument {
   version: number;
@@ -59,7 +100,12 @@ export interface SceneDocument {
 export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
 
 /// One operation of an RFC 6902 patch.
-export interface Operation { op: "add" | "remove" | "replace" | "move" | "copy" | "test"; path: string; from?: string; value?: unknown }
+export interface Operation {
+  op: "add" | "remove" | "replace" | "move" | "copy" | "test";
+  path: string;
+  from?: string;
+  value?: unknown;
+}
 
 /// An array is RFC 6902, an object an RFC 7396 merge patch.
 export type Patch = Operation[] | { [key: string]: unknown };

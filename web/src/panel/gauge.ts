@@ -2,29 +2,49 @@
 import { readable } from "./slider";
 
 /// Of `sim.status`. null: no limit; 0: no time step is stable.
-export interface Stability { dt_limit: number | null }
+export interface Stability {
+  dt_limit: number | null;
+}
 
-const near = 0.9;    // from here on the server warns too
-const end = 1.5;     // the share at the right end
-const safer = 0.8;   // of the limit, where the button goes
+const near = 0.9; // from here on the server warns too
+const end = 1.5; // the share at the right end
+const safer = 0.8; // of the limit, where the button goes
 
 /// A time step [s] that is well below the limit, in a number that is easy to read.
 export const saferStep = (limit: number): number => Math.max(1e-9, Number((safer * limit).toPrecision(3)));
 
 export type Verdict = "good" | "near" | "beyond";
-export interface Reading { verdict: Verdict; word: string; share: string; spoken: string; filled: number }
+export interface Reading {
+  verdict: Verdict;
+  word: string;
+  share: string;
+  spoken: string;
+  filled: number;
+}
 
 /// What the gauge says of a time step [s].
 export function reading(dt: number, limit: number | null): Reading {
-  const always = (verdict: Verdict, word: string): Reading =>
-    ({ verdict, word, share: "at any time step", spoken: `${word} at any time step`, filled: 1 });
+  const always = (verdict: Verdict, word: string): Reading => ({
+    verdict,
+    word,
+    share: "at any time step",
+    spoken: `${word} at any time step`,
+    filled: 1,
+  });
   if (limit === null) return always("good", "Stable");
   if (limit <= 0) return always("beyond", "Unstable");
   const ratio = dt / limit;
   const verdict = ratio > 1 ? "beyond" : ratio > near ? "near" : "good";
   const word = { good: "Stable", near: "Marginal", beyond: "Unstable" }[verdict];
-  const share = ratio < 9.995 ? `${(100 * ratio).toFixed(ratio < 0.0995 ? 1 : 0)} %` : `${Number(ratio.toPrecision(3))} ×`;
-  return { verdict, word, share, spoken: `${word}: ${share}${ratio < 9.995 ? " of" : ""} the limit`, filled: Math.min(1, ratio / end) };
+  const share =
+    ratio < 9.995 ? `${(100 * ratio).toFixed(ratio < 0.0995 ? 1 : 0)} %` : `${Number(ratio.toPrecision(3))} ×`;
+  return {
+    verdict,
+    word,
+    share,
+    spoken: `${word}: ${share}${ratio < 9.995 ? " of" : ""} the limit`,
+    filled: Math.min(1, ratio / end),
+  };
 }
 
 const glyphs: Record<Verdict, string> = { good: "✓", near: "!", beyond: "✕" };
@@ -44,8 +64,8 @@ export class Gauge {
   private readonly word = part("b", "gauge-word", this.line);
   private readonly share = part("span", "gauge-share", this.line);
   private readonly limit = part("button", "gauge-limit", this.line) as HTMLButtonElement;
-  private readonly spoken = part("span", "visually-hidden", this.element);  // the word, said when it changes
-  private saferStep = 0;  // [s], for the button
+  private readonly spoken = part("span", "visually-hidden", this.element); // the word, said when it changes
+  private saferStep = 0; // [s], for the button
 
   constructor(setTimeStep: (dt: number) => void) {
     this.element.className = "gauge";
@@ -91,8 +111,12 @@ export class Gauge {
 }
 
 function explain(dt: number, limit: number | null): string {
-  if (limit === null) return "This method is stable at any time step; a long one damps the motion and asks for more iterations.";
-  if (limit <= 0) return "Without damping this method gains energy at any time step: add damping, or choose another method.";
-  return `time step ${readable(dt)} s, largest stable one ${readable(Number(limit.toPrecision(3)))} s.\n` +
-    "It shrinks with stiffer springs, lighter vertices and more damping. Beyond it the cloth blows up.";
+  if (limit === null)
+    return "This method is stable at any time step; a long one damps the motion and asks for more iterations.";
+  if (limit <= 0)
+    return "Without damping this method gains energy at any time step: add damping, or choose another method.";
+  return (
+    `time step ${readable(dt)} s, largest stable one ${readable(Number(limit.toPrecision(3)))} s.\n` +
+    "It shrinks with stiffer springs, lighter vertices and more damping. Beyond it the cloth blows up."
+  );
 }

@@ -36,7 +36,8 @@ const rows = [
 type Row = (typeof rows)[number][0];
 
 /// ×1.00; ×0.004: what is slow is not nothing.
-const factorText = (factor: number): string => `×${factor >= 0.1 || factor === 0 ? factor.toFixed(2) : factor.toPrecision(1)}`;
+const factorText = (factor: number): string =>
+  `×${factor >= 0.1 || factor === 0 ? factor.toFixed(2) : factor.toPrecision(1)}`;
 
 export class Hud {
   private readonly cells = new Map<Row, HTMLElement>();
@@ -77,8 +78,12 @@ export class Hud {
     if (cell) cell.title = name;
   }
 
-  countDrawn(): void { this.drawn++; }
-  countReceived(): void { this.received++; }
+  countDrawn(): void {
+    this.drawn++;
+  }
+  countReceived(): void {
+    this.received++;
+  }
 
   /// Ten times a second is enough to read, and repainting the card costs a slow machine a frame.
   setTime(seconds: number): void {
@@ -94,7 +99,7 @@ export class Hud {
   }
 
   showStatus(status: Status): void {
-    if (status.playing === false && status.time !== undefined) this.showTime(status.time);  // the last frame came too soon to be shown
+    if (status.playing === false && status.time !== undefined) this.showTime(status.time); // the last frame came too soon to be shown
     if (status.real_time_factor !== undefined) {
       const text = status.playing === false ? "paused" : factorText(status.real_time_factor);
       this.set("rtf", status.asleep ? "at rest" : text);
@@ -117,7 +122,8 @@ export class Hud {
     this.set("rate", kilobits < 10000 ? `${kilobits.toFixed(0)} kbit/s` : `${(kilobits / 1000).toFixed(1)} Mbit/s`);
     for (const [pass, cell] of this.passTimes) {
       const spent = this.passSeconds[pass];
-      cell.textContent = spent === undefined ? "" : spent < 1e-3 ? `${(1e6 * spent).toFixed(0)} µs` : `${(1e3 * spent).toFixed(1)} ms`;
+      cell.textContent =
+        spent === undefined ? "" : spent < 1e-3 ? `${(1e6 * spent).toFixed(0)} µs` : `${(1e3 * spent).toFixed(1)} ms`;
     }
     this.drawn = this.received = 0;
     this.bytes = bytesReceived;
@@ -147,6 +153,8 @@ export class Hud {
       return entry;
     };
     element("passes", HTMLUListElement).replaceChildren(
-      ...running.map((name) => item(name, "")), ...skipped.map(({ name, reason }) => item(name, reason)));
+      ...running.map((name) => item(name, "")),
+      ...skipped.map(({ name, reason }) => item(name, reason)),
+    );
   }
 }

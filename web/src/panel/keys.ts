@@ -3,7 +3,13 @@
 export type Commands = Record<"toggle" | "step" | "reset" | "fit" | "hide" | "help" | "lab", () => void>;
 
 const bindings: Record<string, keyof Commands> = {
-  " ": "toggle", ".": "step", r: "reset", f: "fit", h: "hide", l: "lab", "?": "help",
+  " ": "toggle",
+  ".": "step",
+  r: "reset",
+  f: "fit",
+  h: "hide",
+  l: "lab",
+  "?": "help",
 };
 
 /// Whether the focused element needs this key itself.
@@ -16,7 +22,7 @@ function takes(target: EventTarget | null, key: string): boolean {
 
 export function bindKeys(commands: Commands): void {
   addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey || event.repeat && event.key !== ".") return;
+    if (event.ctrlKey || event.metaKey || event.altKey || (event.repeat && event.key !== ".")) return;
     if (document.querySelector("dialog[open]") || takes(event.target, event.key)) return;
     const command = bindings[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (!command) return;

@@ -3,20 +3,35 @@ import { button, element } from "./dom";
 import type { FreeArea } from "../view/framing";
 
 const narrow = matchMedia("(max-width: 760px)");
-const low = matchMedia("(max-height: 560px)");  // no room for figures below each other, beside a picture
-const leastSide = 120;  // [px] of a picture worth the name
+const low = matchMedia("(max-height: 560px)"); // no room for figures below each other, beside a picture
+const leastSide = 120; // [px] of a picture worth the name
 
 /// The largest rectangle of a window that none of these covers.
 function largestFree(covered: DOMRect[], width: number, height: number): FreeArea {
-  const cuts = (ends: number[], most: number) => [...new Set([0, most, ...ends.filter((end) => end > 0 && end < most)])].sort((a, b) => a - b);
-  const across = cuts(covered.flatMap((box) => [box.left, box.right]), width);
-  const down = cuts(covered.flatMap((box) => [box.top, box.bottom]), height);
+  const cuts = (ends: number[], most: number) =>
+    [...new Set([0, most, ...ends.filter((end) => end > 0 && end < most)])].sort((a, b) => a - b);
+  const across = cuts(
+    covered.flatMap((box) => [box.left, box.right]),
+    width,
+  );
+  const down = cuts(
+    covered.flatMap((box) => [box.top, box.bottom]),
+    height,
+  );
   let best: FreeArea = { left: 0, top: 0, width: 0, height: 0 };
-  for (const left of across) for (const right of across) for (const top of down) for (const bottom of down) {
-    if (Math.min(right - left, bottom - top) < leastSide || (right - left) * (bottom - top) <= best.width * best.height) continue;
-    const meets = (box: DOMRect): boolean => box.left < right && box.right > left && box.top < bottom && box.bottom > top;
-    if (!covered.some(meets)) best = { left, top, width: right - left, height: bottom - top };
-  }
+  for (const left of across)
+    for (const right of across)
+      for (const top of down)
+        for (const bottom of down) {
+          if (
+            Math.min(right - left, bottom - top) < leastSide ||
+            (right - left) * (bottom - top) <= best.width * best.height
+          )
+            continue;
+          const meets = (box: DOMRect): boolean =>
+            box.left < right && box.right > left && box.top < bottom && box.bottom > top;
+          if (!covered.some(meets)) best = { left, top, width: right - left, height: bottom - top };
+        }
   return best.width > 0 ? best : { left: 0, top: 0, width, height };
 }
 
@@ -36,7 +51,7 @@ export class Layout {
     low.addEventListener("change", () => this.foldFigures());
     this.hud.addEventListener("toggle", () => this.changed());
     addEventListener("resize", () => this.changed());
-    element("transport", HTMLElement).addEventListener("transitionend", () => this.changed());  // it rides on the sheet
+    element("transport", HTMLElement).addEventListener("transitionend", () => this.changed()); // it rides on the sheet
   }
 
   toggleInterface(): void {
@@ -61,11 +76,17 @@ export class Layout {
     return [...document.querySelectorAll<HTMLElement>(".card")].flatMap((card) => {
       if (card.hidden || getComputedStyle(card).visibility === "hidden") return [];
       // The lab slides in: it counts where it comes to rest.
-      return [card === this.lab ? new DOMRect(card.offsetLeft, card.offsetTop, card.offsetWidth, card.offsetHeight) : card.getBoundingClientRect()];
+      return [
+        card === this.lab
+          ? new DOMRect(card.offsetLeft, card.offsetTop, card.offsetWidth, card.offsetHeight)
+          : card.getBoundingClientRect(),
+      ];
     });
   }
 
-  private foldFigures(): void { this.hud.open = !narrow.matches && !low.matches; }
+  private foldFigures(): void {
+    this.hud.open = !narrow.matches && !low.matches;
+  }
 
   private showSheet(open: boolean): void {
     document.body.classList.toggle("sheet-open", open);

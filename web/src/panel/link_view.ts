@@ -20,7 +20,12 @@ export class LinkView {
   show(state: LinkState, retryIn: number, why: string): void {
     clearInterval(this.countdown);
     this.dot.dataset.state = state;
-    this.dot.title = { open: "connected", connecting: "connecting", waiting: "not connected", unauthorised: "token needed" }[state];
+    this.dot.title = {
+      open: "connected",
+      connecting: "connecting",
+      waiting: "not connected",
+      unauthorised: "token needed",
+    }[state];
     if (state === "open") this.banner.hidden = true;
     if (state === "connecting" && !this.banner.hidden) this.text.textContent = "Connecting again…";
     if (state === "waiting") this.wait(retryIn, why);

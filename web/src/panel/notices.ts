@@ -4,13 +4,21 @@ import { RpcError } from "../link/rpc";
 import type { Patch } from "../link/scene_types";
 
 export type Level = "info" | "warning" | "error";
-export interface Action { label: string; run(): void }
+export interface Action {
+  label: string;
+  run(): void;
+}
 
-const narrow = matchMedia("(max-width: 760px)");  // room for one
+const narrow = matchMedia("(max-width: 760px)"); // room for one
 const shownAtOnce = (): number => (narrow.matches ? 1 : 3);
-const lifetime: Record<Level, number> = { info: 5000, warning: 9000, error: 14000 };  // [ms]
+const lifetime: Record<Level, number> = { info: 5000, warning: 9000, error: 14000 }; // [ms]
 
-interface Content { title: string; lines?: string[]; action?: Action | undefined; stays?: boolean }
+interface Content {
+  title: string;
+  lines?: string[];
+  action?: Action | undefined;
+  stays?: boolean;
+}
 
 export function notice(level: Level, content: Content): void {
   const holder = element("notices", HTMLElement);
@@ -33,14 +41,16 @@ export function notice(level: Level, content: Content): void {
   if (content.action) box.append(actionButton(content.action, box));
   box.append(close);
   // The same trouble again replaces its notice instead of piling up.
-  for (const old of [...holder.children]) if (old.querySelector("strong")?.textContent === title.textContent) old.remove();
+  for (const old of [...holder.children])
+    if (old.querySelector("strong")?.textContent === title.textContent) old.remove();
   holder.append(box);
   box.dataset.stays = String(content.stays === true);
-  while (holder.children.length > shownAtOnce()) (holder.querySelector('[data-stays="false"]') ?? holder.firstElementChild)?.remove();
+  while (holder.children.length > shownAtOnce())
+    (holder.querySelector('[data-stays="false"]') ?? holder.firstElementChild)?.remove();
   if (!content.stays) setTimeout(() => box.remove(), lifetime[level]);
 }
 
-const capitalised = (text: string): string => text.replace(/^[a-z](?=[a-z]{2})/, (letter) => letter.toUpperCase());  // but not dt
+const capitalised = (text: string): string => text.replace(/^[a-z](?=[a-z]{2})/, (letter) => letter.toUpperCase()); // but not dt
 const sentence = (text: string): string => capitalised(text).replace(/\.?$/, ".");
 
 function actionButton(action: Action, box: HTMLElement): HTMLButtonElement {
@@ -70,7 +80,10 @@ export function noticeError(title: string, error: Error): void {
 const asText = (value: unknown): string => (typeof value === "string" ? value : JSON.stringify(value));
 
 /// `sim.diverged`.
-export interface Diverged { reason: string; remedy?: { text: string; patch?: Patch } }
+export interface Diverged {
+  reason: string;
+  remedy?: { text: string; patch?: Patch };
+}
 
 const blewUp = "The simulation blew up";
 
@@ -84,15 +97,21 @@ export function clearDiverged(): void {
 /// Says why the simulation blew up, with its remedy as a button.
 export function showDiverged({ reason, remedy }: Diverged, apply: (patch: Patch) => Promise<void>): void {
   const patch = remedy?.patch;
-  const run = (fix: Patch): void => void apply(fix).catch((error: Error) => noticeError("The remedy was refused", error));
+  const run = (fix: Patch): void =>
+    void apply(fix).catch((error: Error) => noticeError("The remedy was refused", error));
   notice("error", {
-    title: blewUp, lines: [sentence(reason), ...(remedy ? [sentence(`Remedy: ${remedy.text}`)] : [])], stays: true,
+    title: blewUp,
+    lines: [sentence(reason), ...(remedy ? [sentence(`Remedy: ${remedy.text}`)] : [])],
+    stays: true,
     action: patch ? { label: "Apply the remedy", run: () => run(patch) } : undefined,
   });
 }
 
 const depths: Record<string, string> = {
-  none: "nothing to change", uniform: "applied live", kernel: "applied live, kernel rebuilt", cloth: "cloth rebuilt, time reset",
+  none: "nothing to change",
+  uniform: "applied live",
+  kernel: "applied live, kernel rebuilt",
+  cloth: "cloth rebuilt, time reset",
 };
 let appliedTimer = 0;
 

@@ -1,6 +1,15 @@
 // The panel: generated from the scene document, kept in step with it, and turning what is moved into patches.
 import GUI, { type Controller } from "lil-gui";
-import { operationsFor, readField, sectionsOf, timeStep, type Field, type Note, type Section, type SolverFacts } from "./fields";
+import {
+  operationsFor,
+  readField,
+  sectionsOf,
+  timeStep,
+  type Field,
+  type Note,
+  type Section,
+  type SolverFacts,
+} from "./fields";
 import { Gauge, type Stability } from "./gauge";
 import type { Operation, SceneDocument } from "../link/scene_types";
 import { SliderController } from "./slider";
@@ -11,7 +20,11 @@ export interface PanelEvents {
   loadPreset(name: string): void;
 }
 
-interface Control { field: Field; controller: Controller; held: boolean }
+interface Control {
+  field: Field;
+  controller: Controller;
+  held: boolean;
+}
 
 export class Panel {
   private gui: GUI | null = null;
@@ -28,7 +41,10 @@ export class Panel {
   private readonly folded = new Map<string, boolean>();
   private preset: Controller | null = null;
 
-  constructor(private readonly container: HTMLElement, private readonly events: PanelEvents) {}
+  constructor(
+    private readonly container: HTMLElement,
+    private readonly events: PanelEvents,
+  ) {}
 
   setPresets(presets: string[]): void {
     this.presets = presets;
@@ -77,7 +93,9 @@ export class Panel {
   private rebuildIfNeeded(): void {
     if (!this.document) return;
     const sections = sectionsOf(this.document, this.methods);
-    const shape = JSON.stringify([sections, this.presets], (key, value: unknown) => (key === "open" ? undefined : value));
+    const shape = JSON.stringify([sections, this.presets], (key, value: unknown) =>
+      key === "open" ? undefined : value,
+    );
     if (shape === this.shape) return;
     this.shape = shape;
     const scroll = this.container.scrollTop;
@@ -133,10 +151,14 @@ export class Panel {
 
   private controllerFor(folder: GUI, field: Field): Controller {
     switch (field.kind) {
-      case "number": return new SliderController(folder, this.values, field.key, field.label, field.scale);
-      case "color": return folder.addColor(this.values, field.key).name(field.label);
-      case "toggle": return folder.add(this.values, field.key).name(field.label);
-      case "choice": return this.choice(folder, field);
+      case "number":
+        return new SliderController(folder, this.values, field.key, field.label, field.scale);
+      case "color":
+        return folder.addColor(this.values, field.key).name(field.label);
+      case "toggle":
+        return folder.add(this.values, field.key).name(field.label);
+      case "choice":
+        return this.choice(folder, field);
     }
   }
 

@@ -4,16 +4,16 @@ import { Controller, type GUI } from "lil-gui";
 export interface Scale {
   min: number;
   max: number;
-  step?: number;   ///< of a linear scale; a logarithmic one moves by 0.4 % of its travel
-  log?: boolean;   ///< equal ratios take equal travel
-  zero?: boolean;  ///< the left end of a logarithmic scale is 0
+  step?: number; ///< of a linear scale; a logarithmic one moves by 0.4 % of its travel
+  log?: boolean; ///< equal ratios take equal travel
+  zero?: boolean; ///< the left end of a logarithmic scale is 0
   unit?: string;
   whole?: boolean;
-  zeroText?: string;  ///< what 0 is called, where it is no number to the user
+  zeroText?: string; ///< what 0 is called, where it is no number to the user
 }
 
-const travel = 1000;  // of a logarithmic scale
-const zeroEnd = 20;   // of the travel, where a logarithmic scale jumps to 0
+const travel = 1000; // of a logarithmic scale
+const zeroEnd = 20; // of the travel, where a logarithmic scale jumps to 0
 
 function toValue(at: number, scale: Scale): number {
   if (!scale.log) return Number(at.toPrecision(6));
@@ -43,25 +43,36 @@ export class SliderController extends Controller {
   private readonly high: number;
   private readonly stride: number;
 
-  constructor(gui: GUI, object: Record<string, unknown>, property: string, label: string, private readonly scale: Scale) {
+  constructor(
+    gui: GUI,
+    object: Record<string, unknown>,
+    property: string,
+    label: string,
+    private readonly scale: Scale,
+  ) {
     super(gui, object, property, "slider-controller");
     this.range.type = "range";
-    [this.low, this.high, this.stride] = scale.log ? [0, travel, 4] : [scale.min, scale.max, scale.step ?? (scale.max - scale.min) / 200];
+    [this.low, this.high, this.stride] = scale.log
+      ? [0, travel, 4]
+      : [scale.min, scale.max, scale.step ?? (scale.max - scale.min) / 200];
     this.range.min = String(this.low);
     this.range.max = String(this.high);
-    this.range.step = "any";  // a value between two steps stays where it is
+    this.range.step = "any"; // a value between two steps stays where it is
     this.range.tabIndex = 0;
     this.text.type = "text";
     this.text.inputMode = "decimal";
     this.text.spellcheck = false;
-    for (const input of [this.range, this.text]) input.setAttribute("aria-label", scale.unit ? `${label} [${scale.unit}]` : label);
+    for (const input of [this.range, this.text])
+      input.setAttribute("aria-label", scale.unit ? `${label} [${scale.unit}]` : label);
     this.tick.className = "slider-mark";
     this.tick.hidden = true;
     const rail = document.createElement("span");
     rail.className = "slider-rail";
     rail.append(this.range, this.tick);
     this.$widget.append(rail, this.text);
-    this.range.addEventListener("input", () => this.setValue(toValue(this.snapped(Number(this.range.value)), this.scale)));
+    this.range.addEventListener("input", () =>
+      this.setValue(toValue(this.snapped(Number(this.range.value)), this.scale)),
+    );
     this.range.addEventListener("keydown", (event) => this.rangeKey(event));
     this.range.addEventListener("change", () => this._callOnFinishChange());
     this.text.addEventListener("focus", () => this.text.select());
@@ -96,10 +107,16 @@ export class SliderController extends Controller {
     this.tick.style.setProperty("--at", String(share));
   }
 
-  private named(value: number): string | undefined { return value === 0 ? this.scale.zeroText : undefined; }
-  private written(value: number): string { return this.named(value) ?? readable(value); }
+  private named(value: number): string | undefined {
+    return value === 0 ? this.scale.zeroText : undefined;
+  }
+  private written(value: number): string {
+    return this.named(value) ?? readable(value);
+  }
 
-  private clamped(at: number): number { return Math.min(this.high, Math.max(this.low, at)); }
+  private clamped(at: number): number {
+    return Math.min(this.high, Math.max(this.low, at));
+  }
 
   private snapped(at: number): number {
     return this.scale.log ? at : this.clamped(this.low + Math.round((at - this.low) / this.stride) * this.stride);
@@ -118,7 +135,14 @@ export class SliderController extends Controller {
   }
 
   private rangeKey(event: KeyboardEvent): void {
-    const directions: Record<string, number> = { ArrowRight: 1, ArrowUp: 1, PageUp: 1, ArrowLeft: -1, ArrowDown: -1, PageDown: -1 };
+    const directions: Record<string, number> = {
+      ArrowRight: 1,
+      ArrowUp: 1,
+      PageUp: 1,
+      ArrowLeft: -1,
+      ArrowDown: -1,
+      PageDown: -1,
+    };
     const direction = directions[event.key];
     if (direction !== undefined) this.nudge(direction, event);
     else if (event.key === "Home") this.jump(this.low, event);

@@ -4,13 +4,13 @@ import { button, element } from "./dom";
 import type { Status } from "./hud";
 import type { Operation } from "../link/scene_types";
 
-const creeping = 0.1;        // of the speed asked for: slower than that nobody sees a motion
-const creepingFor = 3000;    // [ms] before it is said: a kernel that is compiled takes a while too
-const noPictureFor = 2000;   // [ms]
-const lookEvery = 250;       // [ms]
+const creeping = 0.1; // of the speed asked for: slower than that nobody sees a motion
+const creepingFor = 3000; // [ms] before it is said: a kernel that is compiled takes a while too
+const noPictureFor = 2000; // [ms]
+const lookEvery = 250; // [ms]
 
 export class SlowWatch {
-  dt = 0;  ///< of the scene [s]
+  dt = 0; ///< of the scene [s]
   private status: Status = {};
   private pictureAt = performance.now();
   private fastAt = performance.now();
@@ -27,7 +27,7 @@ export class SlowWatch {
       this.edit(back);
       this.look();
     };
-    document.addEventListener("visibilitychange", () => this.startAgain());  // a hidden page takes no pictures
+    document.addEventListener("visibilitychange", () => this.startAgain()); // a hidden page takes no pictures
     setInterval(() => this.look(), lookEvery);
   }
 
@@ -36,10 +36,14 @@ export class SlowWatch {
     this.startAgain();
   }
 
-  picture(): void { this.pictureAt = performance.now(); }
+  picture(): void {
+    this.pictureAt = performance.now();
+  }
 
   /// What would undo the last change that this page made.
-  changed(wayBack: Operation[]): void { this.wayBack = wayBack; }
+  changed(wayBack: Operation[]): void {
+    this.wayBack = wayBack;
+  }
 
   told(status: Status): void {
     if (status.playing !== this.status.playing) this.startAgain();
@@ -47,7 +51,9 @@ export class SlowWatch {
     if ((status.real_time_factor ?? 1) >= creeping * (this.status.speed ?? 1)) this.fastAt = performance.now();
   }
 
-  private startAgain(): void { this.pictureAt = this.fastAt = performance.now(); }
+  private startAgain(): void {
+    this.pictureAt = this.fastAt = performance.now();
+  }
 
   private look(): void {
     const said = this.say();
@@ -62,8 +68,10 @@ export class SlowWatch {
     if (!this.open || document.hidden || playing !== true || asleep || diverged) return "";
     const now = performance.now();
     const still = now - this.pictureAt;
-    if (still > noPictureFor) return `No new picture for ${Math.floor(still / 1000)} s: this scene is too much for the server${this.aStep(factor)}. Make it smaller, or undo.`;
-    if (now - this.fastAt > creepingFor) return `Only ×${Number(factor.toPrecision(2))} of real time: this scene is too much for the server${this.aStep(factor)}. Make it smaller, or undo.`;
+    if (still > noPictureFor)
+      return `No new picture for ${Math.floor(still / 1000)} s: this scene is too much for the server${this.aStep(factor)}. Make it smaller, or undo.`;
+    if (now - this.fastAt > creepingFor)
+      return `Only ×${Number(factor.toPrecision(2))} of real time: this scene is too much for the server${this.aStep(factor)}. Make it smaller, or undo.`;
     return "";
   }
 

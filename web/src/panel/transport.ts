@@ -2,13 +2,15 @@
 import { button, element } from "./dom";
 import type { Status } from "./hud";
 
-export interface TransportEvents { request(method: string, params?: Record<string, unknown>): void }
+export interface TransportEvents {
+  request(method: string, params?: Record<string, unknown>): void;
+}
 
 export class Transport {
   playing = true;
   private readonly play = button("play");
   private readonly speed = element("speed", HTMLSelectElement);
-  private readonly holdUntil = { playing: 0, speed: 0 };  // a status sent before our request would flip the button back
+  private readonly holdUntil = { playing: 0, speed: 0 }; // a status sent before our request would flip the button back
 
   constructor(private readonly events: TransportEvents) {
     this.play.onclick = () => this.toggle();
@@ -35,7 +37,9 @@ export class Transport {
     this.assume(false);
   }
 
-  reset(): void { this.events.request("sim.reset"); }
+  reset(): void {
+    this.events.request("sim.reset");
+  }
 
   status(status: Status): void {
     const now = performance.now();

@@ -3,14 +3,14 @@
 import type { PerspectiveCamera, Vector3 } from "three";
 import { between, centerIn, Outline, place, standFor, type FreeArea, type Stand } from "./framing";
 
-const timeToFollow = 0.15;  // [s]
-const mostDrawnBack = 2;    // times the distance that was foreseen: what flies away is let go
-const worthMoving = 1e-3;   // of the distance
+const timeToFollow = 0.15; // [s]
+const mostDrawnBack = 2; // times the distance that was foreseen: what flies away is let go
+const worthMoving = 1e-3; // of the distance
 
 export class CameraKeeper {
-  fitted = true;  ///< until the user moves the camera
+  fitted = true; ///< until the user moves the camera
   private area: FreeArea = { left: 0, top: 0, width: 1, height: 1 };
-  private height = 1;  // of the window [CSS pixels]
+  private height = 1; // of the window [CSS pixels]
   private foreseen = new Outline();
   private seen = new Outline();
   private stand: Stand | null = null;
@@ -63,6 +63,6 @@ export class CameraKeeper {
   private wanted(): Stand {
     const all = standFor(this.seen, this.area, this.height, this.camera.fov);
     const known = standFor(this.foreseen, this.area, this.height, this.camera.fov);
-    return all.away - known.middle <= mostDrawnBack * (known.away - known.middle) ? all : this.goal ?? known;
+    return all.away - known.middle <= mostDrawnBack * (known.away - known.middle) ? all : (this.goal ?? known);
   }
 }

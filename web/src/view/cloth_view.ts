@@ -1,23 +1,42 @@
 // Draws the streamed vertices: the q16 payload is the vertex buffer, decoded in the vertex shader.
-import { Box3, BufferAttribute, BufferGeometry, Group, Mesh, Points, Vector3, type IUniform, type Object3D } from "three";
-import { clothCasterMaterial, FabricMaterial, pinMaterial, type DecodeUniforms, type StageUniforms } from "./fabric_material";
+import {
+  Box3,
+  BufferAttribute,
+  BufferGeometry,
+  Group,
+  Mesh,
+  Points,
+  Vector3,
+  type IUniform,
+  type Object3D,
+} from "three";
+import {
+  clothCasterMaterial,
+  FabricMaterial,
+  pinMaterial,
+  type DecodeUniforms,
+  type StageUniforms,
+} from "./fabric_material";
 import { heldVertices } from "./pins";
 import { q16Words, type Frame, type Topology } from "../link/protocol";
 import type { SceneDocument } from "../link/scene_types";
 
-const mostMarkers = 160;  // a crowd of them would hide the cloth
+const mostMarkers = 160; // a crowd of them would hide the cloth
 
 export class ClothView {
   readonly object = new Group();
-  readonly caster = new Group();  ///< drawn into the ground's shadow
-  readonly box = new Box3();  ///< of the frame on screen [m]
+  readonly caster = new Group(); ///< drawn into the ground's shadow
+  readonly box = new Box3(); ///< of the frame on screen [m]
   vertices = 0;
   private topology: Topology | null = null;
   private document: SceneDocument | null = null;
   // Two buffers in turn: with one, Chromium's software WebGL was seen to draw the mesh, but not the pins, from the vertices
   // of an earlier frame, and to go on with that when no further frame came.
   private words: [BufferAttribute, BufferAttribute] | null = null;
-  private readonly decode: DecodeUniforms = { boxMinimum: { value: new Vector3() }, boxExtent: { value: new Vector3() } };
+  private readonly decode: DecodeUniforms = {
+    boxMinimum: { value: new Vector3() },
+    boxExtent: { value: new Vector3() },
+  };
   private readonly materials: FabricMaterial[] = [];
   private readonly depthMaterial = clothCasterMaterial(this.decode);
   private readonly casterMaterial = clothCasterMaterial(this.decode);
@@ -25,7 +44,10 @@ export class ClothView {
   private mesh: Mesh | null = null;
   private markers: Points | null = null;
 
-  constructor(private readonly stage: StageUniforms, pixelRatio: IUniform<number>) {
+  constructor(
+    private readonly stage: StageUniforms,
+    pixelRatio: IUniform<number>,
+  ) {
     this.pinMaterial = pinMaterial(this.decode, pixelRatio);
   }
 
@@ -43,7 +65,11 @@ export class ClothView {
   /// Takes the frame's bytes as they are. False if they belong to a topology that is not here.
   show(frame: Frame): boolean {
     const { header } = frame;
-    if (!this.topology || this.topology.revision !== header.topologyRevision || this.topology.vertexCount !== header.vertexCount) {
+    if (
+      !this.topology ||
+      this.topology.revision !== header.topologyRevision ||
+      this.topology.vertexCount !== header.vertexCount
+    ) {
       return false;
     }
     const words = q16Words(frame);
@@ -91,12 +117,18 @@ export class ClothView {
     geometry.setAttribute("textureCoordinate", new BufferAttribute(topology.textureCoordinates, 2));
     geometry.setIndex(new BufferAttribute(topology.triangles, 1));
     this.addGroups(geometry, topology);
-    this.mesh = new Mesh(geometry, topology.cloths.map((_, i) => this.material(i)));
-    this.mesh.frustumCulled = false;  // its box is known to the shader only
+    this.mesh = new Mesh(
+      geometry,
+      topology.cloths.map((_, i) => this.material(i)),
+    );
+    this.mesh.frustumCulled = false; // its box is known to the shader only
     this.mesh.castShadow = this.mesh.receiveShadow = true;
     this.mesh.customDepthMaterial = this.depthMaterial;
     this.object.add(this.mesh);
-    const caster = new Mesh(geometry, topology.cloths.map(() => this.casterMaterial));
+    const caster = new Mesh(
+      geometry,
+      topology.cloths.map(() => this.casterMaterial),
+    );
     caster.frustumCulled = false;
     this.caster.add(caster);
     this.rebuildMarkers();
@@ -104,8 +136,10 @@ export class ClothView {
 
   // A group of the index is a run of triangles of one cloth.
   private addGroups(geometry: BufferGeometry, topology: Topology): void {
-    const clothOf = (vertex: number) => topology.cloths.findIndex(
-      ({ firstVertex, vertexCount }) => vertex >= firstVertex && vertex < firstVertex + vertexCount);
+    const clothOf = (vertex: number) =>
+      topology.cloths.findIndex(
+        ({ firstVertex, vertexCount }) => vertex >= firstVertex && vertex < firstVertex + vertexCount,
+      );
     let start = 0;
     let current = clothOf(topology.triangles[0] ?? 0);
     for (let at = 3; at <= topology.triangles.length; at += 3) {
@@ -127,7 +161,9 @@ export class ClothView {
     const ranges = this.topology.cloths;
     const pinned = this.document.cloths.flatMap((cloth, i) => {
       const range = ranges[i];
-      return range ? [...heldVertices(cloth).keys()].filter((v) => v < range.vertexCount).map((v) => range.firstVertex + v) : [];
+      return range
+        ? [...heldVertices(cloth).keys()].filter((v) => v < range.vertexCount).map((v) => range.firstVertex + v)
+        : [];
     });
     if (pinned.length === 0 || pinned.length > mostMarkers) return;
     const geometry = new BufferGeometry();

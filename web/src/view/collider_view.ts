@@ -1,12 +1,23 @@
 // Spheres and planes of the scene, and the studio floor where a scene has none. Where they are now, the session says.
 import {
-  CircleGeometry, type Color, DoubleSide, Group, Mesh, MeshLambertMaterial, ShaderMaterial, SphereGeometry, Vector3, type IUniform, type Object3D,
+  CircleGeometry,
+  type Color,
+  DoubleSide,
+  Group,
+  Mesh,
+  MeshLambertMaterial,
+  ShaderMaterial,
+  SphereGeometry,
+  Vector3,
+  type IUniform,
+  type Object3D,
 } from "three";
 import { casterMaterial, type StageUniforms } from "./fabric_material";
 import type { Collider, MovedCollider, Plane, SceneDocument } from "../link/scene_types";
 import { groundFragment, groundVertex, porcelain } from "./shaders";
 
-const up = new Vector3(0, 1, 0), forward = new Vector3(0, 0, 1);
+const up = new Vector3(0, 1, 0),
+  forward = new Vector3(0, 0, 1);
 
 /// Colours of the ground, set by the theme.
 export interface GroundUniforms {
@@ -18,7 +29,10 @@ export interface GroundUniforms {
 function sphereMaterial(stage: StageUniforms): MeshLambertMaterial {
   const material = new MeshLambertMaterial({ color: 0xd9d4c8 });
   material.onBeforeCompile = (shader) => {
-    shader.fragmentShader = shader.fragmentShader.replace("#include <opaque_fragment>", `${porcelain}\n#include <opaque_fragment>`);
+    shader.fragmentShader = shader.fragmentShader.replace(
+      "#include <opaque_fragment>",
+      `${porcelain}\n#include <opaque_fragment>`,
+    );
     Object.assign(shader.uniforms, stage);
   };
   return material;
@@ -26,13 +40,22 @@ function sphereMaterial(stage: StageUniforms): MeshLambertMaterial {
 
 function groundMaterial(uniforms: Record<string, IUniform>, solid: boolean): ShaderMaterial {
   return new ShaderMaterial({
-    uniforms, defines: solid ? { LINES: 1 } : {},
-    vertexShader: groundVertex, fragmentShader: groundFragment,
-    transparent: true, depthWrite: false, side: DoubleSide,
+    uniforms,
+    defines: solid ? { LINES: 1 } : {},
+    vertexShader: groundVertex,
+    fragmentShader: groundFragment,
+    transparent: true,
+    depthWrite: false,
+    side: DoubleSide,
   });
 }
 
-interface Shown { collider: Collider; index: number; mesh: Mesh; caster: Mesh | null }
+interface Shown {
+  collider: Collider;
+  index: number;
+  mesh: Mesh;
+  caster: Mesh | null;
+}
 
 function layPlane(mesh: Mesh, { point, normal }: Plane): void {
   mesh.position.set(...point);
@@ -41,9 +64,9 @@ function layPlane(mesh: Mesh, { point, normal }: Plane): void {
 
 export class ColliderView {
   readonly object = new Group();
-  readonly caster = new Group();  ///< drawn into the ground's shadow
+  readonly caster = new Group(); ///< drawn into the ground's shadow
   private readonly sphere = new SphereGeometry(1, 40, 24);
-  private readonly coarseSphere = new SphereGeometry(1, 16, 10);  // a blurred shadow needs no more
+  private readonly coarseSphere = new SphereGeometry(1, 16, 10); // a blurred shadow needs no more
   private readonly disc = new CircleGeometry(1, 64);
   private readonly sphereMaterial;
   private readonly planeMaterial;
@@ -52,9 +75,13 @@ export class ColliderView {
   private readonly studio: Mesh;
   private readonly radius = { value: 1 };
   private shown: Shown[] = [];
-  private lowest = 0;  // where the studio floor is [m]
+  private lowest = 0; // where the studio floor is [m]
 
-  constructor(private readonly stage: StageUniforms, ground: GroundUniforms, shadow: Record<string, IUniform>) {
+  constructor(
+    private readonly stage: StageUniforms,
+    ground: GroundUniforms,
+    shadow: Record<string, IUniform>,
+  ) {
     this.sphereMaterial = sphereMaterial(stage);
     const uniforms = { ...ground, ...shadow, fadeRadius: this.radius };
     this.planeMaterial = groundMaterial(uniforms, true);
@@ -101,7 +128,10 @@ export class ColliderView {
 
   /// What is drawn like every sphere and the studio floor, and like a sphere's shadow: see ClothView.samples.
   samples(): { shown: Object3D[]; cast: Object3D[] } {
-    return { shown: [new Mesh(this.sphere, this.sphereMaterial), this.studio], cast: [new Mesh(this.coarseSphere, this.casterMaterial)] };
+    return {
+      shown: [new Mesh(this.sphere, this.sphereMaterial), this.studio],
+      cast: [new Mesh(this.coarseSphere, this.casterMaterial)],
+    };
   }
 
   private meshOf(collider: Collider): Mesh | null {

@@ -1,12 +1,26 @@
 // The cloth's materials: three.js' Lambert shading with vertices decoded from q16 words, woven colour and sheen.
-import { Color, DoubleSide, MeshLambertMaterial, ShaderMaterial, Vector2, type Vector3, type IUniform, type Vector4 } from "three";
 import {
-  casterFragment, decodeParameters, fabricFragmentParameters, fabricShadowNormal, fabricSheen, fabricVertexParameters,
+  Color,
+  DoubleSide,
+  MeshLambertMaterial,
+  ShaderMaterial,
+  Vector2,
+  type Vector3,
+  type IUniform,
+  type Vector4,
+} from "three";
+import {
+  casterFragment,
+  decodeParameters,
+  fabricFragmentParameters,
+  fabricShadowNormal,
+  fabricSheen,
+  fabricVertexParameters,
 } from "./shaders";
 import type { Cloth } from "../link/scene_types";
 
 const patterns = ["plain", "weave", "checker", "stripes"];
-const threadsAcross = 64;  // along the longer side: about 8 pixels a thread at the default framing
+const threadsAcross = 64; // along the longer side: about 8 pixels a thread at the default framing
 
 /// Set from each frame's header; shared by every material that draws the payload.
 export interface DecodeUniforms {
@@ -29,7 +43,11 @@ export class FabricMaterial extends MeshLambertMaterial {
   constructor(decode: DecodeUniforms, stage: StageUniforms) {
     super({ side: DoubleSide, shadowSide: DoubleSide });
     this.onBeforeCompile = (shader) => {
-      Object.assign(shader.uniforms, decode, stage, { threads: this.threads, pattern: this.pattern, hemmed: this.hemmed });
+      Object.assign(shader.uniforms, decode, stage, {
+        threads: this.threads,
+        pattern: this.pattern,
+        hemmed: this.hemmed,
+      });
       shader.vertexShader = shader.vertexShader
         .replace("#include <common>", `#include <common>\n${fabricVertexParameters}`)
         .replace("#include <uv_vertex>", "vCloth = textureCoordinate * threads;")
@@ -39,8 +57,10 @@ export class FabricMaterial extends MeshLambertMaterial {
       shader.fragmentShader = shader.fragmentShader
         .replace("#include <common>", `#include <common>\n${fabricFragmentParameters}`)
         .replace("#include <color_fragment>", "diffuseColor.rgb = fabricColor(diffuseColor.rgb, gl_FrontFacing);")
-        .replace("#include <aomap_fragment>",
-                 "reflectedLight.indirectDiffuse *= skyLeft(vWorld, inverseTransformDirection(normal, viewMatrix));")
+        .replace(
+          "#include <aomap_fragment>",
+          "reflectedLight.indirectDiffuse *= skyLeft(vWorld, inverseTransformDirection(normal, viewMatrix));",
+        )
         .replace("#include <opaque_fragment>", `${fabricSheen}\n#include <opaque_fragment>`);
     };
   }
@@ -59,7 +79,8 @@ export class FabricMaterial extends MeshLambertMaterial {
 /// What draws the cloth where only its outline or its depth counts: both kinds of shadow.
 export function clothCasterMaterial(decode: DecodeUniforms): ShaderMaterial {
   return new ShaderMaterial({
-    uniforms: decode, side: DoubleSide,
+    uniforms: decode,
+    side: DoubleSide,
     vertexShader: `${decodeParameters}\nvoid main() { gl_Position = projectionMatrix * viewMatrix * vec4(decodePosition(), 1.0); }`,
     fragmentShader: casterFragment,
   });

@@ -2,9 +2,14 @@
 import { MathUtils, type PerspectiveCamera, Vector3 } from "three";
 
 /// The part of the window that cards leave free [CSS pixels].
-export interface FreeArea { left: number; top: number; width: number; height: number }
+export interface FreeArea {
+  left: number;
+  top: number;
+  width: number;
+  height: number;
+}
 
-const viewFrom = new Vector3(1, 0.34, 0.5).normalize();  // from the side: the seed's cloth hides its sphere from the front
+const viewFrom = new Vector3(1, 0.34, 0.5).normalize(); // from the side: the seed's cloth hides its sphere from the front
 const right = new Vector3(0, 1, 0).cross(viewFrom).normalize();
 const above = viewFrom.clone().cross(right);
 // Slopes of the four sides of a view: of any between them the farthest point is one of these, nearly.
@@ -12,10 +17,17 @@ const slopes = [0, 0.1, 0.25, 0.5];
 
 /// What is to be seen, as the farthest points towards each side of a view from that direction.
 export class Outline {
-  private readonly sides = slopes.flatMap((slope) => [right, right.clone().negate(), above, above.clone().negate()].map(
-    (across) => ({ along: across.clone().addScaledVector(viewFrom, slope), farthest: null as Vector3 | null, far: -Infinity })));
+  private readonly sides = slopes.flatMap((slope) =>
+    [right, right.clone().negate(), above, above.clone().negate()].map((across) => ({
+      along: across.clone().addScaledVector(viewFrom, slope),
+      farthest: null as Vector3 | null,
+      far: -Infinity,
+    })),
+  );
 
-  get empty(): boolean { return this.sides[0]?.farthest === null; }
+  get empty(): boolean {
+    return this.sides[0]?.farthest === null;
+  }
 
   add(points: Vector3[]): void {
     for (const side of this.sides) {
@@ -28,13 +40,20 @@ export class Outline {
     }
   }
 
-  points(): Vector3[] { return this.sides.flatMap(({ farthest }) => (farthest ? [farthest] : [])); }
+  points(): Vector3[] {
+    return this.sides.flatMap(({ farthest }) => (farthest ? [farthest] : []));
+  }
 }
 
 /// Where a camera stands: across and up the view, and along it, away from what it sees [m].
-export interface Stand { across: number; up: number; away: number; middle: number }
+export interface Stand {
+  across: number;
+  up: number;
+  away: number;
+  middle: number;
+}
 
-const padding = (area: FreeArea): number => 6 + 0.025 * Math.min(area.width, area.height);  // [CSS pixels]
+const padding = (area: FreeArea): number => 6 + 0.025 * Math.min(area.width, area.height); // [CSS pixels]
 
 /// The nearest place from which every point of the outline falls into the area, in a window of this height.
 export function standFor(outline: Outline, area: FreeArea, windowHeight: number, fov: number): Stand {
@@ -46,11 +65,21 @@ export function standFor(outline: Outline, area: FreeArea, windowHeight: number,
   // A point at depth z, x to the right of the camera, is inside while |x| < wide (away - z).
   const most = (along: Vector3, sign: number, slope: number): number =>
     Math.max(...points.map((point) => sign * along.dot(point) + slope * viewFrom.dot(point)));
-  const [toRight, toLeft, toTop, toBottom] = [most(right, 1, wide), most(right, -1, wide), most(above, 1, high), most(above, -1, high)];
+  const [toRight, toLeft, toTop, toBottom] = [
+    most(right, 1, wide),
+    most(right, -1, wide),
+    most(above, 1, high),
+    most(above, -1, high),
+  ];
   const depths = points.map((point) => viewFrom.dot(point));
   const nearest = Math.max(...depths);
   const away = Math.max((toRight + toLeft) / (2 * wide), (toTop + toBottom) / (2 * high), nearest + 0.05);
-  return { across: (toRight - toLeft) / 2, up: (toTop - toBottom) / 2, away, middle: (nearest + Math.min(...depths)) / 2 };
+  return {
+    across: (toRight - toLeft) / 2,
+    up: (toTop - toBottom) / 2,
+    away,
+    middle: (nearest + Math.min(...depths)) / 2,
+  };
 }
 
 /// Places the camera; returns the point it should orbit around.

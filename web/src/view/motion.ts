@@ -10,8 +10,15 @@ export function sweep(home: Vec3, motion: Motion): Vector3[] {
     return [point, point.clone().add(way), point.clone().sub(way)];
   }
   if (motion && "spin" in motion && motion.spin.degrees_per_second !== 0) {
-    const axis = new Vector3(...motion.spin.axis).normalize(), center = new Vector3(...motion.spin.center);
-    return Array.from({ length: 12 }, (_, i) => point.clone().sub(center).applyAxisAngle(axis, MathUtils.degToRad(30 * i)).add(center));
+    const axis = new Vector3(...motion.spin.axis).normalize(),
+      center = new Vector3(...motion.spin.center);
+    return Array.from({ length: 12 }, (_, i) =>
+      point
+        .clone()
+        .sub(center)
+        .applyAxisAngle(axis, MathUtils.degToRad(30 * i))
+        .add(center),
+    );
   }
   return [point];
 }

@@ -8,7 +8,11 @@ export function restPositions(cloth: Cloth): Vector3[] {
   const [x, y, z] = rotate.map(MathUtils.degToRad) as Vec3;
   // x first, then y, then z, each about a fixed axis: the matrix Z * Y * X.
   const turn = new Euler(x, y, z, "ZYX");
-  const place = (point: Vector3) => point.multiplyScalar(scale).applyEuler(turn).add(new Vector3(...translate));
+  const place = (point: Vector3) =>
+    point
+      .multiplyScalar(scale)
+      .applyEuler(turn)
+      .add(new Vector3(...translate));
   if (!("grid" in cloth.mesh)) return cloth.mesh.vertices.map((vertex) => place(new Vector3(...vertex)));
   const { columns, rows, width, height } = cloth.mesh.grid;
   const points: Vector3[] = [];
@@ -42,5 +46,7 @@ function verticesAt(at: At, cloth: Cloth, rest: Vector3[]): number[] {
 /// Vertices of the cloth that pins hold, each once, with the motion of its (last) pin.
 export function heldVertices(cloth: Cloth): Map<number, Motion> {
   const rest = cloth.pins.some((pin) => typeof pin.at !== "string") ? restPositions(cloth) : [];
-  return new Map(cloth.pins.flatMap((pin) => verticesAt(pin.at, cloth, rest).map((vertex) => [vertex, pin.motion] as const)));
+  return new Map(
+    cloth.pins.flatMap((pin) => verticesAt(pin.at, cloth, rest).map((vertex) => [vertex, pin.motion] as const)),
+  );
 }

@@ -1,6 +1,9 @@
 // Lowers the resolution when the machine cannot draw every frame in time, and tries again later.
 
-export interface Level { scale: number; shadow: number }
+export interface Level {
+  scale: number;
+  shadow: number;
+}
 
 const levels: Level[] = [
   { scale: 1, shadow: 2048 },
@@ -8,26 +11,31 @@ const levels: Level[] = [
   { scale: 0.8, shadow: 1024 },
   { scale: 0.65, shadow: 512 },
 ];
-const tooSlow = 34;    // [ms] between frames drawn: below 30 frames/s
+const tooSlow = 34; // [ms] between frames drawn: below 30 frames/s
 const fastEnough = 20; // [ms]
-const patience = 20;   // frames between decisions
+const patience = 20; // frames between decisions
 
 export class Quality {
   private index: number;
   private average = 16;
   private samples = 0;
-  private calmUntilRise = 600;  // frames; doubles whenever a rise proves too much
+  private calmUntilRise = 600; // frames; doubles whenever a rise proves too much
   private calm = 0;
 
-  constructor(private readonly changed: (level: Level) => void, startIndex: number) {
+  constructor(
+    private readonly changed: (level: Level) => void,
+    startIndex: number,
+  ) {
     this.index = startIndex;
   }
 
-  get level(): Level { return levels[this.index] as Level; }
+  get level(): Level {
+    return levels[this.index] as Level;
+  }
 
   /// One continuous frame took `milliseconds` since the last one.
   sample(milliseconds: number): void {
-    if (milliseconds > 1500) return;  // a pause, not a slow frame
+    if (milliseconds > 1500) return; // a pause, not a slow frame
     this.average += 0.1 * (Math.min(milliseconds, 200) - this.average);
     this.calm = this.average < fastEnough ? this.calm + 1 : 0;
     if (++this.samples < patience) return;

@@ -5,8 +5,8 @@ import { heldVertices, restPositions } from "./pins";
 import { q16Words, type Frame } from "../link/protocol";
 import type { Cloth, SceneDocument } from "../link/scene_types";
 
-const mostLooked = 400;  // points of a cloth: more say nothing new of its outline
-const swung = 0.6;       // of the way that a falling cloth goes beyond its pins, air and springs take the rest
+const mostLooked = 400; // points of a cloth: more say nothing new of its outline
+const swung = 0.6; // of the way that a falling cloth goes beyond its pins, air and springs take the rest
 
 function every<T>(items: T[], most: number): T[] {
   const stride = Math.ceil(items.length / most);
@@ -22,7 +22,9 @@ function clothPoints(cloth: Cloth, falls: boolean): Vector3[] {
   if (!falls || held.length === 0) return points;
   const pins = every(held, 64).map(([vertex]) => rest[vertex] as Vector3);
   for (const point of every(rest, mostLooked)) {
-    const pin = pins.reduce((near, other) => (other.distanceToSquared(point) < near.distanceToSquared(point) ? other : near));
+    const pin = pins.reduce((near, other) =>
+      other.distanceToSquared(point) < near.distanceToSquared(point) ? other : near,
+    );
     const length = pin.distanceTo(point);
     points.push(new Vector3(pin.x, pin.y - length, pin.z));
     const beyond = new Vector3(pin.x - point.x, 0, pin.z - point.z).multiplyScalar(swung);
@@ -31,8 +33,11 @@ function clothPoints(cloth: Cloth, falls: boolean): Vector3[] {
   return points;
 }
 
-const corners = (box: Box3): Vector3[] => Array.from({ length: 8 }, (_, i) =>
-  new Vector3((i & 1 ? box.max : box.min).x, (i & 2 ? box.max : box.min).y, (i & 4 ? box.max : box.min).z));
+const corners = (box: Box3): Vector3[] =>
+  Array.from(
+    { length: 8 },
+    (_, i) => new Vector3((i & 1 ? box.max : box.min).x, (i & 2 ? box.max : box.min).y, (i & 4 ? box.max : box.min).z),
+  );
 
 /// A ball's outline, nearly: the corners of a box around it stick out of it.
 function ballPoints(center: Vector3, radius: number): Vector3[] {
@@ -53,7 +58,8 @@ export function scenePoints(document: SceneDocument): Vector3[] {
   }
   // What nothing holds falls to the floor.
   const loose = document.cloths.filter(({ pins }) => pins.length === 0);
-  if (falls && Number.isFinite(floor)) points.push(...loose.flatMap((cloth) => every(restPositions(cloth), mostLooked).map((point) => point.setY(floor))));
+  if (falls && Number.isFinite(floor))
+    points.push(...loose.flatMap((cloth) => every(restPositions(cloth), mostLooked).map((point) => point.setY(floor))));
   return points;
 }
 
@@ -63,7 +69,8 @@ export function framePoints({ header, buffer }: Frame): Vector3[] {
   const stride = Math.ceil(header.vertexCount / mostLooked);
   const [minimum, extent] = [header.boxMinimum, header.boxExtent];
   const points: Vector3[] = [];
-  const at = (vertex: number, axis: 0 | 1 | 2): number => minimum[axis] + (extent[axis] * (words[4 * vertex + axis] ?? 0)) / 65535;
+  const at = (vertex: number, axis: 0 | 1 | 2): number =>
+    minimum[axis] + (extent[axis] * (words[4 * vertex + axis] ?? 0)) / 65535;
   for (let i = 0; i < header.vertexCount; i += stride) points.push(new Vector3(at(i, 0), at(i, 1), at(i, 2)));
   return points;
 }

@@ -1,6 +1,16 @@
 // The renderer, light, camera and the views on it. Draws only when something changed.
 import {
-  Box3, Color, DirectionalLight, HemisphereLight, PCFShadowMap, PerspectiveCamera, Scene, ShaderChunk, Vector3, Vector4, WebGLRenderer,
+  Box3,
+  Color,
+  DirectionalLight,
+  HemisphereLight,
+  PCFShadowMap,
+  PerspectiveCamera,
+  Scene,
+  ShaderChunk,
+  Vector3,
+  Vector4,
+  WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { ClothView } from "./cloth_view";
@@ -14,20 +24,23 @@ import { framePoints, scenePoints } from "./reach";
 import type { SceneDocument } from "../link/scene_types";
 import type { Graphics } from "./webgl";
 
-const stillAfter = 300;  // [ms] without a change: a picture at rest is worth its full resolution
-const explodedAt = 12;   // times the scene's radius
+const stillAfter = 300; // [ms] without a change: a picture at rest is worth its full resolution
+const explodedAt = 12; // times the scene's radius
 const lightFrom = new Vector3(0.55, 1, 0.62).normalize();
 
 // Five filtered reads of the shadow map a pixel are most of what a software renderer spends on the cloth: one will do.
 function readShadowsOnce(): void {
   const fiveReads = /shadow = \(\s*texture\( shadowMap, vec3\( shadowCoord\.xy \+ vogelDiskSample[\s\S]*?\) \* 0\.2;/;
-  ShaderChunk.shadowmap_pars_fragment = ShaderChunk.shadowmap_pars_fragment.replace(fiveReads, "shadow = texture( shadowMap, shadowCoord.xyz );");
+  ShaderChunk.shadowmap_pars_fragment = ShaderChunk.shadowmap_pars_fragment.replace(
+    fiveReads,
+    "shadow = texture( shadowMap, shadowCoord.xyz );",
+  );
 }
 
 export class Stage {
   readonly controls: OrbitControls;
   readonly cloth: ClothView;
-  onLost = (): void => undefined;  ///< the WebGL context is gone; three.js restores what it can when it comes back
+  onLost = (): void => undefined; ///< the WebGL context is gone; three.js restores what it can when it comes back
   private readonly canvas: HTMLCanvasElement;
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
@@ -39,23 +52,25 @@ export class Stage {
   private readonly quality: Quality;
   private readonly pixelRatio = { value: 1 };
   private readonly ground = {
-    groundColor: { value: new Color() }, shadowColor: { value: new Color() }, lineColor: { value: new Color() },
+    groundColor: { value: new Color() },
+    shadowColor: { value: new Color() },
+    lineColor: { value: new Color() },
   };
   private area: FreeArea = { left: 0, top: 0, width: 1, height: 1 };
   private dirty = true;
   private readonly keeper = new CameraKeeper(this.camera);
   private document: SceneDocument | null = null;
-  private latest: ShownFrame | null = null;  // on screen
+  private latest: ShownFrame | null = null; // on screen
   private lastDrawn = 0;
   private lastLook = 0;
-  private scale = 1;      // resolution of the picture on screen: one at rest is sharp, whatever the quality level
+  private scale = 1; // resolution of the picture on screen: one at rest is sharp, whatever the quality level
   private readonly stillScale: number;
-  private radius = 1;  // of the scene [m]
+  private radius = 1; // of the scene [m]
 
   constructor({ canvas, context, software }: Graphics) {
     this.canvas = canvas;
     if (software) readShadowsOnce();
-    this.stillScale = software ? 1.5 : 1;  // more pixels smooth the edges that nothing else smooths there
+    this.stillScale = software ? 1.5 : 1; // more pixels smooth the edges that nothing else smooths there
     this.renderer = new WebGLRenderer({ canvas, context, alpha: true });
     this.renderer.setClearColor(0, 0);
     this.renderer.shadowMap.enabled = true;
@@ -76,20 +91,24 @@ export class Stage {
     this.controls.dampingFactor = 0.12;
     this.controls.maxPolarAngle = Math.PI * 0.56;
     this.controls.addEventListener("change", () => this.invalidate());
-    this.controls.addEventListener("start", () => { this.keeper.fitted = false; });
+    this.controls.addEventListener("start", () => {
+      this.keeper.fitted = false;
+    });
     canvas.addEventListener("webglcontextlost", () => this.onLost());
     canvas.addEventListener("webglcontextrestored", () => this.invalidate());
     this.quality = new Quality(() => this.resize(this.area), software ? 1 : 0);
     this.compileAhead();
   }
 
-  invalidate(): void { this.dirty = true; }
+  invalidate(): void {
+    this.dirty = true;
+  }
 
   setDocument(document: SceneDocument, newScene: boolean): void {
     const box = new Box3().setFromPoints(scenePoints(document));
     const fresh = newScene || !this.document;
     this.document = document;
-    const radius = this.radius = box.getSize(new Vector3()).length() / 2;
+    const radius = (this.radius = box.getSize(new Vector3()).length() / 2);
     this.cloth.setDocument(document);
     this.colliders.setDocument(document, radius);
     this.colliders.update([], this.cloth.box.isEmpty() ? 0 : this.cloth.box.min.y);
@@ -101,7 +120,7 @@ export class Stage {
   setTopology(topology: Topology): void {
     this.cloth.setTopology(topology);
     this.latest = null;
-    if (this.keeper.fitted) this.fit(false);  // what was seen of another mesh need not be seen any more
+    if (this.keeper.fitted) this.fit(false); // what was seen of another mesh need not be seen any more
   }
 
   show(frame: ShownFrame): boolean {
@@ -120,8 +139,12 @@ export class Stage {
   /// Takes the theme's colours from the style sheet.
   setTheme(): void {
     const style = getComputedStyle(document.documentElement);
-    for (const [uniform, name] of [["groundColor", "--ground"], ["shadowColor", "--ground-shadow"], ["lineColor", "--ground-line"]] as const) {
-      this.ground[uniform].value.set(style.getPropertyValue(name).trim()).convertLinearToSRGB();  // the shader writes it as it is
+    for (const [uniform, name] of [
+      ["groundColor", "--ground"],
+      ["shadowColor", "--ground-shadow"],
+      ["lineColor", "--ground-line"],
+    ] as const) {
+      this.ground[uniform].value.set(style.getPropertyValue(name).trim()).convertLinearToSRGB(); // the shader writes it as it is
     }
     this.sky.intensity = Number(style.getPropertyValue("--sky"));
     this.invalidate();
@@ -131,7 +154,7 @@ export class Stage {
   fit(seen = true): void {
     if (!this.document) return;
     const damped = this.controls.enableDamping;
-    this.controls.enableDamping = false;  // an update without damping ends the swing of the last drag
+    this.controls.enableDamping = false; // an update without damping ends the swing of the last drag
     this.controls.update();
     this.controls.enableDamping = damped;
     this.orbit(this.keeper.fit(scenePoints(this.document), seen && this.latest ? framePoints(this.latest) : []));
@@ -160,7 +183,7 @@ export class Stage {
 
   /// Called for every animation frame; true if it drew.
   draw(): boolean {
-    if (this.cloth.vertices === 0) return false;  // an empty stage is not worth the time before the first frame
+    if (this.cloth.vertices === 0) return false; // an empty stage is not worth the time before the first frame
     const now = performance.now();
     this.orbit(this.keeper.follow(Math.min(now - this.lastLook, 100) / 1000));
     this.lastLook = now;
@@ -200,7 +223,14 @@ export class Stage {
     this.light.target.position.copy(center);
     this.light.position.copy(center).addScaledVector(lightFrom, reach * 3);
     const { shadow } = this.light;
-    Object.assign(shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: reach, far: reach * 6 });
+    Object.assign(shadow.camera, {
+      left: -reach,
+      right: reach,
+      top: reach,
+      bottom: -reach,
+      near: reach,
+      far: reach * 6,
+    });
     shadow.camera.updateProjectionMatrix();
     shadow.normalBias = 0.012 * radius;
     shadow.bias = -0.0006;

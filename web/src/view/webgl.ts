@@ -1,9 +1,19 @@
 // Opens WebGL 2, and finds out whether a graphics processor or the processor draws.
 
-export interface Graphics { canvas: HTMLCanvasElement; context: WebGL2RenderingContext; software: boolean }
+export interface Graphics {
+  canvas: HTMLCanvasElement;
+  context: WebGL2RenderingContext;
+  software: boolean;
+}
 
 const softwareRenderers = /swiftshader|llvmpipe|softpipe|software|basic render/i;
-const attributes: WebGLContextAttributes = { alpha: true, depth: true, stencil: false, antialias: false, powerPreference: "high-performance" };
+const attributes: WebGLContextAttributes = {
+  alpha: true,
+  depth: true,
+  stencil: false,
+  antialias: false,
+  powerPreference: "high-performance",
+};
 
 function rendererName(gl: WebGL2RenderingContext): string {
   const details = gl.getExtension("WEBGL_debug_renderer_info");
