@@ -30,7 +30,8 @@ void main() {
   if (i >= vertex_count) return;
   vec3 x = FETCH(position, i).xyz;
   // Cells are twice the reach wide, so only the eight on this vertex's side of its cell can hold a neighbour. One loop
-  // walks all eight chains: threads of a group with chains of different lengths do not wait for each other at each cell.
+  // walks all eight chains: threads of a group with chains of different lengths do not wait for each other at each
+  // cell.
   ivec3 corner = corner_of(x);
   int first = i * NEIGHBOUR_SLOTS;
   int count = 0;

@@ -1,5 +1,5 @@
-// Neighbour search, 3 of 3: what has no room in one vertex's full list leaves the other's too, since of a contact that only one of
-// the two knew momentum would come out of nothing; and the hash is emptied for the next search.
+// Neighbour search, 3 of 3: what has no room in one vertex's full list leaves the other's too, since of a contact that
+// only one of the two knew momentum would come out of nothing; and the hash is emptied for the next search.
 layout(local_size_x = GROUP_SIZE) in;
 #include "neighbours.glsl"
 

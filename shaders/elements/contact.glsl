@@ -2,8 +2,8 @@
 // Bridson, Fedkiw & Anderson 2002, sections 4 and 6 (velocity-level contact, Coulomb friction as an impulse).
 // In the common subset of GLSL and C++ (see types.glsl, elements.h).
 
-/// The share of its sliding, along a surface with unit normal n, that friction (Coulomb coefficient) leaves a vertex that
-/// meets it with the relative velocity v.
+/// The share of its sliding, along a surface with unit normal n, that friction (Coulomb coefficient) leaves a vertex
+/// that meets it with the relative velocity v.
 FUNCTION real sliding_kept(vec3 v, vec3 n, real friction, real restitution) {
   real approach = -dot(v, n);
   if (!(approach > real(0.0))) return real(1.0);
@@ -22,9 +22,10 @@ FUNCTION vec3 contact_velocity(vec3 v, vec3 n, real friction, real restitution) 
   return sliding * sliding_kept(v, n, friction, restitution) + n * (restitution * approach);
 }
 
-/// What friction takes from the displacement `moved` [m] of a step whose end velocity was v, both relative to the surface:
-/// as large a share as of the sliding. What is not taken would be a creep of what should stand, and, as the force of a
-/// stiff spring moves a vertex that friction stops in every step, a vibration that grows below the step limit.
+/// What friction takes from the displacement `moved` [m] of a step whose end velocity was v, both relative to the
+/// surface: as large a share as of the sliding. What is not taken would be a creep of what should stand, and, as the
+/// force of a stiff spring moves a vertex that friction stops in every step, a vibration that grows below the step
+/// limit.
 FUNCTION vec3 contact_braking(vec3 moved, vec3 v, vec3 n, real friction, real restitution) {
   return (moved - n * dot(moved, n)) * (real(1.0) - sliding_kept(v, n, friction, restitution));
 }
@@ -65,7 +66,8 @@ FUNCTION bool sphere_contact(vec3 from, vec3 to, real radius, OUT(vec3) stopped,
 /// away from the second by position (push) and by velocity (impulse), to be shared between the two. True if they touch:
 /// too close already, or they would be within this step of dt. Takes out the approaching velocity that is more than the
 /// room between them, with friction, and mends a fifth of an overlap a step: all of it at once would stretch the
-/// springs and so add energy. Speculative contacts: Catto 2013. Two vertices in one place have no direction: no contact.
+/// springs and so add energy. Speculative contacts: Catto 2013. Two vertices in one place have no direction: no
+/// contact.
 FUNCTION bool self_contact(vec3 x, vec3 y, vec3 v, vec3 w, real keep, real friction, real dt, OUT(vec3) push,
                            OUT(vec3) impulse) {
   push = vec3(real(0.0));
@@ -82,8 +84,8 @@ FUNCTION bool self_contact(vec3 x, vec3 y, vec3 v, vec3 w, real keep, real frict
   return true;
 }
 
-/// The part of a displacement that friction takes: `moved` [m] is that of a step relative to a surface with unit normal n
-/// which pushed back by `depth` [m] (Coulomb's law for positions: Macklin et al. 2014, equation 24).
+/// The part of a displacement that friction takes: `moved` [m] is that of a step relative to a surface with unit normal
+/// n which pushed back by `depth` [m] (Coulomb's law for positions: Macklin et al. 2014, equation 24).
 FUNCTION vec3 friction_displacement(vec3 moved, vec3 n, real friction, real depth) {
   vec3 sliding = moved - n * dot(moved, n);
   real distance_slid = sqrt(dot(sliding, sliding));
@@ -91,9 +93,10 @@ FUNCTION vec3 friction_displacement(vec3 moved, vec3 n, real friction, real dept
   return distance_slid > most ? sliding * (most / distance_slid) : sliding;
 }
 
-/// Two vertices of cloth that keep a distance of `keep` [m], their difference at the step's start and now: swept, as for a
-/// sphere. True if they meet; `correction` then goes to the first, less the second's share. If they started closer than
-/// `keep` already, no more than the share `mend` of what lacks is asked for: all of it at once would be a blow.
+/// Two vertices of cloth that keep a distance of `keep` [m], their difference at the step's start and now: swept, as
+/// for a sphere. True if they meet; `correction` then goes to the first, less the second's share. If they started
+/// closer than `keep` already, no more than the share `mend` of what lacks is asked for: all of it at once would be a
+/// blow.
 FUNCTION bool pair_contact(vec3 before, vec3 now, real keep, real friction, real mend, OUT(vec3) correction) {
   correction = vec3(real(0.0));
   real gap = sqrt(dot(before, before));

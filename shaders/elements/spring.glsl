@@ -14,9 +14,10 @@ FUNCTION vec3 spring_force(vec3 x, vec3 y, vec3 v, vec3 w, real rest_length, rea
   return n * (-tension);
 }
 
-/// The second derivative of the energy with respect to x, -df/dx [N/m], in parts: along n n^T + across (I - n n^T), with n
-/// the spring's direction. `across` is negative in a compressed spring: that part makes the matrix indefinite, and implicit
-/// methods drop it (Choi & Ko 2002, section 4). A spring without length gives stiffness times the unit matrix.
+/// The second derivative of the energy with respect to x, -df/dx [N/m], in parts: along n n^T + across (I - n n^T),
+/// with n the spring's direction. `across` is negative in a compressed spring: that part makes the matrix indefinite,
+/// and implicit methods drop it (Choi & Ko 2002, section 4). A spring without length gives stiffness times the unit
+/// matrix.
 FUNCTION void spring_hessian(vec3 x, vec3 y, real rest_length, real stiffness, OUT(vec3) n, OUT(real) along,
                              OUT(real) across) {
   vec3 d = x - y;
@@ -41,13 +42,14 @@ FUNCTION real spring_strain(vec3 x, vec3 y, real rest_length) {
   return rest_length > real(0.0) ? max(stretch, -stretch) / rest_length : real(0.0);
 }
 
-/// One visit of a Gauss-Seidel sweep to a spring, in PBD and XPBD (Mueller et al. 2007, section 3.3; Macklin et al. 2016,
-/// equations 18 and 26): what more it gives its first end and takes from its second, as an impulse times dt [kg m]. `d` is
-/// the difference of its ends as they are now, `moved` how that has changed since the step's start, `pushed` what it has
-/// given since then. The gains follow from stiffness, damping, masses and dt: server/model/spring_gains.h.
-/// What was given along a direction that the spring no longer has is turned to the one it has now; XPBD as published leaves
-/// it, and so ends beside implicit Euler's solution when springs turn within a step. `turning` = w k dt^2, with w the sum of
-/// the ends' inverse masses, takes into account that the spring itself resists (Newton's method, if it is stretched).
+/// One visit of a Gauss-Seidel sweep to a spring, in PBD and XPBD (Mueller et al. 2007, section 3.3; Macklin et al.
+/// 2016, equations 18 and 26): what more it gives its first end and takes from its second, as an impulse times dt [kg
+/// m]. `d` is the difference of its ends as they are now, `moved` how that has changed since the step's start, `pushed`
+/// what it has given since then. The gains follow from stiffness, damping, masses and dt: server/model/spring_gains.h.
+/// What was given along a direction that the spring no longer has is turned to the one it has now; XPBD as published
+/// leaves it, and so ends beside implicit Euler's solution when springs turn within a step. `turning` = w k dt^2, with
+/// w the sum of the ends' inverse masses, takes into account that the spring itself resists (Newton's method, if it is
+/// stretched).
 FUNCTION vec3 spring_projection(vec3 d, vec3 moved, real rest_length, real stretch_gain, real damping_gain,
                                 real memory, real turning, vec3 pushed) {
   real length_squared = dot(d, d);

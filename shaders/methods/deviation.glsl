@@ -1,6 +1,7 @@
-// How far each vertex has come since the step's start, which the sweeps work on. It is kept as a deviation from where inertia
-// and gravity alone would take the vertex: xyz [m], w how many things it touched when last counted. A difference of positions
-// would lose its digits in float32, and with them the velocity; a deviation keeps those of the acceleration too.
+// How far each vertex has come since the step's start, which the sweeps work on. It is kept as a deviation from where
+// inertia and gravity alone would take the vertex: xyz [m], w how many things it touched when last counted. A
+// difference of positions would lose its digits in float32, and with them the velocity; a deviation keeps those of the
+// acceleration too.
 #ifdef ONE_GROUP
 #ifdef SELF_COLLISION
 #define DEVIATIONS 2  // a pass of contacts reads one and writes the other
@@ -22,16 +23,16 @@ void set_deviation(uint i, vec4 d) { deviation_written[i] = d; }
 void set_deviation(uint i, vec3 d) { deviation_written[i].xyz = d; }
 #endif
 
-/// What float32 took from a vertex's position [m] and velocity [m/s] at the end of the last step. Carried on, it keeps many small
-/// steps from adding up their roundings (compensated summation: Kahan 1965), which in a fall are the same in every step.
-/// Nobody but the vertex itself reads them.
+/// What float32 took from a vertex's position [m] and velocity [m/s] at the end of the last step. Carried on, it keeps
+/// many small steps from adding up their roundings (compensated summation: Kahan 1965), which in a fall are the same in
+/// every step. Nobody but the vertex itself reads them.
 struct Remainder { vec4 position, velocity; };
 layout(std430, binding = 7) buffer Remainders { Remainder remainders[]; };
 uniform int last_sweep;
 uniform float mobility;  // 1 / (1 + dt air drag): air drag as if mass were more
 
-/// Where inertia and gravity take a vertex, less where they take another one: v its velocity, or the difference of both. Under
-/// gravity the two fall alike.
+/// Where inertia and gravity take a vertex, less where they take another one: v its velocity, or the difference of
+/// both. Under gravity the two fall alike.
 vec3 drift(vec3 v) { return (mobility * dt) * v; }
 vec3 free_displacement(vec3 v) { return drift(v + dt * gravity.xyz); }
 /// The deviation that the remainders are, if nothing is in the vertex's way.

@@ -1,8 +1,8 @@
-// PBD, XPBD and VBD: a step begins with a guess of where each vertex will be; sweeps over the springs (or the vertices),
-// colour after colour, improve it, each followed by a pass of contacts; at the end it becomes the new state. What has one
-// colour touches nothing else of that colour, so the outcome depends on no order of threads (server/model/colouring.h).
-// In two forms, for small cloths and for large: ONE_GROUP is the whole step in one work group, which waits for itself at
-// barriers; else each PHASE, and each colour, is a dispatch.
+// PBD, XPBD and VBD: a step begins with a guess of where each vertex will be; sweeps over the springs (or the
+// vertices), colour after colour, improve it, each followed by a pass of contacts; at the end it becomes the new state.
+// What has one colour touches nothing else of that colour, so the outcome depends on no order of threads
+// (server/model/colouring.h). In two forms, for small cloths and for large: ONE_GROUP is the whole step in one work
+// group, which waits for itself at barriers; else each PHASE, and each colour, is a dispatch.
 #include "gather.glsl"
 #include "step_end.glsl"
 #include "../collide/colliders.glsl"
@@ -58,9 +58,9 @@ void wait() {
 }
 
 #ifdef BALANCED
-// Sweeps that move one vertex after another leave a cloth that nothing holds with some momentum that it should not have, as much
-// as they have not converged. Springs and self-collision only pass it on: what its vertices lack or have too much of it in all is
-// given to them alike.
+// Sweeps that move one vertex after another leave a cloth that nothing holds with some momentum that it should not
+// have, as much as they have not converged. Springs and self-collision only pass it on: what its vertices lack or have
+// too much of it in all is given to them alike.
 uniform ivec2 free_vertices[CLOTH_COUNT];  // first, end; none of a cloth that has pins
 layout(std430, binding = 4) coherent buffer Lacking { vec4 lacking[]; };  // of each thread, xyz [kg m], w [kg]
 

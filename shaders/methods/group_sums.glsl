@@ -1,9 +1,9 @@
-// Sums and maxima over all vertices without leaving the GPU and without atomics: each work group writes its own, and whoever needs
-// the total adds those up, in the same order everywhere.
+// Sums and maxima over all vertices without leaving the GPU and without atomics: each work group writes its own, and
+// whoever needs the total adds those up, in the same order everywhere.
 shared vec4 sums[GROUP_SIZE];
 
-/// Of the work group's values; the result is for every lane. In two rounds, since software OpenGL pays more for a barrier
-/// than for a few sums in a row.
+/// Of the work group's values; the result is for every lane. In two rounds, since software OpenGL pays more for a
+/// barrier than for a few sums in a row.
 vec4 sum_of_group(vec4 value) {
   int lane = int(gl_LocalInvocationID.x);
   sums[lane] = value;

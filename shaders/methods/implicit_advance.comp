@@ -1,7 +1,7 @@
-// Implicit Euler, after each solve: the estimates of velocity and position take the change, or the share of it that the line
-// search found best. What the filter kept out of the solution is the impulse of the contact: a collider that would have to
-// pull lets go, one that would have to hold more than friction can lets slide, in the next Newton step if there is one and in
-// the next time step. One that the estimate has entered gets hold of the vertex for the next Newton step.
+// Implicit Euler, after each solve: the estimates of velocity and position take the change, or the share of it that the
+// line search found best. What the filter kept out of the solution is the impulse of the contact: a collider that would
+// have to pull lets go, one that would have to hold more than friction can lets slide, in the next Newton step if there
+// is one and in the next time step. One that the estimate has entered gets hold of the vertex for the next Newton step.
 #include "implicit_euler.glsl"
 #include "implicit_friction.glsl"
 #include "group_sums.glsl"

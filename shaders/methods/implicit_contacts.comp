@@ -1,6 +1,6 @@
-// Implicit Euler, a few times a step: self-collision after the solve. What it took from the velocities before, the springs
-// have given some of back: a long step's springs push layers that lie on each other through each other. All pairs at once,
-// from the velocities of the pass before, so that no order matters.
+// Implicit Euler, a few times a step: self-collision after the solve. What it took from the velocities before, the
+// springs have given some of back: a long step's springs push layers that lie on each other through each other. All
+// pairs at once, from the velocities of the pass before, so that no order matters.
 #include "implicit_euler.glsl"
 #include "../elements/contact.glsl"
 #include "../collide/neighbours.glsl"

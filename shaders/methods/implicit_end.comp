@@ -1,5 +1,5 @@
-// Implicit Euler, once a step: the new state, after rebounds, and after colliders that nobody foresaw; and how each contact
-// begins the next step.
+// Implicit Euler, once a step: the new state, after rebounds, and after colliders that nobody foresaw; and how each
+// contact begins the next step.
 #include "implicit_euler.glsl"
 #include "implicit_friction.glsl"
 #include "step_end.glsl"

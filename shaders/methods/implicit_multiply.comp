@@ -1,5 +1,5 @@
-// Implicit Euler's conjugate gradients, first half of an iteration: the matrix times the preconditioned residual, and the
-// sums that the second half needs. With both sums at once an iteration is two dispatches: Chronopoulos & Gear 1989.
+// Implicit Euler's conjugate gradients, first half of an iteration: the matrix times the preconditioned residual, and
+// the sums that the second half needs. With both sums at once an iteration is two dispatches: Chronopoulos & Gear 1989.
 #include "implicit_euler.glsl"
 #include "group_sums.glsl"
 READ_VEC4(constraint, 10);

@@ -8,8 +8,9 @@ READ_VEC4(change, 11);
 layout(std430, binding = 1) writeonly buffer Sums { vec4 group_sums[]; };  // SUMS a work group
 
 #ifdef FREE
-/// xyz: the momentum [kg m/s] that gravity and air drag leave the vertex without its springs, less the one it would have
-/// with the whole change. Springs only pass it on, so that its sum should be 0. w: what a change of velocity adds to that.
+/// xyz: the momentum [kg m/s] that gravity and air drag leave the vertex without its springs, less the one it would
+/// have with the whole change. Springs only pass it on, so that its sum should be 0. w: what a change of velocity adds
+/// to that.
 vec4 momentum_left_out(int i, vec4 x) {
   vec3 v = FETCH(start_velocity, i).xyz, u = FETCH(velocity, i).xyz + FETCH(change, i).xyz;
   return vec4(v - u + dt * (gravity.xyz - gravity.w * u), 1.0 + dt * gravity.w) / x.w;

@@ -1,4 +1,5 @@
-// Implicit Euler, once a step: what self-collision adds, which vertices a pin or a collider constrains, and the first guess.
+// Implicit Euler, once a step: what self-collision adds, which vertices a pin or a collider constrains, and the first
+// guess.
 #include "implicit_euler.glsl"
 #include "implicit_friction.glsl"
 #include "../collide/colliders.glsl"

@@ -1,4 +1,5 @@
-// Implicit Euler, once a Newton step: the residual of the first guess, and each vertex's block of the matrix, factorised.
+// Implicit Euler, once a Newton step: the residual of the first guess, and each vertex's block of the matrix,
+// factorised.
 #include "implicit_euler.glsl"
 READ_VEC4(start_velocity, 9);
 READ_VEC4(constraint, 10);
@@ -9,8 +10,8 @@ layout(std430, binding = 3) writeonly buffer BlockA { vec4 block_a[]; };
 layout(std430, binding = 4) writeonly buffer BlockB { vec4 block_b[]; };
 uniform float tolerance;  // of the residual, relative
 
-/// What the residual of the vertex, squared and over its mass [J], may be: relative to its own energy and what forces give
-/// it in one step; and not less than what rounding its position makes of its springs' forces.
+/// What the residual of the vertex, squared and over its mass [J], may be: relative to its own energy and what forces
+/// give it in one step; and not less than what rounding its position makes of its springs' forces.
 float good_enough(float inverse_mass, vec3 v, vec3 force, float stiffness, vec3 x, vec3 d) {
   float own = (dot(v, v) + dt * dt * dot(gravity.xyz, gravity.xyz)) / inverse_mass +
               dt * dt * inverse_mass * dot(force, force);

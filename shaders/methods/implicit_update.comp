@@ -1,5 +1,5 @@
-// Implicit Euler's conjugate gradients, second half of an iteration: every work group adds up the sums of all, in the same
-// order, and so comes to the same step and the same decision to stop; then each vertex takes its part of the step.
+// Implicit Euler's conjugate gradients, second half of an iteration: every work group adds up the sums of all, in the
+// same order, and so comes to the same step and the same decision to stop; then each vertex takes its part of the step.
 #include "implicit_euler.glsl"
 #include "group_sums.glsl"
 READ_VEC4(residual, 16);

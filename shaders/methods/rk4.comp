@@ -1,6 +1,6 @@
-// The classical Runge-Kutta method of order 4: four evaluations of the forces a step, each a dispatch of this kernel with
-// STAGE 1 to 4. Hairer, Norsett & Wanner 1993, section II.1. Each stage gathers what the one before it wrote; contacts are
-// seen once, from the state at the step's start, and applied at its end.
+// The classical Runge-Kutta method of order 4: four evaluations of the forces a step, each a dispatch of this kernel
+// with STAGE 1 to 4. Hairer, Norsett & Wanner 1993, section II.1. Each stage gathers what the one before it wrote;
+// contacts are seen once, from the state at the step's start, and applied at its end.
 #include "gather.glsl"
 #include "step_end.glsl"
 #if STAGE > 1

@@ -1,5 +1,5 @@
-// PBD (Mueller et al. 2007, section 3.3) and XPBD (Macklin et al. 2016, equations 17, 18 and 26): a visit to a spring moves its
-// two ends, each by its inverse mass. XPBD remembers what a spring has pushed in this step.
+// PBD (Mueller et al. 2007, section 3.3) and XPBD (Macklin et al. 2016, equations 17, 18 and 26): a visit to a spring
+// moves its two ends, each by its inverse mass. XPBD remembers what a spring has pushed in this step.
 READ_UVEC4(projected, 10);  // (vertex a, vertex b, rest length [m], stretch gain [kg]), colour after colour
 READ_UVEC2(gains, 11);      // (damping gain [kg], memory)
 #ifdef MEMORY

@@ -1,5 +1,5 @@
-// The strain limit, one sweep: each spring's pull changes by a part of what it lacks, and its ends move accordingly. A work
-// group first looks at what the sweep before found; if that was good enough, all leave everything as it is.
+// The strain limit, one sweep: each spring's pull changes by a part of what it lacks, and its ends move accordingly. A
+// work group first looks at what the sweep before found; if that was good enough, all leave everything as it is.
 #include "strain_limit.glsl"
 #include "group_sums.glsl"
 READ_VEC4(group_excess, 9);

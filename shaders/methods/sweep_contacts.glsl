@@ -1,4 +1,5 @@
-// Contacts within the iteration, after each sweep over the springs: every vertex at once, from where the sweep left them, so that no order matters. Several pairs at once would add up to more than is needed: each is scaled by the
+// Contacts within the iteration, after each sweep over the springs: every vertex at once, from where the sweep left
+// them, so that no order matters. Several pairs at once would add up to more than is needed: each is scaled by the
 // larger of the two vertices' contact counts of the pass before, at least 2.
 #ifdef SELF_COLLISION
 READ_UINT(neighbour_count, 4);

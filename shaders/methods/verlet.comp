@@ -1,16 +1,16 @@
-// Velocity Verlet with one evaluation of the forces a step: Swope et al. 1982; Hairer, Lubich & Wanner 2006, section I.1.
-// Forces that depend on the velocity need it at the step's end before that is known: a first-order prediction there,
-// w = v + a dt, keeps the method second order, damping included. So the state holds x and w; what a vertex alone needs to
-// find the velocity in the middle of the last step is carried beside it.
-// A contact is an impulse within the step: it changes the velocity in the middle of it, with which the vertex has moved, and
-// the prediction likewise. Were the step after a contact begun anew from the velocity at its start, what slides or rests
-// would be stepped by explicit Euler.
+// Velocity Verlet with one evaluation of the forces a step: Swope et al. 1982; Hairer, Lubich & Wanner 2006, section
+// I.1. Forces that depend on the velocity need it at the step's end before that is known: a first-order prediction
+// there, w = v + a dt, keeps the method second order, damping included. So the state holds x and w; what a vertex alone
+// needs to find the velocity in the middle of the last step is carried beside it. A contact is an impulse within the
+// step: it changes the velocity in the middle of it, with which the vertex has moved, and the prediction likewise. Were
+// the step after a contact begun anew from the velocity at its start, what slides or rests would be stepped by explicit
+// Euler.
 #include "gather.glsl"
 #include "step_end.glsl"
 #define SECOND_VELOCITY
 
-/// xyz: how much w is ahead of the velocity in the middle of the last step [m/s]; w: the dt of that step [s]. Both 0 after a
-/// start: then w is the velocity now. Kept as a difference, so that who changes w changes both.
+/// xyz: how much w is ahead of the velocity in the middle of the last step [m/s]; w: the dt of that step [s]. Both 0
+/// after a start: then w is the velocity now. Kept as a difference, so that who changes w changes both.
 READ_VEC4(carried, 9);
 layout(std430, binding = 3) writeonly buffer Carried { vec4 next_carried[]; };
 vec4 carry;

@@ -1,23 +1,24 @@
-// VBD: Chen et al. 2024. A visit to a vertex takes one Newton step on implicit Euler's objective with all other vertices held
-// (their equation 9), the part of the Hessian that a compressed spring makes indefinite left out. A collider in the way is
-// met with the vertex's own block: it pushes as hard as it must, and friction follows from that.
+// VBD: Chen et al. 2024. A visit to a vertex takes one Newton step on implicit Euler's objective with all other
+// vertices held (their equation 9), the part of the Hessian that a compressed spring makes indefinite left out. A
+// collider in the way is met with the vertex's own block: it pushes as hard as it must, and friction follows from that.
 #include "blocks.glsl"
 READ_UINT(visited, 12);  // free vertices, colour after colour
 layout(std430, binding = 6) buffer VelocityBefore { vec4 velocity_before[]; };  // at the last step's start; w: 0 if none counts
-/// Where inertia would have each vertex, in the terms of its deviation: pushed by self-collision since the step's start [m];
-/// w: colliders met at the last visit.
+/// Where inertia would have each vertex, in the terms of its deviation: pushed by self-collision since the step's start
+/// [m]; w: colliders met at the last visit.
 layout(std430, binding = 5) coherent buffer Targets { vec4 targets[]; };
 
-/// The share of `pull` that an acceleration has followed. Nearly all counts as all: what rounding cuts off at 1 would brake
-/// a falling cloth, step after step.
+/// The share of `pull` that an acceleration has followed. Nearly all counts as all: what rounding cuts off at 1 would
+/// brake a falling cloth, step after step.
 float followed(vec3 acceleration, vec3 pull) {
   float squared = dot(pull, pull);
   return squared > 0.0 ? clamp(1.02 * dot(acceleration, pull) / squared, 0.0, 1.0) : 1.0;
 }
 
-/// Their adaptive guess (section 3.7): as much of gravity as the vertex has followed of late, so that a cloth at rest starts
-/// from rest. Where its free motion meets a collider, the guess is that motion stopped there, with friction, and of gravity
-/// what is along the surface: sweeps move what is stiff so little that a sheet on a slope would stay where it was put first.
+/// Their adaptive guess (section 3.7): as much of gravity as the vertex has followed of late, so that a cloth at rest
+/// starts from rest. Where its free motion meets a collider, the guess is that motion stopped there, with friction, and
+/// of gravity what is along the surface: sweeps move what is stiff so little that a sheet on a slope would stay where
+/// it was put first.
 vec3 first_deviation(int i, vec3 x, vec3 v) {
   vec4 before = velocity_before[i];
   velocity_before[i] = vec4(v, 1.0);

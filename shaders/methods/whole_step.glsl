@@ -1,5 +1,5 @@
-// A step in one dispatch: everything a vertex needs is gathered here: springs, gravity, air drag, self-collision from the
-// neighbour lists, then pins, and colliders on the way to the new position. The method supplies
+// A step in one dispatch: everything a vertex needs is gathered here: springs, gravity, air drag, self-collision from
+// the neighbour lists, then pins, and colliders on the way to the new position. The method supplies
 //   void integrate(int i, vec4 x, vec3 v, vec3 a, vec3 push, vec3 impulse, out vec3 x_next, out vec3 v_next)
 // from the acceleration a and what self-collision adds to position and velocity, and
 //   void end(int i, int met, inout vec3 v_next)    which is called at the end of it, after `met` colliders.

@@ -1,5 +1,5 @@
-// Energies, largest strain and speed, contacts, and whether every value is finite: one partial result a work group, summed
-// by the host in double precision and in order, so that the outcome does not depend on the order of threads.
+// Energies, largest strain and speed, contacts, and whether every value is finite: one partial result a work group,
+// summed by the host in double precision and in order, so that the outcome does not depend on the order of threads.
 layout(local_size_x = GROUP_SIZE) in;
 #include "../access.glsl"
 #include "../elements/types.glsl"

@@ -1,6 +1,7 @@
-// What one viewer, or somebody without a token, can take from another by every means the protocol leaves: a bystander's frames and the
-// session's real-time factor, alone and beside each kind of abuse. Then what a session takes from another by each valid patch that is
-// more than the machine has, and how soon it is undone and the server ends. By hand, on a quiet machine:
+// What one viewer, or somebody without a token, can take from another by every means the protocol leaves: a bystander's
+// frames and the session's real-time factor, alone and beside each kind of abuse. Then what a session takes from
+// another by each valid patch that is more than the machine has, and how soon it is undone and the server ends. By
+// hand, on a quiet machine:
 //   CLOTHLAB=build/release/clothlab node tests/bench/abuse.mjs [SECONDS] [--only NAME|heavy] [--out FILE]
 // Who abuses is a process of its own, which asks for as much as it can of the same cores. Prints (and writes) JSON.
 import { fork } from "node:child_process";
@@ -118,8 +119,9 @@ const abuses = {
     }, 1),
 };
 
-/// In a process of its own: one abuse for as long as it lives, or a session with a heavy patch that is made and undone when the parent
-/// says so. (What such a session gets takes this process seconds to read, in which a bystander here would see nothing.)
+/// In a process of its own: one abuse for as long as it lives, or a session with a heavy patch that is made and undone
+/// when the parent says so. (What such a session gets takes this process seconds to read, in which a bystander here
+/// would see nothing.)
 if (process.send) {
   const begin = async ({ name, server }) => {
     http.globalAgent = new http.Agent({ keepAlive: true, maxSockets: 64 });

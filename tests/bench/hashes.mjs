@@ -1,7 +1,9 @@
-// The state hash after a second of every preset, and of five scenes with triangle meshes, several cloths and moving spheres and planes,
-// under every method: before and after a change that is to change nothing. What blows up ends with the hash of its last good state.
+// The state hash after a second of every preset, and of five scenes with triangle meshes, several cloths and moving
+// spheres and planes, under every method: before and after a change that is to change nothing. What blows up ends with
+// the hash of its last good state.
 //   CLOTHLAB=build/release/clothlab node tests/bench/hashes.mjs [--out FILE] [--compare FILE]
-// Prints (and writes) JSON; with --compare it names what differs, and ends with 1 if anything does. Hashes are of one device and Mesa.
+// Prints (and writes) JSON; with --compare it names what differs, and ends with 1 if anything does. Hashes are of one
+// device and Mesa.
 import { execFile } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { cpus, tmpdir } from "node:os";

@@ -1,7 +1,8 @@
-// What a job of the lab costs the session beside it: one viewer at 60 frames/s on a scene that plays, first alone, then while its
-// chart is measured, on the processor and on the GPU, then alone again. By hand, on a quiet machine:
+// What a job of the lab costs the session beside it: one viewer at 60 frames/s on a scene that plays, first alone, then
+// while its chart is measured, on the processor and on the GPU, then alone again. By hand, on a quiet machine:
 //   CLOTHLAB=build/release/clothlab node tests/bench/lab.mjs [SECONDS] [--out FILE] [ARGUMENT of serve]...
-// Prints (and writes) JSON: of each stretch the frames/s received, the gaps between them and the real-time factor, and how long a cancel takes.
+// Prints (and writes) JSON: of each stretch the frames/s received, the gaps between them and the real-time factor, and
+// how long a cancel takes.
 import { writeFile } from "node:fs/promises";
 import { cpus } from "node:os";
 import { Client, Server, sleep, withTimeout } from "../protocol/harness.mjs";

@@ -1,9 +1,10 @@
 // Hours of coming and going: does the server keep anything of what has left? By hand, beside other work:
 //   CLOTHLAB=build/release/clothlab node tests/bench/soak.mjs [MINUTES] [--out NAME]
-// Rounds of three minutes in which viewers come, stall, vanish and leave, scenes are loaded and patched, sessions are made and given up, the
-// lab measures, and nuisances are turned away; all from one seed. After each round everybody leaves, the same four sessions show the same
-// scene, and what the server holds then (memory, file descriptors, threads) is compared from round to round. Prints JSON; --out writes
-// NAME.json and NAME.svg, the plot. Leaves with 1 if the server failed, or held more descriptors or threads in the second half than in the first.
+// Rounds of three minutes in which viewers come, stall, vanish and leave, scenes are loaded and patched, sessions are
+// made and given up, the lab measures, and nuisances are turned away; all from one seed. After each round everybody
+// leaves, the same four sessions show the same scene, and what the server holds then (memory, file descriptors,
+// threads) is compared from round to round. Prints JSON; --out writes NAME.json and NAME.svg, the plot. Leaves with 1
+// if the server failed, or held more descriptors or threads in the second half than in the first.
 import { readFileSync, readdirSync, mkdtempSync, rmSync } from "node:fs";
 import { writeFile } from "node:fs/promises";
 import net from "node:net";
@@ -381,7 +382,8 @@ if (out) {
   await writeFile(`${out}.svg`, soakPlot(samples, rests, result));
   rmSync(`${out}.partial.json`, { force: true });
 }
-// Some threads come late and stay, such as Mesa's writers of its shader cache, up to four a screen: so half is compared with half.
+// Some threads come late and stay, such as Mesa's writers of its shader cache, up to four a screen: so half is compared
+// with half.
 const half = rests.length >> 1;
 const grows = (what) =>
   Math.max(...rests.slice(half).map((r) => r[what])) > Math.max(...rests.slice(0, half).map((r) => r[what]));

@@ -1,8 +1,8 @@
-// Many viewers of one session, some of them stalled, one of them slow: what each gets, what the simulation loses, and what a viewer costs
-// in memory. By hand, on a quiet machine:
+// Many viewers of one session, some of them stalled, one of them slow: what each gets, what the simulation loses, and
+// what a viewer costs in memory. By hand, on a quiet machine:
 //   CLOTHLAB=build/release/clothlab node tests/bench/viewers.mjs [VIEWERS] [SECONDS] [--out FILE]
-// Every tenth viewer reads nothing after its first frame. One more reads 64 kB/s; how old its frames are is the simulated time that a viewer
-// that keeps up is ahead of them, at real time. Prints (and writes) JSON.
+// Every tenth viewer reads nothing after its first frame. One more reads 64 kB/s; how old its frames are is the
+// simulated time that a viewer that keeps up is ahead of them, at real time. Prints (and writes) JSON.
 import { readFileSync } from "node:fs";
 import { writeFile } from "node:fs/promises";
 import { cpus } from "node:os";
@@ -25,6 +25,7 @@ const server = await Server.start(
 const resident = () => Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${server.child.pid}/status`, "utf8"))[1]); // [kB]
 
 /// Counts frames without decoding them: the measuring must not be what is measured.
+// biome-ignore lint/complexity/noStaticOnlyClass: it has fields, which `connect` gives it
 class Viewer {
   static async connect() {
     const viewer = new Viewer();

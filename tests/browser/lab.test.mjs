@@ -24,8 +24,8 @@ const small = {
   solver: { method: "symplectic_euler", dt: 0.004 },
 };
 
-/// A page with the drawer open on the small scene, and a script beside it. The cloth stands still: all the machine measures, and what a test
-/// has measured so the next one need not.
+/// A page with the drawer open on the small scene, and a script beside it. The cloth stands still: all the machine
+/// measures, and what a test has measured so the next one need not.
 async function lab(session, { tab = "Chart", ...options } = {}) {
   const { viewer, client, scene } = await here.both(session, options);
   await client.request("scene.load", { scene: small });
@@ -40,8 +40,8 @@ async function lab(session, { tab = "Chart", ...options } = {}) {
 
 const chosen = ["Symplectic Euler", "Verlet"];
 
-/// Charts two methods: seconds, not minutes. How far that goes is the machine's matter; `most` leaves a slow one, busy with other things,
-/// room for the points that the tests look for.
+/// Charts two methods: seconds, not minutes. How far that goes is the machine's matter; `most` leaves a slow one, busy
+/// with other things, room for the points that the tests look for.
 async function start(panel, button, { methods = chosen, most = "120", seconds = "0.1" } = {}) {
   const options = panel.getByRole("button", { name: "Options" });
   if ((await options.getAttribute("aria-expanded")) === "false") await options.click();
@@ -262,7 +262,8 @@ browserTest(
     assert.match(await says.innerText(), /Now: Symplectic Euler, dt 4\sms: error \S+, \S+\s(ms|s) a simulated second/);
     const [x, y] = await place();
     await client.request("scene.patch", { patch: { solver: { dt: 0.002 } } });
-    // Half the step, first order: half the error. What it costs is measured, and so short a run may come out either way.
+    // Half the step, first order: half the error. What it costs is measured, and so short a run may come out either
+    // way.
     await eventually(
       "the sentence",
       () => says.innerText(),

@@ -1,5 +1,5 @@
-// server/net/asyncapi.yaml against sessions that do all there is to do: every message, sent or received, is as it says, and every
-// message that it describes has been seen.
+// server/net/asyncapi.yaml against sessions that do all there is to do: every message, sent or received, is as it says,
+// and every message that it describes has been seen.
 import assert from "node:assert/strict";
 import { after, afterEach, before, test } from "node:test";
 import { document, messages, operations } from "./asyncapi.mjs";
@@ -93,8 +93,8 @@ test("the limits that hello tells are the document's", async () => {
   await leave(client);
 });
 
-// The first fault of a request is the one that is told. So a parameter that is right, beside one that nobody knows, is known to be
-// taken, and nothing comes of it.
+// The first fault of a request is the one that is told. So a parameter that is right, beside one that nobody knows, is
+// known to be taken, and nothing comes of it.
 test("the server takes each parameter up to the limits that the document gives, and refuses it beyond", async (t) => {
   const client = await enter();
   let taken = 0,

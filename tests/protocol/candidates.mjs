@@ -1,4 +1,5 @@
-// Values of a parameter that its schema in server/net/asyncapi.yaml takes, up to its limits, and values just beyond them.
+// Values of a parameter that its schema in server/net/asyncapi.yaml takes, up to its limits, and values just beyond
+// them.
 import { lookUp } from "./asyncapi.mjs";
 
 export function resolved(schema) {

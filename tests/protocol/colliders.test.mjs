@@ -1,4 +1,5 @@
-// Where a moving collider is comes with each frame, by the closed forms of server/scene/README.md: no client repeats a law of motion.
+// Where a moving collider is comes with each frame, by the closed forms of server/scene/README.md: no client repeats a
+// law of motion.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { Client, Server } from "./harness.mjs";

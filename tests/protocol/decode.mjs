@@ -1,5 +1,5 @@
-// Reads the binary messages of the protocol, written from the contract and not from the server's code. What is not exactly
-// such a message is a BadMessage; nothing outside the message is ever read.
+// Reads the binary messages of the protocol, written from the contract and not from the server's code. What is not
+// exactly such a message is a BadMessage; nothing outside the message is ever read.
 
 const headerBytes = 64;
 const topology = 1,

@@ -1,5 +1,5 @@
-// The messages committed in tests/golden, read by the tests' decoder and by the page's; and whatever is not such a message is
-// refused by both with a reason of their own, at no time reading outside of it.
+// The messages committed in tests/golden, read by the tests' decoder and by the page's; and whatever is not such a
+// message is refused by both with a reason of their own, at no time reading outside of it.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { before, test } from "node:test";
@@ -155,8 +155,9 @@ test("every truncated length is refused, and so is every longer one", () => {
   });
 });
 
-// What a header may say beside what it says: any revision, sequence number and step, any time and box that are numbers such as
-// there can be, and on frames either flag. Everything else in it is either of a few known values or counted from the payload.
+// What a header may say beside what it says: any revision, sequence number and step, any time and box that are numbers
+// such as there can be, and on frames either flag. Everything else in it is either of a few known values or counted
+// from the payload.
 const fields = [
   { at: 0, end: 2, name: "kind, encoding", legal: () => false },
   { at: 2, end: 4, name: "flags", legal: (view) => view.getUint8(0) === 2 && view.getUint16(2, true) <= 3 },

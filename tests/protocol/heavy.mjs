@@ -1,5 +1,5 @@
-// Patches that are valid and take more than a small machine has: each for a session of its own, beside which others go on, and which is
-// steered, and ended, as any other. Used by heavy.test.mjs and by tests/bench/abuse.mjs.
+// Patches that are valid and take more than a small machine has: each for a session of its own, beside which others go
+// on, and which is steered, and ended, as any other. Used by heavy.test.mjs and by tests/bench/abuse.mjs.
 const grid = (side, more = {}) => ({
   mesh: { grid: { columns: side, rows: side, width: 1, height: 1 } },
   transform: { translate: [0, 1, 0] },

@@ -1,4 +1,5 @@
-// Patches that are valid and more than the machine can step: what else goes on beside them. How fast is measured by tests/bench/abuse.mjs.
+// Patches that are valid and more than the machine can step: what else goes on beside them. How fast is measured by
+// tests/bench/abuse.mjs.
 import assert from "node:assert/strict";
 import { mkdtemp, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
@@ -10,7 +11,8 @@ import { heavyPatches, tooHeavy } from "./heavy.mjs";
 const patience = 60_000; // to build a million vertices takes its time
 const subscription = { encoding: "q16", rate: 60, in_flight: 2 };
 
-/// One of each kind: many vertices, a dense search, sweeps in many dispatches, sweeps over many vertices, a solver, a limit.
+/// One of each kind: many vertices, a dense search, sweeps in many dispatches, sweeps over many vertices, a solver, a
+/// limit.
 const kinds = [
   "512x512 with self-collision",
   "100x100 with a thickness of 10 m",
@@ -31,7 +33,8 @@ for (const name of kinds)
       const { document } = await heavy.notification("scene");
       const applied = await heavy.request("scene.patch", { patch: heavyPatches[name] }, patience);
 
-      // While it steps: the other's frames come one after another, and this session says where it is, is paused and steps on.
+      // While it steps: the other's frames come one after another, and this session says where it is, is paused and
+      // steps on.
       for (let frame = 0; frame < 60; ++frame) await bystander.nextFrame();
       assert.equal((await heavy.request("scene.get")).revision, applied.revision);
       assert.equal((await heavy.request("sim.pause")).playing, false);

@@ -246,7 +246,8 @@ test("/metrics counts sessions, clients, viewers, steps, frames and bytes, and t
   await client.close();
 });
 
-/// The samples of a metrics text, by name: [{labels, value}]; fails where the text breaks a rule of Prometheus' format or naming.
+/// The samples of a metrics text, by name: [{labels, value}]; fails where the text breaks a rule of Prometheus' format
+/// or naming.
 function readMetrics(text) {
   const types = new Map(),
     samples = new Map();
@@ -275,12 +276,10 @@ function readMetrics(text) {
     assert.ok(types.has(family), `${name} has a TYPE`);
     assert.ok(Number.isFinite(Number(value)), line);
     if (!samples.has(name)) samples.set(name, []);
-    samples
-      .get(name)
-      .push({
-        labels: Object.fromEntries([...labels.matchAll(/([a-z_]+)="([^"]*)"/g)].map(([, key, of]) => [key, of])),
-        value: Number(value),
-      });
+    samples.get(name).push({
+      labels: Object.fromEntries([...labels.matchAll(/([a-z_]+)="([^"]*)"/g)].map(([, key, of]) => [key, of])),
+      value: Number(value),
+    });
   }
   for (const [name, type] of types) {
     if (type !== "histogram") continue;

@@ -280,7 +280,8 @@ test("a client that asks and does not read is cut off once 4 MiB of answers wait
   const other = await Client.connect(server);
   const deaf = await Client.connect(server, { session: "large" });
   const clients = () => server.metric("clothlab_clients");
-  // A document of some 40 kB: twenty times as much as a client's and the kernel's buffers hold when asked for 2000 times.
+  // A document of some 40 kB: twenty times as much as a client's and the kernel's buffers hold when asked for 2000
+  // times.
   const vertices = Array.from({ length: 1000 }, (_, i) => [
     (i % 40) + 0.123456789,
     1.123456789,

@@ -99,6 +99,7 @@ test("bad parameters answer -32602 with where, what was found and what is allowe
     ["sim.step", { steps: 0 }, "/steps"],
     ["sim.step", { steps: -1 }, "/steps"],
     ["sim.step", { steps: 1e300 }, "/steps"],
+    // biome-ignore lint/correctness/noPrecisionLoss: 2^64, as it is sent
     ["sim.step", { steps: 18446744073709551615 }, "/steps"],
     ["sim.speed", {}, "/factor"],
     ["sim.speed", { factor: 0 }, "/factor"],

@@ -52,7 +52,8 @@ test("under PBD sim.status tells for each cloth what it makes of N/m at this dt 
     patch: { cloths: [{ ...cloth, material }], solver: { method: "pbd", dt: 0.002, iterations: 3 } },
   });
   const [{ structural, shear, bend }] = await stiffness((shares) => shares);
-  // A lone spring between two vertices of 0.1 kg, after three visits, is where one solve of implicit Euler would put it.
+  // A lone spring between two vertices of 0.1 kg, after three visits, is where one solve of implicit Euler would put
+  // it.
   for (const [share, k] of [
     [structural, material.structural],
     [shear, material.shear],

@@ -1,4 +1,5 @@
-// What is wrong on the wire, in HTTP (RFC 7230) and in a WebSocket's frames (RFC 6455): each is told, and nobody else notices.
+// What is wrong on the wire, in HTTP (RFC 7230) and in a WebSocket's frames (RFC 6455): each is told, and nobody else
+// notices.
 import assert from "node:assert/strict";
 import { once } from "node:events";
 import net from "node:net";

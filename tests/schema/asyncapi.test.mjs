@@ -1,5 +1,5 @@
-// server/net/asyncapi.yaml by itself: an AsyncAPI 3 document, whole, and right about the bytes of the golden messages. Whether a
-// session really speaks so is for tests/protocol/asyncapi.test.mjs.
+// server/net/asyncapi.yaml by itself: an AsyncAPI 3 document, whole, and right about the bytes of the golden messages.
+// Whether a session really speaks so is for tests/protocol/asyncapi.test.mjs.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";

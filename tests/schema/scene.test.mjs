@@ -1,5 +1,6 @@
-// Holds server/scene/scene.schema.json and the program's validator together: each scene below, valid or broken on purpose, gets the
-// same verdict from both, except where a rule spans parts of the scene that JSON Schema cannot relate.
+// Holds server/scene/scene.schema.json and the program's validator together: each scene below, valid or broken on
+// purpose, gets the same verdict from both, except where a rule spans parts of the scene that JSON Schema cannot
+// relate.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";

@@ -39,7 +39,8 @@ test("every link of a document leads to a file, and to a heading in it", () => {
   assert.deepEqual(wrong, []);
 });
 
-/// A path with a folder, or a document by its name alone, as a comment or a document names it; not one that a program makes.
+/// A path with a folder, or a document by its name alone, as a comment or a document names it; not one that a program
+/// makes.
 const named =
   /(?<![\w/.<"$~{}-])((?:[\w.-]+\/)+[\w.-]+\.(?:md|h|cpp|glsl|comp|vert|geom|frag|ts|mjs|json|yaml|css|html|sh)|[\w-]+\.md)(?![\w/*])/g;
 const comments = (file, text) =>

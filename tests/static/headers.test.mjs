@@ -1,5 +1,5 @@
-// Each header of ours compiles alone, whatever is included before it elsewhere: NAME.cpp includes NAME.h first, so that the
-// build shows it, and what has no such source is compiled here.
+// Each header of ours compiles alone, whatever is included before it elsewhere: NAME.cpp includes NAME.h first, so that
+// the build shows it, and what has no such source is compiled here.
 import assert from "node:assert/strict";
 import { execFile } from "node:child_process";
 import { existsSync, readdirSync, readFileSync } from "node:fs";

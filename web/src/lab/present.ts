@@ -15,8 +15,8 @@ interface Sample {
   cost: number;
 }
 
-/// Error on `axis` and cost [ms per simulated second] of `setting`, interpolated in dt along the curve of its method and
-/// iterations, all in logarithms; or why they are not known.
+/// Error on `axis` and cost [ms per simulated second] of `setting`, interpolated in dt along the curve of its method
+/// and iterations, all in logarithms; or why they are not known.
 export function placeOf(setting: Setting, points: Point[], axis: Axis): Place {
   const ofMethod = points.filter(({ method }) => method === setting.method);
   if (ofMethod.length === 0) return { reason: "the method is not on the chart" };

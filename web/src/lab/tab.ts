@@ -1,4 +1,5 @@
-// What the four tabs of the lab share: a start button with its options, progress, what to know of the result, and export.
+// What the four tabs of the lab share: a start button with its options, progress, what to know of the result, and
+// export.
 import { make, makeButton, makeCheck, say } from "./dom";
 import { working, type Format, type Job, type Jobs } from "./jobs";
 import type { Axis, Kind, Results, Setting } from "./types";

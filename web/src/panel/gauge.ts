@@ -1,4 +1,5 @@
-// The stability gauge: the time step as a share of the largest stable one, which the server computes for the scene as it is.
+// The stability gauge: the time step as a share of the largest stable one, which the server computes for the scene as
+// it is.
 import { readable } from "./slider";
 
 /// Of `sim.status`. null: no limit; 0: no time step is stable.

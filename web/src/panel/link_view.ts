@@ -1,4 +1,5 @@
-// How the connection is doing: the dot beside the name, the banner with its countdown, the first waiting screen, the token.
+// How the connection is doing: the dot beside the name, the banner with its countdown, the first waiting screen, the
+// token.
 import type { Connection, LinkState } from "../link/connection";
 import { button, element } from "./dom";
 

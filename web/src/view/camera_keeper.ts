@@ -1,5 +1,6 @@
-// Keeps the camera on the scene until somebody moves it: fitted at the start, and drawn back where the cloth goes farther
-// than was foreseen. It never comes nearer by itself, as a picture that breathes with the cloth is hard to look at.
+// Keeps the camera on the scene until somebody moves it: fitted at the start, and drawn back where the cloth goes
+// farther than was foreseen. It never comes nearer by itself, as a picture that breathes with the cloth is hard to look
+// at.
 import type { PerspectiveCamera, Vector3 } from "three";
 import { between, centerIn, Outline, place, standFor, type FreeArea, type Stand } from "./framing";
 

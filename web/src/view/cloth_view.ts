@@ -30,8 +30,8 @@ export class ClothView {
   vertices = 0;
   private topology: Topology | null = null;
   private document: SceneDocument | null = null;
-  // Two buffers in turn: with one, Chromium's software WebGL was seen to draw the mesh, but not the pins, from the vertices
-  // of an earlier frame, and to go on with that when no further frame came.
+  // Two buffers in turn: with one, Chromium's software WebGL was seen to draw the mesh, but not the pins, from the
+  // vertices of an earlier frame, and to go on with that when no further frame came.
   private words: [BufferAttribute, BufferAttribute] | null = null;
   private readonly decode: DecodeUniforms = {
     boxMinimum: { value: new Vector3() },
@@ -91,7 +91,8 @@ export class ClothView {
     return true;
   }
 
-  /// What is drawn like the first cloth and its pins, and like its shadow, to compile their programs before there is one.
+  /// What is drawn like the first cloth and its pins, and like its shadow, to compile their programs before there is
+  /// one.
   samples(): { shown: Object3D[]; cast: Object3D[] } {
     const nothing = new BufferGeometry();
     return {

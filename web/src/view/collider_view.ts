@@ -110,8 +110,8 @@ export class ColliderView {
     this.studio.position.y = this.lowest;
   }
 
-  /// Puts everything where it is now, by `moved` or else by the scene; `clothBottom` [m] pushes the studio floor down, it is no
-  /// collider.
+  /// Puts everything where it is now, by `moved` or else by the scene; `clothBottom` [m] pushes the studio floor down,
+  /// it is no collider.
   update(moved: MovedCollider[], clothBottom: number): void {
     let spheres = 0;
     for (const { collider, index, mesh, caster } of this.shown) {

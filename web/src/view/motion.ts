@@ -1,4 +1,5 @@
-// How far a motion takes a point, for a camera that is to see all of it. Where something is at a time, the session says.
+// How far a motion takes a point, for a camera that is to see all of it. Where something is at a time, the session
+// says.
 import { MathUtils, Vector3 } from "three";
 import type { Motion, Vec3 } from "../link/scene_types";
 
