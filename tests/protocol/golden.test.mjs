@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { before, test } from "node:test";
 import { BadMessage, decode } from "./decode.mjs";
-import { pageDecoder } from "./page_decoder.mjs";
+import { load } from "../page/module.mjs";
 
 const folder = new URL("../golden/", import.meta.url);
 const names = ["topology", "frame-q16", "frame-q16-asleep", "frame-f32", "frame-f32-diverged"];
@@ -18,7 +18,7 @@ const called = (name) => golden.find((message) => message.name === name);
 /// `decode` takes the bytes of one message, `name` is for the test's own words.
 const decoders = [{ name: "the tests' decoder", decode, BadMessage, reads: () => true }];
 before(async () => {
-  const page = await pageDecoder();
+  const page = await load("link/protocol");
   decoders.push({
     name: "the page's decoder",
     decode(bytes) {

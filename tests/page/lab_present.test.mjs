@@ -1,24 +1,7 @@
 // The page's pure code: where the present setting lies on a chart, and the way back from a patch. Needs no browser.
 import assert from "node:assert/strict";
-import { rmSync } from "node:fs";
 import { test } from "node:test";
-import { fileURLToPath, pathToFileURL } from "node:url";
-import { build } from "../../web/node_modules/esbuild/lib/main.js";
-
-async function load(name) {
-  const outfile = fileURLToPath(new URL(`../../build/${name.replace("/", "-")}-${process.pid}.mjs`, import.meta.url));
-  await build({
-    entryPoints: [fileURLToPath(new URL(`../../web/src/${name}.ts`, import.meta.url))],
-    bundle: true,
-    format: "esm",
-    outfile,
-  });
-  try {
-    return await import(pathToFileURL(outfile));
-  } finally {
-    rmSync(outfile);
-  }
-}
+import { load } from "./module.mjs";
 
 const { placeOf } = await load("lab/present");
 const { formerly, reverseOf } = await load("lab/apply");

@@ -1,14 +1,14 @@
-// The page's own decoder of binary messages, from web/src, bundled as the page is.
+// A module of the page, bundled as the page is, for a test without a browser.
 import { createRequire } from "node:module";
 import { fileURLToPath } from "node:url";
 
 const web = new URL("../../web/", import.meta.url);
 const { build } = createRequire(new URL("package.json", web))("esbuild");
 
-/// { decode, BadMessage, q16Words }
-export async function pageDecoder() {
+/// The exports of web/src/NAME.ts.
+export async function load(name) {
   const { outputFiles } = await build({
-    entryPoints: [fileURLToPath(new URL("src/link/protocol.ts", web))],
+    entryPoints: [fileURLToPath(new URL(`src/${name}.ts`, web))],
     bundle: true,
     format: "esm",
     write: false,
