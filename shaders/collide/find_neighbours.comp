@@ -13,7 +13,8 @@ READ_VEC4(rest_position, 7);  // w: the cloth
 layout(location = 3) uniform float thickness;
 layout(location = 4) uniform int first_vertex;  // of the range that this dispatch looks at
 layout(std430, binding = 6) writeonly buffer NeighbourCounts { uint neighbour_count[]; };
-layout(std430, binding = 7) buffer Neighbours { uvec2 neighbours[]; };  // (vertex, distance): vertex i's slot s at i * SLOTS + s
+// (vertex, distance): vertex i's slot s at i * SLOTS + s
+layout(std430, binding = 7) buffer Neighbours { uvec2 neighbours[]; };
 
 float rest_distance(int i, int j) {
   vec4 a = FETCH(rest_position, i), b = FETCH(rest_position, j);

@@ -11,6 +11,6 @@ layout(std430, binding = 2) buffer NeighbourControl {
   uint rebuilds;  // how often the lists were built
   uint dropped;   // neighbours that found no slot, over all rebuilds
   uint longest;   // list there would have been, over all rebuilds; told from half of the slots on
-  uint search_groups, search_on, search_groups_z;  // of the search, a range of vertices at a time: that many, times 0 or 1
+  uint search_groups, search_on, search_groups_z;  // of the search, a range at a time: that many, times 0 or 1
   uint finish_groups, finish_groups_y, finish_groups_z;  // of the search's last part, which the one before asks for
 };

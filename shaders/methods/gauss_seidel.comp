@@ -32,7 +32,8 @@ void begin(int i) {
 /// The state at the step's end, and what rounding takes from it.
 void advance(int i, vec3 x, vec3 v, vec3 d, out vec3 x_next, out vec3 v_next) {
   precise vec3 moved = free_displacement(v) + d;
-  precise vec3 gained = mobility * (remainders[i].velocity.xyz + dt * (gravity.xyz - gravity.w * v)) + (d - remainder(i)) / dt;
+  precise vec3 gained =
+      mobility * (remainders[i].velocity.xyz + dt * (gravity.xyz - gravity.w * v)) + (d - remainder(i)) / dt;
   precise vec3 there = x + moved, then = v + gained;
   precise vec3 rounded_move = there - x, rounded_gain = then - v;
   remainders[i].position.xyz = moved - rounded_move;

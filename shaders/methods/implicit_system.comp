@@ -4,7 +4,8 @@
 READ_VEC4(start_velocity, 9);
 READ_VEC4(constraint, 10);
 READ_VEC4(change, 11);
-layout(std430, binding = 0) writeonly buffer Residual { vec4 residual[]; };            // not filtered; w: the vertex's share of what is good enough
+// Not filtered; w: the vertex's share of what is good enough.
+layout(std430, binding = 0) writeonly buffer Residual { vec4 residual[]; };
 layout(std430, binding = 1) writeonly buffer Preconditioned { vec4 preconditioned[]; };
 layout(std430, binding = 3) writeonly buffer BlockA { vec4 block_a[]; };
 layout(std430, binding = 4) writeonly buffer BlockB { vec4 block_b[]; };

@@ -4,7 +4,8 @@
 #include "group_sums.glsl"
 READ_VEC4(group_excess, 9);
 layout(std430, binding = 0) writeonly buffer NextPosition { vec4 next_position[]; };
-layout(std430, binding = 1) writeonly buffer Excess { vec4 next_group_excess[]; };  // x: largest, in shares of the limit
+// x: the largest, in shares of the limit
+layout(std430, binding = 1) writeonly buffer Excess { vec4 next_group_excess[]; };
 layout(std430, binding = 4) buffer Control {
   uint groups, groups_y, groups_z;  // of the next sweeps' dispatches: 0 once they have ended
   uint sweeps;

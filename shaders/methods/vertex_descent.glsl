@@ -3,7 +3,8 @@
 // collider in the way is met with the vertex's own block: it pushes as hard as it must, and friction follows from that.
 #include "blocks.glsl"
 READ_UINT(visited, 12);  // free vertices, colour after colour
-layout(std430, binding = 6) buffer VelocityBefore { vec4 velocity_before[]; };  // at the last step's start; w: 0 if none counts
+/// At the last step's start; w: 0 if none counts.
+layout(std430, binding = 6) buffer VelocityBefore { vec4 velocity_before[]; };
 /// Where inertia would have each vertex, in the terms of its deviation: pushed by self-collision since the step's start
 /// [m]; w: colliders met at the last visit.
 layout(std430, binding = 5) coherent buffer Targets { vec4 targets[]; };

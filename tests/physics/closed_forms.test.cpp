@@ -136,7 +136,8 @@ TEST_CASE("pins are where their motions' closed forms put them") {
   scene::Scene scene = scene_of(R"({"version": 1, "cloths": [{"mesh": {"grid": {"columns": 3, "rows": 2}},
     "pins": [{"at": "corner:0,0", "motion": {"oscillate": {"axis": [0, 0, 2], "amplitude": 0.2, "frequency": 0.5}}},
              {"at": "corner:1,0", "motion": {"linear": {"velocity": [0.1, -0.2, 0.3]}}},
-             {"at": "corner:2,0", "motion": {"spin": {"axis": [0, 3, 0], "center": [0, 0, 0], "degrees_per_second": 90}}},
+             {"at": "corner:2,0",
+              "motion": {"spin": {"axis": [0, 3, 0], "center": [0, 0, 0], "degrees_per_second": 90}}},
              {"at": "corner:0,1"}]}]})");
   const auto simulation = test::simulation(scene);
   simulation->step(500);

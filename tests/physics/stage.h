@@ -22,11 +22,13 @@ inline scene::Scene preset(const std::string& name) {
 inline scene::Scene two_sheets() {
   return scene_of(R"({"version": 1,
     "cloths": [{"mesh": {"grid": {"columns": 15, "rows": 15, "width": 0.28, "height": 0.28}},
-                "mass": {"per_vertex": 0.001}, "material": {"structural": 200, "shear": 100, "bend": 20, "damping": 0.02},
+                "mass": {"per_vertex": 0.001},
+                "material": {"structural": 200, "shear": 100, "bend": 20, "damping": 0.02},
                 "pins": [{"at": "edge:row:0"}, {"at": "edge:row:14"}]},
                {"mesh": {"grid": {"columns": 12, "rows": 12, "width": 0.2, "height": 0.2}},
                 "transform": {"translate": [0.013, 0.05, 0.037], "rotate": [0, 20, 0]},
-                "mass": {"per_vertex": 0.002}, "material": {"structural": 200, "shear": 100, "bend": 20, "damping": 0.02}}],
+                "mass": {"per_vertex": 0.002},
+                "material": {"structural": 200, "shear": 100, "bend": 20, "damping": 0.02}}],
     "self_collision": {"thickness": 0.03, "friction": 0.4}})");
 }
 
