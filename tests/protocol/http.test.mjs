@@ -73,7 +73,6 @@ test("what is not there is a readable 404; nothing outside the page's folder can
     "/%2e%2e/%2e%2e/CMakeLists.txt",
     "/%252e%252e/etc/passwd",
     "/..%5c..%5cetc/passwd",
-    "/%00/etc/passwd",
     "//etc/passwd",
     "/.git/config",
   ]) {
@@ -81,6 +80,12 @@ test("what is not there is a readable 404; nothing outside the page's folder can
     assert.equal(status, 404, path);
     assert.ok(body.length > 0);
   }
+  // libwebsockets 4.3 (Debian 13) closes the connection upon a NUL in a target, 4.1 (Debian 12) hands it on.
+  const status = await server.get("/%00/etc/passwd").then(
+    (answer) => answer.status,
+    (error) => error.code,
+  );
+  assert.ok([404, "ECONNRESET"].includes(status), String(status));
   const socket = net.connect(server.port, "127.0.0.1");
   await once(socket, "connect");
   socket.write("GET /../../../../etc/passwd HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
