@@ -7,7 +7,8 @@ import { test } from "node:test";
 import { files, root } from "./files.mjs";
 
 const longest = 120;
-const is_text = /(?:\.(?:h|cpp|glsl|comp|vert|frag|mjs|ts|css|html|md|yaml|yml|cmake)|CMakeLists\.txt|\/run|Dockerfile)$/;
+const is_text =
+  /(?:\.(?:h|cpp|glsl|comp|vert|frag|mjs|ts|css|html|md|yaml|yml|cmake)|CMakeLists\.txt|\/run|Dockerfile)$/;
 const without_what_stays_whole = (line, file) => {
   if (file.endsWith(".md")) return line.replace(/^\s*\|.*/, "").replaceAll(/\]\([^)]*\)/g, "]");
   if (/\.(?:ts|mjs)$/.test(file)) return /^\s*\/\//.test(line) ? line : "";
