@@ -1,7 +1,7 @@
 // The state hash after a second of every preset, and of five scenes with triangle meshes, several cloths and moving
 // spheres and planes, under every method: before and after a change that is to change nothing. What blows up ends with
 // the hash of its last good state.
-//   CLOTHLAB=build/release/clothlab node tests/bench/hashes.mjs [--out FILE] [--compare FILE]
+//   CLOTHLAB=build/release/clothlab node tests/bench/hashes.mjs [--only REGEX] [--out FILE] [--compare FILE]
 // Prints (and writes) JSON; with --compare it names what differs, and ends with 1 if anything does. Hashes are of one
 // device and Mesa.
 import { execFile } from "node:child_process";
@@ -43,7 +43,7 @@ function disc(rings, radius) {
         triangles.push([at(ring, outer), at(ring - 1, inner), at(ring, outer + 1)]);
         if (i + 1 < ring) triangles.push([at(ring - 1, inner), at(ring - 1, inner + 1), at(ring, outer + 1)]);
       }
-  return { triangles: { vertices, triangles } };
+  return { vertices, triangles };
 }
 const round = (mesh) => ({ mesh, mass: { area_density: 0.3 }, material: springs, transform: { translate: [0, 1, 0] } });
 const sphere = (center, radius, motion = null) => ({
@@ -102,6 +102,7 @@ const made = {
 const folder = mkdtempSync(join(tmpdir(), "clothlab-hashes-"));
 process.on("exit", () => rmSync(folder, { recursive: true, force: true }));
 const run = promisify(execFile);
+const wanted = new RegExp(option("--only") ?? ""); // of "preset, method"
 
 async function hashOf(scene, method, place) {
   const report = join(folder, `report-${place}.json`);
@@ -137,7 +138,9 @@ for (const [name, scene] of Object.entries(made)) {
 }
 
 const result = { benchmark: "hashes", renderer: "", hashes: {} };
-const todo = scenes.flatMap(([name, file]) => methods.map((method) => ({ what: `${name}, ${method}`, file, method })));
+const todo = scenes
+  .flatMap(([name, file]) => methods.map((method) => ({ what: `${name}, ${method}`, file, method })))
+  .filter(({ what }) => wanted.test(what));
 for (const { what } of todo) result.hashes[what] = ""; // in this order, whoever ends first
 let next = 0;
 await Promise.all(
@@ -161,7 +164,7 @@ if (!against) {
   if (before.renderer !== result.renderer)
     console.log(`not comparable: ${before.renderer} before, ${result.renderer} now`);
   const changed = Object.keys({ ...before.hashes, ...result.hashes }).filter(
-    (what) => before.hashes[what] !== result.hashes[what],
+    (what) => wanted.test(what) && before.hashes[what] !== result.hashes[what],
   );
   for (const what of changed) console.log(`${what}: ${before.hashes[what]} before, ${result.hashes[what]} now`);
   console.log(`${changed.length} of ${todo.length} differ`);
