@@ -13,9 +13,9 @@ namespace clothlab::test {
 inline double largest_stretch(sim::Simulation& simulation) {
   const sim::State state = simulation.read_state();
   double largest = 0.0;
-  for (const model::Spring& spring : simulation.model().springs) {
-    const glm::dvec3 a = state.position[spring.a], b = state.position[spring.b];
-    largest = std::max(largest, glm::distance(a, b) / spring.rest_length - 1.0);
+  for (const model::Spring& spring : simulation.model().springs()) {
+    const glm::dvec3 a = state.position[spring.vertices[0]], b = state.position[spring.vertices[1]];
+    largest = std::max(largest, glm::distance(a, b) / spring.law.rest_length - 1.0);
   }
   return largest;
 }

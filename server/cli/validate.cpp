@@ -28,7 +28,7 @@ bool report(const std::string& name) {
   }
   std::cout << name << ": valid (" << counted(model->cloths.size(), "cloth", "cloths") << ", "
             << counted(model->vertex_count(), "vertex", "vertices") << ", "
-            << counted(model->springs.size(), "spring", "springs") << ", "
+            << counted(model->springs().size(), "spring", "springs") << ", "
             << counted(document->scene.colliders.size(), "collider", "colliders") << ")\n";
   warn_of(*model, document->scene, name + ": ");
   return true;

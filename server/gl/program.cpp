@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Source text with its includes expanded, and where each of its lines came from. (Mesa forgets the file that
-/// a #line directive names in some of its messages, so lines are counted here.)
+/// Source text with its includes and repetitions expanded, and where each of its lines came from. (Mesa
+/// forgets the file that a #line directive names in some of its messages, so lines are counted here.)
 struct Source {
   std::string text;
   std::vector<std::string> origins;  ///< "shaders/FILE:LINE" of each line of text
@@ -27,32 +27,68 @@ struct Source {
   }
 };
 
-Status expand(const std::string& path, Source& source, std::set<std::string>& seen) {
-  if (!seen.insert(path).second) return ok();  // every file is included once
-  Result<fs::path> found = data_path("shaders/" + path);
-  if (!found) return found.error();
-  Result<std::string> text = read_file(*found);
-  if (!text) return text.error();
-
-  static const std::regex include(R"(^\s*#include\s+"([^"]+)\".*$)");
-  std::istringstream lines(*text);
-  std::string line;
-  for (int number = 1; std::getline(lines, line); ++number) {
-    const std::string origin = "shaders/" + path + ":" + std::to_string(number);
-    std::smatch match;
-    if (!std::regex_match(line, match, include)) {
-      source.add_line(line, origin);
-      continue;
-    }
-    const std::string target = (fs::path(path).parent_path() / match[1].str()).lexically_normal().string();
-    if (Status status = expand(target, source, seen); !status) {
-      Error error = status.error();
-      error.where = origin + ": " + error.where;
-      return error;
+class Expansion {
+ public:
+  Expansion(Source& source, const Defines& defines) : source_(source) {
+    for (const auto& [name, value] : defines) {
+      if (name != "LAWS") continue;
+      std::istringstream names(value);
+      for (std::string law; names >> law;) laws_.push_back(law);
     }
   }
-  return ok();
-}
+
+  Status add(const std::string& path) {
+    if (!seen_.insert(path).second) return ok();  // every file is included once
+    Result<fs::path> found = data_path("shaders/" + path);
+    if (!found) return found.error();
+    Result<std::string> text = read_file(*found);
+    if (!text) return text.error();
+
+    static const std::regex include(R"(^\s*#include\s+"([^"]+)\".*$)"), each(R"(^\s*#each Law\s*$)"),
+        end(R"(^\s*#end\s*$)");
+    std::istringstream lines(*text);
+    std::string line;
+    std::vector<std::pair<std::string, std::string>> repeated;  // lines and their origins
+    bool repeats = false;
+    for (int number = 1; std::getline(lines, line); ++number) {
+      const std::string origin = "shaders/" + path + ":" + std::to_string(number);
+      std::smatch match;
+      if (std::regex_match(line, each)) {
+        repeats = true;
+      } else if (std::regex_match(line, end)) {
+        for (const std::string& law : laws_)
+          for (const auto& [text_of, origin_of] : repeated) source_.add_line(of_law(text_of, law), origin_of);
+        repeated.clear();
+        repeats = false;
+      } else if (repeats) {
+        repeated.emplace_back(line, origin);
+      } else if (std::regex_match(line, match, include)) {
+        const fs::path target = (fs::path(path).parent_path() / match[1].str()).lexically_normal();
+        if (Status status = add(target.string()); !status) {
+          Error error = status.error();
+          error.where = origin + ": " + error.where;
+          return error;
+        }
+      } else {
+        source_.add_line(line, origin);
+      }
+    }
+    if (repeats) return Error{"shaders/" + path, "#each Law without its #end", "mend the shader"};
+    return ok();
+  }
+
+ private:
+  static std::string of_law(std::string line, const std::string& law) {
+    const std::string placeholder = "Law";
+    for (std::size_t at = 0; (at = line.find(placeholder, at)) != std::string::npos; at += law.size())
+      line.replace(at, placeholder.size(), law);
+    return line;
+  }
+
+  Source& source_;
+  std::vector<std::string> laws_;
+  std::set<std::string> seen_;
+};
 
 /// The driver's first message, with its line of the expanded text replaced by the source file's name and
 /// line.
@@ -93,8 +129,7 @@ Result<GLuint> compile(const std::string& path, const Defines& defines) {
   source.add_line("#version 450 core", prologue);
   if (reads_are_storage()) source.add_line("#define READ_STORAGE", prologue);
   for (const auto& [name, value] : defines) source.add_line("#define " + name + " " + value, prologue);
-  std::set<std::string> seen;
-  if (Status status = expand(path, source, seen); !status) return status.error();
+  if (Status status = Expansion(source, defines).add(path); !status) return status.error();
 
   const GLuint shader = glCreateShader(stage_of(path));
   const char* text = source.text.c_str();

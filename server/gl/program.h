@@ -1,4 +1,6 @@
-// A linked program made from shader files below shaders/, with #include and #define. Knows no cloth.
+// A linked program made from shader files below shaders/, with #include, #define and a repetition: the lines
+// between `#each Law` and `#end` are there once for each name that the define LAWS lists, with that name in
+// the place of Law. (GLSL has neither templates nor ##.)
 #pragma once
 
 #include <glad/gl.h>

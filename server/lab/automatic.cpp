@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "server/model/element_operator.h"
 #include "server/model/remedy.h"
-#include "server/model/spring_operator.h"
 #include "server/model/stability.h"
 
 namespace clothlab::lab {
@@ -42,7 +42,7 @@ json without_solver(json scene) {
 Setting provisional(const model::Model& model, const scene::Scene& scene) {
   Setting setting{scene::Method::verlet, scene.solver.dt, 1, 1e-4};
   const double limit =
-      model::dt_limit_bound(setting.method, model::SpringOperator(model, scene, model.rest_position));
+      model::dt_limit_bound(setting.method, model::ElementOperator(model, scene, model.rest_position));
   if (std::isfinite(limit)) setting.dt = model::rounded_down(of_limit * limit);
   return setting;
 }

@@ -37,11 +37,10 @@ Result<Shapes> shapes_of(scene::Scene scene, double dt, int steps, Runner& runne
   const auto look = [&](sim::Simulation& at) {
     const sim::State state = at.read_state();
     const model::Field shape(state.position.begin(), state.position.end());
-    for (const model::Spring& spring : model.springs)
-      if (spring.rest_length > 0.0)
-        shapes.longest =
-            std::max(shapes.longest, glm::distance(shape[spring.a], shape[spring.b]) / spring.rest_length);
-    limits.push_back(model::dt_limit(scene.solver.method, model::SpringOperator(model, scene, shape), stop));
+    model::each_element(model.elements, [&](const auto& element) {
+      shapes.longest = std::max(shapes.longest, 1.0 + element_stretch(element.law, edges(element, 0, shape)));
+    });
+    limits.push_back(model::dt_limit(scene.solver.method, model::ElementOperator(model, scene, shape), stop));
   };
   const Result<EnergyTrial> trial = run_trial(**simulation, steps, stop, look);
   if (!trial) return trial.error();
@@ -161,7 +160,7 @@ const char* phrase(Cause cause) {
   return "";
 }
 
-model::Mode fastest_growing(Method method, const model::SpringOperator& springs,
+model::Mode fastest_growing(Method method, const model::ElementOperator& springs,
                             const std::stop_token& stop) {
   const auto of_mode = [&](const model::Mode& mode) { return model::dt_limit(method, mode); };
   const auto stiffest = [](const model::Mode& mode) { return 1.0 / std::sqrt(mode.omega_squared); };

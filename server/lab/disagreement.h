@@ -13,7 +13,7 @@ namespace clothlab::lab {
 inline constexpr double agreement = 0.05;
 
 /// The vibration about the rest shape that grows first beyond the method's limit.
-model::Mode fastest_growing(scene::Method method, const model::SpringOperator& springs,
+model::Mode fastest_growing(scene::Method method, const model::ElementOperator& springs,
                             const std::stop_token& stop);
 
 /// Where the boundary lies: between the longest step that held and the shortest that failed, or, if one of

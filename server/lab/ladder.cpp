@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/model/spring_operator.h"
+#include "server/model/element_operator.h"
 #include "server/model/stability.h"
 #include "server/scene/method.h"
 
@@ -49,7 +49,7 @@ void Ladder::go_on(std::optional<double> error, std::optional<double> own) {
 
 double limit_of(Method method, const scene::Scene& scene, const Truth& truth) {
   return model::dt_limit(method,
-                         model::SpringOperator(truth.world.model, scene, truth.world.model.rest_position));
+                         model::ElementOperator(truth.world.model, scene, truth.world.model.rest_position));
 }
 
 std::vector<Ladder> make_ladders(const scene::Scene& scene, const ChartRequest& request, const Truth& truth) {

@@ -59,7 +59,7 @@ class Column {
  private:
   Status find_theory(const model::Model& model) {
     const Method method = scene_.solver.method;
-    const model::SpringOperator springs(model, scene_, model.rest_position);
+    const model::ElementOperator springs(model, scene_, model.rest_position);
     const double limit = model::dt_limit(method, springs, stop_);
     if (stop_.stop_requested()) return cancelled;
     if (limit == model::no_limit) return ok();

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "server/lab/control.h"
-#include "server/model/spring_operator.h"
+#include "server/model/element_operator.h"
 #include "server/model/stability.h"
 #include "server/scene/method.h"
 
@@ -35,7 +35,7 @@ std::vector<Setting> settings_of(Method method) {
 
 double StepSearch::limit_of(Method method) const {
   const model::Model& model = truth_.world.model;
-  return model::dt_limit(method, model::SpringOperator(model, scene_, model.rest_position));
+  return model::dt_limit(method, model::ElementOperator(model, scene_, model.rest_position));
 }
 
 Status StepSearch::list(std::vector<Method> methods) {

@@ -53,11 +53,9 @@ double largest_extent(const model::Model& model) {
 
 double largest_strain(const World& world, const State& state) {
   double most = 0.0;
-  for (const model::Spring& spring : world.model.springs)
-    if (spring.rest_length > 0.0)
-      most = std::max(most, std::abs(glm::distance(state.position[spring.a], state.position[spring.b]) /
-                                         spring.rest_length -
-                                     1.0));
+  model::each_element(world.model.elements, [&](const auto& element) {
+    most = std::max(most, element_strain(element.law, edges(element, 0, state.position)));
+  });
   return most;
 }
 

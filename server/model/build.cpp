@@ -106,6 +106,36 @@ Adjacency adjacency(std::size_t vertex_count, const Items& items, Corners corner
   return result;
 }
 
+/// Lists for each vertex the corners of elements that it is.
+template <class Law>
+Adjacency corners_at(std::size_t vertex_count, const Batch<Law>& batch) {
+  std::vector<Index> corners;
+  corners.reserve(batch.size() * Element<Law>::corners);
+  for (const Element<Law>& element : batch)
+    corners.insert(corners.end(), element.vertices.begin(), element.vertices.end());
+  return adjacency(vertex_count, corners, [](Index vertex) { return std::array{vertex}; });
+}
+
+Adjacency contact_exclusions(const Model& model) {
+  Adjacency result;
+  result.offsets.push_back(0);
+  std::vector<Index> others;
+  for (Index i = 0; i < model.vertex_count(); ++i) {
+    others.clear();
+    model.elements.each([&](const auto& batch) {
+      batch.at(i, [&](const auto& element, std::size_t) {
+        for (const Index vertex : element.vertices)
+          if (vertex != i) others.push_back(vertex);
+      });
+    });
+    std::sort(others.begin(), others.end());
+    others.erase(std::unique(others.begin(), others.end()), others.end());
+    result.items.insert(result.items.end(), others.begin(), others.end());
+    result.offsets.push_back(static_cast<Index>(result.items.size()));
+  }
+  return result;
+}
+
 std::vector<double> masses(const scene::Cloth& cloth, const MeshArrays& arrays,
                            const std::vector<dvec3>& position) {
   if (cloth.mass.kind == scene::Mass::Kind::per_vertex)
@@ -161,14 +191,12 @@ Status add_cloth(Model& model, const scene::Cloth& cloth) {
   const Index first = model.vertex_count();
   ClothRange range{first, static_cast<Index>(position.size()), model.triangle_count(),
                    static_cast<Index>(arrays.triangles.size()), mean_edge_length(arrays, position)};
-  model.springs.reserve(model.springs.size() + arrays.springs.size());
-  for (Spring spring : arrays.springs) {
-    spring.rest_length = glm::distance(position[spring.a], position[spring.b]);
-    spring.a += first;
-    spring.b += first;
-    spring.cloth = cloth_index;
-    model.springs.push_back(spring);
-  }
+  Batch<elements::Spring>& springs = model.elements.springs;
+  springs.reserve(springs.size() + arrays.springs.size());
+  for (const MeshSpring& spring : arrays.springs)
+    springs.push_back({{spring.a + first, spring.b + first},
+                       {glm::distance(position[spring.a], position[spring.b]),
+                        stiffness(cloth.material, spring.kind), cloth.material.damping}});
   for (const auto& [a, b, c] : arrays.triangles) model.triangles.push_back({a + first, b + first, c + first});
   const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
   append(model.rest_position, position);
@@ -199,9 +227,8 @@ Result<Model> build(const scene::Scene& scene) {
   Model model;
   for (const scene::Cloth& cloth : scene.cloths)
     if (Status added = add_cloth(model, cloth); !added) return added.error();
-  model.vertex_springs = adjacency(model.vertex_count(), model.springs, [](const Spring& spring) {
-    return std::array{spring.a, spring.b};
-  });
+  model.elements.each([&](auto& batch) { batch.at_vertex = corners_at(model.vertex_count(), batch); });
+  if (scene.self_collision) model.contact_exclusions = contact_exclusions(model);
   model.vertex_triangles =
       adjacency(model.vertex_count(), model.triangles, [](const auto& corners) { return corners; });
   return model;

@@ -19,10 +19,17 @@ GridPlace place(const scene::Grid& grid, Index vertex) {
   return {vertex % columns, vertex / columns};
 }
 
+/// Of a law without a closed form.
+template <class Law>
+Index grid_colour(const scene::Grid&, Index, const Element<Law>&) {
+  return uncoloured;
+}
+
 /// Twelve classes: six directions, two colours each. Along its direction a spring's two ends are one or two
 /// vertices apart: counted in that length from the edge of the grid, even and odd ones alternate.
-Index grid_spring_colour(const scene::Grid& grid, Index first_vertex, const Spring& spring) {
-  const GridPlace a = place(grid, spring.a - first_vertex), b = place(grid, spring.b - first_vertex);
+Index grid_colour(const scene::Grid& grid, Index first_vertex, const Spring& spring) {
+  const GridPlace a = place(grid, spring.vertices[0] - first_vertex),
+                  b = place(grid, spring.vertices[1] - first_vertex);
   const Index across = b.column > a.column ? b.column - a.column : a.column - b.column, down = b.row - a.row;
   const Index left = std::min(a.column, b.column);
   if (down == 0) return (across == 2 ? 8 : 0) + left / across % 2;
@@ -76,29 +83,28 @@ const scene::Grid* grid_of(const scene::Scene& scene, Index cloth) {
   return std::get_if<scene::Grid>(&scene.cloths[cloth].mesh);
 }
 
-Index other_end(const Spring& spring, Index vertex) {
-  return spring.a == vertex ? spring.b : spring.a;
-}
-
 }  // namespace
 
-Colouring colour_springs(const Model& model, const scene::Scene& scene) {
-  std::vector<Index> colour(model.springs.size(), uncoloured), queue;
-  for (Index i = 0; i < model.springs.size(); ++i) {
-    const Spring& spring = model.springs[i];
-    if (const scene::Grid* grid = grid_of(scene, spring.cloth))
-      colour[i] = grid_spring_colour(*grid, model.cloths[spring.cloth].first_vertex, spring);
-    else
-      queue.push_back(i);
+template <class Law>
+Colouring colour_elements(const Model& model, const scene::Scene& scene, const Batch<Law>& batch) {
+  constexpr auto corners = static_cast<Index>(Element<Law>::corners);
+  std::vector<Index> colour(batch.size(), uncoloured), queue;
+  for (Index i = 0; i < batch.size(); ++i) {
+    const Index cloth = model.vertex_cloth[batch[i].vertices[0]];
+    if (const scene::Grid* grid = grid_of(scene, cloth))
+      colour[i] = grid_colour(*grid, model.cloths[cloth].first_vertex, batch[i]);
+    if (colour[i] == uncoloured) queue.push_back(i);
   }
-  const auto neighbours = [&](Index spring, auto visit) {
-    for (const Index vertex : {model.springs[spring].a, model.springs[spring].b})
-      for (Index k = model.vertex_springs.offsets[vertex]; k < model.vertex_springs.offsets[vertex + 1]; ++k)
-        if (model.vertex_springs.items[k] != spring) visit(model.vertex_springs.items[k]);
+  const auto neighbours = [&](Index element, auto visit) {
+    for (const Index vertex : batch[element].vertices)
+      for (Index k = batch.at_vertex.offsets[vertex]; k < batch.at_vertex.offsets[vertex + 1]; ++k)
+        if (const Index other = batch.at_vertex.items[k] / corners; other != element) visit(other);
   };
   colour_greedily(queue, neighbours, colour);
   return group(colour);
 }
+
+template Colouring colour_elements(const Model&, const scene::Scene&, const Batch<elements::Spring>&);
 
 Colouring colour_vertices(const Model& model, const scene::Scene& scene) {
   std::vector<Index> colour(model.vertex_count(), uncoloured), queue;
@@ -111,13 +117,19 @@ Colouring colour_vertices(const Model& model, const scene::Scene& scene) {
       queue.push_back(i);
     }
   }
-  const std::vector<Index>& offsets = model.vertex_springs.offsets;
-  std::stable_sort(queue.begin(), queue.end(), [&](Index a, Index b) {
-    return offsets[a + 1] - offsets[a] > offsets[b + 1] - offsets[b];
+  std::vector<Index> degree(model.vertex_count(), 0);
+  model.elements.each([&](const auto& batch) {
+    for (Index i = 0; i < degree.size(); ++i)
+      degree[i] += batch.at_vertex.offsets[i + 1] - batch.at_vertex.offsets[i];
   });
+  std::stable_sort(queue.begin(), queue.end(), [&](Index a, Index b) { return degree[a] > degree[b]; });
   const auto neighbours = [&](Index vertex, auto visit) {
-    for (Index k = offsets[vertex]; k < offsets[vertex + 1]; ++k)
-      visit(other_end(model.springs[model.vertex_springs.items[k]], vertex));
+    model.elements.each([&](const auto& batch) {
+      batch.at(vertex, [&](const auto& element, std::size_t) {
+        for (const Index other : element.vertices)
+          if (other != vertex) visit(other);
+      });
+    });
   };
   colour_greedily(queue, neighbours, colour);
   return group(colour);

@@ -69,24 +69,24 @@ Weights weights(const LimitOfMode& limit, const Mode& mode) {
 
 }  // namespace
 
-Field scattered_start(const SpringOperator& springs) {
-  Field start(springs.vertex_count());
+Field scattered_start(const ElementOperator& elements) {
+  Field start(elements.vertex_count());
   std::uint64_t seed = 1;
   const auto next = [&seed] {  // Knuth's linear congruential generator
     seed = seed * 6364136223846793005u + 1442695040888963407u;
     return static_cast<double>(seed >> 11) * 0x1p-53 - 0.5;
   };
   for (std::size_t i = 0; i < start.size(); ++i)
-    for (int axis = 0; axis < 3; ++axis) start[i][axis] = springs.pinned(i) ? 0.0 : next();
+    for (int axis = 0; axis < 3; ++axis) start[i][axis] = elements.pinned(i) ? 0.0 : next();
   return start;
 }
 
-ExtremeMode extreme_mode(const SpringOperator& springs, const LimitOfMode& limit, Field start,
+ExtremeMode extreme_mode(const ElementOperator& elements, const LimitOfMode& limit, Field start,
                          const std::stop_token& stop) {
   const std::size_t count = start.size();
   Direction best(count), residual(count), last(count);
   best.y = std::move(start);
-  springs.apply(best.y, best.stiff, best.damped);
+  elements.apply(best.y, best.stiff, best.damped);
   ExtremeMode found;
   if (!best.normalise()) return found;
   bool has_last = false;
@@ -111,7 +111,7 @@ ExtremeMode extreme_mode(const SpringOperator& springs, const LimitOfMode& limit
     const double terms = std::abs(weight.stiffness) * std::sqrt(dot(best.stiff, best.stiff)) +
                          std::abs(weight.damping) * std::sqrt(dot(best.damped, best.damped));
     if (dot(residual.y, residual.y) <= rounding * rounding * terms * terms) break;
-    springs.apply(residual.y, residual.stiff, residual.damped);
+    elements.apply(residual.y, residual.stiff, residual.damped);
     if (!residual.orthonormalise({&best})) break;
     has_last = has_last && last.orthonormalise({&best, &residual});
 

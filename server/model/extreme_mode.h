@@ -4,7 +4,7 @@
 #include <functional>
 #include <stop_token>
 
-#include "server/model/spring_operator.h"
+#include "server/model/element_operator.h"
 
 namespace clothlab::model {
 
@@ -29,10 +29,10 @@ struct ExtremeMode {
 /// last change. It approaches from one side, so the limit found is never too short, and stops where ten
 /// iterations change it by less than 1e-4 of itself. Every start that is not special does; `stop` ends it
 /// early with the best so far.
-ExtremeMode extreme_mode(const SpringOperator& springs, const LimitOfMode& limit, Field start,
+ExtremeMode extreme_mode(const ElementOperator& elements, const LimitOfMode& limit, Field start,
                          const std::stop_token& stop = {});
 
 /// A start without structure, the same every time; 0 at pinned vertices.
-Field scattered_start(const SpringOperator& springs);
+Field scattered_start(const ElementOperator& elements);
 
 }  // namespace clothlab::model

@@ -15,8 +15,8 @@ Edge sorted(std::uint32_t a, std::uint32_t b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-Spring spring(Edge edge, SpringKind kind) {
-  return {edge.first, edge.second, 0, kind, 0.0};
+MeshSpring spring(Edge edge, SpringKind kind) {
+  return {edge.first, edge.second, kind};
 }
 
 }  // namespace
@@ -91,10 +91,11 @@ MeshArrays triangle_mesh_arrays(const scene::TriangleMesh& mesh, const scene::Sp
     if (!opposite.contains(across)) arrays.springs.push_back(spring(across, SpringKind::bend));
   }
   // Two edges may have the same pair opposite them; one spring is enough.
-  std::stable_sort(arrays.springs.begin(), arrays.springs.end(), [](const Spring& a, const Spring& b) {
-    return std::tie(a.kind, a.a, a.b) < std::tie(b.kind, b.a, b.b);
-  });
-  const auto same = [](const Spring& a, const Spring& b) {
+  std::stable_sort(arrays.springs.begin(), arrays.springs.end(),
+                   [](const MeshSpring& a, const MeshSpring& b) {
+                     return std::tie(a.kind, a.a, a.b) < std::tie(b.kind, b.a, b.b);
+                   });
+  const auto same = [](const MeshSpring& a, const MeshSpring& b) {
     return a.a == b.a && a.b == b.b && a.kind == b.kind;
   };
   arrays.springs.erase(std::unique(arrays.springs.begin(), arrays.springs.end(), same), arrays.springs.end());

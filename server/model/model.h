@@ -1,4 +1,4 @@
-// scene -> particles, springs, triangles, pins as CPU arrays. All cloths of a scene are laid end to end. No
+// scene -> particles, elements, triangles, pins as CPU arrays. All cloths of a scene are laid end to end. No
 // GL here.
 #pragma once
 
@@ -10,35 +10,21 @@
 #include <vector>
 
 #include "server/base/result.h"
+#include "server/model/elements.h"
 #include "server/scene/scene.h"
 
 namespace clothlab::model {
-
-using glm::dvec3;
 
 enum class SpringKind : std::uint8_t { structural, shear, bend };
 
 /// The stiffness [N/m] that `material` gives springs of this kind.
 double stiffness(const scene::Springs& material, SpringKind kind);
 
-struct Spring {
-  std::uint32_t a = 0, b = 0;  ///< vertices, a < b
-  std::uint32_t cloth = 0;
-  SpringKind kind = SpringKind::structural;
-  double rest_length = 0;  ///< [m]
-};
-
 /// One cloth's share of the arrays.
 struct ClothRange {
   std::uint32_t first_vertex = 0, vertex_count = 0;
   std::uint32_t first_triangle = 0, triangle_count = 0;
   double mean_edge_length = 0;  ///< [m], over the triangles' edges at rest
-};
-
-/// For each vertex i the items [offsets[i], offsets[i+1]) (compressed sparse rows).
-struct Adjacency {
-  std::vector<std::uint32_t> offsets;  ///< [vertex_count + 1]
-  std::vector<std::uint32_t> items;
 };
 
 inline constexpr std::int32_t not_pinned = -1;
@@ -53,11 +39,13 @@ struct Model {
   std::vector<std::uint32_t> vertex_cloth;     ///< [vertex_count]
   std::vector<glm::vec2> texture_coordinates;  ///< [vertex_count], [0, 1] over a grid, [m] / 1 m otherwise
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< [triangle_count]
-  std::vector<Spring> springs;                          ///< each once
-  Adjacency vertex_springs;                             ///< springs at each vertex
+  Batches elements;                                     ///< each element once
   Adjacency vertex_triangles;                           ///< triangles at each vertex
+  /// Of each vertex those that self-collision leaves out, in rising order: the other corners of its elements.
+  Adjacency contact_exclusions;
   std::vector<ClothRange> cloths;
 
+  const Batch<elements::Spring>& springs() const { return elements.springs; }
   std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(rest_position.size()); }
   std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(triangles.size()); }
 };

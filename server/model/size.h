@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "server/base/result.h"
+#include "server/model/elements.h"
 #include "server/scene/scene.h"
 
 namespace clothlab::model {
@@ -11,6 +12,8 @@ namespace clothlab::model {
 struct Size {
   std::size_t vertices = 0, triangles = 0;
   std::size_t springs = 0;  ///< exact for grids; of a triangle mesh no more than these
+  /// Entries in the lists of the elements at each vertex, one for each corner of an element.
+  std::size_t entries() const { return elements::corners<elements::Spring> * springs; }
 };
 
 Size size_of(const scene::Scene& scene);

@@ -1,5 +1,5 @@
 // What PBD and XPBD multiply a spring's stretch with when they visit it (shaders/elements/spring.glsl,
-// spring_projection): where stiffness in N/m and damping in N s/m become numbers for one dt.
+// element_projection): where stiffness in N/m and damping in N s/m become numbers for one dt.
 #pragma once
 
 #include <array>
@@ -10,11 +10,7 @@
 
 namespace clothlab::model {
 
-struct SpringGains {
-  double stretch = 0, damping = 0;  ///< [kg]
-  double memory = 0;                ///< of what the spring has pushed in this step already, [0, 1)
-  double turning = 0;               ///< its stiffness over that of both ends' inertia; 0 without memory
-};
+using elements::SpringGains;
 
 /// 1 / (1 + dt air drag): what an implicit step makes of air drag, as if mass were more.
 double mobility(const scene::Scene& scene);

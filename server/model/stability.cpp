@@ -86,7 +86,7 @@ double dt_limit(Method method, const Mode& found) {
 }
 
 double omega_bound(const Model& model, const scene::Scene& scene) {
-  return std::sqrt(SpringOperator(model, scene, model.rest_position).stiffness_bound());
+  return std::sqrt(ElementOperator(model, scene, model.rest_position).stiffness_bound());
 }
 
 double omega_max(const Model& model, const scene::Scene& scene) {
@@ -94,51 +94,51 @@ double omega_max(const Model& model, const scene::Scene& scene) {
 }
 
 double omega_max(const Model& model, const scene::Scene& scene, const Field& shape) {
-  const SpringOperator springs(model, scene, shape);
-  return std::sqrt(extreme_mode(springs, undamped_limit, scattered_start(springs)).mode.omega_squared);
+  const ElementOperator elements(model, scene, shape);
+  return std::sqrt(extreme_mode(elements, undamped_limit, scattered_start(elements)).mode.omega_squared);
 }
 
-double dt_limit_bound(Method method, const SpringOperator& springs) {
-  if (!springs.any_free()) return no_limit;
-  if (springs.empty() || scene::any_step_is_stable(method))
-    return dt_limit(method, {0.0, springs.air_drag()});
-  const Mode worst{springs.stiffness_bound(), springs.damping_bound()};
+double dt_limit_bound(Method method, const ElementOperator& elements) {
+  if (!elements.any_free()) return no_limit;
+  if (elements.empty() || scene::any_step_is_stable(method))
+    return dt_limit(method, {0.0, elements.air_drag()});
+  const Mode worst{elements.stiffness_bound(), elements.damping_bound()};
   if (one_worst(method)) return dt_limit(method, worst);
   // Both need roots that are no farther from 0 than this.
   const double farthest = std::max(std::sqrt(worst.omega_squared), worst.damping);
   if (method == Method::rk4) return 2.6 / farthest;
-  return std::min(springs.least_damping_time() + springs.air_drag() / worst.omega_squared,
+  return std::min(elements.least_damping_time() + elements.air_drag() / worst.omega_squared,
                   worst.damping > 0.0 ? 2.0 / worst.damping : no_limit);
 }
 
-double dt_limit(Method method, const SpringOperator& springs, const std::stop_token& stop) {
-  if (!springs.any_free()) return no_limit;
-  // What stretches no spring, a cloth that moves as a whole, is only slowed by the air.
-  double least = dt_limit(method, {0.0, springs.air_drag()});
-  if (springs.empty() || scene::any_step_is_stable(method)) return least;
-  if (method == Method::explicit_euler && springs.air_drag() == 0.0 && springs.least_damping_time() == 0.0)
+double dt_limit(Method method, const ElementOperator& elements, const std::stop_token& stop) {
+  if (!elements.any_free()) return no_limit;
+  // What strains no element, a cloth that moves as a whole, is only slowed by the air.
+  double least = dt_limit(method, {0.0, elements.air_drag()});
+  if (elements.empty() || scene::any_step_is_stable(method)) return least;
+  if (method == Method::explicit_euler && elements.air_drag() == 0.0 && elements.least_damping_time() == 0.0)
     return 0.0;
   const auto of_mode = [&](const Mode& mode) { return dt_limit(method, mode); };
   const auto search = [&](Field start) {
-    least = std::min(least, of_mode(extreme_mode(springs, of_mode, std::move(start), stop).mode));
+    least = std::min(least, of_mode(extreme_mode(elements, of_mode, std::move(start), stop).mode));
   };
-  const Field scattered = scattered_start(springs);
+  const Field scattered = scattered_start(elements);
   if (one_worst(method)) {
     search(scattered);
   } else {
     // The worst vibration is near the stiffest or near the most damped, and either may be the worse.
-    search(extreme_mode(springs, undamped_limit, scattered, stop).y);
-    if (springs.damping_bound() > 0.0) search(extreme_mode(springs, overdamped_limit, scattered, stop).y);
+    search(extreme_mode(elements, undamped_limit, scattered, stop).y);
+    if (elements.damping_bound() > 0.0) search(extreme_mode(elements, overdamped_limit, scattered, stop).y);
   }
-  return stop.stop_requested() ? dt_limit_bound(method, springs) : least;
+  return stop.stop_requested() ? dt_limit_bound(method, elements) : least;
 }
 
 double dt_limit_bound(const Model& model, const scene::Scene& scene) {
-  return dt_limit_bound(scene.solver.method, SpringOperator(model, scene, model.rest_position));
+  return dt_limit_bound(scene.solver.method, ElementOperator(model, scene, model.rest_position));
 }
 
 double dt_limit(const Model& model, const scene::Scene& scene) {
-  return dt_limit(scene.solver.method, SpringOperator(model, scene, model.rest_position));
+  return dt_limit(scene.solver.method, ElementOperator(model, scene, model.rest_position));
 }
 
 double dt_limit_if_near(const Model& model, const scene::Scene& scene) {

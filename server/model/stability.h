@@ -25,18 +25,18 @@ double dt_limit(scene::Method method, const Mode& mode);
 /// Whether the worst vibration is one of the largest of a single matrix: then any start of a search finds it.
 bool one_worst(scene::Method method);
 
-/// The largest angular frequency [rad/s] of the springs about the rest shape, without damping: no less, at
-/// the cost of a pass over the springs ...
+/// The largest angular frequency [rad/s] of the elements about the rest shape, without damping: no less, at
+/// the cost of a pass over the elements ...
 double omega_bound(const Model& model, const scene::Scene& scene);
 /// ... and sharp, from below, to about 0.1 %; about `shape` [vertex_count] [m] instead, tension included.
 double omega_max(const Model& model, const scene::Scene& scene);
 double omega_max(const Model& model, const scene::Scene& scene, const Field& shape);
 
 /// The longest stable step [s] of a method on a cloth, damping and air drag included: never too long, at the
-/// cost of a pass over the springs ...
-double dt_limit_bound(scene::Method method, const SpringOperator& springs);
+/// cost of a pass over the elements ...
+double dt_limit_bound(scene::Method method, const ElementOperator& elements);
 /// ... and sharp, from above, to about 0.1 %: some 60 passes. `stop` makes it give up and return the bound.
-double dt_limit(scene::Method method, const SpringOperator& springs, const std::stop_token& stop = {});
+double dt_limit(scene::Method method, const ElementOperator& elements, const std::stop_token& stop = {});
 
 /// The same two for a scene as it lies at rest, with its own method.
 double dt_limit_bound(const Model& model, const scene::Scene& scene);

@@ -18,7 +18,7 @@ void StepLimit::follow(const model::Model& model, const scene::Scene& scene) {
   scene_ = scene;
   if (same_limit) return;
   give_up_search();
-  model::SpringOperator springs(model, scene, model.rest_position);
+  model::ElementOperator springs(model, scene, model.rest_position);
   dt_limit_ = model::dt_limit_bound(scene.solver.method, springs);
   search_ = std::async(std::launch::async, [springs = std::move(springs), method = scene.solver.method,
                                             stop = stop_.get_token()] {

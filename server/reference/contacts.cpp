@@ -89,7 +89,10 @@ double inverse_mass(const World& world, std::uint32_t vertex) {
 
 std::optional<double> kept_distance(const World& world, std::uint32_t i, std::uint32_t j) {
   const model::Model& model = world.model;
-  if (i == j || world.joined.contains({std::min(i, j), std::max(i, j)})) return std::nullopt;
+  const model::Adjacency& excluded = model.contact_exclusions;
+  const auto first = excluded.items.begin() + excluded.offsets[i],
+             end = excluded.items.begin() + excluded.offsets[i + 1];
+  if (i == j || std::binary_search(first, end, j)) return std::nullopt;
   const double thickness = world.scene.self_collision->thickness;
   if (model.vertex_cloth[i] != model.vertex_cloth[j]) return thickness;
   return std::min(thickness, glm::distance(model.rest_position[i], model.rest_position[j]));

@@ -77,7 +77,7 @@ SweepState begin(const World& world, const State& state, double t, double t_next
                   Vectors(count),
                   Vectors(count, dvec3(0.0)),
                   std::vector<double>(count),
-                  Vectors(world.model.springs.size(), dvec3(0.0)),
+                  Vectors(world.model.springs().size(), dvec3(0.0)),
                   std::vector<int>(count, 0),
                   state.contacts};
   step.contacts.resize(count, 0);

@@ -45,7 +45,7 @@ struct Equation {
   }
 
   Vectors residual(const Vectors& u) const {
-    const Vectors force = spring_forces(world, end(u), u);
+    const Vectors force = element_forces(world, end(u), u);
     Vectors r(x.size(), dvec3(0.0));
     for (std::size_t i = 0; i < x.size(); ++i) {
       if (world.pinned(i)) continue;
@@ -67,14 +67,12 @@ struct Equation {
     for (std::size_t i = 0; i < x.size(); ++i)
       sum[i].x = world.model.mass[i] *
                  (glm::length(u[i]) + glm::length(v[i]) + dt * glm::length(world.scene.gravity));
-    for (const model::Spring& spring : world.model.springs) {
-      const scene::Springs& material = world.scene.cloths[spring.cloth].material;
-      const double length = glm::distance(positions[spring.a], positions[spring.b]);
-      const double most = model::stiffness(material, spring.kind) * (length + spring.rest_length) +
-                          material.damping * glm::distance(u[spring.a], u[spring.b]);
-      sum[spring.a].x += dt * most;
-      sum[spring.b].x += dt * most;
-    }
+    model::each_element(world.model.elements, [&](const auto& element) {
+      for (std::size_t corner = 0; corner < element.corners; ++corner)
+        sum[element.vertices[corner]].x +=
+            dt *
+            element_force_scale(element.law, edges(element, corner, positions), edges(element, corner, u));
+    });
     double largest = 1e-300;
     for (const dvec3& s : sum) largest = std::max(largest, s.x);
     return largest;

@@ -33,10 +33,9 @@ void stop_at_colliders(const World& world, const State& before, double t, State&
 Result<World> make_world(const scene::Scene& scene, double contact_margin) {
   Result<model::Model> model = model::build(scene);
   if (!model) return model.error();
-  World world{scene, std::move(*model), contact_margin, {}, {}, {}};
-  world.spring_colours = model::colour_springs(world.model, scene);
+  World world{scene, std::move(*model), contact_margin, {}, {}};
+  world.spring_colours = model::colour_elements(world.model, scene, world.model.springs());
   world.vertex_colours = model::colour_vertices(world.model, scene);
-  for (const model::Spring& spring : world.model.springs) world.joined.insert({spring.a, spring.b});
   return world;
 }
 
@@ -45,21 +44,22 @@ State at_rest(const World& world) {
   return State{world.model.start_position, Vectors(count, dvec3(0.0)), std::vector<int>(count, 0), 0};
 }
 
-Vectors spring_forces(const World& world, const Vectors& x, const Vectors& v) {
+Vectors element_forces(const World& world, const Vectors& x, const Vectors& v) {
   Vectors force(world.model.vertex_count(), dvec3(0.0));
-  for (const model::Spring& spring : world.model.springs) {
-    const scene::Springs& material = world.scene.cloths[spring.cloth].material;
-    const dvec3 on_a =
-        elements::spring_force(x[spring.a], x[spring.b], v[spring.a], v[spring.b], spring.rest_length,
-                               model::stiffness(material, spring.kind), material.damping);
-    force[spring.a] += on_a;
-    force[spring.b] -= on_a;
-  }
+  model::each_element(world.model.elements, [&](const auto& element) {
+    dvec3& on_last = force[element.vertices.back()];  // the forces within an element sum to zero
+    for (std::size_t corner = 0; corner + 1 < element.corners; ++corner) {
+      const dvec3 on_corner =
+          element_force(element.law, edges(element, corner, x), edges(element, corner, v));
+      force[element.vertices[corner]] += on_corner;
+      on_last -= on_corner;
+    }
+  });
   return force;
 }
 
 Vectors accelerations(const World& world, const Vectors& x, const Vectors& v) {
-  Vectors a = spring_forces(world, x, v);
+  Vectors a = element_forces(world, x, v);
   for (std::size_t i = 0; i < a.size(); ++i)
     a[i] = a[i] / world.model.mass[i] + world.scene.gravity - world.scene.air_drag * v[i];
   return a;
@@ -82,10 +82,9 @@ Energy energy(const World& world, const State& state) {
     sum.kinetic += 0.5 * mass * glm::dot(state.velocity[i], state.velocity[i]);
     sum.gravitational -= mass * glm::dot(world.scene.gravity, state.position[i]);
   }
-  for (const model::Spring& spring : world.model.springs)
-    sum.elastic +=
-        elements::spring_energy(state.position[spring.a], state.position[spring.b], spring.rest_length,
-                                model::stiffness(world.scene.cloths[spring.cloth].material, spring.kind));
+  model::each_element(world.model.elements, [&](const auto& element) {
+    sum.elastic += element_energy(element.law, edges(element, 0, state.position));
+  });
   return sum;
 }
 

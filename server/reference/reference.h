@@ -1,13 +1,11 @@
 // The truth the GPU is held against: the same scene, one step at a time, in double precision and in the
-// plainest form. Every spring once, every pair of vertices that could touch, no hash; only the element laws
+// plainest form. Every element once, every pair of vertices that could touch, no hash; only the element laws
 // are shared with the shaders.
 #pragma once
 
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>
-#include <set>
-#include <utility>
 #include <vector>
 
 #include "server/base/result.h"
@@ -23,9 +21,7 @@ using glm::dvec3;
 struct World {
   scene::Scene scene;
   model::Model model;
-  double contact_margin = 0;  ///< distance kept from a collider's surface [m]
-  std::set<std::pair<std::uint32_t, std::uint32_t>>
-      joined;                                       ///< pairs (a, b) with a spring between them, a < b
+  double contact_margin = 0;                        ///< distance kept from a collider's surface [m]
   model::Colouring spring_colours, vertex_colours;  ///< the orders of Gauss-Seidel sweeps
 
   bool pinned(std::size_t vertex) const { return model.pin_motion[vertex] != model::not_pinned; }
@@ -66,11 +62,11 @@ void step(const World& world, State& state);
 /// Newton steps, none of them searched along. What the GPU computes, less the tolerance of its linear solver.
 void baraff_witkin_step(const World& world, State& state);
 
-/// Forces of the springs on each vertex [N].
-std::vector<dvec3> spring_forces(const World& world, const std::vector<dvec3>& position,
-                                 const std::vector<dvec3>& velocity);
+/// Forces of the elements on each vertex [N].
+std::vector<dvec3> element_forces(const World& world, const std::vector<dvec3>& position,
+                                  const std::vector<dvec3>& velocity);
 
-/// What springs, gravity and air drag do to each vertex, as if none were pinned [m/s^2].
+/// What elements, gravity and air drag do to each vertex, as if none were pinned [m/s^2].
 std::vector<dvec3> accelerations(const World& world, const std::vector<dvec3>& position,
                                  const std::vector<dvec3>& velocity);
 

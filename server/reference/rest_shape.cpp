@@ -19,7 +19,7 @@ constexpr int most_newton_steps = 2000;
 
 /// The sum of forces on each free vertex [N]; 0 on the pinned.
 Vectors forces(const World& world, const Vectors& x) {
-  Vectors force = spring_forces(world, x, Vectors(x.size(), dvec3(0.0)));
+  Vectors force = element_forces(world, x, Vectors(x.size(), dvec3(0.0)));
   for (std::size_t i = 0; i < x.size(); ++i)
     force[i] = world.pinned(i) ? dvec3(0.0) : force[i] + world.model.mass[i] * world.scene.gravity;
   return force;
@@ -37,13 +37,12 @@ struct Scale {
 };
 Scale scale(const World& world) {
   std::vector<double> stiffness(world.model.vertex_count(), 0.0), force(stiffness);
-  for (const model::Spring& spring : world.model.springs) {
-    const double k = model::stiffness(world.scene.cloths[spring.cloth].material, spring.kind);
-    for (const std::uint32_t vertex : {spring.a, spring.b}) {
-      stiffness[vertex] += k;
-      force[vertex] += k * spring.rest_length;
+  model::each_element(world.model.elements, [&](const auto& element) {
+    for (const std::uint32_t vertex : element.vertices) {
+      stiffness[vertex] += element_stiffness(element.law);
+      force[vertex] += element_stiffness(element.law) * element_size(element.law);
     }
-  }
+  });
   Scale result;
   for (std::size_t i = 0; i < force.size(); ++i) {
     result.stiffness = std::max(result.stiffness, stiffness[i] / world.model.mass[i]);
@@ -57,16 +56,21 @@ double potential(const World& world, const Vectors& x) {
   return sum.elastic + sum.gravitational;
 }
 
-/// A vertex from which no chain of springs leads to a pin.
+/// A vertex from which no chain of elements leads to a pin.
 std::optional<std::size_t> unheld_vertex(const World& world) {
   std::vector<bool> held(world.model.vertex_count());
   for (std::size_t i = 0; i < held.size(); ++i) held[i] = world.pinned(i);
   for (bool spreading = true; spreading;) {
     spreading = false;
-    for (const model::Spring& spring : world.model.springs) {
-      if (held[spring.a] == held[spring.b]) continue;
-      held[spring.a] = held[spring.b] = spreading = true;
-    }
+    model::each_element(world.model.elements, [&](const auto& element) {
+      const auto is_held = [&](std::uint32_t vertex) { return held[vertex]; };
+      const auto& corners = element.vertices;
+      if (std::all_of(corners.begin(), corners.end(), is_held) ||
+          std::none_of(corners.begin(), corners.end(), is_held))
+        return;
+      for (const std::uint32_t vertex : corners) held[vertex] = true;
+      spreading = true;
+    });
   }
   const auto found = std::find(held.begin(), held.end(), false);
   if (found == held.end()) return std::nullopt;
@@ -122,12 +126,14 @@ std::optional<Error> violated(const World& world, const Vectors& x) {
       return Error{"/colliders", "vertex " + std::to_string(i) + " would hang inside a collider",
                    "a rest shape is found only where the cloth hangs clear of the colliders"};
   }
-  for (const model::Spring& spring : world.model.springs) {
-    const std::optional<double>& limit = world.scene.cloths[spring.cloth].material.strain_limit;
-    if (limit && glm::distance(x[spring.a], x[spring.b]) > (1.0 + *limit) * spring.rest_length)
-      return Error{"/cloths/" + std::to_string(spring.cloth) + "/material/strain_limit",
-                   "the spring between vertices " + std::to_string(spring.a) + " and " +
-                       std::to_string(spring.b) + " would be longer than its limit",
+  for (const model::Spring& spring : world.model.springs()) {
+    const auto [a, b] = spring.vertices;
+    const std::uint32_t cloth = world.model.vertex_cloth[a];
+    const std::optional<double>& limit = world.scene.cloths[cloth].material.strain_limit;
+    if (limit && glm::distance(x[a], x[b]) > (1.0 + *limit) * spring.law.rest_length)
+      return Error{"/cloths/" + std::to_string(cloth) + "/material/strain_limit",
+                   "the spring between vertices " + std::to_string(a) + " and " + std::to_string(b) +
+                       " would be longer than its limit",
                    "a rest shape is found only where the limit does not act"};
   }
   return std::nullopt;

@@ -13,21 +13,24 @@ constexpr int most_sweeps = 20000;  // Gauss-Seidel over a cloth that hangs need
 /// Shortens one spring to the most that `limit` allows. Returns by how much it was too long, as a share of
 /// its rest length.
 double shorten(const World& world, const model::Spring& spring, double limit, std::vector<dvec3>& x) {
-  const double wa = world.pinned(spring.a) ? 0.0 : 1.0 / world.model.mass[spring.a];
-  const double wb = world.pinned(spring.b) ? 0.0 : 1.0 / world.model.mass[spring.b];
-  const dvec3 d = x[spring.a] - x[spring.b];
-  const double length = glm::length(d), excess = length - (1.0 + limit) * spring.rest_length;
+  const auto [a, b] = spring.vertices;
+  const double wa = world.pinned(a) ? 0.0 : 1.0 / world.model.mass[a];
+  const double wb = world.pinned(b) ? 0.0 : 1.0 / world.model.mass[b];
+  const double rest_length = spring.law.rest_length;
+  const dvec3 d = x[a] - x[b];
+  const double length = glm::length(d), excess = length - (1.0 + limit) * rest_length;
   if (!(excess > 0.0) || wa + wb == 0.0) return 0.0;
   const dvec3 correction = d * (excess / (length * (wa + wb)));
-  x[spring.a] -= wa * correction;
-  x[spring.b] += wb * correction;
-  return spring.rest_length > 0.0 ? excess / spring.rest_length : 0.0;
+  x[a] -= wa * correction;
+  x[b] += wb * correction;
+  return rest_length > 0.0 ? excess / rest_length : 0.0;
 }
 
 double sweep(const World& world, std::vector<dvec3>& x) {
   double worst = 0.0;
-  for (const model::Spring& spring : world.model.springs) {
-    const std::optional<double>& limit = world.scene.cloths[spring.cloth].material.strain_limit;
+  for (const model::Spring& spring : world.model.springs()) {
+    const std::uint32_t cloth = world.model.vertex_cloth[spring.vertices[0]];
+    const std::optional<double>& limit = world.scene.cloths[cloth].material.strain_limit;
     if (limit) worst = std::max(worst, shorten(world, spring, *limit, x));
   }
   return worst;

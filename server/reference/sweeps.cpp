@@ -16,11 +16,7 @@ namespace {
 
 using glm::dmat3;
 
-dmat3 outer(const dvec3& n) {
-  return glm::outerProduct(n, n);
-}
-
-/// What the springs and inertia leave of a vertex's balance, and its derivative.
+/// What the elements and inertia leave of a vertex's balance, and its derivative.
 struct Balance {
   dvec3 residual{0.0};  ///< [kg m]
   dmat3 hessian{0.0};   ///< [kg], positive definite
@@ -30,23 +26,16 @@ Balance balance(const SweepState& step, std::uint32_t i) {
   const World& world = step.world;
   const double mass = 1.0 / step.mobility[i], dt = step.dt;
   Balance result{mass * (step.free[i] + step.pushed[i] - step.displacement[i]), dmat3(mass)};
-  const model::Adjacency& springs = world.model.vertex_springs;
-  for (std::uint32_t slot = springs.offsets[i]; slot < springs.offsets[i + 1]; ++slot) {
-    const model::Spring& spring = world.model.springs[springs.items[slot]];
-    const std::uint32_t j = spring.a == i ? spring.b : spring.a;
-    const scene::Springs& material = world.scene.cloths[spring.cloth].material;
-    const double stiffness = model::stiffness(material, spring.kind);
-    const dvec3 moved = step.displacement[i] - step.displacement[j], still(0.0);
-    dvec3 n;
-    double along, across;
-    elements::spring_hessian(step.now(i), step.now(j), spring.rest_length, stiffness, n, along, across);
-    result.residual += dt * dt *
-                       elements::spring_force(step.now(i), step.now(j), moved / dt, still, spring.rest_length,
-                                              stiffness, material.damping);
-    // A spring without length has n = 0: it resists alike in every direction, and its damping none.
-    const double sideways = dt * dt * std::max(across, 0.0);
-    result.hessian += dmat3(sideways) + (dt * dt * along + dt * material.damping - sideways) * outer(n);
-  }
+  dvec3 diagonal(0.0), off_diagonal(0.0);
+  world.model.elements.each([&](const auto& batch) {
+    batch.at(i, [&](const auto& element, std::size_t corner) {
+      const auto now = [&](std::uint32_t other) { return step.now(i) - step.now(other); };
+      add_descent(element.law, dt, edges(element, corner, now), edges(element, corner, step.displacement),
+                  result.residual, diagonal, off_diagonal);
+    });
+  });
+  result.hessian += dmat3(diagonal.x, off_diagonal.x, off_diagonal.y, off_diagonal.x, diagonal.y,
+                          off_diagonal.z, off_diagonal.y, off_diagonal.z, diagonal.z);
   return result;
 }
 
@@ -99,17 +88,16 @@ dvec3 pair_push(const SweepState& step, std::uint32_t i, int& touched) {
 void sweep_springs(SweepState& step) {
   const World& world = step.world;
   for (const std::uint32_t s : world.spring_colours.order) {
-    const model::Spring& spring = world.model.springs[s];
-    const std::uint32_t a = spring.a, b = spring.b;
+    const auto& [vertices, law] = world.model.springs()[s];
+    const auto [a, b] = vertices;
     const double wa = step.mobility[a], wb = step.mobility[b];
     if (wa + wb == 0.0) continue;
-    const scene::Springs& material = world.scene.cloths[spring.cloth].material;
-    const model::SpringGains gains = model::spring_gains(
-        world.scene.solver, model::stiffness(material, spring.kind), material.damping, wa + wb);
+    const elements::SpringGains gains =
+        model::spring_gains(world.scene.solver, law.stiffness, law.damping, wa + wb);
     const dvec3 moved = step.displacement[a] - step.displacement[b];
-    const dvec3 push =
-        elements::spring_projection((step.x[a] - step.x[b]) + moved, moved, spring.rest_length, gains.stretch,
-                                    gains.damping, gains.memory, gains.turning, step.spring_pushed[s]);
+    const dvec3 push = elements::element_projection(law.rest_length, gains, {(step.x[a] - step.x[b]) + moved},
+                                                    {moved}, {step.spring_pushed[s]})
+                           .d;
     if (gains.memory > 0.0) step.spring_pushed[s] += push;
     step.displacement[a] += wa * push;
     step.displacement[b] -= wb * push;

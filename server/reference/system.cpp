@@ -2,7 +2,6 @@
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
-#include <tuple>
 
 #include "shaders/elements/elements.h"
 
@@ -17,14 +16,27 @@ Eigen::Map<const Eigen::VectorXd> flat(const std::vector<dvec3>& vectors) {
   return {&vectors[0].x, static_cast<Index>(3 * vectors.size())};
 }
 
-/// Adds along n n^T + across (I - n n^T) as a spring between vertices a and b sees it.
-void add_spring(Triplets& triplets, Index a, Index b, const dvec3& n, double along, double across) {
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      const double value = (along - across) * n[row] * n[column] + (row == column ? across : 0.0);
-      for (const auto& [i, j, sign] : {std::tuple{a, a, 1.0}, {b, b, 1.0}, {a, b, -1.0}, {b, a, -1.0}})
-        triplets.emplace_back(3 * i + row, 3 * j + column, sign * value);
-    }
+/// Adds an element's matrix: what each corner feels of the others' moves along each axis, and of its own.
+template <class Law>
+void add_element(Triplets& triplets, const model::Element<Law>& element, const std::vector<dvec3>& x,
+                 Shares shares, Across kept) {
+  for (std::size_t row = 0; row < element.corners; ++row) {
+    auto hessian = element_hessian(element.law, edges(element, row, x));
+    if (kept == Across::dropped) hessian = element_definite(hessian);
+    for (std::size_t column = 0; column < element.corners; ++column)
+      for (int axis = 0; axis < 3; ++axis) {
+        dvec3 along(0.0);
+        along[axis] = 1.0;
+        const auto moves = edges(element, row, [&](std::uint32_t other) {
+          const dvec3 there = other == element.vertices[column] ? along : dvec3(0.0);
+          return (row == column ? along : dvec3(0.0)) - there;
+        });
+        const dvec3 felt = shares.stiffness * matrix_product(stiffness_matrix(hessian), moves) +
+                           shares.damping * matrix_product(damping_matrix(hessian), moves);
+        for (int to = 0; to < 3; ++to)
+          triplets.emplace_back(3 * static_cast<Index>(element.vertices[row]) + to,
+                                3 * static_cast<Index>(element.vertices[column]) + axis, felt[to]);
+      }
   }
 }
 
@@ -33,21 +45,13 @@ void add_spring(Triplets& triplets, Index a, Index b, const dvec3& n, double alo
 Matrix system_matrix(const World& world, const std::vector<dvec3>& x, Shares shares, Across kept) {
   const model::Model& model = world.model;
   Triplets triplets;
-  triplets.reserve(36 * model.springs.size() + 3 * x.size());
+  triplets.reserve(36 * model.springs().size() + 3 * x.size());
   for (std::size_t i = 0; i < x.size(); ++i)
     for (int axis = 0; axis < 3; ++axis)
       triplets.emplace_back(3 * static_cast<Index>(i) + axis, 3 * static_cast<Index>(i) + axis,
                             shares.mass * model.mass[i]);
-  for (const model::Spring& spring : model.springs) {
-    const scene::Springs& material = world.scene.cloths[spring.cloth].material;
-    dvec3 n;
-    double along, across;
-    elements::spring_hessian(x[spring.a], x[spring.b], spring.rest_length,
-                             model::stiffness(material, spring.kind), n, along, across);
-    if (kept == Across::dropped) across = std::max(across, 0.0);
-    add_spring(triplets, spring.a, spring.b, n, shares.stiffness * along + shares.damping * material.damping,
-               shares.stiffness * across);
-  }
+  model::each_element(model.elements,
+                      [&](const auto& element) { add_element(triplets, element, x, shares, kept); });
   const auto size = static_cast<Index>(3 * x.size());
   Matrix matrix(size, size);
   matrix.setFromTriplets(triplets.begin(), triplets.end());

@@ -16,7 +16,7 @@ struct Shares {
 };
 
 /// What becomes of the part of a compressed spring's stiffness that is negative
-/// (shaders/elements/spring.glsl, `across`).
+/// (element_definite in shaders/elements/).
 enum class Across { kept, dropped };
 
 /// mass M + damping C(x) + stiffness K(x), of all vertices. [3 vertex_count]^2. C leaves out how the springs'

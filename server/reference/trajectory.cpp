@@ -54,13 +54,12 @@ Result<Trajectory> trajectory(const World& world, const std::vector<double>& tim
 double fastest_rate(const World& world) {
   const std::size_t count = world.model.vertex_count();
   std::vector<double> stiffness(count, 0.0), damping(count, 0.0);
-  for (const model::Spring& spring : world.model.springs) {
-    const scene::Springs& material = world.scene.cloths[spring.cloth].material;
-    for (const std::uint32_t vertex : {spring.a, spring.b}) {
-      stiffness[vertex] += model::stiffness(material, spring.kind);
-      damping[vertex] += material.damping;
+  model::each_element(world.model.elements, [&](const auto& element) {
+    for (const std::uint32_t vertex : element.vertices) {
+      stiffness[vertex] += element_stiffness(element.law);
+      damping[vertex] += element_damping(element.law);
     }
-  }
+  });
   double fastest = std::max(world.scene.air_drag, 1e-3);  // a sheet without springs moves too
   for (std::size_t i = 0; i < count; ++i) {
     const double mass = world.model.mass[i];

@@ -71,7 +71,7 @@ double stable_swing(double dt, double dt_limit) {
 Allowance allowance(const scene::Scene& scene, const model::Model& model, double dt_limit) {
   const Extent cloth = extent(model);
   Allowance allowed;
-  double mass = 0.0, spring_energy = 0.0;
+  double mass = 0.0, elastic = 0.0;
   for (std::uint32_t i = 0; i < model.vertex_count(); ++i) {
     const std::int32_t pin = model.pin_motion[i];
     if (pin == model::not_pinned)
@@ -84,15 +84,13 @@ Allowance allowance(const scene::Scene& scene, const model::Model& model, double
   for (const scene::Collider& collider : scene.colliders)
     allowed.collider_speed = std::max(allowed.collider_speed, collider_speed(collider, cloth.size));
   const double push = scene.self_collision ? 0.2 * scene.self_collision->thickness : 0.0;
-  for (const model::Spring& spring : model.springs) {
-    // A thousandth of its length, and the last bits of a coordinate in float32.
-    const double stretch = push + 1e-3 * spring.rest_length + 1e-6 * cloth.farthest;
-    spring_energy +=
-        0.5 * model::stiffness(scene.cloths[spring.cloth].material, spring.kind) * stretch * stretch;
-  }
+  model::each_element(model.elements, [&](const auto& element) {
+    // A thousandth of its size, and the last bits of a coordinate in float32.
+    const double stretch = push + 1e-3 * element_size(element.law) + 1e-6 * cloth.farthest;
+    elastic += 0.5 * element_stiffness(element.law) * stretch * stretch;
+  });
   const double speed = allowed.pin_speed + allowed.collider_speed;
-  allowed.slack =
-      mass * (0.25 * glm::length(scene.gravity) * cloth.size + 2.0 * speed * speed) + spring_energy;
+  allowed.slack = mass * (0.25 * glm::length(scene.gravity) * cloth.size + 2.0 * speed * speed) + elastic;
   allowed.ratio = stable_swing(scene.solver.dt, dt_limit);
   allowed.stretch = !scene::sweeps(scene.solver.method);
   allowed.growth = scene.solver.dt > dt_limit ? proved_already : growth_that_proves;

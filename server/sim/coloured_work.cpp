@@ -34,8 +34,9 @@ model::Colouring only(const model::Colouring& all, Wanted wanted) {
 }  // namespace
 
 model::Colouring visited_springs(const model::Model& model, const scene::Scene& scene) {
-  return only(model::colour_springs(model, scene), [&](std::uint32_t spring) {
-    return !pinned(model, model.springs[spring].a) || !pinned(model, model.springs[spring].b);
+  return only(model::colour_elements(model, scene, model.springs()), [&](std::uint32_t spring) {
+    const auto [a, b] = model.springs()[spring].vertices;
+    return !pinned(model, a) || !pinned(model, b);
   });
 }
 
@@ -52,13 +53,11 @@ ProjectedSprings projected_springs(const model::Colouring& visited, const model:
     return pinned(model, vertex) ? 0.0 : mobility / model.mass[vertex];
   };
   for (const std::uint32_t index : visited.order) {
-    const model::Spring& spring = model.springs[index];
-    const scene::Springs& material = scene.cloths[spring.cloth].material;
-    const model::SpringGains gains =
-        model::spring_gains(scene.solver, model::stiffness(material, spring.kind), material.damping,
-                            inverse_mass(spring.a) + inverse_mass(spring.b));
-    list.entries.push_back(
-        {spring.a, spring.b, static_cast<float>(spring.rest_length), static_cast<float>(gains.stretch)});
+    const auto& [vertices, law] = model.springs()[index];
+    const auto [a, b] = vertices;
+    const elements::SpringGains gains =
+        model::spring_gains(scene.solver, law.stiffness, law.damping, inverse_mass(a) + inverse_mass(b));
+    list.entries.push_back({a, b, static_cast<float>(law.rest_length), static_cast<float>(gains.stretch)});
     list.gains.push_back({static_cast<float>(gains.damping), static_cast<float>(gains.memory)});
   }
   return list;

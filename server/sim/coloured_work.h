@@ -11,7 +11,7 @@
 
 namespace clothlab::sim {
 
-/// The springs that have a free end: indices into model.springs.
+/// The springs that have a free end: indices into model.springs().
 model::Colouring visited_springs(const model::Model& model, const scene::Scene& scene);
 /// The free vertices.
 model::Colouring visited_vertices(const model::Model& model, const scene::Scene& scene);

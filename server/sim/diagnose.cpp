@@ -5,6 +5,7 @@
 #include <cstring>
 #include <tuple>
 
+#include "server/sim/element_lists.h"
 #include "server/sim/plan.h"
 
 namespace clothlab::sim {
@@ -22,8 +23,9 @@ struct Partial {
 
 Result<DiagnosticsPass> DiagnosticsPass::create(std::uint32_t vertex_count) {
   DiagnosticsPass pass;
-  Result<gl::Program> program =
-      gl::Program::load({"stream/diagnose.comp"}, {{"GROUP_SIZE", std::to_string(group_size)}});
+  gl::Defines defines = law_defines();
+  defines.emplace_back("GROUP_SIZE", std::to_string(group_size));
+  Result<gl::Program> program = gl::Program::load({"stream/diagnose.comp"}, defines);
   if (!program) return program.error();
   pass.program_ = std::move(*program);
   pass.program_.use();

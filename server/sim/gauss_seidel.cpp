@@ -17,6 +17,15 @@ constexpr GLuint unit_deviation = 9, unit_projected = 10, unit_gains = 11, unit_
 constexpr GLuint slot_deviation = 3, slot_spring_pushes = 4, slot_lacking = 4, slot_targets = 5,
                  slot_velocity_before = 6, slot_remainders = 7;
 
+/// Elements at a vertex.
+std::uint64_t corners_at(const model::Model& model, std::uint32_t vertex) {
+  std::uint64_t count = 0;
+  model.elements.each([&](const auto& batch) {
+    count += batch.at_vertex.offsets[vertex + 1] - batch.at_vertex.offsets[vertex];
+  });
+  return count;
+}
+
 gl::TextureBuffer per_vertex(std::uint32_t vertex_count) {
   return {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
 }
@@ -103,8 +112,7 @@ class GaussSeidel : public Integrator {
     const std::uint64_t colliders = 2 + 6 * static_cast<std::uint64_t>(plan.spheres + plan.planes);
     std::uint64_t visit = 1;
     for (std::uint32_t i = 0; by_vertex_ && i < vertex_count_; ++i)
-      visit = std::max(visit,
-                       colliders + 1 + model.vertex_springs.offsets[i + 1] - model.vertex_springs.offsets[i]);
+      visit = std::max(visit, colliders + 1 + corners_at(model, i));
     std::uint64_t sweep = 0;
     for (std::uint32_t colour = 0; colour < work_.colours(); ++colour)
       sweep += 1 + rounds(work_.offsets[colour + 1] - work_.offsets[colour]) * visit;

@@ -1,15 +1,15 @@
 #include "server/sim/kernels.h"
 
-#include "server/sim/spring_lists.h"
+#include "server/sim/element_lists.h"
 
 namespace clothlab::sim {
 
 namespace {
 
 /// Returns the number of entries.
-std::size_t upload_springs(Kernels& kernels, const scene::Scene& scene) {
-  const SpringLists lists = spring_lists(kernels.model, scene);
-  kernels.springs = {gl::Buffer(lists.entries), GL_RGBA32UI};
+std::size_t upload_elements(Kernels& kernels) {
+  const ElementLists lists = element_lists(kernels.model);
+  kernels.elements = {gl::Buffer(lists.entries), GL_RGBA32UI};
   kernels.slices = {gl::Buffer(lists.slices), GL_R32UI};
   return lists.entries.size();
 }
@@ -28,13 +28,13 @@ Result<Kernels> Kernels::create(const scene::Scene& scene) {
   kernels.plan = sim::plan(scene);
   kernels.motions = motion_table(scene, kernels.plan);
   if (kernels.plan.self_collision) {
-    Result<SelfCollision> self_collision = SelfCollision::create(kernels.model.vertex_count());
+    Result<SelfCollision> self_collision = SelfCollision::create(kernels.model);
     if (!self_collision) return self_collision.error();
     kernels.self_collision = std::move(*self_collision);
     if (Status set = kernels.self_collision->set_parameters(*scene.self_collision, kernels.model); !set)
       return set.error();
   }
-  const std::size_t entries = upload_springs(kernels, scene);
+  const std::size_t entries = upload_elements(kernels);
   Result<std::unique_ptr<Integrator>> integrator = make_integrator(kernels.surroundings(scene), kernels.plan);
   if (!integrator) return integrator.error();
   kernels.integrator = std::move(*integrator);
@@ -53,7 +53,7 @@ Work Kernels::update_lists(const scene::Scene& scene) {
   if (slots == self_collision->slots()) co_return;
   Plan larger = plan;
   larger.neighbour_slots = slots;
-  Result<SelfCollision> grown = SelfCollision::create(model.vertex_count(), slots);
+  Result<SelfCollision> grown = SelfCollision::create(model, slots);
   Result<std::unique_ptr<Integrator>> adapted = make_integrator(surroundings(scene), larger);
   // Else it goes on with what there is.
   if (!grown || !adapted || !grown->set_parameters(*scene.self_collision, model)) co_return;
@@ -66,7 +66,7 @@ Work Kernels::update_lists(const scene::Scene& scene) {
   co_await self_collision->update_lists();
 }
 
-Status Kernels::update(const scene::Scene& scene, bool springs_changed) {
+Status Kernels::update(const scene::Scene& scene, bool material_changed) {
   // Masses and pins live in the model; building it again is cheap and cannot change its shape here.
   Result<model::Model> rebuilt = model::build(scene);
   if (!rebuilt) return rebuilt.error();
@@ -75,7 +75,7 @@ Status Kernels::update(const scene::Scene& scene, bool springs_changed) {
       return set.error();
   model = std::move(*rebuilt);
   motions = motion_table(scene, plan);
-  if (springs_changed) upload_springs(*this, scene);
+  if (material_changed) upload_elements(*this);
   integrator->set_parameters(surroundings(scene));
   if (strain_limit) strain_limit->set_parameters(surroundings(scene));
   return ok();

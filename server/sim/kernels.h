@@ -15,15 +15,15 @@ struct Kernels {
   model::Model model;
   MotionTable motions;
   std::optional<SelfCollision> self_collision;
-  gl::TextureBuffer springs, slices;
+  gl::TextureBuffer elements, slices;
   std::unique_ptr<Integrator> integrator;
   std::optional<StrainLimit> strain_limit;
 
   /// For a state that none of its steps made yet.
   static Result<Kernels> create(const scene::Scene& scene);
 
-  /// Takes over the numbers of a scene with the same structure; `springs_changed`: a material is another.
-  Status update(const scene::Scene& scene, bool springs_changed);
+  /// Takes over the numbers of a scene with the same structure; `material_changed`: that of any cloth.
+  Status update(const scene::Scene& scene, bool material_changed);
 
   /// Brings the neighbour lists up to date, with more room where they need it: none of a step's pairs is left
   /// out as long as that is to be had. There must be lists; may stop on its way.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "server/scene/method.h"
+#include "server/sim/element_lists.h"
 
 namespace clothlab::sim {
 
@@ -51,6 +52,7 @@ gl::Defines step_defines(const Plan& plan) {
                       {"END_ROW", std::to_string(plan.pose_rows())},
                       {"SPHERE_COUNT", std::to_string(plan.spheres)},
                       {"PLANE_COUNT", std::to_string(plan.planes)}};
+  for (gl::Defines::value_type& define : law_defines(plan)) defines.push_back(std::move(define));
   if (plan.self_collision) {
     defines.emplace_back("SELF_COLLISION", "1");
     defines.emplace_back("NEIGHBOUR_SLOTS", std::to_string(plan.neighbour_slots));

@@ -11,8 +11,8 @@
 
 namespace clothlab::sim {
 
-/// Threads in a work group and vertices in a slice of the spring lists. Of 32 to 256, 128 was best or near it
-/// for cloths from 25x25 to 256x256 on llvmpipe.
+/// Threads in a work group and vertices in a slice of the element lists. Of 32 to 256, 128 was best or near
+/// it for cloths from 25x25 to 256x256 on llvmpipe.
 inline constexpr int group_size = 128;
 
 /// Work groups of a kernel with one thread a vertex.
@@ -24,6 +24,7 @@ constexpr std::uint32_t vertex_groups(std::uint32_t vertex_count) {
 struct Plan {
   scene::Method method = scene::Method::symplectic_euler;
   bool structural = false, shear = false, bend = false;  ///< in any cloth
+  bool springs() const { return structural || shear || bend; }
   bool pins = false;
   int moving = 0;  ///< distinct motions of pins and colliders that are not null
   int spheres = 0, planes = 0;

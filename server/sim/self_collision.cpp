@@ -34,6 +34,7 @@ constexpr double most_pairs = 1e9;
 constexpr double pairs_a_dispatch = 2e6;
 constexpr std::chrono::milliseconds long_dispatch{10};
 
+constexpr GLuint unit_excluded = 9, unit_first_excluded = 10;
 constexpr std::uint64_t updates_between_looks = 8;
 constexpr std::uint32_t most_slots = 256;
 constexpr std::uint64_t most_entries = std::uint64_t{1} << 22;  // 32 MiB, and what walking them takes
@@ -41,8 +42,9 @@ constexpr std::uint32_t chain_end = 0xffffffffu;                // as in cells.g
 
 }  // namespace
 
-Result<SelfCollision> SelfCollision::create(std::uint32_t vertex_count, std::uint32_t slots) {
+Result<SelfCollision> SelfCollision::create(const model::Model& model, std::uint32_t slots) {
   SelfCollision made;
+  const std::uint32_t vertex_count = model.vertex_count();
   made.vertex_count_ = vertex_count;
   made.slots_ = slots;
   // Two cells a vertex keep the chains short.
@@ -66,13 +68,15 @@ Result<SelfCollision> SelfCollision::create(std::uint32_t vertex_count, std::uin
   made.chains_ = {gl::Buffer(vertex_count * sizeof(std::uint32_t)), GL_R32UI};
   made.counts_ = {gl::Buffer(vertex_count * sizeof(std::uint32_t)), GL_R32UI};
   made.lists_ = {gl::Buffer(std::size_t{vertex_count} * slots * 2 * sizeof(std::uint32_t)), GL_RG32UI};
+  made.excluded_ = {gl::Buffer(model.contact_exclusions.items), GL_R32UI};
+  made.first_excluded_ = {gl::Buffer(model.contact_exclusions.offsets), GL_R32UI};
   made.built_position_ = {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
   return made;
 }
 
 Status SelfCollision::set_parameters(const scene::SelfCollision& parameters, const model::Model& model) {
   // The skin trades rebuilds against list length: one edge of the mesh keeps a flat cloth's lists empty while
-  // its contact distance is below an edge, since everything that near is joined by a spring.
+  // its contact distance is below an edge, since everything that near has an element in common.
   double edge = 0.0;
   for (const model::ClothRange& cloth : model.cloths) edge = std::max(edge, cloth.mean_edge_length);
   const double skin = std::max(edge, 0.5 * parameters.thickness), reach = parameters.thickness + skin;
@@ -119,6 +123,8 @@ Work SelfCollision::update_lists() {
   lists_.buffer.bind_storage(7);
   heads_.bind(unit_neighbour_count);  // the search reads its hash where the step reads its lists
   chains_.bind(unit_neighbours);
+  excluded_.bind(unit_excluded);
+  first_excluded_.bind(unit_first_excluded);
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, control_.id());
   const auto dispatch = [](std::size_t arguments) {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);

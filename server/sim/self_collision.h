@@ -17,7 +17,7 @@ inline constexpr std::uint32_t neighbour_slots = 64;
 
 class SelfCollision {
  public:
-  static Result<SelfCollision> create(std::uint32_t vertex_count, std::uint32_t slots = neighbour_slots);
+  static Result<SelfCollision> create(const model::Model& model, std::uint32_t slots = neighbour_slots);
 
   /// The distances for this scene; the lists are rebuilt before the next step. Error: far too many vertices
   /// start within reach of each other for a search to end in bearable time.
@@ -26,7 +26,7 @@ class SelfCollision {
   /// Other vertices that the search looks at for one vertex, in the mean over a sample of the start.
   double candidates() const { return candidates_; }
 
-  /// Rebuilds the lists if a vertex has moved too far since. Needs position, springs, slices and rest
+  /// Rebuilds the lists if a vertex has moved too far since. Needs position and rest
   /// positions bound; leaves bound what the step kernel reads and writes of the lists. Looks now and then, by
   /// the count of updates alone, whether the lists are long enough.
   Work update_lists();
@@ -73,7 +73,7 @@ class SelfCollision {
   gl::Program insert_, find_, finish_;
   gl::Buffer control_;
   gl::ReadbackRing seen_;
-  gl::TextureBuffer heads_, chains_, counts_, lists_, built_position_;
+  gl::TextureBuffer heads_, chains_, counts_, lists_, built_position_, excluded_, first_excluded_;
 };
 
 }  // namespace clothlab::sim

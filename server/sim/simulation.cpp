@@ -31,8 +31,7 @@ Status fits_device(const scene::Scene& scene) {
   GLint texels = 0;
   glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
   const model::Size size = model::size_of(scene);
-  // Each spring is in the lists of both its ends.
-  const std::size_t wanted = std::max(size.vertices, 2 * size.springs);
+  const std::size_t wanted = std::max(size.vertices, size.entries());
   if (wanted <= static_cast<std::size_t>(texels)) return ok();
   return Error{"/cloths",
                std::to_string(size.vertices) + " vertices and " + std::to_string(size.springs) + " springs",
@@ -75,8 +74,8 @@ struct Simulation::Implementation {
   }
 
   void bind_constants() {
-    kernels.springs.bind(unit_springs);
-    kernels.slices.bind(unit_spring_slices);
+    kernels.elements.bind(unit_elements);
+    kernels.slices.bind(unit_element_slices);
     rest.bind(unit_rest_position);
   }
 
@@ -220,8 +219,8 @@ Result<ChangeDepth> Simulation::change(const scene::Scene& scene) {
     self.kernels = std::move(*kernels);
   } else if (depth == ChangeDepth::uniform) {
     self.give_up_work();
-    const bool springs = differs(self.scene, scene, &scene::Cloth::material);
-    if (Status updated = self.kernels.update(scene, springs); !updated) return updated.error();
+    const bool material = differs(self.scene, scene, &scene::Cloth::material);
+    if (Status updated = self.kernels.update(scene, material); !updated) return updated.error();
   }
   self.adopt(scene);
   return depth;

@@ -54,8 +54,8 @@ class StateBuffers {
 enum ReadUnit : GLuint {
   unit_position,
   unit_velocity,
-  unit_springs,
-  unit_spring_slices,
+  unit_elements,
+  unit_element_slices,
   unit_neighbour_count,
   unit_neighbours,
   unit_motion_table,

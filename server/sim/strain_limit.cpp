@@ -22,13 +22,14 @@ struct Control {
 /// / v + b^2 / w. The largest row sum bounds that in turn. A margin is left for springs that turn.
 float relaxation(const model::Model& model) {
   std::vector<glm::dmat3> coupling(model.vertex_count(), glm::dmat3(0.0));
-  for (const model::Spring& spring : model.springs) {
-    const glm::dvec3 d = model.rest_position[spring.a] - model.rest_position[spring.b];
+  for (const model::Spring& spring : model.springs()) {
+    const auto [a, b] = spring.vertices;
+    const glm::dvec3 d = model.rest_position[a] - model.rest_position[b];
     const double squared = glm::dot(d, d);
     if (!(squared > 0.0)) continue;
     const glm::dmat3 share = glm::outerProduct(d, d) / squared;
-    coupling[spring.a] += share;
-    coupling[spring.b] += share;
+    coupling[a] += share;
+    coupling[b] += share;
   }
   double largest = 1.0;
   for (const glm::dmat3& c : coupling)

@@ -11,7 +11,7 @@ namespace clothlab::sim {
 
 class StrainLimit {
  public:
-  /// `entries`: slots of the spring lists.
+  /// `entries`: slots of the element lists.
   static Result<StrainLimit> create(const Surroundings& around, const Plan& plan, std::size_t entries);
 
   void set_parameters(const Surroundings& around);

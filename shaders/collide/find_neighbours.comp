@@ -1,15 +1,16 @@
-// Neighbour search, 2 of 3: lists for each vertex the others within reach that no spring joins to it, the nearest
+// Neighbour search, 2 of 3: lists for each vertex the others within reach that may touch it at all, the nearest
 // NEIGHBOUR_SLOTS of them, with the distance that self-collision keeps between the two: min(thickness, rest distance).
 layout(local_size_x = GROUP_SIZE) in;
 #include "../access.glsl"
 #include "cells.glsl"
 #include "neighbours.glsl"
-#include "spring_lists.glsl"
 
 READ_VEC4(position, 0);
 READ_UINT(head, 4);
 READ_UINT(next, 5);
 READ_VEC4(rest_position, 7);  // w: the cloth
+READ_UINT(excluded, 9);        // those that self-collision leaves out, vertex after vertex
+READ_UINT(first_excluded, 10);  // [vertex_count + 1]
 layout(location = 3) uniform float thickness;
 layout(location = 4) uniform int first_vertex;  // of the range that this dispatch looks at
 layout(std430, binding = 6) writeonly buffer NeighbourCounts { uint neighbour_count[]; };
@@ -19,6 +20,13 @@ layout(std430, binding = 7) buffer Neighbours { uvec2 neighbours[]; };
 float rest_distance(int i, int j) {
   vec4 a = FETCH(rest_position, i), b = FETCH(rest_position, j);
   return a.w == b.w ? distance(a.xyz, b.xyz) : thickness;
+}
+
+bool left_out(int i, uint j) {
+  int end = int(FETCH_UINT(first_excluded, i + 1));
+  for (int at = int(FETCH_UINT(first_excluded, i)); at < end; ++at)
+    if (FETCH_UINT(excluded, at) == j) return true;
+  return false;
 }
 
 void main() {
@@ -49,7 +57,7 @@ void main() {
     vec3 y = FETCH(position, j).xyz;
     float gap = distance(x, y);
     // A bucket may hold several cells; only this one's vertices count, so that none is listed twice.
-    if (j != uint(i) && gap < reach && cell_of(y) == cell && !joined(i, int(j))) {
+    if (j != uint(i) && gap < reach && cell_of(y) == cell && !left_out(i, j)) {
       int slot = count;
       if (count < NEIGHBOUR_SLOTS) ++count;
       else ++lost;

@@ -1,64 +1,225 @@
 // A damped spring between two vertices: Hooke's law, and damping along the spring only.
 // Provot 1995, section 2. In the common subset of GLSL and C++ (see types.glsl, elements.h).
+//
+// Like every law it sees an element from one of its corners: `Edges` are the differences between that corner and the
+// others, of places [m], of velocities [m/s], or of whatever else vertices have. What all laws say, under the same
+// names, is listed in shaders/README.md.
 
-/// Force [N] on the vertex at x with velocity v, from a spring to the vertex at y with velocity w.
-/// rest_length [m], stiffness [N/m], damping [N s/m]. A spring without length has no direction and gives no force.
-/// The damping is the projection of the relative velocity on the spring: a rigid rotation feels none.
-FUNCTION vec3 spring_force(vec3 x, vec3 y, vec3 v, vec3 w, real rest_length, real stiffness, real damping) {
-  vec3 d = x - y;
-  real length_squared = dot(d, d);
+struct Spring {
+  real rest_length;  // [m]
+  real stiffness;    // [N/m]
+  real damping;      // [N s/m]
+};
+
+struct SpringEdges {
+  vec3 d;  // this corner less the other one
+};
+
+/// Force [N] on the corner. A spring without length has no direction and gives no force. The damping is the projection
+/// of the relative velocity on the spring: a rigid rotation feels none.
+FUNCTION vec3 element_force(Spring s, SpringEdges place, SpringEdges velocity) {
+  real length_squared = dot(place.d, place.d);
   real inverse_length = length_squared > real(0.0) ? real(1.0) / sqrt(length_squared) : real(0.0);
-  vec3 n = d * inverse_length;
+  vec3 n = place.d * inverse_length;
   real length_now = length_squared * inverse_length;
-  real tension = stiffness * (length_now - rest_length) + damping * dot(n, v - w);
+  real tension = s.stiffness * (length_now - s.rest_length) + s.damping * dot(n, velocity.d);
   return n * (-tension);
 }
 
-/// The second derivative of the energy with respect to x, -df/dx [N/m], in parts: along n n^T + across (I - n n^T),
-/// with n the spring's direction. `across` is negative in a compressed spring: that part makes the matrix indefinite,
-/// and implicit methods drop it (Choi & Ko 2002, section 4). A spring without length gives stiffness times the unit
-/// matrix.
-FUNCTION void spring_hessian(vec3 x, vec3 y, real rest_length, real stiffness, OUT(vec3) n, OUT(real) along,
-                             OUT(real) across) {
-  vec3 d = x - y;
-  real length_squared = dot(d, d);
-  real inverse_length = length_squared > real(0.0) ? real(1.0) / sqrt(length_squared) : real(0.0);
-  n = d * inverse_length;
-  along = stiffness;
-  across = stiffness * (real(1.0) - rest_length * inverse_length);
-}
-
 /// Elastic energy [J] of the spring.
-FUNCTION real spring_energy(vec3 x, vec3 y, real rest_length, real stiffness) {
-  vec3 d = x - y;
-  real stretch = sqrt(dot(d, d)) - rest_length;
-  return real(0.5) * stiffness * stretch * stretch;
+FUNCTION real element_energy(Spring s, SpringEdges place) {
+  real stretch = sqrt(dot(place.d, place.d)) - s.rest_length;
+  return real(0.5) * s.stiffness * stretch * stretch;
 }
 
-/// |l/L - 1|; 0 for a spring that has no rest length.
-FUNCTION real spring_strain(vec3 x, vec3 y, real rest_length) {
-  vec3 d = x - y;
-  real stretch = sqrt(dot(d, d)) - rest_length;
-  return rest_length > real(0.0) ? max(stretch, -stretch) / rest_length : real(0.0);
+/// l/L - 1; 0 for a spring that has no rest length.
+FUNCTION real element_stretch(Spring s, SpringEdges place) {
+  real stretch = sqrt(dot(place.d, place.d)) - s.rest_length;
+  return s.rest_length > real(0.0) ? stretch / s.rest_length : real(0.0);
 }
 
-/// One visit of a Gauss-Seidel sweep to a spring, in PBD and XPBD (Mueller et al. 2007, section 3.3; Macklin et al.
-/// 2016, equations 18 and 26): what more it gives its first end and takes from its second, as an impulse times dt [kg
-/// m]. `d` is the difference of its ends as they are now, `moved` how that has changed since the step's start, `pushed`
-/// what it has given since then. The gains follow from stiffness, damping, masses and dt: server/model/spring_gains.h.
+/// |l/L - 1|.
+FUNCTION real element_strain(Spring s, SpringEdges place) {
+  real stretch = element_stretch(s, place);
+  return max(stretch, -stretch);
+}
+
+// How large its terms are, for bounds and for what counts as rounding.
+FUNCTION real element_size(Spring s) { return s.rest_length; }     // [m]
+FUNCTION real element_stiffness(Spring s) { return s.stiffness; }  // the largest [N/m]
+FUNCTION real element_damping(Spring s) { return s.damping; }      // the largest [N s/m]
+
+/// The terms whose difference is the force [N], added up: rounding is a share of it.
+FUNCTION real element_force_scale(Spring s, SpringEdges place, SpringEdges velocity) {
+  return s.stiffness * (sqrt(dot(place.d, place.d)) + s.rest_length) +
+         s.damping * sqrt(dot(velocity.d, velocity.d));
+}
+
+/// The second derivatives of energy and dissipation with respect to the corner's place and velocity, -df/dx [N/m] and
+/// -df/dv [N s/m], in parts: along n n^T + across (I - n n^T), and damping n n^T, with n the spring's direction.
+/// `across` is negative in a compressed spring: that part makes the matrix indefinite, and implicit methods drop it
+/// (Choi & Ko 2002, section 4). A spring without length gives stiffness times the unit matrix.
+struct SpringHessian {
+  vec3 n;
+  real along, across, damping;
+};
+
+FUNCTION SpringHessian element_hessian(Spring s, SpringEdges place) {
+  real length_squared = dot(place.d, place.d);
+  real inverse_length = length_squared > real(0.0) ? real(1.0) / sqrt(length_squared) : real(0.0);
+  SpringHessian h;
+  h.n = place.d * inverse_length;
+  h.along = s.stiffness;
+  h.across = s.stiffness * (real(1.0) - s.rest_length * inverse_length);
+  h.damping = s.damping;
+  return h;
+}
+
+/// Without what makes it indefinite.
+FUNCTION SpringHessian element_definite(SpringHessian h) {
+  h.across = max(h.across, real(0.0));
+  return h;
+}
+
+/// Without what rounding of a rest shape leaves across: that is no tension.
+FUNCTION SpringHessian without_rounding(SpringHessian h) {
+  if (h.across < real(1e-9) * h.along) h.across = real(0.0);
+  return h;
+}
+
+/// A share of a matrix: along n n^T + across (I - n n^T).
+struct SpringMatrix {
+  vec3 n;
+  real along, across;
+};
+
+FUNCTION SpringMatrix stiffness_matrix(SpringHessian h) {
+  SpringMatrix m;
+  m.n = h.n;
+  m.along = h.along;
+  m.across = h.across;
+  return m;
+}
+
+FUNCTION SpringMatrix damping_matrix(SpringHessian h) {
+  SpringMatrix m;
+  m.n = h.n;
+  m.along = h.damping;
+  m.across = real(0.0);
+  return m;
+}
+
+/// dt C + dt^2 K, without what makes it indefinite [kg]: of an implicit step of dt [s].
+FUNCTION SpringMatrix step_matrix(SpringHessian h, real dt) {
+  SpringMatrix m;
+  m.n = h.n;
+  m.along = dt * (dt * h.along + h.damping);
+  m.across = dt * dt * max(h.across, real(0.0));
+  return m;
+}
+
+/// The corner's row of the matrix times a vector of all corners.
+FUNCTION vec3 matrix_product(SpringMatrix m, SpringEdges vector) {
+  return m.across * vector.d + m.n * ((m.along - m.across) * dot(m.n, vector.d));
+}
+
+/// Adds the corner's own 3x3 block: its diagonal, and what is off it (21, 31, 32).
+FUNCTION void add_block(SpringMatrix m, INOUT(vec3) diagonal, INOUT(vec3) off_diagonal) {
+  real more = m.along - m.across;
+  diagonal += m.across + more * m.n * m.n;
+  off_diagonal += vec3(more * m.n.x * m.n.y, more * m.n.x * m.n.z, more * m.n.y * m.n.z);
+}
+
+/// The smallest ratio of damping to stiffness [s] of any motion that the spring resists.
+FUNCTION real least_damping_time(SpringHessian h) {
+  return h.across > real(0.0) ? real(0.0) : h.damping / h.along;
+}
+
+/// What VBD needs at a corner, for a step of dt in which the corners have moved by `moved` [m] so far: adds dt^2 times
+/// the force [kg m] to the residual, and dt C + dt^2 K to the corner's block. Its length is measured along its
+/// direction, and nothing is left to the compiler's order: the kernel's two forms are to round alike.
+FUNCTION void add_descent(Spring s, real dt, SpringEdges place, SpringEdges moved, INOUT(vec3) residual,
+                          INOUT(vec3) diagonal, INOUT(vec3) off_diagonal) {
+  SpringHessian h = element_definite(element_hessian(s, place));
+  real along = h.along * (dt * dt), across = dt * dt * h.across, damping = dt * h.damping;
+  residual -= (along * (dot(h.n, place.d) - s.rest_length) + damping * dot(h.n, moved.d)) * h.n;
+  PRECISE real more = along + damping - across;
+  diagonal += across + more * h.n * h.n;
+  off_diagonal += vec3(more * h.n.x * h.n.y, more * h.n.x * h.n.z, more * h.n.y * h.n.z);
+}
+
+/// The spring on a line of states: a line search moves the corners from here in proportion.
+struct SpringLine {
+  vec3 place, change;           // [m], and by how much a whole step changes it
+  real length_before;           // [m]
+  real closing, closing_change;  // speed along the spring [m/s], and by how much a whole step changes it
+};
+
+/// `change` [m/s]: of the velocity, by a whole step of the search; in dt [s] it moves the corners, too.
+FUNCTION SpringLine element_line(SpringEdges place, SpringEdges velocity, SpringEdges change) {
+  SpringLine line;
+  line.place = place.d;
+  line.change = change.d;
+  line.length_before = sqrt(dot(place.d, place.d));
+  vec3 n = line.length_before > real(0.0) ? place.d / line.length_before : vec3(real(0.0));
+  line.closing = dot(n, velocity.d);
+  line.closing_change = dot(n, change.d);
+  return line;
+}
+
+/// What energy and dissipation in a step of dt [J] are more at that share of the whole step than at its start.
+FUNCTION real line_energy(Spring s, SpringLine line, real dt, real share) {
+  vec3 there = line.place + (dt * share) * line.change;
+  real now = sqrt(dot(there, there)), more = share * line.closing_change;
+  return real(0.5) * (s.stiffness * (now - line.length_before) * (now + line.length_before - real(2.0) * s.rest_length) +
+                      dt * s.damping * more * (real(2.0) * line.closing + more));
+}
+
+/// The spring as a constraint that Gauss-Seidel sweeps project: what its stretch is multiplied with for one dt. They
+/// follow from stiffness, damping, masses and dt: server/model/spring_gains.h.
+struct SpringGains {
+  real stretch, damping;  // [kg]
+  real memory;            // of what the spring has pushed in this step already, [0, 1)
+  real turning;           // its stiffness over that of both ends' inertia, w k dt^2; 0 without memory
+};
+
+/// One visit of a sweep, in PBD and XPBD (Mueller et al. 2007, section 3.3; Macklin et al. 2016, equations 18 and 26):
+/// what more the spring gives its first end and takes from its second, as an impulse times dt [kg m]. `place`: of its
+/// ends as they are now, `moved`: how that has changed since the step's start, `pushed`: what it has given since then.
 /// What was given along a direction that the spring no longer has is turned to the one it has now; XPBD as published
-/// leaves it, and so ends beside implicit Euler's solution when springs turn within a step. `turning` = w k dt^2, with
-/// w the sum of the ends' inverse masses, takes into account that the spring itself resists (Newton's method, if it is
-/// stretched).
-FUNCTION vec3 spring_projection(vec3 d, vec3 moved, real rest_length, real stretch_gain, real damping_gain,
-                                real memory, real turning, vec3 pushed) {
-  real length_squared = dot(d, d);
-  if (!(length_squared > real(0.0))) return vec3(real(0.0));
+/// leaves it, and so ends beside implicit Euler's solution when springs turn within a step. `turning` takes into
+/// account that the spring itself resists (Newton's method, if it is stretched).
+FUNCTION SpringEdges element_projection(real rest_length, SpringGains gains, SpringEdges place, SpringEdges moved,
+                                        SpringEdges pushed) {
+  SpringEdges push;
+  push.d = vec3(real(0.0));
+  real length_squared = dot(place.d, place.d);
+  if (!(length_squared > real(0.0))) return push;
   real inverse_length = real(1.0) / sqrt(length_squared);
-  vec3 n = d * inverse_length;
+  vec3 n = place.d * inverse_length;
   real stretch = length_squared * inverse_length - rest_length;
-  real along = dot(n, pushed);
-  real change = -(stretch_gain * stretch + damping_gain * dot(n, moved) + memory * along);
-  real resisted = turning * inverse_length * max(stretch, -stretch);
-  return n * change - (pushed - n * along) * (real(1.0) / (real(1.0) + resisted));
+  real along = dot(n, pushed.d);
+  real change = -(gains.stretch * stretch + gains.damping * dot(n, moved.d) + gains.memory * along);
+  real resisted = gains.turning * inverse_length * max(stretch, -stretch);
+  push.d = n * change - (pushed.d - n * along) * (real(1.0) / (real(1.0) + resisted));
+  return push;
 }
+
+#ifndef __cplusplus
+// In the lists of elements/lists.glsl: (other vertex, rest length, stiffness, damping). Padding is the vertex itself, and
+// zeros: it gives no force.
+struct SpringEntry {
+  int other;
+  Spring law;
+};
+#define Spring_CORNERS 2.0
+#define Spring_TEXELS 1
+#define Spring_ENTRY(at) spring_entry(FETCH(elements, at))
+/// DIFFERENCE(j): a macro of what this corner has more than vertex j.
+#define Spring_EDGES(entry, DIFFERENCE) SpringEdges(DIFFERENCE(entry.other))
+
+SpringEntry spring_entry(uvec4 words) {
+  return SpringEntry(int(words.x),
+                     Spring(uintBitsToFloat(words.y), uintBitsToFloat(words.z), uintBitsToFloat(words.w)));
+}
+#endif

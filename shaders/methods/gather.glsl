@@ -1,31 +1,33 @@
-// What every kernel of a method shares: the vertex's state, the pull of its springs, where a pin takes it.
+// What every kernel of a method shares: the vertex's state, the pull of its elements, where a pin takes it.
 layout(local_size_x = GROUP_SIZE) in;
 #include "../access.glsl"
-#include "../elements/types.glsl"
-#include "../elements/spring.glsl"
-#include "../collide/spring_lists.glsl"
+uniform int vertex_count;
+#include "../elements/lists.glsl"
 #include "motions.glsl"
 
 READ_VEC4(position, 0);       // w: inverse mass [1/kg], 0 if pinned
 READ_VEC4(velocity, 1);       // w: contacts of the last step; of a pinned vertex, its motion's index or -1
 READ_VEC4(rest_position, 7);  // w: the cloth
-uniform int vertex_count;
 uniform float dt;      // [s]
 uniform vec4 gravity;  // xyz [m/s^2], w: air drag [1/s]
 
-vec3 spring_forces(int i, vec3 x, vec3 v) {
+vec3 element_forces(int i, vec3 x, vec3 v) {
   vec3 force = vec3(0.0);
-  SpringRange range = spring_range(i);
-  for (int entry = range.first; entry < range.end; entry += SLICE_SIZE) {
-    uvec4 s = FETCH(springs, entry);
-    force += spring_force(x, FETCH(position, s.x).xyz, v, FETCH(velocity, s.x).xyz, uintBitsToFloat(s.y),
-                          uintBitsToFloat(s.z), uintBitsToFloat(s.w));
+#define PLACE(j) (x - FETCH(position, j).xyz)
+#define VELOCITY(j) (v - FETCH(velocity, j).xyz)
+#each Law
+  for (EntryRange at = entry_range(Law_LIST, i); at.first < at.end; at.first += Law_TEXELS * SLICE_SIZE) {
+    LawEntry entry = Law_ENTRY(at.first);
+    force += element_force(entry.law, Law_EDGES(entry, PLACE), Law_EDGES(entry, VELOCITY));
   }
+#end
+#undef PLACE
+#undef VELOCITY
   return force;
 }
 
-/// Of springs, gravity and air drag [m/s^2].
-vec3 acceleration(int i, vec4 x, vec3 v) { return spring_forces(i, x.xyz, v) * x.w + gravity.xyz - gravity.w * v; }
+/// Of elements, gravity and air drag [m/s^2].
+vec3 acceleration(int i, vec4 x, vec3 v) { return element_forces(i, x.xyz, v) * x.w + gravity.xyz - gravity.w * v; }
 
 /// A pinned vertex is where its motion takes it: at the row of the pose table that many rows after the step's start.
 void follow_motion(int i, float motion_index, int row, out vec3 x, out vec3 v) {

@@ -1,21 +1,13 @@
 // Implicit Euler: Baraff & Witkin 1998. The unknown is the velocity u at the step's end; from an estimate of it, with x
 // = start + dt u, each Newton step solves
 //   J change = m (v - u) + dt f(x, u),   J = m (1 + dt air_drag) + dt C + dt^2 K,
-// with C and K the matrices of the springs' damping and stiffness at x, without the part of K that a compressed spring
-// makes indefinite. The first estimate is u = 0: one Newton step from there is theirs. What a vertex cannot do, because
-// a pin holds it or a collider is in the way, is filtered out of every vector of the solver (sections 5.1 to 5.3). A
-// full Newton step can overshoot where springs turn by much in one step, so it is shortened until the energy whose
-// minimum is sought falls (a line search: Nocedal & Wright 2006, chapter 3). Here `position` and `velocity` are the
-// estimates.
+// with C and K the matrices of the elements' damping and stiffness at x, without the part of K that is indefinite. The
+// first estimate is u = 0: one Newton step from there is theirs. What a vertex cannot do, because a pin holds it or a
+// collider is in the way, is filtered out of every vector of the solver (sections 5.1 to 5.3). A full Newton step can
+// overshoot where elements turn by much in one step, so it is shortened until the energy whose minimum is sought falls
+// (a line search: Nocedal & Wright 2006, chapter 3). Here `position` and `velocity` are the estimates.
 #include "gather.glsl"
 #include "blocks.glsl"
-
-/// The spring's share of J: along n n^T + across (I - n n^T) [kg].
-void spring_matrix(vec3 x, vec3 y, uvec4 s, out vec3 n, out float along, out float across) {
-  spring_hessian(x, y, uintBitsToFloat(s.y), uintBitsToFloat(s.z), n, along, across);
-  along = dt * (dt * along + uintBitsToFloat(s.w));
-  across = dt * dt * max(across, 0.0);
-}
 
 // What a collider leaves a vertex, `constraint`: xyz the unit normal of the contact, or 0 where there is none; w the
 // speed of the rebound [m/s], or -1 less that where the vertex sticks to the surface.

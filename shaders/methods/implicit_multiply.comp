@@ -10,14 +10,15 @@ layout(std430, binding = 1) writeonly buffer Sums { vec4 group_sums[]; };  // on
 
 vec3 multiply(int i, vec4 x, vec3 z) {
   vec3 result = z * ((1.0 + dt * gravity.w) / x.w);
-  SpringRange range = spring_range(i);
-  for (int entry = range.first; entry < range.end; entry += SLICE_SIZE) {
-    uvec4 s = FETCH(springs, entry);
-    vec3 apart = z - FETCH(preconditioned, s.x).xyz, n;
-    float along, across;
-    spring_matrix(x.xyz, FETCH(position, s.x).xyz, s, n, along, across);
-    result += across * apart + n * ((along - across) * dot(n, apart));
+#define PLACE(j) (x.xyz - FETCH(position, j).xyz)
+#define VECTOR(j) (z - FETCH(preconditioned, j).xyz)
+#each Law
+  for (EntryRange at = entry_range(Law_LIST, i); at.first < at.end; at.first += Law_TEXELS * SLICE_SIZE) {
+    LawEntry entry = Law_ENTRY(at.first);
+    LawMatrix matrix = step_matrix(element_hessian(entry.law, Law_EDGES(entry, PLACE)), dt);
+    result += matrix_product(matrix, Law_EDGES(entry, VECTOR));
   }
+#end
   return result;
 }
 

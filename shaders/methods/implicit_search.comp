@@ -25,27 +25,21 @@ void main() {
   if (i < vertex_count) {
     vec3 u = FETCH(velocity, i).xyz, d = FETCH(change, i).xyz;
     bool held = x.w == 0.0;
-    SpringRange range = spring_range(i);
-    for (int entry = range.first; entry < range.end; entry += SLICE_SIZE) {
-      uvec4 s = FETCH(springs, entry);
-      vec4 y = FETCH(position, s.x);
-      vec3 other_u = FETCH(velocity, s.x).xyz, other_d = FETCH(change, s.x).xyz;
-      bool other_held = y.w == 0.0;
-      float rest_length = uintBitsToFloat(s.y), stiffness = uintBitsToFloat(s.z), damping = uintBitsToFloat(s.w);
-      // A free end's change is scaled, a pinned one's is not.
-      vec3 fixed_change = (held ? d : vec3(0.0)) - (other_held ? other_d : vec3(0.0));
-      vec3 scaled_change = (held ? vec3(0.0) : d) - (other_held ? vec3(0.0) : other_d);
-      vec3 apart = x.xyz - y.xyz + dt * fixed_change, speed = u - other_u + fixed_change;
-      float length_before = length(apart);
-      vec3 n = length_before > 0.0 ? apart / length_before : vec3(0.0);
-      float closing = dot(n, speed), closing_change = dot(n, scaled_change);
-      for (int k = 0; k < SHARES; ++k) {
-        float now = length(apart + (dt * shares[k]) * scaled_change);
-        float more = shares[k] * closing_change;
-        energy[k] += 0.25 * (stiffness * (now - length_before) * (now + length_before - 2.0 * rest_length) +
-                             dt * damping * more * (2.0 * closing + more));  // the other half is the other vertex's
-      }
+    // A free corner's change is scaled, a pinned one's is not.
+    vec3 fixed_change = held ? d : vec3(0.0), scaled_change = held ? vec3(0.0) : d;
+#define HELD(j) (FETCH(position, j).w == 0.0)
+#define FIXED(j) (fixed_change - (HELD(j) ? FETCH(change, j).xyz : vec3(0.0)))
+#define SCALED(j) (scaled_change - (HELD(j) ? vec3(0.0) : FETCH(change, j).xyz))
+#define PLACE(j) (x.xyz - FETCH(position, j).xyz + dt * FIXED(j))
+#define VELOCITY(j) (u - FETCH(velocity, j).xyz + FIXED(j))
+#each Law
+    for (EntryRange at = entry_range(Law_LIST, i); at.first < at.end; at.first += Law_TEXELS * SLICE_SIZE) {
+      LawEntry entry = Law_ENTRY(at.first);
+      LawLine line = element_line(Law_EDGES(entry, PLACE), Law_EDGES(entry, VELOCITY), Law_EDGES(entry, SCALED));
+      for (int k = 0; k < SHARES; ++k)
+        energy[k] += line_energy(entry.law, line, dt, shares[k]) / Law_CORNERS;  // the rest is the other corners'
     }
+#end
     if (!held) {
       float m = 1.0 / x.w;
       float slope = m * dot(d, u - FETCH(start_velocity, i).xyz - dt * gravity.xyz + dt * gravity.w * u);

@@ -12,7 +12,7 @@ layout(std430, binding = 4) writeonly buffer BlockB { vec4 block_b[]; };
 uniform float tolerance;  // of the residual, relative
 
 /// What the residual of the vertex, squared and over its mass [J], may be: relative to its own energy and what forces
-/// give it in one step; and not less than what rounding its position makes of its springs' forces.
+/// give it in one step; and not less than what rounding its position makes of its elements' forces.
 float good_enough(float inverse_mass, vec3 v, vec3 force, float stiffness, vec3 x, vec3 d) {
   float own = (dot(v, v) + dt * dt * dot(gravity.xyz, gravity.xyz)) / inverse_mass +
               dt * dt * inverse_mass * dot(force, force);
@@ -27,21 +27,20 @@ void main() {
   vec3 u = FETCH(velocity, i).xyz, d = FETCH(change, i).xyz;
   vec3 force = vec3(0.0), product = vec3(0.0), diagonal = vec3(0.0), corner = vec3(0.0);
   float stiffness = 0.0;
-  SpringRange range = spring_range(i);
-  for (int entry = range.first; entry < range.end; entry += SLICE_SIZE) {
-    uvec4 s = FETCH(springs, entry);
-    vec3 y = FETCH(position, s.x).xyz, n;
-    float along, across;
-    force += spring_force(x.xyz, y, u, FETCH(velocity, s.x).xyz, uintBitsToFloat(s.y), uintBitsToFloat(s.z),
-                          uintBitsToFloat(s.w));
-    spring_matrix(x.xyz, y, s, n, along, across);
-    if (s.x == uint(i)) continue;  // padding
-    stiffness += uintBitsToFloat(s.z) + uintBitsToFloat(s.w) / dt;
-    vec3 apart = d - FETCH(change, s.x).xyz;
-    product += across * apart + n * ((along - across) * dot(n, apart));
-    diagonal += across + (along - across) * n * n;
-    corner += (along - across) * n.xxy * n.yzz;
+#define PLACE(j) (x.xyz - FETCH(position, j).xyz)
+#define VELOCITY(j) (u - FETCH(velocity, j).xyz)
+#define CHANGE(j) (d - FETCH(change, j).xyz)
+#each Law
+  for (EntryRange at = entry_range(Law_LIST, i); at.first < at.end; at.first += Law_TEXELS * SLICE_SIZE) {
+    LawEntry entry = Law_ENTRY(at.first);
+    LawEdges place = Law_EDGES(entry, PLACE);
+    LawMatrix matrix = step_matrix(element_hessian(entry.law, place), dt);
+    force += element_force(entry.law, place, Law_EDGES(entry, VELOCITY));
+    stiffness += element_stiffness(entry.law) + element_damping(entry.law) / dt;
+    product += matrix_product(matrix, Law_EDGES(entry, CHANGE));
+    add_block(matrix, diagonal, corner);
   }
+#end
   if (x.w == 0.0) {
     residual[i] = preconditioned[i] = block_a[i] = block_b[i] = vec4(0.0);
     return;

@@ -14,14 +14,16 @@ void visit(int item) {
   vec4 x = FETCH(position, s.x), y = FETCH(position, s.y);
   vec3 dx = deviation(s.x).xyz, dy = deviation(s.y).xyz;
   vec3 moved = drift(FETCH(velocity, s.x).xyz - FETCH(velocity, s.y).xyz) + (dx - dy);
-  float w_x = x.w * mobility, w_y = y.w * mobility, stretch_gain = uintBitsToFloat(s.w), turning = 0.0;
+  float w_x = x.w * mobility, w_y = y.w * mobility;
+  SpringGains spring = SpringGains(uintBitsToFloat(s.w), gain.x, gain.y, 0.0);
   vec3 before = vec3(0.0);
 #ifdef MEMORY
   if (sweep > 0) before = pushed[item].xyz;
-  turning = (w_x + w_y) * stretch_gain / gain.y;
+  spring.turning = (w_x + w_y) * spring.stretch / spring.memory;
 #endif
-  vec3 change = spring_projection((x.xyz - y.xyz) + moved, moved, uintBitsToFloat(s.z), stretch_gain, gain.x, gain.y,
-                                  turning, before);
+  vec3 change = element_projection(uintBitsToFloat(s.z), spring, SpringEdges((x.xyz - y.xyz) + moved),
+                                   SpringEdges(moved), SpringEdges(before))
+                    .d;
 #ifdef MEMORY
   if (sweep < last_sweep) pushed[item].xyz = before + change;
 #endif

@@ -7,11 +7,10 @@ void main() {
   if (i >= vertex_count) return;
   vec4 x = FETCH(position, i);
   vec3 x_start = FETCH(start_position, i).xyz, moved = vec3(0.0);
-  SpringRange range = spring_range(i);
-  for (int entry = range.first; entry < range.end; entry += SLICE_SIZE) {
-    float pull = pulls[entry];
+  for (EntryRange at = entry_range(Spring_LIST, i); at.first < at.end; at.first += SLICE_SIZE) {
+    float pull = pulls[at.first];
     RARELY(pull > 0.0) {
-      uint j = FETCH(springs, entry).x;
+      int j = Spring_ENTRY(at.first).other;
       float growth;
       moved -= pull * pull_direction(x.xyz - FETCH(position, j).xyz, x_start - FETCH(start_position, j).xyz, growth);
     }

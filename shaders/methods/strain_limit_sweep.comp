@@ -41,19 +41,18 @@ void main() {
     vec4 x = FETCH(position, i);
     vec3 x_start = FETCH(start_position, i).xyz, moved = vec3(0.0);
     float largest_strain = limit[int(FETCH(rest_position, i).w)];
-    SpringRange range = spring_range(i);
-    for (int entry = range.first; entry < range.end; entry += SLICE_SIZE) {
-      uvec4 s = FETCH(springs, entry);
-      vec4 y = FETCH(position, s.x);
+    for (EntryRange at = entry_range(Spring_LIST, i); at.first < at.end; at.first += SLICE_SIZE) {
+      SpringEntry entry = Spring_ENTRY(at.first);
+      vec4 y = FETCH(position, entry.other);
       vec3 d = x.xyz - y.xyz;
-      float pull = pulls[entry];
-      float rest_length = uintBitsToFloat(s.y), allowed = largest_strain * rest_length, mobility = x.w + y.w;
+      float pull = pulls[at.first];
+      float rest_length = entry.law.rest_length, allowed = largest_strain * rest_length, mobility = x.w + y.w;
       float excess = length(d) - rest_length - allowed * (1.0 - margin);
       RARELY((excess > 0.0 || pull > 0.0) && allowed > 0.0 && mobility > 0.0) {
         float growth;
-        vec3 n = pull_direction(d, x_start - FETCH(start_position, s.x).xyz, growth);
+        vec3 n = pull_direction(d, x_start - FETCH(start_position, entry.other).xyz, growth);
         float changed = max(pull + relaxation * excess / (mobility * growth), 0.0);
-        pulls[entry] = changed;
+        pulls[at.first] = changed;
         moved -= (changed - pull) * n;
         // What is left to do: too long, or too short because of the pull.
         most = max(most, (changed > 0.0 ? abs(excess) : excess) / allowed);

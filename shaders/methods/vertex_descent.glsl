@@ -71,20 +71,16 @@ void visit(int item) {
   vec3 v = FETCH(velocity, i).xyz, d = deviation(i).xyz;
   // precise: both forms of the kernel, compiled apart, are to round alike.
   precise vec3 residual = inertia * (targets[i].xyz - d), diagonal = vec3(inertia), corner = vec3(0.0);
-  SpringRange range = spring_range(i);
-  for (int entry = range.first; entry < range.end; entry += SLICE_SIZE) {
-    uvec4 s = FETCH(springs, entry);
-    vec3 moved = drift(v - FETCH(velocity, s.x).xyz) + (d - deviation(s.x).xyz), n;
-    vec3 apart = (x.xyz - FETCH(position, s.x).xyz) + moved;
-    float rest_length = uintBitsToFloat(s.y), damping = dt * uintBitsToFloat(s.w), along, across;
-    spring_hessian(apart, vec3(0.0), rest_length, uintBitsToFloat(s.z), n, along, across);
-    along *= dt * dt;
-    across = dt * dt * max(across, 0.0);
-    residual -= (along * (dot(n, apart) - rest_length) + damping * dot(n, moved)) * n;
-    precise float more = along + damping - across;
-    diagonal += across + more * n * n;
-    corner += more * n.xxy * n.yzz;
+#define MOVED(j) (drift(v - FETCH(velocity, j).xyz) + (d - deviation(j).xyz))
+#define PLACE(j) ((x.xyz - FETCH(position, j).xyz) + MOVED(j))
+#each Law
+  for (EntryRange at = entry_range(Law_LIST, i); at.first < at.end; at.first += Law_TEXELS * SLICE_SIZE) {
+    LawEntry entry = Law_ENTRY(at.first);
+    add_descent(entry.law, dt, Law_EDGES(entry, PLACE), Law_EDGES(entry, MOVED), residual, diagonal, corner);
   }
+#end
+#undef MOVED
+#undef PLACE
   vec3 a, b;
   factorise(diagonal, corner, inertia, a, b);
   precise vec3 descent = solve_block(a, b, residual);

@@ -2,13 +2,11 @@
 // summed by the host in double precision and in order, so that the outcome does not depend on the order of threads.
 layout(local_size_x = GROUP_SIZE) in;
 #include "../access.glsl"
-#include "../elements/types.glsl"
-#include "../elements/spring.glsl"
-#include "../collide/spring_lists.glsl"
+layout(location = 0) uniform int vertex_count;
+#include "../elements/lists.glsl"
 
 READ_VEC4(position, 0);
 READ_VEC4(velocity, 1);
-layout(location = 0) uniform int vertex_count;
 layout(location = 3) uniform vec4 gravity;
 
 struct Partial {
@@ -29,17 +27,17 @@ void main() {
     vec4 x = FETCH(position, i), v = FETCH(velocity, i);
     bool moving_pin = x.w == 0.0 && v.w >= 0.0, touching = x.w > 0.0 && v.w > 0.0;
     vec3 force = vec3(0.0);
-    SpringRange range = spring_range(i);
-    for (int entry = range.first; entry < range.end; entry += SLICE_SIZE) {
-      uvec4 s = FETCH(springs, entry);
-      if (s.x == uint(i)) continue;
-      vec3 y = FETCH(position, s.x).xyz;
-      sum.y += 0.5 * spring_energy(x.xyz, y, uintBitsToFloat(s.y), uintBitsToFloat(s.z));  // the other half is y's
-      most.x = max(most.x, spring_strain(x.xyz, y, uintBitsToFloat(s.y)));
-      if (moving_pin || touching)
-        force += spring_force(x.xyz, y, v.xyz, FETCH(velocity, s.x).xyz, uintBitsToFloat(s.y), uintBitsToFloat(s.z),
-                              uintBitsToFloat(s.w));
+#define PLACE(j) (x.xyz - FETCH(position, j).xyz)
+#define VELOCITY(j) (v.xyz - FETCH(velocity, j).xyz)
+#each Law
+    for (EntryRange at = entry_range(Law_LIST, i); at.first < at.end; at.first += Law_TEXELS * SLICE_SIZE) {
+      LawEntry entry = Law_ENTRY(at.first);
+      LawEdges place = Law_EDGES(entry, PLACE);
+      sum.y += element_energy(entry.law, place) / Law_CORNERS;  // the rest is the other corners'
+      most.x = max(most.x, element_strain(entry.law, place));
+      if (moving_pin || touching) force += element_force(entry.law, place, Law_EDGES(entry, VELOCITY));
     }
+#end
     float speed_squared = dot(v.xyz, v.xyz);
     if (x.w > 0.0) {
       sum.x = 0.5 / x.w * speed_squared;

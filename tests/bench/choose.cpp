@@ -15,7 +15,7 @@
 #include "server/lab/choice.h"
 #include "server/lab/trial.h"
 #include "server/lab/truth.h"
-#include "server/model/spring_operator.h"
+#include "server/model/element_operator.h"
 #include "server/model/stability.h"
 #include "server/reference/trajectory.h"
 #include "server/scene/document.h"
@@ -89,7 +89,8 @@ Grid search(const Case& of, const lab::Choice& choice, const lab::Truth& truth, 
   Grid grid;
   const model::Model& model = truth.world.model;
   for (const Method method : scene::methods) {
-    const double limit = model::dt_limit(method, model::SpringOperator(model, of.scene, model.rest_position));
+    const double limit =
+        model::dt_limit(method, model::ElementOperator(model, of.scene, model.rest_position));
     if (limit == 0.0) continue;
     for (const int iterations : iterations_of(method)) {
       Setting setting{method, std::min({model::margin_to_warn * limit, truth.horizon / 8, 1.0 / 30}),

@@ -25,19 +25,18 @@ inline std::vector<glm::dvec3> xpbd_by_differences(const reference::World& world
     for (std::size_t i = 0; i < x.size(); ++i)
       if (w[i] > 0.0f) x[i] += dt * (v[i] + dt * gravity);
     for (const std::uint32_t index : world.spring_colours.order) {
-      const model::Spring& spring = model.springs[index];
-      const float wa = w[spring.a], wb = w[spring.b];
+      const model::Spring& spring = model.springs()[index];
+      const float wa = w[spring.vertices[0]], wb = w[spring.vertices[1]];
       if (wa + wb == 0.0f) continue;
-      const scene::Springs& material = world.scene.cloths[spring.cloth].material;
       const auto gain =
-          static_cast<float>(model::spring_gains(world.scene.solver, model::stiffness(material, spring.kind),
-                                                 material.damping, static_cast<double>(wa + wb))
+          static_cast<float>(model::spring_gains(world.scene.solver, spring.law.stiffness, spring.law.damping,
+                                                 static_cast<double>(wa + wb))
                                  .stretch);
-      const glm::vec3 d = x[spring.a] - x[spring.b];
+      const glm::vec3 d = x[spring.vertices[0]] - x[spring.vertices[1]];
       const float length = glm::length(d);
-      const glm::vec3 push = d * (-gain * (length - static_cast<float>(spring.rest_length)) / length);
-      x[spring.a] += wa * push;
-      x[spring.b] -= wb * push;
+      const glm::vec3 push = d * (-gain * (length - static_cast<float>(spring.law.rest_length)) / length);
+      x[spring.vertices[0]] += wa * push;
+      x[spring.vertices[1]] -= wb * push;
     }
     for (std::size_t i = 0; i < x.size(); ++i) v[i] = (x[i] - x_prev[i]) / dt;
   }

@@ -41,30 +41,30 @@ struct Step {
       w.push_back(reference::inverse_mass(world, i));
       free.push_back(w[i] > 0.0 ? dt * state.velocity[i] + dt * dt * world.scene.gravity : glm::dvec3(0.0));
     }
-    for (const model::Spring& spring : world.model.springs) {
-      springs_at[spring.a] += 1.0;
-      springs_at[spring.b] += 1.0;
+    for (const model::Spring& spring : world.model.springs()) {
+      springs_at[spring.vertices[0]] += 1.0;
+      springs_at[spring.vertices[1]] += 1.0;
     }
   }
 
-  double weight(const model::Spring& spring) const { return w[spring.a] + w[spring.b]; }
+  double weight(const model::Spring& spring) const { return w[spring.vertices[0]] + w[spring.vertices[1]]; }
 
-  model::SpringGains gains(const model::Spring& spring) const {
-    const scene::Springs& material = world.scene.cloths[spring.cloth].material;
-    return model::spring_gains(world.scene.solver, model::stiffness(material, spring.kind), material.damping,
-                               weight(spring));
+  elements::SpringGains gains(const model::Spring& spring) const {
+    return model::spring_gains(world.scene.solver, spring.law.stiffness, spring.law.damping, weight(spring));
   }
 
   glm::dvec3 change(const model::Spring& spring, const Vectors& d, const glm::dvec3& pushed) const {
-    const model::SpringGains gain = gains(spring);
-    const glm::dvec3 moved = d[spring.a] - d[spring.b];
-    return elements::spring_projection((x[spring.a] - x[spring.b]) + moved, moved, spring.rest_length,
-                                       gain.stretch, gain.damping, gain.memory, gain.turning, pushed);
+    const elements::SpringGains gain = gains(spring);
+    const glm::dvec3 moved = d[spring.vertices[0]] - d[spring.vertices[1]];
+    return elements::element_projection(spring.law.rest_length, gain,
+                                        {(x[spring.vertices[0]] - x[spring.vertices[1]]) + moved}, {moved},
+                                        {pushed})
+        .d;
   }
 
   void push(const model::Spring& spring, const glm::dvec3& by, Vectors& d) const {
-    d[spring.a] += w[spring.a] * by;
-    d[spring.b] -= w[spring.b] * by;
+    d[spring.vertices[0]] += w[spring.vertices[0]] * by;
+    d[spring.vertices[1]] -= w[spring.vertices[1]] * by;
   }
 
   /// The largest momentum that implicit Euler's equation lacks at a free vertex [kg m].
@@ -75,7 +75,7 @@ struct Step {
       end[i] += d[i];
       velocity[i] /= dt;
     }
-    const Vectors force = reference::spring_forces(world, end, velocity);
+    const Vectors force = reference::element_forces(world, end, velocity);
     double most = 0.0;
     for (std::size_t i = 0; i < d.size(); ++i)
       if (w[i] > 0.0) most = std::max(most, glm::length((free[i] - d[i]) / w[i] + dt * dt * force[i]));
@@ -90,7 +90,7 @@ enum class Order { colours, at_once, relaxed, shared };
 /// Iterations until the residual is a thousandth of what it was; `most_iterations` if never; less, with a
 /// minus, if it grew a thousandfold.
 int iterations_needed(const Step& step, Order order, double eigenvalue = 0.0) {
-  const std::vector<model::Spring>& springs = step.world.model.springs;
+  const model::Batch<elements::Spring>& springs = step.world.model.springs();
   Vectors d = step.free, pushed(springs.size(), glm::dvec3(0.0)), by(pushed);
   const double start = step.residual(d);
   for (int n = 1; n < most_iterations; ++n) {
@@ -98,7 +98,7 @@ int iterations_needed(const Step& step, Order order, double eigenvalue = 0.0) {
       if (step.weight(springs[s]) == 0.0) continue;
       by[s] = step.change(springs[s], d, pushed[s]);
       if (order == Order::shared)
-        by[s] /= std::max(step.springs_at[springs[s].a], step.springs_at[springs[s].b]);
+        by[s] /= std::max(step.springs_at[springs[s].vertices[0]], step.springs_at[springs[s].vertices[1]]);
       if (order == Order::relaxed) by[s] *= 1.9 / std::max(eigenvalue, 1.9);
       pushed[s] += by[s];
       if (order == Order::colours) step.push(springs[s], by[s], d);
@@ -117,21 +117,21 @@ struct Spectrum {
   double eigenvalue = 0, row_sum = 0;
 };
 Spectrum spectrum(const Step& step) {
-  const std::vector<model::Spring>& springs = step.world.model.springs;
+  const model::Batch<elements::Spring>& springs = step.world.model.springs();
   std::vector<glm::dvec3> n;
   std::vector<double> diagonal, p(springs.size());
   for (const model::Spring& spring : springs) {
-    n.push_back(glm::normalize(step.x[spring.a] - step.x[spring.b]));
-    const model::SpringGains gains = step.gains(spring);
+    n.push_back(glm::normalize(step.x[spring.vertices[0]] - step.x[spring.vertices[1]]));
+    const elements::SpringGains gains = step.gains(spring);
     diagonal.push_back(1.0 / (gains.stretch + gains.damping));  // W + 1 / (k dt^2 + c dt)
   }
   Spectrum found;
   for (std::size_t s = 0; s < springs.size(); ++s) {
     double sum = diagonal[s];
-    for (const std::uint32_t end : {springs[s].a, springs[s].b})
-      for (std::uint32_t slot = step.world.model.vertex_springs.offsets[end];
-           slot < step.world.model.vertex_springs.offsets[end + 1]; ++slot) {
-        const std::uint32_t other = step.world.model.vertex_springs.items[slot];
+    for (const std::uint32_t end : springs[s].vertices)
+      for (std::uint32_t slot = springs.at_vertex.offsets[end]; slot < springs.at_vertex.offsets[end + 1];
+           ++slot) {
+        const std::uint32_t other = springs.at_vertex.items[slot] / 2;
         if (other != s) sum += step.w[end] * std::abs(glm::dot(n[s], n[other]));
       }
     found.row_sum = std::max(found.row_sum, sum / diagonal[s]);
@@ -143,8 +143,9 @@ Spectrum spectrum(const Step& step) {
     double norm = 0.0, product = 0.0;
     for (std::size_t s = 0; s < springs.size(); ++s) {
       const double compliance = diagonal[s] - step.weight(springs[s]);
-      const double next =
-          (glm::dot(n[s], moved[springs[s].a] - moved[springs[s].b]) + compliance * p[s]) / diagonal[s];
+      const double next = (glm::dot(n[s], moved[springs[s].vertices[0]] - moved[springs[s].vertices[1]]) +
+                           compliance * p[s]) /
+                          diagonal[s];
       product += p[s] * next * diagonal[s];
       norm += p[s] * p[s] * diagonal[s];
       p[s] = next;

@@ -121,7 +121,7 @@ int main(int argc, char** argv) {
     const double cg_iterations =
         static_cast<double>(work.linear_iterations - one.work_before.linear_iterations) / steps;
     const double sweeps = scene::sweeps(one.solver.method) ? one.solver.iterations : cg_iterations;
-    const double entries = 2.0 * static_cast<double>(one.simulation->model().springs.size()) / vertices;
+    const double entries = 2.0 * static_cast<double>(one.simulation->model().springs().size()) / vertices;
     std::printf(
         "{\"renderer\": \"%s\", \"side\": %d, \"method\": \"%s\", \"dt\": %g, \"iterations\": %d, "
         "\"dispatches\": %.1f, "

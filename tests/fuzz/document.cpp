@@ -33,16 +33,15 @@ void require_adjacency(const model::Adjacency& adjacency, std::size_t vertices, 
   for (const std::uint32_t item : adjacency.items) require(item < items, "rows name items there are");
 }
 
-void require_springs(const model::Model& model, const scene::Scene& scene) {
-  std::set<std::tuple<model::SpringKind, std::uint32_t, std::uint32_t>> seen;
-  for (const model::Spring& spring : model.springs) {
-    require(spring.a < spring.b && spring.b < model.vertex_count(), "a spring joins two vertices");
-    require(spring.cloth == model.vertex_cloth[spring.a] && spring.cloth == model.vertex_cloth[spring.b],
-            "a spring stays in its cloth");
-    require(spring.rest_length >= 0.0 && carried(spring.rest_length), "a rest length is a number");
-    require(model::stiffness(scene.cloths[spring.cloth].material, spring.kind) > 0.0,
-            "a spring has a stiffness");
-    require(seen.insert({spring.kind, spring.a, spring.b}).second, "each spring is there once");
+void require_springs(const model::Model& model) {
+  std::set<std::array<std::uint32_t, 2>> seen;
+  for (const model::Spring& spring : model.springs()) {
+    const auto [a, b] = spring.vertices;
+    require(a < b && b < model.vertex_count(), "a spring joins two vertices");
+    require(model.vertex_cloth[a] == model.vertex_cloth[b], "a spring stays in its cloth");
+    require(spring.law.rest_length >= 0.0 && carried(spring.law.rest_length), "a rest length is a number");
+    require(spring.law.stiffness > 0.0, "a spring has a stiffness");
+    require(seen.insert(spring.vertices).second, "each spring is there once");
   }
 }
 
@@ -74,25 +73,24 @@ void require_colouring(const model::Colouring& colouring, std::size_t items, Con
 }
 
 void require_colourings(const model::Model& model, const scene::Scene& scene) {
-  if (model.springs.empty()) return;
-  require_colouring(
-      model::colour_springs(model, scene), model.springs.size(), [&](const auto* begin, const auto* end) {
-        std::set<std::uint32_t> taken;
-        for (; begin != end; ++begin)
-          if (!taken.insert(model.springs[*begin].a).second || !taken.insert(model.springs[*begin].b).second)
-            return true;
-        return false;
-      });
+  if (model.springs().empty()) return;
+  require_colouring(model::colour_elements(model, scene, model.springs()), model.springs().size(),
+                    [&](const auto* begin, const auto* end) {
+                      std::set<std::uint32_t> taken;
+                      for (; begin != end; ++begin)
+                        for (const std::uint32_t vertex : model.springs()[*begin].vertices)
+                          if (!taken.insert(vertex).second) return true;
+                      return false;
+                    });
   require_colouring(model::colour_vertices(model, scene), model.vertex_count(),
                     [&](const auto* begin, const auto* end) {
                       const std::set<std::uint32_t> alike(begin, end);
+                      bool found = false;
                       for (; begin != end; ++begin)
-                        for (std::uint32_t at = model.vertex_springs.offsets[*begin];
-                             at < model.vertex_springs.offsets[*begin + 1]; ++at) {
-                          const model::Spring& spring = model.springs[model.vertex_springs.items[at]];
-                          if (alike.count(spring.a == *begin ? spring.b : spring.a) > 0) return true;
-                        }
-                      return false;
+                        model.springs().at(*begin, [&](const model::Spring& spring, std::size_t corner) {
+                          found = found || alike.count(spring.vertices[1 - corner]) > 0;
+                        });
+                      return found;
                     });
 }
 
@@ -127,8 +125,8 @@ void require_sound(const model::Model& model, const scene::Scene& scene) {
   for (const auto& triangle : model.triangles)
     for (const std::uint32_t corner : triangle) require(corner < first, "a triangle has vertices there are");
   require_vertices(model);
-  require_springs(model, scene);
-  require_adjacency(model.vertex_springs, first, model.springs.size(), 2);
+  require_springs(model);
+  require_adjacency(model.springs().at_vertex, first, 2 * model.springs().size(), 1);
   require_adjacency(model.vertex_triangles, first, triangles, 3);
   require(model::vertex_fans(model).size() == 6 * triangles,
           "two other corners for each corner of a triangle");

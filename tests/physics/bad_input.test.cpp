@@ -40,9 +40,8 @@ double energy_noise(const sim::Simulation& simulation) {
   const double ulp = 0x1p-23;
   double noise = 0.0;
   for (const double mass : model.mass) noise += mass * glm::length(simulation.scene().gravity) * ulp;
-  for (const model::Spring& spring : model.springs)
-    noise += model::stiffness(simulation.scene().cloths[spring.cloth].material, spring.kind) *
-             std::pow((1.0 + spring.rest_length) * 2.0 * ulp, 2);
+  for (const model::Spring& spring : model.springs())
+    noise += spring.law.stiffness * std::pow((1.0 + spring.law.rest_length) * 2.0 * ulp, 2);
   return noise;
 }
 

@@ -24,17 +24,16 @@ TEST_CASE("diagnostics are the sums over the state: energies, largest strain and
     gravitational -= model.mass[i] * glm::dot(seed.gravity, x);
   }
   std::vector<glm::dvec3> force(model.vertex_count(), glm::dvec3(0.0));
-  for (const model::Spring& spring : model.springs) {
-    const glm::dvec3 on_a = elements::spring_force(
-        glm::dvec3(state.position[spring.a]), glm::dvec3(state.position[spring.b]),
-        glm::dvec3(state.velocity[spring.a]), glm::dvec3(state.velocity[spring.b]), spring.rest_length,
-        model::stiffness(seed.cloths[0].material, spring.kind), seed.cloths[0].material.damping);
-    force[spring.a] += on_a;
-    force[spring.b] -= on_a;
-    const glm::dvec3 a(state.position[spring.a]), b(state.position[spring.b]);
-    elastic += elements::spring_energy(a, b, spring.rest_length,
-                                       model::stiffness(seed.cloths[0].material, spring.kind));
-    strain = std::max(strain, elements::spring_strain(a, b, spring.rest_length));
+  for (const model::Spring& spring : model.springs()) {
+    const auto [a, b] = spring.vertices;
+    const glm::dvec3 x(state.position[a]), y(state.position[b]);
+    const glm::dvec3 on_a =
+        test::spring_force(x, y, state.velocity[a], state.velocity[b], spring.law.rest_length,
+                           spring.law.stiffness, spring.law.damping);
+    force[a] += on_a;
+    force[b] -= on_a;
+    elastic += test::spring_energy(x, y, spring.law.rest_length, spring.law.stiffness);
+    strain = std::max(strain, test::spring_strain(x, y, spring.law.rest_length));
   }
   double pin_force = 0.0;
   for (std::uint32_t i = 0; i < model.vertex_count(); ++i)

@@ -31,9 +31,11 @@ std::vector<double> displacement_rounding(const reference::World& world, const r
   std::vector<double> bound(before.position.size());
   for (std::size_t i = 0; i < bound.size(); ++i)
     bound[i] = 4 * unit_roundoff * glm::distance(before.position[i], after.position[i]);
-  for (const model::Spring& spring : world.model.springs) {
-    const double length = glm::distance(before.position[spring.a], before.position[spring.b]);
-    for (const std::uint32_t vertex : {spring.a, spring.b}) bound[vertex] += 16 * unit_roundoff * length;
+  for (const model::Spring& spring : world.model.springs()) {
+    const double length =
+        glm::distance(before.position[spring.vertices[0]], before.position[spring.vertices[1]]);
+    for (const std::uint32_t vertex : {spring.vertices[0], spring.vertices[1]})
+      bound[vertex] += 16 * unit_roundoff * length;
   }
   return bound;
 }

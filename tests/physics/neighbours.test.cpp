@@ -7,7 +7,6 @@
 #include <set>
 
 #include "server/sim/self_collision.h"
-#include "server/sim/spring_lists.h"
 #include "server/sim/state.h"
 #include "tests/scenes.h"
 
@@ -19,7 +18,9 @@ using Lists = std::vector<std::vector<sim::SelfCollision::Neighbour>>;
 constexpr double thickness = 0.01;
 
 model::Model sheet_model(int side) {
-  Result<model::Model> model = model::build(test::sheet(side, side));
+  scene::Scene scene = test::sheet(side, side);
+  scene.self_collision = scene::SelfCollision{thickness, 0.0};
+  Result<model::Model> model = model::build(scene);
   REQUIRE(model);
   return std::move(*model);
 }
@@ -27,10 +28,10 @@ model::Model sheet_model(int side) {
 /// The lists the GPU builds for `model` with its vertices at `position`.
 struct Search {
   sim::SelfCollision self_collision;
-  gl::TextureBuffer position, rest, springs, slices;
+  gl::TextureBuffer position, rest;
 
   Search(const model::Model& model, const std::vector<glm::vec4>& at) {
-    Result<sim::SelfCollision> made = sim::SelfCollision::create(model.vertex_count());
+    Result<sim::SelfCollision> made = sim::SelfCollision::create(model);
     INFO((made ? "" : made.error().text()));
     REQUIRE(made);
     self_collision = std::move(*made);
@@ -38,17 +39,12 @@ struct Search {
     std::vector<glm::vec4> home;
     for (std::uint32_t i = 0; i < model.vertex_count(); ++i)
       home.emplace_back(glm::vec3(model.rest_position[i]), static_cast<float>(model.vertex_cloth[i]));
-    const sim::SpringLists lists = sim::spring_lists(model, test::sheet(2, 2));
     position = {gl::Buffer(at), GL_RGBA32F};
     rest = {gl::Buffer(home), GL_RGBA32F};
-    springs = {gl::Buffer(lists.entries), GL_RGBA32UI};
-    slices = {gl::Buffer(lists.slices), GL_R32UI};
   }
   Lists run() {
     position.bind(sim::unit_position);
     rest.bind(sim::unit_rest_position);
-    springs.bind(sim::unit_springs);
-    slices.bind(sim::unit_spring_slices);
     sim::Pace unlimited;
     self_collision.update_lists().resume(unlimited);
     return self_collision.read_lists();
@@ -58,7 +54,7 @@ struct Search {
 std::vector<std::set<std::uint32_t>> brute_force(const model::Model& model, const std::vector<glm::vec4>& at,
                                                  float reach) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> joined;
-  for (const model::Spring& spring : model.springs) joined.insert({spring.a, spring.b});
+  for (const model::Spring& spring : model.springs()) joined.insert({spring.vertices[0], spring.vertices[1]});
   std::vector<std::set<std::uint32_t>> near(at.size());
   for (std::uint32_t i = 0; i < at.size(); ++i)
     for (std::uint32_t j = 0; j < at.size(); ++j)
@@ -162,7 +158,7 @@ TEST_CASE("neighbour lists do not depend on the numbering of the vertices") {
   model.rest_position.assign(cloud.size(), glm::dvec3(0.0));
   for (std::size_t i = 0; i < cloud.size(); ++i) model.rest_position[i].x = static_cast<double>(i);
   model.vertex_cloth.assign(cloud.size(), 0);
-  model.vertex_springs.offsets.assign(cloud.size() + 1, 0);
+  model.contact_exclusions.offsets.assign(cloud.size() + 1, 0);
   model.cloths.push_back({0, static_cast<std::uint32_t>(cloud.size()), 0, 0, 0.05});
   std::vector<glm::vec4> shuffled(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) shuffled[order[i]] = cloud[i];

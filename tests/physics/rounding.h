@@ -24,17 +24,15 @@ inline Rounding step_rounding(const reference::World& world, const reference::St
   const double u = unit_roundoff, dt = world.scene.solver.dt;
   const std::size_t count = before.position.size();
   std::vector<double> force_error(count, 0.0), force_sum(count, 0.0);
-  for (const model::Spring& spring : world.model.springs) {
-    const scene::Springs& material = world.scene.cloths[spring.cloth].material;
-    const double k = spring.kind == model::SpringKind::structural ? material.structural
-                     : spring.kind == model::SpringKind::shear    ? material.shear
-                                                                  : material.bend;
-    const double length = glm::distance(before.position[spring.a], before.position[spring.b]);
-    const double damping =
-        material.damping * glm::distance(before.velocity[spring.a], before.velocity[spring.b]);
-    const double tension = k * std::abs(length - spring.rest_length) + damping;
-    for (const std::uint32_t vertex : {spring.a, spring.b}) {
-      force_error[vertex] += u * (8 * k * length + 2 * k * spring.rest_length + 10 * damping + 10 * tension);
+  for (const model::Spring& spring : world.model.springs()) {
+    const auto [a, b] = spring.vertices;
+    const double k = spring.law.stiffness;
+    const double length = glm::distance(before.position[a], before.position[b]);
+    const double damping = spring.law.damping * glm::distance(before.velocity[a], before.velocity[b]);
+    const double tension = k * std::abs(length - spring.law.rest_length) + damping;
+    for (const std::uint32_t vertex : {spring.vertices[0], spring.vertices[1]}) {
+      force_error[vertex] +=
+          u * (8 * k * length + 2 * k * spring.law.rest_length + 10 * damping + 10 * tension);
       force_sum[vertex] += tension;
     }
   }

@@ -96,7 +96,7 @@ class Column {
           const Link& link = springs_[s];
           const auto a = static_cast<std::size_t>(link.bottom), b = static_cast<std::size_t>(link.top);
           const double w = mobility(link.bottom) + mobility(link.top), moved = d[a] - d[b];
-          const model::SpringGains gains =
+          const elements::SpringGains gains =
               model::spring_gains(scene_.solver, link.stiffness, scene_.cloths[0].material.damping, w);
           const double now = x[a] - x[b] + moved;
           const double push =
@@ -154,7 +154,7 @@ inline Prediction predict_limited(const Case& test, const scene::Scene& base) {
   const double limit = limit_of(scene);
   if (limit == 0.0) return {0.0, "without damping each step adds (omega dt)^2 to the energy of a vibration"};
   const double tense =
-      model::dt_limit(scene.solver.method, model::SpringOperator(model, scene, model.start_position));
+      model::dt_limit(scene.solver.method, model::ElementOperator(model, scene, model.start_position));
   if (tense < 0.99 * limit)
     return {limit, "step limit of the stiffest vibration: the first at the start, whose springs are long",
             tense};

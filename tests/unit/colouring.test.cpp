@@ -56,18 +56,19 @@ std::vector<std::uint32_t> colour_of_each(const model::Colouring& colouring) {
 }
 
 void check_springs(const model::Model& model, const model::Colouring& colouring) {
-  check_partition(colouring, model.springs.size());
+  check_partition(colouring, model.springs().size());
   const std::vector<std::uint32_t> colour = colour_of_each(colouring);
   std::set<std::pair<std::uint32_t, std::uint32_t>> seen;  // (colour, vertex)
-  for (std::size_t i = 0; i < model.springs.size(); ++i)
-    for (const std::uint32_t vertex : {model.springs[i].a, model.springs[i].b})
+  for (std::size_t i = 0; i < model.springs().size(); ++i)
+    for (const std::uint32_t vertex : model.springs()[i].vertices)
       CHECK(seen.insert({colour[i], vertex}).second);
 }
 
 void check_vertices(const model::Model& model, const model::Colouring& colouring) {
   check_partition(colouring, model.vertex_count());
   const std::vector<std::uint32_t> colour = colour_of_each(colouring);
-  for (const model::Spring& spring : model.springs) CHECK(colour[spring.a] != colour[spring.b]);
+  for (const model::Spring& spring : model.springs())
+    CHECK(colour[spring.vertices[0]] != colour[spring.vertices[1]]);
 }
 
 }  // namespace
@@ -76,7 +77,7 @@ TEST_CASE("a grid's springs take 12 colours, its vertices 5, and no two neighbou
   for (const auto& [columns, rows] : {std::pair{25, 25}, {5, 41}, {7, 4}, {30, 3}}) {
     const scene::Scene scene = scene_of(scene::Grid{columns, rows, 1.0, 1.0});
     const model::Model model = *model::build(scene);
-    const model::Colouring springs = model::colour_springs(model, scene);
+    const model::Colouring springs = model::colour_elements(model, scene, model.springs());
     check_springs(model, springs);
     CHECK(springs.colours() <= 12);
     if (columns > 4 && rows > 4) CHECK(springs.colours() == 12);
@@ -90,7 +91,7 @@ TEST_CASE("kinds of springs that a grid lacks take no colour") {
   scene::Scene scene = scene_of(scene::Grid{9, 9, 1.0, 1.0});
   scene.cloths[0].material.bend = scene.cloths[0].material.shear = 0.0;
   const model::Model model = *model::build(scene);
-  const model::Colouring springs = model::colour_springs(model, scene);
+  const model::Colouring springs = model::colour_elements(model, scene, model.springs());
   check_springs(model, springs);
   CHECK(springs.colours() == 4);
 }
@@ -101,8 +102,8 @@ TEST_CASE("random meshes are coloured validly, within the bounds of greedy colou
     const model::Model model = *model::build(scene);
     std::uint32_t most = 0;
     for (std::uint32_t i = 0; i < model.vertex_count(); ++i)
-      most = std::max(most, model.vertex_springs.offsets[i + 1] - model.vertex_springs.offsets[i]);
-    const model::Colouring springs = model::colour_springs(model, scene);
+      most = std::max(most, model.springs().at_vertex.offsets[i + 1] - model.springs().at_vertex.offsets[i]);
+    const model::Colouring springs = model::colour_elements(model, scene, model.springs());
     check_springs(model, springs);
     CHECK(springs.colours() >= most);      // springs at one vertex differ
     CHECK(springs.colours() <= 2 * most);  // a spring has at most 2 (most - 1) neighbours
@@ -117,11 +118,11 @@ TEST_CASE("several cloths are coloured together, and the same way every time") {
   scene.cloths.push_back(scene.cloths[0]);
   scene.cloths[1].mesh = random_mesh(3, 40);
   const model::Model model = *model::build(scene);
-  const model::Colouring springs = model::colour_springs(model, scene);
+  const model::Colouring springs = model::colour_elements(model, scene, model.springs());
   const model::Colouring vertices = model::colour_vertices(model, scene);
   check_springs(model, springs);
   check_vertices(model, vertices);
-  CHECK(model::colour_springs(model, scene).order == springs.order);
+  CHECK(model::colour_elements(model, scene, model.springs()).order == springs.order);
   CHECK(model::colour_vertices(model, scene).order == vertices.order);
 }
 
@@ -129,7 +130,7 @@ TEST_CASE("greedy colours are balanced: the largest has at most half as many mem
   const scene::Scene scene = scene_of(random_mesh(5, 600));
   const model::Model model = *model::build(scene);
   for (const model::Colouring& colouring :
-       {model::colour_vertices(model, scene), model::colour_springs(model, scene)}) {
+       {model::colour_vertices(model, scene), model::colour_elements(model, scene, model.springs())}) {
     const double mean = static_cast<double>(colouring.order.size()) / colouring.colours();
     for (std::uint32_t c = 0; c < colouring.colours(); ++c)
       CHECK(colouring.offsets[c + 1] - colouring.offsets[c] <= 1.5 * mean);

@@ -8,6 +8,7 @@
 
 #include "shaders/elements/elements.h"
 #include "tests/catch.h"
+#include "tests/spring_laws.h"
 
 using namespace clothlab;
 using glm::dmat3;
@@ -35,15 +36,15 @@ Spring spring_of(std::mt19937& random, double length, double rest) {
 }
 
 double energy(const Spring& s, const dvec3& x) {
-  return elements::spring_energy(x, s.y, s.rest, stiffness);
+  return test::spring_energy(x, s.y, s.rest, stiffness);
 }
 dvec3 force(const Spring& s, const dvec3& x) {
-  return elements::spring_force(x, s.y, dvec3(0.0), dvec3(0.0), s.rest, stiffness, 7.0);
+  return test::spring_force(x, s.y, dvec3(0.0), dvec3(0.0), s.rest, stiffness, 7.0);
 }
 dmat3 hessian(const Spring& s) {
   dvec3 n;
   double along, across;
-  elements::spring_hessian(s.x, s.y, s.rest, stiffness, n, along, across);
+  test::spring_hessian(s.x, s.y, s.rest, stiffness, n, along, across);
   dmat3 matrix;
   for (int column = 0; column < 3; ++column)
     for (int row = 0; row < 3; ++row)
@@ -127,11 +128,11 @@ TEST_CASE(
     "are k") {
   dvec3 n;
   double along, across;
-  elements::spring_hessian({0.0, 0.0, 0.0}, {0.0, 0.0, 0.5}, 1.0, stiffness, n, along, across);
+  test::spring_hessian({0.0, 0.0, 0.0}, {0.0, 0.0, 0.5}, 1.0, stiffness, n, along, across);
   CHECK(n == dvec3(0.0, 0.0, -1.0));
   CHECK(along == stiffness);
   CHECK(across == -stiffness);
-  elements::spring_hessian({0.0, 0.0, 0.0}, {0.0, 0.0, 2.0}, 1.0, stiffness, n, along, across);
+  test::spring_hessian({0.0, 0.0, 0.0}, {0.0, 0.0, 2.0}, 1.0, stiffness, n, along, across);
   CHECK(along == stiffness);
   CHECK(across == 0.5 * stiffness);
 }

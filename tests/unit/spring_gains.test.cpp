@@ -21,13 +21,12 @@ scene::Solver solver(Method method, int iterations, double dt = 0.02) {
 
 /// The length of a spring of 1 m, drawn out to 1.5 m by the step's free motion, after n visits.
 double visited(const scene::Solver& solver, double stiffness, double damping, int visits) {
-  const model::SpringGains gains = model::spring_gains(solver, stiffness, damping, w);
+  const elements::SpringGains gains = model::spring_gains(solver, stiffness, damping, w);
   double length = 1.5, moved = 0.3;
   glm::dvec3 pushed(0.0);
   for (int n = 0; n < visits; ++n) {
     const glm::dvec3 push =
-        elements::spring_projection({0.0, length, 0.0}, {0.0, moved, 0.0}, 1.0, gains.stretch, gains.damping,
-                                    gains.memory, gains.turning, pushed);
+        elements::element_projection(1.0, gains, {{0.0, length, 0.0}}, {{0.0, moved, 0.0}}, {pushed}).d;
     CHECK(std::abs(push.x) + std::abs(push.z) <= rounding);
     if (solver.method == Method::xpbd) pushed += push;
     length += w * push.y;
@@ -41,7 +40,7 @@ double visited(const scene::Solver& solver, double stiffness, double damping, in
 TEST_CASE("a spring without limit of stiffness has a gain of 1 / w: one visit brings it to its rest length") {
   for (const Method method : {Method::pbd, Method::xpbd}) {
     for (const double k : {1e8, 1e16, 1e300}) {
-      const model::SpringGains gains = model::spring_gains(solver(method, 1), k, 0.0, w);
+      const elements::SpringGains gains = model::spring_gains(solver(method, 1), k, 0.0, w);
       INFO(scene::name(method) << ", " << k << " N/m");
       // 1 / (1 + 1 / (w k dt^2)) of it, and rounding.
       CHECK(std::abs(gains.stretch * w - 1.0) < 1.0 / (w * k * 4e-4) + 4 * rounding);
@@ -52,8 +51,8 @@ TEST_CASE("a spring without limit of stiffness has a gain of 1 / w: one visit br
 
 TEST_CASE("the gains of a soft spring keep their digits: dt^2 k and dt c, whatever the iterations") {
   const double k = 1e-12, c = 1e-14, dt = 0.02;
-  const model::SpringGains xpbd = model::spring_gains(solver(Method::xpbd, 10), k, c, w);
-  const model::SpringGains pbd = model::spring_gains(solver(Method::pbd, 10), k, c, w);
+  const elements::SpringGains xpbd = model::spring_gains(solver(Method::xpbd, 10), k, c, w);
+  const elements::SpringGains pbd = model::spring_gains(solver(Method::pbd, 10), k, c, w);
   CHECK(xpbd.stretch == Approx(k * dt * dt).epsilon(1e-13));
   CHECK(xpbd.damping == Approx(c * dt).epsilon(1e-13));
   CHECK(pbd.stretch == Approx(k * dt * dt / 10).epsilon(1e-13));
@@ -64,8 +63,8 @@ TEST_CASE("the gains of a soft spring keep their digits: dt^2 k and dt c, whatev
 
 TEST_CASE("with one iteration PBD is XPBD, which has pushed nothing yet") {
   for (const double k : {1e-3, 1.0, 1e3, 1e9}) {
-    const model::SpringGains pbd = model::spring_gains(solver(Method::pbd, 1), k, 0.1, w);
-    const model::SpringGains xpbd = model::spring_gains(solver(Method::xpbd, 1), k, 0.1, w);
+    const elements::SpringGains pbd = model::spring_gains(solver(Method::pbd, 1), k, 0.1, w);
+    const elements::SpringGains xpbd = model::spring_gains(solver(Method::xpbd, 1), k, 0.1, w);
     CHECK(pbd.stretch == Approx(xpbd.stretch).epsilon(8 * rounding));
     CHECK(pbd.damping == Approx(xpbd.damping).epsilon(8 * rounding));
     CHECK(pbd.memory == 0.0);
@@ -93,6 +92,7 @@ TEST_CASE("a spring alone is after n visits of PBD where one visit of XPBD puts 
 }
 
 TEST_CASE("a spring without length has no direction: neither PBD nor XPBD pushes it") {
-  CHECK(elements::spring_projection(glm::dvec3(0.0), glm::dvec3(0.1), 1.0, 0.3, 0.1, 0.5, 2.0,
-                                    glm::dvec3(0.2)) == glm::dvec3(0.0));
+  CHECK(elements::element_projection(1.0, {0.3, 0.1, 0.5, 2.0}, {glm::dvec3(0.0)}, {glm::dvec3(0.1)},
+                                     {glm::dvec3(0.2)})
+            .d == glm::dvec3(0.0));
 }

@@ -42,7 +42,7 @@ Sheet one_spring() {
   two.model.rest_position.resize(2);
   two.model.mass.resize(2);
   two.model.pin_motion.resize(2);
-  two.model.springs.resize(1);
+  two.model.elements.springs.resize(1);
   return two;
 }
 
@@ -65,14 +65,16 @@ Sheet tangle(std::uint32_t seed, double decades, bool damped, bool pins) {
     if (a == b) continue;
     const auto kind = static_cast<model::SpringKind>(random() % 3);
     const double length = glm::distance(model.rest_position[a], model.rest_position[b]);
-    model.springs.push_back({std::min(a, b), std::max(a, b), 0, kind, length});
+    const scene::Springs& material = sheet.scene.cloths[0].material;
+    model.elements.springs.push_back(
+        {{std::min(a, b), std::max(a, b)}, {length, model::stiffness(material, kind), material.damping}});
   }
   return sheet;
 }
 
 /// omega by nothing but repeated multiplication.
 double power_iteration(const Sheet& sheet, int iterations) {
-  const model::SpringOperator springs(sheet.model, sheet.scene, sheet.model.rest_position);
+  const model::ElementOperator springs(sheet.model, sheet.scene, sheet.model.rest_position);
   model::Field y = model::scattered_start(springs), next(y.size()), drag(y.size());
   double squared = 0.0;
   for (int i = 0; i < iterations; ++i) {
@@ -90,7 +92,7 @@ double power_iteration(const Sheet& sheet, int iterations) {
 
 /// Energy after many steps of symplectic Euler, over that at the start, of the scene linear about rest.
 double energy_gain(const Sheet& sheet, double dt, int steps) {
-  const model::SpringOperator springs(sheet.model, sheet.scene, sheet.model.rest_position);
+  const model::ElementOperator springs(sheet.model, sheet.scene, sheet.model.rest_position);
   model::Field x = model::scattered_start(springs), v(x.size()), stiff(x.size()), drag(x.size()),
                unused(x.size());
   const auto energy = [&] {
@@ -160,7 +162,7 @@ TEST_CASE("a spring in space: both ends free, one heavy, one pinned") {
     CHECK(model::omega_bound(two.model, two.scene) == Approx(std::sqrt(200.0)).epsilon(1e-12));
   }
   two.model.mass = {1.0, 1.0};
-  two.scene.cloths[0].material.damping = 3.0;  // M^-1 C of the one vibration: 2 c / m
+  two.model.elements.springs[0].law.damping = 3.0;  // M^-1 C of the one vibration: 2 c / m
   two.scene.air_drag = 5.0;
   for (const Method method :
        {Method::explicit_euler, Method::symplectic_euler, Method::verlet, Method::rk4}) {
@@ -184,7 +186,7 @@ TEST_CASE("a stretched spring vibrates across its direction too") {
   two.model.pin_motion = {0, model::not_pinned};
   model::Field shape = two.model.rest_position;
   shape[1] = shape[0] + 4.0 * (shape[1] - shape[0]);  // across: k (1 - 1/4)
-  const model::SpringOperator springs(two.model, two.scene, shape);
+  const model::ElementOperator springs(two.model, two.scene, shape);
   model::Field across{glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0)}, stiff(2), drag(2);
   springs.apply(across, stiff, drag);
   CHECK(stiff[1].y == Approx(75.0));
@@ -246,9 +248,9 @@ TEST_CASE("without springs, only the air limits the step") {
 
 TEST_CASE("two vertices in one place, joined by a spring without length, have a limit and no NaN") {
   Sheet two = one_spring();
-  two.scene.cloths[0].material.damping = 1.0;
+  two.model.elements.springs[0].law.damping = 1.0;
   two.model.rest_position[1] = two.model.rest_position[0];
-  two.model.springs[0].rest_length = 0.0;
+  two.model.elements.springs[0].law.rest_length = 0.0;
   CHECK(model::dt_limit(two.model, two.scene) == Approx(2 / std::sqrt(200.0)));
   two.scene.solver.method = Method::explicit_euler;
   CHECK(model::dt_limit(two.model, two.scene) == 0.0);
@@ -258,7 +260,7 @@ TEST_CASE("a search that is told to stop answers with the safe bound") {
   const Sheet sheet = grid(32, 32, 1, 1, 1);
   std::stop_source stop;
   stop.request_stop();
-  const model::SpringOperator springs(sheet.model, sheet.scene, sheet.model.rest_position);
+  const model::ElementOperator springs(sheet.model, sheet.scene, sheet.model.rest_position);
   CHECK(model::dt_limit(Method::rk4, springs, stop.get_token()) ==
         model::dt_limit_bound(Method::rk4, springs));
 }

@@ -52,8 +52,8 @@ TEST_CASE("a scattered cloth fills its cube, its pins stay at home, and its spri
     // The mean of 287 places strays by 0.5 m / sqrt(12 * 287) = 8.5 mm.
     CHECK(std::abs(sum[axis] / 287 - centre[axis]) < 0.03);
   }
-  for (std::size_t s = 0; s < model.springs.size(); ++s)
-    CHECK(model.springs[s].rest_length == rest.springs[s].rest_length);
+  for (std::size_t s = 0; s < model.springs().size(); ++s)
+    CHECK(model.springs()[s].rest_length == rest.springs()[s].rest_length);
 }
 
 TEST_CASE("the same seed scatters to the same places on every machine, another one to others") {

@@ -18,10 +18,11 @@ namespace {
 /// The largest l / L - 1 of the springs with a free end.
 double largest_stretch(const reference::World& world, const reference::State& state) {
   double largest = 0.0;
-  for (const model::Spring& spring : world.model.springs) {
-    if (world.pinned(spring.a) && world.pinned(spring.b)) continue;
-    const double length = glm::distance(state.position[spring.a], state.position[spring.b]);
-    largest = std::max(largest, length / spring.rest_length - 1.0);
+  for (const model::Spring& spring : world.model.springs()) {
+    if (world.pinned(spring.vertices[0]) && world.pinned(spring.vertices[1])) continue;
+    const double length =
+        glm::distance(state.position[spring.vertices[0]], state.position[spring.vertices[1]]);
+    largest = std::max(largest, length / spring.law.rest_length - 1.0);
   }
   return largest;
 }

@@ -1,0 +1,83 @@
+// Elements as data: a batch of each law (shaders/elements/) with the vertices, rest values and material of
+// its elements, and one loop over all of them, which the reference, the step limit and the limits on size
+// share.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "shaders/elements/elements.h"
+
+namespace clothlab::model {
+
+using glm::dvec3;
+
+/// For each vertex i the items [offsets[i], offsets[i+1]) (compressed sparse rows).
+struct Adjacency {
+  std::vector<std::uint32_t> offsets;  ///< [vertex_count + 1]
+  std::vector<std::uint32_t> items;
+};
+
+template <class Law>
+struct Element {
+  static constexpr std::size_t corners = elements::corners<Law>;
+  std::array<std::uint32_t, corners> vertices{};  ///< the corners; of a spring in rising order
+  Law law;                                        ///< rest values and material
+};
+using Spring = Element<elements::Spring>;
+
+template <class Law>
+struct Batch : std::vector<Element<Law>> {
+  /// Of each vertex its (element, corner), as element * corners + corner, in rising order.
+  Adjacency at_vertex;
+
+  /// Calls visit(element, corner) for each at a vertex.
+  template <class Visit>
+  void at(std::uint32_t vertex, Visit&& visit) const {
+    constexpr auto corners = static_cast<std::uint32_t>(Element<Law>::corners);
+    for (std::uint32_t k = at_vertex.offsets[vertex]; k < at_vertex.offsets[vertex + 1]; ++k)
+      visit((*this)[at_vertex.items[k] / corners], std::size_t{at_vertex.items[k] % corners});
+  }
+};
+
+/// The batches of a model, one a law: what a new law is added to.
+struct Batches {
+  Batch<elements::Spring> springs;
+
+  template <class Visit>
+  void each(Visit&& visit) const {
+    visit(springs);
+  }
+  template <class Visit>
+  void each(Visit&& visit) {
+    visit(springs);
+  }
+};
+
+/// An element's edges as seen from one of its corners: what `difference(vertex)` says that this corner has
+/// more than each of the others, which follow it in the order of `vertices`.
+template <class Law, class Difference>
+elements::Edges<Law> edges(const Element<Law>& element, std::size_t corner, Difference&& difference) {
+  return elements::make_edges<Law>([&](std::size_t other) {
+    return difference(element.vertices[(corner + 1 + other) % Element<Law>::corners]);
+  });
+}
+
+/// The edges of an element in a field, such as places or velocities: [vertex_count].
+template <class Law>
+elements::Edges<Law> edges(const Element<Law>& element, std::size_t corner, const std::vector<dvec3>& field) {
+  const dvec3& here = field[element.vertices[corner]];
+  return edges(element, corner, [&](std::uint32_t vertex) { return here - field[vertex]; });
+}
+
+/// Calls visit(element) for every element of every law.
+template <class Visit>
+void each_element(const Batches& batches, Visit&& visit) {
+  batches.each([&](const auto& batch) {
+    for (const auto& element : batch) visit(element);
+  });
+}
+
+}  // namespace clothlab::model
