@@ -3,6 +3,7 @@
 
 #include "shaders/elements/elements.h"
 #include "tests/scenes.h"
+#include "tests/spring_laws.h"
 
 using namespace clothlab;
 

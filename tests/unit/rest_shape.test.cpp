@@ -103,7 +103,7 @@ TEST_CASE("where a cloth hangs still, its pins carry its weight and no step move
   const reference::World world = world_of(scene);
   const std::vector<glm::dvec3> shape = shape_of(scene);
   const std::vector<glm::dvec3> still(shape.size(), glm::dvec3(0.0));
-  const std::vector<glm::dvec3> force = reference::spring_forces(world, shape, still);
+  const std::vector<glm::dvec3> force = reference::element_forces(world, shape, still);
   glm::dvec3 on_pins(0.0);
   for (std::size_t i = 0; i < shape.size(); ++i)
     if (world.pinned(i)) on_pins += force[i];

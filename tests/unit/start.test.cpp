@@ -53,7 +53,7 @@ TEST_CASE("a scattered cloth fills its cube, its pins stay at home, and its spri
     CHECK(std::abs(sum[axis] / 287 - centre[axis]) < 0.03);
   }
   for (std::size_t s = 0; s < model.springs().size(); ++s)
-    CHECK(model.springs()[s].rest_length == rest.springs()[s].rest_length);
+    CHECK(model.springs()[s].law.rest_length == rest.springs()[s].law.rest_length);
 }
 
 TEST_CASE("the same seed scatters to the same places on every machine, another one to others") {
