@@ -1,6 +1,6 @@
-// Solids: stops a vertex's step at their surfaces, by the law of each one's kind (elements/solid.glsl), kind after kind,
-// and within a kind in the scene's order. A kernel is compiled for the kinds that its scene has: EACH_SOLID(meet) is
-// `meet(kind, first, end)` for each of these, which says that the solids from first to before end are of that kind.
+// Solids: stops a vertex's step at their surfaces, by the law of each one's kind (elements/solid.glsl), kind after
+// kind, and within a kind in the scene's order. A kernel is compiled for the kinds that its scene has: EACH_SOLID(meet)
+// is `meet(kind, first, end)` for each of these: the solids from first to before end are of that kind.
 #include "../elements/contact.glsl"
 #include "../elements/solid.glsl"
 #include "../rarely.glsl"

@@ -7,7 +7,7 @@ export interface SceneNumber {
   value: number;
 }
 
-// What no map varies: names of versions, the axis the map has anyway, and what is no quantity, as places and directions.
+// What no map varies: names of versions, the axis the map has anyway, and what is no quantity (places, directions).
 const without =
   /^\/(version|solver\/|cloths\/\d+\/(mesh|transform|pins|weights|start)\/|colliders\/\d+\/(motion\b|\w+\/\w+\/\d))/;
 
