@@ -6,22 +6,13 @@
 #include <variant>
 #include <vector>
 
+#include "server/scene/solid.h"
+
 namespace clothlab::net {
 
 namespace {
 
 using nlohmann::json;
-
-json list(const glm::dvec3& v) {
-  return {v.x, v.y, v.z};
-}
-
-json shape(const scene::Sphere& sphere) {
-  return {{"sphere", {{"center", list(sphere.center)}, {"radius", sphere.radius}}}};
-}
-json shape(const scene::Plane& plane) {
-  return {{"plane", {{"point", list(plane.point)}, {"normal", list(plane.normal)}}}};
-}
 
 bool moves(const scene::Motion& motion) {
   return !std::holds_alternative<std::monostate>(motion);
@@ -38,7 +29,7 @@ std::string collider_text(const sim::Simulation& simulation) {
   const std::vector<scene::Collider> now = simulation.colliders_now();
   for (std::size_t i = 0; i < now.size(); ++i) {
     if (!moves(now[i].motion)) continue;
-    json of = std::visit([](const auto& form) { return shape(form); }, now[i].shape);
+    json of = scene::written(now[i].shape);
     of["index"] = i;
     moving.push_back(std::move(of));
   }

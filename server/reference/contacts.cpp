@@ -2,59 +2,50 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numeric>
 
 #include "server/model/motion.h"
+#include "server/scene/solid.h"
 #include "shaders/elements/elements.h"
 
 namespace clothlab::reference {
 
 namespace {
 
-bool meet_sphere(const World& world, const scene::Collider& collider, double t, const dvec3& from, dvec3& x,
-                 Surface& met) {
-  const auto& sphere = std::get<scene::Sphere>(collider.shape);
+/// Where a collider is in `pose`, as its law takes it.
+elements::Solid solid_at(const World& world, const scene::Solid& home, const model::Pose& pose) {
+  return {pose.place(home.point), pose.rotation * home.direction, home.radius + world.contact_margin};
+}
+
+/// Stops the step from -> x at one of them, if it is in the way.
+bool meet_solid(const World& world, const scene::Collider& collider, double t, const dvec3& from, dvec3& x,
+                Surface& met) {
+  const scene::Solid home = scene::solid(collider.shape);
   const model::Pose before = model::pose(collider.motion, t);
   const model::Pose after = model::pose(collider.motion, t + world.scene.solver.dt);
-  const dvec3 centre = after.place(sphere.center);
   dvec3 stopped, normal;
-  if (!elements::sphere_contact(from - before.place(sphere.center), x - centre,
-                                sphere.radius + world.contact_margin, stopped, normal))
+  if (!elements::solid_contact(home.kind, solid_at(world, home, before), solid_at(world, home, after), from,
+                               x, stopped, normal))
     return false;
-  x = centre + stopped;
+  x = stopped;
   met = {normal, after.velocity_at(x), collider.friction, collider.restitution};
   return true;
 }
 
-bool meet_plane(const World& world, const scene::Collider& collider, double t, dvec3& x, Surface& met) {
-  const auto& plane = std::get<scene::Plane>(collider.shape);
-  const model::Pose after = model::pose(collider.motion, t + world.scene.solver.dt);
-  const dvec3 normal = after.rotation * plane.normal;
-  const double depth = world.contact_margin - glm::dot(x - after.place(plane.point), normal);
-  if (!(depth > 0.0)) return false;
-  x += depth * normal;
-  met = {normal, after.velocity_at(x), collider.friction, collider.restitution};
-  return true;
-}
-
-/// Stops the step from -> x at each collider in turn, spheres first, as on the GPU; `touch` is told of each
+/// Stops the step from -> x at each collider in turn, kind after kind, as on the GPU; `touch` is told of each
 /// that is met.
 template <class Touch>
 int meet_each(const World& world, double t, const dvec3& from, dvec3& x, Touch touch) {
   int count = 0;
   Surface met;
-  for (const scene::Collider& collider : world.scene.colliders) {
-    if (!std::holds_alternative<scene::Sphere>(collider.shape)) continue;
-    if (!meet_sphere(world, collider, t, from, x, met)) continue;
-    touch(met);
-    ++count;
-  }
-  for (const scene::Collider& collider : world.scene.colliders) {
-    if (!std::holds_alternative<scene::Plane>(collider.shape)) continue;
-    if (!meet_plane(world, collider, t, x, met)) continue;
-    touch(met);
-    ++count;
-  }
+  for (std::size_t kind = 0; kind < scene::shape_kinds; ++kind)
+    for (const scene::Collider& collider : world.scene.colliders) {
+      if (collider.shape.index() != kind) continue;
+      if (!meet_solid(world, collider, t, from, x, met)) continue;
+      touch(met);
+      ++count;
+    }
   return count;
 }
 

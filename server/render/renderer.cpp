@@ -2,15 +2,15 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/gtc/type_ptr.hpp>
 #include <glm/vec4.hpp>
-#include <numbers>
 
 #include "server/gl/buffer.h"
 #include "server/gl/program.h"
 #include "server/render/camera.h"
 #include "server/render/cloth_mesh.h"
+#include "server/render/solids.h"
 #include "server/render/target.h"
+#include "server/scene/solid.h"
 
 namespace clothlab::render {
 
@@ -24,62 +24,13 @@ struct FrameBlock {
   glm::vec4 eye, to_light, framed;
 };
 
-/// The unit sphere as a triangle strip around each band of latitude.
-class SphereMesh {
- public:
-  SphereMesh() : points_(points()) {
-    glCreateVertexArrays(1, &vertex_array_);
-    glEnableVertexArrayAttrib(vertex_array_, 0);
-    glVertexArrayAttribFormat(vertex_array_, 0, 3, GL_FLOAT, GL_FALSE, 0);
-    glVertexArrayVertexBuffer(vertex_array_, 0, points_.id(), 0, sizeof(glm::vec3));
-    glVertexArrayAttribBinding(vertex_array_, 0, 0);
-  }
-  ~SphereMesh() { glDeleteVertexArrays(1, &vertex_array_); }
-  SphereMesh(const SphereMesh&) = delete;
-  SphereMesh& operator=(const SphereMesh&) = delete;
-
-  /// Every sphere among the colliders; `placed` is uniform 0 of the program in use.
-  void draw(const std::vector<scene::Collider>& colliders) const {
-    glBindVertexArray(vertex_array_);
-    for (const scene::Collider& collider : colliders) {
-      const auto* sphere = std::get_if<scene::Sphere>(&collider.shape);
-      if (!sphere) continue;
-      const glm::vec4 placed(glm::vec3(sphere->center), static_cast<float>(sphere->radius));
-      glUniform4fv(0, 1, glm::value_ptr(placed));
-      for (int band = 0; band < bands; ++band)
-        glDrawArrays(GL_TRIANGLE_STRIP, band * strip_length, strip_length);
-    }
-  }
-
- private:
-  static constexpr int bands = 48, sectors = 96, strip_length = 2 * (sectors + 1);
-
-  static std::vector<glm::vec3> points() {
-    std::vector<glm::vec3> all;
-    const auto at = [](int band, int sector) {
-      const float down = std::numbers::pi_v<float> * static_cast<float>(band) / bands;
-      const float around = 2 * std::numbers::pi_v<float> * static_cast<float>(sector) / sectors;
-      return glm::vec3(std::sin(down) * std::sin(around), std::cos(down), std::sin(down) * std::cos(around));
-    };
-    for (int band = 0; band < bands; ++band)
-      for (int sector = 0; sector <= sectors; ++sector) {
-        all.push_back(at(band, sector));
-        all.push_back(at(band + 1, sector));
-      }
-    return all;
-  }
-
-  gl::Buffer points_;
-  GLuint vertex_array_ = 0;
-};
-
 }  // namespace
 
 struct Renderer::Implementation {
-  gl::Program normals, cloth, depth, sphere, plane, background;
+  gl::Program normals, cloth, depth, background;
   gl::Buffer frame_block{sizeof(FrameBlock)};
   ShadowMap shadow_map;
-  SphereMesh sphere_mesh;
+  Solids solids;
   GLuint empty_vertex_array = 0;
 
   Implementation() { glCreateVertexArrays(1, &empty_vertex_array); }
@@ -91,7 +42,6 @@ struct Renderer::Implementation {
   void set_frame(const Subject& subject, float aspect);
   void draw_shadow_map(const ClothMesh& cloth_mesh, const std::vector<scene::Collider>& colliders);
   void draw_picture(const Subject& subject, const ClothMesh& cloth_mesh);
-  void draw_planes(const std::vector<scene::Collider>& colliders);
 };
 
 Status Renderer::Implementation::load_programs() {
@@ -104,8 +54,7 @@ Status Renderer::Implementation::load_programs() {
   Status status = load(normals, {"render/normals.comp"});
   if (status) status = load(cloth, {"render/cloth.vert", "render/cloth.geom", "render/cloth.frag"});
   if (status) status = load(depth, {"render/depth.vert", "render/depth.frag"});
-  if (status) status = load(sphere, {"render/sphere.vert", "render/sphere.frag"});
-  if (status) status = load(plane, {"render/plane.vert", "render/plane.frag"});
+  if (status) status = solids.load();
   if (status) status = load(background, {"render/background.vert", "render/background.frag"});
   return status;
 }
@@ -113,9 +62,10 @@ Status Renderer::Implementation::load_programs() {
 void Renderer::Implementation::set_frame(const Subject& subject, float aspect) {
   Box box;
   for (const glm::vec3& position : subject.positions) box.add(position);
-  for (const scene::Collider& collider : subject.colliders)
-    if (const auto* sphere = std::get_if<scene::Sphere>(&collider.shape))
-      box.add(glm::vec3(sphere->center), static_cast<float>(sphere->radius));
+  for (const scene::Collider& collider : subject.colliders) {
+    const scene::Ball ball = scene::bounds(collider.shape);
+    if (std::isfinite(ball.radius)) box.add(glm::vec3(ball.center), static_cast<float>(ball.radius));
+  }
   const Camera camera = frame(box, aspect);
   const FrameBlock block{camera.view_projection, light_view_projection(box, to_light),
                          glm::vec4(camera.eye, 1), glm::vec4(to_light, 0),
@@ -131,25 +81,10 @@ void Renderer::Implementation::draw_shadow_map(const ClothMesh& cloth_mesh,
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(1.5f, 2.0f);
   depth.use();
-  sphere_mesh.draw(colliders);
+  solids.draw(Solids::Layer::shadow, colliders);
   glUniform4f(0, 0, 0, 0, 1);
   cloth_mesh.draw_plain();
   glDisable(GL_POLYGON_OFFSET_FILL);
-}
-
-void Renderer::Implementation::draw_planes(const std::vector<scene::Collider>& colliders) {
-  plane.use();
-  glBindVertexArray(empty_vertex_array);
-  glEnable(GL_BLEND);
-  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  for (const scene::Collider& collider : colliders) {
-    const auto* shape = std::get_if<scene::Plane>(&collider.shape);
-    if (!shape) continue;
-    glUniform3fv(0, 1, glm::value_ptr(glm::vec3(shape->point)));
-    glUniform3fv(1, 1, glm::value_ptr(glm::vec3(shape->normal)));
-    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-  }
-  glDisable(GL_BLEND);
 }
 
 void Renderer::Implementation::draw_picture(const Subject& subject, const ClothMesh& cloth_mesh) {
@@ -159,10 +94,9 @@ void Renderer::Implementation::draw_picture(const Subject& subject, const ClothM
   glBindVertexArray(empty_vertex_array);
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glEnable(GL_DEPTH_TEST);
-  draw_planes(subject.colliders);
+  solids.draw(Solids::Layer::ground, subject.colliders);
   glEnable(GL_CULL_FACE);
-  sphere.use();
-  sphere_mesh.draw(subject.colliders);
+  solids.draw(Solids::Layer::body, subject.colliders);
   cloth.use();
   cloth_mesh.draw(subject.scene);
   glDisable(GL_CULL_FACE);

@@ -155,10 +155,12 @@ struct Plane {
   dvec3 normal{0.0, 1.0, 0.0};  ///< normalised
   bool operator==(const Plane&) const = default;
 };
+/// What each of them is to others, and how it is read: solid.h.
+using Shape = std::variant<Sphere, Plane>;
 
 struct Collider {
   std::string name;
-  std::variant<Sphere, Plane> shape;
+  Shape shape;
   double friction = 0.0;     ///< Coulomb coefficient, 0 or more
   double restitution = 0.0;  ///< [0, 1]
   Motion motion;

@@ -9,6 +9,10 @@ namespace clothlab::scene {
 /// `index` gives the default name: "cloth", "cloth-2", ...
 Cloth read_cloth(const Reader& cloth, std::size_t index);
 Collider read_collider(const Reader& collider, std::size_t index);
+/// Of a collider, which has it under the name of its kind.
+Shape read_shape(const Reader& collider);
+/// The names of kinds that are announced, and not supported yet.
+const Words& shapes_to_come();
 Motion read_motion(const Reader& motion);
 
 /// Which vertices a pin holds or a weight is at, checked against the mesh they belong to.

@@ -9,6 +9,7 @@
 
 #include "server/base/text.h"
 #include "server/scene/method.h"
+#include "server/scene/solid.h"
 
 namespace clothlab::sim {
 
@@ -38,9 +39,9 @@ double largest_speed(const scene::Motion& motion, const glm::dvec3& where, doubl
 }
 
 double collider_speed(const scene::Collider& collider, double size) {
-  if (const auto* sphere = std::get_if<scene::Sphere>(&collider.shape))
-    return largest_speed(collider.motion, sphere->center, sphere->radius);
-  return largest_speed(collider.motion, std::get<scene::Plane>(collider.shape).point, size);
+  const scene::Ball bounds = scene::bounds(collider.shape);
+  // What has no end is touched near the cloth.
+  return largest_speed(collider.motion, bounds.center, std::isinf(bounds.radius) ? size : bounds.radius);
 }
 
 struct Extent {

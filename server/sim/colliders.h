@@ -1,5 +1,4 @@
-// Hands the scene's spheres and planes to the step kernel (shaders/collide/colliders.glsl), and tells where
-// they are.
+// Hands the scene's colliders to the step kernel (shaders/collide/colliders.glsl), and tells where they are.
 #pragma once
 
 #include "server/gl/program.h"
@@ -12,7 +11,7 @@ namespace clothlab::sim {
 /// one, else a hundredth of the mesh's mean edge, so that rounding never lets a vertex in.
 double contact_margin(const scene::Scene& scene, const model::Model& model);
 
-/// Sets the uniforms of `program`, which was compiled for this scene's numbers of spheres and planes.
+/// Sets the uniforms of `program`, which was compiled for this scene's number of solids of each kind.
 void set_colliders(const gl::Program& program, const scene::Scene& scene, const MotionTable& motions,
                    double margin);
 

@@ -84,8 +84,8 @@ class GaussSeidel : public Integrator {
  private:
   GaussSeidel(const Surroundings& around, const Plan& plan)
       : by_vertex_(scene::sweeps_vertices(plan.method)),
-        contacts_(plan.self_collision || (!by_vertex_ && plan.spheres + plan.planes > 0)),
-        balanced_(by_vertex_ && plan.spheres + plan.planes == 0),
+        contacts_(plan.self_collision || (!by_vertex_ && plan.solid_count() > 0)),
+        balanced_(by_vertex_ && plan.solid_count() == 0),
         vertex_count_(around.model.vertex_count()),
         cloths_(static_cast<std::uint32_t>(around.model.cloths.size())),
         work_(by_vertex_ ? visited_vertices(around.model, around.scene)
@@ -109,7 +109,7 @@ class GaussSeidel : public Integrator {
   /// Of all loops in a step, at most, with so many lanes.
   std::uint64_t turns(const model::Model& model, const Plan& plan, std::uint32_t lanes) const {
     const auto rounds = [&](std::uint32_t items) { return std::uint64_t{(items + lanes - 1) / lanes}; };
-    const std::uint64_t colliders = 2 + 6 * static_cast<std::uint64_t>(plan.spheres + plan.planes);
+    const std::uint64_t colliders = 2 + 6 * static_cast<std::uint64_t>(plan.solid_count());
     std::uint64_t visit = 1;
     for (std::uint32_t i = 0; by_vertex_ && i < vertex_count_; ++i)
       visit = std::max(visit, colliders + 1 + corners_at(model, i));

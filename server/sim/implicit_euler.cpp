@@ -28,7 +28,7 @@ class ImplicitEuler : public Integrator {
     std::unique_ptr<ImplicitEuler> made(new ImplicitEuler(vertex_count));
     gl::Defines defines = step_defines(plan);
     defines.emplace_back("GROUP_COUNT", std::to_string(made->groups_));
-    if (!plan.pins && plan.spheres + plan.planes == 0) defines.emplace_back("FREE", "1");
+    if (!plan.pins && plan.solid_count() == 0) defines.emplace_back("FREE", "1");
     for (auto [program, name] : {std::pair{&made->start_, "start"},
                                  {&made->system_, "system"},
                                  {&made->multiply_, "multiply"},

@@ -1,7 +1,9 @@
 #include "server/sim/plan.h"
 
 #include <algorithm>
+#include <cstddef>
 
+#include "server/base/text.h"
 #include "server/scene/method.h"
 #include "server/sim/element_lists.h"
 
@@ -11,6 +13,18 @@ namespace {
 
 bool moves(const scene::Motion& motion) {
   return !std::holds_alternative<std::monostate>(motion);
+}
+
+/// "meet(kind, first, end)" for each kind that there is, for shaders/collide/colliders.glsl.
+std::string each_solid(const Plan& plan) {
+  std::string list;
+  int first = 0;
+  for (std::size_t kind = 0; kind < plan.solids.size(); ++kind) {
+    const int end = first + plan.solids[kind];
+    if (end > first) list += formatted("meet(%d, %d, %d) ", static_cast<int>(kind), first, end);
+    first = end;
+  }
+  return list;
 }
 
 }  // namespace
@@ -37,8 +51,7 @@ Plan plan(const scene::Scene& scene) {
     plan.pins |= !cloth.pins.empty();
     plan.strain_limit |= cloth.material.strain_limit.has_value();
   }
-  for (const scene::Collider& collider : scene.colliders)
-    ++(std::holds_alternative<scene::Sphere>(collider.shape) ? plan.spheres : plan.planes);
+  for (const scene::Collider& collider : scene.colliders) ++plan.solids[collider.shape.index()];
   plan.moving = static_cast<int>(moving_motions(scene).size());
   plan.self_collision = scene.self_collision.has_value();
   if (scene::sweeps(plan.method))
@@ -50,8 +63,8 @@ gl::Defines step_defines(const Plan& plan) {
   gl::Defines defines{{"GROUP_SIZE", std::to_string(group_size)},
                       {"MOTION_COUNT", std::to_string(plan.moving)},
                       {"END_ROW", std::to_string(plan.pose_rows())},
-                      {"SPHERE_COUNT", std::to_string(plan.spheres)},
-                      {"PLANE_COUNT", std::to_string(plan.planes)}};
+                      {"SOLID_COUNT", std::to_string(plan.solid_count())},
+                      {"EACH_SOLID(meet)", each_solid(plan)}};
   for (gl::Defines::value_type& define : law_defines(plan)) defines.push_back(std::move(define));
   if (plan.self_collision) {
     defines.emplace_back("SELF_COLLISION", "1");
@@ -62,7 +75,7 @@ gl::Defines step_defines(const Plan& plan) {
 
 std::vector<Simulation::Pass> passes(const Plan& plan) {
   std::vector<Simulation::Pass> list;
-  const auto add = [&](const char* name, bool runs, const char* reason) {
+  const auto add = [&](const std::string& name, bool runs, const std::string& reason) {
     list.push_back({name, runs ? "" : reason});
   };
   add("neighbour_search", plan.self_collision, "self_collision is null");
@@ -74,8 +87,10 @@ std::vector<Simulation::Pass> passes(const Plan& plan) {
   add("strain_limit", plan.strain_limit, "no cloth has a strain_limit");
   add("pins", plan.pins, "no cloth has pins");
   add("moving_poses", plan.moving > 0, "no pin and no collider moves");
-  add("spheres", plan.spheres > 0, "the scene has no sphere");
-  add("planes", plan.planes > 0, "the scene has no plane");
+  for (std::size_t kind = 0; kind < plan.solids.size(); ++kind) {
+    const std::string name = scene::shape_names()[kind];
+    add(name + "s", plan.solids[kind] > 0, "the scene has no " + name);
+  }
   return list;
 }
 

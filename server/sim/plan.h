@@ -1,12 +1,15 @@
 // Which passes a scene needs, and nothing else: derived from the scene alone (principle 2 of the design).
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <numeric>
 #include <string>
 #include <vector>
 
 #include "server/gl/program.h"
 #include "server/scene/method.h"
+#include "server/scene/solid.h"
 #include "server/sim/simulation.h"
 
 namespace clothlab::sim {
@@ -26,8 +29,8 @@ struct Plan {
   bool structural = false, shear = false, bend = false;  ///< in any cloth
   bool springs() const { return structural || shear || bend; }
   bool pins = false;
-  int moving = 0;  ///< distinct motions of pins and colliders that are not null
-  int spheres = 0, planes = 0;
+  int moving = 0;                                ///< distinct motions of pins and colliders that are not null
+  std::array<int, scene::shape_kinds> solids{};  ///< colliders of each kind of shape
   bool self_collision = false;
   std::uint32_t neighbour_slots = 64;  ///< of each vertex, for self-collision; not the scene's to say
   bool strain_limit = false;           ///< of any cloth
@@ -35,6 +38,7 @@ struct Plan {
   /// Rows that a step has in the table of poses after the one at its start: its end, and before that its
   /// middle if the method looks at it.
   int pose_rows() const { return scene::facts(method).looks_at_the_middle ? 2 : 1; }
+  int solid_count() const { return std::accumulate(solids.begin(), solids.end(), 0); }
   bool operator==(const Plan&) const = default;
 };
 

@@ -1,15 +1,13 @@
-// Spheres and planes: stops a vertex's step at their surface. The same order as in the scene, spheres first.
+// Solids: stops a vertex's step at their surfaces, by the law of each one's kind (elements/solid.glsl), kind after
+// kind, and within a kind in the scene's order. A kernel is compiled for the kinds that its scene has: EACH_SOLID(meet)
+// is `meet(kind, first, end)` for each of these: the solids from first to before end are of that kind.
 #include "../elements/contact.glsl"
+#include "../elements/solid.glsl"
 #include "../rarely.glsl"
 
-#if SPHERE_COUNT > 0
-uniform vec4 sphere[SPHERE_COUNT];          // centre at home [m], radius + margin [m]
-uniform vec3 sphere_surface[SPHERE_COUNT];  // friction, restitution, motion
-#endif
-#if PLANE_COUNT > 0
-uniform vec4 plane_point[PLANE_COUNT];    // a point of it at home [m], margin [m]
-uniform vec3 plane_normal[PLANE_COUNT];
-uniform vec3 plane_surface[PLANE_COUNT];
+#if SOLID_COUNT > 0
+// Of each: its point at home [m], its radius + margin [m]; its direction at home; its friction, restitution, motion.
+uniform vec4 solids[3 * SOLID_COUNT];
 #endif
 
 // Of the surface met last: its unit normal, its velocity [m/s] there, friction, restitution.
@@ -21,12 +19,6 @@ vec3 met_braking;
 #ifdef SECOND_VELOCITY
 vec3 second_velocity;  // of the same vertex: what a contact does to the one it does to this, too
 #endif
-
-vec3 at_step(int motion, int row, vec3 home) {
-  vec3 there = home;
-  RARELY(motion >= 0) there = placed(motion, row, home);
-  return there;
-}
 
 void meet_surface(int motion, vec3 surface, vec3 normal, vec3 from, vec3 x, inout vec3 v) {
   vec3 moving = vec3(0.0);
@@ -41,36 +33,43 @@ void meet_surface(int motion, vec3 surface, vec3 normal, vec3 from, vec3 x, inou
 #endif
 }
 
-/// Mends the step from -> x with end velocity v; colliders are thicker by `reach` [m]. Returns the number of them met.
+#if SOLID_COUNT > 0
+/// Where solid i is at a row of the step, thicker by `reach` [m].
+Solid solid_at(int i, int motion, int row, float reach) {
+  vec3 point = solids[3 * i].xyz, direction = solids[3 * i + 1].xyz;
+  RARELY(motion >= 0) {
+    point = placed(motion, row, point);
+    direction = turned(motion, row, direction);
+  }
+  return Solid(point, direction, solids[3 * i].w + reach);
+}
+
+/// Returns whether the step from -> x meets solid i, and mends it if so.
+bool meet_solid(int kind, int i, vec3 from, inout vec3 x, inout vec3 v, float reach) {
+  vec3 surface = solids[3 * i + 2].xyz;
+  int motion = int(surface.z);
+  Solid before = solid_at(i, motion, 0, reach), after = solid_at(i, motion, END_ROW, reach);
+  bool met = false;
+  RARELY(solid_near(kind, before, after, from, x)) {
+    vec3 stopped, normal;
+    if (solid_contact(kind, before, after, from, x, stopped, normal)) {
+      x = stopped;
+      meet_surface(motion, surface, normal, from, x, v);
+      met = true;
+    }
+  }
+  return met;
+}
+#endif
+
+/// Mends the step from -> x with end velocity v; solids are thicker by `reach` [m]. Returns the number of them met.
 int resolve_colliders(vec3 from, inout vec3 x, inout vec3 v, float reach) {
   int contacts = 0;
   met_braking = vec3(0.0);
-#if SPHERE_COUNT > 0
-  for (int i = 0; i < SPHERE_COUNT; ++i) {
-    int motion = int(sphere_surface[i].z);
-    vec3 centre = at_step(motion, END_ROW, sphere[i].xyz);
-    vec3 start = from - at_step(motion, 0, sphere[i].xyz), end = x - centre;
-    float radius = sphere[i].w + reach, within_reach = radius + distance(start, end);
-    RARELY(dot(start, start) <= within_reach * within_reach) {
-      vec3 stopped, normal;
-      if (sphere_contact(start, end, radius, stopped, normal)) {
-        x = centre + stopped;
-        meet_surface(motion, sphere_surface[i], normal, from, x, v);
-        ++contacts;
-      }
-    }
-  }
-#endif
-#if PLANE_COUNT > 0
-  for (int i = 0; i < PLANE_COUNT; ++i) {
-    int motion = int(plane_surface[i].z);
-    vec3 normal = motion < 0 ? plane_normal[i] : turned(motion, END_ROW, plane_normal[i]);
-    float depth = plane_point[i].w + reach - dot(x - at_step(motion, END_ROW, plane_point[i].xyz), normal);
-    if (!(depth > 0.0)) continue;
-    x += depth * normal;
-    meet_surface(motion, plane_surface[i], normal, from, x, v);
-    ++contacts;
-  }
+#if SOLID_COUNT > 0
+#define MEET(kind, first, end) \
+  for (int i = first; i < end; ++i) contacts += int(meet_solid(kind, i, from, x, v, reach));
+  EACH_SOLID(MEET)
 #endif
   return contacts;
 }

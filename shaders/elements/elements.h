@@ -24,6 +24,7 @@ using std::sqrt;
 #define OUT(T) T&
 #define INOUT(T) T&
 #include "shaders/elements/contact.glsl"
+#include "shaders/elements/solid.glsl"
 #include "shaders/elements/spring.glsl"
 #undef FUNCTION
 #undef PRECISE

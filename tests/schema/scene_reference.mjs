@@ -22,8 +22,7 @@ const tables = [
   ["`weights[]`", ["$defs", "cloth", "properties", "weights", "items"]],
   ["`start: {scatter}` or `{scale}`", ["$defs", "cloth", "properties", "start"]],
   ["A collider: `colliders[]`", ["$defs", "collider"]],
-  ["`sphere`", ["$defs", "collider", "properties", "sphere"]],
-  ["`plane`", ["$defs", "collider", "properties", "plane"]],
+  ["", ["$defs", "shape", "properties"]], // a table of each
   ["`motion`, of a pin or a collider", ["$defs", "motion"]],
   ["`at`, of a pin or a weight", ["$defs", "at"]],
 ];
@@ -60,10 +59,16 @@ function allowed(schema) {
   return keys.length > 0 && keys.length <= 4 ? code(`{${keys.join(", ")}}`) : "see below";
 }
 
+/// What a definition says, and what the place says that refers to it.
+function merged(definition, part) {
+  const both = { ...definition, ...part, $ref: undefined };
+  if (definition.properties && part.properties) both.properties = { ...definition.properties, ...part.properties };
+  return both;
+}
+
 /// The markdown between the markers.
 export function reference(schema) {
-  const resolve = (part) =>
-    part.$ref ? { ...schema.$defs[part.$ref.split("/").at(-1)], ...part, $ref: undefined } : part;
+  const resolve = (part) => (part.$ref ? merged(resolve(schema.$defs[part.$ref.split("/").at(-1)]), part) : part);
   const deep = (part) => {
     if (Array.isArray(part)) return part.map(deep);
     if (part === null || typeof part !== "object") return part;
@@ -100,7 +105,10 @@ export function reference(schema) {
           (choice) => `* ${choice.description ?? `${allowed(choice)}: ${choice.properties.box.description}`}`,
         )
       : ["| key | allowed | default | |", "|---|---|---|---|", ...rows(part)];
-  return tables
+  const each = tables.flatMap(([title, path]) =>
+    title === "" ? Object.keys(find(path)).map((key) => [code(key), [...path, key]]) : [[title, path]],
+  );
+  return each
     .map(([title, path]) => {
       const part = find(path);
       const said = path.length > 0 && part.description ? [part.description, ""] : [];

@@ -7,9 +7,9 @@ export interface SceneNumber {
   value: number;
 }
 
-// What no map varies: names of versions, the axis the map has anyway, and what is no quantity.
+// What no map varies: names of versions, the axis the map has anyway, and what is no quantity (places, directions).
 const without =
-  /^\/(version|solver\/|cloths\/\d+\/(mesh|transform|pins|weights|start)\/|colliders\/\d+\/(motion|sphere\/center|plane)\b)/;
+  /^\/(version|solver\/|cloths\/\d+\/(mesh|transform|pins|weights|start)\/|colliders\/\d+\/(motion\b|\w+\/\w+\/\d))/;
 
 function walk(node: unknown, path: string, names: string[], found: SceneNumber[]): void {
   if (without.test(path)) return;

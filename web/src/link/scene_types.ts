@@ -70,21 +70,35 @@ export interface Plane {
   point: Vec3;
   normal: Vec3;
 }
-export interface Collider {
+/// The kinds of shape, by what the document calls them.
+export interface Shapes {
+  sphere: Sphere;
+  plane: Plane;
+}
+type Kind = keyof Shapes;
+/// One of them, under the name of its kind.
+export type Shape = { [K in Kind]: { [Name in K]: Shapes[K] } }[Kind];
+
+/// What `cases` makes of the kind that a shape is; null of one that this page does not know. A kind that is left out
+/// does not compile.
+export function byKind<T>(shape: Shape, cases: { [K in Kind]: (of: Shapes[K]) => T }): T | null {
+  const made = <K extends Kind>(kind: K): T | null => {
+    const of = (shape as Partial<Shapes>)[kind];
+    return of === undefined ? null : cases[kind](of);
+  };
+  const kind = (Object.keys(cases) as Kind[]).find((each) => each in shape);
+  return kind === undefined ? null : made(kind);
+}
+
+export type Collider = Shape & {
   name: string;
-  sphere?: Sphere;
-  plane?: Plane;
   friction: number;
   restitution: number;
   motion: Motion;
-}
+};
 
 /// Where a collider that moves is at the time of a frame, by its place in the document's list.
-export interface MovedCollider {
-  index: number;
-  sphere?: Sphere;
-  plane?: Plane;
-}
+export type MovedCollider = Shape & { index: number };
 
 export interface SceneDocument {
   version: number;

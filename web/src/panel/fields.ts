@@ -2,7 +2,15 @@
 import { automatic, methodText, type MethodText, type Setting } from "./methods";
 import { readable, type Scale } from "./slider";
 import { valueAt } from "../link/json_patch";
-import type { At, Motion, Operation, SceneDocument, Vec3 } from "../link/scene_types";
+import {
+  type At,
+  byKind,
+  type Motion,
+  type Operation,
+  type SceneDocument,
+  type Shape,
+  type Vec3,
+} from "../link/scene_types";
 
 /// What `sim.status` says of the solver.
 export interface SolverFacts {
@@ -218,28 +226,36 @@ function clothSection(document: SceneDocument, index: number): Section {
   };
 }
 
+/// Of a shape, and where a turn of it starts around.
+function shapeFields(shape: Shape, base: string): { fields: Field[]; center: Vec3 } {
+  const place = { min: -2, max: 2, step: 0.005, ...meter };
+  const made = byKind<{ fields: Field[]; center: Vec3 }>(shape, {
+    sphere: ({ center }) => ({
+      fields: [
+        ...vector("center", [`${base}/sphere/center`], place),
+        number("radius", [`${base}/sphere/radius`], { min: 0.02, max: 1, step: 0.005, ...meter }),
+      ],
+      center,
+    }),
+    plane: () => ({ fields: [number("height", [`${base}/plane/point/1`], place)], center: [0, 0, 0] }),
+  });
+  return made ?? { fields: [], center: [0, 0, 0] };
+}
+
 function colliderSection(document: SceneDocument, index: number): Section {
   const collider = document.colliders[index] as SceneDocument["colliders"][number];
   const base = `/colliders/${index}`;
-  const place = { min: -2, max: 2, step: 0.005, ...meter };
-  const shape: Field[] = collider.sphere
-    ? [
-        ...vector("center", [`${base}/sphere/center`], place),
-        number("radius", [`${base}/sphere/radius`], { min: 0.02, max: 1, step: 0.005, ...meter }),
-      ]
-    : collider.plane
-      ? [number("height", [`${base}/plane/point/1`], place)]
-      : [];
+  const shape = shapeFields(collider, base);
   return {
     key: base,
     title: collider.name ? `Collider: ${collider.name}` : `Collider ${index + 1}`,
     open: false,
     sections: [],
     fields: [
-      ...shape,
+      ...shape.fields,
       number("friction", [`${base}/friction`], { min: 0, max: 2, step: 0.01 }),
       number("restitution", [`${base}/restitution`], { min: 0, max: 1, step: 0.01 }),
-      ...motionFields([`${base}/motion`], collider.motion, collider.sphere?.center ?? [0, 0, 0]),
+      ...motionFields([`${base}/motion`], collider.motion, shape.center),
     ],
   };
 }

@@ -1,7 +1,8 @@
 // How far a scene reaches: what is known of it before the first frame, and what frames show besides.
-import { Box3, Sphere, Vector3 } from "three";
+import { Vector3 } from "three";
 import { sweep } from "./motion";
 import { heldVertices, restPositions } from "./pins";
+import { floorOf, outlineOf } from "./solids";
 import { q16Words, type Frame } from "../link/protocol";
 import type { Cloth, SceneDocument } from "../link/scene_types";
 
@@ -33,29 +34,14 @@ function clothPoints(cloth: Cloth, falls: boolean): Vector3[] {
   return points;
 }
 
-const corners = (box: Box3): Vector3[] =>
-  Array.from(
-    { length: 8 },
-    (_, i) => new Vector3((i & 1 ? box.max : box.min).x, (i & 2 ? box.max : box.min).y, (i & 4 ? box.max : box.min).z),
-  );
-
-/// A ball's outline, nearly: the corners of a box around it stick out of it.
-function ballPoints(center: Vector3, radius: number): Vector3[] {
-  const box = corners(new Sphere(center, radius).getBoundingBox(new Box3()));
-  return box.map((corner) => corner.sub(center).multiplyScalar(0.75).add(center));
-}
-
 /// Points that a scene is going to use [m]: known before the first frame, and the same whenever F is pressed.
 export function scenePoints(document: SceneDocument): Vector3[] {
   const falls = document.gravity[1] < 0;
   const points = document.cloths.flatMap((cloth) => clothPoints(cloth, falls));
-  const floors = document.colliders.flatMap(({ plane }) => (plane && plane.normal[1] > 0.7 ? [plane.point[1]] : []));
+  const floors = document.colliders.flatMap((collider) => floorOf(collider) ?? []);
   const floor = Math.max(-Infinity, ...floors.filter((height) => points.some(({ y }) => y >= height)));
   for (const point of points) point.y = Math.max(point.y, floor);
-  for (const { sphere, motion } of document.colliders) {
-    if (!sphere) continue;
-    for (const center of sweep(sphere.center, motion)) points.push(...ballPoints(center, sphere.radius));
-  }
+  points.push(...document.colliders.flatMap((collider) => outlineOf(collider, collider.motion)));
   // What nothing holds falls to the floor.
   const loose = document.cloths.filter(({ pins }) => pins.length === 0);
   if (falls && Number.isFinite(floor))

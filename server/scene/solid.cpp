@@ -1,0 +1,125 @@
+#include "server/scene/solid.h"
+
+#include <algorithm>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+#include "server/scene/sections.h"
+#include "shaders/elements/elements.h"
+
+namespace clothlab::scene {
+
+namespace {
+
+json list(const dvec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+template <int kind, class Of>
+constexpr bool law_is_of = std::is_same_v<std::variant_alternative_t<kind, Shape>, Of>;
+
+// A kind after the other.
+
+static_assert(law_is_of<elements::solid_sphere, Sphere>);
+const char* name(const Sphere&) {
+  return "sphere";
+}
+void read(const Reader& sphere, Sphere& into) {
+  sphere.object({"center", "radius"});
+  into = {sphere.member("center").vector(ranges::position), sphere.member("radius").number(ranges::length)};
+}
+json numbers(const Sphere& sphere) {
+  return {{"center", list(sphere.center)}, {"radius", sphere.radius}};
+}
+Solid law(const Sphere& sphere) {
+  return {elements::solid_sphere, sphere.center, dvec3(0.0), sphere.radius};
+}
+Ball ball(const Sphere& sphere) {
+  return {sphere.center, sphere.radius};
+}
+Sphere moved(const Sphere& home, const glm::dmat3& rotation, const dvec3& translation) {
+  return {rotation * home.center + translation, home.radius};
+}
+
+static_assert(law_is_of<elements::solid_plane, Plane>);
+const char* name(const Plane&) {
+  return "plane";
+}
+void read(const Reader& plane, Plane& into) {
+  plane.object({"point", "normal"});
+  into = {plane.member("point").vector(ranges::position), plane.member("normal").direction()};
+}
+json numbers(const Plane& plane) {
+  return {{"point", list(plane.point)}, {"normal", list(plane.normal)}};
+}
+Solid law(const Plane& plane) {
+  return {elements::solid_plane, plane.point, plane.normal, 0.0};
+}
+Ball ball(const Plane& plane) {
+  return {plane.point, std::numeric_limits<double>::infinity()};
+}
+Plane moved(const Plane& home, const glm::dmat3& rotation, const dvec3& translation) {
+  return {rotation * home.point + translation, rotation * home.normal};
+}
+
+static_assert(elements::solid_kinds == shape_kinds, "each kind of shape has its law");
+
+template <std::size_t... kind>
+std::array<Shape, shape_kinds> one_of_each(std::index_sequence<kind...>) {
+  return {Shape(std::in_place_index<kind>)...};
+}
+std::array<Shape, shape_kinds> one_of_each() {
+  return one_of_each(std::make_index_sequence<shape_kinds>());
+}
+
+const char* name_of(const Shape& shape) {
+  return std::visit([](const auto& of) { return name(of); }, shape);
+}
+
+}  // namespace
+
+const std::array<const char*, shape_kinds>& shape_names() {
+  static const auto names = [] {
+    std::array<const char*, shape_kinds> all{};
+    const std::array<Shape, shape_kinds> shapes = one_of_each();
+    std::transform(shapes.begin(), shapes.end(), all.begin(), name_of);
+    return all;
+  }();
+  return names;
+}
+
+const Words& shapes_to_come() {
+  static const Words names{"capsule", "box"};
+  return names;
+}
+
+Shape read_shape(const Reader& collider) {
+  const std::string given = collider.exactly_one({shape_names().begin(), shape_names().end()});
+  for (Shape& shape : one_of_each()) {
+    if (given != name_of(shape)) continue;
+    std::visit([&](auto& of) { read(collider.member(given), of); }, shape);
+    return shape;
+  }
+  return {};
+}
+
+Solid solid(const Shape& shape) {
+  return std::visit([](const auto& of) { return law(of); }, shape);
+}
+
+Ball bounds(const Shape& shape) {
+  return std::visit([](const auto& of) { return ball(of); }, shape);
+}
+
+Shape placed(const Shape& home, const glm::dmat3& rotation, const dvec3& translation) {
+  return std::visit([&](const auto& of) { return Shape(moved(of, rotation, translation)); }, home);
+}
+
+json written(const Shape& shape) {
+  json document = json::object();
+  document[name_of(shape)] = std::visit([](const auto& of) { return numbers(of); }, shape);
+  return document;
+}
+
+}  // namespace clothlab::scene

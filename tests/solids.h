@@ -1,0 +1,28 @@
+// A shape of each kind, and what is true of it without its law: for the tests of solids.
+#pragma once
+
+#include <glm/geometric.hpp>
+#include <vector>
+
+#include "server/scene/solid.h"
+
+namespace clothlab::test {
+
+/// How deep x is below the surface [m], less than 0 outside.
+inline double depth(const scene::Sphere& sphere, const glm::dvec3& x) {
+  return sphere.radius - glm::distance(x, sphere.center);
+}
+inline double depth(const scene::Plane& plane, const glm::dvec3& x) {
+  return glm::dot(plane.point - x, plane.normal);
+}
+inline double depth(const scene::Shape& shape, const glm::dvec3& x) {
+  return std::visit([&](const auto& of) { return depth(of, x); }, shape);
+}
+
+/// Each with its surface within 1 m of the origin, and room for paths inside and outside.
+inline const std::vector<scene::Shape> a_shape_of_each_kind{
+    scene::Sphere{{0.1, -0.2, 0.05}, 0.5},
+    scene::Plane{{0.2, -0.3, 0.1}, {0.0, 0.8, 0.6}},
+};
+
+}  // namespace clothlab::test
