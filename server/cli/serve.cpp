@@ -10,11 +10,11 @@
 
 #include "server/base/files.h"
 #include "server/base/folder_lock.h"
+#include "server/base/log.h"
 #include "server/base/memory.h"
 #include "server/cli/commands.h"
 #include "server/model/model.h"
 #include "server/model/size.h"
-#include "server/net/log.h"
 #include "server/net/server.h"
 
 namespace clothlab::cli {
@@ -43,8 +43,8 @@ class StopOnSignal {
           constexpr timespec patience{3, 0};
           sigtimedwait(&signals, nullptr, &patience);
           if (ended_) return;
-          net::log(net::LogLevel::warning, "cut_short",
-                   {{"why", "something did not end in time; sessions are what they were a second ago"}});
+          log(LogLevel::warning, "cut_short",
+              {{"why", "something did not end in time; sessions are what they were a second ago"}});
           std::_Exit(exit_done);
         }) {}
   /// Before the server is destroyed: it is not told to stop any more.
@@ -126,8 +126,8 @@ int serve(ServeArguments& arguments) {
   if (!document) return fail(document.error(), exit_usage);
   const net::Limits& limits = arguments.options.limits;
   if (const Status small =
-          model::within(model::size_of(document->scene), static_cast<std::size_t>(limits.vertices),
-                        static_cast<std::size_t>(limits.springs));
+          model::within(model::size_of(document->scene), static_cast<std::size_t>(limits.scene.vertices),
+                        static_cast<std::size_t>(limits.scene.springs));
       !small)
     return fail(small.error(), exit_usage);
   if (const Result<model::Model> model = model::build(document->scene); !model)
@@ -136,13 +136,13 @@ int serve(ServeArguments& arguments) {
   if (!state_folder) return fail(state_folder.error(), exit_usage);
   arguments.options.document = std::move(*document);
   if (arguments.gpu >= 0) arguments.options.gpu = arguments.gpu;
-  net::set_log_level(*net::log_level(arguments.log_level));
+  set_log_level(*log_level(arguments.log_level));
   share_free_memory();
   StopOnSignal::block();
   Result<std::unique_ptr<net::Server>> server = net::Server::listen(std::move(arguments.options));
   if (!server) return fail(server.error(), exit_internal);
   StopOnSignal stop(**server);
-  const std::optional<net::Failed> failed =
+  const std::optional<session::Failed> failed =
       (*server)->run([&] { std::cout << "listening on " << (*server)->url() << std::endl; });
   stop.forget_server();
   server->reset();  // before `stop`, which sees to it that this ends
@@ -167,8 +167,8 @@ void add_limits(CLI::App& command, net::Limits& limits) {
   add("--max-message-rate", limits.message_rate, 10, 1000000,
       "messages a second from one client, twice that in a burst");
   add("--max-json-depth", limits.json_depth, 8, usual.json_depth, "levels of nesting in a message");
-  add("--max-vertices", limits.vertices, 4, usual.vertices, "of a scene");
-  add("--max-springs", limits.springs, 4, usual.springs, "of a scene");
+  add("--max-vertices", limits.scene.vertices, 4, usual.scene.vertices, "of a scene");
+  add("--max-springs", limits.scene.springs, 4, usual.scene.springs, "of a scene");
   add("--max-lab-seconds", limits.lab_seconds, 1, 86400, "that one measurement of the lab may take");
   add("--header-timeout", limits.header_seconds, 1, 3600,
       "seconds from connecting to the last of a request's headers, TLS included");

@@ -12,10 +12,10 @@
 #include <optional>
 #include <string>
 
+#include "server/base/log.h"
 #include "server/net/client.h"
 #include "server/net/frame_watch.h"
 #include "server/net/http.h"
-#include "server/net/log.h"
 #include "server/net/request_checks.h"
 #include "server/net/request_headers.h"
 #include "server/net/server.h"

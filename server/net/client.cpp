@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "server/base/log.h"
 #include "server/base/text.h"
-#include "server/net/log.h"
 #include "server/net/methods.h"
 #include "server/net/request_headers.h"
 
@@ -20,7 +20,7 @@ Client::Client(Hub& hub, lws* wsi, std::string session)
       session_(std::move(session)),
       address_(peer_address(wsi)),
       role_(hub.role_of("")),
-      messages_(hub.limits().message_rate, burst_of(hub.limits()), now_us()) {
+      messages_(hub.limits().message_rate, burst_of(hub.limits()), session::now_us()) {
   hub_.add(*this);
   log(LogLevel::info, "client_connected",
       {{"client", std::to_string(id_)}, {"address", address_}, {"session", session_}, {"role", name(role_)}});
@@ -33,7 +33,7 @@ Client::Client(Hub& hub, lws* wsi, std::string session)
 Client::~Client() {
   log(LogLevel::info, "client_left",
       {{"client", std::to_string(id_)},
-       {"seconds", formatted("%.1f", 1e-6 * static_cast<double>(now_us() - since_))},
+       {"seconds", formatted("%.1f", 1e-6 * static_cast<double>(session::now_us() - since_))},
        {"bytes", std::to_string(bytes_sent_)},
        {"closed", close_reason_}});
   leave_room();
@@ -84,7 +84,8 @@ int Client::receive(const char* data, std::size_t size) {
   if (!lws_is_final_fragment(wsi_) || lws_remaining_packet_payload(wsi_) > 0) return 0;
   ++hub_.metrics().messages_received;
   // A long one takes as long to read as many short ones.
-  if (!messages_.take(now_us(), std::ceil(static_cast<double>(incoming_.size()) / message_unit_bytes)))
+  if (!messages_.take(session::now_us(),
+                      std::ceil(static_cast<double>(incoming_.size()) / message_unit_bytes)))
     close(close_policy, "too many messages");
   else if (incoming_text_)
     handle(incoming_);
@@ -102,19 +103,20 @@ void Client::handle(const std::string& text) {
     return;
   }
   auto& request = std::get<Request>(parsed);
-  request.received_us = now_us();
+  request.received_us = session::now_us();
   const Outcome outcome = call(*this, request);
   if (const json* result = std::get_if<json>(&outcome)) answer(ticket(*this, request), *result);
   if (const auto* error = std::get_if<RpcError>(&outcome)) answer(ticket(*this, request), *error);
 }
 
-void Client::answer(const Ticket& ticket, const std::variant<json, RpcError>& answer) {
+void Client::answer(const session::Ticket& ticket, const std::variant<json, RpcError>& answer) {
   if (!ticket.id) return;
   const auto* result = std::get_if<json>(&answer);
   const auto* error = std::get_if<RpcError>(&answer);
   // A method that is none would be a label of the client's choice.
   if (is_method(ticket.method))
-    hub_.metrics().requests[ticket.method].add(1e-6 * static_cast<double>(now_us() - ticket.asked_us));
+    hub_.metrics().requests[ticket.method].add(1e-6 *
+                                               static_cast<double>(session::now_us() - ticket.asked_us));
   send(result ? result_text(*ticket.id, *result) : error_text(*ticket.id, *error));
 }
 
@@ -149,7 +151,7 @@ void Client::close(int code, std::string reason) {
 
 void Client::subscribe(stream::Encoding encoding, double rate, int in_flight) {
   if (!pacing_.subscribed()) topology_sent_ = false;
-  pacing_.subscribe(encoding, rate, in_flight, now_us());
+  pacing_.subscribe(encoding, rate, in_flight, session::now_us());
   room_->demand_changed(encoding);
   wake();
 }
@@ -160,7 +162,7 @@ void Client::unsubscribe() {
 }
 
 void Client::acknowledge(std::uint32_t sequence) {
-  const std::int64_t now = now_us();
+  const std::int64_t now = session::now_us();
   pacing_.acknowledge(sequence, now);
   schedule_frame(now);
 }
@@ -228,7 +230,7 @@ int Client::send_next() {
   }
   const stream::SharedMessage frame = room_->frame(pacing_.encoding());
   if (!frame || !pacing_.is_news(frame->header.sequence)) return 0;
-  const std::optional<std::int64_t> wait = pacing_.wait(now_us());
+  const std::optional<std::int64_t> wait = pacing_.wait(session::now_us());
   if (wait && *wait == 0) return send_frame(frame);
   if (wait) lws_set_timer_usecs(wsi_, *wait);
   return 0;
@@ -241,10 +243,10 @@ int Client::send_frame(const stream::SharedMessage& frame) {
     return write(const_cast<unsigned char*>(frame->colliders.data()) + stream::front_room,
                  frame->colliders.size() - stream::front_room, true);
   }
-  const std::int64_t held_until = pacing_.ready_since(now_us());
+  const std::int64_t held_until = pacing_.ready_since(session::now_us());
   // libwebsockets writes its header into the room in front, the same bytes for every viewer.
   const int result = write(const_cast<unsigned char*>(frame->data()), frame->size(), false);
-  const std::int64_t now = now_us();
+  const std::int64_t now = session::now_us();
   pacing_.sent(frame->header.sequence, now);
   frame_waits_ = false;
   ++hub_.metrics().frames_sent;

@@ -51,7 +51,7 @@ class Client {
   void send(const std::string& text) { send(make_text(text)); }
   void send(SharedText text);
   /// Unless it asked for none.
-  void answer(const Ticket& ticket, const std::variant<json, RpcError>& answer);
+  void answer(const session::Ticket& ticket, const std::variant<json, RpcError>& answer);
   void send_status(SharedText text);
   /// Its session was brought back: the topology is to be sent again, and no frame waits for an answer.
   void session_replaced();
@@ -75,7 +75,7 @@ class Client {
   std::uint64_t id_;
   std::string session_;
   std::string address_;
-  std::int64_t since_ = now_us();
+  std::int64_t since_ = session::now_us();
   std::uint64_t bytes_sent_ = 0;
   Role role_;
   Room* room_ = nullptr;

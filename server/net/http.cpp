@@ -130,15 +130,15 @@ void HttpRequest::inside(const std::string& path) {
         plain(404, "no such session is open; one opens when a page or script connects to /ws?session=NAME"));
   if (path == "/api/scene") return answer({200, "application/json", room->document().dump(2) + "\n", {}});
   if (mesh) return ask_session(session, {});
-  const Export what{side(query(wsi_, "width", "1280"), max_snapshot_side),
-                    side(query(wsi_, "height", "720"), max_snapshot_side)};
+  const session::Export what{side(query(wsi_, "width", "1280"), max_snapshot_side),
+                             side(query(wsi_, "height", "720"), max_snapshot_side)};
   if (what.width == 0 || what.height == 0)
     return answer(
         plain(400, "width and height are whole numbers from 1 to " + std::to_string(max_snapshot_side)));
   ask_session(session, what);
 }
 
-void HttpRequest::ask_session(const std::string& session, Export what) {
+void HttpRequest::ask_session(const std::string& session, session::Export what) {
   if (hub_.exports_full() || !hub_.find_room(session)->capture(id_, what)) {
     HttpAnswer refusal =
         plain(503, "the server has as many pictures and meshes to make as it may; ask again");
@@ -155,7 +155,7 @@ bool HttpRequest::hung_up() const {
   return poll(&socket, 1, 0) > 0 && (socket.revents & (POLLRDHUP | POLLHUP | POLLERR)) != 0;
 }
 
-void HttpRequest::deliver(Exported exported) {
+void HttpRequest::deliver(session::Exported exported) {
   if (!exported.body) return answer(plain(500, exported.body.error().text()));
   answer({200, exported.content_type, std::move(*exported.body), {{"cache-control:", "no-store"}}});
 }

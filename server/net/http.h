@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "server/net/exporter.h"
 #include "server/net/web_files.h"
+#include "server/session/exporter.h"
 
 struct lws;
 
@@ -35,7 +35,7 @@ class HttpRequest {
   /// Sends the next part; -1 closes the connection, 1: the answer is complete.
   int writeable();
   /// What it asked to be made.
-  void deliver(Exported exported);
+  void deliver(session::Exported exported);
   /// Who asked is no longer there to be answered.
   bool hung_up() const;
 
@@ -43,7 +43,7 @@ class HttpRequest {
   HttpAnswer file(const std::string& path) const;
   /// What only those see who have a token: /metrics and the API.
   void inside(const std::string& path);
-  void ask_session(const std::string& session, Export what);
+  void ask_session(const std::string& session, session::Export what);
   void answer(HttpAnswer answer);
   int send_headers();
   /// Why who asks may not see that, if so.

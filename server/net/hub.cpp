@@ -6,8 +6,8 @@
 #include "server/base/memory.h"
 #include "server/net/client.h"
 #include "server/net/http.h"
-#include "server/net/keeper.h"
 #include "server/net/request_headers.h"
+#include "server/session/keeper.h"
 
 namespace clothlab::net {
 
@@ -33,9 +33,11 @@ Hub::Hub(Options options, std::function<void()> wake)
       wake_(std::move(wake)),
       lab_(std::make_unique<LabQueue>(
           lab_port(), [gpu = options_.gpu] { return open_lab(gpu); }, options_.limits.lab_seconds)),
-      exporter_([gpu = options_.gpu](const Moment& moment,
-                                     const Export& what) { return make_export(gpu, moment, what); },
-                wake_) {}
+      exporter_(
+          [gpu = options_.gpu](const session::Moment& moment, const session::Export& what) {
+            return session::make_export(gpu, moment, what);
+          },
+          wake_) {}
 
 Hub::~Hub() {
   stop_sessions();
@@ -46,14 +48,14 @@ LabQueue::Port Hub::lab_port() {
   port.notify = [this](std::uint64_t id, const char* method, const json& params) {
     if (Client* client = find_client(id)) client->send(notification_text(method, params));
   };
-  port.answer = [this](const Ticket& ticket, const json& answer) {
+  port.answer = [this](const session::Ticket& ticket, const json& answer) {
     if (Client* client = find_client(ticket.asker)) client->answer(ticket, answer);
   };
   port.hold = [this](const std::string& session, std::uint64_t job) {
-    if (Room* room = find_room(session)) room->post({{}, Hold{job}});
+    if (Room* room = find_room(session)) room->post({{}, session::Hold{job}});
   };
   port.release = [this](const std::string& session) {
-    if (Room* room = find_room(session)) room->post({{}, Release{}});
+    if (Room* room = find_room(session)) room->post({{}, session::Release{}});
   };
   port.steps = [this] { return steps(); };
   // The lab's context is on the device that the sessions run on.
@@ -68,7 +70,8 @@ LabQueue::Port Hub::lab_port() {
     lab_cache_.keep(key(document, job), outcome);
   };
   port.chosen = [this](const std::string& session, SharedDocument measured, Result<lab::Choice> choice) {
-    if (Room* room = find_room(session)) room->post({{}, Chosen{std::move(measured), std::move(choice)}});
+    if (Room* room = find_room(session))
+      room->post({{}, session::Chosen{std::move(measured), std::move(choice)}});
   };
   port.wake = wake_;
   return port;
@@ -81,7 +84,7 @@ Role Hub::role_of(const std::string& token) const {
 }
 
 Verdict Hub::judge(const std::string& token, const std::string& address, std::vector<LogField> who) {
-  const std::int64_t now = now_us();
+  const std::int64_t now = session::now_us();
   const std::string network = network_of(address);
   if (const int wait = token_guard_.wait(network, now)) return {Role::none, wait};
   const Role role = role_of(token);
@@ -122,12 +125,12 @@ bool Hub::knows_session(const std::string& name) {
   if (find_room(name)) return true;
   std::error_code failure;
   return !options_.state_folder.empty() &&
-         std::filesystem::exists(session_file(options_.state_folder, name), failure);
+         std::filesystem::exists(session::session_file(options_.state_folder, name), failure);
 }
 
 std::string Hub::sleeping_room() const {
   std::string longest;
-  std::int64_t since = now_us() - static_cast<std::int64_t>(unwatched_seconds * 1e6);
+  std::int64_t since = session::now_us() - static_cast<std::int64_t>(session::unwatched_seconds * 1e6);
   for (const auto& [name, room] : rooms_) {
     if (name == main_session || !room->empty() || room->unwatched_since() > since) continue;
     since = room->unwatched_since();
@@ -180,18 +183,18 @@ std::size_t Hub::exports_waiting() const {
   return count;
 }
 
-void Hub::captured(Captured captured) {
+void Hub::captured(session::Captured captured) {
   if (!captured.moment) return deliver({captured.asker, "", captured.moment.error()});
   captured_.push_back(std::move(captured));
 }
 
 void Hub::pump_exports() {
-  if (std::optional<Exported> exported = exporter_.take()) {
+  if (std::optional<session::Exported> exported = exporter_.take()) {
     ++metrics_.exports;
     deliver(std::move(*exported));
   }
   while (exporter_.idle() && !captured_.empty()) {
-    Captured next = std::move(captured_.front());
+    session::Captured next = std::move(captured_.front());
     captured_.pop_front();
     const auto asker = waiting_.find(next.asker);
     if (asker == waiting_.end() || asker->second->hung_up()) continue;
@@ -199,7 +202,7 @@ void Hub::pump_exports() {
   }
 }
 
-void Hub::deliver(Exported exported) {
+void Hub::deliver(session::Exported exported) {
   const auto found = waiting_.find(exported.asker);
   if (found != waiting_.end()) found->second->deliver(std::move(exported));
 }
@@ -214,7 +217,7 @@ void Hub::pump() {
   }
   for (const std::string& name : failed) retire(name);
   pump_exports();
-  lab_->pump(now_us());
+  lab_->pump(session::now_us());
 }
 
 void Hub::stop_sessions() {

@@ -11,15 +11,15 @@
 #include <string>
 #include <vector>
 
+#include "server/base/log.h"
 #include "server/lab/cache.h"
 #include "server/net/connections.h"
-#include "server/net/exporter.h"
 #include "server/net/lab_queue.h"
-#include "server/net/log.h"
 #include "server/net/metrics.h"
 #include "server/net/options.h"
 #include "server/net/room.h"
 #include "server/net/token_guard.h"
+#include "server/session/exporter.h"
 
 namespace clothlab::net {
 
@@ -79,21 +79,21 @@ class Hub {
   std::size_t exports_waiting() const;
   bool exports_full() const { return exports_waiting() >= max_exports; }
   /// What a session has handed over for one of them, or why it did not.
-  void captured(Captured captured);
+  void captured(session::Captured captured);
 
   /// Takes in what the sessions have put out.
   void pump();
   /// Stops every session's thread and the lab's, and waits for them.
   void stop_sessions();
   /// Why the session `main` could not start, once it is known.
-  const std::optional<Failed>& main_failure() const { return main_failure_; }
+  const std::optional<session::Failed>& main_failure() const { return main_failure_; }
 
   Gauges gauges() const;
   bool all_sessions_beat() const;
 
  private:
   LabQueue::Port lab_port();
-  void deliver(Exported exported);
+  void deliver(session::Exported exported);
   void pump_exports();
   std::uint64_t steps() const;
   void retire(const std::string& name);
@@ -106,14 +106,14 @@ class Hub {
   TokenGuard token_guard_{options_.limits.wrong_tokens};
   lab::Cache lab_cache_;
   std::unique_ptr<LabQueue> lab_;
-  Exporter exporter_;
-  std::deque<Captured> captured_;  ///< what it is to make next
+  session::Exporter exporter_;
+  std::deque<session::Captured> captured_;  ///< what it is to make next
   std::map<std::string, std::unique_ptr<Room>> rooms_;
   std::map<std::uint64_t, Client*> clients_;
   std::map<std::uint64_t, HttpRequest*> waiting_;
   std::vector<std::future<void>> retiring_;
   std::uint64_t last_id_ = 0;
-  std::optional<Failed> main_failure_;
+  std::optional<session::Failed> main_failure_;
 };
 
 }  // namespace clothlab::net

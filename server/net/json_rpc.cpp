@@ -50,6 +50,21 @@ RpcError invalid_params(const Error& error) {
   return invalid_params(error.where, error.what, error.remedy);
 }
 
+RpcError rpc_error(const session::Refusal& refusal) {
+  using Reason = session::Refusal::Reason;
+  switch (refusal.reason) {
+    case Reason::invalid_value:
+      return invalid_params(refusal.error);
+    case Reason::other_revision:
+      return {error_revision_conflict, refusal.error.text(), {{"revision", refusal.revision}}};
+    case Reason::diverged:
+      return {error_diverged, refusal.error.text(), nullptr};
+    case Reason::failed:
+      break;
+  }
+  return {error_internal, refusal.error.text(), nullptr};
+}
+
 std::variant<Request, BadRequest> parse_request(const std::string& text, scene::TextLimits limits) {
   Result<json> parsed = scene::parse_json(text, "message", false, limits);
   if (!parsed) return BadRequest{{error_parse, parsed.error().text(), nullptr}};

@@ -10,6 +10,7 @@
 
 #include "server/base/result.h"
 #include "server/scene/document.h"
+#include "server/session/refusal.h"
 
 namespace clothlab::net {
 
@@ -37,6 +38,8 @@ struct RpcError {
 RpcError invalid_params(const std::string& path, const std::string& found, const std::string& allowed);
 /// The same from an Error whose `where` is a JSON Pointer (scene errors).
 RpcError invalid_params(const Error& error);
+/// What a session says, with the code for its reason.
+RpcError rpc_error(const session::Refusal& refusal);
 
 /// A call from a client; without an id it is a notification and is never answered.
 struct Request {

@@ -1,8 +1,8 @@
 #include "server/net/lab_entry.h"
 
+#include "server/base/log.h"
 #include "server/base/text.h"
 #include "server/lab/exports.h"
-#include "server/net/log.h"
 #include "server/sim/simulation.h"
 
 namespace clothlab::net {

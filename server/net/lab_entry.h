@@ -5,8 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "server/net/exchange.h"
+#include "server/net/json_rpc.h"
 #include "server/net/lab_worker.h"
+#include "server/session/exchange.h"
 
 namespace clothlab::net {
 
@@ -20,8 +21,8 @@ struct LabEntry {
   enum class State { asked, queued, holding, running, finished, cancelled, failed };
 
   std::uint64_t id = 0;
-  Ticket ticket;          ///< asker 0: has left, or nobody has asked
-  bool for_auto = false;  ///< asked for by the session itself, whose method is `auto`
+  session::Ticket ticket;  ///< asker 0: has left, or nobody has asked
+  bool for_auto = false;   ///< asked for by the session itself, whose method is `auto`
   std::string session;
   lab::Job job;
   LabWishes wishes;

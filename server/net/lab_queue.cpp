@@ -25,8 +25,8 @@ LabQueue::LabQueue(Port port, LabWorker::Open open, int most_seconds)
       most_seconds_(most_seconds),
       worker_(std::make_unique<LabWorker>(std::move(open), port_.wake)) {}
 
-std::variant<std::uint64_t, RpcError> LabQueue::admit(const Ticket& ticket, std::string session, lab::Job job,
-                                                      LabWishes wishes) {
+std::variant<std::uint64_t, RpcError> LabQueue::admit(const session::Ticket& ticket, std::string session,
+                                                      lab::Job job, LabWishes wishes) {
   const auto waiting = [&](auto counts) {
     return std::count_if(entries_.begin(), entries_.end(),
                          [&](const auto& item) { return item.second.waits() && counts(item.second); });
@@ -100,7 +100,7 @@ bool LabQueue::answer_from_cache(LabEntry& entry) {
   entry.outcome = std::make_shared<const lab::Outcome>(std::move(*known));
   entry.cached = true;
   port_.answer(entry.ticket, {{"job", entry.id}, {"ahead", 0}, {"cached", true}});
-  close(entry, State::finished, now_us());
+  close(entry, State::finished, session::now_us());
   return true;
 }
 
@@ -115,13 +115,13 @@ void LabQueue::scene_changed(const std::string& session, const scene::Document& 
 void LabQueue::held(std::uint64_t job) {
   const auto found = entries_.find(job);
   if (found == entries_.end() || found->second.state != State::holding) return;
-  begin(found->second, now_us());
+  begin(found->second, session::now_us());
 }
 
 void LabQueue::session_replaced(const std::string& session) {
   const auto found = entries_.find(current_);
   if (found == entries_.end() || found->second.session != session) return;
-  if (found->second.state == State::holding) begin(found->second, now_us());
+  if (found->second.state == State::holding) begin(found->second, session::now_us());
 }
 
 void LabQueue::session_reaches(const std::string& session, double share, std::int64_t now) {

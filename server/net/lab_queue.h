@@ -21,7 +21,7 @@ class LabQueue {
   struct Port {
     /// A message to a client, who may be gone.
     std::function<void(std::uint64_t client, const char* method, const json& params)> notify;
-    std::function<void(const Ticket& ticket, json answer)> answer;
+    std::function<void(const session::Ticket& ticket, json answer)> answer;
     /// Pauses a session if it plays; it answers with `held`.
     std::function<void(const std::string& session, std::uint64_t job)> hold;
     /// Lets it play on, if it was paused by `hold` and nobody has played, paused or stepped it since.
@@ -43,8 +43,8 @@ class LabQueue {
 
   /// A job and the ticket to answer, or why not: too many wait. The caller then makes sure that `scene_taken`
   /// comes, or calls `withdraw`.
-  std::variant<std::uint64_t, RpcError> admit(const Ticket& ticket, std::string session, lab::Job job,
-                                              LabWishes wishes);
+  std::variant<std::uint64_t, RpcError> admit(const session::Ticket& ticket, std::string session,
+                                              lab::Job job, LabWishes wishes);
   void withdraw(std::uint64_t job) { entries_.erase(job); }
   /// A choice for a session whose scene has the method `auto`; an earlier one that has not ended is dropped.
   void choose_for(const std::string& session, SharedDocument document);

@@ -4,9 +4,9 @@
 #include <new>
 #include <utility>
 
+#include "server/base/priority.h"
 #include "server/gl/context.h"
-#include "server/net/fault.h"
-#include "server/net/priority.h"
+#include "server/session/fault.h"
 
 namespace clothlab::net {
 
@@ -94,7 +94,7 @@ Result<lab::Outcome> LabWorker::carry_out(const Task& task, const std::stop_toke
       auto copy = std::make_shared<const lab::Outcome>(partial);
       put([&](Mail& mail) { mail.partial.swap(copy); });
     };
-    provoke_fault(fault_in_lab, task.id);
+    session::provoke_fault(session::fault_in_lab, task.id);
     return (*job)(*task.document, task.job, control);
   } catch (const std::bad_alloc&) {
     return Error{"lab", "there was not enough memory", "ask for fewer methods, or of a smaller scene"};
@@ -111,7 +111,7 @@ Result<LabWorker::Run> open_lab(std::optional<int> gpu) {
                             const scene::Document& document, const lab::Job& job,
                             const lab::Control<lab::Outcome>& control) -> Result<lab::Outcome> {
     Result<lab::Outcome> outcome = lab::run(document, job, control);
-    if (context->lost() || fault_due(Fault::context_lost, fault_in_lab, 0))
+    if (context->lost() || session::fault_due(session::Fault::context_lost, session::fault_in_lab, 0))
       return Error{"OpenGL", "the device was reset while it measured, and nothing on it can be trusted",
                    "ask again"};
     return outcome;

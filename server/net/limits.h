@@ -1,5 +1,5 @@
-// The bounds that keep one client from costing the others anything. `hello` announces the ones a client can
-// meet.
+// The bounds that keep one client from costing the others anything, those of its session aside. `hello`
+// announces the ones a client can meet.
 #pragma once
 
 #include <cstddef>
@@ -7,6 +7,7 @@
 
 #include "server/scene/document.h"
 #include "server/scene/ranges.h"
+#include "server/session/limits.h"
 
 namespace clothlab::net {
 
@@ -18,8 +19,7 @@ struct Limits {
   int message_bytes = static_cast<int>(scene::max_json_bytes);  ///< larger: closed with 1009
   int message_rate = 2000;  ///< messages a second, twice that in a burst; beyond: a flood, closed with 1008
   int json_depth = static_cast<int>(scene::max_json_depth);
-  int vertices = static_cast<int>(scene::max_vertices);  ///< of a scene
-  int springs = 16 * static_cast<int>(scene::max_vertices);
+  session::Limits scene;
   int lab_seconds = 1800;   ///< a job may take; beyond: it fails
   int header_seconds = 10;  ///< from connecting to the end of the request's headers, TLS included
   int auth_seconds = 5;     ///< a client without a role is closed with 1008 after this
@@ -36,22 +36,16 @@ inline int burst_of(const Limits& limits) {
 
 inline constexpr int max_unadmitted_bytes = 4096;  ///< of a message before its sender has a role
 inline constexpr std::size_t max_unsent_text_bytes =
-    4 * 1024 * 1024;                                        ///< control text a client may let pile up
-inline constexpr std::size_t max_waiting_commands = 1024;   ///< of a client at its session; beyond: -32002
-inline constexpr double min_rate = 0.1, max_rate = 120;     ///< frames a second a viewer may ask for
-inline constexpr int max_in_flight = 8;                     ///< unacknowledged frames a viewer may ask for
-inline constexpr std::int64_t max_steps = 1'000'000;        ///< of one sim.step
-inline constexpr double min_speed = 0.01, max_speed = 100;  ///< of sim.speed
+    4 * 1024 * 1024;                                     ///< control text a client may let pile up
+inline constexpr double min_rate = 0.1, max_rate = 120;  ///< frames a second a viewer may ask for
+inline constexpr int max_in_flight = 8;                  ///< unacknowledged frames a viewer may ask for
+inline constexpr std::int64_t max_steps = 1'000'000;     ///< of one sim.step
 inline constexpr int max_lab_jobs = 8, max_lab_jobs_a_client = 2;   ///< that wait; beyond: -32002
 inline constexpr int max_lab_outcomes_a_client = 8;                 ///< kept for lab.export, the newest
 inline constexpr double min_lab_time = 0.01, max_lab_time = 60;     ///< simulated by a job [s]
 inline constexpr double min_lab_budget = 1, max_lab_budget = 1200;  ///< of a chart [s]
 inline constexpr int max_snapshot_side = 4096;                      ///< [pixels]
 inline constexpr std::size_t max_exports = 8;  ///< pictures and meshes that wait or are made; beyond: 503
-inline constexpr double status_rate = 10;      ///< sim.status a second
-inline constexpr double diagnosis_rate = 60;   ///< looks a second at whether a session blows up
-/// A session that nobody has watched for this long stops stepping until somebody does again [s].
-inline constexpr double unwatched_seconds = 30;
 /// Unsent bytes the kernel may hold for a client: what lies there can no longer be replaced by something
 /// newer.
 inline constexpr int unsent_kernel_bytes = 64 * 1024;

@@ -88,16 +88,16 @@ bool is_method(const std::string& name) {
                      [&](const Method& method) { return name == method.name; });
 }
 
-Ticket ticket(const Client& client, const Request& request) {
+session::Ticket ticket(const Client& client, const Request& request) {
   return {client.id(), request.id, request.method, request.received_us};
 }
 
-Outcome ask_session(Client& client, const Request& request, decltype(Command::what) what) {
+Outcome ask_session(Client& client, const Request& request, decltype(session::Command::what) what) {
   if (client.room()->offer({ticket(client, request), std::move(what)})) return Later{};
-  return RpcError{
-      error_over_limit,
-      std::to_string(max_waiting_commands) + " of your requests wait already; wait for their answers",
-      nullptr};
+  return RpcError{error_over_limit,
+                  std::to_string(session::max_waiting_commands) +
+                      " of your requests wait already; wait for their answers",
+                  nullptr};
 }
 
 Outcome call(Client& client, const Request& request) {

@@ -5,8 +5,8 @@
 #include <variant>
 #include <vector>
 
-#include "server/net/exchange.h"
 #include "server/net/json_rpc.h"
+#include "server/session/exchange.h"
 
 namespace clothlab::net {
 
@@ -23,10 +23,10 @@ Outcome call(Client& client, const Request& request);
 std::vector<std::string> method_names();
 bool is_method(const std::string& name);
 
-Ticket ticket(const Client& client, const Request& request);
+session::Ticket ticket(const Client& client, const Request& request);
 
 /// Leaves it to the client's session, or says that it is too busy.
-Outcome ask_session(Client& client, const Request& request, decltype(Command::what) what);
+Outcome ask_session(Client& client, const Request& request, decltype(session::Command::what) what);
 
 // The groups of methods, one file each.
 Outcome scene_get(Client& client, const Request& request);

@@ -7,12 +7,12 @@ namespace clothlab::net {
 Outcome scene_get(Client& client, const Request& request) {
   Params params(request.params);
   if (auto error = params.check()) return *error;
-  return ask_session(client, request, GetScene{});
+  return ask_session(client, request, session::GetScene{});
 }
 
 Outcome scene_load(Client& client, const Request& request) {
   Params params(request.params);
-  LoadScene load{params.text("preset", ""), params.value("scene")};
+  session::LoadScene load{params.text("preset", ""), params.value("scene")};
   if (params.has("preset") == params.has("scene"))
     params.refuse("preset", "either a preset's name, or a scene");
   else if (params.has("preset") && load.preset.empty())
@@ -23,7 +23,7 @@ Outcome scene_load(Client& client, const Request& request) {
 
 Outcome scene_patch(Client& client, const Request& request) {
   Params params(request.params);
-  PatchScene patch{params.value("patch"), std::nullopt};
+  session::PatchScene patch{params.value("patch"), std::nullopt};
   if (!patch.patch.is_object() && !patch.patch.is_array())
     params.refuse("patch", "an object (RFC 7396 merge patch) or an array (RFC 6902 patch)");
   constexpr std::int64_t most = (std::int64_t{1} << 53) - 1;  // what a JSON number holds exactly

@@ -16,27 +16,27 @@ Outcome without_parameters(Client& client, const Request& request) {
 }  // namespace
 
 Outcome sim_play(Client& client, const Request& request) {
-  return without_parameters<Play>(client, request);
+  return without_parameters<session::Play>(client, request);
 }
 Outcome sim_pause(Client& client, const Request& request) {
-  return without_parameters<Pause>(client, request);
+  return without_parameters<session::Pause>(client, request);
 }
 Outcome sim_reset(Client& client, const Request& request) {
-  return without_parameters<Reset>(client, request);
+  return without_parameters<session::Reset>(client, request);
 }
 
 Outcome sim_step(Client& client, const Request& request) {
   Params params(request.params);
   const std::int64_t steps = params.integer("steps", 1, max_steps, 1);
   if (auto error = params.check()) return *error;
-  return ask_session(client, request, Step{static_cast<std::uint64_t>(steps)});
+  return ask_session(client, request, session::Step{static_cast<std::uint64_t>(steps)});
 }
 
 Outcome sim_speed(Client& client, const Request& request) {
   Params params(request.params);
-  const double factor = params.number("factor", min_speed, max_speed, std::nullopt);
+  const double factor = params.number("factor", session::min_speed, session::max_speed, std::nullopt);
   if (auto error = params.check()) return *error;
-  return ask_session(client, request, Speed{factor});
+  return ask_session(client, request, session::Speed{factor});
 }
 
 }  // namespace clothlab::net

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <cstdio>
 
+#include "server/base/log.h"
 #include "server/net/client.h"
 #include "server/net/greeting.h"
 #include "server/net/hub.h"
-#include "server/net/keeper.h"
-#include "server/net/log.h"
+#include "server/session/keeper.h"
 
 namespace clothlab::net {
 
@@ -20,19 +20,20 @@ bool is_session_name(const std::string& name) {
 }
 
 Room::Room(Hub& hub, std::string name, const std::function<void()>& wake)
-    : hub_(hub), name_(std::move(name)), wake_(wake), unwatched_since_(now_us()) {
+    : hub_(hub), name_(std::move(name)), wake_(wake), unwatched_since_(session::now_us()) {
   begin_session(nullptr);
 }
 
 /// Frames that viewers may have had of a session that failed, since its room last looked.
 constexpr std::uint32_t frames_unseen = 64;
 
-void Room::begin_session(std::shared_ptr<const Saved> saved) {
+void Room::begin_session(std::shared_ptr<const session::Saved> saved) {
   const Options& options = hub_.options();
-  Beginning beginning{name_, options.document, std::move(saved), {}, last_frame_ + frames_unseen};
-  if (!options.state_folder.empty()) beginning.file = session_file(options.state_folder, name_);
+  session::Beginning beginning{name_, options.document, std::move(saved), {}, last_frame_ + frames_unseen};
+  if (!options.state_folder.empty()) beginning.file = session::session_file(options.state_folder, name_);
   give_up_session().reset();
-  session_ = std::make_unique<Session>(std::move(beginning), options.limits, options.gpu, wake_);
+  session_ =
+      std::make_unique<session::Session>(std::move(beginning), options.limits.scene, options.gpu, wake_);
 }
 
 stream::SharedMessage Room::frame(stream::Encoding encoding) const {
@@ -42,21 +43,21 @@ stream::SharedMessage Room::frame(stream::Encoding encoding) const {
   return frame;
 }
 
-void Room::post(Command command) {
+void Room::post(session::Command command) {
   if (session_) session_->exchange().post(std::move(command));
 }
 
-bool Room::offer(Command command) {
+bool Room::offer(session::Command command) {
   return session_ && session_->exchange().offer(std::move(command));
 }
 
-bool Room::capture(std::uint64_t asker, const Export& what) {
+bool Room::capture(std::uint64_t asker, const session::Export& what) {
   if (!offer({{asker, std::nullopt}, what})) return false;
   ++capturing_;
   return true;
 }
 
-std::unique_ptr<Session> Room::give_up_session() {
+std::unique_ptr<session::Session> Room::give_up_session() {
   hub_.metrics().steps_of_closed_sessions += steps();
   return std::move(session_);
 }
@@ -67,7 +68,7 @@ void Room::stop() {
 
 void Room::enter(Client& client) {
   clients_.push_back(&client);
-  post({{}, Watchers{static_cast<int>(clients_.size())}});
+  post({{}, session::Watchers{static_cast<int>(clients_.size())}});
   if (started()) greet(client);
   broadcast_viewers();
 }
@@ -75,14 +76,14 @@ void Room::enter(Client& client) {
 void Room::leave(Client& client) {
   clients_.erase(std::remove(clients_.begin(), clients_.end(), &client), clients_.end());
   hub_.lab().client_left(client.id());
-  if (clients_.empty()) unwatched_since_ = now_us();
-  post({{}, Watchers{static_cast<int>(clients_.size())}});
+  if (clients_.empty()) unwatched_since_ = session::now_us();
+  post({{}, session::Watchers{static_cast<int>(clients_.size())}});
   demand_changed(std::nullopt);
   broadcast_viewers();
 }
 
 void Room::demand_changed(std::optional<stream::Encoding> fresh) {
-  Demand demand;
+  session::Demand demand;
   for (const Client* client : clients_) {
     if (!client->pacing().subscribed()) continue;
     double& rate = demand.rate[static_cast<std::size_t>(client->pacing().encoding())];
@@ -101,8 +102,8 @@ void Room::demand_changed(std::optional<stream::Encoding> fresh) {
 void Room::pump() {
   if (!session_) return;
   session_->exchange().take_events(events_);
-  for (Event& event : events_) std::visit([&](auto& what) { take(what); }, event);
-  const std::int64_t now = now_us();
+  for (session::Event& event : events_) std::visit([&](auto& what) { take(what); }, event);
+  const std::int64_t now = session::now_us();
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     const auto encoding = static_cast<stream::Encoding>(i);
     const stream::SharedMessage latest = demanded_[i] > 0 ? frame(encoding) : nullptr;
@@ -112,7 +113,7 @@ void Room::pump() {
   }
 }
 
-void Room::take(Started& started) {
+void Room::take(session::Started& started) {
   const bool again = this->started();
   renderer_ = started.renderer;
   log(LogLevel::info, "session_started", {{"session", name_}, {"renderer", renderer_}});
@@ -121,22 +122,22 @@ void Room::take(Started& started) {
 }
 
 /// A session that had begun goes on from what it kept; one that fails again and again does not.
-bool Room::bring_back(const Failed& failed) {
+bool Room::bring_back(const session::Failed& failed) {
   constexpr std::int64_t a_while = 60'000'000;
   constexpr std::size_t most = 3;
-  const std::int64_t now = now_us();
+  const std::int64_t now = session::now_us();
   std::erase_if(failed_at_, [&](std::int64_t at) { return now - at > a_while; });
-  const std::shared_ptr<const Saved> saved = session_->exchange().kept();
+  const std::shared_ptr<const session::Saved> saved = session_->exchange().kept();
   if (!started() || !saved || failed_at_.size() >= most) return false;
   failed_at_.push_back(now);
   ++hub_.metrics().sessions_brought_back;
   session_->exchange().give_up(failed.error, late_);
   begin_session(saved);
-  for (Event& event : late_) std::visit([&](auto& what) { take(what); }, event);
+  for (session::Event& event : late_) std::visit([&](auto& what) { take(what); }, event);
   late_.clear();
   for (Client* client : clients_) client->session_replaced();
-  post({{}, Watchers{static_cast<int>(clients_.size())}});
-  for (std::size_t i = 0; i < encoding_count; ++i) demand_changed(static_cast<stream::Encoding>(i));
+  post({{}, session::Watchers{static_cast<int>(clients_.size())}});
+  for (std::size_t i = 0; i < stream::encoding_count; ++i) demand_changed(static_cast<stream::Encoding>(i));
   hub_.lab().session_replaced(name_);
   broadcast("notice", {{"level", "warning"},
                        {"text", "the session failed and goes on from where it was a second ago: " +
@@ -144,11 +145,11 @@ bool Room::bring_back(const Failed& failed) {
   return true;
 }
 
-void Room::take(SceneLost& lost) {
+void Room::take(session::SceneLost& lost) {
   hub_.lab().withdraw(lost.job);
 }
 
-void Room::take(Failed& failed) {
+void Room::take(session::Failed& failed) {
   log(LogLevel::error, "session_failed", {{"session", name_}, {"why", failed.error.text()}});
   if (bring_back(failed)) return;
   broadcast("notice", {{"level", "error"}, {"text", failed.error.text()}});
@@ -160,12 +161,16 @@ void Room::take(Failed& failed) {
   failure_ = failed;
 }
 
-void Room::take(Reply& reply) {
+void Room::take(session::Reply& reply) {
   Client* client = hub_.find_client(reply.ticket.asker);
-  if (client) client->answer(reply.ticket, reply.answer);
+  if (!client) return;
+  if (const auto* refusal = std::get_if<session::Refusal>(&reply.answer))
+    client->answer(reply.ticket, rpc_error(*refusal));
+  else
+    client->answer(reply.ticket, std::get<json>(reply.answer));
 }
 
-void Room::take(SceneChanged& changed) {
+void Room::take(session::SceneChanged& changed) {
   document_ = changed.document;
   revision_ = changed.revision;
   hub_.lab().scene_changed(name_, *document_);
@@ -175,16 +180,16 @@ void Room::take(SceneChanged& changed) {
     broadcast("scene", {{"document", document()}, {"revision", revision_}});
 }
 
-void Room::take(TopologyChanged& changed) {
+void Room::take(session::TopologyChanged& changed) {
   topology_ = changed.message;
   for (Client* client : clients_) client->wake();
 }
 
-void Room::take(const Status& status) {
+void Room::take(const session::Status& status) {
   asleep_ = status.asleep;
   take(status.pass_times);
   if (status.real_time_factor > 0)
-    hub_.lab().session_reaches(name_, status.real_time_factor / status.speed, now_us());
+    hub_.lab().session_reaches(name_, status.real_time_factor / status.speed, session::now_us());
   if (clients_.empty() || !started()) return;
   const SharedText text = make_text(notification_text("sim.status", status_params(status)));
   for (Client* client : clients_) client->send_status(text);
@@ -198,7 +203,7 @@ void Room::take(const gl::StageTimes& times) {
   }
 }
 
-void Room::take(PassesChanged& changed) {
+void Room::take(session::PassesChanged& changed) {
   passes_ = skipped_ = json::array();
   pass_seconds_ = json::object();
   for (const sim::Simulation::Pass& pass : changed.passes) {
@@ -209,33 +214,33 @@ void Room::take(PassesChanged& changed) {
   }
 }
 
-void Room::take(SolverChanged& changed) {
+void Room::take(session::SolverChanged& changed) {
   solver_ = std::move(changed.facts);
 }
 
-void Room::take(Diverged& diverged) {
+void Room::take(session::Diverged& diverged) {
   broadcast("sim.diverged", {{"reason", diverged.reason},
                              {"remedy", {{"text", diverged.remedy}, {"patch", diverged.patch}}}});
 }
 
-void Room::take(Notice& notice) {
+void Room::take(session::Notice& notice) {
   broadcast("notice", {{"level", notice.level}, {"text", notice.text}});
 }
 
-void Room::take(Captured& captured) {
+void Room::take(session::Captured& captured) {
   --capturing_;
   hub_.captured(std::move(captured));
 }
 
-void Room::take(SceneReached& reached) {
+void Room::take(session::SceneReached& reached) {
   hub_.lab().scene_taken(reached.job, document_, revision_);
 }
 
-void Room::take(Held& held) {
+void Room::take(session::Held& held) {
   hub_.lab().held(held.job);
 }
 
-void Room::take(ChoiceWanted&) {
+void Room::take(session::ChoiceWanted&) {
   hub_.lab().choose_for(name_, document_);
 }
 
@@ -254,7 +259,7 @@ void Room::broadcast_viewers() {
   broadcast("viewers", {{"count", clients_.size()}});
 }
 
-json Room::status_params(const Status& status) const {
+json Room::status_params(const session::Status& status) const {
   const sim::Diagnostics& d = status.diagnostics;
   return {{"playing", status.playing},
           {"time", d.time},

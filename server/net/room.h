@@ -10,8 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "server/net/json_rpc.h"
 #include "server/net/outbox.h"
-#include "server/net/session.h"
+#include "server/session/session.h"
 
 namespace clothlab::net {
 
@@ -42,65 +43,65 @@ class Room {
   /// A client's subscription has changed; `fresh`: it needs a frame of this encoding though nothing moves.
   void demand_changed(std::optional<stream::Encoding> fresh);
 
-  void post(Command command);
+  void post(session::Command command);
   /// The same for what a client asks for. False: too much waits already.
-  [[nodiscard]] bool offer(Command command);
+  [[nodiscard]] bool offer(session::Command command);
   /// For a picture or mesh; hub.captured() gets the moment. False: too much waits already.
-  [[nodiscard]] bool capture(std::uint64_t asker, const Export& what);
+  [[nodiscard]] bool capture(std::uint64_t asker, const session::Export& what);
   std::size_t capturing() const { return capturing_; }  ///< how many of those are still to come
   /// Takes in what the session has put out and passes it on.
   void pump();
-  const std::optional<Failed>& failure() const { return failure_; }
+  const std::optional<session::Failed>& failure() const { return failure_; }
 
   void stop();
   /// Its steps stay counted.
-  std::unique_ptr<Session> give_up_session();
+  std::unique_ptr<session::Session> give_up_session();
   bool beats() const { return !session_ || session_->beats(); }
   bool asleep() const { return asleep_; }  ///< as last told
   std::uint64_t steps() const { return session_ ? session_->exchange().steps() : 0; }
 
  private:
-  void take(Started& started);
-  void take(Failed& failed);
-  void take(Reply& reply);
-  void take(SceneChanged& changed);
-  void take(TopologyChanged& changed);
-  void take(PassesChanged& changed);
-  void take(SolverChanged& changed);
-  void take(Diverged& diverged);
-  void take(Notice& notice);
-  void take(Captured& captured);
-  void take(SceneReached& reached);
-  void take(SceneLost& lost);
-  void take(Held& held);
-  void take(ChoiceWanted&);
-  void take(const Status& status);
+  void take(session::Started& started);
+  void take(session::Failed& failed);
+  void take(session::Reply& reply);
+  void take(session::SceneChanged& changed);
+  void take(session::TopologyChanged& changed);
+  void take(session::PassesChanged& changed);
+  void take(session::SolverChanged& changed);
+  void take(session::Diverged& diverged);
+  void take(session::Notice& notice);
+  void take(session::Captured& captured);
+  void take(session::SceneReached& reached);
+  void take(session::SceneLost& lost);
+  void take(session::Held& held);
+  void take(session::ChoiceWanted&);
+  void take(const session::Status& status);
   void take(const gl::StageTimes& times);
-  void begin_session(std::shared_ptr<const Saved> saved);
-  bool bring_back(const Failed& failed);
+  void begin_session(std::shared_ptr<const session::Saved> saved);
+  bool bring_back(const session::Failed& failed);
   void greet(Client& client);
   void broadcast(const char* method, const json& params);
   void broadcast_viewers();
-  json status_params(const Status& status) const;
+  json status_params(const session::Status& status) const;
 
   Hub& hub_;
   std::string name_;
   std::function<void()> wake_;
-  std::unique_ptr<Session> session_;
+  std::unique_ptr<session::Session> session_;
   std::vector<Client*> clients_;
-  std::vector<Event> events_, late_;
+  std::vector<session::Event> events_, late_;
   std::string renderer_;
   std::shared_ptr<const scene::Document> document_;
   std::uint64_t revision_ = 0;
   stream::SharedMessage topology_;
   json passes_ = json::array(), skipped_ = json::array(), pass_seconds_ = json::object(),
        solver_ = json::object();
-  std::array<double, encoding_count> demanded_{};
-  std::array<std::uint32_t, encoding_count>
+  std::array<double, stream::encoding_count> demanded_{};
+  std::array<std::uint32_t, stream::encoding_count>
       seen_{};                           ///< sequence number of the last frame offered to viewers
   std::uint32_t last_frame_ = 0;         ///< the number of the newest one
   std::vector<std::int64_t> failed_at_;  ///< [us] when the session was brought back
-  std::optional<Failed> failure_;
+  std::optional<session::Failed> failure_;
   std::size_t capturing_ = 0;
   std::int64_t unwatched_since_ = 0;
   bool asleep_ = false;

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
+#include "server/base/log.h"
 #include "server/net/callbacks.h"
-#include "server/net/log.h"
 #include "server/net/request_checks.h"
 #include "server/net/request_headers.h"
 
@@ -90,7 +90,7 @@ std::string Server::url() const {
          std::to_string(lws_get_vhost_listen_port(vhost_)) + "/";
 }
 
-std::optional<Failed> Server::run(const std::function<void()>& ready) {
+std::optional<session::Failed> Server::run(const std::function<void()>& ready) {
   if (!files_.built())
     log(LogLevel::warning, "page_not_built",
         {{"remedy", "npm --prefix web ci && npm --prefix web run build, or server/run"}});
@@ -111,8 +111,8 @@ std::optional<Failed> Server::run(const std::function<void()>& ready) {
 void Server::say_goodbye() {
   constexpr int going_away = 1001;
   hub_.close_all(going_away, "the server is shutting down");
-  const std::int64_t until = now_us() + 300'000;
-  while (!hub_.empty() && now_us() < until) {
+  const std::int64_t until = session::now_us() + 300'000;
+  while (!hub_.empty() && session::now_us() < until) {
     lws_cancel_service(context_);  // so that the wait below is short
     if (lws_service(context_, 0) < 0) break;
   }

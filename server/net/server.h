@@ -25,7 +25,7 @@ class Server {
   std::string url() const;
   /// Opens the session `main`, calls `ready` when it runs, and serves until `stop`. Why it could not start,
   /// if so.
-  std::optional<Failed> run(const std::function<void()>& ready);
+  std::optional<session::Failed> run(const std::function<void()>& ready);
   /// Ends `run`. Any thread, and signal handlers, may call it.
   void stop();
 

@@ -9,9 +9,9 @@
 #include <memory>
 #include <set>
 
+#include "server/base/log.h"
 #include "server/net/client.h"
 #include "server/net/hub.h"
-#include "server/net/log.h"
 #include "tests/fuzz/document.h"
 #include "tests/fuzz/no_machine.h"
 
@@ -110,8 +110,8 @@ net::Options options(bool token) {
   net::Options options;
   options.document = document;
   if (token) {
-    options.token = "t";
-    options.view_token = "v";
+    options.token = std::string("t");
+    options.view_token = std::string("v");
   }
   return options;
 }
@@ -145,7 +145,7 @@ void converse(net::Hub& hub, Peer& first, Peer& second, std::string_view rest) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  net::set_log_level(net::LogLevel::error);
+  set_log_level(LogLevel::error);
   if (size == 0 || size > scene::max_json_bytes) return 0;
   const int setup = data[0];
   net::Hub hub(options(setup & 1), [] {});

@@ -1,5 +1,5 @@
-// These definitions take the place of those in server/net/session.cpp and lab_worker.cpp (whose objects the
-// linker then leaves in their library) and of libwebsockets' own.
+// These definitions take the place of those in server/session/session.cpp and server/net/lab_worker.cpp
+// (whose objects the linker then leaves in their library) and of libwebsockets' own.
 #include "tests/fuzz/no_machine.h"
 
 #include <libwebsockets.h>
@@ -8,7 +8,7 @@
 #include <map>
 
 #include "server/net/lab_worker.h"
-#include "server/net/session.h"
+#include "server/session/session.h"
 #include "server/sim/simulation.h"
 
 namespace clothlab {
@@ -28,8 +28,8 @@ std::map<const lws*, Connection>& connections() {
 }
 Arrival arrival;
 
-std::vector<net::Session*>& sessions() {
-  static std::vector<net::Session*> all;
+std::vector<session::Session*>& sessions() {
+  static std::vector<session::Session*> all;
   return all;
 }
 
@@ -61,7 +61,7 @@ bool close_was_said(const lws* wsi) {
 }  // namespace fuzz
 
 // The session.
-namespace net {
+namespace session {
 
 namespace {
 
@@ -85,7 +85,7 @@ class Scribe {
                   {});
     if (const auto* patch = std::get_if<PatchScene>(&command.what)) {
       if (patch->revision && *patch->revision != revision_)
-        return reply(ticket, RpcError{error_revision_conflict, "conflict", {{"revision", revision_}}});
+        return reply(ticket, Refusal{Refusal::Reason::other_revision, {"", "conflict", ""}, revision_});
       return take(ticket, scene::apply_patch(document_, patch->patch), patch->patch);
     }
     if (const auto* reach = std::get_if<ReachScene>(&command.what))
@@ -95,11 +95,11 @@ class Scribe {
   }
 
  private:
-  void reply(const Ticket& ticket, std::variant<json, RpcError> answer) {
+  void reply(const Ticket& ticket, std::variant<json, Refusal> answer) {
     if (ticket.id) exchange_->emit(Reply{ticket, std::move(answer)});
   }
   void take(const Ticket& ticket, Result<scene::Document> document, std::optional<json> patch) {
-    if (!document) return reply(ticket, invalid_params(document.error()));
+    if (!document) return reply(ticket, invalid_value(document.error()));
     document_ = std::move(*document);
     ++revision_;
     reply(ticket, json{{"revision", revision_}});
@@ -134,7 +134,11 @@ Session::~Session() {
   std::erase(fuzz::sessions(), this);
 }
 
+}  // namespace session
+
 // The lab.
+namespace net {
+
 LabWorker::~LabWorker() = default;
 
 void LabWorker::begin(Task task) {
@@ -155,13 +159,13 @@ Result<LabWorker::Run> open_lab(std::optional<int>) {
 
 bool fuzz::answer_commands() {
   bool any = false;
-  std::vector<net::Command> commands;
-  for (net::Session* session : sessions()) {
+  std::vector<session::Command> commands;
+  for (session::Session* session : sessions()) {
     while (true) {
-      session->exchange().take_commands(commands, net::Clock::time_point{});
+      session->exchange().take_commands(commands, session::Clock::time_point{});
       if (commands.empty()) break;
       any = true;
-      for (const net::Command& command : commands) net::scribes().at(session).perform(command);
+      for (const session::Command& command : commands) session::scribes().at(session).perform(command);
     }
   }
   return any;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "server/net/exchange.h"
+#include "server/session/exchange.h"
 
 struct lws;
 

@@ -29,7 +29,8 @@ bool finite(const sim::State& state) {
   return all(state.position) && all(state.velocity);
 }
 
-/// A document and its simulation, changed and watched as a session does it (server/net/stepper_commands.cpp).
+/// A document and its simulation, changed and watched as a session does it
+/// (server/session/stepper_commands.cpp).
 class Session {
  public:
   explicit Session(scene::Document document)

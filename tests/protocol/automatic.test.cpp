@@ -1,10 +1,10 @@
 // The method "auto" in a session, without its threads: when a choice is due, and what becomes of one.
-#include "server/net/automatic.h"
+#include "server/session/automatic.h"
 
 #include "tests/catch.h"
 
 using namespace clothlab;
-using net::Automatic;
+using session::Automatic;
 
 namespace {
 

@@ -1,5 +1,5 @@
 // Which helper threads of software OpenGL a session computes on, and that it moves between them unharmed.
-#include "server/net/engine.h"
+#include "server/session/engine.h"
 
 #include <sys/resource.h>
 
@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "server/net/stepper.h"
+#include "server/session/stepper.h"
 #include "server/sim/cost.h"
 #include "tests/scenes.h"
 
@@ -37,15 +37,15 @@ scene::Scene large_seed(int side) {
   return scene;
 }
 
-net::Command patch(scene::json what) {
-  return {{1, scene::json(1)}, net::PatchScene{std::move(what), {}}};
+session::Command patch(scene::json what) {
+  return {{1, scene::json(1)}, session::PatchScene{std::move(what), {}}};
 }
 
 }  // namespace
 
 TEST_CASE(
     "a scene is heavy where software OpenGL could not step it in real time, and stays so near the boundary") {
-  const auto threads_for = net::Engine::threads_for;
+  const auto threads_for = session::Engine::threads_for;
   CHECK(threads_for(test::seed(), HelperThreads::light_sessions) == HelperThreads::light_sessions);
   CHECK(threads_for(large_seed(64), HelperThreads::light_sessions) == HelperThreads::light_sessions);
   CHECK(threads_for(large_seed(256), HelperThreads::light_sessions) == HelperThreads::heavy_sessions);
@@ -64,14 +64,14 @@ TEST_CASE(
 }
 
 TEST_CASE("heavy scenes have helper threads of their own, which give way") {
-  net::Exchange exchange{[] {}};
-  const auto light = net::Engine::create(test::seed(), exchange, {});
+  session::Exchange exchange{[] {}};
+  const auto light = session::Engine::create(test::seed(), exchange, {});
   REQUIRE(light);
   if (!(*light)->software()) return;  // a GPU has none
   const std::map<int, int> before = threads();
-  net::Engine::Wanted wanted;
+  session::Engine::Wanted wanted;
   wanted.threads = HelperThreads::heavy_sessions;
-  const auto heavy = net::Engine::create(test::seed(), exchange, wanted);
+  const auto heavy = session::Engine::create(test::seed(), exchange, wanted);
   REQUIRE(heavy);
   int added = 0;
   for (const auto& [thread, niceness] : threads()) {
@@ -85,26 +85,26 @@ TEST_CASE("heavy scenes have helper threads of their own, which give way") {
 TEST_CASE(
     "a session whose scene becomes heavy and light again goes on where it was, and its frames are numbered "
     "on") {
-  net::Exchange exchange{[] {}};
+  session::Exchange exchange{[] {}};
   Result<scene::Document> seed = scene::load_preset("seed");
   REQUIRE(seed);
-  Result<std::unique_ptr<net::Stepper>> stepper =
-      net::Stepper::create(std::move(*seed), exchange, net::Limits());
+  Result<std::unique_ptr<session::Stepper>> stepper =
+      session::Stepper::create(std::move(*seed), exchange, session::Limits());
   REQUIRE(stepper);
-  std::vector<net::Command> commands;
+  std::vector<session::Command> commands;
   const auto turn_until = [&](auto done) {
-    const auto late = net::Clock::now() + std::chrono::seconds(60);
-    while (!done() && net::Clock::now() < late) {
+    const auto late = session::Clock::now() + std::chrono::seconds(60);
+    while (!done() && session::Clock::now() < late) {
       std::this_thread::sleep_until(
-          std::min((*stepper)->turn(commands), net::Clock::now() + std::chrono::milliseconds(5)));
+          std::min((*stepper)->turn(commands), session::Clock::now() + std::chrono::milliseconds(5)));
       commands.clear();
     }
     REQUIRE(done());
   };
   const auto frame = [&] { return exchange.frame(stream::Encoding::f32); };
-  net::Demand demand;
+  session::Demand demand;
   demand.rate[static_cast<std::size_t>(stream::Encoding::f32)] = 60;
-  commands = {{{}, net::Watchers{1}}, {{}, demand}};
+  commands = {{{}, session::Watchers{1}}, {{}, demand}};
   turn_until([&] { return frame() && frame()->header.step > 300; });
 
   std::uint64_t steps = frame()->header.step;

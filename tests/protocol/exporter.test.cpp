@@ -1,5 +1,5 @@
 // The thread that makes pictures and meshes, with files made for the test.
-#include "server/net/exporter.h"
+#include "server/session/exporter.h"
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -12,8 +12,8 @@
 #include "tests/catch.h"
 
 using namespace clothlab;
-using net::Exported;
-using net::Exporter;
+using session::Exported;
+using session::Exporter;
 
 namespace {
 
@@ -27,8 +27,8 @@ Exported made_by(Exporter& exporter) {
   return std::move(*made);
 }
 
-net::Moment moment_at(double time) {
-  net::Moment moment;
+session::Moment moment_at(double time) {
+  session::Moment moment;
   moment.time = time;
   return moment;
 }
@@ -38,7 +38,7 @@ net::Moment moment_at(double time) {
 TEST_CASE("the exporter makes one file at a time, gives way while it does, and tells of each") {
   std::atomic<bool> may_end{false};
   std::atomic<int> told{0}, nice{0};
-  const auto make = [&](const net::Moment& moment, const net::Export& what) -> Result<std::string> {
+  const auto make = [&](const session::Moment& moment, const session::Export& what) -> Result<std::string> {
     nice = getpriority(PRIO_PROCESS, static_cast<id_t>(gettid()));
     await([&] { return may_end.load(); });
     return std::to_string(what.width) + " at " + std::to_string(static_cast<int>(moment.time));
@@ -65,7 +65,7 @@ TEST_CASE("the exporter makes one file at a time, gives way while it does, and t
 
 TEST_CASE("an export that cannot be made is an error, and the next one is made") {
   int count = 0;
-  const auto make = [&](const net::Moment&, const net::Export&) -> Result<std::string> {
+  const auto make = [&](const session::Moment&, const session::Export&) -> Result<std::string> {
     ++count;
     if (count == 1) throw std::bad_alloc();
     if (count == 2) throw std::runtime_error("the file fell over");
@@ -83,7 +83,7 @@ TEST_CASE("an export that cannot be made is an error, and the next one is made")
 
 TEST_CASE("an exporter that ends finishes what it makes") {
   std::atomic<bool> begun{false}, ended{false};
-  const auto make = [&](const net::Moment&, const net::Export&) -> Result<std::string> {
+  const auto make = [&](const session::Moment&, const session::Export&) -> Result<std::string> {
     begun = true;
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     ended = true;
@@ -100,16 +100,16 @@ TEST_CASE("an exporter that ends finishes what it makes") {
 TEST_CASE("a picture or mesh of a moment needs no session") {
   Result<scene::Document> document = scene::load_preset("seed");
   REQUIRE(document);
-  net::Moment moment = moment_at(0.5);
+  session::Moment moment = moment_at(0.5);
   moment.positions.assign(625, glm::vec3(0));
   for (std::size_t i = 0; i < 625; ++i) moment.positions[i].x = 0.01f * static_cast<float>(i % 25);
   moment.document = std::make_shared<const scene::Document>(std::move(*document));
-  const Result<std::string> mesh = net::make_export(std::nullopt, moment, {});
+  const Result<std::string> mesh = session::make_export(std::nullopt, moment, {});
   REQUIRE(mesh);
   CHECK(mesh->find("t = 0.5 s") != std::string::npos);
   CHECK(mesh->find("\nv 0.24 0 0\n") != std::string::npos);
   std::thread([&] {
-    const Result<std::string> picture = net::make_export(std::nullopt, moment, {64, 48});
+    const Result<std::string> picture = session::make_export(std::nullopt, moment, {64, 48});
     REQUIRE(picture);
     CHECK(picture->substr(1, 3) == "PNG");
   }).join();

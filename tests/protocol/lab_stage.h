@@ -15,7 +15,7 @@ namespace clothlab::test {
 
 using net::json;
 using net::LabQueue;
-using net::now_us;
+using session::now_us;
 
 struct Message {
   std::uint64_t client = 0;
@@ -95,7 +95,7 @@ struct Lab {
                 [this](std::uint64_t client, const char* method, const json& params) {
                   messages.push_back({client, method, params, now_us()});
                 },
-            .answer = [this](const net::Ticket& ticket,
+            .answer = [this](const session::Ticket& ticket,
                              const json& answer) { answers[ticket.id->get<std::string>()] = answer; },
             .hold = [this](const std::string&, std::uint64_t job) { holds.push_back(job); },
             .release = [this](const std::string&) { ++releases; },

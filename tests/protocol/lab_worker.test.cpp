@@ -7,10 +7,10 @@
 #include <set>
 #include <thread>
 
+#include "server/base/priority.h"
 #include "server/gl/context.h"
-#include "server/net/exporter.h"
 #include "server/net/lab_worker.h"
-#include "server/net/priority.h"
+#include "server/session/exporter.h"
 #include "tests/catch.h"
 
 using namespace clothlab;
@@ -28,12 +28,12 @@ std::set<int> threads() {
 void draw() {
   Result<scene::Document> document = scene::load_preset("seed");
   REQUIRE(document);
-  net::Moment moment;
+  session::Moment moment;
   moment.positions.assign(625, glm::vec3(0.5f));
   moment.document = std::make_shared<const scene::Document>(std::move(*document));
   std::thread([&] {
-    net::lower_priority(10);
-    REQUIRE(net::make_export(std::nullopt, moment, {64, 48}));
+    lower_priority(10);
+    REQUIRE(session::make_export(std::nullopt, moment, {64, 48}));
   }).join();
 }
 

@@ -1,5 +1,5 @@
 // Of the session's thread, in this process: what it allocates.
-#include "server/net/stepper.h"
+#include "server/session/stepper.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -46,20 +46,20 @@ void operator delete[](void* memory, std::size_t) noexcept {
 }
 
 using namespace clothlab;
-using net::Clock;
+using session::Clock;
 
 namespace {
 
 struct Fixture {
-  net::Exchange exchange{[] {}};
-  std::unique_ptr<net::Stepper> stepper;
-  std::vector<net::Command> commands;
+  session::Exchange exchange{[] {}};
+  std::unique_ptr<session::Stepper> stepper;
+  std::vector<session::Command> commands;
 
-  explicit Fixture(double patience = net::unwatched_seconds) {
+  explicit Fixture(double patience = session::unwatched_seconds) {
     Result<scene::Document> seed = scene::load_preset("seed");
     REQUIRE(seed);
-    Result<std::unique_ptr<net::Stepper>> created =
-        net::Stepper::create(std::move(*seed), exchange, net::Limits(), std::nullopt, 0, patience);
+    Result<std::unique_ptr<session::Stepper>> created =
+        session::Stepper::create(std::move(*seed), exchange, session::Limits(), std::nullopt, 0, patience);
     REQUIRE(created);
     stepper = std::move(*created);
   }
@@ -91,9 +91,9 @@ struct Fixture {
 
 TEST_CASE("in steady state the stepping thread allocates nothing but the frames themselves") {
   Fixture session;
-  net::Demand demand;
+  session::Demand demand;
   demand.rate[static_cast<std::size_t>(stream::Encoding::q16)] = 60;
-  session.commands.push_back({{}, net::Watchers{1}});
+  session.commands.push_back({{}, session::Watchers{1}});
   session.commands.push_back({{}, demand});
   session.allocations_for(40);
   constexpr std::size_t frames = 120, a_frame = 2;  // the message with its count, and its bytes
@@ -114,7 +114,7 @@ TEST_CASE("an unwatched session steps until its patience ends, sleeps, and goes 
   CHECK(asleep > early);
   session.turn_for(0.5);
   CHECK(session.exchange.steps() == asleep);
-  session.commands.push_back({{}, net::Watchers{1}});
+  session.commands.push_back({{}, session::Watchers{1}});
   session.turn_for(1.0);
   CHECK(session.exchange.steps() > asleep);
 }

@@ -1,11 +1,11 @@
 // Who asks a session for much waits for himself alone.
-#include "server/net/command_queue.h"
+#include "server/session/command_queue.h"
 
-#include "server/net/limits.h"
+#include "server/session/limits.h"
 #include "tests/catch.h"
 
 using namespace clothlab;
-using net::CommandQueue;
+using session::CommandQueue;
 
 namespace {
 
@@ -13,13 +13,13 @@ std::uint64_t asker_of_next(CommandQueue& queue) {
   return queue.pop().ticket.asker;
 }
 
-net::Ticket by(std::uint64_t asker) {
-  net::Ticket ticket;
+session::Ticket by(std::uint64_t asker) {
+  session::Ticket ticket;
   ticket.asker = asker;
   return ticket;
 }
 
-net::Demand demand(double rate, bool fresh) {
+session::Demand demand(double rate, bool fresh) {
   return {{rate, 0}, {fresh, false}};
 }
 
@@ -28,25 +28,26 @@ net::Demand demand(double rate, bool fresh) {
 TEST_CASE(
     "a client may have max_waiting_commands waiting, whatever the others have, and the server always more") {
   CommandQueue queue;
-  for (std::size_t i = 0; i < net::max_waiting_commands; ++i) REQUIRE(queue.offer({by(1), net::Play{}}));
-  CHECK_FALSE(queue.offer({by(1), net::Play{}}));
-  CHECK(queue.offer({by(2), net::Play{}}));
-  for (std::size_t i = 0; i < 2 * net::max_waiting_commands; ++i) queue.post({{}, net::Release{}});
+  for (std::size_t i = 0; i < session::max_waiting_commands; ++i)
+    REQUIRE(queue.offer({by(1), session::Play{}}));
+  CHECK_FALSE(queue.offer({by(1), session::Play{}}));
+  CHECK(queue.offer({by(2), session::Play{}}));
+  for (std::size_t i = 0; i < 2 * session::max_waiting_commands; ++i) queue.post({{}, session::Release{}});
   CHECK(asker_of_next(queue) == 1);
-  CHECK(queue.offer({by(1), net::Play{}}));
+  CHECK(queue.offer({by(1), session::Play{}}));
 }
 
 TEST_CASE("clients take turns, and each one's commands keep their order") {
   CommandQueue queue;
-  for (std::size_t i = 0; i < 100; ++i) REQUIRE(queue.offer({by(1), net::Step{i}}));
-  REQUIRE(queue.offer({by(2), net::Step{7}}));
-  REQUIRE(queue.offer({by(2), net::Step{8}}));
-  REQUIRE(queue.offer({by(3), net::Step{9}}));
+  for (std::size_t i = 0; i < 100; ++i) REQUIRE(queue.offer({by(1), session::Step{i}}));
+  REQUIRE(queue.offer({by(2), session::Step{7}}));
+  REQUIRE(queue.offer({by(2), session::Step{8}}));
+  REQUIRE(queue.offer({by(3), session::Step{9}}));
   std::vector<std::uint64_t> askers, of_two;
   std::size_t of_one = 0;
   while (!queue.empty()) {
-    const net::Command command = queue.pop();
-    const std::size_t step = std::get<net::Step>(command.what).steps;
+    const session::Command command = queue.pop();
+    const std::size_t step = std::get<session::Step>(command.what).steps;
     askers.push_back(command.ticket.asker);
     if (command.ticket.asker == 1) CHECK(step == of_one++);
     if (command.ticket.asker == 2) of_two.push_back(step);
@@ -61,15 +62,15 @@ TEST_CASE(
     "of what viewers want and how many there are, only the newest waits; what was to come fresh still does") {
   CommandQueue queue;
   queue.post({{}, demand(30, true)});
-  queue.post({{}, net::Watchers{1}});
-  queue.post({{}, net::Hold{5}});
+  queue.post({{}, session::Watchers{1}});
+  queue.post({{}, session::Hold{5}});
   queue.post({{}, demand(60, false)});
-  queue.post({{}, net::Watchers{2}});
-  const net::Command first = queue.pop();
-  CHECK(std::get<net::Demand>(first.what).rate[0] == 60);
-  CHECK(std::get<net::Demand>(first.what).fresh[0]);
-  CHECK_FALSE(std::get<net::Demand>(first.what).fresh[1]);
-  CHECK(std::get<net::Watchers>(queue.pop().what).count == 2);
-  CHECK(std::get<net::Hold>(queue.pop().what).job == 5);
+  queue.post({{}, session::Watchers{2}});
+  const session::Command first = queue.pop();
+  CHECK(std::get<session::Demand>(first.what).rate[0] == 60);
+  CHECK(std::get<session::Demand>(first.what).fresh[0]);
+  CHECK_FALSE(std::get<session::Demand>(first.what).fresh[1]);
+  CHECK(std::get<session::Watchers>(queue.pop().what).count == 2);
+  CHECK(std::get<session::Hold>(queue.pop().what).job == 5);
   CHECK(queue.empty());
 }

@@ -1,10 +1,10 @@
-#include "server/net/exchange.h"
+#include "server/session/exchange.h"
 
 #include "tests/catch.h"
 
 using namespace clothlab;
-using net::Clock;
-using net::Exchange;
+using session::Clock;
+using session::Exchange;
 
 namespace {
 stream::SharedMessage frame(stream::Encoding encoding, std::uint32_t sequence) {
@@ -17,16 +17,16 @@ stream::SharedMessage frame(stream::Encoding encoding, std::uint32_t sequence) {
 
 TEST_CASE("a turn takes a few of the commands that wait, and none is lost") {
   Exchange exchange([] {});
-  for (std::size_t i = 0; i < 20; ++i) REQUIRE(exchange.offer({{}, net::Step{i}}));
-  exchange.post({{}, net::Watchers{3}});
-  std::vector<net::Command> commands;
+  for (std::size_t i = 0; i < 20; ++i) REQUIRE(exchange.offer({{}, session::Step{i}}));
+  exchange.post({{}, session::Watchers{3}});
+  std::vector<session::Command> commands;
   std::size_t steps = 0, taken = 0;
   while (taken < 21) {
     REQUIRE(exchange.take_commands(commands, Clock::now()));
     REQUIRE_FALSE(commands.empty());
     REQUIRE(commands.size() <= Exchange::commands_a_turn);
-    for (const net::Command& command : commands)
-      if (const auto* step = std::get_if<net::Step>(&command.what)) CHECK(step->steps == steps++);
+    for (const session::Command& command : commands)
+      if (const auto* step = std::get_if<session::Step>(&command.what)) CHECK(step->steps == steps++);
     taken += commands.size();
   }
   CHECK(steps == 20);
@@ -48,13 +48,13 @@ TEST_CASE("the mailbox keeps the latest frame of each encoding, for every viewer
 TEST_CASE("events arrive once and in order, and each wakes the service thread") {
   int wakes = 0;
   Exchange exchange([&wakes] { ++wakes; });
-  exchange.emit(net::Notice{"info", "first"});
-  exchange.emit(net::Notice{"info", "second"});
-  std::vector<net::Event> events;
+  exchange.emit(session::Notice{"info", "first"});
+  exchange.emit(session::Notice{"info", "second"});
+  std::vector<session::Event> events;
   exchange.take_events(events);
   REQUIRE(events.size() == 2);
-  CHECK(std::get<net::Notice>(events[0]).text == "first");
-  CHECK(std::get<net::Notice>(events[1]).text == "second");
+  CHECK(std::get<session::Notice>(events[0]).text == "first");
+  CHECK(std::get<session::Notice>(events[1]).text == "second");
   CHECK(wakes == 2);
   exchange.take_events(events);
   CHECK(events.empty());
@@ -63,20 +63,20 @@ TEST_CASE("events arrive once and in order, and each wakes the service thread") 
 TEST_CASE("of the statuses only the newest waits, after the events before it and before those after it") {
   Exchange exchange([] {});
   const auto status = [](double speed) {
-    net::Status status;
+    session::Status status;
     status.speed = speed;
     return status;
   };
   exchange.publish(status(1));
-  exchange.emit(net::Notice{"info", "between"});
+  exchange.emit(session::Notice{"info", "between"});
   exchange.publish(status(2));
-  exchange.emit(net::Notice{"info", "after"});
-  std::vector<net::Event> events;
+  exchange.emit(session::Notice{"info", "after"});
+  std::vector<session::Event> events;
   exchange.take_events(events);
   REQUIRE(events.size() == 3);
-  CHECK(std::get<net::Notice>(events[0]).text == "between");
-  CHECK(std::get<net::Status>(events[1]).speed == 2);
-  CHECK(std::get<net::Notice>(events[2]).text == "after");
+  CHECK(std::get<session::Notice>(events[0]).text == "between");
+  CHECK(std::get<session::Status>(events[1]).speed == 2);
+  CHECK(std::get<session::Notice>(events[2]).text == "after");
   exchange.take_events(events);
   CHECK(events.empty());
 }
@@ -84,6 +84,6 @@ TEST_CASE("of the statuses only the newest waits, after the events before it and
 TEST_CASE("a session that is told to stop does not wait for commands") {
   Exchange exchange([] {});
   exchange.stop();
-  std::vector<net::Command> commands;
+  std::vector<session::Command> commands;
   CHECK_FALSE(exchange.take_commands(commands, Clock::now() + std::chrono::hours(1)));
 }

@@ -1,10 +1,10 @@
-#include "server/net/real_time.h"
+#include "server/session/real_time.h"
 
 #include <algorithm>
 
 #include "tests/catch.h"
 
-using clothlab::net::RealTime;
+using clothlab::session::RealTime;
 using Time = RealTime::Time;
 
 namespace {

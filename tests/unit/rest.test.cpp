@@ -1,4 +1,4 @@
-#include "server/net/rest.h"
+#include "server/session/rest.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -8,7 +8,7 @@
 #include "tests/catch.h"
 
 using namespace clothlab;
-using net::Rest;
+using session::Rest;
 
 namespace {
 

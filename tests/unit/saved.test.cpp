@@ -1,5 +1,5 @@
 // What a session is brought back from, as bytes.
-#include "server/net/saved.h"
+#include "server/session/saved.h"
 
 #include "server/scene/document.h"
 #include "tests/catch.h"
@@ -8,8 +8,8 @@ using namespace clothlab;
 
 namespace {
 
-net::Saved some() {
-  net::Saved saved;
+session::Saved some() {
+  session::Saved saved;
   saved.document = scene::load_preset("seed")->value;
   saved.revision = 7;
   saved.playing = false;
@@ -26,8 +26,8 @@ net::Saved some() {
 }  // namespace
 
 TEST_CASE("a saved session is read back as it was, to the last bit") {
-  const net::Saved before = some();
-  const Result<net::Saved> after = net::saved_from(net::to_bytes(before));
+  const session::Saved before = some();
+  const Result<session::Saved> after = session::saved_from(session::to_bytes(before));
   REQUIRE(after);
   CHECK(after->document == before.document);
   CHECK(after->revision == before.revision);
@@ -41,14 +41,14 @@ TEST_CASE("a saved session is read back as it was, to the last bit") {
 
 TEST_CASE(
     "a saved session of any other length is refused, and so is one with a changed bit among its floats") {
-  const std::string bytes = net::to_bytes(some());
+  const std::string bytes = session::to_bytes(some());
   for (std::size_t length = 0; length < bytes.size(); ++length)
-    if (net::saved_from(bytes.substr(0, length))) FAIL("taken with " << length << " bytes");
-  CHECK_FALSE(net::saved_from(bytes + '\0'));
+    if (session::saved_from(bytes.substr(0, length))) FAIL("taken with " << length << " bytes");
+  CHECK_FALSE(session::saved_from(bytes + '\0'));
   for (std::size_t at = bytes.size() - 2 * 5 * sizeof(glm::vec3); at < bytes.size(); ++at)
     for (int bit = 0; bit < 8; ++bit) {
       std::string flipped = bytes;
       flipped[at] = static_cast<char>(flipped[at] ^ (1 << bit));
-      if (net::saved_from(flipped)) FAIL("taken with bit " << bit << " of byte " << at << " changed");
+      if (session::saved_from(flipped)) FAIL("taken with bit " << bit << " of byte " << at << " changed");
     }
 }

@@ -1,0 +1,68 @@
+#include "server/base/log.h"
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <ctime>
+#include <iostream>
+
+#include "server/base/text.h"
+
+namespace clothlab {
+
+namespace {
+
+constexpr std::array<const char*, 4> names{"error", "warning", "info", "debug"};  // by LogLevel
+std::atomic<LogLevel> least_urgent{LogLevel::info};
+
+/// UTC, to the millisecond (RFC 3339).
+std::string time_text() {
+  const auto now = std::chrono::system_clock::now();
+  const std::time_t seconds = std::chrono::system_clock::to_time_t(now);
+  const auto milliseconds =
+      std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch()).count() % 1000;
+  std::tm calendar{};
+  gmtime_r(&seconds, &calendar);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &calendar);
+  return text + formatted(".%03dZ", static_cast<int>(milliseconds));
+}
+
+std::string quoted(const std::string& value) {
+  const auto plain = [](unsigned char c) {
+    return c > ' ' && c != '"' && c != '=' && c != '\\' && c != 0x7F;
+  };
+  bool bare = !value.empty();
+  std::string text = "\"";
+  for (const char c : value) {
+    const auto byte = static_cast<unsigned char>(c);
+    bare = bare && plain(byte);
+    if (c == '"' || c == '\\')
+      text += {'\\', c};
+    else
+      text += byte < ' ' || byte == 0x7F ? formatted("\\x%02x", byte) : std::string(1, c);
+  }
+  return bare ? value : text + "\"";
+}
+
+}  // namespace
+
+void log(LogLevel level, const char* event, const std::vector<LogField>& fields) {
+  if (level > least_urgent) return;
+  std::string line =
+      "time=" + time_text() + " level=" + names[static_cast<std::size_t>(level)] + " event=" + event;
+  for (const LogField& field : fields) line += std::string(" ") + field.key + "=" + quoted(field.value);
+  std::cerr << line + "\n" << std::flush;  // in one piece: other threads write too
+}
+
+void set_log_level(LogLevel least) {
+  least_urgent = least;
+}
+
+std::optional<LogLevel> log_level(const std::string& name) {
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (name == names[i]) return static_cast<LogLevel>(i);
+  return std::nullopt;
+}
+
+}  // namespace clothlab

@@ -1,0 +1,145 @@
+#include "server/session/exchange.h"
+
+#include <algorithm>
+
+namespace clothlab::session {
+
+std::int64_t now_us() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch()).count();
+}
+
+std::optional<Exchange::Awaited> Exchange::answer_to(const Command& command) {
+  const auto* reach = std::get_if<ReachScene>(&command.what);
+  if (command.ticket.id || reach || std::holds_alternative<Export>(command.what))
+    return Awaited{command.ticket, reach ? std::optional(reach->job) : std::nullopt};
+  return std::nullopt;
+}
+
+void Exchange::settle(const Event& event) {
+  const auto erase = [&](auto is_it) {
+    const auto found = std::find_if(awaited_.begin(), awaited_.end(), is_it);
+    if (found != awaited_.end()) awaited_.erase(found);
+  };
+  if (const auto* reply = std::get_if<Reply>(&event))
+    erase([&](const Awaited& awaited) {
+      return !awaited.job && awaited.ticket.asker == reply->ticket.asker &&
+             awaited.ticket.id == reply->ticket.id;
+    });
+  else if (const auto* captured = std::get_if<Captured>(&event))
+    erase([&](const Awaited& awaited) {
+      return !awaited.ticket.id && awaited.ticket.asker == captured->asker;
+    });
+  else if (const auto* reached = std::get_if<SceneReached>(&event))
+    erase([&](const Awaited& awaited) { return awaited.job == reached->job; });
+}
+
+void Exchange::give_up(const Error& error, std::vector<Event>& out) {
+  const std::lock_guard lock(mutex_);
+  for (const Awaited& awaited : awaited_) {
+    if (awaited.job) out.push_back(SceneLost{*awaited.job});
+    if (awaited.ticket.id)
+      out.push_back(Reply{awaited.ticket, Refusal{Refusal::Reason::failed, error}});
+    else if (!awaited.job)
+      out.push_back(Captured{awaited.ticket.asker, {}, error});
+  }
+  awaited_.clear();
+}
+
+void Exchange::keep(std::shared_ptr<const Saved> saved) {
+  const std::lock_guard lock(mutex_);
+  kept_.swap(saved);  // the older one is freed after the lock
+}
+
+std::shared_ptr<const Saved> Exchange::kept() const {
+  const std::lock_guard lock(mutex_);
+  return kept_;
+}
+
+bool Exchange::offer(Command command) {
+  {
+    const std::lock_guard lock(mutex_);
+    std::optional<Awaited> answer = answer_to(command);
+    if (!commands_.offer(std::move(command))) return false;
+    if (answer) awaited_.push_back(std::move(*answer));
+  }
+  commands_changed_.notify_one();
+  return true;
+}
+
+void Exchange::post(Command command) {
+  {
+    const std::lock_guard lock(mutex_);
+    commands_.post(std::move(command));
+  }
+  commands_changed_.notify_one();
+}
+
+void Exchange::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  commands_changed_.notify_one();
+}
+
+void Exchange::take_events(std::vector<Event>& out) {
+  out.clear();
+  const std::lock_guard lock(mutex_);
+  out.swap(events_);
+}
+
+stream::SharedMessage Exchange::frame(stream::Encoding encoding) const {
+  const std::lock_guard lock(mutex_);
+  return frames_[static_cast<std::size_t>(encoding)];
+}
+
+bool Exchange::take_commands(std::vector<Command>& out, Clock::time_point until) {
+  out.clear();
+  std::unique_lock lock(mutex_);
+  commands_changed_.wait_until(lock, until, [&] { return stopping_ || !commands_.empty(); });
+  while (!commands_.empty() && out.size() < commands_a_turn) out.push_back(commands_.pop());
+  return !stopping_;
+}
+
+void Exchange::emit(Event event) {
+  {
+    const std::lock_guard lock(mutex_);
+    settle(event);
+    events_.push_back(std::move(event));
+  }
+  wake_();
+}
+
+void Exchange::publish(const Status& status) {
+  {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(events_, [](const Event& event) { return std::holds_alternative<Status>(event); });
+    events_.push_back(status);
+  }
+  wake_();
+}
+
+void Exchange::publish(stream::SharedMessage frame) {
+  const auto slot = static_cast<std::size_t>(frame->header.encoding);
+  {
+    const std::lock_guard lock(mutex_);
+    frames_[slot].swap(frame);  // the older frame is freed after the lock
+  }
+  wake_();
+}
+
+void Exchange::forget_frames() {
+  const std::lock_guard lock(mutex_);
+  for (stream::SharedMessage& frame : frames_) frame.reset();
+}
+
+void Exchange::forget_frame(stream::Encoding encoding) {
+  const std::lock_guard lock(mutex_);
+  frames_[static_cast<std::size_t>(encoding)].reset();
+}
+
+void Exchange::beat() {
+  heartbeat_us_.store(now_us(), std::memory_order_relaxed);
+}
+
+}  // namespace clothlab::session

@@ -1,0 +1,110 @@
+#include "server/session/exporter.h"
+
+#include <exception>
+#include <memory>
+#include <new>
+#include <utility>
+
+#include "server/base/priority.h"
+#include "server/gl/context.h"
+#include "server/model/mesh_file.h"
+#include "server/render/renderer.h"
+#include "server/session/fault.h"
+
+namespace clothlab::session {
+
+namespace {
+
+bool is_picture(const Export& what) {
+  return what.width > 0;
+}
+
+/// In a context of its own for each: Mesa frees all that a picture took, up to 0.8 GB, only with its context.
+Result<std::string> picture(std::optional<int> gpu, const Moment& moment, const model::Model& model,
+                            const Export& what) {
+  const Result<std::unique_ptr<gl::Context>> context = gl::Context::create(gpu, gl::HelperThreads::pictures);
+  if (!context) return context.error();
+  const Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create();
+  if (!renderer) return renderer.error();
+  const Result<render::Image> image = (*renderer)->render(
+      {moment.document->scene, model, moment.positions, moment.colliders}, what.width, what.height);
+  if (!image) return image.error();
+  if ((*context)->lost() || fault_due(Fault::context_lost, fault_in_exporter, 0))
+    return Error{"OpenGL", "the device was reset while it drew", "ask again"};
+  const Result<std::vector<std::uint8_t>> png = render::encode_png(*image);
+  if (!png) return png.error();
+  return std::string(png->begin(), png->end());
+}
+
+}  // namespace
+
+void Exporter::stop() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+  }
+  task_arrived_.notify_one();
+  thread_.join();
+}
+
+void Exporter::begin(std::uint64_t asker, const Export& what, Moment moment) {
+  busy_ = true;
+  {
+    const std::lock_guard lock(mutex_);
+    task_ = Task{asker, what, std::move(moment)};
+  }
+  if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
+  task_arrived_.notify_one();
+}
+
+std::optional<Exported> Exporter::take() {
+  std::optional<Exported> made;
+  {
+    const std::lock_guard lock(mutex_);
+    made = std::exchange(made_, std::nullopt);
+  }
+  if (made) busy_ = false;
+  return made;
+}
+
+void Exporter::run() {
+  // Behind every session, but before the lab: somebody waits for it.
+  lower_priority(10);
+  while (true) {
+    Task task;
+    {
+      std::unique_lock lock(mutex_);
+      task_arrived_.wait(lock, [&] { return ending_ || task_; });
+      if (ending_) return;
+      task = *std::exchange(task_, std::nullopt);
+    }
+    Exported made{task.asker, is_picture(task.what) ? "image/png" : "text/plain; charset=utf-8",
+                  carry_out(task)};
+    {
+      const std::lock_guard lock(mutex_);
+      made_ = std::move(made);
+    }
+    wake_();
+  }
+}
+
+Result<std::string> Exporter::carry_out(const Task& task) const {
+  try {
+    provoke_fault(fault_in_exporter, 0);
+    return make_(task.moment, task.what);
+  } catch (const std::bad_alloc&) {
+    return Error{"export", "there was not enough memory", "ask again, for a smaller picture"};
+  } catch (const std::exception& error) {
+    return Error{"export", error.what(), "ask again; please report it if it happens twice"};
+  }
+}
+
+Result<std::string> make_export(std::optional<int> gpu, const Moment& moment, const Export& what) {
+  const Result<model::Model> model = model::build(moment.document->scene);
+  if (!model) return model.error();
+  if (is_picture(what)) return picture(gpu, moment, *model, what);
+  return model::obj_text(*model, moment.positions, "t = " + json(moment.time).dump() + " s");
+}
+
+}  // namespace clothlab::session

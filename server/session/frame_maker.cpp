@@ -1,0 +1,134 @@
+#include "server/session/frame_maker.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "server/stream/collider_text.h"
+
+namespace clothlab::session {
+
+namespace {
+
+Clock::duration period(double rate) {
+  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / rate));
+}
+
+bool finite(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<FrameMaker>> FrameMaker::create(Exchange& exchange, std::uint32_t last) {
+  Result<std::unique_ptr<stream::Packer>> packer = stream::Packer::create(last);
+  if (!packer) return packer.error();
+  return std::unique_ptr<FrameMaker>(new FrameMaker(exchange, std::move(*packer), last));
+}
+
+FrameMaker::FrameMaker(Exchange& exchange, std::unique_ptr<stream::Packer> packer, std::uint32_t last)
+    : exchange_(exchange), packer_(std::move(packer)), requested_(last), arrived_(last), void_until_(last) {}
+
+void FrameMaker::take_over(const FrameMaker& other) {
+  lanes_ = other.lanes_;
+  version_ = other.version_;
+  diverged_ = other.diverged_;
+  asleep_ = other.asleep_;
+  touch_now();
+}
+
+void FrameMaker::demand(const Demand& demand, Clock::time_point now) {
+  for (std::size_t i = 0; i < lanes_.size(); ++i) {
+    Lane& lane = lanes_[i];
+    if (lane.rate <= 0 && demand.rate[i] > 0) lane.due = now;
+    lane.rate = demand.rate[i];
+    if (demand.fresh[i]) lane.urgent = true;
+  }
+}
+
+void FrameMaker::touch_now() {
+  touch();
+  for (Lane& lane : lanes_) lane.urgent = true;
+}
+
+void FrameMaker::restart() {
+  void_until_ = arrived_ = requested_;  // they may come yet, or be dropped with their mesh
+  diverged_ = false;
+  touch_now();
+  exchange_.forget_frames();
+}
+
+bool FrameMaker::request(std::size_t index, const sim::Simulation& simulation) {
+  const auto flags = (diverged_ ? stream::flag_diverged : 0) | (asleep_ ? stream::flag_asleep : 0);
+  timer_.begin();
+  const bool queued = packer_->request(simulation, static_cast<stream::Encoding>(index),
+                                       static_cast<std::uint16_t>(flags), stream::collider_text(simulation));
+  if (queued) timer_.stage("pack_frame");
+  timer_.end();
+  if (!queued) return false;
+  ++requested_;
+  lanes_[index].packed_version = version_;
+  return true;
+}
+
+void FrameMaker::make_urgent(const sim::Simulation& simulation, Clock::time_point now) {
+  for (std::size_t i = 0; i < lanes_.size(); ++i) {
+    Lane& lane = lanes_[i];
+    if (!lane.urgent) continue;
+    if (lane.rate > 0 && !request(i, simulation)) continue;  // the ring is full: after the next poll
+    lane.urgent = false;
+    if (lane.rate > 0) lane.due = now + period(lane.rate);
+  }
+}
+
+void FrameMaker::make_due(const sim::Simulation& simulation, Clock::time_point now) {
+  for (std::size_t i = 0; i < lanes_.size(); ++i) {
+    Lane& lane = lanes_[i];
+    if (lane.rate <= 0 || now < lane.due || lane.packed_version == version_) continue;
+    if (!request(i, simulation)) continue;
+    // On the beat of the clock; after a gap the beat starts anew.
+    lane.due = std::max(lane.due + period(lane.rate), now);
+  }
+}
+
+void FrameMaker::poll() {
+  while (stream::SharedMessage frame = packer_->poll()) {
+    if (frame->header.sequence <= void_until_) continue;
+    arrived_ = frame->header.sequence;
+    publish(std::move(frame));
+  }
+}
+
+void FrameMaker::publish(stream::SharedMessage frame) {
+  // Until a blow-up is noticed its frames are shown, but not what nothing could draw.
+  if (finite(frame->header.box_minimum) && finite(frame->header.box_extent))
+    exchange_.publish(std::move(frame));
+}
+
+void FrameMaker::diverge() {
+  restart();
+  diverged_ = true;
+}
+
+void FrameMaker::go_on() {
+  diverged_ = false;
+  touch_now();
+}
+
+void FrameMaker::asleep(bool asleep) {
+  asleep_ = asleep;
+  touch_now();
+}
+
+bool FrameMaker::urgent() const {
+  return std::any_of(lanes_.begin(), lanes_.end(),
+                     [](const Lane& lane) { return lane.urgent && lane.rate > 0; });
+}
+
+Clock::time_point FrameMaker::next_due() const {
+  Clock::time_point next = Clock::time_point::max();
+  for (const Lane& lane : lanes_)
+    if (lane.rate > 0) next = std::min(next, lane.due);
+  return next;
+}
+
+}  // namespace clothlab::session

@@ -1,0 +1,99 @@
+#include "server/session/session.h"
+
+#include <exception>
+#include <new>
+
+#include "server/base/log.h"
+#include "server/gl/context.h"
+#include "server/session/fault.h"
+#include "server/session/keeper.h"
+#include "server/session/stepper.h"
+
+namespace clothlab::session {
+
+namespace {
+
+/// What the thread before kept, else what the process before did; null: nothing.
+std::shared_ptr<const Saved> kept(const Beginning& beginning, Exchange& exchange) {
+  if (beginning.saved || !beginning.file) return beginning.saved;
+  Result<std::shared_ptr<const Saved>> loaded = load_session(*beginning.file);
+  if (loaded) return *loaded;
+  log(LogLevel::error, "session_not_restored", {{"session", beginning.name}, {"why", loaded.error().text()}});
+  exchange.emit(Notice{"error", "what this session was cannot be read: " + loaded.error().text()});
+  return nullptr;
+}
+
+Result<std::unique_ptr<Stepper>> bring_back(const Saved& saved, const Beginning& beginning,
+                                            const Limits& limits, std::optional<int> gpu,
+                                            Exchange& exchange) {
+  Result<scene::Document> document = scene::validate(saved.document);
+  if (!document) return document.error();
+  Result<std::unique_ptr<Stepper>> stepper =
+      Stepper::create(std::move(*document), exchange, limits, gpu, beginning.last_frame);
+  if (!stepper) return stepper.error();
+  if (clothlab::Status back = (*stepper)->bring_back(saved); !back) return back.error();
+  log(LogLevel::info, "session_restored",
+      {{"session", beginning.name},
+       {"time", std::to_string(saved.time)},
+       {"revision", std::to_string(saved.revision)}});
+  return stepper;
+}
+
+Result<std::unique_ptr<Stepper>> begin(Beginning& beginning, const Limits& limits, std::optional<int> gpu,
+                                       Exchange& exchange) {
+  if (const std::shared_ptr<const Saved> saved = kept(beginning, exchange)) {
+    Result<std::unique_ptr<Stepper>> stepper = bring_back(*saved, beginning, limits, gpu, exchange);
+    if (stepper) return stepper;
+    log(LogLevel::error, "session_not_restored",
+        {{"session", beginning.name}, {"why", stepper.error().text()}});
+    exchange.emit(Notice{"error", "what this session was cannot go on: " + stepper.error().text()});
+  }
+  return Stepper::create(std::move(beginning.document), exchange, limits, gpu, beginning.last_frame);
+}
+
+}  // namespace
+
+Session::Session(Beginning beginning, const Limits& limits, std::optional<int> gpu,
+                 std::function<void()> wake)
+    : exchange_(std::move(wake)) {
+  exchange_.beat();
+  thread_ = std::thread([this, limits, gpu, beginning = std::move(beginning)]() mutable {
+    try {
+      run(beginning, limits, gpu);
+    } catch (const std::bad_alloc&) {
+      exchange_.emit(
+          Failed{{"session", "there was not enough memory", "a smaller scene, or fewer sessions"}});
+    } catch (const std::exception& error) {
+      exchange_.emit(
+          Failed{{"session", error.what(), "load the scene again; please report it if it happens twice"}});
+    }
+  });
+}
+
+Session::~Session() {
+  exchange_.stop();
+  thread_.join();
+}
+
+void Session::run(Beginning& beginning, const Limits& limits, std::optional<int> gpu) {
+  // Tried apart, so that no scene is blamed where there is no OpenGL.
+  if (const Result<std::unique_ptr<gl::Context>> any = gl::Context::create(gpu); !any)
+    return exchange_.emit(Failed{any.error(), true});
+  Result<std::unique_ptr<Stepper>> stepper = begin(beginning, limits, gpu, exchange_);
+  if (!stepper) return exchange_.emit(Failed{stepper.error()});
+  exchange_.emit(Started{(*stepper)->renderer()});
+  Keeper keeper(exchange_, beginning.file);
+  std::vector<Command> commands;
+  Clock::time_point next = Clock::now();
+  while (exchange_.take_commands(commands, next)) {
+    next = (*stepper)->turn(commands);
+    provoke_fault(beginning.name, exchange_.steps());
+    if ((*stepper)->lost() || fault_due(Fault::context_lost, beginning.name, exchange_.steps()))
+      return exchange_.emit(Failed{{"OpenGL", "the device was reset, and all that was on it is lost",
+                                    "if it happens again, see the driver's log"}});
+    keeper.look(**stepper, Clock::now());
+  }
+  keeper.finish(**stepper);
+}
+
+}  // namespace clothlab::session

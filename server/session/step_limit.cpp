@@ -1,0 +1,57 @@
+#include "server/session/step_limit.h"
+
+#include <chrono>
+#include <utility>
+
+#include "server/base/priority.h"
+
+namespace clothlab::session {
+
+namespace {
+constexpr std::chrono::milliseconds worth_waiting{8};  // half a frame
+}
+
+void StepLimit::follow(const model::Model& model, const scene::Scene& scene) {
+  looked_ = false;
+  const bool same_limit = scene_.cloths == scene.cloths && scene_.air_drag == scene.air_drag &&
+                          scene_.solver.method == scene.solver.method;
+  scene_ = scene;
+  if (same_limit) return;
+  give_up_search();
+  model::ElementOperator springs(model, scene, model.rest_position);
+  dt_limit_ = model::dt_limit_bound(scene.solver.method, springs);
+  search_ = std::async(std::launch::async, [springs = std::move(springs), method = scene.solver.method,
+                                            stop = stop_.get_token()] {
+    lower_priority(10);  // of a large mesh it takes many seconds
+    return model::dt_limit(method, springs, stop);
+  });
+  search_.wait_for(worth_waiting);
+  poll();
+}
+
+/// Of a large mesh an iteration takes long: the search before ends by itself, beside what follows. One at
+/// most does, as each holds the whole mesh.
+void StepLimit::give_up_search() {
+  stop_.request_stop();
+  stop_ = std::stop_source();
+  if (search_.valid()) given_up_ = std::move(search_);  // waits for the one before
+}
+
+bool StepLimit::poll() {
+  if (!search_.valid() || search_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+    return false;
+  dt_limit_ = search_.get();
+  return true;
+}
+
+std::optional<std::string> StepLimit::take_warning() {
+  if (looked_) return std::nullopt;
+  const double share = dt_limit_ > 0.0 ? scene_.solver.dt / dt_limit_ : model::no_limit;
+  const int risk = share > 1.0 ? 2 : share > model::margin_to_warn ? 1 : 0;
+  if (risk > 0 && !sharp()) return std::nullopt;  // the bound may cry wolf
+  looked_ = true;
+  if (risk <= std::exchange(risk_, risk)) return std::nullopt;
+  return model::step_warning(scene_.solver, dt_limit_);
+}
+
+}  // namespace clothlab::session

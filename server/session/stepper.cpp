@@ -1,0 +1,320 @@
+#include "server/session/stepper.h"
+
+#include <algorithm>
+#include <new>
+#include <utility>
+
+#include "server/base/text.h"
+#include "server/model/remedy.h"
+#include "server/model/size.h"
+#include "server/model/thickness.h"
+#include "server/scene/method.h"
+#include "server/session/fault.h"
+
+namespace clothlab::session {
+
+using std::chrono::duration;
+using std::chrono::duration_cast;
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+namespace {
+Clock::duration period(double rate) {
+  return duration_cast<Clock::duration>(duration<double>(1.0 / rate));
+}
+}  // namespace
+
+Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Exchange& exchange,
+                                                 const Limits& limits, std::optional<int> gpu,
+                                                 std::uint32_t last_frame, double patience) {
+  auto stepper = std::unique_ptr<Stepper>(new Stepper(std::move(document), exchange, limits, gpu, patience));
+  if (clothlab::Status prepared = stepper->prepare(stepper->document_); !prepared) return prepared.error();
+  const scene::Scene& scene = stepper->document_.scene;
+  Result<std::unique_ptr<Engine>> engine =
+      Engine::create(scene, exchange, {gpu, Engine::threads_for(scene), last_frame});
+  if (!engine) return engine.error();
+  stepper->engine_ = std::move(*engine);
+  stepper->last_watched_ = stepper->next_status_ = Clock::now();
+  stepper->announce_scene(std::nullopt, 0);
+  stepper->announce_passes();
+  stepper->announce_solver();
+  stepper->thin_ = !model::thickness_warning(stepper->simulation().model(), stepper->document_.scene).empty();
+  stepper->step_limit_.follow(stepper->simulation().model(), stepper->document_.scene);
+  stepper->rest_.follow(stepper->document_.scene, stepper->simulation().model());
+  stepper->watch_anew();
+  return stepper;
+}
+
+clothlab::Status Stepper::bring_back(const Saved& saved) {
+  if (saved.state.position.size() != simulation().model().vertex_count())
+    return Error{"saved session",
+                 std::to_string(saved.state.position.size()) + " vertices of a scene that has " +
+                     std::to_string(simulation().model().vertex_count()),
+                 "what this version of the program wrote"};
+  simulation().restore(saved.state, saved.time, saved.step);
+  playing_ = saved.playing;
+  real_time_.set_speed(std::clamp(saved.speed, min_speed, max_speed));
+  state_replaced();
+  watch_anew();
+  revision_ = saved.revision;
+  announce_scene(std::nullopt, 0);
+  return ok();
+}
+
+Saved Stepper::saved() {
+  return {document_.value,          revision_,           playing_ || held_ || (diverged_ && resume_),
+          real_time_.speed(),       simulation().time(), simulation().step_index(),
+          simulation().read_state()};
+}
+
+clothlab::Status Stepper::prepare(scene::Document& document) {
+  const model::Size size = model::size_of(document.scene);
+  if (clothlab::Status fits = model::within(size, static_cast<std::size_t>(limits_.vertices),
+                                            static_cast<std::size_t>(limits_.springs));
+      !fits)
+    return fits;
+  if (fault_due(Fault::change_fails, "", engine_ ? simulation().step_index() : 0)) throw std::bad_alloc();
+  return automatic_.settle(document, Clock::now());
+}
+
+Clock::time_point Stepper::turn(std::vector<Command>& commands) {
+  exchange_.beat();
+  for (Command& command : commands) handle(command);
+  const Clock::time_point now = Clock::now();
+  if (watchers_ > 0) last_watched_ = now;
+  frames().make_urgent(simulation(), now);
+  advance(now);
+  frames().make_urgent(simulation(), now);
+  frames().make_due(simulation(), Clock::now());
+  frames().poll();
+  follow_diagnostics(Clock::now());
+  return next_turn(Clock::now());
+}
+
+void Stepper::advance(Clock::time_point now) {
+  note_finished(now);
+  const bool run = running(now);
+  if (run && !was_running_) real_time_.restart(now);
+  was_running_ = run;
+  if (engine_->backlog.full()) return;
+  want_steps(now, run);
+  if (simulation().wanted() == 0) return;
+  const std::uint64_t before = simulation().step_index();
+  const Clock::time_point begun = Clock::now();
+  sim::Pace pace = piece_size_.pace(begun);
+  simulation().resume(pace);
+  const auto steps = static_cast<std::uint32_t>(simulation().step_index() - before);
+  engine_->backlog.push({steps, pace.passed, begun});
+  note_finished(Clock::now());
+  if (steps == 0) return;
+  ++state_version_;
+  exchange_.count_steps(steps);
+  frames().touch();
+  if (waiting_.empty()) return;
+  finish_waiting(false);
+  if (waiting_.empty()) frames().touch_now();
+}
+
+void Stepper::want_steps(Clock::time_point now, bool run) {
+  if (!waiting_.empty())
+    // No further than the next answer, which tells the step it was asked for.
+    simulation().want(static_cast<std::uint32_t>(std::min<std::uint64_t>(
+                          waiting_.front().until_step - simulation().step_index(), real_time_.affordable())),
+                      &engine_->step_timer);
+  else if (!run)
+    simulation().want(0);
+  else if (simulation().wanted() == 0)
+    simulation().want(real_time_.due(now, document_.scene.solver.dt), &engine_->step_timer);
+}
+
+void Stepper::note_finished(Clock::time_point now) {
+  engine_->backlog.poll(now, [&](const GpuBacklog::Piece& piece, double seconds) {
+    real_time_.spent(piece.steps, seconds);
+    piece_size_.measured(piece.places, seconds);
+  });
+}
+
+void Stepper::finish_waiting(bool all) {
+  const auto done = [&](const Waiting& waiting) {
+    if (!all && waiting.until_step > simulation().step_index()) return false;
+    if (diverged_)
+      reply(waiting.ticket, diverged_refusal());
+    else
+      reply(waiting.ticket, where_we_are());
+    return true;
+  };
+  waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(), done), waiting_.end());
+}
+
+void Stepper::follow_diagnostics(Clock::time_point now) {
+  sim::Diagnostics arrived;
+  if (diagnosing_ && simulation().poll_diagnostics(arrived)) {
+    diagnosing_ = false;
+    accept(arrived);
+    if (running(now) &&
+        rest_.look(arrived.time, arrived.max_speed, [&] { return simulation().read_state().position; }))
+      fall_asleep();
+  }
+  request_diagnosis(now);
+  if (now < next_status_) return;
+  // The first status of a state that has come to rest tells of that one and no earlier.
+  if (!running(now) && waiting_.empty() && (diagnosing_ || diagnosed_version_ != state_version_)) return;
+  next_status_ = std::max(next_status_ + period(status_rate), now);
+  publish_status(now);
+}
+
+// Of a state that stands still once is enough.
+void Stepper::request_diagnosis(Clock::time_point now) {
+  if (diagnosing_ || diagnosed_version_ == state_version_ || now < next_diagnosis_) return;
+  engine_->diagnosis_timer.begin();
+  simulation().request_diagnostics();
+  engine_->diagnosis_timer.stage("diagnose");
+  engine_->diagnosis_timer.end();
+  diagnosing_ = true;
+  diagnosed_version_ = state_version_;
+  next_diagnosis_ = std::max(next_diagnosis_ + period(diagnosis_rate), now);
+}
+
+void Stepper::accept(const sim::Diagnostics& diagnostics) {
+  const sim::BlowUp::Verdict verdict = blow_up_.judge(diagnostics);
+  if (verdict == sim::BlowUp::Verdict::blown_up) return diverge();
+  if (verdict == sim::BlowUp::Verdict::good) simulation().keep_diagnosed();
+  diagnostics_ = diagnostics;
+  warn_if_crowded();
+  warn_if_unconverged();
+}
+
+sim::Allowance Stepper::allowance() const {
+  return sim::allowance(document_.scene, simulation().model(), step_limit_.dt_limit());
+}
+
+// The state is a new one, and taken for sound.
+void Stepper::watch_anew() {
+  diagnostics_ = simulation().diagnose();
+  diagnosing_ = false;
+  blow_up_.start(allowance(), diagnostics_);
+}
+
+void Stepper::fall_asleep() {
+  asleep_ = true;
+  frames().asleep(true);
+  announce_passes();
+}
+
+void Stepper::wake_up() {
+  rest_.disturb();
+  if (!std::exchange(asleep_, false)) return;
+  frames().asleep(false);
+  announce_passes();
+}
+
+void Stepper::diverge() {
+  const std::string reason = blow_up_.reason();
+  const scene::Solver& solver = document_.scene.solver;
+  const double limit = step_limit_.dt_limit();
+  const model::Remedy remedy = model::remedy(simulation().model(), document_.scene, limit);
+  json change{{"dt", remedy.dt}};
+  if (remedy.method || solver.automatic)
+    change["method"] = scene::name(remedy.method.value_or(solver.method));
+  simulation().go_back();
+  ++state_version_;
+  watch_anew();
+  diverged_ = true;
+  resume_ = playing_;
+  playing_ = false;
+  finish_waiting(true);
+  frames().diverge();
+  exchange_.emit(Diverged{reason + model::against_limit(solver, limit), remedy.text, {{"solver", change}}});
+}
+
+// The scene was changed after a blow-up: from the last good state, as it went before.
+void Stepper::go_on() {
+  if (!diverged_) return;
+  diverged_ = false;
+  real_time_.restart(Clock::now());
+  frames().go_on();
+}
+
+void Stepper::publish_status(Clock::time_point now) {
+  if (automatic_.wants_choice(now)) exchange_.emit(ChoiceWanted{});
+  if (was_running_) real_time_.sample(now, simulation().time());
+  Status status;
+  status.playing = playing_;
+  status.diverged = diverged_;
+  status.asleep = asleep_ && playing_;
+  status.speed = real_time_.speed();
+  status.real_time_factor = was_running_ ? real_time_.factor() : 0;
+  follow_step_limit();
+  status.dt_limit = step_limit_.dt_limit();
+  status.margin = step_limit_.margin();
+  status.diagnostics = diagnostics_;
+  // The timers begin again once their times are taken: a few samples a second.
+  engine_->step_timer.poll(status.pass_times);
+  engine_->diagnosis_timer.poll(status.pass_times);
+  frames().poll_times(status.pass_times);
+  exchange_.publish(status);
+  warn_if_slow(now);
+}
+
+void Stepper::follow_step_limit() {
+  if (step_limit_.poll()) blow_up_.allow(allowance());
+  if (std::optional<std::string> warning = step_limit_.take_warning())
+    exchange_.emit(Notice{"warning", std::move(*warning)});
+}
+
+void Stepper::warn_if_slow(Clock::time_point now) {
+  if (!was_running_ || !real_time_.sampled() || real_time_.factor() > 0.9 * real_time_.speed()) {
+    slow_since_ = now;
+    return;
+  }
+  if (slow_announced_ || now - slow_since_ < seconds(3)) return;
+  slow_announced_ = true;
+  std::string text = "this machine cannot keep up: ";
+  text += real_time_.step_cost() >= 0.1 ? formatted("a step takes %.2g s", real_time_.step_cost())
+                                        : std::string("time runs slower than asked for");
+  text += "; a smaller cloth, ";
+  if (scene::iterates(document_.scene.solver.method)) text += "fewer iterations, ";
+  if (const double others = simulation().search_candidates(); others >= 500)
+    text +=
+        formatted("a smaller self_collision thickness (each vertex is held against %.0f others), ", others);
+  exchange_.emit(Notice{"warning", text + "a longer time step or a lower speed helps"});
+}
+
+void Stepper::warn_if_crowded() {
+  if (crowded_announced_ || diagnostics_.neighbours_dropped == 0) return;
+  crowded_announced_ = true;
+  exchange_.emit(Notice{"warning",
+                        "self-collision: some vertices have more neighbours than there is room for, and the "
+                        "farthest are left out; "
+                        "a smaller thickness or a coarser mesh helps"});
+}
+
+// A few such steps are no news: a cloth that falls into its limit takes them.
+void Stepper::warn_if_unconverged() {
+  constexpr std::uint64_t many = 50;
+  const bool limit = simulation().strain_limit_work().unconverged > many;
+  const bool solver = simulation().solver_work().unconverged > many;
+  if (unconverged_announced_ || !(limit || solver)) return;
+  unconverged_announced_ = true;
+  exchange_.emit(
+      Notice{"warning", limit ? "strain_limit: some springs stay longer than it allows; a larger limit, "
+                                "a shorter time step or pins that leave room helps"
+                              : "the linear solver often ends before it meets solver.tolerance; a "
+                                "shorter time step or a larger tolerance helps"});
+}
+
+bool Stepper::suspended(Clock::time_point now) const {
+  return watchers_ == 0 && duration<double>(now - last_watched_).count() > patience_;
+}
+
+Clock::time_point Stepper::next_turn(Clock::time_point now) const {
+  if ((simulation().wanted() > 0 || !waiting_.empty()) && !engine_->backlog.full()) return now;
+  if (frames().urgent() || frames().in_flight() || diagnosing_ || !engine_->backlog.empty())
+    return now + microseconds(500);
+  if (!running(now)) return suspended(now) ? now + milliseconds(250) : std::max(next_status_, now);
+  if (real_time_.behind(document_.scene.solver.dt)) return now;
+  return std::min({now + milliseconds(10), next_status_, std::max(frames().next_due(), now)});
+}
+
+}  // namespace clothlab::session

@@ -1,0 +1,293 @@
+#include <algorithm>
+#include <new>
+#include <utility>
+
+#include "server/model/spring_gains.h"
+#include "server/model/thickness.h"
+#include "server/session/stepper.h"
+
+namespace clothlab::session {
+
+void Stepper::handle(Command& command) {
+  try {
+    std::visit([&](auto& what) { perform(what, command.ticket); }, command.what);
+  } catch (const std::bad_alloc&) {
+    // What was to be made is gone again; what was there is as it was.
+    const Error error{"session", "there is not enough memory for that", "a smaller scene, or fewer sessions"};
+    if (command.ticket.id)
+      reply(command.ticket, Refusal{Refusal::Reason::failed, error});
+    else if (const auto* what = std::get_if<Export>(&command.what))
+      exchange_.emit(Captured{command.ticket.asker, *what, error});
+  }
+}
+
+void Stepper::reply(const Ticket& ticket, Answer answer) {
+  if (ticket.id) exchange_.emit(Reply{ticket, std::move(answer)});
+}
+
+json Stepper::where_we_are() const {
+  return {{"playing", playing_}, {"time", simulation().time()}, {"step", simulation().step_index()}};
+}
+
+Refusal Stepper::diverged_refusal() {
+  return {Refusal::Reason::diverged,
+          {"", "the simulation has diverged",
+           "send the remedy's patch or another, or use sim.reset or scene.load"}};
+}
+
+void Stepper::perform(GetScene&, const Ticket& ticket) {
+  reply(ticket, json{{"document", document_.value}, {"revision", revision_}});
+}
+
+void Stepper::perform(LoadScene& load, const Ticket& ticket) {
+  Result<scene::Document> document =
+      load.preset.empty() ? scene::validate(std::move(load.document)) : scene::load_preset(load.preset);
+  if (!document && !load.preset.empty())
+    return reply(ticket, invalid_value({"/preset", json(load.preset).dump(), document.error().remedy}));
+  if (!document) return reply(ticket, invalid_value(document.error()));
+  if (clothlab::Status prepared = prepare(*document); !prepared)
+    return reply(ticket, invalid_value(prepared.error()));
+  const Result<sim::ChangeDepth> depth = change_engine(document->scene);
+  if (!depth) return reply(ticket, invalid_value(depth.error()));
+  playing_ = playing_ || (diverged_ && resume_);
+  adopt(std::move(*document), *depth);
+  // Another scene starts at its beginning, however alike the two are.
+  if (*depth != sim::ChangeDepth::cloth) restart();
+  reply(ticket, json{{"revision", revision_}, {"applies", sim::name(sim::ChangeDepth::cloth)}});
+  announce_scene(std::nullopt, ticket.asker);
+}
+
+void Stepper::perform(PatchScene& patch, const Ticket& ticket) {
+  if (patch.revision && *patch.revision != revision_)
+    return reply(ticket, Refusal{Refusal::Reason::other_revision,
+                                 {"",
+                                  "the scene is at revision " + std::to_string(revision_) + ", not " +
+                                      std::to_string(*patch.revision),
+                                  "get the scene and patch that"},
+                                 revision_});
+  Result<scene::Document> document = scene::apply_patch(document_, patch.patch);
+  if (!document) return reply(ticket, invalid_value(document.error()));
+  if (clothlab::Status prepared = prepare(*document); !prepared)
+    return reply(ticket, invalid_value(prepared.error()));
+  const Result<sim::ChangeDepth> depth = change(document->scene);
+  if (!depth) return reply(ticket, invalid_value(depth.error()));
+  adopt(std::move(*document), *depth);
+  reply(ticket, json{{"revision", revision_}, {"applies", sim::name(*depth)}});
+  announce_scene(std::move(patch.patch), ticket.asker);
+  if (*depth == sim::ChangeDepth::cloth)
+    exchange_.emit(Notice{"info", "the cloth was rebuilt for this change: time starts again at 0"});
+}
+
+// The energies before and after the change, of the same state: what it adds is no growth, and growth cannot
+// hide behind one change after another.
+Result<sim::ChangeDepth> Stepper::change(const scene::Scene& scene) {
+  if (!sim::changes_energy(document_.scene, scene)) return change_engine(scene);
+  accept(simulation().diagnose());
+  diagnosing_ = false;
+  const Result<sim::ChangeDepth> depth = change_engine(scene);
+  if (depth && *depth != sim::ChangeDepth::cloth) blow_up_.rebase(simulation().diagnose());
+  return depth;
+}
+
+/// Where the scene becomes heavy or light it moves, and nothing of a step that is under way is kept.
+Result<sim::ChangeDepth> Stepper::change_engine(const scene::Scene& scene) {
+  const gl::HelperThreads threads = Engine::threads_for(scene, engine_->threads);
+  return engine_->software() && threads != engine_->threads ? move_to(scene, threads)
+                                                            : simulation().change(scene);
+}
+
+Result<sim::ChangeDepth> Stepper::move_to(const scene::Scene& scene, gl::HelperThreads threads) {
+  struct Current {  // whatever happens
+    std::unique_ptr<Engine>& engine;
+    ~Current() { (void)engine->context->make_current(); }
+  } current{engine_};
+  const sim::ChangeDepth depth = sim::change_depth(simulation().scene(), scene);
+  const bool anew = depth == sim::ChangeDepth::cloth;
+  sim::State state;
+  if (!anew) state = simulation().read_state();
+  Result<std::unique_ptr<Engine>> made =
+      Engine::create(scene, exchange_,
+                     {gpu_, threads, frames().last(), simulation().topology_revision() + (anew ? 1u : 0u)});
+  if (!made) return made.error();
+  if (!anew) (*made)->simulation->restore(state, simulation().time(), simulation().step_index());
+  (*made)->frames->take_over(frames());
+  engine_.swap(*made);
+  made->reset();
+  diagnosing_ = false;
+  return depth;
+}
+
+void Stepper::adopt(scene::Document document, sim::ChangeDepth depth) {
+  ++revision_;
+  take_over(std::move(document), depth);
+}
+
+void Stepper::take_over(scene::Document document, sim::ChangeDepth depth) {
+  document_ = std::move(document);
+  wake_up();
+  rest_.follow(document_.scene, simulation().model());
+  if (depth == sim::ChangeDepth::cloth)
+    state_replaced();
+  else
+    frames().touch_now();
+  ++state_version_;
+  announce_passes();
+  announce_solver();
+  if (depth == sim::ChangeDepth::none) return;
+  playing_ = playing_ || (diverged_ && resume_);
+  warn_if_thin();
+  step_limit_.follow(simulation().model(), document_.scene);
+  follow_step_limit();  // at once: the next change may come before the next status
+  if (depth == sim::ChangeDepth::cloth) return watch_anew();
+  blow_up_.allow(allowance());
+  go_on();
+}
+
+void Stepper::restart() {
+  simulation().reset();
+  state_replaced();
+  watch_anew();
+}
+
+void Stepper::state_replaced() {
+  finish_waiting(true);
+  wake_up();
+  diverged_ = slow_announced_ = crowded_announced_ = unconverged_announced_ = false;
+  ++state_version_;
+  real_time_.restart(Clock::now());
+  frames().restart();
+}
+
+void Stepper::perform(Play&, const Ticket& ticket) {
+  if (diverged_) return reply(ticket, diverged_refusal());
+  finish_waiting(true);
+  wake_up();
+  ++state_version_;
+  playing_ = true;
+  held_ = false;
+  reply(ticket, where_we_are());
+}
+
+void Stepper::perform(Pause&, const Ticket& ticket) {
+  finish_waiting(true);
+  wake_up();
+  ++state_version_;
+  playing_ = resume_ = held_ = false;
+  reply(ticket, where_we_are());
+}
+
+void Stepper::perform(Step& step, const Ticket& ticket) {
+  if (diverged_) return reply(ticket, diverged_refusal());
+  wake_up();
+  playing_ = held_ = false;
+  const std::uint64_t from = waiting_.empty() ? simulation().step_index() : waiting_.back().until_step;
+  waiting_.push_back({ticket, from + step.steps});
+}
+
+void Stepper::perform(Reset&, const Ticket& ticket) {
+  restart();
+  reply(ticket, where_we_are());
+}
+
+void Stepper::perform(Speed& speed, const Ticket& ticket) {
+  wake_up();
+  ++state_version_;
+  real_time_.set_speed(speed.factor);
+  real_time_.restart(Clock::now());
+  reply(ticket, json{{"factor", speed.factor}});
+}
+
+void Stepper::perform(Demand& demand, const Ticket&) {
+  frames().demand(demand, Clock::now());
+}
+
+void Stepper::perform(Watchers& watchers, const Ticket&) {
+  watchers_ = watchers.count;
+  last_watched_ = Clock::now();
+}
+
+void Stepper::perform(ReachScene& reach, const Ticket&) {
+  exchange_.emit(SceneReached{reach.job});
+}
+
+void Stepper::perform(Hold& hold, const Ticket&) {
+  if (playing_) {
+    playing_ = false;
+    held_ = true;
+    simulation().finish();  // what is queued already would run beside the job
+    exchange_.emit(Notice{"info", "paused while the lab measures"});
+  }
+  exchange_.emit(Held{hold.job});
+}
+
+void Stepper::perform(Release&, const Ticket&) {
+  if (std::exchange(held_, false)) playing_ = true;
+}
+
+void Stepper::perform(Export& what, const Ticket& ticket) {
+  last_watched_ = Clock::now();
+  exchange_.emit(Captured{ticket.asker, what,
+                          Moment{std::make_shared<const scene::Document>(document_), simulation().time(),
+                                 simulation().read_state().position, simulation().colliders_now()}});
+}
+
+// The document stays what it is; what steps it is shown by sim.status.
+void Stepper::perform(Chosen& chosen, const Ticket&) {
+  automatic_.take(*chosen.measured, chosen.choice);
+  scene::Document document = document_;
+  if (!document.scene.solver.automatic || !automatic_.settle(document, Clock::now())) return;
+  const Result<sim::ChangeDepth> depth = change(document.scene);
+  if (!depth) return exchange_.emit(Notice{"warning", "method auto: " + depth.error().text()});
+  take_over(std::move(document), *depth);
+  if (!chosen.choice)
+    exchange_.emit(Notice{"warning", "method auto: nothing better than a stable step can be chosen: " +
+                                         chosen.choice.error().text()});
+  else
+    exchange_.emit(Notice{"info", "method auto: " + chosen.choice->why});
+}
+
+void Stepper::announce_scene(std::optional<json> patch, std::uint64_t by) {
+  // A topology precedes the frames that need it, so it goes out with the scene that changed it.
+  if (const std::uint32_t revision = simulation().topology_revision(); revision != topology_revision_) {
+    topology_revision_ = revision;
+    exchange_.emit(TopologyChanged{stream::encode_topology(simulation().model(), revision)});
+  }
+  exchange_.emit(
+      SceneChanged{std::make_shared<const scene::Document>(document_), revision_, std::move(patch), by});
+}
+
+void Stepper::announce_passes() {
+  std::vector<sim::Simulation::Pass> passes = simulation().passes();
+  for (sim::Simulation::Pass& pass : passes)
+    if (asleep_ && pass.skipped.empty()) pass.skipped = "asleep: the cloth is at rest";
+  exchange_.emit(PassesChanged{std::move(passes)});
+}
+
+// Stiffness in N/m means the same under every method but PBD, which says what it makes of it.
+void Stepper::announce_solver() {
+  json shares = nullptr;
+  if (document_.scene.solver.method == scene::Method::pbd) {
+    shares = json::array();
+    for (const model::PbdStiffness& of : model::pbd_stiffness(simulation().model(), document_.scene)) {
+      const auto share = [&](model::SpringKind kind) {
+        const std::optional<double>& value = of[static_cast<std::size_t>(kind)];
+        return value ? json(*value) : json(nullptr);
+      };
+      shares.push_back({{"structural", share(model::SpringKind::structural)},
+                        {"shear", share(model::SpringKind::shear)},
+                        {"bend", share(model::SpringKind::bend)}});
+    }
+  }
+  json thickness = nullptr;
+  if (document_.scene.self_collision) thickness = model::thickness_that_holds(simulation().model());
+  exchange_.emit(SolverChanged{
+      {{"pbd_stiffness", shares}, {"auto", automatic_.facts()}, {"thickness_that_holds", thickness}}});
+}
+
+// Said once, when a change of scene made it so.
+void Stepper::warn_if_thin() {
+  const std::string warning = model::thickness_warning(simulation().model(), document_.scene);
+  if (!std::exchange(thin_, !warning.empty()) && thin_) exchange_.emit(Notice{"warning", warning});
+}
+
+}  // namespace clothlab::session

@@ -1,0 +1,43 @@
+#include "server/stream/collider_text.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <variant>
+#include <vector>
+
+#include "server/scene/solid.h"
+
+namespace clothlab::stream {
+
+namespace {
+
+using nlohmann::json;
+
+bool moves(const scene::Motion& motion) {
+  return !std::holds_alternative<std::monostate>(motion);
+}
+
+}  // namespace
+
+std::string collider_text(const sim::Simulation& simulation) {
+  const std::vector<scene::Collider>& home = simulation.scene().colliders;
+  // Most scenes' frames are to cost no allocation.
+  if (std::none_of(home.begin(), home.end(), [](const scene::Collider& each) { return moves(each.motion); }))
+    return {};
+  json moving = json::array();
+  const std::vector<scene::Collider> now = simulation.colliders_now();
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    if (!moves(now[i].motion)) continue;
+    json of = scene::written(now[i].shape);
+    of["index"] = i;
+    moving.push_back(std::move(of));
+  }
+  return json{
+      {"jsonrpc", "2.0"},
+      {"method", "colliders"},
+      {"params", {{"step", simulation.step_index()}, {"time", simulation.time()}, {"moving", moving}}}}
+      .dump();
+}
+
+}  // namespace clothlab::stream

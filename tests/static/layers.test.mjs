@@ -1,0 +1,47 @@
+// Data flows down the list of folders in server/README.md: a folder includes itself and those above it, nothing else of
+// ours. So a session knows no sockets, and a method no session.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { files, root } from "./files.mjs";
+
+const read = (file) => readFileSync(join(root, file), "utf8");
+const order = [...read("server/README.md").matchAll(/^\| \[?`(\w+)\/`/gm)].map(([, folder]) => folder);
+const sources = files.filter((file) => /^server\/.*\.(?:h|cpp)$/.test(file));
+const folderOf = (path) => path.split("/")[1];
+
+/// What of ours a file includes that it may not.
+function forbidden(file, text) {
+  const place = order.indexOf(folderOf(file));
+  return [...text.matchAll(/^\s*#\s*include\s+"([^"]+)"/gm)]
+    .map(([, path]) => path)
+    .filter((path) => /^(?:server|tests)\//.test(path))
+    .filter((path) => !order.slice(0, place + 1).some((folder) => path.startsWith(`server/${folder}/`)));
+}
+
+test("every folder of server/ with sources has its place in the list of server/README.md", () => {
+  assert.deepEqual([...new Set(sources.map(folderOf))].sort(), [...order].sort());
+});
+
+test("a folder of server/ includes only itself and those above it in that list", () => {
+  assert.deepEqual(
+    sources.flatMap((file) => forbidden(file, read(file)).map((path) => `${file} includes ${path}`)),
+    [],
+  );
+});
+
+test("no file of server/session includes anything of the network", () => {
+  const network = /^\s*#\s*include\s+(?:"server\/net\/|<libwebsockets|<sys\/socket|<netinet)/m;
+  assert.deepEqual(
+    sources.filter((file) => folderOf(file) === "session" && network.test(read(file))),
+    [],
+  );
+});
+
+test("the check sees an include that goes up the list, and none that goes down", () => {
+  const inSession = '#include "server/net/limits.h"\n#include "server/sim/plan.h"\n';
+  assert.deepEqual(forbidden("server/session/a.cpp", inSession), ["server/net/limits.h"]);
+  const inSim = '  #  include "server/lab/chart.h"\n#include "tests/scenes.h"\n';
+  assert.deepEqual(forbidden("server/sim/a.cpp", inSim), ["server/lab/chart.h", "tests/scenes.h"]);
+});
