@@ -1,6 +1,6 @@
-// The elements at each vertex, for gathering: for each law a list of (element, corner), in slices of SLICE_SIZE vertices,
-// each padded to its longest list (sliced ELLPACK: Monakov et al. 2010), so that neighbouring threads read neighbouring
-// entries. server/sim/element_lists.h makes them. Needs vertex_count. A kernel gathers with
+// The elements at each vertex, for gathering: for each law a list of (element, corner), in slices of SLICE_SIZE
+// vertices, each padded to its longest list (sliced ELLPACK: Monakov et al. 2010), so that neighbouring threads read
+// neighbouring entries. server/sim/element_lists.h makes them. Needs vertex_count. A kernel gathers with
 //   #each Law
 //     for (EntryRange at = entry_range(Law_LIST, i); at.first < at.end; at.first += Law_TEXELS * SLICE_SIZE) {
 //       LawEntry entry = Law_ENTRY(at.first);

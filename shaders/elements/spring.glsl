@@ -171,7 +171,8 @@ FUNCTION SpringLine element_line(SpringEdges place, SpringEdges velocity, Spring
 FUNCTION real line_energy(Spring s, SpringLine line, real dt, real share) {
   vec3 there = line.place + (dt * share) * line.change;
   real now = sqrt(dot(there, there)), more = share * line.closing_change;
-  return real(0.5) * (s.stiffness * (now - line.length_before) * (now + line.length_before - real(2.0) * s.rest_length) +
+  real before = line.length_before;
+  return real(0.5) * (s.stiffness * (now - before) * (now + before - real(2.0) * s.rest_length) +
                       dt * s.damping * more * (real(2.0) * line.closing + more));
 }
 
@@ -206,8 +207,8 @@ FUNCTION SpringEdges element_projection(real rest_length, SpringGains gains, Spr
 }
 
 #ifndef __cplusplus
-// In the lists of elements/lists.glsl: (other vertex, rest length, stiffness, damping). Padding is the vertex itself, and
-// zeros: it gives no force.
+// In the lists of elements/lists.glsl: (other vertex, rest length, stiffness, damping). Padding is the vertex itself,
+// and zeros: it gives no force.
 struct SpringEntry {
   int other;
   Spring law;
