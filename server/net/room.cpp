@@ -186,7 +186,7 @@ void Room::take(session::TopologyChanged& changed) {
 }
 
 void Room::take(const session::Status& status) {
-  asleep_ = status.asleep;
+  asleep_ = status.run.state() == session::RunState::State::asleep;
   take(status.pass_times);
   if (status.real_time_factor > 0)
     hub_.lab().session_reaches(name_, status.real_time_factor / status.speed, session::now_us());
@@ -261,7 +261,7 @@ void Room::broadcast_viewers() {
 
 json Room::status_params(const session::Status& status) const {
   const sim::Diagnostics& d = status.diagnostics;
-  return {{"playing", status.playing},
+  return {{"playing", status.run.plays()},
           {"time", d.time},
           {"step", d.step},
           {"speed", status.speed},
@@ -277,8 +277,8 @@ json Room::status_params(const session::Status& status) const {
            {{"dt_limit", std::isfinite(status.dt_limit) ? json(status.dt_limit) : json(nullptr)},
             {"margin", status.margin ? json(*status.margin) : json(nullptr)}}},
           {"solver", solver_},
-          {"asleep", status.asleep},
-          {"diverged", status.diverged}};
+          {"asleep", asleep_},
+          {"diverged", status.run.diverged()}};
 }
 
 }  // namespace clothlab::net

@@ -22,6 +22,7 @@
 #include "server/scene/document.h"
 #include "server/session/command_queue.h"
 #include "server/session/refusal.h"
+#include "server/session/run_state.h"
 #include "server/session/saved.h"
 #include "server/sim/simulation.h"
 #include "server/stream/frame.h"
@@ -94,7 +95,7 @@ struct Held {
 struct ChoiceWanted {};
 /// What sim.status is made of; plain data, so that the session's thread allocates nothing for it.
 struct Status {
-  bool playing = false, diverged = false, asleep = false;
+  RunState run;
   double speed = 1, real_time_factor = 0;
   double dt_limit = 0;           ///< [s]; infinite: none, 0: no step is stable
   std::optional<double> margin;  ///< dt over dt_limit; none where that says nothing

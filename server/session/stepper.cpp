@@ -53,7 +53,7 @@ clothlab::Status Stepper::bring_back(const Saved& saved) {
                      std::to_string(simulation().model().vertex_count()),
                  "what this version of the program wrote"};
   simulation().restore(saved.state, saved.time, saved.step);
-  playing_ = saved.playing;
+  if (!saved.playing) run_.pause();
   real_time_.set_speed(std::clamp(saved.speed, min_speed, max_speed));
   state_replaced();
   watch_anew();
@@ -63,7 +63,7 @@ clothlab::Status Stepper::bring_back(const Saved& saved) {
 }
 
 Saved Stepper::saved() {
-  return {document_.value,          revision_,           playing_ || held_ || (diverged_ && resume_),
+  return {document_.value,          revision_,           run_.would_play(),
           real_time_.speed(),       simulation().time(), simulation().step_index(),
           simulation().read_state()};
 }
@@ -138,7 +138,7 @@ void Stepper::note_finished(Clock::time_point now) {
 void Stepper::finish_waiting(bool all) {
   const auto done = [&](const Waiting& waiting) {
     if (!all && waiting.until_step > simulation().step_index()) return false;
-    if (diverged_)
+    if (run_.diverged())
       reply(waiting.ticket, diverged_refusal());
     else
       reply(waiting.ticket, where_we_are());
@@ -197,14 +197,14 @@ void Stepper::watch_anew() {
 }
 
 void Stepper::fall_asleep() {
-  asleep_ = true;
+  if (!run_.fall_asleep()) return;
   frames().asleep(true);
   announce_passes();
 }
 
 void Stepper::wake_up() {
   rest_.disturb();
-  if (!std::exchange(asleep_, false)) return;
+  if (!run_.wake()) return;
   frames().asleep(false);
   announce_passes();
 }
@@ -220,9 +220,8 @@ void Stepper::diverge() {
   simulation().go_back();
   ++state_version_;
   watch_anew();
-  diverged_ = true;
-  resume_ = playing_;
-  playing_ = false;
+  wake_up();
+  run_.diverge();
   finish_waiting(true);
   frames().diverge();
   exchange_.emit(Diverged{reason + model::against_limit(solver, limit), remedy.text, {{"solver", change}}});
@@ -230,8 +229,7 @@ void Stepper::diverge() {
 
 // The scene was changed after a blow-up: from the last good state, as it went before.
 void Stepper::go_on() {
-  if (!diverged_) return;
-  diverged_ = false;
+  if (!run_.go_on()) return;
   real_time_.restart(Clock::now());
   frames().go_on();
 }
@@ -240,9 +238,7 @@ void Stepper::publish_status(Clock::time_point now) {
   if (automatic_.wants_choice(now)) exchange_.emit(ChoiceWanted{});
   if (was_running_) real_time_.sample(now, simulation().time());
   Status status;
-  status.playing = playing_;
-  status.diverged = diverged_;
-  status.asleep = asleep_ && playing_;
+  status.run = run_;
   status.speed = real_time_.speed();
   status.real_time_factor = was_running_ ? real_time_.factor() : 0;
   follow_step_limit();

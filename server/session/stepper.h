@@ -16,6 +16,7 @@
 #include "server/session/piece_size.h"
 #include "server/session/real_time.h"
 #include "server/session/rest.h"
+#include "server/session/run_state.h"
 #include "server/session/step_limit.h"
 #include "server/sim/blow_up.h"
 
@@ -118,7 +119,7 @@ class Stepper {
   void warn_if_unconverged();
   void warn_if_thin();
   bool suspended(Clock::time_point now) const;
-  bool running(Clock::time_point now) const { return playing_ && !diverged_ && !asleep_ && !suspended(now); }
+  bool running(Clock::time_point now) const { return run_.steps() && !suspended(now); }
   Clock::time_point next_turn(Clock::time_point now) const;
 
   scene::Document document_;
@@ -135,10 +136,7 @@ class Stepper {
 
   std::uint64_t revision_ = 1;
   std::uint32_t topology_revision_ = 0;
-  bool playing_ = true, diverged_ = false;
-  bool resume_ = false;  ///< it was playing when it diverged
-  bool asleep_ = false;  ///< it plays, but the cloth is at rest: no steps until something happens
-  bool held_ = false;    ///< the lab has paused it, and nobody has said anything about that since
+  RunState run_;
   bool was_running_ = false;
   std::vector<Waiting> waiting_;
   int watchers_ = 0;

@@ -26,7 +26,7 @@ void Stepper::reply(const Ticket& ticket, Answer answer) {
 }
 
 json Stepper::where_we_are() const {
-  return {{"playing", playing_}, {"time", simulation().time()}, {"step", simulation().step_index()}};
+  return {{"playing", run_.plays()}, {"time", simulation().time()}, {"step", simulation().step_index()}};
 }
 
 Refusal Stepper::diverged_refusal() {
@@ -49,7 +49,7 @@ void Stepper::perform(LoadScene& load, const Ticket& ticket) {
     return reply(ticket, invalid_value(prepared.error()));
   const Result<sim::ChangeDepth> depth = change_engine(document->scene);
   if (!depth) return reply(ticket, invalid_value(depth.error()));
-  playing_ = playing_ || (diverged_ && resume_);
+  run_.go_on();  // as it went before, whether that has blown up or not
   adopt(std::move(*document), *depth);
   // Another scene starts at its beginning, however alike the two are.
   if (*depth != sim::ChangeDepth::cloth) restart();
@@ -134,7 +134,6 @@ void Stepper::take_over(scene::Document document, sim::ChangeDepth depth) {
   announce_passes();
   announce_solver();
   if (depth == sim::ChangeDepth::none) return;
-  playing_ = playing_ || (diverged_ && resume_);
   warn_if_thin();
   step_limit_.follow(simulation().model(), document_.scene);
   follow_step_limit();  // at once: the next change may come before the next status
@@ -152,19 +151,18 @@ void Stepper::restart() {
 void Stepper::state_replaced() {
   finish_waiting(true);
   wake_up();
-  diverged_ = slow_announced_ = crowded_announced_ = unconverged_announced_ = false;
+  run_.begin_again();
+  slow_announced_ = crowded_announced_ = unconverged_announced_ = false;
   ++state_version_;
   real_time_.restart(Clock::now());
   frames().restart();
 }
 
 void Stepper::perform(Play&, const Ticket& ticket) {
-  if (diverged_) return reply(ticket, diverged_refusal());
   finish_waiting(true);
   wake_up();
+  if (!run_.play()) return reply(ticket, diverged_refusal());
   ++state_version_;
-  playing_ = true;
-  held_ = false;
   reply(ticket, where_we_are());
 }
 
@@ -172,14 +170,13 @@ void Stepper::perform(Pause&, const Ticket& ticket) {
   finish_waiting(true);
   wake_up();
   ++state_version_;
-  playing_ = resume_ = held_ = false;
+  run_.pause();
   reply(ticket, where_we_are());
 }
 
 void Stepper::perform(Step& step, const Ticket& ticket) {
-  if (diverged_) return reply(ticket, diverged_refusal());
   wake_up();
-  playing_ = held_ = false;
+  if (!run_.step_by_hand()) return reply(ticket, diverged_refusal());
   const std::uint64_t from = waiting_.empty() ? simulation().step_index() : waiting_.back().until_step;
   waiting_.push_back({ticket, from + step.steps});
 }
@@ -211,9 +208,7 @@ void Stepper::perform(ReachScene& reach, const Ticket&) {
 }
 
 void Stepper::perform(Hold& hold, const Ticket&) {
-  if (playing_) {
-    playing_ = false;
-    held_ = true;
+  if (run_.hold()) {
     simulation().finish();  // what is queued already would run beside the job
     exchange_.emit(Notice{"info", "paused while the lab measures"});
   }
@@ -221,7 +216,7 @@ void Stepper::perform(Hold& hold, const Ticket&) {
 }
 
 void Stepper::perform(Release&, const Ticket&) {
-  if (std::exchange(held_, false)) playing_ = true;
+  run_.release();
 }
 
 void Stepper::perform(Export& what, const Ticket& ticket) {
@@ -259,7 +254,7 @@ void Stepper::announce_scene(std::optional<json> patch, std::uint64_t by) {
 void Stepper::announce_passes() {
   std::vector<sim::Simulation::Pass> passes = simulation().passes();
   for (sim::Simulation::Pass& pass : passes)
-    if (asleep_ && pass.skipped.empty()) pass.skipped = "asleep: the cloth is at rest";
+    if (run_.at_rest() && pass.skipped.empty()) pass.skipped = "asleep: the cloth is at rest";
   exchange_.emit(PassesChanged{std::move(passes)});
 }
 
