@@ -22,9 +22,9 @@ float rest_distance(int i, int j) {
   return a.w == b.w ? distance(a.xyz, b.xyz) : thickness;
 }
 
-bool left_out(int i, uint j) {
-  int end = int(FETCH_UINT(first_excluded, i + 1));
-  for (int at = int(FETCH_UINT(first_excluded, i)); at < end; ++at)
+/// Whether j is among those of that range.
+bool left_out(int first, int end, uint j) {
+  for (int at = first; at < end; ++at)
     if (FETCH_UINT(excluded, at) == j) return true;
   return false;
 }
@@ -43,6 +43,7 @@ void main() {
   // cell.
   ivec3 corner = corner_of(x);
   int first = i * NEIGHBOUR_SLOTS;
+  int first_left_out = int(FETCH_UINT(first_excluded, i)), end_left_out = int(FETCH_UINT(first_excluded, i + 1));
   int count = 0;
   uint lost = 0;
   ivec3 cell = corner;
@@ -57,7 +58,7 @@ void main() {
     vec3 y = FETCH(position, j).xyz;
     float gap = distance(x, y);
     // A bucket may hold several cells; only this one's vertices count, so that none is listed twice.
-    if (j != uint(i) && gap < reach && cell_of(y) == cell && !left_out(i, j)) {
+    if (j != uint(i) && gap < reach && cell_of(y) == cell && !left_out(first_left_out, end_left_out, j)) {
       int slot = count;
       if (count < NEIGHBOUR_SLOTS) ++count;
       else ++lost;

@@ -15,6 +15,11 @@ struct SpringEdges {
   vec3 d;  // this corner less the other one
 };
 
+FUNCTION SpringEdges edges_sum(SpringEdges a, SpringEdges b) {
+  a.d = a.d + b.d;
+  return a;
+}
+
 /// Force [N] on the corner. A spring without length has no direction and gives no force. The damping is the projection
 /// of the relative velocity on the spring: a rigid rotation feels none.
 FUNCTION vec3 element_force(Spring s, SpringEdges place, SpringEdges velocity) {

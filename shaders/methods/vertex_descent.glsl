@@ -72,15 +72,16 @@ void visit(int item) {
   // precise: both forms of the kernel, compiled apart, are to round alike.
   precise vec3 residual = inertia * (targets[i].xyz - d), diagonal = vec3(inertia), corner = vec3(0.0);
 #define MOVED(j) (drift(v - FETCH(velocity, j).xyz) + (d - deviation(j).xyz))
-#define PLACE(j) ((x.xyz - FETCH(position, j).xyz) + MOVED(j))
+#define START(j) (x.xyz - FETCH(position, j).xyz)
 #each Law
   for (EntryRange at = entry_range(Law_LIST, i); at.first < at.end; at.first += Law_TEXELS * SLICE_SIZE) {
     LawEntry entry = Law_ENTRY(at.first);
-    add_descent(entry.law, dt, Law_EDGES(entry, PLACE), Law_EDGES(entry, MOVED), residual, diagonal, corner);
+    LawEdges moved = Law_EDGES(entry, MOVED), place = edges_sum(Law_EDGES(entry, START), moved);
+    add_descent(entry.law, dt, place, moved, residual, diagonal, corner);
   }
 #end
 #undef MOVED
-#undef PLACE
+#undef START
   vec3 a, b;
   factorise(diagonal, corner, inertia, a, b);
   precise vec3 descent = solve_block(a, b, residual);
