@@ -17,6 +17,11 @@ vec4 momentum_left_out(int i, vec4 x) {
 }
 #endif
 
+// A free corner's change is scaled, a pinned one's is not. Functions, because their arguments are read in any case: a
+// compiler then sees that a vertex is read once.
+vec3 if_pinned(vec3 d, float inverse_mass) { return inverse_mass == 0.0 ? d : vec3(0.0); }
+vec3 if_free(vec3 d, float inverse_mass) { return inverse_mass == 0.0 ? vec3(0.0) : d; }
+
 void main() {
   int i = int(gl_GlobalInvocationID.x);
   float energy[SHARES];
@@ -24,12 +29,9 @@ void main() {
   vec4 x = i < vertex_count ? FETCH(position, i) : vec4(0.0);
   if (i < vertex_count) {
     vec3 u = FETCH(velocity, i).xyz, d = FETCH(change, i).xyz;
-    bool held = x.w == 0.0;
-    // A free corner's change is scaled, a pinned one's is not.
-    vec3 fixed_change = held ? d : vec3(0.0), scaled_change = held ? vec3(0.0) : d;
-#define HELD(j) (FETCH(position, j).w == 0.0)
-#define FIXED(j) (fixed_change - (HELD(j) ? FETCH(change, j).xyz : vec3(0.0)))
-#define SCALED(j) (scaled_change - (HELD(j) ? vec3(0.0) : FETCH(change, j).xyz))
+    vec3 fixed_change = if_pinned(d, x.w), scaled_change = if_free(d, x.w);
+#define FIXED(j) (fixed_change - if_pinned(FETCH(change, j).xyz, FETCH(position, j).w))
+#define SCALED(j) (scaled_change - if_free(FETCH(change, j).xyz, FETCH(position, j).w))
 #define PLACE(j) (x.xyz - FETCH(position, j).xyz + dt * FIXED(j))
 #define VELOCITY(j) (u - FETCH(velocity, j).xyz + FIXED(j))
 #each Law
@@ -40,7 +42,7 @@ void main() {
         energy[k] += line_energy(entry.law, line, dt, shares[k]) / Law_CORNERS;  // the rest is the other corners'
     }
 #end
-    if (!held) {
+    if (x.w > 0.0) {
       float m = 1.0 / x.w;
       float slope = m * dot(d, u - FETCH(start_velocity, i).xyz - dt * gravity.xyz + dt * gravity.w * u);
       float curvature = m * (1.0 + dt * gravity.w) * dot(d, d);
