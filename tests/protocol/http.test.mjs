@@ -191,7 +191,7 @@ test("without a token nothing but /healthz is answered under another name than a
 
 test("who sends no Host is no browser, and is answered", async () => {
   const socket = net.connect(server.port, "127.0.0.1");
-  socket.end("GET /api/scene HTTP/1.0\r\n\r\n");
+  socket.write("GET /api/scene HTTP/1.0\r\n\r\n");
   const [data] = await withTimeout(once(socket, "data"), "the answer");
   assert.match(data.toString(), /^HTTP\/1.\d 200/);
   socket.destroy();

@@ -168,6 +168,6 @@ test("a viewer may open what is kept, after a restart too, and nothing else", as
   assert.equal((await viewer.notification("hello")).role, "viewer");
   assert.equal((await viewer.notification("scene")).document.name, "kept");
   await assert.rejects(enter(server, "another", "look"), { code: -32001 });
+  assert.equal(await server.stop(), 0); // and has finished what it was writing
   assert.deepEqual(readdirSync(kept).sort(), ["main.session", "other.session"]);
-  assert.equal(await server.stop(), 0);
 });
