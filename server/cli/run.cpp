@@ -97,7 +97,7 @@ Report make_report(const Prepared& prepared, const Progress& progress, double wa
   report["diverged"] = progress.diverged;
   if (progress.diverged) {
     report["diverged_by"] = progress.diverged_by;
-    report["diverged_reason"] = progress.reason;
+    report["diverged_reason"] = progress.setback.reason;
   }
   report["state_hash"] = formatted("%016llx", static_cast<unsigned long long>(sim::state_hash(state)));
   return report;

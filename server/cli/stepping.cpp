@@ -1,7 +1,6 @@
 #include "server/cli/stepping.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "server/base/text.h"
@@ -9,7 +8,6 @@
 #include "server/lab/choice.h"
 #include "server/model/stability.h"
 #include "server/scene/method.h"
-#include "server/sim/blow_up.h"
 #include "server/sim/motion_table.h"
 
 namespace clothlab::cli {
@@ -22,25 +20,6 @@ constexpr double most_steps = 1e12;
 /// that a look costs little; fewer where a blow-up is expected, so that more of the good part is kept.
 std::uint64_t steps_between_looks(double dt, double limit) {
   return dt > model::margin_to_warn * limit ? sim::batch_steps / 8 : sim::batch_steps;
-}
-
-/// Steps `count` times and waits for the GPU; returns the seconds that took.
-double timed_steps(sim::Simulation& simulation, std::uint64_t count) {
-  const auto start = std::chrono::steady_clock::now();
-  simulation.step(static_cast<std::uint32_t>(count));
-  simulation.finish();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// What there is to tell about a blow-up, and the simulation back where it was good.
-void end_diverged(Progress& progress, sim::Simulation& simulation, const sim::BlowUp& watch, double limit) {
-  const scene::Scene& scene = simulation.scene();
-  progress.diverged = true;
-  progress.diverged_by = simulation.time();
-  progress.reason = watch.reason() + model::against_limit(scene.solver, limit);
-  progress.remedy = model::remedy(simulation.model(), scene, limit);
-  progress.state = watch.last_good();
-  simulation.go_back();
 }
 
 /// The scene with what the lab chooses in the place of the method `auto`; others as they are. Where it cannot
@@ -116,38 +95,37 @@ Result<Progress> advance(sim::Simulation& simulation, std::uint64_t steps, std::
                          const AtStop& at_stop) {
   Progress progress;
   // Drivers compile a kernel when it first runs: that belongs to no step.
-  timed_steps(simulation, 1);
+  sim::timed_steps(simulation, 1);
   simulation.reset();
-  progress.state = simulation.diagnose();
-  if (Status stop = at_stop(progress.state); !stop) return stop.error();
-
   const double limit = model::dt_limit_if_near(simulation.model(), simulation.scene());
   const std::uint64_t look_every = steps_between_looks(simulation.scene().solver.dt, limit);
-  sim::BlowUp watch;
-  watch.start(sim::allowance(simulation.scene(), simulation.model(), limit), progress.state);
+  sim::GuardedRun run(simulation);
+  run.start(limit);
+  progress.state = run.state();
+  if (Status stop = at_stop(progress.state); !stop) return stop.error();
+
   std::uint64_t next_stop = 0;
   while (progress.steps < steps) {
     if (progress.steps == next_stop) next_stop = std::min(next_stop + every, steps);
     const std::uint64_t count = std::min(next_stop - progress.steps, look_every);
-    progress.step_seconds += timed_steps(simulation, count);
+    progress.step_seconds += run.step(static_cast<std::uint32_t>(count));
     progress.steps += count;
-    const sim::Diagnostics state = simulation.diagnose();
-    const sim::BlowUp::Verdict verdict = watch.judge(state);
-    if (verdict == sim::BlowUp::Verdict::blown_up) {
-      end_diverged(progress, simulation, watch, limit);
-      return progress;
+    progress.diverged = run.look() == sim::GuardedRun::Verdict::blown_up;
+    if (progress.diverged) {
+      progress.diverged_by = simulation.time();
+      progress.setback = run.go_back();
     }
-    if (verdict == sim::BlowUp::Verdict::good) simulation.keep_diagnosed();
-    progress.state = state;
+    progress.state = run.state();
+    if (progress.diverged) return progress;
     if (progress.steps == next_stop)
-      if (Status stop = at_stop(state); !stop) return stop.error();
+      if (Status stop = at_stop(progress.state); !stop) return stop.error();
   }
   return progress;
 }
 
 void note_diverged(const Progress& progress) {
-  const model::Remedy& remedy = progress.remedy;
-  note("the simulation diverged: " + progress.reason + "; what was good, up to t = " +
+  const model::Remedy& remedy = progress.setback.remedy;
+  note("the simulation diverged: " + progress.setback.reason + "; what was good, up to t = " +
        significant(progress.state.time, 9) + " s, is kept. " + remedy.text + ": " +
        (remedy.method ? std::string("--set /solver/method=") + scene::name(*remedy.method) + " " : "") +
        "--set /solver/dt=" + significant(remedy.dt, 9));

@@ -10,7 +10,7 @@
 #include "server/base/result.h"
 #include "server/cli/commands.h"
 #include "server/gl/context.h"
-#include "server/model/remedy.h"
+#include "server/sim/guarded_run.h"
 #include "server/sim/simulation.h"
 
 namespace clothlab::cli {
@@ -38,9 +38,8 @@ struct Progress {
   double step_seconds = 0;  ///< stepping alone, GPU finished, without the stops [s]
   std::uint64_t steps = 0;  ///< that were timed
   bool diverged = false;
-  double diverged_by = 0;  ///< the simulated time at which that was seen [s]
-  std::string reason;      ///< of the blow-up, in numbers
-  model::Remedy remedy;    ///< for it
+  double diverged_by = 0;              ///< the simulated time at which that was seen [s]
+  sim::GuardedRun::Setback setback{};  ///< why it did, in numbers, and what to do
 };
 
 using AtStop = std::function<Status(const sim::Diagnostics&)>;

@@ -1,19 +1,16 @@
 #include "server/lab/energy_trial.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "server/lab/control.h"
 #include "server/model/stability.h"
-#include "server/sim/blow_up.h"
+#include "server/sim/guarded_run.h"
 #include "server/sim/motion_table.h"
 
 namespace clothlab::lab {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// Calls of AtLook in a trial.
 constexpr int calls = 20;
@@ -39,11 +36,8 @@ Result<EnergyTrial> run_trial(sim::Simulation& simulation, int steps, const std:
   constexpr int look_every = sim::batch_steps / 2;
   const int looks_apart = std::max(1, steps / look_every / calls);
   simulation.reset();
-  sim::Allowance allowance = sim::allowance(simulation.scene(), simulation.model(), model::no_limit);
-  allowance.ratio = stable_swing;
-  sim::BlowUp watch;
-  sim::Diagnostics state = simulation.diagnose();
-  watch.start(allowance, state);
+  sim::GuardedRun guard(simulation);
+  guard.start(model::no_limit, stable_swing);
   EnergyTrial trial;
   trial.dt = simulation.scene().solver.dt;
   Pace pace;
@@ -52,22 +46,19 @@ Result<EnergyTrial> run_trial(sim::Simulation& simulation, int steps, const std:
     while (done < look_at) {
       if (stop.stop_requested()) return cancelled;
       const int count = std::min(pace.next(), look_at - done);
-      const Clock::time_point begun = Clock::now();
-      simulation.step(static_cast<std::uint32_t>(count));
-      simulation.finish();
-      pace.took(std::chrono::duration<double>(Clock::now() - begun).count());
+      pace.took(guard.step(static_cast<std::uint32_t>(count)));
       done += count;
     }
-    state = simulation.diagnose();
+    const sim::GuardedRun::Verdict verdict = guard.look();
+    const sim::Diagnostics& state = guard.state();
     trial.time = state.time;
     trial.touched = trial.touched || state.contacts > 0;
     const double energy = state.kinetic + state.elastic;
     if (state.finite && std::isfinite(energy)) trial.most = std::max(trial.most, energy);
-    const sim::BlowUp::Verdict verdict = watch.judge(state);
-    if (verdict == sim::BlowUp::Verdict::blown_up) {
+    if (verdict == sim::GuardedRun::Verdict::blown_up) {
       trial.blew_up = true;
       trial.finite = state.finite && std::isfinite(energy);
-      trial.why = watch.reason();
+      trial.why = guard.reason();
       return trial;
     }
     trial.max_strain = std::max(trial.max_strain, state.max_strain);

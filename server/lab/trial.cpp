@@ -1,7 +1,6 @@
 #include "server/lab/trial.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
@@ -10,7 +9,7 @@
 #include "server/lab/spread.h"
 #include "server/model/stability.h"
 #include "server/reference/trajectory.h"
-#include "server/sim/blow_up.h"
+#include "server/sim/guarded_run.h"
 #include "server/sim/motion_table.h"
 #include "server/sim/plan.h"
 
@@ -18,16 +17,10 @@ namespace clothlab::lab {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr int fewest_samples = 4;       // that a run meets
 constexpr double most_rounding = 0.04;  // of the step, to meet more samples
 constexpr double same_step = 1e-5;      // a step with six digits is the one it was rounded from
 constexpr double patience = 0.1;        // wall time between two looks at the stop token [s]
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 double total(const sim::Diagnostics& state) {
   return state.kinetic + state.elastic + state.gravitational;
@@ -76,10 +69,7 @@ class Stepping {
   std::uint32_t step(std::uint64_t most) {
     const auto count =
         static_cast<std::uint32_t>(std::min<std::uint64_t>(most, std::max<std::uint64_t>(1, affordable_)));
-    const Clock::time_point start = Clock::now();
-    simulation_.step(count);
-    simulation_.finish();
-    const double spent = seconds_since(start);
+    const double spent = sim::timed_steps(simulation_, count);
     wall_ += spent;
     affordable_ = static_cast<std::uint64_t>(std::clamp(patience / spent * count, 1.0, 1e6));
     return count;
@@ -131,9 +121,8 @@ Result<Trial> Bench::run(scene::Scene scene, const Truth& truth, double until, c
   const Result<sim::Simulation*> prepared = prepare(scene);
   if (!prepared) return prepared.error();
   sim::Simulation& simulation = **prepared;
-  const double limit = model::dt_limit_if_near(simulation.model(), scene);
-  sim::BlowUp watch;
-  watch.start(sim::allowance(scene, simulation.model(), limit), simulation.diagnose());
+  sim::GuardedRun guard(simulation);
+  guard.start(model::dt_limit_if_near(simulation.model(), scene));
 
   const int common = std::gcd(steps, samples_to_horizon);
   const auto steps_a_sample = static_cast<std::uint64_t>(steps / common);
@@ -148,15 +137,15 @@ Result<Trial> Bench::run(scene::Scene scene, const Truth& truth, double until, c
     step += stepping.step(next - step);
     trial.wall = stepping.wall();
     trial.simulated = static_cast<double>(step) * scene.solver.dt;
-    const sim::Diagnostics state = simulation.diagnose();
-    if (watch.judge(state) == sim::BlowUp::Verdict::blown_up) {
+    if (guard.look() == sim::GuardedRun::Verdict::blown_up) {
       trial.blew_up_at = trial.simulated;
       trial.error = {};
       trial.largest_position_error.reset();
       return trial;
     }
     if (step % steps_a_sample == 0)
-      comparison.add(static_cast<int>(step / steps_a_sample) * samples_apart, simulation, state, trial);
+      comparison.add(static_cast<int>(step / steps_a_sample) * samples_apart, simulation, guard.state(),
+                     trial);
   }
   return trial;
 }
@@ -166,16 +155,14 @@ Result<std::optional<sim::State>> Bench::run_to(const scene::Scene& scene, doubl
   const Result<sim::Simulation*> prepared = prepare(scene);
   if (!prepared) return prepared.error();
   sim::Simulation& simulation = **prepared;
-  sim::BlowUp watch;
-  watch.start(sim::allowance(scene, simulation.model(), model::dt_limit_if_near(simulation.model(), scene)),
-              simulation.diagnose());
+  sim::GuardedRun guard(simulation);
+  guard.start(model::dt_limit_if_near(simulation.model(), scene));
   Stepping stepping(simulation);
   const auto steps = static_cast<std::uint64_t>(std::max(1.0, std::round(time / scene.solver.dt)));
   for (std::uint64_t done = 0; done < steps;) {
     if (stop.stop_requested()) return cancelled;
     done += stepping.step(steps - done);
-    if (watch.judge(simulation.diagnose()) == sim::BlowUp::Verdict::blown_up)
-      return std::optional<sim::State>();
+    if (guard.look() == sim::GuardedRun::Verdict::blown_up) return std::optional<sim::State>();
   }
   return std::optional<sim::State>(simulation.read_state());
 }

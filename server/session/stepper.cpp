@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "server/base/text.h"
-#include "server/model/remedy.h"
 #include "server/model/size.h"
 #include "server/model/thickness.h"
 #include "server/scene/method.h"
@@ -35,6 +34,7 @@ Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Excha
       Engine::create(scene, exchange, {gpu, Engine::threads_for(scene), last_frame});
   if (!engine) return engine.error();
   stepper->engine_ = std::move(*engine);
+  stepper->guard_.emplace(stepper->simulation());
   stepper->last_watched_ = stepper->next_status_ = Clock::now();
   stepper->announce_scene(std::nullopt, 0);
   stepper->announce_passes();
@@ -42,7 +42,7 @@ Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Excha
   stepper->thin_ = !model::thickness_warning(stepper->simulation().model(), stepper->document_.scene).empty();
   stepper->step_limit_.follow(stepper->simulation().model(), stepper->document_.scene);
   stepper->rest_.follow(stepper->document_.scene, stepper->simulation().model());
-  stepper->watch_anew();
+  stepper->guard_->start(stepper->step_limit_.dt_limit());
   return stepper;
 }
 
@@ -56,7 +56,7 @@ clothlab::Status Stepper::bring_back(const Saved& saved) {
   if (!saved.playing) run_.pause();
   real_time_.set_speed(std::clamp(saved.speed, min_speed, max_speed));
   state_replaced();
-  watch_anew();
+  guard_->start(step_limit_.dt_limit());
   revision_ = saved.revision;
   announce_scene(std::nullopt, 0);
   return ok();
@@ -148,10 +148,9 @@ void Stepper::finish_waiting(bool all) {
 }
 
 void Stepper::follow_diagnostics(Clock::time_point now) {
-  sim::Diagnostics arrived;
-  if (diagnosing_ && simulation().poll_diagnostics(arrived)) {
-    diagnosing_ = false;
-    accept(arrived);
+  if (const std::optional<sim::GuardedRun::Verdict> verdict = guard_->poll()) {
+    accept(*verdict);
+    const sim::Diagnostics& arrived = guard_->state();
     if (running(now) &&
         rest_.look(arrived.time, arrived.max_speed, [&] { return simulation().read_state().position; }))
       fall_asleep();
@@ -159,41 +158,26 @@ void Stepper::follow_diagnostics(Clock::time_point now) {
   request_diagnosis(now);
   if (now < next_status_) return;
   // The first status of a state that has come to rest tells of that one and no earlier.
-  if (!running(now) && waiting_.empty() && (diagnosing_ || diagnosed_version_ != state_version_)) return;
+  if (!running(now) && waiting_.empty() && (guard_->asked() || diagnosed_version_ != state_version_)) return;
   next_status_ = std::max(next_status_ + period(status_rate), now);
   publish_status(now);
 }
 
 // Of a state that stands still once is enough.
 void Stepper::request_diagnosis(Clock::time_point now) {
-  if (diagnosing_ || diagnosed_version_ == state_version_ || now < next_diagnosis_) return;
+  if (guard_->asked() || diagnosed_version_ == state_version_ || now < next_diagnosis_) return;
   engine_->diagnosis_timer.begin();
-  simulation().request_diagnostics();
+  guard_->ask();
   engine_->diagnosis_timer.stage("diagnose");
   engine_->diagnosis_timer.end();
-  diagnosing_ = true;
   diagnosed_version_ = state_version_;
   next_diagnosis_ = std::max(next_diagnosis_ + period(diagnosis_rate), now);
 }
 
-void Stepper::accept(const sim::Diagnostics& diagnostics) {
-  const sim::BlowUp::Verdict verdict = blow_up_.judge(diagnostics);
-  if (verdict == sim::BlowUp::Verdict::blown_up) return diverge();
-  if (verdict == sim::BlowUp::Verdict::good) simulation().keep_diagnosed();
-  diagnostics_ = diagnostics;
+void Stepper::accept(sim::GuardedRun::Verdict verdict) {
+  if (verdict == sim::GuardedRun::Verdict::blown_up) return diverge();
   warn_if_crowded();
   warn_if_unconverged();
-}
-
-sim::Allowance Stepper::allowance() const {
-  return sim::allowance(document_.scene, simulation().model(), step_limit_.dt_limit());
-}
-
-// The state is a new one, and taken for sound.
-void Stepper::watch_anew() {
-  diagnostics_ = simulation().diagnose();
-  diagnosing_ = false;
-  blow_up_.start(allowance(), diagnostics_);
 }
 
 void Stepper::fall_asleep() {
@@ -210,21 +194,18 @@ void Stepper::wake_up() {
 }
 
 void Stepper::diverge() {
-  const std::string reason = blow_up_.reason();
   const scene::Solver& solver = document_.scene.solver;
-  const double limit = step_limit_.dt_limit();
-  const model::Remedy remedy = model::remedy(simulation().model(), document_.scene, limit);
+  auto [reason, remedy] = guard_->go_back();
   json change{{"dt", remedy.dt}};
   if (remedy.method || solver.automatic)
     change["method"] = scene::name(remedy.method.value_or(solver.method));
-  simulation().go_back();
   ++state_version_;
-  watch_anew();
+  guard_->start(step_limit_.dt_limit());
   wake_up();
   run_.diverge();
   finish_waiting(true);
   frames().diverge();
-  exchange_.emit(Diverged{reason + model::against_limit(solver, limit), remedy.text, {{"solver", change}}});
+  exchange_.emit(Diverged{std::move(reason), std::move(remedy.text), {{"solver", change}}});
 }
 
 // The scene was changed after a blow-up: from the last good state, as it went before.
@@ -244,7 +225,7 @@ void Stepper::publish_status(Clock::time_point now) {
   follow_step_limit();
   status.dt_limit = step_limit_.dt_limit();
   status.margin = step_limit_.margin();
-  status.diagnostics = diagnostics_;
+  status.diagnostics = guard_->state();
   // The timers begin again once their times are taken: a few samples a second.
   engine_->step_timer.poll(status.pass_times);
   engine_->diagnosis_timer.poll(status.pass_times);
@@ -254,7 +235,7 @@ void Stepper::publish_status(Clock::time_point now) {
 }
 
 void Stepper::follow_step_limit() {
-  if (step_limit_.poll()) blow_up_.allow(allowance());
+  if (step_limit_.poll()) guard_->allow(step_limit_.dt_limit());
   if (std::optional<std::string> warning = step_limit_.take_warning())
     exchange_.emit(Notice{"warning", std::move(*warning)});
 }
@@ -278,7 +259,7 @@ void Stepper::warn_if_slow(Clock::time_point now) {
 }
 
 void Stepper::warn_if_crowded() {
-  if (crowded_announced_ || diagnostics_.neighbours_dropped == 0) return;
+  if (crowded_announced_ || guard_->state().neighbours_dropped == 0) return;
   crowded_announced_ = true;
   exchange_.emit(Notice{"warning",
                         "self-collision: some vertices have more neighbours than there is room for, and the "
@@ -306,7 +287,7 @@ bool Stepper::suspended(Clock::time_point now) const {
 
 Clock::time_point Stepper::next_turn(Clock::time_point now) const {
   if ((simulation().wanted() > 0 || !waiting_.empty()) && !engine_->backlog.full()) return now;
-  if (frames().urgent() || frames().in_flight() || diagnosing_ || !engine_->backlog.empty())
+  if (frames().urgent() || frames().in_flight() || guard_->asked() || !engine_->backlog.empty())
     return now + microseconds(500);
   if (!running(now)) return suspended(now) ? now + milliseconds(250) : std::max(next_status_, now);
   if (real_time_.behind(document_.scene.solver.dt)) return now;

@@ -18,7 +18,7 @@
 #include "server/session/rest.h"
 #include "server/session/run_state.h"
 #include "server/session/step_limit.h"
-#include "server/sim/blow_up.h"
+#include "server/sim/guarded_run.h"
 
 namespace clothlab::session {
 
@@ -105,9 +105,7 @@ class Stepper {
   void finish_waiting(bool all);
   void follow_diagnostics(Clock::time_point now);
   void request_diagnosis(Clock::time_point now);
-  void accept(const sim::Diagnostics& diagnostics);
-  void watch_anew();
-  sim::Allowance allowance() const;
+  void accept(sim::GuardedRun::Verdict verdict);
   void fall_asleep();
   void wake_up();
   void diverge();
@@ -142,11 +140,9 @@ class Stepper {
   int watchers_ = 0;
   Clock::time_point last_watched_{};
 
-  sim::BlowUp blow_up_;
-  sim::Diagnostics diagnostics_{};
+  std::optional<sim::GuardedRun> guard_;  ///< there is one as soon as there is an engine
   std::uint64_t state_version_ = 1,
                 diagnosed_version_ = 0;  ///< whether the diagnostics are of the present state
-  bool diagnosing_ = false;
   Clock::time_point next_status_{}, next_diagnosis_{};
   Clock::time_point slow_since_{};
   bool slow_announced_ = false, crowded_announced_ = false, unconverged_announced_ = false;

@@ -82,10 +82,9 @@ void Stepper::perform(PatchScene& patch, const Ticket& ticket) {
 // hide behind one change after another.
 Result<sim::ChangeDepth> Stepper::change(const scene::Scene& scene) {
   if (!sim::changes_energy(document_.scene, scene)) return change_engine(scene);
-  accept(simulation().diagnose());
-  diagnosing_ = false;
+  accept(guard_->look());
   const Result<sim::ChangeDepth> depth = change_engine(scene);
-  if (depth && *depth != sim::ChangeDepth::cloth) blow_up_.rebase(simulation().diagnose());
+  if (depth && *depth != sim::ChangeDepth::cloth) guard_->rebase();
   return depth;
 }
 
@@ -113,7 +112,7 @@ Result<sim::ChangeDepth> Stepper::move_to(const scene::Scene& scene, gl::HelperT
   (*made)->frames->take_over(frames());
   engine_.swap(*made);
   made->reset();
-  diagnosing_ = false;
+  guard_->move_to(simulation());
   return depth;
 }
 
@@ -137,15 +136,15 @@ void Stepper::take_over(scene::Document document, sim::ChangeDepth depth) {
   warn_if_thin();
   step_limit_.follow(simulation().model(), document_.scene);
   follow_step_limit();  // at once: the next change may come before the next status
-  if (depth == sim::ChangeDepth::cloth) return watch_anew();
-  blow_up_.allow(allowance());
+  if (depth == sim::ChangeDepth::cloth) return guard_->start(step_limit_.dt_limit());
+  guard_->allow(step_limit_.dt_limit());
   go_on();
 }
 
 void Stepper::restart() {
   simulation().reset();
   state_replaced();
-  watch_anew();
+  guard_->start(step_limit_.dt_limit());
 }
 
 void Stepper::state_replaced() {

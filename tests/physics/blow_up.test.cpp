@@ -2,35 +2,33 @@
 // the state that is kept is whole.
 #include "server/sim/blow_up.h"
 
-#include "server/model/remedy.h"
+#include <optional>
+
 #include "server/model/stability.h"
 #include "server/scene/method.h"
+#include "server/sim/guarded_run.h"
 #include "tests/physics/stage.h"
 
 using namespace clothlab;
-using Verdict = sim::BlowUp::Verdict;
+using Verdict = sim::GuardedRun::Verdict;
 
 namespace {
 
 struct Watched {
   Verdict verdict = Verdict::good;
   int good = 0, looks = 0;
-  sim::BlowUp blow_up;
+  sim::GuardedRun guard;
 };
 
-/// Steps to `time` [s], with a look every `stride` steps, and keeps what is good.
+/// Steps to `time` [s], with a look every `stride` steps.
 Watched watch(sim::Simulation& simulation, double time, std::uint32_t stride) {
-  const scene::Scene& scene = simulation.scene();
-  Watched run;
-  run.blow_up.start(sim::allowance(scene, simulation.model(), model::dt_limit(simulation.model(), scene)),
-                    simulation.diagnose());
+  Watched run{.guard = sim::GuardedRun(simulation)};
+  run.guard.start(model::dt_limit(simulation.model(), simulation.scene()));
   while (run.verdict != Verdict::blown_up && simulation.time() < time) {
-    simulation.step(stride);
-    run.verdict = run.blow_up.judge(simulation.diagnose());
+    run.guard.step(stride);
+    run.verdict = run.guard.look();
     ++run.looks;
-    if (run.verdict != Verdict::good) continue;
-    ++run.good;
-    simulation.keep_diagnosed();
+    if (run.verdict == Verdict::good) ++run.good;
   }
   return run;
 }
@@ -138,18 +136,42 @@ TEST_CASE(
 TEST_CASE("after a blow-up the last good state, with a step that holds, settles again") {
   const auto context = test::context();
   const auto simulation = test::simulation(preset("blowup"));
-  const Watched run = watch(*simulation, 1.0, 2);
+  Watched run = watch(*simulation, 1.0, 2);
   REQUIRE(run.verdict == Verdict::blown_up);
-  simulation->go_back();
+  CHECK_FALSE(run.guard.go_back().reason.empty());
   const sim::Diagnostics back = simulation->diagnose();
   CHECK(back.finite);
-  CHECK(back.step == run.blow_up.last_good().step);
+  CHECK(back.step == run.guard.last_good().step);
+  CHECK(back.step == run.guard.state().step);
   CHECK(back.kinetic + back.elastic < 62.5 * 9.8 * 1.5);  // m g over the cloth's diagonal
   scene::Scene healed = preset("blowup");
   healed.solver.dt = 0.0013;
   REQUIRE(simulation->change(healed));
   CHECK(watch(*simulation, 2.0, 16).verdict == Verdict::good);
   CHECK(simulation->diagnose().max_strain < 0.5);
+}
+
+TEST_CASE("a look that nobody waits for decides as one that is waited for, and goes back to the same state") {
+  const auto context = test::context();
+  const auto waited = test::simulation(preset("blowup")), asked = test::simulation(preset("blowup"));
+  sim::GuardedRun one(*waited), other(*asked);
+  one.start(model::dt_limit(waited->model(), waited->scene()));
+  other.start(model::dt_limit(asked->model(), asked->scene()));
+  Verdict verdict = Verdict::good;
+  while (verdict != Verdict::blown_up && waited->time() < 1.0) {
+    one.step(2);
+    other.step(2);
+    other.ask();
+    std::optional<Verdict> arrived;
+    while (!arrived) arrived = other.poll();
+    verdict = one.look();
+    REQUIRE(*arrived == verdict);
+    CHECK_FALSE(other.asked());
+  }
+  REQUIRE(verdict == Verdict::blown_up);
+  CHECK(one.go_back().reason == other.go_back().reason);
+  CHECK(waited->step_index() == asked->step_index());
+  CHECK(sim::state_hash(waited->read_state()) == sim::state_hash(asked->read_state()));
 }
 
 TEST_CASE("a mass that was changed since the state was kept stays changed") {
@@ -178,12 +200,10 @@ TEST_CASE("after a blow-up below the limit, of a cloth that is pulled tight, one
     scene.solver.method = method;
     scene.solver.dt = 0.85 * model::dt_limit(*model::build(scene), scene);
     const auto simulation = test::simulation(scene);
-    const Watched run = watch(*simulation, 3.0, 8);
+    Watched run = watch(*simulation, 3.0, 8);
     INFO(scene::name(method) << " until " << simulation->time() << " s");
     REQUIRE(run.verdict == Verdict::blown_up);
-    const double limit = model::dt_limit(simulation->model(), scene);
-    const model::Remedy remedy = model::remedy(simulation->model(), scene, limit);
-    simulation->go_back();
+    const model::Remedy remedy = run.guard.go_back().remedy;
     scene.solver.dt = remedy.dt;
     if (remedy.method) scene.solver.method = *remedy.method;
     REQUIRE(simulation->change(scene));

@@ -5,16 +5,15 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "server/model/remedy.h"
 #include "server/model/stability.h"
 #include "server/scene/method.h"
-#include "server/sim/blow_up.h"
+#include "server/sim/guarded_run.h"
 #include "tests/physics/random_patch.h"
 #include "tests/scenes.h"
 
 using namespace clothlab;
 using scene::json;
-using Verdict = sim::BlowUp::Verdict;
+using Verdict = sim::GuardedRun::Verdict;
 
 namespace {
 
@@ -34,7 +33,7 @@ bool finite(const sim::State& state) {
 class Session {
  public:
   explicit Session(scene::Document document)
-      : document_(std::move(document)), simulation_(test::simulation(document_.scene)) {
+      : document_(std::move(document)), simulation_(test::simulation(document_.scene)), guard_(*simulation_) {
     watch();
   }
 
@@ -49,7 +48,7 @@ class Session {
     const Result<scene::Document> again = scene::validate(next->value);
     if (!again || !(*again == *next)) return "the patched document does not validate to itself";
     const bool changes_energy = sim::changes_energy(document_.scene, next->scene);
-    if (changes_energy && judge() == Verdict::blown_up)
+    if (changes_energy && guard_.look() == Verdict::blown_up)
       if (const std::string wrong = recover(); !wrong.empty()) return wrong;
     const Result<sim::ChangeDepth> depth = simulation_->change(next->scene);
     if (!depth) {
@@ -60,9 +59,8 @@ class Session {
     if (*depth == sim::ChangeDepth::cloth) {
       watch();
     } else if (*depth != sim::ChangeDepth::none) {
-      if (changes_energy) blow_up_.rebase(simulation_->diagnose());
-      limit_ = model::dt_limit(simulation_->model(), document_.scene);
-      blow_up_.allow(allowance());
+      if (changes_energy) guard_.rebase();
+      guard_.allow(limit());
     }
     if (simulation_->model().vertex_count() != model::build(document_.scene)->vertex_count())
       return "the simulation is not of the document's mesh";
@@ -73,22 +71,15 @@ class Session {
   std::string run(int batches, std::uint32_t steps) {
     for (int batch = 0; batch < batches; ++batch) {
       simulation_->step(steps);
-      const Verdict verdict = judge();
-      if (verdict == Verdict::blown_up) return recover();
-      if (verdict == Verdict::good) simulation_->keep_diagnosed();
+      if (guard_.look() == Verdict::blown_up) return recover();
       if (const std::string wrong = still_goes(); !wrong.empty()) return wrong;
     }
     return "";
   }
 
  private:
-  sim::Allowance allowance() const { return sim::allowance(document_.scene, simulation_->model(), limit_); }
-  Verdict judge() { return blow_up_.judge(simulation_->diagnose()); }
-
-  void watch() {
-    limit_ = model::dt_limit(simulation_->model(), document_.scene);
-    blow_up_.start(allowance(), simulation_->diagnose());
-  }
+  double limit() const { return model::dt_limit(simulation_->model(), document_.scene); }
+  void watch() { guard_.start(limit()); }
 
   std::string still_goes() {
     return finite(simulation_->read_state()) ? "" : "not finite, and nobody says so";
@@ -97,14 +88,13 @@ class Session {
   /// Back to the last good state, with the remedy, as a user would after sim.diverged.
   std::string recover() {
     ++blow_ups_;
-    if (blow_up_.reason().empty()) return "blown up for no reason";
-    const model::Remedy remedy = model::remedy(simulation_->model(), document_.scene, limit_);
+    const auto [reason, remedy] = guard_.go_back();
+    if (reason.empty()) return "blown up for no reason";
     json solver{{"dt", remedy.dt}};
     if (remedy.method || document_.scene.solver.automatic)
       solver["method"] = scene::name(remedy.method.value_or(document_.scene.solver.method));
     const Result<scene::Document> next = scene::apply_patch(document_, {{"solver", solver}});
     if (!next) return "the remedy is refused: " + next.error().text();
-    simulation_->go_back();
     if (const std::string wrong = still_goes(); !wrong.empty()) return "after going back " + wrong;
     document_ = *next;
     const Result<sim::ChangeDepth> depth = simulation_->change(document_.scene);
@@ -115,8 +105,7 @@ class Session {
 
   scene::Document document_;
   std::unique_ptr<sim::Simulation> simulation_;
-  sim::BlowUp blow_up_;
-  double limit_ = 0;
+  sim::GuardedRun guard_;
   int blow_ups_ = 0, refused_ = 0;
 };
 

@@ -10,8 +10,8 @@
 
 #include "server/model/stability.h"
 #include "server/reference/rest_shape.h"
-#include "server/sim/blow_up.h"
 #include "server/sim/colliders.h"
+#include "server/sim/guarded_run.h"
 #include "tests/stress/cases.h"
 
 namespace clothlab::stress {
@@ -94,18 +94,17 @@ class Trial {
     const double wanted = whole_steps();
     const auto steps = static_cast<std::uint32_t>(std::min(wanted, most_steps));
     const std::uint32_t stride = std::max(1u, steps / 90);
-    const sim::Diagnostics first = simulation.diagnose();
-    const double allowed = allowed_energy(simulation, first);
-    watch_.start(sim::allowance(scene_, simulation.model(), model::dt_limit(simulation.model(), scene_)),
-                 first);
+    sim::GuardedRun guard(simulation);
+    guard.start(model::dt_limit(simulation.model(), scene_));
+    const double allowed = allowed_energy(simulation, guard.state());
     Verdict verdict;
     verdict.cut_short = wanted > most_steps;
     for (std::uint32_t done = 0; done < steps;) {
       const std::uint32_t now = std::min(stride, steps - done);
       simulation.step(now);
       done += now;
-      const sim::Diagnostics state = simulation.diagnose();
-      verdict.alarm = verdict.alarm || watch_.judge(state) == sim::BlowUp::Verdict::blown_up;
+      verdict.alarm = guard.look() == sim::GuardedRun::Verdict::blown_up || verdict.alarm;
+      const sim::Diagnostics& state = guard.state();
       const double t = state.time;
       if (!state.finite || !std::isfinite(state.kinetic))
         return fail(verdict, Ending::not_finite, format("not finite after %.3g s", t));
@@ -237,7 +236,6 @@ class Trial {
   const Case& test_;
   const scene::Scene& scene_;
   bool compared_;
-  sim::BlowUp watch_;
   sim::Diagnostics last_;
   double mass_ = 0;
   bool arrived_ = false;

@@ -1,0 +1,75 @@
+#include "server/sim/guarded_run.h"
+
+#include <chrono>
+
+namespace clothlab::sim {
+
+double timed_steps(Simulation& simulation, std::uint32_t count) {
+  const auto start = std::chrono::steady_clock::now();
+  simulation.step(count);
+  simulation.finish();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void GuardedRun::move_to(Simulation& simulation) {
+  simulation_ = &simulation;
+  asked_ = false;  // what was asked for stays behind
+}
+
+Allowance GuardedRun::allowance() const {
+  Allowance allowed = sim::allowance(simulation_->scene(), simulation_->model(), dt_limit_);
+  if (swing_) allowed.ratio = *swing_;
+  return allowed;
+}
+
+void GuardedRun::start(double dt_limit, std::optional<double> swing) {
+  dt_limit_ = dt_limit;
+  swing_ = swing;
+  state_ = simulation_->diagnose();
+  asked_ = false;
+  blow_up_.start(allowance(), state_);
+}
+
+void GuardedRun::allow(double dt_limit) {
+  dt_limit_ = dt_limit;
+  blow_up_.allow(allowance());
+}
+
+void GuardedRun::rebase() {
+  blow_up_.rebase(simulation_->diagnose());
+  asked_ = false;
+}
+
+GuardedRun::Verdict GuardedRun::judge(const Diagnostics& state) {
+  asked_ = false;
+  state_ = state;
+  const Verdict verdict = blow_up_.judge(state);
+  if (verdict == Verdict::good) simulation_->keep_diagnosed();
+  return verdict;
+}
+
+GuardedRun::Verdict GuardedRun::look() {
+  return judge(simulation_->diagnose());
+}
+
+void GuardedRun::ask() {
+  simulation_->request_diagnostics();
+  asked_ = true;
+}
+
+std::optional<GuardedRun::Verdict> GuardedRun::poll() {
+  Diagnostics arrived;
+  if (!asked_ || !simulation_->poll_diagnostics(arrived)) return std::nullopt;
+  return judge(arrived);
+}
+
+GuardedRun::Setback GuardedRun::go_back() {
+  const scene::Scene& scene = simulation_->scene();
+  Setback setback{blow_up_.reason() + model::against_limit(scene.solver, dt_limit_),
+                  model::remedy(simulation_->model(), scene, dt_limit_)};
+  simulation_->go_back();
+  state_ = blow_up_.last_good();
+  return setback;
+}
+
+}  // namespace clothlab::sim
