@@ -117,7 +117,7 @@ test("the HTTP API and /metrics want the token as a Bearer token; the page and /
   assert.equal((await server.get("/healthz")).status, 200);
 });
 
-test("wrong tokens over HTTP and the WebSocket count together, then both refuse even the right one; a request without one is no guess", async (t) => {
+test("wrong tokens over HTTP and the WebSocket count together, then both refuse even the right one", async (t) => {
   const guarded = await Server.start("--token", "secret", "--max-wrong-tokens", "2", "--auth-timeout", "1");
   t.after(() => guarded.stop());
   const ask = (authorization, path = "/api/scene") => guarded.get(path, authorization ? { authorization } : {});
@@ -144,7 +144,7 @@ test("wrong tokens over HTTP and the WebSocket count together, then both refuse 
   assert.equal((await withTimeout(client.closed, "the close")).code, 1008);
 });
 
-test("a viewer opens no session: auth answers -32001 until an operator has opened it, and the operator's token may come on the same connection", async (t) => {
+test("a viewer opens no session: auth answers -32001 until an operator has opened it", async (t) => {
   const guarded = await Server.start("--token", "secret", "--view-token", "look", "--max-sessions", "3");
   t.after(() => guarded.stop());
   const [first, second, third] = await Promise.all(
@@ -179,7 +179,7 @@ test("a viewer opens no session: auth answers -32001 until an operator has opene
   for (const client of [second, again]) await client.close();
 });
 
-test("where all places are taken, no session makes room for a viewer, however long unwatched; the longest makes room for an operator", async (t) => {
+test("where all places are taken, the session longest unwatched makes room for an operator, none for a viewer", async (t) => {
   const guarded = await Server.start("--token", "secret", "--view-token", "look", "--max-sessions", "2");
   t.after(() => guarded.stop());
   const enter = async (session, token) => {

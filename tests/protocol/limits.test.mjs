@@ -70,7 +70,7 @@ test("one client more than --max-clients-per-address is refused, another address
   for (const client of clients) await client.close();
 });
 
-test("an address may have twice as many connections as clients; those beyond are closed unread, and room is made by those that end", async () => {
+test("an address may have twice as many connections as clients; more are closed unread, until others end", async () => {
   const server = await start("--max-clients-per-address", "2");
   const sockets = [];
   for (let i = 0; i < 4; ++i) sockets.push(await socketTo(server));
@@ -192,7 +192,7 @@ test("a measurement that takes longer than --max-lab-seconds ends with what it f
   await client.close();
 });
 
-test("a connection whose headers do not come within --header-timeout is closed, however it dribbles; one that has asked lives on", async () => {
+test("headers that do not come within --header-timeout, however they dribble, close the connection", async () => {
   const server = await start("--header-timeout", "1");
   const client = await Client.connect(server);
   const [silent, slow] = [await socketTo(server), await socketTo(server)];
@@ -232,7 +232,7 @@ test("who sends no token within --auth-timeout is closed with 1008", async () =>
   assert.equal((await withTimeout(client.closed, "the close")).code, 1008);
 });
 
-test("of an address that sent --max-wrong-tokens none is looked at for the seconds it is told; another address and who is in never notice", async () => {
+test("after --max-wrong-tokens no token of that address is looked at for a while; others never notice", async () => {
   const server = await start("--token", "secret", "--max-wrong-tokens", "20", "--auth-timeout", "60");
   const [inside, guesser] = [await Client.connect(server), await Client.connect(server)];
   await inside.request("auth", { token: "secret" });

@@ -1,7 +1,7 @@
 // Wires the connection, the scene's document, the stage and the controls to each other.
 import { Connection, type LinkEvents } from "./link/connection";
 import { button, element } from "./panel/dom";
-import type { SolverFacts } from "./panel/fields";
+import type { SolverFacts } from "./panel/field";
 import { saferStep, type Stability } from "./panel/gauge";
 import { Hud, type Status } from "./panel/hud";
 import { bindKeys } from "./panel/keys";

@@ -14,7 +14,8 @@ export function readTolerance(input: HTMLInputElement): number {
   const tolerance = numberIn(input);
   if (tolerance === undefined || !(tolerance > 0 && tolerance <= 1)) {
     throw new Error(
-      `The tolerance is ${input.value.trim() === "" ? "empty" : input.value.trim()}; allowed is more than 0, up to 1: 0.01 is one percent of the cloth's size.`,
+      `The tolerance is ${input.value.trim() || "empty"}; ` +
+        "allowed is more than 0, up to 1: 0.01 is one percent of the cloth's size.",
     );
   }
   return tolerance;
@@ -117,9 +118,10 @@ export class ChooseTab extends Tab<"choose"> {
     const blewUp = point.blew_up_at_s !== null;
     const error = point.largest_position_error ?? point.error.position;
     const compared = against ? comparedText(point.ms_a_simulated_s, against.ms_a_simulated_s) : "";
+    const cost = `${costText(point.ms_a_simulated_s)}${costRange(point.ms_a_simulated_s)} a simulated second`;
     const facts = blewUp
       ? `blew up after ${Number(point.blew_up_at_s?.toPrecision(2))} s`
-      : `expected error ${errorText(error)}${atMost(point)}, ${costText(point.ms_a_simulated_s)}${costRange(point.ms_a_simulated_s)} a simulated second${compared ? `: ${compared}` : ""}`;
+      : `expected error ${errorText(error)}${atMost(point)}, ${cost}${compared ? `: ${compared}` : ""}`;
     const card = make(
       "div",
       `lab-card ${className}`,

@@ -91,7 +91,8 @@ export class SimplifyTab extends Tab<"simplify"> {
 
   constructor(around: Surroundings) {
     super("simplify", around, {
-      lead: "Which parts of this scene does its motion need? Each is left out or made coarser in turn: what that changes, and what it saves.",
+      lead: "Which parts of this scene does its motion need? Each is left out or made coarser in turn: " +
+        "what that changes, and what it saves.",
       start: "Measure the parts",
       file: "parts",
       awaits: "A row for each part: how far the motion changes without it, what that saves, and whether it can go.",
@@ -125,8 +126,10 @@ export class SimplifyTab extends Tab<"simplify"> {
     this.drawing.want(result, "position");
     say(
       this.stepped,
-      `All are stepped by ${settingText(result.setting)}. The whole scene costs ${costText(result.whole.ms_a_simulated_s)} a simulated second` +
-        ` and is ${errorText(result.whole.error.position)} off itself; a part may change the motion by ${errorText(result.tolerance)} of the cloth's size.`,
+      `All are stepped by ${settingText(result.setting)}. The whole scene costs ` +
+        `${costText(result.whole.ms_a_simulated_s)} a simulated second and is ` +
+        `${errorText(result.whole.error.position)} off itself; a part may change the motion by ` +
+        `${errorText(result.tolerance)} of the cloth's size.`,
     );
   }
 

@@ -1,141 +1,10 @@
 // What the panel offers for a scene: a list of sections and fields, each tied to JSON Pointers of the document.
-import { automatic, methodText, type MethodText, type Setting } from "./methods";
-import { readable, type Scale } from "./slider";
+import { type Field, kinds, meter, type Note, number, type Section, type SolverFacts, vector } from "./field";
+import { motionFields } from "./motion_fields";
+import { readable } from "./slider";
+import { solverSection } from "./solver_section";
 import { valueAt } from "../link/json_patch";
-import {
-  type At,
-  byKind,
-  type Motion,
-  type Operation,
-  type SceneDocument,
-  type Shape,
-  type Vec3,
-} from "../link/scene_types";
-
-/// What `sim.status` says of the solver.
-export interface SolverFacts {
-  /// Under the method `auto`: what steps the scene, and why.
-  auto?: {
-    state: "measuring" | "chosen" | "failed";
-    method: string;
-    dt_s: number;
-    iterations: number | null;
-    tolerance: number | null;
-    why: string;
-  } | null;
-  /// Of a spring's stretch the share that a visit takes away, for each cloth; only under PBD.
-  pbd_stiffness?: Record<(typeof kinds)[number], number | null>[] | null;
-  /// The least thickness of self-collision at which no vertex slips between those of a triangle [m].
-  thickness_that_holds?: number | null;
-}
-
-/// A line below a control, and what a click in it would change.
-export interface Note {
-  text: string;
-  offer?: { text: string; operations: Operation[] };
-}
-
-interface FieldBase {
-  key: string; ///< unique in the panel
-  label: string;
-  paths: string[]; ///< the places it writes; the first is the one it reads
-  onRelease?: boolean; ///< sent when let go: each value rebuilds the cloth
-  hint?: string; ///< a tooltip
-  note?(values: Record<string, unknown>, facts: SolverFacts): Note; ///< `values` by the keys of all fields
-  read?(document: SceneDocument): unknown;
-  write?(value: unknown): unknown;
-}
-export type Field =
-  | (FieldBase & { kind: "number"; scale: Scale })
-  | (FieldBase & { kind: "toggle" | "color" })
-  | (FieldBase & { kind: "choice"; choices: string[]; names?: Record<string, string> });
-
-export interface Section {
-  key: string;
-  title: string;
-  open: boolean;
-  fields: Field[];
-  sections: Section[];
-}
-
-const meter = { unit: "m" };
-const number = (label: string, paths: string[], scale: Scale, more: Partial<FieldBase> = {}): Field => ({
-  key: paths[0] as string,
-  label,
-  paths,
-  kind: "number",
-  scale,
-  ...more,
-});
-
-const at = (bases: string[], rest: string): string[] => bases.map((base) => base + rest);
-
-function vector(label: string, bases: string[], scale: Scale): Field[] {
-  return ["x", "y", "z"].map((axis, i) => number(`${label} ${axis}`, at(bases, `/${i}`), scale));
-}
-
-const motionKinds = ["still", "oscillate", "linear", "spin"];
-const motionKind = (motion: Motion): string => (motion ? (Object.keys(motion)[0] as string) : "still");
-const axes: Record<string, Vec3> = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
-
-function freshMotion(kind: string, center: Vec3): Motion {
-  switch (kind) {
-    case "oscillate":
-      return { oscillate: { axis: [0, 0, 1], amplitude: 0.2, frequency: 0.5 } };
-    case "linear":
-      return { linear: { velocity: [0, 0, 0.1] } };
-    case "spin":
-      return { spin: { axis: [0, 1, 0], center, degrees_per_second: 30 } };
-    default:
-      return null;
-  }
-}
-
-function axisField(bases: string[], current: Vec3): Field {
-  const name = (axis: Vec3) =>
-    Object.keys(axes).find((key) => (axes[key] as Vec3).every((v, i) => v === axis[i])) ?? "other";
-  const choices = name(current) === "other" ? ["x", "y", "z", "other"] : ["x", "y", "z"];
-  return {
-    key: `${bases[0]}/axis`,
-    label: "axis",
-    paths: at(bases, "/axis"),
-    kind: "choice",
-    choices,
-    read: (document) => name(valueAt(document, `${bases[0]}/axis`) as Vec3),
-    write: (value) => axes[String(value)] ?? current,
-  };
-}
-
-/// Fields of the motions at `bases`, which are all equal and edited together.
-function motionFields(bases: string[], motion: Motion, center: Vec3): Field[] {
-  const kind: Field = {
-    key: `${bases[0]}#kind`,
-    label: "motion",
-    paths: bases,
-    kind: "choice",
-    choices: motionKinds,
-    read: (document) => motionKind(valueAt(document, bases[0] as string) as Motion),
-    write: (value) => freshMotion(String(value), center),
-  };
-  if (!motion) return [kind];
-  if ("oscillate" in motion) {
-    const inside = at(bases, "/oscillate");
-    return [
-      kind,
-      axisField(inside, motion.oscillate.axis),
-      number("amplitude", at(inside, "/amplitude"), { min: 0, max: 0.5, step: 0.005, ...meter }),
-      number("frequency", at(inside, "/frequency"), { min: 0, max: 3, step: 0.01, unit: "Hz" }),
-    ];
-  }
-  if ("linear" in motion)
-    return [kind, ...vector("velocity", at(bases, "/linear/velocity"), { min: -2, max: 2, step: 0.01, unit: "m/s" })];
-  const inside = at(bases, "/spin");
-  return [
-    kind,
-    axisField(inside, motion.spin.axis),
-    number("speed", at(inside, "/degrees_per_second"), { min: -360, max: 360, step: 1, unit: "°/s" }),
-  ];
-}
+import { type At, byKind, type Motion, type SceneDocument, type Shape, type Vec3 } from "../link/scene_types";
 
 const pinTitle = (at: At | undefined): string => (typeof at === "string" ? `Pin ${at}` : "Pin in a box");
 
@@ -172,7 +41,6 @@ function strainLimit(paths: string[]): Field {
   );
 }
 
-const kinds = ["structural", "shear", "bend"] as const;
 const percent = (share: number): string => `${readable(Number((100 * share).toPrecision(2)))}\u00a0%`;
 
 /// PBD knows no N/m: what the server makes of them for a cloth. Nothing under the other methods.
@@ -273,119 +141,6 @@ function worldSection(): Section {
   };
 }
 
-/// Where the gauge belongs.
-export const timeStep = "/solver/dt";
-const methodChoice = "/solver/method";
-const iterationCount = "/solver/iterations";
-
-const secondsText = (seconds: number): string => (seconds === 1 / 60 ? "1/60 s" : `${readable(seconds)} s`);
-
-const methodOf = (values: Record<string, unknown>): MethodText => methodText(String(values[methodChoice]));
-
-/// What iterations are good for under the method that is chosen.
-function tradeOff(values: Record<string, unknown>): Note {
-  const { iterations } = methodOf(values);
-  return iterations ? { text: iterations.trade, offer: suggestion(iterations.suits, values) } : { text: "" };
-}
-
-function suggestion(suits: Setting | null, values: Record<string, unknown>): Note["offer"] {
-  if (
-    !suits ||
-    (readable(Number(values[timeStep])) === readable(suits.dt) && values[iterationCount] === suits.iterations)
-  )
-    return undefined;
-  return {
-    text: `Use ${secondsText(suits.dt)}, ${suits.iterations} iteration${suits.iterations === 1 ? "" : "s"}`,
-    operations: [
-      { op: "replace", path: timeStep, value: suits.dt },
-      { op: "replace", path: iterationCount, value: suits.iterations },
-    ],
-  };
-}
-
-/// What the lab has chosen for the method `auto`, and a way to keep it.
-function choiceNote({ auto }: SolverFacts): Note {
-  const says = methodText(automatic).says;
-  if (!auto) return { text: says };
-  if (auto.state === "measuring")
-    return {
-      text: `Measuring. Until then ${methodText(auto.method).name}, ${secondsText(auto.dt_s)}, which is stable.`,
-    };
-  const kept: [string, unknown][] = [
-    ["method", auto.method],
-    ["dt", auto.dt_s],
-    ["iterations", auto.iterations],
-    ["tolerance", auto.tolerance],
-  ];
-  const operations: Operation[] = kept.flatMap(([key, value]) =>
-    value == null ? [] : [{ op: "replace" as const, path: `/solver/${key}`, value }],
-  );
-  return { text: auto.why, offer: { text: "Keep these settings", operations } };
-}
-
-function automaticSection(method: Field): Section {
-  const tolerance = number(
-    "tolerance",
-    ["/solver/tolerance"],
-    { min: 1e-5, max: 0.1, log: true },
-    { hint: "How far the vertices may be from the truth (RMS), as a share of the cloth's size" },
-  );
-  return {
-    key: "solver",
-    title: "Solver",
-    open: true,
-    sections: [],
-    fields: [{ ...method, note: (_, facts) => choiceNote(facts) }, tolerance],
-  };
-}
-
-function solverSection(document: SceneDocument, methods: string[]): Section {
-  const { method } = document.solver;
-  const choices = methods.includes(method) ? methods : [method, ...methods];
-  const names = Object.fromEntries(choices.map((id) => [id, methodText(id).name]));
-  const choice: Field = {
-    key: methodChoice,
-    label: "method",
-    paths: [methodChoice],
-    kind: "choice",
-    choices,
-    names,
-    note: (values) => ({ text: methodOf(values).says }),
-  };
-  if (method === automatic) return automaticSection(choice);
-  const { iterations } = methodText(method);
-  const iterating: Field[] = iterations
-    ? [
-        number(
-          "iterations",
-          [iterationCount],
-          { min: 1, max: iterations.most, step: 1, whole: true },
-          {
-            note: tradeOff,
-          },
-        ),
-      ]
-    : [];
-  if (iterations?.solves)
-    iterating.push(
-      number(
-        "tolerance",
-        ["/solver/tolerance"],
-        { min: 1e-8, max: 0.1, log: true },
-        {
-          hint: "Where the conjugate gradients stop: the residual left, as a share of the first. Very short steps ask for a smaller one: what is left adds up.",
-        },
-      ),
-    );
-  return {
-    key: "solver",
-    title: "Solver",
-    open: true,
-    sections: [],
-    fields: [choice, number("time step", [timeStep], { min: 1e-5, max: 0.05, log: true, unit: "s" }), ...iterating],
-  };
-}
-
 /// Self-collision keeps vertices apart; thinner than the gaps between them, layers pass through each other.
 function thinNote(values: Record<string, unknown>, { thickness_that_holds: holds }: SolverFacts): Note {
   if (holds == null || Number(values["/self_collision/thickness"]) >= holds) return { text: "" };
@@ -426,13 +181,4 @@ export function sectionsOf(document: SceneDocument, methods: string[]): Section[
     selfCollisionSection(document),
     ...document.colliders.map((_, i) => colliderSection(document, i)),
   ];
-}
-
-export function readField(field: Field, document: SceneDocument): unknown {
-  return field.read ? field.read(document) : valueAt(document, field.paths[0] as string);
-}
-
-export function operationsFor(field: Field, value: unknown): Operation[] {
-  const written = field.write ? field.write(value) : value;
-  return field.paths.map((path) => ({ op: "replace", path, value: written }));
 }

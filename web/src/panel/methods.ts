@@ -57,12 +57,15 @@ const texts: Record<string, MethodText> = {
       solves: true,
       suits: { dt: frame, iterations: 1 },
       trade:
-        "Each iteration is a Newton step: one linear solve. One will do for short steps; a long one in which the cloth turns far asks for a few.",
+        "Each iteration is a Newton step: one linear solve. One will do for short steps; " +
+        "a long one in which the cloth turns far asks for a few.",
     },
   },
   pbd: {
     name: "PBD",
-    says: "Position-based dynamics: puts one spring after another right. Holds at any step; how stiff the cloth is depends on step and iterations.",
+    says:
+      "Position-based dynamics: puts one spring after another right. Holds at any step; " +
+      "how stiff the cloth is depends on step and iterations.",
     iterations: sweeps(
       "Many short steps with one iteration come nearer to the stiffness asked for than one long step with many.",
       { dt: 0.001, iterations: 1 },
@@ -72,7 +75,8 @@ const texts: Record<string, MethodText> = {
     name: "XPBD",
     says: "PBD that knows N/m: what each spring has pushed is remembered through the step. Holds at any step.",
     iterations: sweeps(
-      "Many short steps with one iteration beat one long step with many (Macklin et al. 2019). Too few leave the cloth softer than asked for.",
+      "Many short steps with one iteration beat one long step with many (Macklin et al. 2019). " +
+      "Too few leave the cloth softer than asked for.",
       { dt: 0.001, iterations: 1 },
     ),
   },

@@ -1,18 +1,11 @@
 // The panel: generated from the scene document, kept in step with it, and turning what is moved into patches.
 import GUI, { type Controller } from "lil-gui";
-import {
-  operationsFor,
-  readField,
-  sectionsOf,
-  timeStep,
-  type Field,
-  type Note,
-  type Section,
-  type SolverFacts,
-} from "./fields";
+import { type Field, type Note, operationsFor, readField, type Section, type SolverFacts } from "./field";
+import { sectionsOf } from "./fields";
 import { Gauge, type Stability } from "./gauge";
 import type { Operation, SceneDocument } from "../link/scene_types";
 import { SliderController } from "./slider";
+import { timeStep } from "./solver_section";
 
 export interface PanelEvents {
   edit(operations: Operation[]): void;

@@ -68,10 +68,9 @@ export class SlowWatch {
     if (!this.open || document.hidden || playing !== true || asleep || diverged) return "";
     const now = performance.now();
     const still = now - this.pictureAt;
-    if (still > noPictureFor)
-      return `No new picture for ${Math.floor(still / 1000)} s: this scene is too much for the server${this.aStep(factor)}. Make it smaller, or undo.`;
-    if (now - this.fastAt > creepingFor)
-      return `Only ×${Number(factor.toPrecision(2))} of real time: this scene is too much for the server${this.aStep(factor)}. Make it smaller, or undo.`;
+    const why = `this scene is too much for the server${this.aStep(factor)}. Make it smaller, or undo.`;
+    if (still > noPictureFor) return `No new picture for ${Math.floor(still / 1000)} s: ${why}`;
+    if (now - this.fastAt > creepingFor) return `Only ×${Number(factor.toPrecision(2))} of real time: ${why}`;
     return "";
   }
 

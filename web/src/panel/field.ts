@@ -1,0 +1,80 @@
+// A field of the panel: what it shows, which places of the document it writes (JSON Pointers), what it says below.
+import type { Scale } from "./slider";
+import { valueAt } from "../link/json_patch";
+import type { Operation, SceneDocument } from "../link/scene_types";
+
+/// The kinds of springs, as the document names their stiffnesses.
+export const kinds = ["structural", "shear", "bend"] as const;
+
+/// What `sim.status` says of the solver.
+export interface SolverFacts {
+  /// Under the method `auto`: what steps the scene, and why.
+  auto?: {
+    state: "measuring" | "chosen" | "failed";
+    method: string;
+    dt_s: number;
+    iterations: number | null;
+    tolerance: number | null;
+    why: string;
+  } | null;
+  /// Of a spring's stretch the share that a visit takes away, for each cloth; only under PBD.
+  pbd_stiffness?: Record<(typeof kinds)[number], number | null>[] | null;
+  /// The least thickness of self-collision at which no vertex slips between those of a triangle [m].
+  thickness_that_holds?: number | null;
+}
+
+/// A line below a control, and what a click in it would change.
+export interface Note {
+  text: string;
+  offer?: { text: string; operations: Operation[] };
+}
+
+export interface FieldBase {
+  key: string; ///< unique in the panel
+  label: string;
+  paths: string[]; ///< the places it writes; the first is the one it reads
+  onRelease?: boolean; ///< sent when let go: each value rebuilds the cloth
+  hint?: string; ///< a tooltip
+  note?(values: Record<string, unknown>, facts: SolverFacts): Note; ///< `values` by the keys of all fields
+  read?(document: SceneDocument): unknown;
+  write?(value: unknown): unknown;
+}
+export type Field =
+  | (FieldBase & { kind: "number"; scale: Scale })
+  | (FieldBase & { kind: "toggle" | "color" })
+  | (FieldBase & { kind: "choice"; choices: string[]; names?: Record<string, string> });
+
+export interface Section {
+  key: string;
+  title: string;
+  open: boolean;
+  fields: Field[];
+  sections: Section[];
+}
+
+export const meter = { unit: "m" };
+
+/// A field whose key is the first of the places it writes.
+export const number = (label: string, paths: string[], scale: Scale, more: Partial<FieldBase> = {}): Field => ({
+  key: paths[0] as string,
+  label,
+  paths,
+  kind: "number",
+  scale,
+  ...more,
+});
+
+export const at = (bases: string[], rest: string): string[] => bases.map((base) => base + rest);
+
+export function vector(label: string, bases: string[], scale: Scale): Field[] {
+  return ["x", "y", "z"].map((axis, i) => number(`${label} ${axis}`, at(bases, `/${i}`), scale));
+}
+
+export function readField(field: Field, document: SceneDocument): unknown {
+  return field.read ? field.read(document) : valueAt(document, field.paths[0] as string);
+}
+
+export function operationsFor(field: Field, value: unknown): Operation[] {
+  const written = field.write ? field.write(value) : value;
+  return field.paths.map((path) => ({ op: "replace", path, value: written }));
+}
