@@ -91,7 +91,8 @@ export class SimplifyTab extends Tab<"simplify"> {
 
   constructor(around: Surroundings) {
     super("simplify", around, {
-      lead: "Which parts of this scene does its motion need? Each is left out or made coarser in turn: " +
+      lead:
+        "Which parts of this scene does its motion need? Each is left out or made coarser in turn: " +
         "what that changes, and what it saves.",
       start: "Measure the parts",
       file: "parts",

@@ -76,7 +76,7 @@ const texts: Record<string, MethodText> = {
     says: "PBD that knows N/m: what each spring has pushed is remembered through the step. Holds at any step.",
     iterations: sweeps(
       "Many short steps with one iteration beat one long step with many (Macklin et al. 2019). " +
-      "Too few leave the cloth softer than asked for.",
+        "Too few leave the cloth softer than asked for.",
       { dt: 0.001, iterations: 1 },
     ),
   },
