@@ -142,8 +142,7 @@ int on_http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::si
       slot->asked = true;
       delete slot->request;
       slot->request = new HttpRequest(server_of(wsi).hub(), server_of(wsi).files(), wsi);
-      slot->request->begin(std::string(static_cast<const char*>(in), size));
-      return 0;
+      return finish_http(*slot, wsi, slot->request->begin(std::string(static_cast<const char*>(in), size)));
     case LWS_CALLBACK_HTTP_WRITEABLE:
       return slot->request ? finish_http(*slot, wsi, slot->request->writeable()) : 0;
     case LWS_CALLBACK_CLOSED_HTTP:

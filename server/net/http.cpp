@@ -53,19 +53,21 @@ HttpRequest::~HttpRequest() {
   hub_.remove_request(id_);
 }
 
-void HttpRequest::begin(const std::string& path) {
-  if (const std::optional<RequestFault> fault = request_fault(wsi_)) {
-    last_ = true;
-    return answer(plain(fault->status, fault->why));
-  }
+int HttpRequest::begin(const std::string& path) {
+  if (const std::optional<RequestFault> fault = request_fault(wsi_))
+    return refuse(plain(fault->status, fault->why));
   head_ = lws_hdr_total_length(wsi_, WSI_TOKEN_HEAD_URI) > 0;
   if (!head_ && lws_hdr_total_length(wsi_, WSI_TOKEN_GET_URI) <= 0) {
     HttpAnswer refusal =
         plain(405, "only GET and HEAD are answered here; changes go over the WebSocket at /ws");
     refusal.headers = {{"allow:", "GET, HEAD"}};
-    last_ = true;  // it may have a body
-    return answer(std::move(refusal));
+    return refuse(std::move(refusal));  // it may have a body
   }
+  find(path);
+  return 0;
+}
+
+void HttpRequest::find(const std::string& path) {
   if (path == "/healthz")
     return answer(hub_.all_sessions_beat() ? plain(200, "ok")
                                            : plain(503, "a session's thread does not answer"));
@@ -166,6 +168,18 @@ void HttpRequest::answer(HttpAnswer answer) {
   lws_callback_on_writable(wsi_);
 }
 
+int HttpRequest::refuse(HttpAnswer refusal) {
+  last_ = true;
+  answer_ = std::move(refusal);
+  if (send_headers() == 0) send_body();
+  return -1;
+}
+
+bool HttpRequest::send_body() {
+  auto* body = reinterpret_cast<unsigned char*>(answer_.body.data());
+  return lws_write(wsi_, body, answer_.body.size(), LWS_WRITE_HTTP_FINAL) >= 0;
+}
+
 int HttpRequest::send_headers() {
   unsigned char buffer[LWS_PRE + 4096];
   unsigned char *at = buffer + LWS_PRE, *const start = at, *const end = buffer + sizeof buffer - 1;
@@ -183,10 +197,9 @@ int HttpRequest::send_headers() {
   for (const auto& [name, value] : answer_.headers) failed |= add(name.c_str(), value);
   if (failed || lws_finalize_http_header(wsi_, &at, end)) return -1;
   headers_sent_ = true;
-  const bool alone = head_ || answer_.body.empty();
   const auto size = static_cast<std::size_t>(at - start);
   if (lws_write(wsi_, start, size, LWS_WRITE_HTTP_HEADERS) < 0) return -1;
-  if (alone) return last_ ? -1 : 1;
+  if (head_ || answer_.body.empty()) return 1;
   lws_callback_on_writable(wsi_);
   return 0;
 }
@@ -194,9 +207,7 @@ int HttpRequest::send_headers() {
 int HttpRequest::writeable() {
   if (!answered_) return 0;
   if (!headers_sent_) return send_headers();
-  auto* body = reinterpret_cast<unsigned char*>(answer_.body.data());
-  const bool sent = lws_write(wsi_, body, answer_.body.size(), LWS_WRITE_HTTP_FINAL) >= 0;
-  return sent && !last_ ? 1 : -1;
+  return send_body() ? 1 : -1;
 }
 
 }  // namespace clothlab::net

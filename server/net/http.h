@@ -30,8 +30,8 @@ class HttpRequest {
   HttpRequest(const HttpRequest&) = delete;
   HttpRequest& operator=(const HttpRequest&) = delete;
 
-  /// Works out the answer, or asks a session for it.
-  void begin(const std::string& path);
+  /// Refuses the request, or answers it. -1: the request is refused, and its connection is to be closed.
+  int begin(const std::string& path);
   /// Sends the next part; -1 closes the connection, 1: the answer is complete.
   int writeable();
   /// What it asked to be made.
@@ -40,12 +40,19 @@ class HttpRequest {
   bool hung_up() const;
 
  private:
+  /// Answers what is at that path, or asks a session for it.
+  void find(const std::string& path);
   HttpAnswer file(const std::string& path) const;
   /// What only those see who have a token: /metrics and the API.
   void inside(const std::string& path);
   void ask_session(const std::string& session, session::Export what);
   void answer(HttpAnswer answer);
+  /// Refuses a request that may have a body, and returns -1. The refusal is written at once: libwebsockets would take
+  /// the body for the next request while this one waits until its socket can be written.
+  int refuse(HttpAnswer refusal);
+  /// -1: it could not be sent, 0: the body follows, 1: that was all.
   int send_headers();
+  bool send_body();
   /// Why who asks may not see that, if so.
   std::optional<HttpAnswer> refusal() const;
 
@@ -54,7 +61,7 @@ class HttpRequest {
   lws* wsi_;
   std::uint64_t id_;
   bool head_ = false;
-  bool last_ = false;  ///< the connection is closed once this is answered
+  bool last_ = false;  ///< says in its answer that the connection is closed
   bool answered_ = false, headers_sent_ = false;
   HttpAnswer answer_;
 };
