@@ -137,12 +137,11 @@ TEST_CASE("on a grid the limit is that of its fastest vibration, found by power 
   for (const Method method :
        {Method::explicit_euler, Method::symplectic_euler, Method::verlet, Method::rk4}) {
     scene::Scene scene = hanging_grid(method, k, mass);
-    const model::Model model = *model::build(scene);
-    const double omega = model::omega_max(model, scene);
+    const double omega = model::omega_max(*model::build(scene), scene);
     double z = 0.0;
     if (method == Method::explicit_euler) scene.cloths[0].material.damping = 2 * (z = 0.5) * k / omega;
     INFO("omega " << omega << " /s, in sqrt(k/m) " << omega / std::sqrt(k / mass));
     check_limit(scene, limit_of(method, z) / omega, omega);
-    CHECK(model::dt_limit(model, scene) == Approx(limit_of(method, z) / omega).epsilon(0.002));
+    CHECK(model::dt_limit(*model::build(scene), scene) == Approx(limit_of(method, z) / omega).epsilon(0.002));
   }
 }
