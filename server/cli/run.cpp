@@ -75,12 +75,13 @@ Report make_report(const Prepared& prepared, const Progress& progress, double wa
   report["step_s"] = progress.step_seconds;
   report["ns_per_vertex_step"] = vertex_steps > 0 ? 1e9 * progress.step_seconds / vertex_steps : 0.0;
   report["passes"] = Report::array();
+  report["terms"] = Report::array();
   report["skipped"] = Report::object();
-  for (const sim::Simulation::Pass& pass : simulation.passes()) {
-    if (pass.skipped.empty())
-      report["passes"].push_back(pass.name);
+  for (const sim::Simulation::Part& part : simulation.parts()) {
+    if (!part.skipped.empty())
+      report["skipped"][part.name] = part.skipped;
     else
-      report["skipped"][pass.name] = pass.skipped;
+      report[part.kind == sim::Simulation::Part::Kind::pass ? "passes" : "terms"].push_back(part.name);
   }
   if (const sim::SolverWork work = simulation.solver_work(); work.newton_steps > 0)
     report["solver"] = {{"newton_steps", work.newton_steps},

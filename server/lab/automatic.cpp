@@ -47,6 +47,13 @@ Setting provisional(const model::Model& model, const scene::Scene& scene) {
   return setting;
 }
 
+Result<scene::Document> settled(const scene::Document& document) {
+  if (!document.scene.solver.automatic) return document;
+  const Result<model::Model> model = model::build(document.scene);
+  if (!model) return model.error();
+  return scene::apply_patch(document, patch(provisional(*model, document.scene)));
+}
+
 bool covers(const json& measured, const json& now) {
   return measured["solver"]["method"] == now["solver"]["method"] &&
          measured["solver"]["tolerance"] == now["solver"]["tolerance"] &&

@@ -12,6 +12,10 @@ namespace clothlab::lab {
 /// scenes not far from what the lab would choose.
 Setting provisional(const model::Model& model, const scene::Scene& scene);
 
+/// The document with those settings in the place of the method "auto"; another document as it is. Error: its
+/// model cannot be built.
+Result<scene::Document> settled(const scene::Document& document);
+
 /// Numbers of a scene that differ by less than this share are near what was measured.
 inline constexpr double same_regime = 0.1;
 

@@ -5,6 +5,7 @@
 
 #include "server/base/text.h"
 #include "server/gl/context.h"
+#include "server/lab/automatic.h"
 #include "server/lab/beside.h"
 
 namespace clothlab::lab {
@@ -268,7 +269,9 @@ Result<Simplification> simplify(const Document& document, const SimplifyRequest&
     return Error{"tolerance", significant(request.tolerance, 3), "above 0, at most 1"};
   if (request.time && !(*request.time > 0.0 && std::isfinite(*request.time)))
     return Error{"time", significant(*request.time, 3), "a time in seconds, above 0"};
-  return Maker(document, request, control).make();
+  const Result<Document> settled = lab::settled(document);
+  if (!settled) return settled.error();
+  return Maker(*settled, request, control).make();
 }
 
 }  // namespace clothlab::lab

@@ -54,8 +54,7 @@ std::variant<std::uint64_t, RpcError> LabQueue::admit(const session::Ticket& tic
 void LabQueue::choose_for(const std::string& session, SharedDocument document) {
   session_left(session);
   lab::ChooseRequest request;
-  // The scene's own tolerance has made way for that of the setting it is stepped with.
-  request.tolerance = document->value["solver"]["tolerance"].get<double>();
+  request.tolerance = document->scene.solver.tolerance;
   if (const std::optional<lab::Outcome> known = port_.known(*document, request)) {
     port_.chosen(session, std::move(document), std::get<lab::Choice>(*known));
     return;

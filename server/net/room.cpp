@@ -203,14 +203,14 @@ void Room::take(const gl::StageTimes& times) {
   }
 }
 
-void Room::take(session::PassesChanged& changed) {
-  passes_ = skipped_ = json::array();
+void Room::take(session::PartsChanged& changed) {
+  passes_ = terms_ = skipped_ = json::array();
   pass_seconds_ = json::object();
-  for (const sim::Simulation::Pass& pass : changed.passes) {
-    if (pass.skipped.empty())
-      passes_.push_back(pass.name);
+  for (const sim::Simulation::Part& part : changed.parts) {
+    if (!part.skipped.empty())
+      skipped_.push_back({{"name", part.name}, {"reason", part.skipped}});
     else
-      skipped_.push_back({{"name", pass.name}, {"reason", pass.skipped}});
+      (part.kind == sim::Simulation::Part::Kind::pass ? passes_ : terms_).push_back(part.name);
   }
 }
 
@@ -271,6 +271,7 @@ json Room::status_params(const session::Status& status) const {
           {"max_speed", d.max_speed},
           {"contacts", d.contacts},
           {"passes", passes_},
+          {"terms", terms_},
           {"skipped", skipped_},
           {"pass_seconds", pass_seconds_},
           {"stability",

@@ -66,7 +66,7 @@ class Room {
   void take(session::Reply& reply);
   void take(session::SceneChanged& changed);
   void take(session::TopologyChanged& changed);
-  void take(session::PassesChanged& changed);
+  void take(session::PartsChanged& changed);
   void take(session::SolverChanged& changed);
   void take(session::Diverged& diverged);
   void take(session::Notice& notice);
@@ -94,7 +94,7 @@ class Room {
   std::shared_ptr<const scene::Document> document_;
   std::uint64_t revision_ = 0;
   stream::SharedMessage topology_;
-  json passes_ = json::array(), skipped_ = json::array(), pass_seconds_ = json::object(),
+  json passes_ = json::array(), terms_ = json::array(), skipped_ = json::array(), pass_seconds_ = json::object(),
        solver_ = json::object();
   std::array<double, stream::encoding_count> demanded_{};
   std::array<std::uint32_t, stream::encoding_count>

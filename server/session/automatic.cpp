@@ -4,11 +4,11 @@
 
 namespace clothlab::session {
 
-clothlab::Status Automatic::settle(scene::Document& document, Clock::time_point now) {
+Result<scene::Scene> Automatic::settle(const scene::Document& document, Clock::time_point now) {
   if (!document.scene.solver.automatic) {
     in_use_.reset();
     due_.reset();
-    return ok();
+    return document.scene;
   }
   covered_ = choice_ && lab::covers(choice_->measured, document.value);
   if (covered_ && choice_->setting) {
@@ -20,8 +20,7 @@ clothlab::Status Automatic::settle(scene::Document& document, Clock::time_point 
   }
   due_.reset();
   if (!covered_) due_ = now + quiet;
-  document.scene = lab::with(document.scene, *in_use_);
-  return ok();
+  return lab::with(document.scene, *in_use_);
 }
 
 bool Automatic::wants_choice(Clock::time_point now) {

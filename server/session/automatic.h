@@ -17,10 +17,10 @@ class Automatic {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Puts the settings into `document` that its scene is stepped with: what was chosen where that covers it,
-  /// else what is stable, and a choice is due soon. A document with a method of its own is left as it is.
-  /// Error: its model cannot be built.
-  clothlab::Status settle(scene::Document& document, Clock::time_point now);
+  /// The document's scene with the settings that it is stepped with: what was chosen where that covers the
+  /// document, else what is stable, and a choice is due soon. Another method than "auto" is left as it is.
+  /// Error: the scene's model cannot be built.
+  Result<scene::Scene> settle(const scene::Document& document, Clock::time_point now);
 
   /// Once for each choice that is due: when nothing has changed for a while, as a slider would.
   bool wants_choice(Clock::time_point now);

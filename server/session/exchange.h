@@ -53,8 +53,8 @@ struct SceneChanged {
 struct TopologyChanged {
   stream::SharedMessage message;
 };
-struct PassesChanged {
-  std::vector<sim::Simulation::Pass> passes;
+struct PartsChanged {
+  std::vector<sim::Simulation::Part> parts;
 };
 /// What sim.status says of the solver; see server/net/asyncapi.yaml.
 struct SolverChanged {
@@ -102,9 +102,8 @@ struct Status {
   sim::Diagnostics diagnostics;
   gl::StageTimes pass_times;  ///< those that have arrived since the last status
 };
-using Event =
-    std::variant<Started, Failed, Reply, SceneChanged, TopologyChanged, PassesChanged, SolverChanged,
-                 Diverged, Notice, Captured, SceneReached, SceneLost, Held, ChoiceWanted, Status>;
+using Event = std::variant<Started, Failed, Reply, SceneChanged, TopologyChanged, PartsChanged, SolverChanged,
+                           Diverged, Notice, Captured, SceneReached, SceneLost, Held, ChoiceWanted, Status>;
 
 class Exchange {
  public:

@@ -28,20 +28,20 @@ Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Excha
                                                  const Limits& limits, std::optional<int> gpu,
                                                  std::uint32_t last_frame, double patience) {
   auto stepper = std::unique_ptr<Stepper>(new Stepper(std::move(document), exchange, limits, gpu, patience));
-  if (clothlab::Status prepared = stepper->prepare(stepper->document_); !prepared) return prepared.error();
-  const scene::Scene& scene = stepper->document_.scene;
+  const Result<scene::Scene> scene = stepper->prepare(stepper->document_);
+  if (!scene) return scene.error();
   Result<std::unique_ptr<Engine>> engine =
-      Engine::create(scene, exchange, {gpu, Engine::threads_for(scene), last_frame});
+      Engine::create(*scene, exchange, {gpu, Engine::threads_for(*scene), last_frame});
   if (!engine) return engine.error();
   stepper->engine_ = std::move(*engine);
   stepper->guard_.emplace(stepper->simulation());
   stepper->last_watched_ = stepper->next_status_ = Clock::now();
   stepper->announce_scene(std::nullopt, 0);
-  stepper->announce_passes();
+  stepper->announce_parts();
   stepper->announce_solver();
-  stepper->thin_ = !model::thickness_warning(stepper->simulation().model(), stepper->document_.scene).empty();
-  stepper->step_limit_.follow(stepper->simulation().model(), stepper->document_.scene);
-  stepper->rest_.follow(stepper->document_.scene, stepper->simulation().model());
+  stepper->thin_ = !model::thickness_warning(stepper->simulation().model(), *scene).empty();
+  stepper->step_limit_.follow(stepper->simulation().model(), *scene);
+  stepper->rest_.follow(*scene, stepper->simulation().model());
   stepper->guard_->start(stepper->step_limit_.dt_limit());
   return stepper;
 }
@@ -68,12 +68,12 @@ Saved Stepper::saved() {
           simulation().read_state()};
 }
 
-clothlab::Status Stepper::prepare(scene::Document& document) {
+Result<scene::Scene> Stepper::prepare(const scene::Document& document) {
   const model::Size size = model::size_of(document.scene);
   if (clothlab::Status fits = model::within(size, static_cast<std::size_t>(limits_.vertices),
                                             static_cast<std::size_t>(limits_.springs));
       !fits)
-    return fits;
+    return fits.error();
   if (fault_due(Fault::change_fails, "", engine_ ? simulation().step_index() : 0)) throw std::bad_alloc();
   return automatic_.settle(document, Clock::now());
 }
@@ -125,7 +125,7 @@ void Stepper::want_steps(Clock::time_point now, bool run) {
   else if (!run)
     simulation().want(0);
   else if (simulation().wanted() == 0)
-    simulation().want(real_time_.due(now, document_.scene.solver.dt), &engine_->step_timer);
+    simulation().want(real_time_.due(now, scene().solver.dt), &engine_->step_timer);
 }
 
 void Stepper::note_finished(Clock::time_point now) {
@@ -183,18 +183,18 @@ void Stepper::accept(sim::GuardedRun::Verdict verdict) {
 void Stepper::fall_asleep() {
   if (!run_.fall_asleep()) return;
   frames().asleep(true);
-  announce_passes();
+  announce_parts();
 }
 
 void Stepper::wake_up() {
   rest_.disturb();
   if (!run_.wake()) return;
   frames().asleep(false);
-  announce_passes();
+  announce_parts();
 }
 
 void Stepper::diverge() {
-  const scene::Solver& solver = document_.scene.solver;
+  const scene::Solver& solver = scene().solver;
   auto [reason, remedy] = guard_->go_back();
   json change{{"dt", remedy.dt}};
   if (remedy.method || solver.automatic)
@@ -251,7 +251,7 @@ void Stepper::warn_if_slow(Clock::time_point now) {
   text += real_time_.step_cost() >= 0.1 ? formatted("a step takes %.2g s", real_time_.step_cost())
                                         : std::string("time runs slower than asked for");
   text += "; a smaller cloth, ";
-  if (scene::iterates(document_.scene.solver.method)) text += "fewer iterations, ";
+  if (scene::iterates(scene().solver.method)) text += "fewer iterations, ";
   if (const double others = simulation().search_candidates(); others >= 500)
     text +=
         formatted("a smaller self_collision thickness (each vertex is held against %.0f others), ", others);
@@ -290,7 +290,7 @@ Clock::time_point Stepper::next_turn(Clock::time_point now) const {
   if (frames().urgent() || frames().in_flight() || guard_->asked() || !engine_->backlog.empty())
     return now + microseconds(500);
   if (!running(now)) return suspended(now) ? now + milliseconds(250) : std::max(next_status_, now);
-  if (real_time_.behind(document_.scene.solver.dt)) return now;
+  if (real_time_.behind(scene().solver.dt)) return now;
   return std::min({now + milliseconds(10), next_status_, std::max(frames().next_due(), now)});
 }
 

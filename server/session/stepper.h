@@ -63,9 +63,12 @@ class Stepper {
         gpu_(gpu),
         patience_(patience) {}
   sim::Simulation& simulation() const { return *engine_->simulation; }
+  const scene::Scene& scene() const {
+    return simulation().scene();
+  }  ///< as stepped: its method is never "auto"
   FrameMaker& frames() const { return *engine_->frames; }
-  /// What a scene must pass before anything is made for it.
-  clothlab::Status prepare(scene::Document& document);
+  /// The scene to step for a document (see Automatic), checked before anything is made for it.
+  Result<scene::Scene> prepare(const scene::Document& document);
 
   // stepper_commands.cpp; each answers its ticket where it has one.
   void handle(Command& command);
@@ -95,7 +98,7 @@ class Stepper {
   void restart();
   void state_replaced();
   void announce_scene(std::optional<json> patch, std::uint64_t by);
-  void announce_passes();
+  void announce_parts();
   void announce_solver();
 
   // stepper.cpp
@@ -120,7 +123,7 @@ class Stepper {
   bool running(Clock::time_point now) const { return run_.steps() && !suspended(now); }
   Clock::time_point next_turn(Clock::time_point now) const;
 
-  scene::Document document_;
+  scene::Document document_;  ///< as the clients know it; see scene()
   Exchange& exchange_;
   Limits limits_;
   std::optional<int> gpu_;

@@ -45,9 +45,9 @@ void Stepper::perform(LoadScene& load, const Ticket& ticket) {
   if (!document && !load.preset.empty())
     return reply(ticket, invalid_value({"/preset", json(load.preset).dump(), document.error().remedy}));
   if (!document) return reply(ticket, invalid_value(document.error()));
-  if (clothlab::Status prepared = prepare(*document); !prepared)
-    return reply(ticket, invalid_value(prepared.error()));
-  const Result<sim::ChangeDepth> depth = change_engine(document->scene);
+  const Result<scene::Scene> scene = prepare(*document);
+  if (!scene) return reply(ticket, invalid_value(scene.error()));
+  const Result<sim::ChangeDepth> depth = change_engine(*scene);
   if (!depth) return reply(ticket, invalid_value(depth.error()));
   run_.go_on();  // as it went before, whether that has blown up or not
   adopt(std::move(*document), *depth);
@@ -67,9 +67,9 @@ void Stepper::perform(PatchScene& patch, const Ticket& ticket) {
                                  revision_});
   Result<scene::Document> document = scene::apply_patch(document_, patch.patch);
   if (!document) return reply(ticket, invalid_value(document.error()));
-  if (clothlab::Status prepared = prepare(*document); !prepared)
-    return reply(ticket, invalid_value(prepared.error()));
-  const Result<sim::ChangeDepth> depth = change(document->scene);
+  const Result<scene::Scene> scene = prepare(*document);
+  if (!scene) return reply(ticket, invalid_value(scene.error()));
+  const Result<sim::ChangeDepth> depth = change(*scene);
   if (!depth) return reply(ticket, invalid_value(depth.error()));
   adopt(std::move(*document), *depth);
   reply(ticket, json{{"revision", revision_}, {"applies", sim::name(*depth)}});
@@ -81,7 +81,7 @@ void Stepper::perform(PatchScene& patch, const Ticket& ticket) {
 // The energies before and after the change, of the same state: what it adds is no growth, and growth cannot
 // hide behind one change after another.
 Result<sim::ChangeDepth> Stepper::change(const scene::Scene& scene) {
-  if (!sim::changes_energy(document_.scene, scene)) return change_engine(scene);
+  if (!sim::changes_energy(this->scene(), scene)) return change_engine(scene);
   accept(guard_->look());
   const Result<sim::ChangeDepth> depth = change_engine(scene);
   if (depth && *depth != sim::ChangeDepth::cloth) guard_->rebase();
@@ -124,17 +124,19 @@ void Stepper::adopt(scene::Document document, sim::ChangeDepth depth) {
 void Stepper::take_over(scene::Document document, sim::ChangeDepth depth) {
   document_ = std::move(document);
   wake_up();
-  rest_.follow(document_.scene, simulation().model());
-  if (depth == sim::ChangeDepth::cloth)
+  rest_.follow(scene(), simulation().model());
+  if (depth == sim::ChangeDepth::cloth) {
+    run_.go_on();  // as it went before a blow-up, like any other change
     state_replaced();
-  else
+  } else {
     frames().touch_now();
+  }
   ++state_version_;
-  announce_passes();
+  announce_parts();
   announce_solver();
   if (depth == sim::ChangeDepth::none) return;
   warn_if_thin();
-  step_limit_.follow(simulation().model(), document_.scene);
+  step_limit_.follow(simulation().model(), scene());
   follow_step_limit();  // at once: the next change may come before the next status
   if (depth == sim::ChangeDepth::cloth) return guard_->start(step_limit_.dt_limit());
   guard_->allow(step_limit_.dt_limit());
@@ -228,11 +230,12 @@ void Stepper::perform(Export& what, const Ticket& ticket) {
 // The document stays what it is; what steps it is shown by sim.status.
 void Stepper::perform(Chosen& chosen, const Ticket&) {
   automatic_.take(*chosen.measured, chosen.choice);
-  scene::Document document = document_;
-  if (!document.scene.solver.automatic || !automatic_.settle(document, Clock::now())) return;
-  const Result<sim::ChangeDepth> depth = change(document.scene);
+  if (!document_.scene.solver.automatic) return;
+  const Result<scene::Scene> scene = automatic_.settle(document_, Clock::now());
+  if (!scene) return;
+  const Result<sim::ChangeDepth> depth = change(*scene);
   if (!depth) return exchange_.emit(Notice{"warning", "method auto: " + depth.error().text()});
-  take_over(std::move(document), *depth);
+  take_over(document_, *depth);
   if (!chosen.choice)
     exchange_.emit(Notice{"warning", "method auto: nothing better than a stable step can be chosen: " +
                                          chosen.choice.error().text()});
@@ -250,19 +253,19 @@ void Stepper::announce_scene(std::optional<json> patch, std::uint64_t by) {
       SceneChanged{std::make_shared<const scene::Document>(document_), revision_, std::move(patch), by});
 }
 
-void Stepper::announce_passes() {
-  std::vector<sim::Simulation::Pass> passes = simulation().passes();
-  for (sim::Simulation::Pass& pass : passes)
-    if (run_.at_rest() && pass.skipped.empty()) pass.skipped = "asleep: the cloth is at rest";
-  exchange_.emit(PassesChanged{std::move(passes)});
+void Stepper::announce_parts() {
+  std::vector<sim::Simulation::Part> parts = simulation().parts();
+  for (sim::Simulation::Part& part : parts)
+    if (run_.at_rest() && part.skipped.empty()) part.skipped = "asleep: the cloth is at rest";
+  exchange_.emit(PartsChanged{std::move(parts)});
 }
 
 // Stiffness in N/m means the same under every method but PBD, which says what it makes of it.
 void Stepper::announce_solver() {
   json shares = nullptr;
-  if (document_.scene.solver.method == scene::Method::pbd) {
+  if (scene().solver.method == scene::Method::pbd) {
     shares = json::array();
-    for (const model::PbdStiffness& of : model::pbd_stiffness(simulation().model(), document_.scene)) {
+    for (const model::PbdStiffness& of : model::pbd_stiffness(simulation().model(), scene())) {
       const auto share = [&](model::SpringKind kind) {
         const std::optional<double>& value = of[static_cast<std::size_t>(kind)];
         return value ? json(*value) : json(nullptr);
@@ -273,14 +276,14 @@ void Stepper::announce_solver() {
     }
   }
   json thickness = nullptr;
-  if (document_.scene.self_collision) thickness = model::thickness_that_holds(simulation().model());
+  if (scene().self_collision) thickness = model::thickness_that_holds(simulation().model());
   exchange_.emit(SolverChanged{
       {{"pbd_stiffness", shares}, {"auto", automatic_.facts()}, {"thickness_that_holds", thickness}}});
 }
 
 // Said once, when a change of scene made it so.
 void Stepper::warn_if_thin() {
-  const std::string warning = model::thickness_warning(simulation().model(), document_.scene);
+  const std::string warning = model::thickness_warning(simulation().model(), scene());
   if (!std::exchange(thin_, !warning.empty()) && thin_) exchange_.emit(Notice{"warning", warning});
 }
 

@@ -73,23 +73,23 @@ gl::Defines step_defines(const Plan& plan) {
   return defines;
 }
 
-std::vector<Simulation::Pass> passes(const Plan& plan) {
-  std::vector<Simulation::Pass> list;
-  const auto add = [&](const std::string& name, bool runs, const std::string& reason) {
-    list.push_back({name, runs ? "" : reason});
+std::vector<Simulation::Part> parts(const Plan& plan) {
+  using Kind = Simulation::Part::Kind;
+  std::vector<Simulation::Part> list;
+  const auto add = [&](Kind kind, const std::string& name, bool runs, const std::string& reason) {
+    list.push_back({kind, name, runs ? "" : reason});
   };
-  add("neighbour_search", plan.self_collision, "self_collision is null");
-  add("structural_springs", plan.structural, "their stiffness is 0 in every cloth");
-  add("shear_springs", plan.shear, "their stiffness is 0 in every cloth");
-  add("bend_springs", plan.bend, "their stiffness is 0 in every cloth");
-  add("self_contacts", plan.self_collision, "self_collision is null");
-  add(scene::name(plan.method), true, "");
-  add("strain_limit", plan.strain_limit, "no cloth has a strain_limit");
-  add("pins", plan.pins, "no cloth has pins");
-  add("moving_poses", plan.moving > 0, "no pin and no collider moves");
+  add(Kind::pass, "neighbour_search", plan.self_collision, "self_collision is null");
+  add(Kind::pass, scene::name(plan.method), true, "");
+  add(Kind::pass, "strain_limit", plan.strain_limit, "no cloth has a strain_limit");
+  add(Kind::term, "structural_springs", plan.structural, "their stiffness is 0 in every cloth");
+  add(Kind::term, "shear_springs", plan.shear, "their stiffness is 0 in every cloth");
+  add(Kind::term, "bend_springs", plan.bend, "their stiffness is 0 in every cloth");
+  add(Kind::term, "self_contacts", plan.self_collision, "self_collision is null");
+  add(Kind::term, "moving_poses", plan.moving > 0, "no pin and no collider moves");
   for (std::size_t kind = 0; kind < plan.solids.size(); ++kind) {
     const std::string name = scene::shape_names()[kind];
-    add(name + "s", plan.solids[kind] > 0, "the scene has no " + name);
+    add(Kind::term, name + "s", plan.solids[kind] > 0, "the scene has no " + name);
   }
   return list;
 }

@@ -47,8 +47,8 @@ Plan plan(const scene::Scene& scene);
 /// The defines that specialise the step kernel.
 gl::Defines step_defines(const Plan& plan);
 
-/// What runs and what is left out, with the reason.
-std::vector<Simulation::Pass> passes(const Plan& plan);
+/// See Simulation::parts.
+std::vector<Simulation::Part> parts(const Plan& plan);
 
 /// The motions of pins and colliders that are not null, each once, in order of appearance.
 std::vector<scene::Motion> moving_motions(const scene::Scene& scene);

@@ -283,8 +283,8 @@ const model::Model& Simulation::model() const {
 std::uint32_t Simulation::topology_revision() const {
   return implementation_->topology_revision;
 }
-std::vector<Simulation::Pass> Simulation::passes() const {
-  return sim::passes(implementation_->kernels.plan);
+std::vector<Simulation::Part> Simulation::parts() const {
+  return sim::parts(implementation_->kernels.plan);
 }
 
 double Simulation::search_candidates() const {

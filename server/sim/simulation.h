@@ -108,12 +108,15 @@ class Simulation {
   /// Others that self-collision's search holds each vertex against, in the mean at the start; 0 without.
   double search_candidates() const;
 
-  /// The passes a step runs, in order, and the ones left out with the reason.
-  struct Pass {
+  /// A pass, which is dispatched, or a term, which is compiled into the kernels of a pass.
+  struct Part {
+    enum class Kind { pass, term };
+    Kind kind;
     std::string name;
-    std::string skipped;  ///< empty: it runs; else why not
+    std::string skipped;  ///< empty: a step runs it; else why not
   };
-  std::vector<Pass> passes() const;
+  /// What a step can be made of: the passes in the order in which they run, then the terms.
+  std::vector<Part> parts() const;
 
   /// Diagnostics without stalling: request, then poll until a value comes back (usually a frame later).
   void request_diagnostics();

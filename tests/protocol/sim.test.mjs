@@ -19,7 +19,8 @@ test("sim.status has every field of the contract, with the passes that run and t
   for (const field of ["time", "step", "real_time_factor", "speed", "max_strain", "max_speed", "contacts"])
     assert.ok(Number.isFinite(status[field]), field);
   for (const field of ["kinetic", "elastic", "gravitational"]) assert.ok(Number.isFinite(status.energy[field]), field);
-  assert.ok(status.passes.length > 0 && status.passes.every((name) => typeof name === "string"));
+  assert.deepEqual(status.passes, ["neighbour_search", "symplectic_euler"]);
+  assert.ok(["structural_springs", "self_contacts", "moving_poses", "spheres"].every((t) => status.terms.includes(t)));
   assert.ok(status.skipped.every(({ name, reason }) => name && reason));
   assert.ok(status.stability.dt_limit > 0 && status.stability.margin > 0);
   const { thickness_that_holds: holds, ...solver } = status.solver;
@@ -68,7 +69,7 @@ test("what is skipped follows the scene", async () => {
   const patched = await client.request("scene.patch", { patch: { self_collision: null, colliders: [] } });
   assert.equal(patched.applies, "kernel");
   const status = await client.nextNotification("sim.status", (s) => s.skipped.some((pass) => /self/.test(pass.name)));
-  assert.ok(!status.passes.some((name) => /self/.test(name)));
+  assert.ok(!status.terms.some((name) => /self|sphere/.test(name)));
 });
 
 test("play moves time, pause holds it", async () => {
@@ -206,6 +207,19 @@ test("another scene ends a blow-up too, and plays again if it played before", as
   await client.request("sim.play");
   await told;
   await client.request("scene.load", { preset: "seed" });
+  const status = await client.nextNotification("sim.status", (s) => s.step > 0 && !s.diverged);
+  assert.equal(status.playing, true);
+});
+
+test("a patch that rebuilds the cloth ends a blow-up as any other does: it plays again if it played before", async () => {
+  await client.request("scene.load", { preset: "blowup" });
+  const told = client.nextNotification("sim.diverged");
+  await client.request("sim.play");
+  const { remedy } = await told;
+  const grid = { columns: 5, rows: 5, width: 0.5, height: 0.5 };
+  const cloth = (await client.request("scene.get")).document.cloths[0];
+  const patch = { ...remedy.patch, cloths: [{ ...cloth, mesh: { grid }, pins: [] }] };
+  assert.equal((await client.request("scene.patch", { patch })).applies, "cloth");
   const status = await client.nextNotification("sim.status", (s) => s.step > 0 && !s.diverged);
   assert.equal(status.playing, true);
 });

@@ -17,6 +17,7 @@ export interface Status {
   diverged?: boolean;
   stability?: Stability | null;
   passes?: string[];
+  terms?: string[];
   skipped?: { name: string; reason: string }[];
   pass_seconds?: Record<string, number>;
 }
@@ -106,7 +107,7 @@ export class Hud {
       element("headline-rtf", HTMLElement).textContent = status.asleep ? "at rest" : text;
     }
     if (status.max_strain !== undefined) this.set("strain", `${(100 * status.max_strain).toFixed(1)} %`);
-    if (status.passes) this.showPasses(status.passes, status.skipped ?? []);
+    if (status.passes) this.showPasses(status.passes, status.terms ?? [], status.skipped ?? []);
     if (status.pass_seconds) this.passSeconds = status.pass_seconds;
   }
 
@@ -130,31 +131,34 @@ export class Hud {
     this.since = now;
   }
 
-  private showPasses(running: string[], skipped: { name: string; reason: string }[]): void {
-    const text = JSON.stringify([running, skipped]);
+  private showPasses(running: string[], terms: string[], skipped: { name: string; reason: string }[]): void {
+    const text = JSON.stringify([running, terms, skipped]);
     if (text === this.passes) return;
     this.passes = text;
-    element("passes-count", HTMLElement).textContent = `${running.length} of ${running.length + skipped.length} run`;
+    element("passes-count", HTMLElement).textContent = `${running.length} run, with ${terms.length} terms`;
     this.passTimes.clear();
-    const item = (name: string, reason: string): HTMLLIElement => {
+    const item = (name: string, kind: string, more?: HTMLElement): HTMLLIElement => {
       const entry = document.createElement("li");
       entry.textContent = name.replaceAll("_", " ");
-      if (reason === "") {
-        const time = document.createElement("b");
-        time.title = "what the GPU spends on it in a step; the method's has forces, contacts and pins in it";
-        entry.append(time);
-        this.passTimes.set(name, time);
-        return entry;
-      }
-      entry.className = "skipped";
-      const why = document.createElement("span");
-      why.textContent = reason;
-      entry.append(why);
+      entry.className = kind;
+      if (more) entry.append(more);
       return entry;
     };
+    const timed = (name: string): HTMLElement => {
+      const time = document.createElement("b");
+      time.title = "the time that the GPU spends on this pass in a step; the method's includes all terms";
+      this.passTimes.set(name, time);
+      return time;
+    };
+    const because = (reason: string): HTMLElement => {
+      const why = document.createElement("span");
+      why.textContent = reason;
+      return why;
+    };
     element("passes", HTMLUListElement).replaceChildren(
-      ...running.map((name) => item(name, "")),
-      ...skipped.map(({ name, reason }) => item(name, reason)),
+      ...running.map((name) => item(name, "pass", timed(name))),
+      ...terms.map((name) => item(name, "term")),
+      ...skipped.map(({ name, reason }) => item(name, "skipped", because(reason))),
     );
   }
 }
