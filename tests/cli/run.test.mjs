@@ -189,7 +189,7 @@ test("a run that diverges exits 4, keeps what was good, and marks it", () => {
   assert.equal(r.diverged, true);
   assert.ok(r.diverged_by > r.sim_time);
   assert.match(r.diverged_reason, /0\.0025 s/);
-  // The cloth as it was before: some 600 J are what 62.5 kg have to fall.
+  // The last good state: 62.5 kg that fall gain about 600 J.
   assert.ok(r.energy.kinetic + r.energy.elastic < 600, JSON.stringify(r.energy));
   const obj = file("blowup.obj").toString();
   assert.match(obj, /^#.*diverged/);

@@ -146,10 +146,10 @@ test("the health check succeeds while the server answers, and fails when it does
   const gone = await Container.finish({ command: [...check, "8082"] });
   assert.notEqual(gone.code, 0);
 
-  // Answers what /healthz does when a session's thread stands still; then nothing at all.
+  // Answers as /healthz does when a session's thread hangs; later answers nothing at all.
   const listener = net
     .createServer((socket) => {
-      socket.on("error", () => {}); // who reads one line and leaves resets the connection
+      socket.on("error", () => {}); // a client that reads one line and leaves resets the connection
       socket.end("HTTP/1.1 503 Service Unavailable\r\n\r\n");
     })
     .listen(8082);
