@@ -39,7 +39,7 @@ test("before auth, and with a wrong token, everything answers -32001", async () 
   assert.deepEqual(client.messages, []);
   await client.request("auth", { token: "secret" });
   await client.close();
-  // Nobody chooses a metric's label.
+  // A client must not be able to choose a metric's label.
   assert.ok(!(await server.get("/metrics", { authorization: "Bearer secret" })).body.includes('a"label'));
 });
 
@@ -171,7 +171,7 @@ test("a viewer opens no session: auth answers -32001 until an operator has opene
   await operator.request("auth", { token: "secret" });
   assert.deepEqual(await first.request("auth", { token: "look" }), { role: "viewer" });
   assert.equal((await first.notification("hello")).session, "new");
-  // Open is open, also while nobody is there.
+  // An open session stays open while nobody is there.
   for (const client of [first, operator]) await client.close();
   const again = await Client.connect(guarded, { session: "new" });
   assert.deepEqual(await again.request("auth", { token: "look" }), { role: "viewer" });

@@ -1,4 +1,4 @@
-// What the lab's askers are told of their jobs, and when.
+// The messages of the lab to the clients that asked for jobs, and when they are sent.
 #include "tests/protocol/lab_stage.h"
 
 using namespace clothlab;
@@ -12,7 +12,7 @@ TEST_CASE("a job is stale while what it measures is not what the scene is: its l
   CHECK_FALSE(stale(1));
   CHECK_FALSE(stale(2));
   lab.queue.scene_changed("main", seed_with("/solver/dt=0.0005"));
-  CHECK_FALSE(stale(1));  // a chart goes through time steps of its own
+  CHECK_FALSE(stale(1));  // a chart uses time steps of its own
   CHECK(stale(2));
   lab.queue.scene_changed("other", seed_with("/gravity/1=-1"));
   CHECK_FALSE(stale(1));
@@ -58,7 +58,7 @@ TEST_CASE("who asked for a job that slows the session below 50 of 60 frames is t
   };
   reaches("main", 0.84, 10);
   reaches("other", 0.2, 10);
-  reaches("main", 0.5, 1);  // a hiccup
+  reaches("main", 0.5, 1);  // too short to count
   reaches("main", 0.9, 1);
   CHECK(notices() == 0);
   reaches("main", 0.5, 10);

@@ -11,7 +11,7 @@ using namespace clothlab::render;
 
 namespace {
 
-/// Largest |x|, |y| of the box's corners in the picture, where 1 is its edge; 0 if one is behind the eye.
+/// Largest |x|, |y| of the box's corners in the picture, whose edge is at 1; 0 if a corner is behind the eye.
 float reach(const Box& box, const glm::mat4& to_clip) {
   float largest = 0;
   for (int i = 0; i < 8; ++i) {

@@ -1,4 +1,4 @@
-// Who asks a session for much waits for himself alone.
+// A client that asks a session for much delays only itself.
 #include "server/session/command_queue.h"
 
 #include "server/session/limits.h"

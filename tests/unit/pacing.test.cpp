@@ -71,7 +71,7 @@ TEST_CASE("a viewer of 20 frames/s among frames at 120 gets 20, not more") {
     ++sent;
   }
   CHECK(sent >= 199);
-  CHECK(sent <= 201);  // 10 s at 20, and the first at once
+  CHECK(sent <= 201);  // 10 s at 20 per second, and the first at once
 }
 
 TEST_CASE("after a stall one frame is caught up, no more") {
