@@ -139,7 +139,7 @@ test("the stability map has a table a method with the measured step next to theo
   for (const extension of ["csv", "svg"]) assert.ok(existsSync(join(folder, "results", `stability.${extension}`)));
 });
 
-test("what parts are worth is a row each, with what the scene does not have and why", () => {
+test("each part gets a row with its worth, and missing parts are listed with the reason", () => {
   const { stdout } = lab("simplify", "small.json", "--time", "0.2", "--tolerance", "0.05");
   assert.match(stdout, /^ +cost +change +error +longest dt \[ms\]/m);
   assert.match(stdout, /bend/);

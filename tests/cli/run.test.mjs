@@ -53,7 +53,7 @@ test("the report counts what implicit Euler's solver and the strain limit did", 
   assert.ok(!("solver" in report("report.json")) && !("strain_limit" in report("report.json")));
 });
 
-test("what sweeps a given number of times has nothing to report of its solver, and no limit to warn of", () => {
+test("a method with a fixed number of sweeps reports nothing of its solver and has no limit to warn of", () => {
   for (const method of ["pbd", "xpbd", "vbd"]) {
     const { stderr } = run(
       "seed",

@@ -75,7 +75,7 @@ test("a patch of plain values is applied here; one that may bring defaults, or c
   assert.deepEqual([store.document.solver.dt, fetched], [0.5, 2]);
 });
 
-test("what is refused is told, and the next edit goes out", async () => {
+test("a refusal is reported, and the next edit is sent", async () => {
   answer = () => Promise.reject(new Error("no"));
   store.edit(replace(-1));
   await wait(80);

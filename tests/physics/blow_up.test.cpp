@@ -110,8 +110,7 @@ TEST_CASE("a collider put into the cloth, and one shot through it, are no blow-u
   CHECK(run.verdict != Verdict::blown_up);
 }
 
-TEST_CASE(
-    "what is gone back to is the state that was kept, to the bit, and it goes on from there as before") {
+TEST_CASE("going back restores the kept state to the bit, and the simulation goes on from there as before") {
   const auto context = test::context();
   for (const scene::Method method : {scene::Method::symplectic_euler, scene::Method::rk4}) {
     scene::Scene scene = test::seed();
@@ -151,7 +150,7 @@ TEST_CASE("after a blow-up the last good state, with a step that holds, settles 
   CHECK(simulation->diagnose().max_strain < 0.5);
 }
 
-TEST_CASE("a look that nobody waits for decides as one that is waited for, and goes back to the same state") {
+TEST_CASE("a look without waiting decides like one with waiting, and goes back to the same state") {
   const auto context = test::context();
   const auto waited = test::simulation(preset("blowup")), asked = test::simulation(preset("blowup"));
   sim::GuardedRun one(*waited), other(*asked);

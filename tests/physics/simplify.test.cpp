@@ -132,7 +132,7 @@ TEST_CASE("a combination is recommended only where it costs less than its best p
   CHECK(both.recommended.cost_ratio.median == Approx(0.45).epsilon(0.05));
 }
 
-TEST_CASE("what a scene does not have is not measured, and what changes too much stays") {
+TEST_CASE("parts that a scene does not have are not measured, and parts that change too much stay") {
   const auto context = test::context();
   const Simplification result = simplified(*scene::load_preset("hanging-strip"), {1e-4, 0.3});
   const Variant& bend = variant(result, "without bend springs");

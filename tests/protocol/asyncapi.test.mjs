@@ -187,7 +187,7 @@ test("requests and their answers are as it says, with and without parameters, fo
   await leave(client);
 });
 
-test("what is no request is answered as it says", async () => {
+test("a message that is no request is answered as the document says", async () => {
   const client = await enter();
   const cases = [
     ["{", -32700],
@@ -353,7 +353,7 @@ test("with a token, who may do what is as it says, and why connections are close
   assert.equal((await viewer.closed).code, 1001);
 });
 
-test("what the server cannot do it refuses as it says", async () => {
+test("a request that the server cannot serve is refused as the document says", async () => {
   process.env.CLOTHLAB_FAULT = "change-fails::1";
   const poor = await Server.start().finally(() => delete process.env.CLOTHLAB_FAULT);
   const client = await enter(null, { session: "main", at: poor });

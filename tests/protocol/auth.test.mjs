@@ -56,7 +56,7 @@ test("before auth a message may have 4 KiB, after it as much as the others'", as
   assert.match(reason, /4096 bytes before auth/);
 });
 
-test("who does not authenticate is closed with 1008 after 5 s", async () => {
+test("a client that does not authenticate is closed with 1008 after 5 s", async () => {
   const client = await Client.connect(server);
   const from = performance.now();
   assert.equal((await withTimeout(client.closed, "the close")).code, 1008);

@@ -41,7 +41,7 @@ TEST_CASE("a choice is due once, when the scene has been left alone for a while"
   CHECK(automatic.facts()["state"] == "measuring");
 }
 
-TEST_CASE("what was chosen is used as long as it covers the scene, and without a choice what is stable") {
+TEST_CASE("the chosen method steps as long as it covers the scene, and without a choice a stable one does") {
   Automatic automatic;
   const Automatic::Clock::time_point now{};
   const lab::Setting rk4{scene::Method::rk4, 2e-3, 1, 1e-4};

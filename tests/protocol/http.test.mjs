@@ -64,7 +64,7 @@ test("HEAD answers as GET does, without the body", async () => {
   assert.equal(head.body.length, 0);
 });
 
-test("what is not there is a readable 404; nothing outside the page's folder can be reached", async () => {
+test("a missing file is a readable 404; nothing outside the page's folder can be reached", async () => {
   for (const path of [
     "/nothing",
     "/web",
@@ -189,7 +189,7 @@ test("without a token nothing but /healthz is answered under another name than a
   assert.match(body.toString(), /not as \?b\?x{197}: /);
 });
 
-test("who sends no Host is no browser, and is answered", async () => {
+test("a client that sends no Host is no browser, and is answered", async () => {
   const socket = net.connect(server.port, "127.0.0.1");
   socket.write("GET /api/scene HTTP/1.0\r\n\r\n");
   const [data] = await withTimeout(once(socket, "data"), "the answer");

@@ -173,8 +173,7 @@ TEST_CASE("a server that ends stops the job that runs and waits for it") {
   CHECK(now_us() - begun < 500'000);
 }
 
-TEST_CASE(
-    "what a session with the method auto is to be stepped with is chosen once, without a word to clients") {
+TEST_CASE("the method of a session with auto is chosen once, without messages to clients") {
   Lab lab;
   lab.choose_for("main", "/solver/tolerance=0.02");
   REQUIRE(lab.until([&] { return lab.jobs.started == 1; }));

@@ -44,7 +44,7 @@ TEST_CASE("a result says whether anything was stepped beside its job") {
   }
 }
 
-TEST_CASE("who asked for a job that slows the session below 50 of 60 frames is told so, once") {
+TEST_CASE("a client whose job slows the session below 50 of 60 frames is told so once") {
   Lab lab;
   const std::uint64_t job = lab.ask(1);
   REQUIRE(lab.until([&] { return lab.jobs.started == 1; }));
@@ -71,7 +71,8 @@ TEST_CASE("who asked for a job that slows the session below 50 of 60 frames is t
 }
 
 TEST_CASE(
-    "what was measured with nothing beside it answers the same request at once, unless it is to be fresh") {
+    "a result measured while nothing else ran answers the same request at once, unless a fresh one is "
+    "wanted") {
   Lab lab;
   lab.jobs.may_end = true;
   REQUIRE(lab.reaches(1, lab.ask(1), "finished"));
@@ -106,7 +107,7 @@ TEST_CASE(
   CHECK(lab.last_result(job)["state"] == "finished");
 }
 
-TEST_CASE("what a job found can be had until its asker has had as many newer ones as are kept") {
+TEST_CASE("a job's result is kept until its client has had as many newer ones as the server keeps") {
   Lab lab;
   lab.jobs.may_end = true;
   const std::uint64_t oldest = lab.ask(1);

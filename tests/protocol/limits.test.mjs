@@ -226,7 +226,7 @@ test("a connection that is kept for one request after the other lives as long as
   assert.equal(answered(), 8);
 });
 
-test("who sends no token within --auth-timeout is closed with 1008", async () => {
+test("a client that sends no token within --auth-timeout is closed with 1008", async () => {
   const server = await start("--token", "secret", "--auth-timeout", "1");
   const client = await Client.connect(server);
   assert.equal((await withTimeout(client.closed, "the close")).code, 1008);

@@ -54,7 +54,7 @@ test("batches answer -32600", async () => {
   await stillAlive();
 });
 
-test("what is no request answers -32600", async () => {
+test("a message that is no request is answered with -32600", async () => {
   for (const text of [
     "1",
     "null",

@@ -127,7 +127,7 @@ test("sim.reset goes back to the rest shape at time 0 and keeps playing or pausi
   assert.equal((await client.request("sim.reset")).playing, true);
 });
 
-test("the same step has the same positions whoever watches, and however it was reached", async () => {
+test("a step has the same positions whoever watches, and however it was reached", async () => {
   await client.request("stream.subscribe", { encoding: "f32", rate: 120, in_flight: 8 });
   await client.request("sim.step", { steps: 300 });
   const atOnce = await client.frame((frame) => frame.step === 300);

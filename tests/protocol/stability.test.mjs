@@ -159,7 +159,7 @@ test("far beyond the limit the remedy is a method without one, and the cloth goe
   assert.deepEqual(status.stability, { dt_limit: null, margin: null });
 });
 
-test("the same cure twice: what blows up again is told again", async () => {
+test("a second blow-up after the same remedy is reported again", async () => {
   await patch({ solver: { dt: 0.004 } });
   await client.request("sim.play");
   await client.notification("sim.diverged", ({ reason }) => /0\.004 s/.test(reason));

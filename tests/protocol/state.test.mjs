@@ -95,7 +95,7 @@ test("a file that is damaged is moved aside, never deleted; its session starts a
   await again.stop();
 });
 
-test("a file that is none of this program's, or of another version's, is moved aside with what it begins with", async () => {
+test("a foreign file, or one of another version, is moved aside, and its first bytes are reported", async () => {
   for (const [bytes, found] of [
     ["hello, world\nmore", /it is no saved session: it begins with .*hello, world.*, not with .*clothlab session 1/],
     [

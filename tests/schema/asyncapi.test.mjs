@@ -47,7 +47,7 @@ test("every reference leads somewhere, and nothing that can be referred to is id
     assert.ok(used.has(`#/channels/session/messages/${name}`), `no operation has ${name}`);
 });
 
-test("what it does not know it does not take: every object it describes is closed, and no message is empty", () => {
+test("unknown keys are refused: every object that it describes is closed, and no message is empty", () => {
   for (const [path, schema] of objectsIn({ messages, schemas: document.components.schemas }))
     if (schema.type === "object" && schema.properties)
       assert.equal(schema.unevaluatedProperties ?? schema.additionalProperties, false, path);

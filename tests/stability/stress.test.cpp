@@ -70,7 +70,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("what XPBD and VBD let hang at 1/30 s hangs within 5 mm of the reference's rest shape, at rest") {
+TEST_CASE("under XPBD and VBD at 1/30 s a hanging cloth rests within 5 mm of the reference's rest shape") {
   const auto context = test::context();
   for (const Method method : {Method::xpbd, Method::vbd})
     for (const std::string file : {"level", "plane"}) {

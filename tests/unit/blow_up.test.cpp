@@ -157,7 +157,7 @@ TEST_CASE("a method that may be softer than the cloth is judged by its motion, n
   }
 }
 
-TEST_CASE("what is not finite has blown up, and the reason says between which times") {
+TEST_CASE("a state that is not finite has blown up, and the reason says between which times") {
   sim::BlowUp blow_up;
   sim::Diagnostics state;
   blow_up.start(allowed(0.5), state);
@@ -224,7 +224,7 @@ TEST_CASE("a change of scene under the state is no growth, and hides none") {
   CHECK(blow_up.judge(state) == Verdict::good);
 }
 
-TEST_CASE("what falls, and what colliders throw and carry, is within the allowance") {
+TEST_CASE("a falling cloth, and one that colliders throw and carry, is within the allowance") {
   const scene::Scene seed = test::seed();
   const model::Model model = *model::build(seed);
   const sim::Allowance allowance = sim::allowance(seed, model, 0.0017);

@@ -52,7 +52,8 @@ TEST_CASE("the light's view holds the whole box") {
   CHECK(reached < 1.0f);
 }
 
-TEST_CASE("what is not finite is left out of the framing, and nothing at all still gives a picture") {
+TEST_CASE(
+    "vertices that are not finite are left out of the framing, and an empty scene still gives a picture") {
   const float nan = std::numeric_limits<float>::quiet_NaN(),
               infinity = std::numeric_limits<float>::infinity();
   Box box;

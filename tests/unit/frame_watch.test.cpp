@@ -49,7 +49,7 @@ TEST_CASE("masked frames of every length pass unchanged, however they are cut in
   }
 }
 
-TEST_CASE("of an unmasked frame and of what follows nothing passes but masked frames of nothing") {
+TEST_CASE("an unmasked frame and all that follows is replaced by empty masked frames") {
   for (const std::size_t payload : {0u, 5u, 126u, 70000u}) {
     for (const std::size_t piece : {1u, 2u, 3u, 7u, 1000000u}) {
       const std::string good = frame(1, 200, true);

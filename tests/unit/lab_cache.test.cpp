@@ -112,7 +112,7 @@ TEST_CASE("a result is found by the same program and by the next one, under the 
   CHECK(folder.files().size() == 1);
 }
 
-TEST_CASE("what is not complete is not kept") {
+TEST_CASE("an incomplete result is not kept") {
   const Folder folder;
   Cache cache(folder.path);
   Chart chart = tests::made_up_chart();

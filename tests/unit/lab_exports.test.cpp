@@ -79,7 +79,7 @@ TEST_CASE("a CSV has a row a point, cell, trial or variant, each with as many fi
   }
 }
 
-TEST_CASE("what is recommended alone is listed once, and several together in a row of their own") {
+TEST_CASE("a single recommended part is listed once, several together get a row of their own") {
   Simplification simplification = tests::made_up_simplification();
   const auto listed = [&](const std::string& text) {
     return count_of(text, simplification.recommended.name);

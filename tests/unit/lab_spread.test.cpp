@@ -52,7 +52,7 @@ int count(double cost, const std::function<double(std::mt19937&)>& noise, Saving
 
 }  // namespace
 
-TEST_CASE("what costs the same is not called cheaper by any noise") {
+TEST_CASE("a thing that costs the same is not called cheaper under any noise") {
   // At the ratio that is just worth it a look errs with a chance of 3e-4, three looks with at most 9e-4: more
   // than 5 of 1000 come with a chance of 4e-4. A thing that saves nothing at all is farther off.
   for (const auto& noise : {even, bursts}) {
@@ -75,7 +75,7 @@ TEST_CASE("where the noise is larger than the saving, it is said that nothing ca
   CHECK(count(0.9, wild, Saving::cannot_tell) >= 990);
 }
 
-TEST_CASE("what is clear takes no more rounds than the first look, and what is not takes them all") {
+TEST_CASE("a clear verdict takes no more rounds than the first look, an unclear one takes them all") {
   Machine machine{{1.0, 0.2, 2.0}, bursts, std::mt19937(1)};
   machine.noise = [](std::mt19937&) { return 1.0; };
   const auto clear = machine.compare({{1, 0}, {2, 0}});

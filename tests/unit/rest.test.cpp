@@ -51,7 +51,7 @@ std::optional<double> found_at_rest(Rest& rest, double seconds, const std::funct
 
 }  // namespace
 
-TEST_CASE("what stands still is at rest after its stretch, and what moves fast enough to be seen never") {
+TEST_CASE("a still vertex is at rest after its stretch, and one that moves fast enough to be seen never is") {
   Rest rest = watching(strip());
   const std::optional<double> still = found_at_rest(rest, 60, [](double) { return 0.25; });
   REQUIRE(still);
@@ -128,7 +128,7 @@ TEST_CASE("without gravity, and on a moon of little, the stretch is longer but n
   CHECK(here > 3.14159 * std::sqrt(1.4142 * size_of(watching(strip())) / 9.8));
 }
 
-TEST_CASE("what is not finite is not at rest") {
+TEST_CASE("a vertex that is not finite is not at rest") {
   Rest rest = watching(strip());
   for (int i = 0; i < 1000; ++i)
     CHECK_FALSE(rest.look(0.1 * i, std::nan(""), [] { return std::vector<glm::vec3>(1); }));

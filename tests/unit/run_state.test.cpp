@@ -48,7 +48,7 @@ TEST_CASE("a session begins playing, and steps by the clock in that state alone"
   }
 }
 
-TEST_CASE("one that has diverged is neither played nor stepped, and any other is") {
+TEST_CASE("a run that has diverged is neither played nor stepped, and any other is") {
   for (Case each : all()) {
     INFO(each.name);
     const bool diverged = each.run.diverged();
@@ -73,7 +73,7 @@ TEST_CASE("a pause is never refused, and outlasts a blow-up and the lab") {
   }
 }
 
-TEST_CASE("the lab holds what plays or sleeps, and lets go what nobody has touched since") {
+TEST_CASE("the lab holds a run that plays or sleeps, and releases it if nobody has touched it since") {
   for (Case each : all()) {
     INFO(each.name);
     const State before = each.run.state();

@@ -115,7 +115,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("what is not simulated yet is refused by name, never ignored") {
+TEST_CASE("features that are not simulated yet are refused by name, never ignored") {
   const std::vector<std::pair<std::string, std::string>> not_yet = {
       {"/cloths/0/material", R"({"model": "fem", "warp": 300})"},
       {"/cloths/0/material/fabric", R"("cotton")"},
@@ -158,7 +158,7 @@ TEST_CASE("an unknown key is named with an escaped pointer, the allowed keys and
   CHECK(error.remedy.find("did you mean \"shear\"?") != std::string::npos);
 }
 
-TEST_CASE("what was found is shown as JSON, shortened when it is long and never inside a character") {
+TEST_CASE("an error shows the value found as JSON, shortened if long and never inside a character") {
   json value = base();
   value["solver"]["dt"] = {{"a", 1}};
   CHECK(scene::validate(value).error().what == R"({"a":1})");

@@ -106,7 +106,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("what is no kind of solid meets nothing") {
+TEST_CASE("an unknown kind of solid meets nothing") {
   const elements::Solid solid{dvec3(0.0), dvec3(0.0, 1.0, 0.0), 1.0};
   for (const int kind : {-1, elements::solid_kinds}) {
     dvec3 stopped, normal;

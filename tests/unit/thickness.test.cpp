@@ -55,7 +55,8 @@ TEST_CASE("the thickness that holds on a grid is 1.2 times half the diagonal of 
 }
 
 TEST_CASE(
-    "a self-collision thinner than what holds is warned of with the number, a thicker one or none is not") {
+    "a self-collision thinner than the mesh needs gets a warning with the number, a thicker one or none does "
+    "not") {
   scene::Scene scene;
   scene.cloths.emplace_back().mesh = scene::Grid{11, 11, 0.5, 0.5};
   const model::Model model = *model::build(scene);

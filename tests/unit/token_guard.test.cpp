@@ -41,7 +41,7 @@ TEST_CASE("in an hour of guessing as fast as it may an address is heard N times 
   CHECK(heard >= 60 * 7);
 }
 
-TEST_CASE("one address's wrong tokens are not another's") {
+TEST_CASE("wrong tokens of one address do not count for another") {
   TokenGuard guard(1);
   guess(guard, "a", 1, 0);
   CHECK(guard.wait("a", 0) == 60);
