@@ -14,11 +14,11 @@ uniform vec4 solids[3 * SOLID_COUNT];
 // The surface met last: its unit normal, its velocity [m/s] at the contact, friction and restitution.
 vec3 met_normal, met_velocity;
 vec2 met_surface;
-/// What friction takes from the step's displacement [m]. The caller applies it: not all use the velocity from here.
+/// Displacement [m] that friction takes from the step. The caller applies it: not all callers use the velocity given.
 vec3 met_braking;
 
 #ifdef SECOND_VELOCITY
-vec3 second_velocity;  // of the same vertex: contacts change it, too
+vec3 second_velocity;  // a second velocity of the vertex: contacts change it, too
 #endif
 
 void meet_surface(int motion, vec3 surface, vec3 normal, vec3 from, vec3 x, inout vec3 v) {

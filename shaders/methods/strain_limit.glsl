@@ -16,7 +16,7 @@ READ_VEC4(rest_position, 7);  // w: the cloth
 READ_VEC4(start_position, 10);  // at the step's start
 /// For each entry of the list of springs, written by its own vertex alone: impulse times dt, 0 or more [kg m].
 layout(std430, binding = 3) buffer Pulls { float pulls[]; };
-/// What the pulls have given to each vertex since the step ended, times dt [kg m]. The velocities follow from it: a
+/// Impulse of the pulls on each vertex since the step ended, times dt [kg m]. The velocities follow from it: a
 /// difference of positions would carry their float32 rounding into the velocities, and so into the momentum.
 layout(std430, binding = 5) buffer Given { vec4 given[]; };
 uniform float limit[CLOTH_COUNT];  // largest strain of each cloth's springs; negative: no limit

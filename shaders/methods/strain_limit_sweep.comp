@@ -54,7 +54,7 @@ void main() {
         float changed = max(pull + relaxation * excess / (mobility * growth), 0.0);
         pulls[at.first] = changed;
         moved -= (changed - pull) * n;
-        // What is left to do: the spring is too long, or too short because of the pull.
+        // Remaining error: the spring is too long, or too short because of the pull.
         most = max(most, (changed > 0.0 ? abs(excess) : excess) / allowed);
       }
     }

@@ -55,7 +55,7 @@ int stop(vec3 x, vec3 d, vec3 a, vec3 b, inout vec3 descent) {
     sliding -= met_normal * dot(met_normal, sliding);
     float distance_slid = length(sliding);
     vec3 along = sliding / max(distance_slid, 1e-30);
-    // What friction moves stays on the surface.
+    // Friction moves the vertex along the surface only.
     vec3 response = solve_block(a, b, along);
     response -= give * (dot(met_normal, response) / dot(met_normal, give));
     float most = met_surface.x * impulse;

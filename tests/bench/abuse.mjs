@@ -182,7 +182,7 @@ function round(value, digits = 2) {
   return Number(value.toFixed(digits));
 }
 
-/// What a subscribed bystander gets within this many seconds.
+/// The bystander's frames/s and real-time factor, over this many seconds.
 async function watch(bystander, seconds) {
   const from = bystander.frames.length,
     begun = performance.now(),

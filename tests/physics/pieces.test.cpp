@@ -111,7 +111,7 @@ TEST_CASE("a step given up half-way for a change leaves the state where it was, 
     CHECK(simulation->step_index() == 3);
     CHECK(sim::state_hash(simulation->read_state()) == before);
     simulation->step(5);
-    // As if it had never begun, except that the method and the limits remember earlier steps.
+    // Like a step that never began, except that the method and the limits remember earlier steps.
     const auto whole = test::simulation(busy_without_limit(method));
     whole->step(3);
     REQUIRE(whole->change(scene));

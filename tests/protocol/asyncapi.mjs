@@ -25,7 +25,7 @@ export function complaints(pointer, value) {
 
 export const payloadComplaints = (name, value) => complaints(`/channels/session/messages/${name}/payload`, value);
 
-/// What a JSON Pointer of the document, or one of its $refs, leads to; undefined if it leads to nothing.
+/// The value at a JSON Pointer of the document, or at one of its $refs; undefined if there is none.
 export function lookUp(reference, from = place) {
   const [file, pointer] = reference.split("#");
   const at = new URL(file, from);

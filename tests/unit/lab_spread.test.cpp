@@ -40,7 +40,7 @@ double bursts(std::mt19937& random) {
          (at < 0.2 ? 2.0 * std::uniform_real_distribution<>()(random) : 0.0);
 }
 
-/// Of 1000 comparisons of a thing that costs `cost` times another, the number with this verdict.
+/// Number of comparisons, of 1000, that end with this verdict. One thing costs `cost` times the other.
 int count(double cost, const std::function<double(std::mt19937&)>& noise, Saving verdict) {
   int found = 0;
   for (unsigned seed = 0; seed < 1000; ++seed) {

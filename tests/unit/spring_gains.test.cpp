@@ -76,7 +76,7 @@ TEST_CASE("a spring alone is after n visits of PBD where one visit of XPBD puts 
   for (const double k : {0.1, 100.0, 1e4, 1e9}) {
     for (const double c : {0.0, 2.0}) {
       const double dt = 0.02, coupling = w * (k * dt * dt + c * dt);
-      // Of the force that would be left after the free motion, backward Euler leaves 1 / (1 + coupling).
+      // Backward Euler leaves 1 / (1 + coupling) of the force after the free motion.
       const double force = k * dt * dt * 0.5 + c * dt * 0.3;
       const double expected = 1.5 - w * force / (1.0 + coupling);
       for (const int visits : {1, 2, 7, 100}) {

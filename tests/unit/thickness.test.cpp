@@ -12,7 +12,7 @@ using model::dvec3;
 
 namespace {
 
-/// The same by trying points of the triangle: never more than the truth, and at most a share of 2 / n less.
+/// The radius by trying points of the triangle: never more than the truth, and at most a share of 2 / n less.
 double tried(const dvec3& a, const dvec3& b, const dvec3& c) {
   constexpr int n = 300;
   double farthest = 0.0;

@@ -90,7 +90,7 @@ export class Jobs {
     });
   }
 
-  /// What was measured so far, as the text of a file.
+  /// The result so far, as the text of a file.
   async exported(kind: Kind, format: Format, axis: Axis): Promise<string> {
     const { text } = await this.events.request<{ text: string }>("lab.export", {
       job: this.of(kind).ofJob,

@@ -122,7 +122,7 @@ export class Connection {
     }
   }
 
-  // What follows a bad message might be misread, too: reconnects, but late, as the server may well send the same again.
+  // Reconnects, as later messages might be misread, too; but late, as the server may well send the same again.
   private distrust(error: BadMessage): void {
     this.abandon(closeBadMessage, error.message);
     this.delay = longestDelay;

@@ -6,7 +6,7 @@ import type { Operation, SceneDocument } from "../link/scene_types";
 /// The kinds of springs, as the document names them.
 export const kinds = ["structural", "shear", "bend"] as const;
 
-/// What `sim.status` tells about the solver.
+/// Facts about the solver in `sim.status`.
 export interface SolverFacts {
   /// Under the method `auto`: the method that steps the scene, and why.
   auto?: {

@@ -23,7 +23,7 @@ export interface Reading {
   filled: number;
 }
 
-/// What the gauge shows for a time step [s].
+/// The gauge's reading for a time step [s].
 export function reading(dt: number, limit: number | null): Reading {
   const always = (verdict: Verdict, word: string): Reading => ({
     verdict,
