@@ -22,9 +22,9 @@ void set_deviation(uint i, vec4 d) { deviation_written[i] = d; }
 void set_deviation(uint i, vec3 d) { deviation_written[i].xyz = d; }
 #endif
 
-/// Remainders: what rounding to float32 took from a vertex's position [m] and velocity [m/s] at the end of the last step. Carried
-/// on, it keeps many small steps from adding up their roundings (compensated summation: Kahan 1965), which are the same
-/// in every step of a fall. Only the vertex itself reads them.
+/// What a vertex's position [m] and velocity [m/s] lost by rounding to float32 at the end of the last step. Carried on,
+/// it keeps many small steps from adding up their roundings (compensated summation: Kahan 1965), which are the same in
+/// every step of a fall. Only the vertex itself reads them.
 struct Remainder { vec4 position, velocity; };
 layout(std430, binding = 7) buffer Remainders { Remainder remainders[]; };
 uniform int last_sweep;
