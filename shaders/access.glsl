@@ -1,6 +1,6 @@
-// How kernels read a buffer: through a buffer texture, which on Mesa's llvmpipe takes less than half the time of a
-// storage buffer (tests/bench/step.mjs measures it), or, with READ_STORAGE, as a storage buffer. Writes are always
-// storage buffers. Use: READ_VEC4(position, 0); ... vec4 p = FETCH(position, i);
+// Reading of buffers. A kernel reads through a buffer texture, which on Mesa's llvmpipe takes less than half the time
+// of a storage buffer (tests/bench/step.mjs measures it); with READ_STORAGE it reads a storage buffer. Writes always go
+// to storage buffers. Use: READ_VEC4(position, 0); ... vec4 p = FETCH(position, i);
 #ifdef READ_STORAGE
 #define READ_BUFFER_(type, name, unit) \
   layout(std430, binding = 8 + unit) readonly buffer name##_reads { type name[]; }

@@ -2,7 +2,7 @@
 import { spawnSync } from "node:child_process";
 import { join } from "node:path";
 
-/// Writes key.pem and certificate.pem into the folder. `made`: false where there is no openssl.
+/// Writes key.pem and certificate.pem into the folder. `made` is false if there is no openssl.
 export function makeCertificate(folder) {
   const [key, certificate] = ["key.pem", "certificate.pem"].map((name) => join(folder, name));
   const request = ["req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", "-subj", "/CN=localhost"];

@@ -1,5 +1,5 @@
-// Where cloth passes through cloth: edges that cross triangles, by brute force over all pairs in double
-// precision.
+// Counts where cloth passes through cloth: edges that cross triangles, by brute force over all pairs in
+// double precision.
 #pragma once
 
 #include <algorithm>
@@ -28,13 +28,13 @@ inline std::vector<std::pair<std::uint32_t, std::uint32_t>> edges_of(const model
   return {edges.begin(), edges.end()};
 }
 
-/// Six times the volume of the tetrahedron a b c d: its sign tells on which side of the plane a b c the point
-/// d is.
+/// Six times the volume of the tetrahedron a b c d; its sign tells on which side of the plane a b c the point
+/// d lies.
 inline double volume(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d) {
   return glm::dot(glm::cross(b - a, c - a), d - a);
 }
 
-/// Whether the segment p q passes through the inside of the triangle a b c. What only touches does not.
+/// True if the segment p q passes through the inside of the triangle a b c; touching does not count.
 inline bool crosses(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& a, const glm::dvec3& b,
                     const glm::dvec3& c) {
   const double above = volume(a, b, c, p), below = volume(a, b, c, q);
@@ -43,7 +43,8 @@ inline bool crosses(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& 
   return (ab > 0.0 && bc > 0.0 && ca > 0.0) || (ab < 0.0 && bc < 0.0 && ca < 0.0);
 }
 
-/// All of them in the shape `x` [vertex_count] [m]; an edge and a triangle that share a vertex do not count.
+/// Number of crossings in the shape `x` [vertex_count] [m]; an edge and a triangle that share a vertex do not
+/// count.
 template <class Vec3>
 std::vector<Crossing> crossings(const model::Model& model, const std::vector<Vec3>& x) {
   struct Box {

@@ -1,4 +1,4 @@
-// Results of the lab as they could be, made up: what exports and the cache are tested with.
+// Made-up results of the lab, for tests of the exports and the cache.
 #pragma once
 
 #include <cmath>
@@ -12,8 +12,8 @@ namespace clothlab::tests {
 using lab::Axis;
 using scene::Method;
 
-/// A point whose error falls with dt by `order` from `error_at_ms`, at dt = 1 ms, to a floor, and that costs
-/// `ms_a_step`.
+/// A point whose error falls with dt, by `order`, from `error_at_ms` at dt = 1 ms to a floor; it costs
+/// `ms_a_step` per step.
 inline lab::Point made_up_point(Method method, double dt, int iterations, double error_at_ms, double order,
                                 double ms_a_step) {
   lab::Point point;
@@ -35,7 +35,7 @@ inline lab::Point made_up_blow_up(Method method, double dt, double at) {
   return point;
 }
 
-/// Three methods, of which one sweeps; one point that blew up with its cost known and one without.
+/// Three methods, one of which sweeps; one point that blew up has a known cost, another has none.
 inline lab::Chart made_up_chart() {
   lab::Chart chart;
   chart.scene = "seed";
@@ -90,7 +90,8 @@ inline lab::Choice made_up_choice() {
   return choice;
 }
 
-/// Two methods over three stiffnesses, one with a limit that theory misses at the last value, one without.
+/// Two methods over three stiffnesses: one has a limit, which theory misses at the last value; the other has
+/// none.
 inline lab::StabilityMap made_up_map() {
   lab::StabilityMap map;
   map.scene = "seed";

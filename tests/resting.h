@@ -1,4 +1,4 @@
-// Cloths that lie on planes and spheres, as plain data: for the tests of contact.
+// Cloths that lie on planes and spheres, as plain data, for tests of contact.
 #pragma once
 
 #include <cmath>
@@ -10,8 +10,8 @@ namespace clothlab::test {
 
 inline constexpr double standard_gravity = 9.81;
 
-/// A free sheet of 0.4 m, 0.01 kg a vertex, structural springs of 800 N/m, that lies on a plane sloping down
-/// along -x by `degrees`: the plane is level and gravity leans.
+/// A free cloth of 0.4 m, 0.01 kg per vertex, structural springs of 800 N/m, that lies on a plane sloping
+/// down along -x by `degrees`: the plane is level and gravity leans.
 inline scene::Scene sheet_on_slope(double degrees, double friction, int side = 9) {
   scene::Scene scene;
   scene::Cloth& cloth = scene.cloths.emplace_back();
@@ -24,7 +24,7 @@ inline scene::Scene sheet_on_slope(double degrees, double friction, int side = 9
   return scene;
 }
 
-/// The same sheet, dropped from `height` [m] onto a sphere of 0.2 m that stands in the way.
+/// The same cloth, dropped from `height` [m] onto a sphere of 0.2 m.
 inline scene::Scene sheet_over_sphere(double height, double friction) {
   scene::Scene scene = sheet_on_slope(0.0, friction);
   scene.cloths[0].transform.translate = {0.01, height, 0.02};

@@ -13,8 +13,8 @@
 
 namespace clothlab::test {
 
-/// A context current on this thread for the rest of the test. Fails the test with the reason if there is
-/// none.
+/// An OpenGL context, current on this thread for the rest of the test. Fails the test, with the reason, if
+/// there is none.
 inline std::unique_ptr<gl::Context> context() {
   Result<std::unique_ptr<gl::Context>> made = gl::Context::create();
   INFO((made ? "" : made.error().text()));
@@ -29,7 +29,7 @@ inline std::unique_ptr<sim::Simulation> simulation(const scene::Scene& scene) {
   return std::move(*made);
 }
 
-/// Fails the test with the reason where the text is no scene.
+/// Parses a scene. Fails the test, with the reason, if the text is no scene.
 inline scene::Document document_of(const std::string& text) {
   Result<scene::json> value = scene::parse_json(text, "test", true);
   Result<scene::Document> document = value ? scene::validate(*value) : value.error();
@@ -37,7 +37,7 @@ inline scene::Document document_of(const std::string& text) {
   return *document;
 }
 
-/// A free 1 m x 1 m grid at y = 1 with the seed's material; nothing to collide with.
+/// A free 1 m x 1 m grid at y = 1 m with the seed's material; no colliders.
 inline scene::Scene sheet(int columns, int rows) {
   scene::Scene scene;
   scene::Cloth cloth;

@@ -1,5 +1,5 @@
-// The two sides of every claim about a method: the double-precision reference and the GPU's float32, behind
-// one face.
+// The two sides that are tested of every method, the double-precision reference and the GPU's float32, with
+// one interface.
 #pragma once
 
 #include <array>
@@ -20,7 +20,8 @@ inline const char* name(Side side) {
   return side == Side::gpu ? "GPU, float32" : "reference, float64";
 }
 
-/// A scene being stepped on one side, from rest. On the GPU's side a context must be current on this thread.
+/// A scene being stepped on one side, from rest. The GPU's side needs a context that is current on this
+/// thread.
 class Stepped {
  public:
   Stepped(Side side, const scene::Scene& scene)
@@ -33,7 +34,7 @@ class Stepped {
     for (int n = 0; n < count; ++n) reference::step(world_, state_);
   }
 
-  /// The state now, the GPU's read back.
+  /// The present state; the GPU's is read back.
   reference::State state() {
     if (!simulation_) return state_;
     const sim::State found = simulation_->read_state();
@@ -43,14 +44,14 @@ class Stepped {
     return result;
   }
 
-  /// Of the state now, summed in double precision on either side [J].
+  /// Energy of the present state, summed in double precision on either side [J].
   reference::Energy energy() { return reference::energy(world_, state()); }
 
   /// Goes on from the present state with a changed scene of the same vertices.
   void change(const scene::Scene& scene) {
     world_ = world_of(scene);
     if (!simulation_) {
-      state_.half_dt.clear();  // Verlet starts anew from the velocity it has
+      state_.half_dt.clear();  // Verlet starts anew from the present velocity
       return;
     }
     const auto changed = simulation_->change(scene);
@@ -58,7 +59,7 @@ class Stepped {
     REQUIRE(changed);
   }
 
-  /// Back to rest, with another dt.
+  /// Goes back to rest, with another dt [s].
   void restart(double dt) {
     scene::Scene scene = world_.scene;
     scene.solver.dt = dt;

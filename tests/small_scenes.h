@@ -1,5 +1,5 @@
-// Scenes whose motion has a closed form, as plain data: for the tests of the reference and of the GPU alike.
-// A grid has two columns at least: each scene is two copies side by side that move as one.
+// Scenes whose motion has a closed form, as plain data, for tests of the reference and of the GPU. A grid has
+// at least two columns: each scene is two copies side by side that move as one.
 #pragma once
 
 #include <cmath>
@@ -29,8 +29,8 @@ inline scene::Scene hung_strip(scene::Method method, double dt, int columns, int
 }
 
 /// One spring of 1 m, 16 N/m, along z, with 1 kg at its end: omega = 4 / s. It starts unstretched, at rest,
-/// `amplitude` [m] from the balance that gravity along z gives it. Damping ratio z = damping / 8. It is a
-/// bend spring, over a row that is pinned too: no spring joins the two copies.
+/// `amplitude` [m] from its balance under gravity along z. Damping ratio z = damping / 8. It is a bend spring
+/// over a row that is pinned, too: no spring joins the two copies.
 inline scene::Scene one_spring(scene::Method method, double dt, double damping = 0.0,
                                double amplitude = 0.1) {
   scene::Scene scene = hung_strip(method, dt, 2, 3, 1.0, 1.0);
@@ -60,7 +60,8 @@ inline scene::Scene pendulum(scene::Method method, double dt, double degrees, do
   scene::Scene scene = one_spring(method, dt);
   const double angle = degrees * std::acos(-1.0) / 180.0;
   scene.gravity =
-      9.81 * glm::dvec3(0.0, -std::sin(angle), std::cos(angle));  // the grid's +z makes `degrees` with it
+      // the grid's +z axis makes this angle with gravity
+      9.81 * glm::dvec3(0.0, -std::sin(angle), std::cos(angle));
   scene.cloths[0].material.bend = k;
   return scene;
 }

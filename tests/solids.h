@@ -1,4 +1,4 @@
-// A shape of each kind, and what is true of it without its law: for the tests of solids.
+// A shape of each kind, and properties of it that do not use its law: for tests of solids.
 #pragma once
 
 #include <glm/geometric.hpp>
@@ -8,7 +8,7 @@
 
 namespace clothlab::test {
 
-/// How deep x is below the surface [m], less than 0 outside.
+/// Depth of x below the surface [m]; less than 0 outside.
 inline double depth(const scene::Sphere& sphere, const glm::dvec3& x) {
   return sphere.radius - glm::distance(x, sphere.center);
 }
@@ -19,7 +19,7 @@ inline double depth(const scene::Shape& shape, const glm::dvec3& x) {
   return std::visit([&](const auto& of) { return depth(of, x); }, shape);
 }
 
-/// Each with its surface within 1 m of the origin, and room for paths inside and outside.
+/// Shapes whose surface is within 1 m of the origin, with room for paths inside and outside.
 inline const std::vector<scene::Shape> a_shape_of_each_kind{
     scene::Sphere{{0.1, -0.2, 0.05}, 0.5},
     scene::Plane{{0.2, -0.3, 0.1}, {0.0, 0.8, 0.6}},

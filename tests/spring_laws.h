@@ -1,4 +1,4 @@
-// The spring's law between two places, for tests: as it sees them from the first.
+// The spring's law between two places, seen from the first one, for tests.
 #pragma once
 
 #include "shaders/elements/elements.h"

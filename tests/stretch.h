@@ -1,4 +1,4 @@
-// By how much the springs of a simulation are stretched.
+// Measures how much the springs of a simulation are stretched.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,8 @@
 
 namespace clothlab::test {
 
-/// Longest spring over its length at rest, less 1: stretch alone, where max_strain counts compression, too.
+/// Length of the longest spring over its rest length, less 1. Stretch alone: max_strain counts compression,
+/// too.
 inline double largest_stretch(sim::Simulation& simulation) {
   const sim::State state = simulation.read_state();
   double largest = 0.0;

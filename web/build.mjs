@@ -1,4 +1,4 @@
-// Bundles the page into dist/: one HTML file, one script, one style sheet, and nothing inline (the CSP forbids it).
+// Bundles the page into dist/: one HTML file, one script and one style sheet. Nothing is inline: the CSP forbids it.
 import { build } from "esbuild";
 import { cpSync, mkdirSync, readFileSync, rmSync } from "node:fs";
 import { dirname, join } from "node:path";
@@ -10,7 +10,7 @@ rmSync(dist, { recursive: true, force: true });
 mkdirSync(dist);
 cpSync(join(here, "static"), dist, { recursive: true });
 
-// lil-gui's sheet carries an icon font in a data: URL, which the CSP refuses too: panel.css draws those icons.
+// lil-gui's style sheet holds an icon font in a data: URL, which the CSP also refuses: panel.css draws the icons.
 const withoutFonts = {
   name: "without-fonts",
   setup({ onLoad }) {

@@ -1,23 +1,24 @@
-// Solids: stops a vertex's step at their surfaces, by the law of each one's kind (elements/solid.glsl), kind after
-// kind, and within a kind in the scene's order. A kernel is compiled for the kinds that its scene has: EACH_SOLID(meet)
-// is `meet(kind, first, end)` for each of these: the solids from first to before end are of that kind.
+// Stops a vertex's step at the surfaces of solids, by the law of each kind (elements/solid.glsl). Solids are met kind
+// after kind, within a kind in the scene's order. A kernel is compiled for the kinds that its scene has:
+// EACH_SOLID(meet) calls `meet(kind, first, end)` for each of them; solids first to end - 1 are of that kind.
 #include "../elements/contact.glsl"
 #include "../elements/solid.glsl"
 #include "../rarely.glsl"
 
 #if SOLID_COUNT > 0
-// Of each: its point at home [m], its radius + margin [m]; its direction at home; its friction, restitution, motion.
+// For each solid: point before any motion [m], radius + margin [m]; direction before any motion; friction, restitution,
+// motion.
 uniform vec4 solids[3 * SOLID_COUNT];
 #endif
 
-// Of the surface met last: its unit normal, its velocity [m/s] there, friction, restitution.
+// The surface met last: its unit normal, its velocity [m/s] at the contact, friction and restitution.
 vec3 met_normal, met_velocity;
 vec2 met_surface;
-/// What friction takes from the step's displacement [m]: left to the caller, as not all go by the velocity given.
+/// Displacement [m] that friction takes from the step. The caller applies it: not all callers use the velocity given.
 vec3 met_braking;
 
 #ifdef SECOND_VELOCITY
-vec3 second_velocity;  // of the same vertex: what a contact does to the one it does to this, too
+vec3 second_velocity;  // a second velocity of the vertex: contacts change it, too
 #endif
 
 void meet_surface(int motion, vec3 surface, vec3 normal, vec3 from, vec3 x, inout vec3 v) {
@@ -34,7 +35,7 @@ void meet_surface(int motion, vec3 surface, vec3 normal, vec3 from, vec3 x, inou
 }
 
 #if SOLID_COUNT > 0
-/// Where solid i is at a row of the step, thicker by `reach` [m].
+/// Solid i at a row of the step, thicker by `reach` [m].
 Solid solid_at(int i, int motion, int row, float reach) {
   vec3 point = solids[3 * i].xyz, direction = solids[3 * i + 1].xyz;
   RARELY(motion >= 0) {
@@ -44,7 +45,7 @@ Solid solid_at(int i, int motion, int row, float reach) {
   return Solid(point, direction, solids[3 * i].w + reach);
 }
 
-/// Returns whether the step from -> x meets solid i, and mends it if so.
+/// Stops the step from -> x at solid i, and changes the end velocity v. Returns true if they meet.
 bool meet_solid(int kind, int i, vec3 from, inout vec3 x, inout vec3 v, float reach) {
   vec3 surface = solids[3 * i + 2].xyz;
   int motion = int(surface.z);
@@ -62,7 +63,8 @@ bool meet_solid(int kind, int i, vec3 from, inout vec3 x, inout vec3 v, float re
 }
 #endif
 
-/// Mends the step from -> x with end velocity v; solids are thicker by `reach` [m]. Returns the number of them met.
+/// Stops the step from -> x, with end velocity v, at the solids, thicker by `reach` [m]. Returns the number of solids
+/// met.
 int resolve_colliders(vec3 from, inout vec3 x, inout vec3 v, float reach) {
   int contacts = 0;
   met_braking = vec3(0.0);

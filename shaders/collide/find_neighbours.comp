@@ -1,5 +1,5 @@
-// Neighbour search, 2 of 3: lists for each vertex the others within reach that may touch it at all, the nearest
-// NEIGHBOUR_SLOTS of them, with the distance that self-collision keeps between the two: min(thickness, rest distance).
+// Neighbour search, 2 of 3: lists for each vertex the other vertices within reach, the nearest NEIGHBOUR_SLOTS of them.
+// Each entry holds the distance that self-collision keeps between the two: min(thickness, rest distance).
 layout(local_size_x = GROUP_SIZE) in;
 #include "../access.glsl"
 #include "cells.glsl"
@@ -9,10 +9,10 @@ READ_VEC4(position, 0);
 READ_UINT(head, 4);
 READ_UINT(next, 5);
 READ_VEC4(rest_position, 7);  // w: the cloth
-READ_UINT(excluded, 9);        // those that self-collision leaves out, vertex after vertex
+READ_UINT(excluded, 9);        // vertices that self-collision leaves out, vertex after vertex
 READ_UINT(first_excluded, 10);  // [vertex_count + 1]
 layout(location = 3) uniform float thickness;
-layout(location = 4) uniform int first_vertex;  // of the range that this dispatch looks at
+layout(location = 4) uniform int first_vertex;  // first vertex of this dispatch's range
 layout(std430, binding = 6) writeonly buffer NeighbourCounts { uint neighbour_count[]; };
 // (vertex, distance): vertex i's slot s at i * SLOTS + s
 layout(std430, binding = 7) buffer Neighbours { uvec2 neighbours[]; };
@@ -22,7 +22,7 @@ float rest_distance(int i, int j) {
   return a.w == b.w ? distance(a.xyz, b.xyz) : thickness;
 }
 
-/// Whether j is among those of that range.
+/// True if j is in entries first to end - 1 of `excluded`.
 bool left_out(int first, int end, uint j) {
   for (int at = first; at < end; ++at)
     if (FETCH_UINT(excluded, at) == j) return true;
@@ -31,16 +31,16 @@ bool left_out(int first, int end, uint j) {
 
 void main() {
   int i = first_vertex + int(gl_GlobalInvocationID.x);
-  if (i == vertex_count - 1) {  // the last range: no other rebuild until a vertex asks again
+  if (i == vertex_count - 1) {  // the last range ends the rebuild until a vertex asks for another
     rebuild_groups = search_on = 0;
     finish_groups = uint((vertex_count + GROUP_SIZE - 1) / GROUP_SIZE);
     ++rebuilds;
   }
   if (i >= vertex_count) return;
   vec3 x = FETCH(position, i).xyz;
-  // Cells are twice the reach wide, so only the eight on this vertex's side of its cell can hold a neighbour. One loop
-  // walks all eight chains: threads of a group with chains of different lengths do not wait for each other at each
-  // cell.
+  // Cells are twice the reach wide, so only the eight cells on this vertex's side of its cell can hold a neighbour. One
+  // loop walks all eight chains: the threads of a group, whose chains differ in length, do not wait for each other at
+  // each cell.
   ivec3 corner = corner_of(x);
   int first = i * NEIGHBOUR_SLOTS;
   int first_left_out = int(FETCH_UINT(first_excluded, i)), end_left_out = int(FETCH_UINT(first_excluded, i + 1));
@@ -57,7 +57,7 @@ void main() {
     }
     vec3 y = FETCH(position, j).xyz;
     float gap = distance(x, y);
-    // A bucket may hold several cells; only this one's vertices count, so that none is listed twice.
+    // A bucket may hold several cells; only vertices of this cell count, so that no vertex is listed twice.
     if (j != uint(i) && gap < reach && cell_of(y) == cell && !left_out(first_left_out, end_left_out, j)) {
       int slot = count;
       if (count < NEIGHBOUR_SLOTS) ++count;

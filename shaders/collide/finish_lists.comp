@@ -1,5 +1,5 @@
-// Neighbour search, 3 of 3: what has no room in one vertex's full list leaves the other's too, since of a contact that
-// only one of the two knew momentum would come out of nothing; and the hash is emptied for the next search.
+// Neighbour search, 3 of 3. A vertex that found no room in another's full list drops that one from its own, too: a
+// contact known to one of two vertices would create momentum. Then the hash is emptied for the next search.
 layout(local_size_x = GROUP_SIZE) in;
 #include "neighbours.glsl"
 
@@ -8,7 +8,8 @@ layout(std430, binding = 3) writeonly buffer CellHeads { uint head[]; };  // [CE
 layout(std430, binding = 6) readonly buffer NeighbourCounts { uint neighbour_count[]; };
 layout(std430, binding = 7) coherent buffer Neighbours { uvec2 neighbours[]; };
 
-/// Other work groups may be leaving vertices out of j's list meanwhile, but not i, since j is in i's.
+/// True if i is in j's list. Other work groups may remove vertices from j's list meanwhile, but not i, since j is in
+/// i's list.
 bool lists(uint j, uint i) {
   for (int slot = 0; slot < NEIGHBOUR_SLOTS; ++slot)
     if (neighbours[int(j) * NEIGHBOUR_SLOTS + slot].x == i) return true;
@@ -24,7 +25,7 @@ void main() {
   int first = i * NEIGHBOUR_SLOTS, count = int(neighbour_count[i]);
   for (int slot = 0; slot < count; ++slot) {
     uint j = neighbours[first + slot].x;
-    // A vertex never touches itself.
+    // An entry that names its own vertex is ignored: a vertex never touches itself.
     if (neighbour_count[j] == NEIGHBOUR_SLOTS && !lists(j, uint(i))) neighbours[first + slot].x = uint(i);
   }
 }

@@ -1,4 +1,4 @@
-// Neighbour search, 1 of 3: hangs each vertex into the chain of its cell and notes where it was.
+// Neighbour search, 1 of 3: adds each vertex to the chain of its cell and notes where the vertex is.
 layout(local_size_x = GROUP_SIZE) in;
 #include "../access.glsl"
 #include "cells.glsl"
@@ -6,7 +6,7 @@ layout(local_size_x = GROUP_SIZE) in;
 
 READ_VEC4(position, 0);
 layout(std430, binding = 3) buffer CellHeads { uint head[]; };
-layout(std430, binding = 4) writeonly buffer CellChains { uint next[]; };  // [vertex_count] the next one in the cell
+layout(std430, binding = 4) writeonly buffer CellChains { uint next[]; };  // [vertex_count] the next vertex in the cell
 layout(std430, binding = 5) writeonly buffer PositionWhenBuilt { vec4 position_when_built[]; };
 
 void main() {

@@ -1,6 +1,6 @@
-// Self-collision of a vertex with those of its neighbour list that it touches within this step (elements/contact.glsl),
-// each of the two taking its share by inverse mass: both compute the same contact, so momentum is kept.
-// START_POSITION and START_VELOCITY name the state at the step's start where position and velocity are another.
+// Self-collision of a vertex with those of its neighbours that it touches within this step (elements/contact.glsl).
+// Each of the two takes its share by inverse mass; both compute the same contact, so momentum is kept.
+// START_POSITION and START_VELOCITY name the state at the step's start if that is not position and velocity.
 // Needs neighbours.glsl, contact.glsl, position, velocity, dt.
 #ifndef START_POSITION
 #define START_POSITION position
@@ -11,8 +11,8 @@ READ_UVEC2(neighbours, 5);
 uniform float self_friction;
 
 /// Adds to push [m] and impulse (change of velocity [m/s]); returns the number of vertices touched.
-/// Several contacts at once would add up to more than is needed: each is scaled by the larger of the two vertices'
-/// contact counts of the step before (kept in velocity.w), at least 2.
+/// Several contacts at once would add up to more than is needed: each is divided by the larger of the two vertices'
+/// contact counts in the step before (kept in velocity.w), at least 2.
 int self_contacts(int i, vec4 x, vec4 v, inout vec3 push, inout vec3 impulse) {
   int touched = 0;
   int count = int(FETCH_UINT(neighbour_count, i));
@@ -24,7 +24,7 @@ int self_contacts(int i, vec4 x, vec4 v, inout vec3 push, inout vec3 impulse) {
     if (!self_contact(x.xyz, y.xyz, v.xyz, w.xyz, uintBitsToFloat(neighbour.y), self_friction, dt, apart, change))
       continue;
     ++touched;
-    float others = y.w > 0.0 ? w.w : 0.0;  // a pinned vertex keeps its motion's index there
+    float others = y.w > 0.0 ? w.w : 0.0;  // w of a pinned vertex is its motion's index
     float share = x.w / (x.w + y.w) / max(2.0, max(v.w, others));
     push += share * apart;
     impulse += share * change;

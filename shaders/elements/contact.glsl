@@ -1,9 +1,9 @@
-// A vertex against a solid: where it is stopped, and what is left of its velocity.
+// Contact of a vertex with a solid or with another vertex: where it stops, and the velocity it keeps.
 // Bridson, Fedkiw & Anderson 2002, sections 4 and 6 (velocity-level contact, Coulomb friction as an impulse).
 // In the common subset of GLSL and C++ (see types.glsl, elements.h).
 
-/// The share of its sliding, along a surface with unit normal n, that friction (Coulomb coefficient) leaves a vertex
-/// that meets it with the relative velocity v.
+/// Share of its sliding velocity that a vertex keeps under friction (Coulomb coefficient), [0, 1]. v: velocity relative
+/// to the surface, n: unit normal of the surface.
 FUNCTION real sliding_kept(vec3 v, vec3 n, real friction, real restitution) {
   real approach = -dot(v, n);
   if (!(approach > real(0.0))) return real(1.0);
@@ -13,8 +13,9 @@ FUNCTION real sliding_kept(vec3 v, vec3 n, real friction, real restitution) {
   return speed > lost ? real(1.0) - lost / speed : real(0.0);
 }
 
-/// What a contact leaves of the velocity v relative to the surface with unit normal n: the approaching part is
-/// turned back by restitution [0, 1]; friction (Coulomb coefficient) takes at most that impulse from the sliding part.
+/// Velocity after a contact, from the velocity v before it, both relative to the surface with unit normal n. The
+/// approaching part is turned back by restitution [0, 1]; friction (Coulomb coefficient) takes at most that impulse
+/// from the sliding part.
 FUNCTION vec3 contact_velocity(vec3 v, vec3 n, real friction, real restitution) {
   real approach = -dot(v, n);
   if (!(approach > real(0.0))) return v;
@@ -22,17 +23,17 @@ FUNCTION vec3 contact_velocity(vec3 v, vec3 n, real friction, real restitution) 
   return sliding * sliding_kept(v, n, friction, restitution) + n * (restitution * approach);
 }
 
-/// What friction takes from the displacement `moved` [m] of a step whose end velocity was v, both relative to the
-/// surface: as large a share as of the sliding. What is not taken would be a creep of what should stand, and, as the
-/// force of a stiff spring moves a vertex that friction stops in every step, a vibration that grows below the step
-/// limit.
+/// Displacement [m] that friction takes from a step's displacement `moved` [m]: as large a share as of the sliding
+/// velocity. v: end velocity of the step; both are relative to the surface. Without it a cloth at rest would creep; and
+/// a vertex that friction stops in every step while a stiff spring's force moves it would vibrate more and more even
+/// below the step limit.
 FUNCTION vec3 contact_braking(vec3 moved, vec3 v, vec3 n, real friction, real restitution) {
   return (moved - n * dot(moved, n)) * (real(1.0) - sliding_kept(v, n, friction, restitution));
 }
 
-/// The path from -> to, relative to a sphere's centre at either time, against the sphere: a swept test, so that a
-/// fast vertex does not pass through. True if they meet; then `stopped` is on or outside the sphere (entry point plus
-/// the rest of the path along the tangent plane) and `normal` the unit normal there.
+/// A swept test of the path from -> to, relative to a sphere's centre at either time, against the sphere: a fast vertex
+/// does not pass through. True if they meet; then `stopped` is on or outside the sphere (entry point plus the rest of
+/// the path along the tangent plane) and `normal` the unit normal there.
 /// At the very centre there is no direction: no contact, and never NaN.
 FUNCTION bool sphere_contact(vec3 from, vec3 to, real radius, OUT(vec3) stopped, OUT(vec3) normal) {
   vec3 path = to - from;
@@ -43,7 +44,7 @@ FUNCTION bool sphere_contact(vec3 from, vec3 to, real radius, OUT(vec3) stopped,
   stopped = to;
   normal = vec3(real(0.0));
 
-  real s = real(0.0);  // the share of the path before contact
+  real s = real(0.0);  // share of the path before contact
   if (c > real(0.0)) {
     if (!(b < real(0.0)) || !(discriminant > real(0.0))) return false;
     real reach = -b - sqrt(discriminant);
@@ -51,7 +52,7 @@ FUNCTION bool sphere_contact(vec3 from, vec3 to, real radius, OUT(vec3) stopped,
     s = reach / a;
   } else if (!(b < real(0.0))) {
     if (!(dot(to, to) < radius * radius)) return false;
-    s = real(1.0);  // on its way out, but not out yet
+    s = real(1.0);  // leaving the sphere, but still inside
   }
   vec3 met = from + path * s;
   real distance_squared = dot(met, met);
@@ -62,12 +63,12 @@ FUNCTION bool sphere_contact(vec3 from, vec3 to, real radius, OUT(vec3) stopped,
   return true;
 }
 
-/// Two vertices of cloth, at x and y with velocities v and w, that keep a distance of `keep` [m]: what moves the first
-/// away from the second by position (push) and by velocity (impulse), to be shared between the two. True if they touch:
-/// too close already, or they would be within this step of dt. Takes out the approaching velocity that is more than the
-/// room between them, with friction, and mends a fifth of an overlap a step: all of it at once would stretch the
-/// springs and so add energy. Speculative contacts: Catto 2013. Two vertices in one place have no direction: no
-/// contact.
+/// Contact of two cloth vertices at x and y, with velocities v and w, that keep a distance of `keep` [m]. True if they
+/// touch: they are too close already, or would be within this step of dt [s]. Then `push` [m] and `impulse` [m/s] move
+/// the first away from the second; the caller shares them between the two. The impulse removes the approaching velocity
+/// beyond the room between them, with friction. The push removes a fifth of an overlap per step: all of it at once
+/// would stretch the springs and so add energy. Speculative contacts: Catto 2013. Two vertices in one place have no
+/// direction: no contact.
 FUNCTION bool self_contact(vec3 x, vec3 y, vec3 v, vec3 w, real keep, real friction, real dt, OUT(vec3) push,
                            OUT(vec3) impulse) {
   push = vec3(real(0.0));
@@ -84,8 +85,8 @@ FUNCTION bool self_contact(vec3 x, vec3 y, vec3 v, vec3 w, real keep, real frict
   return true;
 }
 
-/// The part of a displacement that friction takes: `moved` [m] is that of a step relative to a surface with unit normal
-/// n which pushed back by `depth` [m] (Coulomb's law for positions: Macklin et al. 2014, equation 24).
+/// Part of a displacement that friction takes [m]. `moved` [m]: displacement of a step relative to a surface with unit
+/// normal n that pushed back by `depth` [m] (Coulomb's law for positions: Macklin et al. 2014, equation 24).
 FUNCTION vec3 friction_displacement(vec3 moved, vec3 n, real friction, real depth) {
   vec3 sliding = moved - n * dot(moved, n);
   real distance_slid = sqrt(dot(sliding, sliding));
@@ -93,10 +94,10 @@ FUNCTION vec3 friction_displacement(vec3 moved, vec3 n, real friction, real dept
   return distance_slid > most ? sliding * (most / distance_slid) : sliding;
 }
 
-/// Two vertices of cloth that keep a distance of `keep` [m], their difference at the step's start and now: swept, as
-/// for a sphere. True if they meet; `correction` then goes to the first, less the second's share. If they started
-/// closer than `keep` already, no more than the share `mend` of what lacks is asked for: all of it at once would be a
-/// blow.
+/// A swept contact of two cloth vertices that keep a distance of `keep` [m]; `before`, `now`: the first's position less
+/// the second's at the step's start and now. True if they meet; then `correction` [m] moves the first away from the
+/// second, to be shared between them. If they started closer than `keep`, it removes at most the share `mend` of the
+/// overlap: all of it at once would act like a blow.
 FUNCTION bool pair_contact(vec3 before, vec3 now, real keep, real friction, real mend, OUT(vec3) correction) {
   correction = vec3(real(0.0));
   real gap = sqrt(dot(before, before));

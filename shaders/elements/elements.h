@@ -1,5 +1,5 @@
-// The element laws as C++ functions in double precision: the same files that the kernels include. And what
-// templates over laws need to know of each.
+// The element laws as C++ functions in double precision, from the same files that the kernels
+// include; and the types that templates over laws need.
 #pragma once
 
 #include <cmath>
@@ -31,7 +31,7 @@ using std::sqrt;
 #undef OUT
 #undef INOUT
 
-/// Vertices of an element of that law.
+/// Number of corners of an element of that law.
 template <class Law>
 inline constexpr std::size_t corners = 0;
 template <>
@@ -49,7 +49,8 @@ using Edges = typename EdgesOf<Law>::type;
 template <class Law>
 using Hessian = decltype(element_hessian(Law{}, Edges<Law>{}));
 
-/// From `difference(k)`, what a corner has more than the k-th of the others, from 0.
+/// Edges of a corner: `difference(k)` is the corner's value less that of the k-th other corner, k
+/// from 0.
 template <class Law, class Difference>
 Edges<Law> make_edges(Difference&& difference) {
   static_assert(sizeof(Edges<Law>) == (corners<Law> - 1) * sizeof(vec3), "edges are the differences alone");

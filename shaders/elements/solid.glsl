@@ -1,7 +1,6 @@
-// The solids that cloth meets, a kind a shape. Each is all that lies within a radius of what its kind makes of a point
-// and a direction: of the point itself (a sphere), or of the half-space behind the plane through it (its normal is the
-// direction). A vertex against one is a swept test (Bridson, Fedkiw & Anderson 2002, section 4), so that what is fast
-// does not pass through.
+// The solids that cloth meets. Each kind is everything within a radius of a core: of a point (sphere), or of the
+// half-space behind a plane through the point whose normal is the direction (plane). A vertex is stopped by a swept
+// test (Bridson, Fedkiw & Anderson 2002, section 4), so that a fast one does not pass through.
 // In the common subset of GLSL and C++ (see types.glsl, elements.h). Needs contact.glsl.
 
 /// The kinds, in the order of scene::Shape.
@@ -9,17 +8,17 @@ const int solid_sphere = 0;
 const int solid_plane = 1;
 const int solid_kinds = 2;
 
-/// Where a solid is at one time.
+/// Place of a solid at one time.
 struct Solid {
   vec3 point;      // [m]
-  vec3 direction;  // turns with it: a plane's unit normal; (0, 0, 0) where the kind has none
-  real radius;     // [m], with the distance from its surface that is kept
+  vec3 direction;  // turns with it: a plane's unit normal; (0, 0, 0) if the kind has none
+  real radius;     // [m], including the distance kept from its surface
 };
 
-/// How deep x is below the surface of what is within `radius` of a half-space [m]; less than 0 outside.
+/// Depth of x below the surface of a plane, the end of a half-space thickened by `radius` [m]; less than 0 outside.
 FUNCTION real plane_depth(Solid plane, vec3 x) { return plane.radius - dot(x - plane.point, plane.direction); }
 
-/// A cheap look before solid_contact: false if the path from -> to cannot meet the solid, which moves from `before` to
+/// A cheap test before solid_contact: false if the path from -> to cannot meet the solid, which moves from `before` to
 /// `after` meanwhile.
 FUNCTION bool solid_near(int kind, Solid before, Solid after, vec3 from, vec3 to) {
   if (kind == solid_sphere) {
@@ -32,9 +31,9 @@ FUNCTION bool solid_near(int kind, Solid before, Solid after, vec3 from, vec3 to
   return false;
 }
 
-/// The path from -> to [m] against a solid of that kind, which moves from `before` to `after` meanwhile. True if they
-/// meet; then `stopped` is where the path ends instead, on the solid's surface or outside, and `normal` the unit normal
-/// there. What no kind is meets nothing.
+/// Contact of the path from -> to [m] with a solid of this kind, which moves from `before` to `after` meanwhile. True
+/// if they meet; then `stopped` is where the path ends instead, on the solid's surface or outside, and `normal` the
+/// unit normal there. An unknown kind meets nothing.
 FUNCTION bool solid_contact(int kind, Solid before, Solid after, vec3 from, vec3 to, OUT(vec3) stopped,
                             OUT(vec3) normal) {
   stopped = to;

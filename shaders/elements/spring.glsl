@@ -2,8 +2,8 @@
 // Provot 1995, section 2. In the common subset of GLSL and C++ (see types.glsl, elements.h).
 //
 // Like every law it sees an element from one of its corners: `Edges` are the differences between that corner and the
-// others, of places [m], of velocities [m/s], or of whatever else vertices have. What all laws say, under the same
-// names, is listed in shaders/README.md.
+// others, of places [m], of velocities [m/s], or of any other vector at vertices. shaders/README.md lists the functions
+// that all laws define under the same names.
 
 struct Spring {
   real rest_length;  // [m]
@@ -12,7 +12,7 @@ struct Spring {
 };
 
 struct SpringEdges {
-  vec3 d;  // this corner less the other one
+  vec3 d;  // this corner's value less the other's
 };
 
 FUNCTION SpringEdges edges_sum(SpringEdges a, SpringEdges b) {
@@ -20,8 +20,8 @@ FUNCTION SpringEdges edges_sum(SpringEdges a, SpringEdges b) {
   return a;
 }
 
-/// Force [N] on the corner. A spring without length has no direction and gives no force. The damping is the projection
-/// of the relative velocity on the spring: a rigid rotation feels none.
+/// Force [N] on the corner. A spring of length 0 has no direction and gives no force. Damping acts on the relative
+/// velocity projected on the spring: it does not act on a rigid rotation.
 FUNCTION vec3 element_force(Spring s, SpringEdges place, SpringEdges velocity) {
   real length_squared = dot(place.d, place.d);
   real inverse_length = length_squared > real(0.0) ? real(1.0) / sqrt(length_squared) : real(0.0);
@@ -37,33 +37,33 @@ FUNCTION real element_energy(Spring s, SpringEdges place) {
   return real(0.5) * s.stiffness * stretch * stretch;
 }
 
-/// l/L - 1; 0 for a spring that has no rest length.
+/// Stretch l/L - 1; 0 for a spring without rest length.
 FUNCTION real element_stretch(Spring s, SpringEdges place) {
   real stretch = sqrt(dot(place.d, place.d)) - s.rest_length;
   return s.rest_length > real(0.0) ? stretch / s.rest_length : real(0.0);
 }
 
-/// |l/L - 1|.
+/// Strain |l/L - 1|.
 FUNCTION real element_strain(Spring s, SpringEdges place) {
   real stretch = element_stretch(s, place);
   return max(stretch, -stretch);
 }
 
-// How large its terms are, for bounds and for what counts as rounding.
+// Sizes of a spring's terms, for bounds and for rounding errors.
 FUNCTION real element_size(Spring s) { return s.rest_length; }     // [m]
 FUNCTION real element_stiffness(Spring s) { return s.stiffness; }  // the largest [N/m]
 FUNCTION real element_damping(Spring s) { return s.damping; }      // the largest [N s/m]
 
-/// The terms whose difference is the force [N], added up: rounding is a share of it.
+/// The terms of the force [N] added up without their signs: rounding errors are a share of it.
 FUNCTION real element_force_scale(Spring s, SpringEdges place, SpringEdges velocity) {
   return s.stiffness * (sqrt(dot(place.d, place.d)) + s.rest_length) +
          s.damping * sqrt(dot(velocity.d, velocity.d));
 }
 
-/// The second derivatives of energy and dissipation with respect to the corner's place and velocity, -df/dx [N/m] and
-/// -df/dv [N s/m], in parts: along n n^T + across (I - n n^T), and damping n n^T, with n the spring's direction.
-/// `across` is negative in a compressed spring: that part makes the matrix indefinite, and implicit methods drop it
-/// (Choi & Ko 2002, section 4). A spring without length gives stiffness times the unit matrix.
+/// Second derivatives of energy and dissipation with respect to the corner's place and velocity, -df/dx [N/m] and
+/// -df/dv [N s/m]: along n n^T + across (I - n n^T), and damping n n^T, with n the spring's direction. `across` is
+/// negative in a compressed spring: that part makes the matrix indefinite, and implicit methods drop it (Choi & Ko
+/// 2002, section 4). A spring of length 0 gives stiffness times the unit matrix.
 struct SpringHessian {
   vec3 n;
   real along, across, damping;
@@ -80,19 +80,19 @@ FUNCTION SpringHessian element_hessian(Spring s, SpringEdges place) {
   return h;
 }
 
-/// Without what makes it indefinite.
+/// The Hessian without the part that makes it indefinite.
 FUNCTION SpringHessian element_definite(SpringHessian h) {
   h.across = max(h.across, real(0.0));
   return h;
 }
 
-/// Without what rounding of a rest shape leaves across: that is no tension.
+/// The Hessian without the `across` that rounding of a rest shape leaves: that is no tension.
 FUNCTION SpringHessian without_rounding(SpringHessian h) {
   if (h.across < real(1e-9) * h.along) h.across = real(0.0);
   return h;
 }
 
-/// A share of a matrix: along n n^T + across (I - n n^T).
+/// A matrix of a spring: along n n^T + across (I - n n^T).
 struct SpringMatrix {
   vec3 n;
   real along, across;
@@ -114,7 +114,7 @@ FUNCTION SpringMatrix damping_matrix(SpringHessian h) {
   return m;
 }
 
-/// dt C + dt^2 K, without what makes it indefinite [kg]: of an implicit step of dt [s].
+/// Matrix dt C + dt^2 K of an implicit step of dt [s], without the part that makes it indefinite [kg].
 FUNCTION SpringMatrix step_matrix(SpringHessian h, real dt) {
   SpringMatrix m;
   m.n = h.n;
@@ -123,26 +123,26 @@ FUNCTION SpringMatrix step_matrix(SpringHessian h, real dt) {
   return m;
 }
 
-/// The corner's row of the matrix times a vector of all corners.
+/// The corner's row of the matrix, times a vector of all corners.
 FUNCTION vec3 matrix_product(SpringMatrix m, SpringEdges vector) {
   return m.across * vector.d + m.n * ((m.along - m.across) * dot(m.n, vector.d));
 }
 
-/// Adds the corner's own 3x3 block: its diagonal, and what is off it (21, 31, 32).
+/// Adds the corner's own 3x3 block: its diagonal, and its off-diagonal (21, 31, 32).
 FUNCTION void add_block(SpringMatrix m, INOUT(vec3) diagonal, INOUT(vec3) off_diagonal) {
   real more = m.along - m.across;
   diagonal += m.across + more * m.n * m.n;
   off_diagonal += vec3(more * m.n.x * m.n.y, more * m.n.x * m.n.z, more * m.n.y * m.n.z);
 }
 
-/// The smallest ratio of damping to stiffness [s] of any motion that the spring resists.
+/// Smallest ratio of damping to stiffness [s] of any motion that the spring resists.
 FUNCTION real least_damping_time(SpringHessian h) {
   return h.across > real(0.0) ? real(0.0) : h.damping / h.along;
 }
 
-/// What VBD needs at a corner, for a step of dt in which the corners have moved by `moved` [m] so far: adds dt^2 times
-/// the force [kg m] to the residual, and dt C + dt^2 K to the corner's block. Its length is measured along its
-/// direction, and nothing is left to the compiler's order: the kernel's two forms are to round alike.
+/// Adds what VBD needs at a corner, for a step of dt [s] in which the corners have moved by `moved` [m] so far: dt^2
+/// times the force [kg m] to the residual, dt C + dt^2 K to the corner's block. The length is measured along the
+/// direction, and nothing is left to the compiler's order: both forms of the kernel must round alike.
 FUNCTION void add_descent(Spring s, real dt, SpringEdges place, SpringEdges moved, INOUT(vec3) residual,
                           INOUT(vec3) diagonal, INOUT(vec3) off_diagonal) {
   SpringHessian h = element_definite(element_hessian(s, place));
@@ -153,14 +153,14 @@ FUNCTION void add_descent(Spring s, real dt, SpringEdges place, SpringEdges move
   off_diagonal += vec3(more * h.n.x * h.n.y, more * h.n.x * h.n.z, more * h.n.y * h.n.z);
 }
 
-/// The spring on a line of states: a line search moves the corners from here in proportion.
+/// The spring during a line search, which moves the corners from here in proportion to a share.
 struct SpringLine {
-  vec3 place, change;           // [m], and by how much a whole step changes it
+  vec3 place, change;           // [m], and its change in a whole step of the search
   real length_before;           // [m]
-  real closing, closing_change;  // speed along the spring [m/s], and by how much a whole step changes it
+  real closing, closing_change;  // speed along the spring [m/s], and its change in a whole step of the search
 };
 
-/// `change` [m/s]: of the velocity, by a whole step of the search; in dt [s] it moves the corners, too.
+/// `change` [m/s]: change of velocity in a whole step of the search; over dt [s] it moves the corners, too.
 FUNCTION SpringLine element_line(SpringEdges place, SpringEdges velocity, SpringEdges change) {
   SpringLine line;
   line.place = place.d;
@@ -172,7 +172,7 @@ FUNCTION SpringLine element_line(SpringEdges place, SpringEdges velocity, Spring
   return line;
 }
 
-/// What energy and dissipation in a step of dt [J] are more at that share of the whole step than at its start.
+/// Energy and dissipation in a step of dt [J] at this share of the whole step, less those at its start.
 FUNCTION real line_energy(Spring s, SpringLine line, real dt, real share) {
   vec3 there = line.place + (dt * share) * line.change;
   real now = sqrt(dot(there, there)), more = share * line.closing_change;
@@ -181,20 +181,20 @@ FUNCTION real line_energy(Spring s, SpringLine line, real dt, real share) {
                       dt * s.damping * more * (real(2.0) * line.closing + more));
 }
 
-/// The spring as a constraint that Gauss-Seidel sweeps project: what its stretch is multiplied with for one dt. They
-/// follow from stiffness, damping, masses and dt: server/model/spring_gains.h.
+/// Factors of the spring as a constraint that Gauss-Seidel sweeps project, for one dt. They follow from stiffness,
+/// damping, masses and dt: server/model/spring_gains.h.
 struct SpringGains {
   real stretch, damping;  // [kg]
-  real memory;            // of what the spring has pushed in this step already, [0, 1)
-  real turning;           // its stiffness over that of both ends' inertia, w k dt^2; 0 without memory
+  real memory;            // factor on what the spring has pushed in this step so far, [0, 1)
+  real turning;           // stiffness relative to the inertia of both ends, w k dt^2; 0 without memory
 };
 
 /// One visit of a sweep, in PBD and XPBD (Mueller et al. 2007, section 3.3; Macklin et al. 2016, equations 18 and 26):
-/// what more the spring gives its first end and takes from its second, as an impulse times dt [kg m]. `place`: of its
-/// ends as they are now, `moved`: how that has changed since the step's start, `pushed`: what it has given since then.
-/// What was given along a direction that the spring no longer has is turned to the one it has now; XPBD as published
-/// leaves it, and so ends beside implicit Euler's solution when springs turn within a step. `turning` takes into
-/// account that the spring itself resists (Newton's method, if it is stretched).
+/// the impulse times dt [kg m] that the spring adds to its first end and takes from its second. `place`: difference of
+/// its ends now, `moved`: its change since the step's start, `pushed`: impulses given since then. Earlier impulses are
+/// turned to the spring's present direction; published XPBD leaves their direction, and so misses implicit Euler's
+/// solution when springs turn within a step. `turning` accounts for the spring's own resistance (Newton's method, if it
+/// is stretched).
 FUNCTION SpringEdges element_projection(real rest_length, SpringGains gains, SpringEdges place, SpringEdges moved,
                                         SpringEdges pushed) {
   SpringEdges push;
@@ -212,8 +212,8 @@ FUNCTION SpringEdges element_projection(real rest_length, SpringGains gains, Spr
 }
 
 #ifndef __cplusplus
-// In the lists of elements/lists.glsl: (other vertex, rest length, stiffness, damping). Padding is the vertex itself,
-// and zeros: it gives no force.
+// Entry in the lists of elements/lists.glsl: (other vertex, rest length, stiffness, damping). Padding is the vertex
+// itself and zeros: it gives no force.
 struct SpringEntry {
   int other;
   Spring law;
@@ -221,7 +221,7 @@ struct SpringEntry {
 #define Spring_CORNERS 2.0
 #define Spring_TEXELS 1
 #define Spring_ENTRY(at) spring_entry(FETCH(elements, at))
-/// DIFFERENCE(j): a macro of what this corner has more than vertex j.
+/// DIFFERENCE(j): macro for this corner's value less that of vertex j.
 #define Spring_EDGES(entry, DIFFERENCE) SpringEdges(DIFFERENCE(entry.other))
 
 SpringEntry spring_entry(uvec4 words) {

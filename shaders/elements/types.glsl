@@ -1,4 +1,4 @@
-// The words in which the element laws are written, for GLSL. elements.h gives them their meaning in C++.
+// Macros and types in which the element laws are written, for GLSL; elements.h defines them for C++.
 #define real float
 #define FUNCTION
 #define PRECISE precise

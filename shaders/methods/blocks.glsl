@@ -1,6 +1,6 @@
-// A vertex's symmetric 3x3 block, kept as L D L^T: a = 1 / D, b = the lower triangle of L (21, 31, 32).
+// A vertex's symmetric 3x3 block, stored as L D L^T: a = 1 / D, b = lower triangle of L (21, 31, 32).
 
-/// `corner`: what is off the diagonal (21, 31, 32). No pivot is less than `least`, whatever rounding made of it.
+/// `corner`: off-diagonal (21, 31, 32). Rounding makes no pivot less than `least`.
 void factorise(vec3 diagonal, vec3 corner, float least, out vec3 a, out vec3 b) {
   float l_xy = corner.x / diagonal.x, l_xz = corner.y / diagonal.x;
   float pivot_y = max(diagonal.y - l_xy * corner.x, least);

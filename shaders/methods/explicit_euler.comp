@@ -1,5 +1,5 @@
-// Explicit (forward) Euler: x += v dt, v += a dt, both from the state at the step's start. Undamped it gains energy at
-// any dt; it is here to be seen failing. Hairer, Lubich & Wanner 2006, section I.1.
+// Explicit (forward) Euler: x += v dt, v += a dt, both from the state at the step's start. Undamped, it gains energy at
+// any dt: it is here to show that it fails. Hairer, Lubich & Wanner 2006, section I.1.
 #include "gather.glsl"
 #include "step_end.glsl"
 

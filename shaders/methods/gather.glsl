@@ -1,4 +1,4 @@
-// What every kernel of a method shares: the vertex's state, the pull of its elements, where a pin takes it.
+// Shared by every kernel of a method: the vertex's state, the forces of its elements, the motion of its pin.
 layout(local_size_x = GROUP_SIZE) in;
 #include "../access.glsl"
 uniform int vertex_count;
@@ -6,7 +6,7 @@ uniform int vertex_count;
 #include "motions.glsl"
 
 READ_VEC4(position, 0);       // w: inverse mass [1/kg], 0 if pinned
-READ_VEC4(velocity, 1);       // w: contacts of the last step; of a pinned vertex, its motion's index or -1
+READ_VEC4(velocity, 1);       // w: contacts of the last step; for a pinned vertex its motion's index or -1
 READ_VEC4(rest_position, 7);  // w: the cloth
 uniform float dt;      // [s]
 uniform vec4 gravity;  // xyz [m/s^2], w: air drag [1/s]
@@ -26,10 +26,10 @@ vec3 element_forces(int i, vec3 x, vec3 v) {
   return force;
 }
 
-/// Of elements, gravity and air drag [m/s^2].
+/// Acceleration by elements, gravity and air drag [m/s^2].
 vec3 acceleration(int i, vec4 x, vec3 v) { return element_forces(i, x.xyz, v) * x.w + gravity.xyz - gravity.w * v; }
 
-/// A pinned vertex is where its motion takes it: at the row of the pose table that many rows after the step's start.
+/// State of a pinned vertex, by its motion: at the pose table's row `row`, counted from the step's start.
 void follow_motion(int i, float motion_index, int row, out vec3 x, out vec3 v) {
   vec3 home = FETCH(rest_position, i).xyz;
   int motion = int(motion_index);

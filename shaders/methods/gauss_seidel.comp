@@ -1,14 +1,14 @@
-// PBD, XPBD and VBD: a step begins with a guess of where each vertex will be; sweeps over the springs (or the
-// vertices), colour after colour, improve it, each followed by a pass of contacts; at the end it becomes the new state.
-// What has one colour touches nothing else of that colour, so the outcome depends on no order of threads
-// (server/model/colouring.h). In two forms, for small cloths and for large: ONE_GROUP is the whole step in one work
-// group, which waits for itself at barriers; else each PHASE, and each colour, is a dispatch.
+// PBD, XPBD and VBD. A step begins with a guess of where each vertex will be. Sweeps over the springs (VBD: vertices),
+// colour after colour, improve the guess; a pass of contacts follows each sweep. The last guess is the new state. Items
+// of one colour do not touch each other, so the outcome depends on no order of threads (server/model/colouring.h).
+// There are two forms, for small cloths and for large: with ONE_GROUP the whole step runs in one work group, with
+// barriers; otherwise each PHASE, and each colour, is a dispatch.
 #include "gather.glsl"
 #include "step_end.glsl"
 #include "../collide/colliders.glsl"
 #include "deviation.glsl"
 
-/// Whether velocity v is that of an impact on the surface met last: what gravity gives in two steps is none.
+/// True if velocity v is an impact on the surface met last: a speed that gravity gives in two steps is no impact.
 bool hits(vec3 v) { return dot(met_velocity - v, met_normal) > 2.0 * dt * length(gravity.xyz); }
 
 #ifdef BY_VERTEX
@@ -29,7 +29,7 @@ void begin(int i) {
   }
 }
 
-/// The state at the step's end, and what rounding takes from it.
+/// The state at the step's end; stores what rounding takes from it.
 void advance(int i, vec3 x, vec3 v, vec3 d, out vec3 x_next, out vec3 v_next) {
   precise vec3 moved = free_displacement(v) + d;
   precise vec3 gained =
@@ -42,7 +42,7 @@ void advance(int i, vec3 x, vec3 v, vec3 d, out vec3 x_next, out vec3 v_next) {
   v_next = then;
 }
 
-/// A vertex that hits a surface leaves it with its share of the velocity.
+/// Velocity of a vertex after an impact on a surface: it leaves with the restitution's share of its speed.
 vec3 rebound(vec3 x, vec3 v_start, vec3 v) {
   vec3 free = x + free_displacement(v_start), unused = v_start;
   RARELY(resolve_colliders(x, free, unused, 0.0) > 0) {
@@ -52,20 +52,19 @@ vec3 rebound(vec3 x, vec3 v_start, vec3 v) {
   return v;
 }
 
-/// Until all of the work group are here, and what they wrote is there.
+/// Waits until the whole work group is here and its writes are visible.
 void wait() {
   groupMemoryBarrier();
   barrier();
 }
 
 #ifdef BALANCED
-// Sweeps that move one vertex after another leave a cloth that nothing holds with some momentum that it should not
-// have, as much as they have not converged. Springs and self-collision only pass it on: what its vertices lack or have
-// too much of it in all is given to them alike.
-uniform ivec2 free_vertices[CLOTH_COUNT];  // first, end; none of a cloth that has pins
-layout(std430, binding = 4) coherent buffer Lacking { vec4 lacking[]; };  // of each thread, xyz [kg m], w [kg]
+// Sweeps that move one vertex after another give a cloth that nothing holds a false momentum, as large as their error.
+// Springs and self-collision only pass momentum on: the false part is taken from all vertices of the cloth alike.
+uniform ivec2 free_vertices[CLOTH_COUNT];  // first, end; empty for a cloth with pins
+layout(std430, binding = 4) coherent buffer Lacking { vec4 lacking[]; };  // for each thread: xyz [kg m], w [kg]
 
-/// By one work group; each thread adds up the sums of all, in the same order.
+/// Called by one work group; each thread adds up the sums of all threads, in the same order.
 void balance(int cloth) {
   int first_sum = cloth * GROUP_SIZE, lane = int(gl_LocalInvocationID.x), end = free_vertices[cloth].y;
   vec4 sum = vec4(0.0);

@@ -1,9 +1,9 @@
-// Sums and maxima over all vertices without leaving the GPU and without atomics: each work group writes its own, and
-// whoever needs the total adds those up, in the same order everywhere.
+// Sums and maxima over all vertices, on the GPU and without atomics. Each work group writes its own; a reader adds them
+// up, always in the same order.
 shared vec4 sums[GROUP_SIZE];
 
-/// Of the work group's values; the result is for every lane. In two rounds, since software OpenGL pays more for a
-/// barrier than for a few sums in a row.
+/// Sum of the work group's values; every lane gets it. It takes two rounds: in software OpenGL a barrier costs more
+/// than a few sums in a row.
 vec4 sum_of_group(vec4 value) {
   int lane = int(gl_LocalInvocationID.x);
   sums[lane] = value;
@@ -16,11 +16,11 @@ vec4 sum_of_group(vec4 value) {
   barrier();
   vec4 total = vec4(0.0);
   for (int k = 0; k < GROUP_SIZE; k += summands) total += sums[k];
-  barrier();  // before the next sum
+  barrier();  // before the next call writes
   return total;
 }
 
-/// The largest of the work group's values, for every lane.
+/// Largest of the work group's values; every lane gets it.
 float largest_of_group(float value) {
   int lane = int(gl_LocalInvocationID.x);
   sums[lane].x = value;

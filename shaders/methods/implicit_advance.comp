@@ -1,7 +1,8 @@
-// Implicit Euler, after each solve: the estimates of velocity and position take the change, or the share of it that the
-// line search found best. What the filter kept out of the solution is the impulse of the contact: a collider that would
-// have to pull lets go, one that would have to hold more than friction can lets slide, in the next Newton step if there
-// is one and in the next time step. One that the estimate has entered gets hold of the vertex for the next Newton step.
+// Implicit Euler, after each solve: adds the change, or the share of it that the line search found best, to the
+// estimates of velocity and position. What the filter kept out of the solution is the impulse of a contact. A contact
+// that would have to pull ends; one that would need more than friction gives begins to slide. Both take effect in the
+// next Newton step, or else in the next time step. A collider that the estimate has entered becomes a contact for the
+// next Newton step.
 #include "implicit_euler.glsl"
 #include "implicit_friction.glsl"
 #include "group_sums.glsl"
@@ -11,18 +12,18 @@ READ_VEC4(group_sums, 10);
 READ_VEC4(change, 11);
 READ_VEC4(residual, 12);
 layout(std430, binding = 0) writeonly buffer NextPosition { vec4 next_position[]; };
-layout(std430, binding = 3) buffer Estimate { vec4 estimate[]; };  // w: vertices touched
+layout(std430, binding = 3) buffer Estimate { vec4 estimate[]; };  // w: number of vertices touched
 layout(std430, binding = 4) writeonly buffer Guess { vec4 guess[]; };  // of the next change
 layout(std430, binding = 5) buffer Constraint { vec4 constraint[]; };
 layout(std430, binding = 6) buffer Surface { vec4 surface[]; };
-uniform bool another;  // Newton step follows in this time step
+uniform bool another;  // another Newton step follows in this time step
 layout(std430, binding = 1) buffer Inertia { vec4 start_velocity[]; };
 layout(std430, binding = 7) buffer Grip { vec4 grip[]; };
 
-/// The total of one of the sums that the line search made.
+/// Total of one of the line search's sums.
 vec4 total(int sum) {
   vec4 all = vec4(0.0);
-#if GROUP_COUNT <= 16  // no barrier pays for so few
+#if GROUP_COUNT <= 16  // too few groups to be worth a barrier
   for (int group = 0; group < GROUP_COUNT; ++group) all += FETCH(group_sums, SUMS * group + sum);
   return all;
 #else
@@ -32,7 +33,7 @@ vec4 total(int sum) {
 #endif
 }
 
-/// The largest share that the next smaller one does not beat. A hundredth more, so that rounding beats nothing.
+/// The largest share that the next smaller one does not beat by a hundredth: rounding must not decide.
 float best_share() {
   vec4 first = total(0), second = total(1);
   float energy[SHARES] = float[](first.x, first.y, first.z, first.w, second.x, second.y, second.z, second.w);
@@ -41,7 +42,8 @@ float best_share() {
   return shares[k];
 }
 
-/// A linear solver that ends at a tolerance loses momentum, and a free sheet would drift: the whole cloth gets it back.
+/// A linear solver that stops at a tolerance loses momentum, and a free cloth would drift: returns the velocity [m/s]
+/// that gives it back to the whole cloth.
 vec3 drift() {
 #ifdef FREE
   vec4 left_out = total(2);
@@ -51,7 +53,7 @@ vec3 drift() {
 #endif
 }
 
-/// The contact as the solve found it. Returns the change of velocity with which the next Newton step begins.
+/// Updates a contact after the solve. Returns the change of velocity with which the next Newton step begins.
 vec3 follow_contact(int i, float inverse_mass, vec3 u) {
   vec4 before = grip[i], under = surface[i];
   vec3 overshot;
@@ -65,7 +67,7 @@ vec3 follow_contact(int i, float inverse_mass, vec3 u) {
   return -overshot;
 }
 
-/// One that the estimate has entered.
+/// Begins the contact with a collider that the estimate has entered. Returns the change of velocity as above.
 vec3 meet_contact(int i, float inverse_mass, vec3 start, vec3 x, vec3 u) {
   vec3 stopped = x, after = u, change = vec3(0.0);
   RARELY(resolve_colliders(start, stopped, after, 0.0) > 0) {
@@ -89,7 +91,7 @@ void main() {
   if (i >= vertex_count) return;
   vec4 start = FETCH(start_position, i);
   vec3 u = estimate[i].xyz + (start.w == 0.0 ? 1.0 : share) * FETCH(change, i).xyz;
-  if (share == 1.0) u += regained;  // the sum was made for the whole change
+  if (share == 1.0) u += regained;  // the sum is valid for the whole change only
   vec3 x = start.xyz + dt * u;
   estimate[i] = vec4(u, start.w > 0.0 ? start_velocity[i].w : 0.0);
   vec3 first = vec3(0.0);

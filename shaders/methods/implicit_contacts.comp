@@ -1,6 +1,6 @@
-// Implicit Euler, a few times a step: self-collision after the solve. What it took from the velocities before, the
-// springs have given some of back: a long step's springs push layers that lie on each other through each other. All
-// pairs at once, from the velocities of the pass before, so that no order matters.
+// Implicit Euler, a few times per step: self-collision after the solve. In a long step, springs give back some of the
+// velocity that self-collision took before, and push layers that lie on each other through each other. All pairs are
+// computed at once from the velocities of the pass before, so that no order matters.
 #include "implicit_euler.glsl"
 #include "../elements/contact.glsl"
 #include "../collide/neighbours.glsl"
@@ -9,13 +9,13 @@ READ_VEC4(start_position, 9);
 #define START_VELOCITY velocity
 #include "../collide/self_contact.glsl"
 layout(std430, binding = 0) writeonly buffer NextPosition { vec4 next_position[]; };
-layout(std430, binding = 3) writeonly buffer NextEstimate { vec4 next_estimate[]; };  // w: vertices touched
+layout(std430, binding = 3) writeonly buffer NextEstimate { vec4 next_estimate[]; };  // w: number of vertices touched
 
 void main() {
   int i = int(gl_GlobalInvocationID.x);
   if (i >= vertex_count) return;
   vec4 start = FETCH(start_position, i), u = FETCH(velocity, i);
-  vec3 push = vec3(0.0);  // of the overlap that the one before the solve left: long steps mend it less often
+  vec3 push = vec3(0.0);  // of the overlap that the pass before the solve left: long steps mend it less often
   if (start.w > 0.0) {
     vec3 impulse = vec3(0.0);
     int touched = self_contacts(i, start, u, push, impulse);

@@ -1,23 +1,23 @@
-// Implicit Euler, once a step: the new state, after rebounds, and after colliders that nobody foresaw; and how each
-// contact begins the next step.
+// Implicit Euler, once per step: the new state, after rebounds and after colliders that implicit_start did not foresee;
+// and the state in which each contact begins the next step.
 #include "implicit_euler.glsl"
 #include "implicit_friction.glsl"
 #include "step_end.glsl"
 #include "../collide/colliders.glsl"
 READ_VEC4(before_position, 9);  // the state at the step's start
 READ_VEC4(before_velocity, 10);
-READ_VEC4(start_velocity, 11);  // w: vertices touched
+READ_VEC4(start_velocity, 11);  // w: number of vertices touched
 READ_VEC4(residual, 12);
 READ_VEC4(surface, 13);
 READ_VEC4(constraint, 14);
 layout(std430, binding = 7) buffer Grip { vec4 grip[]; };
 
-/// Of a vertex that was kept on a surface.
+/// Ends the step of a vertex that was kept on a surface.
 void leave_contact(int i, float inverse_mass, inout vec3 x, inout vec3 v) {
   vec4 held = FETCH(constraint, i), under = FETCH(surface, i);
   vec3 overshot;
   vec4 now = grip_after(grip[i], held, FETCH(residual, i).xyz, v, under, inverse_mass, overshot);
-  // What it took to stop the vertex on its way in will not be there in the next step.
+  // The impulse that stopped the vertex on its way in is not needed in the next step.
   float impact = max(-dot(FETCH(before_velocity, i).xyz - under.xyz, held.xyz), 0.0) / inverse_mass;
   if (now.w >= 0.0) now.w = max(now.w - impact, 0.0);
   grip[i] = now;

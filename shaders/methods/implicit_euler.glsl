@@ -1,25 +1,25 @@
-// Implicit Euler: Baraff & Witkin 1998. The unknown is the velocity u at the step's end; from an estimate of it, with x
+// Implicit Euler: Baraff & Witkin 1998. The unknown is the velocity u at the step's end. From an estimate of u, with x
 // = start + dt u, each Newton step solves
 //   J change = m (v - u) + dt f(x, u),   J = m (1 + dt air_drag) + dt C + dt^2 K,
-// with C and K the matrices of the elements' damping and stiffness at x, without the part of K that is indefinite. The
-// first estimate is u = 0: one Newton step from there is theirs. What a vertex cannot do, because a pin holds it or a
-// collider is in the way, is filtered out of every vector of the solver (sections 5.1 to 5.3). A full Newton step can
-// overshoot where elements turn by much in one step, so it is shortened until the energy whose minimum is sought falls
-// (a line search: Nocedal & Wright 2006, chapter 3). Here `position` and `velocity` are the estimates.
+// with C and K the matrices of the elements' damping and stiffness at x, without the indefinite part of K. The first
+// estimate is u = 0: one Newton step from there is their method. A motion that a pin or a collider prevents is filtered
+// out of every vector of the solver (sections 5.1 to 5.3). A full Newton step can overshoot if elements turn by much in
+// one step, so it is shortened until the energy that is minimised falls (a line search: Nocedal & Wright 2006, chapter
+// 3). Here `position` and `velocity` are the estimates.
 #include "gather.glsl"
 #include "blocks.glsl"
 
-// What a collider leaves a vertex, `constraint`: xyz the unit normal of the contact, or 0 where there is none; w the
-// speed of the rebound [m/s], or -1 less that where the vertex sticks to the surface.
+// `constraint`: how a collider holds a vertex. xyz: unit normal of the contact, 0 without a contact; w: speed of the
+// rebound [m/s], or -1 minus that speed if the vertex sticks to the surface.
 bool sticks(vec4 constraint) { return constraint.w < 0.0; }
 
-/// Without the part along the normal of a contact; nothing is left of a vertex that is pinned or sticks.
+/// v without the part along a contact's normal; 0 for a vertex that is pinned or sticks.
 vec3 filtered(vec3 v, float inverse_mass, vec4 constraint) {
   return inverse_mass > 0.0 && !sticks(constraint) ? v - constraint.xyz * dot(constraint.xyz, v) : vec3(0.0);
 }
 
-/// Sums that the line search makes, each a vec4. With FREE, where nothing but its own springs acts on the cloth, one
-/// more: the momentum that the linear solver left out.
+/// The line search makes this number of sums, each a vec4. With FREE, for a cloth on which nothing but its own springs
+/// acts, there is one more: the momentum that the linear solver left out.
 #ifdef FREE
 #define SUMS 3
 #else

@@ -1,9 +1,9 @@
-// Implicit Euler's friction: Coulomb's law within the solve (Baraff & Witkin 1998, section 5). A vertex that sticks is
-// held in all three directions while what holds it along the surface is no more than the coefficient times what holds
-// it off; one that slides has that much against it, as an impulse given before the solve: so neighbours that slide with
-// it feel theirs, and none is braked as if the others stood. Both impulses are known after a solve alone: they, and
-// whether it sticks, are kept for the next one. `grip`: xyz where to the vertex slides on the surface, as a unit
-// vector, 0 while it sticks; w the impulse of the contact [kg m/s], or one of these:
+// Friction of implicit Euler: Coulomb's law within the solve (Baraff & Witkin 1998, section 5). A sticking vertex is
+// held in all three directions while the impulse along the surface is at most the coefficient times the impulse normal
+// to it. A sliding vertex gets that much against its motion, as an impulse before the solve: each neighbour that slides
+// with it gets its own, and none is braked as if the others stood still. Both impulses are known only after a solve:
+// they, and whether the vertex sticks, are kept for the next solve. `grip`: xyz the direction in which the vertex
+// slides on the surface, a unit vector, 0 while it sticks; w the impulse of the contact [kg m/s], or one of these:
 const float untouched = -1.0, pulled_away = -2.0;
 
 vec3 along_surface(vec3 v, vec3 normal) { return v - normal * dot(normal, v); }
@@ -12,23 +12,23 @@ vec3 direction(vec3 v) {
   return size > 0.0 ? v / size : vec3(0.0);
 }
 
-/// What friction takes from the velocity of a vertex that slides [m/s].
+/// Velocity that friction takes from a sliding vertex [m/s].
 vec3 braked(vec4 grip, float friction, float inverse_mass) {
   return grip.xyz * (friction * max(grip.w, 0.0) * inverse_mass);
 }
 
-/// The grip of a vertex of which nothing is known but how it slides, and what it takes to keep it off the surface.
+/// Grip of a new contact, from its sliding velocity [m/s] and the impulse that keeps it off the surface [kg m/s].
 vec4 first_grip(vec3 sliding, float impulse, float friction, float inverse_mass) {
   bool stopped = length(sliding) <= friction * impulse * inverse_mass;
   return vec4(stopped ? vec3(0.0) : direction(sliding), impulse);
 }
 
-/// The speed at which a vertex that is kept at the surface seems to leave it [m/s]: along the chord of a round one, or
-/// out of one that it had entered. It will not have it, nor does the contact have to give it.
+/// Speed at which a vertex kept at the surface seems to leave it [m/s]: along the chord of a round surface, or out of a
+/// surface that it had entered. The vertex does not get this speed, and the contact need not give it.
 float leaving(vec3 u, vec4 surface, vec3 normal) { return max(dot(u - surface.xyz, normal), 0.0); }
 
-/// The grip after a solve that left `residual`, which is what the contact has to take [kg m/s], and the velocity u. One
-/// that slid and would now slide back sticks: `overshot` is what it went too far [m/s].
+/// Grip after a solve that left `residual`, the impulse [kg m/s] that the contact must take, and the velocity u [m/s].
+/// A vertex that slid and would now slide back sticks: `overshot` [m/s] is the velocity beyond that.
 vec4 grip_after(vec4 grip, vec4 constraint, vec3 residual, vec3 u, vec4 surface, float inverse_mass,
                 out vec3 overshot) {
   vec3 normal = constraint.xyz;

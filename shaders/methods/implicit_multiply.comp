@@ -1,12 +1,13 @@
 // Implicit Euler's conjugate gradients, first half of an iteration: the matrix times the preconditioned residual, and
-// the sums that the second half needs. With both sums at once an iteration is two dispatches: Chronopoulos & Gear 1989.
+// the sums that the second half needs. As both sums are made at once, an iteration takes two dispatches: Chronopoulos &
+// Gear 1989.
 #include "implicit_euler.glsl"
 #include "group_sums.glsl"
 READ_VEC4(constraint, 10);
 READ_VEC4(residual, 11);
 READ_VEC4(preconditioned, 12);
 layout(std430, binding = 0) writeonly buffer Product { vec4 product[]; };
-layout(std430, binding = 1) writeonly buffer Sums { vec4 group_sums[]; };  // one a work group
+layout(std430, binding = 1) writeonly buffer Sums { vec4 group_sums[]; };  // one per work group
 
 vec3 multiply(int i, vec4 x, vec3 z) {
   vec3 result = z * ((1.0 + dt * gravity.w) / x.w);
@@ -30,7 +31,7 @@ void main() {
     vec3 w = vec3(0.0);
     if (x.w > 0.0) {
       vec3 z = FETCH(preconditioned, i).xyz, left = filtered(r.xyz, x.w, FETCH(constraint, i));
-      w = multiply(i, x, z);  // z is filtered, so its products with w and r are, too
+      w = multiply(i, x, z);  // z is filtered: so are its products with w and r
       sum = vec4(dot(r.xyz, z), dot(w, z), x.w * dot(left, left), r.w);
     }
     product[i] = vec4(w, 0.0);

@@ -1,24 +1,24 @@
-// Implicit Euler's line search: by how much the incremental potential
+// Implicit Euler's line search: the change of the incremental potential
 //   m/2 |u - v|^2 + elastic(start + dt u) - dt m g.u + dt m air_drag/2 |u|^2 + dt c/2 sum (n.(u_i - u_j))^2
-// changes for each share of the change. A pin goes its whole way whatever the share.
+// for each share of the Newton step. A pin moves its whole way at any share.
 #include "implicit_euler.glsl"
 #include "group_sums.glsl"
 READ_VEC4(start_velocity, 9);
 READ_VEC4(change, 11);
-layout(std430, binding = 1) writeonly buffer Sums { vec4 group_sums[]; };  // SUMS a work group
+layout(std430, binding = 1) writeonly buffer Sums { vec4 group_sums[]; };  // SUMS per work group
 
 #ifdef FREE
-/// xyz: the momentum [kg m/s] that gravity and air drag leave the vertex without its springs, less the one it would
-/// have with the whole change. Springs only pass it on, so that its sum should be 0. w: what a change of velocity adds
-/// to that.
+/// xyz: momentum [kg m/s] that gravity and air drag leave the vertex without its springs, less the momentum that it has
+/// with the whole change. Springs only pass momentum on, so that the sum should be 0. w: momentum per change of
+/// velocity [kg].
 vec4 momentum_left_out(int i, vec4 x) {
   vec3 v = FETCH(start_velocity, i).xyz, u = FETCH(velocity, i).xyz + FETCH(change, i).xyz;
   return vec4(v - u + dt * (gravity.xyz - gravity.w * u), 1.0 + dt * gravity.w) / x.w;
 }
 #endif
 
-// A free corner's change is scaled, a pinned one's is not. Functions, because their arguments are read in any case: a
-// compiler then sees that a vertex is read once.
+// The change of a free corner is scaled, that of a pinned one is not. These are functions because their arguments are
+// read in any case: a compiler then sees that a vertex is read once.
 vec3 if_pinned(vec3 d, float inverse_mass) { return inverse_mass == 0.0 ? d : vec3(0.0); }
 vec3 if_free(vec3 d, float inverse_mass) { return inverse_mass == 0.0 ? vec3(0.0) : d; }
 
@@ -39,7 +39,7 @@ void main() {
       LawEntry entry = Law_ENTRY(at.first);
       LawLine line = element_line(Law_EDGES(entry, PLACE), Law_EDGES(entry, VELOCITY), Law_EDGES(entry, SCALED));
       for (int k = 0; k < SHARES; ++k)
-        energy[k] += line_energy(entry.law, line, dt, shares[k]) / Law_CORNERS;  // the rest is the other corners'
+        energy[k] += line_energy(entry.law, line, dt, shares[k]) / Law_CORNERS;  // the other corners count the rest
     }
 #end
     if (x.w > 0.0) {

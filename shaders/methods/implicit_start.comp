@@ -1,4 +1,4 @@
-// Implicit Euler, once a step: what self-collision adds, which vertices a pin or a collider constrains, and the first
+// Implicit Euler, once per step: what self-collision adds, which vertices a pin or a collider constrains, and the first
 // guess.
 #include "implicit_euler.glsl"
 #include "implicit_friction.glsl"
@@ -8,19 +8,20 @@
 #include "../collide/self_contact.glsl"
 #endif
 layout(std430, binding = 0) writeonly buffer Start { vec4 start_position[]; };      // w: inverse mass
-layout(std430, binding = 1) writeonly buffer Inertia { vec4 start_velocity[]; };    // w: vertices touched
-layout(std430, binding = 3) writeonly buffer Estimate { vec4 estimate[]; };         // of the velocity: 0
-layout(std430, binding = 4) writeonly buffer Guess { vec4 first_guess[]; };         // the solver's
+layout(std430, binding = 1) writeonly buffer Inertia { vec4 start_velocity[]; };    // w: number of vertices touched
+layout(std430, binding = 3) writeonly buffer Estimate { vec4 estimate[]; };         // velocity: 0
+layout(std430, binding = 4) writeonly buffer Guess { vec4 first_guess[]; };         // of the solver
 layout(std430, binding = 5) writeonly buffer Constraint { vec4 constraint[]; };
-layout(std430, binding = 6) writeonly buffer Surface { vec4 surface[]; };  // its velocity, its friction
-layout(std430, binding = 7) buffer Grip { vec4 grip[]; };                  // of the last step, then of this one
+layout(std430, binding = 6) writeonly buffer Surface { vec4 surface[]; };  // its velocity [m/s], its friction
+// read: of the last step; written: of this step
+layout(std430, binding = 7) buffer Grip { vec4 grip[]; };
 
-/// The velocity that the vertex is taken to have in the solve, and the guess of the one that comes out.
+/// Velocity at which a vertex enters the solve, and the guess of the velocity that comes out [m/s].
 struct Beginning {
   vec3 velocity, guess;
 };
 
-/// On the surface that was just met, and kept at it: friction.
+/// Applies friction to a vertex that is kept at the surface just met.
 void rub(int i, float inverse_mass, float impulse, inout Beginning start) {
   vec4 kept = grip[i];
   vec3 sliding = along_surface(start.guess - met_velocity, met_normal);
@@ -30,7 +31,7 @@ void rub(int i, float inverse_mass, float impulse, inout Beginning start) {
   vec3 taken = slides ? braked(kept, met_surface.x, inverse_mass) : sliding;
   if (slides) start.velocity -= taken;
   start.guess -= taken;
-  // What gravity gives in two steps is no impact: a vertex at rest must not bounce.
+  // A speed that gravity gives in two steps is no impact: a vertex at rest must not bounce.
   float approach = dot(met_velocity - start.velocity, met_normal);
   float rebound = approach > 2.0 * dt * length(gravity.xyz) ? met_surface.y * approach : 0.0;
   constraint[i] = vec4(met_normal, slides ? rebound : -1.0 - rebound);
@@ -38,9 +39,9 @@ void rub(int i, float inverse_mass, float impulse, inout Beginning start) {
   grip[i] = kept;
 }
 
-/// Left alone by the springs, would the vertex meet a collider, or stay near one? Then its velocity along the normal is
-/// the one that takes it to the surface, whatever the springs say; unless the last step found that they pull it away.
-/// Near is a quarter of its way: one that slides over a sphere must not count as leaving.
+/// Finds out if a vertex without springs would meet a collider or stay near one. Then its velocity along the normal is
+/// the one that takes it to the surface, whatever the springs do, unless they pulled it away in the last step. Near is
+/// a quarter of its way: a vertex that slides over a sphere must not count as leaving.
 Beginning foresee(int i, vec3 x, vec3 v, float inverse_mass) {
   Beginning start = Beginning(v, v + dt * gravity.xyz);
   vec3 stopped = x + dt * start.guess, after = start.guess;

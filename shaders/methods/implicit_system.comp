@@ -1,18 +1,18 @@
-// Implicit Euler, once a Newton step: the residual of the first guess, and each vertex's block of the matrix,
+// Implicit Euler, once per Newton step: the residual of the first guess, and each vertex's block of the matrix,
 // factorised.
 #include "implicit_euler.glsl"
 READ_VEC4(start_velocity, 9);
 READ_VEC4(constraint, 10);
 READ_VEC4(change, 11);
-// Not filtered; w: the vertex's share of what is good enough.
+// Not filtered; w: the vertex's share of the residual that may remain.
 layout(std430, binding = 0) writeonly buffer Residual { vec4 residual[]; };
 layout(std430, binding = 1) writeonly buffer Preconditioned { vec4 preconditioned[]; };
 layout(std430, binding = 3) writeonly buffer BlockA { vec4 block_a[]; };
 layout(std430, binding = 4) writeonly buffer BlockB { vec4 block_b[]; };
-uniform float tolerance;  // of the residual, relative
+uniform float tolerance;  // relative, of the residual
 
-/// What the residual of the vertex, squared and over its mass [J], may be: relative to its own energy and what forces
-/// give it in one step; and not less than what rounding its position makes of its elements' forces.
+/// Allowed residual of the vertex, squared and over its mass [J]: relative to its own energy and to what forces add in
+/// one step, but not less than the error that rounding of its position makes in its elements' forces.
 float good_enough(float inverse_mass, vec3 v, vec3 force, float stiffness, vec3 x, vec3 d) {
   float own = (dot(v, v) + dt * dt * dot(gravity.xyz, gravity.xyz)) / inverse_mass +
               dt * dt * inverse_mass * dot(force, force);

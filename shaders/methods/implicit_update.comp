@@ -1,5 +1,5 @@
-// Implicit Euler's conjugate gradients, second half of an iteration: every work group adds up the sums of all, in the
-// same order, and so comes to the same step and the same decision to stop; then each vertex takes its part of the step.
+// Implicit Euler's conjugate gradients, second half of an iteration. Every work group adds up all groups' sums in the
+// same order, and so finds the same step and the same decision to stop; then each vertex takes its part of the step.
 #include "implicit_euler.glsl"
 #include "group_sums.glsl"
 READ_VEC4(residual, 16);
@@ -22,12 +22,12 @@ layout(std430, binding = 3) buffer Control {
   uint iterations;                  // of this solve
   uint converged;
   uint unused_1, unused_2, unused_3;
-  vec2 steps[];  // of each iteration: residual times preconditioned residual, length of the step
+  vec2 steps[];  // for each iteration: residual times preconditioned residual, length of the step
 };
 uniform int iteration;
 
-/// Every work group adds up what all wrote.
-#if GROUP_COUNT <= 16  // no barrier pays for so few
+/// Adds up all work groups' sums, in every work group.
+#if GROUP_COUNT <= 16  // too few groups to be worth a barrier
 vec4 total() {
   vec4 sum = vec4(0.0);
   for (int group = 0; group < GROUP_COUNT; ++group) sum += FETCH(group_sums, group);
@@ -46,14 +46,14 @@ void main() {
   int i = int(gl_GlobalInvocationID.x);
   vec4 sum = total();
   float now = sum.x, curvature = sum.y;
-  float kept = 0.0;  // share of the last direction in the next
+  float kept = 0.0;  // share of the last direction in the next one
   if (iteration > 0) {
     vec2 last = steps[iteration - 1];
     kept = now / last.x;
     curvature -= kept * now / last.y;
   }
   bool met = sum.z <= sum.w;
-  bool ended = met || !(now > 0.0 && curvature > 0.0);  // or no precision is left
+  bool ended = met || !(now > 0.0 && curvature > 0.0);  // or there is no precision left
   float along = now / curvature;
   if (i == 0) {
     if (ended) {

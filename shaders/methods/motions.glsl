@@ -1,9 +1,9 @@
 // Poses of moving pins and colliders, computed by the host in double precision for each step of a batch.
-// A step has END_ROW rows after the one at its start: the last is its end, one before it (if any) its middle.
+// A step has END_ROW rows after the row of its start: the last is its end, the one before it, if any, its middle.
 // A pose takes five vec4: three rows (rotation, translation), the velocity of the origin, the angular velocity.
 #if MOTION_COUNT > 0
 READ_VEC4(motion_table, 6);
-uniform int start_row;  // of the step, in the batch
+uniform int start_row;  // row of the step's start in the batch
 
 int pose_at(int motion, int row) { return ((start_row + row) * MOTION_COUNT + motion) * 5; }
 

@@ -1,6 +1,6 @@
-// The classical Runge-Kutta method of order 4: four evaluations of the forces a step, each a dispatch of this kernel
-// with STAGE 1 to 4. Hairer, Norsett & Wanner 1993, section II.1. Each stage gathers what the one before it wrote;
-// contacts are seen once, from the state at the step's start, and applied at its end.
+// The classical Runge-Kutta method of order 4: four evaluations of the forces per step, each a dispatch of this kernel
+// with STAGE 1 to 4. Hairer, Norsett & Wanner 1993, section II.1. Each stage reads what the stage before wrote;
+// contacts are found once, from the state at the step's start, and applied at its end.
 #include "gather.glsl"
 #include "step_end.glsl"
 #if STAGE > 1
@@ -25,7 +25,7 @@ READ_VEC4(slope_3, 13);
 #endif
 
 #if STAGE < 4
-/// The state that the next stage looks at: half a step on, or a whole one.
+/// The state for the next stage: half a step on, or a whole step.
 void main() {
   int i = int(gl_GlobalInvocationID.x);
   if (i >= vertex_count) return;
@@ -45,7 +45,8 @@ void main() {
   next_velocity[i] = vec4(v_next, v.w);
 }
 #else
-/// The slopes' weighted mean; with each stage's velocity written out, the position's needs no velocity but the first.
+/// The weighted mean of the slopes. With each stage's velocity written out, the position needs no velocity but the
+/// first.
 int move_freely(int i, vec4 x, vec4 v, out vec3 x_next, out vec3 v_next) {
   vec3 a1 = FETCH(slope_1, i).xyz, a2 = FETCH(slope_2, i).xyz, a3 = FETCH(slope_3, i).xyz;
   vec3 a4 = acceleration(i, FETCH(position, i), FETCH(velocity, i).xyz);

@@ -1,5 +1,4 @@
-// The end of a step: the new state is written, and the neighbour lists' rebuild is asked for if the vertex went too
-// far.
+// The end of a step: writes the new state, and asks for new neighbour lists if the vertex went too far.
 layout(std430, binding = 0) writeonly buffer NextPosition { vec4 next_position[]; };
 layout(std430, binding = 1) writeonly buffer NextVelocity { vec4 next_velocity[]; };
 #ifdef SELF_COLLISION

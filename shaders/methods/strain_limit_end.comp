@@ -1,4 +1,4 @@
-// The strain limit, once a step: the corrected positions become the state's, and the velocities follow.
+// The strain limit, once per step: the corrected positions become the state, and the velocities follow.
 #include "strain_limit.glsl"
 READ_VEC4(velocity, 1);
 READ_VEC4(corrected_position, 9);

@@ -1,4 +1,4 @@
-// The strain limit, once a step: pulls as the step before ended.
+// The strain limit, once per step: begins with the pulls at which the step before ended.
 #include "strain_limit.glsl"
 layout(std430, binding = 0) writeonly buffer NextPosition { vec4 next_position[]; };
 

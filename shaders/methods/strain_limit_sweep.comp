@@ -1,10 +1,10 @@
 // The strain limit, one sweep: each spring's pull changes by a part of what it lacks, and its ends move accordingly. A
-// work group first looks at what the sweep before found; if that was good enough, all leave everything as it is.
+// work group first reads what the sweep before found; if that was good enough, all groups leave everything as it is.
 #include "strain_limit.glsl"
 #include "group_sums.glsl"
 READ_VEC4(group_excess, 9);
 layout(std430, binding = 0) writeonly buffer NextPosition { vec4 next_position[]; };
-// x: the largest, in shares of the limit
+// x: the largest excess, as a share of the limit
 layout(std430, binding = 1) writeonly buffer Excess { vec4 next_group_excess[]; };
 layout(std430, binding = 4) buffer Control {
   uint groups, groups_y, groups_z;  // of the next sweeps' dispatches: 0 once they have ended
@@ -13,7 +13,7 @@ layout(std430, binding = 4) buffer Control {
 uniform int sweep;
 uniform float relaxation;
 
-#if GROUP_COUNT <= 16  // no barrier pays for so few
+#if GROUP_COUNT <= 16  // too few groups to be worth a barrier
 float excess_before() {
   float most = 0.0;
   for (int group = 0; group < GROUP_COUNT; ++group) most = max(most, FETCH(group_excess, group).x);
@@ -54,7 +54,7 @@ void main() {
         float changed = max(pull + relaxation * excess / (mobility * growth), 0.0);
         pulls[at.first] = changed;
         moved -= (changed - pull) * n;
-        // What is left to do: too long, or too short because of the pull.
+        // Remaining error: the spring is too long, or too short because of the pull.
         most = max(most, (changed > 0.0 ? abs(excess) : excess) / allowed);
       }
     }

@@ -1,15 +1,15 @@
-// Contacts within the iteration, after each sweep over the springs: every vertex at once, from where the sweep left
-// them, so that no order matters. Several pairs at once would add up to more than is needed: each is scaled by the
-// larger of the two vertices' contact counts of the pass before, at least 2.
+// Contacts within the iteration, after each sweep over the springs. All vertices are handled at once, from where the
+// sweep left them, so that no order matters. Several pairs at once would add up to more than is needed: each is divided
+// by the larger of the two vertices' contact counts in the pass before, at least 2.
 #ifdef SELF_COLLISION
 READ_UINT(neighbour_count, 4);
 READ_UVEC2(neighbours, 5);
 uniform float self_friction;
 
-/// Of an overlap at the step's start [1/s]: what is mended becomes velocity.
+/// Share of an overlap at the step's start that is removed per second [1/s]: what is removed becomes velocity.
 const float mending = 20.0;
 
-/// What the vertices that touch it push it by [m].
+/// The push by the vertices that touch this one [m].
 vec3 push_of_pairs(int i, vec4 x, vec3 v, vec4 d, inout int touched) {
   vec3 push = vec3(0.0);
   int count = int(FETCH_UINT(neighbour_count, i));

@@ -1,23 +1,23 @@
-// Velocity Verlet with one evaluation of the forces a step: Swope et al. 1982; Hairer, Lubich & Wanner 2006, section
-// I.1. Forces that depend on the velocity need it at the step's end before that is known: a first-order prediction
-// there, w = v + a dt, keeps the method second order, damping included. So the state holds x and w; what a vertex alone
-// needs to find the velocity in the middle of the last step is carried beside it. A contact is an impulse within the
-// step: it changes the velocity in the middle of it, with which the vertex has moved, and the prediction likewise. Were
-// the step after a contact begun anew from the velocity at its start, what slides or rests would be stepped by explicit
-// Euler.
+// Velocity Verlet with one evaluation of the forces per step: Swope et al. 1982; Hairer, Lubich & Wanner 2006, section
+// I.1. Forces that depend on the velocity need it at the step's end before it is known: a first-order prediction there,
+// w = v + a dt, keeps the method at order 2, damping included. So the state holds x and w; `carried` holds what a
+// vertex needs to find the velocity in the middle of the last step. A contact is an impulse within the step: it changes
+// the velocity in the step's middle, with which the vertex has moved, and the prediction likewise. If the step after a
+// contact began anew from the velocity at its start, a sliding or resting vertex would be stepped by explicit Euler.
 #include "gather.glsl"
 #include "step_end.glsl"
 #define SECOND_VELOCITY
 
-/// xyz: how much w is ahead of the velocity in the middle of the last step [m/s]; w: the dt of that step [s]. Both 0
-/// after a start: then w is the velocity now. Kept as a difference, so that who changes w changes both.
+/// xyz: w less the velocity in the middle of the last step [m/s]; w: dt of that step [s]. Both are 0 after a start:
+/// then the state's w is the present velocity. As it is a difference, a change of the state's w changes both
+/// velocities.
 READ_VEC4(carried, 9);
 layout(std430, binding = 3) writeonly buffer Carried { vec4 next_carried[]; };
 vec4 carry;
 
 #include "whole_step.glsl"
 
-/// v_next: the velocity in the middle of the step, the second velocity the one at its end.
+/// v_next: the velocity in the middle of the step; second_velocity: the velocity at its end.
 void integrate(int i, vec4 x, vec3 v, vec3 a, vec3 push, vec3 impulse, out vec3 x_next, out vec3 v_next) {
   vec4 before = FETCH(carried, i);
   vec3 now = v - before.xyz + (0.5 * before.w) * a + impulse;

@@ -1,25 +1,24 @@
 // VBD: Chen et al. 2024. A visit to a vertex takes one Newton step on implicit Euler's objective with all other
-// vertices held (their equation 9), the part of the Hessian that a compressed spring makes indefinite left out. A
+// vertices held (their equation 9), without the part of the Hessian that a compressed spring makes indefinite. A
 // collider in the way is met with the vertex's own block: it pushes as hard as it must, and friction follows from that.
 #include "blocks.glsl"
 READ_UINT(visited, 12);  // free vertices, colour after colour
-/// At the last step's start; w: 0 if none counts.
+/// Velocity at the last step's start [m/s]; w: 0 if there is none to use.
 layout(std430, binding = 6) buffer VelocityBefore { vec4 velocity_before[]; };
-/// Where inertia would have each vertex, in the terms of its deviation: pushed by self-collision since the step's start
-/// [m]; w: colliders met at the last visit.
+/// Where inertia would take each vertex, as a deviation [m], with the pushes of self-collision since the step's start;
+/// w: number of colliders met at the last visit.
 layout(std430, binding = 5) coherent buffer Targets { vec4 targets[]; };
 
-/// The share of `pull` that an acceleration has followed. Nearly all counts as all: what rounding cuts off at 1 would
+/// Share of `pull` that an acceleration has followed, [0, 1]. Nearly all counts as all: rounding just below 1 would
 /// brake a falling cloth, step after step.
 float followed(vec3 acceleration, vec3 pull) {
   float squared = dot(pull, pull);
   return squared > 0.0 ? clamp(1.02 * dot(acceleration, pull) / squared, 0.0, 1.0) : 1.0;
 }
 
-/// Their adaptive guess (section 3.7): as much of gravity as the vertex has followed of late, so that a cloth at rest
-/// starts from rest. Where its free motion meets a collider, the guess is that motion stopped there, with friction, and
-/// of gravity what is along the surface: sweeps move what is stiff so little that a sheet on a slope would stay where
-/// it was put first.
+/// Their adaptive guess (section 3.7): as much of gravity as the vertex has followed lately, so that a cloth at rest
+/// starts from rest. If its free motion meets a collider, the guess is that motion stopped there, with friction, and of
+/// gravity the part along the surface: sweeps move a stiff cloth so little that one on a slope would stay where it was.
 vec3 first_deviation(int i, vec3 x, vec3 v) {
   vec4 before = velocity_before[i];
   velocity_before[i] = vec4(v, 1.0);
@@ -33,7 +32,7 @@ vec3 first_deviation(int i, vec3 x, vec3 v) {
     sliding = free + back - dt * met_velocity;
     vec3 taken = friction_displacement(sliding, met_normal, met_surface.x, dot(back, met_normal));
     felt += taken / (mobility * dt * dt);  // without friction it would have followed by that much more
-    // What a blow does to the velocity says nothing of the next step.
+    // The change of velocity in an impact says nothing of the next step.
     if (hits(v)) velocity_before[i].w = 0.0;
   }
   float share = before.w == 0.0 ? 1.0 : followed(felt, pull);
@@ -42,7 +41,8 @@ vec3 first_deviation(int i, vec3 x, vec3 v) {
   return less + back;
 }
 
-/// Stops the step of a vertex, x + d to x + d + descent, at the colliders; a, b: its block. Returns how many it meets.
+/// Stops the step of a vertex, x + d to x + d + descent, at the colliders; a, b: its block. Returns the number of
+/// colliders met.
 int stop(vec3 x, vec3 d, vec3 a, vec3 b, inout vec3 descent) {
   vec3 wanted = x + d + descent, stopped = wanted, v = vec3(0.0);
   int met = resolve_colliders(x, stopped, v, 0.0);
@@ -55,7 +55,7 @@ int stop(vec3 x, vec3 d, vec3 a, vec3 b, inout vec3 descent) {
     sliding -= met_normal * dot(met_normal, sliding);
     float distance_slid = length(sliding);
     vec3 along = sliding / max(distance_slid, 1e-30);
-    // What friction moves stays on the surface.
+    // Friction moves the vertex along the surface only.
     vec3 response = solve_block(a, b, along);
     response -= give * (dot(met_normal, response) / dot(met_normal, give));
     float most = met_surface.x * impulse;
@@ -69,7 +69,7 @@ void visit(int item) {
   vec4 x = FETCH(position, i);
   float inertia = 1.0 / (x.w * mobility);
   vec3 v = FETCH(velocity, i).xyz, d = deviation(i).xyz;
-  // precise: both forms of the kernel, compiled apart, are to round alike.
+  // precise: both forms of the kernel are compiled apart and must round alike.
   precise vec3 residual = inertia * (targets[i].xyz - d), diagonal = vec3(inertia), corner = vec3(0.0);
 #define MOVED(j) (drift(v - FETCH(velocity, j).xyz) + (d - deviation(j).xyz))
 #define START(j) (x.xyz - FETCH(position, j).xyz)

@@ -1,8 +1,9 @@
-// A step in one dispatch: everything a vertex needs is gathered here: springs, gravity, air drag, self-collision from
-// the neighbour lists, then pins, and colliders on the way to the new position. The method supplies
+// A step in one dispatch. It gathers everything that a vertex needs: springs, gravity, air drag and self-collision from
+// the neighbour lists; then pins, and colliders on the way to the new position. The method supplies
 //   void integrate(int i, vec4 x, vec3 v, vec3 a, vec3 push, vec3 impulse, out vec3 x_next, out vec3 v_next)
 // from the acceleration a and what self-collision adds to position and velocity, and
-//   void end(int i, int met, inout vec3 v_next)    which is called at the end of it, after `met` colliders.
+//   void end(int i, int met, inout vec3 v_next)
+// which is called at the step's end, after the vertex met `met` colliders.
 #include "../collide/colliders.glsl"
 #ifdef SELF_COLLISION
 #include "../collide/self_contact.glsl"
@@ -11,7 +12,7 @@
 void integrate(int i, vec4 x, vec3 v, vec3 a, vec3 push, vec3 impulse, out vec3 x_next, out vec3 v_next);
 void end(int i, int met, inout vec3 v_next);
 
-/// Returns how many things the vertex touches.
+/// Moves a free vertex. Returns the number of things that it touches.
 int move_freely(int i, vec4 x, vec4 v, out vec3 x_next, out vec3 v_next) {
   vec3 a = acceleration(i, x, v.xyz);
   vec3 push = vec3(0.0), impulse = vec3(0.0);

@@ -12,13 +12,14 @@ layout(location = 0) uniform vec3 color;  // linear
 layout(location = 1) uniform int pattern;  // 0 plain, 1 weave, 2 checker, 3 stripes
 layout(location = 0) out vec4 pixel;
 
-// How much of a pattern with this many repeats is left where one repeat is about a pixel: it fades before it flickers.
+// How much of a pattern with this many repeats is visible, [0, 1]: it fades before it flickers, where a repeat is about
+// a pixel.
 float visible(vec2 repeats) {
   vec2 per_pixel = fwidth(repeats);
   return 1.0 - smoothstep(0.35, 0.9, max(per_pixel.x, per_pixel.y));
 }
 
-// Threads going over and under each other, brightest where they arch.
+// Threads that go over and under each other, brightest where they arch.
 float weave(vec2 at) {
   vec2 thread = at * 56.0;
   vec2 inside = fract(thread) - 0.5;

@@ -1,4 +1,4 @@
-// Into the shadow map. A sphere is the unit sphere placed; a cloth is placed already.
+// Draws into the shadow map. A sphere is the unit sphere, placed here; a cloth is in place already.
 #include "frame.glsl"
 
 layout(location = 0) in vec3 position;

@@ -1,8 +1,8 @@
-// What every draw of one picture shares; filled by server/render/renderer.cpp.
+// Shared by every draw of one picture; server/render/renderer.cpp fills it.
 layout(std140, binding = 0) uniform Frame {
   mat4 view_projection;        // world to clip space
   mat4 light_view_projection;  // world to the shadow map's clip space
   vec4 eye;                    // xyz [m]
   vec4 to_light;               // xyz, unit length
-  vec4 framed;                 // xyz centre of what the picture shows [m], w its radius [m]
+  vec4 framed;                 // xyz centre [m] and w radius [m] of the scene in the picture
 };

@@ -3,8 +3,8 @@
 
 layout(binding = 0) uniform sampler2DShadow shadow_map;
 
-// Share of the light that arrives, [0, 1]. The point is moved off the surface by a few texels of the map, so that the
-// surface does not shadow itself.
+// Share of the light that arrives, [0, 1]. The point is moved off the surface by a few texels of the shadow map, so
+// that the surface does not shadow itself.
 float light_reaching(vec3 position, vec3 normal) {
   float texel = 2.0 * framed.w / float(textureSize(shadow_map, 0).x);  // [m]
   vec4 clip = light_view_projection * vec4(position + 3.0 * texel * normal, 1.0);
@@ -29,7 +29,7 @@ vec3 diffuse(vec3 position, vec3 normal) {
   return sun * facing * (facing > 0.0 ? light_reaching(position, normal) : 0.0);
 }
 
-// Linear light to what an sRGB display is sent.
+// Linear light in the encoding of an sRGB display.
 vec3 to_display(vec3 light) {
   vec3 c = clamp(light, 0.0, 1.0);
   return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308)));

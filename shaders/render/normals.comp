@@ -1,4 +1,4 @@
-// The normals the streamed frames have, kept as numbers for cloth.vert.
+// The normals of the streamed frames, as numbers for cloth.vert.
 layout(local_size_x = 64) in;
 #include "../access.glsl"
 

@@ -1,4 +1,4 @@
-// A large square of the plane around what the picture shows; plane.frag lets it fade out before its edge.
+// A large square of the plane around the scene in the picture; plane.frag fades it out before its edge.
 #include "frame.glsl"
 
 layout(location = 0) uniform vec3 point;   // [m]

@@ -1,5 +1,6 @@
-// Energies, largest strain and speed, contacts, and whether every value is finite: one partial result a work group,
-// summed by the host in double precision and in order, so that the outcome does not depend on the order of threads.
+// Energies, largest strain and speed, contacts, and whether every value is finite. Each work group writes a partial
+// result; the host sums them in double precision and in order, so that the outcome does not depend on the order of
+// threads.
 layout(local_size_x = GROUP_SIZE) in;
 #include "../access.glsl"
 layout(location = 0) uniform int vertex_count;
@@ -12,7 +13,7 @@ layout(location = 3) uniform vec4 gravity;
 struct Partial {
   vec4 sums;     // kinetic, elastic, gravitational energy [J], vertices in contact
   vec4 largest;  // strain, speed squared, 1 if something is not finite, unused
-  vec4 work;     // pull at moving pins [N], pull and weight of what touches something [N], its mass [kg], unused
+  vec4 work;     // pull at moving pins [N], pull and weight of touching vertices [N], their mass [kg], unused
 };
 layout(std430, binding = 0) writeonly buffer Partials { Partial partials[]; };
 shared vec4 sums[GROUP_SIZE];
@@ -33,7 +34,7 @@ void main() {
     for (EntryRange at = entry_range(Law_LIST, i); at.first < at.end; at.first += Law_TEXELS * SLICE_SIZE) {
       LawEntry entry = Law_ENTRY(at.first);
       LawEdges place = Law_EDGES(entry, PLACE);
-      sum.y += element_energy(entry.law, place) / Law_CORNERS;  // the rest is the other corners'
+      sum.y += element_energy(entry.law, place) / Law_CORNERS;  // the other corners count the rest
       most.x = max(most.x, element_strain(entry.law, place));
       if (moving_pin || touching) force += element_force(entry.law, place, Law_EDGES(entry, VELOCITY));
     }

@@ -1,4 +1,4 @@
-// Frame, 2 of 2: positions and normals as they go over the wire and into WebGL (server/net/README.md), the box first.
+// Frame, 2 of 2: positions and normals as the wire and WebGL take them (server/net/README.md), the box first.
 layout(local_size_x = GROUP_SIZE) in;
 #include "../access.glsl"
 #include "bounds.glsl"

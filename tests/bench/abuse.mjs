@@ -1,9 +1,9 @@
-// What one viewer, or somebody without a token, can take from another by every means the protocol leaves: a bystander's
-// frames and the session's real-time factor, alone and beside each kind of abuse. Then what a session takes from
-// another by each valid patch that is more than the machine has, and how soon it is undone and the server ends. By
-// hand, on a quiet machine:
+// Measures how much one client, a viewer or one without a token, can take from another by each kind of request that the
+// protocol allows: a bystander's frames/s and the session's real-time factor, alone and beside each abuse. Then it
+// applies valid patches that are more than the machine can step, and measures what they take from another session, and
+// how long undoing them and ending the server take. By hand, on a quiet machine:
 //   CLOTHLAB=build/release/clothlab node tests/bench/abuse.mjs [SECONDS] [--only NAME|heavy] [--out FILE]
-// Who abuses is a process of its own, which asks for as much as it can of the same cores. Prints (and writes) JSON.
+// The abuser is a process of its own that uses as much as it can of the same cores. Prints (and writes) JSON.
 import { fork } from "node:child_process";
 import { once } from "node:events";
 import { readFileSync } from "node:fs";
@@ -25,7 +25,7 @@ const asViewer = async (server, options = {}) => {
   return client;
 };
 
-/// Sends `frame` over and over as fast as the socket takes it, and drops what comes back.
+/// Sends `frame` repeatedly, as fast as the socket takes it, and drops the answers.
 function pour(socket, frame) {
   const many = Buffer.concat(Array(Math.ceil(65536 / frame.length)).fill(frame));
   socket.removeAllListeners("data");
@@ -39,7 +39,7 @@ function pour(socket, frame) {
 const masked = (first, length = 0) =>
   Buffer.concat([Buffer.from([first, 0x80 | length, 0, 0, 0, 0]), Buffer.alloc(length)]);
 
-/// `lanes` requests at any time, one after the other in each.
+/// Keeps `lanes` requests open at any time; each lane asks one after the other.
 function keepAsking(lanes, ask) {
   const lane = async () => {
     for (;;) await ask().catch(() => sleep(10));
@@ -48,7 +48,7 @@ function keepAsking(lanes, ask) {
 }
 const get = (server, path, headers = bearer) => server.get(path, headers);
 
-/// Asks and hangs up before the answer, at most `rate` times a second.
+/// Sends requests and hangs up before the answers, at most `rate` times a second.
 const askAndLeave = (server, path, rate) =>
   setInterval(() => {
     const socket = net.connect(server.port, "127.0.0.1", () => {
@@ -58,7 +58,7 @@ const askAndLeave = (server, path, rate) =>
     socket.on("error", () => {});
   }, 1000 / rate);
 
-/// Ten viewers that each say `text` over and over, just within the rate that is allowed: 1900 a second if it is short.
+/// Ten viewers each send `text` repeatedly, just within the allowed rate: 1900 messages a second if it is short.
 async function chatter(server, text) {
   const rate = 1900 / Math.ceil(text.length / 256);
   for (let i = 0; i < 10; ++i) {
@@ -119,9 +119,9 @@ const abuses = {
     }, 1),
 };
 
-/// In a process of its own: one abuse for as long as it lives, or a session with a heavy patch that is made and undone
-/// when the parent says so. (What such a session gets takes this process seconds to read, in which a bystander here
-/// would see nothing.)
+/// The forked process: it runs one abuse until it is killed, or makes and undoes a heavy patch when the parent says so.
+/// (This process reads that session's frames: they take seconds, in which a bystander in the same process would see
+/// nothing.)
 if (process.send) {
   const begin = async ({ name, server }) => {
     http.globalAgent = new http.Agent({ keepAlive: true, maxSockets: 64 });
@@ -130,7 +130,7 @@ if (process.send) {
   let heavy, light;
   const open = async ({ server }) => {
     heavy = await Client.connect(server, { session: "heavy" });
-    // Frames are acknowledged and dropped: a page does not look at a million vertices one by one either.
+    // Frames are acknowledged and dropped: a page does not read a million vertices one by one, either.
     heavy.receive = (data, isBinary) => {
       if (!isBinary) Client.prototype.receive.call(heavy, data, false);
       else if (data[0] === 2) heavy.notify("stream.ack", { frame: data.readUInt32LE(8) });
@@ -182,7 +182,7 @@ function round(value, digits = 2) {
   return Number(value.toFixed(digits));
 }
 
-/// What a subscribed bystander gets within so many seconds.
+/// The bystander's frames/s and real-time factor, over this many seconds.
 async function watch(bystander, seconds) {
   const from = bystander.frames.length,
     begun = performance.now(),
@@ -234,7 +234,7 @@ async function measure(name, seconds) {
   }
 }
 
-/// What a process that was forked took for a task [ms].
+/// Has a forked process do a task; returns the time that it took [ms].
 async function ask(child, task) {
   child.send(task);
   const [{ failed, took_ms }] = await once(child, "message");
@@ -242,7 +242,7 @@ async function ask(child, task) {
   return took_ms;
 }
 
-/// The patch is made, undone, made again; then the server is told to end.
+/// Makes the patch, undoes it, makes it again; then ends the server.
 async function measureHeavy(name, seconds) {
   const server = await Server.start("--log-level", "error");
   const heavy = fork(new URL(import.meta.url).pathname);

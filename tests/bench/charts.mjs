@@ -1,6 +1,6 @@
-// Speed against accuracy, and the stability map, of the scenes that server/lab/README.md shows. node
-// tests/bench/charts.mjs [MACHINE] [SCENE...]  ->  tests/bench/results/chart-SCENE-MACHINE.{svg,json}, and one
-// stability map
+// Draws speed against accuracy, and the stability map, of the scenes that server/lab/README.md shows.
+//   node tests/bench/charts.mjs [MACHINE] [SCENE...]
+// It writes tests/bench/results/chart-SCENE-MACHINE.{svg,json} and one stability map.
 import { execFileSync } from "node:child_process";
 import { copyFileSync, mkdtempSync, rmSync } from "node:fs";
 import { cpus, loadavg, tmpdir } from "node:os";

@@ -1,8 +1,8 @@
-// Whether the lab's choice keeps its word. For each scene and tolerance: the choice; its error again, in a
-// simulation of its own, at more times, against a reference with half the step; its cost again, in longer
-// runs, as it is and over that of the scene's own setting; and every setting of a fine grid that would cost
-// less, run to see whether it keeps the tolerance too. Prints a JSON document. bench_choose [SCENE...], where
-// 17x17 is the swinging cloth of tests/README.md; by default four.
+// Measures if the lab's choice keeps the tolerance. For each scene and tolerance it finds: the choice; its
+// error in another simulation, at more times, against a reference with half the step; its cost in longer
+// runs, by itself and over the cost of the scene's own setting; and every cheaper setting of a fine grid, to
+// see which of them keep the tolerance. Prints a JSON document. Usage: bench_choose [SCENE...], where 17x17
+// is the swinging cloth of tests/README.md; by default four scenes.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -30,8 +30,8 @@ using scene::Method;
 
 namespace {
 
-constexpr int looks = 24;            // at the error of the choice
-constexpr double finer = 1.08;       // the grid's steps, each over the next
+constexpr int looks = 24;            // times at which the choice's error is measured
+constexpr double finer = 1.08;       // ratio of the grid's successive steps
 constexpr double long_enough = 0.4;  // wall time of one timing [s]
 constexpr int rounds = 9, glances = 5;
 
@@ -49,7 +49,7 @@ Case named(const std::string& name) {
   return {name, document->scene};
 }
 
-/// The largest error of a setting over `looks` times up to the horizon, over the size.
+/// Largest error of a setting at `looks` times up to the horizon, over the cloth's size.
 double independent_error(const Case& of, const Setting& setting, const lab::Truth& truth) {
   const int steps = lab::steps_to_horizon(setting.dt, truth);
   std::vector<int> at;
@@ -60,7 +60,8 @@ double independent_error(const Case& of, const Setting& setting, const lab::Trut
     at.push_back(step);
     times.push_back(step * setting.dt);
   }
-  const auto exact = reference::trajectory(truth.world, times, truth.dt);  // its states: at half of this
+  // its finer run takes half of this step
+  const auto exact = reference::trajectory(truth.world, times, truth.dt);
   if (!exact) std::fprintf(stderr, "%s\n", exact.error().text().c_str()), std::exit(1);
   auto made = sim::Simulation::create(lab::with(of.scene, setting));
   const auto simulation = std::move(*made);
@@ -96,7 +97,7 @@ Grid search(const Case& of, const lab::Choice& choice, const lab::Truth& truth, 
       Setting setting{method, std::min({model::margin_to_warn * limit, truth.horizon / 8, 1.0 / 30}),
                       iterations, 1e-4};
       setting.dt = lab::fitted_dt(setting.dt, truth);
-      // The least of several: what is cheaper at a quiet moment counts as cheaper.
+      // The least of several timings: a setting that is cheaper at a quiet moment counts as cheaper.
       const auto glance = *bench.time({lab::with(of.scene, setting)}, truth.horizon, 0.03, glances, {});
       double step_cost = lab::cost_of(glance.front()).minimum * setting.dt;
       for (; step_cost / setting.dt < choice.chosen.cost->median;
@@ -106,7 +107,7 @@ Grid search(const Case& of, const lab::Choice& choice, const lab::Truth& truth, 
         step_cost = std::min(step_cost, 1000.0 * trial.wall / trial.simulated * setting.dt);
         if (trial.largest_position_error && *trial.largest_position_error <= choice.tolerance) {
           grid.better.push_back(setting);
-          break;  // shorter ones cost more
+          break;  // shorter steps cost more
         }
       }
     }
@@ -142,7 +143,8 @@ void print(const Case& of, double tolerance, bool last) {
     const double of_grid = lab::cost_of(times[i + 2]).median;
     if (of_grid < best) best = of_grid, best_name = lab::text(grid.better[i]);
   }
-  // Both over what the scene's own setting took at that moment: the machine's speed is not the lab's promise.
+  // Both over the cost of the scene's own setting at that moment: the lab makes no promise about the
+  // machine's speed.
   const double own = lab::cost_of(times[1]).median;
   const std::string against_own =
       choice->present.cost

@@ -1,7 +1,8 @@
-// Error against dt, the table of tests/README.md: the swinging 17 x 17 cloth at 0.3 s under symplectic Euler,
-// Verlet, RK4, PBD, XPBD and VBD, by the reference in double precision and by the GPU in float32, against RK4
-// in double precision at u/200 (u = sqrt(m/k)). XPBD also as float32 is usually made to do it, by differences
-// of positions: what the GPU's displacements are for. Prints a JSON document.
+// Error against dt, for the table of tests/README.md: the swinging 17 x 17 cloth at 0.3 s under symplectic
+// Euler, Verlet, RK4, PBD, XPBD and VBD, by the reference in double precision and by the GPU in float32,
+// against RK4 in double precision at u/200 (u = sqrt(m/k)). XPBD is also run as most write it in float32,
+// with velocities from differences of positions: it shows what the GPU's deviations gain. Prints a JSON
+// document.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -45,7 +46,7 @@ int steps_of(double share) {
 
 struct Contestant {
   Method method;
-  int iterations;  ///< 0 where it has none
+  int iterations;  ///< 0 if the method does not iterate
 };
 
 void print_row(const Contestant& row, const char* precision, const std::vector<double>& errors) {

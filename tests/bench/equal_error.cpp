@@ -1,7 +1,7 @@
-// What the same accuracy costs under each method: for the swinging cloth of tests/README.md (17 x 17, 0.3 s)
-// the cheapest dt and iterations whose RMS position error is 1e-2, 1e-3 and 1e-4 of the cloth's size, and the
-// milliseconds of stepping a simulated second takes with them. Errors are the same at every run, so they are
-// searched first; what comes near the cheapest is then timed, all taking turns. Prints a JSON document.
+// Cost of the same accuracy under each method: for the swinging cloth of tests/README.md (17 x 17, 0.3 s) it
+// finds the cheapest dt and iterations whose RMS position error is 1e-2, 1e-3 and 1e-4 of the cloth's size,
+// and the milliseconds of stepping per simulated second. Errors are the same in every run, so they are
+// searched first; the settings near the cheapest are then timed in turns. Prints a JSON document.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,18 +27,18 @@ namespace {
 constexpr double end = 0.3;                       // [s], before the cloth buckles
 constexpr double size = 0.5;                      // [m]
 constexpr double targets[] = {1e-2, 1e-3, 1e-4};  // of the size
-constexpr double most_work = 1 << 17;             // of one error, in forces of all springs
-constexpr double hopeless = 1.6;                  // times the work of other iterations
+constexpr double most_work = 1 << 17;             // for one error, in forces of all springs
+constexpr double hopeless = 1.6;                  // times the work with other iterations
 constexpr int rounds = 5;
-constexpr double enough_time = 8.0;  // [s] for the samples of one setting, of three or more
+constexpr double enough_time = 8.0;  // [s] for three or more samples of one setting
 
 struct Setting {
   Method method;
   int iterations, steps;
 };
 
-/// About what it costs, to choose what to try and to time: a sweep costs about what a force does, implicit
-/// Euler's small step, which needs few iterations of conjugate gradients, about 12.
+/// Estimated cost, in forces, to choose the settings to try and to time: a sweep costs about as much as a
+/// force; a small step of implicit Euler, which needs few iterations of conjugate gradients, about 12.
 double work(const Setting& setting) {
   const double step = setting.method == Method::implicit_euler ? 12.0
                       : setting.method == Method::rk4          ? 4.0
@@ -47,25 +47,26 @@ double work(const Setting& setting) {
   return step * setting.steps;
 }
 
-/// One number of iterations: its ladder of steps, as far as it was climbed.
+/// The steps tried with one number of iterations.
 struct Ladder {
   int iterations;
-  std::vector<std::pair<int, double>> rungs = {};  // steps, error [m]: infinite where it blew up
+  std::vector<std::pair<int, double>> rungs = {};  // steps, error [m]: infinite if it blew up
   bool too_slow = false;
 };
 
-/// Settings that reach a target, and what was measured of them.
+/// A setting that reaches a target, and its measurements.
 struct Candidate {
   Setting setting;
   double error;
   double seconds = 0;                // spent on the samples
-  std::vector<double> samples = {};  // [ms] a simulated second
+  std::vector<double> samples = {};  // [ms] per simulated second
 };
 
 scene::Scene scene_of(const Setting& setting) {
   scene::Scene scene = test::swinging_cloth(setting.method, end / setting.steps);
   scene.solver.iterations = setting.iterations;
-  scene.solver.tolerance = 1e-6;  // small steps are met by no iteration at all with 1e-4, which adds up
+  // with 1e-4 small steps would need no iteration at all, and their errors add up
+  scene.solver.tolerance = 1e-6;
   return scene;
 }
 
@@ -90,8 +91,8 @@ class Search {
     return std::isfinite(error) ? error : HUGE_VAL;
   }
 
-  /// Takes steps shorter by sqrt(2) until the last target is met, the error no longer falls, or the next
-  /// target is met with far less work by other iterations: `least_work` of each target, which it lowers.
+  /// Tries steps, each shorter by sqrt(2), until the last target is met, the error no longer falls, or other
+  /// iterations reach the next target with far less work. `least_work`: for each target; lowered here.
   Ladder climb(Method method, int iterations, std::array<double, 3>& least_work) {
     Ladder ladder{iterations};
     double least = HUGE_VAL;
@@ -113,7 +114,7 @@ class Search {
     return ladder;
   }
 
-  /// The fewest steps, to some 9 %, that reach `target`, between the rung that does and the one before.
+  /// The fewest steps, to about 9 %, that reach `target`: between the rung that does and the one before.
   std::optional<Candidate> first(Method method, const Ladder& ladder, double target, double most) {
     const auto reaches = [&](const auto& rung) { return rung.second <= target * size; };
     const auto found = std::find_if(ladder.rungs.begin(), ladder.rungs.end(), reaches);
@@ -163,7 +164,7 @@ double median(std::vector<double> values) {
 struct Outcome {
   Method method;
   std::vector<Ladder> ladders;
-  std::vector<Candidate> candidates[3];  // of each target
+  std::vector<Candidate> candidates[3];  // for each target
 };
 
 Outcome search_all(Search& search, Method method) {

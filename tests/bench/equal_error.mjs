@@ -1,5 +1,6 @@
-// What the same accuracy costs under each method, beside what it ran on, and as the table of tests/README.md.
-// node tests/bench/equal_error.mjs [MACHINE]   ->   tests/bench/results/equal_error-MACHINE.json
+// Cost of the same accuracy under each method (bench_equal_error), with the machine that it was measured on, and as the
+// table of tests/README.md.
+//   node tests/bench/equal_error.mjs [MACHINE]   ->   tests/bench/results/equal_error-MACHINE.json
 import { execFileSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import { cpus, loadavg } from "node:os";
@@ -17,7 +18,7 @@ const measured = execFileSync(join(build, "tests/bench_equal_error"), {
 });
 const about = { machine, cpu: cpus()[0].model, cores: cpus().length, load_average: load };
 const out = join(here, `results/equal_error-${machine}.json`);
-// In between, so that the rows stay one a line.
+// Inserted as text, so that each row stays on one line.
 writeFileSync(out, measured.replace(' "methods": [', `${JSON.stringify(about, null, 1).slice(2, -2)},\n "methods": [`));
 
 const { methods } = JSON.parse(readFileSync(out, "utf8"));

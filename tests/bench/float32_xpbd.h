@@ -1,6 +1,6 @@
-// XPBD in float32 as it is usually written: it moves positions, and takes the velocity from their difference,
-// v = (x - x_prev) / dt. What Clothlab's kernel does not do (shaders/methods/deviation.glsl), to show the
-// difference. On the CPU, one iteration, no contacts.
+// XPBD in float32 as most write it: it moves positions and takes the velocity from their difference, v = (x -
+// x_prev) / dt. Clothlab's kernel does not (shaders/methods/deviation.glsl): this shows the difference. On
+// the CPU, with one iteration and no contacts.
 #pragma once
 
 #include <glm/geometric.hpp>

@@ -1,11 +1,11 @@
 // How much too far a hanging chain stretches under PBD, XPBD and VBD, against the closed form sum (nodes
 // below) m g / k, over dt / u and iterations (u = sqrt(m/k)): the fixed point of the double-precision
-// reference, and what theory says of it. Prints a JSON document.
+// reference, and the prediction by theory. Prints a JSON document.
 //
-// Prediction. XPBD with one iteration: what tests/unit/hanging_chain.test.cpp derives, nearly (dt / u)^2;
-// with many nothing. PBD: the same with one; with many a / ln(1 + a) - 1, a = 2 (dt / u)^2, but for the
-// springs next to the pin, since its visits do not know of one another. VBD: nothing, since a cloth at rest
-// starts its sweeps where it is. The air takes 2 % of a step, and so of what is predicted.
+// Prediction. XPBD with one iteration: nearly (dt / u)^2, which tests/unit/hanging_chain.test.cpp derives;
+// with many: 0. PBD with one iteration: the same; with many: a / ln(1 + a) - 1, a = 2 (dt / u)^2, except for
+// the springs next to the pin, since its visits do not know of one another. VBD: 0, since the sweeps of a
+// cloth at rest start where it is. The air takes 2 % of a step, and so of the prediction.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -25,9 +25,9 @@ constexpr double k = 2000.0, mass = 0.005, g = 9.8;  // [N/m], [kg], [m/s^2]
 const double unit = std::sqrt(mass / k);             // [s]
 const double exact = mass * g * links * (links + 1) / (2 * k);
 
-/// By how much its stretch at rest exceeds the closed form, as a share of it.
+/// Relative excess of the chain's stretch at rest over the closed form.
 double excess(Method method, double share, int count) {
-  // Air thick enough that no mode swings, thin enough that it hardly adds to the masses in a step.
+  // The air is so thick that no mode swings, and so thin that it hardly adds to the masses in a step.
   const double air = std::min(3.14159 / links / unit, 0.02 / (share * unit));
   scene::Scene scene = test::chain(method, share * unit, links, k, mass);
   scene.gravity = {0.0, 0.0, g};

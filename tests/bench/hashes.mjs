@@ -1,9 +1,9 @@
-// The state hash after a second of every preset, and of five scenes with triangle meshes, several cloths and moving
-// spheres and planes, under every method: before and after a change that is to change nothing. What blows up ends with
-// the hash of its last good state.
+// State hashes after one second of every preset, and of five scenes with triangle meshes, several cloths and moving
+// spheres and planes, under every method. Made before and after a change of the code that must not change the motion. A
+// scene that blows up gives the hash of its last good state.
 //   CLOTHLAB=build/release/clothlab node tests/bench/hashes.mjs [--only REGEX] [--out FILE] [--compare FILE]
-// Prints (and writes) JSON; with --compare it names what differs, and ends with 1 if anything does. Hashes are of one
-// device and Mesa.
+// Prints (and writes) JSON; with --compare it names what differs, and exits with 1 if anything does. Hashes hold for
+// one device and Mesa version.
 import { execFile } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { cpus, tmpdir } from "node:os";
@@ -102,14 +102,14 @@ const made = {
 const folder = mkdtempSync(join(tmpdir(), "clothlab-hashes-"));
 process.on("exit", () => rmSync(folder, { recursive: true, force: true }));
 const run = promisify(execFile);
-const wanted = new RegExp(option("--only") ?? ""); // of "preset, method"
+const wanted = new RegExp(option("--only") ?? ""); // matches "preset, method"
 
 async function hashOf(scene, method, place) {
   const report = join(folder, `report-${place}.json`);
   try {
     await run(program, ["run", scene, "--time", "1", "--set", `/solver/method="${method}"`, "--report", report]);
   } catch (error) {
-    if (error.code !== 4) throw error; // 4: it blew up, which is an answer too
+    if (error.code !== 4) throw error; // 4: the scene blew up, which has a hash too
   }
   const { state_hash, diverged, renderer } = JSON.parse(readFileSync(report, "utf8"));
   result.renderer = renderer;
@@ -141,7 +141,7 @@ const result = { benchmark: "hashes", renderer: "", hashes: {} };
 const todo = scenes
   .flatMap(([name, file]) => methods.map((method) => ({ what: `${name}, ${method}`, file, method })))
   .filter(({ what }) => wanted.test(what));
-for (const { what } of todo) result.hashes[what] = ""; // in this order, whoever ends first
+for (const { what } of todo) result.hashes[what] = ""; // fixes their order, in which the runs need not end
 let next = 0;
 await Promise.all(
   Array.from({ length: cpus().length }, async () => {

@@ -1,13 +1,13 @@
-// What colouring buys: iterations of XPBD on one step of the seed's cloth until a thousandth of the step's
-// residual is left, by Gauss-Seidel in the order of the colours and by Jacobi, all springs from the same
-// displacements: in full, by the largest share that converges, and by a share that always does. In double
-// precision. Prints a JSON document.
+// What colouring gains: iterations of XPBD on one step of the seed's cloth until a thousandth of the step's
+// residual is left, by Gauss-Seidel in the order of the colours and by Jacobi, where all springs use the same
+// displacements. Jacobi applies the full change, the largest share that converges, or a share that always
+// converges. In double precision. Prints a JSON document.
 //
 // Prediction. Jacobi adds D^-1 (b - A p), A = J M^-1 J^T + 1 / (k dt^2 + c dt) and D its diagonal: it
-// converges if the largest eigenvalue of D^-1 A is below 2 (here by power iteration at the start), and that
-// is at most the largest row sum. A share of 1 / (springs at the end with more of them) brings every row sum
-// to 1 or less, since a row has at most the springs of its two ends, each with at most half of the diagonal:
-// it converges always.
+// converges if the largest eigenvalue of D^-1 A is below 2 (here by power iteration at the start), which is
+// at most the largest row sum. A share of 1 / (springs at the end with more of them) makes every row sum at
+// most 1, since a row has at most the springs of its two ends, each with at most half of the diagonal: it
+// always converges.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -32,7 +32,7 @@ struct Step {
   const reference::World& world;
   Vectors x, free;
   std::vector<double> w;
-  std::vector<double> springs_at;  ///< a vertex
+  std::vector<double> springs_at;  ///< of each vertex
 
   Step(const reference::World& in, const reference::State& state) : world(in), x(state.position) {
     const double dt = world.scene.solver.dt;
@@ -67,7 +67,7 @@ struct Step {
     d[spring.vertices[1]] -= w[spring.vertices[1]] * by;
   }
 
-  /// The largest momentum that implicit Euler's equation lacks at a free vertex [kg m].
+  /// Largest momentum that implicit Euler's equation leaves unsolved at a free vertex [kg m].
   double residual(const Vectors& d) const {
     const double dt = world.scene.solver.dt;
     Vectors end = x, velocity = d;
@@ -83,12 +83,12 @@ struct Step {
   }
 };
 
-/// In the order of the colours; or all from the same displacements: in full, as much as the eigenvalue
-/// allows, or shared out among the springs at the busier end.
+/// In the order of the colours; or all at once from the same displacements: with the full change, as much as
+/// the eigenvalue allows, or divided by the number of springs at the end with more.
 enum class Order { colours, at_once, relaxed, shared };
 
-/// Iterations until the residual is a thousandth of what it was; `most_iterations` if never; less, with a
-/// minus, if it grew a thousandfold.
+/// Iterations until the residual is a thousandth of the first; `most_iterations` if never; a negative number
+/// if it grew a thousandfold.
 int iterations_needed(const Step& step, Order order, double eigenvalue = 0.0) {
   const model::Batch<elements::Spring>& springs = step.world.model.springs();
   Vectors d = step.free, pushed(springs.size(), glm::dvec3(0.0)), by(pushed);
@@ -112,7 +112,7 @@ int iterations_needed(const Step& step, Order order, double eigenvalue = 0.0) {
   return most_iterations;
 }
 
-/// The largest eigenvalue of D^-1 A, from below, and its largest row sum.
+/// Largest eigenvalue of D^-1 A, a lower bound, and its largest row sum.
 struct Spectrum {
   double eigenvalue = 0, row_sum = 0;
 };

@@ -1,8 +1,8 @@
-// What a job of the lab costs the session beside it: one viewer at 60 frames/s on a scene that plays, first alone, then
-// while its chart is measured, on the processor and on the GPU, then alone again. By hand, on a quiet machine:
+// What a job of the lab costs the session beside it: one viewer at 60 frames/s on a playing scene, first alone, then
+// while its chart is measured on the processor and on the GPU, then alone again. By hand, on a quiet machine:
 //   CLOTHLAB=build/release/clothlab node tests/bench/lab.mjs [SECONDS] [--out FILE] [ARGUMENT of serve]...
-// Prints (and writes) JSON: of each stretch the frames/s received, the gaps between them and the real-time factor, and
-// how long a cancel takes.
+// Prints (and writes) JSON: for each stretch of time the frames/s received, the gaps between them, the real-time
+// factor, and how long a cancel takes.
 import { writeFile } from "node:fs/promises";
 import { cpus } from "node:os";
 import { Client, Server, sleep, withTimeout } from "../protocol/harness.mjs";
@@ -31,7 +31,7 @@ async function stretch(name) {
     .slice(1)
     .map((frame, i) => frame.receivedAt - frames[i].receivedAt)
     .sort((a, b) => a - b);
-  // The slowest second tells more than the mean of all.
+  // The slowest second tells more than the mean of all seconds.
   const inSecond = Array.from(
     { length: seconds },
     (_, i) => frames.filter((frame) => Math.floor((frame.receivedAt - mark.at) / 1000) === i).length,
@@ -47,7 +47,7 @@ async function stretch(name) {
   };
 }
 
-/// A chart that is asked for, is doing `what`, and is measured and cancelled.
+/// Measures while a chart is doing `what`, then cancels the chart.
 async function beside(name, what, params) {
   const { job } = await client.request("lab.chart", { ...params, fresh: true });
   await withTimeout(
@@ -73,7 +73,7 @@ async function beside(name, what, params) {
 
 const stretches = [];
 try {
-  await sleep(2000); // warm
+  await sleep(2000); // warm-up
   stretches.push(await stretch("alone"));
   stretches.push(await beside("beside the reference of a chart", /^the reference/, { budget: 600 }));
   stretches.push(await beside("beside the trials of a chart", /, dt /, { time: 0.1, budget: 600 }));

@@ -1,6 +1,6 @@
-// What a step of each method costs on the seed scene with another number of vertices a side: time,
-// dispatches, bytes. The methods take turns in every round, so that a noisy machine disturbs all alike and
-// their ratios mean something. bench_methods SIDE ROUNDS: one JSON line a method; methods.mjs runs it for all
+// Cost of a step under each method, on the seed scene with SIDE vertices per side: time, dispatches, bytes.
+// The methods take turns in every round, so that a noisy machine disturbs all alike and their ratios stay
+// valid. Usage: bench_methods SIDE ROUNDS; it prints one JSON line per method. methods.mjs runs it for all
 // sizes.
 #include <cstdio>
 #include <cstdlib>
@@ -16,8 +16,8 @@ using namespace clothlab;
 
 namespace {
 
-/// dt below each method's limit; implicit Euler at the 1/60 s it is used with, one Newton step; what sweeps
-/// at 1 ms, once and ten times.
+/// dt below each method's limit; implicit Euler at its usual 1/60 s with one Newton step; methods that sweep
+/// at 1 ms with one and with ten sweeps.
 std::vector<scene::Solver> settings() {
   std::vector<scene::Solver> result;
   for (const scene::Method method : scene::methods) {
@@ -30,14 +30,14 @@ std::vector<scene::Solver> settings() {
   return result;
 }
 
-/// Self-collision, which is left out, costs the same under most methods.
+/// Without self-collision, which costs the same under most methods.
 scene::Scene seed_of(int side, const scene::Solver& solver) {
   scene::Scene scene = bench::seed_of(side);
   scene.solver = solver;
   return scene;
 }
 
-/// Steps that make a round of some tenth of a second.
+/// Number of steps for a round of about a tenth of a second.
 std::uint32_t steps_a_round(const scene::Solver& solver, double vertices) {
   if (solver.method == scene::Method::implicit_euler) return 3;
   const double steps = 20 + 2e5 / vertices;
@@ -45,13 +45,13 @@ std::uint32_t steps_a_round(const scene::Solver& solver, double vertices) {
                                                                  : steps);
 }
 
-/// Bytes that the kernels of one step read and write for a vertex with `entries` springs, caches not counted:
-/// 16 for each spring entry, position, velocity or other vector, as the shaders of server/sim list them.
-/// `iterations`: of conjugate gradients, or sweeps; deviations count as memory, though a small cloth has
-/// them in its work group.
+/// Bytes that the kernels of one step read and write per vertex with `entries` springs, without caches: 16
+/// for each spring entry, position, velocity or other vector, as the shaders list them. `iterations`: of
+/// conjugate gradients, or sweeps. Deviations count as memory, though a small cloth keeps them in its work
+/// group.
 double bytes_a_vertex(scene::Method method, double entries, double iterations) {
   const double vector = 16;
-  const double gather = entries * 3 * vector + 2 * vector;  // of each spring: entry, position, velocity
+  const double gather = entries * 3 * vector + 2 * vector;  // for each spring: entry, position, velocity
   switch (method) {
     case scene::Method::explicit_euler:
     case scene::Method::symplectic_euler:
@@ -61,7 +61,7 @@ double bytes_a_vertex(scene::Method method, double entries, double iterations) {
     case scene::Method::rk4:
       return 4 * gather + (3 + 5 + 5 + 7) * vector;
     case scene::Method::pbd:
-    case scene::Method::xpbd: {  // begin and finish; springs and the pass of contacts of each sweep
+    case scene::Method::xpbd: {  // begin and finish; springs and the pass of contacts for each sweep
       const double springs = entries / 2, remembered = method == scene::Method::xpbd ? iterations - 1 : 0;
       return (5 + 9) * vector + iterations * (springs * (9 * vector + 8) + 4 * vector) +
              remembered * springs * 2 * vector;
@@ -79,9 +79,9 @@ double bytes_a_vertex(scene::Method method, double entries, double iterations) {
 
 struct Contestant {
   scene::Solver solver;
-  std::uint32_t steps;  ///< a round
+  std::uint32_t steps;  ///< per round
   std::unique_ptr<sim::Simulation> simulation;
-  std::vector<double> samples;  ///< [ns] a vertex and step
+  std::vector<double> samples;  ///< [ns] per vertex and step
   std::uint64_t steps_before = 0, dispatches_before = 0;
   sim::SolverWork work_before;
 };
@@ -100,7 +100,7 @@ int main(int argc, char** argv) {
     auto simulation = sim::Simulation::create(seed_of(side, solver));
     if (!simulation) return std::fprintf(stderr, "%s\n", simulation.error().text().c_str()), 1;
     contestants.push_back({solver, steps_a_round(solver, vertices), std::move(*simulation), {}, 0, 0, {}});
-    // Compiles, and lets the cloth get moving.
+    // Compiles, and sets the cloth in motion.
     contestants.back().simulation->step(steps_a_round(solver, vertices) < 20 ? 10 : 100);
     contestants.back().simulation->finish();
     contestants.back().steps_before = contestants.back().simulation->step_index();

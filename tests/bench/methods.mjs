@@ -1,5 +1,6 @@
 // Cost of a step per method and grid, against symplectic Euler in the same round, and cost and effect of the strain
-// limit. node tests/bench/methods.mjs [MACHINE]   ->   tests/bench/results/methods-MACHINE.json
+// limit.
+//   node tests/bench/methods.mjs [MACHINE]   ->   tests/bench/results/methods-MACHINE.json
 import { execFileSync } from "node:child_process";
 import { writeFileSync } from "node:fs";
 import { cpus, loadavg } from "node:os";

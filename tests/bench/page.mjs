@@ -1,5 +1,5 @@
-// What the page costs: bytes, time to the first frame, frames/s drawn in a headless Chromium with software WebGL.
-// Run by hand on a quiet machine:
+// Cost of the page: bytes, time to the first frame, frames/s drawn in a headless Chromium with software WebGL.
+// By hand, on a quiet machine:
 //   CLOTHLAB=build/release/clothlab node tests/bench/page.mjs [SECONDS] [--out FILE]
 import { readdirSync, readFileSync } from "node:fs";
 import { writeFile } from "node:fs/promises";
@@ -12,7 +12,7 @@ import { Server } from "../protocol/harness.mjs";
 const args = process.argv.slice(2);
 const seconds = /^\d+$/.test(args[0] ?? "") ? Number(args.shift()) : 10;
 const out = args[0] === "--out" ? args[1] : null;
-const load = loadavg()[0]; // of the others: one that is not near 0 spoils every time below
+const load = loadavg()[0]; // of other processes: if it is not near 0, every time below is wrong
 
 const dist = fileURLToPath(new URL("../../web/dist/", import.meta.url));
 const bytes = Object.fromEntries(
@@ -23,7 +23,7 @@ const server = await Server.start();
 const browser = await launch();
 const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 
-// The first load also starts the browser's graphics process; a person's browser runs already.
+// The first load also starts the browser's graphics process, which a person's browser runs already.
 const firstFrames = [];
 for (let i = 0; i < 6; ++i) {
   const viewer = await Viewer.open(browser, server, { width: 1280, height: 800, drawn: 1 });

@@ -1,4 +1,4 @@
-// What the stepping benchmarks share: the seed scene on grids of other sizes, and a clock.
+// Shared by the stepping benchmarks: the seed scene on grids of other sizes, and a clock.
 #pragma once
 
 #include <chrono>
@@ -7,7 +7,7 @@
 
 namespace clothlab::bench {
 
-/// The seed scene with another number of vertices a side, without self-collision.
+/// The seed scene with `side` vertices per side, without self-collision.
 inline scene::Scene seed_of(int side) {
   scene::Scene scene;
   scene::Cloth cloth;

@@ -18,7 +18,7 @@ const { renderer } = await client.notification("hello");
 
 const metric = (text, name) => Number(new RegExp(`^${name} (\\S+)$`, "m").exec(text)[1]);
 const metrics = async () => (await server.get("/metrics")).body.toString();
-/// The p95 of what was added to the histogram between two readings [s].
+/// 95th percentile of what was added to the histogram between two readings [s].
 function p95(before, after) {
   const buckets = (text) =>
     [...text.matchAll(/latency_seconds_bucket\{le="([^"]+)"\} (\d+)/g)].map((m) => [Number(m[1]), Number(m[2])]);
@@ -30,7 +30,7 @@ function p95(before, after) {
   return low + ((added[i][0] - low) * (rank - below)) / (added[i][1] - below);
 }
 
-await sleep(2000); // warm
+await sleep(2000); // warm-up
 const before = await metrics();
 const mark = { frames: client.frames.length, messages: client.messages.length, at: performance.now() };
 await sleep(seconds * 1000);

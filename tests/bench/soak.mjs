@@ -1,10 +1,11 @@
-// Hours of coming and going: does the server keep anything of what has left? By hand, beside other work:
+// Hours of viewers that come and go: shows if the server keeps anything of those that have left. By hand, beside other
+// work:
 //   CLOTHLAB=build/release/clothlab node tests/bench/soak.mjs [MINUTES] [--out NAME]
-// Rounds of three minutes in which viewers come, stall, vanish and leave, scenes are loaded and patched, sessions are
-// made and given up, the lab measures, and nuisances are turned away; all from one seed. After each round everybody
-// leaves, the same four sessions show the same scene, and what the server holds then (memory, file descriptors,
-// threads) is compared from round to round. Prints JSON; --out writes NAME.json and NAME.svg, the plot. Leaves with 1
-// if the server failed, or held more descriptors or threads in the second half than in the first.
+// In rounds of three minutes, all from one random seed, viewers come, stall, vanish and leave; scenes are loaded and
+// patched; sessions are made and given up; the lab measures; bad clients are turned away. After each round everybody
+// leaves and the same four sessions show the same scene; what the server then holds (memory, file descriptors, threads)
+// is compared from round to round. Prints JSON; --out writes NAME.json and NAME.svg, the plot. Exits with 1 if the
+// server failed, or held more descriptors or threads in the second half than in the first.
 import { readFileSync, readdirSync, mkdtempSync, rmSync } from "node:fs";
 import { writeFile } from "node:fs/promises";
 import net from "node:net";
@@ -23,7 +24,7 @@ const busySeconds = Math.min(180, 60 * minutes),
   places = 4;
 
 let seed = 20261122;
-/// mulberry32: the same soak each time, as far as sockets allow.
+/// mulberry32: makes each soak the same, as far as sockets allow.
 function random() {
   seed = (seed + 0x6d2b79f5) | 0;
   let t = Math.imul(seed ^ (seed >>> 15), 1 | seed);
@@ -51,7 +52,7 @@ server.child.on("exit", (code, signal) => (ended = { code, signal }));
 const begun = performance.now();
 const counts = {};
 const count = (what) => (counts[what] = (counts[what] ?? 0) + 1);
-let busy = true; // false: everybody leaves
+let busy = true; // false once the round ends and everybody leaves
 
 /// A pause that ends early when the round does.
 async function dwell(seconds) {
@@ -59,12 +60,12 @@ async function dwell(seconds) {
   while (busy && performance.now() < until) await sleep(Math.min(200, until - performance.now()));
 }
 
-const sessions = ["main", "a", "b", "c", "d", "e"]; // two more than there are places for
+const sessions = ["main", "a", "b", "c", "d", "e"]; // two more than the server allows
 
 async function enter(session) {
   try {
     const client = await Client.connect(server, { session });
-    client.messages.push = () => 0; // nobody reads them, and hours of them are many
+    client.messages.push = () => 0; // nobody reads the messages, and hours of them need much memory
     client.binary.push = () => 0;
     count("connections");
     return client;
@@ -75,7 +76,7 @@ async function enter(session) {
   }
 }
 
-/// An answer, or the refusal that a scene or its moment deserves; nothing else is expected.
+/// Sends a request. Returns the answer; a refusal by the scene's state is expected, any other error is not.
 async function ask(client, method, params) {
   try {
     const result = await client.request(method, params);
@@ -92,7 +93,7 @@ async function viewer() {
   const client = await enter(pick(sessions));
   if (!client) return dwell(2);
   await ask(client, "stream.subscribe", { encoding: pick(["f32", "q16"]), rate: pick([10, 30, 60]), in_flight: 2 });
-  // A frame counts itself and is let go; it is not decoded.
+  // A frame is counted and dropped, not decoded.
   client.receive = (data, binary) => {
     if (!binary) return Client.prototype.receive.call(client, data, false);
     if (data[0] !== 2) return;
@@ -207,7 +208,7 @@ async function measurer() {
     }
     count(`a measurement ${state ?? "left or cancelled"}`);
   }
-  await client.close(); // what still runs is nobody's then
+  await client.close(); // its other requests are of no interest
 }
 
 async function nuisance() {
@@ -279,7 +280,7 @@ async function round() {
     actors.map(async (act) => {
       while (busy && !ended)
         await act().catch((error) => {
-          // A session that was given up, or the end of the round, may come in between; the server's own end may not.
+          // A closed session, or the end of the round, may interrupt an act; the server's end may not.
           troubles.push(`${((performance.now() - begun) / 60_000).toFixed(1)} min, ${act.name}: ${error.message}`);
           return dwell(1);
         });
@@ -288,7 +289,7 @@ async function round() {
   await over;
 }
 
-/// Everybody has left: the same sessions, each with the seed scene at its beginning.
+/// After everybody has left: opens the same sessions, each with the seed scene at its start.
 async function rest() {
   await sleep(1000 * unwatchedSeconds);
   for (const session of ["main", ...Array.from({ length: places - 1 }, (_, i) => `rest-${i}`)]) {
@@ -311,7 +312,7 @@ function held() {
   };
 }
 
-/// The median of the slopes between all pairs (Theil 1950, Sen 1968): one odd sample does not move it.
+/// Median of the slopes between all pairs of points (Theil 1950, Sen 1968): one odd sample does not move it.
 function slope(points, x, y) {
   const slopes = [];
   points.forEach((p, i) => points.slice(i + 1).forEach((q) => slopes.push((q[y] - p[y]) / (q[x] - p[x]))));
@@ -330,11 +331,11 @@ try {
     await rest();
     rests.push(held());
     console.error(JSON.stringify({ ...rests.at(-1), troubles: troubles.length }));
-    // Each round's figures are kept: an end by force loses none of them.
+    // Each round's figures are written, so that a kill loses none of them.
     if (out) await writeFile(`${out}.partial.json`, JSON.stringify({ samples, rests, counts, troubles }));
   }
   clearInterval(sampler);
-  const later = rests.slice(1); // the first round is what the server had not needed before
+  const later = rests.slice(1); // in the first round the server allocates what it did not need before
   const spread = (what) => ({
     first: rests[0]?.[what],
     least: Math.min(...later.map((r) => r[what])),
@@ -382,8 +383,8 @@ if (out) {
   await writeFile(`${out}.svg`, soakPlot(samples, rests, result));
   rmSync(`${out}.partial.json`, { force: true });
 }
-// Some threads come late and stay, such as Mesa's writers of its shader cache, up to four a screen: so half is compared
-// with half.
+// Some threads start late and stay, such as Mesa's writers of its shader cache, up to four per screen: so the halves
+// are compared.
 const half = rests.length >> 1;
 const grows = (what) =>
   Math.max(...rests.slice(half).map((r) => r[what])) > Math.max(...rests.slice(0, half).map((r) => r[what]));

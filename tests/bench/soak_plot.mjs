@@ -1,4 +1,4 @@
-// The plot of a soak (tests/bench/soak.mjs): what the server held, over the hours.
+// The plot of a soak (tests/bench/soak.mjs): what the server held over the hours.
 
 const width = 900,
   left = 70,
@@ -7,14 +7,14 @@ const width = 900,
   gap = 34,
   top = 64;
 
-/// A step of 1, 2 or 5 times a power of ten that divides `range` into a few.
+/// A step of 1, 2 or 5 times a power of ten that divides `range` into about `ticks` parts.
 function tickStep(range, ticks) {
   const raw = range / ticks,
     power = 10 ** Math.floor(Math.log10(raw));
   return [1, 2, 5, 10].map((factor) => factor * power).find((step) => step >= raw);
 }
 
-/// An SVG document. `samples`, `rests`: [{minute, resident_MB, descriptors, threads}], all of them and those at rest.
+/// An SVG document. `samples`, `rests`: [{minute, resident_MB, descriptors, threads}], all samples and those at rest.
 export function soakPlot(samples, rests, result) {
   const panels = [
     { key: "resident_MB", name: "resident memory, MB" },

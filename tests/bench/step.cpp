@@ -14,7 +14,8 @@ using namespace clothlab;
 
 namespace {
 
-/// The contact distance keeps its share of the spacing, 0.24, so that every size does the same work a vertex.
+/// The contact distance keeps its share of the spacing, 0.24, so that every size does the same work per
+/// vertex.
 scene::Scene seed_of(int side, bool self_collision) {
   scene::Scene scene = bench::seed_of(side);
   if (self_collision) scene.self_collision = scene::SelfCollision{0.24 / (side - 1), 0.2};

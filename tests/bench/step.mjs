@@ -1,6 +1,7 @@
-// Stepping cost per method and grid, reads through buffer textures against storage buffers, and the seed scene's
-// real-time factor. Configurations alternate, so that a noisy machine disturbs all alike; medians and minima are kept.
-// node tests/bench/step.mjs [MACHINE]   ->   tests/bench/results/step-MACHINE.json
+// Cost of a step per method and grid, with reads through buffer textures and through storage buffers, and the seed
+// scene's real-time factor. Configurations alternate, so that a noisy machine disturbs all alike; medians and minima
+// are kept.
+//   node tests/bench/step.mjs [MACHINE]   ->   tests/bench/results/step-MACHINE.json
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
 import { cpus, loadavg, tmpdir } from "node:os";

@@ -1,5 +1,5 @@
-// Cost and effect of the strain limit: the seed's heavy cloth (0.1 kg a vertex) hanging from two corners for
-// 1 s, symplectic Euler at 1 ms. One JSON line a limit; methods.mjs runs it.
+// Cost and effect of the strain limit: the seed's heavy cloth (0.1 kg per vertex) hangs from two corners for
+// 1 s under symplectic Euler at 1 ms. Prints one JSON line per limit; methods.mjs runs it.
 #include <algorithm>
 #include <cstdio>
 

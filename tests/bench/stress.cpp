@@ -1,6 +1,6 @@
-// Where each method fails: every stress scene (tests/stress) under every method, turned up until it fails,
-// next to what was predicted. bench_stress [PART OF A CASE'S NAME [METHOD]]: one JSON line for each of them;
-// stress.mjs makes the table.
+// Where each method fails: runs every stress scene (tests/stress) under every method, and turns up the
+// scene's knob until the method fails; beside it the prediction. Usage: bench_stress [PART OF A CASE'S NAME
+// [METHOD]]; it prints one JSON line for each. stress.mjs makes the table.
 #include "server/gl/context.h"
 #include "tests/bench/seed.h"
 #include "tests/stress/predict.h"
@@ -11,8 +11,8 @@ using namespace clothlab::stress;
 namespace {
 
 struct Measured {
-  double holds_at = 0, fails_from = 0;  ///< of the knob; 0: never seen
-  std::string how, at_worst;            ///< at fails_from, and at the worst value tried
+  double holds_at = 0, fails_from = 0;  ///< values of the knob; 0: never seen
+  std::string how, at_worst;            ///< failure at fails_from, and at the worst value tried
   int runs = 0, at_rest_shape = 0, finished = 0;
   bool false_alarm = false, cut_short = false, in_order = true;
 };
@@ -26,7 +26,7 @@ class Search {
     const bool by_limit = test_.knob.name == "dt" && !scene::any_step_is_stable(base_.solver.method);
     std::vector<double> values = test_.knob.values;
     if (by_limit) {
-      values.clear();  // blow-ups end early, so it costs little to start far above the limit
+      values.clear();  // blow-ups end early: it costs little to start far above the limit
       const double least = predicted_ > 0 ? predicted_ / 8 : test_.seconds / 6e5;
       for (double dt = 1.0 / 30; dt > least; dt /= 4) values.push_back(dt);
     }
@@ -35,7 +35,7 @@ class Search {
       if (held && by_limit) break;
       if (held && test_.knob.name != "dt") break;
     }
-    // A failure that only a still shorter step cures.
+    // A failure that only a shorter step cures.
     for (double dt = values.back() / 2;
          test_.knob.name == "dt" && !by_limit && result_.holds_at == 0 && dt > test_.seconds / 13000; dt /= 2)
       holds(dt);
@@ -124,7 +124,7 @@ void study(const Case& test, Method method) {
   std::fflush(stdout);
 }
 
-/// Stretch of a hanging strip over what it should be, against iterations and dt.
+/// Stretch of a hanging strip over the exact stretch, against iterations and dt.
 void study_stretch(Method method) {
   for (const double dt : {1.0 / 30, 1.0 / 60, 1.0 / 120})
     for (const int iterations : {1, 10, 100}) {
@@ -134,7 +134,7 @@ void study_stretch(Method method) {
       if (!simulation) return;
       (*simulation)->step(static_cast<std::uint32_t>(8.0 / dt));
       const double low = (*simulation)->read_state().position.back().y;
-      // Each link bears what hangs on it: m g (8 + 7 + ... + 1) / k in all.
+      // Each link bears the weight below it: m g (8 + 7 + ... + 1) / k in all.
       const double exact = 0.01 * 9.8 * 36 / 2000;
       std::printf(
           "{\"stretch\": true, \"method\": \"%s\", \"dt\": %.4g, \"iterations\": %d, \"predicted\": %.4g, "
@@ -154,7 +154,7 @@ int main(int argc, char** argv) {
   std::printf("{\"renderer\": \"%s\"}\n", (*context)->device().name.c_str());
   for (const Case& test : cases())
     for (const Method method : scene::methods)
-      // At 1/30 s the methods that have a limit are far beyond it at any value of the other knobs.
+      // At 1/30 s the methods with a step limit are far beyond it, at any value of the other knobs.
       if ((scene::any_step_is_stable(method) || test.knob.name == "dt" || test.knob.name == "distance") &&
           test.name.find(part) != std::string::npos && (only.empty() || only == scene::name(method)))
         study(test, method);

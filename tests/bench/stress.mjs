@@ -1,6 +1,6 @@
 // Where methods fail: runs bench_stress and writes its results as JSON and as a table to read.
-// node tests/bench/stress.mjs [MACHINE]   ->   tests/bench/results/stress-MACHINE.{json,md}
-// node tests/bench/stress.mjs MACHINE LINES.jsonl   makes them from lines that were printed before.
+//   node tests/bench/stress.mjs [MACHINE]   ->   tests/bench/results/stress-MACHINE.{json,md}
+//   node tests/bench/stress.mjs MACHINE LINES.jsonl   makes them from lines printed earlier.
 import { execFileSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import { cpus } from "node:os";

@@ -1,6 +1,6 @@
-// A step of PBD, XPBD and VBD in the kernel's two forms, one work group and a dispatch a colour, on the seed
-// scene with another number of vertices a side: bench_sweeps SIDE... prints a JSON document, microseconds a
-// step, the median of rounds in which all take turns.
+// A step of PBD, XPBD and VBD in the kernel's two forms, one work group and one dispatch per colour, on the
+// seed scene with SIDE vertices per side. Usage: bench_sweeps SIDE...; it prints a JSON document:
+// microseconds per step, the median of rounds in which all take turns.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

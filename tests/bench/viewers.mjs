@@ -1,8 +1,8 @@
-// Many viewers of one session, some of them stalled, one of them slow: what each gets, what the simulation loses, and
-// what a viewer costs in memory. By hand, on a quiet machine:
+// Many viewers of one session, some stalled, one slow: what each receives, what the simulation loses, and how much
+// memory a viewer costs. By hand, on a quiet machine:
 //   CLOTHLAB=build/release/clothlab node tests/bench/viewers.mjs [VIEWERS] [SECONDS] [--out FILE]
-// Every tenth viewer reads nothing after its first frame. One more reads 64 kB/s; how old its frames are is the
-// simulated time that a viewer that keeps up is ahead of them, at real time. Prints (and writes) JSON.
+// Every tenth viewer reads nothing after its first frame. One more reads 64 kB/s; the age of its frames is the
+// difference in simulated time to a viewer that keeps up, at real time. Prints (and writes) JSON.
 import { readFileSync } from "node:fs";
 import { writeFile } from "node:fs/promises";
 import { cpus } from "node:os";
@@ -24,7 +24,7 @@ const server = await Server.start(
 );
 const resident = () => Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${server.child.pid}/status`, "utf8"))[1]); // [kB]
 
-/// Counts frames without decoding them: the measuring must not be what is measured.
+/// Counts frames without decoding them: decoding here would disturb the measurement.
 // biome-ignore lint/complexity/noStaticOnlyClass: it has fields, which `connect` gives it
 class Viewer {
   static async connect() {
@@ -46,7 +46,7 @@ class Viewer {
   }
 }
 
-/// Lets a socket give out no more than so many bytes a second.
+/// Lets a socket deliver at most this many bytes a second.
 function throttle(socket, bytesPerSecond) {
   let allowed = 0;
   const read = socket.read.bind(socket);

@@ -1,4 +1,4 @@
-// Chromium with the page in it, and what tests read from the page: pixels, positions, controls.
+// Chromium with the page, and what tests read from the page: pixels, positions, controls.
 import assert from "node:assert/strict";
 import { existsSync, mkdirSync } from "node:fs";
 import { after, before, test } from "node:test";
@@ -14,19 +14,20 @@ const candidates = [
 ];
 const executablePath = candidates.find((path) => path && existsSync(path));
 
-/// A test that needs a browser; skipped, and said so, only where there is none.
+/// A test that needs a browser. It is skipped, with a message, only if there is none.
 export function browserTest(name, body) {
   const skip = executablePath ? false : "no Chromium here: install chromium, or name one in CLOTHLAB_BROWSER";
   test(name, { skip, timeout: 240_000 }, async () => {
     try {
       await body();
     } finally {
-      await Promise.all((running?.contexts() ?? []).map((context) => context.close())); // pages left open would draw on
+      // pages left open would go on drawing
+      await Promise.all((running?.contexts() ?? []).map((context) => context.close()));
     }
   });
 }
 
-/// Reads until it is as it should be, for `milliseconds` at most.
+/// Reads repeatedly until `good` accepts the value, for at most `milliseconds`.
 export async function eventually(what, read, good, milliseconds = patience) {
   const until = Date.now() + milliseconds;
   for (;;) {
@@ -42,7 +43,7 @@ mkdirSync(screenshots, { recursive: true });
 
 let running = null;
 
-/// The browser, or null where there is none.
+/// The browser; null if there is none.
 export async function launch() {
   if (!executablePath) return null;
   running = await chromium.launch({
@@ -63,7 +64,7 @@ export async function launch() {
   return running;
 }
 
-/// Gives a file's tests a browser, closed after them.
+/// Gives a file's tests a browser, which closes after them.
 export function withBrowser() {
   const here = {
     browser: null,
@@ -76,14 +77,14 @@ export function withBrowser() {
   return here;
 }
 
-/// A browser and a server, both stopped after a file's tests.
+/// Gives a file's tests a browser and a server, which both stop after them.
 export function withServer(...args) {
   const browser = withBrowser();
   const here = {
     server: null,
-    /// `options.server`: another one than the file's.
+    /// `options.server`: a server other than the file's.
     open: (options = {}) => browser.open(options.server ?? here.server, options),
-    /// A page and a script on the same session, and the scene as the server has it.
+    /// A page and a script on the same session, and a function that reads the server's scene.
     async both(session, options) {
       const viewer = await here.open({ session, width: 1280, height: 800, ...options });
       const client = await Client.connect(options?.server ?? here.server, { session });
@@ -130,7 +131,7 @@ export class Viewer {
     return folder.locator(`input[type=${type}][aria-label^="${label}"]`).first();
   }
 
-  /// The range input of a parameter; its folder is opened if it has to be.
+  /// The range input of a parameter; its folder is opened if it is closed.
   async slider(section, label) {
     const range = this.input("range", section, label);
     if (!(await range.isVisible())) await this.page.locator(`.lil-title:text-is("${section}")`).first().click();
@@ -143,7 +144,7 @@ export class Viewer {
     return this.input("text", section, label);
   }
 
-  /// Vertex positions [m] of the frame on screen, decoded here from the bytes that were uploaded.
+  /// Vertex positions [m] of the frame on screen, decoded here from the uploaded bytes.
   positions() {
     return this.page.evaluate(() => {
       const { header, buffer } = window.clothlab.lastFrame;
@@ -154,7 +155,7 @@ export class Viewer {
     });
   }
 
-  /// What a person sees, as numbers: pixels of the cloth's red in a screenshot, their share, middle and a checksum.
+  /// Pixels of the cloth's red in a screenshot: their share, their middle and a checksum.
   async cloth() {
     const png = (await this.page.screenshot()).toString("base64");
     const helper = await this.page.context().browser().newPage();
@@ -171,7 +172,7 @@ async function countRed(png) {
   const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${png}`)).blob());
   const context = new OffscreenCanvas(image.width, image.height).getContext("2d");
   context.drawImage(image, 0, 0);
-  // The middle of the window: no panel, no red button.
+  // Only the middle of the window: it has no panel and no red button.
   const left = Math.round(image.width * 0.26),
     width = Math.round(image.width * 0.4),
     height = Math.round(image.height * 0.86);

@@ -1,4 +1,4 @@
-// Moving colliders are drawn where the session says they are at the time of the frame on screen.
+// Moving colliders are drawn where the session places them at the time of the frame on screen.
 import assert from "node:assert/strict";
 import { browserTest, eventually, withServer } from "./browser.mjs";
 
@@ -30,7 +30,7 @@ browserTest(
     const { time, normal, table, ball } = await viewer.page.evaluate(() => {
       const { stage, simTime } = window.clothlab;
       const [table, ball] = stage.colliders.shown.map(({ mesh }) => mesh);
-      // A disc faces along its z.
+      // A disc faces along its own z axis.
       const normal = table.position.clone().set(0, 0, 1).applyQuaternion(table.quaternion).toArray();
       return { time: simTime, normal, table: table.position.toArray(), ball: ball.position.toArray() };
     });

@@ -174,7 +174,7 @@ browserTest("a refused edit is explained by a notice, and the control goes back"
 browserTest("pause pauses, step steps once, reset goes back to 0, and keys do the same", async () => {
   const { viewer, client } = await both("transport");
   const { page } = viewer;
-  // The page comes to show the step at which the server stopped, however late it draws its last frame.
+  // The page shows the step at which the server stopped, however late it draws its last frame.
   const stopped = async () => {
     const { step } = await client.nextNotification("sim.status", (status) => status.playing === false);
     await eventually(
@@ -231,7 +231,7 @@ browserTest("speed, help, fit and hiding: the remaining controls do what they sa
   await page.locator("#panel").waitFor({ state: "hidden" });
   await page.keyboard.press("h");
   await page.locator("#panel").waitFor({ state: "visible" });
-  // From where it looks; how near it is depends on where the cloth has got to (framing.test.mjs).
+  // The direction of the view only: the distance depends on where the cloth is (framing.test.mjs).
   const camera = () =>
     page.evaluate(() => {
       const { object, target } = window.clothlab.stage.controls;

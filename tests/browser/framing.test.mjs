@@ -14,8 +14,8 @@ const sizes = [
 const moments = process.env.FRAMING_PICTURES ? [0.4, 0.8, 1.4, 2.2, 3] : [0.5, 1.4]; // [s] simulated
 const margin = 4; // [CSS pixels] between the cloth and an edge or a card
 
-/// What of the frame on screen, and of its spheres, lies outside the window or behind a card: how many points, and the
-/// farthest. Projected here, by the camera's matrices alone.
+/// How much of the frame's vertices and spheres lies outside the window or behind a card: number of points, and the
+/// farthest. Projected here with the camera's matrices alone.
 const hiddenPoints = (margin) => {
   const {
     stage,
@@ -55,7 +55,7 @@ const hiddenPoints = (margin) => {
     hidden++;
     if (where === "" || depth > worst) (worst = depth), (where = by);
   }
-  // Nor may a card stick out itself.
+  // No card may stick out of the window, either.
   const cut = cards
     .filter(([, box]) => box.left < 0 || box.right > innerWidth + 0.5)
     .map(([id]) => id)
@@ -73,7 +73,7 @@ const hiddenPoints = (margin) => {
   };
 };
 
-/// Where things stand is looked at, not the picture: a software renderer would take most of the time for that.
+/// Turns drawing off: the tests read places only, and a software renderer would take most of the time.
 const onlyPlace = () => {
   const { stage } = window.clothlab;
   stage.renderer.render = stage.groundShadow.draw = () => undefined;
@@ -82,7 +82,7 @@ const onlyPlace = () => {
 async function check(viewer, moment, found = []) {
   for (const [width, height] of moment === "start" ? sizes : sizes.filter(([width]) => width < 1920)) {
     await viewer.page.setViewportSize({ width, height });
-    // The layout follows at once, a sheet or a camera on its way a little later.
+    // The layout changes at once; a sliding sheet or camera arrives a little later.
     const seen = await eventually(
       `${moment} at ${width}x${height}`,
       async () => {
@@ -105,7 +105,7 @@ async function check(viewer, moment, found = []) {
   return found;
 }
 
-/// Steps the paused session on to a simulated time, and waits until the page shows it.
+/// Steps the paused session to a simulated time, and waits until the page shows it.
 async function stepTo(viewer, client, dt, time) {
   const now = await viewer.read("simTime");
   await client.request("sim.step", { steps: Math.max(1, Math.round((time - now) / dt)) });
@@ -164,7 +164,7 @@ browserTest(
     await viewer.page.mouse.move(320, 430, { steps: 4 });
     await viewer.page.mouse.up();
     const apart = (a, b) => Math.hypot(...a.map((value, axis) => value - b[axis]));
-    // A drag swings out, for as many pictures as that takes.
+    // A drag swings out over some frames.
     let last = await stand();
     await eventually(
       "the camera at rest",

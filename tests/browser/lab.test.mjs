@@ -6,7 +6,7 @@ import { browserTest, eventually, screenshots, withServer } from "./browser.mjs"
 
 const here = withServer();
 
-/// Hangs from its upper corners, nothing to collide with.
+/// The cloth hangs from its upper corners; there are no colliders.
 const small = {
   version: 1,
   name: "small",
@@ -24,8 +24,8 @@ const small = {
   solver: { method: "symplectic_euler", dt: 0.004 },
 };
 
-/// A page with the drawer open on the small scene, and a script beside it. The cloth stands still: all the machine
-/// measures, and what a test has measured so the next one need not.
+/// A page with the drawer open on the small scene, and a script beside it. The session is paused: the machine only
+/// measures, and what one test has measured the cache gives to the next.
 async function lab(session, { tab = "Chart", ...options } = {}) {
   const { viewer, client, scene } = await here.both(session, options);
   await client.request("scene.load", { scene: small });
@@ -40,8 +40,8 @@ async function lab(session, { tab = "Chart", ...options } = {}) {
 
 const chosen = ["Symplectic Euler", "Verlet"];
 
-/// Charts two methods: seconds, not minutes. How far that goes is the machine's matter; `most` leaves a slow one, busy
-/// with other things, room for the points that the tests look for.
+/// Charts two methods in seconds, not minutes. How far a chart gets depends on the machine: `most` leaves a slow, busy
+/// one time for the points that the tests look for.
 async function start(panel, button, { methods = chosen, most = "120", seconds = "0.1" } = {}) {
   const options = panel.getByRole("button", { name: "Options" });
   if ((await options.getAttribute("aria-expanded")) === "false") await options.click();
@@ -76,7 +76,7 @@ async function charted(session, options) {
   return all;
 }
 
-/// The time step that is told [s].
+/// The time step in the text [s].
 function step(text) {
   const [, value, unit] = /dt ([\d.]+)\s(ms|µs)/.exec(text);
   return value * (unit === "µs" ? 1e-6 : 1e-3);
@@ -93,7 +93,7 @@ browserTest(
   async () => {
     const { viewer, client } = await here.both("main");
     const { page } = viewer;
-    await client.request("sim.pause"); // the session that every server has would play for half a minute beside the next tests
+    await client.request("sim.pause"); // the main session would play for half a minute beside the next tests
     const drawer = page.locator("#lab");
     assert.ok(await drawer.isHidden());
     await page.getByRole("button", { name: "Lab", exact: true }).click();
@@ -162,7 +162,7 @@ browserTest(
     const { page, scene, panel, marks } = await charted("lab-keys");
     const tip = page.getByRole("tooltip");
     await panel.locator('.lab-picture [data-index][tabindex="0"]').focus();
-    // From wherever Tab comes in, to the end of its curve and back one.
+    // Walks from the mark with the focus to the end of its curve, then one back.
     for (let told = await tip.innerText(), before = ""; told !== before; ) {
       before = told;
       await page.keyboard.press("ArrowRight");
@@ -262,8 +262,7 @@ browserTest(
     assert.match(await says.innerText(), /Now: Symplectic Euler, dt 4\sms: error \S+, \S+\s(ms|s) a simulated second/);
     const [x, y] = await place();
     await client.request("scene.patch", { patch: { solver: { dt: 0.002 } } });
-    // Half the step, first order: half the error. What it costs is measured, and so short a run may come out either
-    // way.
+    // Half the step at order 1: half the error. The cost is measured, and in so short a run it may change either way.
     await eventually(
       "the sentence",
       () => says.innerText(),
@@ -282,7 +281,7 @@ browserTest(
       0,
       "the chart does not depend on how the scene is stepped",
     );
-    // What moves the cloth otherwise makes it stale, until it is taken back.
+    // A change of the motion makes the result stale until it is undone.
     await client.request("scene.patch", { patch: { gravity: [0, -3, 0] } });
     const badge = panel.getByText("Measured for an earlier scene");
     await badge.waitFor();
@@ -408,7 +407,7 @@ browserTest(
   },
 );
 
-/// Parts of the drawer that stick out of it or of the window, and words that are cut off.
+/// Parts of the drawer that stick out of it or of the window, and cut-off words.
 const cutOff = () => {
   const problems = [];
   const drawer = document.getElementById("lab").getBoundingClientRect();

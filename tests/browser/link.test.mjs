@@ -41,7 +41,7 @@ browserTest("a server with a token asks for it, refuses a wrong one, and lets th
     await viewer.until(() => window.clothlab.framesDrawn > 2);
     assert.equal(await dialog.isVisible(), false);
     await viewer.page.reload();
-    await viewer.until(() => window.clothlab.framesDrawn > 2); // kept for this tab
+    await viewer.until(() => window.clothlab.framesDrawn > 2); // the token is kept for this tab
   } finally {
     await server.stop();
   }
@@ -56,7 +56,7 @@ browserTest("where too many wrong tokens were tried, the page says so, waits, an
     await viewer.page.getByLabel("Token", { exact: true }).fill("spun gold");
     await viewer.page.getByRole("button", { name: "Connect" }).click();
     await viewer.page.getByText("Not connected (too many wrong tokens came from this address").waitFor();
-    await viewer.until(() => window.clothlab.framesDrawn > 2); // one is looked at every ten seconds
+    await viewer.until(() => window.clothlab.framesDrawn > 2); // the server checks one token every ten seconds
     assert.equal(await viewer.page.locator("#banner").isVisible(), false);
   } finally {
     await server.stop();
@@ -81,7 +81,7 @@ browserTest(
     const server = await Server.start();
     const viewer = await open(server);
     const closed = [];
-    let spoil = null; // what is sent in place of the next frame
+    let spoil = null; // sent in place of the next frame
     await viewer.page.routeWebSocket("**/ws**", (page) => {
       const link = page.connectToServer();
       link.onMessage((message) => {
@@ -127,6 +127,6 @@ browserTest("a page that finds no server says so instead of staying empty", asyn
   const viewer = await open(server, { drawn: 0 });
   await viewer.page.route("**/ws**", (route) => route.abort());
   await server.stop("SIGKILL");
-  // Between two tries it says for a moment that it tries again.
+  // Between two attempts the banner says for a moment that it tries again.
   await viewer.page.locator("#banner", { hasText: /Connection lost|No server answers/ }).waitFor({ state: "visible" });
 });

@@ -6,7 +6,7 @@ import { browserTest, eventually, screenshots, withServer } from "./browser.mjs"
 
 const here = withServer();
 
-/// Visible controls and cards that stick out of the window, or text cut off inside them.
+/// Visible controls and cards that stick out of the window, and text cut off inside them.
 const cutOff = () => {
   const problems = [];
   const visible = (node) => node.checkVisibility({ visibilityProperty: true, opacityProperty: true });
@@ -15,7 +15,7 @@ const cutOff = () => {
   )) {
     if (!visible(node)) continue;
     const { left, top, right, bottom } = node.getBoundingClientRect();
-    const inPanel = node.closest(".panel-body"); // which scrolls
+    const inPanel = node.closest(".panel-body"); // the panel's body scrolls
     if (left < 0 || right > innerWidth + 0.5 || (!inPanel && (top < 0 || bottom > innerHeight + 1))) {
       problems.push(`${node.id || node.className} at ${[left, top, right, bottom].map(Math.round)}`);
     }
@@ -47,7 +47,7 @@ for (const [width, height] of [
         assert.ok(await (await viewer.slider("Cloth", "structural")).isVisible());
         await viewer.page.screenshot({ path: `${screenshots}${width}x${height}-${colorScheme}-parameters.png` });
       }
-      await viewer.page.getByRole("combobox", { name: "method" }).selectOption("PBD"); // it has most to say
+      await viewer.page.getByRole("combobox", { name: "method" }).selectOption("PBD"); // PBD has the most notes
       await eventually(
         "notes",
         () => viewer.page.locator(".note:visible").count(),

@@ -36,7 +36,7 @@ browserTest("the cloth hits the sphere and lies on it: vertices touch its surfac
   assert.ok(touching >= 8, `${touching} vertices are within 2 cm of the ball`);
 });
 
-browserTest("what is drawn follows the scene: another colour is another colour on the screen", async () => {
+browserTest("the picture follows the scene: a change of colour shows on the screen", async () => {
   const viewer = await open({ session: "colour" });
   await viewer.until(() => window.clothlab.simTime > 0.5);
   const red = await viewer.cloth();

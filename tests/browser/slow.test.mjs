@@ -1,10 +1,11 @@
-// What the page says of a server that cannot keep up. The server is a quick one; what comes from it is held back.
+// What the page shows when a server cannot keep up. The server here is quick; its messages are held back.
 import assert from "node:assert/strict";
 import { browserTest, eventually, withServer } from "./browser.mjs";
 
 const { both } = withServer();
 
-/// Opens a page whose connection passes through `slow`: no frames while it is on, and that factor in every status.
+/// Opens a page whose connection passes through `slow`: while it is on, no frames pass, and every status has its
+/// factor.
 async function throttled(session) {
   const link = { slow: false, frames: true, factor: 1 };
   const opened = await both(session);
@@ -13,14 +14,14 @@ async function throttled(session) {
     server.onMessage((message) => {
       if (Buffer.isBuffer(message)) {
         if (link.frames || message[0] !== 2) return page.send(message);
-        // The server sends on as if it had been drawn.
+        // Acknowledges the dropped frame, so that the server goes on sending.
         server.send(
           JSON.stringify({ jsonrpc: "2.0", method: "stream.ack", params: { frame: message.readUInt32LE(8) } }),
         );
         return;
       }
       const text = JSON.parse(message);
-      // A busy machine's own slowness is none of these tests'.
+      // The busy machine's own slowness must not count.
       if (text.method === "sim.status")
         Object.assign(text.params, { real_time_factor: link.slow ? link.factor : 1, asleep: false });
       page.send(JSON.stringify(text));
@@ -60,9 +61,9 @@ browserTest("time that creeps is told of with its factor, a pause and a scene at
   const box = viewer.page.locator("#slow");
   Object.assign(link, { slow: true, factor: 0.02 });
   await box.filter({ hasText: "Only ×0.02 of real time" }).waitFor({ state: "visible" });
-  assert.equal(await box.getByRole("button", { name: "Undo" }).isVisible(), false); // this page changed nothing
+  assert.equal(await box.getByRole("button", { name: "Undo" }).isVisible(), false); // this page has changed nothing
   await client.request("sim.pause", {});
   await box.waitFor({ state: "hidden" });
-  await viewer.page.waitForTimeout(4000); // paused: no pictures, and nothing wrong
+  await viewer.page.waitForTimeout(4000); // paused: no pictures come, and nothing is wrong
   assert.equal(await box.isVisible(), false);
 });

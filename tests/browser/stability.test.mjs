@@ -4,7 +4,7 @@ import { browserTest, eventually, withServer } from "./browser.mjs";
 
 const here = withServer();
 
-/// A page and a script on the same session, and what the page's gauge says.
+/// A page and a script on the same session, and a function that reads the page's gauge.
 async function both(session, options) {
   const { viewer, client, scene } = await here.both(session, options);
   const meter = viewer.page.getByRole("meter");
@@ -58,7 +58,7 @@ browserTest(
     ]) {
       await number.fill(String(Number((share * limit).toPrecision(4))));
       await number.press("Enter");
-      // On a busy machine a bound stands in for the sharp limit for a moment.
+      // On a busy machine a bound replaces the sharp limit for a moment.
       const percent = `${Math.round(100 * share)} %`;
       const shown = await eventually(
         word,
@@ -151,7 +151,7 @@ browserTest(
       assert.equal(await viewer.input("range", "Solver", "tolerance").count(), 0, `${name} has no tolerance`);
       trades.add((await eventually("its own trade", notes, ([, trade]) => trade && !trades.has(trade)))[1]);
     }
-    // The figures are the server's, and follow the iterations as well as the stiffness.
+    // The server computes the figures: they follow the iterations and the stiffness.
     const told = async () => (await eventually("the note", notes, (texts) => texts.length === 3))[2];
     const percent = (share) => `${Number((100 * share).toPrecision(2))}\u00a0%`;
     // Both are read anew at each try: an edit may still be on its way.
@@ -207,8 +207,8 @@ for (const [name, section, label] of [
       const text = await notice.innerText();
       assert.match(text, /blew up[^]*(\d J|finite)[^]*t = \d[^]*the longest stable step[^]*Remedy: set dt to /);
 
-      // What is shown meanwhile is the last good state.
-      // (Each press of a key was an edit, after which it went on until it blew up again.)
+      // Meanwhile the page shows the last good state.
+      // (Each press of a key was an edit, after which the simulation ran until it blew up again.)
       const lastStatus = () => client.messages.findLast(({ method }) => method === "sim.status").params;
       await eventually(
         "the last good frame",
@@ -286,7 +286,7 @@ browserTest(
   },
 );
 
-/// The seed's 25 x 25 vertices, 1/24 m apart at rest: none is lost, and no cell has more than doubled.
+/// True if the seed's 25 x 25 vertices, 1/24 m apart at rest, are all there and no cell has more than doubled.
 function inOnePiece(positions) {
   assert.equal(positions.length, 625);
   positions.forEach((at, i) => {

@@ -1,4 +1,4 @@
-// `clothlab chart`, `stability`, `choose`, `simplify`: what they print and write, the cache, and Ctrl-C.
+// `clothlab chart`, `stability`, `choose`, `simplify`: their output and files, the cache, and Ctrl-C.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
@@ -10,7 +10,7 @@ const cache = join(folder, "cache");
 const environment = { XDG_CACHE_HOME: cache };
 const program = process.env.CLOTHLAB ?? "build/release/clothlab";
 
-// Small enough for seconds: 25 vertices, a corner held.
+// Small enough to measure in seconds: 25 vertices, one corner held.
 writeFileSync(
   join(folder, "small.json"),
   JSON.stringify({
@@ -88,7 +88,7 @@ test("a cache that cannot be written changes nothing", () => {
   writeFileSync(join(folder, "in-the-way"), "");
   const { status, stderr } = clothlab([...chart.slice(0, -1), "2"], { XDG_CACHE_HOME: join(folder, "in-the-way") });
   assert.equal(status, 0);
-  assert.doesNotMatch(stderr, /clothlab:/); // Mesa, whose cache of shaders is there too, may say something
+  assert.doesNotMatch(stderr, /clothlab:/); // Mesa, whose shader cache is in this folder too, may print something
 });
 
 test("the choice prints its settings as options that `run` takes, and as a patch", () => {
@@ -133,13 +133,13 @@ test("the stability map has a table a method with the measured step next to theo
   assert.match(stdout, /^value +held \[ms\] +failed \[ms\] +theory \[ms\]/m);
   const result = JSON.parse(read("results", "stability.json"));
   assert.equal(result.methods[0].columns.length, 2);
-  // Beyond theory's limit a cloth may tremble without blowing up (1.2 here): the map says so.
+  // Beyond theory's limit a cloth may tremble without blowing up (here up to 1.2 of it): the map says so.
   for (const { held_s, failed_s, theory_s } of result.methods[0].columns)
     assert.ok(held_s < failed_s && failed_s > 0.95 * theory_s && held_s < 1.5 * theory_s);
   for (const extension of ["csv", "svg"]) assert.ok(existsSync(join(folder, "results", `stability.${extension}`)));
 });
 
-test("what parts are worth is a row each, with what the scene does not have and why", () => {
+test("each part gets a row with its worth, and missing parts are listed with the reason", () => {
   const { stdout } = lab("simplify", "small.json", "--time", "0.2", "--tolerance", "0.05");
   assert.match(stdout, /^ +cost +change +error +longest dt \[ms\]/m);
   assert.match(stdout, /bend/);

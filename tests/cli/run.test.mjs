@@ -53,7 +53,7 @@ test("the report counts what implicit Euler's solver and the strain limit did", 
   assert.ok(!("solver" in report("report.json")) && !("strain_limit" in report("report.json")));
 });
 
-test("what sweeps a given number of times has nothing to report of its solver, and no limit to warn of", () => {
+test("a method with a fixed number of sweeps reports nothing of its solver and has no limit to warn of", () => {
   for (const method of ["pbd", "xpbd", "vbd"]) {
     const { stderr } = run(
       "seed",
@@ -189,7 +189,7 @@ test("a run that diverges exits 4, keeps what was good, and marks it", () => {
   assert.equal(r.diverged, true);
   assert.ok(r.diverged_by > r.sim_time);
   assert.match(r.diverged_reason, /0\.0025 s/);
-  // The cloth as it was before: some 600 J are what 62.5 kg have to fall.
+  // The last good state: 62.5 kg that fall gain about 600 J.
   assert.ok(r.energy.kinetic + r.energy.elastic < 600, JSON.stringify(r.energy));
   const obj = file("blowup.obj").toString();
   assert.match(obj, /^#.*diverged/);

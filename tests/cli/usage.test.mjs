@@ -1,4 +1,4 @@
-// Help, exit codes, and what is said about wrong input.
+// Help, exit codes, and messages about wrong input.
 import assert from "node:assert/strict";
 import { existsSync, mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -114,7 +114,7 @@ test("info names a usable device, the one that is used, the methods, and the fol
 });
 
 test("a step near or beyond the longest stable one is said on stderr, in one line, and is no error", () => {
-  const thick = ["--set", "/self_collision/thickness=0.036"]; // else that is told of too
+  const thick = ["--set", "/self_collision/thickness=0.036"]; // otherwise the thin self-collision is reported, too
   for (const args of [
     ["validate", "blowup"],
     ["run", "seed", "--time", "0", ...thick, "--set", "/solver/dt=0.0025"],

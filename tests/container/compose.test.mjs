@@ -12,7 +12,7 @@ const tool = [["docker", "compose"], ["docker-compose"]].find(([program, ...args
 );
 const skip = tool ? false : "there is no Docker Compose 2 here to read compose.yaml with";
 
-/// What Docker Compose makes of a compose file; needs no daemon.
+/// The configuration that Docker Compose reads from a compose file; needs no daemon.
 function read(document, env = {}) {
   const [program, ...args] = [...tool, "--project-directory", folder, "-f", "-", "config", "--format", "json"];
   const { status, stdout, stderr } = spawnSync(program, args, {
@@ -24,7 +24,7 @@ function read(document, env = {}) {
   return JSON.parse(stdout).services.clothlab;
 }
 
-/// The file with some of its commented lines in force.
+/// The compose file with some of its commented lines in force.
 function uncommented(...lines) {
   let document = text;
   for (const line of lines) {

@@ -57,7 +57,7 @@ test("the server is process 1, not root, without any capability, on a root it ca
   assert.equal(stdout, "/tmp\n/var/lib/clothlab\n");
 });
 
-test("what Mesa compiles is kept in the volume", async () => {
+test("shaders that Mesa has compiled are kept in the volume", async () => {
   const kept = readdirSync(container.volume, { recursive: true });
   assert.ok(
     kept.some((name) => name.startsWith("cache/mesa_shader_cache")),
@@ -72,7 +72,7 @@ test("the tokens are in no process's arguments", () => {
   assert.equal(container.environment.CLOTHLAB_TOKEN, token);
 });
 
-test("who has no token sees nothing; a viewer's token lets one look", async () => {
+test("a client without a token sees nothing; a viewer's token lets it look", async () => {
   const client = await Client.connect(container);
   assert.equal((await client.refusal("scene.get")).code, -32001);
   assert.deepEqual(await client.request("auth", { token: "look" }), { role: "viewer" });
@@ -146,10 +146,10 @@ test("the health check succeeds while the server answers, and fails when it does
   const gone = await Container.finish({ command: [...check, "8082"] });
   assert.notEqual(gone.code, 0);
 
-  // Answers what /healthz does when a session's thread stands still; then nothing at all.
+  // Answers as /healthz does when a session's thread hangs; later answers nothing at all.
   const listener = net
     .createServer((socket) => {
-      socket.on("error", () => {}); // who reads one line and leaves resets the connection
+      socket.on("error", () => {}); // a client that reads one line and leaves resets the connection
       socket.end("HTTP/1.1 503 Service Unavailable\r\n\r\n");
     })
     .listen(8082);
@@ -197,7 +197,7 @@ test("with --tls-cert the health check asks by HTTPS", async () => {
   assert.equal((await other.stop()).code, 0);
 });
 
-test("what a session was is there again in another container with the same volume", async () => {
+test("a session is restored in another container with the same volume", async () => {
   const volume = newVolume(),
     options = { args: ["--port", "8081"], env: { CLOTHLAB_TOKEN: token }, volume };
   let other = await Container.start(options);

@@ -1,5 +1,5 @@
-// The image that tests/container/run has built, and containers of it, confined as docker/compose.yaml asks for: a
-// read-only root, no capability, no new privileges, the server as process 1, and no device but /dev/null and its like.
+// The image that tests/container/run has built, and containers of it, restricted as docker/compose.yaml asks: a
+// read-only root, no capability, no new privileges, the server as process 1, and no device but /dev/null and the like.
 import { spawn, spawnSync } from "node:child_process";
 import { once } from "node:events";
 import { chownSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -7,7 +7,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { Server, withTimeout } from "../protocol/harness.mjs";
 
-/// The folder with the image's files, and what `docker inspect` shows as Config.
+/// The folder with the image's files, and the part Config of `docker inspect`.
 export const root = process.env.CLOTHLAB_IMAGE_ROOT;
 export const config = JSON.parse(readFileSync(process.env.CLOTHLAB_IMAGE_CONFIG, "utf8"));
 export const user = Number(config.User.split(":")[0]);
@@ -29,7 +29,7 @@ const confined = `set -eu
     --inh-caps=-all --no-new-privs env -i --chdir="$FOLDER" "$@"`;
 
 export class Container extends Server {
-  /// Starts the image's entrypoint with `args` (none: the image's own), or `command` instead of it.
+  /// Starts the image's entrypoint with `args` (by default the image's own), or `command` instead of it.
   static run({ args = config.Cmd, command = [...config.Entrypoint, ...args], env = {}, volume } = {}) {
     const container = new Container();
     container.volume = volume ?? newVolume();
@@ -46,7 +46,7 @@ export class Container extends Server {
     return container;
   }
 
-  /// Runs it until it listens.
+  /// Runs a container until it listens.
   static async start(options = {}) {
     const container = Container.run(options);
     const listening = new Promise((resolve, reject) => {
@@ -63,20 +63,20 @@ export class Container extends Server {
     return container;
   }
 
-  /// Runs it to its end.
+  /// Runs a container to its end.
   static async finish(options) {
     const container = Container.run(options);
     const [code] = await withTimeout(container.closed, "the container to end");
     return { code, stdout: container.stdout, stderr: container.stderr };
   }
 
-  /// The number this machine has for the container's process 1.
+  /// The process id that this machine gives the container's process 1.
   get process() {
     const children = readFileSync(`/proc/${this.child.pid}/task/${this.child.pid}/children`, "utf8");
     return Number(children.split(" ")[0]);
   }
 
-  /// What the kernel says of process 1, by its name in /proc/PID/status.
+  /// A field of /proc/PID/status of process 1.
   get status() {
     const lines = readFileSync(`/proc/${this.process}/status`, "utf8").trim().split("\n");
     return Object.fromEntries(lines.map((line) => line.split(/:\s*/)));
@@ -87,7 +87,7 @@ export class Container extends Server {
     return Object.fromEntries(lines.filter(Boolean).map((line) => line.split(/=(.*)/s, 2)));
   }
 
-  /// Another command in the same container, as `docker exec` does: its exit code and output.
+  /// Runs another command in the same container, like `docker exec`: its exit code and output.
   exec(...command) {
     const inside = [
       "--mount",
@@ -105,7 +105,7 @@ export class Container extends Server {
     return { code: status, stdout, stderr };
   }
 
-  /// As `docker stop` does: SIGTERM to process 1. The exit code, and how long it took.
+  /// Stops the container like `docker stop`, with SIGTERM to process 1: the exit code, and how long it took.
   async stop(signal = "SIGTERM") {
     const from = performance.now();
     process.kill(this.process, signal);
@@ -117,7 +117,7 @@ export class Container extends Server {
 const volumes = mkdtempSync(join(tmpdir(), "clothlab-volumes-"));
 process.on("exit", () => rmSync(volumes, { recursive: true, force: true }));
 
-/// A folder that belongs to the image's user, as a new volume does. It goes when the tests end.
+/// A folder that belongs to the image's user, like a new volume. It is removed when the tests end.
 export function newVolume() {
   const folder = mkdtempSync(join(volumes, "volume-"));
   chownSync(folder, user, user);

@@ -34,7 +34,7 @@ test("there is no compiler, assembler, linker, build tool, Node or Python in it"
     ),
     [],
   );
-  assert.ok(find("-path", "*/bin/bash").length > 0); // the search does find what is there
+  assert.ok(find("-path", "*/bin/bash").length > 0); // the search does find existing files
 });
 
 test("its user may write nowhere but in /var/lib/clothlab and the folders for everybody", () => {

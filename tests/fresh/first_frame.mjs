@@ -1,4 +1,4 @@
-// Waits for a frame from the server at the URL given. With what comes with Node 18 alone: nothing else is there yet.
+// Waits for a frame from the server at the given URL. Uses only what comes with Node 18: nothing else is installed yet.
 import { randomBytes } from "node:crypto";
 import net from "node:net";
 
@@ -18,7 +18,7 @@ function say(message) {
   socket.write(Buffer.concat([Buffer.from([0x81, 0x80 | text.length]), mask, masked]));
 }
 
-/// The messages in what has come so far: each a final frame, as this server sends them.
+/// The messages in the bytes received so far. Each is a single final frame, as this server sends them.
 function* messages(bytes) {
   while (bytes.length >= 2) {
     const short = bytes[1] & 127,

@@ -22,7 +22,7 @@ Error refused(std::size_t offset, std::string found, std::string allowed) {
   return {"byte " + std::to_string(offset), std::move(found), std::move(allowed)};
 }
 
-/// `count` items, one after another, which the bytes must hold.
+/// `count` items, one after another; the caller has checked that the bytes hold them.
 template <class T>
 std::vector<T> items_at(std::span<const std::uint8_t> bytes, std::size_t& offset, std::size_t count) {
   std::vector<T> items(count);
@@ -73,7 +73,7 @@ Result<Topology> read_topology(std::span<const std::uint8_t> bytes, const FrameH
   const std::uint64_t triangles = number_at<std::uint32_t>(bytes, offset),
                       cloths = number_at<std::uint32_t>(bytes, offset + 4);
   offset += 8;
-  // In 64 bits: no three counts of 32 bits can overflow that.
+  // In 64 bits: three 32-bit counts cannot overflow that.
   if (8 * cloths + 12 * triangles + 8 * std::uint64_t{header.vertex_count} != bytes.size() - offset)
     return refused(offset, std::to_string(bytes.size() - offset) + " bytes after the counts",
                    "as many as they say");

@@ -1,5 +1,5 @@
-// Reads the binary messages of the protocol (server/net/README.md), strictly and written from that
-// table alone: what the server sends is held against it. Nothing is lost in reading, so `encode_frame` gives
+// Reads the binary messages of the protocol strictly. It is written from the table in server/net/README.md
+// alone, so that the server's messages can be checked with it. Reading loses nothing: `encode_frame` gives
 // the same bytes back.
 #pragma once
 
@@ -39,7 +39,7 @@ struct Quantised {
     bool operator==(const Vertex&) const = default;
   };
   std::vector<Vertex> vertices;
-  /// Where a vertex is: minimum + extent * u / 65535 [m].
+  /// Position of a vertex: minimum + extent * u / 65535 [m].
   static std::array<double, 3> position(const FrameHeader& header, const Vertex& vertex);
 };
 
@@ -48,7 +48,7 @@ struct Decoded {
   std::variant<Topology, Float32, Quantised> payload;
 };
 
-/// Error: where = "byte OFFSET".
+/// Reads a message. The error's `where` is "byte OFFSET".
 Result<Decoded> decode_frame(std::span<const std::uint8_t> bytes);
 
 std::vector<std::uint8_t> encode_frame(const Decoded& message);

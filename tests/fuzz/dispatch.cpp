@@ -1,10 +1,10 @@
-// Messages to the server, a line each: two clients in turn, through everything from the bytes as
-// libwebsockets hands them over to the answer as it would be written. Every request gets one answer with its
-// id, a notification none, and the connection lives on.
+// Messages to the server, one per line, from two clients in turn: from the bytes as libwebsockets delivers
+// them to the answer as it would be written. Every request gets one answer with its id, a notification gets
+// none, and the connection stays open.
 //
-// The first character of the input says who is who (bit 0: a token is asked for; bit 1: the second client is
-// in another session). A line may begin with ">" (the second client says it), "%" (as a binary message);
-// "\x1f" within a line ends a fragment.
+// The first character of the input sets the clients up (bit 0: a token is asked for; bit 1: the second client
+// is in another session). A line may begin with ">" (the second client sends it) or "%" (as a binary
+// message); "\x1f" within a line ends a fragment.
 #include <algorithm>
 #include <memory>
 #include <set>
@@ -40,7 +40,7 @@ class Peer {
     }
   }
 
-  /// Reads all that waits to be sent, each message a whole one.
+  /// Reads all messages that wait to be sent, each a whole one.
   std::vector<json> hear() {
     std::size_t before = 0;
     std::vector<json> heard;
@@ -77,7 +77,8 @@ void require_error(const json& error, const std::string& text) {
                 "invalid parameters are named, with what is allowed", text);
 }
 
-/// What the message asks an answer to: an id, null where it could not be read, or nothing.
+/// The id that an answer to the message must have: null if the id could not be read, nothing if no answer is
+/// due.
 std::optional<json> answer_wanted(const std::string& line, bool binary) {
   if (binary) return json(nullptr);
   const std::variant<net::Request, net::BadRequest> read = net::parse_request(line);
@@ -91,7 +92,7 @@ void pump(net::Hub& hub) {
   hub.pump();
 }
 
-/// Answers among what was heard; each must be to `wanted`.
+/// Number of answers among the messages `heard`; each must be to `wanted`.
 int answers(const std::vector<json>& heard, const std::optional<json>& wanted, const std::string& line) {
   int count = 0;
   for (const json& message : heard) {

@@ -14,7 +14,7 @@ namespace clothlab::fuzz {
 namespace {
 
 constexpr std::size_t most_vertices = 256;  // of a model that is built for every input
-constexpr std::size_t most_searched = 64;   // of one whose step limit is searched
+constexpr std::size_t most_searched = 64;   // of a model whose step limit is searched
 
 bool carried(double x) {
   return std::isfinite(static_cast<float>(x));
@@ -60,7 +60,7 @@ void require_vertices(const model::Model& model) {
   }
 }
 
-/// Every item once, and no two of a colour that `conflict`.
+/// Requires that every item is there once, and that no two items of a colour `conflict`.
 template <class Conflict>
 void require_colouring(const model::Colouring& colouring, std::size_t items, Conflict conflict) {
   require(colouring.order.size() == items && colouring.offsets.back() == items, "every item has one colour");

@@ -1,4 +1,4 @@
-// What holds for every scene document that was accepted, and for every error that a document gets.
+// Properties of every accepted scene document, and of every error about a document.
 #pragma once
 
 #include "server/model/model.h"
@@ -8,7 +8,7 @@
 
 namespace clothlab::fuzz {
 
-/// It validates again to itself, and so does its own text.
+/// The document validates to itself, and so does its own text.
 inline void require_settled(const scene::Document& document) {
   const Result<scene::Document> again = scene::validate(document.value);
   require(bool(again), "a validated document validates", again ? "" : again.error().text());
@@ -20,7 +20,7 @@ inline void require_settled(const scene::Document& document) {
   require(*read == document.value, "a document's text reads as the document");
 }
 
-/// Complete, `where` a JSON Pointer, all of it text that can be sent.
+/// The error is complete, `where` is a JSON Pointer, and all its text can be sent.
 inline void require_pointer(const Error& error) {
   require_complete(error);
   require(scene::split_pointer(error.where).has_value(), "an error's place is a JSON Pointer", error.where);
@@ -28,15 +28,14 @@ inline void require_pointer(const Error& error) {
           error.text());
 }
 
-/// Vertices of what a scene would build.
+/// Number of vertices that a scene would build.
 std::size_t vertex_count(const scene::Scene& scene);
 
-/// The arrays fit each other, every number in them is one that float32 can carry, and the model is what the
-/// scene says.
+/// The arrays have matching sizes, every number fits float32, and the model agrees with the scene.
 void require_sound(const model::Model& model, const scene::Scene& scene);
 
-/// Builds the scene's model where that is small enough to be done often: it is sound, or an error points to
-/// why not.
+/// Builds the scene's model if it is small enough to be built often: the model is sound, or an error points
+/// to the cause.
 void require_model(const scene::Scene& scene);
 
 }  // namespace clothlab::fuzz

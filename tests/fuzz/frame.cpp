@@ -1,5 +1,5 @@
-// Any bytes as a binary message: refused with the byte that is wrong, or read so that nothing is lost. What
-// is read, the server's own code would have written in the same bytes.
+// Any bytes as a binary message: they are refused with the offset of the wrong byte, or read without loss.
+// The server's own code would have written the same bytes for what was read.
 #include <algorithm>
 #include <cstring>
 
@@ -50,7 +50,7 @@ void require_in_box(const fuzz::FrameHeader& header, const fuzz::Quantised& fram
   }
 }
 
-/// False: refused.
+/// Reads the bytes; false if they are refused.
 bool check(std::span<const std::uint8_t> bytes) {
   const Result<fuzz::Decoded> message = fuzz::decode_frame(bytes);
   if (!message) {
@@ -80,7 +80,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::vector<std::uint8_t> bytes(data, data + size);
   check(bytes);
   if (size < stream::header_bytes) return 0;
-  // The same with a length that is right, which a mutation seldom leaves: no part of it is a message.
+  // The same with a correct length, which a mutation seldom leaves: no part of the message is a message.
   const auto payload = static_cast<std::uint32_t>(size - stream::header_bytes);
   std::memcpy(bytes.data() + 56, &payload, sizeof payload);
   std::memset(bytes.data() + 60, 0, 4);

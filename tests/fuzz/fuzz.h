@@ -1,6 +1,6 @@
-// What the fuzz targets share. A target is a file with LLVMFuzzerTestOneInput: under clang it is linked with
-// libFuzzer, otherwise with replay.cpp, which runs it over the files of tests/fuzz/corpus. What it checks
-// holds for every input.
+// Shared by the fuzz targets. A target is a file with LLVMFuzzerTestOneInput: under clang it is linked with
+// libFuzzer, otherwise with replay.cpp, which runs it over the files of tests/fuzz/corpus. Its checks hold
+// for every input.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 namespace clothlab::fuzz {
 
-/// Ends the program where a property does not hold; libFuzzer then keeps the input.
+/// Ends the program if a property does not hold; libFuzzer then keeps the input.
 inline void require(bool holds, const char* property, const std::string& found = "") {
   if (holds) return;
   std::fprintf(stderr, "property broken: %s%s%s\n", property, found.empty() ? "" : ": ", found.c_str());
@@ -28,7 +28,7 @@ inline std::string text_of(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-/// The text up to the next newline, which is taken away with it.
+/// Returns the text up to the next newline, and removes both from `rest`.
 inline std::string next_line(std::string_view& rest) {
   const std::size_t end = rest.find('\n');
   const std::string line(rest.substr(0, end));
@@ -45,7 +45,7 @@ inline bool is_utf8(const std::string& text) {
   }
 }
 
-/// An error says what was found and what to do, in text that can be shown. `where` may be empty: the whole
+/// The error says what was found and what to do, in text that can be shown. An empty `where` is the whole
 /// document.
 inline void require_complete(const Error& error) {
   require(!error.what.empty() && !error.remedy.empty(), "an error says what was found and what is allowed",

@@ -1,5 +1,5 @@
-// A triangle mesh from raw bytes, with indices and coordinates that a text would seldom hit upon: as a
-// document, so that validation sees them, then as a model, as files and as a topology message.
+// A triangle mesh from raw bytes, with indices and coordinates that a text would seldom contain: as a
+// document, for the validation; then as a model, as files and as a topology message.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -14,7 +14,7 @@ using namespace clothlab;
 
 namespace {
 
-/// Takes numbers off the front of the input, 0 once it is used up.
+/// Reads numbers from the front of the input; 0 once the input is used up.
 class Bytes {
  public:
   Bytes(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
@@ -34,7 +34,7 @@ class Bytes {
   std::size_t size_;
 };
 
-/// Mostly a small number, so that vertices coincide and lie in line; sometimes any float.
+/// Mostly a small number, so that vertices coincide or lie in line; sometimes any float.
 double coordinate(Bytes& bytes) {
   const auto byte = bytes.take<std::int8_t>();
   if (byte != -128) return byte / 16.0;
@@ -42,7 +42,7 @@ double coordinate(Bytes& bytes) {
   return std::isfinite(any) ? static_cast<double>(any) : 0.0;
 }
 
-/// Near the number of vertices on both sides, and far beyond.
+/// An index near the number of vertices, on both sides, or far beyond.
 std::int64_t index(Bytes& bytes) {
   const auto byte = bytes.take<std::uint8_t>();
   return byte == 255 ? bytes.take<std::int64_t>() : byte;
@@ -83,7 +83,7 @@ scene::json cloth_of(Bytes& bytes) {
   return cloth;
 }
 
-/// What leaves the server of a model: every file whole, the message one that a viewer reads.
+/// The exports of a model: every file is whole, and a viewer can read the message.
 void require_exports(const model::Model& model) {
   std::vector<glm::vec3> positions;
   for (const glm::dvec3& position : model.start_position) positions.emplace_back(position);

@@ -1,5 +1,5 @@
-// These definitions take the place of those in server/session/session.cpp and server/net/lab_worker.cpp
-// (whose objects the linker then leaves in their library) and of libwebsockets' own.
+// These definitions replace those in server/session/session.cpp and server/net/lab_worker.cpp (whose objects
+// the linker then leaves in their library) and those of libwebsockets.
 #include "tests/fuzz/no_machine.h"
 
 #include <libwebsockets.h>
@@ -40,7 +40,7 @@ void set_arrival(const Arrival& next) {
 }
 
 lws* connect() {
-  auto* handle = reinterpret_cast<lws*>(new char);  // an address of its own, never looked into
+  auto* handle = reinterpret_cast<lws*>(new char);  // a unique address that nobody reads
   connections()[handle];
   return handle;
 }
@@ -65,7 +65,8 @@ namespace session {
 
 namespace {
 
-/// What a session keeps, and what it makes of commands: the document is patched and told, nothing is stepped.
+/// A session's state, and what commands do to it: patches change the document and are told, but nothing is
+/// stepped.
 class Scribe {
  public:
   Scribe(scene::Document document, Exchange& exchange)
@@ -91,7 +92,7 @@ class Scribe {
     if (const auto* reach = std::get_if<ReachScene>(&command.what))
       return exchange_->emit(SceneReached{reach->job});
     if (const auto* hold = std::get_if<Hold>(&command.what)) return exchange_->emit(Held{hold->job});
-    reply(ticket, json::object());  // Demand, Watchers, ... come without an id
+    reply(ticket, json::object());  // Demand, Watchers, ... have no id
   }
 
  private:
@@ -173,7 +174,7 @@ bool fuzz::answer_commands() {
 
 }  // namespace clothlab
 
-// libwebsockets, as far as a Client calls it.
+// The functions of libwebsockets that a Client calls.
 extern "C" {
 
 void lws_set_timer_usecs(lws*, lws_usec_t) {}

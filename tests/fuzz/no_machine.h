@@ -1,6 +1,6 @@
-// The server's protocol without what is below and beside it, for the target `dispatch`: a session that
-// answers at once, on the caller's thread and without OpenGL; a lab that measures nothing; a network that is
-// a list of messages.
+// The server's protocol without the parts below and beside it, for the target `dispatch`: a session answers
+// at once, on the caller's thread and without OpenGL; a lab measures nothing; a network is a list of
+// messages.
 #pragma once
 
 #include <string>
@@ -12,23 +12,23 @@ struct lws;
 
 namespace clothlab::fuzz {
 
-/// Lets every session carry out what it was asked. True if there was anything.
+/// Lets every session carry out its commands. True if there were any.
 bool answer_commands();
 
-/// What a client has been sent since the last call, oldest first; binary messages are left out.
+/// Messages sent to a client since the last call, oldest first, without binary messages.
 std::vector<std::string> take_sent(const lws* wsi);
 
-/// How the next piece of a message arrives.
+/// Form in which the next piece of a message arrives.
 struct Arrival {
   bool first = true, last = true, binary = false;
 };
 void set_arrival(const Arrival& arrival);
 
-/// A connection's handle, until `disconnect`.
+/// Makes a connection's handle, valid until `disconnect`.
 lws* connect();
 void disconnect(lws* wsi);
 
-/// Whether a client has told its connection to close, by a close frame.
+/// True if a client has told its connection to close, by a close frame.
 bool close_was_said(const lws* wsi);
 
 }  // namespace clothlab::fuzz

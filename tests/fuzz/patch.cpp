@@ -1,6 +1,6 @@
-// Patches of all three kinds, one a line, each applied to what the ones before have left: an object is a
-// merge patch (RFC 7396), an array a list of operations (RFC 6902), what starts with a slash an assignment as
-// of --set. A line that names a preset starts over with that.
+// Patches of all three kinds, one per line, each applied to the result of those before: an object is a merge
+// patch (RFC 7396), an array a list of operations (RFC 6902), a line that starts with a slash an assignment
+// like --set. A line that names a preset starts again from that preset.
 #include <algorithm>
 
 #include "tests/fuzz/document.h"
@@ -9,7 +9,7 @@ using namespace clothlab;
 
 namespace {
 
-/// Everything a document can have, small.
+/// A small scene with everything that a document can have.
 const char* const rich =
     R"({"version": 1, "name": "rich", "air_drag": 0.5, "self_collision": {"thickness": 0.01},
   "cloths": [

@@ -35,7 +35,7 @@ int main(int count, char** arguments) {
       std::fprintf(stderr, "%s: cannot be read\n", path.c_str());
       return 1;
     }
-    std::fprintf(stderr, "%s\n", path.c_str());  // the last one named is the one that failed
+    std::fprintf(stderr, "%s\n", path.c_str());  // the last path printed is the one that failed
     LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
   }
   std::fprintf(stderr, "%zu inputs\n", files.size());

@@ -1,12 +1,12 @@
-// Any text as a scene: read, validated, built. What is accepted stays what it is; what is refused is refused
-// with its place, what was found there and what is allowed.
+// Any text as a scene: read, validated, built. An accepted scene validates to itself; an error says where it
+// is, what was found there and what is allowed.
 #include "tests/fuzz/document.h"
 
 using namespace clothlab;
 
 namespace {
 
-/// `pointer` names something of `value`, or a key that is missing in something of it.
+/// True if `pointer` names a part of `value`, or a missing key of such a part.
 bool exists(scene::json value, const std::string& pointer) {
   const std::vector<std::string> tokens = *scene::split_pointer(pointer);
   scene::json* at = &value;

@@ -1,4 +1,5 @@
-// The camera's stand: all of an outline inside the part of the window that is free, and no farther than that takes.
+// The camera's place: the whole outline is inside the free part of the window, and the camera is no farther than
+// needed.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { load } from "./module.mjs";
@@ -9,7 +10,7 @@ const three = await import("../../web/node_modules/three/build/three.module.js")
 
 const cloud = (size, at) =>
   Array.from({ length: 300 }, (_, i) => {
-    const turn = 2.399963 * i; // the golden angle: points all over a ball
+    const turn = 2.399963 * i; // the golden angle spreads points over a ball
     const height = 1 - (2 * i + 1) / 300;
     const around = Math.sqrt(1 - height * height);
     return new three.Vector3(
@@ -42,7 +43,7 @@ for (const [name, width, height, area] of [
       const [top, bottom] = [0, 0].map((_, i) => Math[i ? "max" : "min"](...seen.map(([, y]) => y)));
       assert.ok(left >= area.left && right <= area.left + area.width, `${left} to ${right} in ${JSON.stringify(area)}`);
       assert.ok(top >= area.top && bottom <= area.top + area.height, `${top} to ${bottom} in ${JSON.stringify(area)}`);
-      // The outline knows a ball's farthest points to a tenth, and some padding stays.
+      // The outline knows a ball's farthest points to a tenth, and some padding remains.
       const fill = Math.max((right - left) / area.width, (bottom - top) / area.height);
       assert.ok(fill > 0.75, `it fills ${fill} of the longer side`);
     });

@@ -1,4 +1,4 @@
-// The page applies the patches that the server accepted as RFC 6902 and RFC 7396 say.
+// The page applies accepted patches as RFC 6902 and RFC 7396 say.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { load } from "./module.mjs";

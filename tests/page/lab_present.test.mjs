@@ -1,4 +1,4 @@
-// The page's pure code: where the present setting lies on a chart, and the way back from a patch. Needs no browser.
+// The page's pure code: where the present setting lies on a chart, and the patch that undoes another. Needs no browser.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { load } from "./module.mjs";
@@ -20,7 +20,7 @@ const point = (of, error, cost, blew_up_at_s = null) => ({
 });
 const near = (a, b) => assert.ok(Math.abs(a - b) <= 1e-9 * Math.abs(b), `${a} is not ${b}`);
 
-// An error of second order and a cost per step: powers of dt, which straight lines on logarithmic paper meet exactly.
+// Error and cost per step are powers of dt, which are straight lines in logarithms: interpolation is exact.
 const verlet = [0.0005, 0.001, 0.004].map((dt) => point(setting("verlet", dt), 100 * dt ** 2, 0.05 / dt));
 
 test("between two points of its curve a setting lies on a straight line of logarithms, on a point it is that point", () => {

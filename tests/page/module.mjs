@@ -1,4 +1,4 @@
-// A module of the page, bundled as the page is, for a test without a browser.
+// Bundles a module of the page, as the page is bundled, for a test without a browser.
 import { createRequire } from "node:module";
 import { fileURLToPath } from "node:url";
 

@@ -1,10 +1,10 @@
-// Edits on their way to the server: few messages, the last value always, the way back of what was one change to a
-// person.
+// Edits on their way to the server: few messages, always the last value, and an Undo for what a person made as one
+// change.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import { load } from "./module.mjs";
 
-globalThis.window = globalThis; // what the page's timers are asked of
+globalThis.window = globalThis; // the page's timers are methods of window
 const { SceneStore } = await load("link/scene_store");
 
 const path = "/solver/dt";
@@ -68,14 +68,14 @@ test("the way back of a slider that was dragged is where it began", async () => 
 test("a patch of plain values is applied here; one that may bring defaults, or comes late, is fetched whole", () => {
   store.patched(2, { solver: { dt: 0.5 } });
   assert.deepEqual([store.document.solver.dt, fetched, changes.at(-1).whole], [0.5, 0, false]);
-  store.patched(2, { solver: { dt: 0.7 } }); // told twice
+  store.patched(2, { solver: { dt: 0.7 } }); // the same revision a second time
   assert.equal(store.document.solver.dt, 0.5);
   store.patched(3, [{ op: "add", path: "/cloths/0", value: {} }]);
   store.patched(9, { solver: { dt: 1 } });
   assert.deepEqual([store.document.solver.dt, fetched], [0.5, 2]);
 });
 
-test("what is refused is told, and the next edit goes out", async () => {
+test("a refusal is reported, and the next edit is sent", async () => {
   answer = () => Promise.reject(new Error("no"));
   store.edit(replace(-1));
   await wait(80);

@@ -16,10 +16,10 @@ reference::State after(const reference::World& world, reference::State state, in
   return state;
 }
 
-/// How far the state is after each of `steps` steps when one step's rounding disturbs its start: the scene's
-/// own dynamics carry a rounding error along, in an unstable direction (a cloth about to buckle) they enlarge
-/// it. Found by disturbing the reference by a thousandth of that much, so that the answer is linear, at
-/// random.
+/// For each of `steps` steps, how far the state is off when the rounding of one step disturbs its start. The
+/// scene's own dynamics carry a rounding error along; in an unstable direction (a cloth about to buckle) they
+/// enlarge it. Found by random disturbances of the reference by a thousandth of that, so that the response is
+/// linear.
 double largest_growth(const reference::World& world, const Rounding& rounding, int steps) {
   constexpr double part = 1e-3;
   std::mt19937 random(7);
@@ -62,7 +62,7 @@ TEST_CASE(
   }
   INFO("largest error over its bound: " << worst);
   CHECK(worst < 1.0);
-  CHECK(worst > 0.01);  // a bound that is never neared would not notice an error
+  CHECK(worst > 0.01);  // the bound must be near enough to notice an error
 }
 
 TEST_CASE("after 1, 10 and 100 steps of the seed scene the GPU is where the double-precision reference is") {
@@ -81,7 +81,7 @@ TEST_CASE("after 1, 10 and 100 steps of the seed scene the GPU is where the doub
     const double error = reference::rms_distance(found.position, expected.position);
     INFO(steps << " steps: RMS error " << error << " m, bound " << bound << " m");
     CHECK(error < bound);
-    CHECK(bound < 2e-3);  // two thousandths of the cloth: the bound still means something
+    CHECK(bound < 2e-3);  // two thousandths of the cloth: the bound is still sharp enough to find errors
   }
 }
 
@@ -89,15 +89,14 @@ namespace {
 
 struct Agreement {
   int touching = 0;   ///< vertices in contact, over all steps
-  int undecided = 0;  ///< of these, the ones that rounding could have decided otherwise
-  double worst = 0;   ///< largest error of the others over the bound of one step's rounding
+  int undecided = 0;  ///< those of them that rounding could decide otherwise
+  double worst = 0;   ///< largest error of the other vertices over the bound of one step's rounding
 };
 
-/// Lets symplectic Euler go to step `first`, then `method` go on; compares each of its steps with a reference
-/// step from the GPU's own state before it.
+/// Runs symplectic Euler to step `first`, then `method`; compares each of its steps with a reference step
+/// from the GPU's own state before it.
 Agreement compare_contacts(scene::Scene scene, scene::Method method, std::uint64_t first, int steps) {
-  // Whether a vertex just touches hangs on the last bit; such vertices are found by moving the surfaces a
-  // little.
+  // The last bit may decide if a vertex touches: such vertices are found by moving the surfaces a little.
   const auto moved = [&](double by) {
     reference::World world = world_of(scene);
     world.contact_margin += by;
@@ -113,8 +112,8 @@ Agreement compare_contacts(scene::Scene scene, scene::Method method, std::uint64
   reference::State expected = in_double(simulation->read_state(), first);
   for (int n = 0; n <= steps; ++n) {
     reference::State before = in_double(simulation->read_state(), first + static_cast<std::uint64_t>(n));
-    // What the GPU does not show, it got from the step before: how many contacts share a push, and Verlet's
-    // half step.
+    // The state does not show all: how many contacts share a push, and Verlet's half step, come from the step
+    // before.
     before.contacts = expected.contacts;
     before.half_dt = expected.half_dt;
     before.half_velocity = before.velocity;
@@ -125,7 +124,7 @@ Agreement compare_contacts(scene::Scene scene, scene::Method method, std::uint64
     simulation->step(1);
     const reference::State found = in_double(simulation->read_state(), 0);
     const Rounding bound = step_rounding(world, before, expected);
-    if (n == 0) continue;  // of the first step they are not known
+    if (n == 0) continue;  // these are unknown in the first step
     for (std::size_t i = 0; i < expected.contacts.size(); ++i) {
       if (expected.contacts[i] == 0) continue;
       ++agreement.touching;
@@ -144,11 +143,10 @@ Agreement compare_contacts(scene::Scene scene, scene::Method method, std::uint64
 
 namespace {
 
-/// The methods that meet contacts in the same way as the reference: all but implicit Euler, which foresees
-/// them.
+/// A method that treats contacts like the reference: all but implicit Euler, which foresees them.
 struct Contact {
   scene::Method method;
-  int steps;         ///< that are compared: explicit Euler, unstable here, has a few before it blows up
+  int steps;         ///< steps to compare: explicit Euler, unstable here, has only a few before it blows up
   double undecided;  ///< share of contacts that rounding may decide: with explicit Euler what slid along a
                      ///< surface last step now just touches it
   double more;  ///< roundings, as a multiple of those of a step with one evaluation, of which a contact adds

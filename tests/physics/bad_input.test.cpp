@@ -1,4 +1,4 @@
-// Numbers at the ends of what a document may say, under every method: a clear error
+// Numbers at the limits of what a document may say, under every method: a clear error
 // (tests/unit/scene_validate) or a run that stays finite and within the energy there is.
 #include <algorithm>
 #include <cmath>
@@ -12,9 +12,9 @@ using namespace clothlab;
 
 namespace {
 
-/// Well below the method's limit; where no step is stable (explicit Euler without damping) so short that the
-/// growth, (1 + (omega dt)^2)^(N/2), stays small over some hundred steps; where all are, one of the usual
-/// length.
+/// A time step [s] well below the method's limit. If no step is stable (explicit Euler without damping), one
+/// so short that the growth, (1 + (omega dt)^2)^(N/2), stays small over some hundred steps; if all are, one
+/// of the usual length.
 double gentle_dt(const scene::Scene& scene) {
   const model::Model model = *model::build(scene);
   const double limit = model::dt_limit_bound(model, scene), omega = model::omega_bound(model, scene);
@@ -33,8 +33,8 @@ void under_every_method(scene::Scene scene, Body body) {
   }
 }
 
-/// What float32 positions about 1 m from the origin leave unknown of the energies [J]: an ulp of height, and
-/// of the length of a spring.
+/// Error of the energies [J] that float32 positions about 1 m from the origin leave: an ulp of height, and of
+/// the length of a spring.
 double energy_noise(const sim::Simulation& simulation) {
   const model::Model& model = simulation.model();
   const double ulp = 0x1p-23;
@@ -45,9 +45,9 @@ double energy_noise(const sim::Simulation& simulation) {
   return noise;
 }
 
-/// Steps and checks that pins hold, and that what moves and stretches is what gravity has paid for. Returns
-/// that [J]. A tenth of the limit keeps the energy that a first-order method shows within 1/(1 - 0.1) of the
-/// one it conserves. A tenth more is left for the growth of explicit Euler.
+/// Steps, and checks that pins hold and that motion and stretch have no more energy than gravity has given.
+/// Returns that energy [J]. A tenth of the limit keeps the energy that a first-order method shows within 1/(1
+/// - 0.1) of the one that it conserves. Another tenth is allowed for the growth of explicit Euler.
 double stays_within_its_energy(sim::Simulation& simulation, std::uint32_t steps) {
   const sim::Diagnostics before = simulation.diagnose();
   simulation.step(steps);
@@ -87,8 +87,7 @@ TEST_CASE("springs of 1e-30 N/m let a cloth fall freely under every method, with
     const sim::State state = simulation->read_state();
     for (std::uint32_t i = 0; i < state.position.size(); ++i) {
       const bool pinned = simulation->model().pin_motion[i] != model::not_pinned;
-      // A method of first order is off by half a step: g t dt / 2. Each of N sums rounds by half an ulp of 1
-      // m.
+      // A method of order 1 is off by half a step: g t dt / 2. Each of N sums rounds by half an ulp of 1 m.
       CHECK(std::abs(1.0 - state.position[i].y - (pinned ? 0.0 : fallen)) <=
             0.5 * 9.8 * t * scene.solver.dt * 1.001 + steps * 0x1p-24);
     }
@@ -100,7 +99,7 @@ TEST_CASE("springs of 1e12 N/m hold under every method when the step is below it
   const auto context = test::context();
   scene::Scene scene = hung({1e12, 1e12, 1e12, 1e8});
   scene.cloths[0].mass.value =
-      1e6;  // the most allowed too, so that the cloth gets somewhere in some hundred steps
+      1e6;  // also the largest allowed, so that the cloth moves in some hundred steps
   under_every_method(scene, [](const scene::Scene& each) { falls_within_its_energy(each, 300); });
 }
 
@@ -131,7 +130,7 @@ TEST_CASE("a cloth a million times heavier than the one it lands on stays finite
     simulation->step(300);
     const sim::Diagnostics after = simulation->diagnose();
     CHECK(after.finite);
-    // Nothing makes the light cloth faster than an elastic blow of the heavy one would: twice its speed.
+    // The light cloth gets at most the speed of an elastic blow by the heavy one: twice its speed.
     CHECK(after.max_speed <= 2.0 * 9.8 * 300 * each.solver.dt * 1.01);
   });
 }
@@ -158,7 +157,7 @@ TEST_CASE("a cloth without a pin falls as a whole under every method") {
     simulation->step(200);
     const sim::Diagnostics after = simulation->diagnose();
     CHECK(after.finite);
-    // Nothing pulls at its springs but rounding: an ulp of a metre, over the shortest of them.
+    // Only rounding stretches its springs: an ulp of a metre, over the shortest of them.
     CHECK(after.max_strain < 200 * 0x1p-23 / (1.0 / 6.0));
     CHECK(after.max_speed == Approx(9.8 * 200 * each.solver.dt).epsilon(1e-4));
   });
@@ -188,8 +187,8 @@ TEST_CASE("implicit Euler holds with steps of a second, whatever the stiffness a
       simulation->step(20);
       const sim::Diagnostics after = simulation->diagnose();
       CHECK(after.finite);
-      CHECK(after.max_speed <= 9.8 * 21);  // 20 s of free fall and a step of overshoot
-      // What overshot in the first step, which no spring of a flat sheet holds back, has died away.
+      CHECK(after.max_speed <= 9.8 * 21);  // 20 s of free fall and one step too many
+      // The overshoot of the first step, which no spring of a flat cloth holds back, has died away.
       const double weight = 35 * mass * 9.8, stretch = weight / (stiffness * 0.167);
       if (stretch < 0.05) CHECK(after.max_strain < 0.05);
     }
@@ -199,7 +198,7 @@ TEST_CASE("implicit Euler holds with steps of a second, whatever the stiffness a
 TEST_CASE("a strain limit that pins or springs without length make impossible leaves every number finite") {
   const auto context = test::context();
   scene::Scene torn = hung({2000.0, 1000.0, 200.0, 0.2});
-  torn.cloths[0].pins[1].motion = scene::Linear{glm::dvec3(500.0, 0.0, 0.0)};  // a pin runs away with it
+  torn.cloths[0].pins[1].motion = scene::Linear{glm::dvec3(500.0, 0.0, 0.0)};  // a pin flies away with it
   scene::Scene held = hung({2000.0, 1000.0, 200.0, 0.2});
   held.cloths[0].pins = {{scene::AtBox{glm::dvec3(-9.0), glm::dvec3(9.0)}, {}}};
   const scene::Scene lengthless = scene_of(R"({"version": 1, "cloths": [{

@@ -1,5 +1,5 @@
-// Blow-up on the GPU, both sides: honest scenes are never taken for one, unstable ones are found early, and
-// the state that is kept is whole.
+// The watch for blow-ups, on the GPU and in the reference: sound scenes are never reported, unstable ones are
+// found early, and the kept state is whole.
 #include "server/sim/blow_up.h"
 
 #include <optional>
@@ -20,7 +20,7 @@ struct Watched {
   sim::GuardedRun guard;
 };
 
-/// Steps to `time` [s], with a look every `stride` steps.
+/// Steps to `time` [s]; the watch looks every `stride` steps.
 Watched watch(sim::Simulation& simulation, double time, std::uint32_t stride) {
   Watched run{.guard = sim::GuardedRun(simulation)};
   run.guard.start(model::dt_limit(simulation.model(), simulation.scene()));
@@ -110,8 +110,7 @@ TEST_CASE("a collider put into the cloth, and one shot through it, are no blow-u
   CHECK(run.verdict != Verdict::blown_up);
 }
 
-TEST_CASE(
-    "what is gone back to is the state that was kept, to the bit, and it goes on from there as before") {
+TEST_CASE("going back restores the kept state to the bit, and the simulation goes on from there as before") {
   const auto context = test::context();
   for (const scene::Method method : {scene::Method::symplectic_euler, scene::Method::rk4}) {
     scene::Scene scene = test::seed();
@@ -123,7 +122,7 @@ TEST_CASE(
     const std::uint64_t kept = sim::state_hash(simulation->read_state());
     simulation->step(100);
     const std::uint64_t later = sim::state_hash(simulation->read_state());
-    simulation->diagnose();  // put aside, but not kept
+    simulation->diagnose();  // read, but not kept as good
     simulation->go_back();
     CHECK(simulation->step_index() == 300);
     CHECK(simulation->time() == Approx(0.3).epsilon(1e-12));
@@ -151,7 +150,7 @@ TEST_CASE("after a blow-up the last good state, with a step that holds, settles 
   CHECK(simulation->diagnose().max_strain < 0.5);
 }
 
-TEST_CASE("a look that nobody waits for decides as one that is waited for, and goes back to the same state") {
+TEST_CASE("a look without waiting decides like one with waiting, and goes back to the same state") {
   const auto context = test::context();
   const auto waited = test::simulation(preset("blowup")), asked = test::simulation(preset("blowup"));
   sim::GuardedRun one(*waited), other(*asked);
@@ -189,10 +188,9 @@ TEST_CASE("a mass that was changed since the state was kept stays changed") {
 TEST_CASE("after a blow-up below the limit, of a cloth that is pulled tight, one remedy holds") {
   const auto context = test::context();
   for (const scene::Method method : {scene::Method::symplectic_euler, scene::Method::verlet}) {
-    // Springs across the pull are slack at rest: they count for nothing there, and all the more under
-    // tension.
+    // Springs across the pull are slack at rest: they count for nothing there, and the more under tension.
     scene::Scene scene = test::sheet(9, 9);
-    scene.gravity = {2.0, -9.8, 0.0};  // something to swing across the pull
+    scene.gravity = {2.0, -9.8, 0.0};  // so that it swings across the pull
     scene.cloths[0].mass.value = 0.01;
     scene.cloths[0].material = {800.0, 0.0, 0.0, 0.0};
     scene.cloths[0].pins = {{scene::AtEdge{scene::AtEdge::Line::row, 0}, scene::Linear{{0.0, 0.0, -1.0}}},

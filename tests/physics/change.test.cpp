@@ -1,4 +1,4 @@
-// Live changes of the scene: how deep each cuts, and that only a new cloth resets time.
+// Live changes of the scene: how much each rebuilds, and that only a new cloth resets time.
 #include "server/scene/method.h"
 #include "tests/scenes.h"
 
@@ -65,12 +65,12 @@ TEST_CASE("another method takes the cloth over where it is") {
     const sim::State before = simulation->read_state();
     scene::Scene next = simulation->scene();
     next.solver.method = method;
-    next.solver.dt = 0.0002;  // that explicit Euler takes 4 ms without harm
+    next.solver.dt = 0.0002;  // explicit Euler stands 4 ms of these
     REQUIRE(simulation->change(next));
     CHECK(sim::state_hash(simulation->read_state()) == sim::state_hash(before));
     simulation->step(20);
     const sim::State after = simulation->read_state();
-    // Nothing moves farther in 20 steps than its speed, and what gravity and the springs make of it, allow.
+    // In 20 steps no vertex moves farther than its speed, gravity and the springs allow.
     for (std::size_t i = 0; i < after.position.size(); ++i) {
       const float way = glm::distance(after.position[i], before.position[i]);
       CHECK(way <= 20 * 0.0002f * (2.0f * glm::length(before.velocity[i]) + 1.0f));
@@ -125,7 +125,7 @@ TEST_CASE("a live change of every parameter does what starting with it does") {
 TEST_CASE("a pin taken away lets its vertex fall from where it is") {
   const auto context = test::context();
   scene::Scene scene = test::sheet(2, 2);
-  scene.cloths[0].material = {0.0, 0.0, 0.0, 0.0};  // no springs: each vertex on its own
+  scene.cloths[0].material = {0.0, 0.0, 0.0, 0.0};  // no springs: each vertex moves on its own
   scene.cloths[0].pins = {{scene::AtVertex{0}, {}}};
   const auto simulation = test::simulation(scene);
   simulation->step(10);

@@ -9,14 +9,15 @@ using namespace clothlab;
 
 namespace {
 
-/// A 5 x 5 sheet whose rest lengths and time step are exact in binary, falling free at -8 m/s^2.
+/// A 5 x 5 cloth that falls freely at -8 m/s^2; its rest lengths and time step are exact in binary.
 const char* const falling_sheet = R"({"version": 1, "gravity": [0, -8, 0],
   "cloths": [{"mesh": {"grid": {"columns": 5, "rows": 5, "width": 1, "height": 1}},
               "transform": {"translate": [0, 4, 0]}, "mass": {"per_vertex": 0.125}}],
   "solver": {"dt": 0.0009765625}})";
 
 /// Two free vertices side by side, each hung from a pinned one by a spring of 1 m and 16 N/m, pulled along z.
-/// The spring between the two stays unstretched, so each is the one spring of the closed form.
+/// The spring between the two stays unstretched, so each vertex moves like the single spring of the closed
+/// form.
 scene::Scene one_spring(double omega_dt, double damping = 0.0) {
   scene::Scene scene = scene_of(R"({"version": 1, "gravity": [0, 0, 1.6],
     "cloths": [{"mesh": {"grid": {"columns": 2, "rows": 2, "width": 1, "height": 1}}, "mass": {"per_vertex": 1},
@@ -142,7 +143,7 @@ TEST_CASE("pins are where their motions' closed forms put them") {
   const auto simulation = test::simulation(scene);
   simulation->step(500);
   const sim::State state = simulation->read_state();
-  const double t = 0.5, quarter = std::numbers::pi / 4.0;  // 45 degrees after half a second
+  const double t = 0.5, quarter = std::numbers::pi / 4.0;  // turned by 45 degrees after half a second
   const auto check = [&](std::size_t vertex, glm::dvec3 x, glm::dvec3 v) {
     INFO("vertex " << vertex);
     CHECK(glm::distance(glm::dvec3(state.position[vertex]), x) < 8 * unit_roundoff);

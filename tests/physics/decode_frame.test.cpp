@@ -1,4 +1,4 @@
-// The fuzz targets' decoder, written from the contract's table alone, against what the server makes.
+// The fuzz targets' decoder, written from the protocol's table alone, against the server's messages.
 #include "tests/fuzz/decode_frame.h"
 
 #include <algorithm>

@@ -15,7 +15,7 @@ bool finite(const sim::State& state) {
   return true;
 }
 
-/// A free sheet in the way of a sphere that moves along +z at `speed` through its middle.
+/// A free cloth that a sphere, moving along +z at `speed` [m/s], hits in the middle.
 scene::Scene struck_sheet(double speed, double radius) {
   scene::Scene scene = scene_of(R"({"version": 1, "gravity": [0, 0, 0],
     "cloths": [{"mesh": {"grid": {"columns": 21, "rows": 21, "width": 1, "height": 1}}, "mass": {"per_vertex": 0.001},
@@ -60,16 +60,17 @@ TEST_CASE("the sphere is never entered, at 1 and at 50 m/s") {
       }
       INFO(speed << " m/s, radius " << radius << " m: nearest vertex at " << nearest << " m");
       CHECK(nearest >= radius);
-      CHECK(nearest < 1.1 * radius);  // they did meet
+      CHECK(nearest < 1.1 * radius);  // they met
       const glm::vec3 middle = simulation->read_state().position[10 * 21 + 10];
-      CHECK(middle.z > -0.5 + speed * steps * scene.solver.dt);  // it is pushed ahead, not passed
+      // the sphere pushes it ahead and does not pass it
+      CHECK(middle.z > -0.5 + speed * steps * scene.solver.dt);
     }
   }
 }
 
 TEST_CASE("a sphere far smaller than its path in a step still takes the vertex in its way along") {
   const auto context = test::context();
-  // 4 mm of sphere, 50 mm a step: a test of end points alone would miss it.
+  // A sphere of 4 mm moves 50 mm per step: a test of end points alone would miss it.
   const scene::Scene scene = struck_sheet(50.0, 0.002);
   const auto simulation = test::simulation(scene);
   simulation->step(11);

@@ -1,4 +1,4 @@
-// Same scene, same device, same build: the same bits.
+// The same scene, device and build give the same bits.
 #include "server/stream/packer.h"
 #include "tests/scenes.h"
 
@@ -21,7 +21,7 @@ TEST_CASE("two runs of the seed scene in one process end in the same bits, howev
   REQUIRE(hash_after(test::seed(), {1, 499, 33, 967}) == expected);
   scene::Scene heavier = test::seed();
   heavier.cloths[0].mass.value *= 1.0001;
-  REQUIRE(hash_after(heavier, {1500}) != expected);  // the hash can tell
+  REQUIRE(hash_after(heavier, {1500}) != expected);  // the hash differs for another scene
 }
 
 TEST_CASE("watching does not change what is watched: frames and diagnostics leave the state's bits alone") {

@@ -1,4 +1,4 @@
-// Energies, strain and speed as the GPU reduces them, against sums over the same state in double precision.
+// Energies, strain and speed as the GPU sums them, against sums over the same state in double precision.
 #include <algorithm>
 
 #include "shaders/elements/elements.h"

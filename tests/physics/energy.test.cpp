@@ -1,5 +1,5 @@
-// What each method does to the energy of an undamped motion: kept without slope, or changed by its own law,
-// on both sides.
+// Energy of an undamped motion under each method, on the GPU and in the reference: kept without a trend, or
+// changed by the method's own law.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -16,7 +16,7 @@ namespace {
 constexpr int steps = 10000;
 constexpr double float32_rounding = 0x1p-24;
 
-/// Of one_spring about its balance, both copies [J].
+/// Energy of both copies of one_spring about its balance [J].
 double spring_energy(const reference::State& state) {
   const double u = state.position[spring_end].z - spring_balance, v = state.velocity[spring_end].z;
   return v * v + spring_omega * spring_omega * u * u;
@@ -25,7 +25,7 @@ constexpr double spring_start = spring_omega * spring_omega * spring_amplitude *
 
 struct Line {
   double drift;  ///< of the fitted line, from the first sample to the last
-  double error;  ///< its standard error, from how far the samples are from the line
+  double error;  ///< standard error of the drift, from the samples' distances to the line
 };
 
 Line fit(const std::vector<double>& samples) {
@@ -60,14 +60,16 @@ TEST_CASE(
           stepped.step(1);
           energy.push_back(spring_energy(stepped.state()) / spring_start);
         }
-        // Exactly kept: v^2 + (omega u)^2 - y omega u v, so the energy to 1 +- y/2; with Verlet's v_n, v^2 +
-        // (1 - y^2/4) (omega u)^2, and the velocity shown is ahead of that by up to y^2/2 of the half step's.
+        // Symplectic Euler keeps v^2 + (omega u)^2 - y omega u v exactly, and so the energy to 1 +- y/2.
+        // Verlet keeps v_n^2 + (1 - y^2/4) (omega u)^2, and the velocity shown is ahead of that by up to
+        // y^2/2 of the half step's.
         const double low = method == Method::verlet ? 1 - y * y / 4 : 1 / (1 + y / 2);
         const double high =
             method == Method::verlet ? (1 + y * y / 2) * (1 + y * y / 2) / (1 - y * y / 4) : 1 / (1 - y / 2);
         const auto [least, most] = std::minmax_element(energy.begin(), energy.end());
-        // A line through an oscillation of amplitude A and 2 theta a step drifts by up to 6 A / (N sin theta)
-        // by itself; float32 rounds z of 1.2 m and v each step, which takes the energy for a random walk.
+        // A line through an oscillation of amplitude A and 2 theta per step drifts by up to 6 A / (N sin
+        // theta) by itself; float32 rounds z of 1.2 m and v in each step, so that the energy makes a random
+        // walk.
         const double theta = 2 * std::asin(y / 2), amplitude = (*most - *least) / 2;
         const double walk = 3 * std::sqrt(steps) * 2 * 1.2 * float32_rounding * spring_omega / 0.4 *
                             (1 / std::cos(theta / 2));
@@ -78,7 +80,7 @@ TEST_CASE(
         CHECK(*least > low - error);
         CHECK(*most < high + error);
         CHECK(std::abs(fit(energy).drift) < error);
-        CHECK(error < 0.01);  // of the energy, over 10,000 steps: the bar still means something
+        CHECK(error < 0.01);  // of the energy, over 10,000 steps: the error bar is small enough
       }
     }
   }
@@ -112,7 +114,7 @@ TEST_CASE(
                                  << line.drift / kinetic << ", error bar " << line.error / kinetic
                                  << " of the vibrations' energy");
         CHECK(std::abs(line.drift) < 3 * line.error);  // 3 standard errors
-        CHECK(3 * line.error < 0.01 * kinetic);        // and these are small
+        CHECK(3 * line.error < 0.01 * kinetic);        // and the standard errors are small
       }
     }
   }
@@ -135,8 +137,8 @@ TEST_CASE(
         most = std::max(most, now.total() - start);
         kinetic = std::max(kinetic, now.kinetic);
       }
-      // No vibration's energy is off by more than on one spring at the fastest's omega dt: y/2, and y^2/2 for
-      // Verlet.
+      // No vibration's relative energy error is larger than that of one spring at the fastest vibration's
+      // omega dt: y/2, and y^2/2 for Verlet.
       const double bound = (method == Method::verlet ? y * y / 2 : y / 2) * kinetic;
       INFO(scene::name(method) << ", " << name(side) << ": " << least << " to " << most << " J, bound "
                                << bound << " J");

@@ -1,5 +1,4 @@
-// A cloth folded over slowly: two layers that meet nowhere pass through each other, whatever the method's
-// step.
+// A cloth folded over slowly: its two layers do not pass through each other, whatever the method's step.
 #include <cmath>
 
 #include "tests/crossings.h"
@@ -12,8 +11,8 @@ using scene::Method;
 
 namespace {
 
-/// A limp sheet of 0.4 m on the ground, one edge held, the opposite one in 2 s carried over to above it or
-/// pushed to it; its vertices keep 0.8 of the mesh's spacing apart, so that none finds its way between three
+/// A limp cloth of 0.4 m on the ground. One edge is held; the opposite one is carried over to above it, or
+/// pushed to it, in 2 s. The vertices keep 0.8 of the mesh's spacing apart, so that none slips between three
 /// others.
 scene::Scene fold(const scene::Motion& motion, Method method, double dt) {
   scene::Scene scene = sheet_on_slope(0.0, 0.3, 17);
@@ -28,7 +27,7 @@ scene::Scene fold(const scene::Motion& motion, Method method, double dt) {
   return scene;
 }
 
-/// The most edges through triangles in 2 s, looked for eight times.
+/// Largest number of crossings in 2 s, from eight looks.
 std::size_t most_crossings(const scene::Scene& scene) {
   Stepped stepped(Side::gpu, scene);
   std::size_t most = 0;

@@ -1,4 +1,4 @@
-// Frames as packed on the GPU against the state they show.
+// Frames packed on the GPU against the state that they show.
 #include <cmath>
 #include <cstring>
 
@@ -71,8 +71,8 @@ TEST_CASE(
   for (std::size_t i = 0; i < 625; ++i) {
     REQUIRE(at<glm::vec3>(frame, 64 + 24 * i) == state.position[i]);
     const glm::dvec3 normal(at<glm::vec3>(frame, 64 + 24 * i + 12));
-    // Cross products of edges of 4 cm from float32 positions near 1: a relative error of about 1e-7 / 0.04 an
-    // edge.
+    // Cross products of edges of 4 cm from float32 positions near 1 m: a relative error of about 1e-7 / 0.04
+    // per edge.
     REQUIRE(glm::distance(normal, normals[i]) < 1e-4);
   }
 }
@@ -90,14 +90,14 @@ TEST_CASE("a q16 frame is within half a quantum of the state, its normals within
     for (int axis = 0; axis < 3; ++axis) {
       const double u = at<std::uint16_t>(frame, 64 + 8 * i + 2 * static_cast<std::size_t>(axis));
       const double decoded = low[axis] + extent[axis] * u / 65535.0;
-      // Half a step, and one float32 rounding of the box and of the share.
+      // Half a quantum, and one float32 rounding of the box and of the share.
       const double bound = extent[axis] * (0.5 / 65535.0 + 2e-7) + 2e-7;
       REQUIRE(std::abs(decoded - static_cast<double>(state.position[i][axis])) <= bound);
     }
     const glm::vec3 normal =
         octahedral_decoded(static_cast<float>(at<std::int8_t>(frame, 64 + 8 * i + 6)) / 127.0f,
                            static_cast<float>(at<std::int8_t>(frame, 64 + 8 * i + 7)) / 127.0f);
-    // Half a step of 1/127 in each of two coordinates; the map stretches lengths by less than 2.5.
+    // Half a quantum of 1/127 in each of two coordinates; the map stretches lengths by less than 2.5.
     REQUIRE(glm::distance(glm::dvec3(normal), normals[i]) < 2.5 * std::sqrt(2.0) * 0.5 / 127.0);
   }
 }
@@ -113,7 +113,7 @@ TEST_CASE("normals are right on a mesh of 1 mm cells") {
   for (std::size_t i = 0; i < 625; ++i)
     // float32 positions near 1 m against edges of 1 mm: 6e-8 / 1e-3, a few times over the faces of a vertex.
     REQUIRE(glm::distance(glm::dvec3(at<glm::vec3>(frame, 64 + 24 * i + 12)), normals[i]) < 1e-3);
-  REQUIRE(std::abs(normals[0].y) < 0.9);  // not the fallback's direction
+  REQUIRE(std::abs(normals[0].y) < 0.9);  // not the direction that replaces a missing normal
 }
 
 TEST_CASE("a topology message lists cloths, triangles and texture coordinates") {

@@ -1,4 +1,4 @@
-// Coulomb's law on a slope: what it holds stands, what it does not slides with g (sin a - mu cos a).
+// Coulomb's law on a slope: below its limit a cloth stands, above it slides with g (sin a - mu cos a).
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -13,7 +13,7 @@ using scene::Method;
 
 namespace {
 
-/// How far the sheet has slid down the slope after `seconds`, in the mean of its vertices [m].
+/// Distance that the cloth has slid down the slope after `seconds`, the mean of its vertices [m].
 double slid(Side side, scene::Scene scene, Method method, double dt, double seconds) {
   scene.solver.method = method;
   scene.solver.dt = dt;
@@ -37,7 +37,7 @@ TEST_CASE(
       if (large && side == Side::reference) continue;
       for (const double dt : {0.001, 0.004, 0.008, 0.016}) {
         for (const double degrees : {5.0, 15.0, 30.0}) {
-          if (large && (degrees != 15.0 || dt < 0.008)) continue;  // it takes long
+          if (large && (degrees != 15.0 || dt < 0.008)) continue;  // saves time
           for (const double friction : {0.0, 0.1, 0.3, 0.6, 1.0}) {
             const double angle = degrees * std::numbers::pi / 180.0, seconds = 0.48;
             const double pull =
@@ -45,8 +45,8 @@ TEST_CASE(
             const double expected = 0.5 * pull * seconds * seconds;
             const double found =
                 slid(side, sheet_on_slope(degrees, friction, columns), Method::implicit_euler, dt, seconds);
-            // Of first order: positions follow the velocity at the step's end, half a step ahead; and the law
-            // of a contact may be learnt a step late. The solver's tolerance is 1e-4 of gravity.
+            // Order 1: positions follow the velocity at the step's end, half a step ahead; and the law of a
+            // contact may act a step late. The solver's tolerance is 1e-4 of gravity.
             const double late = standard_gravity * dt * seconds;
             INFO(name(side) << ", " << columns << " columns, dt " << dt << " s, " << degrees
                             << " degrees, friction " << friction << ": " << found << " m, by the law "
@@ -71,13 +71,14 @@ TEST_CASE(
         const double speed = 0.5, seconds = 0.8;
         scene::Scene scene = sheet_on_slope(0.0, friction);
         scene.colliders[0].motion = scene::Linear{{-speed, 0.0, 0.0}};
-        const double late = speed / (friction * standard_gravity);  // when it is as fast as the conveyor
+        // time at which it reaches the conveyor's speed
+        const double late = speed / (friction * standard_gravity);
         const double expected = speed * (seconds - 0.5 * late);
         const double found = slid(side, scene, Method::implicit_euler, dt, seconds);
         INFO(name(side) << ", dt " << dt << " s, friction " << friction << ": " << found << " m, by the law "
                         << expected << " m");
         REQUIRE(late < seconds);
-        // A step early or late, in the beginning and in the end.
+        // One step early or late, at the beginning and at the end.
         CHECK(std::abs(found - expected) < 2.0 * speed * dt + 1e-3 * expected);
       }
     }

@@ -18,14 +18,14 @@ namespace {
 
 constexpr std::array methods{Method::pbd, Method::xpbd, Method::vbd};
 
-/// The largest differences of a step from the reference's, over its rounding.
+/// Largest differences of a step from the reference's, over the bound of its rounding.
 struct Worst {
   double position = 0, velocity = 0;
 };
 
-/// What float32 may make of a vertex's displacement in one step [m]. Each visit takes a difference of places,
-/// a length and a direction from them and a product: up to 16 roundings of the spring's length, which the
-/// spring hands to its ends; what earlier sweeps made of it later ones correct.
+/// Bound of float32's error in a vertex's displacement in one step [m]. Each visit takes a difference of
+/// places, a length and a direction from it, and a product: up to 16 roundings of the spring's length, which
+/// the spring passes to its ends. Later sweeps correct the errors of earlier ones.
 std::vector<double> displacement_rounding(const reference::World& world, const reference::State& before,
                                           const reference::State& after) {
   std::vector<double> bound(before.position.size());
@@ -93,16 +93,16 @@ namespace {
 
 struct Agreement {
   int touching = 0;   ///< vertices in contact, over all steps
-  int undecided = 0;  ///< of these, the ones that rounding could have decided otherwise
-  double worst = 0;   ///< largest error of the others over the bound of one step's rounding
+  int undecided = 0;  ///< those of them that rounding could decide otherwise
+  double worst = 0;   ///< largest error of the other vertices over the bound of one step's rounding
 };
 
-/// Lets symplectic Euler go to step `first`, then `method` go on; compares each of its steps with a reference
-/// step from the GPU's own state before it.
+/// Runs symplectic Euler to step `first`, then `method`; compares each of its steps with a reference step
+/// from the GPU's own state before it.
 Agreement compare_contacts(scene::Scene scene, Method method, int iterations, std::uint64_t first,
                            int steps) {
-  // Whether a vertex just touches hangs on the last bit, and with it how its other contacts share: such
-  // vertices are found by moving the surfaces a little.
+  // The last bit may decide if a vertex touches, and with it how its other contacts share: such vertices are
+  // found by moving the surfaces a little.
   constexpr double little = 1e-7;
   scene.solver.iterations = iterations;
   const auto simulation = test::simulation(scene);
@@ -131,9 +131,9 @@ Agreement compare_contacts(scene::Scene scene, Method method, int iterations, st
     simulation->step(1);
     const reference::State found = in_double(simulation->read_state(), 0);
     const std::vector<double> bound = displacement_rounding(world, before, expected);
-    if (n == 0) continue;  // of the first step the contacts before are not known
+    if (n == 0) continue;  // the contacts before the first step are unknown
     for (std::size_t i = 0; i < bound.size(); ++i) {
-      // Where a contact acts, moving the surfaces moves the vertex; where it acts either way, evenly.
+      // If a contact acts, moving the surfaces moves the vertex; if it acts in both cases, by equal amounts.
       const glm::dvec3 down = expected.position[i] - less.position[i],
                        up = more.position[i] - expected.position[i];
       if (glm::length(up) + glm::length(down) < 0.1 * little) continue;
@@ -142,7 +142,7 @@ Agreement compare_contacts(scene::Scene scene, Method method, int iterations, st
         ++agreement.undecided;
         continue;
       }
-      // A surface is a radius and a centre of up to a metre in float32.
+      // A surface is a radius and a centre of up to a metre, in float32.
       const double most = bound[i] + unit_roundoff * (glm::length(expected.position[i]) + 4.0);
       agreement.worst =
           std::max({agreement.worst, glm::distance(found.position[i], expected.position[i]) / most,

@@ -1,5 +1,5 @@
-// PBD, XPBD and VBD on the GPU against what is true of them: implicit Euler's step, a hanging strip's closed
-// form, free fall, the same bits again.
+// PBD, XPBD and VBD on the GPU against closed results: implicit Euler's step, a hanging strip's closed form,
+// free fall, and the same bits in every run.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,7 +29,7 @@ std::vector<glm::dvec3> after(scene::Scene scene, Method method, int iterations,
   return gpu.state().position;
 }
 
-/// The seed's cloth, held at rest.
+/// The seed's cloth with pins that stand still, without colliders and self-collision.
 scene::Scene seed_cloth(double dt) {
   scene::Scene scene = test::seed();
   for (scene::Pin& pin : scene.cloths[0].pins) pin.motion = {};
@@ -44,18 +44,18 @@ scene::Scene seed_cloth(double dt) {
 TEST_CASE(
     "with many iterations XPBD and VBD agree with implicit Euler on the GPU to 1e-5 of the cloth's size") {
   const auto context = test::context();
-  // More turns than one kernel of software OpenGL has: such steps are taken in several dispatches.
+  // More sweeps than one kernel of software OpenGL can loop: such steps take several dispatches.
   struct Case {
     const char* what;
     scene::Scene scene;
     double size;
     int iterations;
-    Side side = Side::gpu;  ///< of the implicit Euler
+    Side side = Side::gpu;  ///< side that runs implicit Euler
   };
   scene::Scene damped = swinging_cloth(Method::implicit_euler, 2 * cloth_unit);
   damped.cloths[0].material.damping = 0.01;
-  // (Where damping is this strong the GPU's Newton steps stop 4e-5 m short of where both others and the
-  // reference are.)
+  // (With such strong damping the GPU's Newton steps stop 4e-5 m short of the reference, which both other
+  // methods reach.)
   damped.air_drag = 0.5;
   damped.cloths[0].pins[0].motion = scene::Oscillate{{0.0, 0.0, 1.0}, 0.02, 5.0};
   for (const Case& one :
@@ -99,16 +99,16 @@ TEST_CASE(
     gpu.step(static_cast<int>(24.0 / air / dt));
     return gpu.state().position[5 * links + 2].z - 0.4;
   };
-  // The springs of the first colour are 2 (k dt^2 + c dt) / m too long, c their damping, with one iteration:
-  // nearly (k dt^2 + c dt) / m on the whole, as tests/unit/hanging_chain.test.cpp has it exactly.
+  // With one iteration the springs of the first colour are 2 (k dt^2 + c dt) / m too long, c their damping:
+  // nearly (k dt^2 + c dt) / m on the whole, as tests/unit/hanging_chain.test.cpp derives exactly.
   for (const int iterations : {1, 10, 100}) {
     const double off = stretch(Method::xpbd, 0.1 * unit, iterations) / exact - 1.0;
     INFO(iterations << " iterations: off by " << off);
     CHECK(std::abs(off) < 0.01);
   }
   CHECK(stretch(Method::xpbd, 0.1 * unit, 1, 0.01) / exact - 1.0 == Approx(0.019).epsilon(0.1));
-  // At a step ten times as large one iteration is off by all of it, a hundred are right; PBD's are not
-  // (tests/unit/hanging_chain.test.cpp has its law).
+  // At a step ten times as long, one iteration is off by all of the stretch, a hundred are right; PBD's are
+  // not (tests/unit/hanging_chain.test.cpp has its law).
   CHECK(std::abs(stretch(Method::xpbd, unit, 1) / exact - 1.0) > 0.5);
   CHECK(std::abs(stretch(Method::xpbd, unit, 100) / exact - 1.0) < 0.01);
   CHECK(std::abs(stretch(Method::vbd, unit, 100) / exact - 1.0) < 0.01);
@@ -137,8 +137,8 @@ TEST_CASE("a light sheet falls flat on the GPU under PBD, XPBD and VBD, in air a
           most = std::max(most, glm::distance(state.position[i],
                                               gpu.world().model.rest_position[i] + glm::dvec3(0, y, 0)));
         INFO(scene::name(method) << ", dt " << dt << " s, air " << air << ": off by " << most << " m");
-        // Each step rounds a place of up to 2 m and a displacement, and what of 5 m/s float32 does not hold
-        // moves it in each later one.
+        // Each step rounds a place of up to 2 m and a displacement; what float32 loses of 5 m/s moves the
+        // vertex in each later step.
         CHECK(most < 2e-5);
       }
     }
@@ -160,7 +160,7 @@ TEST_CASE("PBD, XPBD and VBD end in the same bits twice, however the steps are g
     CHECK(hash({600}) == expected);
     CHECK(hash({1, 199, 33, 367}) == expected);
     scene.cloths[0].mass.value *= 1.0001;
-    CHECK(hash({600}) != expected);  // the hash can tell
+    CHECK(hash({600}) != expected);  // the hash differs after other steps
   }
 }
 

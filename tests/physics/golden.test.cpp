@@ -1,7 +1,7 @@
-// The bytes of the protocol, committed in tests/golden: what the server makes of a fixed scene is these and
-// no others. The files were written from server/net/README.md, not by this code. The scenes are all pinned,
-// and their numbers such that no step of the way rounds: f32 has only normals along axes (no other unit
-// vector is exact in binary), and in q16 positions are whole quanta and normals far from a half of one.
+// The bytes of the protocol in tests/golden: the server makes exactly these of a fixed scene. The files were
+// written from server/net/README.md, not by this code. All vertices of the scenes are pinned, and their
+// numbers are such that nothing is rounded: f32 has only normals along axes (no other unit vector is exact in
+// binary); in q16 positions are whole quanta, and normals far from half a quantum.
 #include <algorithm>
 
 #include "server/base/files.h"
@@ -20,7 +20,8 @@ std::string golden(const std::string& name) {
   return *bytes;
 }
 
-/// After three steps of 1/8 s, so that time and step are not 0; all is pinned, so nothing else changes.
+/// After three steps of 1/8 s, so that time and step are not 0; all vertices are pinned, so nothing else
+/// changes.
 std::unique_ptr<sim::Simulation> stepped(const std::string& scene) {
   auto simulation = test::simulation(test::document_of(golden(scene)).scene);
   simulation->step(3);
@@ -38,7 +39,7 @@ void require_golden(const stream::SharedMessage& message, const std::string& nam
   REQUIRE(differs == made.end());
 }
 
-/// The frames of one packer, one for each of `flags`: numbered from 1.
+/// Checks the frames of one packer, one for each of `flags`, numbered from 1.
 void require_frames(const sim::Simulation& simulation, Encoding encoding, std::vector<std::uint16_t> flags,
                     const std::vector<std::string>& names) {
   auto packer = stream::Packer::create();
@@ -84,7 +85,7 @@ TEST_CASE(
     };
     INFO(name);
     REQUIRE(same(bytes));
-    // Each in memory of its own size, so that AddressSanitizer sees what is read behind it.
+    // Each in memory of its own size, so that AddressSanitizer sees a read behind it.
     for (auto end = bytes.begin(); end != bytes.end(); ++end)
       REQUIRE_FALSE(fuzz::decode_frame(std::vector<std::uint8_t>(bytes.begin(), end)));
     int refused = 0;

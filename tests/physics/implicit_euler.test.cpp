@@ -1,5 +1,4 @@
-// Implicit Euler on the GPU against the double-precision reference: Newton step by Newton step, and where it
-// comes to rest.
+// Implicit Euler on the GPU against the double-precision reference: after each Newton step, and at rest.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -44,7 +43,7 @@ TEST_CASE(
     INFO(iterations << " Newton steps: off by " << worst << " m, of a step of " << moved
                     << " m; from the exact step " << apart << " m");
     CHECK(worst < 2 * rounding);
-    CHECK(apart > 4 * rounding);  // so many Newton steps are told from more
+    CHECK(apart > 4 * rounding);  // this number of Newton steps differs visibly from more
     CHECK(moved > 1e-3);
   }
 }
@@ -65,7 +64,7 @@ TEST_CASE(
   gpu.step(300);
   const reference::Energy found = gpu.energy();
   // Its folds may have fallen the other way: the same energy, another shape. The energy has its minimum
-  // there, so what the solver's tolerance of 1e-4 leaves of the motion shows only in its square.
+  // there, so the solver's tolerance of 1e-4 shows only by its square.
   INFO("energy " << found.total() << " J, at balance " << expected.total() << " J, at the start " << start
                  << " J");
   CHECK(std::abs(found.total() - expected.total()) < 1e-5 * (start - expected.total()));

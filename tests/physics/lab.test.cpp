@@ -18,7 +18,7 @@ namespace {
 
 scene::Scene swinging(Method method = Method::symplectic_euler) {
   scene::Scene scene = test::swinging_cloth(method, 0.6 * test::cloth_unit);
-  scene.cloths[0].transform.translate = {0.0, 1.0, 0.0};  // where a zero of energy would show
+  scene.cloths[0].transform.translate = {0.0, 1.0, 0.0};  // an offset that would show in the energy
   return scene;
 }
 
@@ -41,7 +41,7 @@ std::vector<Point> points_of(const Chart& chart, Method method) {
   return points;
 }
 
-/// Slope in the log-log plane between two points.
+/// Order between two points: slope of error over dt in the log-log plane.
 double order(const Point& a, const Point& b) {
   return std::log(*a.error[index(Axis::position)] / *b.error[index(Axis::position)]) /
          std::log(a.setting.dt / b.setting.dt);
@@ -73,7 +73,7 @@ TEST_CASE("the lab's reference of the swinging cloth is as exact as it says, for
   const auto exact = reference::trajectory(found.world, {0.3}, test::cloth_unit / 100);
   REQUIRE(exact);
   const double off = reference::rms_distance(found.position.back(), exact->states[0].position);
-  // An estimate of the size of the error: within a factor of three of it, and as small as was asked for.
+  // The estimate is within a factor of three of the error, and as small as was asked for.
   CHECK(off < 3.0 * found.position_error);
   CHECK(found.position_error < 1e-7 * found.size);
 }
@@ -84,7 +84,7 @@ TEST_CASE("a horizon ends where a cloth buckles, and a tangle has none: the lab 
   CHECK(buckling.horizon < 1.0);
   CHECK(buckling.horizon_reason.find("100 times") != std::string::npos);
 
-  // A tangle parts from its copy within 0.2 s: at once, for who wants to see ten seconds.
+  // A tangle departs from its copy within 0.2 s: too early for a request of ten seconds.
   scene::Scene tangle = swinging();
   tangle.cloths[0].mesh = scene::Grid{7, 7, 0.5, 0.5};
   tangle.cloths[0].pins = {{scene::AtCorner{0, 0}, {}}};
@@ -122,20 +122,18 @@ TEST_CASE("the chart of the swinging cloth shows each method's order, float32's 
   const Chart made = chart_of(swinging(), request);
   CHECK(made.complete);
   CHECK(made.horizon == 0.3);
-  // The first two rungs below the limit, 0.95 and 0.48 of it; what higher orders of dt add there is below
-  // 0.15.
+  // The first two rungs below the limit, 0.95 and 0.48 of it; higher orders of dt add less than 0.15 there.
   for (const auto& [method, of_theory] : {std::pair{Method::symplectic_euler, 1.0}, {Method::verlet, 2.0}}) {
     const std::vector<Point> points = points_of(made, method);
     REQUIRE(points.size() >= 2);
     CAPTURE(scene::name(method));
     CHECK(std::abs(order(points[0], points[1]) - of_theory) < 0.15);
   }
-  // At dt = 0.6 u: 7.8e-4 and 3.4e-5 m (tests/README.md), of a size of 0.5 m. The step here is up to 4 %
+  // At dt = 0.6 u: 7.8e-4 and 3.4e-5 m (tests/README.md), for a size of 0.5 m. The step here is up to 4 %
   // shorter.
   CHECK(std::abs(*points_of(made, Method::symplectic_euler)[0].error[0] / 1.56e-3 - 1.0) < 0.05);
   CHECK(std::abs(*points_of(made, Method::verlet)[0].error[0] / 6.8e-5 - 1.0) < 0.09);
-  // Verlet keeps the energy: what swings is of the order of (omega dt)^2 in the fastest modes, which carry
-  // little.
+  // Verlet keeps the energy: it swings by (omega dt)^2 in the fastest modes, which carry little.
   CHECK(*points_of(made, Method::verlet)[0].error[index(Axis::energy)] < 1e-3);
   // RK4 at half its limit is at float32's floor: 3.7e-7 to 7.4e-7 m there, and no shorter step is below a
   // third.
@@ -177,7 +175,7 @@ TEST_CASE(
   const sim::State read = (*simulation)->read_state();
   const double error =
       reference::rms_distance({read.position.begin(), read.position.end()}, exact->states[1].position) / 0.5;
-  // The same bits as in the choice, against a reference that is some 1e-7 off.
+  // The same bits as in the choice, against a reference that is off by about 1e-7.
   CHECK(std::abs(error / *made->chosen.error[index(Axis::position)] - 1.0) < 0.01);
   CHECK(*made->chosen.largest_position_error <= tolerance);
   CHECK(error <= tolerance);

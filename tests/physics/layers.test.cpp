@@ -1,4 +1,4 @@
-// Layers of cloth that meet: from which thickness on points that keep apart keep their surfaces apart.
+// Layers of cloth that meet: the thickness from which vertices that keep apart keep their surfaces apart.
 #include "server/model/thickness.h"
 #include "tests/crossings.h"
 #include "tests/scenes.h"
@@ -7,8 +7,8 @@ using namespace clothlab;
 
 namespace {
 
-/// A sheet that falls onto another one, which is held at two edges; turned against it by so many degrees, or
-/// all of its vertices over middles of the other's cells.
+/// A cloth that falls onto another one, which is held at two edges. The first is turned by this many degrees;
+/// at 0 all of its vertices lie over middles of the other's cells.
 scene::Scene falling_sheet(double degrees) {
   constexpr double half_cell = 0.2 / 12;
   scene::Scene scene;
@@ -27,7 +27,7 @@ scene::Scene falling_sheet(double degrees) {
   return scene;
 }
 
-/// The most crossings at any of 30 times in 1.5 s.
+/// Largest number of crossings at any of 30 times in 1.5 s.
 std::size_t most_crossings(const scene::Scene& scene) {
   const auto simulation = test::simulation(scene);
   std::size_t most = 0;
@@ -50,7 +50,8 @@ TEST_CASE(
     INFO(degrees << " degrees, " << holds << " m holds");
     scene.self_collision = scene::SelfCollision{holds, 0.2};
     CHECK(most_crossings(scene) == 0);
-    // Below half the diagonal of a cell a vertex goes through its middle, far enough from all four corners.
+    // Below half the diagonal of a cell a vertex passes through the cell's middle, far enough from all four
+    // corners.
     scene.self_collision->thickness = holds / 1.3;
     CHECK(most_crossings(scene) > 0);
   }

@@ -1,4 +1,5 @@
-// Linear and angular momentum of a sheet that nothing holds, under every method, on both sides.
+// Linear and angular momentum of a cloth that nothing holds, under every method, on the GPU and in the
+// reference.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -36,7 +37,7 @@ Momentum momentum(const reference::World& world, const reference::State& state) 
   return sum;
 }
 
-/// A sheet shaken by one corner and turned by another: what is let go of then vibrates, bends and spins.
+/// A cloth shaken by one corner and turned by another: once released it vibrates, bends and spins.
 scene::Scene held(Method method, double dt) {
   scene::Scene scene = bare_scene(method, dt);
   scene::Cloth cloth;
@@ -52,8 +53,7 @@ scene::Scene held(Method method, double dt) {
   return scene;
 }
 
-/// The most that each momentum changes in 0.05 s after the sheet was let go, as a share of the sum of its
-/// parts.
+/// Largest change of each momentum within 0.05 s after the release, over the sum of its parts' magnitudes.
 struct Change {
   double linear = 0, angular = 0;
 };
@@ -86,9 +86,9 @@ TEST_CASE("a free sheet keeps its linear momentum to 1e-5 under every method") {
     for (const Method method : scene::methods) {
       const double change = change_after_release(side, method, 0.1 * cloth_unit).linear;
       INFO(scene::name(method) << ", " << name(side) << ": " << change);
-      // Every spring's two forces cancel: 400 steps' rounding is left. Implicit Euler's linear solver on the
-      // GPU ends at a tolerance of 1e-4, and what it leaves of the momentum is given back. VBD moves one
-      // vertex at a time, and gives back what of the momentum that leaves out.
+      // Every spring's two forces cancel: the rounding of 400 steps is left. Implicit Euler's linear solver
+      // on the GPU stops at a tolerance of 1e-4, and VBD moves one vertex at a time: both give back the
+      // momentum that this leaves out.
       CHECK(change < (side == Side::gpu ? 1e-5 : 1e-12));
     }
   }
@@ -102,8 +102,8 @@ TEST_CASE("a free sheet keeps its angular momentum to 1e-5 under symplectic Eule
       INFO(scene::name(method) << ", " << name(side) << ": " << change);
       CHECK(change < 1e-5);
       if (side == Side::gpu) continue;
-      // Symplectic Euler keeps it exactly. Verlet does with the velocity that it does not show; what it shows
-      // is ahead by an error of second order. RK4 loses it by its fifth.
+      // Symplectic Euler keeps it exactly. Verlet does so with a velocity that it does not show; the one
+      // shown is ahead by an error of order 2. RK4 loses momentum by an error of order 5.
       const double coarse = change_after_release(side, method, 0.1 * cloth_unit).angular;
       if (method == Method::symplectic_euler) CHECK(change < 1e-12);
       if (method == Method::verlet) CHECK(std::abs(std::log2(coarse / change) - 2.0) < 0.3);
@@ -119,8 +119,8 @@ TEST_CASE("explicit and implicit Euler change a free sheet's angular momentum by
       const double coarse = change_after_release(side, method, 0.2 * cloth_unit, 1e-7).angular;
       const double fine = change_after_release(side, method, 0.1 * cloth_unit, 1e-7).angular;
       INFO(scene::name(method) << ", " << name(side) << ": " << coarse << ", " << fine);
-      // x' x v' = x x v +- dt^2 v x a: the sum of that over a given time falls with dt, slower while implicit
-      // Euler still damps the vibrations that carry a.
+      // x' x v' = x x v +- dt^2 v x a: the sum of that over a given time falls with dt, more slowly while
+      // implicit Euler still damps the vibrations that carry a.
       CHECK(coarse > 1.3 * fine);
       CHECK(coarse < 2.5 * fine);
       CHECK(fine > 1e-4);

@@ -25,7 +25,7 @@ model::Model sheet_model(int side) {
   return std::move(*model);
 }
 
-/// The lists the GPU builds for `model` with its vertices at `position`.
+/// The lists that the GPU builds for `model` with its vertices at `position`.
 struct Search {
   sim::SelfCollision self_collision;
   gl::TextureBuffer position, rest;
@@ -76,7 +76,7 @@ void check_against_brute_force(const model::Model& model, const std::vector<glm:
     REQUIRE(listed == expected[i]);
     found += listed.size();
   }
-  REQUIRE(found > at.size());                                // the case is not an empty one
+  REQUIRE(found > at.size());                                // there are neighbours to find
   for (const auto& list : lists) REQUIRE(list.size() < 64);  // none was cut short
 }
 
@@ -88,7 +88,7 @@ std::vector<glm::vec4> random_cloud(std::size_t count, unsigned seed) {
   return at;
 }
 
-/// A sheet folded in four layers, 8 mm apart.
+/// Positions of a cloth folded in four layers, 8 mm apart.
 std::vector<glm::vec4> folded(const model::Model& model) {
   std::vector<glm::vec4> at;
   for (const glm::dvec3& x : model.rest_position) {
@@ -103,7 +103,7 @@ std::vector<glm::vec4> folded(const model::Model& model) {
 
 TEST_CASE("neighbour lists hold exactly the pairs that brute force finds in a random cloud") {
   const auto context = test::context();
-  const model::Model model = sheet_model(19);  // 361 vertices: no multiple of the work group
+  const model::Model model = sheet_model(19);  // 361 vertices: not a multiple of the work group
   for (const unsigned seed : {1u, 2u, 3u})
     check_against_brute_force(model, random_cloud(model.vertex_count(), seed));
 }
@@ -148,7 +148,7 @@ TEST_CASE("neighbour lists are the same whatever the order of threads: nearest f
 
 TEST_CASE("neighbour lists do not depend on the numbering of the vertices") {
   const auto context = test::context();
-  // Unconnected triangles, so that numbering can be permuted without touching springs.
+  // Unconnected triangles: their vertices can be numbered otherwise without another order of springs.
   const auto cloud = random_cloud(300, 5);
   std::vector<std::uint32_t> order(cloud.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -176,7 +176,7 @@ TEST_CASE("vertices at the same place are neighbours and give no NaN") {
   const auto context = test::context();
   scene::Scene scene = test::sheet(5, 5);
   scene.self_collision = scene::SelfCollision{thickness, 0.3};
-  scene.cloths.push_back(scene.cloths[0]);  // the same sheet again, in the same place
+  scene.cloths.push_back(scene.cloths[0]);  // the same cloth again, in the same place
   const auto simulation = test::simulation(scene);
   simulation->step(100);
   REQUIRE(simulation->diagnose().finite);
@@ -224,8 +224,8 @@ TEST_CASE("a sheet that falls on another one comes to lie a thickness above it")
   float lowest = 1e9f;
   for (std::size_t i = 0; i < 169; ++i)
     lowest = std::min(lowest, state.position[169 + i].y - state.position[i].y);
-  // The layers lie vertex over vertex: each pair is kept a thickness apart, less one step's fall before it is
-  // seen.
+  // The layers lie vertex over vertex. Each pair is kept a thickness apart, less one step's fall before the
+  // contact is seen.
   REQUIRE(lowest > 0.02f - 2e-4f);
   REQUIRE(simulation->diagnose().contacts > 100);
 }

@@ -1,6 +1,5 @@
-// The order of every method, on both sides: in double precision over four halvings of dt, on the GPU down to
-// what float32 leaves. What float32 adds is measured apart: the distance between the two sides at the same
-// dt.
+// The order of every method: of the reference over four halvings of dt, of the GPU as far as float32 allows.
+// What float32 adds is measured by itself: the distance between the two at the same dt.
 #include "tests/physics/orders.h"
 
 using namespace clothlab;
@@ -9,12 +8,12 @@ using scene::Method;
 
 namespace {
 
-/// How a method is measured on a scene, and what is claimed of it.
+/// How a method is measured on a scene, and the result that is required.
 struct Plan {
   Method method;
   int coarsest;      ///< steps at the largest dt
-  int gpu_halvings;  ///< of dt on the GPU before float32 hides the method's error
-  double floor;      ///< the most that float32 adds [m]; for implicit Euler, with the tolerance of its solver
+  int gpu_halvings;  ///< halvings of dt on the GPU before float32 hides the method's error
+  double floor;      ///< the most that float32 may add [m]; for implicit Euler with its solver's tolerance
 };
 
 int order_of(Method method) {
@@ -22,8 +21,8 @@ int order_of(Method method) {
 }
 
 constexpr int halvings = 4;
-constexpr double tolerance = 0.15;  // the issue's; at these dt the next order is still seen
-/// The method's error is seen while it is 4 times what float32 adds: as an independent error that adds 3 % to
+constexpr double tolerance = 0.15;  // of the order: at these dt the next order is still seen
+/// The method's error is seen while it is 4 times what float32 adds: such an independent error adds 3 % to
 /// it, 0.05 to the order.
 constexpr double seen = 4.0;
 
@@ -39,8 +38,7 @@ std::string text(const std::vector<Rung>& rungs) {
   return lines;
 }
 
-/// Every planned method on `scene`, against the truth at `time`. `float32_floor` [m] is the most that float32
-/// may add.
+/// Checks every planned method on `scene` against the truth at `time` [s].
 void check_orders(const SceneOf& scene, double time, int truth_steps, const std::vector<Plan>& plans) {
   const auto context = test::context();
   const Truth exact = truth(scene, time, truth_steps);
@@ -68,7 +66,7 @@ void check_orders(const SceneOf& scene, double time, int truth_steps, const std:
 }
 
 scene::Scene precise(scene::Scene scene) {
-  scene.solver.tolerance = 1e-7;  // implicit Euler's linear solver: to what float32 can tell
+  scene.solver.tolerance = 1e-7;  // of implicit Euler's linear solver: as small as float32 allows
   return scene;
 }
 
@@ -98,8 +96,8 @@ TEST_CASE("one damped spring: every method has its order, in float32 down to a m
                 {Method::vbd, 100, 4, 5e-6}});
 }
 
-// Implicit Euler leaves 1e-7 of a momentum of 4 m/s a step unsolved, for up to 1600 steps of 1 s in all: at
-// most 3e-4 m.
+// Implicit Euler leaves 1e-7 of a momentum of 4 m/s unsolved per step, for up to 1600 steps in 1 s: at most
+// 3e-4 m.
 TEST_CASE("a pendulum: every method has its order, in float32 down to some micrometres") {
   check_orders([](Method method, double dt) { return precise(pendulum(method, dt, 60.0, 100.0)); }, 1.0, 8000,
                {{Method::explicit_euler, 400, 4, 3e-6},
@@ -122,9 +120,9 @@ TEST_CASE(
 }
 
 TEST_CASE("a cloth that begins to swing: explicit and implicit Euler, XPBD and VBD have order 1") {
-  // Explicit Euler's undamped vibrations grow by exp(omega^2 dt t / 2): an early time and a small dt, so that
-  // those of rounding do not show. Even so float32 leaves a halving or none. Implicit Euler damps vibrations
-  // by as much: the same early time shows the order of the motion rather than the loss of vibrations.
+  // Explicit Euler's undamped vibrations grow by exp(omega^2 dt t / 2): an early time and a small dt keep
+  // those of rounding small. Even so float32 leaves one halving or none. Implicit Euler damps vibrations by
+  // as much: the same early time shows the order of the motion rather than the loss of vibrations.
   const SceneOf scene = [](Method method, double dt) { return precise(swinging_cloth(method, dt)); };
   check_orders(scene, 0.03, 600,
                {{Method::explicit_euler, 620, 0, 1e-5},
@@ -134,7 +132,7 @@ TEST_CASE("a cloth that begins to swing: explicit and implicit Euler, XPBD and V
 }
 
 TEST_CASE("a damped swinging cloth: explicit Euler has order 1, in float32 too") {
-  // With damping of 0.3 u times the stiffness it is stable below 0.3 u.
+  // With damping of 0.3 u times the stiffness, explicit Euler is stable below 0.3 u.
   const SceneOf scene = [](Method method, double dt) {
     scene::Scene damped = swinging_cloth(method, dt);
     damped.cloths[0].material.damping = 0.3 * cloth_unit * 100.0;

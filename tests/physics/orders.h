@@ -1,4 +1,4 @@
-// How the error of a method falls with dt, on either side.
+// Measures how the error of a method falls with dt, on the GPU and in the reference.
 #pragma once
 
 #include <cmath>
@@ -11,10 +11,10 @@
 
 namespace clothlab::test {
 
-/// A scene for a method and a dt.
+/// Makes a scene for a method and a dt.
 using SceneOf = std::function<scene::Scene(scene::Method, double)>;
 
-/// One dt of a ladder on which each is half of the one before.
+/// One dt of a ladder, on which each dt is half of the one before.
 struct Rung {
   int steps = 0;
   double error = 0;  ///< RMS distance to the truth [m]
@@ -23,16 +23,16 @@ struct Rung {
 
 struct Truth {
   std::vector<glm::dvec3> position;
-  double error = 0;  ///< of it [m]
+  double error = 0;  ///< estimated error of `position` [m]
 };
 
-/// Where the scene is at `time`, by RK4 in double precision; the coarser of its two runs takes `steps`.
+/// The scene at `time` [s], by RK4 in double precision; the coarser of its two runs takes `steps`.
 inline Truth truth(const SceneOf& scene, double time, int steps) {
   const auto world = reference::make_world(scene(scene::Method::rk4, time), 0.0);
   REQUIRE(world);
   const auto found = reference::trajectory(*world, {time}, time / steps);
   REQUIRE(found);
-  return {found->states[0].position, found->error[0] / 15};  // twice the step has 16 times the error
+  return {found->states[0].position, found->error[0] / 15};  // a step twice as long has 16 times the error
 }
 
 inline std::vector<glm::dvec3> position_after(Side side, const scene::Scene& scene, int steps) {
@@ -41,12 +41,12 @@ inline std::vector<glm::dvec3> position_after(Side side, const scene::Scene& sce
   return stepped.state().position;
 }
 
-/// Both sides on the same rungs.
+/// The rungs of the reference and of the GPU, with the same dt.
 struct Ladder {
   std::vector<Rung> reference, gpu;
 };
 
-/// `count` rungs from `coarsest` steps over `time` on.
+/// Climbs `count` rungs; the first takes `coarsest` steps over `time`.
 inline Ladder climb(scene::Method method, const SceneOf& scene, double time, int coarsest, int count,
                     const Truth& truth) {
   Ladder ladder;

@@ -1,4 +1,4 @@
-// Steps that are queued in pieces end in the bits they would have ended in anyway.
+// Steps that are queued in pieces end in the same bits as whole ones.
 #include "server/model/crowding.h"
 #include "server/scene/method.h"
 #include "server/stream/packer.h"
@@ -8,8 +8,8 @@ using namespace clothlab;
 
 namespace {
 
-/// Larger than what one work group sweeps; with everything that may stop on its way: contacts, a moving pin,
-/// a limit on strain.
+/// A cloth larger than one work group sweeps, with everything that may stop within a step: contacts, a moving
+/// pin, a limit on strain.
 scene::Scene busy(scene::Method method, int side) {
   scene::Scene scene = test::seed();
   scene.cloths[0].mesh = scene::Grid{side, side, 1.0, 1.0};
@@ -104,14 +104,14 @@ TEST_CASE("a step given up half-way for a change leaves the state where it was, 
     sim::Pace three;
     three.most = 3;
     simulation->resume(three);
-    if (simulation->step_index() > 3) continue;  // it has nowhere to stop within a step
+    if (simulation->step_index() > 3) continue;  // it cannot stop within a step
     scene.gravity.y = -5.0;
     REQUIRE(simulation->change(scene));
     CHECK(simulation->wanted() == 0);
     CHECK(simulation->step_index() == 3);
     CHECK(sim::state_hash(simulation->read_state()) == before);
     simulation->step(5);
-    // As if it had never begun, but for what the method and the limits remember of steps before.
+    // Like a step that never began, except that the method and the limits remember earlier steps.
     const auto whole = test::simulation(busy_without_limit(method));
     whole->step(3);
     REQUIRE(whole->change(scene));

@@ -50,7 +50,8 @@ json RandomPatch::grid() {
             {"height", usual(0.1, 3.0, ranges::length)}}}};
 }
 
-/// Corners on a coarse lattice, so that vertices coincide, triangles have no area and edges many triangles.
+/// Corners on a coarse lattice, so that vertices coincide, triangles have no area and edges belong to many
+/// triangles.
 json RandomPatch::triangle_mesh() {
   const int count = whole(3, 12);
   json vertices = json::array(), triangles = json::array();
@@ -156,7 +157,7 @@ json RandomPatch::cloth(const std::string& name) {
       {"name", name},           {"mesh", mesh},       {"transform", transform()}, {"mass", mass()},
       {"material", material()}, {"pins", pins(mesh)}, {"weights", weights(mesh)}, {"start", start()}};
   json whole = json::object();
-  whole.merge_patch(patch);  // without what it says is not there
+  whole.merge_patch(patch);  // a missing key gets its default
   return whole;
 }
 
@@ -175,7 +176,7 @@ json RandomPatch::collider(const std::string& name) {
 
 json RandomPatch::change_cloth(const json& cloth) {
   switch (whole(0, 7)) {
-    case 0: {  // what is at a place of the old mesh goes with it
+    case 0: {  // what refers to a place of the old mesh is removed with it
       json mesh = chance(0.7) ? grid() : triangle_mesh();
       json changed = {{"pins", pins(mesh)}, {"weights", weights(mesh)}};
       for (const auto& old : cloth["mesh"].items())
@@ -200,7 +201,7 @@ json RandomPatch::change_cloth(const json& cloth) {
   }
 }
 
-/// A merge patch replaces arrays as a whole.
+/// A merge patch replaces whole arrays.
 json RandomPatch::change_cloths(const json& document) {
   json cloths = document["cloths"];
   if (cloths.size() < 3 && chance(0.1)) {

@@ -1,5 +1,5 @@
-// Random patches of a scene that are valid by construction: each is drawn for the document as it is, numbers
-// from the ranges of server/scene/ranges.h, mostly where users are, sometimes at their very ends. Grids and
+// Random patches of a scene that are valid by construction. Each is drawn for the present document, with
+// numbers from the ranges of server/scene/ranges.h: mostly usual ones, sometimes the very ends. Grids and
 // iterations are kept small, so that many patches are tried in little time.
 #pragma once
 
@@ -17,9 +17,9 @@ class RandomPatch {
 
   /// A small scene to begin with.
   scene::json first_scene();
-  /// A merge patch, or the operations that do the same; never one that is refused as a document.
+  /// A merge patch, or the operations that do the same; the document accepts it always.
   scene::json next(const scene::Document& document);
-  /// In [least, most].
+  /// An integer in [least, most].
   int whole(int least, int most) { return std::uniform_int_distribution<int>(least, most)(random_); }
 
  private:
@@ -29,15 +29,15 @@ class RandomPatch {
   double uniform(double least, double most) {
     return std::uniform_real_distribution<double>(least, most)(random_);
   }
-  /// Evenly in the logarithm.
+  /// A number in [least, most], evenly distributed in the logarithm.
   double spread(double least, double most);
-  /// Usually in [least, most], else anywhere in the range, or at one of its ends.
+  /// A number usually in [least, most], else anywhere in the range or at one of its ends.
   double usual(double least, double most, const scene::Range& range);
-  /// Of either sign, or 0.
+  /// Like `usual`, of either sign, or 0.
   double signed_usual(double least, double most, const scene::Range& range);
   json vector(double least, double most, const scene::Range& range);
   json direction();
-  std::string fresh_name();  ///< that nothing has yet
+  std::string fresh_name();  ///< that nothing in the scene has
 
   json grid();
   json triangle_mesh();

@@ -1,5 +1,5 @@
-// A property: whatever valid patches come one after another, the document stays valid, and the simulation
-// stays finite or is said to have blown up, and goes on from a finite state with the remedy.
+// A property: after any sequence of valid patches the document is valid, and the simulation is finite, or is
+// reported to have blown up and goes on from a finite state with the remedy.
 // CLOTHLAB_PATCH_SEEDS=FROM-TO tries other seeds than the few of every run.
 #include <cmath>
 #include <cstdlib>
@@ -41,7 +41,7 @@ class Session {
   int blow_ups() const { return blow_ups_; }
   int refused() const { return refused_; }
 
-  /// What is wrong, or nothing.
+  /// Applies the patch. Returns what is wrong, or "".
   std::string patch(const json& patch) {
     const Result<scene::Document> next = scene::apply_patch(document_, patch);
     if (!next) return "a valid patch was refused: " + next.error().text();
@@ -67,7 +67,7 @@ class Session {
     return still_goes();
   }
 
-  /// Steps and judges; what is wrong, or nothing.
+  /// Steps and checks. Returns what is wrong, or "".
   std::string run(int batches, std::uint32_t steps) {
     for (int batch = 0; batch < batches; ++batch) {
       simulation_->step(steps);
@@ -85,7 +85,7 @@ class Session {
     return finite(simulation_->read_state()) ? "" : "not finite, and nobody says so";
   }
 
-  /// Back to the last good state, with the remedy, as a user would after sim.diverged.
+  /// Goes back to the last good state with the remedy, as a user would after sim.diverged.
   std::string recover() {
     ++blow_ups_;
     const auto [reason, remedy] = guard_.go_back();
@@ -127,14 +127,14 @@ struct Count {
   int patches = 0, blow_ups = 0, refused = 0;
 };
 
-/// Runs one seed; what is wrong, with all that led to it, or nothing.
+/// Runs one seed. Returns what is wrong, with the patches that led to it, or "".
 std::string run_seed(std::uint64_t seed, Count& count) {
   test::RandomPatch random(seed);
   const json first = random.first_scene();
   std::string history = "seed " + std::to_string(seed) + "\n" + first.dump() + "\n";
   const Result<scene::Document> document = scene::validate(first);
   if (!document) return history + document.error().text();
-  if (!model::build(document->scene)) return "";  // a mesh without area cannot be weighed by it
+  if (!model::build(document->scene)) return "";  // a mesh without area has no mass by area
   Session session(*document);
   std::string wrong;
   for (int i = 0; i < patches_a_seed && wrong.empty(); ++i) {
@@ -166,7 +166,7 @@ TEST_CASE(
   }
   WARN(count.patches << " patches, " << count.blow_ups << " blow-ups, " << count.refused
                      << " refused by the model");
-  // Random enough to meet both outcomes, and seldom refused.
+  // The patches are random enough to meet both outcomes, and are seldom refused.
   if (std::getenv("CLOTHLAB_PATCH_SEEDS")) return;
   CHECK(count.blow_ups > 5);
   CHECK(count.refused * 10 < count.patches);

@@ -1,4 +1,5 @@
-// How far a step in float32 may be from the same step in double, from the rounding of each operation in it.
+// Bounds of how far a step in float32 may be from the same step in double, from the rounding of each
+// operation.
 #pragma once
 
 #include <cmath>
@@ -41,7 +42,7 @@ inline Rounding step_rounding(const reference::World& world, const reference::St
     const double x = glm::length(before.position[i]) + glm::length(after.position[i]);
     const double v = glm::length(before.velocity[i]) + glm::length(after.velocity[i]);
     if (world.model.pin_motion[i] !=
-        model::not_pinned) {  // a pose in float32: 3 products and sums a component
+        model::not_pinned) {  // a pose in float32: 3 products and sums per component
       bound.position[i] = 4 * u * x;
       bound.velocity[i] = 4 * u * (v + x);
       continue;

@@ -1,4 +1,4 @@
-// What a choice promises of its error, against closed forms: no step in between is worse than that.
+// The error range that a choice promises, against closed forms: no step in between is worse.
 #include <algorithm>
 #include <cmath>
 
@@ -15,7 +15,7 @@ namespace {
 
 const scene::Scene spring = test::one_spring(Method::verlet, 0.001);
 
-/// The largest error of a setting at any step up to `time`, over the size, by the closed form.
+/// Largest error of a setting at any step up to `time`, over the size, by the closed form.
 double largest_by_hand(const Setting& setting, double time, int steps) {
   scene::Scene scene = with(spring, setting);
   scene.solver.dt = time / steps;
@@ -48,7 +48,7 @@ TEST_CASE(
   constexpr double time = 1.0;
   const Truth truth = true_spring(time);
   Bench bench;
-  // 20 steps have 4 of the 64 samples in common; 60 are looked at each, 600 at every seventh.
+  // 20 steps have 4 of the 64 samples in common; of 60 steps each is looked at, of 600 every seventh.
   const std::vector<Setting> settings{{Method::symplectic_euler, time / 20, 1, 1e-4},
                                       {Method::verlet, time / 60, 1, 1e-4},
                                       {Method::symplectic_euler, time / 600, 1, 1e-4}};
@@ -62,11 +62,11 @@ TEST_CASE(
     const double rounding = 1e-6;  // float32 positions of about 1 m, RMS
     CHECK(found.low <= exact + rounding);
     CHECK(found.high >= exact - rounding);
-    // It is no excuse to promise nothing: between two of 96 looks an oscillation of 0.6 periods changes
-    // little.
+    // The range must also be narrow: between two of 96 looks an oscillation of 0.6 periods changes little.
     CHECK(found.high <= 1.1 * exact + rounding);
   }
-  // At the 4 common times, quarters of the time, it seems better than it is: what was promised before.
+  // At the 4 common times, quarters of the time, the error seems smaller than it is: without a second look
+  // the choice would promise that.
   const auto trial = bench.run(with(spring, settings[0]), truth, time, {});
   REQUIRE(trial);
   CHECK(*trial->largest_position_error < 0.98 * (*errors)[0]->seen);

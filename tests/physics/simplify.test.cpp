@@ -1,4 +1,4 @@
-// What the lab says of leaving parts of a scene out.
+// The lab's verdict on leaving parts of a scene out.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -14,7 +14,7 @@ using lab::Variant;
 
 namespace {
 
-/// A sheet pulled a little in its plane, which swings by less than a thousandth and never meets itself.
+/// A cloth pulled a little in its plane; it swings by less than a thousandth and never touches itself.
 scene::Document pulled(const std::string& material, const std::string& more) {
   return document_of(R"({"version": 1, "name": "pulled", "gravity": [0, 0, 0.5],
     "cloths": [{"mesh": {"grid": {"columns": 33, "rows": 33, "width": 1, "height": 1}}, "mass": {"per_vertex": 0.001},
@@ -53,10 +53,10 @@ TEST_CASE("a flat pulled sheet needs neither bend springs nor self-collision nor
     const Variant& part = variant(result, name);
     REQUIRE(part.measured);
     REQUIRE(part.change);
-    // It is pulled g M / (2 k) = 1.4 mm at most; no part is more than that.
+    // The pull stretches it by g M / (2 k) = 1.4 mm at most; no part changes it by more.
     CHECK(*part.change < 2e-3);
     CHECK(part.error[lab::index(lab::Axis::position)]);
-    // Only what saves more than its timings vary by is dropped.
+    // A part is dropped only if it saves more than its timings vary by.
     if (part.drop) CHECK(part.saving == lab::Saving::yes);
     CHECK(part.cost_ratio.low <= part.cost_ratio.median);
     CHECK(part.cost_ratio.high >= part.cost_ratio.median);
@@ -64,12 +64,13 @@ TEST_CASE("a flat pulled sheet needs neither bend springs nor self-collision nor
   CHECK(*variant(result, "without self-collision").change < 1e-7);
   const Variant& half = variant(result, "half the mesh resolution");
   const Variant& quarter = variant(result, "a quarter of the mesh resolution");
-  // A quarter and a sixteenth of the springs and half and a quarter of the steps.
+  // A quarter and a sixteenth of the springs, and half and a quarter of the steps.
   CHECK(half.cost_ratio.median < 0.5);
   CHECK(quarter.cost_ratio.median < half.cost_ratio.median);
   CHECK(quarter.drop);
   CHECK_FALSE(half.drop);
-  // The step keeps its share of the limit, which is twice as long on cells twice as wide, edges apart.
+  // The step keeps its share of the limit, which is twice as long on cells twice as wide, except for the
+  // edges.
   const double dt = half.patch["solver"]["dt"];
   CHECK(dt / half.dt_limit == Approx(0.0005 / result.whole.dt_limit).epsilon(1e-9));
   CHECK(half.dt_limit / result.whole.dt_limit == Approx(2.0).epsilon(0.05));
@@ -84,7 +85,7 @@ TEST_CASE("a flat pulled sheet needs neither bend springs nor self-collision nor
 
 namespace {
 
-/// Parts that change nothing here, and timings made up of what each is said to save.
+/// Parts that change nothing here, with timings made up from what each is said to save.
 Simplification with_savings(double bend, double self_collision, double both, double noise) {
   const scene::Document whole =
       pulled(R"({"structural": 200, "shear": 100, "bend": 50, "damping": 0.01})",
@@ -116,7 +117,8 @@ TEST_CASE("parts that save nothing are not recommended, however noisy the machin
 
 TEST_CASE("a combination is recommended only where it costs less than its best part") {
   const auto context = test::context();
-  const Simplification best = with_savings(0.8, 0.6, 0.62, 0.03);  // together dearer than one alone
+  // the two together cost more than one alone
+  const Simplification best = with_savings(0.8, 0.6, 0.62, 0.03);
   CHECK(best.recommended.name == "without self-collision");
   CHECK_FALSE(best.together());
   CHECK_FALSE(variant(best, "without bend springs").drop);
@@ -130,7 +132,7 @@ TEST_CASE("a combination is recommended only where it costs less than its best p
   CHECK(both.recommended.cost_ratio.median == Approx(0.45).epsilon(0.05));
 }
 
-TEST_CASE("what a scene does not have is not measured, and what changes too much stays") {
+TEST_CASE("parts that a scene does not have are not measured, and parts that change too much stay") {
   const auto context = test::context();
   const Simplification result = simplified(*scene::load_preset("hanging-strip"), {1e-4, 0.3});
   const Variant& bend = variant(result, "without bend springs");
@@ -157,7 +159,7 @@ TEST_CASE("a scene that blows up as it is gets no advice but a stable step") {
 
 TEST_CASE("without a reference what parts change is still measured, and errors are not made up") {
   const auto context = test::context();
-  // Stiff and light: a second takes 1e6 steps of the reference and more.
+  // Stiff and light: one second takes 1e6 steps of the reference or more.
   const scene::Document stiff = pulled(R"({"structural": 2e9, "shear": 1e9, "bend": 1e8, "damping": 0})",
                                        R"(, "solver": {"method": "xpbd", "dt": 0.005, "iterations": 5})");
   const Simplification result = simplified(stiff, {1e-2, 0.2});

@@ -1,4 +1,4 @@
-// What lies on a slope slides down it as Newton and Coulomb say, however few sweeps a step has and however
+// A cloth on a slope slides down it by Newton's and Coulomb's laws, however few sweeps a step has and however
 // long it is.
 #include <algorithm>
 #include <array>
@@ -21,7 +21,7 @@ double in_radians(double degrees) {
   return degrees * std::acos(-1.0) / 180.0;
 }
 
-/// A free sheet of 9 x 9 that lies on a plane `degrees` from level: gravity leans, not the plane.
+/// A free cloth of 9 x 9 on a plane `degrees` from level: gravity leans, not the plane.
 scene::Scene on_slope(Method method, double degrees, double friction, double dt, int iterations) {
   scene::Scene scene = bare_scene(method, dt);
   scene.solver.iterations = iterations;
@@ -37,7 +37,7 @@ scene::Scene on_slope(Method method, double degrees, double friction, double dt,
   return scene;
 }
 
-/// How far the sheet's centre has come down in `steps` steps [m].
+/// Distance that the cloth's centre has slid down in `steps` steps [m].
 double slid(Side side, const scene::Scene& scene, int steps) {
   Stepped stepped(side, scene);
   const auto centre = [&] {
@@ -70,8 +70,8 @@ TEST_CASE(
               INFO(scene::name(method)
                    << ", " << name(side) << ", " << degrees << " degrees, friction " << friction << ", dt "
                    << dt << " s, " << iterations << " iterations: " << found << " m of " << expected);
-              // All vertices slide alike, so no spring acts. In float32 a place within 2 m is rounded, which
-              // is an acceleration of that over dt^2, in every step the same at worst.
+              // All vertices slide alike, so no spring acts. float32 rounds a place within 2 m, which acts
+              // like an acceleration of that over dt^2, at worst the same in every step.
               const double rounding = unit_roundoff * 2.0 * steps * (steps + 1) / 2;
               CHECK(std::abs(found - expected) < (side == Side::gpu ? 4 * rounding : 1e-6));
             }

@@ -1,4 +1,4 @@
-// Solids on the GPU and in the reference, each kind against what is true of its shape (tests/solids.h).
+// Solids on the GPU and in the reference: each kind against properties of its shape (tests/solids.h).
 #include "tests/solids.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 const scene::Motion motions[] = {
     {}, scene::Linear{{0.0, 4.0, -2.0}}, scene::Spin{{0.6, 0.0, 0.8}, {0.3, 0.0, 0.2}, 400.0}};
 
-/// Vertices that nothing joins, in a heap that fills and surrounds where the shapes are; they fall.
+/// Unconnected vertices that fall, in a heap that fills and surrounds the places of the shapes.
 scene::Scene loose_vertices(std::vector<scene::Collider> colliders) {
   scene::Scene scene = sheet(24, 24);
   scene.cloths[0].material = {0.0, 0.0, 0.0, 0.0};
@@ -33,8 +33,7 @@ TEST_CASE("no vertex is left inside a solid, of any kind, that stands, moves or 
     for (const scene::Motion& motion : motions)
       for (const Side side : sides) {
         INFO(scene::written(shape) << " motion " << motion.index() << ", " << name(side));
-        // No friction: what it takes of a step is along the surface as it was, and this one turns by degrees
-        // a step.
+        // No friction: it acts along the surface as it was, and this one turns by degrees per step.
         const scene::Scene scene = loose_vertices({{"solid", shape, 0.0, 0.2, motion}});
         Stepped stepped(side, scene), free(side, loose_vertices({}));
         const double margin = stepped.world().contact_margin;
@@ -47,8 +46,8 @@ TEST_CASE("no vertex is left inside a solid, of any kind, that stands, moves or 
           double deepest = -1.0;
           const reference::State state = stepped.state();
           for (const glm::dvec3& x : state.position) deepest = std::max(deepest, depth(now, x));
-          CHECK(deepest <= -margin + 2e-6);  // some roundings of float32 at 1 m, of margin, place and shape
-          if (n == 1) CHECK(deepest >= -margin - 2e-6);  // and one at least lies on it
+          CHECK(deepest <= -margin + 2e-6);  // some float32 roundings at 1 m, of margin, place and shape
+          if (n == 1) CHECK(deepest >= -margin - 2e-6);  // at least one vertex lies on it
         }
         const reference::State state = stepped.state(), fallen = free.state();
         int same = 0, moved = 0;
@@ -65,7 +64,7 @@ TEST_CASE("a step against solids of every kind at once is the same on the GPU an
   for (const scene::Motion& motion : motions)
     for (const scene::Shape& shape : a_shape_of_each_kind)
       colliders.push_back({std::to_string(colliders.size()), shape, 0.3, 0.2, motion});
-  // The later one comes first in the scene: kinds are met in an order of their own.
+  // The later collider comes first in the scene: kinds are met in an order of their own.
   std::reverse(colliders.begin(), colliders.end());
   const scene::Scene scene = loose_vertices(colliders);
   Stepped gpu(Side::gpu, scene), truth(Side::reference, scene);

@@ -1,4 +1,4 @@
-// What the tests against the double-precision reference share: scenes from JSON, and states in double.
+// Shared by the tests against the double-precision reference: scenes from JSON, and states in double.
 #pragma once
 
 #include <glm/geometric.hpp>
@@ -18,7 +18,7 @@ inline scene::Scene preset(const std::string& name) {
   return scene::load_preset(name)->scene;
 }
 
-/// A sheet that falls onto one that is held at two edges.
+/// A cloth that falls onto another one, which is held at two edges.
 inline scene::Scene two_sheets() {
   return scene_of(R"({"version": 1,
     "cloths": [{"mesh": {"grid": {"columns": 15, "rows": 15, "width": 0.28, "height": 0.28}},

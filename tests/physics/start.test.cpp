@@ -1,4 +1,5 @@
-// Starts and weights on the GPU: where a cloth begins, what reset goes back to, what a weight weighs.
+// Starts and weights on the GPU: where a cloth begins, the state that reset restores, and the mass that a
+// weight adds.
 #include <algorithm>
 
 #include "server/scene/method.h"

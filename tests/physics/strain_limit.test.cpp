@@ -10,7 +10,7 @@ using namespace clothlab;
 
 namespace {
 
-/// The seed's cloth, 0.1 kg a vertex, hanging still from two corners: its springs alone would stretch by a
+/// The seed's cloth, 0.1 kg per vertex, hanging still from two corners: its springs alone would stretch by a
 /// third.
 scene::Scene heavy(scene::Method method, std::optional<double> limit) {
   scene::Scene scene = test::sheet(25, 25);
@@ -18,7 +18,7 @@ scene::Scene heavy(scene::Method method, std::optional<double> limit) {
   scene.cloths[0].material.strain_limit = limit;
   scene.solver.method = method;
   scene.solver.iterations = 1;
-  // Explicit Euler holds below damping / stiffness only, 1e-4 s; implicit Euler at any step.
+  // Explicit Euler is stable only below damping / stiffness, 1e-4 s; implicit Euler at any step.
   scene.solver.dt = method == scene::Method::explicit_euler ? 5e-5 : 1e-3;
   if (method == scene::Method::implicit_euler) scene.solver.dt = 5e-3;
   return scene;
@@ -41,7 +41,7 @@ TEST_CASE(
       CHECK(test::largest_stretch(*simulation) <= limit + 4 * 0x1p-24 / (1.0 / 24));
     }
     CHECK(simulation->strain_limit_work().unconverged == 0);
-    CHECK(simulation->strain_limit_work().sweeps > simulation->step_index());  // it had work to do
+    CHECK(simulation->strain_limit_work().sweeps > simulation->step_index());  // the limit acted
   }
 }
 
@@ -72,7 +72,7 @@ TEST_CASE("the strain limit keeps the momentum of a free sheet whose springs are
   scene::Scene scene = test::sheet(9, 7);
   scene.gravity = {0.0, 0.0, 0.0};
   scene.cloths[0].mass = {scene::Mass::Kind::area_density, 0.5};
-  // A spin about the sheet's normal so fast that it is torn apart: v^2 / r = 100 m/s^2 at the edge.
+  // A spin about the cloth's normal so fast that it would tear: v^2 / r = 100 m/s^2 at the edge.
   scene.cloths[0].material = {50.0, 50.0, 0.0, 0.0, 0.02};
   scene.cloths[0].pins = {{scene::AtVertex{31}, scene::Spin{{0.0, 1.0, 0.0}, {0.0, 1.0, 0.5}, 2000.0}},
                           {scene::AtVertex{32}, scene::Spin{{0.0, 1.0, 0.0}, {0.0, 1.0, 0.5}, 2000.0}}};

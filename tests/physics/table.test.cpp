@@ -1,5 +1,5 @@
-// The work-precision table of tests/README.md: RMS position error of the swinging cloth at 0.3 s. The
-// whole of it: tests/bench/convergence.cpp and its results.
+// The work-precision table of tests/README.md: RMS position error of the swinging cloth at 0.3 s.
+// tests/bench/convergence.cpp makes the whole table.
 #include "tests/bench/float32_xpbd.h"
 #include "tests/physics/orders.h"
 
@@ -30,10 +30,10 @@ TEST_CASE("the swinging cloth's errors in double precision and on the GPU are th
     const Rung ours = rung.reference[0], theirs = rung.gpu[0];
     INFO(scene::name(entry.method) << ", dt " << entry.share << " u: float64 " << ours.error << " m, float32 "
                                    << theirs.error << " m, between them " << theirs.floor << " m");
-    // Two digits are given: half of the second, at most a 20th; dt is not exactly the share, which takes time
-    // / dt to be whole: 0.1 % of dt, 0.4 % of RK4's error.
+    // The table gives two digits: half of the second digit, at most a 20th. dt is not exactly the share, as
+    // time / dt must be whole: 0.1 % of dt, 0.4 % of RK4's error.
     CHECK(ours.error == Approx(entry.float64).epsilon(0.03));
-    // Where float32 shows, its size is reproduced and not its digits: they hang on the order of the
+    // Where float32 shows, its size is reproduced but not its digits: these depend on the order of the
     // operations.
     const bool shows = entry.float32 > 1.05 * entry.float64;
     CHECK(theirs.error < (shows ? 3.0 : 1.06) * entry.float32);
@@ -65,9 +65,10 @@ TEST_CASE(
                << " m; by differences " << differences << " m");
     CHECK(theirs.error == Approx(entry.float64).epsilon(0.04));  // two digits are given
     // What rounding takes is carried on, so that nothing adds up: a few times the rounding of the positions
-    // as they are read, half a unit in the last place below 0.5 m, 1.5e-8 m. Verlet's is 1e-6 to 4e-6 m here.
+    // when they are read, half a unit in the last place below 0.5 m, 1.5e-8 m. Verlet's error is 1e-6 to 4e-6
+    // m here.
     CHECK(theirs.floor < 1e-7);
-    // The size of what rounding does is reproduced, its digits hang on the order of the operations.
+    // The size of the rounding errors is reproduced; their digits depend on the order of the operations.
     CHECK(differences == Approx(entry.differences).epsilon(0.1));
   }
 }

@@ -1,5 +1,5 @@
-// Free sheets thrown into a heap, where they meet themselves and each other: what they do to each other moves
-// them as a whole by nothing.
+// Free cloths thrown into a heap, where they touch themselves and each other: their contacts do not move the
+// whole heap.
 #include <algorithm>
 #include <glm/geometric.hpp>
 
@@ -13,7 +13,7 @@ using scene::Method;
 
 namespace {
 
-/// Two sheets of 9 x 9 whose vertices start at random places in a cube of 0.6 m; nothing holds them.
+/// Two cloths of 9 x 9 whose vertices start at random places in a cube of 0.6 m; nothing holds them.
 scene::Scene tangle(Method method, double dt) {
   scene::Scene scene = bare_scene(method, dt);
   for (unsigned seed = 1; seed <= 2; ++seed) {
@@ -27,9 +27,9 @@ scene::Scene tangle(Method method, double dt) {
 }
 
 struct Drift {
-  double momentum = 0;         ///< the largest, over the largest sum of its parts' magnitudes so far
-  double centre = 0;           ///< how far the centre of mass has come [m]
-  double momentum_of_one = 0;  ///< the first sheet's, where nothing else touches it
+  double momentum = 0;         ///< the largest so far, over the largest sum of its parts' magnitudes
+  double centre = 0;           ///< distance that the centre of mass has moved [m]
+  double momentum_of_one = 0;  ///< of the first cloth while nothing else touches it
 };
 
 Drift drift(Side side, const scene::Scene& scene, double seconds) {
@@ -67,8 +67,8 @@ Drift drift(Side side, const scene::Scene& scene, double seconds) {
   return worst;
 }
 
-/// Every force has its opposite, so rounding is left: in each step of float32 some 40 roundings (12 springs,
-/// the contacts) of momenta whose sum is `scale`, evenly to either side.
+/// Bound of the momentum by rounding, as every force has its opposite: in each step of float32 about 40
+/// roundings (12 springs, the contacts) of momenta whose sum is `scale`, evenly to either side.
 constexpr double most(Side side) {
   return side == Side::gpu ? 1e-5 : 1e-12;
 }

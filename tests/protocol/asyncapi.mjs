@@ -1,4 +1,4 @@
-// server/net/asyncapi.yaml as something to check messages with.
+// Checks messages against server/net/asyncapi.yaml.
 import { readFileSync } from "node:fs";
 import Ajv2020 from "ajv/dist/2020.js";
 import { parse } from "yaml";
@@ -8,12 +8,12 @@ export const document = parse(readFileSync(place, "utf8"));
 export const messages = document.channels.session.messages;
 
 const ajv = new Ajv2020({ strict: true, strictTypes: false, strictRequired: false, allowUnionTypes: true });
-ajv.addVocabulary(Object.keys(document)); // it holds schemas, but is none
+ajv.addVocabulary(Object.keys(document)); // keywords of a document that holds schemas but is none
 for (const schema of ["../scene/scene.schema.json", "../lab/result.schema.json"])
   ajv.addSchema(JSON.parse(readFileSync(new URL(schema, place))), new URL(schema, place).href);
 ajv.addSchema(document, place.href);
 
-/// Whether a value is what the schema at a JSON Pointer of the document says; the reasons, empty if it is.
+/// The reasons why a value violates the schema at a JSON Pointer of the document; empty if it is valid.
 export function complaints(pointer, value) {
   const validate = ajv.getSchema(`${place.href}#${pointer}`);
   return validate(value)
@@ -25,7 +25,7 @@ export function complaints(pointer, value) {
 
 export const payloadComplaints = (name, value) => complaints(`/channels/session/messages/${name}/payload`, value);
 
-/// What a pointer of the document, or a $ref as in it, leads to; undefined where that is nothing.
+/// The value at a JSON Pointer of the document, or at one of its $refs; undefined if there is none.
 export function lookUp(reference, from = place) {
   const [file, pointer] = reference.split("#");
   const at = new URL(file, from);
@@ -38,7 +38,7 @@ export function lookUp(reference, from = place) {
 
 export const nameOf = ({ $ref }) => $ref.split("/").at(-1);
 
-/// Each with the names of its messages instead of references.
+/// The operations, each with the names of its messages instead of references.
 export const operations = Object.entries(document.operations).map(([name, operation]) => ({
   ...operation,
   name,
@@ -58,7 +58,7 @@ const readers = {
   f64: (view, at) => view.getFloat64(at, true),
 };
 
-/// A binary message, read as `x-binary` says: { header, ...payload }. Throws where the bytes are too few or too many.
+/// Reads a binary message by its `x-binary`: { header, ...payload }. Throws if it has too few or too many bytes.
 export function readBinary(bytes) {
   const layout = document["x-binary"];
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);

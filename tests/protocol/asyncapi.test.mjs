@@ -1,5 +1,5 @@
-// server/net/asyncapi.yaml against sessions that do all there is to do: every message, sent or received, is as it says,
-// and every message that it describes has been seen.
+// server/net/asyncapi.yaml against sessions that use every method: every message, sent or received, must match it, and
+// every message that it describes must occur.
 import assert from "node:assert/strict";
 import { after, afterEach, before, test } from "node:test";
 import { document, messages, operations } from "./asyncapi.mjs";
@@ -9,7 +9,7 @@ import { Client, Server, withTimeout } from "./harness.mjs";
 import { strip as stripOf } from "./strip.mjs";
 
 const strip = stripOf(5);
-/// It is at rest from the start, as good as.
+/// A cloth that is almost at rest from the start.
 const plumb = {
   ...strip,
   name: "plumb",
@@ -34,7 +34,7 @@ async function enter(scene, { session = `said-${++sessions}`, at = server } = {}
   if (scene) await client.request("scene.load", { scene });
   return client;
 }
-/// Leaves nothing behind that is stepped on and keeps the lab waiting.
+/// Leaves without a cloth that goes on stepping and keeps the lab waiting.
 async function leave(client) {
   await client.request("sim.pause");
   await client.close();
@@ -45,7 +45,7 @@ const answerTo = (client, id) =>
     (message) => message.id === id,
     `the answer to ${id}`,
   );
-/// What the lab tells, which gives way to everything else on the machine.
+/// Waits for a message of the lab, which has the lowest priority on the machine.
 async function inTime(client, method, predicate) {
   const fits = (message) => message.method === method && predicate(message.params);
   return (await client.until(() => client.messages, fits, method, 240_000)).params;
@@ -93,8 +93,8 @@ test("the limits that hello tells are the document's", async () => {
   await leave(client);
 });
 
-// The first fault of a request is the one that is told. So a parameter that is right, beside one that nobody knows, is
-// known to be taken, and nothing comes of it.
+// A request's error names its first fault. So if a valid parameter stands before an unknown one, the error shows that
+// the parameter was accepted, and the request has no effect.
 test("the server takes each parameter up to the limits that the document gives, and refuses it beyond", async (t) => {
   const client = await enter();
   let taken = 0,
@@ -111,7 +111,7 @@ test("the server takes each parameter up to the limits that the document gives, 
     };
     if (name !== "scene.load") assert.equal(await pathFor({}), "/surplus", name);
     for (const [parameter, schema] of Object.entries(properties)) {
-      if (parameter === "scene") continue; // tests/schema/scene.test.mjs
+      if (parameter === "scene") continue; // tests/schema/scene.test.mjs tests it
       const { good, bad } = candidates(schema);
       for (const value of good)
         assert.equal(
@@ -187,7 +187,7 @@ test("requests and their answers are as it says, with and without parameters, fo
   await leave(client);
 });
 
-test("what is no request is answered as it says", async () => {
+test("a message that is no request is answered as the document says", async () => {
   const client = await enter();
   const cases = [
     ["{", -32700],
@@ -234,7 +234,7 @@ test("a blow-up, its remedy and a cloth at rest are told as it says", async () =
   const client = await enter();
   await client.request("stream.subscribe", {});
   for (const method of ["symplectic_euler", "explicit_euler"]) {
-    await client.request("sim.pause"); // it would have blown up before anybody listens
+    await client.request("sim.pause"); // otherwise it would blow up before anybody listens
     await client.request("scene.load", { preset: "blowup" });
     const {
       document: {
@@ -242,7 +242,7 @@ test("a blow-up, its remedy and a cloth at rest are told as it says", async () =
       },
     } = await client.request("scene.get");
     if (method === "explicit_euler")
-      // whose remedy is another method
+      // here the remedy is another method
       await client.request("scene.patch", {
         patch: { solver: { method }, cloths: [{ ...cloth, material: { ...cloth.material, damping: 0 } }] },
       });
@@ -353,7 +353,7 @@ test("with a token, who may do what is as it says, and why connections are close
   assert.equal((await viewer.closed).code, 1001);
 });
 
-test("what the server cannot do it refuses as it says", async () => {
+test("a request that the server cannot serve is refused as the document says", async () => {
   process.env.CLOTHLAB_FAULT = "change-fails::1";
   const poor = await Server.start().finally(() => delete process.env.CLOTHLAB_FAULT);
   const client = await enter(null, { session: "main", at: poor });

@@ -1,4 +1,4 @@
-// Holds all that clients of the harness send and get, in both directions, against server/net/asyncapi.yaml.
+// Checks everything that the harness's clients send and receive against server/net/asyncapi.yaml.
 import { operation, operations, payloadComplaints, readBinary, document } from "./asyncapi.mjs";
 import { Client } from "./harness.mjs";
 
@@ -10,21 +10,21 @@ const told = new Set(
     .flatMap((o) => o.messages),
 );
 
-/// Requests that no schema can tell from right ones, by where their fault is.
+/// Places of faults in requests that only the server can find: no schema can tell them.
 const knownByTheServerOnly = {
-  "scene.load": /^\/preset$/, // a name that is no preset
-  "scene.patch": /^/, // whether the patched scene is one
+  "scene.load": /^\/preset$/, // a name that is not of a preset
+  "scene.patch": /^/, // a patch whose result is no valid scene
   "lab.cancel": /^\/job$/,
-  "lab.export": /^\/job$/, // somebody else's, or without results yet
+  "lab.export": /^\/job$/, // a job of somebody else, or one without results yet
 };
 
 export class Audit {
   faults = [];
-  seen = new Set(); ///< names of messages, all of them as the document says
+  seen = new Set(); ///< names of messages seen, all of them valid
   closeCodes = new Set();
-  clients = new Map(); ///< { role, pending: id -> what was asked }
+  clients = new Map(); ///< { role, pending: id -> request }
 
-  /// From now on every client is listened to.
+  /// Listens to every client from now on.
   begin() {
     const audit = this,
       { send, receive } = Client.prototype;
@@ -82,7 +82,7 @@ export class Audit {
     if (request) this.judge(about, request, names[0], message);
   }
 
-  /// Whether the document and the server are of one mind about a request.
+  /// Notes a fault if the document and the server disagree about a request.
   judge({ role }, { asked, message, complaints }, answer, { error }) {
     const fault = (what) => this.faults.push(`${short(message)} ${what}: ${short(error ?? answer)}`);
     const right = complaints.length === 0;

@@ -39,7 +39,7 @@ test("before auth, and with a wrong token, everything answers -32001", async () 
   assert.deepEqual(client.messages, []);
   await client.request("auth", { token: "secret" });
   await client.close();
-  // Nobody chooses a metric's label.
+  // A client must not be able to choose a metric's label.
   assert.ok(!(await server.get("/metrics", { authorization: "Bearer secret" })).body.includes('a"label'));
 });
 
@@ -56,7 +56,7 @@ test("before auth a message may have 4 KiB, after it as much as the others'", as
   assert.match(reason, /4096 bytes before auth/);
 });
 
-test("who does not authenticate is closed with 1008 after 5 s", async () => {
+test("a client that does not authenticate is closed with 1008 after 5 s", async () => {
   const client = await Client.connect(server);
   const from = performance.now();
   assert.equal((await withTimeout(client.closed, "the close")).code, 1008);
@@ -171,7 +171,7 @@ test("a viewer opens no session: auth answers -32001 until an operator has opene
   await operator.request("auth", { token: "secret" });
   assert.deepEqual(await first.request("auth", { token: "look" }), { role: "viewer" });
   assert.equal((await first.notification("hello")).session, "new");
-  // Open is open, also while nobody is there.
+  // An open session stays open while nobody is there.
   for (const client of [first, operator]) await client.close();
   const again = await Client.connect(guarded, { session: "new" });
   assert.deepEqual(await again.request("auth", { token: "look" }), { role: "viewer" });

@@ -1,5 +1,5 @@
-// The method "auto" over a socket: stable at once, chosen by the lab soon, kept while the scene stays, chosen
-// again when it is left behind, and never unseen.
+// The method "auto" over a socket: it is stable at once; the lab soon chooses a method, keeps it while the scene
+// changes little, and chooses again after a large change; clients are told of each choice.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { Client, Server } from "./harness.mjs";
@@ -11,7 +11,7 @@ let server;
 before(async () => (server = await Server.start()));
 after(() => server.stop());
 
-// Choosing takes seconds, on a busy machine many.
+// A choice takes seconds, many on a busy machine.
 const auto = (client, accept) =>
   client.nextNotification("sim.status", ({ solver }) => solver?.auto && accept(solver.auto), 240_000);
 
@@ -29,12 +29,12 @@ test("a session with the method auto plays stably at once, then with what the la
   assert.ok(stability.margin === null || stability.margin <= 0.91);
   assert.ok(client.messages.some((m) => m.method === "notice" && /method auto: /.test(m.params.text)));
 
-  // The document still says what was asked for.
+  // The document still names the method that was asked for.
   const { document } = await client.request("scene.get");
   assert.equal(document.solver.method, "auto");
   assert.equal(document.solver.tolerance, 0.01);
 
-  // A small change keeps the choice, a large one is measured anew, and a method of one's own ends it.
+  // A small change keeps the choice, a large one makes the lab choose again, and another method ends it.
   await client.request("scene.patch", { patch: { gravity: [0, -9.5, 0] } });
   const kept = await client.nextNotification("sim.status");
   assert.equal(kept.solver.auto.state, "chosen");

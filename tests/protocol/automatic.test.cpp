@@ -1,4 +1,4 @@
-// The method "auto" in a session, without its threads: when a choice is due, and what becomes of one.
+// The method "auto" in a session, without its threads: when a choice is due, and what a choice changes.
 #include "server/session/automatic.h"
 
 #include "tests/catch.h"
@@ -41,7 +41,7 @@ TEST_CASE("a choice is due once, when the scene has been left alone for a while"
   CHECK(automatic.facts()["state"] == "measuring");
 }
 
-TEST_CASE("what was chosen is used as long as it covers the scene, and without a choice what is stable") {
+TEST_CASE("the chosen method steps as long as it covers the scene, and without a choice a stable one does") {
   Automatic automatic;
   const Automatic::Clock::time_point now{};
   const lab::Setting rk4{scene::Method::rk4, 2e-3, 1, 1e-4};
@@ -59,7 +59,7 @@ TEST_CASE("what was chosen is used as long as it covers the scene, and without a
   CHECK(document.scene.solver.method == scene::Method::verlet);
   CHECK(automatic.wants_choice(now + Automatic::quiet));
 
-  // Nothing could be chosen for it: not asked again before something changes.
+  // No choice was found for this document: it is not asked for again before something changes.
   automatic.take(document, Error{"choose", "chaotic", "the chart"});
   REQUIRE(automatic.settle(document, now));
   CHECK(automatic.facts()["state"] == "failed");

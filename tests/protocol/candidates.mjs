@@ -1,5 +1,4 @@
-// Values of a parameter that its schema in server/net/asyncapi.yaml takes, up to its limits, and values just beyond
-// them.
+// Values of a parameter that its schema in server/net/asyncapi.yaml allows, up to its limits, and values just beyond.
 import { lookUp } from "./asyncapi.mjs";
 
 export function resolved(schema) {
@@ -18,7 +17,7 @@ const numbers = ({ type, minimum, maximum }) => ({
   ].flat(),
 });
 
-/// { good, bad }
+/// Values { good, bad } for a schema.
 export function candidates(given) {
   const schema = resolved(given);
   if (schema.enum)

@@ -1,5 +1,5 @@
-// Where a moving collider is comes with each frame, by the closed forms of server/scene/README.md: no client repeats a
-// law of motion.
+// The place of a moving collider comes with each frame, by the closed forms of server/scene/README.md: a client need
+// not compute motions itself.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { Client, Server } from "./harness.mjs";
@@ -38,7 +38,7 @@ for (const encoding of ["f32", "q16"])
     assert.deepEqual(
       moving.map(({ index }) => index),
       [1, 2, 3],
-    ); // what stands still is where the scene says
+    ); // a still collider stays where the scene places it
     const angle = (Math.PI / 2) * time;
     near(
       moving[0].plane.point,

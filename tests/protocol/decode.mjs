@@ -1,5 +1,5 @@
-// Reads the binary messages of the protocol, written from the contract and not from the server's code. What is not
-// exactly such a message is a BadMessage; nothing outside the message is ever read.
+// Reads the binary messages of the protocol. Written from the contract, not from the server's code. Anything but an
+// exact message throws a BadMessage; nothing outside the message is ever read.
 
 const headerBytes = 64;
 const topology = 1,
@@ -14,7 +14,7 @@ function demand(condition, what) {
   if (!condition) throw new BadMessage(what);
 }
 
-/// Of the bytes of one message; throws a BadMessage.
+/// Reads the bytes of one message; throws a BadMessage.
 export function decode(bytes) {
   demand(bytes.byteLength >= headerBytes, `${bytes.byteLength} bytes are no header`);
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);

@@ -1,4 +1,4 @@
-// Which helper threads of software OpenGL a session computes on, and that it moves between them unharmed.
+// The helper threads of software OpenGL on which a session computes; a session moves between them unharmed.
 #include "server/session/engine.h"
 
 #include <sys/resource.h>
@@ -109,14 +109,14 @@ TEST_CASE(
 
   std::uint64_t steps = frame()->header.step;
   std::uint32_t sequence = frame()->header.sequence, topology = frame()->header.topology_revision;
-  // Kernels are others, the cloth is the same.
+  // The kernels differ, the cloth is the same.
   for (const char* method : {"xpbd", "symplectic_euler"}) {
     const int iterations = std::string(method) == "xpbd" ? 5000 : 10;
     commands = {patch({{"solver", {{"method", method}, {"iterations", iterations}}}})};
     turn_until([&] { return frame() && frame()->header.step > steps; });
     CHECK(frame()->header.sequence > sequence);
     CHECK(frame()->header.topology_revision == topology);
-    CHECK(frame()->header.step < steps + 100);  // it did not begin anew, and lost nothing
+    CHECK(frame()->header.step < steps + 100);  // it did not begin anew, and lost no step
     steps = frame()->header.step;
     sequence = frame()->header.sequence;
   }

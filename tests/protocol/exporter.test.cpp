@@ -1,4 +1,4 @@
-// The thread that makes pictures and meshes, with files made for the test.
+// The thread that makes pictures and meshes, here with files made for the test.
 #include "server/session/exporter.h"
 
 #include <sys/resource.h>

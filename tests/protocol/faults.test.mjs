@@ -1,4 +1,4 @@
-// What goes wrong in one session: it says so and goes on where it can, and the other sessions never notice.
+// Faults of one session: it reports them and goes on if it can, and the other sessions are not affected.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { cpSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -18,7 +18,7 @@ function folder() {
   return folders.at(-1);
 }
 
-/// A server that meets a fault, or has its data elsewhere.
+/// Starts a server that meets a fault, or that keeps its data elsewhere.
 async function startWith(environment, ...args) {
   const before = { ...process.env };
   Object.assign(process.env, environment);
@@ -74,7 +74,7 @@ test("the steps of a session that failed stay counted", async () => {
   const hurt = await watch(server, "hurt");
   const steps = [];
   for (let back = 0; back < 3; ) {
-    // two looks more once it is back
+    // reads twice more once the session is back
     steps.push(await server.metric("clothlab_steps_total"));
     back += await server.metric("clothlab_sessions_brought_back_total");
     await sleep(20);
@@ -130,7 +130,7 @@ test("a shader that does not compile after an edit refuses the change that needs
   await server.stop();
 });
 
-/// A file system of 256 KiB; null where none can be mounted.
+/// Mounts a file system of 256 KiB; null if none can be mounted.
 function tinyDisk() {
   const where = folder();
   if (spawnSync("mount", ["-t", "tmpfs", "-o", "size=256k", "tmpfs", where]).status !== 0) return null;
@@ -208,13 +208,13 @@ test("a process that is stopped for two seconds, as by a sleeping machine, does 
   const seen = client.binary.length;
   await client.nextFrame((frame) => frame.time > time + 0.3);
   const frames = client.binary.slice(seen - 1).filter((message) => message.kind === 2);
-  // A step of the eye: at most what a frame or two may lag, not the seconds that were missed.
+  // Time jumps by at most the lag of a frame or two, not by the seconds that were missed.
   for (let i = 1; i < frames.length; ++i)
     assert.ok(frames[i].time - frames[i - 1].time < 0.5, `from ${frames[i - 1].time} to ${frames[i].time} s`);
   await server.stop();
 });
 
-// Built with the tests, unless with sanitizers (tests/CMakeLists.txt).
+// Built with the tests, except with sanitizers (tests/CMakeLists.txt).
 const jumpingClock = join(dirname(process.env.CLOTHLAB), "tests/libjumping_clock.so");
 
 test("a clock that jumps an hour ahead and two back: nobody is sent away, time goes on, and the session is kept", async (context) => {
@@ -233,7 +233,7 @@ test("a clock that jumps an hour ahead and two back: nobody is sent away, time g
   const { job } = await client.request("lab.chart", { methods: ["verlet"], time: 0.2, budget: 20, fresh: true });
   const { time } = await client.frame();
   await client.frame((frame) => frame.time > time + 4.5);
-  const late = await Client.connect(server); // so that there is a line of the log after the last jump
+  const late = await Client.connect(server); // writes a line to the log after the last jump
   await late.close();
   await client.until(
     () => [server.stderr],
@@ -263,7 +263,7 @@ test("a clock that jumps an hour ahead and two back: nobody is sent away, time g
   await again.stop();
 });
 
-/// The whole hours by which the times of log lines differ from the first one's.
+/// Whole hours by which the times of log lines differ from the first line's.
 function hours(log) {
   const times = [...log.matchAll(/^time=(\S+)/gm)].map(([, text]) => Date.parse(text));
   return new Set(times.map((time) => Math.round((time - times[0]) / 3_600_000)));

@@ -1,5 +1,5 @@
-// The messages committed in tests/golden, read by the tests' decoder and by the page's; and whatever is not such a
-// message is refused by both with a reason of their own, at no time reading outside of it.
+// The messages in tests/golden, read by the tests' decoder and by the page's. Both refuse anything else, each with a
+// reason, and never read outside the message.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { before, test } from "node:test";
@@ -15,7 +15,7 @@ const golden = names.map((name) => ({
 }));
 const called = (name) => golden.find((message) => message.name === name);
 
-/// `decode` takes the bytes of one message, `name` is for the test's own words.
+/// `decode` takes the bytes of one message; `name` appears in the test's messages.
 const decoders = [{ name: "the tests' decoder", decode, BadMessage, reads: () => true }];
 before(async () => {
   const page = await load("link/protocol");
@@ -30,7 +30,7 @@ before(async () => {
   });
 });
 
-/// The bytes within more bytes that would make sense too, so that a reader that goes too far finds something.
+/// The bytes inside others that would be valid too: a reader that goes too far gets values instead of an error.
 function embedded(bytes) {
   const around = new Uint8Array(bytes.length + 256).fill(1);
   around.set(bytes, 128);
@@ -52,7 +52,7 @@ function refuses(decoder, bytes, what) {
   }
   assert.fail(`${decoder.name} takes ${what}: ${JSON.stringify(answer).slice(0, 300)}`);
 }
-/// `body(decoder, message)` for each decoder and each message it can read.
+/// Calls `body(decoder, message)` for each decoder and each message that it can read.
 function forEach(body) {
   for (const decoder of decoders) for (const message of golden.filter(decoder.reads)) body(decoder, message);
 }
@@ -155,9 +155,9 @@ test("every truncated length is refused, and so is every longer one", () => {
   });
 });
 
-// What a header may say beside what it says: any revision, sequence number and step, any time and box that are numbers
-// such as there can be, and on frames either flag. Everything else in it is either of a few known values or counted
-// from the payload.
+// The fields of a header, and the changes of each that leave the message valid: any revision, sequence number and step;
+// any finite time >= 0; any valid box; on frames both flags. The other fields have few known values or follow from the
+// payload.
 const fields = [
   { at: 0, end: 2, name: "kind, encoding", legal: () => false },
   { at: 2, end: 4, name: "flags", legal: (view) => view.getUint8(0) === 2 && view.getUint16(2, true) <= 3 },
@@ -210,7 +210,7 @@ test("every flipped bit of a header is refused, or where it makes another legal 
   t.diagnostic(`${refused} refused, ${taken} taken`);
 });
 
-/// What else a decoder makes of a field.
+/// True if a change of `field` may also change the decoded value `key`.
 function mayDiffer(field, key) {
   const derived = {
     flags: ["asleep", "diverged"],
@@ -275,7 +275,7 @@ test("a topology without counts, or with less than one, is refused", () => {
 });
 
 test("counts that fit the payload's length but not each other are refused", () => {
-  // Three cloths fewer bytes than two triangles: 24 bytes moved from one to the other.
+  // Three cloths take as many bytes as two triangles: 24 bytes move from one to the other.
   const { bytes } = called("topology");
   for (const decoder of decoders)
     refuses(

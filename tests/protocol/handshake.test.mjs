@@ -24,7 +24,7 @@ async function refused(options, status) {
   await assert.rejects(Client.connect(server, options), (error) => status === undefined || error.status === status);
 }
 
-/// Sends raw bytes; what comes back until the server closes, or `enough` is seen.
+/// Sends raw bytes; returns the answer until the server closes, or `enough` is seen.
 async function raw(text, enough) {
   const socket = net.connect(server.port, "127.0.0.1");
   let answer = "";
@@ -79,7 +79,7 @@ test("a page whose site's name was made to point at this machine is refused, tho
   const at = `rebound.example:${server.port}`;
   await refused({ headers: { host: at, origin: `http://${at}` } }, 403);
   await refused({ headers: { host: at } }, 403);
-  // The name of one that --allow-origin names is known, an address's and localhost's cannot be another's.
+  // Known hosts: that of an origin which --allow-origin names; an address; localhost. Nobody else can own the last two.
   for (const [host, origin] of [
     ["friend.example", "https://friend.example"],
     [`localhost:${server.port}`, `http://localhost:${server.port}`],

@@ -1,4 +1,4 @@
-// A server process and clients of it, over real sockets.
+// A server process and its clients, over real sockets.
 import { spawn } from "node:child_process";
 import { once } from "node:events";
 import { mkdtempSync, rmSync } from "node:fs";
@@ -11,7 +11,7 @@ import { decode } from "./decode.mjs";
 const program = process.env.CLOTHLAB;
 if (!program) throw new Error("CLOTHLAB must name the program to test");
 
-/// Generous: a busy machine under a sanitizer must not fail a test.
+/// [ms], generous: a busy machine under a sanitizer must not fail a test.
 export const patience = 30_000;
 
 export const sleep = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
@@ -38,7 +38,7 @@ export async function runProgram(args) {
   return { code, stdout, stderr };
 }
 
-/// What the lab keeps of its results is each test's own.
+/// The lab's cache of results is each test file's own.
 const cacheHome = mkdtempSync(join(tmpdir(), "clothlab-cache-"));
 process.on("exit", () => rmSync(cacheHome, { recursive: true, force: true }));
 
@@ -48,7 +48,7 @@ export class Server {
     server.startedAt = performance.now();
     server.child = spawn(program, ["serve", ...(args.includes("--port") ? [] : ["--port", "0"]), ...args], {
       stdio: ["ignore", "pipe", "pipe"],
-      // A token of the shell's is none of the tests'.
+      // Tokens of the shell must not reach the tests.
       env: { ...process.env, XDG_CACHE_HOME: cacheHome, CLOTHLAB_TOKEN: undefined, CLOTHLAB_VIEW_TOKEN: undefined },
     });
     server.closed = once(server.child, "close");
@@ -68,7 +68,7 @@ export class Server {
     return server;
   }
 
-  /// Ends it as a user would; the exit code.
+  /// Ends the server as a user would; returns the exit code.
   async stop(signal = "SIGTERM") {
     this.child.kill(signal);
     const [code] = await withTimeout(this.closed, "the server to end");
@@ -88,7 +88,7 @@ export class Server {
     return withTimeout(answer, path);
   }
 
-  /// What /metrics says of one that has no labels; NaN: nothing.
+  /// The value of a metric without labels in /metrics; NaN if it is not there.
   async metric(name) {
     return Number(new RegExp(`^${name} (\\S+)$`, "m").exec((await this.get("/metrics")).body)?.[1]);
   }
@@ -118,7 +118,7 @@ export class Client {
     });
     client.nextId = 1;
     client.pending = new Map();
-    client.messages = []; // notifications and errors without an id, as they came
+    client.messages = []; // notifications and errors without an id, in the order of arrival
     client.binary = []; // decoded topologies and frames
     client.waiting = new Set();
     client.closed = new Promise((resolve) =>
@@ -183,7 +183,7 @@ export class Client {
     return withTimeout(answer, `the answer to ${method}`, patience);
   }
 
-  /// The error a request is answered with.
+  /// The error that answers a request.
   async refusal(method, params) {
     try {
       await this.request(method, params);
@@ -194,7 +194,7 @@ export class Client {
     throw new Error(`${method} was not refused`);
   }
 
-  /// The first item of `list()` that satisfies `predicate`, now or later; `patience` as of withTimeout.
+  /// The first item of `list()` that satisfies `predicate`, now or later; `patience` as in withTimeout.
   until(list, predicate, what, patience) {
     let check;
     const found = new Promise((resolve) => {
@@ -208,7 +208,7 @@ export class Client {
     return withTimeout(found, what, patience).finally(() => this.waiting.delete(check));
   }
 
-  /// The parameters of a notification that has come or will come.
+  /// The parameters of a notification that has arrived or will arrive.
   async notification(method, predicate = () => true) {
     const message = await this.until(
       () => this.messages,
@@ -217,7 +217,7 @@ export class Client {
     );
     return message.params;
   }
-  /// The same, but only one that comes from now on.
+  /// Like `notification`, but only one that arrives from now on.
   nextNotification(method, predicate = () => true, patience = undefined) {
     const before = new Set(this.messages);
     return this.until(
@@ -227,7 +227,7 @@ export class Client {
       patience,
     ).then((message) => message.params);
   }
-  /// An answer with id null: to what could not be read.
+  /// An answer with id null: the server could not read the request.
   errorWithoutId(from = 0) {
     return this.until(
       () => this.messages.slice(from),

@@ -1,5 +1,5 @@
-// Patches that are valid and take more than a small machine has: each for a session of its own, beside which others go
-// on, and which is steered, and ended, as any other. Used by heavy.test.mjs and by tests/bench/abuse.mjs.
+// Patches that are valid but need more than a small machine has. Each is for a session of its own: other sessions go on
+// beside it, and it can be steered and ended like any other. Used by heavy.test.mjs and tests/bench/abuse.mjs.
 const grid = (side, more = {}) => ({
   mesh: { grid: { columns: side, rows: side, width: 1, height: 1 } },
   transform: { translate: [0, 1, 0] },
@@ -42,5 +42,5 @@ export const heavyPatches = {
   },
 };
 
-/// What is refused, as no machine would end a step of it: 7.5e9 pairs of vertices a search.
+/// A refused scene, as no machine would end a step of it: 7.5e9 pairs of vertices per search.
 export const tooHeavy = { cloths: [grid(1024)] };

@@ -1,5 +1,5 @@
-// Patches that are valid and more than the machine can step: what else goes on beside them. How fast is measured by
-// tests/bench/abuse.mjs.
+// Valid patches that are more than the machine can step: what still works beside them. tests/bench/abuse.mjs measures
+// the speed.
 import assert from "node:assert/strict";
 import { mkdtemp, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
@@ -8,7 +8,7 @@ import test from "node:test";
 import { Client, Server, sleep } from "./harness.mjs";
 import { heavyPatches, tooHeavy } from "./heavy.mjs";
 
-const patience = 60_000; // to build a million vertices takes its time
+const patience = 60_000; // [ms]: building a million vertices takes time
 const subscription = { encoding: "q16", rate: 60, in_flight: 2 };
 
 /// One of each kind: many vertices, a dense search, sweeps in many dispatches, sweeps over many vertices, a solver, a
@@ -33,8 +33,8 @@ for (const name of kinds)
       const { document } = await heavy.notification("scene");
       const applied = await heavy.request("scene.patch", { patch: heavyPatches[name] }, patience);
 
-      // While it steps: the other's frames come one after another, and this session says where it is, is paused and
-      // steps on.
+      // While it steps, the other session's frames keep coming, and this session tells its state, is paused and steps
+      // on.
       for (let frame = 0; frame < 60; ++frame) await bystander.nextFrame();
       assert.equal((await heavy.request("scene.get")).revision, applied.revision);
       assert.equal((await heavy.request("sim.pause")).playing, false);
@@ -78,7 +78,7 @@ test("a change that was acknowledged in the middle of a step that takes seconds 
     const client = await Client.connect(server);
     await client.request("scene.patch", { patch: heavyPatches["10,000 iterations of vbd"] });
     const { revision } = await client.request("scene.patch", { patch: { name: "kept" } });
-    await sleep(2500); // twice the second that may be lost, and some to write
+    await sleep(2500); // twice the second that may be lost, and time to write
     await server.stop("SIGKILL");
     const again = await Server.start("--state-dir", folder);
     try {

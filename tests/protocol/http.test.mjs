@@ -64,7 +64,7 @@ test("HEAD answers as GET does, without the body", async () => {
   assert.equal(head.body.length, 0);
 });
 
-test("what is not there is a readable 404; nothing outside the page's folder can be reached", async () => {
+test("a missing file is a readable 404; nothing outside the page's folder can be reached", async () => {
   for (const path of [
     "/nothing",
     "/web",
@@ -80,7 +80,7 @@ test("what is not there is a readable 404; nothing outside the page's folder can
     assert.equal(status, 404, path);
     assert.ok(body.length > 0);
   }
-  // libwebsockets 4.3 (Debian 13) closes the connection upon a NUL in a target, 4.1 (Debian 12) hands it on.
+  // libwebsockets 4.3 (Debian 13) closes the connection upon a NUL in a target, 4.1 (Debian 12) passes it on.
   const status = await server.get("/%00/etc/passwd").then(
     (answer) => answer.status,
     (error) => error.code,
@@ -189,7 +189,7 @@ test("without a token nothing but /healthz is answered under another name than a
   assert.match(body.toString(), /not as \?b\?x{197}: /);
 });
 
-test("who sends no Host is no browser, and is answered", async () => {
+test("a client that sends no Host is no browser, and is answered", async () => {
   const socket = net.connect(server.port, "127.0.0.1");
   socket.write("GET /api/scene HTTP/1.0\r\n\r\n");
   const [data] = await withTimeout(once(socket, "data"), "the answer");
@@ -256,8 +256,8 @@ test("/metrics counts sessions, clients, viewers, steps, frames and bytes, and t
   await client.close();
 });
 
-/// The samples of a metrics text, by name: [{labels, value}]; fails where the text breaks a rule of Prometheus' format
-/// or naming.
+/// The samples of a metrics text, by name: [{labels, value}]; fails if the text breaks a rule of Prometheus's format or
+/// naming.
 function readMetrics(text) {
   const types = new Map(),
     samples = new Map();
@@ -338,7 +338,7 @@ test("/metrics follows Prometheus' format, and has what each pass takes on the G
   for (const pass of ["symplectic_euler", "neighbour_search", "diagnose", "pack_frame"])
     assert.ok(passes[pass] >= 1, pass);
   assert.ok(!("strain_limit" in passes), "the seed has none");
-  // What is not in the scene any more is not timed any more.
+  // A stage that the scene no longer has is no longer timed.
   await client.request("scene.patch", { patch: { self_collision: null } });
   await client.notification(
     "sim.status",
@@ -395,7 +395,7 @@ test("/api/snapshot.png is a picture of the size asked for", async () => {
     assert.equal((await server.get(`/api/snapshot.png?${query}`)).status, 400, query);
 });
 
-/// Asks for so many pictures at once; `answers` has what came so far.
+/// Asks for `count` pictures at once; `answers` collects the answers.
 function askForPictures(count, side) {
   const answers = [];
   const requests = Array.from({ length: count }, () =>

@@ -5,7 +5,7 @@ import { Client, Server, sleep } from "./harness.mjs";
 import { strip as stripOf } from "./strip.mjs";
 
 const strip = stripOf();
-// Longer than any test waits: jobs that are to be cancelled, left or waited for.
+// Takes longer than any test waits: for jobs to cancel, to leave or to queue behind.
 const long = {
   methods: ["explicit_euler", "symplectic_euler", "verlet", "rk4", "implicit_euler"],
   time: 20,
@@ -126,7 +126,7 @@ test("a client that leaves leaves no job behind", async () => {
 });
 
 test("a job that asks for it pauses the session, tells all who are there, and lets it play on", async () => {
-  const alone = await Server.start(); // any session that plays would be beside the job
+  const alone = await Server.start(); // a playing session of another test would disturb the job
   const client = await enter({ at: alone, session: "main" });
   const other = await Client.connect(alone, { session: "main" });
   await client.nextNotification("sim.status", (s) => s.playing && s.step > 0);

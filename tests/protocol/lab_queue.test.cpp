@@ -1,4 +1,4 @@
-// The lab's queue: whose turn it is, who may ask for what, and how jobs end.
+// The lab's queue: the order of jobs, who may ask for what, and how jobs end.
 #include "tests/protocol/lab_stage.h"
 
 using namespace clothlab;
@@ -43,7 +43,7 @@ TEST_CASE(
   CHECK(std::get<bool>(lab.queue.cancel(1, runs)));
   REQUIRE(lab.reaches(1, runs, "cancelled"));
   CHECK(lab.last_result(runs)["state"] == "cancelled");
-  CHECK(lab.jobs.started == 1);  // the one that waited never ran
+  CHECK(lab.jobs.started == 1);  // the job that waited never ran
   CHECK_FALSE(std::get<bool>(lab.queue.cancel(1, runs)));
   lab.jobs.may_end = true;
   CHECK(lab.reaches(1, lab.ask(1), "finished"));
@@ -130,7 +130,7 @@ TEST_CASE(
     CHECK(lab.releases == (cancel_held ? 1 : 0));
     CHECK(std::get<bool>(lab.queue.cancel(1, job)));
     REQUIRE(lab.reaches(1, job, "cancelled"));
-    lab.queue.held(job);  // the session's word may come late
+    lab.queue.held(job);  // the session may answer late
     lab.queue.pump(now_us());
     CHECK(lab.jobs.started == (cancel_held ? before : before + 1));
     CHECK(lab.releases == (cancel_held ? 2 : 1));
@@ -173,8 +173,7 @@ TEST_CASE("a server that ends stops the job that runs and waits for it") {
   CHECK(now_us() - begun < 500'000);
 }
 
-TEST_CASE(
-    "what a session with the method auto is to be stepped with is chosen once, without a word to clients") {
+TEST_CASE("the method of a session with auto is chosen once, without messages to clients") {
   Lab lab;
   lab.choose_for("main", "/solver/tolerance=0.02");
   REQUIRE(lab.until([&] { return lab.jobs.started == 1; }));
@@ -185,7 +184,7 @@ TEST_CASE(
   REQUIRE(lab.chosen[0].second);
   CHECK(lab.chosen[0].second->tolerance == 0.02);
   CHECK(lab.messages.empty());
-  // The same is known now.
+  // The same request is answered from the cache now.
   lab.choose_for("other", "/solver/tolerance=0.02");
   CHECK(lab.chosen.size() == 2);
   CHECK(lab.chosen.back().first == "other");

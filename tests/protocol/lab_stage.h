@@ -24,11 +24,11 @@ struct Message {
   std::int64_t at = 0;
 };
 
-/// What the jobs of a test do; they look at their stop token every millisecond.
+/// Made-up jobs of a test; they check their stop token every millisecond.
 struct Jobs {
   std::atomic<bool> may_end{false};
   std::atomic<int> started{0}, ended{0}, opened{0};
-  std::atomic<int> reports{0};  ///< partial results and progress so far, of all jobs
+  std::atomic<int> reports{0};  ///< partial results and progress messages so far, of all jobs
   std::atomic<bool> fails_to_open{false}, throws{false}, talks{false}, hands_over{false};
 
   Result<lab::Outcome> run(const lab::Job& job, const lab::Control<lab::Outcome>& control) {
@@ -63,7 +63,7 @@ struct Jobs {
   }
 };
 
-/// The seed with one value of it changed.
+/// The seed scene with one assignment.
 inline scene::Document seed_with(const std::string& assignment) {
   Result<scene::Document> document = scene::set_value(*scene::load_preset("seed"), assignment);
   REQUIRE(document);
@@ -73,7 +73,7 @@ inline scene::Document seed_with(const std::string& assignment) {
 struct Lab {
   Jobs jobs;
   std::vector<Message> messages;
-  std::map<std::string, json> answers;  ///< by the request's id
+  std::map<std::string, json> answers;  ///< by the id of the request
   std::vector<std::uint64_t> holds;
   int releases = 0;
   std::optional<lab::Outcome> known;
@@ -108,7 +108,7 @@ struct Lab {
             .wake = [] {}};
   }
 
-  /// As a session that answers at once.
+  /// Asks for a job, as a session that answers at once.
   std::uint64_t ask(std::uint64_t client, lab::Job job = lab::ChartRequest{}, net::LabWishes wishes = {},
                     const std::string& request = "request") {
     const auto admitted = queue.admit({client, json(request)}, "main", std::move(job), wishes);
@@ -118,7 +118,7 @@ struct Lab {
     return id;
   }
 
-  /// As a session whose scene is the seed with this changed, and the method auto.
+  /// Asks for a choice, as a session whose scene is the seed with this assignment and the method auto.
   void choose_for(const std::string& session, const std::string& assignment) {
     queue.choose_for(session, std::make_shared<const scene::Document>(seed_with(assignment)));
   }

@@ -1,4 +1,4 @@
-// What the lab's askers are told of their jobs, and when.
+// The messages of the lab to the clients that asked for jobs, and when they are sent.
 #include "tests/protocol/lab_stage.h"
 
 using namespace clothlab;
@@ -12,7 +12,7 @@ TEST_CASE("a job is stale while what it measures is not what the scene is: its l
   CHECK_FALSE(stale(1));
   CHECK_FALSE(stale(2));
   lab.queue.scene_changed("main", seed_with("/solver/dt=0.0005"));
-  CHECK_FALSE(stale(1));  // a chart goes through time steps of its own
+  CHECK_FALSE(stale(1));  // a chart uses time steps of its own
   CHECK(stale(2));
   lab.queue.scene_changed("other", seed_with("/gravity/1=-1"));
   CHECK_FALSE(stale(1));
@@ -44,7 +44,7 @@ TEST_CASE("a result says whether anything was stepped beside its job") {
   }
 }
 
-TEST_CASE("who asked for a job that slows the session below 50 of 60 frames is told so, once") {
+TEST_CASE("a client whose job slows the session below 50 of 60 frames is told so once") {
   Lab lab;
   const std::uint64_t job = lab.ask(1);
   REQUIRE(lab.until([&] { return lab.jobs.started == 1; }));
@@ -58,7 +58,7 @@ TEST_CASE("who asked for a job that slows the session below 50 of 60 frames is t
   };
   reaches("main", 0.84, 10);
   reaches("other", 0.2, 10);
-  reaches("main", 0.5, 1);  // a hiccup
+  reaches("main", 0.5, 1);  // too short to count
   reaches("main", 0.9, 1);
   CHECK(notices() == 0);
   reaches("main", 0.5, 10);
@@ -71,7 +71,8 @@ TEST_CASE("who asked for a job that slows the session below 50 of 60 frames is t
 }
 
 TEST_CASE(
-    "what was measured with nothing beside it answers the same request at once, unless it is to be fresh") {
+    "a result measured while nothing else ran answers the same request at once, unless a fresh one is "
+    "wanted") {
   Lab lab;
   lab.jobs.may_end = true;
   REQUIRE(lab.reaches(1, lab.ask(1), "finished"));
@@ -106,7 +107,7 @@ TEST_CASE(
   CHECK(lab.last_result(job)["state"] == "finished");
 }
 
-TEST_CASE("what a job found can be had until its asker has had as many newer ones as are kept") {
+TEST_CASE("a job's result is kept until its client has had as many newer ones as the server keeps") {
   Lab lab;
   lab.jobs.may_end = true;
   const std::uint64_t oldest = lab.ask(1);

@@ -1,4 +1,4 @@
-// The threads beside the sessions', as the server sets them up.
+// The threads beside the sessions' own, as the server sets them up.
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -24,7 +24,7 @@ std::set<int> threads() {
   return found;
 }
 
-/// A picture as the exporter draws it; ends with its thread, not with its OpenGL's.
+/// Draws a picture like the exporter, on a thread that may end before its OpenGL's threads.
 void draw() {
   Result<scene::Document> document = scene::load_preset("seed");
   REQUIRE(document);
@@ -48,7 +48,7 @@ TEST_CASE("the lab's thread and those of its OpenGL have the lowest priority, th
   REQUIRE(session);
   const std::set<int> of_session = threads();
   draw();
-  std::map<int, int> before;  // thread, niceness: Mesa has a thread of low priority itself
+  std::map<int, int> before;  // thread -> niceness: Mesa has a thread of low priority, too
   for (const int thread : threads()) {
     before[thread] = niceness(thread);
     if (!of_session.contains(thread)) CHECK(niceness(thread) >= 10);
@@ -62,8 +62,8 @@ TEST_CASE("the lab's thread and those of its OpenGL have the lowest priority, th
       CHECK(niceness(thread) == (known == before.end() ? 19 : known->second));
       added += known == before.end() ? 1u : 0u;
     }
-    // Software OpenGL computes on threads besides the one that asks it to, and these are the lab's alone: not
-    // those that draw pictures either.
+    // Software OpenGL computes on threads besides the one that calls it. These belong to the lab alone: the
+    // threads that draw pictures are others.
     if ((*session)->device().software) CHECK(added > 1);
   }).join();
 }

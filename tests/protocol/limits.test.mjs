@@ -1,4 +1,4 @@
-// The limits that whoever starts the server may set: what each refuses, in which words, and what lives on.
+// The limits that an operator sets when starting the server: what each refuses, the error's text, and what goes on.
 import assert from "node:assert/strict";
 import { once } from "node:events";
 import net from "node:net";
@@ -14,7 +14,7 @@ async function start(...args) {
   return server;
 }
 
-/// A bare connection, and whether the server has closed it.
+/// A bare connection, and a function that tells if the server has closed it.
 async function socketTo(server, options = {}) {
   const socket = net.connect({ port: server.port, host: "127.0.0.1", ...options });
   socket.over = new Promise((resolve) => {
@@ -212,7 +212,7 @@ test("a connection that is kept for one request after the other lives as long as
   socket.on("data", (data) => (answers += data));
   const answered = () => answers.split("HTTP/1.1 200 OK").length - 1;
   for (let asked = 1; asked <= 8; ++asked) {
-    // for twice the timeout
+    // lasts twice the timeout
     socket.write("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n");
     for (const until = Date.now() + patience; answered() < asked && !socket.destroyed && Date.now() < until; )
       await sleep(20);
@@ -226,7 +226,7 @@ test("a connection that is kept for one request after the other lives as long as
   assert.equal(answered(), 8);
 });
 
-test("who sends no token within --auth-timeout is closed with 1008", async () => {
+test("a client that sends no token within --auth-timeout is closed with 1008", async () => {
   const server = await start("--token", "secret", "--auth-timeout", "1");
   const client = await Client.connect(server);
   assert.equal((await withTimeout(client.closed, "the close")).code, 1008);
@@ -244,7 +244,7 @@ test("after --max-wrong-tokens no token of that address is looked at for a while
   let heard = 0,
     error;
   while ((error = await guesser.refusal("auth", { token: `guess ${heard}` })).code === -32001) ++heard;
-  const due = Math.floor((performance.now() - from) / 3000); // one more each 3 s
+  const due = Math.floor((performance.now() - from) / 3000); // one more every 3 s
   assert.ok(heard >= 20 && heard <= 20 + due, `${heard} were looked at`);
   assert.equal(error.code, -32002);
   const seconds = Number(/ for (\d+) s; see --max-wrong-tokens$/.exec(error.message)[1]);
@@ -280,8 +280,7 @@ test("a client that asks and does not read is cut off once 4 MiB of answers wait
   const other = await Client.connect(server);
   const deaf = await Client.connect(server, { session: "large" });
   const clients = () => server.metric("clothlab_clients");
-  // A document of some 40 kB: twenty times as much as a client's and the kernel's buffers hold when asked for 2000
-  // times.
+  // A document of about 40 kB: 2000 copies are twenty times as much as the client's and the kernel's buffers hold.
   const vertices = Array.from({ length: 1000 }, (_, i) => [
     (i % 40) + 0.123456789,
     1.123456789,

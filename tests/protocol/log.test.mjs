@@ -1,4 +1,4 @@
-// What the server tells whoever started it, on stderr.
+// The log that the server writes to stderr for its operator.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Client, Server } from "./harness.mjs";
@@ -9,7 +9,7 @@ const line = new RegExp(
   String.raw`^time=\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z level=(error|warning|info|debug) event=([a-z_]+)((?: [a-z_]+=${value})*)$`,
 );
 
-/// One who may not come in, one who guesses, and one who looks and leaves; what the server wrote of them.
+/// The log lines about three clients: one that is not let in, one that guesses a token, and one that looks and leaves.
 async function told(...args) {
   const server = await Server.start("--token", tokens[0], "--view-token", tokens[1], ...args);
   await assert.rejects(Client.connect(server, { headers: { origin: String.raw`https://e"v=i\l example` } }), {

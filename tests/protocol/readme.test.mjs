@@ -1,4 +1,4 @@
-// The scripts and scenes that the documents show are run as they stand there, but for the port.
+// Runs the scripts and scenes in the documents as they stand there, except for the port.
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
 import { readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -7,7 +7,7 @@ import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
 
 const program = process.env.CLOTHLAB ?? "build/release/clothlab";
-/// The first piece of code of a language in a document.
+/// The first piece of code in this language in a document.
 const shown = (document, language) =>
   readFileSync(new URL(`../../${document}`, import.meta.url), "utf8").match(
     new RegExp("```" + language + "\n(.*?)```", "s"),
@@ -42,7 +42,7 @@ after(() => {
 async function runs(document, language, extension, interpreter) {
   const code = shown(document, language);
   assert.match(code, /127\.0\.0\.1:8080/);
-  // Below tests/, where Node finds the packages.
+  // Below tests/, so that Node finds the packages.
   const path = fileURLToPath(new URL(`readme-${process.pid}.${extension}`, import.meta.url));
   scripts.push(path);
   writeFileSync(path, code.replaceAll("127.0.0.1:8080", address));

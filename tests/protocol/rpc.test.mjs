@@ -54,7 +54,7 @@ test("batches answer -32600", async () => {
   await stillAlive();
 });
 
-test("what is no request answers -32600", async () => {
+test("a message that is no request is answered with -32600", async () => {
   for (const text of [
     "1",
     "null",
@@ -133,7 +133,7 @@ test("positional parameters answer -32602, which says that they are to be named"
     assert.match(error.message, /^invalid params: .*; an object of named parameters$/);
     assert.doesNotMatch(error.message, /document/);
   }
-  // Beside an id, even null, it is a request.
+  // With an id, even null, it is a request.
   assert.equal((await errorFor(request({ id: null, params: [1] }))).code, -32602);
 });
 

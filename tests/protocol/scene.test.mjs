@@ -113,7 +113,7 @@ test("an invalid patch answers -32602 with the scene's pointer and changes nothi
   assert.deepEqual(await client.request("scene.get"), before);
 });
 
-test("what is not supported yet is refused and says so", async () => {
+test("keys that are not supported yet are refused with that reason", async () => {
   const error = await client.refusal("scene.patch", { patch: { wind: { velocity: [1, 0, 0] } } });
   assert.equal(error.code, -32602);
   assert.match(error.message, /not supported yet/);

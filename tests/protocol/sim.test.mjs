@@ -25,7 +25,8 @@ test("sim.status has every field of the contract, with the passes that run and t
   assert.ok(status.stability.dt_limit > 0 && status.stability.margin > 0);
   const { thickness_that_holds: holds, ...solver } = status.solver;
   assert.deepEqual(solver, { pbd_stiffness: null, auto: null });
-  assert.ok(Math.abs(holds - 1.2 / 24 / Math.SQRT2) < 1e-9, `${holds}`); // a vertex in the middle of a cell, and a fifth
+  // a vertex in the middle of a cell, and a fifth more
+  assert.ok(Math.abs(holds - 1.2 / 24 / Math.SQRT2) < 1e-9, `${holds}`);
   assert.equal(status.asleep, false);
   assert.equal(status.diverged, false);
 });
@@ -53,8 +54,8 @@ test("under PBD sim.status tells for each cloth what it makes of N/m at this dt 
     patch: { cloths: [{ ...cloth, material }], solver: { method: "pbd", dt: 0.002, iterations: 3 } },
   });
   const [{ structural, shear, bend }] = await stiffness((shares) => shares);
-  // A lone spring between two vertices of 0.1 kg, after three visits, is where one solve of implicit Euler would put
-  // it.
+  // A single spring between two vertices of 0.1 kg ends, after three visits, where one solve of implicit Euler would
+  // put it.
   for (const [share, k] of [
     [structural, material.structural],
     [shear, material.shear],
@@ -127,7 +128,7 @@ test("sim.reset goes back to the rest shape at time 0 and keeps playing or pausi
   assert.equal((await client.request("sim.reset")).playing, true);
 });
 
-test("the same step has the same positions whoever watches, and however it was reached", async () => {
+test("a step has the same positions whoever watches, and however it was reached", async () => {
   await client.request("stream.subscribe", { encoding: "f32", rate: 120, in_flight: 8 });
   await client.request("sim.step", { steps: 300 });
   const atOnce = await client.frame((frame) => frame.step === 300);

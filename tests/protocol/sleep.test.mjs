@@ -1,10 +1,10 @@
-// A cloth at rest: no steps and no frames until something changes, and everybody is told.
+// A cloth at rest: no steps and no frames until something changes, and every client is told.
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { after, before, test } from "node:test";
 import { Client, Server, sleep } from "./harness.mjs";
 
-// Hangs straight down from the start, and what its own weight does to it is damped away within a second.
+// A cloth that hangs straight down from the start: the motion by its own weight is damped away within a second.
 const hanging = {
   version: 1,
   name: "hanging",
@@ -60,7 +60,7 @@ test("a cloth at rest falls asleep: it plays, time stands still, no pass runs, a
   assert.equal(later.step, before.step);
   assert.equal(later.time, before.time);
   assert.ok((await server.metric("clothlab_sessions_asleep")) >= 1);
-  // Who comes now still sees the cloth.
+  // A client that connects now still gets the cloth.
   const late = await Client.connect(server, { session: client.session });
   await late.notification("scene");
   await late.request("stream.subscribe", { rate: 60 });

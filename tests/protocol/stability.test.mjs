@@ -1,4 +1,4 @@
-// The live step limit: in sim.status, after every change of the scene, with a warning near it.
+// The live step limit in sim.status: it follows every change of the scene, and there is a warning near it.
 import assert from "node:assert/strict";
 import { after, afterEach, before, beforeEach, test } from "node:test";
 import { Client, Server } from "./harness.mjs";
@@ -20,7 +20,7 @@ const stability = async (predicate) =>
 
 test("sim.status tells the seed's limit, and margin is dt over it", async () => {
   const { dt_limit, margin } = await stability((s) => s.dt_limit !== null);
-  // Its fastest wave: omega^2 between that of the bound, 2 / 1.59 ms, and of the undamped infinite grid.
+  // Limit of its fastest wave: between the bound, 1.59 ms, and that of the undamped infinite grid.
   assert.ok(dt_limit > 1.59e-3 && dt_limit < 1.75e-3, `${dt_limit}`);
   assert.ok(Math.abs(margin - 0.001 / dt_limit) < 1e-12);
 });
@@ -45,7 +45,7 @@ test("a patch that moves the margin above 0.9 warns, once, with the limit in num
   await stability((s) => s.margin > 0.945);
   assert.ok(!client.messages.slice(before).some((m) => m.method === "notice"), "told twice");
   for (let i = 0; i < 3; ++i) {
-    // and again each time, however fast it comes and goes
+    // a warning each time, however quickly the scene changes there and back
     const beyond = client.nextNotification("notice", (n) => /beyond/.test(n.text));
     await patch({ solver: { dt: 0.002 } });
     await patch({ solver: { dt: 0.001 } });
@@ -87,7 +87,7 @@ function seedCloth() {
   return client.messages.findLast((m) => m.method === "scene").params.document.cloths[0];
 }
 
-/// Whether a frame shows a cloth that hangs, and not one that flies: the seed's is 1 m wide at 1 m height.
+/// True if a frame shows a hanging cloth and not a flying one: the seed's is 1 m wide at a height of 1 m.
 function hangs(frame) {
   return frame.positions.every(([x, y, z]) => Math.abs(x) < 2 && y > -1.5 && y < 1.5 && Math.abs(z) < 2.5);
 }
@@ -159,7 +159,7 @@ test("far beyond the limit the remedy is a method without one, and the cloth goe
   assert.deepEqual(status.stability, { dt_limit: null, margin: null });
 });
 
-test("the same cure twice: what blows up again is told again", async () => {
+test("a second blow-up after the same remedy is reported again", async () => {
   await patch({ solver: { dt: 0.004 } });
   await client.request("sim.play");
   await client.notification("sim.diverged", ({ reason }) => /0\.004 s/.test(reason));

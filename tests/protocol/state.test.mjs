@@ -1,4 +1,4 @@
-// --state-dir: what a session was is there again after the server's end, whatever that was.
+// --state-dir: a session returns after the server's end, however the server ended.
 import assert from "node:assert/strict";
 import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -41,7 +41,7 @@ test("after kill -9 a restart brings each session's scene and state back to with
     [1, "other"],
   ]) {
     const client = await Client.connect(server, { session });
-    // What it was at first, before it goes on.
+    // The session's first state, before it goes on.
     const { document, revision } = await client.notification("scene");
     assert.deepEqual(document, scenes[i].document, session);
     assert.ok(revision >= scenes[i].revision, session);
@@ -70,7 +70,7 @@ test("a session that was paused is as it was, vertex by vertex, after SIGTERM", 
   assert.ok(Math.abs(after.time - time) < 1e-12);
   assert.deepEqual(after.positions, before.positions);
   assert.equal((await client.notification("sim.status")).playing, false);
-  // And it can go on.
+  // It can go on.
   assert.equal((await client.request("sim.step", { steps: 3 })).step, step + 3);
   await server.stop();
 });
@@ -95,7 +95,7 @@ test("a file that is damaged is moved aside, never deleted; its session starts a
   await again.stop();
 });
 
-test("a file that is none of this program's, or of another version's, is moved aside with what it begins with", async () => {
+test("a foreign file, or one of another version, is moved aside, and its first bytes are reported", async () => {
   for (const [bytes, found] of [
     ["hello, world\nmore", /it is no saved session: it begins with .*hello, world.*, not with .*clothlab session 1/],
     [
@@ -168,6 +168,6 @@ test("a viewer may open what is kept, after a restart too, and nothing else", as
   assert.equal((await viewer.notification("hello")).role, "viewer");
   assert.equal((await viewer.notification("scene")).document.name, "kept");
   await assert.rejects(enter(server, "another", "look"), { code: -32001 });
-  assert.equal(await server.stop(), 0); // and has finished what it was writing
+  assert.equal(await server.stop(), 0); // and the server has finished writing
   assert.deepEqual(readdirSync(kept).sort(), ["main.session", "other.session"]);
 });

@@ -1,4 +1,4 @@
-// Of the session's thread, in this process: what it allocates.
+// The session's thread, run in this process: counts its allocations.
 #include "server/session/stepper.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include "tests/catch.h"
 
 namespace {
-thread_local std::size_t allocations = 0;  // by operator new; the GL driver has allocators of its own
+thread_local std::size_t allocations = 0;  // by operator new; the GL driver uses other allocators
 
 void* allocate(std::size_t bytes) {
   ++allocations;
@@ -74,7 +74,7 @@ struct Fixture {
       turn();
   }
 
-  /// Turns until `frames` more frames were published; how many times the turns allocated.
+  /// Turns the stepper until `frames` more frames were published; returns the number of allocations.
   std::size_t allocations_for(std::uint32_t frames) {
     const auto sequence = [&] {
       const stream::SharedMessage frame = exchange.frame(stream::Encoding::q16);
@@ -96,10 +96,10 @@ TEST_CASE("in steady state the stepping thread allocates nothing but the frames 
   session.commands.push_back({{}, session::Watchers{1}});
   session.commands.push_back({{}, demand});
   session.allocations_for(40);
-  constexpr std::size_t frames = 120, a_frame = 2;  // the message with its count, and its bytes
+  constexpr std::size_t frames = 120, a_frame = 2;  // the message with its reference count, and its bytes
   const std::size_t counted = session.allocations_for(frames);
-  CHECK(counted >= frames);  // the counting works
-  // A slow machine is told once that it is slow, and that takes a few too.
+  CHECK(counted >= frames);  // the counter works
+  // A slow machine gets one notice that it is slow, which needs some allocations, too.
   constexpr std::size_t a_notice = 16;
   CHECK(counted <= frames * a_frame + a_notice);
 }

@@ -66,7 +66,7 @@ test("the rest shape arrives as the scene describes it, in both encodings", asyn
         );
       }
     }
-    // A flat sheet, counter-clockwise seen from above: every normal is up. 127 steps a half axis in q16.
+    // A flat cloth, counter-clockwise seen from above: every normal points up. q16 has 127 steps per half axis.
     for (const [x, y, z] of frame.normals) assert.ok(y > 0.999 && Math.hypot(x, z) < 0.02, `${x} ${y} ${z}`);
   }
 });
@@ -200,7 +200,7 @@ test("a viewer that stops acknowledging costs the others nothing, and resumes wi
   await client.frame();
   const from = client.frames.length;
   await sleep(3000);
-  // 60 here; half of it tells a stall from a busy machine.
+  // 60 here; half of that tells a stall from a busy machine.
   const others = rate(client.frames.slice(from));
   assert.ok(others > 30, `the other viewer gets ${others} frames/s`);
   assert.equal(stuck.frames.length, 2);

@@ -1,6 +1,6 @@
-// A small cloth that every method steps soon: for tests and the soak, where what is measured does not matter.
+// A small cloth that every method steps quickly: for tests and the soak, where the kind of cloth does not matter.
 
-/// `rows` of three vertices, 5 cm apart, hung by the first.
+/// A cloth of `rows` rows of three vertices, 5 cm apart, hung by the first row.
 export const strip = (rows = 9) => ({
   version: 1,
   name: "strip",

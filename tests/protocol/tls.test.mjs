@@ -1,4 +1,4 @@
-// HTTPS and WSS: with which certificate, from which version on, and no HTTP/2.
+// HTTPS and WSS: the certificate, the lowest version of TLS, and no HTTP/2.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
@@ -36,7 +36,7 @@ after(async () => {
   rmSync(folder, { recursive: true });
 });
 
-/// What a TLS client with these options agrees on with the server; rejects if they agree on nothing.
+/// The parameters on which a TLS client with these options and the server agree; rejects if they do not.
 function handshake(options) {
   const agreed = new Promise((resolve, reject) => {
     const socket = tls.connect({ host: "127.0.0.1", port: server.port, rejectUnauthorized: false, ...options }, () => {
@@ -59,7 +59,7 @@ test("with --tls-cert and --tls-key it serves HTTPS and WSS", { skip }, async ()
 test("TLS 1.2 and 1.3 are spoken, 1.0 and 1.1 are not", { skip }, async () => {
   for (const version of ["TLSv1.2", "TLSv1.3"])
     assert.equal((await handshake({ minVersion: version, maxVersion: version })).version, version);
-  // SECLEVEL=0, so that it is the server that refuses.
+  // SECLEVEL=0 lets the client offer these versions: the server refuses them.
   for (const version of ["TLSv1", "TLSv1.1"])
     await assert.rejects(
       handshake({ minVersion: version, maxVersion: version, ciphers: "DEFAULT@SECLEVEL=0" }),

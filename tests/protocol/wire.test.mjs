@@ -1,5 +1,5 @@
-// What is wrong on the wire, in HTTP (RFC 7230) and in a WebSocket's frames (RFC 6455): each is told, and nobody else
-// notices.
+// Errors on the wire, in HTTP (RFC 7230) and in WebSocket frames (RFC 6455): the client is told of each, and no other
+// client is affected.
 import assert from "node:assert/strict";
 import { once } from "node:events";
 import net from "node:net";
@@ -28,7 +28,7 @@ class Socket {
   write(data) {
     this.net.write(data);
   }
-  /// What has come once `enough` of it is there.
+  /// All data received so far, once `enough` accepts it.
   async until(enough) {
     for (let over = false; !enough(this.bytes); await sleep(10)) {
       if (over) assert.fail(`closed after ${JSON.stringify(this.bytes.toString("latin1"))}`);
@@ -38,7 +38,7 @@ class Socket {
   }
 }
 
-/// The answer to these bytes, from a server that closes the connection then.
+/// The answer to these bytes from a server that then closes the connection.
 async function refusal(bytes) {
   const socket = await Socket.open();
   socket.write(bytes);
@@ -46,7 +46,7 @@ async function refusal(bytes) {
   const [, status, reason] = /^HTTP\/1\.\d (\d+)[^\r]*\r\n[\s\S]*?\r\n\r\n([\s\S]*)$/.exec(text) ?? [];
   return { status: Number(status), reason, text };
 }
-/// How many answers with 200 there are to all of this, on a connection that stays.
+/// The number of answers with status 200 to these bytes, on a connection that stays open.
 async function answers(bytes, count) {
   const socket = await Socket.open();
   socket.write(bytes);
@@ -226,7 +226,7 @@ function frame(opcode, payload, { masked = true, final = true, reserved = 0 } = 
   ]);
 }
 
-/// What the server says after a handshake: {opcode, payload}.
+/// The server's frames after a handshake: {opcode, payload}.
 function heard(bytes) {
   const all = [];
   let rest = bytes.subarray(bytes.indexOf("\r\n\r\n") + 4);

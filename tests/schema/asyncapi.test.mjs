@@ -1,5 +1,5 @@
-// server/net/asyncapi.yaml by itself: an AsyncAPI 3 document, whole, and right about the bytes of the golden messages.
-// Whether a session really speaks so is for tests/protocol/asyncapi.test.mjs.
+// server/net/asyncapi.yaml by itself: it is a complete AsyncAPI 3 document and describes the bytes of the golden
+// messages. tests/protocol/asyncapi.test.mjs compares it with real sessions.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -9,14 +9,14 @@ import { document, lookUp, messages, operations, payloadComplaints, readBinary }
 
 const { schemas } = createRequire(import.meta.url)("@asyncapi/specs");
 
-/// Every object within a value, with the path to it.
+/// Every object within a value, with its path.
 function* objectsIn(value, path = "") {
   if (typeof value !== "object" || value === null) return;
   yield [path, value];
   for (const [key, inner] of Object.entries(value)) yield* objectsIn(inner, `${path}/${key}`);
 }
 
-/// The schema brings that of JSON Schema with it, which must not be there twice.
+/// The schema includes JSON Schema's own, which must not be added twice.
 const compiled = () =>
   new Ajv({ strict: false, validateFormats: false, meta: false, validateSchema: false, logger: false }).compile(
     schemas[document.asyncapi],
@@ -47,7 +47,7 @@ test("every reference leads somewhere, and nothing that can be referred to is id
     assert.ok(used.has(`#/channels/session/messages/${name}`), `no operation has ${name}`);
 });
 
-test("what it does not know it does not take: every object it describes is closed, and no message is empty", () => {
+test("unknown keys are refused: every object that it describes is closed, and no message is empty", () => {
   for (const [path, schema] of objectsIn({ messages, schemas: document.components.schemas }))
     if (schema.type === "object" && schema.properties)
       assert.equal(schema.unevaluatedProperties ?? schema.additionalProperties, false, path);

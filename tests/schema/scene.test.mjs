@@ -1,6 +1,5 @@
-// Holds server/scene/scene.schema.json and the program's validator together: each scene below, valid or broken on
-// purpose, gets the same verdict from both, except where a rule spans parts of the scene that JSON Schema cannot
-// relate.
+// Compares server/scene/scene.schema.json with the program's validator: each scene below, valid or broken on purpose,
+// gets the same verdict from both, except for rules about several parts of the scene, which JSON Schema cannot express.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";

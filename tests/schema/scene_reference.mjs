@@ -1,4 +1,4 @@
-// The tables of server/scene/README.md, made from server/scene/scene.schema.json. After a change of the schema:
+// Makes the tables of server/scene/README.md from server/scene/scene.schema.json. After a change of the schema:
 //   node tests/schema/scene_reference.mjs
 import { readFileSync, writeFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
@@ -7,7 +7,7 @@ const folder = new URL("../../server/scene/", import.meta.url);
 const begin = "<!-- made by tests/schema/scene_reference.mjs from scene.schema.json -->\n",
   end = "<!-- end of what is made -->\n";
 
-/// Each table: its title, the place in the schema, and what is said above it.
+/// Each table: its title, its place in the schema, and the text above it.
 const tables = [
   ["The document", []],
   ["`self_collision`", ["properties", "self_collision", "oneOf", 1]],
@@ -22,7 +22,7 @@ const tables = [
   ["`weights[]`", ["$defs", "cloth", "properties", "weights", "items"]],
   ["`start: {scatter}` or `{scale}`", ["$defs", "cloth", "properties", "start"]],
   ["A collider: `colliders[]`", ["$defs", "collider"]],
-  ["", ["$defs", "shape", "properties"]], // a table of each
+  ["", ["$defs", "shape", "properties"]], // one table for each
   ["`motion`, of a pin or a collider", ["$defs", "motion"]],
   ["`at`, of a pin or a weight", ["$defs", "at"]],
 ];
@@ -33,7 +33,7 @@ const number = (value) =>
     ? value.toExponential().replace("e+", "e")
     : String(value);
 
-/// What a value may be.
+/// The values that a key may have.
 function allowed(schema) {
   if ("const" in schema) return code(JSON.stringify(schema.const));
   if (schema.enum) return schema.enum.map((value) => code(value)).join(", ");
@@ -59,7 +59,7 @@ function allowed(schema) {
   return keys.length > 0 && keys.length <= 4 ? code(`{${keys.join(", ")}}`) : "see below";
 }
 
-/// What a definition says, and what the place says that refers to it.
+/// A definition, completed by the place that refers to it.
 function merged(definition, part) {
   const both = { ...definition, ...part, $ref: undefined };
   if (definition.properties && part.properties) both.properties = { ...definition.properties, ...part.properties };
@@ -117,7 +117,7 @@ export function reference(schema) {
     .join("\n");
 }
 
-/// The README with its tables as they should be.
+/// The README with its tables made anew.
 export function updated(readme, schema) {
   const [from, to] = [readme.indexOf(begin), readme.indexOf(end)];
   if (from < 0 || to < from) throw new Error("server/scene/README.md has lost its markers");

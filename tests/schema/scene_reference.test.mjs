@@ -1,4 +1,4 @@
-// The tables of server/scene/README.md say what the schema says.
+// The tables of server/scene/README.md agree with the schema.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";

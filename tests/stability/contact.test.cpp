@@ -1,4 +1,4 @@
-// A cloth that lies, slides or lands gains no energy below the step limit: contact is no source.
+// A cloth that lies, slides or lands gains no energy below the step limit: contact adds none.
 #include <algorithm>
 #include <cmath>
 
@@ -30,8 +30,7 @@ std::vector<Case> cases(double friction) {
   made.back().scene.cloths[0].transform.rotate = {0.0, 0.0, 10.0};
   made.push_back({"bounces", made.back().scene});
   made.back().scene.colliders[0].restitution = 0.5;
-  // Springs that turn stiffen a cloth without shear springs: the limit about its rest shape is no longer its
-  // own.
+  // Springs that turn stiffen a cloth without shear springs: the limit about its rest shape no longer holds.
   made.push_back({"lands on a ball", sheet_over_sphere(0.05, friction)});
   made.back().scene.cloths[0].material = {800.0, 800.0, 80.0, 0.0};
   made.push_back({"lands on a ball, itself in the way", sheet_over_sphere(0.05, friction)});
@@ -43,7 +42,8 @@ std::vector<Case> cases(double friction) {
   return made;
 }
 
-/// A vibration's energy may swing about its own mean by this factor below the limit, and does in free flight.
+/// Factor by which a vibration's energy may swing about its mean at this share of the limit, as it does in
+/// free flight.
 double swing(double share) {
   return (1.0 + share) / (1.0 - share);
 }
@@ -63,7 +63,7 @@ TEST_CASE("a cloth that rests, slides or lands on a plane or a ball gains no ene
           for (const double share : {0.1, 0.35, 0.9}) {
             one.scene.solver.dt = share * limit;
             Stepped stepped(side, one.scene);
-            stepped.step(1);  // the ground keeps its margin, and lifts what lies on it
+            stepped.step(1);  // the ground keeps its margin, and lifts a cloth that lies on it
             const int steps = static_cast<int>(0.7 / one.scene.solver.dt);
             const double start = stepped.energy().total();
             double worst = 0.0;
@@ -71,7 +71,7 @@ TEST_CASE("a cloth that rests, slides or lands on a plane or a ball gains no ene
               stepped.step(steps / 10);
               const reference::Energy now = stepped.energy();
               const double fall = std::max(0.0, start - now.gravitational);
-              // A ten-thousandth of a joule: what rounding of the places makes of the springs' energy.
+              // 1e-4 J: the error of the springs' energy by rounding of the places.
               worst = std::max(worst, (now.kinetic + now.elastic) / (swing(share) * fall + 1e-4));
               if (!std::isfinite(now.total())) worst = 1e300;
             }

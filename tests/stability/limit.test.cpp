@@ -1,5 +1,5 @@
-// The largest stable dt of each method, found by bisection on the total energy, on both sides, against
-// theory.
+// The largest stable dt of each method, found by bisection on the total energy, in the reference and on the
+// GPU, against theory.
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +13,7 @@ using scene::Method;
 
 namespace {
 
-/// What the scene's vibrations carry [J]: the largest kinetic energy of a motion that is resolved.
+/// Energy of the scene's vibrations [J]: the largest kinetic energy of a resolved motion.
 double energy_scale(scene::Scene scene, double omega) {
   scene.solver.method = Method::rk4;
   scene.solver.dt = 0.2 / omega;
@@ -26,15 +26,16 @@ double energy_scale(scene::Scene scene, double omega) {
   return largest;
 }
 
-/// Whether the total energy stays where it was for `steps` steps of dt. A stable method may swing by far more
-/// than the scene's own energy near its limit (symplectic Euler and Verlet by 1/(1 - (dt/limit)^2)); beyond
-/// it there is no end.
+/// True if the total energy does not grow for `steps` steps of dt. Near its limit a stable method may swing
+/// by far more than the scene's own energy (symplectic Euler and Verlet by 1/(1 - (dt/limit)^2)); beyond the
+/// limit it grows without end.
 bool holds(Stepped& stepped, double dt, int steps, double scale) {
   stepped.restart(dt);
   const double start = stepped.energy().total();
   for (int done = 0; done < steps; done += 250) {
     stepped.step(250);
-    if (!(stepped.energy().total() - start < 1e4 * scale)) return false;  // not finite counts as grown
+    // a value that is not finite counts as growth
+    if (!(stepped.energy().total() - start < 1e4 * scale)) return false;
   }
   return true;
 }
@@ -52,7 +53,8 @@ double largest_stable(Stepped& stepped, double expected, double scale) {
   return std::sqrt(stable * unstable);
 }
 
-/// Bisection, and both sides of the limit for longer, on both sides of the comparison.
+/// Checks the limit by bisection, and steps for longer just below and above it, in the reference and on the
+/// GPU.
 void check_limit(const scene::Scene& scene, double expected, double omega) {
   const double scale = energy_scale(scene, omega);
   for (const Side side : sides) {
@@ -60,13 +62,13 @@ void check_limit(const scene::Scene& scene, double expected, double omega) {
     const double found = largest_stable(stepped, expected, scale);
     INFO(scene::name(scene.solver.method) << " on " << name(side) << ": " << found << " s, theory "
                                           << expected << " s, ratio " << found / expected);
-    CHECK(std::abs(found / expected - 1.0) < 0.03);  // the issue's; 0.3 % of it is the bisection's
+    CHECK(std::abs(found / expected - 1.0) < 0.03);  // of which the bisection may use 0.3 %
     CHECK(holds(stepped, 0.99 * expected, 10000, scale));
     CHECK_FALSE(holds(stepped, 1.015 * expected, 10000, scale));
   }
 }
 
-/// So small an amplitude [m] that the spring is linear until it has grown enough to be told.
+/// Amplitude [m] so small that the spring is linear until its growth is visible.
 constexpr double small = 1e-3;
 
 /// The closed form of a method's limit, in 1/omega, at damping ratio z (shaders/README.md).
@@ -78,8 +80,8 @@ double limit_of(Method method, double z) {
   return z == 0.0 ? 2.828 : z == 0.1 ? 2.95 : z == 0.5 ? 2.62 : 2.79;
 }
 
-/// A grid of equal stiffness [N/m] and mass hung from its top edge, stretched a ten thousandth by gravity in
-/// its plane.
+/// A grid of equal stiffness [N/m] and mass [kg] hung from its top edge; gravity in its plane stretches it by
+/// 1e-4.
 scene::Scene hanging_grid(Method method, double k, double mass) {
   scene::Scene scene = bare_scene(method, 1e-3);
   scene::Cloth cloth;
@@ -108,7 +110,7 @@ TEST_CASE("damping moves one spring's limit as each method's closed form says") 
     for (const Method method :
          {Method::explicit_euler, Method::symplectic_euler, Method::verlet, Method::rk4}) {
       if (method == Method::explicit_euler && z < 0.5)
-        continue;  // grows too slowly past its limit to be found
+        continue;  // grows too slowly beyond its limit to be found
       INFO("z = " << z);
       check_limit(one_spring(method, 0.1, damping, small), limit_of(method, z) / spring_omega, spring_omega);
     }

@@ -1,4 +1,5 @@
-// The stability map: where measured and theory must be one, where they cannot be, and how it ends early.
+// The stability map: where measurement and theory must agree, where they cannot, and what it contains when it
+// ends early.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -16,8 +17,8 @@ using scene::Method;
 
 namespace {
 
-/// One spring of 16 N/m with 1 kg at its end, omega = 4 / s, as in small_scenes.h; so little amplitude that
-/// it is linear until growth is proved.
+/// One spring of 16 N/m with 1 kg at its end, omega = 4 / s, as in small_scenes.h. Its amplitude is so small
+/// that it is linear until growth is proved.
 scene::Document one_spring() {
   return document_of(R"({"version": 1, "name": "one spring", "gravity": [0, 0, 0.016],
     "cloths": [{"mesh": {"grid": {"columns": 2, "rows": 3, "width": 1, "height": 1}}, "mass": {"per_vertex": 1},
@@ -25,7 +26,7 @@ scene::Document one_spring() {
                 "pins": [{"at": "edge:row:0"}, {"at": "edge:row:1"}]}]})");
 }
 
-/// A sheet that lies still in its plane but for a pull of a ten thousandth.
+/// A cloth that lies still in its plane, except for a pull by 1e-4.
 scene::Document grid(double gravity) {
   return document_of(R"({"version": 1, "name": "grid", "gravity": [0, 0, )" + std::to_string(gravity) + R"(],
     "cloths": [{"mesh": {"grid": {"columns": 9, "rows": 7, "width": 0.8, "height": 0.6}}, "mass": {"per_vertex": 0.001},
@@ -48,7 +49,7 @@ double closed_form(Method method, double z) {
   return z == 0.0 ? 2.828 : z == 0.5 ? 2.62 : 2.79;
 }
 
-/// The bisection's 1 %, and as much for growth that is slow just beyond the limit.
+/// The bisection's 1 %, and as much for slow growth just beyond the limit.
 constexpr double tolerance = 0.02;
 
 }  // namespace
@@ -95,8 +96,8 @@ TEST_CASE("on a grid at rest the map's boundary falls with the root of the stiff
 
 TEST_CASE("where gravity stretches a cloth far the map says that theory is off, and why") {
   const auto context = test::context();
-  // 7 rows of 1 g at 9.8 m/s^2 on springs of 0.1 N/m, of 0.1 m: the uppermost is stretched to some 6 times
-  // its length, which at rest is the only one that counts along the columns, and now counts across them, too.
+  // 7 rows of 1 g at 9.8 m/s^2 on springs of 0.1 N/m and 0.1 m stretch the uppermost to about 6 times its
+  // length. At rest it counts along the columns only; stretched it counts across them, too.
   const StabilityMap map = map_of(grid(9.8), {{Method::symplectic_euler}, "stiffness", 0.001, 1.0, 2});
   const MapColumn &soft = map.methods[0].columns[0], &stiff = map.methods[0].columns[1];
   INFO(soft.reason);

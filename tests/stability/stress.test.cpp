@@ -1,5 +1,5 @@
-// PBD, XPBD and VBD where scenes are at their worst (tests/stress): nothing explodes, and what settles,
-// settles at the rest shape that the reference finds, or as far from it as predicted.
+// PBD, XPBD and VBD in the stress scenes (tests/stress): nothing explodes, and a cloth that settles does so
+// at the reference's rest shape, or as far from it as predicted.
 #include <filesystem>
 
 #include "tests/scenes.h"
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array by_sweeps{Method::pbd, Method::xpbd, Method::vbd};
 
-/// A stress scene by its file, at a dt [s].
+/// A stress scene, by its file, at a dt [s].
 struct Stage {
   Case test;
   scene::Scene scene;
@@ -64,13 +64,13 @@ TEST_CASE(
       CHECK(verdict.ending != Ending::not_finite);
       CHECK(verdict.ending != Ending::blows_up);
       CHECK(verdict.ending != Ending::passes_through);
-      // VBD keeps momentum only as far as its sweeps converge: below, at a step that is short enough.
+      // VBD keeps momentum only as far as its sweeps converge: tested below, at a step that is short enough.
       if (method != Method::vbd) CHECK(verdict.ending != Ending::falls_wrong);
     }
   }
 }
 
-TEST_CASE("what XPBD and VBD let hang at 1/30 s hangs within 5 mm of the reference's rest shape, at rest") {
+TEST_CASE("under XPBD and VBD at 1/30 s a hanging cloth rests within 5 mm of the reference's rest shape") {
   const auto context = test::context();
   for (const Method method : {Method::xpbd, Method::vbd})
     for (const std::string file : {"level", "plane"}) {
@@ -79,7 +79,7 @@ TEST_CASE("what XPBD and VBD let hang at 1/30 s hangs within 5 mm of the referen
       CHECK(verdict.ending == Ending::holds);
       CHECK(verdict.at_rest_shape);
     }
-  // The mass ratio is VBD's strength, the stiffness that of the other two.
+  // VBD's strength is the mass ratio, that of the other two the stiffness.
   CHECK(Stage("heavy", Method::vbd, 1.0 / 30).run().at_rest_shape);
   CHECK(Stage("stiff", Method::xpbd, 1.0 / 30).run().at_rest_shape);
   CHECK(Stage("stiff", Method::pbd, 1.0 / 30).run().at_rest_shape);
@@ -94,7 +94,7 @@ TEST_CASE(
     const double from = predict(stage.test, stage.scene).from;
     INFO(file << ": predicted from " << from << " s");
     REQUIRE(from < 1.0 / 30);
-    // A column leaves out how the sheet's diagonals share its load: a third either way.
+    // The prediction by a column leaves out how the cloth's diagonals share its load: a third either way.
     CHECK(Stage(file, method, 0.7 * from).run().at_rest_shape);
     CHECK(Stage(file, method, 1.4 * from).run().ending == Ending::elsewhere);
   }
@@ -108,20 +108,20 @@ TEST_CASE(
   for (const Method method : by_sweeps)
     for (const double dt : {1.0 / 30, 1.0 / 120})
       for (const int iterations : {1, 10, 50}) {
-        if (method == Method::vbd && iterations == 1) continue;  // one sweep a step keeps it in motion
+        // with one sweep per step it never comes to rest
+        if (method == Method::vbd && iterations == 1) continue;
         scene::Scene scene = load("strip");
         scene.solver = {method, dt, iterations, 1e-4};
         const double wanted = method == Method::vbd ? 1.0 : Column(scene).stretch_ratio();
         const auto simulation = test::simulation(scene);
         simulation->step(static_cast<std::uint32_t>(8.0 / dt));
-        // Each link bears what hangs on it: m g (8 + 7 + ... + 1) / k in all.
+        // Each link bears the weight below it: m g (8 + 7 + ... + 1) / k in all.
         const double stretch = 0.01 * 9.8 * 36 / 2000;
         const double found =
             (1.0 - static_cast<double>(simulation->read_state().position.back().y)) / stretch;
         INFO(scene::name(method) << ", dt " << dt << ", " << iterations << " iterations: " << found
                                  << " times, predicted " << wanted);
-        // Eight links of 1 m in all, rounded to 2^-24 of a coordinate of 2 m each, are 1 micrometre of 1.8
-        // mm.
+        // Eight links of 1 m in all, rounded to 2^-24 of a coordinate of 2 m each: 1 micrometre of 1.8 mm.
         CHECK(found == Approx(wanted).epsilon(2e-3));
       }
 }

@@ -1,4 +1,4 @@
-// The two ends: explicit Euler without damping is stable at no dt, implicit Euler at any.
+// The two extremes: explicit Euler without damping is stable at no dt, implicit Euler at any.
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +12,7 @@ using scene::Method;
 
 namespace {
 
-/// Of one_spring, about its balance, both copies [J].
+/// Energy of both copies of one_spring about its balance [J].
 double spring_energy(const reference::State& state) {
   const double u = state.position[spring_end].z - spring_balance, v = state.velocity[spring_end].z;
   return v * v + spring_omega * spring_omega * u * u;
@@ -27,7 +27,7 @@ TEST_CASE("undamped explicit Euler gains energy by 1 + (omega dt)^2 a step at an
     for (const double omega_dt : {1.0, 0.1, 0.01, 0.003}) {
       Stepped stepped(side, one_spring(Method::explicit_euler, omega_dt / spring_omega));
       const double rate = std::log1p(omega_dt * omega_dt);
-      // Until the amplitude is half the spring's length: much longer, and it passes its pin.
+      // Until the amplitude is half the spring's length: at a larger one the vertex would pass its pin.
       const int steps = std::min(40000, static_cast<int>(std::log(30.0) / rate));
       stepped.step(steps);
       const double found = std::log(spring_energy(stepped.state()) / start);
@@ -44,8 +44,8 @@ TEST_CASE(
     for (const double share : {0.5, 0.1, 0.05}) {
       const double omega = 2 / (0.6285 * cloth_unit), omega_dt = 2 * share;
       const scene::Scene scene = swinging_cloth(Method::explicit_euler, omega_dt / omega);
-      // The fastest vibration grows by omega_dt^2 / 2 a step: from double precision's rounding to 1 in 37
-      // times 1 over that.
+      // The fastest vibration grows by omega_dt^2 / 2 per step: from double precision's rounding to 1 takes
+      // 37 over that.
       const int steps = static_cast<int>(1.5 * 37 * 2 / (omega_dt * omega_dt));
       Stepped stepped(side, scene);
       stepped.step(steps);

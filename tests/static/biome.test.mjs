@@ -1,4 +1,4 @@
-// TypeScript and scripts are laid out and linted as .biome.jsonc says.
+// TypeScript and scripts follow .biome.jsonc, in layout and rules.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { existsSync } from "node:fs";

@@ -1,4 +1,4 @@
-// What documents and comments point to is there, and the top README is a door.
+// Files that documents and comments name exist, and the top README stays short.
 import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { dirname, join, normalize } from "node:path";
@@ -8,7 +8,7 @@ import { files, root } from "./files.mjs";
 const read = (file) => readFileSync(join(root, file), "utf8");
 const documents = files.filter((file) => file.endsWith(".md"));
 
-/// As GitHub makes the anchor of a heading.
+/// The anchor that GitHub makes for a heading.
 const anchors = (text) =>
   [...text.matchAll(/^#+ (.*)$/gm)].map(([, title]) =>
     title
@@ -39,8 +39,7 @@ test("every link of a document leads to a file, and to a heading in it", () => {
   assert.deepEqual(wrong, []);
 });
 
-/// A path with a folder, or a document by its name alone, as a comment or a document names it; not one that a program
-/// makes.
+/// Matches a path with a folder, or a document's bare name, in a comment or a document; not files that a program makes.
 const named =
   /(?<![\w/.<"$~{}-])((?:[\w.-]+\/)+[\w.-]+\.(?:md|h|cpp|glsl|comp|vert|geom|frag|ts|mjs|json|yaml|css|html|sh)|[\w-]+\.md)(?![\w/*])/g;
 const comments = (file, text) =>

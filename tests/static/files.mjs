@@ -1,4 +1,4 @@
-// The files of the repository, without what is made from them.
+// The files of the repository, without generated ones.
 import { readdirSync } from "node:fs";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";

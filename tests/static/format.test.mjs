@@ -1,4 +1,4 @@
-// C++ is laid out as .clang-format says.
+// C++ follows .clang-format.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { test } from "node:test";

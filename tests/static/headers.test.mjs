@@ -1,5 +1,5 @@
-// Each header of ours compiles alone, whatever is included before it elsewhere: NAME.cpp includes NAME.h first, so that
-// the build shows it, and what has no such source is compiled here.
+// Each of our headers compiles alone, whatever is included before it elsewhere. NAME.cpp includes NAME.h first, so that
+// the build checks it; headers without such a source are compiled here.
 import assert from "node:assert/strict";
 import { execFile } from "node:child_process";
 import { existsSync, readdirSync, readFileSync } from "node:fs";
@@ -11,7 +11,7 @@ import { promisify } from "node:util";
 
 const root = fileURLToPath(new URL("../../", import.meta.url));
 const compiler = process.env.CLOTHLAB_CXX;
-/// Where the generated loader of OpenGL and the libraries are that are in no usual place.
+/// Folders of the generated OpenGL loader and of libraries that are not in the usual places.
 const folders = (process.env.CLOTHLAB_INCLUDES ?? "").split(":").filter(Boolean);
 
 function* headers(folder) {

@@ -1,5 +1,5 @@
-// What a file uses of the standard library it includes, itself or through our own headers: through the library's own
-// headers it may have come with one version of the compiler and not with the next.
+// A file includes each header of the standard library that it needs, itself or through our own headers. A header that
+// comes only through the library's own headers may be missing with another version of the compiler.
 import assert from "node:assert/strict";
 import { readdirSync, readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
@@ -8,7 +8,7 @@ import { fileURLToPath } from "node:url";
 
 const root = fileURLToPath(new URL("../../", import.meta.url));
 
-/// Names of namespace std, and the headers of which any one is good for them.
+/// Names of namespace std, and the headers that declare them, of which any one is enough.
 const headers = {
   "int8_t|int16_t|int32_t|int64_t|uint8_t|uint16_t|uint32_t|uint64_t|intptr_t|uintptr_t|intmax_t|uintmax_t": "cstdint",
   "byte|max_align_t|ptrdiff_t": "cstddef",
@@ -85,7 +85,7 @@ function* sources(folder) {
 }
 
 const read = new Map();
-/// What a file includes in angle brackets, itself and through our own headers.
+/// The headers in angle brackets that a file includes, itself or through our own headers.
 function reachable(path, seen = new Set()) {
   if (seen.has(path)) return new Set();
   seen.add(path);
@@ -108,7 +108,7 @@ function text(path) {
   return read.get(path);
 }
 
-/// What the code itself says: without comments and the insides of strings.
+/// The code without comments and the insides of strings.
 const code = (source) =>
   source.replace(/R"(\w*)\([\s\S]*?\)\1"|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])'|\/\/.*|\/\*[\s\S]*?\*\//g, (found) =>
     found[0] === "/" ? "" : '""',

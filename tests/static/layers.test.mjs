@@ -1,5 +1,5 @@
-// Data flows down the list of folders in server/README.md: a folder includes itself and those above it, nothing else of
-// ours. So a session knows no sockets, and a method no session.
+// Data flows down the list of folders in server/README.md: a folder includes itself and the folders above it, and no
+// other folder of ours. So a session does not depend on sockets, nor a method on sessions.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -11,7 +11,7 @@ const order = [...read("server/README.md").matchAll(/^\| \[?`(\w+)\/`/gm)].map((
 const sources = files.filter((file) => /^server\/.*\.(?:h|cpp)$/.test(file));
 const folderOf = (path) => path.split("/")[1];
 
-/// What of ours a file includes that it may not.
+/// The includes of our own files that are forbidden in this file.
 function forbidden(file, text) {
   const place = order.indexOf(folderOf(file));
   return [...text.matchAll(/^\s*#\s*include\s+"([^"]+)"/gm)]

@@ -1,5 +1,5 @@
-// No line is longer than 120 characters, but what cannot be broken: a row of a table, a link, a string. In TypeScript
-// and scripts Biome breaks the code where it can, so only their comments are measured.
+// No line is longer than 120 characters, except lines that cannot be broken: a row of a table, a link, a string. In
+// TypeScript and scripts only comments are measured, since Biome breaks the code where it can.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";

@@ -1,4 +1,4 @@
-// Every shell script of the repository: bash reads it, and shellcheck has nothing to warn of.
+// bash can read every shell script of the repository, and shellcheck has no warning.
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
 import { readFileSync } from "node:fs";

@@ -1,4 +1,5 @@
-// The stress scenes, what is turned up in each until a method fails, and what counts as holding.
+// The stress scenes, the knob that is turned up in each until a method fails, and the check that a run must
+// pass.
 #pragma once
 
 #include <functional>
@@ -10,17 +11,18 @@
 
 namespace clothlab::stress {
 
-/// What a run must do to hold; whatever the check, its numbers stay finite and its motion bounded.
+/// The check that a run must pass to hold; its numbers must also stay finite and its motion bounded.
 enum class Check {
   settles,    ///< comes to rest at the reference's rest shape
-  untangles,  ///< comes to rest; whether at the reference's rest shape or crumpled is counted
-  bounded,    ///< no more
+  untangles,  ///< comes to rest, at the reference's rest shape or crumpled: both are counted
+  bounded,    ///< no further condition
   falls,      ///< as one piece, as far as gravity takes it
-  struck,     ///< no vertex inside the sphere, the middle one ahead of it
-  pulled      ///< stays above the table and is stretched no more than the truth is
+  struck,     ///< no vertex inside the sphere, the middle vertex ahead of it
+  pulled      ///< stays above the table and is stretched no more than in the true motion
 };
 
-/// What is turned up: the scene's dt, or another number at the scene's dt. Worst value first.
+/// The number that is turned up: the scene's dt, or another number at the scene's dt. The worst value comes
+/// first.
 struct Knob {
   std::string name, unit;
   std::vector<double> values;
@@ -32,7 +34,7 @@ struct Case {
   Check check;
   double seconds;  ///< of simulated time
   Knob knob;
-  std::vector<std::uint32_t> seeds = {1};  ///< of a scattered start: a run each
+  std::vector<std::uint32_t> seeds = {1};  ///< of a scattered start: one run each
 };
 
 inline scene::Scene load(const std::string& file) {

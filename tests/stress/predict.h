@@ -1,4 +1,4 @@
-// What is expected of each method in each stress scene, from formulas alone: written down before it is run.
+// Predictions for each method in each stress scene, from formulas alone: written before the scenes were run.
 #pragma once
 
 #include <limits>
@@ -13,16 +13,16 @@ using scene::Method;
 
 inline constexpr double never = std::numeric_limits<double>::infinity();
 
-/// From which value of the case's knob a method is expected to fail, and why.
+/// The value of the case's knob from which a method is expected to fail, and why.
 struct Prediction {
-  double from = never;  ///< `never`: at none of the values
+  double from = never;  ///< `never`: at no value
   std::string why;
   double at_start =
       0;  ///< or from here on already, as the start's long springs are stiff across; 0: the same
 };
 
-/// One column of a sheet that hangs as a chain: links of structural and shear springs, and bend springs over
-/// two of them. A step of PBD or XPBD on it, in one dimension and double precision, until it hangs still.
+/// One column of a cloth that hangs as a chain: links of structural and shear springs, and bend springs over
+/// two links. Steps it by PBD or XPBD, in one dimension and double precision, until it hangs still.
 class Column {
  public:
   explicit Column(const scene::Scene& scene) : scene_(scene) {
@@ -40,14 +40,14 @@ class Column {
         springs_.push_back({top, top + 2, 2 * length_, cloth.material.bend});
   }
 
-  /// RMS distance [m] between where the scene's method lets it hang and where its springs would.
+  /// RMS distance [m] between the hanging column under the scene's method and its exact balance.
   double error() const {
     const std::vector<double> found = hung(), exact = balanced();
     double sum = 0.0;
     for (std::size_t i = 0; i < found.size(); ++i) sum += (found[i] - exact[i]) * (found[i] - exact[i]);
     return std::sqrt(sum / static_cast<double>(found.size()));
   }
-  /// How much longer than at rest it hangs, over how much it should.
+  /// The column's stretch under the scene's method, over the exact stretch.
   double stretch_ratio() const {
     const double whole = length_ * links_;
     return (hung().back() - whole) / (balanced().back() - whole);
@@ -123,7 +123,7 @@ class Column {
   std::vector<Link> springs_;
 };
 
-/// The least value of the knob between its ends for which `fails`; `never` if it does not at the worst.
+/// Smallest value of the knob for which `fails`, between its ends; `never` if the worst value does not fail.
 template <class Fails>
 double threshold(const Case& test, const scene::Scene& base, double best, Fails fails) {
   const auto at = [&](double value) {
@@ -140,7 +140,7 @@ double threshold(const Case& test, const scene::Scene& base, double best, Fails 
   return bad;
 }
 
-/// The sharp step limit about the rest shape.
+/// The sharp step limit [s] about the rest shape.
 inline double limit_of(const scene::Scene& scene) {
   return model::dt_limit(*model::build(scene), scene);
 }
@@ -161,7 +161,7 @@ inline Prediction predict_limited(const Case& test, const scene::Scene& base) {
   return {limit, "step limit of the stiffest vibration"};
 }
 
-/// VBD's: N sqrt(n m / k), for N links in a row.
+/// Step [s] at which VBD's sweeps reach along a cloth of N links in a row: N sqrt(n m / k).
 inline double reach_of_sweeps(const scene::Scene& scene) {
   const scene::Cloth& cloth = scene.cloths[0];
   return (std::get<scene::Grid>(cloth.mesh).rows - 1) *

@@ -19,8 +19,9 @@ namespace clothlab::stress {
 using glm::dvec3;
 
 inline constexpr double still = 5e-3;  ///< RMS speed of a cloth at rest [m/s]: 0.3 mm in a frame
-inline constexpr double near = 5e-3;   ///< RMS distance from the rest shape [m]: half a percent of the cloth
-inline constexpr double most_steps = 4e4;   ///< of a run; a method that needs more is stopped there
+/// RMS distance from the rest shape [m]: half a percent of the cloth's size
+inline constexpr double near = 5e-3;
+inline constexpr double most_steps = 4e4;   ///< of a run; a method that needs more is stopped after these
 inline constexpr double fewest_steps = 12;  ///< of a run, so that a blow-up has time to show
 
 enum class Ending {
@@ -36,10 +37,10 @@ enum class Ending {
 
 struct Verdict {
   Ending ending = Ending::holds;
-  std::string text;  ///< how it failed, with the number that says so
+  std::string text;  ///< how it failed, with a number
   bool at_rest_shape = false;
-  bool cut_short = false;  ///< too many steps: only that it did not blow up is known
-  bool alarm = false;      ///< the server's own watch called it diverged
+  bool cut_short = false;  ///< too many steps: only known not to have blown up so far
+  bool alarm = false;      ///< the server's own watch reported a blow-up
 };
 
 inline std::string format(const char* form, double value) {
@@ -48,8 +49,8 @@ inline std::string format(const char* form, double value) {
   return text;
 }
 
-/// Where the cloth should hang, from the reference: upright from the edge that holds it, a little bent, so
-/// that a minimum is found and not the saddle of the plane.
+/// The hanging cloth at rest, by the reference. It starts upright above the edge that holds it, a little
+/// bent, so that the solver finds a minimum and not the saddle of the plane.
 inline const std::vector<dvec3>& rest_shape(scene::Scene scene) {
   static std::map<std::string, std::vector<dvec3>> known;
   scene.cloths[0].transform.rotate = {90, 0, 0};
@@ -70,7 +71,7 @@ inline const std::vector<dvec3>& rest_shape(scene::Scene scene) {
   return known[key] = shape ? shape->position : std::vector<dvec3>();
 }
 
-/// RMS distance from the shape, or from its mirror image in the plane of the pins, whichever is less [m].
+/// RMS distance [m] from the shape or from its mirror image in the plane of the pins, whichever is less.
 inline double distance_to(const std::vector<dvec3>& shape, const sim::State& state) {
   double straight = 0.0, mirrored = 0.0;
   for (std::size_t i = 0; i < shape.size(); ++i) {
@@ -83,7 +84,7 @@ inline double distance_to(const std::vector<dvec3>& shape, const sim::State& sta
 
 class Trial {
  public:
-  /// `compared`: what is pulled is compared with a run of RK4, too, which takes a second.
+  /// `compared`: a pulled cloth is also compared with a run of RK4, which takes a second.
   Trial(const Case& test, const scene::Scene& scene, bool compared = true)
       : test_(test), scene_(scene), compared_(compared) {}
 
@@ -126,8 +127,8 @@ class Trial {
     return verdict;
   }
 
-  /// Ten times all that the scene can put into motion: what is in its springs, a fall by twice its size,
-  /// and a throw by what moves in it.
+  /// Energy [J] above which a run is unbounded: ten times all that the scene can put into motion, that is the
+  /// energy of its springs, of a fall by twice its size, and of a throw by its moving parts.
   double allowed_energy(const sim::Simulation& simulation, const sim::Diagnostics& first) {
     const model::Model& model = simulation.model();
     double mass = 0.0;
@@ -171,7 +172,7 @@ class Trial {
       moved +=
           (dvec3(state.position[i]) - model.start_position[i]) / static_cast<double>(state.position.size());
     const dvec3 fall = 0.5 * last_.time * last_.time * scene_.gravity;
-    // A method of first order is off by g t dt / 2; the rest is for 32-bit rounding.
+    // A method of order 1 is off by g t dt / 2; the rest allows for 32-bit rounding.
     const double first_order = 0.5 * glm::length(scene_.gravity) * last_.time * scene_.solver.dt;
     const double off = glm::distance(moved, fall);
     if (!(off < 1.01 * first_order + 1e-3))
@@ -180,8 +181,8 @@ class Trial {
       fail(verdict, Ending::falls_wrong, format("does not stay flat: strain %.2g", last_.max_strain));
   }
 
-  /// At every look. Whether the cloth is taken along is asked once, when the sphere has come as far as it
-  /// should; later any cloth slides off it.
+  /// Called at every look. It checks only once if the cloth is taken along, when the sphere has come as far
+  /// as it should: later any cloth slides off.
   void judge_sphere(sim::Simulation& simulation, Verdict& verdict) {
     const sim::State state = simulation.read_state();
     const scene::Collider collider = simulation.colliders_now()[0];
@@ -204,7 +205,7 @@ class Trial {
     return std::max(fewest_steps, std::ceil(test_.seconds / scene_.solver.dt - 1e-9));
   }
 
-  /// The truth: RK4 at a quarter of its limit, on the GPU.
+  /// Strain of the true motion: RK4 at a quarter of its limit, on the GPU.
   double true_strain() {
     static std::map<std::string, double> known;
     const double end = whole_steps() * scene_.solver.dt;

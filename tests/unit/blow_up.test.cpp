@@ -1,4 +1,5 @@
-// Blow-up from energies alone, on both sides: what grows without work is found, what is honest never is.
+// The watch for blow-ups on energies alone: it finds energy that grows without work, and never reports a
+// sound motion.
 #include "server/sim/blow_up.h"
 
 #include <algorithm>
@@ -13,8 +14,8 @@ using Verdict = sim::BlowUp::Verdict;
 
 namespace {
 
-/// A mass of 1 kg on a spring of 100 N/m (omega = 10/s) whose far end may swing, in symplectic or explicit
-/// Euler, looked at every `stride` steps.
+/// A mass of 1 kg on a spring of 100 N/m (omega = 10/s) whose far end may swing, under symplectic or explicit
+/// Euler; the watch looks every `stride` steps.
 struct Oscillator {
   bool symplectic = true;
   double dt = 0.01, damping = 0.0, pin_amplitude = 0.0, pin_omega = 0.0;
@@ -51,7 +52,7 @@ sim::Allowance allowed(double share_of_limit, double pin_speed = 0.0) {
 
 struct Outcome {
   bool blown_up = false;
-  double energy = 0.0, good_energy = 0.0;  // kinetic + elastic at the end, and of the last good state [J]
+  double energy = 0.0, good_energy = 0.0;  // kinetic + elastic [J], at the end and in the last good state
   int doubtful = 0;
 };
 
@@ -81,7 +82,7 @@ TEST_CASE("a vibration just under its step limit swings in energy and never blow
       const Outcome outcome = watch(run, allowed(share), 200'000, stride);
       INFO("share " << share << ", stride " << stride);
       CHECK_FALSE(outcome.blown_up);
-      CHECK(outcome.doubtful < 180'000 / stride);  // one to go back to comes round often
+      CHECK(outcome.doubtful < 180'000 / stride);  // good states are frequent
     }
   }
 }
@@ -94,8 +95,8 @@ TEST_CASE("just over its limit it is found while the last good state is still sm
     const Outcome outcome = watch(run, allowed(share), 200'000, 2);
     INFO("share " << share << ", energy " << outcome.energy << ", good " << outcome.good_energy);
     CHECK(outcome.blown_up);
-    CHECK(outcome.good_energy < 1.0);  // the slack
-    CHECK(outcome.energy < 1e9);       // long before it is infinite: 47 times as much a step at 1.5
+    CHECK(outcome.good_energy < 1.0);  // the tolerated growth
+    CHECK(outcome.energy < 1e9);       // found long before it is infinite: at 1.5 it grows 47 times per step
   }
 }
 
@@ -118,9 +119,9 @@ TEST_CASE("a pin that swings at the resonance does the work that it costs, howev
     run.pin_omega = 10.0;
     const Outcome outcome = watch(run, allowed(0.01, 1.0), 50'000, 8);
     CHECK_FALSE(outcome.blown_up);
-    CHECK(outcome.energy > 5.0);  // the slack does not hide it
+    CHECK(outcome.energy > 5.0);  // the tolerated growth does not hide it
     CHECK(outcome.doubtful == 0);
-    // The same energies without a pin that moves would be growth from nothing.
+    // The same energies without a moving pin would be growth from nothing.
     CHECK(watch(run, allowed(0.01, 0.0), 50'000, 8).blown_up);
   }
 }
@@ -156,7 +157,7 @@ TEST_CASE("a method that may be softer than the cloth is judged by its motion, n
   }
 }
 
-TEST_CASE("what is not finite has blown up, and the reason says between which times") {
+TEST_CASE("a state that is not finite has blown up, and the reason says between which times") {
   sim::BlowUp blow_up;
   sim::Diagnostics state;
   blow_up.start(allowed(0.5), state);
@@ -223,11 +224,11 @@ TEST_CASE("a change of scene under the state is no growth, and hides none") {
   CHECK(blow_up.judge(state) == Verdict::good);
 }
 
-TEST_CASE("what falls, and what colliders throw and carry, is within the allowance") {
+TEST_CASE("a falling cloth, and one that colliders throw and carry, is within the allowance") {
   const scene::Scene seed = test::seed();
   const model::Model model = *model::build(seed);
   const sim::Allowance allowance = sim::allowance(seed, model, 0.0017);
-  // 62.3 kg that move, 1 m x 1 m; pins at 2 pi 0.5 Hz 0.2 m; dt / limit = 0.588.
+  // 62.3 kg move, 1 m x 1 m; pins at 2 pi 0.5 Hz 0.2 m; dt / limit = 0.588.
   const double lifted = 0.25 * 62.3 * 9.8 * std::sqrt(2.0);
   CHECK(allowance.slack > lifted);
   CHECK(allowance.slack < 2.0 * lifted);
@@ -236,7 +237,7 @@ TEST_CASE("what falls, and what colliders throw and carry, is within the allowan
   CHECK(allowance.collider_speed == 0.0);
   CHECK(allowance.ratio == Approx((1 + 0.588) / (1 - 0.588)).epsilon(1e-2));
   scene::Scene beyond = seed;
-  beyond.solver.dt = 0.0018;  // nothing is left to doubt
+  beyond.solver.dt = 0.0018;  // no doubt is left
   CHECK(sim::allowance(beyond, model, 0.0017).growth == 1.0);
   scene::Scene rolling = seed;
   rolling.colliders[0].motion = scene::Linear{{3.0, 0.0, 4.0}};

@@ -11,7 +11,7 @@ using namespace clothlab::render;
 
 namespace {
 
-/// Largest |x|, |y| of the box's corners in the picture, where 1 is its edge; 0 if one is behind the eye.
+/// Largest |x|, |y| of the box's corners in the picture, whose edge is at 1; 0 if a corner is behind the eye.
 float reach(const Box& box, const glm::mat4& to_clip) {
   float largest = 0;
   for (int i = 0; i < 8; ++i) {
@@ -52,7 +52,8 @@ TEST_CASE("the light's view holds the whole box") {
   CHECK(reached < 1.0f);
 }
 
-TEST_CASE("what is not finite is left out of the framing, and nothing at all still gives a picture") {
+TEST_CASE(
+    "vertices that are not finite are left out of the framing, and an empty scene still gives a picture") {
   const float nan = std::numeric_limits<float>::quiet_NaN(),
               infinity = std::numeric_limits<float>::infinity();
   Box box;

@@ -1,4 +1,4 @@
-// A coarser mesh that means the same cloth, and the other parts of a scene that can be left out.
+// A coarser mesh that stands for the same cloth, and the other parts of a scene that can be left out.
 #include "server/lab/coarsen.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ scene::Document document(const std::string& cloth) {
   return test::document_of(R"({"version": 1, "gravity": [0, 0, 0.5], "cloths": [)" + cloth + "]}");
 }
 
-/// A sheet of a square meter, 1 kg, hung by its first row in its plane.
+/// A cloth of a square metre, 1 kg, hung by its first row in its plane.
 scene::Document hung(int count, const std::string& material, const std::string& more = "") {
   const std::string n = std::to_string(count);
   return document(R"({"mesh": {"grid": {"columns": )" + n + R"(, "rows": )" + n +
@@ -43,7 +43,7 @@ double total_mass(const model::Model& model) {
   return std::accumulate(model.mass.begin(), model.mass.end(), 0.0);
 }
 
-/// How far the last row hangs below where it is at rest, on average [m].
+/// Distance of the last row below its place at rest, on average [m].
 double stretch(const scene::Document& document) {
   const reference::World world = *reference::make_world(document.scene, 0.0);
   const auto shape = reference::rest_shape(world);
@@ -103,7 +103,7 @@ TEST_CASE("a coarser cloth keeps its mass, its extents and its pins") {
 }
 
 TEST_CASE("a hung sheet of structural springs stretches as far on a coarser mesh, exactly") {
-  // g M (m - 1) / (2 n k) on n x m vertices, which is what the springs are scaled to keep.
+  // g M (m - 1) / (2 n k) on n x m vertices: springs are scaled to keep it.
   const scene::Document fine = hung(17, R"({"structural": 20, "shear": 0, "bend": 0})");
   const double expected = 0.5 * 1.0 * 16 / (2 * 17 * 20.0);
   CHECK(stretch(fine) == Approx(expected).epsilon(1e-6));
@@ -112,8 +112,8 @@ TEST_CASE("a hung sheet of structural springs stretches as far on a coarser mesh
 
 TEST_CASE(
     "with shear and bend springs a hung sheet stretches as far at half the resolution within 5 percent") {
-  // What a sheet does near its pinned row and its edges is resolved to a cell, 1/8 of its height at half the
-  // resolution; shear and bend springs bear 2/5 of the load.
+  // The stretch near the pinned row and the edges is resolved to one cell, 1/8 of the cloth's height at half
+  // the resolution; shear and bend springs bear 2/5 of the load.
   const scene::Document fine = hung(17, R"({"structural": 20, "shear": 10, "bend": 3})");
   CHECK(stretch(coarsened(fine, 2)) == Approx(stretch(fine)).epsilon(0.05));
 }

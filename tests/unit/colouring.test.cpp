@@ -33,7 +33,7 @@ scene::TriangleMesh random_mesh(std::uint32_t seed, std::uint32_t vertices) {
   return mesh;
 }
 
-/// Every item once, offsets rising, each colour in rising order.
+/// Checks that every item is there once, offsets rise, and items rise within each colour.
 void check_partition(const model::Colouring& colouring, std::size_t count) {
   REQUIRE(colouring.order.size() == count);
   CHECK(std::set<std::uint32_t>(colouring.order.begin(), colouring.order.end()).size() == count);
@@ -105,7 +105,7 @@ TEST_CASE("random meshes are coloured validly, within the bounds of greedy colou
       most = std::max(most, model.springs().at_vertex.offsets[i + 1] - model.springs().at_vertex.offsets[i]);
     const model::Colouring springs = model::colour_elements(model, scene, model.springs());
     check_springs(model, springs);
-    CHECK(springs.colours() >= most);      // springs at one vertex differ
+    CHECK(springs.colours() >= most);      // springs at one vertex have different colours
     CHECK(springs.colours() <= 2 * most);  // a spring has at most 2 (most - 1) neighbours
     const model::Colouring vertices = model::colour_vertices(model, scene);
     check_vertices(model, vertices);

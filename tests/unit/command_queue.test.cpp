@@ -1,4 +1,4 @@
-// Who asks a session for much waits for himself alone.
+// A client that asks a session for much delays only itself.
 #include "server/session/command_queue.h"
 
 #include "server/session/limits.h"
@@ -58,8 +58,7 @@ TEST_CASE("clients take turns, and each one's commands keep their order") {
   CHECK(of_one == 100);
 }
 
-TEST_CASE(
-    "of what viewers want and how many there are, only the newest waits; what was to come fresh still does") {
+TEST_CASE("of viewers' wishes and their number only the newest waits, and a wish for a fresh frame stays") {
   CommandQueue queue;
   queue.post({{}, demand(30, true)});
   queue.post({{}, session::Watchers{1}});

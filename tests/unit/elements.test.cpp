@@ -1,4 +1,4 @@
-// The element laws in double precision, the very files that the kernels include.
+// The element laws in double precision, from the files that the kernels include.
 #include <cmath>
 #include <random>
 
@@ -78,7 +78,7 @@ TEST_CASE("friction stops a slow slide, slows a fast one by the Coulomb impulse,
   const dvec3 kept = elements::contact_velocity({4.0, -1.0, 3.0}, n, 0.5, 0.0);  // speed 5, loses 0.5
   CHECK(glm::distance(kept, dvec3(3.6, 0.0, 2.7)) < 1e-15);
   CHECK(elements::contact_velocity({1.0, -2.0, 0.0}, n, 0.0, 0.5) == dvec3(1.0, 1.0, 0.0));
-  CHECK(elements::contact_velocity({1.0, 2.0, 0.0}, n, 0.5, 0.5) == dvec3(1.0, 2.0, 0.0));  // on its way out
+  CHECK(elements::contact_velocity({1.0, 2.0, 0.0}, n, 0.5, 0.5) == dvec3(1.0, 2.0, 0.0));  // moving away
 }
 
 TEST_CASE("no path ends inside a sphere, wherever it starts and however long it is") {

@@ -60,7 +60,7 @@ TEST_CASE("events arrive once and in order, and each wakes the service thread") 
   CHECK(events.empty());
 }
 
-TEST_CASE("of the statuses only the newest waits, after the events before it and before those after it") {
+TEST_CASE("only the newest status waits, after the events before it and before those after it") {
   Exchange exchange([] {});
   const auto status = [](double speed) {
     session::Status status;

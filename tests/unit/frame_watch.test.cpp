@@ -1,4 +1,4 @@
-// What of a client's bytes libwebsockets gets to see.
+// Which of a client's bytes are passed on to libwebsockets.
 #include "server/net/frame_watch.h"
 
 #include <cstddef>
@@ -21,10 +21,10 @@ std::string frame(int opcode, std::size_t payload, bool masked) {
     for (int shift = 56; shift >= 0; shift -= 8) put(payload >> shift & 255);
   }
   return bytes + (masked ? "mask" : "") +
-         std::string(payload, '\x01');  // as payload: heads of unmasked frames
+         std::string(payload, '\x01');  // as payload these bytes are heads of unmasked frames
 }
 
-/// What is passed on of bytes that come in pieces of this size.
+/// The bytes passed on, if they come in pieces of this size.
 std::string passed(FrameWatch& watch, const std::string& bytes, std::size_t piece) {
   std::string all;
   for (std::size_t at = 0; at < bytes.size(); at += piece) {
@@ -49,7 +49,7 @@ TEST_CASE("masked frames of every length pass unchanged, however they are cut in
   }
 }
 
-TEST_CASE("of an unmasked frame and of what follows nothing passes but masked frames of nothing") {
+TEST_CASE("an unmasked frame and all that follows is replaced by empty masked frames") {
   for (const std::size_t payload : {0u, 5u, 126u, 70000u}) {
     for (const std::size_t piece : {1u, 2u, 3u, 7u, 1000000u}) {
       const std::string good = frame(1, 200, true);

@@ -1,4 +1,5 @@
-// PBD, XPBD and VBD in double precision: what they converge to, their order, what they keep.
+// PBD, XPBD and VBD in double precision: their limit with many iterations, their order, and what they
+// conserve.
 #include "server/reference/gauss_seidel.h"
 
 #include <algorithm>
@@ -30,7 +31,7 @@ scene::Scene with(scene::Scene scene, Method method, int iterations) {
   return scene;
 }
 
-/// The swinging cloth as a scene has it: damped, in air, and one corner shaken.
+/// The swinging cloth with damping and air drag, shaken at one corner.
 scene::Scene shaken_cloth(double dt) {
   scene::Scene scene = test::swinging_cloth(Method::implicit_euler, dt);
   scene.cloths[0].material.damping = 0.01;
@@ -39,7 +40,7 @@ scene::Scene shaken_cloth(double dt) {
   return scene;
 }
 
-/// Farthest vertex [m].
+/// Distance of the vertex that is farthest off [m].
 double apart(const reference::State& a, const reference::State& b) {
   double most = 0.0;
   for (std::size_t i = 0; i < a.position.size(); ++i)
@@ -54,7 +55,7 @@ TEST_CASE(
     "shaken") {
   const double dt = 2 * test::cloth_unit;
   scene::Scene chain = test::chain(Method::implicit_euler, 0.05, 10, 400.0, 0.1);
-  chain.gravity = {0.0, -9.81, 0.0};  // across it: it swings
+  chain.gravity = {0.0, -9.81, 0.0};  // across the chain: it swings
   for (const scene::Scene& scene :
        {test::swinging_cloth(Method::implicit_euler, dt), shaken_cloth(dt), chain}) {
     const reference::State start = stepped(scene, reference::at_rest(world_of(scene)), 20);
@@ -70,8 +71,8 @@ TEST_CASE(
 }
 
 TEST_CASE("many iterations of XPBD are backward Euler's step, at any dt") {
-  // As published XPBD leaves what a spring pushed along directions it no longer has: 9e-7 m off at 2.4 u and
-  // 2e-4 m at 1/60 s. Here it turns with the spring. The sweeps' convergence slows with stiffness dt^2.
+  // Published XPBD leaves impulses along directions that the springs no longer have: 9e-7 m off at 2.4 u and
+  // 2e-4 m at 1/60 s. Here they turn with the spring. The sweeps' convergence slows with stiffness dt^2.
   scene::Scene swinging = test::swinging_cloth(Method::symplectic_euler, 0.5 * test::cloth_unit);
   reference::State start = stepped(swinging, reference::at_rest(world_of(swinging)), 250);
   start.step = 0;
@@ -81,13 +82,13 @@ TEST_CASE("many iterations of XPBD are backward Euler's step, at any dt") {
     const double off = reference::rms_distance(
         stepped(with(scene, Method::xpbd, iterations), start, 1).position, exact.position);
     INFO("dt " << share << " u: " << off << " m, of a step of " << apart(exact, start) << " m");
-    CHECK(off < 1e-9);  // VBD's too: of 5 mm to 2 cm
+    CHECK(off < 1e-9);  // VBD's too, for motions of 5 mm to 2 cm
   }
 }
 
 TEST_CASE("XPBD with one iteration on the swinging cloth is as far off as tests/README.md says") {
-  // Half of the last digit printed, at most a 24th; the sweep's order is another than the table's, which
-  // shows in no digit.
+  // Half of the last printed digit, at most a 24th; the sweeps' order differs from the table's, which shows
+  // in no digit.
   const double share[] = {0.6, 0.3, 0.15}, error[] = {2.9e-3, 1.3e-3, 6.9e-4};
   const reference::World world = world_of(test::swinging_cloth(Method::rk4, 1.0));
   const auto truth = reference::trajectory(world, {0.3}, test::cloth_unit / 10);
@@ -168,7 +169,7 @@ TEST_CASE("a free light sheet falls flat under PBD, XPBD and VBD at any step, as
 }
 
 TEST_CASE("a free sheet keeps its momentum under PBD, XPBD and VBD whatever the iterations") {
-  // A sheet that vibrates, bends and turns, let go of without gravity.
+  // A cloth that vibrates, bends and turns, released without gravity.
   scene::Scene held = test::swinging_cloth(Method::implicit_euler, test::cloth_unit);
   const reference::State shaken = stepped(held, reference::at_rest(world_of(held)), 60);
   held.gravity = glm::dvec3(0.0);

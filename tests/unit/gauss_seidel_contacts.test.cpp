@@ -1,5 +1,5 @@
 // PBD, XPBD and VBD meet contacts within their iterations: Coulomb's law on a slope, restitution, a collider
-// that carries, two sheets that keep their distance and their momentum. In double precision.
+// that carries a cloth, two cloths that keep their distance and their momentum. In double precision.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 constexpr std::array methods{Method::pbd, Method::xpbd, Method::vbd};
 constexpr double g = 9.8;
 
-/// A free sheet of 5 x 5 that lies on a plane through the origin whose normal is `degrees` from up.
+/// A free cloth of 5 x 5 on a plane through the origin whose normal is `degrees` from up.
 scene::Scene on_slope(Method method, double degrees, double friction) {
   scene::Scene scene = test::bare_scene(method, 5e-3);
   const double angle = degrees * std::acos(-1.0) / 180.0;
@@ -65,9 +65,9 @@ TEST_CASE(
       const double angle = degrees * std::acos(-1.0) / 180.0, time = steps * scene.solver.dt;
       const double expected = std::max(0.0, g * (std::sin(angle) - friction * std::cos(angle)) * time);
       INFO(scene::name(method) << " at " << degrees << " degrees: " << mean_velocity(state).x << " m/s");
-      // All vertices slide alike, so springs do not act; each step presses by dt^2 g cos and rubs by friction
-      // of that: exact. VBD finds a vertex's friction through its own matrix, which at the corners turns it a
-      // little; five sweeps leave some millionths of that.
+      // All vertices slide alike, so springs do not act; each step presses by dt^2 g cos and brakes by
+      // friction times that: exact. VBD finds a vertex's friction through the vertex's own matrix, which
+      // turns it a little at the corners; five sweeps leave some millionths of that.
       CHECK(std::abs(mean_velocity(state).x - expected) <
             (method == Method::vbd ? 1e-5 * expected : 0.0) + 1e-9);
       CHECK(lowest(state) > -1e-12);
@@ -95,7 +95,7 @@ TEST_CASE(
       scene.colliders[0].restitution = restitution;
       const reference::World world = world_of(scene);
       reference::State state = reference::at_rest(world);
-      double fastest = 0.0, bounce = 0.0;  // falling, and right after [m/s]
+      double fastest = 0.0, bounce = 0.0;  // [m/s], while falling and right after the impact
       for (int n = 0; n < 80 && bounce < 1e-6; ++n) {
         fastest = std::max(fastest, -mean_velocity(state).y);
         reference::step(world, state);
@@ -128,8 +128,8 @@ TEST_CASE(
       }
     }
     INFO(scene::name(method) << ": nearest " << nearest << " m from the centre, " << touching << " contacts");
-    // The contact is the last word of every pass; VBD's springs have it where a vertex follows, but each
-    // vertex is stopped in its own move.
+    // Every pass ends with the contact, so it is exact; under VBD springs act last where a vertex follows,
+    // but each vertex is stopped within its own move.
     CHECK(nearest > 0.25 - 1e-12);
     CHECK(touching > 200 * 5);
   }

@@ -1,5 +1,5 @@
-// How far a hanging chain stretches under PBD, XPBD and VBD in double precision, against the closed form
-// T_j / k of each spring, and against what theory says of too few iterations.
+// The stretch of a hanging chain under PBD, XPBD and VBD in double precision, against the closed form T_j / k
+// of each spring, and against theory for too few iterations.
 #include <cmath>
 #include <vector>
 
@@ -28,7 +28,7 @@ double tension(int j) {
   return (links - j) * mass * g;
 }
 
-/// How much longer each spring is than at rest [m], from the pin down.
+/// Length of each spring less its rest length [m], from the pin down.
 std::vector<double> stretches(const reference::State& state) {
   std::vector<double> found;
   for (int j = 0; j < links; ++j) {
@@ -38,7 +38,7 @@ std::vector<double> stretches(const reference::State& state) {
   return found;
 }
 
-/// At rest with these stretches.
+/// The state at rest with these stretches.
 reference::State at_rest_with(const reference::World& world, const std::vector<double>& stretch) {
   reference::State state = reference::at_rest(world);
   double sum = 0.0;
@@ -49,17 +49,17 @@ reference::State at_rest_with(const reference::World& world, const std::vector<d
   return state;
 }
 
-/// The air that lets the slowest mode, of pi / (2 links) / unit, die away without swinging [1/s].
+/// Air drag [1/s] in which the slowest mode, of pi / (2 links) / unit, dies away without swinging.
 const double thick_air = 3.14159 / links / unit;
 
-/// The stretches at rest, after its motion has died away in thick air, which gravity does not notice.
+/// The stretches at rest: thick air damps the motion away but does not act on a chain at rest.
 std::vector<double> settled(scene::Scene scene) {
   scene.air_drag = thick_air;
   const reference::World world = world_of(scene);
   std::vector<double> start;
   for (int j = 0; j < links; ++j) start.push_back(tension(j) / k);
   reference::State state = at_rest_with(world, start);
-  const double time = 40.0 / thick_air;  // e^-20 is left
+  const double time = 40.0 / thick_air;  // e^-20 of the motion is left
   for (int n = 0; n < time / scene.solver.dt; ++n) reference::step(world, state);
   return stretches(state);
 }
@@ -72,7 +72,7 @@ double sum(const std::vector<double>& values) {
 
 const double exact = mass * g * links * (links + 1) / (2 * k);  // [m]
 
-/// How much longer one iteration of XPBD leaves each spring than it should be [m] (the first test below).
+/// By how much one iteration of XPBD leaves each spring too long [m] (the first test below).
 double excess(int j, double dt) {
   if (j == 0) return (links - 1) * g * dt * dt;
   return j % 2 == 0 ? 2 * (links - j) * g * dt * dt : 0.0;
@@ -87,10 +87,10 @@ double total_excess(double dt) {
 
 TEST_CASE(
     "one iteration of XPBD rests where each spring of the first colour is dt^2 g x (nodes below) too long") {
-  // At rest every spring pushes T dt^2 in its one visit. The first colour starts from nothing:
-  // T dt^2 = k dt^2 stretch / (1 + 2 k dt^2 / m), or, at the pin, k dt^2 (stretch + g dt^2) / (1 + k dt^2 /
-  // m) since the free motion draws it out. The second finds itself drawn out by its neighbours' pushes, by as
-  // much as its own will be: it is right.
+  // At rest every spring pushes T dt^2 in its one visit. The first colour starts from nothing: T dt^2 = k
+  // dt^2 stretch / (1 + 2 k dt^2 / m), or, at the pin, k dt^2 (stretch + g dt^2) / (1 + k dt^2 / m), since
+  // the free motion draws it out. The second colour is drawn out by its neighbours' pushes, by as much as its
+  // own will be: it is right.
   for (const double share : {0.1, 1.0, 10.0}) {
     const double dt = share * unit;
     const reference::World world = world_of(hanging(Method::xpbd, dt, 1));
@@ -100,7 +100,7 @@ TEST_CASE(
     for (int n = 0; n < 100; ++n) reference::step(world, state);
     for (int j = 0; j < links; ++j) {
       INFO("dt " << share << " u, spring " << j);
-      // Roundings of lengths and of a metre, over 100 steps.
+      // Roundings of lengths and of a coordinate of 1 m, over 100 steps.
       CHECK(std::abs(stretches(state)[static_cast<std::size_t>(j)] - expected[static_cast<std::size_t>(j)]) <
             100 * (1.0 + 10 * sum(expected)) * 0x1p-52);
     }
@@ -110,7 +110,7 @@ TEST_CASE(
 TEST_CASE(
     "XPBD's hanging chain is within 1 % of the closed form for 1 to 100 iterations below 0.1 sqrt(m/k)") {
   // Half of the springs are 2 k dt^2 / m too long with one iteration: nearly k dt^2 / m on the whole, less in
-  // air. Further iterations only help.
+  // air. More iterations only help.
   for (const double share : {0.05, 0.1, 0.2}) {
     const double dt = share * unit, predicted = total_excess(dt) / (1.0 + dt * thick_air) / exact;
     for (const int iterations : {1, 2, 5, 20, 100}) {
@@ -119,14 +119,14 @@ TEST_CASE(
       CHECK(std::abs(off) < 1.001 * predicted);
       if (iterations == 1) CHECK(off == Approx(predicted).epsilon(1e-3));
     }
-    CHECK((predicted < 0.01) == (share <= 0.1));  // beyond it fails, as said
+    CHECK((predicted < 0.01) == (share <= 0.1));  // beyond that it fails, as the comment says
   }
 }
 
 TEST_CASE("XPBD's hanging chain comes to the closed form by iterations at a large step, PBD's does not") {
-  // After many visits a PBD spring has pulled with ln(1 + a) / a of k, a = w k dt^2: each visit leaves
-  // (1 + a)^(-1/n) of its stretch, and its neighbours, as long as itself, draw it out again. w = 2 / m, less
-  // in air.
+  // After many visits a PBD spring has pulled with ln(1 + a) / a of k, a = w k dt^2: each visit leaves (1 +
+  // a)^(-1/n) of its stretch, and its neighbours, as long as itself, draw it out again. w = 2 / m, less in
+  // air.
   for (const double share : {0.5, 1.0, 2.0}) {
     const double dt = share * unit, a = 2 * share * share / (1.0 + dt * thick_air);
     const std::vector<double> xpbd = settled(hanging(Method::xpbd, dt, 400));
@@ -147,7 +147,7 @@ TEST_CASE("VBD's hanging chain rests at the closed form with one iteration at an
     std::vector<double> expected;
     for (int j = 0; j < links; ++j) expected.push_back(tension(j) / k);
     reference::State state = at_rest_with(world, expected);
-    state.velocity_before.assign(state.velocity.begin(), state.velocity.end());  // it has been at rest before
+    state.velocity_before.assign(state.velocity.begin(), state.velocity.end());  // it was at rest before, too
     for (int n = 0; n < 100; ++n) reference::step(world, state);
     INFO("dt " << share << " u");
     CHECK(std::abs(sum(stretches(state)) / exact - 1.0) < 1e-9);

@@ -1,5 +1,5 @@
-// The method "auto": how a document asks for it, what is stepped until the lab has chosen, when a choice
-// holds.
+// The method "auto": how a document asks for it, which method steps until the lab has chosen, and how long a
+// choice holds.
 #include <cmath>
 
 #include "server/lab/automatic.h"
@@ -30,7 +30,7 @@ TEST_CASE("a scene with the method auto steps by verlet, stably, until something
   CHECK(setting.method == scene::Method::verlet);
   const double limit = model::dt_limit(model, lab::with(document.scene, setting));
   CHECK(setting.dt < 0.8 * limit);
-  CHECK(setting.dt > 0.5 * limit);  // the bound it comes from is never that far below
+  CHECK(setting.dt > 0.5 * limit);  // the bound that it comes from is never that far below
 }
 
 TEST_CASE("a document whose method auto is settled says so itself, and its scene is what it says") {
@@ -51,7 +51,7 @@ TEST_CASE("a choice holds while numbers stay within a tenth, and no longer") {
   CHECK(after({}));
   CHECK(after({{"gravity", {0, -9.0, 0}}}));
   CHECK_FALSE(after({{"gravity", {0, -8.0, 0}}}));
-  CHECK_FALSE(after({{"gravity", {0.1, -9.8, 0}}}));  // something from nothing is no small change
+  CHECK_FALSE(after({{"gravity", {0.1, -9.8, 0}}}));  // a change from 0 is never small
   CHECK(after({{"name", "another"}}));
   CHECK_FALSE(after({{"self_collision", nullptr}}));
   CHECK_FALSE(after({{"air_drag", 0.5}}));

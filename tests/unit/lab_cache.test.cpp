@@ -1,5 +1,4 @@
-// The lab's cache: what it finds again, what it does not, and what it makes of a folder that is not as it
-// should be.
+// The lab's cache: what it finds again, what it does not, and how it handles a damaged folder.
 #include "server/lab/cache.h"
 
 #include <unistd.h>
@@ -19,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A folder of its own for a test, gone with it.
+/// A folder for one test, removed with it.
 struct Folder {
   fs::path path = fs::temp_directory_path() / ("clothlab-cache-" + std::to_string(getpid()));
   Folder() { fs::remove_all(path); }
@@ -89,7 +88,7 @@ TEST_CASE("a key depends on all that moves the cloth, the job and the device, an
   CHECK(hash(seed(), ChartRequest{{}, {2}, {}, 120}) != own);
   CHECK(hash(seed(), SimplifyRequest{}) != own);
   CHECK(hash(seed(), ChooseRequest{1e-3, {}, {}}) != hash(seed(), ChooseRequest{1e-2, {}, {}}));
-  // All methods, in any order, are what naming none means.
+  // Naming all methods, in any order, is the same as naming none.
   ChartRequest all{{scene::methods.rbegin(), scene::methods.rend()}, {}, {}, 120};
   CHECK(hash(seed(), all) == own);
 }
@@ -113,7 +112,7 @@ TEST_CASE("a result is found by the same program and by the next one, under the 
   CHECK(folder.files().size() == 1);
 }
 
-TEST_CASE("what is not complete is not kept") {
+TEST_CASE("an incomplete result is not kept") {
   const Folder folder;
   Cache cache(folder.path);
   Chart chart = tests::made_up_chart();
@@ -132,7 +131,8 @@ TEST_CASE("a damaged or foreign file is as good as none, and is replaced") {
     return std::string(std::istreambuf_iterator<char>(stream), {});
   }();
   const std::string other_key =
-      std::string(whole).replace(whole.find("\"0000"), 5, "\"1111");  // an entry under another's name
+      // an entry under the name of another one
+      std::string(whole).replace(whole.find("\"0000"), 5, "\"1111");
   for (const std::string& text :
        {whole.substr(0, whole.size() / 2), std::string(), std::string("[[[["), std::string("{}"),
         std::string(100000, '['), std::string(R"({"key": 3, "result": {}})"), other_key}) {
@@ -159,10 +159,10 @@ TEST_CASE("a folder that cannot be made leaves the memory, and no error") {
 TEST_CASE("neither memory nor disk grows beyond its limit: the oldest goes first") {
   const Folder folder;
   const std::size_t bytes = to_json(tests::made_up_chart()).dump().size();
-  Cache cache(folder.path, {2, 7 * bytes / 2});  // room for three files with their keys
+  Cache cache(folder.path, {2, 7 * bytes / 2});  // holds three files with their keys
   for (int number = 1; number <= 6; ++number) {
     cache.keep(key(number), tests::made_up_chart());
-    // Files of the same moment have no order.
+    // Files of the same moment would have no order.
     for (const fs::path& file : folder.files())
       if (file.filename().string().starts_with(key(number).hash))
         fs::last_write_time(file, fs::file_time_type::clock::now() - std::chrono::hours(10 - number));

@@ -1,4 +1,4 @@
-// What the lab's results look like as JSON, CSV and SVG, with made-up results.
+// The lab's results as JSON, CSV and SVG, with made-up results.
 #include <iterator>
 #include <regex>
 
@@ -54,7 +54,7 @@ TEST_CASE("a number that is not finite is null in JSON, in every kind of result"
   CHECK(to_json(simplification)["variants"][2]["dt_limit_s"].is_null());
   for (const Outcome& outcome : all_kinds()) {
     const std::string text = to_json(outcome).dump();
-    CHECK(json::parse(text) == to_json(outcome));  // nlohmann would write a NaN as null without a word
+    CHECK(json::parse(text) == to_json(outcome));  // nlohmann would write a NaN as null without an error
   }
 }
 
@@ -68,7 +68,7 @@ TEST_CASE("a CSV has a row a point, cell, trial or variant, each with as many fi
     std::size_t fields = 0, start = 0;
     while (start < table.size()) {
       const std::size_t end = table.find('\n', start);
-      // Quoted fields have commas of their own.
+      // Quoted fields may contain commas.
       const std::string bare =
           std::regex_replace(table.substr(start, end - start), std::regex("\"([^\"]|\"\")*\""), "");
       const std::size_t here = count_of(bare, ",");
@@ -79,7 +79,7 @@ TEST_CASE("a CSV has a row a point, cell, trial or variant, each with as many fi
   }
 }
 
-TEST_CASE("what is recommended alone is listed once, and several together in a row of their own") {
+TEST_CASE("a single recommended part is listed once, several together get a row of their own") {
   Simplification simplification = tests::made_up_simplification();
   const auto listed = [&](const std::string& text) {
     return count_of(text, simplification.recommended.name);
@@ -119,7 +119,7 @@ TEST_CASE("a picture has a mark for every setting with an error and a cross for 
         std::string::npos);
   CHECK(picture.find("blew up at 0.03 s") != std::string::npos);
   CHECK(picture.find("no sweep converges &lt;here&gt; &amp; now") != std::string::npos);
-  // Of an axis that cannot be had the picture says why; what blew up is there all the same.
+  // For a missing axis the picture says why; points that blew up are drawn all the same.
   const std::string rest = svg(chart, Axis::rest);
   CHECK(count_of(rest, "data-index=\"") == blown);
   CHECK(rest.find("the cloth does not come to rest") != std::string::npos);
@@ -158,7 +158,7 @@ TEST_CASE("every dt of a mark can be read back from its place and the root's sca
   const double x0 = number("data-x0"), x1 = number("data-x1"), left = number("data-left"),
                right = number("data-right"), y0 = number("data-y0"), y1 = number("data-y1"),
                top = number("data-top"), bottom = number("data-bottom");
-  // The ring of the present setting, verlet at 1 ms, stands where its error and cost are.
+  // The ring of the present setting, verlet at 1 ms, is drawn at its error and cost.
   std::smatch ring;
   REQUIRE(std::regex_search(picture, ring, std::regex("ring present\" cx=\"([^\"]*)\" cy=\"([^\"]*)\"")));
   const double error = x0 * std::pow(x1 / x0, (std::stod(ring[1]) - left) / (right - left));

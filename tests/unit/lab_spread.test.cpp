@@ -1,4 +1,5 @@
-// What the lab makes of noisy timings, with timings made up: nobody's machine decides whether these pass.
+// The lab's verdicts on noisy timings. The timings are made up, so that no machine decides whether these
+// tests pass.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -11,7 +12,7 @@ using namespace clothlab::lab;
 
 namespace {
 
-/// Times of things that really take `cost`, with noise of a law.
+/// Made-up timings of things that really take `cost`, with a law of noise.
 struct Machine {
   std::vector<double> cost;
   std::function<double(std::mt19937&)> noise;  ///< a factor
@@ -32,14 +33,14 @@ double even(std::mt19937& random) {
   return std::max(0.1, 1.0 + 0.1 * std::normal_distribution<>()(random));
 }
 
-/// Mostly quiet, and every fifth time something else runs for up to three times as long.
+/// Mostly quiet; in every fifth timing something else takes up to three times as long.
 double bursts(std::mt19937& random) {
   const double at = std::uniform_real_distribution<>()(random);
   return 1.0 + 0.02 * std::uniform_real_distribution<>()(random) +
          (at < 0.2 ? 2.0 * std::uniform_real_distribution<>()(random) : 0.0);
 }
 
-/// Of 1000 comparisons of something that costs `cost` of the other, how many end like this.
+/// Number of comparisons, of 1000, that end with this verdict. One thing costs `cost` times the other.
 int count(double cost, const std::function<double(std::mt19937&)>& noise, Saving verdict) {
   int found = 0;
   for (unsigned seed = 0; seed < 1000; ++seed) {
@@ -51,9 +52,9 @@ int count(double cost, const std::function<double(std::mt19937&)>& noise, Saving
 
 }  // namespace
 
-TEST_CASE("what costs the same is not called cheaper by any noise") {
-  // A look errs with a chance of 3e-4, three looks with 9e-4 at most, where the ratio is just what is worth
-  // it: more than 5 of 1000 come with a chance of 4e-4. What saves nothing at all is farther off.
+TEST_CASE("a thing that costs the same is not called cheaper under any noise") {
+  // At the ratio that is just worth it a look errs with a chance of 3e-4, three looks with at most 9e-4: more
+  // than 5 of 1000 come with a chance of 4e-4. A thing that saves nothing at all is farther off.
   for (const auto& noise : {even, bursts}) {
     CHECK(count(worth_it, noise, Saving::yes) <= 5);
     CHECK(count(worth_it, noise, Saving::no) <= 5);
@@ -74,7 +75,7 @@ TEST_CASE("where the noise is larger than the saving, it is said that nothing ca
   CHECK(count(0.9, wild, Saving::cannot_tell) >= 990);
 }
 
-TEST_CASE("what is clear takes no more rounds than the first look, and what is not takes them all") {
+TEST_CASE("a clear verdict takes no more rounds than the first look, an unclear one takes them all") {
   Machine machine{{1.0, 0.2, 2.0}, bursts, std::mt19937(1)};
   machine.noise = [](std::mt19937&) { return 1.0; };
   const auto clear = machine.compare({{1, 0}, {2, 0}});
@@ -85,7 +86,7 @@ TEST_CASE("what is clear takes no more rounds than the first look, and what is n
   machine.cost[1] = worth_it * 0.999;
   machine.noise = even;
   CHECK(machine.compare({{1, 0}, {2, 0}})[0].saving == Saving::cannot_tell);
-  // The third is decided at the first look, and is not timed any more.
+  // The third is decided at the first look, and is timed no more.
   CHECK(machine.timed == 2 * looks[2] + looks[0]);
   machine.timed = 0;
   CHECK(machine.compare({{1, 0, false}})[0].saving == Saving::cannot_tell);
@@ -110,7 +111,8 @@ TEST_CASE(
   CHECK(std::isinf(spread_of({}, 0.01).high));
   CHECK(std::isinf(spread_of({1, 2, 3}, 0.01).high));
   CHECK(spread_of({3, 1, 2}, 0.01).median == 2.0);
-  const Spread seven = spread_of({7, 1, 6, 2, 5, 3, 4}, 0.01);  // all on one side: 1 / 128
+  // the chance that all are on one side: 1 / 128
+  const Spread seven = spread_of({7, 1, 6, 2, 5, 3, 4}, 0.01);
   CHECK(seven.low == 1.0);
   CHECK(seven.median == 4.0);
   CHECK(seven.high == 7.0);

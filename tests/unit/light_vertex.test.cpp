@@ -1,5 +1,4 @@
-// The lightest vertex that float32 can be trusted with: its inverse mass times the largest stiffness is still
-// a number.
+// The lightest vertex that float32 allows: its inverse mass times the largest stiffness is still finite.
 #include <cmath>
 
 #include "server/model/model.h"
@@ -11,7 +10,7 @@ using namespace clothlab;
 
 namespace {
 
-/// A triangle with legs of `side` [m] and 1 kg/m^2: each vertex gets a sixth of side^2.
+/// A triangle with legs of `side` [m] and 1 kg/m^2: each vertex gets a sixth of side^2 [kg].
 Result<model::Model> triangle(double side) {
   scene::Scene scene;
   scene::Cloth& cloth = scene.cloths.emplace_back();

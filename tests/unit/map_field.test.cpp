@@ -1,4 +1,4 @@
-// The number that a stability map varies: found, checked, spaced.
+// The number that a stability map varies: how it is found, checked and spaced.
 #include <cmath>
 
 #include "server/lab/map_field.h"
@@ -46,7 +46,7 @@ TEST_CASE("a range is refused where it is none, and where the scene does not all
   CHECK(refused_range(mass, 1.0, 1.0).where == "to");
   CHECK(refused_range(mass, 0.1, 1.0, 1).where == "columns");
   CHECK(refused_range(mass, 0.1, 1.0, 42).where == "columns");
-  CHECK(refused_range(mass, -1.0, 1.0).where == mass);  // the validator's
+  CHECK(refused_range(mass, -1.0, 1.0).where == mass);  // the validator's error
   CHECK(refused_range(mass, std::nan(""), 1.0).where == "from");
   CHECK(refused_range("/air_drag", std::nullopt, 1.0).remedy.find("present value is 0") != std::string::npos);
 }

@@ -1,4 +1,4 @@
-// How fast a spring's vibration grows beyond a method's limit, against the reference stepping that spring.
+// How fast a spring's vibration grows beyond a method's limit, against the reference that steps this spring.
 #include <cmath>
 
 #include "server/lab/mode_growth.h"
@@ -12,9 +12,9 @@ using scene::Method;
 
 namespace {
 
-/// Of the amplitude, a step [e-folds]: from kinetic and elastic energy about the balance. `expected` only
-/// says for how long: until what grows fastest is alone, and then as long again, from 1e-9 m to 1e-4 m at
-/// most.
+/// Growth of the amplitude per step [e-folds], from kinetic and elastic energy about the balance. `expected`
+/// only sets the duration: until the fastest growing part is alone, and then as long again, from 1e-9 m to at
+/// most 1e-4 m.
 double measured_growth(Method method, double dt, double damping, double expected) {
   constexpr double balance = 1.0 + 1e-9;
   Stepped stepped(Side::reference, one_spring(method, dt, damping, 1e-9));
@@ -44,7 +44,7 @@ TEST_CASE("beyond a method's limit a spring grows as fast as the lab expects, an
         INFO(scene::name(method) << ", z = " << z << ", " << beyond << " of the limit");
         const double expected = lab::growth_a_step(method, mode, beyond * limit);
         CHECK(expected > 0.0);
-        // While it turns, the energy of a damped vibration swings by 2 z at most: 0.6 of 11 e-folds.
+        // Within a turn the energy of a damped vibration swings by at most 2 z: 0.6 of 11 e-folds.
         CHECK(measured_growth(method, beyond * limit, damping, expected) == Approx(expected).epsilon(0.06));
       }
       CHECK(lab::growth_a_step(method, mode, 0.999 * limit) == 0.0);
@@ -61,7 +61,7 @@ TEST_CASE("the shortest step whose growth shows is where growth times steps is w
     CHECK(dt > model::dt_limit(method, mode));
     CHECK(600 * lab::growth_a_step(method, mode, dt) == Approx(11.5).epsilon(1e-6));
   }
-  // Without damping explicit Euler multiplies by sqrt(1 + (omega dt)^2): (omega dt)^2 / 2 a step.
+  // Without damping explicit Euler multiplies by sqrt(1 + (omega dt)^2): (omega dt)^2 / 2 per step.
   const double dt = lab::shortest_visible(Method::explicit_euler, {100.0, 0.0}, 1000, 0.5);
   CHECK(dt == Approx(std::sqrt(2 * 0.5 / 1000) / 10).epsilon(1e-3));
 }

@@ -1,5 +1,5 @@
-// Each method's step limit for one vibration: the formulae, and the method's own growth on both sides of
-// them.
+// Each method's step limit for one vibration: the formulae, and the method's own growth on both sides of the
+// limit.
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -15,7 +15,7 @@ using scene::Method;
 
 namespace {
 
-using State = std::array<double, 3>;  // x, v, and what Verlet carries: the velocity half a step ago
+using State = std::array<double, 3>;  // x, v, and the velocity half a step ago, which Verlet carries
 
 /// One step of x'' = -omega^2 x - damping x', as the method's kernel takes it.
 State step(Method method, const Mode& mode, double dt, const State& state) {
@@ -30,8 +30,7 @@ State step(Method method, const Mode& mode, double dt, const State& state) {
   return {x + dt / 6 * (v + 2 * v2 + 2 * v3 + v4), v + dt / 6 * (a + 2 * a2 + 2 * a3 + a4), 0.0};
 }
 
-/// By what a step multiplies the vibration in the long run, as a logarithm: of the step's matrix, squared
-/// often.
+/// Long-term growth of the vibration per step, as a logarithm, from repeated squares of the step's matrix.
 double growth(Method method, const Mode& mode, double dt) {
   glm::dmat3 matrix;
   for (int column = 0; column < 3; ++column) {
@@ -67,7 +66,7 @@ TEST_CASE("for one vibration the limits are those of the theory") {
     CHECK(limit(Method::symplectic_euler, z) == Approx(2 * (std::sqrt(1 + z * z) - z)));
     CHECK(limit(Method::verlet, z) == Approx(2 * (std::sqrt(1 + 4 * z * z) - 2 * z)));
   }
-  // Solved by hand, to the digits that are given.
+  // Solved by hand, to the given digits.
   CHECK(limit(Method::symplectic_euler, 0.1) == Approx(1.81).margin(0.005));
   CHECK(limit(Method::symplectic_euler, 1.0) == Approx(0.83).margin(0.005));
   CHECK(limit(Method::rk4, 0.1) == Approx(2.95).margin(0.005));

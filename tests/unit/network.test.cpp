@@ -1,4 +1,4 @@
-// Whose connections and wrong tokens count as one address's.
+// Which addresses count as one for limits on connections and wrong tokens.
 #include "server/net/request_headers.h"
 #include "tests/catch.h"
 

@@ -1,4 +1,4 @@
-// What waits for a client goes out in order, and no status is told once there is a newer one.
+// Messages to a client are sent in order, and a status is dropped if there is a newer one.
 #include "server/net/outbox.h"
 
 #include "server/net/limits.h"
@@ -28,7 +28,7 @@ TEST_CASE("a status takes the place of the one that waits, behind what was said 
   outbox.push_first(make_text("hello"));
   for (const char* text : {"hello", "first", "second", "status", "third"}) CHECK(next(outbox) == text);
   CHECK(outbox.empty());
-  // One that has gone is not looked for.
+  // A status that has been sent is not searched for.
   REQUIRE(outbox.push_status(make_text("a status again")));
   CHECK(next(outbox) == "a status again");
   CHECK(next(outbox).empty());

@@ -71,7 +71,7 @@ TEST_CASE("a viewer of 20 frames/s among frames at 120 gets 20, not more") {
     ++sent;
   }
   CHECK(sent >= 199);
-  CHECK(sent <= 201);  // 10 s at 20, and the first at once
+  CHECK(sent <= 201);  // 10 s at 20 per second, and the first at once
 }
 
 TEST_CASE("after a stall one frame is caught up, no more") {
@@ -123,7 +123,7 @@ TEST_CASE("a bucket lets its burst through, then its rate") {
   CHECK(taken == 5);
 }
 
-TEST_CASE("what costs more than is left of a bucket is let through, and paid off before the next") {
+TEST_CASE("a message that costs more than a bucket holds passes, and is paid off before the next one") {
   net::TokenBucket bucket(10, 5, 0);
   CHECK(bucket.take(0, 25));  // 20 short: two seconds, and a tenth for the next
   CHECK_FALSE(bucket.take(2 * second));

@@ -1,4 +1,4 @@
-// What is told of PBD's stiffness, which has no N/m of its own.
+// The stiffness that is reported for PBD, which has none in N/m.
 #include <cmath>
 
 #include "server/model/spring_gains.h"
@@ -39,7 +39,7 @@ TEST_CASE("PBD's share is told for each cloth by its own mass, and only for spri
   scene.cloths[0].material.bend = 0.0;
   scene.cloths.push_back(scene.cloths[0]);
   scene.cloths[1].name = "lighter";
-  // An inner vertex has the mass of a cell, 1/24 m a side; the fewer ones on the border have less.
+  // An inner vertex has the mass of a cell of 1/24 m; those on the border have less.
   scene.cloths[1].mass = {scene::Mass::Kind::area_density, 0.05 * 24 * 24};
   const auto shares = model::pbd_stiffness(*model::build(scene), scene);
   REQUIRE(shares.size() == 2);

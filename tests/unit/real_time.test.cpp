@@ -13,7 +13,8 @@ Time at(double seconds) {
   return Time{} + std::chrono::duration_cast<Time::duration>(std::chrono::duration<double>(seconds));
 }
 
-/// Steps done in `seconds` of turns of `turn` seconds, on a machine where a step costs `cost` seconds.
+/// Number of steps done in `seconds`, in turns of `turn` seconds, on a machine where a step costs `cost`
+/// seconds.
 double run(RealTime& clock, double seconds, double turn, double cost) {
   double now = 0, steps = 0;
   while (now < seconds) {
@@ -30,7 +31,7 @@ TEST_CASE("a machine that keeps up does one step for each dt that passes") {
   RealTime clock;
   clock.restart(at(0));
   const double steps = run(clock, 10.0, 0.007, 1e-5);
-  // All but what the last turn had not seen yet.
+  // All steps except those that the last turn had not seen yet.
   CHECK(steps <= 10.0 / dt);
   CHECK(steps >= (10.0 - 0.007) / dt - 1);
 }

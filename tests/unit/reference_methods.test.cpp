@@ -1,5 +1,5 @@
-// The double-precision reference: one step of each method on a spring is the linear map that theory gives, so
-// every later step is too; and laws that hold for whole cloths.
+// The double-precision reference: one step of each method on a spring is the linear map of theory, and so is
+// every later step; and laws that hold for whole cloths.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double rounding = 0x1p-52;
 
-/// Displacement from balance and velocity [m, m/s] of the end of one_spring after n steps.
+/// Displacement from balance [m] and velocity [m/s] of the end of one_spring after `steps` steps.
 std::array<double, 2> spring_after(const scene::Scene& scene, int steps) {
   const reference::World world = world_of(scene);
   reference::State state = reference::at_rest(world);
@@ -38,8 +38,8 @@ std::array<double, 2> iterate(const Map& map, int steps) {
   return {u, v};
 }
 
-/// Compares the reference with the map over 50 steps at omega dt of 0.3 and damping ratio z. Both round a few
-/// times a step; explicit Euler grows by at most (1 + 0.3^2)^25 = 9.
+/// Compares the reference with the map over 50 steps, at omega dt of 0.3 and damping ratio z. Both round a
+/// few times per step; explicit Euler grows by at most (1 + 0.3^2)^25 = 9.
 template <class MapOf>
 void check_map(Method method, double z, MapOf map_of) {
   const double w = test::spring_omega, dt = 0.3 / w, c = 2 * z * w;

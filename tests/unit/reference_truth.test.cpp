@@ -14,7 +14,7 @@ using scene::Method;
 
 namespace {
 
-/// The angle [rad] from hanging down at which the rod of `pendulum` is, by its own plane.
+/// Angle [rad] of the rod of `pendulum` from hanging down, in its own plane.
 double angle_of(const scene::Scene& scene, const reference::State& state) {
   const glm::dvec3 arm = state.position[test::spring_end] - state.position[0];
   const glm::dvec3 down = glm::normalize(scene.gravity);
@@ -35,7 +35,7 @@ TEST_CASE("the trajectory of a damped spring is the closed form, and nearer to i
         test::spring_amplitude * std::exp(-z * w * t) * (std::cos(wd * t) + z * w / wd * std::sin(wd * t));
     const double off = std::abs(found->states[i].position[test::spring_end].z - test::spring_balance - u);
     INFO("at " << t << " s: off by " << off << " m, said " << found->error[i] << " m");
-    // Two of six vertices move: their distance is sqrt(3) times the RMS. The finer run is off by a 15th;
+    // Two of six vertices move: their distance is sqrt(3) times the RMS. The finer run is off by a 15th, and
     // rounding.
     CHECK(off < std::numbers::sqrt3 * found->error[i] / 15 * 1.1 + 1e-14);
     CHECK(found->error[i] < 1e-8);
@@ -61,7 +61,7 @@ TEST_CASE("a stiff pendulum's period is the rod's times a factor that falls as 1
     for (int i = 0; i < 2; ++i) {
       const double k = i == 0 ? 2e4 : 4e4;
       const scene::Scene scene = test::pendulum(Method::rk4, 1.0, degrees, k);
-      // Through the lowest point after a quarter: the angle's zero by the secant of two times around it.
+      // Time at the lowest point, after a quarter: zero of the angle by the secant of two times around it.
       const double t0 = 0.99 * period / 4, t1 = 1.01 * period / 4;
       const auto found = reference::trajectory(world_of(scene), {t0, t1}, 0.1 / std::sqrt(k));
       REQUIRE(found);
@@ -73,7 +73,7 @@ TEST_CASE("a stiff pendulum's period is the rod's times a factor that falls as 1
       // share; the secant of a nearly straight line is off by 1e-6.
       CHECK(std::abs(off[i]) < 0.5 * 5 * 9.81 / k + 4e-6);
     }
-    const double at_infinity = 2 * off[1] - off[0];  // what does not fall with the stiffness
+    const double at_infinity = 2 * off[1] - off[0];  // the part that does not fall with the stiffness
     INFO(degrees << " degrees: extrapolated " << at_infinity);
     CHECK(std::abs(at_infinity) < 6e-6);  // half a digit of the factor, the secant, and the rod's vibration
   }

@@ -12,7 +12,7 @@ using session::Rest;
 
 namespace {
 
-/// The hanging strip with assignments.
+/// The hanging strip, with assignments.
 scene::Scene strip(const std::vector<std::string>& assignments = {}) {
   Result<scene::Document> document = scene::load_preset("hanging-strip");
   for (const std::string& assignment : assignments) {
@@ -31,12 +31,13 @@ Rest watching(const scene::Scene& scene) {
   return rest;
 }
 
-/// The cloth's size, of which a picture has 720 lines [m].
+/// Size of the cloth [m]: a picture of it has 720 lines.
 double size_of(const Rest& rest) {
   return 720 * 50 * rest.drift();
 }
 
-/// A vertex that moves as `x` tells, looked at every 1/60 s for `seconds`: when it was found at rest.
+/// Time [s] at which a vertex is found at rest that moves by `x` and is looked at every `period` for
+/// `seconds`.
 std::optional<double> found_at_rest(Rest& rest, double seconds, const std::function<double(double)>& x,
                                     double period = 1.0 / 60) {
   constexpr double h = 1e-6;
@@ -50,12 +51,12 @@ std::optional<double> found_at_rest(Rest& rest, double seconds, const std::funct
 
 }  // namespace
 
-TEST_CASE("what stands still is at rest after its stretch, and what moves fast enough to be seen never") {
+TEST_CASE("a still vertex is at rest after its stretch, and one that moves fast enough to be seen never is") {
   Rest rest = watching(strip());
   const std::optional<double> still = found_at_rest(rest, 60, [](double) { return 0.25; });
   REQUIRE(still);
   CHECK(*still >= rest.stretch());
-  CHECK(*still < 1.1 * rest.stretch());  // it is looked at 32 times a stretch
+  CHECK(*still < 1.1 * rest.stretch());  // there are 32 looks per stretch
   rest.disturb();
   CHECK_FALSE(found_at_rest(rest, 60, [&](double t) { return 0.9 * rest.speed() * t; }));
 }
@@ -64,13 +65,13 @@ TEST_CASE(
     "a swing is not taken for rest at its turning points, however slow, unless it is too small to be seen") {
   const scene::Scene scene = strip();
   Rest rest = watching(scene);
-  // A plumb-bob of the cloth's diagonal, the slowest thing that swings.
+  // A pendulum as long as the cloth's diagonal, the slowest thing that swings.
   const double omega = std::sqrt(glm::length(scene.gravity) / (1.4142 * size_of(rest)));
   const auto rests = [&](double amplitude) {
     rest.disturb();
     return found_at_rest(rest, 120, [&](double t) { return amplitude * std::sin(omega * t); }).has_value();
   };
-  // From wherever it begins, half a swing goes as far as the amplitude, and never further than twice that.
+  // From any start, half a swing goes as far as the amplitude, and never farther than twice that.
   CHECK_FALSE(rests(1.05 * rest.drift()));
   CHECK(rests(0.45 * rest.drift()));
 }
@@ -127,7 +128,7 @@ TEST_CASE("without gravity, and on a moon of little, the stretch is longer but n
   CHECK(here > 3.14159 * std::sqrt(1.4142 * size_of(watching(strip())) / 9.8));
 }
 
-TEST_CASE("what is not finite is not at rest") {
+TEST_CASE("a vertex that is not finite is not at rest") {
   Rest rest = watching(strip());
   for (int i = 0; i < 1000; ++i)
     CHECK_FALSE(rest.look(0.1 * i, std::nan(""), [] { return std::vector<glm::vec3>(1); }));

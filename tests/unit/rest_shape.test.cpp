@@ -1,4 +1,4 @@
-// The reference's rest shape against statics, and its errors where there is none.
+// The reference's rest shape against statics, and its errors if there is none.
 #include "server/reference/rest_shape.h"
 
 #include <algorithm>
@@ -21,8 +21,9 @@ std::vector<glm::dvec3> shape_of(const scene::Scene& scene) {
   return found->position;
 }
 
-/// A narrow band of `links` quads, `length` long, held at both ends `span` apart; it starts as a V. Folding
-/// about z keeps its edges' lengths, the diagonals' too, so that it hangs as a chain does.
+/// A narrow band of `links` quads, `length` [m] long, held at both ends, which are `span` [m] apart; it
+/// starts as a V. As it folds about z its edges and diagonals keep their lengths, so that it hangs like a
+/// chain.
 scene::Scene hanging_band(int links, double length, double span, double k) {
   scene::Scene scene = test::bare_scene(Method::implicit_euler, 1e-3);
   scene.gravity = {0.0, -9.81, 0.0};
@@ -71,7 +72,7 @@ TEST_CASE(
     scene.gravity = {0.0, 0.0, g};
     const std::vector<glm::dvec3> shape = shape_of(scene);
     // The solver leaves at most 1e-12 of k times the lengths at a node (a rung of 1 m, two links) unbalanced;
-    // every link above carries that.
+    // every link above carries that, too.
     const double bound = 1e-12 * (1.0 + 2.0 / links) * links * links;
     double z = 0.0;
     for (int n = 1; n <= links; ++n) {
@@ -129,7 +130,7 @@ TEST_CASE("a rest shape that cannot be is an error that says why") {
   scene = cloth;
   scene.colliders = {{"floor", scene::Plane{{0.0, -0.2, 0.0}, {0.0, 1.0, 0.0}}, 0.0, 0.0, {}}};
   CHECK(error_of(scene).where == "/colliders");
-  scene.colliders[0].shape = scene::Plane{{0.0, -2.0, 0.0}, {0.0, 1.0, 0.0}};  // out of reach: no matter
+  scene.colliders[0].shape = scene::Plane{{0.0, -2.0, 0.0}, {0.0, 1.0, 0.0}};  // out of reach: allowed
   CHECK(reference::rest_shape(world_of(scene)));
 
   scene.cloths[0].pins.clear();

@@ -10,7 +10,7 @@ using State = RunState::State;
 
 namespace {
 
-/// One in each state that there is, held and diverged ones by what they go back to.
+/// One run in each possible state; held and diverged ones for each state that they return to.
 struct Case {
   const char* name;
   RunState run;
@@ -48,7 +48,7 @@ TEST_CASE("a session begins playing, and steps by the clock in that state alone"
   }
 }
 
-TEST_CASE("one that has diverged is neither played nor stepped, and any other is") {
+TEST_CASE("a run that has diverged is neither played nor stepped, and any other is") {
   for (Case each : all()) {
     INFO(each.name);
     const bool diverged = each.run.diverged();
@@ -73,7 +73,7 @@ TEST_CASE("a pause is never refused, and outlasts a blow-up and the lab") {
   }
 }
 
-TEST_CASE("the lab holds what plays or sleeps, and lets go what nobody has touched since") {
+TEST_CASE("the lab holds a run that plays or sleeps, and releases it if nobody has touched it since") {
   for (Case each : all()) {
     INFO(each.name);
     const State before = each.run.state();
@@ -112,7 +112,7 @@ TEST_CASE("only what plays falls asleep, and only what is at rest wakes") {
   RunState held = made({"fall asleep", "hold"});
   REQUIRE(held.wake());
   REQUIRE(held.release());
-  CHECK(held.state() == State::playing);  // something happened to it while it was held
+  CHECK(held.state() == State::playing);  // an event reached it while it was held
 }
 
 TEST_CASE("after a blow-up it goes on as it went before, awake") {
@@ -124,7 +124,7 @@ TEST_CASE("after a blow-up it goes on as it went before, awake") {
     CHECK_FALSE(each.run.plays());
     CHECK_FALSE(each.run.at_rest());
     CHECK(each.run.would_play() == would_play);
-    each.run.diverge();  // twice is once
+    each.run.diverge();  // diverging twice changes nothing
     CHECK(each.run.would_play() == would_play);
     REQUIRE(each.run.go_on());
     CHECK_FALSE(each.run.go_on());

@@ -1,4 +1,4 @@
-// What a session is brought back from, as bytes.
+// The bytes from which a session is restored.
 #include "server/session/saved.h"
 
 #include "server/scene/document.h"

@@ -1,4 +1,4 @@
-// Untrusted text: whatever it is, the answer is a value or an error that says where.
+// Untrusted text: the answer is always a value, or an error that says where.
 #include "server/scene/document.h"
 #include "tests/catch.h"
 

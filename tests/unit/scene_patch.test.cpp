@@ -1,4 +1,4 @@
-// Patches: RFC 7396, RFC 6902 and `--set`. Whatever happens, a scene in hand stays a valid one.
+// Patches: RFC 7396, RFC 6902 and `--set`. After any of them the scene is still valid.
 #include <random>
 
 #include "server/scene/document.h"
@@ -117,7 +117,7 @@ TEST_CASE("copying the scene into itself again and again is stopped before memor
 
 TEST_CASE("moving a large part is allowed, moving it a thousand times is stopped before it takes minutes") {
   json patch = json::array();
-  // Each copy holds the ones before: some hundred thousand values in all.
+  // Each copy contains the ones before: some hundred thousand values in all.
   for (int i = 0; i < 12; ++i)
     patch.push_back({{"op", "copy"}, {"from", ""}, {"path", "/a" + std::to_string(i)}});
   patch.push_back({{"op", "move"}, {"from", "/a11"}, {"path", "/b"}});

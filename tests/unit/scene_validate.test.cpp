@@ -1,4 +1,4 @@
-// The scene document, rule by rule: what just passes and what just does not.
+// The scene document, rule by rule: values that just pass and values that just fail.
 #include <limits>
 
 #include "server/scene/document.h"
@@ -11,8 +11,7 @@ using scene::json;
 
 namespace {
 
-/// The seed, a floor, an explicit triangle and every motion: something to change at each place of the
-/// document.
+/// The seed, a floor, an explicit triangle and every motion: a value to change at each place of the document.
 json base() {
   json value = scene::load_preset("seed")->value;
   json triangle = json::parse(
@@ -116,7 +115,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("what is not simulated yet is refused by name, never ignored") {
+TEST_CASE("features that are not simulated yet are refused by name, never ignored") {
   const std::vector<std::pair<std::string, std::string>> not_yet = {
       {"/cloths/0/material", R"({"model": "fem", "warp": 300})"},
       {"/cloths/0/material/fabric", R"("cotton")"},
@@ -159,7 +158,7 @@ TEST_CASE("an unknown key is named with an escaped pointer, the allowed keys and
   CHECK(error.remedy.find("did you mean \"shear\"?") != std::string::npos);
 }
 
-TEST_CASE("what was found is shown as JSON, shortened when it is long and never inside a character") {
+TEST_CASE("an error shows the value found as JSON, shortened if long and never inside a character") {
   json value = base();
   value["solver"]["dt"] = {{"a", 1}};
   CHECK(scene::validate(value).error().what == R"({"a":1})");
@@ -207,7 +206,7 @@ TEST_CASE("all cloths together have at most 2^20 vertices") {
   value["cloths"][0]["mesh"]["grid"]["columns"] = 1024;
   value["cloths"][0]["mesh"]["grid"]["rows"] = 1023;
   CHECK(scene::validate(value));
-  value["cloths"][0]["mesh"]["grid"]["rows"] = 1024;  // and three more in the triangle
+  value["cloths"][0]["mesh"]["grid"]["rows"] = 1024;  // and three more vertices in the triangle
   CHECK(scene::validate(value).error().where == "/cloths/1/mesh");
 }
 

@@ -1,4 +1,4 @@
-// The law of solids in double precision, for each kind against what is true of its shape (tests/solids.h).
+// The law of solids in double precision: each kind against properties of its shape (tests/solids.h).
 #include "tests/solids.h"
 
 #include <cmath>
@@ -74,7 +74,7 @@ TEST_CASE("no path ends within the margin of a solid, of any kind, that moves an
       }
       CHECK(outcome.near);
       CHECK(glm::length(outcome.normal) == Approx(1.0));
-      // The normal leads out.
+      // The normal points outwards.
       CHECK(test::depth(after, outcome.stopped + 0.01 * outcome.normal) <
             test::depth(after, outcome.stopped));
     }
@@ -101,12 +101,12 @@ TEST_CASE(
         CHECK(outcome.met);
       }
     }
-    // What has no end has no far side, either.
+    // An endless shape has no far side, either.
     CHECK((entered > 100 || std::isinf(scene::bounds(shape).radius)));
   }
 }
 
-TEST_CASE("what is no kind of solid meets nothing") {
+TEST_CASE("an unknown kind of solid meets nothing") {
   const elements::Solid solid{dvec3(0.0), dvec3(0.0, 1.0, 0.0), 1.0};
   for (const int kind : {-1, elements::solid_kinds}) {
     dvec3 stopped, normal;

@@ -58,7 +58,7 @@ dmat3 hessian(const Spring& s) {
 /// l.
 void check_derivatives(const Spring& s) {
   const double length = glm::distance(s.x, s.y), size = 2.0 + length + s.rest;
-  const double h = 1e-4 * length, moved = rounding * size / h;  // how far x + h is from there, relative to h
+  const double h = 1e-4 * length, moved = rounding * size / h;  // error of x + h, relative to h
   const double energy_bound =
       h * h / 6 * 3 * stiffness * s.rest / (length * length) + 4 * stiffness * (length + s.rest) * moved;
   const double force_bound = h * h / 6 * 15 * stiffness * s.rest / (length * length * length) * 2 +
@@ -72,7 +72,7 @@ void check_derivatives(const Spring& s) {
     INFO("length " << length << " m, rest " << s.rest << " m, axis " << axis);
     CHECK(std::abs((energy(s, up) - energy(s, down)) / (2 * h) + f[axis]) < energy_bound);
     CHECK(glm::length((force(s, up) - force(s, down)) / (2 * h) + matrix[axis]) < force_bound);
-    CHECK(energy_bound < 1e-4 * stiffness * (length + s.rest));  // the bounds still mean something
+    CHECK(energy_bound < 1e-4 * stiffness * (length + s.rest));  // the bounds are small enough to find errors
     CHECK(force_bound < 1e-4 * stiffness * (1 + s.rest / length));
   }
 }

@@ -1,4 +1,5 @@
-// What PBD and XPBD multiply a spring's stretch with: their limits, and what a spring alone does under them.
+// The factors on a spring's stretch in PBD and XPBD: their limits, and the motion of a single spring under
+// them.
 #include "server/model/spring_gains.h"
 
 #include <cmath>
@@ -13,13 +14,13 @@ using scene::Method;
 namespace {
 
 constexpr double rounding = 0x1p-52;
-constexpr double w = 3.0;  // [1/kg], of both ends together
+constexpr double w = 3.0;  // [1/kg], sum of both ends
 
 scene::Solver solver(Method method, int iterations, double dt = 0.02) {
   return {.method = method, .dt = dt, .iterations = iterations};
 }
 
-/// The length of a spring of 1 m, drawn out to 1.5 m by the step's free motion, after n visits.
+/// Length [m] after `visits` visits of a spring of 1 m that the step's free motion draws out to 1.5 m.
 double visited(const scene::Solver& solver, double stiffness, double damping, int visits) {
   const elements::SpringGains gains = model::spring_gains(solver, stiffness, damping, w);
   double length = 1.5, moved = 0.3;
@@ -57,7 +58,7 @@ TEST_CASE("the gains of a soft spring keep their digits: dt^2 k and dt c, whatev
   CHECK(xpbd.damping == Approx(c * dt).epsilon(1e-13));
   CHECK(pbd.stretch == Approx(k * dt * dt / 10).epsilon(1e-13));
   CHECK(pbd.damping == Approx(c * dt / 10).epsilon(1e-13));
-  // Between two pinned vertices nothing moves, whatever its gains: they are only finite.
+  // Between two pinned vertices nothing moves, whatever the gains: these need only be finite.
   CHECK(model::spring_gains(solver(Method::pbd, 10), 1e4, 1.0, 0.0).stretch == 1e4 * dt * dt);
 }
 
@@ -75,7 +76,7 @@ TEST_CASE("a spring alone is after n visits of PBD where one visit of XPBD puts 
   for (const double k : {0.1, 100.0, 1e4, 1e9}) {
     for (const double c : {0.0, 2.0}) {
       const double dt = 0.02, coupling = w * (k * dt * dt + c * dt);
-      // Of the force that would be left after the free motion, backward Euler leaves a part of 1 + coupling.
+      // Backward Euler leaves 1 / (1 + coupling) of the force after the free motion.
       const double force = k * dt * dt * 0.5 + c * dt * 0.3;
       const double expected = 1.5 - w * force / (1.0 + coupling);
       for (const int visits : {1, 2, 7, 100}) {

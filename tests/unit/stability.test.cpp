@@ -1,5 +1,5 @@
 // The step limit: bound and sharp value against closed forms, and each method's own growth on both sides of
-// it.
+// the limit.
 #include "server/model/stability.h"
 
 #include <algorithm>
@@ -46,7 +46,8 @@ Sheet one_spring() {
   return two;
 }
 
-/// Vertices at random places, springs of all three kinds between random pairs, masses over `decades` tens.
+/// Vertices at random places, springs of all three kinds between random pairs, masses over `decades` powers
+/// of ten.
 Sheet tangle(std::uint32_t seed, double decades, bool damped, bool pins) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -72,7 +73,7 @@ Sheet tangle(std::uint32_t seed, double decades, bool damped, bool pins) {
   return sheet;
 }
 
-/// omega by nothing but repeated multiplication.
+/// omega by repeated multiplication alone.
 double power_iteration(const Sheet& sheet, int iterations) {
   const model::ElementOperator springs(sheet.model, sheet.scene, sheet.model.rest_position);
   model::Field y = model::scattered_start(springs), next(y.size()), drag(y.size());
@@ -90,7 +91,7 @@ double power_iteration(const Sheet& sheet, int iterations) {
   return std::sqrt(squared);
 }
 
-/// Energy after many steps of symplectic Euler, over that at the start, of the scene linear about rest.
+/// Energy after many steps of symplectic Euler over that at the start, for the scene linearised about rest.
 double energy_gain(const Sheet& sheet, double dt, int steps) {
   const model::ElementOperator springs(sheet.model, sheet.scene, sheet.model.rest_position);
   model::Field x = model::scattered_start(springs), v(x.size()), stiff(x.size()), drag(x.size()),
@@ -127,7 +128,7 @@ TEST_CASE(
       const double limit = model::dt_limit(sheet.model, sheet.scene);
       INFO("kinds " << kinds << ", size " << size << ", limit " << limit);
       // A part of the infinite grid cannot vibrate faster. Nor much slower: its fastest wave under an
-      // envelope cos(pi x / n) loses a share of omega^2 of some (pi / n)^2 for each axis and length.
+      // envelope cos(pi x / n) loses a share of omega^2 of about (pi / n)^2 for each axis and length.
       CHECK(limit >= 0.9999 * infinite[kinds]);
       const double envelope = std::numbers::pi / size;
       CHECK(limit <= infinite[kinds] * (1.0 + envelope * envelope));
@@ -226,7 +227,7 @@ TEST_CASE(
     const double limit = model::dt_limit(sheet.model, sheet.scene);
     INFO("seed " << seed << ", limit " << limit);
     CHECK(energy_gain(sheet, 0.995 * limit, 6000) < 10.0);
-    CHECK_FALSE(energy_gain(sheet, 1.005 * limit, 6000) < 1e6);  // or no number any more
+    CHECK_FALSE(energy_gain(sheet, 1.005 * limit, 6000) < 1e6);  // or it is no longer a number
   }
 }
 

@@ -1,4 +1,4 @@
-// The GPU's time by stage: what is timed, what is not, and that nothing waits for it.
+// GPU time by stage: what is timed, what is not, and that nothing waits for the result.
 #include <glad/gl.h>
 
 #include <chrono>
@@ -37,7 +37,7 @@ TEST_CASE("stages are timed in order, and together take no longer than they were
   CHECK(times[0].seconds > 0);
   CHECK(times[1].seconds >= 0);
   CHECK(times[0].seconds + times[1].seconds <= waited);
-  CHECK(arrived(timer).size() == 0);  // each is told once
+  CHECK(arrived(timer).size() == 0);  // each is reported once
 }
 
 TEST_CASE("only what lies between begin and end is timed, and not anew before its times are taken") {
@@ -52,7 +52,7 @@ TEST_CASE("only what lies between begin and end is timed, and not anew before it
   timer.begin();
   timer.stage("first");
   timer.end();
-  timer.begin();  // the first is still on its way
+  timer.begin();  // the first is not finished yet
   timer.stage("second");
   timer.end();
   const gl::StageTimes times = arrived(timer);

@@ -1,4 +1,4 @@
-// Where a cloth starts, and weights: what the model makes of them.
+// The model's start positions and weights.
 #include <algorithm>
 
 #include "tests/catch.h"
@@ -10,7 +10,7 @@ using glm::dvec3;
 
 namespace {
 
-/// Standing upright, so that the axes of the world are not those of the mesh.
+/// A cloth that stands upright, so that the world's axes are not those of the mesh.
 scene::Scene cloth(const scene::Start& start) {
   scene::Scene scene = test::swinging_cloth(scene::Method::symplectic_euler, 1e-3);
   scene.cloths[0].transform = {{1.0, 2.0, 3.0}, {90.0, 0.0, 0.0}, 2.0};

@@ -15,7 +15,7 @@ using scene::Method;
 
 namespace {
 
-/// The largest l / L - 1 of the springs with a free end.
+/// Largest l / L - 1 of the springs with a free end.
 double largest_stretch(const reference::World& world, const reference::State& state) {
   double largest = 0.0;
   for (const model::Spring& spring : world.model.springs()) {
@@ -53,7 +53,7 @@ TEST_CASE(
     for (int n = 0; n < steps; ++n) {
       reference::step(world, state);
       CHECK(largest_stretch(world, state) <
-            0.1 + 2e-12);  // what the sweeps leave, and a rounding of the test's own
+            0.1 + 2e-12);  // the sweeps' remainder, and a rounding of the test's own
     }
   }
 }
@@ -77,7 +77,8 @@ TEST_CASE("the strain limit keeps a free sheet's momentum and angular momentum, 
     for (std::size_t i = 0; i < s.position.size(); ++i) {
       const glm::dvec3 p = world.model.mass[i] * s.velocity[i];
       sums[0] += p;
-      sums[1] += world.model.mass[i] * s.position[i];  // what the corrections move of the centre of mass
+      // momentum of the corrections: how they move the centre of mass
+      sums[1] += world.model.mass[i] * s.position[i];
       sums[2] += glm::cross(world.model.mass[i] * state.position[i], s.velocity[i]);
     }
     return sums;
@@ -86,8 +87,8 @@ TEST_CASE("the strain limit keeps a free sheet's momentum and angular momentum, 
   CHECK(reference::limit_strain(world, limited) <= 1e-12);
   CHECK(glm::distance(limited.position[0], state.position[0]) > 1e-4);
   const auto before = momenta(state), after = momenta(limited);
-  // Sums of 289 vertices; a correction is along its spring as it then is, so angular momentum about the
-  // positions before is kept to the corrections' share of the arm only.
+  // Sums over 289 vertices. A correction is along its spring's present direction, so angular momentum about
+  // the earlier positions is kept only up to the corrections' share of the arm.
   CHECK(glm::distance(before[0], after[0]) < 1e-12);
   CHECK(glm::distance(before[1], after[1]) < 1e-15);
 }

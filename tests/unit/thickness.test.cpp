@@ -1,4 +1,4 @@
-// How thick self-collision must be for a mesh, and what is told where it is less.
+// The thickness of self-collision that a mesh needs, and the warning if there is less.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -12,7 +12,7 @@ using model::dvec3;
 
 namespace {
 
-/// The same by trying points of the triangle: never more than the truth, and less by a part of 2 / n.
+/// The radius by trying points of the triangle: never more than the truth, and at most a share of 2 / n less.
 double tried(const dvec3& a, const dvec3& b, const dvec3& c) {
   constexpr int n = 300;
   double farthest = 0.0;
@@ -55,7 +55,8 @@ TEST_CASE("the thickness that holds on a grid is 1.2 times half the diagonal of 
 }
 
 TEST_CASE(
-    "a self-collision thinner than what holds is warned of with the number, a thicker one or none is not") {
+    "a self-collision thinner than the mesh needs gets a warning with the number, a thicker one or none does "
+    "not") {
   scene::Scene scene;
   scene.cloths.emplace_back().mesh = scene::Grid{11, 11, 0.5, 0.5};
   const model::Model model = *model::build(scene);

@@ -1,4 +1,4 @@
-// Who guesses tokens is not listened to for a while, and is forgotten afterwards.
+// A client that guesses tokens is refused for a while, and forgotten afterwards.
 #include "server/net/token_guard.h"
 
 #include "tests/catch.h"
@@ -18,10 +18,10 @@ void guess(TokenGuard& guard, const std::string& address, int times, std::int64_
 }  // namespace
 
 TEST_CASE("after its wrong tokens an address waits for as long as the next one takes to be due") {
-  TokenGuard guard(10);  // one each 6 s
+  TokenGuard guard(10);  // one guess every 6 s
   guess(guard, "a", 10, 0);
   CHECK(guard.wait("a", 0) == 6);
-  CHECK(guard.wait("a", 1) == 6);  // rounded up: who waits that long is not sent away again
+  CHECK(guard.wait("a", 1) == 6);  // rounded up: a client that waits that long is not refused again
   CHECK(guard.wait("a", 5 * second + 1) == 1);
   CHECK(guard.wait("a", 6 * second - 10) == 1);
   CHECK(guard.wait("a", 6 * second + 10) == 0);
@@ -41,7 +41,7 @@ TEST_CASE("in an hour of guessing as fast as it may an address is heard N times 
   CHECK(heard >= 60 * 7);
 }
 
-TEST_CASE("one address's wrong tokens are not another's") {
+TEST_CASE("wrong tokens of one address do not count for another") {
   TokenGuard guard(1);
   guess(guard, "a", 1, 0);
   CHECK(guard.wait("a", 0) == 60);
@@ -49,12 +49,12 @@ TEST_CASE("one address's wrong tokens are not another's") {
 }
 
 TEST_CASE("an address that may send all its wrong tokens at once again is forgotten, and not before") {
-  TokenGuard guard(2);  // one each 30 s
+  TokenGuard guard(2);  // one guess every 30 s
   for (int i = 0; i < 1000; ++i) guess(guard, std::to_string(i), 1, 0);
   guess(guard, "a", 2, 0);
   CHECK(guard.count() == 1001);
   guess(guard, "b", 1, 31 * second);
-  CHECK(guard.count() == 2);  // "a" has one back
+  CHECK(guard.count() == 2);  // one guess of "a" has expired
   guess(guard, "a", 1, 32 * second);
   CHECK(guard.wait("a", 32 * second) > 0);
   guess(guard, "c", 1, 200 * second);

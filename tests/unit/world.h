@@ -1,4 +1,4 @@
-// A scene for the double-precision reference, where nothing collides.
+// A scene for the double-precision reference, without collisions.
 #pragma once
 
 #include "server/reference/reference.h"

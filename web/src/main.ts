@@ -1,4 +1,4 @@
-// Starts the page: the connection first, since its handshake needs no processor while WebGL starts.
+// Starts the page. The connection comes first: its handshake needs no processor while WebGL starts.
 import { element } from "./panel/dom";
 import { Page } from "./page";
 import { Stage } from "./view/stage";

@@ -1,4 +1,4 @@
-// Wires the connection, the scene's document, the stage and the controls to each other.
+// Connects the parts of the page: the link, the scene's document, the stage and the controls.
 import { Connection, type LinkEvents } from "./link/connection";
 import { button, element } from "./panel/dom";
 import type { SolverFacts } from "./panel/field";
@@ -31,7 +31,7 @@ import { Transport } from "./panel/transport";
 type Params = Record<string, unknown>;
 
 export class Page {
-  private stage!: Stage; // given by show(), before any event of the connection can arrive
+  private stage!: Stage; // set by show(), before the first event of the connection
   private readonly hud = new Hud();
   private readonly connection = new Connection(
     new URLSearchParams(location.search).get("session") ?? "main",
@@ -46,11 +46,11 @@ export class Page {
   private readonly notifications = this.makeNotifications();
   private layout: Layout | null = null;
   private latest: ShownFrame | null = null;
-  private moved: MovedCollider[] = []; // before the next frame
+  private moved: MovedCollider[] = []; // colliders' places for the next frame
   private sceneName = "";
   private toldOfDivergence = false;
-  private diverged = false; // by the last status
-  private mayEdit = true; // a viewer's role may only watch
+  private diverged = false; // in the last status
+  private mayEdit = true; // false for a viewer, who may only watch
 
   constructor() {
     this.connection.connect();
@@ -132,7 +132,7 @@ export class Page {
         hook.framesReceived++;
         this.hud.countReceived();
         this.slow.picture();
-        const replaced = this.latest; // before it was drawn
+        const replaced = this.latest; // a newer frame came before this one was drawn
         if (replaced && !document.hidden) this.connection.acknowledge(replaced.header.sequence);
         this.latest = { ...frame, moved: this.moved };
       },
@@ -235,11 +235,12 @@ export class Page {
 
   private tellDivergence(diverged: Diverged): void {
     this.toldOfDivergence = true;
-    // The patch applied, the server goes on from the last good state by itself.
+    // Once the patch is applied, the server continues from the last good state by itself.
     showDiverged(diverged, async (patch) => void (await this.connection.request("scene.patch", { patch })));
   }
 
-  // Somebody else may have seen to it, or it was before this page was opened.
+  // Shows and clears the notice by the status: another viewer may have applied the remedy, or the scene blew up before
+  // this page was opened.
   private followDivergence({ diverged, stability }: Status): void {
     if (this.diverged && !diverged) {
       clearDiverged();
@@ -255,7 +256,7 @@ export class Page {
     });
   }
 
-  // A request lost with its connection needs no notice: the banner tells.
+  // A request that is lost with its connection needs no notice: the banner reports the loss.
   private request(method: string, params: Params = {}): void {
     this.connection.request(method, params).catch((error: Error) => {
       if (error instanceof RpcError) noticeError("The server refused this", error);

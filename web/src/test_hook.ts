@@ -1,4 +1,4 @@
-// What browser tests read; nothing in the page depends on it.
+// Values that browser tests read; nothing in the page depends on them.
 import type { Frame } from "./link/protocol";
 import type { SceneDocument } from "./link/scene_types";
 import type { Stage } from "./view/stage";
@@ -9,7 +9,7 @@ interface TestHook {
   simTime: number; ///< of the last frame drawn [s]
   step: number;
   lastFrame: Frame | null;
-  firstFrameAt: number; ///< [ms] since navigation, 0 before
+  firstFrameAt: number; ///< [ms] since navigation; 0 before the first frame
   document: SceneDocument | null;
   stage: Stage | null;
 }

@@ -1,4 +1,4 @@
-// Applying what the lab found: the way back, and what was changed in words.
+// Applies what the lab found to the scene: the patch that undoes a change, and the replaced values in words.
 import { valueAt } from "../link/json_patch";
 import type { Operation, Patch } from "../link/scene_types";
 
@@ -6,7 +6,7 @@ type Tree = Record<string, unknown>;
 
 const isTree = (value: unknown): value is Tree => typeof value === "object" && value !== null && !Array.isArray(value);
 
-/// The patch that brings `document` back after `patch`. Arrays are restored whole.
+/// The patch that undoes `patch` and restores `document`. Arrays are restored whole.
 export function reverseOf(document: unknown, patch: Patch): Patch {
   if (Array.isArray(patch)) {
     return patch.map(({ path }): Operation => ({ op: "replace", path, value: valueAt(document, path) })).reverse();
@@ -26,7 +26,7 @@ function mergeBack(document: Tree, patch: Tree): Tree {
 const written = (value: unknown): string =>
   typeof value === "number" ? String(Number(value.toPrecision(4))) : String(value).replaceAll("_", " ");
 
-/// "method was symplectic euler, dt was 0.001": the plain values that `patch` changes, as they were.
+/// The plain values of `document` that `patch` replaces, in words: "method was symplectic euler, dt was 0.001".
 export function formerly(document: unknown, patch: Patch): string {
   const places = Array.isArray(patch) ? patch.map(({ path, value }) => ({ path, value })) : leaves(patch, "");
   const changed = places.filter(({ path, value }) => valueAt(document, path) !== value && !isContainer(value));

@@ -1,5 +1,5 @@
-// The tab with speed against accuracy: the chart, the present setting on it, the same as a table, and what was left
-// out.
+// The tab with speed against accuracy: the chart, the present setting on it, the points as a table, and the list of
+// what was left out.
 import { labelled, make, makeNumber, makeSelect, numberIn, say } from "./dom";
 import { Drawing } from "./drawing";
 import { Picture } from "./picture";

@@ -1,4 +1,4 @@
-// The tab that asks for a tolerance and answers with the cheapest way to step that keeps it.
+// The tab that asks for a tolerance and answers with the cheapest setting that keeps it.
 import { labelled, make, makeButton, makeNumber, numberIn, say } from "./dom";
 import { Drawing } from "./drawing";
 import { Picture } from "./picture";
@@ -9,7 +9,7 @@ import type { Choice, Point } from "./types";
 
 const presets = ["1e-2", "1e-3", "1e-4"];
 
-/// A tolerance as the lab takes it; what it is else, in words.
+/// The tolerance typed into `input`, (0, 1]; throws an Error that says what is allowed.
 export function readTolerance(input: HTMLInputElement): number {
   const tolerance = numberIn(input);
   if (tolerance === undefined || !(tolerance > 0 && tolerance <= 1)) {
@@ -21,7 +21,7 @@ export function readTolerance(input: HTMLInputElement): number {
   return tolerance;
 }
 
-/// A field for a tolerance, with buttons for the usual ones.
+/// A field for a tolerance, with buttons for the usual values.
 export function toleranceField(input: HTMLInputElement): HTMLElement {
   input.setAttribute("aria-label", "Tolerance");
   const buttons = presets.map((text) =>
@@ -37,7 +37,7 @@ export function toleranceField(input: HTMLInputElement): HTMLElement {
   );
 }
 
-/// How far the error may turn out to be larger.
+/// The upper bound of a point's error as text: " (at most 1e-3)"; "" where it is unknown or the same as the error.
 function atMost({ largest_position_error: seen, largest_position_error_high: high }: Point): string {
   return high === null || errorText(high) === errorText(seen) ? "" : ` (at most ${errorText(high)})`;
 }

@@ -1,4 +1,4 @@
-// Elements made by the lab's drawer.
+// Makes HTML elements for the lab's drawer.
 
 type Child = Node | string;
 
@@ -20,7 +20,7 @@ export function makeButton(text: string, className: string, run: () => void): HT
   return made;
 }
 
-/// Says it only when it changed: a status that is rewritten is read out again.
+/// Sets the text of `place` only when it changed: a screen reader reads a status again each time it is written.
 export function say(place: HTMLElement, text: string): void {
   place.hidden = text === "";
   if (place.textContent !== text) place.textContent = text;
@@ -46,7 +46,7 @@ export function labelled(text: string, control: HTMLElement, title = ""): HTMLLa
   return label;
 }
 
-/// A field for a number; what is not typed is undefined.
+/// A field for a number; a field left empty yields undefined.
 export function makeNumber(placeholder: string, value = ""): HTMLInputElement {
   const input = make("input", "lab-number");
   input.type = "text";

@@ -1,4 +1,4 @@
-// The lab: a drawer beside the cloth with four tabs. It remembers nothing beyond this page.
+// The lab: a drawer beside the cloth with four tabs. Nothing of it is stored in the browser.
 import { button, element } from "../panel/dom";
 import { formerly, reverseOf } from "./apply";
 import { ChartTab } from "./chart";
@@ -17,7 +17,7 @@ export interface LabEvents {
   document(): SceneDocument | null;
   mayEdit(): boolean;
   applied(depth: string): void;
-  toggled(open: boolean): void; ///< the picture's free part of the window is another
+  toggled(open: boolean): void; ///< changes the free part of the window
 }
 
 const titles: Record<Kind, string> = { chart: "Chart", stability: "Stability", choose: "Choose", simplify: "Simplify" };
@@ -85,7 +85,7 @@ export class Lab {
     for (const tab of Object.values(this.tabs)) tab.setMethods(methods);
   }
 
-  /// The role is known, or another one.
+  /// Called when the server tells this page's role, at first or anew.
   roleChanged(): void {
     for (const kind of Object.keys(titles) as Kind[]) this.changed(kind);
   }
@@ -146,7 +146,7 @@ export class Lab {
     this.tabs[kind].update();
   }
 
-  // Says what was changed, and offers the way back.
+  // Applies `patch` and shows a notice that says what was changed and offers to undo it.
   private async apply(patch: Patch, what: string): Promise<void> {
     const before = this.events.document();
     if (!before || !this.events.mayEdit()) return;

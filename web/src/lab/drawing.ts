@@ -1,4 +1,4 @@
-// Keeps a picture up with its job: the drawing is fetched again as results arrive, at most twice a second.
+// Keeps a picture up to date with its job: it fetches the drawing again as results arrive, at most twice a second.
 import type { Jobs } from "./jobs";
 import type { Axis, Kind } from "./types";
 import type { Picture } from "./picture";
@@ -6,8 +6,9 @@ import type { Picture } from "./picture";
 const fetchEvery = 500; // [ms]
 
 export class Drawing {
-  text: string | null = null; ///< as it came
-  private wanted = ""; // what the drawing should be of: changes when it is out of date
+  text: string | null = null; ///< the SVG as the server sent it
+  // names the job, axis and result to draw; the drawing is out of date while it differs from `drawn`
+  private wanted = "";
   private drawn = "";
   private fetching = false;
   private fetchedAt = -Infinity;
@@ -21,10 +22,10 @@ export class Drawing {
     private readonly problem: (error: Error) => void,
   ) {}
 
-  /// The drawing of the job's present result, on `axis`.
+  /// Asks for the drawing of the job's present result, on `axis`.
   want(result: object, axis: Axis): void {
     const { ofJob } = this.jobs.of(this.kind);
-    if (ofJob === null) return; // gone with the connection: the last drawing stays
+    if (ofJob === null) return; // the job is gone with the connection: the last drawing stays
     this.wanted = `${ofJob} ${axis} ${stamp(result)}`;
     this.axis = axis;
     this.schedule();
@@ -34,7 +35,7 @@ export class Drawing {
 
   private schedule(): void {
     if (this.timer || this.fetching || this.wanted === this.drawn) return;
-    const otherAxis = this.drawn.split(" ")[1] !== this.axis; // somebody waits for it
+    const otherAxis = this.drawn.split(" ")[1] !== this.axis; // the user chose another axis and waits for it
     const wait = otherAxis ? 0 : Math.max(0, this.fetchedAt + fetchEvery - performance.now());
     this.timer = window.setTimeout(() => void this.fetch(), wait);
   }
@@ -57,7 +58,7 @@ export class Drawing {
   }
 }
 
-// Each result that arrives is an object of its own.
+// Numbers the results: each result that arrives is an object of its own.
 const stamps = new WeakMap<object, number>();
 let last = 0;
 function stamp(result: object): number {

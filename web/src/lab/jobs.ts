@@ -1,9 +1,9 @@
-// The lab's jobs as this page knows them: at most one of each kind, from the wish to measure to what came of it.
+// The lab's jobs as this page knows them: at most one of each kind, from the request to its result.
 import type { RpcErrorData } from "../link/rpc";
 import { RpcError } from "../link/rpc";
 import type { Arrival, Axis, Kind, Progress, Results } from "./types";
 
-/// asked: the server has not answered yet; lost: with the connection.
+/// asked: the server has not answered yet; lost: the connection closed, and the job ended with it.
 export type State = "idle" | "asked" | "queued" | "running" | "finished" | "cancelled" | "failed" | "lost";
 export type Format = "json" | "csv" | "svg";
 
@@ -18,8 +18,8 @@ export interface Job<K extends Kind = Kind> {
   stale: boolean;
   cached: boolean;
   beside: boolean;
-  result: Results[K] | null; ///< while the next one is measured, still that of the last
-  ofJob: number | null; ///< the job `result` is of
+  result: Results[K] | null; ///< while the next job is measured, still the result of the last one
+  ofJob: number | null; ///< the job that `result` comes from
   error: RpcErrorData | null;
 }
 
@@ -32,7 +32,7 @@ export interface JobEvents {
 }
 
 const kinds: Kind[] = ["chart", "stability", "choose", "simplify"];
-const staleDelay = 300; // [ms] after a change, when sliders rest
+const staleDelay = 300; // [ms] after a change: by then a moved slider is at rest
 
 function fresh<K extends Kind>(kind: K): Job<K> {
   return {
@@ -74,7 +74,7 @@ export class Jobs {
       );
       if (job.state === "asked") Object.assign(job, { id, ahead, state: ahead > 0 ? "queued" : "running" });
     } catch (error) {
-      if (job.state !== "asked") return; // lost with the connection, which says so
+      if (job.state !== "asked") return; // the job was lost with the connection, and the page says so already
       Object.assign(job, before);
       if (error instanceof RpcError) this.events.refused(error);
     }
@@ -85,11 +85,12 @@ export class Jobs {
     const { id } = this.of(kind);
     if (id === null) return;
     await this.events.request("lab.cancel", { job: id }).catch((error: unknown) => {
-      if (error instanceof RpcError && working(this.of(kind) as Job)) this.events.refused(error); // else it was over before
+      // otherwise the job had ended before the request arrived
+      if (error instanceof RpcError && working(this.of(kind) as Job)) this.events.refused(error);
     });
   }
 
-  /// The text of what was measured so far.
+  /// The result so far, as the text of a file.
   async exported(kind: Kind, format: Format, axis: Axis): Promise<string> {
     const { text } = await this.events.request<{ text: string }>("lab.export", {
       job: this.of(kind).ofJob,
@@ -113,12 +114,12 @@ export class Jobs {
     if (!job) return;
     const { state, stale, cached, beside, error = null, result } = arrival;
     Object.assign(job, { state, error });
-    // One that was cancelled or failed before its first result leaves what there was.
+    // A job that was cancelled or failed before its first result leaves the earlier result in place.
     if (result && hasContent(arrival)) Object.assign(job, { result, ofJob: arrival.job, stale, cached, beside });
     this.events.changed(job.kind);
   }
 
-  /// Jobs end with the connection; what they found stays.
+  /// The connection closed: its jobs end, the results they found stay.
   lost(): void {
     for (const kind of kinds) {
       const job = this.of(kind) as Job;
@@ -128,7 +129,7 @@ export class Jobs {
     }
   }
 
-  /// Asks, a little later, which results are of an earlier scene.
+  /// Asks, `staleDelay` later, which results belong to an earlier scene.
   sceneChanged(): void {
     clearTimeout(this.timer);
     if (kinds.some((kind) => this.of(kind).ofJob !== null))
@@ -146,7 +147,7 @@ export class Jobs {
     }
   }
 
-  // Its first news may come before the answer that names it.
+  // Finds the job with this id. Its first message may arrive before the answer to the request, which names the id.
   private adopt(kind: Kind, id: number): Job | null {
     const job = this.jobs[kind] as Job | undefined;
     if (!job) return null;
@@ -155,7 +156,7 @@ export class Jobs {
   }
 }
 
-/// Whether there is anything to look at yet.
+/// True if the result holds something to show.
 function hasContent({ kind, result, state }: Arrival): boolean {
   if (state === "finished") return true;
   switch (kind) {

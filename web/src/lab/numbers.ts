@@ -1,4 +1,4 @@
-// The numbers of a scene over which a stability map can be drawn, by name.
+// Lists the numbers of a scene over which a stability map can be drawn, by name.
 import type { SceneDocument } from "../link/scene_types";
 
 export interface SceneNumber {
@@ -7,7 +7,7 @@ export interface SceneNumber {
   value: number;
 }
 
-// What no map varies: names of versions, the axis the map has anyway, and what is no quantity (places, directions).
+// The keys that no map varies: versions, the axis every map has, and numbers that are no quantity (places, directions).
 const without =
   /^\/(version|solver\/|cloths\/\d+\/(mesh|transform|pins|weights|start)\/|colliders\/\d+\/(motion\b|\w+\/\w+\/\d))/;
 
@@ -36,7 +36,7 @@ const plain = (name: string): string =>
     .replace(/ material /, " ")
     .replace(/ mass /, " mass ");
 
-/// Every number that makes sense, what is zero left out: a map spans ratios of it.
+/// All numbers that a map can vary, without those that are 0: a map spans ratios of a number.
 export function numbersOf(document: SceneDocument): SceneNumber[] {
   const found: SceneNumber[] = [];
   walk(

@@ -1,19 +1,20 @@
-// The server's drawing in the page: its marks can be pointed at, walked with the arrow keys and chosen.
+// The server's drawing in the page. Its marks can be pointed at, walked with the arrow keys and chosen.
 import { make, makeButton } from "./dom";
 
-/// `action`: what a click does.
+/// A tooltip. `action` says what a click on the mark does.
 export interface Tip {
   title: string;
   lines: string[];
   action: string | null;
 }
 
-/// A mark's key is its data-index, its place in the result's list; of a map's cell "METHOD/COLUMN/CELL".
+/// Events of the marks. A mark's key is its data-index, its place in the result's list; for a cell of a map it is
+/// "METHOD/COLUMN/CELL".
 export interface PictureEvents {
-  /// What a mark stands for; null: nothing to tell.
+  /// The tooltip of a mark; null if it has none.
   tip(key: string): Tip | null;
   choose(key: string): void;
-  /// The curve a mark is on, and its place along it, above 0: the arrow keys' order.
+  /// The curve of a mark and its place along the curve, above 0: the arrow keys go in this order.
   order(key: string): { curve: string; along: number };
 }
 
@@ -24,10 +25,10 @@ function keyOf(mark: SVGElement): string {
   return index ?? `${mark.closest<SVGElement>("[data-method]")?.dataset.method}/${column}/${cell}`;
 }
 
-const reach = 18; // [px] from the pointer to the nearest mark
+const reach = 18; // [px]: farthest distance from the pointer to a mark that it points at
 const drawingNamespace = "http://www.w3.org/2000/svg";
 
-/// A place in values; in the panel of a method, where the drawing has one each.
+/// A place in values; `panel` is the method whose panel it lies in, if the drawing has one for each method.
 export interface Place {
   x: number;
   y: number;
@@ -36,17 +37,17 @@ export interface Place {
 
 export class Picture {
   readonly element = make("div", "lab-picture");
-  private readonly scroller = make("div", "lab-scroller"); // where the window is too narrow for its words
+  private readonly scroller = make("div", "lab-scroller"); // scrolls where the window is too narrow for the drawing
   private readonly tooltip = make("div", "lab-tip");
   private drawing: SVGSVGElement | null = null;
-  private marks = new Map<string, SVGElement>(); // those that have something to tell
+  private marks = new Map<string, SVGElement>(); // marks that have a tooltip
   private shown = ""; // key of the mark whose tooltip is up
-  private pinned = false; // by a finger: it stays until one touches elsewhere
+  private pinned = false; // true after a tap: the tooltip stays until a touch elsewhere
   private focused = "";
   private redrawing = false;
-  private place: Place | null = null; // of the present setting
+  private place: Place | null = null; // place of the present setting
 
-  /// `moves`: the present setting is marked here, not where it was when the drawing was made.
+  /// `moves`: mark the present setting here as it changes, and remove the mark that the drawing came with.
   constructor(
     private readonly events: PictureEvents,
     private readonly moves = false,
@@ -69,7 +70,7 @@ export class Picture {
     return this.drawing === null;
   }
 
-  /// Replaces the drawing; what is pointed at stays so.
+  /// Replaces the drawing and keeps the mark that is pointed at.
   show(text: string, title: string): void {
     const root = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
     if (root.namespaceURI !== drawingNamespace || root.localName !== "svg")
@@ -77,7 +78,7 @@ export class Picture {
     const drawing = document.importNode(root, true) as unknown as SVGSVGElement;
     this.prepare(drawing, title);
     const hadFocus = this.drawing?.contains(document.activeElement) ?? false;
-    this.redrawing = true; // a mark that is taken away loses the focus, before it is gone
+    this.redrawing = true; // a removed mark loses the focus while it is still in the document
     if (this.drawing) this.drawing.replaceWith(drawing);
     else this.scroller.append(drawing);
     this.redrawing = false;
@@ -88,9 +89,9 @@ export class Picture {
     this.point(this.shown, this.pinned);
   }
 
-  // What stands around the drawing in words is left out of it here; a pointer is told what the titles say.
+  // Removes what the page says beside the drawing, and the titles that its tooltips replace.
   private prepare(drawing: SVGSVGElement, title: string): void {
-    const scripts = "script, foreignObject, style"; // none are expected
+    const scripts = "script, foreignObject, style"; // removed for safety; none are expected
     for (const node of drawing.querySelectorAll(`${scripts}, .heading, .notes, [data-index] title, [data-cell] title`))
       node.remove();
     if (this.moves) for (const node of drawing.querySelectorAll(".present:not(.legend *)")) node.remove();
@@ -112,7 +113,7 @@ export class Picture {
     this.point("", false);
   }
 
-  /// Marks the present setting at these values, or nowhere.
+  /// Marks the present setting at these values; null removes the mark.
   showPresent(place: Place | null): void {
     this.place = place;
     this.drawPresent();
@@ -143,7 +144,7 @@ export class Picture {
     if (hadFocus && this.focused !== "") first?.focus({ preventScroll: true });
   }
 
-  /// The mark under the pointer, else the nearest one in reach; "" where there is none.
+  /// The key of the mark under the pointer, else of the nearest one within `reach`; "" if there is none.
   private nearest(event: MouseEvent): string {
     const under = (event.target as Element).closest<SVGElement>(markSelector);
     if (under && this.marks.has(keyOf(under))) return keyOf(under);
@@ -160,7 +161,7 @@ export class Picture {
     if ((event.target as Element).closest(".lab-tip")) return;
     const key = this.nearest(event);
     if (event.pointerType === "touch")
-      this.point(key, true); // a finger hides what it points at: look first
+      this.point(key, true); // a finger hides the mark it points at: the first tap shows the tooltip
     else if (key !== "") this.events.choose(key);
   }
 
@@ -177,7 +178,7 @@ export class Picture {
     event.stopPropagation();
   }
 
-  /// To the next mark on the same curve.
+  /// Moves the focus to the next mark on the same curve.
   private walk(from: string, direction: number): void {
     const { curve } = this.events.order(from);
     const same = [...this.marks.keys()].filter((key) => this.events.order(key).curve === curve);
@@ -185,7 +186,7 @@ export class Picture {
     this.focus(same[same.indexOf(from) + direction]);
   }
 
-  /// To the nearest mark of the next curve.
+  /// Moves the focus to the nearest mark on the next curve.
   private change(from: string, direction: number): void {
     const here = this.events.order(from);
     const keys = [...this.marks.keys()];
@@ -227,7 +228,7 @@ export class Picture {
     });
   }
 
-  // Above the mark or below it, and inside the picture.
+  // Places the tooltip above the mark, or below it if there is no room above, and inside the picture.
   private putBeside(mark: SVGElement): void {
     const frame = this.element.getBoundingClientRect();
     const at = mark.getBoundingClientRect();
@@ -262,7 +263,8 @@ export class Picture {
   }
 }
 
-/// Where a value is in the view box, by the attributes that tell the scales; those beyond the range are on its edge.
+/// Where a value lies along an axis, in units of the view box. The element's data attributes give the scale; a value
+/// beyond its range lies on the edge. null if the attributes or the value are no numbers.
 function along({ dataset }: SVGElement, axis: "x" | "y", start: string, end: string, value: number): number | null {
   const [low, high, from, to] = [`${axis}0`, `${axis}1`, start, end].map((name) => Number(dataset[name] ?? NaN)) as [
     number,

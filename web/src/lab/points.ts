@@ -1,4 +1,4 @@
-// Points of a chart or of a choice: what a pointer is told of one, and the table of them all.
+// The points of a chart or of a choice: the tooltip of one point, and the table of all.
 import { make, makeButton } from "./dom";
 import { Table } from "./table";
 import { axisNames, costText, errorText, iterationsText, limitText, settingText, stepText } from "./text";
@@ -6,7 +6,8 @@ import type { Axis, Point } from "./types";
 import type { Tip } from "./picture";
 import { methodText } from "../panel/methods";
 
-/// Which error of a point is shown, and how it is called; `size` of the cloth [m] where it is a length over that.
+/// The error of a point that is shown, and its name; `size`: size of the cloth [m] if the error is relative to it, else
+/// null.
 export interface Shown {
   name: string;
   size: number | null;
@@ -19,7 +20,7 @@ export const onAxis = (axis: Axis, size: number | null): Shown => ({
   of: ({ error }) => error[axis],
 });
 
-/// What the choice goes by.
+/// The error that decides the choice.
 export const largestOnTheWay: Shown = {
   name: "largest position error",
   size: null,
@@ -112,7 +113,7 @@ export function applyButton(name: string, apply: () => void): HTMLButtonElement 
   return button;
 }
 
-/// "xpbd, dt 1 ms, 4 iterations: not enough time left".
+/// A setting that was not measured, as text: "xpbd, dt 1 ms, 4 iterations: not enough time left".
 export function leftOutText(method: string, dt: number | null, iterations: number | null, reason: string): string {
   const setting = [methodText(method).name, dt === null ? "" : `dt ${stepText(dt)}`, iterationsText(iterations)];
   return `${setting.filter((part) => part !== "").join(", ")}: ${reason}`;

@@ -1,4 +1,4 @@
-// Where the present setting lies on a chart: between the points that were measured with its method, never beyond them.
+// Finds where the present setting lies on a chart: between points measured with its method, never beyond them.
 import type { Axis, Point, Setting } from "./types";
 
 export type Place = { error: number; cost: number } | { reason: string };
@@ -6,7 +6,7 @@ export type Place = { error: number; cost: number } | { reason: string };
 const sameNumber = (a: number | null, b: number | null): boolean =>
   a === b || (a !== null && b !== null && Math.abs(a - b) <= 1e-9 * Math.abs(b));
 
-/// Between `a` at 0 and `b` at 1, straight on logarithmic paper.
+/// Interpolates from `a` (share 0) to `b` (share 1), linearly in the logarithm.
 const between = (a: number, b: number, share: number): number => a * (b / a) ** share;
 
 interface Sample {
@@ -15,8 +15,8 @@ interface Sample {
   cost: number;
 }
 
-/// Error on `axis` and cost [ms per simulated second] of `setting`, interpolated in dt along the curve of its method
-/// and iterations, all in logarithms; or why they are not known.
+/// Error on `axis` and cost [ms per simulated second] of `setting`, or the reason why they are not known. Interpolated
+/// in dt along the curve of its method and iterations, in logarithms.
 export function placeOf(setting: Setting, points: Point[], axis: Axis): Place {
   const ofMethod = points.filter(({ method }) => method === setting.method);
   if (ofMethod.length === 0) return { reason: "the method is not on the chart" };
@@ -38,7 +38,7 @@ export function placeOf(setting: Setting, points: Point[], axis: Axis): Place {
 }
 
 function along(samples: Sample[], dt: number, blown: number[]): Place {
-  const slack = 1e-6; // a step is written with some digits less than it has
+  const slack = 1e-6; // a step is written with fewer digits than it has
   const above = samples.findIndex((sample) => sample.dt >= dt * (1 - slack));
   const upper = samples[above];
   const lower = samples[above - 1];
@@ -54,7 +54,7 @@ function along(samples: Sample[], dt: number, blown: number[]): Place {
 
 const milliseconds = (dt: number): string => `${Number((1000 * dt).toPrecision(3))} ms`;
 
-/// Which iterations, or which tolerance, were measured instead.
+/// The reason why no curve fits: says which iterations, or which tolerance, were measured instead.
 function otherwise(setting: Setting, points: Point[]): string {
   const counts = [...new Set(points.flatMap(({ iterations }) => iterations ?? []))].sort((a, b) => a - b);
   if (setting.iterations !== null && !counts.includes(setting.iterations)) {

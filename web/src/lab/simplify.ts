@@ -1,4 +1,4 @@
-// The tab with what each part of the scene is worth: what leaving it out, or coarsening it, does to error and cost.
+// The tab that shows what each part of the scene is worth: error and cost without it, or with it coarser.
 import { labelled, make, makeButton, makeNumber, numberIn, say } from "./dom";
 import { Drawing } from "./drawing";
 import { Picture } from "./picture";
@@ -9,14 +9,14 @@ import { Table } from "./table";
 import { costText, errorText, settingText } from "./text";
 import type { Simplification, Variant } from "./types";
 
-/// "−38 %" of the cost, "+2 %".
+/// A ratio of costs as a change: "−38 %", "+2 %".
 function savedText(ratio: number | null): string {
   if (ratio === null) return "–";
   const change = Math.round(100 * (ratio - 1));
   return change === 0 ? "±0 %" : change < 0 ? `−${-change} %` : `+${change} %`;
 }
 
-/// Of the whole's cost, and between what that may lie.
+/// Cost of a variant against the whole scene, with its range.
 function costNode(variant: Variant): Node {
   const cell = make("span", "", variant.measured ? savedText(variant.cost_ratio) : "–");
   if (
@@ -137,7 +137,7 @@ export class SimplifyTab extends Tab<"simplify"> {
   private verdict(variant: Variant): string {
     if (!variant.measured || variant === this.result?.recommended) return "";
     if (variant.drop) return "drop";
-    // Only what could go at all is worth a quieter machine.
+    // Only a variant that changes the motion little enough is worth measuring again on a quieter machine.
     const small = variant.change !== null && this.result !== null && variant.change <= this.result.tolerance;
     return small && variant.saves === "cannot tell" ? "within the noise" : "keep";
   }

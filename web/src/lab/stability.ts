@@ -129,7 +129,7 @@ export class StabilityTab extends Tab<"stability"> {
     this.content.append(this.picture.element, make("details", "lab-more", this.tableTitle, this.table.element));
   }
 
-  /// The list of numbers follows the scene.
+  /// Updates the list of numbers to the scene.
   override sceneChanged(): void {
     const document = this.around.document();
     if (!document) return;
@@ -150,7 +150,7 @@ export class StabilityTab extends Tab<"stability"> {
     return `At most ${Number(time_s.toPrecision(3))} s and ${steps} steps a trial`;
   }
 
-  // The others are meant to hold at any step: one may ask whether they do.
+  // Methods that iterate are meant to be stable at any step: they are measured on request only.
   protected override byDefault(method: string): boolean {
     return methodText(method).iterations === null;
   }
@@ -179,7 +179,7 @@ export class StabilityTab extends Tab<"stability"> {
     if (document) this.showPresent(document);
   }
 
-  // A factor on all stiffnesses is of the scene that was measured: it stays.
+  // Marks the present setting. A factor on all stiffnesses refers to the measured scene, so it keeps its value.
   private showPresent(document: SceneDocument): void {
     if (!this.result) return;
     const { field, present } = this.result;
@@ -220,7 +220,8 @@ export class StabilityTab extends Tab<"stability"> {
     };
   }
 
-  /// What makes the scene that of a cell; null where it was measured for an earlier scene, which the factor is of.
+  /// The operations that give the scene the setting of a cell. null if the cell was measured for an earlier scene and
+  /// holds a factor on that scene's stiffnesses.
   private operations({ method, column, cell }: Found): Operation[] | null {
     const map = this.result as StabilityMap;
     const solver: Operation[] = [

@@ -1,5 +1,4 @@
-// What the four tabs of the lab share: a start button with its options, progress, what to know of the result, and
-// export.
+// The base of the lab's four tabs: a start button with options, progress, notes on the result, and export.
 import { make, makeButton, makeCheck, say } from "./dom";
 import { working, type Format, type Job, type Jobs } from "./jobs";
 import type { Axis, Kind, Results, Setting } from "./types";
@@ -7,7 +6,7 @@ import { sentence } from "./text";
 import { methodText } from "../panel/methods";
 import type { Patch, SceneDocument } from "../link/scene_types";
 
-/// What a tab can do to the page around it.
+/// The page around a tab, as the tab uses it.
 export interface Surroundings {
   jobs: Jobs;
   apply(patch: Patch, what: string): void;
@@ -16,7 +15,7 @@ export interface Surroundings {
   document(): SceneDocument | null;
 }
 
-/// `awaits`: what will stand where the result is to come; `file`: its name, after the scene's.
+/// The texts of a tab. `awaits`: shown until there is a result; `file`: the last part of an exported file's name.
 interface Texts {
   lead: string;
   start: string;
@@ -24,7 +23,7 @@ interface Texts {
   file: string;
 }
 
-const shownNotes = 3; // more are folded
+const shownNotes = 3; // a longer list of notes is folded
 const pauseHint = "Times are true only while nothing else computes; it plays on afterwards.";
 
 export abstract class Tab<K extends Kind> {
@@ -87,7 +86,7 @@ export abstract class Tab<K extends Kind> {
     );
   }
 
-  /// Follows what the server said; call it once more when the tab comes up.
+  /// Shows the job's state. Call it once more when the tab is selected.
   update(): void {
     const job = this.around.jobs.of(this.kind);
     const busy = working(job as Job);
@@ -95,7 +94,8 @@ export abstract class Tab<K extends Kind> {
     this.startButton.disabled = busy || !this.around.mayEdit();
     this.startButton.title = this.around.mayEdit() ? "" : "A viewer may look at the cloth, not measure it";
     this.startButton.textContent = job.result && !busy ? "Measure again" : this.texts.start;
-    this.lead.hidden = busy || job.result !== null; // once at the start: nothing moves under a pointer that is about to cancel
+    // hidden for good at the first start: the Cancel button must not move under the pointer
+    this.lead.hidden = busy || job.result !== null;
     this.row.hidden = busy;
     this.why.hidden = busy || job.state !== "idle";
     this.placeholder.hidden = job.result !== null || job.state === "failed";
@@ -118,9 +118,9 @@ export abstract class Tab<K extends Kind> {
     this.show(job.result as Results[K]);
   }
 
-  /// The scene moved: what stands beside the result follows.
+  /// The scene changed: updates what stands beside the result.
   sceneChanged(): void {
-    /* most have nothing */
+    /* most tabs have nothing to update */
   }
 
   setMethods(methods: string[]): void {
@@ -135,15 +135,15 @@ export abstract class Tab<K extends Kind> {
 
   protected abstract show(result: Results[K]): void;
 
-  /// What goes with the request, beside the methods and what all have; throws what is wrong with it as text.
+  /// Parameters of the request, without the methods and those of every tab. Throws an Error that says what is wrong.
   protected abstract params(): Record<string, unknown>;
 
-  /// How much of the motion each of its runs has seen.
+  /// How much of the motion each run covers, as text.
   protected extent({ time_s }: Results[K]): string {
     return `${Number(time_s.toPrecision(3))} s simulated each time`;
   }
 
-  /// Whether a method takes part unless one says otherwise.
+  /// True if the method is measured unless the user chooses otherwise.
   protected byDefault(_method: string): boolean {
     return true;
   }
@@ -175,7 +175,7 @@ export abstract class Tab<K extends Kind> {
     this.optionsButton.setAttribute("aria-expanded", String(shown));
   }
 
-  // All of them goes without saying.
+  // The chosen methods; left out if all are chosen, as that is the server's default.
   private chosenMethods(): { methods?: string[] } {
     const methods = [...this.methodBoxes].filter(([, box]) => box.checked).map(([method]) => method);
     if (!this.options.contains(this.methodList) || methods.length === this.methodBoxes.size) return {};
@@ -262,7 +262,7 @@ export abstract class Tab<K extends Kind> {
     }
   }
 
-  // The job is gone with its connection: what the page has.
+  // The text to export when the job is gone with its connection: from what the page holds. Throws if it holds none.
   private kept(format: Format): string {
     const text =
       format === "json"
@@ -274,13 +274,13 @@ export abstract class Tab<K extends Kind> {
     return text;
   }
 
-  /// The drawing as it came.
+  /// The drawing as the server sent it; null if there is none.
   protected drawn(): string | null {
     return null;
   }
 }
 
-/// The scene's own way to step.
+/// The setting that the scene is stepped with.
 export function presentSetting(document: SceneDocument): Setting {
   const { method, dt, iterations, tolerance } = document.solver;
   const { iterations: iterates } = methodText(method);

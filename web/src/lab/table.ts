@@ -1,11 +1,11 @@
-// A table that is sorted by a click on a column's head: what the drawings show, for those who would rather read it.
+// The content of a drawing as a table. A click on a column's head sorts it.
 import { make, makeButton } from "./dom";
 
 export interface Column<Row> {
   title: string;
   hint?: string;
   text(row: Row): string | Node;
-  order?(row: Row): number | string | null; ///< null comes last; without it, not sortable
+  order?(row: Row): number | string | null; ///< sorts the column, null last; a column without it cannot be sorted
   className?: string;
 }
 
@@ -16,7 +16,7 @@ export class Table<Row> {
   private rows: Row[] = [];
   private descending = false;
 
-  /// Sorted by the column `sorted` at first; none: as the rows come.
+  /// `sorted`: the column that sorts the rows at first; without it they keep their order.
   constructor(
     caption: string,
     private readonly columns: Column<Row>[],

@@ -1,4 +1,4 @@
-// What the lab of the server answers (server/lab/result.schema.json), as far as the page reads it.
+// The results that the server's lab sends (server/lab/result.schema.json): the parts that the page reads.
 import type { RpcErrorData } from "../link/rpc";
 import type { Patch } from "../link/scene_types";
 
@@ -6,7 +6,7 @@ export type Kind = "chart" | "stability" | "choose" | "simplify";
 export const axes = ["position", "energy", "strain", "rest"] as const;
 export type Axis = (typeof axes)[number];
 
-/// A way to step a scene; null for what the method does not look at.
+/// A setting to step a scene with; null for a number that the method does not use.
 export interface Setting {
   method: string;
   dt_s: number;
@@ -14,8 +14,8 @@ export interface Setting {
   tolerance: number | null;
 }
 
-export type Errors = Record<Axis, number | null>; ///< shares: 0.01 is one percent
-/// [ms per simulated second]; the median lies between low and high, null where too few runs tell.
+export type Errors = Record<Axis, number | null>; ///< relative errors: 0.01 is one percent
+/// [ms per simulated second]. The median lies between low and high; null if there are too few runs to tell.
 export interface Cost {
   median: number;
   minimum: number;
@@ -27,7 +27,7 @@ export interface Cost {
 export interface Point extends Setting {
   error: Errors;
   largest_position_error: number | null;
-  largest_position_error_low: number | null; ///< of what a choice answers; null: not known
+  largest_position_error_low: number | null; ///< bounds of the largest error in a choice; null: not known
   largest_position_error_high: number | null;
   ms_a_simulated_s: Cost | null;
   blew_up_at_s: number | null;
@@ -83,7 +83,7 @@ export interface MapColumn {
 }
 export interface StabilityMap extends Measured {
   kind: "stability";
-  field: string; ///< JSON Pointer, or "stiffness": a factor on all of them
+  field: string; ///< JSON Pointer of a number, or "stiffness": a factor on all stiffnesses
   unit: string;
   present: { value: number; dt_s: number; method: string };
   time_s: number;
@@ -115,7 +115,7 @@ export interface Variant {
   change: number | null;
   ms_a_simulated_s: Cost | null;
   cost_ratio: number | null;
-  cost_ratio_low: number | null; ///< it lies between these; null: too few timings to tell
+  cost_ratio_low: number | null; ///< the ratio lies between low and high; null: too few timings to tell
   cost_ratio_high: number | null;
   saves: "yes" | "no" | "cannot tell" | null;
   dt_limit_s: number | null;
@@ -141,7 +141,7 @@ export interface Results {
   simplify: Simplification;
 }
 
-/// `lab.progress`.
+/// Notification `lab.progress`.
 export interface Progress {
   job: number;
   kind: Kind;
@@ -153,7 +153,7 @@ export interface Progress {
   stale: boolean;
 }
 
-/// `lab.result`: what there is so far.
+/// Notification `lab.result`: the result so far.
 export interface Arrival {
   job: number;
   kind: Kind;
@@ -161,7 +161,7 @@ export interface Arrival {
   stale: boolean;
   revision: number;
   cached: boolean;
-  beside: boolean; ///< the session played on meanwhile
+  beside: boolean; ///< the session was playing during the measurement
   result: Results[Kind] | null;
   error?: RpcErrorData;
 }

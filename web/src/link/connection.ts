@@ -1,4 +1,4 @@
-// The link to the server: connects, authenticates, subscribes, measures, and comes back by itself after a loss.
+// The link to the server: connects, authenticates, subscribes, measures the round trip, and reconnects after a loss.
 import { BadMessage, decode, type Frame, type Topology } from "./protocol";
 import { errorNotAllowed, Rpc, RpcError } from "./rpc";
 
@@ -17,8 +17,8 @@ const subprotocol = "clothlab.v1";
 const firstDelay = 0.25; // [s]: a restarted server is usually back at once
 const longestDelay = 8; // [s]
 const pingEvery = 1000; // [ms]
-const silenceLimit = 8000; // [ms] without one byte: sim.status alone comes 10 times a second
-const closeBadMessage = 4002; // 1002, "protocol error", is not a page's to use
+const silenceLimit = 8000; // [ms] without a byte: sim.status alone comes 10 times a second
+const closeBadMessage = 4002; // a page may not send 1002, "protocol error"
 
 export class Connection {
   bytesReceived = 0;
@@ -73,7 +73,7 @@ export class Connection {
     this.connect();
   }
 
-  // Everything is sent at once: the first frame needs no second round trip.
+  // Sends everything at once: the first frame needs no second round trip.
   private async greet(rpc: Rpc): Promise<void> {
     const token = sessionStorage.getItem("clothlab-token");
     try {
@@ -87,7 +87,8 @@ export class Connection {
         this.refuse(
           token === null ? "This server asks for a token." : `The server did not accept this token: ${error.message}.`,
         );
-      else if (error instanceof RpcError) this.tryLater(error.message); // too many of something: it passes
+      // too many of something, such as sessions: that passes
+      else if (error instanceof RpcError) this.tryLater(error.message);
     }
   }
 
@@ -121,7 +122,7 @@ export class Connection {
     }
   }
 
-  // What follows might be misread, too: it begins anew, but not at once, as the server may well say the same again.
+  // Reconnects, as later messages might be misread, too; but late, as the server may well send the same again.
   private distrust(error: BadMessage): void {
     this.abandon(closeBadMessage, error.message);
     this.delay = longestDelay;
@@ -143,7 +144,7 @@ export class Connection {
     );
   }
 
-  /// For good: nothing reconnects it.
+  /// Closes the link for good: it does not reconnect.
   close(): void {
     clearTimeout(this.retryTimer);
     this.abandon();
@@ -152,7 +153,7 @@ export class Connection {
   private abandon(code = 1000, reason = ""): void {
     if (!this.socket) return;
     this.socket.onopen = this.socket.onmessage = this.socket.onclose = null;
-    this.socket.close(code, reason.slice(0, 123)); // the most a close frame holds
+    this.socket.close(code, reason.slice(0, 123)); // a close frame holds at most this many bytes
     this.rpc?.close();
     this.socket = this.rpc = null;
   }
@@ -164,7 +165,7 @@ export class Connection {
   }
 
   private retry(why: string): void {
-    const wait = this.delay * (0.8 + 0.4 * Math.random()); // spread out: all viewers lost the server together
+    const wait = this.delay * (0.8 + 0.4 * Math.random()); // spread out: all viewers lost the server at the same time
     this.delay = Math.min(this.delay * 1.6, longestDelay);
     this.events.state("waiting", wait, why);
     this.retryTimer = window.setTimeout(() => this.connect(), wait * 1000);

@@ -1,4 +1,4 @@
-// Applies the patches the server accepted to the page's copy of the document: RFC 7396 (object) and RFC 6902 (array).
+// Applies accepted patches to the page's copy of the document: RFC 7396 (object) and RFC 6902 (array).
 import type { Operation, Patch } from "./scene_types";
 
 type Node = Record<string, unknown> | unknown[];
@@ -21,7 +21,7 @@ function child(node: unknown, key: string): unknown {
   return undefined;
 }
 
-/// The value at a JSON Pointer, undefined where there is none.
+/// The value at a JSON Pointer; undefined if there is none.
 export function valueAt(document: unknown, pointer: string): unknown {
   return keysOf(pointer).reduce(child, document);
 }
@@ -76,11 +76,11 @@ function operate(root: { document: unknown }, operation: Operation): void {
       break;
     }
     case "test":
-      break; // the server has held the test already
+      break; // the server has tested already
   }
 }
 
-/// A patched copy; `document` stays as it was.
+/// Returns a patched copy; `document` is not changed.
 export function applyPatch<T>(document: T, patch: Patch): T {
   if (!Array.isArray(patch)) return mergePatch(document, patch) as T;
   const root = { document: structuredClone(document) as unknown };

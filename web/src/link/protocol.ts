@@ -6,7 +6,7 @@ const kindTopology = 1;
 const kindFrame = 2;
 const encodingF32 = 0;
 const encodingQ16 = 1;
-const q16Bytes = 8; ///< a vertex
+const q16Bytes = 8; ///< per vertex
 const flagAsleep = 1;
 const flagDiverged = 2;
 
@@ -29,7 +29,7 @@ export interface Frame {
   header: Header;
   buffer: ArrayBuffer;
 }
-/// With what the session told before it: where its colliders are.
+/// A frame with the colliders' places, which the server sends just before it.
 export interface ShownFrame extends Frame {
   moved: MovedCollider[];
 }
@@ -47,14 +47,15 @@ export interface Topology {
   textureCoordinates: Float32Array; ///< [vertex_count * 2]
 }
 
-/// A message that is not what the protocol says; nothing of it may be used.
+/// A message that violates the protocol; nothing of it may be used.
 export class BadMessage extends Error {}
 
 function demand(condition: boolean, what: string): asserts condition {
   if (!condition) throw new BadMessage(what);
 }
 
-/// Throws a BadMessage; reads nothing outside the buffer. Frames are q16: this page asks for no others.
+/// Decodes a message. Throws a BadMessage; reads nothing outside the buffer. Frames are q16: the page asks for no other
+/// encoding.
 export function decode(buffer: ArrayBuffer): { topology: Topology } | { frame: Frame } {
   const header = decodeHeader(buffer);
   if (header.kind === kindTopology) return { topology: decodeTopology(header, buffer) };
@@ -149,7 +150,7 @@ function decodeTopology(header: Header, buffer: ArrayBuffer): Topology {
   };
 }
 
-/// The payload of a q16 frame as four 16-bit words a vertex (x, y, z, both normal bytes): no copy.
+/// The payload of a q16 frame as four 16-bit words per vertex (x, y, z, both bytes of the normal), without a copy.
 export function q16Words(frame: Frame): Uint16Array {
   return new Uint16Array(frame.buffer, headerBytes, frame.header.vertexCount * 4);
 }

@@ -1,4 +1,4 @@
-// JSON-RPC 2.0 over one WebSocket: requests as promises, notifications to a handler.
+// JSON-RPC 2.0 over a WebSocket: a request returns a promise, a notification goes to a handler.
 import { BadMessage } from "./protocol";
 
 export interface RpcErrorData {
@@ -40,7 +40,7 @@ function parsed(text: string): Incoming {
   try {
     message = JSON.parse(text);
   } catch {
-    // What is no JSON is no object either.
+    // Text that is no JSON falls through to the error below.
   }
   if (typeof message !== "object" || message === null) throw new BadMessage("a text message is no JSON object");
   return message;
@@ -71,7 +71,7 @@ export class Rpc {
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify({ jsonrpc: "2.0", method, params }));
   }
 
-  /// Takes one text frame of the server; throws a BadMessage if it is none.
+  /// Takes one text message of the server; throws a BadMessage if it is no JSON-RPC message.
   receive(text: string): void {
     const message = parsed(text);
     if (message.method !== undefined) {
@@ -85,7 +85,7 @@ export class Rpc {
     else waiting.resolve(message.result);
   }
 
-  /// The socket is gone: nobody will answer any more.
+  /// The socket is closed: every pending request fails, as no answer can come.
   close(): void {
     for (const waiting of this.pending.values())
       waiting.reject(new Error("the connection was lost before the server answered"));

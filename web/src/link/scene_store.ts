@@ -1,17 +1,17 @@
-// The page's copy of the scene: what the server last said, and the edits on their way to it.
-// Edits to the same place are coalesced to one message per `sendEvery`; the last value is always sent.
+// The page's copy of the scene: the server's last document, and the edits on their way to the server.
+// Edits to the same place are merged into one message per `sendEvery`; the last value is always sent.
 import { applyPatch, valueAt } from "./json_patch";
 import type { Operation, Patch, SceneDocument } from "./scene_types";
 
 const sendEvery = 50; // [ms]
-const oneChange = 2000; // [ms] between edits that are one change to a person: a slider that is dragged
+const oneChange = 2000; // [ms]: edits closer together count as one change for Undo, such as a dragged slider
 
 export interface StoreEvents {
   send(patch: Patch): Promise<{ revision?: number; applies?: string }>;
   fetch(): Promise<void>;
   changed(document: SceneDocument, whole: boolean): void;
   applied(depth: string): void;
-  wayBack(operations: Operation[]): void; ///< of the changes that this page made last
+  wayBack(operations: Operation[]): void; ///< operations that undo the last change that this page made
   rejected(error: Error): void;
 }
 
@@ -22,21 +22,22 @@ export class SceneStore {
   private inFlight: Operation[] | null = null;
   private timer = 0;
   private lastSent = -Infinity;
-  private readonly before = new Map<string, Operation>(); // the last change, undone
+  private readonly before = new Map<string, Operation>(); // the operations that undo the last change, by path
 
   constructor(private readonly events: StoreEvents) {}
 
-  /// The whole document came: `scene` or the answer of `scene.get`.
+  /// Takes a whole document, from `scene` or from the answer to `scene.get`.
   replace(document: SceneDocument, revision: number): void {
     this.document = document;
     this.revision = revision;
     this.events.changed(document, true);
   }
 
-  /// A patch came, ours or somebody else's; each revision is applied once, whichever message tells of it first.
+  /// Takes a patch, this page's or another viewer's. A revision is applied once, though several messages may tell it.
   patched(revision: number, patch: Patch): void {
     if (!this.document || revision <= this.revision) return;
-    // Defaults the server filled in are not in the patch: anything but plain values is fetched whole.
+    // A patch lacks the defaults that the server filled in: anything but plain values makes the page fetch the
+    // document.
     if (revision !== this.revision + 1 || !isPlain(patch)) {
       void this.events.fetch();
       return;
@@ -56,13 +57,13 @@ export class SceneStore {
     this.schedule();
   }
 
-  /// True while a change at or below `path` has not been answered yet: the control there leads, the document follows.
+  /// True while a change at or below `path` is unanswered: the control there keeps its value until the answer comes.
   busy(path: string): boolean {
     const touches = (operation: Operation) => operation.path === path || path.startsWith(operation.path + "/");
     return [...this.queue.values()].some(touches) || (this.inFlight?.some(touches) ?? false);
   }
 
-  /// The connection was lost: what was not sent is dropped, the next `scene` tells the truth.
+  /// The connection was lost: drops unsent edits, as the next `scene` brings the server's document.
   forget(): void {
     this.queue.clear();
     clearTimeout(this.timer);
@@ -105,7 +106,7 @@ export class SceneStore {
   }
 }
 
-/// The operation that brings back what one changes; null where it cannot be told.
+/// The operation that undoes another; null if it is none of replace, add, remove.
 function inverse(document: SceneDocument, { op, path }: Operation): Operation | null {
   if (op !== "replace" && op !== "add" && op !== "remove") return null;
   const value = valueAt(document, path);

@@ -1,4 +1,4 @@
-// The scene document (server/scene/README.md) as far as the page shows it. The server fills in every default.
+// The scene document (server/scene/README.md): the parts that the page shows. The server fills in every default.
 
 export type Vec3 = [number, number, number];
 
@@ -70,16 +70,16 @@ export interface Plane {
   point: Vec3;
   normal: Vec3;
 }
-/// The kinds of shape, by what the document calls them.
+/// The kinds of shape, under their names in the document.
 export interface Shapes {
   sphere: Sphere;
   plane: Plane;
 }
 type Kind = keyof Shapes;
-/// One of them, under the name of its kind.
+/// One shape, under the name of its kind.
 export type Shape = { [K in Kind]: { [Name in K]: Shapes[K] } }[Kind];
 
-/// What `cases` makes of the kind that a shape is; null of one that this page does not know. A kind that is left out
+/// Calls the function of `cases` for the shape's kind; null for a kind that this page does not know. A missing kind
 /// does not compile.
 export function byKind<T>(shape: Shape, cases: { [K in Kind]: (of: Shapes[K]) => T }): T | null {
   const made = <K extends Kind>(kind: K): T | null => {
@@ -97,7 +97,7 @@ export type Collider = Shape & {
   motion: Motion;
 };
 
-/// Where a collider that moves is at the time of a frame, by its place in the document's list.
+/// Where a moving collider is at the time of a frame. `index`: its place in the document's list.
 export type MovedCollider = Shape & { index: number };
 
 export interface SceneDocument {
@@ -121,5 +121,5 @@ export interface Operation {
   value?: unknown;
 }
 
-/// An array is RFC 6902, an object an RFC 7396 merge patch.
+/// A patch: an array is RFC 6902, an object an RFC 7396 merge patch.
 export type Patch = Operation[] | { [key: string]: unknown };

@@ -1,4 +1,4 @@
-// The elements of static/index.html by id, typed, with a clear error if one is missing.
+// Finds the elements of static/index.html by id, typed; throws an Error if one is missing.
 
 export function element<T extends HTMLElement>(id: string, type: new () => T): T {
   const found = document.getElementById(id);

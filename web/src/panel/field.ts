@@ -1,14 +1,14 @@
-// A field of the panel: what it shows, which places of the document it writes (JSON Pointers), what it says below.
+// A field of the panel: the value it shows, the places of the document it writes (JSON Pointers), and its note.
 import type { Scale } from "./slider";
 import { valueAt } from "../link/json_patch";
 import type { Operation, SceneDocument } from "../link/scene_types";
 
-/// The kinds of springs, as the document names their stiffnesses.
+/// The kinds of springs, as the document names them.
 export const kinds = ["structural", "shear", "bend"] as const;
 
-/// What `sim.status` says of the solver.
+/// Facts about the solver in `sim.status`.
 export interface SolverFacts {
-  /// Under the method `auto`: what steps the scene, and why.
+  /// Under the method `auto`: the method that steps the scene, and why.
   auto?: {
     state: "measuring" | "chosen" | "failed";
     method: string;
@@ -17,13 +17,13 @@ export interface SolverFacts {
     tolerance: number | null;
     why: string;
   } | null;
-  /// Of a spring's stretch the share that a visit takes away, for each cloth; only under PBD.
+  /// Share of a spring's stretch that one visit removes, for each cloth; under PBD only.
   pbd_stiffness?: Record<(typeof kinds)[number], number | null>[] | null;
-  /// The least thickness of self-collision at which no vertex slips between those of a triangle [m].
+  /// Least thickness of self-collision at which no vertex slips between the vertices of a triangle [m].
   thickness_that_holds?: number | null;
 }
 
-/// A line below a control, and what a click in it would change.
+/// A line below a control; `offer`: a button in it and the change it makes.
 export interface Note {
   text: string;
   offer?: { text: string; operations: Operation[] };
@@ -32,8 +32,8 @@ export interface Note {
 export interface FieldBase {
   key: string; ///< unique in the panel
   label: string;
-  paths: string[]; ///< the places it writes; the first is the one it reads
-  onRelease?: boolean; ///< sent when let go: each value rebuilds the cloth
+  paths: string[]; ///< the places it writes; it reads the first
+  onRelease?: boolean; ///< sent when the slider is released: each value rebuilds the cloth
   hint?: string; ///< a tooltip
   note?(values: Record<string, unknown>, facts: SolverFacts): Note; ///< `values` by the keys of all fields
   read?(document: SceneDocument): unknown;
@@ -54,7 +54,7 @@ export interface Section {
 
 export const meter = { unit: "m" };
 
-/// A field whose key is the first of the places it writes.
+/// A field for a number; its key is the first place it writes.
 export const number = (label: string, paths: string[], scale: Scale, more: Partial<FieldBase> = {}): Field => ({
   key: paths[0] as string,
   label,

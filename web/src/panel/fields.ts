@@ -1,4 +1,4 @@
-// What the panel offers for a scene: a list of sections and fields, each tied to JSON Pointers of the document.
+// Lists the panel's sections and fields for a scene, each tied to JSON Pointers of the document.
 import { type Field, kinds, meter, type Note, number, type Section, type SolverFacts, vector } from "./field";
 import { motionFields } from "./motion_fields";
 import { readable } from "./slider";
@@ -27,7 +27,7 @@ function pinSections(document: SceneDocument, cloth: number): Section[] {
   }));
 }
 
-/// In percent; null, no limit, is the slider's left end.
+/// The strain limit in percent. The slider's left end is null: no limit.
 function strainLimit(paths: string[]): Field {
   return number(
     "strain limit",
@@ -43,7 +43,7 @@ function strainLimit(paths: string[]): Field {
 
 const percent = (share: number): string => `${readable(Number((100 * share).toPrecision(2)))}\u00a0%`;
 
-/// PBD knows no N/m: what the server makes of them for a cloth. Nothing under the other methods.
+/// PBD has no stiffness in N/m: says what share of a stretch it removes instead, for one cloth. "" for other methods.
 function pbdStiffness(index: number, { pbd_stiffness }: SolverFacts): Note {
   const cloth = pbd_stiffness?.[index];
   const shares = kinds.flatMap((kind) => (cloth?.[kind] == null ? [] : [`${kind}\u00a0${percent(cloth[kind])}`]));
@@ -94,7 +94,7 @@ function clothSection(document: SceneDocument, index: number): Section {
   };
 }
 
-/// Of a shape, and where a turn of it starts around.
+/// The fields of a shape, and the center around which it spins by default.
 function shapeFields(shape: Shape, base: string): { fields: Field[]; center: Vec3 } {
   const place = { min: -2, max: 2, step: 0.005, ...meter };
   const made = byKind<{ fields: Field[]; center: Vec3 }>(shape, {
@@ -141,7 +141,7 @@ function worldSection(): Section {
   };
 }
 
-/// Self-collision keeps vertices apart; thinner than the gaps between them, layers pass through each other.
+/// Warns of a thin self-collision: layers pass through each other if it is thinner than the gaps between vertices.
 function thinNote(values: Record<string, unknown>, { thickness_that_holds: holds }: SolverFacts): Note {
   if (holds == null || Number(values["/self_collision/thickness"]) >= holds) return { text: "" };
   const enough = Number((Math.ceil(holds * 1e4) / 1e4).toPrecision(6));

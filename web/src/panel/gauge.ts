@@ -1,17 +1,17 @@
-// The stability gauge: the time step as a share of the largest stable one, which the server computes for the scene as
-// it is.
+// The stability gauge: the time step as a share of the longest stable one. The server computes that for the present
+// scene.
 import { readable } from "./slider";
 
-/// Of `sim.status`. null: no limit; 0: no time step is stable.
+/// Part of `sim.status`. null: no limit; 0: no time step is stable.
 export interface Stability {
   dt_limit: number | null;
 }
 
-const near = 0.9; // from here on the server warns too
-const end = 1.5; // the share at the right end
-const safer = 0.8; // of the limit, where the button goes
+const near = 0.9; // share of the limit: above it the server warns too
+const end = 1.5; // share of the limit at the gauge's right end
+const safer = 0.8; // share of the limit that the button sets
 
-/// A time step [s] that is well below the limit, in a number that is easy to read.
+/// A time step [s] well below the limit, rounded to be easy to read.
 export const saferStep = (limit: number): number => Math.max(1e-9, Number((safer * limit).toPrecision(3)));
 
 export type Verdict = "good" | "near" | "beyond";
@@ -23,7 +23,7 @@ export interface Reading {
   filled: number;
 }
 
-/// What the gauge says of a time step [s].
+/// The gauge's reading for a time step [s].
 export function reading(dt: number, limit: number | null): Reading {
   const always = (verdict: Verdict, word: string): Reading => ({
     verdict,
@@ -65,8 +65,9 @@ export class Gauge {
   private readonly word = part("b", "gauge-word", this.line);
   private readonly share = part("span", "gauge-share", this.line);
   private readonly limit = part("button", "gauge-limit", this.line) as HTMLButtonElement;
-  private readonly spoken = part("span", "visually-hidden", this.element); // the word, said when it changes
-  private saferStep = 0; // [s], for the button
+  // the word for a screen reader, written when it changes
+  private readonly spoken = part("span", "visually-hidden", this.element);
+  private saferStep = 0; // [s]: what the button sets
 
   constructor(setTimeStep: (dt: number) => void) {
     this.element.className = "gauge";

@@ -1,8 +1,8 @@
-// The card with figures: what is drawn, what comes in, how the simulation keeps up, and which passes run.
+// The card with figures: what is drawn, what arrives, how the simulation keeps up, and which passes run.
 import { element } from "./dom";
 import type { Stability } from "./gauge";
 
-/// `sim.status`; every part may be missing.
+/// Notification `sim.status`; every part may be missing.
 export interface Status {
   playing?: boolean;
   time?: number;
@@ -36,7 +36,7 @@ const rows = [
 ] as const;
 type Row = (typeof rows)[number][0];
 
-/// ×1.00; ×0.004: what is slow is not nothing.
+/// ×1.00; ×0.004: a slow simulation must not read as 0.
 const factorText = (factor: number): string =>
   `×${factor >= 0.1 || factor === 0 ? factor.toFixed(2) : factor.toPrecision(1)}`;
 
@@ -72,7 +72,7 @@ export class Hud {
     if (cell && cell.textContent !== text) cell.textContent = text;
   }
 
-  /// Its name without versions and buses; the rest is in the tooltip.
+  /// Shows the renderer's name without versions and buses; the tooltip has all of it.
   setRenderer(name: string): void {
     this.set("renderer", name.split(/ \(|\//)[0] ?? name);
     const cell = this.cells.get("renderer");
@@ -86,7 +86,7 @@ export class Hud {
     this.received++;
   }
 
-  /// Ten times a second is enough to read, and repainting the card costs a slow machine a frame.
+  /// Shows the time ten times a second at most: that is enough to read, and repainting costs a slow machine a frame.
   setTime(seconds: number): void {
     const now = performance.now();
     if (now - this.timeShownAt < 100) return;
@@ -100,7 +100,8 @@ export class Hud {
   }
 
   showStatus(status: Status): void {
-    if (status.playing === false && status.time !== undefined) this.showTime(status.time); // the last frame came too soon to be shown
+    // the last frame may have come too soon after another to be shown
+    if (status.playing === false && status.time !== undefined) this.showTime(status.time);
     if (status.real_time_factor !== undefined) {
       const text = status.playing === false ? "paused" : factorText(status.real_time_factor);
       this.set("rtf", status.asleep ? "at rest" : text);
@@ -111,7 +112,7 @@ export class Hud {
     if (status.pass_seconds) this.passSeconds = status.pass_seconds;
   }
 
-  /// Turns the counts since the last call into rates; call it about once a second.
+  /// Turns the counts since the last call into rates. Call it about once a second.
   tick(bytesReceived: number): void {
     const now = performance.now();
     const seconds = (now - this.since) / 1000;

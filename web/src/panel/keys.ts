@@ -1,4 +1,4 @@
-// The keyboard: one key, one command; silent while something is being typed or a dialog is open.
+// The keyboard: one key, one command. Keys do nothing while the user types or a dialog is open.
 
 export type Commands = Record<"toggle" | "step" | "reset" | "fit" | "hide" | "help" | "lab", () => void>;
 
@@ -12,7 +12,7 @@ const bindings: Record<string, keyof Commands> = {
   "?": "help",
 };
 
-/// Whether the focused element needs this key itself.
+/// True if the focused element needs this key itself.
 function takes(target: EventTarget | null, key: string): boolean {
   if (!(target instanceof HTMLElement)) return false;
   if (target instanceof HTMLInputElement) return target.type === "checkbox" ? key === " " : target.type !== "range";

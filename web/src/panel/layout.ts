@@ -1,12 +1,12 @@
-// Which part of the window is free for the picture, and the bottom sheet that the panel becomes on a narrow window.
+// Finds the part of the window that is free for the picture. On a narrow window the panel is a sheet at the bottom.
 import { button, element } from "./dom";
 import type { FreeArea } from "../view/framing";
 
 const narrow = matchMedia("(max-width: 760px)");
-const low = matchMedia("(max-height: 560px)"); // no room for figures below each other, beside a picture
-const leastSide = 120; // [px] of a picture worth the name
+const low = matchMedia("(max-height: 560px)"); // no room for the card of figures beside a picture
+const leastSide = 120; // [px]: the least useful side of a picture
 
-/// The largest rectangle of a window that none of these covers.
+/// The largest rectangle of a window that none of the `covered` rectangles overlaps.
 function largestFree(covered: DOMRect[], width: number, height: number): FreeArea {
   const cuts = (ends: number[], most: number) =>
     [...new Set([0, most, ...ends.filter((end) => end > 0 && end < most)])].sort((a, b) => a - b);
@@ -51,7 +51,8 @@ export class Layout {
     low.addEventListener("change", () => this.foldFigures());
     this.hud.addEventListener("toggle", () => this.changed());
     addEventListener("resize", () => this.changed());
-    element("transport", HTMLElement).addEventListener("transitionend", () => this.changed()); // it rides on the sheet
+    // it moves with the sheet
+    element("transport", HTMLElement).addEventListener("transitionend", () => this.changed());
   }
 
   toggleInterface(): void {
@@ -59,7 +60,7 @@ export class Layout {
     this.changed();
   }
 
-  /// The lab's drawer came or went: beside it there is room for the figures' headline only.
+  /// The lab's drawer opened or closed. Beside it there is room only for the headline of the figures.
   labToggled(open: boolean): void {
     if (open) this.foldedForLab = this.hud.open;
     if (this.foldedForLab) this.hud.open = !open;
@@ -75,7 +76,7 @@ export class Layout {
   private covered(): DOMRect[] {
     return [...document.querySelectorAll<HTMLElement>(".card")].flatMap((card) => {
       if (card.hidden || getComputedStyle(card).visibility === "hidden") return [];
-      // The lab slides in: it counts where it comes to rest.
+      // The lab slides in: its final place counts.
       return [
         card === this.lab
           ? new DOMRect(card.offsetLeft, card.offsetTop, card.offsetWidth, card.offsetHeight)

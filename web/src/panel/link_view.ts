@@ -1,5 +1,5 @@
-// How the connection is doing: the dot beside the name, the banner with its countdown, the first waiting screen, the
-// token.
+// Shows the state of the connection: the dot beside the name, the banner with its countdown, the waiting screen, and
+// the dialog that asks for the token.
 import type { Connection, LinkState } from "../link/connection";
 import { button, element } from "./dom";
 
@@ -33,7 +33,7 @@ export class LinkView {
     if (state === "unauthorised") this.ask(why);
   }
 
-  /// A frame is on screen.
+  /// Called when a frame is on screen.
   drawing(): void {
     if (this.everDrawn) return;
     this.everDrawn = true;

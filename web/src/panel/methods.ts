@@ -1,5 +1,4 @@
-// The methods of time stepping by the names people know them by, in a line what to expect of each, and what their
-// iterations buy.
+// The methods of time stepping: their common names, a line about each, and what its iterations are good for.
 
 /// A time step [s] and a number of iterations that suit a method.
 export interface Setting {
@@ -8,16 +7,16 @@ export interface Setting {
 }
 
 export interface Iterations {
-  most: number; ///< at the slider's right end
-  trade: string; ///< what more of them are good for, against shorter steps
+  most: number; ///< number at the slider's right end
+  trade: string; ///< what more iterations are good for, compared with shorter steps
   suits: Setting | null; ///< a good start
-  solves: boolean; ///< equations, to `tolerance`
+  solves: boolean; ///< true if it iterates until `tolerance` is met
 }
 
 export interface MethodText {
   name: string;
   says: string;
-  iterations: Iterations | null; ///< null: it does not iterate
+  iterations: Iterations | null; ///< null: the method does not iterate
 }
 
 const frame = 1 / 60;
@@ -90,10 +89,10 @@ const texts: Record<string, MethodText> = {
   },
 };
 
-/// The lab chooses; see SolverFacts.
+/// The method that the lab chooses; see SolverFacts.
 export const automatic = "auto";
 
-/// One the page does not know yet is shown as the server spells it.
+/// The texts of a method. One that this page does not know is shown by the server's name.
 export function methodText(id: string): MethodText {
   return texts[id] ?? { name: id.replaceAll("_", " "), says: "", iterations: { ...sweeps("", null), solves: true } };
 }

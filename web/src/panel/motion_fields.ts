@@ -1,4 +1,4 @@
-// The fields of a motion: of pins, and of colliders.
+// The fields of a motion, of pins and of colliders.
 import { at, type Field, meter, number, vector } from "./field";
 import { valueAt } from "../link/json_patch";
 import type { Motion, Vec3 } from "../link/scene_types";
@@ -35,7 +35,7 @@ function axisField(bases: string[], current: Vec3): Field {
   };
 }
 
-/// Fields of the motions at `bases`, which are all equal and edited together.
+/// Fields of the motions at `bases`. These are all equal and are edited together.
 export function motionFields(bases: string[], motion: Motion, center: Vec3): Field[] {
   const kind: Field = {
     key: `${bases[0]}#kind`,

@@ -1,4 +1,4 @@
-// Notices: what went wrong or changed, in words, with the remedy as a button where there is one.
+// Notices: what went wrong or changed, in words, with a button for the remedy if there is one.
 import { element } from "./dom";
 import { RpcError } from "../link/rpc";
 import type { Patch } from "../link/scene_types";
@@ -9,7 +9,7 @@ export interface Action {
   run(): void;
 }
 
-const narrow = matchMedia("(max-width: 760px)"); // room for one
+const narrow = matchMedia("(max-width: 760px)"); // room for one notice only
 const shownAtOnce = (): number => (narrow.matches ? 1 : 3);
 const lifetime: Record<Level, number> = { info: 5000, warning: 9000, error: 14000 }; // [ms]
 
@@ -40,7 +40,7 @@ export function notice(level: Level, content: Content): void {
   close.onclick = () => box.remove();
   if (content.action) box.append(actionButton(content.action, box));
   box.append(close);
-  // The same trouble again replaces its notice instead of piling up.
+  // The same notice again replaces the old one.
   for (const old of [...holder.children])
     if (old.querySelector("strong")?.textContent === title.textContent) old.remove();
   holder.append(box);
@@ -50,7 +50,8 @@ export function notice(level: Level, content: Content): void {
   if (!content.stays) setTimeout(() => box.remove(), lifetime[level]);
 }
 
-const capitalised = (text: string): string => text.replace(/^[a-z](?=[a-z]{2})/, (letter) => letter.toUpperCase()); // but not dt
+// leaves dt as it is
+const capitalised = (text: string): string => text.replace(/^[a-z](?=[a-z]{2})/, (letter) => letter.toUpperCase());
 const sentence = (text: string): string => capitalised(text).replace(/\.?$/, ".");
 
 function actionButton(action: Action, box: HTMLElement): HTMLButtonElement {
@@ -64,7 +65,7 @@ function actionButton(action: Action, box: HTMLElement): HTMLButtonElement {
   return run;
 }
 
-/// An error as a notice: where, what was found, what is allowed.
+/// Shows an error as a notice: where it is, what was found, what is allowed.
 export function noticeError(title: string, error: Error): void {
   if (!(error instanceof RpcError)) {
     notice("error", { title, lines: [error.message] });
@@ -79,7 +80,7 @@ export function noticeError(title: string, error: Error): void {
 
 const asText = (value: unknown): string => (typeof value === "string" ? value : JSON.stringify(value));
 
-/// `sim.diverged`.
+/// Notification `sim.diverged`.
 export interface Diverged {
   reason: string;
   remedy?: { text: string; patch?: Patch };
@@ -87,14 +88,14 @@ export interface Diverged {
 
 const blewUp = "The simulation blew up";
 
-/// It goes on, whoever has seen to that: the notice has done its duty.
+/// Removes the notice of a blow-up: the simulation runs again.
 export function clearDiverged(): void {
   for (const box of element("notices", HTMLElement).querySelectorAll(".notice")) {
     if (box.querySelector("strong")?.textContent === blewUp) box.remove();
   }
 }
 
-/// Says why the simulation blew up, with its remedy as a button.
+/// Says why the simulation blew up, with a button for its remedy.
 export function showDiverged({ reason, remedy }: Diverged, apply: (patch: Patch) => Promise<void>): void {
   const patch = remedy?.patch;
   const run = (fix: Patch): void =>
@@ -115,7 +116,7 @@ const depths: Record<string, string> = {
 };
 let appliedTimer = 0;
 
-/// How deep an edit cut, in a line at the foot of the panel.
+/// Says at the foot of the panel how much an edit rebuilt.
 export function showApplied(depth: string): void {
   const place = element("applied", HTMLElement);
   place.textContent = depths[depth] ?? `applied (${depth})`;

@@ -1,4 +1,4 @@
-// The panel: generated from the scene document, kept in step with it, and turning what is moved into patches.
+// The panel: made from the scene document, kept equal to it, and turning moved controls into patches.
 import GUI, { type Controller } from "lil-gui";
 import { type Field, type Note, operationsFor, readField, type Section, type SolverFacts } from "./field";
 import { sectionsOf } from "./fields";
@@ -49,19 +49,19 @@ export class Panel {
     this.rebuildIfNeeded();
   }
 
-  /// The largest stable time step, as the server last computed it.
+  /// Takes the longest stable time step that the server computed.
   showStability(stability: Stability): void {
     this.stability = stability;
     this.moveGauge();
   }
 
-  /// What the server makes of the solver's settings.
+  /// Takes what the server tells about the solver.
   showSolver(facts: SolverFacts): void {
     this.facts = facts;
     this.accompany();
   }
 
-  /// Moves the controls to the document, except those the user is ahead with.
+  /// Sets the controls to the document, except those that the user is moving or whose edits are unanswered.
   show(document: SceneDocument): void {
     this.document = document;
     this.rebuildIfNeeded();
@@ -77,7 +77,7 @@ export class Panel {
     this.accompany();
   }
 
-  /// After a rejected edit: back to what the server has.
+  /// Resets the controls to the server's document after a rejected edit.
   snapBack(): void {
     for (const control of this.controls) control.held = false;
     if (this.document) this.show(this.document);
@@ -162,7 +162,7 @@ export class Panel {
     return controller;
   }
 
-  /// A line below a control that says what its present value means.
+  /// Adds a line below a control that explains its present value.
   private addNote(folder: GUI, says: NonNullable<Field["note"]>): void {
     const line = document.createElement("p");
     line.className = "note";
@@ -188,7 +188,7 @@ export class Panel {
     return [button];
   }
 
-  /// What stands beside the controls follows them.
+  /// Updates the notes and the gauge to the controls' values.
   private accompany(): void {
     for (const update of this.notes) update();
     this.moveGauge();

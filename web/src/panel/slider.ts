@@ -1,19 +1,19 @@
-// A lil-gui controller with a native range input: reachable by keyboard, and able to spread its travel logarithmically.
+// A lil-gui controller with a native range input: the keyboard can reach it, and its scale may be logarithmic.
 import { Controller, type GUI } from "lil-gui";
 
 export interface Scale {
   min: number;
   max: number;
   step?: number; ///< of a linear scale; a logarithmic one moves by 0.4 % of its travel
-  log?: boolean; ///< equal ratios take equal travel
+  log?: boolean; ///< equal ratios take equal lengths of travel
   zero?: boolean; ///< the left end of a logarithmic scale is 0
   unit?: string;
   whole?: boolean;
-  zeroText?: string; ///< what 0 is called, where it is no number to the user
+  zeroText?: string; ///< the word for 0, if 0 is no number to the user
 }
 
-const travel = 1000; // of a logarithmic scale
-const zeroEnd = 20; // of the travel, where a logarithmic scale jumps to 0
+const travel = 1000; // length of a logarithmic scale
+const zeroEnd = 20; // length at the left of `travel` between 0 and the least value of a logarithmic scale
 
 function toValue(at: number, scale: Scale): number {
   if (!scale.log) return Number(at.toPrecision(6));
@@ -30,7 +30,7 @@ function toTravel(value: number, scale: Scale): number {
   return start + ((travel - start) * Math.log(value / scale.min)) / Math.log(scale.max / scale.min);
 }
 
-/// Short and exact enough to read: 20000, 0.001, 1e-5.
+/// A number short and exact enough to read: 20000, 0.001, 1e-5.
 export function readable(value: number): string {
   return String(Number(value.toPrecision(5)));
 }
@@ -57,7 +57,7 @@ export class SliderController extends Controller {
       : [scale.min, scale.max, scale.step ?? (scale.max - scale.min) / 200];
     this.range.min = String(this.low);
     this.range.max = String(this.high);
-    this.range.step = "any"; // a value between two steps stays where it is
+    this.range.step = "any"; // keeps a value that lies between two steps
     this.range.tabIndex = 0;
     this.text.type = "text";
     this.text.inputMode = "decimal";
@@ -100,7 +100,7 @@ export class SliderController extends Controller {
     return this;
   }
 
-  /// Marks a value on the travel; one outside it, or null, has no mark.
+  /// Marks a value on the scale; null, or a value outside the scale, removes the mark.
   mark(value: number | null): void {
     const share = value === null || value <= 0 ? -1 : (toTravel(value, this.scale) - this.low) / (this.high - this.low);
     this.tick.hidden = !(share >= 0 && share <= 1);
@@ -122,7 +122,7 @@ export class SliderController extends Controller {
     return this.scale.log ? at : this.clamped(this.low + Math.round((at - this.low) / this.stride) * this.stride);
   }
 
-  // Moves by whole steps from the value there is; with Shift by ten.
+  // Moves by one step from the present value, with Shift or Page keys by ten.
   private nudge(direction: number, event: KeyboardEvent): void {
     const steps = direction * (event.shiftKey || event.key.startsWith("Page") ? 10 : 1);
     this.jump(toTravel(Number(this.getValue()), this.scale) + steps * this.stride, event);
@@ -160,7 +160,7 @@ export class SliderController extends Controller {
     this.text.value = this.written(Number(this.getValue()));
   }
 
-  // A typed number may lie outside the slider's travel: the server has the last word.
+  // Takes a typed number. It may lie outside the slider's travel: the server decides.
   private take(): void {
     const typed = this.text.value.trim().replace(",", ".");
     const value = typed === this.scale.zeroText ? 0 : Number(typed);

@@ -1,16 +1,16 @@
-// Says so, for as long as it lasts, when the scene is too much for the server: time that creeps, or no picture at all.
-// The way back is beside it: what this page changed last.
+// Shows a bar while the scene is too much for the server: the simulation is slow, or no picture comes. A button in it
+// undoes this page's last change.
 import { button, element } from "./dom";
 import type { Status } from "./hud";
 import type { Operation } from "../link/scene_types";
 
-const creeping = 0.1; // of the speed asked for: slower than that nobody sees a motion
-const creepingFor = 3000; // [ms] before it is said: a kernel that is compiled takes a while too
+const creeping = 0.1; // share of the speed asked for: nobody sees a slower motion
+const creepingFor = 3000; // [ms] before the bar appears: compiling a kernel takes a while too
 const noPictureFor = 2000; // [ms]
 const lookEvery = 250; // [ms]
 
 export class SlowWatch {
-  dt = 0; ///< of the scene [s]
+  dt = 0; ///< time step of the scene [s]
   private status: Status = {};
   private pictureAt = performance.now();
   private fastAt = performance.now();
@@ -27,7 +27,7 @@ export class SlowWatch {
       this.edit(back);
       this.look();
     };
-    document.addEventListener("visibilitychange", () => this.startAgain()); // a hidden page takes no pictures
+    document.addEventListener("visibilitychange", () => this.startAgain()); // a hidden page gets no pictures
     setInterval(() => this.look(), lookEvery);
   }
 
@@ -40,7 +40,7 @@ export class SlowWatch {
     this.pictureAt = performance.now();
   }
 
-  /// What would undo the last change that this page made.
+  /// Takes the operations that undo this page's last change.
   changed(wayBack: Operation[]): void {
     this.wayBack = wayBack;
   }
@@ -74,7 +74,7 @@ export class SlowWatch {
     return "";
   }
 
-  // By what the server says of the last seconds.
+  // How long a step takes, as text, by the server's last status.
   private aStep(factor: number): string {
     const seconds = factor > 0 ? this.dt / factor : 0;
     return seconds >= 0.01 ? `, a step takes it ${Number(seconds.toPrecision(2))} s` : "";

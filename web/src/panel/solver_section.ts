@@ -1,10 +1,10 @@
-// The panel's section of the solver: method, time step, iterations, tolerance, and what is said of them.
+// The panel's section of the solver: method, time step, iterations, tolerance, and the notes below them.
 import { type Field, type Note, number, type Section, type SolverFacts } from "./field";
 import { automatic, type MethodText, methodText, type Setting } from "./methods";
 import { readable } from "./slider";
 import type { Operation, SceneDocument } from "../link/scene_types";
 
-/// Where the gauge belongs.
+/// The field that carries the gauge.
 export const timeStep = "/solver/dt";
 const methodChoice = "/solver/method";
 const iterationCount = "/solver/iterations";
@@ -13,7 +13,7 @@ const secondsText = (seconds: number): string => (seconds === 1 / 60 ? "1/60 s" 
 
 const methodOf = (values: Record<string, unknown>): MethodText => methodText(String(values[methodChoice]));
 
-/// What iterations are good for under the method that is chosen.
+/// Says what iterations are good for under the chosen method.
 function tradeOff(values: Record<string, unknown>): Note {
   const { iterations } = methodOf(values);
   return iterations ? { text: iterations.trade, offer: suggestion(iterations.suits, values) } : { text: "" };
@@ -34,7 +34,7 @@ function suggestion(suits: Setting | null, values: Record<string, unknown>): Not
   };
 }
 
-/// What the lab has chosen for the method `auto`, and a way to keep it.
+/// Says what the lab has chosen for the method `auto`, and offers to keep it.
 function choiceNote({ auto }: SolverFacts): Note {
   const says = methodText(automatic).says;
   if (!auto) return { text: says };

@@ -1,4 +1,4 @@
-// Play, pause, step, reset and speed: the buttons, and what the server says about them.
+// Play, pause, step, reset and speed: the buttons, and the state that the server reports.
 import { button, element } from "./dom";
 import type { Status } from "./hud";
 
@@ -10,7 +10,8 @@ export class Transport {
   playing = true;
   private readonly play = button("play");
   private readonly speed = element("speed", HTMLSelectElement);
-  private readonly holdUntil = { playing: 0, speed: 0 }; // a status sent before our request would flip the button back
+  // until then a status may be older than this page's request and would flip the button back
+  private readonly holdUntil = { playing: 0, speed: 0 };
 
   constructor(private readonly events: TransportEvents) {
     this.play.onclick = () => this.toggle();
@@ -61,7 +62,7 @@ export class Transport {
     this.play.setAttribute("aria-label", this.playing ? "Pause" : "Play");
   }
 
-  // Another viewer may have set a factor that is not in the list.
+  // Shows a speed. Another viewer may have set one that is not in the list.
   private showSpeed(factor: number): void {
     if (Number(this.speed.value) === factor) return;
     if (![...this.speed.options].some((option) => Number(option.value) === factor)) {

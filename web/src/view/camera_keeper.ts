@@ -1,17 +1,17 @@
-// Keeps the camera on the scene until somebody moves it: fitted at the start, and drawn back where the cloth goes
-// farther than was foreseen. It never comes nearer by itself, as a picture that breathes with the cloth is hard to look
-// at.
+// Keeps the scene in view until the user moves the camera. The camera is fitted at the start, and moves back if the
+// cloth goes farther than expected. It never comes nearer by itself: a picture that follows every motion of the cloth
+// is hard to look at.
 import type { PerspectiveCamera, Vector3 } from "three";
 import { between, centerIn, Outline, place, standFor, type FreeArea, type Stand } from "./framing";
 
-const timeToFollow = 0.15; // [s]
-const mostDrawnBack = 2; // times the distance that was foreseen: what flies away is let go
-const worthMoving = 1e-3; // of the distance
+const timeToFollow = 0.15; // [s]: time constant
+const mostDrawnBack = 2; // times the expected distance: the camera does not follow what flies farther
+const worthMoving = 1e-3; // share of the distance: shorter ways are not worth moving
 
 export class CameraKeeper {
-  fitted = true; ///< until the user moves the camera
+  fitted = true; ///< false once the user has moved the camera
   private area: FreeArea = { left: 0, top: 0, width: 1, height: 1 };
-  private height = 1; // of the window [CSS pixels]
+  private height = 1; // height of the window [CSS pixels]
   private foreseen = new Outline();
   private seen = new Outline();
   private stand: Stand | null = null;
@@ -19,14 +19,14 @@ export class CameraKeeper {
 
   constructor(private readonly camera: PerspectiveCamera) {}
 
-  /// Another window, or another part of it.
+  /// The window, or its free part, has another size.
   resize(area: FreeArea, width: number, height: number): void {
     this.area = area;
     this.height = height;
     centerIn(this.camera, area, width, height);
   }
 
-  /// Only these are to be seen, from now on. Returns what to orbit around.
+  /// Fits the camera to these points. Returns the point to orbit around; null if there are none.
   fit(points: Vector3[], now: Vector3[] = []): Vector3 | null {
     this.foreseen = new Outline();
     this.foreseen.add(points);
@@ -35,7 +35,7 @@ export class CameraKeeper {
     return this.jump();
   }
 
-  /// Where it should be, at once.
+  /// Moves the camera to the fitted place at once. Returns the point to orbit around.
   jump(): Vector3 | null {
     if (this.seen.empty) return null;
     this.fitted = true;
@@ -43,14 +43,14 @@ export class CameraKeeper {
     return place(this.camera, this.stand);
   }
 
-  /// These are on screen now.
+  /// Takes points that are on screen now: the camera must show them too.
   see(points: Vector3[]): void {
     if (!this.fitted || this.seen.empty) return;
     this.seen.add(points);
     this.goal = this.wanted();
   }
 
-  /// Some of the way to where it should be; null: it is there.
+  /// Moves part of the way to the fitted place. Returns the point to orbit around; null if the camera is there.
   follow(seconds: number): Vector3 | null {
     const { stand, goal } = this;
     if (!this.fitted || !stand || !goal) return null;

@@ -1,4 +1,4 @@
-// Draws the streamed vertices: the q16 payload is the vertex buffer, decoded in the vertex shader.
+// Draws the streamed vertices. The q16 payload is the vertex buffer; the vertex shader decodes it.
 import {
   Box3,
   BufferAttribute,
@@ -21,17 +21,17 @@ import { heldVertices } from "./pins";
 import { q16Words, type Frame, type Topology } from "../link/protocol";
 import type { SceneDocument } from "../link/scene_types";
 
-const mostMarkers = 160; // a crowd of them would hide the cloth
+const mostMarkers = 160; // more would hide the cloth
 
 export class ClothView {
   readonly object = new Group();
-  readonly caster = new Group(); ///< drawn into the ground's shadow
+  readonly caster = new Group(); ///< casts the ground's shadow
   readonly box = new Box3(); ///< of the frame on screen [m]
   vertices = 0;
   private topology: Topology | null = null;
   private document: SceneDocument | null = null;
-  // Two buffers in turn: with one, Chromium's software WebGL was seen to draw the mesh, but not the pins, from the
-  // vertices of an earlier frame, and to go on with that when no further frame came.
+  // Two buffers in turn. With one, Chromium's software WebGL drew the mesh, but not the pins, with the vertices of an
+  // earlier frame, and kept doing so when no further frame came.
   private words: [BufferAttribute, BufferAttribute] | null = null;
   private readonly decode: DecodeUniforms = {
     boxMinimum: { value: new Vector3() },
@@ -91,8 +91,8 @@ export class ClothView {
     return true;
   }
 
-  /// What is drawn like the first cloth and its pins, and like its shadow, to compile their programs before there is
-  /// one.
+  /// Empty objects with the materials of a cloth, its pins and its shadow. They let WebGL compile the programs before
+  /// there is a cloth.
   samples(): { shown: Object3D[]; cast: Object3D[] } {
     const nothing = new BufferGeometry();
     return {
@@ -105,7 +105,7 @@ export class ClothView {
     return (this.materials[index] ??= new FabricMaterial(this.decode, this.stage));
   }
 
-  // The resting one is bound, too, so that it is freed with the geometry.
+  // Binds both buffers. The one not in use is bound so that it is freed with the geometry.
   private bindWords(geometry: BufferGeometry | undefined): void {
     if (!geometry || !this.words) return;
     geometry.setAttribute("q16", this.words[0]);
@@ -122,7 +122,7 @@ export class ClothView {
       geometry,
       topology.cloths.map((_, i) => this.material(i)),
     );
-    this.mesh.frustumCulled = false; // its box is known to the shader only
+    this.mesh.frustumCulled = false; // only the shader knows its box
     this.mesh.castShadow = this.mesh.receiveShadow = true;
     this.mesh.customDepthMaterial = this.depthMaterial;
     this.object.add(this.mesh);
@@ -135,7 +135,7 @@ export class ClothView {
     this.rebuildMarkers();
   }
 
-  // A group of the index is a run of triangles of one cloth.
+  // Adds a group of the index for each run of triangles of one cloth.
   private addGroups(geometry: BufferGeometry, topology: Topology): void {
     const clothOf = (vertex: number) =>
       topology.cloths.findIndex(

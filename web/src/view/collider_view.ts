@@ -1,5 +1,5 @@
-// The colliders of the scene, and the studio floor where a scene has none. Where they are now, the session says; how a
-// kind of shape is shown, solids.ts.
+// Shows the colliders of the scene, and a studio floor if the scene has no floor. The session says where colliders are
+// now; solids.ts shows each kind of shape.
 import { type Color, Group, type IUniform, Mesh, type Object3D, Vector3 } from "three";
 import type { StageUniforms } from "./fabric_material";
 import type { Collider, MovedCollider, SceneDocument } from "../link/scene_types";
@@ -16,12 +16,12 @@ export interface GroundUniforms {
 
 export class ColliderView {
   readonly object = new Group();
-  readonly caster = new Group(); ///< drawn into the ground's shadow
+  readonly caster = new Group(); ///< casts the ground's shadow
   private readonly maker: SolidMaker;
   private readonly studio: Mesh;
   private readonly radius = { value: 1 };
   private shown: (Shown & { collider: Collider; index: number })[] = [];
-  private lowest = 0; // where the studio floor is [m]
+  private lowest = 0; // height of the studio floor [m]
 
   constructor(
     private readonly stage: StageUniforms,
@@ -54,8 +54,8 @@ export class ColliderView {
     this.studio.position.y = this.lowest;
   }
 
-  /// Puts everything where it is now, by `moved` or else by the scene; `clothBottom` [m] pushes the studio floor down,
-  /// it is no collider.
+  /// Places everything: colliders as `moved` says, else as the scene does. The studio floor is no collider: it stays
+  /// below `clothBottom` [m].
   update(moved: MovedCollider[], clothBottom: number): void {
     const occluders = this.stage.occluders.value;
     let used = 0;
@@ -68,7 +68,7 @@ export class ColliderView {
     this.studio.position.y = Math.min(this.lowest, clothBottom - 0.01);
   }
 
-  /// What is drawn like every body and the studio floor, and like a body's shadow: see ClothView.samples.
+  /// Objects with the materials of every body, the studio floor and a body's shadow: see ClothView.samples.
   samples(): { shown: Object3D[]; cast: Object3D[] } {
     const { shown, cast } = this.maker.samples();
     return { shown: [...shown, this.studio], cast };

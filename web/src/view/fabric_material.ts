@@ -1,4 +1,4 @@
-// The cloth's materials: three.js' Lambert shading with vertices decoded from q16 words, woven colour and sheen.
+// The cloth's materials: three.js's Lambert shading with vertices decoded from q16 words, woven colour and sheen.
 import {
   Color,
   DoubleSide,
@@ -20,16 +20,16 @@ import {
 import type { Cloth } from "../link/scene_types";
 
 const patterns = ["plain", "weave", "checker", "stripes"];
-const threadsAcross = 64; // along the longer side: about 8 pixels a thread at the default framing
+const threadsAcross = 64; // along the longer side: about 8 pixels per thread at the default framing
 
-/// Set from each frame's header; shared by every material that draws the payload.
+/// Uniforms set from each frame's header, shared by every material that draws the payload.
 export interface DecodeUniforms {
   [name: string]: IUniform;
   boxMinimum: IUniform<Vector3>;
   boxExtent: IUniform<Vector3>;
 }
 
-/// The same for every surface of the stage.
+/// Uniforms shared by every surface of the stage.
 export interface StageUniforms {
   lightDirection: IUniform<Vector3>;
   occluders: IUniform<Vector4[]>;
@@ -76,7 +76,7 @@ export class FabricMaterial extends MeshLambertMaterial {
   }
 }
 
-/// What draws the cloth where only its outline or its depth counts: both kinds of shadow.
+/// The material that draws a cloth's outline or depth, for both kinds of shadow.
 export function clothCasterMaterial(decode: DecodeUniforms): ShaderMaterial {
   return new ShaderMaterial({
     uniforms: decode,
@@ -86,7 +86,7 @@ export function clothCasterMaterial(decode: DecodeUniforms): ShaderMaterial {
   });
 }
 
-/// The same for a mesh of three.js.
+/// The material that draws the outline or depth of a three.js mesh.
 export function casterMaterial(): ShaderMaterial {
   return new ShaderMaterial({
     vertexShader: "void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }",
@@ -94,7 +94,7 @@ export function casterMaterial(): ShaderMaterial {
   });
 }
 
-/// Small discs on the vertices that pins hold, drawn from the same payload.
+/// Draws small discs on the pinned vertices, from the same payload.
 export function pinMaterial(decode: DecodeUniforms, pixelRatio: IUniform<number>): ShaderMaterial {
   return new ShaderMaterial({
     uniforms: { ...decode, pixelRatio, diameter: { value: 9 } },

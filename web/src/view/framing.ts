@@ -1,4 +1,4 @@
-// Where the camera stands so that all it is to show lies in the part of the window that no card covers.
+// Finds where the camera stands so that everything it must show lies in the part of the window that no card covers.
 import { MathUtils, type PerspectiveCamera, Vector3 } from "three";
 
 /// The part of the window that cards leave free [CSS pixels].
@@ -9,13 +9,15 @@ export interface FreeArea {
   height: number;
 }
 
-const viewFrom = new Vector3(1, 0.34, 0.5).normalize(); // from the side: the seed's cloth hides its sphere from the front
+// from the side: seen from the front, the seed's cloth hides its sphere
+const viewFrom = new Vector3(1, 0.34, 0.5).normalize();
 const right = new Vector3(0, 1, 0).cross(viewFrom).normalize();
 const above = viewFrom.clone().cross(right);
-// Slopes of the four sides of a view: of any between them the farthest point is one of these, nearly.
+// Slopes of a view's sides for which the farthest point is kept. Between them, one of the kept points is nearly the
+// farthest.
 const slopes = [0, 0.1, 0.25, 0.5];
 
-/// What is to be seen, as the farthest points towards each side of a view from that direction.
+/// The points that a camera must show: the farthest ones towards each side of a view in the direction `viewFrom`.
 export class Outline {
   private readonly sides = slopes.flatMap((slope) =>
     [right, right.clone().negate(), above, above.clone().negate()].map((across) => ({
@@ -45,7 +47,7 @@ export class Outline {
   }
 }
 
-/// Where a camera stands: across and up the view, and along it, away from what it sees [m].
+/// Where a camera stands [m]: across and up the view, and away along it; `middle`: depth of the orbit's center.
 export interface Stand {
   across: number;
   up: number;
@@ -55,14 +57,15 @@ export interface Stand {
 
 const padding = (area: FreeArea): number => 6 + 0.025 * Math.min(area.width, area.height); // [CSS pixels]
 
-/// The nearest place from which every point of the outline falls into the area, in a window of this height.
+/// The nearest place from which every point of the outline falls into the area. `windowHeight` [CSS pixels], `fov`
+/// [degrees].
 export function standFor(outline: Outline, area: FreeArea, windowHeight: number, fov: number): Stand {
   const perPixel = Math.tan(MathUtils.degToRad(fov / 2)) / (windowHeight / 2);
   const tangent = (pixels: number): number => (perPixel * Math.max(pixels - 2 * padding(area), 24)) / 2;
   const wide = tangent(area.width);
   const high = tangent(area.height);
   const points = outline.points();
-  // A point at depth z, x to the right of the camera, is inside while |x| < wide (away - z).
+  // A point at depth z and at x to the right of the camera is inside while |x| < wide (away - z).
   const most = (along: Vector3, sign: number, slope: number): number =>
     Math.max(...points.map((point) => sign * along.dot(point) + slope * viewFrom.dot(point)));
   const [toRight, toLeft, toTop, toBottom] = [
@@ -93,7 +96,7 @@ export function place(camera: PerspectiveCamera, stand: Stand): Vector3 {
   return foot.addScaledVector(viewFrom, stand.middle);
 }
 
-/// Between two stands, `share` of the way.
+/// The stand at `share` of the way between two stands.
 export function between(from: Stand, to: Stand, share: number): Stand {
   const mix = (key: keyof Stand): number => from[key] + share * (to[key] - from[key]);
   return { across: mix("across"), up: mix("up"), away: mix("away"), middle: mix("middle") };

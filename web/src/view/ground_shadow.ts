@@ -1,5 +1,6 @@
-// The shadow on the ground: everything that casts one, drawn small along the light and blurred into one soft mask.
-// The ground covers most of the picture, and one texture read a pixel is what a software renderer can afford there.
+// The shadow on the ground: all its casters are drawn along the light into one small texture, and blurred to a soft
+// mask.
+// The ground covers most of the picture, and a software renderer can afford one texture read per pixel there.
 import {
   BufferAttribute,
   BufferGeometry,
@@ -28,7 +29,7 @@ export interface GroundShadowUniforms {
   shadowMatrix: IUniform<Matrix4>; ///< world to mask, both axes 0 to 1
 }
 
-// Nine taps of a Gaussian, in pairs between two pixels so that linear filtering does half of the reads.
+// Nine taps of a Gaussian. Eight are read in pairs, between two pixels: linear filtering halves the reads.
 const blurFragment = /* glsl */ `
 uniform sampler2D source;
 uniform vec2 along;
@@ -96,7 +97,7 @@ export class GroundShadow {
 
   /// Compiles what draw() needs for casters like these.
   compile(samples: Object3D[]): void {
-    this.renderer.setRenderTarget(this.targets[0]); // a program depends on what it draws to
+    this.renderer.setRenderTarget(this.targets[0]); // a program depends on the target it draws to
     this.casters.add(...samples);
     this.renderer.compile(this.casters, this.camera);
     this.casters.remove(...samples);

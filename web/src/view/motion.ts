@@ -1,9 +1,9 @@
-// How far a motion takes a point, for a camera that is to see all of it. Where something is at a time, the session
-// says.
+// Finds how far a motion takes a point, so that a camera can show all of it. The session says where it is at a time.
 import { MathUtils, Vector3 } from "three";
 import type { Motion, Vec3 } from "../link/scene_types";
 
-/// Points that the motion of `home` [m] passes, its farthest among them; what leaves for good counts as still.
+/// Points that the motion of `home` [m] passes, with the farthest ones. A velocity, which never returns, counts as
+/// still.
 export function sweep(home: Vec3, motion: Motion): Vector3[] {
   const point = new Vector3(...home);
   if (motion && "oscillate" in motion && motion.oscillate.frequency > 0) {

@@ -1,4 +1,4 @@
-// Which vertices the pins of a scene hold, by the rules of server/scene/README.md, for the small markers.
+// Finds the vertices that a scene's pins hold, by the rules of server/scene/README.md, to draw markers on them.
 import { Euler, MathUtils, Vector3 } from "three";
 import type { At, Cloth, Motion, Vec3 } from "../link/scene_types";
 
@@ -6,7 +6,7 @@ import type { At, Cloth, Motion, Vec3 } from "../link/scene_types";
 export function restPositions(cloth: Cloth): Vector3[] {
   const { translate, rotate, scale } = cloth.transform;
   const [x, y, z] = rotate.map(MathUtils.degToRad) as Vec3;
-  // x first, then y, then z, each about a fixed axis: the matrix Z * Y * X.
+  // About x first, then y, then z, each a fixed axis: the matrix Z * Y * X.
   const turn = new Euler(x, y, z, "ZYX");
   const place = (point: Vector3) =>
     point
@@ -43,7 +43,7 @@ function verticesAt(at: At, cloth: Cloth, rest: Vector3[]): number[] {
     : Array.from({ length: rows }, (_, row) => row * columns + line);
 }
 
-/// Vertices of the cloth that pins hold, each once, with the motion of its (last) pin.
+/// Vertices of the cloth that pins hold, each once, with the motion of its last pin.
 export function heldVertices(cloth: Cloth): Map<number, Motion> {
   const rest = cloth.pins.some((pin) => typeof pin.at !== "string") ? restPositions(cloth) : [];
   return new Map(

@@ -1,4 +1,4 @@
-// Lowers the resolution when the machine cannot draw every frame in time, and tries again later.
+// Lowers the resolution if the machine cannot draw every frame in time, and tries a higher one later.
 
 export interface Level {
   scale: number;
@@ -11,7 +11,7 @@ const levels: Level[] = [
   { scale: 0.8, shadow: 1024 },
   { scale: 0.65, shadow: 512 },
 ];
-const tooSlow = 34; // [ms] between frames drawn: below 30 frames/s
+const tooSlow = 34; // [ms] between drawn frames: below 30 frames/s
 const fastEnough = 20; // [ms]
 const patience = 20; // frames between decisions
 
@@ -19,7 +19,7 @@ export class Quality {
   private index: number;
   private average = 16;
   private samples = 0;
-  private calmUntilRise = 600; // frames; doubles whenever a rise proves too much
+  private calmUntilRise = 600; // frames; doubles whenever a higher resolution proves too slow
   private calm = 0;
 
   constructor(
@@ -33,7 +33,7 @@ export class Quality {
     return levels[this.index] as Level;
   }
 
-  /// One continuous frame took `milliseconds` since the last one.
+  /// Takes the time [ms] between two drawn frames.
   sample(milliseconds: number): void {
     if (milliseconds > 1500) return; // a pause, not a slow frame
     this.average += 0.1 * (Math.min(milliseconds, 200) - this.average);

@@ -1,4 +1,4 @@
-// How far a scene reaches: what is known of it before the first frame, and what frames show besides.
+// Finds how far a scene reaches: what is known before the first frame, and what a frame shows.
 import { Vector3 } from "three";
 import { sweep } from "./motion";
 import { heldVertices, restPositions } from "./pins";
@@ -6,15 +6,16 @@ import { floorOf, outlineOf } from "./solids";
 import { q16Words, type Frame } from "../link/protocol";
 import type { Cloth, SceneDocument } from "../link/scene_types";
 
-const mostLooked = 400; // points of a cloth: more say nothing new of its outline
-const swung = 0.6; // of the way that a falling cloth goes beyond its pins, air and springs take the rest
+const mostLooked = 400; // vertices of a cloth: more tell nothing new of its outline
+// share: a falling cloth swings beyond its pins by this part of its distance; air and springs take the rest
+const swung = 0.6;
 
 function every<T>(items: T[], most: number): T[] {
   const stride = Math.ceil(items.length / most);
   return items.filter((_, i) => i % stride === 0);
 }
 
-/// Where a cloth starts, where its pins go, and where what hangs on them comes to.
+/// Points where a cloth starts, where its pins go, and where the cloth that hangs on them swings to.
 function clothPoints(cloth: Cloth, falls: boolean): Vector3[] {
   const rest = restPositions(cloth);
   const held = [...heldVertices(cloth)].filter(([vertex]) => rest[vertex]);
@@ -34,7 +35,7 @@ function clothPoints(cloth: Cloth, falls: boolean): Vector3[] {
   return points;
 }
 
-/// Points that a scene is going to use [m]: known before the first frame, and the same whenever F is pressed.
+/// Points that a scene is going to reach [m]. They are known before the first frame and always the same.
 export function scenePoints(document: SceneDocument): Vector3[] {
   const falls = document.gravity[1] < 0;
   const points = document.cloths.flatMap((cloth) => clothPoints(cloth, falls));
@@ -42,7 +43,7 @@ export function scenePoints(document: SceneDocument): Vector3[] {
   const floor = Math.max(-Infinity, ...floors.filter((height) => points.some(({ y }) => y >= height)));
   for (const point of points) point.y = Math.max(point.y, floor);
   points.push(...document.colliders.flatMap((collider) => outlineOf(collider, collider.motion)));
-  // What nothing holds falls to the floor.
+  // A cloth that nothing holds falls to the floor.
   const loose = document.cloths.filter(({ pins }) => pins.length === 0);
   if (falls && Number.isFinite(floor))
     points.push(...loose.flatMap((cloth) => every(restPositions(cloth), mostLooked).map((point) => point.setY(floor))));

@@ -1,6 +1,6 @@
-// GLSL spliced into three.js materials: decoding q16 vertices, woven textures, sheen, and occlusion by spheres.
+// GLSL spliced into three.js materials: decoding of q16 vertices, woven textures, sheen, and occlusion by spheres.
 
-/// Vertex attribute `q16` = u16 x3 position and two i8 of an octahedral normal, as four normalised 16-bit words.
+/// Vertex attribute `q16`: position as u16 x 3 and two i8 of an octahedral normal, as four normalised 16-bit words.
 export const decodeParameters = /* glsl */ `
 attribute vec4 q16;
 uniform vec3 boxMinimum;
@@ -29,7 +29,7 @@ varying vec2 vCloth;
 varying vec3 vWorld;
 `;
 
-// A back face lit from behind must push its shadow test towards the light too, or it shadows itself in stripes.
+// A back face lit from behind must move its shadow test towards the light too, else it shadows itself in stripes.
 export const fabricShadowNormal = /* glsl */ `
 transformedNormal *= dot(objectNormal, lightDirection) < 0.0 ? -1.0 : 1.0;
 `;
@@ -37,7 +37,7 @@ transformedNormal *= dot(objectNormal, lightDirection) < 0.0 ? -1.0 : 1.0;
 export const occlusionParameters = /* glsl */ `
 uniform vec4 occluders[4];
 
-// The share of the sky that spheres hide from a surface: closed form of a fully visible sphere, clamped.
+// Share of the sky that spheres leave visible to a surface: closed form of a fully visible sphere, clamped.
 float skyLeft(vec3 position, vec3 normal) {
   float left = 1.0;
   for (int i = 0; i < 4; ++i) {
@@ -59,7 +59,7 @@ uniform float hemmed;
 varying vec2 vCloth;
 varying vec3 vWorld;
 
-// Plain weave: threads over and under in turn; fades to its mean where a thread is smaller than a pixel.
+// Plain weave: threads go over and under in turn. It fades to its mean if a thread is smaller than a pixel.
 float weave(vec2 at) {
   vec2 cell = floor(at);
   vec2 q = fract(at) - 0.5;
@@ -72,7 +72,7 @@ float weave(vec2 at) {
   return mix(shade, 0.95, smoothstep(0.3, 0.85, max(width.x, width.y)));
 }
 
-// Positive in half of each period, negative in the other, blurred over a pixel: [0, 1].
+// 1 in half of each period and 0 in the other, blurred over a pixel.
 vec2 halves(vec2 periods) {
   return smoothstep(-fwidth(periods), fwidth(periods), abs(fract(periods) - 0.5) - 0.25);
 }
@@ -98,7 +98,7 @@ vec3 fabricColor(vec3 base, bool front) {
 }
 `;
 
-/// Grazing light caught by loose fibres, and a little light through the cloth from behind.
+/// Grazing light that loose fibres catch, and a little light through the cloth from behind.
 export const fabricSheen = /* glsl */ `
 vec3 viewDirection = normalize(vViewPosition);
 float grazing = 1.0 - saturate(dot(viewDirection, normal));
@@ -118,13 +118,13 @@ float rim = pow(1.0 - saturate(dot(viewDirection, normal)), 4.0);
 outgoingLight += vec3(0.22) * rim;
 #if NUM_DIR_LIGHTS > 0
   vec3 halfway = normalize(viewDirection + directionalLights[0].direction);
-  float lit = smoothstep(0.0, 0.25, reflectedLight.directDiffuse.g);  // none where the light is hidden
+  float lit = smoothstep(0.0, 0.25, reflectedLight.directDiffuse.g);  // no highlight where the light is hidden
   outgoingLight += 0.35 * lit * pow(saturate(dot(normal, halfway)), 60.0);
 #endif
 `;
 
 /// A disc that fades into the backdrop, with the soft shadow of ground_shadow.ts. Colours are sRGB as in the style
-/// sheet, and nothing is lit: the ground covers most of the picture, so a fragment must cost next to nothing.
+/// sheet, and there is no lighting: the ground covers most of the picture, so a fragment must cost next to nothing.
 export const groundVertex = /* glsl */ `
 uniform mat4 shadowMatrix;
 uniform float fadeRadius;
@@ -150,7 +150,7 @@ varying vec2 vMask;
 
 void main() {
   vec3 color = groundColor;
-  #ifdef LINES  // each 0.25 m
+  #ifdef LINES  // every 0.25 m
     vec2 width = fwidth(vLines);
     vec2 line = clamp(1.3 - abs(fract(vLines - 0.5) - 0.5) / width, 0.0, 1.0) * clamp(1.6 - 4.0 * width, 0.0, 1.0);
     color = mix(color, lineColor, 0.5 * max(line.x, line.y));
@@ -158,7 +158,8 @@ void main() {
   vec2 off = abs(vMask - 0.5);
   if (max(off.x, off.y) < 0.5) color = mix(color, shadowColor, 0.62 * texture2D(shadowMask, vMask).r);
   float fade = max(1.0 - dot(vDisc, vDisc), 0.0);
-  float noise = fract(52.98 * fract(dot(gl_FragCoord.xy, vec2(0.0671, 0.00584)))) - 0.5;  // against rings of equal shade
+  // against visible bands in the gradient
+  float noise = fract(52.98 * fract(dot(gl_FragCoord.xy, vec2(0.0671, 0.00584)))) - 0.5;
   gl_FragColor = vec4(color, fade * fade + 0.012 * noise);
 }`;
 

@@ -1,4 +1,4 @@
-// How each kind of shape is shown, and what a view knows of it. What is the same for all of them: collider_view.ts.
+// Draws each kind of shape, and knows what a view needs of it. collider_view.ts has what all kinds share.
 import {
   Box3,
   CircleGeometry,
@@ -20,20 +20,20 @@ import { groundFragment, groundVertex, porcelain } from "./shaders";
 
 export const forward = new Vector3(0, 0, 1); // the normal of a disc
 
-/// One of a scene's shapes on the stage, and what falls into the ground's shadow of it.
+/// A shape of the scene on the stage, and the mesh that casts its shadow on the ground.
 export interface Shown {
   mesh: Mesh;
   caster: Mesh | null;
 }
 
-const levelled = 0.7; // a normal that rises so far is that of a floor
+const levelled = 0.7; // a plane counts as a floor if its normal rises more than this
 const rises = ({ normal }: Plane): boolean => new Vector3(...normal).normalize().y > levelled;
 
-/// How high the floor is that a shape makes [m]; null where it makes none.
+/// Height of the floor that a shape is [m]; null if it is none.
 export const floorOf = (shape: Shape): number | null =>
   byKind<number | null>(shape, { sphere: () => null, plane: (plane) => (rises(plane) ? plane.point[1] : null) });
 
-/// The lowest point of a shape [m]; null where it has none.
+/// Lowest point of a shape [m]; null if it has none.
 export const bottomOf = (shape: Shape): number | null =>
   byKind<number | null>(shape, { sphere: ({ center, radius }) => center[1] - radius, plane: () => null });
 
@@ -43,20 +43,20 @@ const corners = (box: Box3): Vector3[] =>
     (_, i) => new Vector3((i & 1 ? box.max : box.min).x, (i & 2 ? box.max : box.min).y, (i & 4 ? box.max : box.min).z),
   );
 
-/// A ball's outline, nearly: the corners of a box around it stick out of it.
+/// Points near a ball's surface: the corners of its bounding box, moved inwards.
 function ballPoints(center: Vector3, radius: number): Vector3[] {
   const box = corners(new Ball(center, radius).getBoundingBox(new Box3()));
   return box.map((corner) => corner.sub(center).multiplyScalar(0.75).add(center));
 }
 
-/// Points around all that a shape sweeps [m]; none of what has no end.
+/// Points around everything that a shape's motion covers [m]; none for an endless shape.
 export const outlineOf = (shape: Shape, motion: Motion): Vector3[] =>
   byKind<Vector3[]>(shape, {
     sphere: ({ center, radius }) => sweep(center, motion).flatMap((point) => ballPoints(point, radius)),
     plane: () => [],
   }) ?? [];
 
-/// Puts the ball (centre, radius) by which a shape hides the sky into `occluder`; false where it hides none.
+/// Sets `occluder` to the ball (centre, radius) with which a shape hides the sky; false if it hides none.
 export const occlude = (shape: Shape, occluder: Vector4 | undefined): boolean =>
   byKind<boolean>(shape, {
     sphere: ({ center, radius }) => {
@@ -66,7 +66,7 @@ export const occlude = (shape: Shape, occluder: Vector4 | undefined): boolean =>
     plane: () => false,
   }) ?? false;
 
-/// Puts what is shown of a shape where the shape is.
+/// Moves a shape's meshes to the shape.
 export const place = ({ mesh, caster }: Shown, shape: Shape): void => {
   byKind<void>(shape, {
     sphere: ({ center }) => {
@@ -104,11 +104,11 @@ export function groundMaterial(uniforms: Record<string, IUniform>, solid: boolea
   });
 }
 
-/// Makes the meshes of shapes, which share their geometries and materials.
+/// Makes the meshes of shapes; these share their geometries and materials.
 export class SolidMaker {
   readonly disc = new CircleGeometry(1, 64);
   private readonly sphere = new SphereGeometry(1, 40, 24);
-  private readonly coarseSphere = new SphereGeometry(1, 16, 10); // a blurred shadow needs no more
+  private readonly coarseSphere = new SphereGeometry(1, 16, 10); // enough for a blurred shadow
   private readonly sphereMaterial;
   private readonly planeMaterial;
   private readonly casterMaterial = casterMaterial();
@@ -119,7 +119,7 @@ export class SolidMaker {
     this.planeMaterial = groundMaterial(ground, true);
   }
 
-  /// What has no end is shown as far as `far` [m].
+  /// Makes the meshes of a shape. An endless shape is drawn as far as `far` [m].
   make(shape: Shape, far: number): Shown | null {
     return byKind<Shown>(shape, {
       sphere: ({ radius }) => {
@@ -139,7 +139,7 @@ export class SolidMaker {
     });
   }
 
-  /// What is drawn like every body, and like the shadow of one: see ClothView.samples.
+  /// Objects with the materials of every body and of its shadow: see ClothView.samples.
   samples(): { shown: Object3D[]; cast: Object3D[] } {
     return {
       shown: [new Mesh(this.sphere, this.sphereMaterial)],

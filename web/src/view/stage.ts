@@ -1,4 +1,4 @@
-// The renderer, light, camera and the views on it. Draws only when something changed.
+// The renderer, the light, the camera and the views they draw. Draws only when something changed.
 import {
   Box3,
   Color,
@@ -24,11 +24,12 @@ import { framePoints, scenePoints } from "./reach";
 import type { SceneDocument } from "../link/scene_types";
 import type { Graphics } from "./webgl";
 
-const stillAfter = 300; // [ms] without a change: a picture at rest is worth its full resolution
+const stillAfter = 300; // [ms] without a change: then the picture is drawn at full resolution
 const explodedAt = 12; // times the scene's radius
 const lightFrom = new Vector3(0.55, 1, 0.62).normalize();
 
-// Five filtered reads of the shadow map a pixel are most of what a software renderer spends on the cloth: one will do.
+// Five filtered reads of the shadow map per pixel are most of what a software renderer spends on the cloth: one will
+// do.
 function readShadowsOnce(): void {
   const fiveReads = /shadow = \(\s*texture\( shadowMap, vec3\( shadowCoord\.xy \+ vogelDiskSample[\s\S]*?\) \* 0\.2;/;
   ShaderChunk.shadowmap_pars_fragment = ShaderChunk.shadowmap_pars_fragment.replace(
@@ -40,7 +41,7 @@ function readShadowsOnce(): void {
 export class Stage {
   readonly controls: OrbitControls;
   readonly cloth: ClothView;
-  onLost = (): void => undefined; ///< the WebGL context is gone; three.js restores what it can when it comes back
+  onLost = (): void => undefined; ///< the WebGL context is lost; three.js restores what it can when the context returns
   private readonly canvas: HTMLCanvasElement;
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
@@ -60,17 +61,17 @@ export class Stage {
   private dirty = true;
   private readonly keeper = new CameraKeeper(this.camera);
   private document: SceneDocument | null = null;
-  private latest: ShownFrame | null = null; // on screen
+  private latest: ShownFrame | null = null; // frame on screen
   private lastDrawn = 0;
   private lastLook = 0;
-  private scale = 1; // resolution of the picture on screen: one at rest is sharp, whatever the quality level
+  private scale = 1; // resolution of the picture; a still picture is drawn sharp at any quality level
   private readonly stillScale: number;
-  private radius = 1; // of the scene [m]
+  private radius = 1; // radius of the scene [m]
 
   constructor({ canvas, context, software }: Graphics) {
     this.canvas = canvas;
     if (software) readShadowsOnce();
-    this.stillScale = software ? 1.5 : 1; // more pixels smooth the edges that nothing else smooths there
+    this.stillScale = software ? 1.5 : 1; // a software renderer has no antialiasing: more pixels smooth the edges
     this.renderer = new WebGLRenderer({ canvas, context, alpha: true });
     this.renderer.setClearColor(0, 0);
     this.renderer.shadowMap.enabled = true;
@@ -120,11 +121,11 @@ export class Stage {
   setTopology(topology: Topology): void {
     this.cloth.setTopology(topology);
     this.latest = null;
-    if (this.keeper.fitted) this.fit(false); // what was seen of another mesh need not be seen any more
+    if (this.keeper.fitted) this.fit(false); // another mesh: forget where the last one was seen
   }
 
   show(frame: ShownFrame): boolean {
-    // A cloth that has blown up would fill the window many times over: its last sane shape stays.
+    // A cloth that has blown up would fill the window many times over: its last sane shape stays on screen.
     if (Math.max(...frame.header.boxExtent) > explodedAt * this.radius) return true;
     if (!this.cloth.show(frame)) return false;
     const first = this.latest === null;
@@ -144,13 +145,14 @@ export class Stage {
       ["shadowColor", "--ground-shadow"],
       ["lineColor", "--ground-line"],
     ] as const) {
-      this.ground[uniform].value.set(style.getPropertyValue(name).trim()).convertLinearToSRGB(); // the shader writes it as it is
+      // the shader writes sRGB as it is
+      this.ground[uniform].value.set(style.getPropertyValue(name).trim()).convertLinearToSRGB();
     }
     this.sky.intensity = Number(style.getPropertyValue("--sky"));
     this.invalidate();
   }
 
-  /// All of the scene into view; `seen`: what is on screen now too, wherever it has got to.
+  /// Fits the whole scene into the view; with `seen`, also what is on screen now.
   fit(seen = true): void {
     if (!this.document) return;
     const damped = this.controls.enableDamping;
@@ -183,7 +185,7 @@ export class Stage {
 
   /// Called for every animation frame; true if it drew.
   draw(): boolean {
-    if (this.cloth.vertices === 0) return false; // an empty stage is not worth the time before the first frame
+    if (this.cloth.vertices === 0) return false; // saves the time to draw an empty stage before the first frame
     const now = performance.now();
     this.orbit(this.keeper.follow(Math.min(now - this.lastLook, 100) / 1000));
     this.lastLook = now;
@@ -200,7 +202,7 @@ export class Stage {
     return true;
   }
 
-  // The driver compiles while the connection is made: the first frame need not wait for it.
+  // Lets the driver compile while the page connects, so that the first frame need not wait.
   private compileAhead(): void {
     const samples = [this.cloth.samples(), this.colliders.samples()];
     const shown = samples.flatMap((sample) => sample.shown);
@@ -210,7 +212,7 @@ export class Stage {
     this.groundShadow.compile(samples.flatMap((sample) => sample.cast));
   }
 
-  // Also the size of the drawing buffer: three.js keeps the size in CSS pixels.
+  // Sets the size of the drawing buffer: three.js keeps the canvas's size in CSS pixels.
   private setScale(scale: number): void {
     this.scale = scale;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * scale);

@@ -1,4 +1,4 @@
-// Dark or light: what the system says, until the user chose here.
+// The theme, dark or light: the system's, until the user chooses one.
 
 type Theme = "dark" | "light";
 const key = "clothlab-theme";

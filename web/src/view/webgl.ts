@@ -20,9 +20,9 @@ function rendererName(gl: WebGL2RenderingContext): string {
   return String(gl.getParameter(details ? details.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
 }
 
-/// Null without WebGL 2. Edges are smoothed only by a graphics processor, which does so at no cost. Who draws is known
-/// only from a context, and smoothing cannot be added to one: a graphics processor gets a second context, on a fresh
-/// canvas.
+/// Opens WebGL 2; null if there is none. Edges are smoothed only by a graphics processor, which does so at no cost. The
+/// renderer is known only from a context, and smoothing cannot be added to one: a graphics processor gets a second
+/// context, on a fresh canvas.
 export function openWebGl(canvas: HTMLCanvasElement): Graphics | null {
   const first = canvas.getContext("webgl2", attributes);
   if (!first) return null;
