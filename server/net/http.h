@@ -47,8 +47,8 @@ class HttpRequest {
   void inside(const std::string& path);
   void ask_session(const std::string& session, session::Export what);
   void answer(HttpAnswer answer);
-  /// Refuses a request that may have a body, and returns -1. The refusal is written at once: libwebsockets would take
-  /// the body for the next request while this one waits until its socket can be written.
+  /// Refuses a request that may have a body, and returns -1. The refusal is written at once: libwebsockets
+  /// would take the body for the next request while this one waits until its socket can be written.
   int refuse(HttpAnswer refusal);
   /// -1: it could not be sent, 0: the body follows, 1: that was all.
   int send_headers();

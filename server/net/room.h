@@ -94,8 +94,8 @@ class Room {
   std::shared_ptr<const scene::Document> document_;
   std::uint64_t revision_ = 0;
   stream::SharedMessage topology_;
-  json passes_ = json::array(), terms_ = json::array(), skipped_ = json::array(), pass_seconds_ = json::object(),
-       solver_ = json::object();
+  json passes_ = json::array(), terms_ = json::array(), skipped_ = json::array(),
+       pass_seconds_ = json::object(), solver_ = json::object();
   std::array<double, stream::encoding_count> demanded_{};
   std::array<std::uint32_t, stream::encoding_count>
       seen_{};                           ///< sequence number of the last frame offered to viewers
