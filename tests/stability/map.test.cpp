@@ -136,26 +136,25 @@ TEST_CASE("methods that no step makes unstable hold at the longest that the map 
   }
 }
 
-TEST_CASE("a cancelled map ends within half a second, and what had arrived stays") {
+TEST_CASE("a cancelled map begins nothing more, and what had arrived stays") {
   const auto context = test::context();
   std::stop_source source;
-  std::chrono::steady_clock::time_point asked;
+  int begun_after = 0;
   StabilityMap so_far;
   lab::Control<StabilityMap> control;
   control.stop = source.get_token();
   control.arrived = [&](const StabilityMap& map) { so_far = map; };
   control.progress = [&](const lab::Progress& progress) {
     CHECK(progress.done <= progress.total);
-    if (progress.done < 1.3 || source.stop_requested()) return;
-    asked = std::chrono::steady_clock::now();
-    source.request_stop();
+    if (source.stop_requested()) ++begun_after;
+    if (progress.done >= 1.3) source.request_stop();
   };
   lab::MapRequest request;
   request.methods = {Method::rk4};
   const Result<StabilityMap> map = lab::stability_map(*scene::load_preset("seed"), request, control);
   REQUIRE_FALSE(map);
   CHECK(lab::was_cancelled(map.error()));
-  CHECK(std::chrono::steady_clock::now() - asked < std::chrono::milliseconds(500));
+  CHECK(begun_after == 0);
   REQUIRE(so_far.methods.size() == 1);
   CHECK(so_far.methods[0].columns.size() == 1);
   CHECK_FALSE(so_far.complete);

@@ -1,5 +1,11 @@
 #include "server/render/image.h"
 
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#include <stb_image.h>
+
+#include <memory>
+
 #include "tests/catch.h"
 
 using namespace clothlab::render;
@@ -12,12 +18,18 @@ TEST_CASE("a picture's sides are from 1 to the largest, both bounds included") {
   CHECK_FALSE(check_size(max_image_side + 1, 10));
 }
 
-TEST_CASE("a PNG starts with its signature and states its size") {
-  const Image image{3, 2, std::vector<std::uint8_t>(18, 200)};
+TEST_CASE("a PNG has the pixels that it was made of, row by row from the top") {
+  Image image{3, 2, {}};
+  for (int i = 0; i < 18; ++i) image.pixels.push_back(static_cast<std::uint8_t>(13 * i));
   const clothlab::Result<std::vector<std::uint8_t>> png = encode_png(image);
   REQUIRE(png);
-  CHECK(std::vector<std::uint8_t>(png->begin(), png->begin() + 4) ==
-        std::vector<std::uint8_t>{0x89, 'P', 'N', 'G'});
-  CHECK((*png)[19] == 3);
-  CHECK((*png)[23] == 2);
+  int width = 0, height = 0, channels = 0;
+  const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
+      stbi_load_from_memory(png->data(), static_cast<int>(png->size()), &width, &height, &channels, 0),
+      &stbi_image_free);
+  REQUIRE(pixels);
+  CHECK(width == 3);
+  CHECK(height == 2);
+  REQUIRE(channels == 3);
+  CHECK(std::vector<std::uint8_t>(pixels.get(), pixels.get() + 18) == image.pixels);
 }
