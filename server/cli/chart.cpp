@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "server/cli/lab_command.h"
+#include "server/lab/draw/plot.h"
 #include "server/lab/exports.h"
-#include "server/lab/plot.h"
 #include "server/scene/method.h"
 #include "server/scene/ranges.h"
 

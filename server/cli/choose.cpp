@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "server/cli/lab_command.h"
-#include "server/lab/plot.h"
+#include "server/lab/draw/plot.h"
 
 namespace clothlab::cli {
 

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "server/cli/lab_command.h"
-#include "server/lab/plot.h"
+#include "server/lab/draw/plot.h"
 #include "server/scene/method.h"
 
 namespace clothlab::cli {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "server/base/text.h"
-#include "server/lab/automatic.h"
-#include "server/lab/choice.h"
+#include "server/lab/measure/automatic.h"
+#include "server/lab/measure/choice.h"
 #include "server/model/stability.h"
 #include "server/scene/method.h"
 #include "server/sim/motion_table.h"

@@ -3,10 +3,10 @@
 
 #include <variant>
 
-#include "server/lab/chart.h"
-#include "server/lab/choice.h"
-#include "server/lab/simplification.h"
-#include "server/lab/stability_map.h"
+#include "server/lab/measure/chart.h"
+#include "server/lab/measure/choice.h"
+#include "server/lab/measure/simplification.h"
+#include "server/lab/measure/stability_map.h"
 
 namespace clothlab::lab {
 

@@ -1,6 +1,6 @@
 #include "server/session/automatic.h"
 
-#include "server/lab/automatic.h"
+#include "server/lab/measure/automatic.h"
 
 namespace clothlab::session {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "server/lab/choice.h"
+#include "server/lab/measure/choice.h"
 #include "server/scene/document.h"
 
 namespace clothlab::session {

@@ -8,7 +8,7 @@
 #include <string>
 #include <variant>
 
-#include "server/lab/choice.h"
+#include "server/lab/measure/choice.h"
 #include "server/scene/document.h"
 #include "server/stream/frame.h"
 

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "server/gl/stage_timer.h"
-#include "server/lab/choice.h"
+#include "server/lab/measure/choice.h"
 #include "server/scene/document.h"
 #include "server/session/command_queue.h"
 #include "server/session/refusal.h"

@@ -12,9 +12,9 @@
 
 #include "server/base/text.h"
 #include "server/gl/context.h"
-#include "server/lab/choice.h"
-#include "server/lab/trial.h"
-#include "server/lab/truth.h"
+#include "server/lab/measure/choice.h"
+#include "server/lab/measure/trial.h"
+#include "server/lab/measure/truth.h"
 #include "server/model/element_operator.h"
 #include "server/model/stability.h"
 #include "server/reference/trajectory.h"

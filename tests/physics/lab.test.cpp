@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/lab/choice.h"
-#include "server/lab/trial.h"
-#include "server/lab/truth.h"
+#include "server/lab/measure/choice.h"
+#include "server/lab/measure/trial.h"
+#include "server/lab/measure/truth.h"
 #include "server/reference/trajectory.h"
 #include "server/scene/method.h"
 #include "tests/physics/stage.h"

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/lab/choice.h"
-#include "server/lab/second_look.h"
+#include "server/lab/measure/choice.h"
+#include "server/lab/measure/second_look.h"
 #include "tests/scenes.h"
 #include "tests/small_scenes.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "server/lab/simplification.h"
+#include "server/lab/measure/simplification.h"
 #include "tests/scenes.h"
 
 using namespace clothlab;

@@ -4,8 +4,8 @@
 #include <chrono>
 #include <cmath>
 
-#include "server/lab/disagreement.h"
-#include "server/lab/stability_map.h"
+#include "server/lab/measure/disagreement.h"
+#include "server/lab/measure/stability_map.h"
 #include "server/scene/method.h"
 #include "tests/scenes.h"
 

@@ -39,9 +39,17 @@ test("no file of server/session includes anything of the network", () => {
   );
 });
 
+test("what the lab measures does not depend on how it is drawn or exported", () => {
+  const above = /^\s*#\s*include\s+"server\/lab\/(?!measure\/)/m;
+  assert.deepEqual(
+    sources.filter((file) => file.startsWith("server/lab/measure/") && above.test(read(file))),
+    [],
+  );
+});
+
 test("the check sees an include that goes up the list, and none that goes down", () => {
   const inSession = '#include "server/net/limits.h"\n#include "server/sim/plan.h"\n';
   assert.deepEqual(forbidden("server/session/a.cpp", inSession), ["server/net/limits.h"]);
-  const inSim = '  #  include "server/lab/chart.h"\n#include "tests/scenes.h"\n';
-  assert.deepEqual(forbidden("server/sim/a.cpp", inSim), ["server/lab/chart.h", "tests/scenes.h"]);
+  const inSim = '  #  include "server/lab/measure/chart.h"\n#include "tests/scenes.h"\n';
+  assert.deepEqual(forbidden("server/sim/a.cpp", inSim), ["server/lab/measure/chart.h", "tests/scenes.h"]);
 });

@@ -1,11 +1,11 @@
 // A coarser mesh that stands for the same cloth, and the other parts of a scene that can be left out.
-#include "server/lab/coarsen.h"
+#include "server/lab/measure/coarsen.h"
 
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <numeric>
 
-#include "server/lab/parts.h"
+#include "server/lab/measure/parts.h"
 #include "server/reference/rest_shape.h"
 #include "tests/scenes.h"
 

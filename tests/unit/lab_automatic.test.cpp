@@ -2,7 +2,7 @@
 // choice holds.
 #include <cmath>
 
-#include "server/lab/automatic.h"
+#include "server/lab/measure/automatic.h"
 #include "server/model/stability.h"
 #include "tests/catch.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "server/lab/spread.h"
+#include "server/lab/measure/spread.h"
 #include "tests/catch.h"
 
 using namespace clothlab;

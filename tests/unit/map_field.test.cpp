@@ -1,7 +1,7 @@
 // The number that a stability map varies: how it is found, checked and spaced.
 #include <cmath>
 
-#include "server/lab/map_field.h"
+#include "server/lab/measure/map_field.h"
 #include "tests/catch.h"
 
 using namespace clothlab;

@@ -1,7 +1,7 @@
 // How fast a spring's vibration grows beyond a method's limit, against the reference that steps this spring.
 #include <cmath>
 
-#include "server/lab/mode_growth.h"
+#include "server/lab/measure/mode_growth.h"
 #include "server/model/stability.h"
 #include "tests/sides.h"
 #include "tests/small_scenes.h"

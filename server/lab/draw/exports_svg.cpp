@@ -1,0 +1,26 @@
+#include "server/lab/draw/drawings.h"
+#include "server/lab/exports.h"
+
+namespace clothlab::lab {
+
+namespace {
+// Only where errors are drawn is there an axis to choose.
+std::string picture(const Chart& chart, Axis axis) {
+  return draw(chart, axis);
+}
+std::string picture(const Choice& choice, Axis axis) {
+  return draw(choice, axis);
+}
+std::string picture(const StabilityMap& map, Axis) {
+  return draw(map);
+}
+std::string picture(const Simplification& simplification, Axis) {
+  return draw(simplification);
+}
+}  // namespace
+
+std::string svg(const Outcome& outcome, Axis axis) {
+  return std::visit([axis](const auto& result) { return picture(result, axis); }, outcome);
+}
+
+}  // namespace clothlab::lab

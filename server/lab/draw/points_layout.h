@@ -1,0 +1,66 @@
+// How settings become places in a plot of error against cost; private to points_*.cpp.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/lab/draw/drawings.h"
+
+namespace clothlab::lab {
+
+inline constexpr double mark_radius = 4.6, small_radius = 3.4, cross_radius = 3.6;
+inline constexpr double strip_width = 60;
+inline constexpr const char* real_time_colour = "#b03a2e";
+
+/// A point that has a place in the plot.
+struct Place {
+  std::size_t index = 0;
+  double error = 0, cost = 0;
+  double x = 0, y = 0;
+};
+
+struct Cross {
+  std::size_t index = 0;
+  std::optional<double> cost;  ///< [ms per simulated second]
+  bool inferred = false;       ///< from the same steps where they did not blow up
+};
+
+struct Layout {
+  const PointsPlot* plot = nullptr;
+  Scale x, y;
+  double strip_left = 0;  ///< of the blown-up; where there are none, the right edge
+  std::vector<Place> places;
+  std::vector<Cross> crosses;
+  std::size_t beyond = 0;  ///< points with an error above 1
+
+  const Point& point(std::size_t index) const { return (*plot->points)[index]; }
+  scene::Method method(std::size_t index) const { return point(index).setting.method; }
+  double lane(std::size_t index) const {
+    const double lanes = static_cast<double>(scene_methods);
+    return strip_left + 3 + (strip_width - 6) * (static_cast<double>(shape(method(index))) + 0.5) / lanes;
+  }
+  double height(const Cross& cross) const { return cross.cost ? y(*cross.cost) : y.from - 5; }
+  static constexpr std::size_t scene_methods = 8;
+};
+
+/// Places all points of the plot, whose frame starts at `top`.
+Layout layout_of(const PointsPlot& plot, double top);
+
+/// Those of `candidates` that no other of them beats in both error and cost, rising error. An error of more
+/// than the whole is no accuracy at all.
+std::vector<Place> front(std::vector<Place> candidates);
+std::vector<Place> of_method(const Layout& layout, scene::Method method);
+/// Where a point of that index is drawn, if it is.
+std::optional<std::pair<double, double>> where(const Layout& layout, std::size_t index);
+
+// Parts of the picture, from back to front.
+void draw_lines(Svg& svg, const Layout& layout, std::size_t rows);
+void draw_crosses(Svg& svg, const Layout& layout);
+void draw_curves(Svg& svg, const Layout& layout);
+void draw_marks(Svg& svg, const Layout& layout, Places& taken);
+void draw_rings(Svg& svg, const Layout& layout, Places& taken);
+void draw_labels(Svg& svg, const Layout& layout, Places& taken);
+
+}  // namespace clothlab::lab

@@ -1,0 +1,300 @@
+#include "server/lab/measure/choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "server/base/text.h"
+#include "server/gl/context.h"
+#include "server/lab/measure/second_look.h"
+#include "server/lab/measure/spread.h"
+#include "server/lab/measure/step_search.h"
+#include "server/lab/measure/trial.h"
+#include "server/lab/measure/truth.h"
+#include "server/model/stability.h"
+#include "server/scene/method.h"
+
+namespace clothlab::lab {
+
+namespace {
+
+using scene::Method;
+
+constexpr int rounds = 7;                                      // all on one side of the median: 1 / 128
+constexpr int looks_again = 3;                                 // at those whose step had to be shortened
+constexpr double timed = 0.2;                                  // wall time of one timing at most [s]
+constexpr double share_of_truth = 0.3, share_of_search = 0.9;  // of the progress
+
+std::string times(double ratio) {
+  return formatted("%.*f times", ratio < 10 ? 1 : 0, ratio);
+}
+
+/// "3.4e-04, at most 3.6e-04".
+std::string error_text(const Point& point) {
+  const std::string seen = significant(point.largest_position_error.value_or(unknown), 3);
+  if (!point.error_high || significant(*point.error_high, 3) == seen) return seen;
+  return seen + " (at most " + significant(*point.error_high, 3) + ")";
+}
+
+class Chooser {
+ public:
+  Chooser(const scene::Scene& scene, const ChooseRequest& request, const Control<Choice>& control)
+      : scene_(scene), request_(request), control_(control) {}
+
+  Result<Choice> choose() {
+    choice_.scene = scene_.name;
+    choice_.renderer = gl::renderer_name();
+    choice_.tolerance = request_.tolerance;
+    if (Status known = know_truth(); !known) return known.error();
+    search_.emplace(scene_, truth_, request_.tolerance, bench_, control_.stop);
+    if (Status listed = search_->list(request_.methods); !listed) return listed.error();
+    choice_.notes.insert(choice_.notes.end(), search_->notes().begin(), search_->notes().end());
+    if (Status measured = measure_present(); !measured) return measured.error();
+    std::vector<Candidate>& candidates = search_->candidates();
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      control_.progress({share_of_truth + (share_of_search - share_of_truth) * static_cast<double>(i) /
+                                              static_cast<double>(candidates.size()),
+                         1.0, text(candidates[i].setting)});
+      if (Status searched = search_->search(candidates[i]); !searched) return searched.error();
+      choice_.tried = search_->tried();
+      control_.arrived(choice_);
+    }
+    if (Status decided = decide(); !decided) return decided.error();
+    choice_.complete = true;
+    control_.progress({1.0, 1.0, "done"});
+    return choice_;
+  }
+
+ private:
+  Status know_truth() {
+    const auto progress = [this](double share) {
+      control_.progress({share * share_of_truth, 1.0, "the reference, in double precision"});
+    };
+    const double accuracy = std::min(1e-7, 1e-3 * request_.tolerance);
+    Result<Truth> found =
+        truth(scene_, {request_.time.value_or(1.0), accuracy, 30.0}, control_.stop, progress);
+    if (!found) return found.error();
+    truth_ = std::move(*found);
+    choice_.time = truth_.time;
+    choice_.horizon = truth_.horizon;
+    choice_.reference_error = truth_.position_error / truth_.size;
+    choice_.notes = truth_.notes;
+    if (!truth_.missing.empty())
+      return Error{"choose", "there is no reference: " + truth_.missing,
+                   "the chart still shows what each method costs and what blows up"};
+    if (truth_.horizon == 0.0)
+      return Error{
+          "choose", "positions cannot be compared: " + truth_.horizon_reason,
+          "the chart still compares energy, the largest strain and, where there is one, the shape of rest"};
+    if (choice_.reference_error > 0.3 * request_.tolerance)
+      return Error{
+          "choose",
+          "the reference itself is known to " + significant(choice_.reference_error, 3) +
+              " of the cloth's size only, a tolerance of " + significant(request_.tolerance, 3) +
+              " was asked for",
+          "a tolerance of " + significant(choice_.reference_error / 0.3, 3) + " or more, or a shorter time"};
+    return ok();
+  }
+
+  Status measure_present() {
+    Candidate present{setting_of(scene_), search_->limit_of(scene_.solver.method), unknown, {}};
+    const Result<double> error = search_->error_at(present, scene_.solver.dt, choice_.present);
+    if (!error) return error.error();
+    return ok();
+  }
+
+  /// What may be promised of those in the race: looked at again, at every step. Whose error turns out to be
+  /// above the tolerance tries shorter steps, and leaves the race if that does not help.
+  Status promise(std::vector<Candidate*>& race) {
+    std::vector<Candidate*> open = race;
+    bool present = choice_.present.largest_position_error.has_value();
+    for (int look = 0; look < looks_again && !open.empty(); ++look) {
+      std::vector<Setting> settings;
+      for (const Candidate* candidate : open) settings.push_back(candidate->best->setting);
+      if (present) settings.push_back(choice_.present.setting);
+      const auto errors = look_again(scene_, truth_, settings, bench_, control_.stop);
+      if (!errors) return errors.error();
+      if (present) set_error(choice_.present, errors->back());
+      present = false;
+      std::vector<Candidate*> again;
+      for (std::size_t i = 0; i < open.size(); ++i) {
+        set_error(*open[i]->best, (*errors)[i]);
+        const double high = (*errors)[i] ? (*errors)[i]->high : unknown;
+        if (high <= request_.tolerance) continue;
+        again.push_back(open[i]);
+        if (look + 1 == looks_again || high == unknown) continue;
+        const Result<double> shorter = search_->shorten(*open[i], high);
+        if (!shorter) return shorter.error();
+      }
+      open = std::move(again);
+    }
+    choice_.tried = search_->tried();
+    for (const Candidate* candidate : open) {
+      choice_.notes.push_back(text(candidate->best->setting) +
+                              " seemed to keep the tolerance, but does not at every step.");
+      std::erase(race, candidate);
+    }
+    return ok();
+  }
+
+  static void set_error(Point& point, const std::optional<LargestError>& error) {
+    if (!error) return;
+    point.largest_position_error = error->seen;
+    point.error_low = error->low;
+    point.error_high = error->high;
+  }
+
+  /// Times those in the race taking turns, the scene's own setting among them.
+  Status time_race(std::vector<Candidate*>& race) {
+    std::vector<scene::Scene> scenes;
+    for (const Candidate* candidate : race) scenes.push_back(with(scene_, candidate->best->setting));
+    const bool present = choice_.present.cost.has_value();
+    if (present) scenes.push_back(with(scene_, choice_.present.setting));
+    Result<std::vector<std::vector<double>>> measured =
+        bench_.time(scenes, truth_.horizon, timed, rounds, control_.stop);
+    if (!measured) return measured.error();
+    for (std::size_t i = 0; i < race.size(); ++i) {
+      race[i]->best->cost = cost_of((*measured)[i]);
+      race[i]->times = (*measured)[i];
+    }
+    if (present) choice_.present.cost = cost_of(measured->back());
+    return ok();
+  }
+
+  Status decide() {
+    std::vector<Candidate*> race;
+    double best = unknown;
+    for (const Candidate& candidate : search_->candidates())
+      if (candidate.best) best = std::min(best, candidate.best->cost->median);
+    for (Candidate& candidate : search_->candidates())
+      if (candidate.best && candidate.best->cost->median <= close_race * best) race.push_back(&candidate);
+    if (race.empty()) return give_most_accurate();
+    add_runner_up(race);
+    control_.progress({share_of_search, 1.0, "looking at the best at every step"});
+    if (Status looked = promise(race); !looked) return looked;
+    if (race.empty()) return give_most_accurate();
+    control_.progress({0.5 * (1.0 + share_of_search), 1.0, "timing the best, taking turns"});
+    if (Status timed_all = time_race(race); !timed_all) return timed_all;
+    const auto cheaper = [](const Candidate* a, const Candidate* b) {
+      return a->best->cost->median < b->best->cost->median;
+    };
+    std::sort(race.begin(), race.end(), cheaper);
+    for (Candidate* candidate : race) {
+      Result<bool> holds = keeps_margin(*candidate);
+      if (!holds) return holds.error();
+      if (!*holds) continue;
+      choice_.met = true;
+      choice_.chosen = *candidate->best;
+      chosen_times_ = candidate->times;
+      break;
+    }
+    if (!choice_.met) return give_most_accurate();
+    for (const Candidate* candidate : race)
+      if (!choice_.runner_up && candidate->setting.method != choice_.chosen.setting.method) {
+        choice_.runner_up = *candidate->best;
+        runner_up_times_ = candidate->times;
+      }
+    choice_.why = explain();
+    return ok();
+  }
+
+  /// The cheapest of another method than the cheapest of all.
+  void add_runner_up(std::vector<Candidate*>& race) {
+    const Method winner =
+        (*std::min_element(race.begin(), race.end(), [](const Candidate* a, const Candidate* b) {
+          return a->best->cost->median < b->best->cost->median;
+        }))->setting.method;
+    Candidate* second = nullptr;
+    for (Candidate& candidate : search_->candidates())
+      if (candidate.best && candidate.setting.method != winner &&
+          (!second || candidate.best->cost->median < second->best->cost->median))
+        second = &candidate;
+    if (second && std::find(race.begin(), race.end(), second) == race.end()) race.push_back(second);
+  }
+
+  /// Neither it nor a step a ninth longer blows up within the whole time.
+  Result<bool> keeps_margin(const Candidate& candidate) {
+    scene::Scene scene = with(scene_, candidate.best->setting);
+    std::vector<double> steps{scene.solver.dt};
+    if (!scene::any_step_is_stable(candidate.setting.method))
+      steps.push_back(scene.solver.dt / model::margin_to_warn);
+    for (const double dt : steps) {
+      scene.solver.dt = dt;
+      const Result<Trial> trial = bench_.run(scene, truth_, truth_.time, control_.stop);
+      if (!trial) return trial.error();
+      if (!trial->blew_up_at) continue;
+      choice_.notes.push_back(text(candidate.best->setting) + " keeps the tolerance, but blows up " +
+                              (dt == steps.front() ? "later" : "with a step a ninth longer") + ", at " +
+                              significant(*trial->blew_up_at, 3) + " s.");
+      return false;
+    }
+    return true;
+  }
+
+  Status give_most_accurate() {
+    const Point* best = nullptr;
+    for (const Point& point : choice_.tried)
+      if (!(point.setting == choice_.present.setting) && point.largest_position_error && point.cost &&
+          (!best || *point.largest_position_error < *best->largest_position_error))
+        best = &point;
+    if (!best)
+      return Error{"choose", "everything that was tried blew up", "a stabler method, a shorter time"};
+    choice_.chosen = *best;
+    const auto errors = look_again(scene_, truth_, {choice_.chosen.setting}, bench_, control_.stop);
+    if (!errors) return errors.error();
+    set_error(choice_.chosen, errors->front());
+    choice_.why = "Nothing that was tried keeps " + significant(request_.tolerance, 3) + "; nearest came " +
+                  text(choice_.chosen.setting) + " with an error of " + error_text(choice_.chosen) + ".";
+    return ok();
+  }
+
+  Spread ratio_to_runner_up() const {
+    std::vector<double> ratios;
+    for (std::size_t round = 0; round < std::min(chosen_times_.size(), runner_up_times_.size()); ++round)
+      ratios.push_back(runner_up_times_[round] / chosen_times_[round]);
+    return spread_of(std::move(ratios), 0.01);
+  }
+
+  std::string explain() const {
+    const Point& chosen = choice_.chosen;
+    const double cost = chosen.cost->median;
+    std::string why = text(chosen.setting) + " costs " + significant(cost, 3) + " ms a simulated second";
+    if (choice_.runner_up) {
+      const double ratio = choice_.runner_up->cost->median / cost;
+      const bool cheaper = ratio_to_runner_up().low > 1.0;
+      why += (!cheaper       ? ", too near to tell from"
+              : ratio < 1.05 ? ", about as much as"
+                             : ", " + times(ratio) + " less than") +
+             " the next best (" + text(choice_.runner_up->setting) + ")";
+    }
+    if (chosen.dt_over_limit && *chosen.dt_over_limit > model::margin_to_warn / near_enough)
+      why += "; its step is as long as stability allows, where its error of " + error_text(chosen) +
+             " is already " + times(request_.tolerance / *chosen.error_high) + " below the tolerance";
+    else
+      why += "; with an error of " + error_text(chosen) + ", a longer step would miss the tolerance";
+    if (choice_.present.cost)
+      why += ". The scene's own setting costs " + times(choice_.present.cost->median / cost) + " as much";
+    return why + ".";
+  }
+
+  const scene::Scene& scene_;
+  const ChooseRequest& request_;
+  const Control<Choice>& control_;
+  Choice choice_;
+  Truth truth_;
+  Bench bench_;
+  std::optional<StepSearch> search_;
+  std::vector<double> chosen_times_, runner_up_times_;  // by round
+};
+
+}  // namespace
+
+Result<Choice> choose(const scene::Scene& scene, const ChooseRequest& request,
+                      const Control<Choice>& control) {
+  if (!(request.tolerance > 0.0 && request.tolerance <= 1.0))
+    return Error{"tolerance", significant(request.tolerance, 3),
+                 "above 0, at most 1: a share of the cloth's size"};
+  return Chooser(scene, request, control).choose();
+}
+
+}  // namespace clothlab::lab

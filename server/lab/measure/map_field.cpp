@@ -1,0 +1,146 @@
+#include "server/lab/measure/map_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "server/base/text.h"
+#include "server/scene/pointer.h"
+
+namespace clothlab::lab {
+
+namespace {
+
+using scene::json;
+
+const char* const stiffness = "stiffness";
+
+/// The value a pointer names, or null.
+json* find_value(json& document, const std::string& pointer) {
+  const auto tokens = scene::split_pointer(pointer);
+  if (!tokens || tokens->empty()) return nullptr;
+  json* at = &document;
+  for (const std::string& token : *tokens)
+    if (!(at = scene::child(*at, token))) return nullptr;
+  return at;
+}
+
+/// Multiplies the stiffnesses of every cloth.
+void scale_stiffness(json& document, double factor) {
+  for (json& cloth : document["cloths"])
+    for (const char* kind : {"structural", "shear", "bend"})
+      cloth["material"][kind] = factor * cloth["material"][kind].get<double>();
+}
+
+bool any_spring(const scene::Scene& scene) {
+  return std::any_of(scene.cloths.begin(), scene.cloths.end(), [](const scene::Cloth& cloth) {
+    return cloth.material.structural > 0 || cloth.material.shear > 0 || cloth.material.bend > 0;
+  });
+}
+
+}  // namespace
+
+Result<MapField> MapField::find(const scene::Document& document, const std::string& field) {
+  MapField found(document, field);
+  if (field == stiffness) {
+    if (!any_spring(document.scene))
+      return Error{"field", "\"stiffness\", but no cloth has a spring", "the JSON Pointer of another number"};
+    return found;
+  }
+  const json* value = find_value(found.document_.value, field);
+  if (!value)
+    return Error{"field", scene::compact(field),
+                 "\"stiffness\", or the JSON Pointer of a number of this scene, such as "
+                 "\"/cloths/0/mass/per_vertex\""};
+  if (!value->is_number())
+    return Error{"field", scene::compact(*value) + " at " + field, "the JSON Pointer of a number"};
+  if (field == "/solver/dt")
+    return Error{"field", "\"/solver/dt\"", "another number: dt is the map's other axis"};
+  if (field == "/version")
+    return Error{"field", "\"/version\"", "a number that means something to the cloth"};
+  found.present_ = value->get<double>();
+  // Halfway to the next number on either side: where both are refused and it is whole, only such are allowed.
+  found.whole_ = found.present_ == std::round(found.present_) && !found.allowed(found.present_ + 0.5) &&
+                 !found.allowed(found.present_ - 0.5) &&
+                 (found.allowed(found.present_ + 1) || found.allowed(found.present_ - 1));
+  return found;
+}
+
+Result<scene::Document> MapField::with(double& value) const {
+  json changed = document_.value;
+  if (whole_) value = std::round(value);
+  if (field_ == stiffness)
+    scale_stiffness(changed, value);
+  else
+    *find_value(changed, field_) = whole_ ? json(static_cast<std::int64_t>(value)) : json(value);
+  return scene::validate(std::move(changed));
+}
+
+bool MapField::allowed(double value) const {
+  return static_cast<bool>(with(value));
+}
+
+double MapField::nearest_allowed(double end) const {
+  if (allowed(end)) return end;
+  double good = present_, bad = end;
+  const bool log = present_ > 0 && end > 0;
+  for (int halving = 0; halving < 30; ++halving) {
+    const double middle = log ? std::sqrt(good * bad) : 0.5 * (good + bad);
+    (allowed(middle) ? good : bad) = middle;
+    if (log ? std::abs(std::log(bad / good)) < 1e-3 : std::abs(bad - good) < 1e-3 * std::abs(end - present_))
+      break;
+  }
+  return whole_ ? std::round(good) : good;
+}
+
+Result<std::vector<double>> MapField::values(std::optional<double> from, std::optional<double> to,
+                                             int columns) const {
+  if (columns < 2 || columns > 41) return Error{"columns", std::to_string(columns), "2 to 41"};
+  for (const auto& [name, end] : {std::pair("from", from), std::pair("to", to)})
+    if (end && !std::isfinite(*end)) return Error{name, "no finite number", "a number"};
+  if (present_ == 0.0 && (!from || !to))
+    return Error{from ? "to" : "from", "nothing", "a number: the present value is 0 and gives no scale"};
+  const double reach = whole_ ? 4.0 : 100.0;
+  const double low =
+      from ? *from
+           : nearest_allowed(present_ > 0 ? std::min(present_, to.value_or(present_)) / reach : 2 * present_);
+  const double high = to ? *to : nearest_allowed(present_ > 0 ? std::max(present_, low) * reach : 0.0);
+  if (!(low < high))
+    return Error{to ? "to" : "from", significant(to ? high : low, 6),
+                 to ? "above " + significant(low, 6) : "below " + significant(high, 6)};
+  std::vector<double> values;
+  for (int i = 0; i < columns; ++i) {
+    const double share = static_cast<double>(i) / (columns - 1);
+    double value = low > 0 ? low * std::pow(high / low, share) : low + share * (high - low);
+    if (i == columns - 1) value = high;
+    const Result<scene::Document> scene = with(value);
+    if (!scene) return scene.error();
+    if (values.empty() || value > values.back()) values.push_back(value);
+  }
+  if (values.size() < 2)
+    return Error{"to", significant(high, 6), "at least one more than from, in whole numbers"};
+  return values;
+}
+
+std::string MapField::unit() const {
+  static const std::map<std::string, std::string> units{
+      {"structural", "N/m"}, {"shear", "N/m"},      {"bend", "N/m"},
+      {"damping", "N s/m"},  {"per_vertex", "kg"},  {"area_density", "kg/m^2"},
+      {"mass", "kg"},        {"width", "m"},        {"height", "m"},
+      {"gravity", "m/s^2"},  {"air_drag", "1/s"},   {"thickness", "m"},
+      {"radius", "m"},       {"amplitude", "m"},    {"frequency", "Hz"},
+      {"velocity", "m/s"},   {"center", "m"},       {"point", "m"},
+      {"translate", "m"},    {"rotate", "degrees"}, {"size", "m"},
+      {"vertices", "m"},     {"box", "m"},          {"degrees_per_second", "degrees/s"}};
+  if (field_ == stiffness) return "times the present";
+  // The last key that is no index of an array says what it is.
+  const auto tokens = scene::split_pointer(field_);
+  for (auto token = tokens->rbegin(); token != tokens->rend(); ++token) {
+    if (scene::array_index(*token, 1u << 30)) continue;
+    const auto found = units.find(*token);
+    return found == units.end() ? "" : found->second;
+  }
+  return "";
+}
+
+}  // namespace clothlab::lab

@@ -1,0 +1,88 @@
+#include "server/lab/measure/parts.h"
+
+#include <algorithm>
+
+#include "server/lab/measure/coarsen.h"
+#include "server/model/model.h"
+
+namespace clothlab::lab {
+
+namespace {
+
+using scene::Document;
+using scene::json;
+
+Error not_there(const char* what) {
+  return {"", std::string("the scene has no ") + what, ""};
+}
+
+Result<Document> without_springs(const Document& document, const char* key) {
+  json value = document.value;
+  for (json& cloth : value["cloths"]) cloth["material"][key] = 0.0;
+  Result<Document> without = scene::validate(std::move(value));
+  if (!without) return without;
+  // A stiffness alone makes no spring: a triangle mesh has no shear springs, and bend springs across edges
+  // only.
+  const Result<model::Model> model = model::build(document.scene), fewer = model::build(without->scene);
+  if (!model || !fewer) return model ? fewer.error() : model.error();
+  if (model->springs().size() == fewer->springs().size())
+    return not_there((std::string(key) + " springs").c_str());
+  return without;
+}
+
+Result<Document> without_bend(const Document& document) {
+  return without_springs(document, "bend");
+}
+Result<Document> without_shear(const Document& document) {
+  return without_springs(document, "shear");
+}
+
+Result<Document> without_self_collision(const Document& document) {
+  if (!document.scene.self_collision) return not_there("self-collision");
+  json value = document.value;
+  value["self_collision"] = nullptr;
+  return scene::validate(std::move(value));
+}
+
+Result<Document> undamped(const Document& document) {
+  if (std::none_of(document.scene.cloths.begin(), document.scene.cloths.end(),
+                   [](const scene::Cloth& cloth) { return cloth.material.damping > 0.0; }))
+    return not_there("damping");
+  json value = document.value;
+  for (json& cloth : value["cloths"]) cloth["material"]["damping"] = 0.0;
+  return scene::validate(std::move(value));
+}
+
+Result<Document> half(const Document& document) {
+  return coarsen(document, 2);
+}
+Result<Document> quarter(const Document& document) {
+  return coarsen(document, 4);
+}
+
+}  // namespace
+
+const std::vector<Part>& parts() {
+  static const std::vector<Part> all{{"without bend springs", 1, without_bend},
+                                     {"without shear springs", 1, without_shear},
+                                     {"without self-collision", 1, without_self_collision},
+                                     {without_damping, 1, undamped},
+                                     {"half the mesh resolution", 2, half},
+                                     {"a quarter of the mesh resolution", 4, quarter}};
+  return all;
+}
+
+json merge_patch(const json& from, const json& to) {
+  json patch = json::object();
+  for (const auto& [key, value] : to.items()) {
+    if (!from.contains(key))
+      patch[key] = value;
+    else if (from[key] != value)
+      patch[key] = from[key].is_object() && value.is_object() ? merge_patch(from[key], value) : value;
+  }
+  for (const auto& [key, value] : from.items())
+    if (!to.contains(key)) patch[key] = nullptr;
+  return patch;
+}
+
+}  // namespace clothlab::lab

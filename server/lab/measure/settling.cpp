@@ -1,0 +1,80 @@
+#include "server/lab/measure/settling.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "server/lab/measure/control.h"
+#include "server/reference/methods.h"
+#include "server/reference/rest_shape.h"
+#include "server/reference/trajectory.h"
+
+namespace clothlab::lab {
+
+namespace {
+
+/// In units of sqrt(g / size), about the slowest swing of a hanging cloth: drag that just lets it not swing.
+constexpr double drag = 1.5;
+constexpr double swings = 16.0;  // in units of sqrt(size / g): the slowest motion falls to 1e-5 in that time
+constexpr std::uint32_t most_vertices = 4096;  // whose balance Newton's method finds in seconds
+
+bool moves(const scene::Motion& motion) {
+  return !std::holds_alternative<std::monostate>(motion);
+}
+
+std::optional<Error> unfit(const reference::World& world) {
+  for (const scene::Motion& motion : world.model.motions)
+    if (moves(motion)) return Error{"rest", "a pin moves, so nothing comes to rest", "pins that stand still"};
+  if (!(glm::length(world.scene.gravity) > 0.0))
+    return Error{"rest", "there is no gravity to hang in", "gravity"};
+  if (world.model.vertex_count() > most_vertices)
+    return Error{"rest",
+                 std::to_string(world.model.vertex_count()) + " vertices are too many to find their balance",
+                 "at most " + std::to_string(most_vertices)};
+  return std::nullopt;
+}
+
+}  // namespace
+
+Result<Settling> settle(const reference::World& world, double size, double budget,
+                        const std::stop_token& stop) {
+  if (const std::optional<Error> reason = unfit(world)) return *reason;
+  Settling settling;
+  const double g = glm::length(world.scene.gravity);
+  settling.scene = world.scene;
+  settling.scene.air_drag = std::max(world.scene.air_drag, drag * std::sqrt(g / size));
+  settling.time = swings * std::sqrt(size / g);
+
+  reference::World thick = world;
+  thick.scene = settling.scene;
+  const auto steps = static_cast<int>(std::ceil(settling.time * reference::fastest_rate(thick)));
+  const double dt = thick.scene.solver.dt = settling.time / steps;
+  reference::State state = reference::at_rest(thick);
+  const auto start = std::chrono::steady_clock::now();
+  for (int n = 0; n < steps; ++n) {
+    if (stop.stop_requested()) return cancelled;
+    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > budget)
+      return Error{"rest", "letting the reference settle takes too long",
+                   "softer springs, a coarser mesh or a larger budget"};
+    reference::advance(reference::rk4, thick, state, n * dt, (n + 1) * dt);
+  }
+  Result<reference::RestShape> shape = reference::rest_shape(thick, state.position, stop);
+  if (stop.stop_requested()) return cancelled;
+  if (!shape) return Error{"rest", "no shape of rest was found: " + shape.error().what, shape.error().remedy};
+  settling.shape = std::move(shape->position);
+  settling.reference_error = reference::rms_distance(settling.shape, state.position) / size;
+  return settling;
+}
+
+Result<std::optional<double>> rest_error(const Settling& settling, const scene::Scene& scene, double size,
+                                         Bench& bench, const std::stop_token& stop) {
+  const Result<std::optional<sim::State>> end = bench.run_to(scene, settling.time, stop);
+  if (!end) return end.error();
+  if (!*end) return std::optional<double>();
+  const std::vector<glm::vec3>& read = (*end)->position;
+  const double distance = reference::rms_distance({read.begin(), read.end()}, settling.shape);
+  return std::isfinite(distance) ? std::optional<double>(distance / size) : std::nullopt;
+}
+
+}  // namespace clothlab::lab

@@ -1,0 +1,102 @@
+#include "server/lab/measure/spread.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "server/base/text.h"
+
+namespace clothlab::lab {
+
+Spread spread_of(std::vector<double> values, double doubt) {
+  Spread spread;
+  const std::size_t count = values.size();
+  if (count == 0) return spread;
+  std::sort(values.begin(), values.end());
+  spread.median = count % 2 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
+  // The chance that at most k of the values are above the median: a sum of binomials.
+  double chance = std::exp2(-static_cast<double>(count)), sum = chance;
+  std::size_t from_the_end = 0;  // how many values may be left out at each end, and one
+  for (std::size_t k = 0; k < count / 2 && sum <= doubt; ++k) {
+    from_the_end = k + 1;
+    chance *= static_cast<double>(count - k) / static_cast<double>(k + 1);
+    sum += chance;
+  }
+  if (from_the_end == 0) return spread;
+  spread.low = values[from_the_end - 1];
+  spread.high = values[count - from_the_end];
+  return spread;
+}
+
+std::string text(const Spread& ratio) {
+  // Hundredths, or two digits of what is smaller.
+  const auto written = [](double value) {
+    return value >= 0.1 ? formatted("%.2f", value) : significant(value, 2);
+  };
+  if (!std::isfinite(ratio.high)) return written(ratio.median);
+  return written(ratio.median) + " [" + written(ratio.low) + ".." + written(ratio.high) + "]";
+}
+
+const char* name(Saving saving) {
+  switch (saving) {
+    case Saving::yes:
+      return "yes";
+    case Saving::no:
+      return "no";
+    case Saving::cannot_tell:
+      return "cannot tell";
+    case Saving::unknown:
+      break;
+  }
+  return "";
+}
+
+Saving saving(const Spread& ratio) {
+  if (ratio.high <= worth_it) return Saving::yes;
+  return ratio.low > worth_it ? Saving::no : Saving::cannot_tell;
+}
+
+namespace {
+
+void judge(CostComparison& comparison, const std::vector<std::vector<double>>& times) {
+  const std::vector<double>&own = times[comparison.thing], &other = times[comparison.over];
+  std::vector<double> ratios;
+  for (std::size_t round = 0; round < std::min(own.size(), other.size()); ++round)
+    if (std::isfinite(own[round]) && std::isfinite(other[round]) && other[round] > 0.0)
+      ratios.push_back(own[round] / other[round]);
+  comparison.ratio = spread_of(std::move(ratios), doubt_a_look);
+  comparison.saving = saving(comparison.ratio);
+}
+
+}  // namespace
+
+Result<std::vector<std::vector<double>>> take_turns(std::size_t things,
+                                                    std::vector<CostComparison>& comparisons,
+                                                    const std::function<Result<double>(std::size_t)>& time,
+                                                    const std::function<bool()>& more) {
+  std::vector<std::vector<double>> times(things);
+  std::vector<bool> goes_on(things, true);
+  int round = 0;
+  for (const int look : looks) {
+    for (; round < look && (round < looks[0] || more()); ++round) {
+      for (std::size_t turn = 0; turn < things; ++turn) {
+        const std::size_t thing = round % 2 ? things - 1 - turn : turn;
+        // Rounds stay rounds: what is decided has no time in the later ones.
+        Result<double> spent = goes_on[thing] ? time(thing) : std::nan("");
+        if (!spent) return spent.error();
+        times[thing].push_back(*spent);
+      }
+    }
+    std::fill(goes_on.begin(), goes_on.end(), false);
+    for (CostComparison& comparison : comparisons) {
+      if (look > looks[0] && comparison.saving != Saving::cannot_tell) continue;  // said is said
+      judge(comparison, times);
+      if (comparison.matters && comparison.saving == Saving::cannot_tell)
+        goes_on[comparison.thing] = goes_on[comparison.over] = true;
+    }
+    if (std::none_of(goes_on.begin(), goes_on.end(), [](bool going) { return going; }) || !more()) break;
+  }
+  for (std::vector<double>& own : times) std::erase_if(own, [](double spent) { return std::isnan(spent); });
+  return times;
+}
+
+}  // namespace clothlab::lab

@@ -1,0 +1,181 @@
+#include "server/lab/measure/step_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "server/lab/measure/control.h"
+#include "server/model/element_operator.h"
+#include "server/model/stability.h"
+#include "server/scene/method.h"
+
+namespace clothlab::lab {
+
+namespace {
+
+using scene::Method;
+
+constexpr double longest_of_all = 1.0 / 30;  // step [s]: what comes between two of them nobody would see
+constexpr double most_of_others = 20;        // times the best cost: where a runner-up is no longer looked for
+constexpr double far_off = 2.0;     // too dear by the method's order, which need not hold at long steps
+constexpr double most_a_run = 8.0;  // wall time of one run [s]
+constexpr int glances = 3;
+constexpr double glanced = 0.03;  // wall time of one timing at most [s]
+
+std::vector<Setting> settings_of(Method method) {
+  if (scene::solves(method))
+    return {{method, 0, 1, 1e-4}, {method, 0, 1, 1e-6}, {method, 0, 2, 1e-4}, {method, 0, 4, 1e-4}};
+  if (!scene::sweeps(method)) return {{method, 0, 1, 1e-4}};
+  std::vector<Setting> settings;
+  for (const int iterations : {1, 2, 3, 4, 6, 8, 12, 16, 24, 32})
+    settings.push_back({method, 0, iterations, 1e-4});
+  return settings;
+}
+
+}  // namespace
+
+double StepSearch::limit_of(Method method) const {
+  const model::Model& model = truth_.world.model;
+  return model::dt_limit(method, model::ElementOperator(model, scene_, model.rest_position));
+}
+
+Status StepSearch::list(std::vector<Method> methods) {
+  if (methods.empty()) methods.assign(scene::methods.begin(), scene::methods.end());
+  for (const Method method : methods) {
+    const double limit = limit_of(method);
+    if (limit == 0.0) {
+      notes_.push_back(std::string(scene::name(method)) + " is stable at no step here.");
+      continue;
+    }
+    for (Setting setting : settings_of(method)) {
+      setting.dt = std::min({model::margin_to_warn * limit, truth_.horizon / 8, longest_of_all});
+      setting.dt = fitted_dt(setting.dt, truth_);
+      candidates_.push_back({setting, limit, unknown, {}});
+    }
+  }
+  if (candidates_.empty())
+    return Error{"methods", "none of them is stable at any step here", "other methods, or damping"};
+  if (Status glanced_at = glance(); !glanced_at) return glanced_at;
+  std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
+    const bool a_free = std::isinf(a.limit), b_free = std::isinf(b.limit);
+    return a_free != b_free ? b_free : a.cost(a.setting.dt) < b.cost(b.setting.dt);
+  });
+  return ok();
+}
+
+/// What a step of each costs, about: the least of some short runs, taking turns.
+Status StepSearch::glance() {
+  std::vector<scene::Scene> scenes;
+  for (const Candidate& candidate : candidates_) scenes.push_back(with(scene_, candidate.setting));
+  Result<std::vector<std::vector<double>>> times =
+      bench_.time(scenes, truth_.horizon, glanced, glances, stop_);
+  if (!times) return times.error();
+  for (std::size_t i = 0; i < candidates_.size(); ++i)
+    candidates_[i].step_cost = cost_of((*times)[i]).minimum * candidates_[i].setting.dt / 1000.0;
+  return ok();
+}
+
+Result<double> StepSearch::error_at(Candidate& candidate, double dt, Point& point) {
+  point = {};
+  point.setting = candidate.setting;
+  point.setting.dt = fitted_dt(dt, truth_);
+  const Result<Trial> trial = bench_.run(with(scene_, point.setting), truth_, truth_.horizon, stop_);
+  if (!trial) return trial.error();
+  point.error = trial->error;
+  point.largest_position_error = trial->largest_position_error;
+  point.blew_up_at = trial->blew_up_at;
+  if (std::isfinite(candidate.limit)) point.dt_over_limit = point.setting.dt / candidate.limit;
+  if (!point.blew_up_at) {
+    const double cost = 1000.0 * trial->wall / trial->simulated;
+    point.cost = Cost{cost, cost, 1};
+    candidate.step_cost = std::min(candidate.step_cost, cost * point.setting.dt / 1000.0);
+  }
+  tried_.push_back(point);
+  return point.largest_position_error && std::isfinite(*point.largest_position_error)
+             ? *point.largest_position_error
+             : unknown;
+}
+
+/// What a setting of the method may cost to be of interest [ms per simulated second]: as the best, or as
+/// the best of another method.
+double StepSearch::of_interest(Method method) const {
+  double best = unknown, other = unknown;
+  Method best_method = method;
+  for (const Candidate& candidate : candidates_)
+    if (candidate.best && candidate.best->cost->median < best) {
+      best = candidate.best->cost->median;
+      best_method = candidate.setting.method;
+    }
+  if (best_method == method) return best;
+  for (const Candidate& candidate : candidates_)
+    if (candidate.best && candidate.setting.method != best_method)
+      other = std::min(other, candidate.best->cost->median);
+  return std::min(other, most_of_others * best);
+}
+
+/// Whether what the best costs is known so well that one run shows what cannot beat it.
+bool StepSearch::close_at_hand(double most) const {
+  double best = unknown;
+  for (const Candidate& candidate : candidates_)
+    if (candidate.best) best = std::min(best, candidate.best->cost->median);
+  return most < 3.0 * best;
+}
+
+Status StepSearch::search(Candidate& candidate) {
+  const double most = close_race * of_interest(candidate.setting.method);
+  const double longest = candidate.setting.dt;
+  Point point;
+  double kept = 0.0, missed = unknown;
+  const double dearest = 1000.0 * candidate.step_cost / most;  // the step at which it would cost too much
+  for (double dt = close_at_hand(most) ? std::min(longest, dearest) : longest; kept == 0.0;) {
+    if (candidate.cost(longest) > most || candidate.step_cost * truth_.horizon / dt > most_a_run) return ok();
+    const Result<double> error = error_at(candidate, dt, point);
+    if (!error) return error.error();
+    if (*error <= tolerance_) {
+      kept = point.setting.dt;
+      keep(candidate, point);
+      break;
+    }
+    missed = point.setting.dt;
+    const double hoped =
+        missed * 0.95 * std::pow(tolerance_ / *error, 1.0 / scene::facts(candidate.setting.method).order);
+    if (hoped * far_off < dearest || dt <= dearest) return ok();
+    dt = std::clamp(hoped, missed / 16, missed / 1.3);
+  }
+  if (missed == unknown && kept < longest) missed = near_enough * longest;  // which itself may keep it
+  // From a step that keeps the tolerance towards one that misses it: where the order says, then halfway.
+  double dt = kept * std::pow(tolerance_ / *candidate.best->largest_position_error,
+                              1.0 / scene::facts(candidate.setting.method).order);
+  while (kept < longest / near_enough && missed > near_enough * kept) {
+    if (!(dt > kept * std::sqrt(near_enough) && dt < missed / std::sqrt(near_enough)))
+      dt = std::sqrt(kept * missed);
+    const Result<double> error = error_at(candidate, std::min(dt, longest), point);
+    if (!error) return error.error();
+    if (point.setting.dt <= kept || point.setting.dt >= missed) break;  // no step lies between
+    if (*error <= tolerance_) {
+      kept = point.setting.dt;
+      keep(candidate, point);
+    } else {
+      missed = point.setting.dt;
+    }
+    dt = std::sqrt(kept * missed);
+  }
+  return ok();
+}
+
+Result<double> StepSearch::shorten(Candidate& candidate, double too_large) {
+  const double dt =
+      candidate.best->setting.dt *
+      std::clamp(0.97 * std::pow(tolerance_ / too_large, 1.0 / scene::facts(candidate.setting.method).order),
+                 0.25, 0.97);
+  Point point;
+  const Result<double> error = error_at(candidate, dt, point);
+  if (error && *error < unknown) keep(candidate, point);
+  return error;
+}
+
+void StepSearch::keep(Candidate& candidate, const Point& point) const {
+  candidate.best = point;
+  candidate.best->cost = Cost{candidate.cost(point.setting.dt), candidate.cost(point.setting.dt), 1};
+}
+
+}  // namespace clothlab::lab
