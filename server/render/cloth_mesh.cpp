@@ -67,7 +67,7 @@ void ClothMesh::compute_normals(const model::Model& model, const gl::Program& pr
   const gl::TextureBuffer fan_offsets(gl::Buffer(model.vertex_triangles.offsets), GL_R32UI);
   const gl::TextureBuffer fans(gl::Buffer(model::vertex_fans(model)), GL_RG32UI);
   program.use();
-  glUniform1i(0, static_cast<GLint>(vertex_count_));
+  program.set("vertex_count", static_cast<GLint>(vertex_count_));
   positions_.bind(0);
   fan_offsets.bind(2);
   fans.bind(3);

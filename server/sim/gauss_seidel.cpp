@@ -45,8 +45,8 @@ class GaussSeidel : public Integrator {
     for (const gl::Program* program : {&whole_, &begin_, &visit_, &meet_, &balance_, &finish_}) {
       if (!program->id()) continue;
       set_step_uniforms(*program, around);
-      glProgramUniform1f(program->id(), program->uniform("mobility"), mobility);
-      glProgramUniform1i(program->id(), program->uniform("last_sweep"), sweeps_ - 1);
+      program->set("mobility", mobility);
+      program->set("last_sweep", sweeps_ - 1);
     }
     if (balanced_) set_free_vertices(around);
     if (by_vertex_) return;
@@ -147,7 +147,7 @@ class GaussSeidel : public Integrator {
     if (!loaded) return loaded.error();
     whole_ = std::move(*loaded);
     const std::vector<GLint> first(work_.offsets.begin(), work_.offsets.end());
-    glProgramUniform1iv(whole_.id(), whole_.uniform("colour_first"), static_cast<GLsizei>(first.size()),
+    glProgramUniform1iv(whole_.id(), whole_.location("colour_first"), static_cast<GLsizei>(first.size()),
                         first.data());
     return ok();
   }
@@ -181,13 +181,13 @@ class GaussSeidel : public Integrator {
       ranges.push_back(static_cast<GLint>(cloth.first_vertex + (free ? cloth.vertex_count : 0)));
     }
     const gl::Program& program = lanes_ > 0 ? whole_ : balance_;
-    glProgramUniform2iv(program.id(), program.uniform("free_vertices"),
+    glProgramUniform2iv(program.id(), program.location("free_vertices"),
                         static_cast<GLsizei>(ranges.size() / 2), ranges.data());
   }
 
   void step_in_one_group(int row) {
     whole_.use();
-    glUniform1i(whole_.uniform("start_row"), row);
+    whole_.set("start_row", row);
     dispatch(1);
     wait_for_writes();
   }
@@ -195,14 +195,14 @@ class GaussSeidel : public Integrator {
   Work step_in_phases(int row) {
     std::size_t current = 0;
     const auto run = [&](const gl::Program& program, std::uint32_t first, std::uint32_t end) {
-      glUniform1i(program.uniform("first"), static_cast<GLint>(first));
-      glUniform1i(program.uniform("end"), static_cast<GLint>(end));
+      program.set("first", static_cast<GLint>(first));
+      program.set("end", static_cast<GLint>(end));
       dispatch(vertex_groups(end - first));
       wait_for_writes();
     };
     const auto use = [&](const gl::Program& program, std::size_t read, std::size_t written) {
       program.use();
-      glUniform1i(program.uniform("start_row"), row);
+      program.set("start_row", row);
       deviation_[read].bind(unit_deviation);
       deviation_[written].buffer.bind_storage(slot_deviation);
     };
@@ -210,7 +210,7 @@ class GaussSeidel : public Integrator {
     run(begin_, 0, vertex_count_);
     for (int sweep = 0; sweep < sweeps_; ++sweep) {
       use(visit_, current, current);
-      glUniform1i(visit_.uniform("sweep"), sweep);
+      visit_.set("sweep", sweep);
       for (std::uint32_t colour = 0; colour < work_.colours(); ++colour) {
         run(visit_, work_.offsets[colour], work_.offsets[colour + 1]);
         co_await may_stop;

@@ -55,10 +55,8 @@ class ImplicitEuler : public Integrator {
       if (program->id()) set_step_uniforms(*program, around);
     if (around.scene.solver.dt != dt_) restart();  // the contacts' impulses are forces times dt
     dt_ = around.scene.solver.dt;
-    iteration_location_ = update_.uniform("iteration");
     most_newton_steps_ = around.scene.solver.iterations;
-    glProgramUniform1f(system_.id(), system_.uniform("tolerance"),
-                       static_cast<float>(around.scene.solver.tolerance));
+    system_.set("tolerance", static_cast<float>(around.scene.solver.tolerance));
   }
 
   Work step(StateBuffers& state, int row) override {
@@ -128,7 +126,7 @@ class ImplicitEuler : public Integrator {
     constraint_.buffer.bind_storage(5);
     surface_.buffer.bind_storage(6);
     grip_.bind_storage(7);
-    glProgramUniform1i(start_.id(), start_.uniform("start_row"), row);
+    start_.set("start_row", row);
     run(start_);
   }
 
@@ -187,7 +185,7 @@ class ImplicitEuler : public Integrator {
     next.direction_product.buffer.bind_storage(5);
     next.change.buffer.bind_storage(6);
     update_.use();
-    glUniform1i(iteration_location_, iteration);
+    update_.set("iteration", iteration);
     glDispatchComputeIndirect(0);
     wait_for_writes();
     dispatches_ += 2;
@@ -209,8 +207,8 @@ class ImplicitEuler : public Integrator {
     surface_.buffer.bind_storage(6);
     start_velocity_.buffer.bind_storage(1);
     grip_.bind_storage(7);
-    glProgramUniform1i(advance_.id(), advance_.uniform("start_row"), row);
-    glProgramUniform1i(advance_.id(), advance_.uniform("another"), another ? 1 : 0);
+    advance_.set("start_row", row);
+    advance_.set("another", another ? 1 : 0);
     run(advance_);
   }
 
@@ -237,7 +235,7 @@ class ImplicitEuler : public Integrator {
     constraint_.bind(14);
     grip_.bind_storage(7);
     state.bind_outputs();
-    glProgramUniform1i(end_.id(), end_.uniform("start_row"), row);
+    end_.set("start_row", row);
     run(end_);
     state.swap();
   }
@@ -245,7 +243,6 @@ class ImplicitEuler : public Integrator {
   GLuint groups_;
   double dt_ = 0;
   int most_newton_steps_ = 1;
-  GLint iteration_location_ = -1;
   gl::Program start_, system_, multiply_, update_, search_, advance_, end_, contacts_;
   gl::TextureBuffer start_position_, start_velocity_;  ///< where the step starts, with self-collision's share
   gl::TextureBuffer position_, velocity_;              ///< estimate of where it ends

@@ -39,7 +39,7 @@ class Rk4 : public Integrator {
         state.bind_outputs();
       }
       stages_[stage].use();
-      glUniform1i(stages_[stage].uniform("start_row"), row);
+      stages_[stage].set("start_row", row);
       dispatch(groups_);
       glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
     }

@@ -58,7 +58,7 @@ Result<SelfCollision> SelfCollision::create(const model::Model& model, std::uint
     Result<gl::Program> loaded = gl::Program::load({path}, defines);
     if (!loaded) return loaded.error();
     *program = std::move(*loaded);
-    glProgramUniform1i(program->id(), 0, static_cast<GLint>(vertex_count));
+    program->set("vertex_count", static_cast<GLint>(vertex_count));
   }
   const Control nothing;
   made.control_ = gl::Buffer(sizeof(Control), &nothing);
@@ -93,8 +93,8 @@ Status SelfCollision::set_parameters(const scene::SelfCollision& parameters, con
   candidates_ = candidates;
   skin_ = static_cast<float>(skin);
   reach_ = static_cast<float>(reach);
-  for (const gl::Program* program : {&insert_, &find_}) glProgramUniform1f(program->id(), 2, reach_);
-  glProgramUniform1f(find_.id(), 3, static_cast<float>(parameters.thickness));
+  for (const gl::Program* program : {&insert_, &find_}) program->set("reach", reach_);
+  find_.set("thickness", static_cast<float>(parameters.thickness));
   if (!same)
     limit_range(static_cast<std::uint32_t>(
         std::clamp(pairs_a_dispatch / std::max(candidates * group_size, 1.0), 1.0, 1e6)));
@@ -136,7 +136,7 @@ Work SelfCollision::update_lists() {
   const auto range = static_cast<GLint>(range_groups_) * group_size;
   Clock::duration longest{};
   for (GLint first = 0; first < static_cast<GLint>(vertex_count_); first += range) {
-    glUniform1i(4, first);
+    find_.set("first_vertex", first);
     const Clock::time_point begun = Clock::now();
     dispatch(offsetof(Control, search));
     longest = std::max(longest, Clock::now() - begun);

@@ -61,7 +61,7 @@ Result<StrainLimit> StrainLimit::create(const Surroundings& around, const Plan& 
   made.pulls_ = gl::Buffer(std::max<std::size_t>(entries, 1) * sizeof(float));
   made.given_ = gl::Buffer(count * 4 * sizeof(float));
   made.control_ = gl::Buffer(sizeof(Control));
-  glProgramUniform1f(made.sweep_.id(), made.sweep_.uniform("relaxation"), relaxation(around.model));
+  made.sweep_.set("relaxation", relaxation(around.model));
   made.set_parameters(around);
   return made;
 }
@@ -71,8 +71,8 @@ void StrainLimit::set_parameters(const Surroundings& around) {
   std::vector<float> limits;
   for (const scene::Cloth& cloth : around.scene.cloths)
     limits.push_back(static_cast<float>(cloth.material.strain_limit.value_or(-1.0)));
-  const GLuint sweep = sweep_.id();
-  glProgramUniform1fv(sweep, sweep_.uniform("limit"), static_cast<GLsizei>(limits.size()), limits.data());
+  glProgramUniform1fv(sweep_.id(), sweep_.location("limit"), static_cast<GLsizei>(limits.size()),
+                      limits.data());
   // A pull is a force times dt^2.
   if (around.scene.solver.dt != dt_) restart();
   dt_ = around.scene.solver.dt;
@@ -94,7 +94,6 @@ Work StrainLimit::apply(StateBuffers& state) {
   sweep_.use();
   control_.bind_storage(4);
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, control_.id());
-  const GLint sweep_location = sweep_.uniform("sweep");
   for (int done = 0; done < most_sweeps && control.groups > 0; done += sweeps_between_looks) {
     for (int sweep = done; sweep < done + sweeps_between_looks; ++sweep) {
       const auto from = static_cast<std::size_t>(sweep) % 2, to = 1 - from;
@@ -102,7 +101,7 @@ Work StrainLimit::apply(StateBuffers& state) {
       group_excess_[from].bind(9);
       position_[to].buffer.bind_storage(0);
       group_excess_[to].buffer.bind_storage(1);
-      glUniform1i(sweep_location, sweep);
+      sweep_.set("sweep", sweep);
       glDispatchComputeIndirect(0);
       wait_for_writes();
       co_await may_stop;

@@ -57,7 +57,7 @@ struct Packer::Implementation {
 
   void dispatch(const gl::Program& program) const {
     program.use();
-    glUniform1i(0, static_cast<GLint>(vertex_count));
+    program.set("vertex_count", static_cast<GLint>(vertex_count));
     glDispatchCompute((vertex_count + group_size - 1) / group_size, 1, 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   }

@@ -11,8 +11,8 @@ READ_UINT(next, 5);
 READ_VEC4(rest_position, 7);  // w: the cloth
 READ_UINT(excluded, 9);        // those that self-collision leaves out, vertex after vertex
 READ_UINT(first_excluded, 10);  // [vertex_count + 1]
-layout(location = 3) uniform float thickness;
-layout(location = 4) uniform int first_vertex;  // of the range that this dispatch looks at
+uniform float thickness;
+uniform int first_vertex;  // of the range that this dispatch looks at
 layout(std430, binding = 6) writeonly buffer NeighbourCounts { uint neighbour_count[]; };
 // (vertex, distance): vertex i's slot s at i * SLOTS + s
 layout(std430, binding = 7) buffer Neighbours { uvec2 neighbours[]; };

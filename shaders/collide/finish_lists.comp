@@ -3,7 +3,7 @@
 layout(local_size_x = GROUP_SIZE) in;
 #include "neighbours.glsl"
 
-layout(location = 0) uniform int vertex_count;
+uniform int vertex_count;
 layout(std430, binding = 3) writeonly buffer CellHeads { uint head[]; };  // [CELL_COUNT]
 layout(std430, binding = 6) readonly buffer NeighbourCounts { uint neighbour_count[]; };
 layout(std430, binding = 7) coherent buffer Neighbours { uvec2 neighbours[]; };

@@ -4,7 +4,7 @@ layout(local_size_x = 64) in;
 
 READ_VEC4(position, 0);
 #include "../stream/normal.glsl"
-layout(location = 0) uniform int vertex_count;
+uniform int vertex_count;
 layout(std430, binding = 0) writeonly buffer Normals { vec4 normals[]; };
 
 void main() {

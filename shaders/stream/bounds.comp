@@ -4,7 +4,7 @@ layout(local_size_x = GROUP_SIZE) in;
 #include "bounds.glsl"
 
 READ_VEC4(position, 0);
-layout(location = 0) uniform int vertex_count;
+uniform int vertex_count;
 shared vec3 low[GROUP_SIZE];
 shared vec3 high[GROUP_SIZE];
 

@@ -2,12 +2,12 @@
 // summed by the host in double precision and in order, so that the outcome does not depend on the order of threads.
 layout(local_size_x = GROUP_SIZE) in;
 #include "../access.glsl"
-layout(location = 0) uniform int vertex_count;
+uniform int vertex_count;
 #include "../elements/lists.glsl"
 
 READ_VEC4(position, 0);
 READ_VEC4(velocity, 1);
-layout(location = 3) uniform vec4 gravity;
+uniform vec4 gravity;
 
 struct Partial {
   vec4 sums;     // kinetic, elastic, gravitational energy [J], vertices in contact

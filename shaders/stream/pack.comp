@@ -5,7 +5,7 @@ layout(local_size_x = GROUP_SIZE) in;
 
 READ_VEC4(position, 0);
 #include "normal.glsl"
-layout(location = 0) uniform int vertex_count;
+uniform int vertex_count;
 layout(std430, binding = 0) writeonly buffer Packed {
   float packed_box[8];  // minimum, unused, extent, unused
   uint packed_vertices[];
