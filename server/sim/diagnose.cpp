@@ -43,7 +43,7 @@ bool DiagnosticsPass::request(const StateBuffers& state, const SelfCollision* se
               static_cast<float>(gravity.z), 0.0f);
   state.shown_position().bind(unit_position);
   state.shown_velocity().bind(unit_velocity);
-  results_.bind_storage(0);
+  results_.bind_storage(slot_partials);
   glDispatchCompute(groups_, 1, 1);
   if (self_collision) {
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);

@@ -13,10 +13,6 @@ namespace clothlab::sim {
 
 namespace {
 
-constexpr GLuint unit_deviation = 9, unit_projected = 10, unit_gains = 11, unit_visited = 12;
-constexpr GLuint slot_deviation = 3, slot_spring_pushes = 4, slot_lacking = 4, slot_targets = 5,
-                 slot_velocity_before = 6, slot_remainders = 7;
-
 /// Elements at a vertex.
 std::uint64_t corners_at(const model::Model& model, std::uint32_t vertex) {
   std::uint64_t count = 0;
@@ -66,7 +62,7 @@ class GaussSeidel : public Integrator {
     } else {
       projected_.bind(unit_projected);
       gains_.bind(unit_gains);
-      if (spring_pushes_.bytes() > 0) spring_pushes_.bind_storage(slot_spring_pushes);
+      if (spring_pushes_.bytes() > 0) spring_pushes_.bind_storage(slot_pushed);
     }
     if (lanes_ > 0)
       step_in_one_group(row);

@@ -34,7 +34,6 @@ constexpr double most_pairs = 1e9;
 constexpr double pairs_a_dispatch = 2e6;
 constexpr std::chrono::milliseconds long_dispatch{10};
 
-constexpr GLuint unit_excluded = 9, unit_first_excluded = 10;
 constexpr std::uint64_t updates_between_looks = 8;
 constexpr std::uint32_t most_slots = 256;
 constexpr std::uint64_t most_entries = std::uint64_t{1} << 22;  // 32 MiB, and what walking them takes
@@ -115,14 +114,17 @@ void SelfCollision::invalidate() {
 }
 
 Work SelfCollision::update_lists() {
-  control_.bind_storage(2);
-  heads_.buffer.bind_storage(3);
-  chains_.buffer.bind_storage(4);
-  built_position_.buffer.bind_storage(5);
-  counts_.buffer.bind_storage(6);
-  lists_.buffer.bind_storage(7);
-  heads_.bind(unit_neighbour_count);  // the search reads its hash where the step reads its lists
-  chains_.bind(unit_neighbours);
+  control_.bind_storage(slot_neighbour_control);
+  heads_.buffer.bind_storage(slot_cell_heads);
+  chains_.buffer.bind_storage(slot_cell_chains);
+  built_position_.buffer.bind_storage(slot_position_when_built);
+  counts_.buffer.bind_storage(slot_neighbour_count);
+  lists_.buffer.bind_storage(slot_neighbours);
+  heads_.bind(unit_cell_heads);
+  chains_.bind(unit_cell_chains);
+  counts_.bind(unit_neighbour_count);
+  lists_.bind(unit_neighbours);
+  built_position_.bind(unit_position_when_built);
   excluded_.bind(unit_excluded);
   first_excluded_.bind(unit_first_excluded);
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, control_.id());
@@ -151,9 +153,6 @@ Work SelfCollision::update_lists() {
   }
   if (updates_++ % updates_between_looks == 0) look();
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
-  counts_.bind(unit_neighbour_count);
-  lists_.bind(unit_neighbours);
-  built_position_.bind(unit_position_when_built);
 }
 
 /// What the lists were like at the look before; lists that somebody has just asked for at once.

@@ -80,10 +80,10 @@ void StrainLimit::set_parameters(const Surroundings& around) {
 
 Work StrainLimit::apply(StateBuffers& state) {
   state.position().bind(unit_position);
-  state.previous_position().bind(10);
-  position_[0].buffer.bind_storage(0);
-  pulls_.bind_storage(3);
-  given_.bind_storage(5);
+  state.previous_position().bind(unit_start_position);
+  position_[0].buffer.bind_storage(slot_next_position);
+  pulls_.bind_storage(slot_pulls);
+  given_.bind_storage(slot_given);
   start_.use();
   glDispatchCompute(groups_, 1, 1);
   wait_for_writes();
@@ -92,15 +92,15 @@ Work StrainLimit::apply(StateBuffers& state) {
   control.groups = groups_;
   control_.upload(&control, sizeof control);
   sweep_.use();
-  control_.bind_storage(4);
+  control_.bind_storage(slot_limit_control);
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, control_.id());
   for (int done = 0; done < most_sweeps && control.groups > 0; done += sweeps_between_looks) {
     for (int sweep = done; sweep < done + sweeps_between_looks; ++sweep) {
       const auto from = static_cast<std::size_t>(sweep) % 2, to = 1 - from;
       position_[from].bind(unit_position);
-      group_excess_[from].bind(9);
-      position_[to].buffer.bind_storage(0);
-      group_excess_[to].buffer.bind_storage(1);
+      group_excess_[from].bind(unit_group_excess);
+      position_[to].buffer.bind_storage(slot_next_position);
+      group_excess_[to].buffer.bind_storage(slot_group_excess);
       sweep_.set("sweep", sweep);
       glDispatchComputeIndirect(0);
       wait_for_writes();
@@ -112,7 +112,7 @@ Work StrainLimit::apply(StateBuffers& state) {
   work_.unconverged += control.groups > 0 ? 1 : 0;
 
   state.bind_for_step();
-  position_[control.sweeps % 2].bind(9);
+  position_[control.sweeps % 2].bind(unit_corrected_position);
   end_.use();
   glDispatchCompute(groups_, 1, 1);
   wait_for_writes();

@@ -10,8 +10,6 @@ namespace clothlab::sim {
 
 namespace {
 
-constexpr GLuint unit_carried = 9, slot_carried = 3;  // verlet.comp
-
 class WholeStep : public Integrator {
  public:
   WholeStep(gl::Program program, std::uint32_t vertex_count, bool carries)

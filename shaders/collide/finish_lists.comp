@@ -4,9 +4,9 @@ layout(local_size_x = GROUP_SIZE) in;
 #include "neighbours.glsl"
 
 uniform int vertex_count;
-layout(std430, binding = 3) writeonly buffer CellHeads { uint head[]; };  // [CELL_COUNT]
-layout(std430, binding = 6) readonly buffer NeighbourCounts { uint neighbour_count[]; };
-layout(std430, binding = 7) coherent buffer Neighbours { uvec2 neighbours[]; };
+layout(std430, binding = slot_cell_heads) writeonly buffer CellHeads { uint head[]; };  // [CELL_COUNT]
+layout(std430, binding = slot_neighbour_count) readonly buffer NeighbourCounts { uint neighbour_count[]; };
+layout(std430, binding = slot_neighbours) coherent buffer Neighbours { uvec2 neighbours[]; };
 
 /// Other work groups may be leaving vertices out of j's list meanwhile, but not i, since j is in i's.
 bool lists(uint j, uint i) {

@@ -63,7 +63,8 @@ void wait() {
 // have, as much as they have not converged. Springs and self-collision only pass it on: what its vertices lack or have
 // too much of it in all is given to them alike.
 uniform ivec2 free_vertices[CLOTH_COUNT];  // first, end; none of a cloth that has pins
-layout(std430, binding = 4) coherent buffer Lacking { vec4 lacking[]; };  // of each thread, xyz [kg m], w [kg]
+// of each thread, xyz [kg m], w [kg]
+layout(std430, binding = slot_lacking) coherent buffer Lacking { vec4 lacking[]; };
 
 /// By one work group; each thread adds up the sums of all, in the same order.
 void balance(int cloth) {

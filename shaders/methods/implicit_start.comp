@@ -7,13 +7,14 @@
 #include "../collide/neighbours.glsl"
 #include "../collide/self_contact.glsl"
 #endif
-layout(std430, binding = 0) writeonly buffer Start { vec4 start_position[]; };      // w: inverse mass
-layout(std430, binding = 1) writeonly buffer Inertia { vec4 start_velocity[]; };    // w: vertices touched
-layout(std430, binding = 3) writeonly buffer Estimate { vec4 estimate[]; };         // of the velocity: 0
-layout(std430, binding = 4) writeonly buffer Guess { vec4 first_guess[]; };         // the solver's
-layout(std430, binding = 5) writeonly buffer Constraint { vec4 constraint[]; };
-layout(std430, binding = 6) writeonly buffer Surface { vec4 surface[]; };  // its velocity, its friction
-layout(std430, binding = 7) buffer Grip { vec4 grip[]; };                  // of the last step, then of this one
+layout(std430, binding = slot_start_position) writeonly buffer Start { vec4 start_position[]; };  // w: inverse mass
+// w: vertices touched
+layout(std430, binding = slot_start_velocity) writeonly buffer Inertia { vec4 start_velocity[]; };
+layout(std430, binding = slot_estimate) writeonly buffer Estimate { vec4 estimate[]; };  // of the velocity: 0
+layout(std430, binding = slot_guess) writeonly buffer Guess { vec4 first_guess[]; };     // the solver's
+layout(std430, binding = slot_constraint) writeonly buffer Constraint { vec4 constraint[]; };
+layout(std430, binding = slot_surface) writeonly buffer Surface { vec4 surface[]; };  // its velocity, its friction
+layout(std430, binding = slot_grip) buffer Grip { vec4 grip[]; };  // of the last step, then of this one
 
 /// The velocity that the vertex is taken to have in the solve, and the guess of the one that comes out.
 struct Beginning {

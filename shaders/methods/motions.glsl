@@ -2,7 +2,7 @@
 // A step has END_ROW rows after the one at its start: the last is its end, one before it (if any) its middle.
 // A pose takes five vec4: three rows (rotation, translation), the velocity of the origin, the angular velocity.
 #if MOTION_COUNT > 0
-READ_VEC4(motion_table, 6);
+READ_VEC4(motion_table, unit_motion_table);
 uniform int start_row;  // of the step, in the batch
 
 int pose_at(int motion, int row) { return ((start_row + row) * MOTION_COUNT + motion) * 5; }

@@ -1,10 +1,10 @@
 // The end of a step: the new state is written, and the neighbour lists' rebuild is asked for if the vertex went too
 // far.
-layout(std430, binding = 0) writeonly buffer NextPosition { vec4 next_position[]; };
-layout(std430, binding = 1) writeonly buffer NextVelocity { vec4 next_velocity[]; };
+layout(std430, binding = slot_next_position) writeonly buffer NextPosition { vec4 next_position[]; };
+layout(std430, binding = slot_next_velocity) writeonly buffer NextVelocity { vec4 next_velocity[]; };
 #ifdef SELF_COLLISION
 #include "../collide/neighbours.glsl"
-READ_VEC4(position_when_built, 8);
+READ_VEC4(position_when_built, unit_position_when_built);
 uniform float skin;  // [m]
 #endif
 

@@ -2,8 +2,8 @@
 // them, so that no order matters. Several pairs at once would add up to more than is needed: each is scaled by the
 // larger of the two vertices' contact counts of the pass before, at least 2.
 #ifdef SELF_COLLISION
-READ_UINT(neighbour_count, 4);
-READ_UVEC2(neighbours, 5);
+READ_UINT(neighbour_count, unit_neighbour_count);
+READ_UVEC2(neighbours, unit_neighbours);
 uniform float self_friction;
 
 /// Of an overlap at the step's start [1/s]: what is mended becomes velocity.

@@ -11,8 +11,8 @@
 
 /// xyz: how much w is ahead of the velocity in the middle of the last step [m/s]; w: the dt of that step [s]. Both 0
 /// after a start: then w is the velocity now. Kept as a difference, so that who changes w changes both.
-READ_VEC4(carried, 9);
-layout(std430, binding = 3) writeonly buffer Carried { vec4 next_carried[]; };
+READ_VEC4(carried, unit_carried);
+layout(std430, binding = slot_carried) writeonly buffer Carried { vec4 next_carried[]; };
 vec4 carry;
 
 #include "whole_step.glsl"

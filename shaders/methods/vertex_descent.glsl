@@ -2,12 +2,12 @@
 // vertices held (their equation 9), the part of the Hessian that a compressed spring makes indefinite left out. A
 // collider in the way is met with the vertex's own block: it pushes as hard as it must, and friction follows from that.
 #include "blocks.glsl"
-READ_UINT(visited, 12);  // free vertices, colour after colour
+READ_UINT(visited, unit_visited);  // free vertices, colour after colour
 /// At the last step's start; w: 0 if none counts.
-layout(std430, binding = 6) buffer VelocityBefore { vec4 velocity_before[]; };
+layout(std430, binding = slot_velocity_before) buffer VelocityBefore { vec4 velocity_before[]; };
 /// Where inertia would have each vertex, in the terms of its deviation: pushed by self-collision since the step's start
 /// [m]; w: colliders met at the last visit.
-layout(std430, binding = 5) coherent buffer Targets { vec4 targets[]; };
+layout(std430, binding = slot_targets) coherent buffer Targets { vec4 targets[]; };
 
 /// The share of `pull` that an acceleration has followed. Nearly all counts as all: what rounding cuts off at 1 would
 /// brake a falling cloth, step after step.

@@ -5,8 +5,8 @@ layout(local_size_x = GROUP_SIZE) in;
 uniform int vertex_count;
 #include "../elements/lists.glsl"
 
-READ_VEC4(position, 0);
-READ_VEC4(velocity, 1);
+READ_VEC4(position, unit_position);
+READ_VEC4(velocity, unit_velocity);
 uniform vec4 gravity;
 
 struct Partial {
@@ -14,7 +14,7 @@ struct Partial {
   vec4 largest;  // strain, speed squared, 1 if something is not finite, unused
   vec4 work;     // pull at moving pins [N], pull and weight of what touches something [N], its mass [kg], unused
 };
-layout(std430, binding = 0) writeonly buffer Partials { Partial partials[]; };
+layout(std430, binding = slot_partials) writeonly buffer Partials { Partial partials[]; };
 shared vec4 sums[GROUP_SIZE];
 shared vec4 largest[GROUP_SIZE];
 shared vec4 work[GROUP_SIZE];
