@@ -1,9 +1,10 @@
 // Reading of buffers. A kernel reads through a buffer texture, which on Mesa's llvmpipe takes less than half the time
 // of a storage buffer (tests/bench/step.mjs measures it); with READ_STORAGE it reads a storage buffer. Writes always go
-// to storage buffers. Use: READ_VEC4(position, 0); ... vec4 p = FETCH(position, i);
+// to storage buffers. Use: READ_VEC4(position, unit_position); ... vec4 p = FETCH(position, i);
+#include "slots.glsl"
 #ifdef READ_STORAGE
 #define READ_BUFFER_(type, name, unit) \
-  layout(std430, binding = 8 + unit) readonly buffer name##_reads { type name[]; }
+  layout(std430, binding = number_of_slots + unit) readonly buffer name##_reads { type name[]; }
 #define READ_VEC4(name, unit) READ_BUFFER_(vec4, name, unit)
 #define READ_UVEC4(name, unit) READ_BUFFER_(uvec4, name, unit)
 #define READ_UVEC2(name, unit) READ_BUFFER_(uvec2, name, unit)

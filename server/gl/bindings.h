@@ -5,6 +5,8 @@
 
 #include <array>
 
+#include "shaders/slots.h"
+
 namespace clothlab::gl {
 
 class Bindings {
@@ -15,7 +17,7 @@ class Bindings {
   void restore() const;
 
  private:
-  static constexpr GLuint texture_units = 24, storage_slots = 32;  ///< more than any kernel here has
+  static constexpr GLuint texture_units = number_of_units, storage_slots = number_of_slots + number_of_units;
   GLint program_ = 0, indirect_ = 0;
   std::array<GLint, texture_units> textures_{};
   std::array<GLint, storage_slots> storage_{};

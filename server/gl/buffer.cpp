@@ -4,6 +4,8 @@
 #include <new>
 #include <string_view>
 
+#include "shaders/slots.h"
+
 namespace clothlab::gl {
 
 Buffer::Buffer(std::size_t bytes, const void* data, GLbitfield flags) : bytes_(bytes) {
@@ -70,7 +72,7 @@ bool reads_are_storage() {
 
 void TextureBuffer::bind(GLuint unit) const {
   if (reads_are_storage()) {
-    buffer.bind_storage(8 + unit);
+    buffer.bind_storage(number_of_slots + unit);
   } else {
     texture.bind(unit);
   }

@@ -161,7 +161,20 @@ Result<Program> Program::load(std::initializer_list<std::string> paths, const De
   if (!linked)
     return Error{"shaders/" + *paths.begin(), info_log(program.id_, glGetProgramiv, glGetProgramInfoLog),
                  "mend the shader and start again"};
+  program.list_uniforms();
   return program;
+}
+
+void Program::list_uniforms() {
+  GLint count = 0, longest = 0;
+  glGetProgramiv(id_, GL_ACTIVE_UNIFORMS, &count);
+  glGetProgramiv(id_, GL_ACTIVE_UNIFORM_MAX_LENGTH, &longest);
+  std::string name(static_cast<std::size_t>(longest), '\0');  // room for the 0 at its end
+  for (GLuint i = 0; i < static_cast<GLuint>(count); ++i) {
+    glGetActiveUniformName(id_, i, longest, nullptr, name.data());
+    const GLint location = glGetUniformLocation(id_, name.c_str());
+    uniforms_.emplace(name.substr(0, name.find_first_of(std::string_view("[\0", 2))), location);
+  }
 }
 
 Program::~Program() {

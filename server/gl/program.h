@@ -5,8 +5,11 @@
 
 #include <glad/gl.h>
 
+#include <functional>
 #include <initializer_list>
+#include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -24,19 +27,29 @@ class Program {
   /// where = "shaders/FILE:LINE" of the source file, also inside an #include.
   static Result<Program> load(std::initializer_list<std::string> paths, const Defines& defines = {});
   ~Program();
-  Program(Program&& other) noexcept { std::swap(id_, other.id_); }
+  Program(Program&& other) noexcept { *this = std::move(other); }
   Program& operator=(Program&& other) noexcept {
     std::swap(id_, other.id_);
+    std::swap(uniforms_, other.uniforms_);
     return *this;
   }
 
   void use() const { glUseProgram(id_); }
   GLuint id() const { return id_; }
-  /// -1 where the uniform is not used, which glUniform ignores.
-  GLint uniform(const char* name) const { return glGetUniformLocation(id_, name); }
+  /// Of a uniform, an array by its name alone. -1 where it is not used, which glProgramUniform ignores.
+  GLint location(std::string_view name) const {
+    const auto found = uniforms_.find(name);
+    return found == uniforms_.end() ? -1 : found->second;
+  }
+  /// Sets a uniform, if it is used.
+  void set(std::string_view name, GLint value) const { glProgramUniform1i(id_, location(name), value); }
+  void set(std::string_view name, GLfloat value) const { glProgramUniform1f(id_, location(name), value); }
 
  private:
+  void list_uniforms();
+
   GLuint id_ = 0;
+  std::map<std::string, GLint, std::less<>> uniforms_;  ///< locations, as the driver told them once
 };
 
 }  // namespace clothlab::gl

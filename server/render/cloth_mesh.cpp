@@ -5,6 +5,8 @@
 #include <glm/vec4.hpp>
 #include <string>
 
+#include "shaders/slots.h"
+
 namespace clothlab::render {
 
 namespace {
@@ -49,13 +51,14 @@ ClothMesh::ClothMesh(const model::Model& model, const std::vector<glm::vec3>& po
       vertex_count_(model.vertex_count()),
       triangle_count_(static_cast<GLsizei>(model.triangle_count())) {
   glCreateVertexArrays(1, &vertex_array_);
-  attribute(vertex_array_, 0, 3);
-  attribute(vertex_array_, 1, 3);
-  attribute(vertex_array_, 2, 2);
-  glVertexArrayVertexBuffer(vertex_array_, 1, normals_.id(), 0, 4 * sizeof(float));
-  glVertexArrayVertexBuffer(vertex_array_, 2, texture_coordinates_.id(), 0, 2 * sizeof(float));
+  attribute(vertex_array_, attribute_position, 3);
+  attribute(vertex_array_, attribute_normal, 3);
+  attribute(vertex_array_, attribute_texture_coordinate, 2);
+  glVertexArrayVertexBuffer(vertex_array_, attribute_normal, normals_.id(), 0, 4 * sizeof(float));
+  glVertexArrayVertexBuffer(vertex_array_, attribute_texture_coordinate, texture_coordinates_.id(), 0,
+                            2 * sizeof(float));
   glVertexArrayElementBuffer(vertex_array_, triangles_.id());
-  glVertexArrayVertexBuffer(vertex_array_, 0, positions_.buffer.id(), 0, 4 * sizeof(float));
+  glVertexArrayVertexBuffer(vertex_array_, attribute_position, positions_.buffer.id(), 0, 4 * sizeof(float));
   compute_normals(model, normals_program);
 }
 
@@ -67,11 +70,11 @@ void ClothMesh::compute_normals(const model::Model& model, const gl::Program& pr
   const gl::TextureBuffer fan_offsets(gl::Buffer(model.vertex_triangles.offsets), GL_R32UI);
   const gl::TextureBuffer fans(gl::Buffer(model::vertex_fans(model)), GL_RG32UI);
   program.use();
-  glUniform1i(0, static_cast<GLint>(vertex_count_));
-  positions_.bind(0);
-  fan_offsets.bind(2);
-  fans.bind(3);
-  normals_.bind_storage(0);
+  program.set("vertex_count", static_cast<GLint>(vertex_count_));
+  positions_.bind(unit_position);
+  fan_offsets.bind(unit_fan_offsets);
+  fans.bind(unit_fans);
+  normals_.bind_storage(slot_normals);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   glDispatchCompute((vertex_count_ + 63) / 64, 1, 1);
   glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
@@ -81,9 +84,9 @@ void ClothMesh::draw(const scene::Scene& scene) const {
   glBindVertexArray(vertex_array_);
   for (std::size_t index = 0; index < ranges_.size(); ++index) {
     const scene::Cloth& cloth = scene.cloths[index];
-    glUniform3f(0, linear_channel(cloth.color, 1), linear_channel(cloth.color, 3),
+    glUniform3f(uniform_color, linear_channel(cloth.color, 1), linear_channel(cloth.color, 3),
                 linear_channel(cloth.color, 5));
-    glUniform1i(1, pattern_number(cloth.texture));
+    glUniform1i(uniform_pattern, pattern_number(cloth.texture));
     const std::uintptr_t first_byte = ranges_[index].first_triangle * 3 * sizeof(std::uint32_t);
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * ranges_[index].triangle_count), GL_UNSIGNED_INT,
                    reinterpret_cast<const void*>(first_byte));

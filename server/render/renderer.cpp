@@ -11,6 +11,7 @@
 #include "server/render/solids.h"
 #include "server/render/target.h"
 #include "server/scene/solid.h"
+#include "shaders/slots.h"
 
 namespace clothlab::render {
 
@@ -71,7 +72,7 @@ void Renderer::Implementation::set_frame(const Subject& subject, float aspect) {
                          glm::vec4(camera.eye, 1), glm::vec4(to_light, 0),
                          glm::vec4(box.center(), box.radius())};
   frame_block.upload(&block, sizeof block);
-  glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame_block.id());
+  glBindBufferBase(GL_UNIFORM_BUFFER, block_frame, frame_block.id());
 }
 
 void Renderer::Implementation::draw_shadow_map(const ClothMesh& cloth_mesh,
@@ -82,7 +83,7 @@ void Renderer::Implementation::draw_shadow_map(const ClothMesh& cloth_mesh,
   glPolygonOffset(1.5f, 2.0f);
   depth.use();
   solids.draw(Solids::Layer::shadow, colliders);
-  glUniform4f(0, 0, 0, 0, 1);
+  glUniform4f(uniform_placed, 0, 0, 0, 1);
   cloth_mesh.draw_plain();
   glDisable(GL_POLYGON_OFFSET_FILL);
 }

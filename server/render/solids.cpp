@@ -10,6 +10,7 @@
 
 #include "server/gl/buffer.h"
 #include "server/gl/program.h"
+#include "shaders/slots.h"
 
 namespace clothlab::render {
 
@@ -43,10 +44,10 @@ struct Solids::Implementation {
   Implementation() {
     glCreateVertexArrays(1, &empty_array);
     glCreateVertexArrays(1, &sphere_array);
-    glEnableVertexArrayAttrib(sphere_array, 0);
-    glVertexArrayAttribFormat(sphere_array, 0, 3, GL_FLOAT, GL_FALSE, 0);
-    glVertexArrayVertexBuffer(sphere_array, 0, sphere_points.id(), 0, sizeof(glm::vec3));
-    glVertexArrayAttribBinding(sphere_array, 0, 0);
+    glEnableVertexArrayAttrib(sphere_array, attribute_position);
+    glVertexArrayAttribFormat(sphere_array, attribute_position, 3, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayVertexBuffer(sphere_array, attribute_position, sphere_points.id(), 0, sizeof(glm::vec3));
+    glVertexArrayAttribBinding(sphere_array, attribute_position, attribute_position);
   }
   ~Implementation() {
     glDeleteVertexArrays(1, &sphere_array);
@@ -60,7 +61,7 @@ struct Solids::Implementation {
     if (layer == Layer::body) sphere.use();
     glBindVertexArray(sphere_array);
     const glm::vec4 placed(glm::vec3(shape.center), static_cast<float>(shape.radius));
-    glUniform4fv(0, 1, glm::value_ptr(placed));
+    glUniform4fv(uniform_placed, 1, glm::value_ptr(placed));
     for (int band = 0; band < bands; ++band)
       glDrawArrays(GL_TRIANGLE_STRIP, band * strip_length, strip_length);
   }
@@ -72,8 +73,8 @@ struct Solids::Implementation {
     glBindVertexArray(empty_array);
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    glUniform3fv(0, 1, glm::value_ptr(glm::vec3(shape.point)));
-    glUniform3fv(1, 1, glm::value_ptr(glm::vec3(shape.normal)));
+    glUniform3fv(uniform_point, 1, glm::value_ptr(glm::vec3(shape.point)));
+    glUniform3fv(uniform_normal, 1, glm::value_ptr(glm::vec3(shape.normal)));
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
     glDisable(GL_BLEND);
   }

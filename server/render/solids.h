@@ -21,7 +21,7 @@ class Solids {
   Solids& operator=(const Solids&) = delete;
 
   Status load();
-  /// `shadow` is drawn with the program in use, whose uniform 0 places a unit shape
+  /// `shadow` is drawn with the program in use, whose uniform_placed places a unit shape
   /// (shaders/render/depth.vert).
   void draw(Layer layer, const std::vector<scene::Collider>& colliders) const;
 

@@ -5,6 +5,7 @@
 
 #include "server/base/result.h"
 #include "server/render/image.h"
+#include "shaders/slots.h"
 
 namespace clothlab::render {
 
@@ -28,7 +29,7 @@ class Target {
   GLuint renderbuffers_[3] = {};  // samples' colour, samples' depth, resolved colour
 };
 
-/// A depth texture that the lit shaders compare with (binding 0).
+/// A depth texture that the lit shaders compare with.
 class ShadowMap {
  public:
   ShadowMap();
@@ -38,7 +39,7 @@ class ShadowMap {
 
   /// Clears it; draws go here until another framebuffer is bound.
   void bind() const;
-  void bind_texture() const { glBindTextureUnit(0, texture_); }
+  void bind_texture() const { glBindTextureUnit(unit_shadow_map, texture_); }
 
  private:
   GLuint framebuffer_ = 0, texture_ = 0;

@@ -28,7 +28,8 @@ void set_colliders(const gl::Program& program, const scene::Scene& scene, const 
       rows.emplace_back(collider.friction, collider.restitution, motions.index(collider.motion), 0.0f);
     }
   if (rows.empty()) return;
-  glProgramUniform4fv(program.id(), program.uniform("solids"), static_cast<GLsizei>(rows.size()), &rows[0].x);
+  glProgramUniform4fv(program.id(), program.location("solids"), static_cast<GLsizei>(rows.size()),
+                      &rows[0].x);
 }
 
 std::vector<scene::Collider> colliders_at(const scene::Scene& scene, double time) {

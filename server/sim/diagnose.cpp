@@ -25,11 +25,10 @@ Result<DiagnosticsPass> DiagnosticsPass::create(std::uint32_t vertex_count) {
   DiagnosticsPass pass;
   gl::Defines defines = law_defines();
   defines.emplace_back("GROUP_SIZE", std::to_string(group_size));
-  Result<gl::Program> program = gl::Program::load({"stream/diagnose.comp"}, defines);
+  Result<gl::Program> program = gl::Program::load({"diagnose.comp"}, defines);
   if (!program) return program.error();
   pass.program_ = std::move(*program);
-  pass.program_.use();
-  glUniform1i(0, static_cast<GLint>(vertex_count));
+  pass.program_.set("vertex_count", static_cast<GLint>(vertex_count));
   pass.groups_ = vertex_groups(vertex_count);
   pass.results_ = gl::Buffer(pass.groups_ * sizeof(Partial) + sizeof(SelfCollision::Counters));
   pass.ring_ = gl::ReadbackRing(pass.results_.bytes(), ring_slots);
@@ -40,11 +39,11 @@ bool DiagnosticsPass::request(const StateBuffers& state, const SelfCollision* se
                               const glm::dvec3& gravity, double time, std::uint64_t step) {
   if (ring_.full()) return false;
   program_.use();
-  glUniform4f(3, static_cast<float>(gravity.x), static_cast<float>(gravity.y), static_cast<float>(gravity.z),
-              0.0f);
+  glUniform4f(program_.location("gravity"), static_cast<float>(gravity.x), static_cast<float>(gravity.y),
+              static_cast<float>(gravity.z), 0.0f);
   state.shown_position().bind(unit_position);
   state.shown_velocity().bind(unit_velocity);
-  results_.bind_storage(0);
+  results_.bind_storage(slot_partials);
   glDispatchCompute(groups_, 1, 1);
   if (self_collision) {
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);

@@ -1,5 +1,5 @@
 // Energies, strain, speed and contacts of the whole state: a reduction on the GPU
-// (shaders/stream/diagnose.comp) whose partial results come back through a ring, without waiting unless asked
+// (shaders/diagnose.comp) whose partial results come back through a ring, without waiting unless asked
 // to.
 #pragma once
 

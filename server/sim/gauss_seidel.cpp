@@ -13,10 +13,6 @@ namespace clothlab::sim {
 
 namespace {
 
-constexpr GLuint unit_deviation = 9, unit_projected = 10, unit_gains = 11, unit_visited = 12;
-constexpr GLuint slot_deviation = 3, slot_spring_pushes = 4, slot_lacking = 4, slot_targets = 5,
-                 slot_velocity_before = 6, slot_remainders = 7;
-
 /// Elements at a vertex.
 std::uint64_t corners_at(const model::Model& model, std::uint32_t vertex) {
   std::uint64_t count = 0;
@@ -45,8 +41,8 @@ class GaussSeidel : public Integrator {
     for (const gl::Program* program : {&whole_, &begin_, &visit_, &meet_, &balance_, &finish_}) {
       if (!program->id()) continue;
       set_step_uniforms(*program, around);
-      glProgramUniform1f(program->id(), program->uniform("mobility"), mobility);
-      glProgramUniform1i(program->id(), program->uniform("last_sweep"), sweeps_ - 1);
+      program->set("mobility", mobility);
+      program->set("last_sweep", sweeps_ - 1);
     }
     if (balanced_) set_free_vertices(around);
     if (by_vertex_) return;
@@ -66,7 +62,7 @@ class GaussSeidel : public Integrator {
     } else {
       projected_.bind(unit_projected);
       gains_.bind(unit_gains);
-      if (spring_pushes_.bytes() > 0) spring_pushes_.bind_storage(slot_spring_pushes);
+      if (spring_pushes_.bytes() > 0) spring_pushes_.bind_storage(slot_pushed);
     }
     if (lanes_ > 0)
       step_in_one_group(row);
@@ -147,7 +143,7 @@ class GaussSeidel : public Integrator {
     if (!loaded) return loaded.error();
     whole_ = std::move(*loaded);
     const std::vector<GLint> first(work_.offsets.begin(), work_.offsets.end());
-    glProgramUniform1iv(whole_.id(), whole_.uniform("colour_first"), static_cast<GLsizei>(first.size()),
+    glProgramUniform1iv(whole_.id(), whole_.location("colour_first"), static_cast<GLsizei>(first.size()),
                         first.data());
     return ok();
   }
@@ -181,13 +177,13 @@ class GaussSeidel : public Integrator {
       ranges.push_back(static_cast<GLint>(cloth.first_vertex + (free ? cloth.vertex_count : 0)));
     }
     const gl::Program& program = lanes_ > 0 ? whole_ : balance_;
-    glProgramUniform2iv(program.id(), program.uniform("free_vertices"),
+    glProgramUniform2iv(program.id(), program.location("free_vertices"),
                         static_cast<GLsizei>(ranges.size() / 2), ranges.data());
   }
 
   void step_in_one_group(int row) {
     whole_.use();
-    glUniform1i(whole_.uniform("start_row"), row);
+    whole_.set("start_row", row);
     dispatch(1);
     wait_for_writes();
   }
@@ -195,14 +191,14 @@ class GaussSeidel : public Integrator {
   Work step_in_phases(int row) {
     std::size_t current = 0;
     const auto run = [&](const gl::Program& program, std::uint32_t first, std::uint32_t end) {
-      glUniform1i(program.uniform("first"), static_cast<GLint>(first));
-      glUniform1i(program.uniform("end"), static_cast<GLint>(end));
+      program.set("first", static_cast<GLint>(first));
+      program.set("end", static_cast<GLint>(end));
       dispatch(vertex_groups(end - first));
       wait_for_writes();
     };
     const auto use = [&](const gl::Program& program, std::size_t read, std::size_t written) {
       program.use();
-      glUniform1i(program.uniform("start_row"), row);
+      program.set("start_row", row);
       deviation_[read].bind(unit_deviation);
       deviation_[written].buffer.bind_storage(slot_deviation);
     };
@@ -210,7 +206,7 @@ class GaussSeidel : public Integrator {
     run(begin_, 0, vertex_count_);
     for (int sweep = 0; sweep < sweeps_; ++sweep) {
       use(visit_, current, current);
-      glUniform1i(visit_.uniform("sweep"), sweep);
+      visit_.set("sweep", sweep);
       for (std::uint32_t colour = 0; colour < work_.colours(); ++colour) {
         run(visit_, work_.offsets[colour], work_.offsets[colour + 1]);
         co_await may_stop;

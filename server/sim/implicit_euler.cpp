@@ -55,10 +55,8 @@ class ImplicitEuler : public Integrator {
       if (program->id()) set_step_uniforms(*program, around);
     if (around.scene.solver.dt != dt_) restart();  // the contacts' impulses are forces times dt
     dt_ = around.scene.solver.dt;
-    iteration_location_ = update_.uniform("iteration");
     most_newton_steps_ = around.scene.solver.iterations;
-    glProgramUniform1f(system_.id(), system_.uniform("tolerance"),
-                       static_cast<float>(around.scene.solver.tolerance));
+    system_.set("tolerance", static_cast<float>(around.scene.solver.tolerance));
   }
 
   Work step(StateBuffers& state, int row) override {
@@ -121,28 +119,41 @@ class ImplicitEuler : public Integrator {
 
   void begin(const StateBuffers& state, int row) {
     state.bind_for_step();
-    start_position_.buffer.bind_storage(0);
-    start_velocity_.buffer.bind_storage(1);
-    velocity_.buffer.bind_storage(3);
-    guess_.buffer.bind_storage(4);
-    constraint_.buffer.bind_storage(5);
-    surface_.buffer.bind_storage(6);
-    grip_.bind_storage(7);
-    glProgramUniform1i(start_.id(), start_.uniform("start_row"), row);
+    state.position().bind(unit_before_position);
+    state.velocity().bind(unit_before_velocity);
+    start_position_.bind(unit_start_position);
+    start_velocity_.bind(unit_start_velocity);
+    constraint_.bind(unit_constraint);
+    surface_.bind(unit_surface);
+    product_.bind(unit_product);
+    sums_.bind(unit_group_sums);
+    block_a_.bind(unit_block_a);
+    block_b_.bind(unit_block_b);
+    start_position_.buffer.bind_storage(slot_start_position);
+    bind_estimate();
+    start_.set("start_row", row);
     run(start_);
+  }
+
+  /// What the passes before and after a solve write.
+  void bind_estimate() {
+    start_velocity_.buffer.bind_storage(slot_start_velocity);
+    velocity_.buffer.bind_storage(slot_estimate);
+    guess_.buffer.bind_storage(slot_guess);
+    constraint_.buffer.bind_storage(slot_constraint);
+    surface_.buffer.bind_storage(slot_surface);
+    grip_.bind_storage(slot_grip);
   }
 
   /// The linear system at the estimate.
   void set_up(const gl::TextureBuffer& position) {
     position.bind(unit_position);
     velocity_.bind(unit_velocity);
-    start_velocity_.bind(9);
-    constraint_.bind(10);
-    guess_.bind(11);
-    vectors_[0].residual.buffer.bind_storage(0);
-    vectors_[0].preconditioned.buffer.bind_storage(1);
-    block_a_.buffer.bind_storage(3);
-    block_b_.buffer.bind_storage(4);
+    guess_.bind(unit_change);
+    vectors_[0].residual.buffer.bind_storage(slot_residual);
+    vectors_[0].preconditioned.buffer.bind_storage(slot_preconditioned);
+    block_a_.buffer.bind_storage(slot_block_a);
+    block_b_.buffer.bind_storage(slot_block_b);
     run(system_);
   }
 
@@ -163,31 +174,24 @@ class ImplicitEuler : public Integrator {
   void iterate(int iteration) {
     const Vectors &now = vectors_[iteration % 2], &next = vectors_[(iteration + 1) % 2];
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, control_.id());
-    constraint_.bind(10);
-    now.residual.bind(11);
-    now.preconditioned.bind(12);
-    product_.buffer.bind_storage(0);
-    sums_.buffer.bind_storage(1);
+    now.residual.bind(unit_residual);
+    now.preconditioned.bind(unit_preconditioned);
+    product_.buffer.bind_storage(slot_product);
+    sums_.buffer.bind_storage(slot_group_sums);
     multiply_.use();
     glDispatchComputeIndirect(0);
     wait_for_writes();
-    now.residual.bind(16);
-    now.preconditioned.bind(17);
-    now.direction.bind(18);
-    now.direction_product.bind(19);
-    (iteration == 0 ? guess_ : now.change).bind(20);
-    product_.bind(9);
-    sums_.bind(11);
-    block_a_.bind(12);
-    block_b_.bind(13);
-    next.residual.buffer.bind_storage(0);
-    next.preconditioned.buffer.bind_storage(1);
-    control_.bind_storage(3);
-    next.direction.buffer.bind_storage(4);
-    next.direction_product.buffer.bind_storage(5);
-    next.change.buffer.bind_storage(6);
+    now.direction.bind(unit_direction);
+    now.direction_product.bind(unit_direction_product);
+    (iteration == 0 ? guess_ : now.change).bind(unit_change);
+    next.residual.buffer.bind_storage(slot_residual);
+    next.preconditioned.buffer.bind_storage(slot_preconditioned);
+    control_.bind_storage(slot_solver_control);
+    next.direction.buffer.bind_storage(slot_direction);
+    next.direction_product.buffer.bind_storage(slot_direction_product);
+    next.change.buffer.bind_storage(slot_change);
     update_.use();
-    glUniform1i(iteration_location_, iteration);
+    update_.set("iteration", iteration);
     glDispatchComputeIndirect(0);
     wait_for_writes();
     dispatches_ += 2;
@@ -195,33 +199,24 @@ class ImplicitEuler : public Integrator {
 
   /// Line search, then the estimate takes its share of the change.
   void advance(const Vectors& solved, int row, bool another) {
-    start_velocity_.bind(9);
-    solved.change.bind(11);
-    sums_.buffer.bind_storage(1);
+    solved.change.bind(unit_change);
+    solved.residual.bind(unit_residual);
+    sums_.buffer.bind_storage(slot_group_sums);
     run(search_);
-    start_position_.bind(9);
-    sums_.bind(10);
-    solved.residual.bind(12);
-    position_.buffer.bind_storage(0);
-    velocity_.buffer.bind_storage(3);
-    guess_.buffer.bind_storage(4);
-    constraint_.buffer.bind_storage(5);
-    surface_.buffer.bind_storage(6);
-    start_velocity_.buffer.bind_storage(1);
-    grip_.bind_storage(7);
-    glProgramUniform1i(advance_.id(), advance_.uniform("start_row"), row);
-    glProgramUniform1i(advance_.id(), advance_.uniform("another"), another ? 1 : 0);
+    position_.buffer.bind_storage(slot_next_position);
+    bind_estimate();
+    advance_.set("start_row", row);
+    advance_.set("another", another ? 1 : 0);
     run(advance_);
   }
 
   /// The velocities go back and forth between two buffers, and end in the one they came from.
   void keep_apart() {
     static_assert(contact_passes % 2 == 0);
-    start_position_.bind(9);
-    position_.buffer.bind_storage(0);
+    position_.buffer.bind_storage(slot_next_position);
     for (int pass = 0; pass < contact_passes; ++pass) {
       (pass % 2 == 0 ? velocity_ : guess_).bind(unit_velocity);
-      (pass % 2 == 0 ? guess_ : velocity_).buffer.bind_storage(3);
+      (pass % 2 == 0 ? guess_ : velocity_).buffer.bind_storage(slot_estimate);
       run(contacts_);
     }
   }
@@ -229,15 +224,10 @@ class ImplicitEuler : public Integrator {
   void finish(StateBuffers& state, const Vectors& solved, int row) {
     position_.bind(unit_position);
     velocity_.bind(unit_velocity);
-    state.position().bind(9);
-    state.velocity().bind(10);
-    start_velocity_.bind(11);
-    solved.residual.bind(12);
-    surface_.bind(13);
-    constraint_.bind(14);
-    grip_.bind_storage(7);
+    solved.residual.bind(unit_residual);
+    grip_.bind_storage(slot_grip);
     state.bind_outputs();
-    glProgramUniform1i(end_.id(), end_.uniform("start_row"), row);
+    end_.set("start_row", row);
     run(end_);
     state.swap();
   }
@@ -245,7 +235,6 @@ class ImplicitEuler : public Integrator {
   GLuint groups_;
   double dt_ = 0;
   int most_newton_steps_ = 1;
-  GLint iteration_location_ = -1;
   gl::Program start_, system_, multiply_, update_, search_, advance_, end_, contacts_;
   gl::TextureBuffer start_position_, start_velocity_;  ///< where the step starts, with self-collision's share
   gl::TextureBuffer position_, velocity_;              ///< estimate of where it ends

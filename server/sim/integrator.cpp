@@ -35,17 +35,15 @@ Result<std::unique_ptr<Integrator>> make_integrator(const Surroundings& around, 
 
 void set_step_uniforms(const gl::Program& program, const Surroundings& around) {
   const scene::Scene& scene = around.scene;
-  const GLuint id = program.id();
-  glProgramUniform1i(id, program.uniform("vertex_count"), static_cast<GLint>(around.model.vertex_count()));
-  glProgramUniform1f(id, program.uniform("dt"), static_cast<float>(scene.solver.dt));
-  glProgramUniform4f(id, program.uniform("gravity"), static_cast<float>(scene.gravity.x),
+  program.set("vertex_count", static_cast<GLint>(around.model.vertex_count()));
+  program.set("dt", static_cast<float>(scene.solver.dt));
+  glProgramUniform4f(program.id(), program.location("gravity"), static_cast<float>(scene.gravity.x),
                      static_cast<float>(scene.gravity.y), static_cast<float>(scene.gravity.z),
                      static_cast<float>(scene.air_drag));
   set_colliders(program, scene, around.motions, contact_margin(scene, around.model));
   if (!around.self_collision) return;
-  glProgramUniform1f(id, program.uniform("self_friction"),
-                     static_cast<float>(scene.self_collision->friction));
-  glProgramUniform1f(id, program.uniform("skin"), around.self_collision->skin());
+  program.set("self_friction", static_cast<float>(scene.self_collision->friction));
+  program.set("skin", around.self_collision->skin());
 }
 
 }  // namespace clothlab::sim

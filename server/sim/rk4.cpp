@@ -7,9 +7,6 @@ namespace clothlab::sim {
 
 namespace {
 
-constexpr GLuint slot_slope = 3;
-constexpr GLuint unit_start_position = 9, unit_start_velocity = 10, unit_slope = 11;  // and the two after it
-
 class Rk4 : public Integrator {
  public:
   explicit Rk4(std::array<gl::Program, 4> stages, std::uint32_t vertex_count)
@@ -35,11 +32,13 @@ class Rk4 : public Integrator {
         between_[stage % 2].bind_for_writing();
         slopes_[stage].buffer.bind_storage(slot_slope);
       } else {
-        for (GLuint slope = 0; slope < 3; ++slope) slopes_[slope].bind(unit_slope + slope);
+        slopes_[0].bind(unit_slope_1);
+        slopes_[1].bind(unit_slope_2);
+        slopes_[2].bind(unit_slope_3);
         state.bind_outputs();
       }
       stages_[stage].use();
-      glUniform1i(stages_[stage].uniform("start_row"), row);
+      stages_[stage].set("start_row", row);
       dispatch(groups_);
       glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
     }
@@ -56,8 +55,8 @@ class Rk4 : public Integrator {
       velocity.bind(unit_velocity);
     }
     void bind_for_writing() const {
-      position.buffer.bind_storage(0);
-      velocity.buffer.bind_storage(1);
+      position.buffer.bind_storage(slot_next_position);
+      velocity.buffer.bind_storage(slot_next_velocity);
     }
   };
 

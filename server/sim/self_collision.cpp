@@ -34,7 +34,6 @@ constexpr double most_pairs = 1e9;
 constexpr double pairs_a_dispatch = 2e6;
 constexpr std::chrono::milliseconds long_dispatch{10};
 
-constexpr GLuint unit_excluded = 9, unit_first_excluded = 10;
 constexpr std::uint64_t updates_between_looks = 8;
 constexpr std::uint32_t most_slots = 256;
 constexpr std::uint64_t most_entries = std::uint64_t{1} << 22;  // 32 MiB, and what walking them takes
@@ -58,7 +57,7 @@ Result<SelfCollision> SelfCollision::create(const model::Model& model, std::uint
     Result<gl::Program> loaded = gl::Program::load({path}, defines);
     if (!loaded) return loaded.error();
     *program = std::move(*loaded);
-    glProgramUniform1i(program->id(), 0, static_cast<GLint>(vertex_count));
+    program->set("vertex_count", static_cast<GLint>(vertex_count));
   }
   const Control nothing;
   made.control_ = gl::Buffer(sizeof(Control), &nothing);
@@ -93,8 +92,8 @@ Status SelfCollision::set_parameters(const scene::SelfCollision& parameters, con
   candidates_ = candidates;
   skin_ = static_cast<float>(skin);
   reach_ = static_cast<float>(reach);
-  for (const gl::Program* program : {&insert_, &find_}) glProgramUniform1f(program->id(), 2, reach_);
-  glProgramUniform1f(find_.id(), 3, static_cast<float>(parameters.thickness));
+  for (const gl::Program* program : {&insert_, &find_}) program->set("reach", reach_);
+  find_.set("thickness", static_cast<float>(parameters.thickness));
   if (!same)
     limit_range(static_cast<std::uint32_t>(
         std::clamp(pairs_a_dispatch / std::max(candidates * group_size, 1.0), 1.0, 1e6)));
@@ -115,14 +114,17 @@ void SelfCollision::invalidate() {
 }
 
 Work SelfCollision::update_lists() {
-  control_.bind_storage(2);
-  heads_.buffer.bind_storage(3);
-  chains_.buffer.bind_storage(4);
-  built_position_.buffer.bind_storage(5);
-  counts_.buffer.bind_storage(6);
-  lists_.buffer.bind_storage(7);
-  heads_.bind(unit_neighbour_count);  // the search reads its hash where the step reads its lists
-  chains_.bind(unit_neighbours);
+  control_.bind_storage(slot_neighbour_control);
+  heads_.buffer.bind_storage(slot_cell_heads);
+  chains_.buffer.bind_storage(slot_cell_chains);
+  built_position_.buffer.bind_storage(slot_position_when_built);
+  counts_.buffer.bind_storage(slot_neighbour_count);
+  lists_.buffer.bind_storage(slot_neighbours);
+  heads_.bind(unit_cell_heads);
+  chains_.bind(unit_cell_chains);
+  counts_.bind(unit_neighbour_count);
+  lists_.bind(unit_neighbours);
+  built_position_.bind(unit_position_when_built);
   excluded_.bind(unit_excluded);
   first_excluded_.bind(unit_first_excluded);
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, control_.id());
@@ -136,7 +138,7 @@ Work SelfCollision::update_lists() {
   const auto range = static_cast<GLint>(range_groups_) * group_size;
   Clock::duration longest{};
   for (GLint first = 0; first < static_cast<GLint>(vertex_count_); first += range) {
-    glUniform1i(4, first);
+    find_.set("first_vertex", first);
     const Clock::time_point begun = Clock::now();
     dispatch(offsetof(Control, search));
     longest = std::max(longest, Clock::now() - begun);
@@ -151,9 +153,6 @@ Work SelfCollision::update_lists() {
   }
   if (updates_++ % updates_between_looks == 0) look();
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
-  counts_.bind(unit_neighbour_count);
-  lists_.bind(unit_neighbours);
-  built_position_.bind(unit_position_when_built);
 }
 
 /// What the lists were like at the look before; lists that somebody has just asked for at once.

@@ -86,8 +86,8 @@ void StateBuffers::bind_for_step() const {
 }
 
 void StateBuffers::bind_outputs() const {
-  position_[1 - current_].buffer.bind_storage(0);
-  velocity_[1 - current_].buffer.bind_storage(1);
+  position_[1 - current_].buffer.bind_storage(slot_next_position);
+  velocity_[1 - current_].buffer.bind_storage(slot_next_velocity);
 }
 
 State StateBuffers::read() const {

@@ -4,6 +4,7 @@
 #include "server/gl/buffer.h"
 #include "server/model/model.h"
 #include "server/sim/simulation.h"
+#include "shaders/slots.h"
 
 namespace clothlab::sim {
 
@@ -48,19 +49,6 @@ class StateBuffers {
   gl::TextureBuffer position_[2];  ///< xyz [m], w inverse mass [1/kg], 0 if pinned
   gl::TextureBuffer velocity_[2];  ///< xyz [m/s], w contacts, or of a pinned vertex its motion's index or -1
   int current_ = 0, shown_ = 0;
-};
-
-/// The units at which the kernels' READ_... declarations expect their buffers.
-enum ReadUnit : GLuint {
-  unit_position,
-  unit_velocity,
-  unit_elements,
-  unit_element_slices,
-  unit_neighbour_count,
-  unit_neighbours,
-  unit_motion_table,
-  unit_rest_position,
-  unit_position_when_built
 };
 
 }  // namespace clothlab::sim

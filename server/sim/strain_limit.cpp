@@ -11,7 +11,7 @@ namespace {
 constexpr int most_sweeps = 512;
 constexpr int sweeps_between_looks = 8;
 
-/// As in strain_limit_sweep.comp.
+/// As in strain_limit/sweep.comp.
 struct Control {
   std::uint32_t groups = 0, groups_y = 1, groups_z = 1;
   std::uint32_t sweeps = 0;
@@ -45,9 +45,9 @@ Result<StrainLimit> StrainLimit::create(const Surroundings& around, const Plan& 
   gl::Defines defines = step_defines(plan);
   defines.emplace_back("GROUP_COUNT", std::to_string(vertex_groups(around.model.vertex_count())));
   defines.emplace_back("CLOTH_COUNT", std::to_string(around.scene.cloths.size()));
-  for (auto [program, path] : {std::pair{&made.start_, "methods/strain_limit_start.comp"},
-                               {&made.sweep_, "methods/strain_limit_sweep.comp"},
-                               {&made.end_, "methods/strain_limit_end.comp"}}) {
+  for (auto [program, path] : {std::pair{&made.start_, "strain_limit/start.comp"},
+                               {&made.sweep_, "strain_limit/sweep.comp"},
+                               {&made.end_, "strain_limit/end.comp"}}) {
     Result<gl::Program> loaded = gl::Program::load({path}, defines);
     if (!loaded) return loaded.error();
     *program = std::move(*loaded);
@@ -61,7 +61,7 @@ Result<StrainLimit> StrainLimit::create(const Surroundings& around, const Plan& 
   made.pulls_ = gl::Buffer(std::max<std::size_t>(entries, 1) * sizeof(float));
   made.given_ = gl::Buffer(count * 4 * sizeof(float));
   made.control_ = gl::Buffer(sizeof(Control));
-  glProgramUniform1f(made.sweep_.id(), made.sweep_.uniform("relaxation"), relaxation(around.model));
+  made.sweep_.set("relaxation", relaxation(around.model));
   made.set_parameters(around);
   return made;
 }
@@ -71,8 +71,8 @@ void StrainLimit::set_parameters(const Surroundings& around) {
   std::vector<float> limits;
   for (const scene::Cloth& cloth : around.scene.cloths)
     limits.push_back(static_cast<float>(cloth.material.strain_limit.value_or(-1.0)));
-  const GLuint sweep = sweep_.id();
-  glProgramUniform1fv(sweep, sweep_.uniform("limit"), static_cast<GLsizei>(limits.size()), limits.data());
+  glProgramUniform1fv(sweep_.id(), sweep_.location("limit"), static_cast<GLsizei>(limits.size()),
+                      limits.data());
   // A pull is a force times dt^2.
   if (around.scene.solver.dt != dt_) restart();
   dt_ = around.scene.solver.dt;
@@ -80,10 +80,10 @@ void StrainLimit::set_parameters(const Surroundings& around) {
 
 Work StrainLimit::apply(StateBuffers& state) {
   state.position().bind(unit_position);
-  state.previous_position().bind(10);
-  position_[0].buffer.bind_storage(0);
-  pulls_.bind_storage(3);
-  given_.bind_storage(5);
+  state.previous_position().bind(unit_start_position);
+  position_[0].buffer.bind_storage(slot_next_position);
+  pulls_.bind_storage(slot_pulls);
+  given_.bind_storage(slot_given);
   start_.use();
   glDispatchCompute(groups_, 1, 1);
   wait_for_writes();
@@ -92,17 +92,16 @@ Work StrainLimit::apply(StateBuffers& state) {
   control.groups = groups_;
   control_.upload(&control, sizeof control);
   sweep_.use();
-  control_.bind_storage(4);
+  control_.bind_storage(slot_limit_control);
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, control_.id());
-  const GLint sweep_location = sweep_.uniform("sweep");
   for (int done = 0; done < most_sweeps && control.groups > 0; done += sweeps_between_looks) {
     for (int sweep = done; sweep < done + sweeps_between_looks; ++sweep) {
       const auto from = static_cast<std::size_t>(sweep) % 2, to = 1 - from;
       position_[from].bind(unit_position);
-      group_excess_[from].bind(9);
-      position_[to].buffer.bind_storage(0);
-      group_excess_[to].buffer.bind_storage(1);
-      glUniform1i(sweep_location, sweep);
+      group_excess_[from].bind(unit_group_excess);
+      position_[to].buffer.bind_storage(slot_next_position);
+      group_excess_[to].buffer.bind_storage(slot_group_excess);
+      sweep_.set("sweep", sweep);
       glDispatchComputeIndirect(0);
       wait_for_writes();
       co_await may_stop;
@@ -113,7 +112,7 @@ Work StrainLimit::apply(StateBuffers& state) {
   work_.unconverged += control.groups > 0 ? 1 : 0;
 
   state.bind_for_step();
-  position_[control.sweeps % 2].bind(9);
+  position_[control.sweeps % 2].bind(unit_corrected_position);
   end_.use();
   glDispatchCompute(groups_, 1, 1);
   wait_for_writes();

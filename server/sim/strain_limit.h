@@ -1,4 +1,4 @@
-// Provot's strain limit after a step of any method: shaders/methods/strain_limit_*.comp. The sweeps end by
+// Provot's strain limit after a step of any method: shaders/strain_limit/. The sweeps end by
 // the GPU's own decision; the host only asks, now and then, whether they have.
 #pragma once
 

@@ -10,8 +10,6 @@ namespace clothlab::sim {
 
 namespace {
 
-constexpr GLuint unit_carried = 9, slot_carried = 3;  // verlet.comp
-
 class WholeStep : public Integrator {
  public:
   WholeStep(gl::Program program, std::uint32_t vertex_count, bool carries)
@@ -21,14 +19,11 @@ class WholeStep : public Integrator {
       carried = {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
   }
 
-  void set_parameters(const Surroundings& around) override {
-    set_step_uniforms(program_, around);
-    start_row_ = program_.uniform("start_row");
-  }
+  void set_parameters(const Surroundings& around) override { set_step_uniforms(program_, around); }
 
   Work step(StateBuffers& state, int row) override {
     program_.use();
-    glUniform1i(start_row_, row);
+    program_.set("start_row", row);
     state.bind_for_step();
     if (carries()) {
       carried_[current_].bind(unit_carried);
@@ -52,7 +47,6 @@ class WholeStep : public Integrator {
   std::array<gl::TextureBuffer, 2>
       carried_;  ///< verlet's; none otherwise. A step reads one, writes the other
   std::size_t current_ = 0;
-  GLint start_row_ = -1;
   GLuint groups_;
 };
 

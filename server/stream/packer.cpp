@@ -8,6 +8,7 @@
 
 #include "server/gl/buffer.h"
 #include "server/gl/program.h"
+#include "shaders/slots.h"
 
 namespace clothlab::stream {
 
@@ -16,7 +17,6 @@ namespace {
 constexpr int group_size = 128;
 constexpr int ring_slots = 3;  ///< frames on their way back at once
 constexpr std::size_t box_bytes = 32;
-enum Unit : GLuint { unit_position = 0, unit_fan_offsets = 2, unit_fans = 3 };
 
 std::int64_t now_us() {
   return std::chrono::duration_cast<std::chrono::microseconds>(
@@ -57,7 +57,7 @@ struct Packer::Implementation {
 
   void dispatch(const gl::Program& program) const {
     program.use();
-    glUniform1i(0, static_cast<GLint>(vertex_count));
+    program.set("vertex_count", static_cast<GLint>(vertex_count));
     glDispatchCompute((vertex_count + group_size - 1) / group_size, 1, 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   }
@@ -119,8 +119,8 @@ bool Packer::request(const sim::Simulation& simulation, Encoding encoding, std::
   simulation.bind_positions(unit_position);
   self.fan_offsets.bind(unit_fan_offsets);
   self.fans.bind(unit_fans);
-  self.box.bind_storage(2);
-  self.packed[index].bind_storage(0);
+  self.box.bind_storage(slot_bounds);
+  self.packed[index].bind_storage(slot_packed);
   self.dispatch(self.bounds);
   self.dispatch(self.pack[index]);
 

@@ -1,7 +1,7 @@
 // A spatial hash: each cell leads to a chain of vertices. Teschner et al. 2003, "Optimized Spatial Hashing", section
 // 3.1.
-layout(location = 0) uniform int vertex_count;
-layout(location = 2) uniform float reach;  // contact distance + skin; a cell is twice as wide [m]
+uniform int vertex_count;
+uniform float reach;  // contact distance + skin; a cell is twice as wide [m]
 
 const uint chain_end = 0xffffffffu;
 

@@ -5,17 +5,17 @@ layout(local_size_x = GROUP_SIZE) in;
 #include "cells.glsl"
 #include "neighbours.glsl"
 
-READ_VEC4(position, 0);
-READ_UINT(head, 4);
-READ_UINT(next, 5);
-READ_VEC4(rest_position, 7);  // w: the cloth
-READ_UINT(excluded, 9);        // vertices that self-collision leaves out, vertex after vertex
-READ_UINT(first_excluded, 10);  // [vertex_count + 1]
-layout(location = 3) uniform float thickness;
-layout(location = 4) uniform int first_vertex;  // first vertex of this dispatch's range
-layout(std430, binding = 6) writeonly buffer NeighbourCounts { uint neighbour_count[]; };
+READ_VEC4(position, unit_position);
+READ_UINT(head, unit_cell_heads);
+READ_UINT(next, unit_cell_chains);
+READ_VEC4(rest_position, unit_rest_position);  // w: the cloth
+READ_UINT(excluded, unit_excluded);  // vertices that self-collision leaves out, vertex after vertex
+READ_UINT(first_excluded, unit_first_excluded);  // [vertex_count + 1]
+uniform float thickness;
+uniform int first_vertex;  // first vertex of this dispatch's range
+layout(std430, binding = slot_neighbour_count) writeonly buffer NeighbourCounts { uint neighbour_count[]; };
 // (vertex, distance): vertex i's slot s at i * SLOTS + s
-layout(std430, binding = 7) buffer Neighbours { uvec2 neighbours[]; };
+layout(std430, binding = slot_neighbours) buffer Neighbours { uvec2 neighbours[]; };
 
 float rest_distance(int i, int j) {
   vec4 a = FETCH(rest_position, i), b = FETCH(rest_position, j);

@@ -3,10 +3,10 @@
 layout(local_size_x = GROUP_SIZE) in;
 #include "neighbours.glsl"
 
-layout(location = 0) uniform int vertex_count;
-layout(std430, binding = 3) writeonly buffer CellHeads { uint head[]; };  // [CELL_COUNT]
-layout(std430, binding = 6) readonly buffer NeighbourCounts { uint neighbour_count[]; };
-layout(std430, binding = 7) coherent buffer Neighbours { uvec2 neighbours[]; };
+uniform int vertex_count;
+layout(std430, binding = slot_cell_heads) writeonly buffer CellHeads { uint head[]; };  // [CELL_COUNT]
+layout(std430, binding = slot_neighbour_count) readonly buffer NeighbourCounts { uint neighbour_count[]; };
+layout(std430, binding = slot_neighbours) coherent buffer Neighbours { uvec2 neighbours[]; };
 
 /// True if i is in j's list. Other work groups may remove vertices from j's list meanwhile, but not i, since j is in
 /// i's list.

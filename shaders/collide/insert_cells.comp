@@ -4,10 +4,11 @@ layout(local_size_x = GROUP_SIZE) in;
 #include "cells.glsl"
 #include "neighbours.glsl"
 
-READ_VEC4(position, 0);
-layout(std430, binding = 3) buffer CellHeads { uint head[]; };
-layout(std430, binding = 4) writeonly buffer CellChains { uint next[]; };  // [vertex_count] the next vertex in the cell
-layout(std430, binding = 5) writeonly buffer PositionWhenBuilt { vec4 position_when_built[]; };
+READ_VEC4(position, unit_position);
+layout(std430, binding = slot_cell_heads) buffer CellHeads { uint head[]; };
+// [vertex_count] the next vertex in the cell
+layout(std430, binding = slot_cell_chains) writeonly buffer CellChains { uint next[]; };
+layout(std430, binding = slot_position_when_built) writeonly buffer PositionWhenBuilt { vec4 position_when_built[]; };
 
 void main() {
   int i = int(gl_GlobalInvocationID.x);

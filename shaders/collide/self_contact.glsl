@@ -6,8 +6,8 @@
 #define START_POSITION position
 #define START_VELOCITY velocity
 #endif
-READ_UINT(neighbour_count, 4);
-READ_UVEC2(neighbours, 5);
+READ_UINT(neighbour_count, unit_neighbour_count);
+READ_UVEC2(neighbours, unit_neighbours);
 uniform float self_friction;
 
 /// Adds to push [m] and impulse (change of velocity [m/s]); returns the number of vertices touched.

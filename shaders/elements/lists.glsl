@@ -13,8 +13,8 @@
 #ifndef SLICE_SIZE
 #define SLICE_SIZE GROUP_SIZE
 #endif
-READ_UVEC4(elements, 2);       // entries in each law's layout, a texel in a row of SLICE_SIZE
-READ_UINT(element_slices, 3);  // for each law [slices + 1]: the first row of each slice
+READ_UVEC4(elements, unit_elements);  // entries in each law's layout, a texel in a row of SLICE_SIZE
+READ_UINT(element_slices, unit_element_slices);  // for each law [slices + 1]: the first row of each slice
 
 struct EntryRange {
   int first, end;

@@ -14,8 +14,8 @@ vec4 deviation(uint i) { return deviations[copy_read][i]; }
 void set_deviation(uint i, vec4 d) { deviations[copy_written][i] = d; }
 void set_deviation(uint i, vec3 d) { deviations[copy_written][i].xyz = d; }
 #else
-READ_VEC4(deviation_read, 9);
-layout(std430, binding = 3) writeonly buffer Deviation { vec4 deviation_written[]; };
+READ_VEC4(deviation_read, unit_deviation);
+layout(std430, binding = slot_deviation) writeonly buffer Deviation { vec4 deviation_written[]; };
 uniform int sweep;  // number of the sweep in the step, from 0
 vec4 deviation(uint i) { return FETCH(deviation_read, i); }
 void set_deviation(uint i, vec4 d) { deviation_written[i] = d; }
@@ -26,7 +26,7 @@ void set_deviation(uint i, vec3 d) { deviation_written[i].xyz = d; }
 /// it keeps many small steps from adding up their roundings (compensated summation: Kahan 1965), which are the same in
 /// every step of a fall. Only the vertex itself reads them.
 struct Remainder { vec4 position, velocity; };
-layout(std430, binding = 7) buffer Remainders { Remainder remainders[]; };
+layout(std430, binding = slot_remainders) buffer Remainders { Remainder remainders[]; };
 uniform int last_sweep;
 uniform float mobility;  // 1 / (1 + dt air drag): air drag acts like more mass
 

@@ -5,9 +5,9 @@ uniform int vertex_count;
 #include "../elements/lists.glsl"
 #include "motions.glsl"
 
-READ_VEC4(position, 0);       // w: inverse mass [1/kg], 0 if pinned
-READ_VEC4(velocity, 1);       // w: contacts of the last step; for a pinned vertex its motion's index or -1
-READ_VEC4(rest_position, 7);  // w: the cloth
+READ_VEC4(position, unit_position);  // w: inverse mass [1/kg], 0 if pinned
+READ_VEC4(velocity, unit_velocity);  // w: contacts of the last step; for a pinned vertex its motion's index or -1
+READ_VEC4(rest_position, unit_rest_position);  // w: the cloth
 uniform float dt;      // [s]
 uniform vec4 gravity;  // xyz [m/s^2], w: air drag [1/s]
 

@@ -62,7 +62,8 @@ void wait() {
 // Sweeps that move one vertex after another give a cloth that nothing holds a false momentum, as large as their error.
 // Springs and self-collision only pass momentum on: the false part is taken from all vertices of the cloth alike.
 uniform ivec2 free_vertices[CLOTH_COUNT];  // first, end; empty for a cloth with pins
-layout(std430, binding = 4) coherent buffer Lacking { vec4 lacking[]; };  // for each thread: xyz [kg m], w [kg]
+// for each thread: xyz [kg m], w [kg]
+layout(std430, binding = slot_lacking) coherent buffer Lacking { vec4 lacking[]; };
 
 /// Called by one work group; each thread adds up the sums of all threads, in the same order.
 void balance(int cloth) {

@@ -7,18 +7,18 @@
 #include "implicit_friction.glsl"
 #include "group_sums.glsl"
 #include "../collide/colliders.glsl"
-READ_VEC4(start_position, 9);
-READ_VEC4(group_sums, 10);
-READ_VEC4(change, 11);
-READ_VEC4(residual, 12);
-layout(std430, binding = 0) writeonly buffer NextPosition { vec4 next_position[]; };
-layout(std430, binding = 3) buffer Estimate { vec4 estimate[]; };  // w: number of vertices touched
-layout(std430, binding = 4) writeonly buffer Guess { vec4 guess[]; };  // of the next change
-layout(std430, binding = 5) buffer Constraint { vec4 constraint[]; };
-layout(std430, binding = 6) buffer Surface { vec4 surface[]; };
+READ_VEC4(start_position, unit_start_position);
+READ_VEC4(group_sums, unit_group_sums);
+READ_VEC4(change, unit_change);
+READ_VEC4(residual, unit_residual);
+layout(std430, binding = slot_next_position) writeonly buffer NextPosition { vec4 next_position[]; };
+layout(std430, binding = slot_estimate) buffer Estimate { vec4 estimate[]; };  // w: number of vertices touched
+layout(std430, binding = slot_guess) writeonly buffer Guess { vec4 guess[]; };  // of the next change
+layout(std430, binding = slot_constraint) buffer Constraint { vec4 constraint[]; };
+layout(std430, binding = slot_surface) buffer Surface { vec4 surface[]; };
 uniform bool another;  // another Newton step follows in this time step
-layout(std430, binding = 1) buffer Inertia { vec4 start_velocity[]; };
-layout(std430, binding = 7) buffer Grip { vec4 grip[]; };
+layout(std430, binding = slot_start_velocity) buffer Inertia { vec4 start_velocity[]; };
+layout(std430, binding = slot_grip) buffer Grip { vec4 grip[]; };
 
 /// Total of one of the line search's sums.
 vec4 total(int sum) {

@@ -4,12 +4,13 @@
 #include "implicit_euler.glsl"
 #include "../elements/contact.glsl"
 #include "../collide/neighbours.glsl"
-READ_VEC4(start_position, 9);
+READ_VEC4(start_position, unit_start_position);
 #define START_POSITION start_position
 #define START_VELOCITY velocity
 #include "../collide/self_contact.glsl"
-layout(std430, binding = 0) writeonly buffer NextPosition { vec4 next_position[]; };
-layout(std430, binding = 3) writeonly buffer NextEstimate { vec4 next_estimate[]; };  // w: number of vertices touched
+layout(std430, binding = slot_next_position) writeonly buffer NextPosition { vec4 next_position[]; };
+// w: number of vertices touched
+layout(std430, binding = slot_estimate) writeonly buffer NextEstimate { vec4 next_estimate[]; };
 
 void main() {
   int i = int(gl_GlobalInvocationID.x);

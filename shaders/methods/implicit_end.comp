@@ -4,13 +4,13 @@
 #include "implicit_friction.glsl"
 #include "step_end.glsl"
 #include "../collide/colliders.glsl"
-READ_VEC4(before_position, 9);  // the state at the step's start
-READ_VEC4(before_velocity, 10);
-READ_VEC4(start_velocity, 11);  // w: number of vertices touched
-READ_VEC4(residual, 12);
-READ_VEC4(surface, 13);
-READ_VEC4(constraint, 14);
-layout(std430, binding = 7) buffer Grip { vec4 grip[]; };
+READ_VEC4(before_position, unit_before_position);  // the state at the step's start
+READ_VEC4(before_velocity, unit_before_velocity);
+READ_VEC4(start_velocity, unit_start_velocity);  // w: number of vertices touched
+READ_VEC4(residual, unit_residual);
+READ_VEC4(surface, unit_surface);
+READ_VEC4(constraint, unit_constraint);
+layout(std430, binding = slot_grip) buffer Grip { vec4 grip[]; };
 
 /// Ends the step of a vertex that was kept on a surface.
 void leave_contact(int i, float inverse_mass, inout vec3 x, inout vec3 v) {

@@ -3,11 +3,11 @@
 // Gear 1989.
 #include "implicit_euler.glsl"
 #include "group_sums.glsl"
-READ_VEC4(constraint, 10);
-READ_VEC4(residual, 11);
-READ_VEC4(preconditioned, 12);
-layout(std430, binding = 0) writeonly buffer Product { vec4 product[]; };
-layout(std430, binding = 1) writeonly buffer Sums { vec4 group_sums[]; };  // one per work group
+READ_VEC4(constraint, unit_constraint);
+READ_VEC4(residual, unit_residual);
+READ_VEC4(preconditioned, unit_preconditioned);
+layout(std430, binding = slot_product) writeonly buffer Product { vec4 product[]; };
+layout(std430, binding = slot_group_sums) writeonly buffer Sums { vec4 group_sums[]; };  // one per work group
 
 vec3 multiply(int i, vec4 x, vec3 z) {
   vec3 result = z * ((1.0 + dt * gravity.w) / x.w);

@@ -3,9 +3,9 @@
 // for each share of the Newton step. A pin moves its whole way at any share.
 #include "implicit_euler.glsl"
 #include "group_sums.glsl"
-READ_VEC4(start_velocity, 9);
-READ_VEC4(change, 11);
-layout(std430, binding = 1) writeonly buffer Sums { vec4 group_sums[]; };  // SUMS per work group
+READ_VEC4(start_velocity, unit_start_velocity);
+READ_VEC4(change, unit_change);
+layout(std430, binding = slot_group_sums) writeonly buffer Sums { vec4 group_sums[]; };  // SUMS per work group
 
 #ifdef FREE
 /// xyz: momentum [kg m/s] that gravity and air drag leave the vertex without its springs, less the momentum that it has

@@ -7,14 +7,16 @@
 #include "../collide/neighbours.glsl"
 #include "../collide/self_contact.glsl"
 #endif
-layout(std430, binding = 0) writeonly buffer Start { vec4 start_position[]; };      // w: inverse mass
-layout(std430, binding = 1) writeonly buffer Inertia { vec4 start_velocity[]; };    // w: number of vertices touched
-layout(std430, binding = 3) writeonly buffer Estimate { vec4 estimate[]; };         // velocity: 0
-layout(std430, binding = 4) writeonly buffer Guess { vec4 first_guess[]; };         // of the solver
-layout(std430, binding = 5) writeonly buffer Constraint { vec4 constraint[]; };
-layout(std430, binding = 6) writeonly buffer Surface { vec4 surface[]; };  // its velocity [m/s], its friction
+layout(std430, binding = slot_start_position) writeonly buffer Start { vec4 start_position[]; };  // w: inverse mass
+// w: number of vertices touched
+layout(std430, binding = slot_start_velocity) writeonly buffer Inertia { vec4 start_velocity[]; };
+layout(std430, binding = slot_estimate) writeonly buffer Estimate { vec4 estimate[]; };  // velocity: 0
+layout(std430, binding = slot_guess) writeonly buffer Guess { vec4 first_guess[]; };  // of the solver
+layout(std430, binding = slot_constraint) writeonly buffer Constraint { vec4 constraint[]; };
+// its velocity [m/s], its friction
+layout(std430, binding = slot_surface) writeonly buffer Surface { vec4 surface[]; };
 // read: of the last step; written: of this step
-layout(std430, binding = 7) buffer Grip { vec4 grip[]; };
+layout(std430, binding = slot_grip) buffer Grip { vec4 grip[]; };
 
 /// Velocity at which a vertex enters the solve, and the guess of the velocity that comes out [m/s].
 struct Beginning {

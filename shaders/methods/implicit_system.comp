@@ -1,14 +1,14 @@
 // Implicit Euler, once per Newton step: the residual of the first guess, and each vertex's block of the matrix,
 // factorised.
 #include "implicit_euler.glsl"
-READ_VEC4(start_velocity, 9);
-READ_VEC4(constraint, 10);
-READ_VEC4(change, 11);
+READ_VEC4(start_velocity, unit_start_velocity);
+READ_VEC4(constraint, unit_constraint);
+READ_VEC4(change, unit_change);
 // Not filtered; w: the vertex's share of the residual that may remain.
-layout(std430, binding = 0) writeonly buffer Residual { vec4 residual[]; };
-layout(std430, binding = 1) writeonly buffer Preconditioned { vec4 preconditioned[]; };
-layout(std430, binding = 3) writeonly buffer BlockA { vec4 block_a[]; };
-layout(std430, binding = 4) writeonly buffer BlockB { vec4 block_b[]; };
+layout(std430, binding = slot_residual) writeonly buffer Residual { vec4 residual[]; };
+layout(std430, binding = slot_preconditioned) writeonly buffer Preconditioned { vec4 preconditioned[]; };
+layout(std430, binding = slot_block_a) writeonly buffer BlockA { vec4 block_a[]; };
+layout(std430, binding = slot_block_b) writeonly buffer BlockB { vec4 block_b[]; };
 uniform float tolerance;  // relative, of the residual
 
 /// Allowed residual of the vertex, squared and over its mass [J]: relative to its own energy and to what forces add in

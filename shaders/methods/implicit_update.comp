@@ -2,22 +2,22 @@
 // same order, and so finds the same step and the same decision to stop; then each vertex takes its part of the step.
 #include "implicit_euler.glsl"
 #include "group_sums.glsl"
-READ_VEC4(residual, 16);
-READ_VEC4(preconditioned, 17);
-READ_VEC4(direction, 18);
-READ_VEC4(direction_product, 19);
-READ_VEC4(change, 20);
-READ_VEC4(product, 9);
-READ_VEC4(constraint, 10);
-READ_VEC4(group_sums, 11);
-READ_VEC4(block_a, 12);
-READ_VEC4(block_b, 13);
-layout(std430, binding = 0) writeonly buffer Residual { vec4 next_residual[]; };
-layout(std430, binding = 1) writeonly buffer Preconditioned { vec4 next_preconditioned[]; };
-layout(std430, binding = 4) writeonly buffer Direction { vec4 next_direction[]; };
-layout(std430, binding = 5) writeonly buffer DirectionProduct { vec4 next_direction_product[]; };
-layout(std430, binding = 6) writeonly buffer Change { vec4 next_change[]; };
-layout(std430, binding = 3) buffer Control {
+READ_VEC4(residual, unit_residual);
+READ_VEC4(preconditioned, unit_preconditioned);
+READ_VEC4(direction, unit_direction);
+READ_VEC4(direction_product, unit_direction_product);
+READ_VEC4(change, unit_change);
+READ_VEC4(product, unit_product);
+READ_VEC4(constraint, unit_constraint);
+READ_VEC4(group_sums, unit_group_sums);
+READ_VEC4(block_a, unit_block_a);
+READ_VEC4(block_b, unit_block_b);
+layout(std430, binding = slot_residual) writeonly buffer Residual { vec4 next_residual[]; };
+layout(std430, binding = slot_preconditioned) writeonly buffer Preconditioned { vec4 next_preconditioned[]; };
+layout(std430, binding = slot_direction) writeonly buffer Direction { vec4 next_direction[]; };
+layout(std430, binding = slot_direction_product) writeonly buffer DirectionProduct { vec4 next_direction_product[]; };
+layout(std430, binding = slot_change) writeonly buffer Change { vec4 next_change[]; };
+layout(std430, binding = slot_solver_control) buffer Control {
   uint groups, groups_y, groups_z;  // of the next iterations' dispatches: 0 once this solve has ended
   uint iterations;                  // of this solve
   uint converged;

@@ -2,7 +2,7 @@
 // A step has END_ROW rows after the row of its start: the last is its end, the one before it, if any, its middle.
 // A pose takes five vec4: three rows (rotation, translation), the velocity of the origin, the angular velocity.
 #if MOTION_COUNT > 0
-READ_VEC4(motion_table, 6);
+READ_VEC4(motion_table, unit_motion_table);
 uniform int start_row;  // row of the step's start in the batch
 
 int pose_at(int motion, int row) { return ((start_row + row) * MOTION_COUNT + motion) * 5; }

@@ -4,18 +4,19 @@
 #include "gather.glsl"
 #include "step_end.glsl"
 #if STAGE > 1
-READ_VEC4(start_position, 9);
-READ_VEC4(start_velocity, 10);
+READ_VEC4(start_position, unit_start_position);
+READ_VEC4(start_velocity, unit_start_velocity);
 #else
 #define start_position position
 #define start_velocity velocity
 #endif
 #if STAGE < 4
-layout(std430, binding = 3) writeonly buffer Slope { vec4 slope[]; };  // xyz: this stage's acceleration [m/s^2]
+// xyz: this stage's acceleration [m/s^2]
+layout(std430, binding = slot_slope) writeonly buffer Slope { vec4 slope[]; };
 #else
-READ_VEC4(slope_1, 11);
-READ_VEC4(slope_2, 12);
-READ_VEC4(slope_3, 13);
+READ_VEC4(slope_1, unit_slope_1);
+READ_VEC4(slope_2, unit_slope_2);
+READ_VEC4(slope_3, unit_slope_3);
 #define START_POSITION start_position
 #define START_VELOCITY start_velocity
 #include "../collide/colliders.glsl"

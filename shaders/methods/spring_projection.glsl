@@ -1,9 +1,9 @@
 // PBD (Mueller et al. 2007, section 3.3) and XPBD (Macklin et al. 2016, equations 17, 18 and 26): a visit to a spring
 // moves its two ends, each by its inverse mass. XPBD remembers what a spring has pushed in this step.
-READ_UVEC4(projected, 10);  // (vertex a, vertex b, rest length [m], stretch gain [kg]), colour after colour
-READ_UVEC2(gains, 11);      // (damping gain [kg], memory)
+READ_UVEC4(projected, unit_projected);  // (vertex a, vertex b, rest length [m], stretch gain [kg]), colour after colour
+READ_UVEC2(gains, unit_gains);          // (damping gain [kg], memory)
 #ifdef MEMORY
-layout(std430, binding = 4) buffer Pushed { vec4 pushed[]; };  // by each spring since the step's start [kg m]
+layout(std430, binding = slot_pushed) buffer Pushed { vec4 pushed[]; };  // by each spring since the step's start [kg m]
 #endif
 
 vec3 first_deviation(int i, vec3 x, vec3 v) { return vec3(0.0); }

@@ -1,9 +1,9 @@
 // The end of a step: writes the new state, and asks for new neighbour lists if the vertex went too far.
-layout(std430, binding = 0) writeonly buffer NextPosition { vec4 next_position[]; };
-layout(std430, binding = 1) writeonly buffer NextVelocity { vec4 next_velocity[]; };
+layout(std430, binding = slot_next_position) writeonly buffer NextPosition { vec4 next_position[]; };
+layout(std430, binding = slot_next_velocity) writeonly buffer NextVelocity { vec4 next_velocity[]; };
 #ifdef SELF_COLLISION
 #include "../collide/neighbours.glsl"
-READ_VEC4(position_when_built, 8);
+READ_VEC4(position_when_built, unit_position_when_built);
 uniform float skin;  // [m]
 #endif
 

@@ -2,8 +2,8 @@
 // sweep left them, so that no order matters. Several pairs at once would add up to more than is needed: each is divided
 // by the larger of the two vertices' contact counts in the pass before, at least 2.
 #ifdef SELF_COLLISION
-READ_UINT(neighbour_count, 4);
-READ_UVEC2(neighbours, 5);
+READ_UINT(neighbour_count, unit_neighbour_count);
+READ_UVEC2(neighbours, unit_neighbours);
 uniform float self_friction;
 
 /// Share of an overlap at the step's start that is removed per second [1/s]: what is removed becomes velocity.

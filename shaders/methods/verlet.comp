@@ -11,8 +11,8 @@
 /// xyz: w less the velocity in the middle of the last step [m/s]; w: dt of that step [s]. Both are 0 after a start:
 /// then the state's w is the present velocity. As it is a difference, a change of the state's w changes both
 /// velocities.
-READ_VEC4(carried, 9);
-layout(std430, binding = 3) writeonly buffer Carried { vec4 next_carried[]; };
+READ_VEC4(carried, unit_carried);
+layout(std430, binding = slot_carried) writeonly buffer Carried { vec4 next_carried[]; };
 vec4 carry;
 
 #include "whole_step.glsl"

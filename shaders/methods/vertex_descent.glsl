@@ -2,12 +2,12 @@
 // vertices held (their equation 9), without the part of the Hessian that a compressed spring makes indefinite. A
 // collider in the way is met with the vertex's own block: it pushes as hard as it must, and friction follows from that.
 #include "blocks.glsl"
-READ_UINT(visited, 12);  // free vertices, colour after colour
+READ_UINT(visited, unit_visited);  // free vertices, colour after colour
 /// Velocity at the last step's start [m/s]; w: 0 if there is none to use.
-layout(std430, binding = 6) buffer VelocityBefore { vec4 velocity_before[]; };
+layout(std430, binding = slot_velocity_before) buffer VelocityBefore { vec4 velocity_before[]; };
 /// Where inertia would take each vertex, as a deviation [m], with the pushes of self-collision since the step's start;
 /// w: number of colliders met at the last visit.
-layout(std430, binding = 5) coherent buffer Targets { vec4 targets[]; };
+layout(std430, binding = slot_targets) coherent buffer Targets { vec4 targets[]; };
 
 /// Share of `pull` that an acceleration has followed, [0, 1]. Nearly all counts as all: rounding just below 1 would
 /// brake a falling cloth, step after step.

@@ -8,8 +8,8 @@ in Surface {
 } surface;
 flat in float back;
 
-layout(location = 0) uniform vec3 color;  // linear
-layout(location = 1) uniform int pattern;  // 0 plain, 1 weave, 2 checker, 3 stripes
+layout(location = uniform_color) uniform vec3 color;   // linear
+layout(location = uniform_pattern) uniform int pattern;  // 0 plain, 1 weave, 2 checker, 3 stripes
 layout(location = 0) out vec4 pixel;
 
 // How much of a pattern with this many repeats is visible, [0, 1]: it fades before it flickers, where a repeat is about

@@ -1,8 +1,8 @@
 #include "frame.glsl"
 
-layout(location = 0) in vec3 position;  // [m]
-layout(location = 1) in vec3 normal;
-layout(location = 2) in vec2 texture_coordinate;
+layout(location = attribute_position) in vec3 position;  // [m]
+layout(location = attribute_normal) in vec3 normal;
+layout(location = attribute_texture_coordinate) in vec2 texture_coordinate;
 
 out Corner {
   vec3 position;

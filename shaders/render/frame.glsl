@@ -1,5 +1,6 @@
 // Shared by every draw of one picture; server/render/renderer.cpp fills it.
-layout(std140, binding = 0) uniform Frame {
+#include "../slots.glsl"
+layout(std140, binding = block_frame) uniform Frame {
   mat4 view_projection;        // world to clip space
   mat4 light_view_projection;  // world to the shadow map's clip space
   vec4 eye;                    // xyz [m]

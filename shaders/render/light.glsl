@@ -1,7 +1,7 @@
 // One directional light with a soft shadow, and a sky brighter than the ground.
 #include "frame.glsl"
 
-layout(binding = 0) uniform sampler2DShadow shadow_map;
+layout(binding = unit_shadow_map) uniform sampler2DShadow shadow_map;
 
 // Share of the light that arrives, [0, 1]. The point is moved off the surface by a few texels of the shadow map, so
 // that the surface does not shadow itself.

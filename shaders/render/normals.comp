@@ -2,10 +2,10 @@
 layout(local_size_x = 64) in;
 #include "../access.glsl"
 
-READ_VEC4(position, 0);
+READ_VEC4(position, unit_position);
 #include "../stream/normal.glsl"
-layout(location = 0) uniform int vertex_count;
-layout(std430, binding = 0) writeonly buffer Normals { vec4 normals[]; };
+uniform int vertex_count;
+layout(std430, binding = slot_normals) writeonly buffer Normals { vec4 normals[]; };
 
 void main() {
   int i = int(gl_GlobalInvocationID.x);

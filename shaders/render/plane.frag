@@ -1,7 +1,7 @@
 #include "light.glsl"
 
 in vec3 position;
-layout(location = 1) uniform vec3 normal;
+layout(location = uniform_normal) uniform vec3 normal;
 layout(location = 0) out vec4 pixel;
 
 void main() {

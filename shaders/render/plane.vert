@@ -1,8 +1,8 @@
 // A large square of the plane around the scene in the picture; plane.frag fades it out before its edge.
 #include "frame.glsl"
 
-layout(location = 0) uniform vec3 point;   // [m]
-layout(location = 1) uniform vec3 normal;  // unit length
+layout(location = uniform_point) uniform vec3 point;   // [m]
+layout(location = uniform_normal) uniform vec3 normal;  // unit length
 
 out vec3 position;
 

@@ -1,7 +1,7 @@
 #include "frame.glsl"
 
-layout(location = 0) in vec3 unit;  // on the unit sphere
-layout(location = 0) uniform vec4 placed;  // xyz centre [m], w radius [m]
+layout(location = attribute_position) in vec3 unit;  // on the unit sphere
+layout(location = uniform_placed) uniform vec4 placed;  // xyz centre [m], w radius [m]
 
 out vec3 position;
 out vec3 normal;

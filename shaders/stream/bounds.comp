@@ -3,8 +3,8 @@ layout(local_size_x = GROUP_SIZE) in;
 #include "../access.glsl"
 #include "bounds.glsl"
 
-READ_VEC4(position, 0);
-layout(location = 0) uniform int vertex_count;
+READ_VEC4(position, unit_position);
+uniform int vertex_count;
 shared vec3 low[GROUP_SIZE];
 shared vec3 high[GROUP_SIZE];
 

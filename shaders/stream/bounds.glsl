@@ -1,6 +1,6 @@
 // The box of all vertices, gathered with integer atomics. Floats are mapped to unsigned integers of the same order; a
 // minimum does not depend on the order in which its values came.
-layout(std430, binding = 2) buffer Bounds { uint box_low[4], box_high[4]; };
+layout(std430, binding = slot_bounds) buffer Bounds { uint box_low[4], box_high[4]; };
 
 uint ordered(float x) {
   uint bits = floatBitsToUint(x);

@@ -1,6 +1,6 @@
 // Vertex normals: the sum of the cross products of the adjacent faces, so that larger faces count more.
-READ_UINT(fan_offsets, 2);  // [vertex_count + 1] into the fans
-READ_UVEC2(fans, 3);        // for each triangle at a vertex its two other corners, counter-clockwise
+READ_UINT(fan_offsets, unit_fan_offsets);  // [vertex_count + 1] into the fans
+READ_UVEC2(fans, unit_fans);  // for each triangle at a vertex its two other corners, counter-clockwise
 
 /// Unit normal at vertex i. If its faces have no area relative to their edges it has no normal: up.
 vec3 vertex_normal(int i, vec3 x) {

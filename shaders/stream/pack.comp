@@ -3,10 +3,10 @@ layout(local_size_x = GROUP_SIZE) in;
 #include "../access.glsl"
 #include "bounds.glsl"
 
-READ_VEC4(position, 0);
+READ_VEC4(position, unit_position);
 #include "normal.glsl"
-layout(location = 0) uniform int vertex_count;
-layout(std430, binding = 0) writeonly buffer Packed {
+uniform int vertex_count;
+layout(std430, binding = slot_packed) writeonly buffer Packed {
   float packed_box[8];  // minimum, unused, extent, unused
   uint packed_vertices[];
 };

@@ -43,8 +43,8 @@ struct Search {
     rest = {gl::Buffer(home), GL_RGBA32F};
   }
   Lists run() {
-    position.bind(sim::unit_position);
-    rest.bind(sim::unit_rest_position);
+    position.bind(unit_position);
+    rest.bind(unit_rest_position);
     sim::Pace unlimited;
     self_collision.update_lists().resume(unlimited);
     return self_collision.read_lists();

@@ -1,6 +1,7 @@
-// Shader errors name the file and line of the source, also inside an include.
+// Shader errors name the file and line of the source, also inside an include; uniforms are found by name.
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include "server/gl/program.h"
 #include "tests/scenes.h"
@@ -34,4 +35,36 @@ TEST_CASE("a shader error names file and line of the source file, also in an inc
   CHECK(where("lost.comp").find("shaders/lost.comp:2") == 0);
   unsetenv("CLOTHLAB_DATA");
   fs::remove_all(root);
+}
+
+TEST_CASE("a uniform is set by its name, an array by its name alone, and one that is not used is no error") {
+  const auto context = test::context();
+  const fs::path root = fs::temp_directory_path() / "clothlab-uniform-test";
+  fs::create_directories(root / "shaders");
+  std::ofstream(root / "shaders/sum.comp")
+      << "layout(local_size_x = 1) in;\nuniform int whole, idle;\nuniform float part;\n"
+         "uniform float list[2];\nbuffer Out { float sum; };\n"
+         "void main() { sum = float(whole) + part + list[0] + list[1]; }\n";
+  setenv("CLOTHLAB_DATA", root.c_str(), 1);
+  Result<gl::Program> loaded = gl::Program::load({"sum.comp"});
+  unsetenv("CLOTHLAB_DATA");
+  fs::remove_all(root);
+  REQUIRE(loaded);
+  const gl::Program program = std::move(*loaded);
+
+  program.set("whole", 3);
+  program.set("part", 0.5f);
+  program.set("idle", 7);
+  program.set("nowhere", 7.0f);
+  glProgramUniform1f(program.id(), program.location("list"), 0.25f);
+  CHECK(program.location("idle") == -1);
+  CHECK(glGetError() == GL_NO_ERROR);
+  const auto value = [&](const char* name) {
+    GLfloat is = 0;
+    glGetUniformfv(program.id(), glGetUniformLocation(program.id(), name), &is);
+    return is;
+  };
+  CHECK(value("whole") == 3.0f);
+  CHECK(value("part") == 0.5f);
+  CHECK(value("list[0]") == 0.25f);
 }

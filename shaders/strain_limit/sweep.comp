@@ -1,12 +1,12 @@
 // The strain limit, one sweep: each spring's pull changes by a part of what it lacks, and its ends move accordingly. A
 // work group first reads what the sweep before found; if that was good enough, all groups leave everything as it is.
 #include "strain_limit.glsl"
-#include "group_sums.glsl"
-READ_VEC4(group_excess, 9);
-layout(std430, binding = 0) writeonly buffer NextPosition { vec4 next_position[]; };
+#include "../methods/group_sums.glsl"
+READ_VEC4(group_excess, unit_group_excess);
+layout(std430, binding = slot_next_position) writeonly buffer NextPosition { vec4 next_position[]; };
 // x: the largest excess, as a share of the limit
-layout(std430, binding = 1) writeonly buffer Excess { vec4 next_group_excess[]; };
-layout(std430, binding = 4) buffer Control {
+layout(std430, binding = slot_group_excess) writeonly buffer Excess { vec4 next_group_excess[]; };
+layout(std430, binding = slot_limit_control) buffer Control {
   uint groups, groups_y, groups_z;  // of the next sweeps' dispatches: 0 once they have ended
   uint sweeps;
 };

@@ -1,9 +1,9 @@
 // The strain limit, once per step: the corrected positions become the state, and the velocities follow.
 #include "strain_limit.glsl"
-READ_VEC4(velocity, 1);
-READ_VEC4(corrected_position, 9);
-layout(std430, binding = 0) writeonly buffer NextPosition { vec4 next_position[]; };
-layout(std430, binding = 1) writeonly buffer NextVelocity { vec4 next_velocity[]; };
+READ_VEC4(velocity, unit_velocity);
+READ_VEC4(corrected_position, unit_corrected_position);
+layout(std430, binding = slot_next_position) writeonly buffer NextPosition { vec4 next_position[]; };
+layout(std430, binding = slot_next_velocity) writeonly buffer NextVelocity { vec4 next_velocity[]; };
 uniform float dt;  // [s]
 
 void main() {

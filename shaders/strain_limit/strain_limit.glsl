@@ -11,14 +11,14 @@ layout(local_size_x = GROUP_SIZE) in;
 uniform int vertex_count;
 #include "../elements/lists.glsl"
 
-READ_VEC4(position, 0);       // w: inverse mass [1/kg], 0 if pinned
-READ_VEC4(rest_position, 7);  // w: the cloth
-READ_VEC4(start_position, 10);  // at the step's start
+READ_VEC4(position, unit_position);  // w: inverse mass [1/kg], 0 if pinned
+READ_VEC4(rest_position, unit_rest_position);  // w: the cloth
+READ_VEC4(start_position, unit_start_position);  // at the step's start
 /// For each entry of the list of springs, written by its own vertex alone: impulse times dt, 0 or more [kg m].
-layout(std430, binding = 3) buffer Pulls { float pulls[]; };
+layout(std430, binding = slot_pulls) buffer Pulls { float pulls[]; };
 /// Impulse of the pulls on each vertex since the step ended, times dt [kg m]. The velocities follow from it: a
 /// difference of positions would carry their float32 rounding into the velocities, and so into the momentum.
-layout(std430, binding = 5) buffer Given { vec4 given[]; };
+layout(std430, binding = slot_given) buffer Given { vec4 given[]; };
 uniform float limit[CLOTH_COUNT];  // largest strain of each cloth's springs; negative: no limit
 
 /// Springs are pulled to less than the limit by this share of it, so that the sweeps can end with none above the limit.

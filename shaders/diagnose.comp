@@ -2,20 +2,20 @@
 // result; the host sums them in double precision and in order, so that the outcome does not depend on the order of
 // threads.
 layout(local_size_x = GROUP_SIZE) in;
-#include "../access.glsl"
-layout(location = 0) uniform int vertex_count;
-#include "../elements/lists.glsl"
+#include "access.glsl"
+uniform int vertex_count;
+#include "elements/lists.glsl"
 
-READ_VEC4(position, 0);
-READ_VEC4(velocity, 1);
-layout(location = 3) uniform vec4 gravity;
+READ_VEC4(position, unit_position);
+READ_VEC4(velocity, unit_velocity);
+uniform vec4 gravity;
 
 struct Partial {
   vec4 sums;     // kinetic, elastic, gravitational energy [J], vertices in contact
   vec4 largest;  // strain, speed squared, 1 if something is not finite, unused
   vec4 work;     // pull at moving pins [N], pull and weight of touching vertices [N], their mass [kg], unused
 };
-layout(std430, binding = 0) writeonly buffer Partials { Partial partials[]; };
+layout(std430, binding = slot_partials) writeonly buffer Partials { Partial partials[]; };
 shared vec4 sums[GROUP_SIZE];
 shared vec4 largest[GROUP_SIZE];
 shared vec4 work[GROUP_SIZE];

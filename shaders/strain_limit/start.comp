@@ -1,6 +1,6 @@
 // The strain limit, once per step: begins with the pulls at which the step before ended.
 #include "strain_limit.glsl"
-layout(std430, binding = 0) writeonly buffer NextPosition { vec4 next_position[]; };
+layout(std430, binding = slot_next_position) writeonly buffer NextPosition { vec4 next_position[]; };
 
 void main() {
   int i = int(gl_GlobalInvocationID.x);

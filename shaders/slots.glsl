@@ -1,0 +1,120 @@
+// Where things are bound, by name, for shaders and for C++ (slots.h): a `unit_` is a buffer that kernels read
+// (access.glsl), a `slot_` a storage buffer, which they write. Behind a name stands who writes what is bound there, and
+// after the semicolon who reads it. Names that no kernel needs at the same time may have the same number.
+
+// Every kernel's.
+const int unit_position = 0;             // the step before, or a method's own estimate; all
+const int unit_velocity = 1;             // the same
+const int unit_elements = 2;             // sim/element_lists.cpp; elements/lists.glsl
+const int unit_element_slices = 3;       // the same
+const int unit_neighbour_count = 4;      // collide/find_neighbours.comp; self-collision under every method
+const int unit_neighbours = 5;           // collide/find_neighbours.comp, finish_lists.comp; the same
+const int unit_motion_table = 6;         // sim/motion_table.cpp; methods/motions.glsl
+const int unit_rest_position = 7;        // sim/simulation.cpp; pins, neighbour search, strain limit
+const int unit_position_when_built = 8;  // collide/insert_cells.comp; methods/step_end.glsl
+const int slot_next_position = 0;        // the end of a step, or of a part of it; the next one, as unit_position
+const int slot_next_velocity = 1;        // the same, as unit_velocity
+const int slot_neighbour_control = 2;    // collide/*.comp, methods/step_end.glsl; collide/*.comp, indirect dispatches
+
+// The neighbour search's: collide/*.comp. The slots are read as the units of the same name, too.
+const int unit_excluded = 9;             // sim/self_collision.cpp; find_neighbours
+const int unit_first_excluded = 10;      // the same
+const int unit_cell_heads = 11;          // insert_cells, finish_lists; find_neighbours
+const int unit_cell_chains = 12;         // insert_cells; find_neighbours
+const int slot_cell_heads = 3;           // insert_cells, finish_lists; insert_cells
+const int slot_cell_chains = 4;          // insert_cells
+const int slot_position_when_built = 5;  // insert_cells
+const int slot_neighbour_count = 6;      // find_neighbours; finish_lists
+const int slot_neighbours = 7;           // find_neighbours, finish_lists; both
+
+// Verlet's: what a vertex carries from step to step.
+const int unit_carried = 9;  // methods/verlet.comp; itself, in the next step
+const int slot_carried = 3;
+
+// The state at the step's start, for those whose unit_position is another: RK4, implicit Euler, the strain limit.
+const int unit_start_position = 9;
+const int unit_start_velocity = 10;
+
+// RK4's: methods/rk4.comp, whose last stage reads the slopes that the others wrote.
+const int unit_slope_1 = 11;
+const int unit_slope_2 = 12;
+const int unit_slope_3 = 13;
+const int slot_slope = 3;
+
+// Those of PBD, XPBD and VBD: methods/gauss_seidel.comp writes and reads the slots.
+const int unit_deviation = 9;        // the pass before; methods/deviation.glsl
+const int unit_projected = 10;       // sim/gauss_seidel.cpp; methods/spring_projection.glsl
+const int unit_gains = 11;           // the same
+const int unit_visited = 12;         // sim/gauss_seidel.cpp; methods/vertex_descent.glsl
+const int slot_deviation = 3;        // each pass; the next one, as unit_deviation
+const int slot_pushed = 4;           // XPBD
+const int slot_lacking = 4;          // VBD
+const int slot_targets = 5;          // VBD
+const int slot_velocity_before = 6;  // VBD
+const int slot_remainders = 7;
+
+// Implicit Euler's: methods/implicit_NAME.comp. The slots are read as the units of the same name, too.
+const int unit_change = 11;             // update, or slot_guess; system, update, search, advance
+const int unit_constraint = 12;         // start, advance; system, multiply, update, end
+const int unit_surface = 13;            // start, advance; end
+const int unit_residual = 14;           // system, update; multiply, update, advance, end
+const int unit_preconditioned = 15;     // system, update; multiply, update
+const int unit_direction = 16;          // update; update
+const int unit_direction_product = 17;  // update; update
+const int unit_product = 18;            // multiply; update
+const int unit_group_sums = 19;         // multiply, search; update, advance
+const int unit_block_a = 20;            // system; update
+const int unit_block_b = 21;            // system; update
+const int unit_before_position = 22;    // the step before; end
+const int unit_before_velocity = 23;    // the step before; end
+const int slot_start_position = 0;      // start
+const int slot_start_velocity = 1;      // start, advance; advance
+const int slot_estimate = 3;            // start, advance, contacts; advance, and all as unit_velocity
+const int slot_guess = 4;               // start, advance; as unit_change
+const int slot_constraint = 5;          // start, advance; advance
+const int slot_surface = 6;             // start, advance; advance
+const int slot_grip = 7;                // start, advance, end; the same
+const int slot_residual = 0;            // system, update
+const int slot_preconditioned = 1;      // system, update
+const int slot_block_a = 3;             // system
+const int slot_block_b = 4;             // system
+const int slot_product = 0;             // multiply
+const int slot_group_sums = 1;          // multiply, search
+const int slot_solver_control = 3;      // update; update, indirect dispatches, sim/implicit_euler.cpp
+const int slot_direction = 4;           // update
+const int slot_direction_product = 5;   // update
+const int slot_change = 6;              // update
+
+// The strain limit's: strain_limit/NAME.comp.
+const int unit_group_excess = 10;        // sweep; the next sweep
+const int unit_corrected_position = 11;  // sweep; end
+const int slot_group_excess = 1;         // sweep; the next sweep, as unit_group_excess
+const int slot_pulls = 3;                // sweep; sweep, and start in the next step
+const int slot_limit_control = 4;        // sweep; indirect dispatches, sim/strain_limit.cpp
+const int slot_given = 5;                // start, sweep; sweep, end
+
+// The diagnosis's.
+const int slot_partials = 0;  // diagnose.comp; sim/diagnose.cpp
+
+// Those of frames and pictures.
+const int unit_fan_offsets = 9;  // model/fans.cpp; stream/normal.glsl
+const int unit_fans = 10;        // the same
+const int slot_packed = 0;       // stream/pack.comp; stream/packer.cpp
+const int slot_bounds = 2;       // stream/bounds.comp; stream/pack.comp
+const int slot_normals = 0;      // render/normals.comp; render/cloth.vert, as attribute_normal
+const int unit_shadow_map = 0;   // render/depth.vert; render/light.glsl
+const int block_frame = 0;       // a uniform block: render/renderer.cpp; render/frame.glsl
+
+// Locations of a picture's attributes, and of uniforms of whichever program is in use: who reads them in render/.
+const int attribute_position = 0;            // cloth.vert, depth.vert, sphere.vert
+const int attribute_normal = 1;              // cloth.vert
+const int attribute_texture_coordinate = 2;  // cloth.vert
+const int uniform_placed = 0;                // depth.vert, sphere.vert
+const int uniform_point = 0;                 // plane.vert
+const int uniform_normal = 1;                // plane.vert, plane.frag
+const int uniform_color = 0;                 // cloth.frag
+const int uniform_pattern = 1;               // cloth.frag
+
+// All of them; with READ_STORAGE units are slots too, after the others.
+const int number_of_units = 24;
+const int number_of_slots = 8;
