@@ -5,19 +5,19 @@
 // Every kernel's.
 const int unit_position = 0;             // the step before, or a method's own estimate; all
 const int unit_velocity = 1;             // the same
-const int unit_elements = 2;             // sim/element_lists.cpp; elements/lists.glsl
+const int unit_elements = 2;             // server/sim/element_lists.cpp; elements/lists.glsl
 const int unit_element_slices = 3;       // the same
 const int unit_neighbour_count = 4;      // collide/find_neighbours.comp; self-collision under every method
 const int unit_neighbours = 5;           // collide/find_neighbours.comp, finish_lists.comp; the same
-const int unit_motion_table = 6;         // sim/motion_table.cpp; methods/motions.glsl
-const int unit_rest_position = 7;        // sim/simulation.cpp; pins, neighbour search, strain limit
+const int unit_motion_table = 6;         // server/sim/motion_table.cpp; methods/motions.glsl
+const int unit_rest_position = 7;        // server/sim/simulation.cpp; pins, neighbour search, strain limit
 const int unit_position_when_built = 8;  // collide/insert_cells.comp; methods/step_end.glsl
 const int slot_next_position = 0;        // the end of a step, or of a part of it; the next one, as unit_position
 const int slot_next_velocity = 1;        // the same, as unit_velocity
 const int slot_neighbour_control = 2;    // collide/*.comp, methods/step_end.glsl; collide/*.comp, indirect dispatches
 
 // The neighbour search's: collide/*.comp. The slots are read as the units of the same name, too.
-const int unit_excluded = 9;             // sim/self_collision.cpp; find_neighbours
+const int unit_excluded = 9;             // server/sim/self_collision.cpp; find_neighbours
 const int unit_first_excluded = 10;      // the same
 const int unit_cell_heads = 11;          // insert_cells, finish_lists; find_neighbours
 const int unit_cell_chains = 12;         // insert_cells; find_neighbours
@@ -43,9 +43,9 @@ const int slot_slope = 3;
 
 // Those of PBD, XPBD and VBD: methods/gauss_seidel.comp writes and reads the slots.
 const int unit_deviation = 9;        // the pass before; methods/deviation.glsl
-const int unit_projected = 10;       // sim/gauss_seidel.cpp; methods/spring_projection.glsl
+const int unit_projected = 10;       // server/sim/gauss_seidel.cpp; methods/spring_projection.glsl
 const int unit_gains = 11;           // the same
-const int unit_visited = 12;         // sim/gauss_seidel.cpp; methods/vertex_descent.glsl
+const int unit_visited = 12;         // server/sim/gauss_seidel.cpp; methods/vertex_descent.glsl
 const int slot_deviation = 3;        // each pass; the next one, as unit_deviation
 const int slot_pushed = 4;           // XPBD
 const int slot_lacking = 4;          // VBD
@@ -80,7 +80,7 @@ const int slot_block_a = 3;             // system
 const int slot_block_b = 4;             // system
 const int slot_product = 0;             // multiply
 const int slot_group_sums = 1;          // multiply, search
-const int slot_solver_control = 3;      // update; update, indirect dispatches, sim/implicit_euler.cpp
+const int slot_solver_control = 3;      // update; update, indirect dispatches, server/sim/implicit_euler.cpp
 const int slot_direction = 4;           // update
 const int slot_direction_product = 5;   // update
 const int slot_change = 6;              // update
@@ -90,20 +90,20 @@ const int unit_group_excess = 10;        // sweep; the next sweep
 const int unit_corrected_position = 11;  // sweep; end
 const int slot_group_excess = 1;         // sweep; the next sweep, as unit_group_excess
 const int slot_pulls = 3;                // sweep; sweep, and start in the next step
-const int slot_limit_control = 4;        // sweep; indirect dispatches, sim/strain_limit.cpp
+const int slot_limit_control = 4;        // sweep; indirect dispatches, server/sim/strain_limit.cpp
 const int slot_given = 5;                // start, sweep; sweep, end
 
 // The diagnosis's.
-const int slot_partials = 0;  // diagnose.comp; sim/diagnose.cpp
+const int slot_partials = 0;  // diagnose.comp; server/sim/diagnose.cpp
 
 // Those of frames and pictures.
-const int unit_fan_offsets = 9;  // model/fans.cpp; stream/normal.glsl
+const int unit_fan_offsets = 9;  // server/model/fans.cpp; stream/normal.glsl
 const int unit_fans = 10;        // the same
-const int slot_packed = 0;       // stream/pack.comp; stream/packer.cpp
+const int slot_packed = 0;       // stream/pack.comp; server/stream/packer.cpp
 const int slot_bounds = 2;       // stream/bounds.comp; stream/pack.comp
 const int slot_normals = 0;      // render/normals.comp; render/cloth.vert, as attribute_normal
 const int unit_shadow_map = 0;   // render/depth.vert; render/light.glsl
-const int block_frame = 0;       // a uniform block: render/renderer.cpp; render/frame.glsl
+const int block_frame = 0;       // a uniform block: server/render/renderer.cpp; render/frame.glsl
 
 // Locations of a picture's attributes, and of uniforms of whichever program is in use: who reads them in render/.
 const int attribute_position = 0;            // cloth.vert, depth.vert, sphere.vert

@@ -11,7 +11,7 @@ namespace {
 constexpr int most_sweeps = 512;
 constexpr int sweeps_between_looks = 8;
 
-/// As in strain_limit/sweep.comp.
+/// As in shaders/strain_limit/sweep.comp.
 struct Control {
   std::uint32_t groups = 0, groups_y = 1, groups_z = 1;
   std::uint32_t sweeps = 0;
