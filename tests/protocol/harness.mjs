@@ -5,6 +5,7 @@ import { mkdtempSync, rmSync } from "node:fs";
 import http from "node:http";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
+import { after } from "node:test";
 import WebSocket from "ws";
 import { decode } from "./decode.mjs";
 
@@ -42,6 +43,10 @@ export async function runProgram(args) {
 const cacheHome = mkdtempSync(join(tmpdir(), "clothlab-cache-"));
 process.on("exit", () => rmSync(cacheHome, { recursive: true, force: true }));
 
+/// A test that fails stops before it ends its server, which would keep the test file's process alive without end.
+const children = new Set();
+if (process.env.NODE_TEST_CONTEXT) after(() => children.forEach((child) => child.kill("SIGKILL")));
+
 export class Server {
   static async start(...args) {
     const server = new Server();
@@ -52,6 +57,8 @@ export class Server {
       env: { ...process.env, XDG_CACHE_HOME: cacheHome, CLOTHLAB_TOKEN: undefined, CLOTHLAB_VIEW_TOKEN: undefined },
     });
     server.closed = once(server.child, "close");
+    children.add(server.child);
+    server.closed.then(() => children.delete(server.child));
     server.stdout = server.stderr = "";
     server.child.stderr.on("data", (data) => (server.stderr += data));
     const line = new Promise((resolve, reject) => {
