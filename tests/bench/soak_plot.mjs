@@ -52,10 +52,17 @@ export function soakPlot(samples, rests, result) {
     );
   parts.push(`<text x="${width - right}" y="${bottom + 18}" text-anchor="end">minutes</text>`);
   return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${height}" font-family="system-ui, sans-serif" font-size="12">
-<style>text{fill:#334155}.title{font-size:16px;font-weight:600}.name{font-weight:600}.grid{stroke:#e2e8f0}.busy{fill:none;stroke:#94a3b8}.rest{fill:#b03a2e}</style>
+<style>
+text{fill:#334155}.title{font-size:16px;font-weight:600}.name{font-weight:600}
+.grid{stroke:#e2e8f0}.busy{fill:none;stroke:#94a3b8}.rest{fill:#b03a2e}
+</style>
 <rect width="${width}" height="${height}" fill="#fff"/>
 <text x="${left}" y="26" class="title">What the server holds through ${Math.round(result.minutes)} minutes of coming and going</text>
-<g><path d="M${width - right - 250} 46h18" class="busy"/><text x="${width - right - 226}" y="50">busy</text><circle cx="${width - right - 170}" cy="46" r="3.5" class="rest"/><text x="${width - right - 160}" y="50">everybody has left</text></g>
+<g>
+<path d="M${width - right - 250} 46h18" class="busy"/><text x="${width - right - 226}" y="50">busy</text>
+<circle cx="${width - right - 170}" cy="46" r="3.5" class="rest"/>
+<text x="${width - right - 160}" y="50">everybody has left</text>
+</g>
 ${parts.join("\n")}
 </svg>
 `;

@@ -45,7 +45,7 @@ for (const [kind, why] of [
   ["no-memory", /not enough memory/],
   ["context-lost", /the device was reset/],
 ])
-  test(`a session whose thread ends by ${kind} goes on from within the last second, its viewers still there, and others never notice`, async () => {
+  test(`a session whose thread ends by ${kind} goes on with its viewers, at most a second back; others never notice`, async () => {
     const server = await startWith({ CLOTHLAB_FAULT: `${kind}:hurt:2000` });
     const [hurt, other] = [await watch(server, "hurt"), await watch(server, "other")];
     await hurt.request("scene.patch", { patch: { name: "patched" } });
@@ -110,7 +110,7 @@ test("a change for which there is not enough memory is refused, and the scene go
   await server.stop();
 });
 
-test("a shader that does not compile after an edit refuses the change that needs it, with file and line; the cloth goes on, and once it is mended the change works", async () => {
+test("a shader that does not compile refuses the change that needs it, with file and line, until it is mended", async () => {
   const data = folder();
   for (const part of ["shaders", "server/scene/presets", "web/dist"])
     cpSync(join(root, part), join(data, part), { recursive: true });

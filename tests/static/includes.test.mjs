@@ -33,11 +33,13 @@ const headers = {
   move: "utility algorithm",
   swap: "utility",
   "exchange|pair|make_pair|forward|declval|in_place|in_place_type|index_sequence": "utility map",
-  "sort|stable_sort|any_of|all_of|none_of|find_if|find|count_if|count|transform|fill|fill_n|copy|copy_n|min|max|clamp|min_element|max_element|minmax_element|lower_bound|upper_bound|reverse|rotate|unique|remove_if|replace_if|equal|nth_element|generate|for_each|shuffle|is_sorted|set_difference|search|adjacent_find|mismatch":
-    "algorithm",
+  "sort|stable_sort|any_of|all_of|none_of|find_if|find|count_if|count|transform|fill|fill_n|copy|copy_n": "algorithm",
+  "min|max|clamp|min_element|max_element|minmax_element|lower_bound|upper_bound|reverse|rotate|unique": "algorithm",
+  "remove_if|replace_if|equal|nth_element|generate|for_each|shuffle|is_sorted|set_difference|search": "algorithm",
+  "adjacent_find|mismatch": "algorithm",
   "accumulate|iota|inner_product|reduce|gcd|lcm|partial_sum": "numeric",
-  "sqrt|abs|pow|exp|log|log2|log10|sin|cos|tan|asin|acos|atan|atan2|floor|ceil|round|lround|llround|isfinite|isnan|isinf|hypot|fmod|nan|cbrt|signbit|nextafter|ldexp|frexp|trunc|expm1|log1p":
-    "cmath",
+  "sqrt|abs|pow|exp|log|log2|log10|sin|cos|tan|asin|acos|atan|atan2|floor|ceil|round|lround|llround": "cmath",
+  "isfinite|isnan|isinf|hypot|fmod|nan|cbrt|signbit|nextafter|ldexp|frexp|trunc|expm1|log1p": "cmath",
   numeric_limits: "limits",
   numbers: "numbers",
   "bit_cast|bit_ceil|bit_width|popcount|endian|has_single_bit": "bit",

@@ -55,7 +55,9 @@ export class ChartTab extends Tab<"chart"> {
 
   constructor(around: Surroundings) {
     super("chart", around, {
-      lead: "What does each method cost on this scene, and how far from the truth does it end? Every method is run with many time steps, against a reference in double precision.",
+      lead:
+        "What does each method cost on this scene, and how far from the truth does it end? " +
+        "Every method is run with many time steps, against a reference in double precision.",
       start: "Measure the chart",
       file: "chart",
       awaits:
@@ -159,12 +161,11 @@ export class ChartTab extends Tab<"chart"> {
     const known = "error" in place;
     this.picture.showPresent(known ? { x: place.error, y: place.cost } : null);
     this.present.classList.toggle("unknown", !known);
-    say(
-      this.present,
-      known
-        ? `Now: ${settingText(setting)}: error ${errorText(place.error)}, ${costText({ median: place.cost, minimum: place.cost, runs: 0, low: null, high: null })} a simulated second.`
-        : `Now: ${settingText(setting)}. Not measured: ${place.reason}.`,
-    );
+    const cost = (seconds: number) => costText({ median: seconds, minimum: seconds, runs: 0, low: null, high: null });
+    const facts = known
+      ? `: error ${errorText(place.error)}, ${cost(place.cost)} a simulated second.`
+      : `. Not measured: ${place.reason}.`;
+    say(this.present, `Now: ${settingText(setting)}${facts}`);
   }
 
   private get shown(): Shown {

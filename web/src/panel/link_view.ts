@@ -45,7 +45,8 @@ export class LinkView {
     const say = (): void => {
       const left = Math.max(0, Math.ceil((until - performance.now()) / 1000));
       const soon = left > 0 ? `trying again in ${left} s` : "trying again";
-      this.text.textContent = `${this.everDrawn ? "Connection lost" : why ? "Not connected" : "No server answers"}${why ? ` (${why})` : ""}: ${soon}.`;
+      const what = this.everDrawn ? "Connection lost" : why ? "Not connected" : "No server answers";
+      this.text.textContent = `${what}${why ? ` (${why})` : ""}: ${soon}.`;
     };
     say();
     this.banner.hidden = false;

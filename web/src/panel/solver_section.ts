@@ -104,7 +104,9 @@ export function solverSection(document: SceneDocument, methods: string[]): Secti
         ["/solver/tolerance"],
         { min: 1e-8, max: 0.1, log: true },
         {
-          hint: "Where the conjugate gradients stop: the residual left, as a share of the first. Very short steps ask for a smaller one: what is left adds up.",
+          hint:
+            "Where the conjugate gradients stop: the residual left, as a share of the first. " +
+            "Very short steps ask for a smaller one: what is left adds up.",
         },
       ),
     );
