@@ -1,4 +1,4 @@
-// Where the files that travel with the program are: shaders/, server/scene/presets/, web/dist/.
+// Finds the files that are installed with the program: shaders/, server/scene/presets/, web/dist/.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,9 @@
 
 namespace clothlab {
 
-/// Finds `relative` (e.g. "shaders/methods/symplectic_euler.comp") below, in this order: $CLOTHLAB_DATA,
-/// <program>/../share/clothlab, the source tree this program was built from.
+/// The path of the file or folder `relative` (e.g. "shaders/methods/symplectic_euler.comp") in the first of
+/// these folders that has it: $CLOTHLAB_DATA, <the program's folder>/../share/clothlab, the source tree from
+/// which this program was built.
 Result<std::filesystem::path> data_path(const std::string& relative);
 
 }  // namespace clothlab

@@ -1,4 +1,4 @@
-// Whole files, read and written.
+// Reads and writes whole files.
 #pragma once
 
 #include <filesystem>
@@ -8,15 +8,15 @@
 
 namespace clothlab {
 
-/// The whole of a file as bytes.
+/// Returns all bytes of a file.
 Result<std::string> read_file(const std::filesystem::path& path);
 
-/// What is still being written ends so.
+/// Ending of the name of a file that is still being written.
 inline constexpr const char* unfinished_suffix = ".unfinished";
 
-/// Puts `bytes` where `path` says, whole or not at all: whoever reads meanwhile, or finds it after this
-/// program was killed, has what was there before or this. Error: the disk is full, the folder not writable,
-/// ...
+/// Replaces the content of the file at `path` by `bytes`, completely or not at all: a program that reads the
+/// file meanwhile, or after this program was killed, finds either the old content or `bytes`. Error: the disk
+/// is full, the folder is not writable, ...
 Status replace_file(const std::filesystem::path& path, const std::string& bytes);
 
 }  // namespace clothlab

@@ -1,5 +1,5 @@
-// A folder that one process at a time may call its own. The claim is the kernel's and ends with the process,
-// however that ends; nothing of it lies in the folder.
+// A lock on a folder that one process at a time can hold. The operating system keeps the lock (flock(2)) and
+// releases it when the process ends, however it ends; the lock leaves no file in the folder.
 #pragma once
 
 #include <filesystem>
@@ -10,8 +10,8 @@ namespace clothlab {
 
 class FolderLock {
  public:
-  /// Error: another process holds it, or it cannot be opened. Where the file system knows no locks, it is
-  /// held by whoever asks.
+  /// Locks `folder`. Error: another process holds the lock, or the folder cannot be opened. On a file system
+  /// without locks every call succeeds.
   static Result<FolderLock> take(const std::filesystem::path& folder);
   FolderLock() = default;
   FolderLock(FolderLock&& other) noexcept;

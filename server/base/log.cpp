@@ -12,10 +12,10 @@ namespace clothlab {
 
 namespace {
 
-constexpr std::array<const char*, 4> names{"error", "warning", "info", "debug"};  // by LogLevel
+constexpr std::array<const char*, 4> names{"error", "warning", "info", "debug"};  // indexed by LogLevel
 std::atomic<LogLevel> least_urgent{LogLevel::info};
 
-/// UTC, to the millisecond (RFC 3339).
+/// The present time in UTC, to the millisecond (RFC 3339).
 std::string time_text() {
   const auto now = std::chrono::system_clock::now();
   const std::time_t seconds = std::chrono::system_clock::to_time_t(now);
@@ -52,7 +52,7 @@ void log(LogLevel level, const char* event, const std::vector<LogField>& fields)
   std::string line =
       "time=" + time_text() + " level=" + names[static_cast<std::size_t>(level)] + " event=" + event;
   for (const LogField& field : fields) line += std::string(" ") + field.key + "=" + quoted(field.value);
-  std::cerr << line + "\n" << std::flush;  // in one piece: other threads write too
+  std::cerr << line + "\n" << std::flush;  // one write for the whole line, since other threads write too
 }
 
 void set_log_level(LogLevel least) {

@@ -1,13 +1,15 @@
-// How a process that runs for months keeps no more memory than it needs: glibc by itself keeps what each
-// thread has freed for that thread (malloc(3), arenas), and the threads of sessions come and go.
+// Keeps a process that runs for months from holding more memory than it needs. By default, glibc keeps the
+// memory that a thread has freed for that thread (malloc(3), arenas), but sessions' threads come and go.
 #pragma once
 
 namespace clothlab {
 
-/// What one thread frees is any thread's to use. Before the first other thread.
+/// Limits malloc to two arenas, so that all threads reuse what one thread has freed. Call it before the
+/// process starts a second thread.
 void share_free_memory();
 
-/// Gives back to the system what is free (malloc_trim(3)): some milliseconds, on a thread that has them.
+/// Returns free memory to the system (malloc_trim(3)). Takes some milliseconds: call it on a thread that has
+/// no other work to do in that time.
 void release_free_memory();
 
 }  // namespace clothlab

@@ -1,4 +1,4 @@
-// How much of a busy machine a thread may have.
+// The priority of a thread on a busy machine.
 #pragma once
 
 #include <sys/resource.h>
@@ -6,9 +6,9 @@
 
 namespace clothlab {
 
-/// Makes the calling thread give way: `nice` from 0 to 19, the lowest. Linux counts priorities by thread, and
-/// threads that a thread makes inherit its own. A failure costs the sessions some speed and the caller
-/// nothing.
+/// Sets the calling thread's priority to `nice`, from 0 (normal) to 19 (lowest). On Linux each thread has its
+/// own priority, and a new thread inherits that of the thread that made it. A failure is ignored: it only
+/// makes the sessions slower.
 inline void lower_priority(int nice) {
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), nice);
 }

@@ -1,4 +1,4 @@
-// Errors as values that carry their remedy. Exceptions do not cross a thread, a callback or a public
+// Errors as values that say how to correct them. No exception leaves a thread, a callback or a public
 // function.
 #pragma once
 
@@ -9,8 +9,8 @@
 namespace clothlab {
 
 /// What went wrong, in three parts that every front end shows the same way.
-/// For a scene: `where` is a JSON Pointer, `what` the value found (compact JSON), `remedy` what is allowed
-/// there.
+/// In an error in a scene, `where` is a JSON Pointer, `what` the value found there (compact JSON), and
+/// `remedy` what is allowed there.
 struct Error {
   std::string where;   ///< file, line, JSON Pointer, or subsystem
   std::string what;    ///< what was found

@@ -1,14 +1,14 @@
-// Numbers in words that users read.
+// Formats numbers for messages to users.
 #pragma once
 
 #include <string>
 
 namespace clothlab {
 
-/// What printf would print.
+/// Returns the text that printf would print.
 [[gnu::format(printf, 1, 2)]] std::string formatted(const char* form, ...);
 
-/// With this many significant digits, trailing zeros left out.
+/// `value` with at most `digits` significant digits, trailing zeros left out.
 std::string significant(double value, int digits);
 
 }  // namespace clothlab

@@ -22,14 +22,14 @@ struct Options {
   double time = 1, budget = 120;
 };
 
-/// "57 ms (dt 1.6 ms ×4)"
+/// A point's cost [ms per simulated second], time step and iterations: "57 (dt 1.6 ms ×4)".
 std::string words(const lab::Point& point) {
   std::string words = brief(point.cost->median) + " (dt " + brief(1000 * point.setting.dt) + " ms";
   if (scene::iterates(point.setting.method)) words += " ×" + std::to_string(point.setting.iterations);
   return words + ")";
 }
 
-/// The cheapest of a method with at most that error.
+/// The cheapest point of `method` whose error on `axis` is at most `most`, in words; "-" if none is.
 std::string cheapest(const lab::Chart& chart, scene::Method method, std::size_t axis, double most) {
   const lab::Point* best = nullptr;
   for (const lab::Point& point : chart.points) {
@@ -41,7 +41,7 @@ std::string cheapest(const lab::Chart& chart, scene::Method method, std::size_t 
 }
 
 void print_best(const lab::Chart& chart) {
-  std::size_t axis = 0;  // positions; where they cannot be compared the first that can
+  std::size_t axis = 0;  // positions, or the first axis that has errors
   while (axis + 1 < lab::all_axes.size() && !chart.axes[axis].available) ++axis;
   if (!chart.axes[axis].available) return;
   std::cout << "\nms of stepping per simulated second, cheapest with an error of "

@@ -17,7 +17,7 @@ struct Options {
   double tolerance = 0.01, time = 1;
 };
 
-/// " [0.9..1.1]"; nothing where there is no interval.
+/// " [0.9..1.1]"; an empty text if there is no finite interval.
 std::string range(std::optional<double> low, std::optional<double> high) {
   if (!low || !high || !std::isfinite(*high)) return "";
   return " [" + brief(*low) + ".." + brief(*high) + "]";

@@ -34,7 +34,7 @@ CLI::Validator whole_number(int least, int most) {
 
 void warn_of(const model::Model& model, const scene::Scene& scene, const std::string& about) {
   std::vector<std::string> warnings{model::thickness_warning(model, scene)};
-  if (!scene.solver.automatic)  // else its step is not the user's
+  if (!scene.solver.automatic)  // else the lab chooses the step, not the user
     warnings.push_back(model::step_warning(scene.solver, model::dt_limit_if_near(model, scene)));
   for (const std::string& warning : warnings) {
     if (warning.empty()) continue;
@@ -58,7 +58,7 @@ void SceneChoice::add_option(CLI::App& command) {
 }
 
 void SceneChoice::add_set(CLI::App& command) {
-  // One value an occurrence, so that a positional S may follow.
+  // Each --set takes exactly one value, so that a positional S may follow.
   command
       .add_option("--set", set, "sets one value of the scene, e.g. --set /solver/dt=0.0005; may be repeated")
       ->type_name("POINTER=VALUE")

@@ -1,5 +1,5 @@
-// The subcommands of `clothlab`, one file each, and what they share: exit codes, errors, how a scene is
-// named.
+// The subcommands of `clothlab`, one file each, and what they share: exit codes, messages on stderr, and the
+// options that name a scene.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -12,7 +12,7 @@
 
 namespace clothlab::cli {
 
-/// What the program's exit code means to a script.
+/// The program's exit codes, for scripts.
 enum ExitCode : int {
   exit_done = 0,
   exit_internal = 1,
@@ -21,8 +21,8 @@ enum ExitCode : int {
   exit_diverged = 4
 };
 
-// Each adds its subcommand to `app`; when it is the one called, it runs and leaves its ExitCode in
-// `exit_code`.
+// Each function adds its subcommand to `app`. If the command line calls that subcommand, it runs and stores
+// its exit code in `exit_code`.
 void add_serve(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
 void add_render(CLI::App& app, int& exit_code);
@@ -39,23 +39,24 @@ int fail(const Error& error, ExitCode code);
 /// Prints "clothlab: note: ..." on stderr.
 void note(const std::string& text);
 
-/// What an option's value must be. CLI::Range's words differ from one version of CLI11 to the next.
+/// Accepts a whole number from `least` to `most`. CLI::Range would do, but its error messages differ between
+/// versions of CLI11.
 CLI::Validator whole_number(int least, int most);
 
-/// Prints warnings on stderr: of a step near or beyond the longest stable one, of self-collision too thin for
-/// the mesh.
+/// Prints warnings on stderr, `about` before each: if the time step is near or beyond the longest stable one,
+/// and if the thickness of self-collision is too small for the mesh.
 void warn_of(const model::Model& model, const scene::Scene& scene, const std::string& about = "");
 
 /// The scene a command works on: a preset's name or a file, then `--set POINTER=VALUE` in the order given.
 struct SceneChoice {
-  std::string name;              ///< what the command line says, or the default the command starts with
+  std::string name;              ///< from the command line, else the command's default
   std::vector<std::string> set;  ///< e.g. "/solver/dt=0.0005"
 
-  /// S as a required positional argument, and `--set`.
+  /// Adds S as a required positional argument, and `--set`.
   void add_positional(CLI::App& command);
-  /// `--scene S` with the present name as its default, and `--set`.
+  /// Adds `--scene S` with the present `name` as its default, and `--set`.
   void add_option(CLI::App& command);
-  /// Loads it and applies every `--set`.
+  /// Loads the scene and applies every `--set`.
   Result<scene::Document> load() const;
 
  private:

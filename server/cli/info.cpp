@@ -1,5 +1,5 @@
-// `clothlab info`: versions, methods, the devices there are and which one would be used, where the data files
-// are.
+// `clothlab info`: prints versions, methods, the folders of the data files, and all OpenGL devices with a
+// mark at the default one.
 #include <libwebsockets.h>
 
 #include <iostream>

@@ -30,10 +30,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int exit_interrupted = 128 + SIGINT;  // what shells say of a program that Ctrl-C ended
+constexpr int exit_interrupted = 128 + SIGINT;  // the code that shells give a program ended by Ctrl-C
 
-/// Asks the job to stop at the first Ctrl-C; the second ends the program as it always would. Made before any
-/// other thread, which would not be spared the signal otherwise.
+/// The first SIGINT (Ctrl-C) or SIGTERM asks the job to stop, the second ends the program as usual. Must be
+/// made before any other thread: threads inherit the blocked signals only from then on.
 class StopOnInterrupt {
  public:
   StopOnInterrupt() {
@@ -59,7 +59,7 @@ class StopOnInterrupt {
     while (!done_) {
       if (sigtimedwait(&signals_, nullptr, &a_while) < 0) continue;
       stop_.request_stop();
-      pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);  // of this thread: it will take the next one
+      pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);  // this thread's: the next signal ends the program
       while (!done_) std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
   }
@@ -70,7 +70,7 @@ class StopOnInterrupt {
   std::thread thread_;
 };
 
-/// One line on a terminal that is written over and over; nothing where stderr is none.
+/// One line of progress on stderr, which `show` overwrites. Prints nothing if stderr is not a terminal.
 class ProgressLine {
  public:
   ~ProgressLine() { clear(); }
@@ -100,7 +100,7 @@ std::string file_name(const LabOptions& options, const char* kind, const char* e
   return (fs::path(options.out) / (std::string(kind) + extension)).string();
 }
 
-/// Before any work: the folder exists then, and the files can be written.
+/// Makes the folder of --out if needed and checks that its files can be written; called before any work.
 Status check_out(const LabOptions& options, const char* kind) {
   if (options.out.empty()) return ok();
   std::error_code failure;
@@ -126,11 +126,12 @@ Status write_files(const LabOptions& options, const lab::Outcome& outcome) {
   return ok();
 }
 
-/// The job's errors name its parameters; a user knows them as options.
+/// Prints the error of a job and returns the exit code. Jobs call their parameters by name, users by option:
+/// "time" becomes "--time".
 int fail_job(Error error) {
   for (const char* option : {"field", "from", "to", "columns", "tolerance", "time", "methods"})
     if (error.where == option) error.where = std::string("--") + option;
-  // Of anything but the scene and what was asked of it the program is to blame.
+  // Errors in an option, the scene or the request are the user's; all others are the program's.
   const bool asked = error.where.starts_with("-") || error.where.starts_with("/") ||
                      error.where == "choose" || error.where == "simplify" || error.where == "chart" ||
                      error.where == "stability";
@@ -233,7 +234,7 @@ int run_lab(const LabOptions& options, const lab::Job& job, void (*print)(const 
 }
 
 void print_table(const std::vector<std::vector<std::string>>& rows) {
-  // Bytes are not columns: "×" and "⁻" take several of the first, one of the second.
+  // Counts characters, not bytes: "×" and "⁻" are several bytes long but one column wide.
   const auto columns_of = [](const std::string& text) {
     return static_cast<std::size_t>(
         std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; }));

@@ -1,5 +1,5 @@
 // What `chart`, `stability`, `choose` and `simplify` share: their options, the run of the job with progress,
-// cache and Ctrl-C, and the files it leaves.
+// cache and Ctrl-C, and the output as files, table or JSON.
 #pragma once
 
 #include <optional>
@@ -15,39 +15,39 @@ struct LabOptions {
   SceneChoice scene;
   std::string methods;  ///< "verlet,xpbd"; empty: all
   std::string out;      ///< folder; empty: no files
-  bool fresh = false;   ///< whatever the cache has
-  bool json = false;    ///< the result on stdout as JSON, instead of the table
+  bool fresh = false;   ///< measure anew, even if the cache has the result
+  bool json = false;    ///< print the result as JSON instead of a table
   std::optional<int> gpu;
 };
 
-/// S, --set, --out, --json, --fresh, --gpu.
+/// Adds S, --set, --out, --json, --fresh and --gpu.
 void add_lab_options(CLI::App& command, LabOptions& options);
-/// --methods.
+/// Adds --methods.
 void add_methods(CLI::App& command, LabOptions& options);
-/// --time, whose default is what `seconds` is.
+/// Adds --time, with the present value of `seconds` [s] as its default.
 void add_time(CLI::App& command, double& seconds, const std::string& help);
-/// The methods named, empty for all. Error: one that there is not.
+/// The methods that --methods names; empty for all. Error: a name that no method has.
 Result<std::vector<scene::Method>> methods_of(const LabOptions& options);
-/// `value` if it is a number above 0 and at most `most`. Error: says so of `option`.
+/// Checks that the value of `option` is a number above 0 and at most `most`.
 Status check_positive(const std::string& option, double value, double most);
 
-/// Runs the job, or takes its result from the cache; then writes KIND.json, .csv and .svg into --out and
-/// prints with `print`, or as JSON. Ctrl-C ends it early and keeps what there is. Returns the exit code, 130
-/// where it was interrupted.
+/// Runs the job or takes its result from the cache. Writes KIND.json, KIND.csv and KIND.svg into the folder
+/// of --out, if given, and prints the result with `print` or as JSON. Ctrl-C ends the job early; the result
+/// so far is still written and printed. Returns the exit code, 130 if interrupted.
 int run_lab(const LabOptions& options, const lab::Job& job, void (*print)(const lab::Outcome&));
 
-/// Simulated longer than this is a mistake [s].
+/// The largest --time [s]; a larger one is taken for a mistake.
 inline constexpr double most_lab_time = 1000;
-/// What every help of the lab's commands ends with.
+/// The end of the help text of each of these commands.
 extern const char* const lab_footer;
 
-/// Rows of words in columns as wide as they need, two blanks apart; the first row is the header.
+/// Prints rows of cells on stdout, in columns as wide as their widest cell and two blanks apart.
 void print_table(const std::vector<std::vector<std::string>>& rows);
-/// Every line of `words` that is not empty as "note: ...", on stdout.
+/// Prints each text of `notes` that is not empty as "note: ..." on stdout.
 void print_notes(const std::vector<std::string>& notes);
-/// "1 s simulated on llvmpipe (...)", and whether it is all.
+/// Prints "WHAT, 1 s simulated on llvmpipe (...)", followed by ", NOT COMPLETE" unless `complete`.
 void print_heading(const std::string& what, double time, const std::string& renderer, bool complete);
-/// The options that make a command step by `setting`.
+/// The --set options that make a command step a scene with `setting`.
 std::string set_options(const lab::Setting& setting);
 
 }  // namespace clothlab::cli

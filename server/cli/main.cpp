@@ -25,7 +25,7 @@ void describe(CLI::App& app, int& exit_code) {
   app.set_version_flag("--version", "clothlab " CLOTHLAB_VERSION, "print the version and exit");
   app.set_help_flag("-h,--help", "print this help and exit");
   app.require_subcommand(0, 1);
-  // One line a subcommand, in the order the help shows them.
+  // One line for each subcommand, in the order in which the help lists them.
   add_serve(app, exit_code);
   add_run(app, exit_code);
   add_render(app, exit_code);
@@ -36,7 +36,7 @@ void describe(CLI::App& app, int& exit_code) {
   add_validate(app, exit_code);
   add_presets(app, exit_code);
   add_info(app, exit_code);
-  app.footer(examples);  // after the subcommands, which would take it over
+  app.footer(examples);  // after the subcommands, which would inherit it
 }
 
 int usage_error(const CLI::App& app, const CLI::ParseError& error) {

@@ -26,9 +26,9 @@ struct Options {
   std::optional<int> gpu;
 };
 
-constexpr double default_every = 0.01;  // [s], of a trace
+constexpr double default_every = 0.01;  // [s], between two rows of a trace
 
-/// The `--trace` file: written row by row, so that a run that ends early leaves what it had.
+/// The `--trace` file. Each row is written at once, so that a run that ends early leaves the rows so far.
 class Trace {
  public:
   explicit Trace(const std::string& path) : path_(path), file_(path) {
@@ -117,7 +117,8 @@ void print_summary(const Report& report, double simulated) {
   std::fflush(stdout);
 }
 
-/// What the methods' own iterations did not reach, and what had no room.
+/// Prints notes on stderr about neighbours left out of self-collision, linear solves that missed their
+/// tolerance and springs beyond their strain limit.
 void note_left_out(const sim::Simulation& simulation, const sim::Diagnostics& state) {
   if (state.neighbours_dropped > 0)
     note("self-collision left out " + std::to_string(state.neighbours_dropped) +
@@ -131,12 +132,13 @@ void note_left_out(const sim::Simulation& simulation, const sim::Diagnostics& st
          " steps ended with a spring longer than its strain_limit; a smaller dt or a larger limit helps");
 }
 
-/// Where the outputs go, checked before anything is simulated.
+/// The files of --out and --trace, if given.
 struct Outputs {
   std::optional<StateFiles> states;
   std::optional<Trace> trace;
 };
 
+/// Checks every option that names a file, before anything is simulated. `run` opens the trace later.
 Result<Outputs> open_outputs(const Options& options) {
   if (options.every && options.out.empty() && options.trace.empty())
     return Error{"--every", significant(*options.every, 9), "needs --out or --trace"};
@@ -158,7 +160,7 @@ std::string comment(const sim::Diagnostics& state, const std::string& scene, boo
          " s, in metres" + (diverged ? "; the simulation diverged after this" : "");
 }
 
-/// Whole steps between two stops; without --every of a trace the default, without either the whole run.
+/// The steps between two stops: those of --every; else default_every if there is a trace; else all `steps`.
 Result<std::uint64_t> stop_interval(const Options& options, std::uint64_t steps, double dt) {
   if (!options.every && options.trace.empty()) return std::max<std::uint64_t>(steps, 1);
   if (!options.every)

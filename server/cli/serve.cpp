@@ -28,9 +28,10 @@ struct ServeArguments {
   int gpu = -1;
 };
 
-/// Ends the server on SIGINT and SIGTERM, which must be blocked in every thread: this one waits for them.
-/// What does not end in time then, as where a driver hangs, ends with the process; so it does on a second
-/// signal. Sessions keep themselves once a second, so no more than that is lost.
+/// Stops the server on SIGINT or SIGTERM. Both must be blocked in all threads: the thread made here waits for
+/// them. The process exits by force if the server has not ended within 3 s (a driver may hang), and on a
+/// second signal. Sessions are saved about once a second (with --state-dir), so at most the last second is
+/// lost.
 class StopOnSignal {
  public:
   explicit StopOnSignal(net::Server& server)
@@ -47,12 +48,13 @@ class StopOnSignal {
               {{"why", "something did not end in time; sessions are what they were a second ago"}});
           std::_Exit(exit_done);
         }) {}
-  /// Before the server is destroyed: it is not told to stop any more.
+  /// To be called before the server is destroyed: from then on no signal calls the server.
   void forget_server() {
     const std::lock_guard lock(mutex_);
     server_ = nullptr;
   }
-  /// After that.
+  /// Runs after the server is destroyed: a server that hangs meanwhile is still ended by force. The SIGTERM
+  /// wakes the waiting thread.
   ~StopOnSignal() {
     ended_ = true;
     pthread_kill(thread_.native_handle(), SIGTERM);
@@ -61,7 +63,7 @@ class StopOnSignal {
   StopOnSignal(const StopOnSignal&) = delete;
   StopOnSignal& operator=(const StopOnSignal&) = delete;
 
-  /// Before any thread is started.
+  /// Blocks both signals and ignores SIGPIPE. To be called before any thread starts: threads inherit this.
   static void block() {
     const sigset_t signals = stop_signals();
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
@@ -83,7 +85,7 @@ class StopOnSignal {
   std::mutex mutex_;
   net::Server* server_;
   std::atomic<bool> ended_{false};
-  std::thread thread_;  ///< the last member: it reads the others
+  std::thread thread_;  ///< last, because the thread uses the members above
 };
 
 Status check(const ServeArguments& arguments) {
@@ -103,8 +105,8 @@ Status check(const ServeArguments& arguments) {
   return ok();
 }
 
-/// Makes the folder where it is not there yet, and keeps other servers out of it for as long as this process
-/// lives: two would write over each other's sessions.
+/// Makes the folder of --state-dir if needed, checks that it can be written, and locks it for as long as the
+/// returned lock lives: two servers would overwrite each other's sessions.
 Result<FolderLock> claim_state_folder(const net::Options& options) {
   if (options.state_folder.empty()) return FolderLock();
   std::error_code failure;
@@ -145,7 +147,7 @@ int serve(ServeArguments& arguments) {
   const std::optional<session::Failed> failed =
       (*server)->run([&] { std::cout << "listening on " << (*server)->url() << std::endl; });
   stop.forget_server();
-  server->reset();  // before `stop`, which sees to it that this ends
+  server->reset();  // while `stop` lives, which ends the process if this call hangs
   if (!failed) return exit_done;
   return fail(failed->error, failed->no_opengl ? exit_no_opengl : exit_internal);
 }
@@ -194,7 +196,7 @@ void add_serve(CLI::App& app, int& exit_code) {
       ->type_name("PORT")
       ->check(whole_number(0, 65535))
       ->capture_default_str();
-  // From the environment, other users of the machine cannot read them.
+  // Tokens may come from the environment: other users of the machine can read only the command line.
   command->add_option("--token", options.token, "what operators must send first (auth), or as a Bearer token")
       ->type_name("T")
       ->envname("CLOTHLAB_TOKEN");

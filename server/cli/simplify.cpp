@@ -1,4 +1,4 @@
-// `clothlab simplify S`: what parts of the model, left out or made coarser, change and save.
+// `clothlab simplify S`: what changes, and what is saved, if parts of the model are left out or made coarser.
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -12,7 +12,7 @@ namespace {
 
 using lab::brief;
 
-constexpr std::size_t longest_patch = 2000;  // on a terminal; a coarser mesh of one's own is long
+constexpr std::size_t longest_patch = 2000;  // [bytes] to print; a patch with a triangle mesh is longer
 
 struct Options {
   LabOptions lab;

@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 namespace {
 constexpr std::size_t point_cache_header_bytes = 32;
 
-/// Version 1: "POINTCACHE2\0", version, points, first frame, frames a sample, samples; little-endian.
+/// The header of a PC2 file: "POINTCACHE2\0", version (1), points, first frame, frames per sample, samples;
+/// little-endian.
 std::string point_cache_header(std::uint32_t points, std::uint32_t samples) {
   std::string header("POINTCACHE2\0", 12);
   const auto append = [&header](const auto& value) {
@@ -90,7 +91,7 @@ Status StateFiles::add_to_point_cache(const sim::State& state) {
   const auto points = static_cast<std::uint32_t>(state.position.size());
   if (samples_ == 0)
     if (Status created = write_file(path_, point_cache_header(points, 0)); !created) return created;
-  // The header counts the samples that are really there, also when the run ends early.
+  // The header is rewritten with every sample, so that its count is right even if the run ends early.
   std::fstream file(path_, std::ios::binary | std::ios::in | std::ios::out);
   const std::size_t sample_bytes = points * sizeof(glm::vec3);
   file.seekp(static_cast<std::streamoff>(point_cache_header_bytes + samples_ * sample_bytes));

@@ -1,4 +1,4 @@
-// What `--out` writes: the final state, or one sample after another, as OBJ, PLY or PC2 (point cache 2).
+// The files of `--out`: the final state or a series of samples, as OBJ, PLY or PC2 (point cache 2).
 #pragma once
 
 #include <cstdint>
@@ -11,20 +11,20 @@
 
 namespace clothlab::cli {
 
-/// An error unless a file can be made or replaced at `path`; touches nothing.
+/// Checks that a file can be made or replaced at `path`, without touching it. Errors name `option`.
 Status check_writable(const std::string& option, const std::string& path);
 
-/// Writes the whole file.
+/// Makes or replaces the file at `path`, with `bytes` as its contents.
 Status write_file(const std::string& path, const std::string& bytes);
 
 class StateFiles {
  public:
-  /// `series`: `add` is called for every sample, not only for the final state. OBJ and PLY samples are then
-  /// numbered (out.obj becomes out-0000.obj, out-0001.obj, ...); a PC2 file holds all of them and exists only
-  /// as a series.
+  /// `series`: true if `add` is called for every sample, not only for the final state. OBJ and PLY samples
+  /// are then numbered (out.obj becomes out-0000.obj, out-0001.obj, ...). One PC2 file holds all samples, and
+  /// is possible only for a series.
   static Result<StateFiles> create(const std::string& path, bool series);
 
-  /// `comment` is one line about this state; PC2 has no room for it.
+  /// Writes one sample. `comment` is one line about this state; a PC2 file cannot hold it.
   Status add(const model::Model& model, const sim::State& state, const std::string& comment);
 
  private:

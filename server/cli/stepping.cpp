@@ -16,14 +16,14 @@ namespace {
 
 constexpr double most_steps = 1e12;
 
-/// Steps between two looks at whether it still goes well: as many as are queued behind one table of poses, so
-/// that a look costs little; fewer where a blow-up is expected, so that more of the good part is kept.
+/// The number of steps between two checks for a blow-up. Usually a whole batch, so that checks cost little;
+/// fewer if `dt` is near or beyond `limit` [s], so that a blow-up is seen soon and more good steps are kept.
 std::uint64_t steps_between_looks(double dt, double limit) {
   return dt > model::margin_to_warn * limit ? sim::batch_steps / 8 : sim::batch_steps;
 }
 
-/// The scene with what the lab chooses in the place of the method `auto`; others as they are. Where it cannot
-/// choose, what is stable, and why.
+/// Replaces the method `auto` by the setting that the lab chooses, or by a stable one if the lab cannot
+/// choose; `chosen` receives the setting and the reason. A scene with another method is returned unchanged.
 Result<scene::Scene> settle_method(scene::Scene scene, std::string& chosen) {
   if (!scene.solver.automatic) return scene;
   note("method auto: measuring what keeps a tolerance of " + significant(scene.solver.tolerance, 9) +
@@ -69,7 +69,7 @@ std::optional<Prepared> prepare(const SceneChoice& choice, std::optional<int> gp
   }
   Result<std::unique_ptr<sim::Simulation>> simulation = sim::Simulation::create(*settled);
   if (!simulation) {
-    // A JSON Pointer says that the scene is at fault, anything else that the program is.
+    // An error at a JSON Pointer ("/...") is a fault of the scene, any other a fault of the program.
     exit_code =
         fail(simulation.error(), simulation.error().where.starts_with("/") ? exit_usage : exit_internal);
     return std::nullopt;
@@ -94,7 +94,7 @@ Result<std::uint64_t> whole_steps(const std::string& option, double seconds, dou
 Result<Progress> advance(sim::Simulation& simulation, std::uint64_t steps, std::uint64_t every,
                          const AtStop& at_stop) {
   Progress progress;
-  // Drivers compile a kernel when it first runs: that belongs to no step.
+  // One step that is not timed: drivers compile a kernel when it first runs.
   sim::timed_steps(simulation, 1);
   simulation.reset();
   const double limit = model::dt_limit_if_near(simulation.model(), simulation.scene());

@@ -1,4 +1,4 @@
-// Stepping a scene as fast as it goes, with stops to look at it: shared by `run` and `render`.
+// Stepping a scene as fast as possible, with stops to read its state; shared by `run` and `render`.
 #pragma once
 
 #include <cstdint>
@@ -15,41 +15,41 @@
 
 namespace clothlab::cli {
 
-/// `--gpu N`.
+/// Adds `--gpu N`.
 void add_gpu(CLI::App& command, std::optional<int>& gpu);
 
 /// A scene ready to step, in the GL context of this thread.
 struct Prepared {
   std::unique_ptr<gl::Context> context;
   std::unique_ptr<sim::Simulation> simulation;
-  std::string chosen;  ///< for the method `auto`: what was chosen and why; empty for others
+  std::string chosen;  ///< for the method `auto`: the chosen setting and the reason; else empty
 };
-/// For the method `auto` the lab chooses first, and its words go to stderr. On failure says why on stderr and
-/// leaves the exit code.
+/// Loads the scene and makes its simulation. For the method `auto` the lab first chooses a setting, with
+/// notes on stderr. On failure prints the error on stderr, sets `exit_code` and returns nothing.
 std::optional<Prepared> prepare(const SceneChoice& choice, std::optional<int> gpu, int& exit_code);
 
-/// `seconds` as whole steps, rounded; says so on stderr when it was not whole. Error: not finite, negative,
-/// too many.
+/// `seconds` as a number of steps of `dt` [s], rounded, with a note on stderr if rounding changed it. Error:
+/// `seconds` is not finite or negative, or the steps are too many.
 Result<std::uint64_t> whole_steps(const std::string& option, double seconds, double dt);
 
 /// How far `advance` came.
 struct Progress {
-  sim::Diagnostics state;   ///< at the end; the last good one if it diverged
-  double step_seconds = 0;  ///< stepping alone, GPU finished, without the stops [s]
-  std::uint64_t steps = 0;  ///< that were timed
+  sim::Diagnostics state;   ///< the final state; the last good one if the run diverged
+  double step_seconds = 0;  ///< time of stepping until the GPU was done, without the stops [s]
+  std::uint64_t steps = 0;  ///< the number of steps timed in `step_seconds`
   bool diverged = false;
-  double diverged_by = 0;              ///< the simulated time at which that was seen [s]
-  sim::GuardedRun::Setback setback{};  ///< why it did, in numbers, and what to do
+  double diverged_by = 0;              ///< the simulated time at which the divergence was seen [s]
+  sim::GuardedRun::Setback setback{};  ///< if it diverged: the reason, in numbers, and a remedy
 };
 
 using AtStop = std::function<Status(const sim::Diagnostics&)>;
 
-/// Steps `steps` times, stopping at the start, every `every` steps and at the end; `at_stop` is called at
-/// each. If it blows up the simulation is brought back to its last good state, and that is the end.
+/// Steps `steps` times. Calls `at_stop` at the start, after every `every` steps, and at the end. If the
+/// simulation blows up, restores its last good state and returns.
 Result<Progress> advance(sim::Simulation& simulation, std::uint64_t steps, std::uint64_t every,
                          const AtStop& at_stop);
 
-/// The note on stderr about a run that diverged: why, what is kept, and what to do.
+/// Prints a note on stderr about a run that diverged: the reason, what is kept, and a remedy.
 void note_diverged(const Progress& progress);
 
 }  // namespace clothlab::cli

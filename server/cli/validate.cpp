@@ -13,7 +13,8 @@ std::string counted(std::size_t count, const std::string& one, const std::string
   return std::to_string(count) + " " + (count == 1 ? one : more);
 }
 
-/// "seed.json: valid (...)" on stdout, or why not on stderr; there too what is valid and will not hold.
+/// Prints "seed.json: valid (...)" on stdout, or the error on stderr. Warnings about a valid scene go to
+/// stderr, too. Returns true if the scene is valid.
 bool report(const std::string& name) {
   const Result<scene::Document> document = scene::load(name);
   if (!document) {

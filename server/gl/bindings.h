@@ -1,4 +1,5 @@
-// What is bound for compute in the current context, to be put back after other work has bound something else.
+// Keeps what is bound for compute in the current context (program, buffers, textures), to bind it again after
+// other work has bound something else.
 #pragma once
 
 #include <glad/gl.h>
@@ -11,9 +12,9 @@ namespace clothlab::gl {
 
 class Bindings {
  public:
-  /// Those of now. Asks the driver's client side only: nothing waits for the GPU.
+  /// The present bindings. The driver knows them itself, so that nothing waits for the GPU.
   static Bindings now();
-  /// Objects that have gone since stay unbound.
+  /// Binds the kept objects again, except those that have been deleted since.
   void restore() const;
 
  private:

@@ -11,7 +11,7 @@ namespace clothlab::gl {
 Buffer::Buffer(std::size_t bytes, const void* data, GLbitfield flags) : bytes_(bytes) {
   glCreateBuffers(1, &id_);
   while (glGetError() == GL_OUT_OF_MEMORY) {
-  }  // what is left of before is not ours
+  }  // discards errors of earlier calls
   glNamedBufferStorage(id_, static_cast<GLsizeiptr>(bytes), data, flags);
   if (glGetError() == GL_OUT_OF_MEMORY) {
     glDeleteBuffers(1, &id_);

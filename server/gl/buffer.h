@@ -1,5 +1,5 @@
-// GL objects that own their names: buffers, buffer textures, and the ring that brings results back without
-// waiting.
+// Classes that own GL objects and delete them: buffers, buffer textures, and a ring of buffers that brings
+// results back without waiting for the GPU.
 #pragma once
 
 #include <glad/gl.h>
@@ -16,8 +16,8 @@ namespace clothlab::gl {
 class Buffer {
  public:
   Buffer() = default;
-  /// `flags` as for glNamedBufferStorage; dynamic storage lets `upload` work. Throws std::bad_alloc where the
-  /// device has no room, as containers do.
+  /// `flags` are those of glNamedBufferStorage; `upload` needs GL_DYNAMIC_STORAGE_BIT. Throws std::bad_alloc
+  /// if the device has too little memory.
   explicit Buffer(std::size_t bytes, const void* data = nullptr, GLbitfield flags = GL_DYNAMIC_STORAGE_BIT);
   template <class T>
   explicit Buffer(const std::vector<T>& items)
@@ -29,10 +29,10 @@ class Buffer {
   GLuint id() const { return id_; }
   std::size_t bytes() const { return bytes_; }
   void upload(const void* data, std::size_t bytes, std::size_t offset = 0);
-  /// Waits for the GPU.
+  /// Copies bytes from the buffer to `data`; waits for the GPU.
   void download(void* data, std::size_t bytes, std::size_t offset = 0) const;
   void fill(std::uint32_t value);
-  /// Queues a copy of all of a buffer of the same size.
+  /// Queues a copy of all of `other`, which must have the same size.
   void copy_from(const Buffer& other);
   void bind_storage(GLuint binding) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id_); }
 
@@ -41,7 +41,7 @@ class Buffer {
   std::size_t bytes_ = 0;
 };
 
-/// A texture view of a buffer: much faster to read than storage buffers on software OpenGL
+/// A texture view of a buffer. On software OpenGL kernels read it much faster than a storage buffer
 /// (shaders/access.glsl).
 class BufferTexture {
  public:
@@ -56,8 +56,8 @@ class BufferTexture {
   GLuint id_ = 0;
 };
 
-/// True with CLOTHLAB_READS=storage in the environment: kernels then read buffers as storage, to compare the
-/// two.
+/// True with CLOTHLAB_READS=storage in the environment: kernels then read storage buffers instead of buffer
+/// textures, to compare their speed.
 bool reads_are_storage();
 
 /// A buffer that kernels read through shaders/access.glsl, and that other kernels may write.
@@ -66,11 +66,12 @@ struct TextureBuffer {
   BufferTexture texture;
   TextureBuffer() = default;
   TextureBuffer(Buffer storage, GLenum format) : buffer(std::move(storage)), texture(buffer, format) {}
-  /// Binds it for reading as READ_...(name, unit).
+  /// Binds the buffer where kernels read it as READ_...(name, unit).
   void bind(GLuint unit) const;
 };
 
-/// Copies of GPU results on their way back: copy now, read when the fence says it has arrived.
+/// A ring of slots for copies of GPU results: `push` queues a copy, and `front` reads that copy once its
+/// fence says that it has arrived.
 class ReadbackRing {
  public:
   ReadbackRing() = default;
@@ -82,9 +83,9 @@ class ReadbackRing {
   std::size_t slot_bytes() const { return slot_bytes_; }
   bool full() const { return pending_ == fences_.size(); }
   bool empty() const { return pending_ == 0; }
-  /// Queues a copy of `source` [0, bytes) behind the work queued so far. The ring must not be full.
+  /// Queues a copy of `source` [0, bytes) after the work queued so far. The ring must not be full.
   void push(const Buffer& source, std::size_t bytes);
-  /// The oldest copy if it has arrived (or after waiting for it); empty span otherwise. Valid until `pop`.
+  /// The oldest copy; empty if there is none or, without `wait`, if it has not arrived. Valid until `pop`.
   std::span<const std::byte> front(bool wait);
   void pop();
 

@@ -13,7 +13,7 @@ namespace {
 constexpr const char* install_hint =
     "install Mesa's software OpenGL: apt-get install libegl1 libgl1-mesa-dri (or the GPU's own driver)";
 
-/// The EGL entry points are process-wide; loading them twice from two threads would be a race.
+/// Guards the EGL entry points, which are process-wide: two threads must not load them at once.
 std::mutex egl_mutex;
 
 struct Candidate {
@@ -63,7 +63,7 @@ std::vector<Candidate> candidates() {
 EGLDisplay open_display(const Candidate& candidate) {
   if (!eglGetPlatformDisplayEXT) return EGL_NO_DISPLAY;
   const auto is = [&](HelperThreads threads) { return candidate.threads == threads; };
-  // An empty list of attributes is another display to Mesa than no list.
+  // Mesa opens one display for an empty list of attributes and another one for no list.
   const EGLint nothing[] = {EGL_NONE};
   const EGLint* attributes =
       is(HelperThreads::heavy_sessions) || is(HelperThreads::pictures) ? nothing : nullptr;
@@ -75,7 +75,8 @@ EGLDisplay open_display(const Candidate& candidate) {
 EGLContext open_context(EGLDisplay display) {
   const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
                                EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                               // Last, as not every driver tells of a reset: then `lost` is never true.
+                               // Last, to be left out below for drivers that cannot report a reset:
+                               // `lost` is then never true.
                                EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET,
                                EGL_NONE};
   if (!eglBindAPI(EGL_OPENGL_API)) return EGL_NO_CONTEXT;
@@ -100,7 +101,7 @@ Opened open(Candidate& candidate) {
     device.problem = "EGL cannot open the device";
     return {};
   }
-  gladLoaderLoadEGL(opened.display);  // a display has extensions of its own
+  gladLoaderLoadEGL(opened.display);  // each display has its own extensions
   opened.context = open_context(opened.display);
   if (opened.context == EGL_NO_CONTEXT) {
     device.problem = "no OpenGL 4.5 core context";
@@ -115,7 +116,8 @@ Opened open(Candidate& candidate) {
   device.name = gl_text(GL_RENDERER);
   device.version = gl_text(GL_VERSION);
   device.vendor = gl_text(GL_VENDOR);
-  device.software = device.software || software_renderer();  // some drivers offer it as an ordinary device
+  // Some drivers list Mesa's rasteriser as an ordinary device.
+  device.software = device.software || software_renderer();
   device.usable = true;
   return opened;
 }
@@ -125,8 +127,8 @@ void close(const Opened& opened) {
   eglDestroyContext(opened.display, opened.context);
 }
 
-/// The same software device through a display of its own: Mesa has its helper threads by display. Nothing
-/// where that is another device.
+/// Opens the same software device through the display of `threads`, because in Mesa each display has its own
+/// helper threads. Empty if that display leads to another device.
 std::optional<Opened> open_apart(Candidate candidate, HelperThreads threads) {
   const std::string wanted = candidate.device.name;
   candidate.threads = threads;

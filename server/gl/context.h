@@ -1,4 +1,4 @@
-// A headless OpenGL 4.5 core context through surfaceless EGL. Knows no cloth.
+// A headless OpenGL 4.5 core context through surfaceless EGL.
 #pragma once
 
 #include <memory>
@@ -12,36 +12,35 @@ namespace clothlab::gl {
 
 struct Device {
   int index = 0;          ///< the N of `--gpu N`
-  std::string name;       ///< GL_RENDERER, empty where no context could be made
+  std::string name;       ///< GL_RENDERER; empty if no context could be made
   std::string version;    ///< GL_VERSION
   std::string vendor;     ///< GL_VENDOR
-  std::string node;       ///< /dev/dri/... or empty
-  bool software = false;  ///< Mesa's rasteriser
-  bool usable = false;    ///< OpenGL 4.5 core works on it
-  std::string problem;    ///< why not usable
+  std::string node;       ///< device file /dev/dri/..., or empty
+  bool software = false;  ///< it is Mesa's software rasteriser
+  bool usable = false;    ///< OpenGL 4.5 core works on this device
+  std::string problem;    ///< why it is not usable
 };
 
-/// Mesa's rasteriser draws in the context that is current here.
+/// True if the calling thread's current context is one of Mesa's software rasteriser.
 bool software_renderer();
 
-/// GL_RENDERER of the context that is current here.
+/// GL_RENDERER of the calling thread's current context.
 std::string renderer_name();
 
 /// Every EGL device in the driver's order; opens a context on each to ask its name.
 Result<std::vector<Device>> list_devices();
 
-/// Software OpenGL computes on helper threads, which all contexts of one display share: they work in turns,
-/// one dispatch after another, however long, at the priority of whoever made the first context there. Mesa
-/// tells as many displays of its software device apart as there are names here; who shares each:
+/// Software OpenGL computes on helper threads, which all contexts of one EGL display share. They carry out
+/// one dispatch after another, however long, at the priority of the thread that made the display's first
+/// context. Mesa has four displays for its software device; each value names the contexts that share one.
 enum class HelperThreads { light_sessions, heavy_sessions, lab, pictures };
 
-/// A context that belongs to the thread that made it current. Order of devices: `gpu` if given; else the
-/// first usable one that is not software; else Mesa's software rasteriser.
+/// A context that belongs to the thread that made it current. Its device is `gpu` if given; else the first
+/// usable device that is not software; else Mesa's software rasteriser.
 class Context {
  public:
-  /// Makes a context and makes it current on the calling thread. `threads` means nothing to a GPU, and where
-  /// Mesa has no further display they are those of light sessions. Error: what is missing and the package to
-  /// install.
+  /// Makes a context and makes it current on the calling thread. `threads` has no effect on a GPU; if Mesa
+  /// cannot open another display, light_sessions is used. Error: what is missing and the package to install.
   static Result<std::unique_ptr<Context>> create(std::optional<int> gpu = std::nullopt,
                                                  HelperThreads threads = HelperThreads::light_sessions);
   ~Context();
@@ -49,8 +48,8 @@ class Context {
   Context& operator=(const Context&) = delete;
 
   const Device& device() const { return device_; }
-  /// Whether the device was reset, and all that was on it is gone: nothing of this context works any more.
-  /// The context must be current here.
+  /// True if the device was reset: its data are lost, and nothing of this context works any more. The context
+  /// must be current on the calling thread.
   bool lost() const;
   /// Moves the context to the calling thread (it must be current on no other).
   Status make_current();

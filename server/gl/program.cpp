@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Source text with its includes and repetitions expanded, and where each of its lines came from. (Mesa
-/// forgets the file that a #line directive names in some of its messages, so lines are counted here.)
+/// Source text with its includes and repetitions expanded, and the file and line that each of its lines came
+/// from. (Some of Mesa's messages ignore the file that a #line directive names.)
 struct Source {
   std::string text;
   std::vector<std::string> origins;  ///< "shaders/FILE:LINE" of each line of text
@@ -53,7 +53,7 @@ class Expansion {
     for (int number = 1; std::getline(lines, line); ++number) {
       const std::string origin = "shaders/" + path + ":" + std::to_string(number);
       std::smatch match;
-      const bool directive = line.find('#') != std::string::npos;  // spares most lines the slow look
+      const bool directive = line.find('#') != std::string::npos;  // saves most lines the slow regex
       if (directive && std::regex_match(line, each)) {
         repeats = true;
       } else if (directive && std::regex_match(line, end)) {
@@ -169,7 +169,7 @@ void Program::list_uniforms() {
   GLint count = 0, longest = 0;
   glGetProgramiv(id_, GL_ACTIVE_UNIFORMS, &count);
   glGetProgramiv(id_, GL_ACTIVE_UNIFORM_MAX_LENGTH, &longest);
-  std::string name(static_cast<std::size_t>(longest), '\0');  // room for the 0 at its end
+  std::string name(static_cast<std::size_t>(longest), '\0');  // the 0 at its end included
   for (GLuint i = 0; i < static_cast<GLuint>(count); ++i) {
     glGetActiveUniformName(id_, i, longest, nullptr, name.data());
     const GLint location = glGetUniformLocation(id_, name.c_str());

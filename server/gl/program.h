@@ -1,6 +1,6 @@
 // A linked program made from shader files below shaders/, with #include, #define and a repetition: the lines
-// between `#each Law` and `#end` are there once for each name that the define LAWS lists, with that name in
-// the place of Law. (GLSL has neither templates nor ##.)
+// between `#each Law` and `#end` are repeated for each name in the define LAWS, with that name in place of
+// `Law`. (GLSL has neither templates nor ##.)
 #pragma once
 
 #include <glad/gl.h>
@@ -36,12 +36,13 @@ class Program {
 
   void use() const { glUseProgram(id_); }
   GLuint id() const { return id_; }
-  /// Of a uniform, an array by its name alone. -1 where it is not used, which glProgramUniform ignores.
+  /// The location of a uniform; an array's name comes without [0]. -1 if the program does not use the
+  /// uniform; glProgramUniform ignores -1.
   GLint location(std::string_view name) const {
     const auto found = uniforms_.find(name);
     return found == uniforms_.end() ? -1 : found->second;
   }
-  /// Sets a uniform, if it is used.
+  /// Sets a uniform, if the program uses it.
   void set(std::string_view name, GLint value) const { glProgramUniform1i(id_, location(name), value); }
   void set(std::string_view name, GLfloat value) const { glProgramUniform1f(id_, location(name), value); }
 
@@ -49,7 +50,7 @@ class Program {
   void list_uniforms();
 
   GLuint id_ = 0;
-  std::map<std::string, GLint, std::less<>> uniforms_;  ///< locations, as the driver told them once
+  std::map<std::string, GLint, std::less<>> uniforms_;  ///< locations by name, read once after linking
 };
 
 }  // namespace clothlab::gl

@@ -35,7 +35,7 @@ void StageTimer::poll(StageTimes& out) {
   for (std::size_t i = 0; i < stages_; ++i) {
     GLuint64 now = 0;
     glGetQueryObjectui64v(marks_[i + 1], GL_QUERY_RESULT, &now);
-    // Clocks of some GPUs start anew when they wake: not a time.
+    // Some GPUs' clocks restart when the GPU wakes: the difference is then no duration.
     if (now >= before) out.add({names_[i], 1e-9 * static_cast<double>(now - before)});
     before = now;
   }

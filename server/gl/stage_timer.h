@@ -1,4 +1,5 @@
-// How long stages of queued GPU work take, found out without waiting: timestamps between them (GL_TIMESTAMP).
+// Measures how long the stages of queued GPU work take, without waiting for the GPU: it queues timestamps
+// (GL_TIMESTAMP) between them.
 #pragma once
 
 #include <glad/gl.h>
@@ -10,10 +11,10 @@ namespace clothlab::gl {
 
 struct StageTime {
   const char* stage = "";
-  double seconds = 0;  ///< on the GPU, from the end of the stage before
+  double seconds = 0;  ///< GPU time since the end of the stage before [s]
 };
 
-/// Some of them, without an allocation; those beyond its room are left out.
+/// A list of at most 8 stage times, without an allocation; further times are left out.
 class StageTimes {
  public:
   void add(const StageTime& time) {
@@ -38,18 +39,19 @@ class StageTimer {
   StageTimer(const StageTimer&) = delete;
   StageTimer& operator=(const StageTimer&) = delete;
 
-  /// What is queued from here to `end` is timed, unless the times of the last time are still on their way.
+  /// Starts to time what is queued until `end`. Does nothing while earlier times wait for `poll`.
   void begin();
-  /// What has been queued since `begin` or the last stage was this one: a literal. Nothing unless begun.
+  /// Ends the stage `name` (a string literal): what has been queued since `begin` or the stage before. Does
+  /// nothing unless `begin` has started to time.
   void stage(const char* name);
   void end();
-  /// Adds the times of the stages between the last `begin` and `end`, once they have arrived. Never waits.
+  /// Appends the times of the stages between the last `begin` and `end`, once they have arrived. Never waits.
   void poll(StageTimes& out);
 
  private:
   enum class State { idle, running, waiting };
   State state_ = State::idle;
-  std::array<GLuint, most_stages + 1> marks_{};  ///< queries; made when first needed
+  std::array<GLuint, most_stages + 1> marks_{};  ///< timestamp queries, made when first needed
   std::array<const char*, most_stages> names_{};
   std::size_t stages_ = 0;
 };

@@ -20,6 +20,7 @@ bool complete(const Outcome& outcome) {
   return std::visit([](const auto& result) { return result.complete; }, outcome);
 }
 
+/// The result with the scene's present name in the place of the one it was measured under.
 Outcome named(Outcome outcome, const std::string& scene) {
   std::visit([&](auto& result) { result.scene = scene; }, outcome);
   return outcome;
@@ -28,7 +29,7 @@ Outcome named(Outcome outcome, const std::string& scene) {
 }  // namespace
 
 fs::path cache_folder() {
-  // A relative path would be somewhere else in every folder; the XDG specification has it ignored.
+  // A relative path would depend on the current folder; the XDG specification says to ignore it.
   const char* cache = std::getenv("XDG_CACHE_HOME");
   if (cache && fs::path(cache).is_absolute()) return fs::path(cache) / "clothlab" / "lab";
   const char* home = std::getenv("HOME");
@@ -72,7 +73,8 @@ std::optional<Outcome> Cache::read(const std::string& hash) const {
     return std::nullopt;
   const Result<std::string> text = read_file(path);
   if (!text) return std::nullopt;
-  // With limits on depth and size, and errors as values: anybody may have written to that folder.
+  // The file is not trusted, as any program may write to the folder: depth and size are limited, and bad JSON
+  // is an Error.
   const Result<json> file = scene::parse_json(*text, path.string(), false, {most_bytes_a_file});
   if (!file || !file->is_object() || !file->contains("key") || !file->contains("result") ||
       file->at("key") != hash)
@@ -89,7 +91,7 @@ void Cache::write(const std::string& hash, const Outcome& outcome) const {
   const std::string text =
       json{{"key", hash}, {"result", to_json(outcome)}}.dump(-1, ' ', false, json::error_handler_t::replace);
   if (text.size() > most_bytes_a_file) return;
-  // A folder that cannot be written is no error: it is a cache.
+  // A folder that cannot be written is no error: the result is measured again next time.
   if (!replace_file(folder_ / (hash + suffix), text)) return;
   remove_oldest();
 }
@@ -104,7 +106,7 @@ void Cache::remove_oldest() const {
   std::uintmax_t bytes = 0;
   std::error_code failure;
   for (fs::directory_iterator at(folder_, failure), end; !failure && at != end; at.increment(failure)) {
-    std::error_code gone;  // another program may be tidying up as well
+    std::error_code gone;  // set if another program has deleted the file meanwhile
     const std::string extension = at->path().extension().string();
     if (extension != suffix && extension != unfinished_suffix) continue;
     File file{at->path(), at->last_write_time(gone), at->file_size(gone)};

@@ -1,6 +1,6 @@
-// Results of the lab that were measured before: the same scene, job, build and device give the same answer
-// without work. In memory, and on disk for other runs of the program; a disk that cannot be written is no
-// error, and a file that is damaged or not ours is as good as none.
+// Keeps results of the lab, so that the same scene, job, build and device give the same answer without
+// measuring again: in memory, and on disk for other runs of the program. A disk that cannot be written is no
+// error, and a file that is damaged or was not written by this program is ignored.
 #pragma once
 
 #include <cstdint>
@@ -14,16 +14,17 @@
 
 namespace clothlab::lab {
 
-/// What a result depends on.
+/// Identifies a result by all that it depends on.
 struct CacheKey {
-  std::string hash;   ///< 32 hexadecimal digits; of the scene without its names, colours and textures, the
+  std::string hash;   ///< 32 hexadecimal digits, from the scene without its names, colours and textures, the
                       ///< job, the program and its shaders, and the renderer
-  std::string scene;  ///< its name, which a result carries though it does not depend on it
+  std::string scene;  ///< the scene's name: put into a result that is found, but no part of the hash
 };
 /// `renderer`: gl::renderer_name() of the context the job would run in.
 CacheKey cache_key(const scene::Document& document, const Job& job, const std::string& renderer);
 
-/// $XDG_CACHE_HOME/clothlab/lab, or ~/.cache/clothlab/lab; empty where neither is known.
+/// $XDG_CACHE_HOME/clothlab/lab, or ~/.cache/clothlab/lab; empty where neither $XDG_CACHE_HOME nor $HOME is
+/// an absolute path.
 std::filesystem::path cache_folder();
 
 /// All functions may be called from any thread, and several programs may use one folder.
@@ -34,12 +35,12 @@ class Cache {
     std::uintmax_t bytes_on_disk = 64 * 1024 * 1024;
   };
 
-  /// Results stay in memory only where `folder` is empty or cannot be written.
+  /// Where `folder` is empty or cannot be written, results are kept in memory only.
   explicit Cache(std::filesystem::path folder = cache_folder()) : Cache(std::move(folder), Limits{}) {}
   Cache(std::filesystem::path folder, Limits limits) : folder_(std::move(folder)), limits_(limits) {}
 
   std::optional<Outcome> find(const CacheKey& key);
-  /// Only what is complete is kept. The oldest go where there is no room.
+  /// Keeps `outcome` if it is complete. Where there is no room, the oldest results are deleted.
   void keep(const CacheKey& key, const Outcome& outcome);
 
  private:
@@ -55,7 +56,7 @@ class Cache {
   std::filesystem::path folder_;
   Limits limits_;
   std::mutex mutex_;
-  std::list<Entry> recent_;  ///< the latest used first
+  std::list<Entry> recent_;  ///< the most recently used first
 };
 
 }  // namespace clothlab::lab

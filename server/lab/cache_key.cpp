@@ -1,4 +1,4 @@
-// What a result of the lab depends on, as one hash.
+// Computes the key under which a result of the lab is cached: a hash of all that the result depends on.
 #include <algorithm>
 #include <vector>
 
@@ -14,19 +14,19 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// FNV-1a over 128 bits as two lanes with different starts: not against an adversary, who has nothing to
-/// gain.
+/// A hash of 128 bits from two lanes of 64 bits: FNV-1a, and a variant of it. It does not withstand an
+/// attacker, who would gain nothing from a collision.
 class Hash {
  public:
   void add(const std::string& bytes) {
     for (const char byte : bytes) {
       const auto value = static_cast<std::uint8_t>(byte);
       first_ = (first_ ^ value) * 0x100000001b3ull;
-      // Another multiplier, so that the two lanes do not collide together.
+      // A different multiplier, so that bytes that collide in one lane do not collide in the other.
       second_ = (second_ + value + 1) * 0x9e3779b97f4a7c15ull;
       second_ ^= second_ >> 32;
     }
-    // Where one part ends and the next begins is part of it.
+    // The length is hashed too, so that "ab", "c" and "a", "bc" give different hashes.
     first_ = (first_ ^ bytes.size()) * 0x100000001b3ull;
     second_ = (second_ ^ bytes.size()) * 0x9e3779b97f4a7c15ull;
   }
@@ -39,7 +39,7 @@ class Hash {
   std::uint64_t first_ = 0xcbf29ce484222325ull, second_ = 0x84222325cbf29ce4ull;
 };
 
-/// The program and the shaders it compiles while it runs.
+/// A hash of the program's file and of the shaders that it compiles while it runs.
 std::string build_hash() {
   Hash hash;
   if (const Result<std::string> program = read_file("/proc/self/exe")) hash.add(*program);
@@ -50,7 +50,7 @@ std::string build_hash() {
     for (fs::recursive_directory_iterator at(*shaders, failure), end; !failure && at != end;
          at.increment(failure))
       if (at->is_regular_file(failure)) files.push_back(at->path());
-  std::sort(files.begin(), files.end());  // folders are listed in any order
+  std::sort(files.begin(), files.end());  // the order of a folder's entries is not defined
   for (const fs::path& file : files) {
     hash.add(fs::relative(file, *shaders, failure).string());
     if (const Result<std::string> text = read_file(file)) hash.add(*text);
@@ -58,7 +58,7 @@ std::string build_hash() {
   return hash.text();
 }
 
-/// Without what cannot matter to how the cloth moves.
+/// The scene without what does not change the motion: names, colours and textures.
 json what_moves(json scene) {
   scene.erase("name");
   for (json& cloth : scene["cloths"])
@@ -67,7 +67,7 @@ json what_moves(json scene) {
   return scene;
 }
 
-/// None named means all; the order in which they are named is nothing.
+/// The names of `methods` (empty: of all), sorted, as their order does not change a result.
 json names(std::vector<scene::Method> methods) {
   if (methods.empty()) methods.assign(scene::methods.begin(), scene::methods.end());
   std::sort(methods.begin(), methods.end());

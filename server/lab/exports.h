@@ -1,4 +1,4 @@
-// Results of the lab as JSON, CSV and SVG. The command line writes what the page shows: there is one drawing.
+// Results of the lab as JSON, CSV and SVG. The command line and the page use the same drawings.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,24 +9,25 @@
 
 namespace clothlab::lab {
 
-/// Every number there is, with its unit in its name; see README.md here.
+/// The whole result; the names of numbers contain their units. See README.md here.
 json to_json(const Outcome& outcome);
 
-/// The result that to_json wrote; numbers that were not finite are NaN, limits of dt infinite. Error: it is
-/// no such JSON, with what is wrong.
+/// Reads a result that to_json wrote. Numbers that were not finite become NaN, but a step limit becomes
+/// infinite. Error: what is wrong with the JSON.
 Result<Outcome> from_json(const json& value);
 
-/// What a chart leaves out, for people: "verlet, vbd (3 points): the budget is spent", a text a reason.
+/// The points that a chart leaves out, for people, one text for each reason: "verlet, vbd (3 points): the
+/// budget is spent".
 std::vector<std::string> left_out(const Chart& chart);
 
-/// A header and a row a point, cell, trial or variant.
+/// A header, then one row for each point (chart), cell (stability), trial (choose) or variant (simplify).
 std::string csv(const Outcome& outcome);
 
-/// A picture of its own, without scripts and without inline styles. `axis` is the chart's (and the choice's)
-/// horizontal one, the other kinds have none. Every mark that stands for a setting carries the attribute
-/// data-index, its place in the JSON's list of points; the root carries the scales (data-x0, data-x1,
-/// data-y0, data-y1: the range of values; data-left, data-right, data-top, data-bottom: where that is in the
-/// view box).
+/// A complete SVG file, without scripts and without inline styles. `axis` is the horizontal axis of a chart
+/// or a choice; the other results have no axis to choose. In a chart or a choice every mark of a setting has
+/// the attribute data-index, its place in the JSON's list of points, and the root has the scales (data-x0,
+/// data-x1, data-y0, data-y1: the ranges of values; data-left, data-right, data-top, data-bottom: where these
+/// are in the view box). In a stability map the panel of each method has the scales.
 std::string svg(const Outcome& outcome, Axis axis = Axis::position);
 
 }  // namespace clothlab::lab

@@ -1,5 +1,5 @@
-// Results of the lab as CSV (RFC 4180, but with plain line feeds): a header with the units, then a row a
-// point, cell, trial or variant. What there is no number for is left empty.
+// Results of the lab as CSV (RFC 4180, but with plain line feeds): a header with the units, then one row for
+// each point, cell, trial or variant. A field without a finite number is left empty.
 #include <cmath>
 
 #include "server/base/text.h"
@@ -95,7 +95,7 @@ std::string of(const StabilityMap& map) {
         table.add(column.reason);
       };
       for (const MapCell& cell : column.cells) row(&cell);
-      if (column.cells.empty()) row(nullptr);  // what theory says of it is known all the same
+      if (column.cells.empty()) row(nullptr);  // a column without trials still has theory's limit
     }
   return table.finish();
 }

@@ -16,7 +16,7 @@ json number(const std::optional<double>& value) {
   return value ? number(*value) : json();
 }
 
-/// An end of an interval; null where too few values make none.
+/// One end of an interval; null where there were too few values for an interval.
 json end_of(const Spread& spread, double end) {
   return std::isfinite(spread.high) ? number(end) : json();
 }
@@ -77,7 +77,7 @@ json of(const AxisFacts& facts) {
           {"float32_floor", number(facts.float32_floor)}};
 }
 
-/// What every result of the lab begins with.
+/// The members that every result of the lab starts with.
 template <class Result>
 json heading(const char* kind, const Result& result) {
   return {{"kind", kind},

@@ -1,5 +1,5 @@
-// Results of the lab back from their JSON. What is not as to_json writes it throws within this file and is an
-// Error outside.
+// Reads results of the lab from their JSON. Within this file JSON that to_json would not write causes an
+// exception; from_json turns it into an Error.
 #include <algorithm>
 #include <exception>
 #include <limits>
@@ -12,7 +12,7 @@ namespace clothlab::lab {
 
 namespace {
 
-/// Numbers that were not finite are null; only limits of dt have a meaning without end.
+/// Null stands for a number that was not finite and is read as NaN. (An infinite step limit: see `variant`.)
 double number(const json& value) {
   return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
 }
@@ -27,7 +27,7 @@ scene::Method method(const json& value) {
   return *method;
 }
 
-/// What the method does not look at is as in a Setting that nobody touched.
+/// Fields that the method does not use are null and keep a Setting's defaults.
 Setting setting(const json& value) {
   Setting setting;
   setting.method = method(value.at("method"));
@@ -84,7 +84,7 @@ LeftOut left_out(const json& value) {
   return left_out;
 }
 
-/// What every result of the lab begins with.
+/// Reads the members that every result of the lab starts with.
 template <class Result>
 void read_heading(Result& result, const json& value) {
   result.scene = value.at("scene");
@@ -208,7 +208,7 @@ Outcome any(const json& value) {
 Result<Outcome> from_json(const json& value) {
   try {
     return any(value);
-  } catch (const std::exception& problem) {  // nlohmann's, and those of this file
+  } catch (const std::exception& problem) {  // thrown by nlohmann's library or by this file
     return Error{"result of the lab", problem.what(), "what this version of the program wrote"};
   }
 }

@@ -4,7 +4,7 @@ namespace clothlab::lab {
 
 namespace {
 
-/// The control of one kind of job, made from that of any.
+/// The control for one kind of job, which passes everything on to `control`, the control for any kind.
 template <class Kind>
 Control<Kind> control_of(const Control<Outcome>& control) {
   return {control.stop, control.progress, [&control](const Kind& so_far) { control.arrived(so_far); }};

@@ -1,4 +1,5 @@
-// The lab's jobs as one type each way: what the command line, the WebSocket and the cache ask for and get.
+// One type for all of the lab's jobs and one for all of their results, as the command line, the WebSocket and
+// the cache use them.
 #pragma once
 
 #include <variant>
@@ -13,11 +14,11 @@ namespace clothlab::lab {
 using Job = std::variant<ChartRequest, MapRequest, ChooseRequest, SimplifyRequest>;
 using Outcome = std::variant<Chart, StabilityMap, Choice, Simplification>;
 
-/// "chart", "stability", "choose", "simplify".
+/// "chart", "stability", "choose" or "simplify".
 const char* name(const Job& job);
 const char* name(const Outcome& outcome);
 
-/// Runs it; needs a current GL context on this thread.
+/// Runs `job` on the scene `document`; needs a current GL context on this thread.
 Result<Outcome> run(const scene::Document& document, const Job& job, const Control<Outcome>& control);
 
 }  // namespace clothlab::lab

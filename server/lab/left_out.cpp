@@ -6,7 +6,7 @@
 namespace clothlab::lab {
 
 std::vector<std::string> left_out(const Chart& chart) {
-  std::vector<std::string> reasons;  // in the order in which they came up
+  std::vector<std::string> reasons;  // each once, in the order of the chart's list
   std::map<std::string, std::map<scene::Method, int>> points;
   for (const LeftOut& one : chart.left_out) {
     if (!points.contains(one.reason)) reasons.push_back(one.reason);

@@ -1,4 +1,4 @@
-// What axes, jobs and results are called, on the command line, over the WebSocket and in files.
+// The names of axes, jobs and results on the command line, over the WebSocket and in files.
 #include <algorithm>
 
 #include "server/lab/job.h"
@@ -6,7 +6,7 @@
 namespace clothlab::lab {
 
 namespace {
-constexpr std::array kinds{"chart", "stability", "choose", "simplify"};  // in the order of both variants
+constexpr std::array kinds{"chart", "stability", "choose", "simplify"};  // in the order of Job and Outcome
 constexpr std::array axis_names{"position", "energy", "strain", "rest"};
 }  // namespace
 

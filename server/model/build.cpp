@@ -15,10 +15,11 @@ namespace {
 
 using Index = std::uint32_t;
 
-/// Of a vertex [kg]: the shaders multiply its inverse by stiffnesses up to 1e12 N/m, in float32.
+/// The smallest mass of a vertex [kg]: the shaders multiply its inverse by stiffnesses up to 1e12 N/m, in
+/// float32.
 constexpr double least_mass = 1e-15;
 
-/// Turns points about an axis.
+/// Rotates points about a coordinate axis (0: x, 1: y, 2: z).
 struct Turn {
   int axis = 0;
   double cosine = 1, sine = 0;
@@ -45,7 +46,7 @@ std::vector<dvec3> placed(const scene::Transform& transform, std::vector<dvec3> 
   return points;
 }
 
-/// The vertices of a cloth, numbered within it, that a pin or a weight names.
+/// The vertices that the `at` of a pin or a weight selects, as indices within the cloth.
 std::vector<Index> held_by(const scene::Cloth& cloth, const scene::At& at,
                            const std::vector<dvec3>& position) {
   const auto* grid = std::get_if<scene::Grid>(&cloth.mesh);
@@ -72,7 +73,7 @@ std::vector<Index> held_by(const scene::Cloth& cloth, const scene::At& at,
   return held;
 }
 
-/// The same, or why there are none; `where` is the JSON Pointer of `at`.
+/// Like held_by, but an error if `at` selects no vertex; `where` is the JSON Pointer of `at`.
 Result<std::vector<Index>> held_at(const std::string& where, const scene::Cloth& cloth, const scene::At& at,
                                    const std::vector<dvec3>& position) {
   std::vector<Index> held = held_by(cloth, at, position);
@@ -91,7 +92,7 @@ Index motion_index(std::vector<scene::Motion>& motions, const scene::Motion& mot
   return index;
 }
 
-/// Lists for each vertex the items that touch it; `corners(item)` gives an item's vertices.
+/// Lists for each vertex the items that have it as a corner; `corners(item)` gives an item's vertices.
 template <class Items, class Corners>
 Adjacency adjacency(std::size_t vertex_count, const Items& items, Corners corners) {
   Adjacency result;
@@ -106,7 +107,7 @@ Adjacency adjacency(std::size_t vertex_count, const Items& items, Corners corner
   return result;
 }
 
-/// Lists for each vertex the corners of elements that it is.
+/// Lists for each vertex the element corners at it, as in Batch::at_vertex.
 template <class Law>
 Adjacency corners_at(std::size_t vertex_count, const Batch<Law>& batch) {
   std::vector<Index> corners;

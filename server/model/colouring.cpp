@@ -19,14 +19,15 @@ GridPlace place(const scene::Grid& grid, Index vertex) {
   return {vertex % columns, vertex / columns};
 }
 
-/// Of a law without a closed form.
+/// For laws without a closed form: the element stays uncoloured.
 template <class Law>
 Index grid_colour(const scene::Grid&, Index, const Element<Law>&) {
   return uncoloured;
 }
 
-/// Twelve classes: six directions, two colours each. Along its direction a spring's two ends are one or two
-/// vertices apart: counted in that length from the edge of the grid, even and odd ones alternate.
+/// A grid spring's colour, in [0, 12): two for each of six pairs of direction and length. A spring's ends are
+/// one or two vertices apart in its direction; its distance from the grid's edge in that length, even or odd,
+/// picks the colour.
 Index grid_colour(const scene::Grid& grid, Index first_vertex, const Spring& spring) {
   const GridPlace a = place(grid, spring.vertices[0] - first_vertex),
                   b = place(grid, spring.vertices[1] - first_vertex);
@@ -37,7 +38,8 @@ Index grid_colour(const scene::Grid& grid, Index first_vertex, const Spring& spr
   return (b.column > a.column ? 4 : 6) + a.row % 2;
 }
 
-/// The colour that none of `taken` is; of several, the one with fewest members; a new one if there is none.
+/// The colour with fewest members among those not `taken`, or a new colour if all are taken. Counts one more
+/// member for it.
 Index least_crowded(const std::vector<char>& taken, std::vector<Index>& members) {
   Index best = uncoloured;
   for (Index colour = 0; colour < members.size(); ++colour)
@@ -50,7 +52,8 @@ Index least_crowded(const std::vector<char>& taken, std::vector<Index>& members)
   return best;
 }
 
-/// Colours the items of `queue` one by one; `neighbours(item, visit)` visits those that must differ from it.
+/// Colours the items of `queue` in order; `neighbours(item, visit)` calls visit(other) for each other item
+/// that must have a different colour.
 template <class Neighbours>
 void colour_greedily(const std::vector<Index>& queue, Neighbours neighbours, std::vector<Index>& colour) {
   std::vector<Index> members;
@@ -64,7 +67,7 @@ void colour_greedily(const std::vector<Index>& queue, Neighbours neighbours, std
   }
 }
 
-/// Sorts by colour; colours nobody has are left out.
+/// Groups the items by colour; colours without items are left out.
 Colouring group(const std::vector<Index>& colour) {
   const Index count = colour.empty() ? 0 : *std::max_element(colour.begin(), colour.end()) + 1;
   std::vector<std::vector<Index>> groups(count);

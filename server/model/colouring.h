@@ -1,5 +1,6 @@
-// Colours for methods that move vertices one after another (PBD, XPBD, VBD): what has one colour has no
-// vertex in common, or no element, and so can be done at once without a race, in any order, with one outcome.
+// Colours for methods that move vertices one after another (PBD, XPBD, VBD). Elements of one colour share no
+// vertex, and vertices of one colour share no element: all can be treated at once without a race, and the
+// order does not change the result.
 #pragma once
 
 #include <cstdint>
@@ -16,15 +17,16 @@ struct Colouring {
   std::uint32_t colours() const { return static_cast<std::uint32_t>(offsets.size()) - 1; }
 };
 
-/// Elements of one colour share no vertex. A grid's springs: the 12 colours of their 12 directions in closed
-/// form, fewer where kinds of springs are missing. All else: greedily, least crowded colour first.
-/// Deterministic. Defined for every law.
+/// Colours elements so that those of one colour share no vertex. A grid's springs get 12 colours in closed
+/// form, two for each of six pairs of direction and length, and fewer where kinds of springs are missing. All
+/// other elements are coloured greedily: each gets the colour with fewest members. Deterministic. Defined for
+/// every law.
 template <class Law>
 Colouring colour_elements(const Model& model, const scene::Scene& scene, const Batch<Law>& batch);
 
-/// Vertices of one colour have no element in common. Grids with springs: 5 colours, (column + 2 row) mod 5.
-/// Other meshes: greedily, the vertices with most elements first (Welsh & Powell 1967), least crowded colour
-/// first. Deterministic.
+/// Colours vertices so that those of one colour share no element. A grid, with springs as its only elements,
+/// gets 5 colours: (column + 2 row) mod 5. Other meshes are coloured greedily: vertices with most elements
+/// first (Welsh & Powell 1967), each with the colour that has fewest members. Deterministic.
 Colouring colour_vertices(const Model& model, const scene::Scene& scene);
 
 }  // namespace clothlab::model

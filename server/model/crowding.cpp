@@ -12,7 +12,7 @@ namespace {
 
 using Cell = std::array<std::int64_t, 3>;
 
-/// `shift`: 0 for the cell that x lies in; -1/2 for the lowest of the eight nearest.
+/// `shift` 0: the grid cell that contains x [m]; -1/2: the lowest of the eight cells nearest to x.
 Cell cell_of(const glm::dvec3& x, double cell, double shift) {
   Cell result;
   for (int axis = 0; axis < 3; ++axis)
@@ -30,7 +30,7 @@ double crowding(const std::vector<glm::dvec3>& positions, double cell) {
   cells.reserve(positions.size());
   for (const glm::dvec3& x : positions) cells.push_back(cell_of(x, cell, 0.0));
   std::sort(cells.begin(), cells.end());
-  // Golden-ratio steps fall into no rhythm with the rows of a grid.
+  // Golden-ratio steps sample the vertices evenly: they do not repeat with the rows of a grid.
   const double size = static_cast<double>(positions.size());
   const std::size_t looks = std::min(sample, positions.size());
   std::size_t looked_at = 0;

@@ -1,4 +1,4 @@
-// How many others a neighbour search has to look at for each vertex, found before it is made.
+// Estimates the cost of a neighbour search before it is made: how many other vertices it examines per vertex.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -6,8 +6,8 @@
 
 namespace clothlab::model {
 
-/// The mean, over a sample of the vertices, of how many others lie in the eight cells, `cell` [m] wide, of a
-/// regular grid that are nearest to the vertex. Takes a sort of all vertices.
+/// The mean number of other vertices in the eight cells nearest to a vertex, in a regular grid with cells
+/// `cell` [m] wide. The mean is over at most 1000 of the vertices. Sorts all vertices by cell.
 double crowding(const std::vector<glm::dvec3>& positions, double cell);
 
 }  // namespace clothlab::model

@@ -12,7 +12,7 @@ namespace clothlab::model {
 
 namespace {
 
-/// visit(linear) for each of every law.
+/// Calls visit(linear) for each linearised element of every law.
 template <class Linears, class Visit>
 void each_linear(const Linears& linears, Visit visit) {
   std::apply(
@@ -25,14 +25,14 @@ void each_linear(const Linears& linears, Visit visit) {
       linears);
 }
 
-/// What corner `of` of an element has more than each other, in a vector of its corners.
+/// An element's edges as seen from corner `of`: its value in `vector` less that of each other corner.
 template <class Law, std::size_t corners>
 elements::Edges<Law> edges_of(const std::array<dvec3, corners>& vector, std::size_t of) {
   return elements::make_edges<Law>(
       [&](std::size_t other) { return vector[of] - vector[(of + 1 + other) % corners]; });
 }
 
-/// The element's matrix times a vector of its corners.
+/// The element's matrix times `vector`, which has one value for each corner.
 template <class Law, std::size_t corners, class Hessians, class MatrixOf>
 std::array<dvec3, corners> product(const Hessians& hessian, const std::array<dvec3, corners>& vector,
                                    MatrixOf matrix_of) {
@@ -101,9 +101,10 @@ void ElementOperator::apply(const Field& y, Field& stiff, Field& damped) const {
   });
 }
 
-// An element's share of y.Ky is |sum of a_c|^2 with a_c = L y_c / sqrt(m_c) for its f free corners, L a root
-// of its matrix, and |sum of f vectors|^2 <= f times the sum of their squares (Cauchy & Schwarz), whatever
-// the masses: K is bounded by a matrix of one 3x3 block a vertex, the sum of f K_cc / m_c over its elements.
+// An element adds |sum of a_c|^2 to y.Ky, with a_c = L_c y_c / sqrt(m_c) for each of its f free corners c and
+// L_c^T L_c = K_cc, the corner's block of its matrix. For any masses |sum of f vectors|^2 <= f times the sum
+// of their squares (Cauchy & Schwarz). So K is bounded by a matrix with one 3x3 block for each vertex: the
+// sum of f K_cc / m_c over its elements.
 template <class MatrixOf>
 double ElementOperator::bound(MatrixOf matrix_of) const {
   std::vector<glm::dmat3> block(scale_.size(), glm::dmat3(0.0));
@@ -112,7 +113,7 @@ double ElementOperator::bound(MatrixOf matrix_of) const {
     const auto free = std::count_if(linear.vertices.begin(), linear.vertices.end(),
                                     [&](std::uint32_t vertex) { return !pinned(vertex); });
     for (std::size_t c = 0; c < corners; ++c) {
-      glm::dmat3 own(0.0);  // what the corner feels of its own moves along each axis
+      glm::dmat3 own(0.0);  // the corner's own block K_cc, one column for each axis
       for (int axis = 0; axis < 3; ++axis) {
         std::array<dvec3, corners> vector{};
         vector[c][axis] = 1.0;

@@ -1,6 +1,5 @@
-// Elements as data: a batch of each law (shaders/elements/) with the vertices, rest values and material of
-// its elements, and one loop over all of them, which the reference, the step limit and the limits on size
-// share.
+// Elements as data. For each element law (shaders/elements/) there is a batch with the vertices, rest values
+// and material of its elements. Batches::each and each_element loop over all of them.
 #pragma once
 
 #include <array>
@@ -23,17 +22,17 @@ struct Adjacency {
 template <class Law>
 struct Element {
   static constexpr std::size_t corners = elements::corners<Law>;
-  std::array<std::uint32_t, corners> vertices{};  ///< the corners; of a spring in rising order
+  std::array<std::uint32_t, corners> vertices{};  ///< the corners; a spring's are in rising order
   Law law;                                        ///< rest values and material
 };
 using Spring = Element<elements::Spring>;
 
 template <class Law>
 struct Batch : std::vector<Element<Law>> {
-  /// Of each vertex its (element, corner), as element * corners + corner, in rising order.
+  /// For each vertex the element corners at it, each as element * corners + corner, in rising order.
   Adjacency at_vertex;
 
-  /// Calls visit(element, corner) for each at a vertex.
+  /// Calls visit(element, corner) for each element that has `vertex` as its corner number `corner`.
   template <class Visit>
   void at(std::uint32_t vertex, Visit&& visit) const {
     constexpr auto corners = static_cast<std::uint32_t>(Element<Law>::corners);
@@ -42,7 +41,7 @@ struct Batch : std::vector<Element<Law>> {
   }
 };
 
-/// The batches of a model, one a law: what a new law is added to.
+/// The batches of a model, one for each law. A new law adds its batch here.
 struct Batches {
   Batch<elements::Spring> springs;
 
@@ -56,8 +55,8 @@ struct Batches {
   }
 };
 
-/// An element's edges as seen from one of its corners: what `difference(vertex)` says that this corner has
-/// more than each of the others, which follow it in the order of `vertices`.
+/// An element's edges as seen from one of its corners. `difference(vertex)` must return the value at this
+/// corner less the value at `vertex`; it is called for each other corner, in cyclic order from this one.
 template <class Law, class Difference>
 elements::Edges<Law> edges(const Element<Law>& element, std::size_t corner, Difference&& difference) {
   return elements::make_edges<Law>([&](std::size_t other) {
@@ -65,7 +64,7 @@ elements::Edges<Law> edges(const Element<Law>& element, std::size_t corner, Diff
   });
 }
 
-/// The edges of an element in a field, such as places or velocities: [vertex_count].
+/// The edges of an element in `field` [vertex_count], for example positions or velocities.
 template <class Law>
 elements::Edges<Law> edges(const Element<Law>& element, std::size_t corner, const std::vector<dvec3>& field) {
   const dvec3& here = field[element.vertices[corner]];

@@ -14,9 +14,9 @@ namespace clothlab::model {
 namespace {
 
 constexpr int most_iterations = 2000;
-constexpr int patience = 10;           // iterations that must bring ...
-constexpr double still_moving = 1e-4;  // ... this share of the limit, to go on
-constexpr double rounding = 1e-7;      // of a residual; its square is what it could still bring
+constexpr int patience = 10;           // iterations between two checks of progress
+constexpr double still_moving = 1e-4;  // go on if the limit has fallen by this share since the last check
+constexpr double rounding = 1e-7;      // a residual below this share of its terms counts as rounding error
 
 double dot(const Field& a, const Field& b) {
   double sum = 0.0;
@@ -24,12 +24,12 @@ double dot(const Field& a, const Field& b) {
   return sum;
 }
 
-/// A direction of the search with what the operators make of it: sums of directions are sums of all three.
+/// A search direction y with its products K y and C y. All three are linear: a sum of directions adds each.
 struct Direction {
   Field y, stiff, damped;
   explicit Direction(std::size_t count) : y(count), stiff(count), damped(count) {}
 
-  /// this = a this + b other.
+  /// Replaces this direction by a * this + b * other.
   void combine(double a, double b, const Direction& other) {
     for (std::size_t i = 0; i < y.size(); ++i) {
       y[i] = a * y[i] + b * other.y[i];
@@ -37,14 +37,14 @@ struct Direction {
       damped[i] = a * damped[i] + b * other.damped[i];
     }
   }
-  /// False if nothing is left to normalise.
+  /// Scales y to length 1; false if y is too short for that.
   bool normalise() {
     const double length = std::sqrt(dot(y, y));
     if (!(length > 1e-30)) return false;
     combine(1.0 / length, 0.0, *this);
     return true;
   }
-  /// Makes it of length 1 and perpendicular to unit vectors; false if it lies in their span.
+  /// Makes y perpendicular to the unit vectors `others` and of length 1; false if y lies in their span.
   bool orthonormalise(std::initializer_list<const Direction*> others) {
     if (!normalise()) return false;
     for (const Direction* other : others) combine(1.0, -dot(y, other->y), *other);
@@ -53,7 +53,7 @@ struct Direction {
   }
 };
 
-/// The limit falls fastest where stiffness * y.Ky + damping * y.Cy rises.
+/// The limit's negative slopes: to first order it falls as stiffness * y.Ky + damping * y.Cy rises.
 struct Weights {
   double stiffness = 0, damping = 0;
 };
@@ -107,7 +107,7 @@ ExtremeMode extreme_mode(const ElementOperator& elements, const LimitOfMode& lim
     };
     const double level = weight.stiffness * found.mode.omega_squared + weight.damping * found.mode.damping;
     for (std::size_t i = 0; i < count; ++i) residual.y[i] = image(best, i) - level * best.y[i];
-    // What is left of it by rounding is no direction.
+    // A residual that is only rounding error gives no direction. The limit could still fall by its square.
     const double terms = std::abs(weight.stiffness) * std::sqrt(dot(best.stiff, best.stiff)) +
                          std::abs(weight.damping) * std::sqrt(dot(best.damped, best.damped));
     if (dot(residual.y, residual.y) <= rounding * rounding * terms * terms) break;
@@ -115,7 +115,7 @@ ExtremeMode extreme_mode(const ElementOperator& elements, const LimitOfMode& lim
     if (!residual.orthonormalise({&best})) break;
     has_last = has_last && last.orthonormalise({&best, &residual});
 
-    // The best of the plane, or space, that the directions span.
+    // The best vector in the plane, or space, that the directions span: the largest eigenvector there.
     const Direction* basis[3] = {&best, &residual, &last};
     const int size = has_last ? 3 : 2;
     glm::dmat3 matrix(0.0);
@@ -125,7 +125,7 @@ ExtremeMode extreme_mode(const ElementOperator& elements, const LimitOfMode& lim
         for (std::size_t i = 0; i < count; ++i) sum += glm::dot(basis[row]->y[i], image(*basis[column], i));
         matrix[row][column] = matrix[column][row] = sum;
       }
-    if (!has_last) matrix[2][2] = -1e300;  // never the largest
+    if (!has_last) matrix[2][2] = -1e300;  // keeps the unused axis out of the largest eigenvector
     const glm::dvec3 share = largest_eigenpair(matrix).vector;
     if (has_last)
       last.combine(share[2], share[1], residual);

@@ -65,7 +65,7 @@ MeshArrays triangle_mesh_arrays(const scene::TriangleMesh& mesh, const scene::Sp
   arrays.position = mesh.vertices;
   arrays.triangles = mesh.triangles;
 
-  // Texture coordinates: the two axes along which the mesh is largest, over their extent.
+  // Texture coordinates: positions along the two axes in which the mesh is largest, over its largest extent.
   dvec3 low(1e300), high(-1e300);
   for (const dvec3& point : mesh.vertices) {
     low = glm::min(low, point);
@@ -90,7 +90,7 @@ MeshArrays triangle_mesh_arrays(const scene::TriangleMesh& mesh, const scene::Sp
     const Edge across = sorted(corners[0], corners[1]);
     if (!opposite.contains(across)) arrays.springs.push_back(spring(across, SpringKind::bend));
   }
-  // Two edges may have the same pair opposite them; one spring is enough.
+  // Two edges may have the same pair of vertices opposite them; one spring is enough.
   std::stable_sort(arrays.springs.begin(), arrays.springs.end(),
                    [](const MeshSpring& a, const MeshSpring& b) {
                      return std::tie(a.kind, a.a, a.b) < std::tie(b.kind, b.a, b.b);

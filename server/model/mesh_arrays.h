@@ -1,4 +1,4 @@
-// Triangles and springs of the two kinds of mesh. Internal to model/.
+// Vertices, triangles and springs of the two kinds of mesh: grids and triangle meshes. Internal to model/.
 #pragma once
 
 #include "server/model/model.h"
@@ -11,18 +11,20 @@ struct MeshSpring {
   SpringKind kind = SpringKind::structural;
 };
 
-/// What a mesh contributes, with vertex indices local to its cloth.
+/// The arrays of one mesh; vertex indices count within its cloth.
 struct MeshArrays {
   std::vector<dvec3> position;  ///< before the cloth's transform [m]
+  /// [vertex_count], each in [0, 1]: over the width and height of a grid, or over a mesh's largest extent.
   std::vector<glm::vec2> texture_coordinates;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<MeshSpring> springs;  ///< each once
+  std::vector<MeshSpring> springs;  ///< without duplicates
 };
 
-/// Springs of a kind whose stiffness is 0 are left out.
+/// The arrays of a grid. Kinds of springs whose stiffness is 0 are left out.
 MeshArrays grid_arrays(const scene::Grid& grid, const scene::Springs& material);
 
-/// Structural springs along the edges, bend springs between the vertices opposite an inner edge.
+/// The arrays of a triangle mesh: structural springs along the edges, bend springs between the two vertices
+/// opposite an edge of two triangles. Kinds of springs whose stiffness is 0 are left out.
 MeshArrays triangle_mesh_arrays(const scene::TriangleMesh& mesh, const scene::Springs& material);
 
 }  // namespace clothlab::model

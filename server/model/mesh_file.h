@@ -1,5 +1,5 @@
-// Meshes as files that other programs read: Wavefront OBJ and PLY. Positions in metres, to the last bit of
-// the float.
+// Meshes as files that other programs read: Wavefront OBJ and PLY. Positions are in metres and keep every bit
+// of the float.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -10,11 +10,11 @@
 
 namespace clothlab::model {
 
-/// `positions` [vertex_count] with the model's triangles and texture coordinates. `comment` is one line of
-/// text.
+/// An OBJ file of `positions` [vertex_count] [m] with the model's triangles and texture coordinates.
+/// `comment` is one line of text.
 std::string obj_text(const Model& model, const std::vector<glm::vec3>& positions, const std::string& comment);
 
-/// The same as binary little-endian PLY.
+/// A binary little-endian PLY file of the same mesh; `comment` is one line of text.
 std::string ply_bytes(const Model& model, const std::vector<glm::vec3>& positions,
                       const std::string& comment);
 

@@ -1,5 +1,5 @@
-// How pins and colliders move: closed forms of time, in double precision. Shared by the GPU path and the
-// reference.
+// The motion of pins and colliders as closed forms of time, in double precision. Shared by the GPU path and
+// the reference.
 #pragma once
 
 #include <glm/mat3x3.hpp>
@@ -9,7 +9,7 @@
 
 namespace clothlab::model {
 
-/// A rigid motion at one time: takes a home position to where it is, and tells how fast it moves there.
+/// A rigid motion at one time: maps a home position to its present position, and gives the velocity there.
 struct Pose {
   glm::dmat3 rotation{1.0};
   glm::dvec3 translation{0.0};       ///< [m]

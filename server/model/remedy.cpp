@@ -13,8 +13,8 @@ namespace clothlab::model {
 namespace {
 
 constexpr double safe_share = 0.8;
-constexpr double too_slow = 0.1;   // of the present step: what a user would not wait for
-constexpr double a_frame = 0.016;  // [s]
+constexpr double too_slow = 0.1;   // a step below this share of the present one makes a run too slow
+constexpr double a_frame = 0.016;  // [s], a display frame at about 60 Hz
 
 double within_safe_share(double limit) {
   return std::max(rounded_down(safe_share * limit), scene::ranges::dt.minimum);
@@ -24,7 +24,7 @@ double within_safe_share(double limit) {
 
 double rounded_down(double value) {
   const int digits = 1 - static_cast<int>(std::floor(std::log10(value)));
-  // Multiplying by a negative power of ten would leave its rounding in the result.
+  // Negative powers of ten are rounded: divide by the exact positive power instead of multiplying by them.
   const double scale = std::pow(10.0, std::abs(digits));
   const double shifted = digits >= 0 ? value * scale : value / scale;
   const double whole = std::floor(shifted + 1e-9);
@@ -53,8 +53,8 @@ Remedy remedy(const Model& model, const scene::Scene& scene, double limit) {
     remedy.dt = within_safe_share(limit);
     remedy.text = "set dt to " + significant(remedy.dt, 4) + " s, 80 % of the limit";
   } else if (solver.method != scene::Method::implicit_euler) {
-    // Not the limit about the rest shape: the cloth is stiffer as it lies, or something else feeds it. A
-    // shorter step would be tried again and again.
+    // The limit about the rest shape is not the cause: the cloth is stiffer in its present shape, or some
+    // other part adds energy. A shorter step might have to be shortened again and again.
     remedy.dt = std::min(solver.dt, a_frame);
     remedy.method = scene::Method::implicit_euler;
     remedy.text = "use implicit_euler, which holds whatever stiffens the cloth, with dt = " +

@@ -1,4 +1,4 @@
-// What to change in a scene whose run has blown up, so that it holds.
+// Advice after a run has blown up: the change to the scene that makes it stable.
 #pragma once
 
 #include <optional>
@@ -10,21 +10,23 @@
 namespace clothlab::model {
 
 struct Remedy {
-  std::string text;                     ///< what to do, as a command to the user
+  std::string text;                     ///< what the user should do, in the imperative
   double dt = 0;                        ///< [s]
-  std::optional<scene::Method> method;  ///< another one than the scene has
+  std::optional<scene::Method> method;  ///< the method to change to; none: keep the scene's
 };
 
-/// 0.8 of the limit where the step is near or beyond it, implicit Euler where that would be less than a tenth
-/// of the step or where the limit cannot be the cause, and of implicit Euler itself half the step; for
-/// explicit Euler, which gains energy at nearly every step, symplectic Euler. `limit` [s] is the one of the
-/// scene's own method.
+/// The remedy depends on the method, on the step and on `limit` [s], the method's longest stable step:
+/// explicit Euler, which gains energy at nearly every step: symplectic Euler;
+/// a step near or beyond `limit`: 0.8 of `limit`, or implicit Euler if that is less than a tenth of the step;
+/// a step well below `limit`, which then cannot be the cause: implicit Euler;
+/// implicit Euler itself: half the step.
 Remedy remedy(const Model& model, const scene::Scene& scene, double limit);
 
-/// How dt stands to its limit, for after the reason: ": dt = 0.0025 s is 1.47 times 0.001701 s, ...".
+/// Text that compares dt with `limit` [s], to be appended to the reason of a blow-up:
+/// ": dt = 0.0025 s is 1.47 times the longest stable step of ...".
 std::string against_limit(const scene::Solver& solver, double limit);
 
-/// The largest number of two digits that is no larger; `value` above 0.
+/// `value`, above 0, rounded down to two significant digits.
 double rounded_down(double value);
 
 }  // namespace clothlab::model

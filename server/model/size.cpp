@@ -8,7 +8,7 @@ namespace clothlab::model {
 
 namespace {
 
-/// Pairs of vertices of a grid that lie so many columns and rows apart.
+/// The number of pairs of a grid's vertices whose second is `columns_on` columns and `rows_on` rows further.
 std::size_t pairs(const scene::Grid& grid, int columns_on, int rows_on) {
   const int columns = grid.columns - columns_on, rows = grid.rows - rows_on;
   return columns > 0 && rows > 0 ? static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows) : 0;
@@ -22,7 +22,7 @@ std::size_t springs(const scene::Grid& grid, const scene::Springs& material) {
   return count;
 }
 
-/// No edge shared, each across another: the most there can be.
+/// The most springs that a mesh can have: structural ones if no triangles share an edge, bend ones if all do.
 std::size_t springs(const scene::TriangleMesh& mesh, const scene::Springs& material) {
   const std::size_t edges = 3 * mesh.triangles.size();
   return (material.structural != 0.0 ? edges : 0) + (material.bend != 0.0 ? edges / 2 : 0);

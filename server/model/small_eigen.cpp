@@ -6,7 +6,7 @@ namespace clothlab::model {
 
 namespace {
 
-/// Turns the axes p and q so that matrix[p][q] becomes 0; `axes` takes the same turn.
+/// Rotates the axes p and q so that matrix[p][q] becomes 0, and applies the same rotation to `axes`.
 void rotate(glm::dmat3& matrix, glm::dmat3& axes, int p, int q) {
   const double off = matrix[p][q];
   if (off == 0.0) return;

@@ -1,4 +1,4 @@
-// The largest eigenvalue of a symmetric 3x3 matrix, and its vector.
+// The largest eigenvalue of a symmetric 3x3 matrix, and its eigenvector.
 #pragma once
 
 #include <glm/mat3x3.hpp>

@@ -13,8 +13,8 @@ namespace {
 
 using scene::Method;
 
-/// The positive root dt of dt^2 omega^2 + factor dt damping = 4: where a step of a method that lags its
-/// damping turns the vibration round, x -> -x, and beyond which it grows.
+/// The positive root dt of dt^2 omega^2 + factor dt damping = 4 [s]. With this dt a step of a method whose
+/// damping takes an older or predicted velocity maps x to -x; with a longer dt the vibration grows.
 double flip_limit(double factor, const Mode& mode) {
   const double half = 0.5 * factor * mode.damping;
   // Written so that nothing cancels: 4 / (half + sqrt(half^2 + 4 omega^2)).
@@ -28,14 +28,15 @@ std::complex<double> farthest_root(const Mode& mode) {
   return {-half, std::sqrt(-square)};
 }
 
-/// Where |1 + s dt| = 1.
+/// The dt [s] at which explicit Euler's growth |1 + s dt| is 1, for the root s farthest from 0.
 double explicit_limit(const Mode& mode) {
   const std::complex<double> root = farthest_root(mode);
   return -2.0 * root.real() / std::norm(root);
 }
 
-/// Where the ray from 0 through the root leaves |1 + w + w^2/2 + w^3/6 + w^4/24| <= 1. In the left half plane
-/// that is between 2.6 and 3 from 0 and the ray leaves once (Hairer & Wanner 1996, section IV.2).
+/// The dt [s] at which RK4's growth |1 + w + w^2/2 + w^3/6 + w^4/24|, w = s dt, is 1, for the root s farthest
+/// from 0. In the left half plane |w| is then between 2.6 and 3, and a ray from 0 leaves the stable region
+/// only once (Hairer & Wanner 1996, section IV.2).
 double rk4_limit(const Mode& mode) {
   const std::complex<double> root = farthest_root(mode), direction = root / std::abs(root);
   double inside = 2.0, outside = 4.0;
@@ -64,7 +65,7 @@ bool one_worst(Method method) {
 }
 
 double dt_limit(Method method, const Mode& found) {
-  // Both are sums of squares; what rounding leaves below 0 is 0.
+  // Both are sums of squares: a value below 0 is a rounding error.
   const Mode mode{std::max(0.0, found.omega_squared), std::max(0.0, found.damping)};
   if (!(mode.omega_squared > 0.0) && !(mode.damping > 0.0)) return no_limit;
   switch (method) {
@@ -104,7 +105,7 @@ double dt_limit_bound(Method method, const ElementOperator& elements) {
     return dt_limit(method, {0.0, elements.air_drag()});
   const Mode worst{elements.stiffness_bound(), elements.damping_bound()};
   if (one_worst(method)) return dt_limit(method, worst);
-  // Both need roots that are no farther from 0 than this.
+  // No vibration's root s of s^2 + damping s + omega^2 is farther from 0 than this [1/s].
   const double farthest = std::max(std::sqrt(worst.omega_squared), worst.damping);
   if (method == Method::rk4) return 2.6 / farthest;
   return std::min(elements.least_damping_time() + elements.air_drag() / worst.omega_squared,
@@ -113,7 +114,7 @@ double dt_limit_bound(Method method, const ElementOperator& elements) {
 
 double dt_limit(Method method, const ElementOperator& elements, const std::stop_token& stop) {
   if (!elements.any_free()) return no_limit;
-  // What strains no element, a cloth that moves as a whole, is only slowed by the air.
+  // A cloth that moves as a whole strains no element: only air drag acts on it.
   double least = dt_limit(method, {0.0, elements.air_drag()});
   if (elements.empty() || scene::any_step_is_stable(method)) return least;
   if (method == Method::explicit_euler && elements.air_drag() == 0.0 && elements.least_damping_time() == 0.0)
@@ -126,7 +127,7 @@ double dt_limit(Method method, const ElementOperator& elements, const std::stop_
   if (one_worst(method)) {
     search(scattered);
   } else {
-    // The worst vibration is near the stiffest or near the most damped, and either may be the worse.
+    // The worst vibration is near the stiffest or near the most damped one: search from both.
     search(extreme_mode(elements, undamped_limit, scattered, stop).y);
     if (elements.damping_bound() > 0.0) search(extreme_mode(elements, overdamped_limit, scattered, stop).y);
   }

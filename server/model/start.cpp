@@ -4,8 +4,8 @@ namespace clothlab::model {
 
 namespace {
 
-/// SplitMix64 (Steele, Lea & Flood 2014), the number after `state`: the same on every machine, which the
-/// distributions of the standard library are not.
+/// The SplitMix64 number that follows `state` (Steele, Lea & Flood 2014). It is the same on every machine,
+/// unlike the distributions of the standard library.
 std::uint64_t mixed(std::uint64_t state) {
   state += 0x9e3779b97f4a7c15u;
   state = (state ^ (state >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -13,7 +13,7 @@ std::uint64_t mixed(std::uint64_t state) {
   return state ^ (state >> 31);
 }
 
-/// In [-0.5, 0.5), a number for each coordinate of each vertex.
+/// A pseudo-random number in [-0.5, 0.5) for one coordinate of one vertex.
 double spread(std::uint32_t seed, std::size_t vertex, int axis) {
   const std::uint64_t stream = mixed(seed) + 3 * vertex + static_cast<std::uint64_t>(axis);
   return static_cast<double>(mixed(stream) >> 11) * 0x1p-53 - 0.5;

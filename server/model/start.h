@@ -1,4 +1,4 @@
-// Where the vertices of a cloth are at time 0.
+// The positions of a cloth's vertices at time 0.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace clothlab::model {
 
-/// The start of a cloth with these rest positions [m]; pinned vertices start there, whatever `start` says.
-/// `pin_motion` as in Model, of the cloth's own vertices.
+/// The start positions [m] of a cloth with rest positions `rest` [m]. Pinned vertices start at their rest
+/// positions, whatever `start` says. `pin_motion` is as in Model, but for this cloth's vertices only.
 std::vector<dvec3> start_positions(const scene::Start& start, const std::vector<dvec3>& rest,
                                    const std::vector<std::int32_t>& pin_motion);
 

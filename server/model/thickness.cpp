@@ -8,9 +8,9 @@
 namespace clothlab::model {
 
 namespace {
-/// Of the covering radius. A vertex that falls onto the middle of a cell pushes its corners aside, and cloth
-/// is a little longer than at rest: of two sheets that meet vertex over middle one falls through the other
-/// at 1.06 times that radius, and none at 1.13.
+/// Thickness over covering radius. The thickness must exceed the radius, because a vertex that falls onto the
+/// middle of a grid cell pushes the cell's corners aside, and cloth is a little longer than at rest. Of two
+/// sheets, vertices over middles, one fell through the other at 1.06 times the radius, but not at 1.13.
 constexpr double with_some_room = 1.2;
 
 }  // namespace
@@ -21,8 +21,8 @@ double covering_radius(const dvec3& a, const dvec3& b, const dvec3& c) {
   const auto [least, middle, longest] = sides;
   const double area = 0.5 * glm::length(glm::cross(b - a, c - a));
   if (least * least + middle * middle > longest * longest) return least * middle * longest / (4.0 * area);
-  // An obtuse angle: the point is on the longest side, as far from the corner opposite as from one of its
-  // ends.
+  // An obtuse angle: the farthest point is on the longest side, as far from the opposite corner as from one
+  // end of that side.
   const double foot = (longest * longest + middle * middle - least * least) / (2.0 * longest);
   return foot > 0.0 ? 0.5 * middle * middle / foot : 0.5 * longest;
 }

@@ -1,5 +1,5 @@
-// How thick self-collision must be for a mesh. It keeps vertices apart, so a layer of cloth passes through
-// another where a vertex finds a place that is far enough from all others.
+// The least thickness of self-collision that works for a mesh. Self-collision keeps only vertices apart: a
+// layer of cloth passes through another where a vertex finds a point far enough from all other vertices.
 #pragma once
 
 #include <string>
@@ -9,16 +9,16 @@
 
 namespace clothlab::model {
 
-/// The farthest that a point of a triangle can be from the nearest of its corners: the circumradius, less
-/// where an angle is obtuse. [m]
+/// The largest distance [m] from a point of a triangle to the nearest of its corners: the circumradius, or
+/// less where an angle is obtuse.
 double covering_radius(const dvec3& a, const dvec3& b, const dvec3& c);
 
-/// The least self_collision.thickness [m] that leaves no triangle at rest a gap: the largest covering radius
-/// and a fifth. Of a square grid 0.85 of the spacing. 0 without triangles.
+/// The least self_collision.thickness [m] with which no vertex slips through a triangle at rest: 1.2 times
+/// the largest covering radius. On a square grid that is 0.85 of the spacing. 0 without triangles.
 double thickness_that_holds(const Model& model);
 
-/// What to tell about a self-collision that is thinner than that, in a sentence; empty where it holds or
-/// there is none.
+/// A warning to the user if the scene's self-collision is thinner than thickness_that_holds; empty if it is
+/// not, or if the scene has no self-collision.
 std::string thickness_warning(const Model& model, const scene::Scene& scene);
 
 }  // namespace clothlab::model

@@ -24,21 +24,21 @@ namespace clothlab::net {
 
 namespace {
 
-// What libwebsockets keeps for each connection (zeroed by it): who handles the connection.
+// libwebsockets keeps one of these structs, zeroed at first, for each connection: the object that handles it.
 struct HttpSlot {
   HttpRequest* request;
-  bool asked;  ///< the request has come whole; false again once it is answered
+  bool asked;  ///< the request's headers are complete, and it is not answered yet
 };
 struct ClientSlot {
   Client* client;
-  bool ending;  ///< libwebsockets says the close
+  bool ending;  ///< libwebsockets itself sends the close frame
 };
 
 Server& server_of(lws* wsi) {
   return *static_cast<Server*>(lws_context_user(lws_get_context(wsi)));
 }
 
-/// The words of a status, which only people read.
+/// The reason phrase of an HTTP status; only people read it.
 std::string reason(unsigned status) {
   switch (status) {
     case 400:
@@ -58,7 +58,7 @@ std::string reason(unsigned status) {
   }
 }
 
-/// The next request is to be there whole by then.
+/// Starts the timer that closes the connection unless the next request's headers are complete in time.
 void await_request(lws* wsi) {
   lws_set_timer_usecs(wsi, lws_usec_t{server_of(wsi).hub().limits().header_seconds} * LWS_USEC_PER_SEC);
 }
@@ -67,12 +67,12 @@ int finish_http(HttpSlot& slot, lws* wsi, int result) {
   if (result == 0) return 0;
   delete slot.request;
   slot.request = nullptr;
-  if (result < 0 || lws_http_transaction_completed(wsi)) return -1;  // the slot is another from here on
+  if (result < 0 || lws_http_transaction_completed(wsi)) return -1;  // `slot` is invalid now
   await_request(wsi);
   return 0;
 }
 
-/// Before a socket becomes a connection: libwebsockets has only its number yet.
+/// Refuses a new socket if too many are open. libwebsockets has no `lws` for the socket yet.
 int on_socket(lws* wsi, int socket) {
   Hub& hub = server_of(wsi).hub();
   const std::string address = peer_address(socket);
@@ -90,9 +90,9 @@ int on_connection(lws* wsi) {
   return 0;
 }
 
-/// Answers in place of a handshake; the connection is to be closed then.
+/// Answers a handshake with an HTTP error. Returns -1, which closes the connection.
 int refuse(lws* wsi, const RequestFault& fault) {
-  constexpr std::size_t longest = 200;  // of an origin: nobody fills the log with it
+  constexpr std::size_t longest = 200;  // bytes of the Origin to log, so that no client fills the log
   ++server_of(wsi).hub().metrics().refused;
   log(LogLevel::warning, "client_refused",
       {{"address", peer_address(wsi)},
@@ -110,7 +110,8 @@ int refuse(lws* wsi, const RequestFault& fault) {
   return -1;
 }
 
-/// libwebsockets would answer h2c too, and take a handshake for whatever protocol is its first.
+/// Checks a request with an Upgrade header. Without this check libwebsockets would accept h2c, and would give
+/// a handshake without a subprotocol the first protocol of its list.
 int on_upgrade(lws* wsi, const char* to) {
   if (strcasecmp(to, "websocket") != 0) return -1;
   if (const std::optional<RequestFault> fault = request_fault(wsi)) return refuse(wsi, *fault);
@@ -137,7 +138,7 @@ int on_http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::si
       server_of(wsi).hub().connections().closed(wsi);
       return 0;
     case LWS_CALLBACK_TIMER:
-      return slot && slot->asked ? 0 : -1;  // its headers have not come in time
+      return slot && slot->asked ? 0 : -1;  // the request's headers have not come in time
     case LWS_CALLBACK_HTTP:
       slot->asked = true;
       delete slot->request;
@@ -151,10 +152,10 @@ int on_http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::si
     case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
       return on_upgrade(wsi, static_cast<const char*>(in));
     case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
-      return -1;  // a WebSocket that asks for this protocol by name
+      return -1;  // a WebSocket handshake for the subprotocol "http"
     case LWS_CALLBACK_RAW_ADOPT:
     case LWS_CALLBACK_RAW_RX:
-      return -1;  // after CONNECT libwebsockets would speak no HTTP any more
+      return -1;  // libwebsockets takes what follows a CONNECT request for raw bytes
     case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
       server_of(wsi).hub().pump();
       return 0;
@@ -163,7 +164,7 @@ int on_http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::si
   }
 }
 
-/// What the kernel has not sent can no longer be replaced by something newer: keep that little.
+/// Keeps the kernel's unsent bytes few, because a newer frame can no longer replace a frame among them.
 void set_socket_options(lws* wsi) {
   const int socket = lws_get_socket_fd(wsi);
   const int unsent = unsent_kernel_bytes, yes = 1;
@@ -173,7 +174,7 @@ void set_socket_options(lws* wsi) {
 
 constexpr const char* why_masked = "a client's frames are to be masked (RFC 6455, 5.1)";
 
-/// Where the frame was the client's close, libwebsockets wants to answer it itself.
+/// Answers an unmasked close frame. libwebsockets writes that answer itself and only takes the reason.
 int refuse_unmasked(lws* wsi) {
   std::string why = why_masked;
   lws_close_reason(wsi, LWS_CLOSE_STATUS_PROTOCOL_ERR, reinterpret_cast<unsigned char*>(why.data()),
@@ -216,7 +217,7 @@ int on_client(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::
   }
 }
 
-// Exceptions must not cross libwebsockets: a connection that meets one is closed.
+// Exceptions must not pass through libwebsockets: after an exception the connection is closed.
 template <int (*handler)(lws*, lws_callback_reasons, void*, void*, std::size_t)>
 int guarded(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size) {
   try {
@@ -230,7 +231,7 @@ int guarded(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::si
 }  // namespace
 
 const lws_protocols* protocols() {
-  // A frame leaves in one piece, not in slices of the receive buffer's size.
+  // A send() takes up to `send_bytes`; at 0, libwebsockets would slice frames to the receive buffer's size.
   constexpr std::size_t receive_bytes = 64 * 1024, send_bytes = 8 * 1024 * 1024;
   static const lws_protocols list[] = {
       {"http", guarded<on_http>, sizeof(HttpSlot), 4096, 0, nullptr, send_bytes},

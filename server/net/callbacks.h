@@ -1,4 +1,4 @@
-// Where libwebsockets calls in: the protocols it may speak and what each event is passed on to.
+// The callbacks of libwebsockets: the protocols it serves and the object that handles each event.
 #pragma once
 
 struct lws_protocols;

@@ -68,7 +68,7 @@ void Client::timer() {
 }
 
 int Client::receive(const char* data, std::size_t size) {
-  if (close_code_ != 0) return 0;  // whatever it says, it is on its way out
+  if (close_code_ != 0) return 0;  // the connection is being closed: drop what still comes
   if (lws_is_first_fragment(wsi_)) {
     incoming_.clear();
     incoming_text_ = !lws_frame_is_binary(wsi_);
@@ -83,7 +83,7 @@ int Client::receive(const char* data, std::size_t size) {
   incoming_.append(data, size);
   if (!lws_is_final_fragment(wsi_) || lws_remaining_packet_payload(wsi_) > 0) return 0;
   ++hub_.metrics().messages_received;
-  // A long one takes as long to read as many short ones.
+  // A long message takes as long to read as many short ones, and counts as many.
   if (!messages_.take(session::now_us(),
                       std::ceil(static_cast<double>(incoming_.size()) / message_unit_bytes)))
     close(close_policy, "too many messages");
@@ -113,7 +113,7 @@ void Client::answer(const session::Ticket& ticket, const std::variant<json, RpcE
   if (!ticket.id) return;
   const auto* result = std::get_if<json>(&answer);
   const auto* error = std::get_if<RpcError>(&answer);
-  // A method that is none would be a label of the client's choice.
+  // Unknown methods are not counted: a client could choose the metrics' labels with them.
   if (is_method(ticket.method))
     hub_.metrics().requests[ticket.method].add(1e-6 *
                                                static_cast<double>(session::now_us() - ticket.asked_us));
@@ -145,7 +145,7 @@ void Client::close(int code, std::string reason) {
   close_code_ = code;
   close_reason_ = std::move(reason);
   wake();
-  // A client that reads nothing never becomes writeable.
+  // The socket of a client that reads nothing never becomes writeable, so it is closed after 2 s.
   lws_set_timeout(wsi_, PENDING_TIMEOUT_CLOSE_SEND, 2);
 }
 
@@ -187,25 +187,26 @@ void Client::schedule_frame(std::int64_t now) {
     lws_set_timer_usecs(wsi_, *wait);
 }
 
-/// Before hello, only who may not enter is answered.
+/// True if messages may be sent: after `hello`, or to a client without a role or room, which gets no `hello`.
 bool Client::may_speak() const {
   return greeted_ || role_ == Role::none || !room_;
 }
 
 int Client::writeable() {
-  // A flood or a client that does not read is cut off at once; the others first get what was said to them.
+  // A client whose session failed first gets the text that waits for it. In all other cases, a flood among
+  // them, the close frame goes out at once.
   const bool finish_first = close_code_ == close_internal && !outbox_.empty();
   if (close_code_ != 0 && !finish_first) return say_close();
   if (!may_speak()) return 0;
   return send_next();
 }
 
-// lws_close_reason would close the socket with the client's messages unread; the kernel would then reset it,
-// and the client would never learn why. So the close frame is written here, and what still comes is read and
-// dropped until the client has answered, or for 2 s.
+// lws_close_reason would close the socket with the client's messages unread; the kernel would then reset the
+// connection, and the client would never learn the reason. So the close frame is written here, and further
+// messages are read and dropped until the client answers it, or for 2 s.
 int Client::say_close() {
   if (std::exchange(close_said_, true)) return 0;
-  constexpr std::size_t longest = 123;  // of a control frame's reason (RFC 6455, 5.5)
+  constexpr std::size_t longest = 123;  // bytes of a close frame's reason (RFC 6455, 5.5)
   const std::string reason = close_reason_.substr(0, longest);
   std::string frame{'\x88', static_cast<char>(reason.size() + 2), static_cast<char>(close_code_ >> 8),
                     static_cast<char>(close_code_ & 0xFF)};
@@ -214,7 +215,7 @@ int Client::say_close() {
   return lws_write(wsi_, text.data(), text.size(), LWS_WRITE_RAW) < 0 ? -1 : 0;
 }
 
-// One message a call, as libwebsockets wants it: control first, then the topology, then the latest frame.
+// Sends one message a call, as libwebsockets requires: text first, then the topology, then the latest frame.
 int Client::send_next() {
   if (const SharedText text = outbox_.pop()) {
     wake();
@@ -239,12 +240,13 @@ int Client::send_next() {
 int Client::send_frame(const stream::SharedMessage& frame) {
   if (!frame->colliders.empty() && colliders_said_ != frame->header.sequence) {
     colliders_said_ = frame->header.sequence;
-    wake();  // for the frame itself
+    wake();  // the next call sends the frame itself
     return write(const_cast<unsigned char*>(frame->colliders.data()) + stream::front_room,
                  frame->colliders.size() - stream::front_room, true);
   }
   const std::int64_t held_until = pacing_.ready_since(session::now_us());
-  // libwebsockets writes its header into the room in front, the same bytes for every viewer.
+  // libwebsockets writes its header into the space before the data: the same bytes for every viewer, so that
+  // viewers can share the message.
   const int result = write(const_cast<unsigned char*>(frame->data()), frame->size(), false);
   const std::int64_t now = session::now_us();
   pacing_.sent(frame->header.sequence, now);

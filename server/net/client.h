@@ -1,4 +1,4 @@
-// One WebSocket connection: what it says, what waits to be said to it, and which frames it gets.
+// One WebSocket connection: handles the client's messages, queues text for the client and sends its frames.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace clothlab::net {
 
 class Client {
  public:
-  /// `session` is entered at once if no token is needed, else after `auth`.
+  /// The client enters the session of this name at once if no token is needed, else after `auth`.
   Client(Hub& hub, lws* wsi, std::string session);
   ~Client();
   Client(const Client&) = delete;
@@ -30,13 +30,13 @@ class Client {
   FramePacing& pacing() { return pacing_; }
   const FramePacing& pacing() const { return pacing_; }
 
-  // From libwebsockets; -1 closes the connection.
+  // Called for events of libwebsockets; a return value of -1 closes the connection.
   int receive(const char* data, std::size_t size);
   int writeable();
   void timer();
-  /// Whether the server has said that it closes, so that the client's close is the answer to that.
+  /// True once the server has sent its close frame; the client's close frame is then the answer to it.
   bool close_said() const { return close_said_; }
-  /// Something is ready to be sent.
+  /// Makes libwebsockets call `writeable` soon, because something is ready to be sent.
   void wake();
 
   /// Gives the client this role and lets it enter its session. False: there are too many sessions.
@@ -46,18 +46,18 @@ class Client {
   void acknowledge(std::uint32_t sequence);
   void leave_room();
 
-  // From the room.
-  void greet(const std::string& hello);  ///< goes before anything that waits
+  // Mostly called by the room.
+  void greet(const std::string& hello);  ///< sends `hello` before all text that waits
   void send(const std::string& text) { send(make_text(text)); }
   void send(SharedText text);
-  /// Unless it asked for none.
+  /// Sends the answer to a request; a notification (a ticket without id) gets none.
   void answer(const session::Ticket& ticket, const std::variant<json, RpcError>& answer);
   void send_status(SharedText text);
-  /// Its session was brought back: the topology is to be sent again, and no frame waits for an answer.
+  /// The session was brought back after it failed: the topology is sent again before the next frame.
   void session_replaced();
   void frame_arrived(stream::Encoding encoding, std::int64_t now);
 
-  /// Closes the connection with a code of RFC 6455 as soon as it can be told.
+  /// Closes the connection with a close code of RFC 6455, as soon as the close frame can be sent.
   void close(int code, std::string reason);
 
  private:
@@ -80,14 +80,14 @@ class Client {
   Role role_;
   Room* room_ = nullptr;
   bool greeted_ = false;
-  std::string incoming_;  ///< a message in several fragments, so far
+  std::string incoming_;  ///< the message being received, its fragments so far
   bool incoming_text_ = true;
   Outbox outbox_;
   FramePacing pacing_;
   TokenBucket messages_;
   bool topology_sent_ = false;
   std::uint32_t topology_revision_ = 0;
-  std::uint32_t colliders_said_ = 0;  ///< number of the frame whose colliders were told last
+  std::uint32_t colliders_said_ = 0;  ///< sequence number of the frame whose colliders were sent last
   bool frame_waits_ = false;
   int close_code_ = 0;
   bool close_said_ = false;

@@ -1,5 +1,5 @@
-// The open sockets, of WebSockets and plain HTTP alike, by the address at the other end: how many there may
-// be.
+// Counts and limits the open connections, WebSockets and plain HTTP alike, in all and by the client's
+// address.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace clothlab::net {
 
 class Connections {
  public:
-  /// As many again as there may be WebSockets, for plain HTTP: of one address, and in all.
+  /// Allows twice as many connections as WebSockets, by address and in all, which leaves half to plain HTTP.
   explicit Connections(const Limits& limits)
       : most_(2 * static_cast<std::size_t>(limits.clients)),
         most_of_one_(2 * static_cast<std::size_t>(limits.clients_per_address)) {}

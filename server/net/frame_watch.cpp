@@ -1,4 +1,4 @@
-// glibc's fortified headers would define recv() inline.
+// With _FORTIFY_SOURCE glibc's headers would define recv() inline; this file defines it.
 #undef _FORTIFY_SOURCE
 
 #include "server/net/frame_watch.h"
@@ -19,12 +19,13 @@ namespace clothlab::net {
 namespace {
 
 struct Watched {
-  std::string tail;    ///< of the requests, the last bytes
-  lws* wsi = nullptr;  ///< once it sends frames
+  std::string tail;    ///< the last bytes [at most 4] that came before the frames
+  lws* wsi = nullptr;  ///< null until the connection sends frames
   FrameWatch frames;
 };
 
-/// By socket, of the thread that serves them; in another thread nothing is watched.
+/// The watched connections by socket. Each thread has its own map, filled only in the service thread, so that
+/// reads in other threads pass unchanged.
 std::unordered_map<int, Watched>& watched() {
   static thread_local std::unordered_map<int, Watched> all;
   return all;
@@ -64,7 +65,7 @@ std::size_t FrameWatch::pass(unsigned char* data, std::size_t size, std::size_t 
     if (head_bytes_ < 2) continue;
     if ((head_[1] & 0x80) == 0) {
       unmasked_ = true;
-      // Its first byte may have been passed on already: it becomes a masked frame of nothing.
+      // The head's first byte may have been passed on already: it stays, and an empty masked frame results.
       const std::size_t from = at - 1, rest = std::min(empty_pong.size() - 1, room - from);
       std::copy_n(empty_pong.begin() + 1, rest, data + from);
       return from + rest;
@@ -103,8 +104,8 @@ void watch_no_longer(lws* wsi) {
 
 }  // namespace clothlab::net
 
-// libwebsockets reads through these two, and as the program defines them, through these here: the linker
-// looks in the program before it looks in libraries.
+// libwebsockets reads with recv() and SSL_read(). The dynamic linker looks for them in the program before it
+// looks in libraries, so libwebsockets calls these definitions.
 extern "C" {
 
 ssize_t recv(int socket, void* buffer, size_t size, int flags) {

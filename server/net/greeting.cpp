@@ -32,7 +32,7 @@ nlohmann::json hello_params(const Hub& hub, const Room& room, const Client& clie
           {"version", CLOTHLAB_VERSION},
           {"session", room.name()},
           {"role", name(client.role())},
-          {"client", client.id()},  // the `by` of this client's edits
+          {"client", client.id()},  // `by` in the scene.changed of this client's edits
           {"renderer", room.renderer()},
           {"methods", method_list()},
           {"requests", method_names()},

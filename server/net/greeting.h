@@ -1,4 +1,4 @@
-// What a client is told first: who it talks to, what it may do and within which limits.
+// The parameters of `hello`, the first message to a client: the server, the client's role and its limits.
 #pragma once
 
 #include <nlohmann/json.hpp>

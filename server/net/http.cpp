@@ -34,7 +34,7 @@ HttpAnswer plain(unsigned status, const std::string& text) {
   return {status, "text/plain; charset=utf-8", text + "\n", {}};
 }
 
-/// A whole number in [1, most], or 0.
+/// The width or height that `text` gives, a whole number in [1, most] [pixels]; 0 for any other text.
 int side(const std::string& text, int most) {
   int value = 0;
   const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -61,7 +61,7 @@ int HttpRequest::begin(const std::string& path) {
     HttpAnswer refusal =
         plain(405, "only GET and HEAD are answered here; changes go over the WebSocket at /ws");
     refusal.headers = {{"allow:", "GET, HEAD"}};
-    return refuse(std::move(refusal));  // it may have a body
+    return refuse(std::move(refusal));  // the request may have a body
   }
   find(path);
   return 0;
@@ -151,7 +151,7 @@ void HttpRequest::ask_session(const std::string& session, session::Export what) 
   lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, patience);
 }
 
-// libwebsockets does not look at a connection's end until it has written the answer.
+// Asks the socket: libwebsockets does not notice that a connection has ended until it has written the answer.
 bool HttpRequest::hung_up() const {
   pollfd socket{lws_get_socket_fd(wsi_), POLLRDHUP, 0};
   return poll(&socket, 1, 0) > 0 && (socket.revents & (POLLRDHUP | POLLHUP | POLLERR)) != 0;

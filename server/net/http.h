@@ -1,4 +1,4 @@
-// Plain HTTP: the page, /healthz, /metrics and the API. One object a request, on the service thread.
+// Plain HTTP: the page, /healthz, /metrics and the API. Each request has one object, on the service thread.
 #pragma once
 
 #include <cstdint>
@@ -30,30 +30,32 @@ class HttpRequest {
   HttpRequest(const HttpRequest&) = delete;
   HttpRequest& operator=(const HttpRequest&) = delete;
 
-  /// Refuses the request, or answers it. -1: the request is refused, and its connection is to be closed.
+  /// Starts the answer to the request. Returns 0, or -1 if the request is refused and its connection must be
+  /// closed.
   int begin(const std::string& path);
-  /// Sends the next part; -1 closes the connection, 1: the answer is complete.
+  /// Sends the next part of the answer. Returns 1 if the answer is complete, 0 if not yet, -1 to close the
+  /// connection.
   int writeable();
-  /// What it asked to be made.
+  /// Answers with the picture or mesh that this request asked for, or with the error.
   void deliver(session::Exported exported);
-  /// Who asked is no longer there to be answered.
+  /// True if the client has closed the connection, so that nobody waits for the answer.
   bool hung_up() const;
 
  private:
-  /// Answers what is at that path, or asks a session for it.
+  /// Answers with what is at this path, or asks a session for it.
   void find(const std::string& path);
   HttpAnswer file(const std::string& path) const;
-  /// What only those see who have a token: /metrics and the API.
+  /// Answers the paths that need a token, if the server has one: /metrics and the API.
   void inside(const std::string& path);
   void ask_session(const std::string& session, session::Export what);
   void answer(HttpAnswer answer);
-  /// Refuses a request that may have a body, and returns -1. The refusal is written at once: libwebsockets
-  /// would take the body for the next request while this one waits until its socket can be written.
+  /// Refuses a request that may have a body, and returns -1. The refusal is written at once: if it waited
+  /// until the socket is writeable, libwebsockets would take the body for the next request.
   int refuse(HttpAnswer refusal);
-  /// -1: it could not be sent, 0: the body follows, 1: that was all.
+  /// Returns -1 if the headers could not be sent, 0 if the body follows, 1 if the answer has no body.
   int send_headers();
   bool send_body();
-  /// Why who asks may not see that, if so.
+  /// The answer that refuses a client without a valid token; empty: the client may go on.
   std::optional<HttpAnswer> refusal() const;
 
   Hub& hub_;
@@ -61,7 +63,7 @@ class HttpRequest {
   lws* wsi_;
   std::uint64_t id_;
   bool head_ = false;
-  bool last_ = false;  ///< says in its answer that the connection is closed
+  bool last_ = false;  ///< the answer says that the connection will be closed
   bool answered_ = false, headers_sent_ = false;
   HttpAnswer answer_;
 };

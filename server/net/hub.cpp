@@ -13,7 +13,7 @@ namespace clothlab::net {
 
 namespace {
 
-/// In a time that does not tell how much of a guess was right.
+/// Compares in a time that does not reveal how much of a guessed token was right.
 bool same(const std::string& a, const std::string& b) {
   unsigned difference = a.size() == b.size() ? 0 : 1;
   for (std::size_t i = 0; i < a.size(); ++i)
@@ -58,7 +58,7 @@ LabQueue::Port Hub::lab_port() {
     if (Room* room = find_room(session)) room->post({{}, session::Release{}});
   };
   port.steps = [this] { return steps(); };
-  // The lab's context is on the device that the sessions run on.
+  // The renderer of `main` is the lab's too: the lab's context is on the device that the sessions run on.
   const auto key = [this](const scene::Document& document, const lab::Job& job) {
     const Room* room = find_room(main_session);
     return lab::cache_key(document, job, room ? room->renderer() : "");
@@ -142,8 +142,8 @@ std::string Hub::sleeping_room() const {
 void Hub::retire(const std::string& name) {
   const auto found = rooms_.find(name);
   lab_->session_left(name);
-  // Its thread may need a turn to end: not on this thread's time. A future that is kept keeps its thread's
-  // stack.
+  // The session's thread may need a turn to end, so another thread waits for it. Futures of threads that have
+  // ended are dropped, because each keeps its thread's stack.
   std::erase_if(retiring_, [](const std::future<void>& end) {
     return end.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
   });
@@ -224,7 +224,7 @@ void Hub::stop_sessions() {
   for (const auto& [name, room] : rooms_) room->stop();
   lab_->stop();
   for (const auto& [name, room] : rooms_) room->give_up_session().reset();
-  retiring_.clear();  // waits for each
+  retiring_.clear();  // waits for each session that is being closed
   exporter_.stop();
 }
 

@@ -1,5 +1,5 @@
-// Everything the service thread knows: rooms (a session and who is in it), clients, HTTP requests that wait
-// for a session. Only that thread touches it.
+// The state of the service thread: rooms (a session and its clients), all clients, and the HTTP requests in
+// progress. Only the service thread touches it.
 #pragma once
 
 #include <cstdint>
@@ -29,9 +29,10 @@ class HttpRequest;
 enum class Role { none, viewer, operator_ };
 const char* name(Role role);
 
+/// The result of checking a token.
 struct Verdict {
   Role role = Role::none;
-  int wait = 0;  ///< more than 0: the token was not looked at, and none of its address is for so long [s]
+  int wait = 0;  ///< above 0: the token was not checked, as no token from its address is for so long [s]
 };
 
 class Hub {
@@ -46,28 +47,29 @@ class Hub {
   LabQueue& lab() { return *lab_; }
   Connections& connections() { return connections_; }
 
-  /// What a token makes of who has it; without `--token` everybody is an operator.
+  /// The role that a token gives its client; without `--token` every client is an operator.
   Role role_of(const std::string& token) const;
-  /// The same of one that came from this address, whose wrong ones are counted and logged, with `who`.
+  /// The role of a token that came from `address`, or how long that address must wait after too many wrong
+  /// tokens. A wrong token is counted, and logged with the fields `who`.
   Verdict judge(const std::string& token, const std::string& address, std::vector<LogField> who);
   bool needs_token() const { return !options_.token.empty(); }
-  /// Why a request with this Host header is refused; empty: it is not. Who knows a token may use any name.
+  /// Why a request with this Host header is refused; empty: it is not. With `--token` any name is allowed.
   std::string host_refusal(const std::string& host) const;
 
   Room* find_room(const std::string& name);
-  /// The room, opened if it is new; null over --max-sessions. The longest unwatched session, if it sleeps,
-  /// makes room.
+  /// The room of this name, opened if it is new; null beyond --max-sessions. To make place, the room that has
+  /// been without clients for the longest time, at least unwatched_seconds, is closed, but never `main`.
   Room* open_room(const std::string& name);
   bool has_place_for(const std::string& name);
-  /// Whether it is open or kept in the state folder: another one would be made, which is not a viewer's to
-  /// do.
+  /// True if the session is open or kept in the state folder. A viewer may enter no other session, because
+  /// that would create it.
   bool knows_session(const std::string& name);
 
   void add(Client& client);
   void remove(Client& client);
   Client* find_client(std::uint64_t id);
   bool full() const { return clients_.size() >= static_cast<std::size_t>(options_.limits.clients); }
-  /// As many clients as one address may have.
+  /// True if this address has as many clients as one address may have.
   bool full(const std::string& address) const;
   bool empty() const { return clients_.empty(); }
   void close_all(int code, const std::string& reason);
@@ -75,17 +77,18 @@ class Hub {
 
   void add(std::uint64_t id, HttpRequest& request) { waiting_[id] = &request; }
   void remove_request(std::uint64_t id) { waiting_.erase(id); }
-  /// Pictures and meshes that wait or are being made, what sessions have yet to hand over included.
+  /// The number of pictures and meshes that wait or are being made, including those whose session has not
+  /// handed over its moment yet.
   std::size_t exports_waiting() const;
   bool exports_full() const { return exports_waiting() >= max_exports; }
-  /// What a session has handed over for one of them, or why it did not.
+  /// Takes the moment that a session has handed over for a picture or mesh, or the reason why it did not.
   void captured(session::Captured captured);
 
-  /// Takes in what the sessions have put out.
+  /// Passes on what the sessions, the exporter and the lab have put out.
   void pump();
   /// Stops every session's thread and the lab's, and waits for them.
   void stop_sessions();
-  /// Why the session `main` could not start, once it is known.
+  /// Why the session `main` failed; empty: it has not.
   const std::optional<session::Failed>& main_failure() const { return main_failure_; }
 
   Gauges gauges() const;
@@ -107,7 +110,7 @@ class Hub {
   lab::Cache lab_cache_;
   std::unique_ptr<LabQueue> lab_;
   session::Exporter exporter_;
-  std::deque<session::Captured> captured_;  ///< what it is to make next
+  std::deque<session::Captured> captured_;  ///< what the exporter makes next, first come first
   std::map<std::string, std::unique_ptr<Room>> rooms_;
   std::map<std::uint64_t, Client*> clients_;
   std::map<std::uint64_t, HttpRequest*> waiting_;

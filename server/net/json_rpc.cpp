@@ -13,7 +13,7 @@ std::string compact(const json& value) {
   std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
   constexpr std::size_t longest = 200;
   if (text.size() <= longest) return text;
-  // Cut before a continuation byte, so that the text stays UTF-8.
+  // Cut where a character begins, not before a continuation byte, so that the text stays UTF-8.
   std::size_t end = longest;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
   return text.substr(0, end) + "...";
@@ -141,7 +141,7 @@ std::int64_t Params::integer(const char* name, std::int64_t least, std::int64_t 
   const json* value = find(name);
   if (!value && fallback) return *fallback;
   if (value && value->is_number_integer()) {
-    // An unsigned value beyond int64 would wrap.
+    // An unsigned value beyond int64 would wrap to a negative number.
     const bool huge =
         value->is_number_unsigned() && value->get<std::uint64_t>() > static_cast<std::uint64_t>(most);
     const std::int64_t number = huge ? 0 : value->get<std::int64_t>();

@@ -1,5 +1,5 @@
-// JSON-RPC 2.0, narrowed (README.md here): named parameters, no batches, errors that carry their
-// remedy.
+// A subset of JSON-RPC 2.0 (README.md here): named parameters only, no batches; errors say what would be
+// allowed.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -34,11 +34,11 @@ struct RpcError {
   json data = nullptr;  ///< left out of the message when null
 };
 
-/// -32602 with data {path, found, allowed}.
+/// Error -32602 with data {path, found, allowed}.
 RpcError invalid_params(const std::string& path, const std::string& found, const std::string& allowed);
-/// The same from an Error whose `where` is a JSON Pointer (scene errors).
+/// Error -32602 from a scene error, whose `where` is a JSON Pointer and becomes `path`.
 RpcError invalid_params(const Error& error);
-/// What a session says, with the code for its reason.
+/// The error for a session's refusal, with the code for the refusal's reason.
 RpcError rpc_error(const session::Refusal& refusal);
 
 /// A call from a client; without an id it is a notification and is never answered.
@@ -46,18 +46,18 @@ struct Request {
   std::string method;
   json params = json::object();
   std::optional<json> id;
-  std::int64_t received_us = 0;  ///< steady clock
+  std::int64_t received_us = 0;  ///< when the request came, by the steady clock [us]
 };
 
-/// What a message could not be read as, and the id to answer to (null where it is unknown).
+/// A message that is no valid request: the error, and the id to answer to (null if it is unknown).
 struct BadRequest {
   RpcError error;
   json id = nullptr;
-  bool notification = false;  ///< of one that has all else a notification has: nobody waits for an answer
+  bool notification = false;  ///< valid but for its params, and without an id: not answered
 };
 
-/// Reads one text message. Too deep or not JSON: -32700; a batch or no request: -32600; positional
-/// parameters: -32602.
+/// Reads one text message. Errors: -32700 if the text is not JSON or is beyond `limits`, -32600 if it is a
+/// batch or no request, -32602 if its parameters are positional.
 std::variant<Request, BadRequest> parse_request(const std::string& text, scene::TextLimits limits = {});
 
 // Messages to the client, as text.
@@ -65,23 +65,23 @@ std::string result_text(const json& id, const json& result);
 std::string error_text(const json& id, const RpcError& error);
 std::string notification_text(const char* method, const json& params);
 
-/// Reads named parameters one by one; the first fault is kept, and `check` also refuses names that nobody
-/// asked for.
+/// Reads named parameters one by one and keeps the first fault. `check` also refuses parameters of names that
+/// were never read.
 class Params {
  public:
   explicit Params(const json& params) : params_(params) {}
 
-  /// A finite number in [least, most]; `fallback` where it is left out.
+  /// A finite number in [least, most]; `fallback` if the parameter is left out.
   double number(const char* name, double least, double most, std::optional<double> fallback);
   std::int64_t integer(const char* name, std::int64_t least, std::int64_t most,
                        std::optional<std::int64_t> fallback);
   std::string text(const char* name, std::optional<std::string> fallback);
-  /// Any value, null where it is left out.
+  /// The parameter's value of any type; null if it is left out.
   const json& value(const char* name);
   bool has(const char* name) const { return params_.contains(name); }
 
   void refuse(const char* name, const std::string& allowed);
-  /// The first fault, if there was one.
+  /// The first fault, an unknown name included; empty: none.
   std::optional<RpcError> check();
 
  private:

@@ -9,8 +9,8 @@ namespace clothlab::net {
 
 namespace {
 
-/// The scene without what the job does not look at: charts and choices go through methods, steps and
-/// iterations of their own, a map through methods and steps.
+/// The scene with the usual value of each setting that the job ignores: charts and choices try their own
+/// methods, time steps and iterations, a map its own methods and time steps.
 scene::Scene as_seen_by(const lab::Job& job, scene::Scene scene) {
   if (std::holds_alternative<lab::SimplifyRequest>(job)) return scene;
   const scene::Solver usual;

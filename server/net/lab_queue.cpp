@@ -82,7 +82,7 @@ void LabQueue::session_left(const std::string& session) {
 
 void LabQueue::scene_taken(std::uint64_t job, SharedDocument document, std::uint64_t revision) {
   const auto found = entries_.find(job);
-  if (found == entries_.end()) return;  // its asker has left
+  if (found == entries_.end()) return;  // the client has left
   LabEntry& entry = found->second;
   entry.document = std::move(document);
   entry.revision = revision;
@@ -214,11 +214,11 @@ void LabQueue::follow_running(std::int64_t now) {
 }
 
 void LabQueue::finish(LabEntry& entry, Result<lab::Outcome> outcome, std::int64_t now) {
-  // A job that is stopped may hand over what it has.
+  // A stopped job may hand over the results it has.
   if (outcome) entry.outcome = std::make_shared<const lab::Outcome>(std::move(*outcome));
   if (entry.cancelling) return close(entry, State::cancelled, now);
   if (outcome && !entry.overdue) {
-    // Times that were measured beside something are no use to the next who asks.
+    // Times measured while a session stepped may be too long, so they are not cached.
     if (!entry.beside) port_.keep(*entry.document, entry.job, *entry.outcome);
     return close(entry, State::finished, now);
   }
@@ -228,7 +228,7 @@ void LabQueue::finish(LabEntry& entry, Result<lab::Outcome> outcome, std::int64_
   close(entry, State::failed, now);
 }
 
-/// Those that run end by themselves.
+/// Ends cancelled jobs that do not run yet; a running job ends when the worker reports its end.
 void LabQueue::end_cancelled(std::int64_t now) {
   std::vector<std::uint64_t> over;
   for (const auto& [id, entry] : entries_)

@@ -45,7 +45,8 @@ LabWorker::Mail LabWorker::take() {
   return mail;
 }
 
-/// One wake covers all that comes until it is taken: a job may report far more often than anybody looks.
+/// Changes the mail. Calls `wake_` only for the first change after a `take`, because a job may report far
+/// more often than the service thread looks.
 template <class Put>
 void LabWorker::put(Put into_mail) {
   bool wake = false;
@@ -70,7 +71,7 @@ void LabWorker::run() {
       stop = task_stop_;
     }
     Result<lab::Outcome> outcome = carry_out(task, stop, job);
-    // What it ran on may be what failed: the next job has another.
+    // The GL context may have caused the failure, so the next job gets a new one.
     if (!outcome && !lab::was_cancelled(outcome.error())) job.reset();
     put([&](Mail& mail) { mail.ended.emplace(Ended{task.id, std::move(outcome)}); });
   }

@@ -1,5 +1,5 @@
-// The one thread on which the lab measures: it runs one job at a time, with a GL context of its own and at
-// the lowest priority, and hands over what it finds. This is the service thread's handle.
+// The thread on which the lab measures: it runs one job at a time, with its own GL context and at the lowest
+// priority, and hands over the results. A LabWorker is the service thread's handle to that thread.
 #pragma once
 
 #include <condition_variable>
@@ -21,11 +21,11 @@ using SharedDocument = std::shared_ptr<const scene::Document>;
 
 class LabWorker {
  public:
-  /// Does a job, on the worker's thread; `lab::run` in the server.
+  /// Runs a job on the worker's thread; in the server it calls `lab::run`.
   using Run = std::function<Result<lab::Outcome>(const scene::Document&, const lab::Job&,
                                                  const lab::Control<lab::Outcome>&)>;
-  /// Makes the worker's thread fit to run jobs, on that thread; tried again at the next job if it fails. The
-  /// Run is destroyed there too.
+  /// Prepares the worker's thread for jobs; called on that thread before the first job, and again before the
+  /// next job after a failure. The Run is destroyed on that thread too.
   using Open = std::function<Result<Run>()>;
 
   struct Task {
@@ -37,7 +37,7 @@ class LabWorker {
     std::uint64_t id = 0;
     Result<lab::Outcome> outcome;
   };
-  /// What has come since the last look, of everything only the newest.
+  /// What the worker has put out since the last `take`, only the newest of each kind.
   struct Mail {
     std::optional<lab::Progress> progress;
     SharedOutcome partial;
@@ -46,16 +46,16 @@ class LabWorker {
 
   /// `wake` is called on the worker's thread after something was put out; it must not block.
   LabWorker(Open open, std::function<void()> wake) : open_(std::move(open)), wake_(std::move(wake)) {}
-  /// Stops the job that runs and waits for it: as long as a job takes to look at its stop token.
+  /// Stops the running job and waits for its end, which comes when the job next checks its stop token.
   ~LabWorker();
   LabWorker(const LabWorker&) = delete;
   LabWorker& operator=(const LabWorker&) = delete;
 
-  /// Nothing runs, and the end of what ran has been taken.
+  /// True if no job runs and `take` has returned the end of the last one.
   bool idle() const { return !busy_; }
   /// The worker must be idle. The first task starts the thread.
   void begin(Task task);
-  /// Asks the running job to stop; it ends like any other.
+  /// Asks the running job to stop; its end is reported like any other job's.
   void stop_job() { stop_.request_stop(); }
   Mail take();
 
@@ -67,10 +67,10 @@ class LabWorker {
 
   const Open open_;
   const std::function<void()> wake_;
-  bool busy_ = false;      // the service thread's own
-  std::stop_source stop_;  // of the running job; likewise
+  bool busy_ = false;      // used by the service thread only
+  std::stop_source stop_;  // stops the running job; used by the service thread only
 
-  std::mutex mutex_;  // held to move a pointer, never while anything is computed
+  std::mutex mutex_;  // held only to move a pointer, never during a computation
   std::condition_variable task_arrived_;
   std::optional<Task> task_;
   std::stop_token task_stop_;
@@ -81,7 +81,7 @@ class LabWorker {
 };
 
 /// The server's Open: lowers the calling thread's priority, then makes a GL context whose helper threads
-/// inherit it. Error: no usable OpenGL.
+/// inherit that priority. Error: no usable OpenGL.
 Result<LabWorker::Run> open_lab(std::optional<int> gpu);
 
 }  // namespace clothlab::net

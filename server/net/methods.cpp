@@ -37,7 +37,7 @@ Outcome auth(Client& client, const Request& request) {
 
 struct Method {
   const char* name;
-  bool changes;  ///< what operators may do, and viewers not
+  bool changes;  ///< true: only operators may call the method
   Outcome (*run)(Client&, const Request&);
 };
 
@@ -65,7 +65,7 @@ constexpr std::array methods{
     Method{"stream.unsubscribe", false, stream_unsubscribe},
 };
 
-// Of the protocol, but not of this version of the server.
+// Methods of the protocol that this version of the server does not support yet.
 constexpr std::array later{"mesh.upload", "grab.start", "grab.move", "grab.end"};
 
 RpcError unknown(const std::string& method) {

@@ -1,4 +1,4 @@
-// The methods of the protocol: what each needs and what it does. See README.md here.
+// The methods of the protocol (README.md here): each checks its request and carries the request out.
 #pragma once
 
 #include <string>
@@ -12,23 +12,24 @@ namespace clothlab::net {
 
 class Client;
 
-/// The session's thread will answer.
+/// A request's outcome while no answer is known: the session's thread will answer.
 struct Later {};
 using Outcome = std::variant<json, RpcError, Later>;
 
-/// Checks the method's name, the client's role and the parameters, and carries the request out.
+/// Checks the method's name, the client's role and the parameters, then carries the request out.
 Outcome call(Client& client, const Request& request);
 
-/// What a client may call.
+/// The names of all methods that the server supports.
 std::vector<std::string> method_names();
 bool is_method(const std::string& name);
 
+/// Says which client an answer goes to, and which of its requests the answer belongs to.
 session::Ticket ticket(const Client& client, const Request& request);
 
-/// Leaves it to the client's session, or says that it is too busy.
+/// Passes `what` to the client's session, which will answer. Error: too many of the client's requests wait.
 Outcome ask_session(Client& client, const Request& request, decltype(session::Command::what) what);
 
-// The groups of methods, one file each.
+// The groups of methods, each in its own file methods_GROUP.cpp.
 Outcome scene_get(Client& client, const Request& request);
 Outcome scene_load(Client& client, const Request& request);
 Outcome scene_patch(Client& client, const Request& request);

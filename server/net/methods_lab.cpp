@@ -1,5 +1,5 @@
-// lab.*: jobs that measure the session's scene. The queue answers once the session has told which scene that
-// is; what the jobs find comes as notifications, lab.progress and lab.result.
+// lab.*: jobs that measure the session's scene. The LabQueue answers a request once the session has reported
+// which scene to measure; the notifications lab.progress and lab.result tell what a job finds.
 #include <algorithm>
 
 #include "server/lab/exports.h"
@@ -19,7 +19,7 @@ std::string names_of(const List& list, Name name) {
   return text;
 }
 
-/// Empty: all of them.
+/// The methods that the request names, each once. Empty: all methods.
 std::vector<scene::Method> methods_in(Params& params) {
   std::vector<scene::Method> methods;
   const json& value = params.value("methods");
@@ -38,7 +38,7 @@ std::vector<scene::Method> methods_in(Params& params) {
   return methods;
 }
 
-/// Empty: the usual ones.
+/// The iteration counts that the request names. Empty: the defaults of lab::ChartRequest.
 std::vector<int> iterations_in(Params& params) {
   constexpr std::size_t most = 16;
   constexpr int least_value = static_cast<int>(scene::ranges::iterations.minimum),
@@ -74,7 +74,7 @@ bool flag(Params& params, const char* name) {
 }
 
 std::uint64_t job_in(Params& params) {
-  constexpr std::int64_t most = (std::int64_t{1} << 53) - 1;  // what a JSON number holds exactly
+  constexpr std::int64_t most = (std::int64_t{1} << 53) - 1;  // JSON numbers are exact up to here
   return static_cast<std::uint64_t>(params.integer("job", 1, most, std::nullopt));
 }
 
@@ -104,7 +104,7 @@ Outcome lab_chart(Client& client, const Request& request) {
 
 Outcome lab_stability(Client& client, const Request& request) {
   Params params(request.params);
-  constexpr double least = -1e12, most = 1e12;  // of any number of a scene; the job knows the field's own
+  constexpr double least = -1e12, most = 1e12;  // for any field; the job checks the field's own range
   constexpr int least_columns = 2, most_columns = 41;
   lab::MapRequest job;
   job.methods = methods_in(params);

@@ -1,4 +1,5 @@
-// scene.*: read, replace and patch the document. The session's thread validates and answers.
+// scene.*: read, replace and patch the document: the session's thread validates the request and answers.
+// scene.presets lists the presets without the session.
 #include "server/net/client.h"
 #include "server/net/methods.h"
 
@@ -26,7 +27,7 @@ Outcome scene_patch(Client& client, const Request& request) {
   session::PatchScene patch{params.value("patch"), std::nullopt};
   if (!patch.patch.is_object() && !patch.patch.is_array())
     params.refuse("patch", "an object (RFC 7396 merge patch) or an array (RFC 6902 patch)");
-  constexpr std::int64_t most = (std::int64_t{1} << 53) - 1;  // what a JSON number holds exactly
+  constexpr std::int64_t most = (std::int64_t{1} << 53) - 1;  // JSON numbers are exact up to here
   const std::int64_t revision = params.integer("revision", 0, most, -1);
   if (auto error = params.check()) return *error;
   if (revision >= 0) patch.revision = static_cast<std::uint64_t>(revision);

@@ -1,4 +1,4 @@
-// sim.*: play, pause, step, reset, speed. The session's thread carries them out in order and answers.
+// sim.*: play, pause, step, reset, speed. The session's thread carries the requests out in order and answers.
 #include "server/net/client.h"
 #include "server/net/methods.h"
 

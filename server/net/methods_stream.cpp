@@ -1,4 +1,4 @@
-// stream.*: which frames this client gets. Answered here: they concern nobody else.
+// stream.*: which frames this client gets. The service thread answers, without waiting for the session.
 #include <limits>
 #include <optional>
 #include <string>
@@ -9,7 +9,7 @@
 namespace clothlab::net {
 
 namespace {
-/// "f32 or q16".
+/// The names of all encodings, for an error: "f32 or q16".
 std::string allowed() {
   std::string list;
   for (const stream::EncodingFacts& encoding : stream::encodings)

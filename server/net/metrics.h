@@ -1,4 +1,5 @@
-// What `/metrics` tells, in Prometheus' text format. Only the service thread touches it.
+// The server's counters and histograms, which `/metrics` shows in Prometheus' text format. Only the service
+// thread uses them.
 #pragma once
 
 #include <cstddef>
@@ -10,25 +11,25 @@
 
 namespace clothlab::net {
 
-/// How often durations fell between fixed edges.
+/// Counts durations [s] in buckets between fixed edges.
 class Histogram {
  public:
-  explicit Histogram(std::vector<double> edges);  ///< ascending [s]
+  explicit Histogram(std::vector<double> edges);  ///< in ascending order [s]
   void add(double seconds);
   std::uint64_t count() const { return count_; }
-  /// The p-quantile, interpolated within its bucket [s]; 0 if empty.
+  /// The p-quantile [s], interpolated within its bucket, at most the last edge; 0 without durations.
   double quantile(double p) const;
-  /// Appends its lines; `label` is `name="value"`, or empty.
+  /// Appends the histogram's lines to `out`; `label` is `name="value"`, or empty.
   void write(std::string& out, const std::string& name, const std::string& label = "") const;
 
  private:
   std::vector<double> edges_;
-  std::vector<std::uint64_t> counts_;  ///< the last: beyond the last edge
+  std::vector<std::uint64_t> counts_;  ///< [edges + 1]; the last counts durations beyond the last edge
   std::uint64_t count_ = 0;
-  double sum_ = 0;  ///< [s]
+  double sum_ = 0;  ///< of all durations [s]
 };
 
-/// Histograms of one family, by the value of its label.
+/// The histograms of one metric, one for each value of its label.
 class Histograms {
  public:
   explicit Histograms(std::vector<double> edges) : edges_(std::move(edges)) {}
@@ -45,31 +46,31 @@ class Histograms {
 struct Metrics {
   Metrics();
   std::uint64_t frames_sent = 0;
-  std::uint64_t frames_skipped = 0;  ///< replaced by a newer one before the viewer could have it
+  std::uint64_t frames_skipped = 0;  ///< replaced by newer frames before they could be sent
   std::uint64_t bytes_sent = 0;      ///< WebSocket payloads
   std::uint64_t messages_received = 0;
-  std::uint64_t refused = 0;  ///< handshakes and connections
+  std::uint64_t refused = 0;  ///< refused handshakes and connections
   std::uint64_t sessions_brought_back = 0;
-  std::uint64_t exports = 0;  ///< pictures and meshes made, or failed
+  std::uint64_t exports = 0;  ///< pictures and meshes made, failed ones included
   std::uint64_t steps_of_closed_sessions = 0;
-  /// How long frames lay in the server: from the end of the step they show to their bytes leaving, without
-  /// the time in which the viewer itself held them back.
+  /// Time that sent frames spent in the server [s]: from the request to pack a frame, after its steps, until
+  /// its bytes left, without the time for which the viewer's rate or acknowledgements held it back.
   Histogram latency;
-  Histograms requests;    ///< from a request's arrival to its answer, by method
-  Histograms gpu_passes;  ///< what a pass took on the GPU, sampled
+  Histograms requests;    ///< time from a request's arrival to its answer, by method [s]
+  Histograms gpu_passes;  ///< time that a pass took on the GPU, by pass [s]; samples only
 };
 
-/// The lab's jobs by state, those that have ended in all, and what they took.
+/// Numbers of the lab's jobs: those that wait and run now, and all that have ended so far.
 struct LabGauges {
   std::size_t queued = 0, running = 0;
   std::uint64_t finished = 0, cancelled = 0, failed = 0;
-  double seconds = 0;
+  double seconds = 0;  ///< run time of all jobs that have ended [s]
 };
 
-/// What is counted elsewhere and asked for at the moment.
+/// Present values that other parts of the server keep; Hub::gauges collects them for `/metrics`.
 struct Gauges {
   std::size_t sessions = 0, clients = 0, viewers = 0;
-  std::uint64_t steps = 0;  ///< of the sessions that are open
+  std::uint64_t steps = 0;  ///< of the open sessions, since each was opened
   LabGauges lab;
   std::size_t asleep = 0;           ///< sessions whose cloth is at rest
   std::size_t exports_waiting = 0;  ///< pictures and meshes that wait or are being made

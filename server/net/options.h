@@ -1,4 +1,4 @@
-// What `clothlab serve` is told on its command line.
+// The command-line options of `clothlab serve`.
 #pragma once
 
 #include <filesystem>
@@ -12,19 +12,19 @@
 namespace clothlab::net {
 
 struct Options {
-  scene::Document document;  ///< what every session starts with
+  scene::Document document;  ///< the scene that every new session starts with
   std::string bind = "127.0.0.1";
-  int port = 8080;                        ///< 0: a free one
-  std::string token;                      ///< empty: everybody is an operator
-  std::string view_token;                 ///< for viewers, who change nothing
-  std::vector<std::string> allow_origin;  ///< besides the server's own, e.g. "https://example.org"
+  int port = 8080;                        ///< 0: any free port
+  std::string token;                      ///< makes a client an operator; empty: every client is one
+  std::string view_token;                 ///< makes a client a viewer, who may change nothing; empty: none
+  std::vector<std::string> allow_origin;  ///< origins allowed too, e.g. "https://example.org"
   Limits limits;
-  std::filesystem::path state_folder;  ///< where sessions are kept; empty: nowhere
+  std::filesystem::path state_folder;  ///< keeps the sessions' files; empty: sessions are not kept
   std::optional<int> gpu;
   std::string tls_certificate, tls_key;  ///< PEM files; empty: plain HTTP
 };
 
-/// 127.0.0.0/8, ::1 or localhost.
+/// True for 127.0.0.0/8, ::1 and localhost.
 bool is_loopback(const std::string& address);
 
 }  // namespace clothlab::net

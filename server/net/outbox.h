@@ -1,4 +1,5 @@
-// Text on its way to a client, in order: nothing is dropped but a status that a newer one follows.
+// The text messages that wait to be sent to a client, in order. Only a status is ever dropped, when a newer
+// status replaces it.
 #pragma once
 
 #include <cstddef>
@@ -9,11 +10,11 @@
 
 namespace clothlab::net {
 
-/// One text message with the room in front that libwebsockets wants; shared by all clients it goes to.
+/// A text message with LWS_PRE spare bytes in front, as libwebsockets requires; all receivers share it.
 class Text {
  public:
   explicit Text(std::string_view text);
-  /// libwebsockets writes its own header into the room in front of the message; the text stays as it is.
+  /// The text's first byte. libwebsockets writes its header into the spare bytes, never into the text.
   unsigned char* data() const;
   std::size_t size() const;
 
@@ -25,17 +26,17 @@ SharedText make_text(std::string_view text);
 
 class Outbox {
  public:
-  /// False: the client lets more than max_unsent_text_bytes pile up.
+  /// Appends a message. False: more than max_unsent_text_bytes wait, because the client does not read.
   [[nodiscard]] bool push(SharedText text);
   void push_first(SharedText text);
-  /// In place of the status that waits, but behind what was said since.
+  /// Appends a status and drops the status that still waits, if any. Returns the same as `push`.
   [[nodiscard]] bool push_status(SharedText text);
   bool empty() const { return texts_.empty(); }
-  SharedText pop();  ///< null if empty
+  SharedText pop();  ///< removes the first message; null if empty
 
  private:
   std::deque<SharedText> texts_;
-  SharedText status_;  ///< the one among them, null: none
+  SharedText status_;  ///< the status in `texts_`; null: none
   std::size_t bytes_ = 0;
 };
 

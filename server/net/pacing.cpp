@@ -6,7 +6,7 @@
 namespace clothlab::net {
 
 void FramePacing::subscribe(stream::Encoding encoding, double rate, int in_flight, std::int64_t now) {
-  if (!subscribed_ || encoding != encoding_) sent_any_ = false;  // whatever there is, is new to it
+  if (!subscribed_ || encoding != encoding_) sent_any_ = false;  // all frames are new to the viewer
   if (!subscribed_) count_ = 0;
   subscribed_ = true;
   encoding_ = encoding;
@@ -18,7 +18,7 @@ void FramePacing::subscribe(stream::Encoding encoding, double rate, int in_fligh
 
 std::optional<std::int64_t> FramePacing::wait(std::int64_t now) const {
   if (!subscribed_ || count_ >= in_flight_) return std::nullopt;
-  // Frames come at the viewer's own rate, a little early or late: a quarter of a period must not cost it one.
+  // Frames come at the viewer's rate, a little early or late: a quarter of a period early is not too early.
   return std::max<std::int64_t>(0, due_ - period_ / 4 - now);
 }
 

@@ -1,4 +1,5 @@
-// When a viewer gets its next frame, and when somebody talks too much. Pure arithmetic on given times [us].
+// Decides when a viewer gets its next frame, and when a client sends too many messages. Pure arithmetic: the
+// caller passes the time `now` [us].
 #pragma once
 
 #include <array>
@@ -10,8 +11,8 @@
 
 namespace clothlab::net {
 
-/// A viewer's subscription: a frame goes out when it is due by the viewer's rate and fewer than `in_flight`
-/// are unacknowledged. Which frame that is, the latest, is decided at that moment.
+/// A viewer's subscription. A frame is sent when one is due by the viewer's rate [1/s] and fewer than
+/// `in_flight` frames are unacknowledged. The caller then sends the latest frame.
 class FramePacing {
  public:
   void subscribe(stream::Encoding encoding, double rate, int in_flight, std::int64_t now);
@@ -20,20 +21,21 @@ class FramePacing {
   stream::Encoding encoding() const { return encoding_; }
   double rate() const { return rate_; }
 
-  /// Whether this frame is newer than the last one sent.
+  /// True if this frame is newer than the last one sent, or if none was sent.
   bool is_news(std::uint32_t sequence) const { return !sent_any_ || newer(sequence, last_sent_); }
-  /// Microseconds until the next frame may go: 0 now; nothing while only an acknowledgement can help.
+  /// Time until the next frame may be sent [us], 0: now. Empty without a subscription, and while the viewer
+  /// must first acknowledge a frame.
   std::optional<std::int64_t> wait(std::int64_t now) const;
-  /// Since when nothing on the viewer's side has held frames back.
+  /// The time [us] since which neither the viewer's rate nor missing acknowledgements have held frames back.
   std::int64_t ready_since(std::int64_t now) const;
 
   void sent(std::uint32_t sequence, std::int64_t now);
-  /// That frame and all before it; what was never sent is ignored.
+  /// Marks this frame and all before it as acknowledged; ignores the number of a frame that was not sent yet.
   void acknowledge(std::uint32_t sequence, std::int64_t now);
   int unacknowledged() const { return count_; }
 
  private:
-  // Sequence numbers may wrap around.
+  // True if `a` is newer than `b`; right also where sequence numbers wrap around.
   static bool newer(std::uint32_t a, std::uint32_t b) { return static_cast<std::int32_t>(a - b) > 0; }
 
   bool subscribed_ = false, sent_any_ = false;
@@ -41,21 +43,22 @@ class FramePacing {
   double rate_ = 60;         ///< [1/s]
   std::int64_t period_ = 0;  ///< [us]
   int in_flight_ = 2, count_ = 0;
-  std::array<std::uint32_t, max_in_flight> unacknowledged_{};  ///< oldest first, `count_` of them
+  std::array<std::uint32_t, max_in_flight> unacknowledged_{};  ///< `count_` numbers, oldest first
   std::uint32_t last_sent_ = 0;
   std::int64_t due_ = 0, unblocked_ = 0;
 };
 
-/// So many messages a second, and a burst.
+/// A rate limit: a bucket that gains `rate` tokens a second [1/s] and holds at most `burst` tokens.
 class TokenBucket {
  public:
   TokenBucket(double rate, double burst, std::int64_t now)
       : rate_(rate), burst_(burst), tokens_(burst), last_(now) {}
-  /// False: too many. What costs more than is left is let through, and paid off before the next.
+  /// Takes `cost` tokens. False: less than one is left, and none is taken. A cost above what is left leaves a
+  /// debt, which must be gained back first.
   bool take(std::int64_t now, double cost = 1);
-  /// Until one may be taken [us]; 0: now.
+  /// Time until `take` can succeed [us]; 0: now.
   std::int64_t wait(std::int64_t now) const;
-  /// Whether the whole burst may be taken.
+  /// True if the bucket is full.
   bool full(std::int64_t now) const { return left(now) >= burst_; }
 
  private:

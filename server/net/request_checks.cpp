@@ -15,7 +15,8 @@ namespace clothlab::net {
 
 namespace {
 
-constexpr std::size_t longest_list = 120;  ///< of Connection's and the subprotocols' that libwebsockets reads
+/// The most bytes that libwebsockets reads of the lists in Connection and Sec-WebSocket-Protocol.
+constexpr std::size_t longest_list = 120;
 
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t");
@@ -23,7 +24,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-/// Cuts off and returns what stands before the first `separator`.
+/// Returns the part of `text` before the first `separator`, trimmed; cuts that part and the separator off.
 std::string_view take(std::string_view& text, char separator) {
   const std::size_t at = text.find(separator);
   const std::string_view part = text.substr(0, at);
@@ -40,7 +41,8 @@ bool same(std::string_view a, std::string_view b) {
                     [](char x, char y) { return lower(x) == lower(y); });
 }
 
-/// In [0, 1]; what is no weight counts as 0, as who cannot be understood is best sent what anybody reads.
+/// The weight q in an Accept-Encoding item's parameters, in [0, 1]; 1 if there is none. A malformed weight is
+/// 0: without compression every client can read the answer.
 double weight(std::string_view parameters) {
   while (!parameters.empty()) {
     const std::string_view parameter = take(parameters, ';');
@@ -65,7 +67,7 @@ bool has(lws* wsi, lws_token_indexes token) {
 }
 
 bool is_key(const std::string& text) {
-  constexpr std::size_t length = 24;  // of 16 bytes in base64
+  constexpr std::size_t length = 24;  // 16 bytes in base64
   const auto of_base64 = [](char c) {
     return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '+' || c == '/';
   };
@@ -136,7 +138,7 @@ bool prefers_gzip(const std::string& accept_encoding) {
     if (coding == "*") any = q;
   }
   const double wish = gzip.value_or(any.value_or(0));
-  // Who does not name it takes it, but would rather have what was named.
+  // A client that does not name `identity` accepts no coding, but prefers the codings that it names.
   return wish > 0 && wish >= identity.value_or(0);
 }
 

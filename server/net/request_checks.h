@@ -1,5 +1,5 @@
-// What is wrong with a request before it is asked what it wants: HTTP/1.1 (RFC 7230) and the WebSocket's
-// handshake (RFC 6455), where libwebsockets is more lenient than they are.
+// Checks a request's form before its content is handled: HTTP/1.1 (RFC 7230) and the WebSocket handshake
+// (RFC 6455), where libwebsockets is more lenient than these RFCs.
 #pragma once
 
 #include <libwebsockets.h>
@@ -9,24 +9,25 @@
 
 namespace clothlab::net {
 
-/// Of a request's known headers together; beyond: 431. Cookies of whatever else runs on localhost come along.
+/// The most bytes that a request's known headers may have together; beyond: 431. They include the cookies of
+/// other programs on localhost.
 inline constexpr int max_header_bytes = 16 * 1024;
-/// That libwebsockets reads at all; beyond: the connection is closed unanswered.
+/// The most bytes of headers that libwebsockets reads; beyond: the connection is closed without an answer.
 inline constexpr int header_room_bytes = 48 * 1024;
 
 struct RequestFault {
-  unsigned status;   ///< of HTTP
-  std::string why;   ///< and what to do
-  std::string also;  ///< a header line that the status asks for, or nothing
+  unsigned status;   ///< HTTP status to answer with
+  std::string why;   ///< what is wrong, and what to do
+  std::string also;  ///< a header line that the status requires; empty: none
 };
 
-/// Nothing: the request is well-formed. After a fault the connection is closed: what follows could be part of
-/// this one.
+/// The first fault of a request; empty: the request is well-formed. After a fault the connection must be
+/// closed, because the bytes that follow could be part of this request.
 std::optional<RequestFault> request_fault(lws* wsi);
-/// Of a request to become a WebSocket, well-formed as a request.
+/// The first fault of a WebSocket handshake that has no request_fault; empty: the handshake is well-formed.
 std::optional<RequestFault> handshake_fault(lws* wsi);
 
-/// Whether a client that sent this Accept-Encoding would rather have gzip than no coding (RFC 7231, 5.3.4).
+/// True if a client that sent this Accept-Encoding prefers gzip to no coding (RFC 7231, 5.3.4).
 bool prefers_gzip(const std::string& accept_encoding);
 
 }  // namespace clothlab::net

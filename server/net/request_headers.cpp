@@ -27,9 +27,9 @@ bool is_of_host(unsigned char c) {
          std::string_view("-_.:[]").find(static_cast<char>(c)) != std::string_view::npos;
 }
 
-/// `host` may end with a port, or be all kinds of garbage: then nothing.
+/// `host` without the port at its end, if any; empty if a colon is not followed by a port.
 std::string without_port(const std::string& host) {
-  const std::size_t bracket = host.rfind(']');  // the colons before it are an IPv6 address's own
+  const std::size_t bracket = host.rfind(']');  // colons before it belong to an IPv6 address
   const std::size_t colon = host.find(':', bracket == std::string::npos ? 0 : bracket);
   if (colon == std::string::npos) return host;
   const bool port = colon + 1 < host.size() &&
@@ -38,7 +38,7 @@ std::string without_port(const std::string& host) {
 }
 
 bool is_address(const std::string& name) {
-  in6_addr parsed{};  // has room for either
+  in6_addr parsed{};  // large enough for both kinds
   if (name.starts_with('[') && name.ends_with(']'))
     return inet_pton(AF_INET6, name.substr(1, name.size() - 2).c_str(), &parsed) == 1;
   return inet_pton(AF_INET, name.c_str(), &parsed) == 1;
@@ -54,7 +54,7 @@ std::string peer_address(int socket) {
     inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in&>(peer).sin_addr, text, sizeof text);
   } else if (peer.ss_family == AF_INET6) {
     const in6_addr& address = reinterpret_cast<const sockaddr_in6&>(peer).sin6_addr;
-    // An IPv4 address that reached an IPv6 socket is that address.
+    // An IPv4 client of an IPv6 socket is known by its IPv4 address.
     if (IN6_IS_ADDR_V4MAPPED(&address))
       inet_ntop(AF_INET, address.s6_addr + 12, text, sizeof text);
     else
@@ -112,7 +112,7 @@ bool host_trusted(const std::string& host, const std::vector<std::string>& allow
   if (!std::all_of(asked.begin(), asked.end(), is_of_host)) return false;
   std::string name = without_port(asked);
   if (is_address(name)) return true;
-  if (name.ends_with('.')) name.pop_back();  // the same name, written in full
+  if (name.ends_with('.')) name.pop_back();  // "localhost." means localhost
   return name == "localhost" || name.ends_with(".localhost");
 }
 

@@ -1,4 +1,5 @@
-// What a request says of itself, read from libwebsockets while it handles that request.
+// A request's sender, headers and arguments, read while libwebsockets handles the request, and the checks of
+// its Origin and Host.
 #pragma once
 
 #include <libwebsockets.h>
@@ -8,27 +9,28 @@
 
 namespace clothlab::net {
 
-/// Who is at the other end of a socket: an IPv4 or IPv6 address, empty where there is nobody any more.
+/// The IPv4 or IPv6 address at the other end of a socket; empty if the connection has ended.
 std::string peer_address(int socket);
 std::string peer_address(lws* wsi);
-/// What limits count as one address: an IPv6 host has a network of 64 bits to itself, and any number of
-/// addresses in it.
+/// The name under which limits count an address: an IPv4 address itself, but an IPv6 address's /64 network,
+/// because one host can use all addresses of its /64 network.
 std::string network_of(const std::string& address);
-/// A header's value, empty if it is missing; those of the same name are joined by commas.
+/// A header's value; empty if the header is missing. Headers of the same name are joined by commas.
 std::string header(lws* wsi, lws_token_indexes token);
-/// An argument of the query, `fallback` if it is missing.
+/// The value of the argument `name` in the URL's query; `fallback` if it is missing.
 std::string query(lws* wsi, const std::string& name, const std::string& fallback);
 
-/// Whether a page from `origin` may connect: the page's own server, or one of `allowed`. No Origin is no
-/// browser.
+/// True if a page from `origin` may connect: a page of this server, which the request calls `host`, or of an
+/// `allowed` origin. An empty `origin` is allowed: browsers always send one with a WebSocket handshake.
 bool origin_allowed(const std::string& origin, const std::string& host,
                     const std::vector<std::string>& allowed);
 
-/// Whether this Host header cannot be a hostile site's: an address, localhost, a name below that, or the host
-/// of one of the `allowed` origins. A site may have any other name point at this machine (DNS rebinding), and
-/// its pages then come from the "page's own server". No Host is no browser.
+/// True if this Host header cannot name a hostile site: it is an IP address, localhost, a name below
+/// localhost, or the host of an `allowed` origin. A site can make any other name point at this machine (DNS
+/// rebinding), and its pages would then count as this server's own. An empty `host` is trusted: browsers
+/// always send one.
 bool host_trusted(const std::string& host, const std::vector<std::string>& allowed);
-/// A Host header for people to read: at most 200 characters, `?` for those that no name has.
+/// A Host header for messages: at most 200 characters, with `?` for characters that no host name has.
 std::string host_text(const std::string& host);
 
 }  // namespace clothlab::net

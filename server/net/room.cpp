@@ -24,7 +24,8 @@ Room::Room(Hub& hub, std::string name, const std::function<void()>& wake)
   begin_session(nullptr);
 }
 
-/// Frames that viewers may have had of a session that failed, since its room last looked.
+/// The most frames that viewers may have got from a failed session since its room last looked; the session
+/// that replaces it numbers its frames from after them.
 constexpr std::uint32_t frames_unseen = 64;
 
 void Room::begin_session(std::shared_ptr<const session::Saved> saved) {
@@ -90,7 +91,7 @@ void Room::demand_changed(std::optional<stream::Encoding> fresh) {
     rate = std::max(rate, client->pacing().rate());
   }
   for (std::size_t i = 0; i < demand.rate.size(); ++i) {
-    // Nobody has asked for it for a while: what lies in the mailbox may be long past.
+    // Nobody has asked for this encoding for a while: the frame in the mailbox may be old.
     if (demanded_[i] <= 0 && demand.rate[i] > 0 && session_)
       session_->exchange().forget_frame(static_cast<stream::Encoding>(i));
     demanded_[i] = demand.rate[i];
@@ -117,11 +118,12 @@ void Room::take(session::Started& started) {
   const bool again = this->started();
   renderer_ = started.renderer;
   log(LogLevel::info, "session_started", {{"session", name_}, {"renderer", renderer_}});
-  if (again) return;  // they have been greeted
+  if (again) return;  // the clients have been greeted
   for (Client* client : clients_) greet(*client);
 }
 
-/// A session that had begun goes on from what it kept; one that fails again and again does not.
+/// Replaces a failed session by one that goes on from its last saved state. False: the failed session had not
+/// started or saved anything, or this room has replaced 3 sessions in the last minute.
 bool Room::bring_back(const session::Failed& failed) {
   constexpr std::int64_t a_while = 60'000'000;
   constexpr std::size_t most = 3;
@@ -198,7 +200,7 @@ void Room::take(const session::Status& status) {
 void Room::take(const gl::StageTimes& times) {
   for (const auto& [pass, seconds] : times) {
     hub_.metrics().gpu_passes[pass].add(seconds);
-    // It may be of a pass that has been replaced since.
+    // The session may have replaced this pass since it was timed.
     if (std::find(passes_.begin(), passes_.end(), pass) != passes_.end()) pass_seconds_[pass] = seconds;
   }
 }

@@ -1,5 +1,4 @@
-// A session as the service thread sees it: who is in it, its scene and topology as last announced, its
-// frames.
+// A session as the service thread sees it: its clients, its scene and topology as last announced, its frames.
 #pragma once
 
 #include <array>
@@ -21,7 +20,7 @@ class Hub;
 
 inline constexpr const char* main_session = "main";
 
-/// [A-Za-z0-9_-], 1 to 64 of them.
+/// True for 1 to 64 characters of [A-Za-z0-9_-].
 bool is_session_name(const std::string& name);
 
 class Room {
@@ -33,31 +32,34 @@ class Room {
   const std::string& renderer() const { return renderer_; }
   const json& document() const { return document_->value; }
   const stream::SharedMessage& topology() const { return topology_; }
-  /// The latest frame, or null: none yet, or only one that the present topology does not fit.
+  /// The latest frame; null if there is none yet, or if it does not fit the present topology.
   stream::SharedMessage frame(stream::Encoding encoding) const;
 
   void enter(Client& client);
   void leave(Client& client);
   bool empty() const { return clients_.empty(); }
-  std::int64_t unwatched_since() const { return unwatched_since_; }  ///< [us]
-  /// A client's subscription has changed; `fresh`: it needs a frame of this encoding though nothing moves.
+  std::int64_t unwatched_since() const { return unwatched_since_; }  ///< when the last client left [us]
+  /// Tells the session which frames its viewers want, after a subscription has changed. `fresh`: a client
+  /// needs a frame of this encoding at once, even if nothing moves.
   void demand_changed(std::optional<stream::Encoding> fresh);
 
+  /// Passes a command of the server itself to the session.
   void post(session::Command command);
-  /// The same for what a client asks for. False: too much waits already.
+  /// Passes a client's command to the session. False: too many commands of this client wait already.
   [[nodiscard]] bool offer(session::Command command);
-  /// For a picture or mesh; hub.captured() gets the moment. False: too much waits already.
+  /// Asks the session for its present moment, to make a picture or mesh of it; Hub::captured receives the
+  /// moment. False: too many commands of this asker wait already.
   [[nodiscard]] bool capture(std::uint64_t asker, const session::Export& what);
-  std::size_t capturing() const { return capturing_; }  ///< how many of those are still to come
-  /// Takes in what the session has put out and passes it on.
+  std::size_t capturing() const { return capturing_; }  ///< moments asked for that have not come yet
+  /// Takes the session's events and new frames, and passes them on to clients, hub and lab.
   void pump();
   const std::optional<session::Failed>& failure() const { return failure_; }
 
   void stop();
-  /// Its steps stay counted.
+  /// Hands the session to the caller, who ends it; its steps stay counted in the metrics.
   std::unique_ptr<session::Session> give_up_session();
   bool beats() const { return !session_ || session_->beats(); }
-  bool asleep() const { return asleep_; }  ///< as last told
+  bool asleep() const { return asleep_; }  ///< as of the last status
   std::uint64_t steps() const { return session_ ? session_->exchange().steps() : 0; }
 
  private:
@@ -98,9 +100,9 @@ class Room {
        pass_seconds_ = json::object(), solver_ = json::object();
   std::array<double, stream::encoding_count> demanded_{};
   std::array<std::uint32_t, stream::encoding_count>
-      seen_{};                           ///< sequence number of the last frame offered to viewers
-  std::uint32_t last_frame_ = 0;         ///< the number of the newest one
-  std::vector<std::int64_t> failed_at_;  ///< [us] when the session was brought back
+      seen_{};                           ///< number of the last frame offered to viewers, by encoding
+  std::uint32_t last_frame_ = 0;         ///< number of the newest frame of all encodings
+  std::vector<std::int64_t> failed_at_;  ///< times at which the session was brought back [us]
   std::optional<session::Failed> failure_;
   std::size_t capturing_ = 0;
   std::int64_t unwatched_since_ = 0;

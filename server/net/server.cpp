@@ -24,7 +24,8 @@ bool is_loopback(const std::string& address) {
   return address == "localhost" || address == "::1" || address.rfind("127.", 0) == 0;
 }
 
-// A client that is gone without a word is noticed by a ping it does not answer.
+// A connection that is silent for half of idle_seconds gets a ping; without a pong it is closed after
+// idle_seconds, so that a client which has vanished without closing is noticed.
 Server::Server(Options options)
     : keep_alive_{nullptr,
                   0,
@@ -113,7 +114,7 @@ void Server::say_goodbye() {
   hub_.close_all(going_away, "the server is shutting down");
   const std::int64_t until = session::now_us() + 300'000;
   while (!hub_.empty() && session::now_us() < until) {
-    lws_cancel_service(context_);  // so that the wait below is short
+    lws_cancel_service(context_);  // so that lws_service returns soon
     if (lws_service(context_, 0) < 0) break;
   }
 }

@@ -1,5 +1,5 @@
-// The server: libwebsockets' context and callbacks, the listening socket, the service loop. One thread runs
-// it.
+// The server: libwebsockets' context, the listening socket and the service loop. One thread, the service
+// thread, runs it.
 #pragma once
 
 #include <libwebsockets.h>
@@ -16,15 +16,15 @@ namespace clothlab::net {
 
 class Server {
  public:
-  /// Listens. Error: the address is in use, a certificate cannot be read, ...
+  /// Makes a server that listens. Error: the address is in use, a certificate cannot be read, ...
   static Result<std::unique_ptr<Server>> listen(Options options);
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
   std::string url() const;
-  /// Opens the session `main`, calls `ready` when it runs, and serves until `stop`. Why it could not start,
-  /// if so.
+  /// Opens the session `main`, calls `ready` once that session has started, and serves until `stop`. Returns
+  /// why the session could not start; empty if it did.
   std::optional<session::Failed> run(const std::function<void()>& ready);
   /// Ends `run`. Any thread, and signal handlers, may call it.
   void stop();
@@ -32,7 +32,7 @@ class Server {
   // For the callbacks of libwebsockets.
   Hub& hub() { return hub_; }
   const WebFiles& files() const { return files_; }
-  /// 0: this handshake may go on; else the HTTP status to refuse it with.
+  /// The HTTP status to refuse a handshake with, and the reason in `why`; 0: the handshake may go on.
   unsigned refusal(lws* wsi, std::string& why);
 
  private:

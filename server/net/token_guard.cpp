@@ -13,7 +13,7 @@ int TokenGuard::wait(const std::string& address, std::int64_t now) const {
 }
 
 void TokenGuard::was_wrong(const std::string& address, std::int64_t now) {
-  // Not each time: there may be many.
+  // Addresses are forgotten at most once a second, as there may be many to look through.
   if (now >= forget_at_) {
     std::erase_if(left_, [now](const auto& item) { return item.second.full(now); });
     forget_at_ = now + second;

@@ -1,5 +1,6 @@
-// Keeps an address from guessing tokens: so many wrong ones a minute, and as many at once. Beyond that none
-// of it is looked at, right or wrong. Pure arithmetic on given times [us].
+// Keeps an address from guessing tokens: it may send a number of wrong tokens a minute, and as many at once.
+// Beyond that no token from the address is checked, right or wrong. Pure arithmetic: the caller passes the
+// time `now` [us].
 #pragma once
 
 #include <cstddef>
@@ -15,11 +16,11 @@ class TokenGuard {
  public:
   explicit TokenGuard(int wrong_a_minute) : most_(wrong_a_minute) {}
 
-  /// Until a token of this address is looked at [s], rounded up; 0: it is now.
+  /// Seconds to wait before a token from this address is checked again, rounded up; 0: none.
   int wait(const std::string& address, std::int64_t now) const;
-  /// One was looked at, and is wrong.
+  /// Counts a token from this address that was checked and is wrong.
   void was_wrong(const std::string& address, std::int64_t now);
-  /// Addresses it knows: those that may not yet send all their wrong ones at once again.
+  /// Number of addresses remembered: an address is forgotten once it may send all its wrong tokens again.
   std::size_t count() const { return left_.size(); }
 
  private:
@@ -28,7 +29,7 @@ class TokenGuard {
   std::int64_t forget_at_ = 0;
 };
 
-/// What is said instead of looking at a token.
+/// The message that refuses a token without checking it; `seconds` is the time to wait.
 std::string not_looked_at(int seconds);
 
 }  // namespace clothlab::net

@@ -1,5 +1,5 @@
-// The page's files, all in memory from the start: nothing outside web/dist can be reached, and nothing is
-// compressed twice.
+// The page's files, all read and compressed once at the start, so that requests reach no file outside
+// web/dist.
 #pragma once
 
 #include <filesystem>
@@ -9,19 +9,18 @@
 namespace clothlab::net {
 
 struct WebFile {
-  std::string type;  ///< of the content, with its charset
+  std::string type;  ///< content-type, with its charset
   std::string body;
-  std::string gzipped;  ///< empty where it would not be smaller
-  std::string etag;     ///< quoted
+  std::string gzipped;  ///< `body` compressed; empty where that saves nothing
+  std::string etag;     ///< hash of `body`, in quotes
 };
 
 class WebFiles {
  public:
-  /// Loads every file below the page's folder. Without it there is one page, which says how to build the real
-  /// one.
+  /// Loads every file below web/dist. If the page was not built, "/" is a page that says how to build it.
   static WebFiles load();
 
-  /// By path, "/" being the page; null if there is none.
+  /// The file at `path`; "/" is the page, /index.html. Null if there is no such file.
   const WebFile* find(const std::string& path) const;
   bool built() const { return built_; }
 

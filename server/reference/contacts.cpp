@@ -13,12 +13,12 @@ namespace clothlab::reference {
 
 namespace {
 
-/// Where a collider is in `pose`, as its law takes it.
+/// The collider `home` moved to `pose` and grown by the contact margin, in the form that its law takes.
 elements::Solid solid_at(const World& world, const scene::Solid& home, const model::Pose& pose) {
   return {pose.place(home.point), pose.rotation * home.direction, home.radius + world.contact_margin};
 }
 
-/// Stops the step from -> x at one of them, if it is in the way.
+/// Stops the step from -> x at one collider; true if the collider is in the way.
 bool meet_solid(const World& world, const scene::Collider& collider, double t, const dvec3& from, dvec3& x,
                 Surface& met) {
   const scene::Solid home = scene::solid(collider.shape);
@@ -33,8 +33,8 @@ bool meet_solid(const World& world, const scene::Collider& collider, double t, c
   return true;
 }
 
-/// Stops the step from -> x at each collider in turn, kind after kind, as on the GPU; `touch` is told of each
-/// that is met.
+/// Stops the step from -> x at each collider in turn, one kind of shape after another, as on the GPU. Calls
+/// touch(surface) for each collider met, and returns their number.
 template <class Touch>
 int meet_each(const World& world, double t, const dvec3& from, dvec3& x, Touch touch) {
   int count = 0;
@@ -53,7 +53,7 @@ int meet_each(const World& world, double t, const dvec3& from, dvec3& x, Touch t
 
 int meet_colliders(const World& world, double t, const dvec3& from, dvec3& x, dvec3& v, dvec3* second) {
   dvec3 braking(0.0);
-  // Verlet moves with its second velocity.
+  // Verlet moves its vertices with the second velocity.
   const dvec3* moves = second ? second : &v;
   const int count = meet_each(world, t, from, x, [&](const Surface& met) {
     const dvec3 moved = x - braking - from - world.scene.solver.dt * met.velocity;
@@ -99,7 +99,7 @@ model::Adjacency within_reach(const World& world, const State& state) {
     fastest = std::max(fastest, speed);
   }
   model::Adjacency near{std::vector<std::uint32_t>(count + 1, 0), {}};
-  if (!sound) return near;  // the run is lost anyhow, and such places have no order
+  if (!sound) return near;  // the run has failed already, and NaN cannot be sorted
   const double reach = world.scene.self_collision->thickness + 2.0 * fastest * world.scene.solver.dt;
   std::vector<std::uint32_t> along(count);
   std::iota(along.begin(), along.end(), 0);
@@ -140,8 +140,8 @@ SelfContact self_contact(const World& world, const State& state, const model::Ad
                                 *keep, world.scene.self_collision->friction, dt, push, impulse))
       continue;
     ++contact.touched;
-    // Each vertex takes its share by inverse mass, less where several contacts would add up to more than is
-    // needed.
+    // The two vertices share the correction by inverse mass. The share is smaller where several contacts
+    // would add up to more than is needed.
     const double crowd = std::max({2, state.contacts[i], state.contacts[j]});
     const double share = inverse_mass(world, i) / (inverse_mass(world, i) + inverse_mass(world, j)) / crowd;
     contact.push += share * push;

@@ -16,21 +16,22 @@ namespace {
 
 using Vectors = std::vector<dvec3>;
 
-/// How much of `pull` a vertex followed in the step before (Chen et al. 2024, section 3.7): none at rest, so
-/// that a cloth at rest starts where it stays; all of it in free fall, in air too. Nearly all counts as all,
-/// for the sake of float32.
+/// The share of `pull` [m/s^2] that a vertex followed in the step before (Chen et al. 2024, section 3.7): 0
+/// at rest, so that a cloth at rest starts its step where it stays; 1 in free fall, in air too. A share just
+/// below 1 counts as 1, because the GPU's float32 does not give exactly 1.
 double followed(const dvec3& acceleration, const dvec3& pull) {
   const double squared = glm::dot(pull, pull);
   return squared > 0.0 ? std::clamp(1.02 * glm::dot(acceleration, pull) / squared, 0.0, 1.0) : 1.0;
 }
 
-/// Whether a vertex with velocity v hits that surface: faster than it could fall to it in a step or two.
+/// True if a vertex with velocity v hits the surface in an impact: it approaches faster than gravity alone
+/// could make it in two steps.
 bool hits(const SweepState& step, const Surface& met, const dvec3& v) {
   return glm::dot(met.velocity - v, met.normal) > 2.0 * step.dt * glm::length(step.world.scene.gravity);
 }
 
-/// Where VBD starts: inertia's displacement and the followed share of gravity; where the free motion meets a
-/// collider, that motion as far as the surface and friction let it go.
+/// The displacement from which VBD's sweeps start [m]: inertia's displacement plus the followed share of
+/// gravity's. Where the free motion meets a collider, the surface and friction cut both down.
 dvec3 first_guess(const SweepState& step, std::uint32_t i, const std::optional<dvec3>& velocity_before) {
   const World& world = step.world;
   const double dt = step.dt, drag = model::mobility(world.scene);
@@ -52,7 +53,8 @@ dvec3 first_guess(const SweepState& step, std::uint32_t i, const std::optional<d
   return moved - elements::friction_displacement(moved - carried, n, met.friction, depth);
 }
 
-/// The velocities at this step's start that the next one may compare its own with.
+/// The velocities at this step's start that the next step compares its own with; none at a vertex that hits a
+/// collider.
 std::vector<std::optional<dvec3>> to_remember(const SweepState& step) {
   std::vector<std::optional<dvec3>> before(step.v.begin(), step.v.end());
   for (std::uint32_t i = 0; i < before.size(); ++i) {
@@ -96,8 +98,8 @@ SweepState begin(const World& world, const State& state, double t, double t_next
   return step;
 }
 
-/// The velocity of a vertex that the step's free motion brings to a surface in an impact: turned back by the
-/// surface's restitution.
+/// The velocity of vertex i after the step: v, but if its free motion hits a surface in an impact, with the
+/// normal part turned back by the surface's restitution.
 dvec3 bounced(const SweepState& step, std::uint32_t i, const dvec3& v) {
   dvec3 stopped = step.x[i] + step.free[i];
   Surface met;

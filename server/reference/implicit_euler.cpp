@@ -1,5 +1,5 @@
 // Backward Euler as an equation for the velocity u at the end of the step (Baraff & Witkin 1998, section 3),
-// solved by Newton's method: fully, or by the given number of steps from u = 0.
+// solved by Newton's method: to rounding, or by a given number of Newton steps from u = 0.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -14,16 +14,16 @@ namespace {
 
 using Vectors = std::vector<dvec3>;
 
-constexpr double solved = 1e-13;  // of the largest momentum in the equation: a few hundred roundings
+constexpr double solved = 1e-13;  // residual over Equation::scale: a few hundred roundings
 constexpr int most_newton_steps =
-    200;  // far from the solution the dropped `across` makes it converge linearly
+    200;  // far from the solution convergence is only linear, where the negative `across` is dropped
 
-/// r(u) = M (1 + dt drag) u - M (v + dt g) - dt f(x + dt u, u), 0 for the free vertices at the end of the
-/// step.
+/// The equation r(u) = 0 at the free vertices, r(u) = M (1 + dt drag) u - M (v + dt g) - dt f(x + dt u, u),
+/// for the velocity u at the end of the step [m/s].
 struct Equation {
   const World& world;
-  Vectors x, v;   ///< at the start, with self-collision's push and impulse
-  Vectors moved;  ///< [m/s]: (place at the end - x) / dt of the pinned vertices, 0 of the others
+  Vectors x, v;   ///< at the step's start [m], [m/s], with self-collision's push and impulse added
+  Vectors moved;  ///< (position at the end - x) / dt of pinned vertices, 0 of free ones [m/s]
   double dt;
 
   explicit Equation(const StepStart& start)
@@ -60,7 +60,7 @@ struct Equation {
     return system_matrix(world, end(u), {1.0 + dt * world.scene.air_drag, dt, dt * dt}, across);
   }
 
-  /// The largest momentum that goes into any vertex's equation: what its rounding is measured by.
+  /// The largest sum of momenta in the equation of any vertex [kg m/s]; rounding errors are a share of it.
   double scale(const Vectors& u) const {
     Vectors sum(x.size());
     const Vectors positions = end(u);
@@ -78,8 +78,8 @@ struct Equation {
     return largest;
   }
 
-  /// What a Newton step has to lower. Without damping the incremental potential, whose gradient r is; with it
-  /// there is none, and it is |r|^2.
+  /// The value that a line search lowers. Without damping it is the incremental potential [J], whose gradient
+  /// is r. With damping there is no such potential, and it is |r|^2.
   double merit(const Vectors& u) const {
     const auto damped = [](const scene::Cloth& cloth) { return cloth.material.damping > 0.0; };
     const std::vector<scene::Cloth>& cloths = world.scene.cloths;
@@ -110,8 +110,8 @@ Vectors plus(const Vectors& a, double scale, const Vectors& b) {
   return sum;
 }
 
-/// The Newton step from u. The true matrix converges quadratically but is not always positive definite; the
-/// one without the compressed springs' negative part always is.
+/// The Newton step from u. With the true matrix it converges quadratically, but that matrix is not always
+/// positive definite; the matrix without the negative part of compressed springs always is.
 Vectors newton_step(const Equation& equation, const Vectors& u, const Vectors& r) {
   const Vectors wanted = plus(Vectors(u.size(), dvec3(0.0)), -1.0, r), still(u.size(), dvec3(0.0));
   Vectors du;
@@ -120,7 +120,8 @@ Vectors newton_step(const Equation& equation, const Vectors& u, const Vectors& r
   return du;
 }
 
-/// The share of du that lowers the merit; 0 if none does, as happens at the rounding of the solution.
+/// The largest share 1, 1/2, 1/4, ... of du that lowers the merit; 0 if none does, as happens where only
+/// rounding separates u from the solution.
 double line_search(const Equation& equation, const Vectors& u, const Vectors& du) {
   const double before = equation.merit(u);
   for (double share = 1.0; share > 1e-6; share *= 0.5)
@@ -148,7 +149,7 @@ State backward_euler(const StepStart& start) {
   Vectors r = equation.residual(u);
   for (int n = 0; n < most_newton_steps && largest(r) > solved * scale; ++n) {
     const Vectors du = newton_step(equation, u, r);
-    // Near the solution the merit's rounding hides its decrease, and the residual shows it better.
+    // Near the solution rounding hides the merit's decrease; the residual shows the progress better.
     Vectors next = plus(u, 1.0, du), r_next = equation.residual(next);
     if (!(largest(r_next) < 0.5 * largest(r))) {
       const double share = line_search(equation, u, du);
@@ -167,7 +168,7 @@ State baraff_witkin(const StepStart& start) {
   Vectors u(equation.x.size(), dvec3(0.0));
   for (int n = 0; n < start.world.scene.solver.iterations; ++n) {
     const Vectors r = equation.residual(u), wanted = plus(Vectors(u.size(), dvec3(0.0)), -1.0, r);
-    const Vectors to_pins = plus(equation.moved, -1.0, u);  // all of the way in the first step
+    const Vectors to_pins = plus(equation.moved, -1.0, u);  // the first Newton step takes pins all the way
     Vectors du;
     solve_with_pins(start.world, equation.jacobian(u, Across::dropped), wanted, to_pins, du);
     u = plus(u, 1.0, du);

@@ -50,7 +50,7 @@ State verlet(const StepStart& start) {
     v += start.impulse[i];
     next.half_velocity[i] = v + 0.5 * start.dt * a[i];
     next.position[i] = state.position[i] + start.push[i] + start.dt * next.half_velocity[i];
-    next.velocity[i] = v + start.dt * a[i];  // predicted: the next step's damping and drag see it
+    next.velocity[i] = v + start.dt * a[i];  // predicted, for the next step's damping and drag
   }
   return next;
 }
@@ -98,7 +98,7 @@ StepMethod step_method(scene::Method method) {
     case scene::Method::pbd:
     case scene::Method::xpbd:
     case scene::Method::vbd:
-      break;  // gauss_seidel.h
+      break;  // not reached: gauss_seidel_step does these
   }
   return symplectic_euler;
 }

@@ -1,17 +1,17 @@
-// One step of each method from t to t + dt, as its textbook writes it, in double precision. Pins and
-// colliders are left to the caller: what a method returns for a pinned vertex does not count.
+// One step of each method from t to t + dt, as textbooks write it, in double precision. The caller treats
+// pins and colliders: it overwrites what a method returns for a pinned vertex.
 #pragma once
 
 #include "server/reference/reference.h"
 
 namespace clothlab::reference {
 
-/// What a step starts from.
+/// The input of a step.
 struct StepStart {
   const World& world;
   const State& state;          ///< at time t
-  std::vector<dvec3> push;     ///< [vertex_count] of self-collision: added to the position [m]
-  std::vector<dvec3> impulse;  ///< [vertex_count] of self-collision: added to the velocity at the start [m/s]
+  std::vector<dvec3> push;     ///< [vertex_count] self-collision adds it to the position [m]
+  std::vector<dvec3> impulse;  ///< [vertex_count] self-collision adds it to the velocity at the start [m/s]
   double t, dt;                ///< [s]
 };
 
@@ -21,21 +21,21 @@ using StepMethod = State (*)(const StepStart&);
 State explicit_euler(const StepStart& start);
 /// v += a(x, v) dt; x += v dt with the new v.
 State symplectic_euler(const StepStart& start);
-/// Velocity Verlet with one evaluation a step; its damping sees a velocity predicted from the last
+/// Velocity Verlet with one evaluation of forces per step. Damping uses a velocity predicted from the last
 /// acceleration, which keeps the second order (Groot & Warren 1997, with their lambda = 1).
 State verlet(const StepStart& start);
-/// The classical Runge-Kutta method of fourth order, the pins where they are at the time of each stage.
+/// The classical Runge-Kutta method of fourth order; each stage has the pins where they are at its time.
 State rk4(const StepStart& start);
 /// Backward Euler: u = v + dt a(x + dt u, u), x += dt u, solved by Newton's method to rounding.
 State backward_euler(const StepStart& start);
-/// The same by `solver.iterations` Newton steps from u = 0 (Baraff & Witkin 1998, with more steps than their
-/// one).
+/// Backward Euler with exactly `solver.iterations` Newton steps from u = 0 (Baraff & Witkin 1998, who take
+/// one step).
 State baraff_witkin(const StepStart& start);
 
 /// A whole step by `method` with contacts, pins and strain limit, from time t to t_next = t + solver.dt.
 void advance(StepMethod method, const World& world, State& state, double t, double t_next);
 
-/// The one of these that the scene asks for.
+/// The function above for `method`. PBD, XPBD and VBD have none: see gauss_seidel.h.
 StepMethod step_method(scene::Method method);
 
 }  // namespace clothlab::reference

@@ -20,8 +20,8 @@ using Vectors = std::vector<dvec3>;
 void stop_at_colliders(const World& world, const State& before, double t, State& next) {
   for (std::size_t i = 0; i < next.position.size(); ++i) {
     if (world.pinned(i)) continue;
-    // Verlet's contact is an impulse within the step: it changes the velocity in the middle of it as the one
-    // at its end.
+    // Verlet's contact is an impulse within the step: it changes the velocity in the middle of the step like
+    // the velocity at its end.
     dvec3* half = next.half_dt.empty() ? nullptr : &next.half_velocity[i];
     next.contacts[i] +=
         meet_colliders(world, t, before.position[i], next.position[i], next.velocity[i], half);

@@ -1,6 +1,6 @@
-// The truth the GPU is held against: the same scene, one step at a time, in double precision and in the
-// plainest form. Every element once, every pair of vertices that could touch, no hash; only the element laws
-// are shared with the shaders.
+// The reference that GPU results are compared with: it steps the same scene in double precision and in the
+// plainest form. It visits every element once and every pair of vertices that could touch, without a spatial
+// hash. It shares only the element laws with the shaders.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace clothlab::reference {
 
 using glm::dvec3;
 
-/// What does not change while it runs.
+/// Everything that stays constant during a run.
 struct World {
   scene::Scene scene;
   model::Model model;
@@ -31,51 +31,52 @@ struct State {
   std::vector<dvec3> position;  ///< [vertex_count] [m]
   std::vector<dvec3> velocity;  ///< [vertex_count] [m/s]
   std::vector<int>
-      contacts;  ///< [vertex_count] of the last step: colliders met and vertices touched; 0 if pinned
-  std::uint64_t step = 0;  ///< steps since the start: the time is step * dt
-  /// Verlet's own, [vertex_count] or empty before its first step: the velocity half a step ago [m/s], and the
-  /// dt of that half step [s], 0 where the velocity is of now.
+      contacts;  ///< [vertex_count] colliders met and vertices touched in the last step; 0 if pinned
+  std::uint64_t step = 0;  ///< number of steps since the start: the time is step * dt
+  /// Verlet only, [vertex_count] or empty before its first step: the velocity half a step ago [m/s], and dt
+  /// of that step [s]; where half_dt is 0, the next step starts from `velocity` instead.
   std::vector<dvec3> half_velocity = {};
   std::vector<double> half_dt = {};
-  /// VBD's own, [vertex_count] or empty before its first step: the velocity at the start of the last step
-  /// [m/s]; none where that was one of an impact.
+  /// VBD only, [vertex_count] or empty before its first step: the velocity at the start of the last step
+  /// [m/s]; none where the vertex hit a collider in an impact in that step.
   std::vector<std::optional<dvec3>> velocity_before = {};
-  /// What an implicit method left unsolved, as a share of the largest momentum in its equation; 0 after
-  /// others.
+  /// The residual that an implicit method left, as a share of the largest momentum in its equation; 0 after
+  /// other methods.
   double residual = 0;
 };
 
-/// A world for `scene`, or why its model cannot be built.
+/// A world for `scene`, or an error that says why its model cannot be built.
 Result<World> make_world(const scene::Scene& scene, double contact_margin);
 
-/// Where the cloths start, nothing moving, at time 0.
+/// The state at time 0: start positions, and velocity 0.
 State at_rest(const World& world);
 
-/// One step of dt by the scene's method (methods.h). Self-collision acts from the state at the start; pins
-/// are put where their motion is at t + dt; a vertex that would enter a collider on its way is stopped at the
-/// surface; then the strain limit. PBD, XPBD and VBD meet contacts within their iterations
-/// (gauss_seidel.h). Implicit Euler is solved to the rounding of double precision, whatever
-/// `iterations` says.
+/// Advances `state` by one step of dt with the scene's method (methods.h). Self-collision acts on the state
+/// at the start. After the method's step, pins go to where their motions are at t + dt, then vertices that
+/// would enter a collider stop at its surface, then the strain limit acts. PBD, XPBD and VBD treat contacts
+/// within their iterations instead (gauss_seidel.h). Implicit Euler is solved to the rounding of double
+/// precision, whatever `iterations` says.
 void step(const World& world, State& state);
 
-/// The same with Baraff & Witkin's implicit Euler in the place of the method: at most `solver.iterations`
-/// Newton steps, none of them searched along. What the GPU computes, less the tolerance of its linear solver.
+/// Like `step`, but with Baraff & Witkin's implicit Euler as the method: exactly `solver.iterations` Newton
+/// steps, without a line search. With whole Newton steps the GPU computes the same, to its solver's
+/// tolerance.
 void baraff_witkin_step(const World& world, State& state);
 
 /// Forces of the elements on each vertex [N].
 std::vector<dvec3> element_forces(const World& world, const std::vector<dvec3>& position,
                                   const std::vector<dvec3>& velocity);
 
-/// What elements, gravity and air drag do to each vertex, as if none were pinned [m/s^2].
+/// The acceleration of each vertex by elements, gravity and air drag, as if no vertex were pinned [m/s^2].
 std::vector<dvec3> accelerations(const World& world, const std::vector<dvec3>& position,
                                  const std::vector<dvec3>& velocity);
 
-/// Puts the pinned vertices where their motions take them at time t [s], with the velocity they have there.
+/// Sets position and velocity of the pinned vertices to those of their motions at time t [s].
 void place_pins(const World& world, double t, std::vector<dvec3>& position, std::vector<dvec3>& velocity);
 
 struct Energy {
   double kinetic = 0, elastic = 0,
-         gravitational = 0;  ///< [J], of all vertices; gravitational 0 at the origin
+         gravitational = 0;  ///< [J], of the whole scene; gravitational energy is 0 at the origin
   double total() const { return kinetic + elastic + gravitational; }
 };
 Energy energy(const World& world, const State& state);

@@ -14,10 +14,10 @@ namespace {
 
 using Vectors = std::vector<dvec3>;
 
-constexpr double balanced = 1e-12;  // of the largest force on any vertex: some thousand roundings
+constexpr double balanced = 1e-12;  // force left over Scale::force: some thousand roundings
 constexpr int most_newton_steps = 2000;
 
-/// The sum of forces on each free vertex [N]; 0 on the pinned.
+/// The sum of forces on each free vertex [N]; 0 on pinned vertices.
 Vectors forces(const World& world, const Vectors& x) {
   Vectors force = element_forces(world, x, Vectors(x.size(), dvec3(0.0)));
   for (std::size_t i = 0; i < x.size(); ++i)
@@ -31,7 +31,8 @@ double largest(const Vectors& vectors) {
   return most;
 }
 
-/// The largest sum of stiffness over mass at a vertex [1/s^2], and of the forces that balance there [N].
+/// The largest stiffness over mass of any vertex [1/s^2], and the largest sum of forces, without signs, that
+/// balance at any vertex [N].
 struct Scale {
   double stiffness = 1e-300, force = 1e-300;
 };
@@ -56,7 +57,7 @@ double potential(const World& world, const Vectors& x) {
   return sum.elastic + sum.gravitational;
 }
 
-/// A vertex from which no chain of elements leads to a pin.
+/// The first vertex from which no chain of elements leads to a pin; none if every vertex is held.
 std::optional<std::size_t> unheld_vertex(const World& world) {
   std::vector<bool> held(world.model.vertex_count());
   for (std::size_t i = 0; i < held.size(); ++i) held[i] = world.pinned(i);
@@ -77,8 +78,9 @@ std::optional<std::size_t> unheld_vertex(const World& world) {
   return static_cast<std::size_t>(found - held.begin());
 }
 
-/// One step of Newton's method with `shift` [N/m] added to every stiffness (Levenberg): the true matrix where
-/// that is positive definite, else the one without the compressed springs' negative part.
+/// One step of Newton's method with `shift` [1/s^2] times the masses added to the stiffness (Levenberg). Uses
+/// the true matrix if it is positive definite, else the matrix without the negative part of compressed
+/// springs.
 Vectors shifted_step(const World& world, const Vectors& x, const Vectors& force, double shift) {
   const Vectors still(x.size(), dvec3(0.0));
   Vectors dx;
@@ -87,7 +89,7 @@ Vectors shifted_step(const World& world, const Vectors& x, const Vectors& force,
   return dx;
 }
 
-/// Newton's method from `start`; the shift falls as long as steps go downhill and rises when they do not.
+/// Newton's method from `start`. The shift falls while steps lower the energy, and rises when they do not.
 RestShape descend(const World& world, const Vectors& start, const std::stop_token& stop) {
   const Scale scales = scale(world);
   RestShape shape{start, 0.0, 0};
@@ -97,14 +99,14 @@ RestShape descend(const World& world, const Vectors& start, const std::stop_toke
     if (largest(force) <= balanced * scales.force || !(shift < 1e6 * scales.stiffness)) break;
     if (stop.stop_requested()) break;
     Vectors next = shifted_step(world, shape.position, force, shift);
-    double expected = 0.0;  // how far the slope alone would take the energy down
+    double expected = 0.0;  // the decrease of energy [J] that its slope alone predicts
     for (std::size_t i = 0; i < next.size(); ++i) {
       expected += glm::dot(next[i], force[i]);
       next[i] += shape.position[i];
     }
     const double height_next = potential(world, next);
     const Vectors force_next = forces(world, next);
-    // At the minimum the energy's rounding hides the decrease, and the force shows it better.
+    // At the minimum rounding hides the energy's decrease; the force shows the progress better.
     if (height_next < height - 0.1 * expected || largest(force_next) < 0.5 * largest(force)) {
       shape.position = next;
       force = force_next;
@@ -118,7 +120,7 @@ RestShape descend(const World& world, const Vectors& start, const std::stop_toke
   return shape;
 }
 
-/// What of the scene the shape does not respect.
+/// An error if a free vertex of the shape x is inside a collider, or a spring is beyond its strain limit.
 std::optional<Error> violated(const World& world, const Vectors& x) {
   for (std::size_t i = 0; i < x.size(); ++i) {
     dvec3 stopped = x[i], v(0.0);

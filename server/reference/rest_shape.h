@@ -1,4 +1,5 @@
-// Where a cloth hangs still: the minimum of its elastic and gravitational energy, by Newton's method.
+// The shape in which a cloth hangs still: a minimum of its elastic and gravitational energy, by Newton's
+// method.
 #pragma once
 
 #include <stop_token>
@@ -13,10 +14,10 @@ struct RestShape {
   int iterations = 0;           ///< Newton steps taken
 };
 
-/// Springs and gravity in balance, the pins where they are at time 0, downhill from the rest positions or
-/// from `start` [vertex_count] [m]: a nearby minimum, not always the lowest. An error that says why where
-/// there is none: a vertex that nothing holds, a shape that would be inside a collider or beyond a strain
-/// limit (neither is treated), or no convergence, as when `stop` ends the search.
+/// Finds a shape in which springs and gravity balance, with the pins where they are at time 0. Descends from
+/// the rest positions, or from `start` [vertex_count] [m], to a nearby minimum, which need not be the lowest.
+/// An error says why there is no such shape: nothing holds a vertex, the shape would be inside a collider or
+/// beyond a strain limit (both are only checked), or no convergence, also when `stop` ends the search.
 Result<RestShape> rest_shape(const World& world);
 Result<RestShape> rest_shape(const World& world, std::vector<dvec3> start, const std::stop_token& stop);
 

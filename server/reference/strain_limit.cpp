@@ -7,11 +7,11 @@ namespace clothlab::reference {
 
 namespace {
 
-constexpr double enough = 1e-12;    // of the rest length: some thousand roundings
-constexpr int most_sweeps = 20000;  // Gauss-Seidel over a cloth that hangs needs about (rows)^2
+constexpr double enough = 1e-12;    // excess over rest length: some thousand roundings
+constexpr int most_sweeps = 20000;  // Gauss-Seidel on a hanging cloth needs about rows^2 sweeps
 
-/// Shortens one spring to the most that `limit` allows. Returns by how much it was too long, as a share of
-/// its rest length.
+/// Shortens one spring to (1 + limit) rest lengths if it is longer. Returns by how much it was too long, as a
+/// share of its rest length.
 double shorten(const World& world, const model::Spring& spring, double limit, std::vector<dvec3>& x) {
   const auto [a, b] = spring.vertices;
   const double wa = world.pinned(a) ? 0.0 : 1.0 / world.model.mass[a];

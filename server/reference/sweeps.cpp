@@ -16,7 +16,8 @@ namespace {
 
 using glm::dmat3;
 
-/// What the elements and inertia leave of a vertex's balance, and its derivative.
+/// The net force of elements and inertia on a vertex, times dt^2, and its negative derivative with respect to
+/// the vertex's displacement. VBD moves the vertex so as to make the net force 0.
 struct Balance {
   dvec3 residual{0.0};  ///< [kg m]
   dmat3 hessian{0.0};   ///< [kg], positive definite
@@ -39,14 +40,15 @@ Balance balance(const SweepState& step, std::uint32_t i) {
   return result;
 }
 
-/// The impulses of the colliders that the vertex would enter by moving by `move`, through the same matrix as
-/// the springs' forces: one along the normal that stops it, and friction.
+/// `move` [m] of vertex i, changed by the impulses of a collider that it would enter: one along the normal
+/// that stops the vertex, and friction. `inverse` turns the impulses into displacements, as it does the
+/// forces.
 dvec3 stopped_move(SweepState& step, std::uint32_t i, const dmat3& inverse, dvec3 move) {
   const dvec3 trial = step.now(i) + move;
   dvec3 stopped = trial;
   Surface met;
   step.met[i] = stop_on_way(step.world, step.t, step.x[i], stopped, met);
-  if (!step.world.scene.self_collision) step.contacts[i] = step.met[i];  // else the contact pass counts
+  if (!step.world.scene.self_collision) step.contacts[i] = step.met[i];  // else contact_pass counts
   if (step.met[i] == 0) return move;
   const dvec3& n = met.normal;
   const dvec3 response = inverse * n;
@@ -57,22 +59,22 @@ dvec3 stopped_move(SweepState& step, std::uint32_t i, const dmat3& inverse, dvec
   const double distance = glm::length(sliding);
   if (!(distance > 0.0)) return move;
   const dvec3 along = sliding / distance;
-  dvec3 rubbed = inverse * along;  // what friction moves stays on the surface
+  dvec3 rubbed = inverse * along;  // friction moves the vertex only along the surface
   rubbed -= response * (glm::dot(n, rubbed) / glm::dot(n, response));
   const double most = met.friction * impulse;
   return move - (glm::dot(along, rubbed) * most < distance ? rubbed * most : sliding);
 }
 
-/// What self-collision pushes vertex i by, and how many vertices it touches.
+/// The displacement of vertex i by self-collision [m]; adds to `touched` how many vertices i touches.
 dvec3 pair_push(const SweepState& step, std::uint32_t i, int& touched) {
   const World& world = step.world;
   const scene::SelfCollision& self = *world.scene.self_collision;
-  // All of an old overlap at once would be a blow: a fifth a step, less in small steps.
+  // Removing an old overlap at once would act like a blow: remove a fifth in a step, less in short steps.
   const double mend = std::min(0.2, 20.0 * step.dt);
   dvec3 push(0.0);
   for (std::uint32_t j = 0; j < world.model.vertex_count(); ++j) {
     const dvec3 before = step.x[i] - step.x[j], now = step.now(i) - step.now(j);
-    if (glm::length(before) > self.thickness + glm::distance(before, now)) continue;  // spares the look-up
+    if (glm::length(before) > self.thickness + glm::distance(before, now)) continue;  // cannot meet
     const std::optional<double> keep = kept_distance(world, i, j);
     dvec3 correction;
     if (!keep || !elements::pair_contact(before, now, *keep, self.friction, mend, correction)) continue;
@@ -131,7 +133,7 @@ void contact_pass(SweepState& step) {
     dvec3 stopped = trial;
     Surface met;
     const int count = stop_on_way(world, step.t, step.x[i], stopped, met);
-    contacts[i] += std::max(count, step.met[i]);  // VBD's visit has put it on the surface already
+    contacts[i] += std::max(count, step.met[i]);  // VBD's visit may have put the vertex on the surface
     if (count == 0) continue;
     d += stopped - trial;
     d -= elements::friction_displacement(d - step.dt * met.velocity, met.normal, met.friction,

@@ -1,22 +1,22 @@
-// The parts of a Gauss-Seidel step (gauss_seidel.h): what it carries from sweep to sweep, and the sweeps.
+// The parts of a Gauss-Seidel step (gauss_seidel.h): the state kept from sweep to sweep, and the sweeps.
 #pragma once
 
 #include "server/reference/reference.h"
 
 namespace clothlab::reference {
 
-/// A step under way. All displacements are from the step's start.
+/// The state within a step. All displacements are from the step's start.
 struct SweepState {
   const World& world;
-  double t, dt;                      ///< [s], of the step's start and its length
+  double t, dt;                      ///< time at the step's start, length of the step [s]
   std::vector<dvec3> x, v;           ///< [vertex_count] at the step's start [m], [m/s]
-  std::vector<dvec3> displacement;   ///< [vertex_count] so far [m]; of pinned vertices the whole step's
-  std::vector<dvec3> free;           ///< [vertex_count] what inertia, gravity and air drag alone would do [m]
-  std::vector<dvec3> pushed;         ///< [vertex_count] VBD: by self-collision so far [m]
+  std::vector<dvec3> displacement;   ///< [vertex_count] so far [m]; of the whole step for pinned vertices
+  std::vector<dvec3> free;           ///< [vertex_count] displacement by inertia, gravity and drag alone [m]
+  std::vector<dvec3> pushed;         ///< [vertex_count] VBD: displacement by self-collision so far [m]
   std::vector<double> mobility;      ///< [vertex_count] 1 / ((1 + dt air drag) mass) [1/kg], 0 if pinned
-  std::vector<dvec3> spring_pushed;  ///< [spring_count] XPBD: by each spring so far, on its first end [kg m]
-  std::vector<int> met;              ///< [vertex_count] VBD: colliders met at the last visit
-  std::vector<int> contacts;         ///< [vertex_count] counted in the last pass; 0 if pinned
+  std::vector<dvec3> spring_pushed;  ///< [spring_count] XPBD: impulse times dt on the first end so far [kg m]
+  std::vector<int> met;              ///< [vertex_count] VBD: colliders met at the last visit of the vertex
+  std::vector<int> contacts;         ///< [vertex_count] contacts at the last count; 0 if pinned
 
   dvec3 now(std::size_t vertex) const { return x[vertex] + displacement[vertex]; }
 };
@@ -24,16 +24,17 @@ struct SweepState {
 /// PBD and XPBD: visits every spring once, colour by colour.
 void sweep_springs(SweepState& step);
 
-/// VBD: moves every free vertex to where its own forces balance, by one Newton step each, colour by colour;
-/// colliders are met on the way.
+/// VBD: moves every free vertex, colour by colour, towards the balance of its own forces by one Newton step.
+/// A collider in the way stops the vertex.
 void sweep_vertices(SweepState& step);
 
-/// Self-collision and colliders, all vertices from the displacements before the pass. VBD's target moves by
-/// what self-collision pushes, so that the next sweep does not take it back.
+/// Applies self-collision, for all vertices from the displacements before the pass, and then colliders. Under
+/// VBD a vertex's target moves by self-collision's push, so that the next sweep does not undo the push.
 void contact_pass(SweepState& step);
 
-/// VBD, where nothing but its own springs and self-collision acts on a cloth: they only pass momentum on, so
-/// what its vertices lack of it in all after the sweeps is given to them alike.
+/// VBD, for each cloth without pins in a scene without colliders: springs and self-collision only pass
+/// momentum on, so the momentum that a cloth lacks after the sweeps is given back by one displacement of all
+/// its vertices.
 void balance_momentum(SweepState& step);
 
 }  // namespace clothlab::reference

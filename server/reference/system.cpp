@@ -16,7 +16,7 @@ Eigen::Map<const Eigen::VectorXd> flat(const std::vector<dvec3>& vectors) {
   return {&vectors[0].x, static_cast<Index>(3 * vectors.size())};
 }
 
-/// Adds an element's matrix: what each corner feels of the others' moves along each axis, and of its own.
+/// Adds an element's matrix: the response of each corner to a unit move of every corner along each axis.
 template <class Law>
 void add_element(Triplets& triplets, const model::Element<Law>& element, const std::vector<dvec3>& x,
                  Shares shares, Across kept) {
@@ -60,7 +60,7 @@ Matrix system_matrix(const World& world, const std::vector<dvec3>& x, Shares sha
 
 bool solve_with_pins(const World& world, const Matrix& matrix, const std::vector<dvec3>& right_hand_side,
                      const std::vector<dvec3>& pinned, std::vector<dvec3>& y) {
-  // The known values go to the right-hand side; their rows and columns become those of the unit matrix.
+  // The known values move to the right-hand side; their rows and columns become those of the unit matrix.
   std::vector<dvec3> known = pinned;
   for (std::size_t i = 0; i < known.size(); ++i)
     if (!world.pinned(i)) known[i] = dvec3(0.0);

@@ -10,7 +10,7 @@ namespace clothlab::reference {
 
 namespace {
 
-/// The states at `times`, by equal steps of at most `largest_step` from each to the next.
+/// The states at `times` [s], by RK4 with equal steps of at most `largest_step` [s] between two times.
 std::vector<State> follow(World world, const std::vector<double>& times, double largest_step) {
   std::vector<State> states;
   State state = at_rest(world);
@@ -60,7 +60,7 @@ double fastest_rate(const World& world) {
       damping[vertex] += element_damping(element.law);
     }
   });
-  double fastest = std::max(world.scene.air_drag, 1e-3);  // a sheet without springs moves too
+  double fastest = std::max(world.scene.air_drag, 1e-3);  // never 0: a sheet without springs moves too
   for (std::size_t i = 0; i < count; ++i) {
     const double mass = world.model.mass[i];
     fastest = std::max(

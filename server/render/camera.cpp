@@ -13,15 +13,15 @@ namespace {
 const glm::vec3 view_direction = glm::normalize(glm::vec3(0.62f, 0.3f, 1.0f));  // from the centre to the eye
 const glm::vec3 up{0.0f, 1.0f, 0.0f};
 constexpr float vertical_field = 32.0f;   // [degrees]
-constexpr float margin = 1.08f;           // room around the box
-constexpr float smallest_radius = 1e-4f;  // [m]; a single point still gets a picture
+constexpr float margin = 1.08f;           // factor: space around the box
+constexpr float smallest_radius = 1e-4f;  // [m]; a single point becomes a box of this radius
 
 glm::vec3 corner(const Box& box, int index) {
   return {index & 1 ? box.maximum.x : box.minimum.x, index & 2 ? box.maximum.y : box.minimum.y,
           index & 4 ? box.maximum.z : box.minimum.z};
 }
 
-/// The box to look at: never empty, never a mere point.
+/// The box to look at: `box`, enlarged if it is empty or a single point.
 Box visible(const Box& box) {
   Box result = box;
   if (box.empty()) result.add(glm::vec3(0.0f), 1.0f);
@@ -54,8 +54,8 @@ Camera frame(const Box& seen, float aspect) {
   const float tan_y = std::tan(glm::radians(0.5f * vertical_field));
   const float tan_x = tan_y * aspect;
 
-  // A corner at (x, y, z) in the eye's axes is inside the picture when distance - z >= |x| / tan_x and |y| /
-  // tan_y.
+  // A corner at (x, y, z) in the eye's axes is inside the picture if distance - z is at least |x| / tan_x and
+  // at least |y| / tan_y.
   float distance = 0.0f;
   for (int index = 0; index < 8; ++index) {
     const glm::vec3 offset = margin * (corner(box, index) - center);

@@ -1,4 +1,4 @@
-// Where to look from, so that all of a box is well in the picture.
+// Chooses a camera that has all of a box in its picture.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -6,7 +6,7 @@
 
 namespace clothlab::render {
 
-/// An axis-aligned box that grows; empty until something finite is in it.
+/// An axis-aligned box that grows to contain what is added; empty until a finite point is added.
 struct Box {
   glm::vec3 minimum{1e30f}, maximum{-1e30f};  ///< [m]
 
@@ -24,10 +24,11 @@ struct Camera {
 };
 
 /// Looks at the box's centre from the front, a little from the right and above, just far enough for all of
-/// the box to be in a picture of this aspect (width / height). An empty box is taken as 1 m about the origin.
+/// the box to be in a picture of this aspect (width / height). An empty box counts as a cube around the
+/// origin with sides of 2 m.
 Camera frame(const Box& box, float aspect);
 
-/// Parallel projection along the light onto all of the box, for the shadow map.
+/// The parallel projection along the light that has all of the box in the shadow map. `to_light`: length 1.
 glm::mat4 light_view_projection(const Box& box, const glm::vec3& to_light);
 
 }  // namespace clothlab::render

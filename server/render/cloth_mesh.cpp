@@ -11,13 +11,13 @@ namespace clothlab::render {
 
 namespace {
 
-/// One channel of "#rrggbb" as linear light, [0, 1].
+/// The channel at character `at` of "#rrggbb" as linear light in [0, 1].
 float linear_channel(const std::string& color, std::size_t at) {
   const double encoded = std::stoi(color.substr(at, 2), nullptr, 16) / 255.0;
   return static_cast<float>(encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4));
 }
 
-/// The number cloth.frag knows a texture by.
+/// The number that cloth.frag has for a texture.
 GLint pattern_number(const std::string& texture) {
   if (texture == "weave") return 1;
   if (texture == "checker") return 2;
@@ -31,7 +31,7 @@ void attribute(GLuint vertex_array, GLuint index, GLint components) {
   glVertexArrayAttribBinding(vertex_array, index, index);
 }
 
-/// As the kernels read them.
+/// The positions [m] as the kernels read them: with a fourth component, 1.
 std::vector<glm::vec4> padded(const std::vector<glm::vec3>& positions) {
   std::vector<glm::vec4> all;
   all.reserve(positions.size());

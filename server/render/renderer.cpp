@@ -126,7 +126,7 @@ Result<Image> Renderer::render(const Subject& subject, int width, int height) {
   self.draw_picture(subject, cloth_mesh);
   Image image = target->read();
 
-  // Nothing of this is left bound for who else computes in this context.
+  // Leaves nothing of the drawing bound, because other work may follow in this context.
   glDisable(GL_DEPTH_TEST);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glBindVertexArray(0);

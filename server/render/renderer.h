@@ -1,6 +1,6 @@
 // Draws a moment of a scene to a picture without a window: normals by a compute pass, then the cloth by
 // vertex, geometry and fragment shader, the colliders, a shadow. Uses the GL context that is current on the
-// calling thread, whichever one the moment was simulated in.
+// calling thread, which need not be the one that simulated the moment.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -14,12 +14,12 @@
 
 namespace clothlab::render {
 
-/// What is drawn; all of it outlives the drawing.
+/// What is drawn: references, all valid until the drawing is done.
 struct Subject {
   const scene::Scene& scene;                      ///< for the cloths' colours and textures
   const model::Model& model;                      ///< of that scene
   const std::vector<glm::vec3>& positions;        ///< [vertex_count] [m]
-  const std::vector<scene::Collider>& colliders;  ///< where they are at that moment
+  const std::vector<scene::Collider>& colliders;  ///< placed as at that moment
 };
 
 class Renderer {
@@ -28,7 +28,7 @@ class Renderer {
   static Result<std::unique_ptr<Renderer>> create();
   ~Renderer();
 
-  /// `width` x `height` pixels, each in [1, max_image_side], framed so that all of it is
+  /// `width` x `height` pixels, each in [1, max_image_side], framed so that all of the subject is
   /// seen. Waits for the GPU. A vertex that is not finite is left out of the framing.
   Result<Image> render(const Subject& subject, int width, int height);
 

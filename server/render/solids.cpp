@@ -66,7 +66,7 @@ struct Solids::Implementation {
       glDrawArrays(GL_TRIANGLE_STRIP, band * strip_length, strip_length);
   }
 
-  /// Shadows fall on it; it casts none.
+  /// A plane receives shadows, but casts none.
   void draw(Layer layer, const scene::Plane& shape) const {
     if (layer != Layer::ground) return;
     plane.use();

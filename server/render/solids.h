@@ -1,5 +1,5 @@
-// Draws the colliders. How a kind of shape looks is said in solids.cpp alone, and a kind that is not does not
-// compile.
+// Draws the colliders. Only solids.cpp defines how each kind of shape looks; a kind that is missing there
+// does not compile.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@ namespace clothlab::render {
 
 class Solids {
  public:
-  /// What is drawn at a time: shadows into their map, the grounds that the rest stands on, then the bodies.
+  /// The parts of a picture, in drawing order: shadows into the shadow map, planes, then all other shapes.
   enum class Layer { shadow, ground, body };
 
   Solids();
@@ -21,8 +21,8 @@ class Solids {
   Solids& operator=(const Solids&) = delete;
 
   Status load();
-  /// `shadow` is drawn with the program in use, whose uniform_placed places a unit shape
-  /// (shaders/render/depth.vert).
+  /// Draws one layer of the colliders. `shadow` is drawn with the program in use, whose uniform_placed places
+  /// a unit shape (shaders/render/depth.vert).
   void draw(Layer layer, const std::vector<scene::Collider>& colliders) const;
 
  private:

@@ -10,7 +10,7 @@ namespace clothlab::render {
 namespace {
 constexpr GLint wanted_samples = 8;
 constexpr GLint most_total_samples =
-    32 * 1024 * 1024;                  // 8 bytes each: larger pictures get fewer samples a pixel
+    32 * 1024 * 1024;                  // 8 bytes each; larger pictures get fewer samples a pixel
 constexpr GLsizei shadow_side = 2048;  // [pixels]
 
 bool complete(GLuint framebuffer) {
@@ -90,7 +90,7 @@ ShadowMap::ShadowMap() {
   glTextureParameteri(texture_, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glTextureParameteri(texture_, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
   glTextureParameteri(texture_, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
-  // Outside the map everything is lit.
+  // The border is farther than everything, so that everything outside the map is lit.
   glTextureParameteri(texture_, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
   glTextureParameteri(texture_, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
   const GLfloat farthest[4] = {1, 1, 1, 1};

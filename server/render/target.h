@@ -17,7 +17,7 @@ class Target {
   Target(Target&& other) noexcept;
   Target& operator=(Target&&) = delete;
 
-  /// Draws go here until another framebuffer is bound.
+  /// Clears the depths; draws go here until another framebuffer is bound.
   void bind() const;
   /// Averages the samples and reads the picture back.
   Image read() const;
@@ -29,7 +29,7 @@ class Target {
   GLuint renderbuffers_[3] = {};  // samples' colour, samples' depth, resolved colour
 };
 
-/// A depth texture that the lit shaders compare with.
+/// The depths seen from the light, as a texture that the shaders read to find what is in shadow.
 class ShadowMap {
  public:
   ShadowMap();
@@ -37,7 +37,7 @@ class ShadowMap {
   ShadowMap(const ShadowMap&) = delete;
   ShadowMap& operator=(const ShadowMap&) = delete;
 
-  /// Clears it; draws go here until another framebuffer is bound.
+  /// Clears the map; draws go here until another framebuffer is bound.
   void bind() const;
   void bind_texture() const { glBindTextureUnit(unit_shadow_map, texture_); }
 

@@ -1,5 +1,5 @@
-// The `at` of a pin or a weight: "corner:COLUMN,ROW", "vertex:N", "edge:row:N", "edge:column:N" or {"box":
-// [[min], [max]]}.
+// Reads the `at` of a pin or a weight: "corner:COLUMN,ROW", "vertex:N", "edge:row:N", "edge:column:N" or
+// {"box": [[min], [max]]}.
 #include <optional>
 
 #include "server/scene/pointer.h"
@@ -12,7 +12,7 @@ namespace {
 const std::string at_forms =
     R"("corner:COLUMN,ROW", "vertex:N", "edge:row:N", "edge:column:N" or {"box": [[x,y,z],[x,y,z]]})";
 
-/// What follows `prefix`, if the text starts with it.
+/// The rest of `text` after `prefix`, if `text` starts with it.
 std::optional<std::string> after(const std::string& text, const std::string& prefix) {
   return text.rfind(prefix, 0) == 0 ? std::optional(text.substr(prefix.size())) : std::nullopt;
 }
@@ -46,7 +46,7 @@ std::string up_to(const char* what, std::size_t count) {
   return std::string(what) + " 0 to " + std::to_string(count - 1);
 }
 
-/// What is allowed instead, or empty if `at` lies in the mesh.
+/// Empty if `at` lies in the mesh, else what is allowed. Boxes are checked later, by model::build.
 std::string outside(const At& at, const Mesh& mesh) {
   const Grid* grid = std::get_if<Grid>(&mesh);
   if (const AtVertex* vertex = std::get_if<AtVertex>(&at))

@@ -1,5 +1,5 @@
-// The methods of time stepping: what they are called and what sets each apart. Whoever asks which method it
-// is reads this table; formulas of a method are where they are used (limits, factors of growth, kernels).
+// The methods of time stepping: their names and how they differ. Code that treats methods differently reads
+// this table; the formulas of a method stand where they are used (step limits, growth factors, kernels).
 #pragma once
 
 #include <array>
@@ -10,19 +10,19 @@
 
 namespace clothlab::scene {
 
-/// What `solver.iterations` counts.
+/// The kind of iteration that `solver.iterations` counts.
 enum class Iterations { none, newton_steps, spring_sweeps, vertex_sweeps };
 
 struct MethodFacts {
   Method method;
-  const char* name;          ///< as the document, the command line and the protocol spell it
-  int order;                 ///< of the error in dt
-  int evaluations;           ///< of all forces, in a step before any iteration
-  Iterations iterations;     ///< a time step
-  bool looks_at_the_middle;  ///< at where pins and colliders are in the middle of the step
+  const char* name;          ///< in the document, on the command line and in the protocol
+  int order;                 ///< the error of a run shrinks as dt^order
+  int evaluations;           ///< of all forces in one time step, iterations not counted
+  Iterations iterations;     ///< in one time step
+  bool looks_at_the_middle;  ///< a step also needs the poses of moving pins at its middle
 };
 
-/// In the order of `Method`.
+/// One entry for each method, in the order of `Method`.
 inline constexpr std::array method_table{
     MethodFacts{Method::explicit_euler, "explicit_euler", 1, 1, Iterations::none, false},
     MethodFacts{Method::symplectic_euler, "symplectic_euler", 1, 1, Iterations::none, false},
@@ -34,7 +34,7 @@ inline constexpr std::array method_table{
     MethodFacts{Method::vbd, "vbd", 1, 1, Iterations::vertex_sweeps, false},
 };
 
-/// All there are, in the order in which they are listed to a user.
+/// All methods, in the order in which they are listed to a user.
 inline constexpr auto methods = [] {
   std::array<Method, method_table.size()> list{};
   for (std::size_t i = 0; i < list.size(); ++i) list[i] = method_table[i].method;
@@ -51,7 +51,7 @@ constexpr const char* name(Method method) {
 constexpr bool iterates(Method method) {
   return facts(method).iterations != Iterations::none;
 }
-/// Gauss-Seidel sweeps over springs or vertices, colour by colour.
+/// True if the method makes Gauss-Seidel sweeps over springs or vertices, one colour after the other.
 constexpr bool sweeps(Method method) {
   return facts(method).iterations == Iterations::spring_sweeps ||
          facts(method).iterations == Iterations::vertex_sweeps;
@@ -59,16 +59,16 @@ constexpr bool sweeps(Method method) {
 constexpr bool sweeps_vertices(Method method) {
   return facts(method).iterations == Iterations::vertex_sweeps;
 }
-/// Linear equations, to `solver.tolerance`.
+/// True if the method solves linear equations, to the accuracy `solver.tolerance`.
 constexpr bool solves(Method method) {
   return facts(method).iterations == Iterations::newton_steps;
 }
-/// No length of step makes the method blow up: so it is with all that iterate, and no other.
+/// True if the method is stable at any time step. This holds for all methods that iterate, and for no others.
 constexpr bool any_step_is_stable(Method method) {
   return iterates(method);
 }
 
-/// What a document says instead of a method for Solver::automatic.
+/// The value of `solver.method` in a document that sets Solver::automatic.
 inline constexpr const char* automatic_method = "auto";
 
 /// The method of that name, if there is one.

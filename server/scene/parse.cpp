@@ -1,5 +1,5 @@
-// Text to JSON, with size, depth and repeated keys checked while it is read: a value that nlohmann_json could
-// not copy or print without running out of stack never comes into being.
+// Parses JSON text. Size, depth and repeated keys are checked before or while a value is built: nlohmann_json
+// would run out of stack when it copies or prints a value that is nested too deep.
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
@@ -11,7 +11,7 @@ namespace clothlab::scene {
 
 namespace {
 
-/// Reads the text a character at a time and lets the events below know how far it got.
+/// Walks over the text and counts the bytes read, so that Builder can tell where a problem is.
 struct CountingIterator {
   using iterator_category = std::input_iterator_tag;
   using value_type = char;
@@ -42,7 +42,7 @@ class Builder : public nlohmann::json_sax<json> {
   Builder(const std::size_t& position, std::size_t deepest) : position_(position), deepest_(deepest) {}
 
   json value;
-  std::string problem, remedy;  ///< empty: none
+  std::string problem, remedy;  ///< empty if there is no problem
   std::size_t problem_at = 0;   ///< bytes from the start
 
   bool null() override { return put(nullptr); }
@@ -66,8 +66,8 @@ class Builder : public nlohmann::json_sax<json> {
 
   bool parse_error(std::size_t position, const std::string&, const json::exception& failure) override {
     const std::string text = failure.what();
-    // "[json.exception.parse_error.101] parse error at line 1, column 2: " says what the location says
-    // already.
+    // Cuts "[json.exception.parse_error.101] parse error at line 1, column 2: " off: Error::where has the
+    // place.
     std::size_t begin = text.find(": ");
     begin = begin == std::string::npos ? text.find("] ") : begin;
     problem = begin == std::string::npos ? text : text.substr(begin + 2);
@@ -106,7 +106,8 @@ class Builder : public nlohmann::json_sax<json> {
 
   const std::size_t& position_;
   const std::size_t deepest_;
-  std::vector<json*> open_;  // a parent does not grow while its child is open, so these stay where they are
+  // The open containers, outermost first. The pointers stay valid: no parent grows while its child is open.
+  std::vector<json*> open_;
   std::string key_;
 };
 
@@ -128,7 +129,7 @@ Result<json> parse_json(const std::string& text, const std::string& source, bool
   Builder builder(position, limits.depth);
   const CountingIterator begin{text.data(), &position}, end{text.data() + text.size(), &position};
   const bool read = json::sax_parse(begin, end, &builder, json::input_format_t::json, true, comments);
-  // nlohmann_json takes a zero byte for the end, and never looks at what follows.
+  // nlohmann_json takes a zero byte for the end of the text and ignores all that follows.
   const std::size_t zero = text.find('\0');
   if (read && zero == std::string::npos) return std::move(builder.value);
   if (read) {

@@ -1,5 +1,5 @@
-// Patches of the scene document: RFC 7396 (merge) and RFC 6902 (a list of operations, each carried out on a
-// copy).
+// Patches of the scene document: RFC 7396 (merge) and RFC 6902 (a list of operations). Both work on a copy of
+// the document.
 #include <algorithm>
 #include <cstddef>
 #include <utility>
@@ -11,9 +11,9 @@ namespace clothlab::scene {
 
 namespace {
 
-/// Values an RFC 6902 patch may copy: without a bound, copying the whole into itself doubles it at every
-/// operation. Values it may move: they are looked at each time, and a thousand moves of a large part are as
-/// many looks.
+/// The most JSON values that one RFC 6902 patch may copy and move. Without the first limit a patch could
+/// double the document with every operation, by copying it into itself. The second limits time: each move
+/// counts the values that it moves.
 constexpr std::size_t max_copied_values = 1u << 20, max_moved_values = 1u << 23;
 
 std::size_t value_count(const json& value) {
@@ -25,7 +25,7 @@ std::size_t value_count(const json& value) {
 
 using Tokens = std::vector<std::string>;
 
-/// One RFC 6902 patch at work on `target`; errors point into the patch.
+/// Applies the operations of one RFC 6902 patch to `target`. The JSON Pointers of errors are into the patch.
 class Operations {
  public:
   explicit Operations(json& target) : target_(target) {}

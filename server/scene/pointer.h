@@ -10,20 +10,20 @@ namespace clothlab::scene {
 
 using nlohmann::json;
 
-/// "~" and "/" of one token escaped as "~0" and "~1".
+/// The token with each "~" escaped as "~0" and each "/" as "~1".
 std::string escape_token(const std::string& token);
 
-/// The tokens of a pointer, unescaped; nothing if it is no JSON Pointer ("" or "/..." with "~" only in "~0"
-/// and "~1").
+/// The unescaped tokens of `pointer`. Nothing if it is no JSON Pointer: "" or "/...", with "~" only in "~0"
+/// and "~1".
 std::optional<std::vector<std::string>> split_pointer(const std::string& pointer);
 
-/// An array index below `end`: digits without a leading zero.
+/// The array index in `token`, digits without a leading zero. Nothing if it is no index below `end`.
 std::optional<std::size_t> array_index(const std::string& token, std::size_t end);
 
 /// The member or element of `value` that `token` names, or null.
 json* child(json& value, const std::string& token);
 
-/// JSON on one line, shortened to be read in a message.
+/// JSON on one line for a message; beyond 80 bytes it is cut and ends in "...".
 std::string compact(const json& value);
 
 /// Levels of nesting: 0 for a number or a text, 1 for an array of them.

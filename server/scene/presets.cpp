@@ -1,4 +1,4 @@
-// The scenes that come with the program, and scene files.
+// Loads presets (the scenes that come with the program) and scene files.
 #include <filesystem>
 
 #include "server/base/data_files.h"

@@ -1,6 +1,6 @@
-// Every range and limit of the scene document, in one place. scene.schema.json states the same numbers;
-// tests/schema holds the two together at both ends of each. All ends are inclusive, and every one is a
-// normal, finite float32.
+// Every range and limit of the scene document. scene.schema.json has the same numbers; tests/schema checks
+// that both accept and refuse the same values at each end of each range. All ends are inclusive, and as a
+// float32 each is finite and either 0 or normal.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ inline constexpr Range velocity{-1e6, 1e6, "m/s"};
 inline constexpr Range gravity{-1e6, 1e6, "m/s^2"};
 inline constexpr Range angle{-1e6, 1e6, "degrees"};
 inline constexpr Range angular_speed{-1e6, 1e6, "degrees/s"};
-inline constexpr Range direction{-1e6, 1e6};  ///< a component; not all of them 0
+inline constexpr Range direction{-1e6, 1e6};  ///< one component; the three are not all 0
 inline constexpr Range amplitude{-1e6, 1e6, "m"};
 inline constexpr Range frequency{0, 1e4, "Hz"};
 

@@ -31,7 +31,7 @@ std::size_t edits(const std::string& a, const std::string& b) {
   return row[b.size()];
 }
 
-/// `; did you mean "x"?` where a word is near enough to be a slip of the hand.
+/// `; did you mean "x"?` for the nearest of `words`, if it is near enough for `word` to be a typing error.
 std::string suggestion(const std::string& word, const Words& words) {
   if (word.size() > max_name_length) return "";
   const std::string* nearest = nullptr;
@@ -150,7 +150,7 @@ dvec3 Reader::vector(const Range& range) const {
 dvec3 Reader::direction() const {
   const dvec3 v = vector(ranges::direction);
   const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-  if (largest > 0) return glm::normalize(v / largest);  // scaled first: the square of 1e-200 is 0
+  if (largest > 0) return glm::normalize(v / largest);  // scaled first, because the square of 1e-200 is 0
   fail("a direction: three numbers, not all of them 0");
   return dvec3(0.0, 1.0, 0.0);
 }

@@ -1,6 +1,5 @@
-// A checked walk through untrusted JSON: each Reader is one value and its JSON Pointer. The first thing that
-// is wrong is kept and everything after it reads as a harmless default, so that the code of a section reads
-// as if nothing could fail.
+// Reads untrusted JSON and checks it: each Reader is one value and its JSON Pointer. The first error is kept,
+// and a wrong value reads as a harmless default, so that code that uses a Reader need not handle errors.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -21,17 +20,17 @@ using Words = std::vector<std::string>;
 
 class Reader {
  public:
-  /// `error` receives the first thing that is wrong and outlives every Reader made from this one.
+  /// `error` receives the first error. It must outlive this Reader and every Reader made from it.
   Reader(json* value, std::string pointer, std::optional<Error>& error)
       : value_(value), pointer_(std::move(pointer)), error_(&error) {}
 
-  /// An object without any key but `keys`; a key of `later` is refused as "not supported yet".
+  /// Checks that this is an object with only `keys`; a key of `later` is refused as "not supported yet".
   void object(const Words& keys, const Words& later = {}) const;
-  /// The one key of `alternatives` that the object has.
+  /// The key of `alternatives` that the object has; an error unless it has exactly one of them.
   std::string exactly_one(const Words& alternatives) const;
   bool has(const std::string& key) const;
-  /// A member. Where it is absent, `fallback` is written into the document; without a fallback it is
-  /// required.
+  /// The member `key`. If it is absent, `fallback` is written into the document; without a fallback reading
+  /// the member is an error.
   Reader member(const std::string& key, const std::optional<json>& fallback = std::nullopt) const;
 
   /// Checks an array's length and returns it.
@@ -41,19 +40,19 @@ class Reader {
   bool is_null() const { return value_ && value_->is_null(); }
   bool is_string() const { return value_ && value_->is_string(); }
   double number(const Range& range) const;
-  int integer(const Range& range) const;  ///< 3.0 is an integer too: JSON does not tell them apart
+  int integer(const Range& range) const;  ///< accepts 3.0, too: to JSON it is the same number as 3
   dvec3 vector(const Range& range) const;
-  dvec3 direction() const;  ///< three numbers, not all 0, normalised
+  dvec3 direction() const;  ///< three numbers, not all 0, scaled to unit length
   std::string string(const std::string& allowed) const;
   std::string name() const;
   std::string choice(const Words& choices, const Words& later = {}) const;
 
-  /// Records that this value is wrong.
+  /// Records that this value is wrong, unless an earlier error is recorded; `allowed` says what it may be.
   void fail(const std::string& allowed) const;
   void fail(const std::string& found, const std::string& allowed) const;
 
  private:
-  json* value_;  ///< null: absent
+  json* value_;  ///< null if the value is absent
   std::string pointer_;
   std::optional<Error>* error_;
 };

@@ -1,5 +1,5 @@
-// The scene as typed, validated plain data: what every other part of the server reads. See README.md here.
-// Made only by `validate` (scene/document.h); a Scene in hand is a valid one. All quantities SI.
+// The scene as typed plain data, which every other part of the server reads. See README.md here. Only
+// `validate` (scene/document.h) makes a Scene from a document, so every Scene is valid. All values are SI.
 #pragma once
 
 #include <array>
@@ -53,52 +53,56 @@ struct Springs {
   double shear = 10000.0;       ///< [N/m]
   double bend = 2000.0;         ///< [N/m]
   double damping = 2.0;         ///< [N s/m], along the spring
-  /// The most a spring may exceed its rest length after a step, as a share of it; Provot 1995. None: no
+  /// The largest extension of a spring after a step, as a share of its rest length (Provot 1995). None: no
   /// limit.
   std::optional<double> strain_limit = std::nullopt;
   bool operator==(const Springs&) const = default;
 };
 
-/// home + amplitude * axis * sin(2 pi frequency t); the axis is normalised.
+/// The place at time t is home + amplitude * axis * sin(2 pi frequency t), where home is the place at time 0.
 struct Oscillate {
-  dvec3 axis{0.0, 0.0, 1.0};
-  double amplitude = 0.0;  ///< [m]
-  double frequency = 0.0;  ///< [Hz]
+  dvec3 axis{0.0, 0.0, 1.0};  ///< unit length
+  double amplitude = 0.0;     ///< [m]
+  double frequency = 0.0;     ///< [Hz]
   bool operator==(const Oscillate&) const = default;
 };
-/// home + velocity * t.
+/// The place at time t is home + velocity * t.
 struct Linear {
   dvec3 velocity{0.0};  ///< [m/s]
   bool operator==(const Linear&) const = default;
 };
-/// home turned about the line through `center` along `axis`.
+/// The place at time t is home turned by degrees_per_second * t about the line through `center` along `axis`.
 struct Spin {
-  dvec3 axis{0.0, 1.0, 0.0};
-  dvec3 center{0.0};  ///< [m]
+  dvec3 axis{0.0, 1.0, 0.0};  ///< unit length
+  dvec3 center{0.0};          ///< [m]
   double degrees_per_second = 0.0;
   bool operator==(const Spin&) const = default;
 };
 /// How a pin or a collider moves; monostate: it does not (`null` in the document).
 using Motion = std::variant<std::monostate, Oscillate, Linear, Spin>;
 
-/// Which vertices of its cloth a pin holds.
+/// A vertex of a grid by its column and row, counted from 0. Despite the name it can be any vertex.
 struct AtCorner {
-  int column = 0, row = 0;  ///< grids only; any vertex of the grid by its column and row
+  int column = 0, row = 0;  ///< grids only
   bool operator==(const AtCorner&) const = default;
 };
+/// A vertex of any mesh by its index.
 struct AtVertex {
   std::uint32_t vertex = 0;
   bool operator==(const AtVertex&) const = default;
 };
+/// All vertices of one row or column of a grid.
 struct AtEdge {
   enum class Line { row, column } line = Line::row;
   int index = 0;  ///< grids only
   bool operator==(const AtEdge&) const = default;
 };
+/// All vertices whose transformed rest positions lie in a box, its faces included.
 struct AtBox {
-  dvec3 minimum{0.0}, maximum{0.0};  ///< [m], world space, against the transformed rest positions
+  dvec3 minimum{0.0}, maximum{0.0};  ///< [m], world space
   bool operator==(const AtBox&) const = default;
 };
+/// The vertices of a cloth that a pin holds or that a weight is added to.
 using At = std::variant<AtCorner, AtVertex, AtEdge, AtBox>;
 
 struct Pin {
@@ -110,24 +114,24 @@ struct Pin {
 /// Mass on top of the cloth's own, such as a weight sewn into a hem.
 struct Weight {
   At at;
-  double mass = 0.0;  ///< added to each of the vertices [kg], above 0
+  double mass = 0.0;  ///< added to each vertex of `at` [kg], above 0
   bool operator==(const Weight&) const = default;
 };
 
 /// Free vertices start at pseudo-random places in a cube about the middle of the cloth's rest shape.
 struct Scatter {
   double size = 1.0;       ///< the cube's edge [m]
-  std::uint32_t seed = 1;  ///< the same seed, the same places, on every machine
+  std::uint32_t seed = 1;  ///< the same seed gives the same places on every machine
   bool operator==(const Scatter&) const = default;
 };
-/// Free vertices start with their place relative to the middle of the cloth's rest shape scaled along the
-/// axes of the world: (1, 1, 0) makes it flat, (0, 0, 0) a point.
+/// Free vertices start in the rest shape scaled about its middle along the world axes: (1, 1, 0) makes the
+/// cloth flat, (0, 0, 0) makes it a point.
 struct Stretch {
   dvec3 scale{1.0};
   bool operator==(const Stretch&) const = default;
 };
-/// Where the free vertices are at time 0; monostate: in the rest shape. Rest lengths are those of the rest
-/// shape always.
+/// Where the free vertices are at time 0; monostate: in the rest shape. Rest lengths always come from the
+/// rest shape.
 using Start = std::variant<std::monostate, Scatter, Stretch>;
 
 struct Cloth {
@@ -155,7 +159,7 @@ struct Plane {
   dvec3 normal{0.0, 1.0, 0.0};  ///< normalised
   bool operator==(const Plane&) const = default;
 };
-/// What each of them is to others, and how it is read: solid.h.
+/// The shape of a collider. solid.h has the functions for code that need not know which kind it is.
 using Shape = std::variant<Sphere, Plane>;
 
 struct Collider {
@@ -173,7 +177,7 @@ struct SelfCollision {
   bool operator==(const SelfCollision&) const = default;
 };
 
-/// How the scene is advanced in time. scene/method.h has their names.
+/// The methods of time stepping. scene/method.h has their names.
 enum class Method { explicit_euler, symplectic_euler, verlet, rk4, implicit_euler, pbd, xpbd, vbd };
 
 struct Solver {
@@ -181,8 +185,9 @@ struct Solver {
   double dt = 0.001;  ///< [s]
   int iterations = 10;
   double tolerance = 1e-4;
-  /// The document says "auto": the lab is to choose so that `tolerance` is kept, an RMS position error over
-  /// the cloth's size. Until it has, and after it has, the other values say how to step.
+  /// True if the document's method is "auto": the lab chooses how to step so that the RMS position error, as
+  /// a share of the cloth's size, is at most `tolerance`. The other fields say how to step at present, before
+  /// and after that choice.
   bool automatic = false;
   bool operator==(const Solver&) const = default;
 };

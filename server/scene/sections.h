@@ -1,4 +1,4 @@
-// The sections of the scene document, each read and checked in its own file. Internal to server/scene.
+// Functions that read and check the sections of the scene document. Internal to server/scene.
 #pragma once
 
 #include "server/scene/reader.h"
@@ -6,16 +6,16 @@
 
 namespace clothlab::scene {
 
-/// `index` gives the default name: "cloth", "cloth-2", ...
+/// `index` is the place in the list; the default name follows from it: "cloth", "cloth-2", ...
 Cloth read_cloth(const Reader& cloth, std::size_t index);
 Collider read_collider(const Reader& collider, std::size_t index);
-/// Of a collider, which has it under the name of its kind.
+/// Reads the shape of a collider, which is the member with the name of its kind, e.g. "sphere".
 Shape read_shape(const Reader& collider);
-/// The names of kinds that are announced, and not supported yet.
+/// The names of the kinds of shape that are planned but not supported yet.
 const Words& shapes_to_come();
 Motion read_motion(const Reader& motion);
 
-/// Which vertices a pin holds or a weight is at, checked against the mesh they belong to.
+/// Reads the `at` of a pin or a weight and checks it against the mesh of its cloth.
 At read_at(const Reader& at, const Mesh& mesh);
 
 std::size_t vertex_count(const Mesh& mesh);

@@ -1,4 +1,4 @@
-// `--set /solver/dt=0.0005`: one value by its JSON Pointer.
+// `--set /solver/dt=0.0005`: sets one value of the document, which a JSON Pointer names.
 #include "server/scene/document.h"
 #include "server/scene/pointer.h"
 
@@ -8,7 +8,8 @@ namespace {
 
 const char* const assignment_form = "POINTER=VALUE, e.g. /solver/dt=0.0005 or /cloths/0/texture=checker";
 
-/// JSON where the text is JSON; a plain string where it neither is nor tries to be.
+/// Parses the text as JSON. Other text is a plain string, unless it starts like JSON ({, [ or "): then it
+/// is an error.
 Result<json> parse_value(const std::string& text, const std::string& pointer) {
   Result<json> value = parse_json(text, pointer);
   if (value) return value;
@@ -17,8 +18,8 @@ Result<json> parse_value(const std::string& text, const std::string& pointer) {
   return json(text);
 }
 
-/// The place `tokens` name, made where it is absent; null where an array has no such index or a plain value
-/// is in the way.
+/// The value that `tokens` name, made if it is absent. Null if an array has no such index or a value on the
+/// way is neither object nor array; `reached` is then the index of the token that failed.
 json* make_place(json& top, const std::vector<std::string>& tokens, std::size_t& reached) {
   json* at = &top;
   for (reached = 0; reached < tokens.size(); ++reached) {

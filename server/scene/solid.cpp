@@ -19,7 +19,7 @@ json list(const dvec3& v) {
 template <int kind, class Of>
 constexpr bool law_is_of = std::is_same_v<std::variant_alternative_t<kind, Shape>, Of>;
 
-// A kind after the other.
+// The functions of each kind of shape, one kind after the other.
 
 static_assert(law_is_of<elements::solid_sphere, Sphere>);
 const char* name(const Sphere&) {

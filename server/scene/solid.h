@@ -1,6 +1,5 @@
-// What the shapes of colliders are to whoever need not know which one it is: its name, its numbers for the
-// law, where a motion takes it. All that differs from kind to kind is in solid.cpp, and a kind that lacks any
-// of it does not compile.
+// The shapes of colliders, for code that does not depend on their kind: name, numbers for the contact code,
+// and place after a motion. solid.cpp defines these for each kind, and does not compile if a kind lacks any.
 #pragma once
 
 #include <array>
@@ -15,29 +14,29 @@ namespace clothlab::scene {
 
 inline constexpr std::size_t shape_kinds = std::variant_size_v<Shape>;
 
-/// "sphere", "plane": what a document calls each kind, in the order of Shape.
+/// The names of the kinds in a document, in the order of Shape: "sphere", "plane".
 const std::array<const char*, shape_kinds>& shape_names();
 
-/// A shape as its law takes it (shaders/elements/solid.glsl).
+/// The numbers of a shape that its contact code needs (shaders/elements/solid.glsl).
 struct Solid {
-  int kind = 0;          ///< its place in Shape
+  int kind = 0;          ///< the index of the kind in Shape
   dvec3 point{0.0};      ///< [m]
-  dvec3 direction{0.0};  ///< unit length; 0 where the kind has none
+  dvec3 direction{0.0};  ///< unit length; 0 if the kind has none
   double radius = 0;     ///< [m]
 };
 Solid solid(const Shape& shape);
 
-/// A ball that holds a shape.
+/// A ball that contains the whole shape.
 struct Ball {
-  dvec3 center{0.0};
-  double radius = 0;  ///< [m]; infinite where the shape has no end
+  dvec3 center{0.0};  ///< [m]
+  double radius = 0;  ///< [m]; infinite if the shape is infinite
 };
 Ball bounds(const Shape& shape);
 
 /// The shape turned by `rotation`, then moved by `translation` [m].
 Shape placed(const Shape& home, const glm::dmat3& rotation, const dvec3& translation);
 
-/// As in a document: {"sphere": {"center": [x, y, z], "radius": r}}.
+/// The shape as a document has it: {"sphere": {"center": [x, y, z], "radius": r}}.
 nlohmann::json written(const Shape& shape);
 
 }  // namespace clothlab::scene

@@ -1,4 +1,4 @@
-// The top of the scene document, and the rules that span its sections.
+// Reads the top level of the scene document and checks the rules that span several sections.
 #include <set>
 
 #include "server/scene/document.h"

@@ -1,5 +1,5 @@
-// The method "auto" in a session: what is stepped until the lab has chosen, when a choice is to be made, and
-// whether it still holds. Changes nothing by itself.
+// The method "auto" in a session: the settings to step with until the lab has chosen, when the lab has to
+// choose, and whether its choice still holds. This class only decides: it changes no simulation.
 #pragma once
 
 #include <chrono>
@@ -17,31 +17,32 @@ class Automatic {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// The document's scene with the settings that it is stepped with: what was chosen where that covers the
-  /// document, else what is stable, and a choice is due soon. Another method than "auto" is left as it is.
+  /// The document's scene with the settings to step it with: the lab's choice if that covers the document,
+  /// else stable settings, and a choice becomes due after `quiet`. A method other than "auto" stays as it is.
   /// Error: the scene's model cannot be built.
   Result<scene::Scene> settle(const scene::Document& document, Clock::time_point now);
 
-  /// Once for each choice that is due: when nothing has changed for a while, as a slider would.
+  /// True once for each choice that is due: `quiet` after the last change, so that a slider that is being
+  /// moved causes only one choice.
   bool wants_choice(Clock::time_point now);
 
-  /// What has come of it, for the document that was measured.
+  /// Takes in the lab's choice, or its error, for the document that the lab measured.
   void take(const scene::Document& measured, const Result<lab::Choice>& choice);
 
-  /// {state: "measuring" | "chosen" | "failed", ...} for sim.status, null without the method.
+  /// {state: "measuring" | "chosen" | "failed", ...} for sim.status, null if the method is not "auto".
   json facts() const;
 
   static constexpr std::chrono::milliseconds quiet{700};
 
  private:
   struct Choice {
-    json measured;  ///< the document
+    json measured;  ///< the document that the lab measured
     std::optional<lab::Setting> setting;
     json facts;
   };
   std::optional<Choice> choice_;
-  std::optional<lab::Setting> in_use_;  ///< none: another method
-  bool covered_ = false;
+  std::optional<lab::Setting> in_use_;  ///< none: the method is not "auto"
+  bool covered_ = false;                ///< `choice_` holds for the present document
   std::optional<Clock::time_point> due_;
 };
 

@@ -1,4 +1,4 @@
-// What is asked of a session's thread, and by whom.
+// The commands to a session's thread, each with a ticket that says who sent it.
 #pragma once
 
 #include <array>
@@ -17,22 +17,22 @@ namespace clothlab::session {
 using nlohmann::json;
 using stream::encoding_count;
 
-/// Who asked, and the request's id (none: a notification, or the server itself). 0 is nobody.
+/// Says who sent a command and which answer it needs.
 struct Ticket {
-  std::uint64_t asker = 0;
-  std::optional<json> id;
+  std::uint64_t asker = 0;  ///< the client's number; 0: the server itself
+  std::optional<json> id;   ///< the request's id; none: a notification, or a command of the server
   std::string method{};
-  std::int64_t asked_us = 0;  ///< when it came
+  std::int64_t asked_us = 0;  ///< when the request came, on the clock of now_us [us]
 };
 
 struct GetScene {};
 struct LoadScene {
-  std::string preset;  ///< or, where empty:
+  std::string preset;  ///< the preset's name; empty: `document` is loaded
   json document;
 };
 struct PatchScene {
   json patch;
-  std::optional<std::uint64_t> revision;  ///< the one the patch was made for
+  std::optional<std::uint64_t> revision;  ///< the scene revision that the patch was made for; none: any
 };
 struct Play {};
 struct Pause {};
@@ -43,31 +43,30 @@ struct Reset {};
 struct Speed {
   double factor = 1;
 };
-/// What viewers want: the highest rate of each encoding, and which are wanted at once, even while nothing
-/// moves.
+/// The frames that viewers want, for each encoding.
 struct Demand {
-  std::array<double, encoding_count> rate{};  ///< [1/s], 0: nobody
-  std::array<bool, encoding_count> fresh{};
+  std::array<double, encoding_count> rate{};  ///< the highest rate wanted [1/s]; 0: no viewer wants frames
+  std::array<bool, encoding_count> fresh{};   ///< true: a frame is wanted at once, even if nothing moves
 };
 struct Watchers {
   int count = 0;
 };
-/// For a picture (width > 0) or a mesh for the HTTP API: answered by Captured; `Ticket::asker` is the HTTP
-/// request.
+/// Asks for the present state for the HTTP API, which makes a picture (width > 0) or a mesh from it. Answered
+/// by Captured. `Ticket::asker` is the HTTP request.
 struct Export {
   int width = 0, height = 0;  ///< [pixels]
 };
-/// For a job of the lab: answered by SceneReached, after what the commands before it have changed.
+/// Tells a job of the lab when the commands before this one are done. Answered by SceneReached.
 struct ReachScene {
   std::uint64_t job = 0;
 };
-/// Stands still if it plays, for a job of the lab to measure: answered by Held.
+/// Pauses a playing session, so that a job of the lab can measure. Answered by Held.
 struct Hold {
   std::uint64_t job = 0;
 };
-/// Plays on, unless somebody has played, paused or stepped it since it was held.
+/// Ends a Hold: the session plays on, unless a client has played, paused or stepped it in the meantime.
 struct Release {};
-/// What the lab says to a scene with the method `auto`.
+/// The lab's choice, or its error, for a scene with the method `auto`.
 struct Chosen {
   std::shared_ptr<const scene::Document> measured;
   Result<lab::Choice> choice;

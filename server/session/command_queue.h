@@ -1,5 +1,5 @@
-// What waits for a session, in order for each who asked, and in turns among them: who asks much waits for
-// himself alone.
+// The commands that wait for a session. Each client's commands stay in order, and clients take turns, so that
+// a client that sends many commands delays only its own.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,21 @@ namespace clothlab::session {
 
 class CommandQueue {
  public:
-  /// What a client asks for. False: max_waiting_commands of its own wait already.
+  /// Adds a client's command. False: max_waiting_commands of this client wait already.
   [[nodiscard]] bool offer(Command command);
-  /// What the server itself has to say; never refused. Of what viewers want and how many there are, only the
-  /// newest waits.
+  /// Adds a command of the server itself; never refused. A new Demand or Watchers replaces the one that
+  /// waits, but what that Demand wanted at once (`fresh`) is still wanted.
   void post(Command command);
   bool empty() const { return turns_.empty(); }
-  /// The next one of whoever's turn it is; the queue must not be empty.
+  /// Removes and returns the next command of the client whose turn it is. The queue must not be empty.
   Command pop();
 
  private:
   std::deque<Command>& of(std::uint64_t asker);
   bool replace(const Command& newer);
 
-  std::map<std::uint64_t, std::deque<Command>> waiting_;  ///< by who asked, none of them empty
-  std::deque<std::uint64_t> turns_;                       ///< who has something waiting, next first
+  std::map<std::uint64_t, std::deque<Command>> waiting_;  ///< by asker; no queue is empty
+  std::deque<std::uint64_t> turns_;                       ///< askers with waiting commands, the next first
 };
 
 }  // namespace clothlab::session

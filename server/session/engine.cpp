@@ -11,8 +11,8 @@ namespace clothlab::session {
 
 namespace {
 
-/// Helper threads keep the priority of whoever makes the first context for them; sessions' threads keep their
-/// own, so a thread of low priority does it.
+/// Creates the helper threads for heavy sessions, at low priority. Helper threads inherit the priority of the
+/// thread that makes the first context for them, so a thread of low priority makes that context.
 void make_heavy_threads(std::optional<int> gpu) {
   static std::once_flag made;
   std::call_once(made, [&] {

@@ -47,7 +47,7 @@ void Exchange::give_up(const Error& error, std::vector<Event>& out) {
 
 void Exchange::keep(std::shared_ptr<const Saved> saved) {
   const std::lock_guard lock(mutex_);
-  kept_.swap(saved);  // the older one is freed after the lock
+  kept_.swap(saved);  // the older state is freed after the lock is released
 }
 
 std::shared_ptr<const Saved> Exchange::kept() const {
@@ -123,7 +123,7 @@ void Exchange::publish(stream::SharedMessage frame) {
   const auto slot = static_cast<std::size_t>(frame->header.encoding);
   {
     const std::lock_guard lock(mutex_);
-    frames_[slot].swap(frame);  // the older frame is freed after the lock
+    frames_[slot].swap(frame);  // the older frame is freed after the lock is released
   }
   wake_();
 }

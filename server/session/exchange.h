@@ -1,5 +1,5 @@
 // All that passes between a session's thread and the service thread: commands in; events, a status and the
-// latest frame of each encoding out. Its locks are held only to move a pointer or swap a vector.
+// latest frame of each encoding out. The lock is held only to move a pointer or swap a vector.
 #pragma once
 
 #include <array>
@@ -37,13 +37,13 @@ struct Started {
 };
 struct Failed {
   Error error;
-  bool no_opengl = false;  ///< before anything of the scene was tried
+  bool no_opengl = false;  ///< true: no OpenGL context can be made; the scene was not tried
 };
 struct Reply {
   Ticket ticket;
   std::variant<json, Refusal> answer;
 };
-/// The document has changed: by `patch`, or as a whole where there is none.
+/// The document has changed by `patch`, or, without a patch, as a whole. `by` is the asker, 0: the server.
 struct SceneChanged {
   std::shared_ptr<const scene::Document> document;
   std::uint64_t revision = 0;
@@ -56,7 +56,7 @@ struct TopologyChanged {
 struct PartsChanged {
   std::vector<sim::Simulation::Part> parts;
 };
-/// What sim.status says of the solver; see server/net/asyncapi.yaml.
+/// The solver's part of sim.status; see server/net/asyncapi.yaml.
 struct SolverChanged {
   json facts;
 };
@@ -69,12 +69,12 @@ struct Notice {
   const char* level = "info";  ///< info | warning | error
   std::string text;
 };
-/// All that is needed to draw a moment of a simulation elsewhere.
+/// All that another thread needs to draw the scene at one moment.
 struct Moment {
   std::shared_ptr<const scene::Document> document;
   double time = 0;                           ///< [s]
   std::vector<glm::vec3> positions{};        ///< [vertex] [m]
-  std::vector<scene::Collider> colliders{};  ///< where they are then
+  std::vector<scene::Collider> colliders{};  ///< as placed at `time`
 };
 struct Captured {
   std::uint64_t asker = 0;
@@ -84,23 +84,23 @@ struct Captured {
 struct SceneReached {
   std::uint64_t job = 0;
 };
-/// There is no scene to measure: the session has failed.
+/// Answers ReachScene after the session has failed: there is no scene to measure.
 struct SceneLost {
   std::uint64_t job = 0;
 };
 struct Held {
   std::uint64_t job = 0;
 };
-/// The scene's method is `auto`, and the lab is to choose for it.
+/// The scene's method is `auto`, and the lab has to choose settings for it.
 struct ChoiceWanted {};
-/// What sim.status is made of; plain data, so that the session's thread allocates nothing for it.
+/// The content of sim.status as plain data, so that the session's thread allocates nothing for it.
 struct Status {
   RunState run;
   double speed = 1, real_time_factor = 0;
-  double dt_limit = 0;           ///< [s]; infinite: none, 0: no step is stable
-  std::optional<double> margin;  ///< dt over dt_limit; none where that says nothing
+  double dt_limit = 0;           ///< [s]; infinite: any step is stable, 0: no step is
+  std::optional<double> margin;  ///< dt over dt_limit; none: any step is stable, or no step is
   sim::Diagnostics diagnostics;
-  gl::StageTimes pass_times;  ///< those that have arrived since the last status
+  gl::StageTimes pass_times;  ///< the GPU times that have arrived since the last status
 };
 using Event = std::variant<Started, Failed, Reply, SceneChanged, TopologyChanged, PartsChanged, SolverChanged,
                            Diverged, Notice, Captured, SceneReached, SceneLost, Held, ChoiceWanted, Status>;
@@ -109,41 +109,42 @@ class Exchange {
  public:
   static constexpr std::size_t commands_a_turn = 8;
 
-  /// `wake` is called on the session's thread after something has been put out; it must not block.
+  /// `wake` is called on the session's thread after each new event or frame; it must not block.
   explicit Exchange(std::function<void()> wake) : wake_(std::move(wake)) {}
 
-  // The service thread's side.
-  /// What a client asks for. False: it has max_waiting_commands waiting already.
+  // For the service thread:
+  /// Adds a client's command. False: max_waiting_commands of this client wait already.
   [[nodiscard]] bool offer(Command command);
-  /// What the server itself has to say; see CommandQueue::post.
+  /// Adds a command of the server itself; see CommandQueue::post.
   void post(Command command);
   void stop();
   void take_events(std::vector<Event>& out);  ///< `out` is emptied first
   stream::SharedMessage frame(stream::Encoding encoding) const;
-  /// The latest that the session kept of itself, null before the first time.
+  /// The newest saved state of the session, null before the first.
   std::shared_ptr<const Saved> kept() const;
-  /// Who waits for an answer that a session which has failed will not give: answered with `error`, as events.
+  /// After the session has failed: answers each of its open commands with `error`, as events added to `out`.
   void give_up(const Error& error, std::vector<Event>& out);
   std::int64_t heartbeat_us() const { return heartbeat_us_.load(std::memory_order_relaxed); }
   std::uint64_t steps() const { return steps_.load(std::memory_order_relaxed); }
 
-  // The session's side.
-  /// Waits for a command until `until`; false: the session is to end. `out` is emptied first, and gets no
-  /// more than `commands_a_turn`, so that a session with much to do still ends, beats and shows frames.
+  // For the session's thread:
+  /// Waits for a command until `until`. False: the session has to end. `out` is emptied first, and gets at
+  /// most `commands_a_turn`, so that a session with many commands still ends, beats and makes frames in time.
   bool take_commands(std::vector<Command>& out, Clock::time_point until);
   void emit(Event event);
-  /// An event, of which only the newest waits: it says what was before it, and nothing of what comes after.
+  /// Adds a status to the events and removes older statuses that still wait. The new status comes after all
+  /// waiting events, as it shows the state after them.
   void publish(const Status& status);
   void publish(stream::SharedMessage frame);
-  void forget_frames();  ///< what is in the mailbox no longer shows the present
-  void forget_frame(stream::Encoding encoding);
-  void beat();
-  /// What the session could be brought back from.
+  void forget_frames();  ///< removes the latest frames, as they no longer show the present state
+  void forget_frame(stream::Encoding encoding);  ///< called by the service thread
+  void beat();                                   ///< sets the heartbeat to now
+  /// Stores the state from which the session can be restored.
   void keep(std::shared_ptr<const Saved> saved);
   void count_steps(std::uint64_t steps) { steps_.fetch_add(steps, std::memory_order_relaxed); }
 
  private:
-  /// An answer that is still to be given: to a request, for a picture or mesh, or to the lab.
+  /// An answer that the session still owes: to a request, to an Export, or to a job of the lab.
   struct Awaited {
     Ticket ticket;
     std::optional<std::uint64_t> job;
@@ -157,14 +158,14 @@ class Exchange {
   CommandQueue commands_;
   std::vector<Event> events_;
   std::array<stream::SharedMessage, encoding_count> frames_;
-  std::list<Awaited> awaited_;  ///< as asked; settled near its front
+  std::list<Awaited> awaited_;  ///< in the order of asking, so the next to be answered is near the front
   std::shared_ptr<const Saved> kept_;
   bool stopping_ = false;
   std::atomic<std::int64_t> heartbeat_us_{0};
   std::atomic<std::uint64_t> steps_{0};
 };
 
-/// Steady clock now [us], as Message::made_at_us counts.
+/// The present time on the steady clock [us], as in Message::made_at_us.
 std::int64_t now_us();
 
 }  // namespace clothlab::session

@@ -19,7 +19,8 @@ bool is_picture(const Export& what) {
   return what.width > 0;
 }
 
-/// In a context of its own for each: Mesa frees all that a picture took, up to 0.8 GB, only with its context.
+/// A PNG. Each picture has a new context, as Mesa frees a picture's memory, up to 0.8 GB, only with its
+/// context.
 Result<std::string> picture(std::optional<int> gpu, const Moment& moment, const model::Model& model,
                             const Export& what) {
   const Result<std::unique_ptr<gl::Context>> context = gl::Context::create(gpu, gl::HelperThreads::pictures);
@@ -69,7 +70,7 @@ std::optional<Exported> Exporter::take() {
 }
 
 void Exporter::run() {
-  // Behind every session, but before the lab: somebody waits for it.
+  // Lower priority than any session, but higher than the lab, as a user waits for the file.
   lower_priority(10);
   while (true) {
     Task task;

@@ -1,5 +1,5 @@
-// The one thread that makes the pictures and meshes of the HTTP API, one at a time, of moments that sessions
-// hand over: no session's steps wait for them. This is the service thread's handle.
+// Makes the pictures and meshes of the HTTP API on a thread of its own, one at a time, from moments that
+// sessions hand over, so that no session's steps wait for them. The service thread uses this class.
 #pragma once
 
 #include <condition_variable>
@@ -14,7 +14,7 @@
 
 namespace clothlab::session {
 
-/// What an HTTP request gets.
+/// The answer to an HTTP request.
 struct Exported {
   std::uint64_t asker = 0;
   const char* content_type = "";
@@ -23,22 +23,22 @@ struct Exported {
 
 class Exporter {
  public:
-  /// Makes a file's bytes, on the exporter's thread; `make_export` in the server.
+  /// Makes a file's bytes on the exporter's thread. The server uses `make_export`.
   using Make = std::function<Result<std::string>(const Moment&, const Export&)>;
 
-  /// `wake` is called on the exporter's thread after something was made; it must not block.
+  /// `wake` is called on the exporter's thread after each export; it must not block.
   Exporter(Make make, std::function<void()> wake) : make_(std::move(make)), wake_(std::move(wake)) {}
   ~Exporter() { stop(); }
   Exporter(const Exporter&) = delete;
   Exporter& operator=(const Exporter&) = delete;
 
-  /// Nothing is being made, and what was made has been taken.
+  /// True if no export is under way and the result of the last one has been taken.
   bool idle() const { return !busy_; }
-  /// The exporter must be idle. The first one starts the thread.
+  /// Starts an export. The exporter must be idle. The first call starts the thread.
   void begin(std::uint64_t asker, const Export& what, Moment moment);
-  /// What has been made since the last look.
+  /// The result of the export under way, once it is ready; none: not ready yet.
   std::optional<Exported> take();
-  /// Waits for what is being made; nothing may begin after it.
+  /// Waits for the export under way and ends the thread. No `begin` is allowed afterwards.
   void stop();
 
  private:
@@ -52,9 +52,9 @@ class Exporter {
 
   const Make make_;
   const std::function<void()> wake_;
-  bool busy_ = false;  // the service thread's own
+  bool busy_ = false;  // used by the service thread only
 
-  std::mutex mutex_;  // held to move a task, never while anything is made
+  std::mutex mutex_;  // held to move a task or a result, never during an export
   std::condition_variable task_arrived_;
   std::optional<Task> task_;
   std::optional<Exported> made_;
@@ -62,8 +62,8 @@ class Exporter {
   std::thread thread_;
 };
 
-/// A PNG or OBJ file of `moment`. Makes a GL context current on the calling thread for as long as it needs
-/// it, with helper threads of that thread's priority. Error: what failed, no usable OpenGL among it.
+/// A PNG or OBJ file of `moment`. For a PNG a GL context is current on the calling thread until the picture
+/// is drawn, with helper threads of that thread's priority. Error: what failed, e.g. no usable OpenGL.
 Result<std::string> make_export(std::optional<int> gpu, const Moment& moment, const Export& what);
 
 }  // namespace clothlab::session

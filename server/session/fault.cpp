@@ -18,7 +18,7 @@ struct Plan {
   std::uint64_t steps = 0;
 };
 
-/// "KIND:SESSION:STEPS"; anything else plans nothing.
+/// The fault in CLOTHLAB_FAULT, "KIND:SESSION:STEPS"; no fault if it is not set or not of this form.
 Plan plan() {
   const char* text = std::getenv("CLOTHLAB_FAULT");
   if (!text) return {};

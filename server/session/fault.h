@@ -1,5 +1,5 @@
-// Faults on purpose, for tests of what cannot be provoked from outside: CLOTHLAB_FAULT=KIND:SESSION:STEPS in
-// the environment makes that session meet it once it has made so many steps, the first time only.
+// Faults on purpose, for tests of failures that cannot be provoked from outside. The environment variable
+// CLOTHLAB_FAULT=KIND:SESSION:STEPS causes one fault of this kind in the session, once it has made the steps.
 #pragma once
 
 #include <cstdint>
@@ -8,19 +8,19 @@
 namespace clothlab::session {
 
 enum class Fault {
-  exception,     ///< "exception": its thread throws
+  exception,     ///< "exception": the session's thread throws
   no_memory,     ///< "no-memory": an allocation fails between steps
-  change_fails,  ///< "change-fails": an allocation fails while a changed scene is adopted
+  change_fails,  ///< "change-fails": an allocation fails while a changed scene is prepared; SESSION is empty
   context_lost   ///< "context-lost": the OpenGL context is reset
 };
 
-/// The lab's and the exporter's place among the sessions: names that no session can have. STEPS is then a
-/// job's number, or 0.
+/// The values of SESSION for a fault in the lab or in the exporter: names that no session can have. STEPS is
+/// then a job's number, or 0.
 inline constexpr const char *fault_in_lab = "/lab", *fault_in_exporter = "/export";
 
-/// True once, where the environment asks for it.
+/// True once: when kind, session and steps are those that the environment asks for.
 bool fault_due(Fault fault, const std::string& session, std::uint64_t steps);
-/// Throws what `exception` and `no_memory` ask for, when it is due.
+/// Throws if the fault `exception` or `no_memory` is due.
 void provoke_fault(const std::string& session, std::uint64_t steps);
 
 }  // namespace clothlab::session

@@ -51,7 +51,7 @@ void FrameMaker::touch_now() {
 }
 
 void FrameMaker::restart() {
-  void_until_ = arrived_ = requested_;  // they may come yet, or be dropped with their mesh
+  void_until_ = arrived_ = requested_;  // frames under way may still arrive, or be dropped with their mesh
   diverged_ = false;
   touch_now();
   exchange_.forget_frames();
@@ -74,7 +74,7 @@ void FrameMaker::make_urgent(const sim::Simulation& simulation, Clock::time_poin
   for (std::size_t i = 0; i < lanes_.size(); ++i) {
     Lane& lane = lanes_[i];
     if (!lane.urgent) continue;
-    if (lane.rate > 0 && !request(i, simulation)) continue;  // the ring is full: after the next poll
+    if (lane.rate > 0 && !request(i, simulation)) continue;  // the readback ring is full: try again later
     lane.urgent = false;
     if (lane.rate > 0) lane.due = now + period(lane.rate);
   }
@@ -85,7 +85,7 @@ void FrameMaker::make_due(const sim::Simulation& simulation, Clock::time_point n
     Lane& lane = lanes_[i];
     if (lane.rate <= 0 || now < lane.due || lane.packed_version == version_) continue;
     if (!request(i, simulation)) continue;
-    // On the beat of the clock; after a gap the beat starts anew.
+    // Frames are due at equal intervals; after a gap the intervals start anew.
     lane.due = std::max(lane.due + period(lane.rate), now);
   }
 }
@@ -99,7 +99,7 @@ void FrameMaker::poll() {
 }
 
 void FrameMaker::publish(stream::SharedMessage frame) {
-  // Until a blow-up is noticed its frames are shown, but not what nothing could draw.
+  // Frames of a blow-up are shown until it is noticed, except those that cannot be drawn.
   if (finite(frame->header.box_minimum) && finite(frame->header.box_extent))
     exchange_.publish(std::move(frame));
 }

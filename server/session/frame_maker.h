@@ -1,5 +1,5 @@
-// Decides when a session packs a frame, of which encodings, and puts the finished ones into the mailbox.
-// Nothing is packed that nobody asked for, and nothing twice while the state stands still.
+// Decides when a session packs a frame and in which encodings, and publishes finished frames. Only encodings
+// that viewers want are packed, and an unchanged state is packed again only if a frame is wanted at once.
 #pragma once
 
 #include <array>
@@ -14,45 +14,47 @@ namespace clothlab::session {
 
 class FrameMaker {
  public:
-  /// Its frames are numbered from after `last`.
+  /// The first frame has the number `last` + 1.
   static Result<std::unique_ptr<FrameMaker>> create(Exchange& exchange, std::uint32_t last);
 
-  /// Goes on where another, in another context, ends: with its viewers, its numbers and what its frames say.
+  /// Continues the work of a frame maker in another context: takes over its demands and its frames' flags.
   void take_over(const FrameMaker& other);
-  std::uint32_t last() const { return requested_; }  ///< the number of its newest frame
+  std::uint32_t last() const { return requested_; }  ///< the number of the newest requested frame
 
   void demand(const Demand& demand, Clock::time_point now);
-  /// The state has changed: the next frame due is worth making.
+  /// The state has changed: a frame is made when the next is due.
   void touch() { ++version_; }
-  /// The same, and it is wanted at once (an edit while paused, a step by hand).
+  /// The state has changed, and a frame of each wanted encoding is made at once (an edit while paused, a step
+  /// by hand).
   void touch_now();
-  /// The state was replaced (reset, another scene): frames made or under way of the old one are void.
+  /// The state was replaced (reset, another scene): discards the frames of the old state.
   void restart();
 
-  /// Queues what is wanted at once; called before stepping, so that a reset shows step 0.
+  /// Queues the frames that are wanted at once. Called before stepping too, so that a reset shows step 0.
   void make_urgent(const sim::Simulation& simulation, Clock::time_point now);
-  /// Queues what is due by the clock.
+  /// Queues the frames that are due by the clock.
   void make_due(const sim::Simulation& simulation, Clock::time_point now);
-  /// Publishes what has arrived.
+  /// Publishes the frames that have arrived from the GPU.
   void poll();
-  /// Appends what packing a frame took lately.
+  /// Appends the GPU time that the packing of a recent frame took, if it has arrived.
   void poll_times(gl::StageTimes& out) { timer_.poll(out); }
 
-  /// The state is the last good one again, after a blow-up: frames say so, and those on their way are void.
+  /// After a blow-up the last good state was restored: discards older frames, and flags new ones as diverged.
   void diverge();
-  /// It goes on from there.
+  /// The simulation goes on after a blow-up: new frames are no longer flagged as diverged.
   void go_on();
 
-  /// The cloth is at rest, and frames say so; or no longer.
+  /// Sets whether new frames are flagged as asleep: the cloth is at rest.
   void asleep(bool asleep);
 
+  /// True while requested frames have not arrived.
   bool in_flight() const { return requested_ != arrived_; }
   bool urgent() const;
   /// When the next frame is due if the state moves; far in the future if nobody wants one.
   Clock::time_point next_due() const;
 
  private:
-  struct Lane {       // one encoding
+  struct Lane {       // the state of one encoding
     double rate = 0;  ///< [1/s]
     bool urgent = false;
     std::uint64_t packed_version = 0;
@@ -66,9 +68,9 @@ class FrameMaker {
   std::unique_ptr<stream::Packer> packer_;
   gl::StageTimer timer_;
   std::array<Lane, encoding_count> lanes_{};
-  std::uint32_t requested_ = 0;   ///< sequence number of the newest frame under way: the packer counts by one
-  std::uint32_t arrived_ = 0;     ///< of the newest that came back, or that is void
-  std::uint32_t void_until_ = 0;  ///< frames up to this one show a state that was replaced
+  std::uint32_t requested_ = 0;   ///< sequence number of the newest requested frame, as in the packer
+  std::uint32_t arrived_ = 0;     ///< sequence number of the newest frame that arrived or was discarded
+  std::uint32_t void_until_ = 0;  ///< frames up to this number are discarded: their state was replaced
   std::uint64_t version_ = 1;
   bool diverged_ = false, asleep_ = false;
 };

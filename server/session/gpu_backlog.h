@@ -1,5 +1,5 @@
-// Pieces of work queued on the GPU and not finished yet: their number is bounded, and what they took is
-// measured.
+// The pieces of work that are queued on the GPU and not finished yet. Their number is bounded, and the time
+// that each takes is measured.
 #pragma once
 
 #include <glad/gl.h>
@@ -23,13 +23,14 @@ class GpuBacklog {
   bool full() const { return count_ == queued_.size(); }
   bool empty() const { return count_ == 0; }
   struct Piece {
-    std::uint32_t steps = 0;   ///< that end in it
-    std::uint32_t places = 0;  ///< at which it might have ended (sim::Pace)
-    Time begun{};              ///< when it began to be queued
+    std::uint32_t steps = 0;   ///< number of steps that end in this piece
+    std::uint32_t places = 0;  ///< number of places at which the piece might have stopped (sim::Pace)
+    Time begun{};              ///< when the queueing began
   };
-  /// A piece has been queued. The backlog must not be full.
+  /// Adds a piece that has just been queued. The backlog must not be full.
   void push(const Piece& piece);
-  /// Calls `spent(piece, seconds)` for each piece that has finished by `now`. Never waits.
+  /// Calls `spent(piece, seconds)` for each piece that has finished by `now`, with the time since the piece
+  /// before it ended, or since it was begun if that is later [s]. Never waits.
   template <class Spent>
   void poll(Time now, Spent spent) {
     while (finished()) {

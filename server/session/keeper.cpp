@@ -35,7 +35,7 @@ void Keeper::look(Stepper& stepper, Clock::time_point now) {
   if (now < next_ || stepper.version() == kept_version_) return;
   const Clock::time_point begun = Clock::now();
   keep(stepper);
-  // Reading a large state back takes its time: no more than a tenth of the session's.
+  // Reading a large state back takes long. Saving takes at most about a tenth of the session's time.
   next_ = now + std::max<Clock::duration>(period, 10 * (Clock::now() - begun));
 }
 
@@ -57,7 +57,7 @@ void Keeper::write(const Saved& saved) {
       log(LogLevel::info, "session_saved_again", {{"file", file_->string()}});
     return;
   }
-  if (std::exchange(failing_, true)) return;  // told once
+  if (std::exchange(failing_, true)) return;  // already reported
   log(LogLevel::error, "session_not_saved", {{"file", file_->string()}, {"why", written.error().text()}});
   exchange_.emit(Notice{"error", "this session cannot be saved: " + written.error().what +
                                      "; it goes on, but would be lost with the server"});

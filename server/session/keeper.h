@@ -1,5 +1,5 @@
-// Keeps what a session could be brought back from: once a second while it changes, in memory for its room,
-// and in a file where the server has a folder for that.
+// Saves the state from which a session can be restored: about once a second while it changes, in memory for
+// its room, and in a file if the server has a folder for sessions.
 #pragma once
 
 #include <chrono>
@@ -15,26 +15,26 @@ namespace clothlab::session {
 class Exchange;
 class Stepper;
 
-/// NAME.session in the folder.
+/// FOLDER/NAME.session
 std::filesystem::path session_file(const std::filesystem::path& folder, const std::string& session);
-/// Nothing where there is no file. What cannot be read is moved aside, to NAME.session.unreadable, never
-/// deleted; the error says so.
+/// Reads a saved session; null if there is no file. A file that cannot be read is renamed to
+/// NAME.session.unreadable, never deleted; the error says so.
 Result<std::shared_ptr<const Saved>> load_session(const std::filesystem::path& file);
 
 class Keeper {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// `file`: none: in memory only.
+  /// Without `file` the session is saved in memory only.
   Keeper(Exchange& exchange, std::optional<std::filesystem::path> file)
       : exchange_(exchange), file_(std::move(file)) {}
 
-  /// Keeps the session's present if it has changed and the last time is long enough ago.
+  /// Saves the session if it has changed and the last save is long enough ago.
   void look(Stepper& stepper, Clock::time_point now);
-  /// The last time: whenever the one before was.
+  /// Saves the session at its end, if it has changed, however recent the last save is.
   void finish(Stepper& stepper);
 
-  static constexpr std::chrono::milliseconds period{900};  ///< less than the second that may be lost
+  static constexpr std::chrono::milliseconds period{900};  ///< so that at most a second is lost
 
  private:
   void keep(Stepper& stepper);

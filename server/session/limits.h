@@ -1,4 +1,4 @@
-// The bounds of a session: of its scene, of what may wait for it, and how often it looks and tells.
+// The limits of a session: its scene's size, its waiting commands, and how often it checks and reports.
 #pragma once
 
 #include <cstddef>
@@ -7,17 +7,17 @@
 
 namespace clothlab::session {
 
-/// What whoever starts the server may set: one flag of `clothlab serve` each.
+/// The limits that `clothlab serve` sets, each with a flag.
 struct Limits {
-  int vertices = static_cast<int>(scene::max_vertices);  ///< of a scene
-  int springs = 16 * static_cast<int>(scene::max_vertices);
+  int vertices = static_cast<int>(scene::max_vertices);      ///< at most, per scene
+  int springs = 16 * static_cast<int>(scene::max_vertices);  ///< at most, per scene
 };
 
-inline constexpr std::size_t max_waiting_commands = 1024;   ///< of a client
-inline constexpr double min_speed = 0.01, max_speed = 100;  ///< simulated seconds a second
-inline constexpr double status_rate = 10;                   ///< statuses a second
-inline constexpr double diagnosis_rate = 60;                ///< looks a second at whether it blows up
-/// A session that nobody has watched for this long stops stepping until somebody does again [s].
+inline constexpr std::size_t max_waiting_commands = 1024;   ///< per client
+inline constexpr double min_speed = 0.01, max_speed = 100;  ///< simulated seconds per second
+inline constexpr double status_rate = 10;                   ///< statuses per second
+inline constexpr double diagnosis_rate = 60;                ///< checks for a blow-up per second
+/// A session without viewers for this long stops stepping until somebody watches it again [s].
 inline constexpr double unwatched_seconds = 30;
 
 }  // namespace clothlab::session

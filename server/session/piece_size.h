@@ -1,5 +1,5 @@
-// How large a piece of a step may be: a share of a turn, in milliseconds as measured, so that a session that
-// steps a heavy scene still hears what is asked of it, and no driver's watchdog takes it for hung.
+// How large a piece of a step may be. Its measured time is limited, so that a session that steps a heavy
+// scene still handles commands, and the driver's watchdog does not take the GPU for hung.
 #pragma once
 
 #include <algorithm>
@@ -10,18 +10,18 @@
 
 namespace clothlab::session {
 
-/// Where queueing returns before the work is done, as on a GPU, the clock alone would not end a piece in
-/// time: then what earlier pieces took says how many dispatches fit.
+/// The clock alone cannot end a piece in time where queueing returns before the work is done, as on a GPU.
+/// There the times of earlier pieces say how many dispatches fit.
 class PieceSize {
  public:
-  static constexpr double budget = 0.010;  ///< [s]
+  static constexpr double budget = 0.010;  ///< the time a piece may take [s]
 
   sim::Pace pace(sim::Pace::Clock::time_point now) const {
     using namespace std::chrono;
     return {now + duration_cast<sim::Pace::Clock::duration>(duration<double>(budget)), most_};
   }
 
-  /// A piece with so many places to stop took so long [s].
+  /// Takes in that a piece with `places` places to stop took `seconds` [s].
   void measured(std::uint32_t places, double seconds) {
     if (seconds > 2 * budget && places > 0)
       most_ = std::max(1u, static_cast<std::uint32_t>(std::min(places, most_) * budget / seconds));
@@ -31,7 +31,7 @@ class PieceSize {
 
  private:
   static constexpr std::uint32_t largest = 1u << 20;
-  std::uint32_t most_ = 256;
+  std::uint32_t most_ = 256;  ///< places to stop that a piece may pass
 };
 
 }  // namespace clothlab::session

@@ -7,8 +7,8 @@
 namespace clothlab::session {
 
 namespace {
-constexpr std::uint32_t first_steps = 32;      // while the cost is unknown
-constexpr std::uint32_t most_steps = 100'000;  // of one turn, however cheap
+constexpr std::uint32_t first_steps = 32;      // per turn, while the cost is unknown
+constexpr std::uint32_t most_steps = 100'000;  // per turn, however low the cost
 double seconds(std::chrono::steady_clock::duration duration) {
   return std::chrono::duration<double>(duration).count();
 }
@@ -29,7 +29,7 @@ std::uint32_t RealTime::affordable() const {
 std::uint32_t RealTime::due(Time now, double dt) {
   owed_ = std::min(owed_ + seconds(now - last_) * speed_, std::max(most_owed * speed_, dt));
   last_ = now;
-  // The hair keeps a debt of 16.999999 steps from being paid as 16.
+  // 1e-9 makes up for rounding: a debt that is 17 steps but for rounding counts as 17.
   const double whole = std::floor(owed_ / dt + 1e-9);
   const double steps = std::min(whole, static_cast<double>(affordable()));
   owed_ = std::max(0.0, owed_ - steps * dt);
@@ -40,7 +40,7 @@ void RealTime::spent(std::uint32_t steps, double wall) {
   unfinished_ += wall;
   if (steps == 0) return;
   const double cost = std::max(std::exchange(unfinished_, 0.0), 1e-9) / steps;
-  // Up at once, down slowly: a turn that overruns delays every command and frame.
+  // The cost rises fast and falls slowly, because a turn that takes too long delays every command and frame.
   step_cost_ = cost > step_cost_ ? 0.5 * (step_cost_ > 0 ? step_cost_ : cost) + 0.5 * cost
                                  : 0.9 * step_cost_ + 0.1 * cost;
 }

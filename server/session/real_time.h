@@ -1,4 +1,5 @@
-// How many fixed steps are due: an accumulator that lets simulated time slow down rather than work pile up.
+// How many fixed steps are due by the clock. On a machine that is too slow simulated time slows down, instead
+// of a growing number of steps being owed.
 #pragma once
 
 #include <algorithm>
@@ -9,38 +10,38 @@
 
 namespace clothlab::session {
 
-/// Pure arithmetic on given times, so that it can be tested without waiting.
+/// Computes from given times only, so that tests need not wait.
 class RealTime {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// Begins to count at `now`: on play, reset, a new speed, or after a pause. Nothing is owed yet.
+  /// Begins to count at `now`, with no steps owed: on play, reset, a new speed, or after a pause.
   void restart(Time now);
-  /// `factor` simulated seconds a second.
+  /// `factor`: simulated seconds per second.
   void set_speed(double factor) { speed_ = factor; }
   double speed() const { return speed_; }
 
-  /// Steps of `dt` [s] to do now: what is owed, but no more than fits the work budget of one turn. What is
-  /// owed beyond `most_owed` seconds of wall time is given up.
+  /// The number of steps of `dt` [s] to do now: those owed, but no more than fit the time of one turn. Steps
+  /// owed beyond `most_owed` seconds of wall time are dropped, but one step may always be owed.
   std::uint32_t due(Time now, double dt);
-  /// Steps that fit the budget of one turn at the measured cost.
+  /// The number of steps that fit the time of one turn at the measured cost; at least 1.
   std::uint32_t affordable() const;
-  /// Whether the last `due` left steps undone.
+  /// True if the last `due` left steps owed.
   bool behind(double dt) const { return owed_ >= dt; }
-  /// What a piece of work took [s], in which `steps` steps ended; of a step that takes several pieces, with
-  /// those before it.
+  /// Takes in that a piece of work, in which `steps` steps ended, took `seconds` [s]. The times of several
+  /// pieces of one step are added up.
   void spent(std::uint32_t steps, double seconds);
-  /// Of a step [s]; one that has not ended counts as far as it has come.
+  /// The measured cost of a step [s], smoothed; at least the time spent so far on the unfinished step.
   double step_cost() const { return std::max(step_cost_, unfinished_); }
 
-  /// Notes that simulated time was `simulated` [s] at `now`; about `status_rate` times a second.
+  /// Takes in that simulated time was `simulated` [s] at `now`; called about `status_rate` times a second.
   void sample(Time now, double simulated);
-  /// Simulated seconds a second over the last second of samples; 0 before there are two.
+  /// Simulated seconds per second, over about the last second; 0 before there are two samples.
   double factor() const;
   bool sampled() const { return sample_count_ >= 2; }
 
   static constexpr double turn_budget = 0.010;  ///< wall time one turn may spend stepping [s]
-  static constexpr double most_owed = 0.050;    ///< [s] of wall time
+  static constexpr double most_owed = 0.050;    ///< wall time for which steps may be owed [s]
 
  private:
   struct Sample {
@@ -48,11 +49,11 @@ class RealTime {
     double simulated = 0;
   };
   Time last_{};
-  double owed_ = 0;  ///< simulated time [s]
+  double owed_ = 0;  ///< simulated time that is due but not stepped [s]
   double speed_ = 1;
   double step_cost_ = 0;              ///< smoothed [s]; 0: not measured yet
-  double unfinished_ = 0;             ///< spent on a step that has not ended yet [s]
-  std::array<Sample, 11> samples_{};  ///< a ring
+  double unfinished_ = 0;             ///< time spent on a step that has not ended yet [s]
+  std::array<Sample, 11> samples_{};  ///< a ring buffer
   std::size_t newest_ = 0, sample_count_ = 0;
 };
 

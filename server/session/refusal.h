@@ -1,5 +1,5 @@
-// Why a session does not do what it was asked for, and what to do about it. Each protocol has codes of its
-// own for that.
+// Why a session refuses a command, and what to do about it. Each protocol turns a refusal into its own error
+// codes.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +11,14 @@ namespace clothlab::session {
 
 struct Refusal {
   enum class Reason {
-    invalid_value,   ///< `error.where` is a JSON Pointer, and the rest says what was found there and what is
-                     ///< allowed
+    invalid_value,   ///< `error`: where (a JSON Pointer), what was found there, and what is allowed
     other_revision,  ///< the request was made for another revision of the scene than `revision`
     diverged,        ///< the simulation has blown up, and waits for a change
-    failed           ///< the session could not do it
+    failed           ///< the session could not do it; `error` says why
   };
   Reason reason = Reason::failed;
   Error error;
-  std::uint64_t revision = 0;  ///< the scene's, where that is the reason
+  std::uint64_t revision = 0;  ///< the scene's present revision; for `other_revision` only
 };
 
 inline Refusal invalid_value(Error error) {

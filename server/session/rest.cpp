@@ -9,18 +9,18 @@ namespace clothlab::session {
 
 namespace {
 
-// What a viewer sees: the cloth fills the 720 lines of a picture, one pixel is a 720th of its size.
+// A viewer sees the cloth fill the 720 lines of a picture, so that a pixel is a 720th of the cloth's size.
 constexpr double pixel = 1.0 / 720;
 constexpr double pixels_a_second = 10;
-// A swing of so little cannot be seen, and a creep that takes a stretch for it takes minutes for a pixel.
+// So small a swing cannot be seen, and a cloth that creeps so slowly takes 50 stretches for a pixel.
 constexpr double pixels_a_stretch = 0.02;
-// Coordinates in float32 wobble by this many of their units in the last place.
+// Rounding moves coordinates in float32 by up to this many units in the last place.
 constexpr double roundings = 4;
 constexpr double pi = 3.14159265358979;
-// The slowest swing is that of a cloth that hangs from a corner as a plumb-bob does, of the length of its
-// diagonal; a cloth that hangs as a chain swings faster. Half as long again is waited for.
+// No cloth swings slower than a pendulum as long as its diagonal; a cloth that hangs as a chain from a corner
+// swings faster. The stretch is 1.5 times half the pendulum's period.
 constexpr double diagonal = 1.4143, margin = 1.5;
-// Without gravity nothing but the springs brings a cloth back.
+// Without gravity only the springs move a cloth back, and the pendulum's period is infinite: hence a maximum.
 constexpr double shortest_stretch = 1, longest_stretch = 15;  // [s]
 
 bool moves(const scene::Motion& motion) {
@@ -39,7 +39,7 @@ bool is_driven(const scene::Scene& scene) {
          });
 }
 
-/// Largest extent of a cloth at rest along an axis [m].
+/// The largest extent of a cloth's rest shape along an axis [m].
 double size_of(const model::Model& model, const model::ClothRange& cloth) {
   scene::dvec3 low(std::numeric_limits<double>::max()), high(-low);
   for (std::uint32_t i = cloth.first_vertex; i < cloth.first_vertex + cloth.vertex_count; ++i) {

@@ -1,4 +1,4 @@
-// Whether a cloth has come to rest, so that its session may stop stepping until something changes.
+// Detects that a cloth has come to rest, so that its session may stop stepping until something changes.
 #pragma once
 
 #include <functional>
@@ -11,26 +11,26 @@
 
 namespace clothlab::session {
 
-/// Pure arithmetic on what is measured, so that it can be tested without a simulation. At rest: for longer
-/// than the slowest swing takes from one turning point to the next, no vertex was further than `drift` from
-/// where it was at the beginning of that stretch. Speeds do not tell: what rounding leaves in a stiff cloth
-/// is fast, up to 1e-3 m/s, and goes nowhere.
+/// A cloth is at rest if during a stretch of time no vertex was farther than `drift` from its place at the
+/// beginning of the stretch. The stretch is longer than the slowest swing takes from one turning point to the
+/// next. Speeds are no measure: rounding leaves up to 1e-3 m/s in a stiff cloth that goes nowhere. This class
+/// computes from given positions only, so that tests need no simulation.
 class Rest {
  public:
-  /// Another scene, or another state of it: watches anew.
+  /// Sets the limits for a changed scene, and begins to watch anew.
   void follow(const scene::Scene& scene, const model::Model& model);
-  /// Watches anew: something has happened.
+  /// Begins to watch anew, because something has happened to the cloth.
   void disturb() { begun_.reset(); }
 
-  /// A look at the moving cloth: simulated `time` [s] and the largest speed [m/s]. `positions` is asked for
-  /// only while that is small, about `most_looks` times a stretch. True: it is at rest.
+  /// Takes in the simulated time [s] and the largest speed [m/s] of the cloth. Calls `positions` only while
+  /// the speed is low, about `most_looks` times per stretch. True: the cloth is at rest.
   bool look(double time, double max_speed, const std::function<std::vector<glm::vec3>()>& positions);
 
   bool driven() const { return driven_; }      ///< a pin or a collider moves: never at rest
-  double speed() const { return speed_; }      ///< faster than this is not looked at closer [m/s]
-  double drift() const { return drift_; }      ///< [m]
-  double stretch() const { return stretch_; }  ///< of simulated time [s]
-  /// Looks at the positions in a stretch; at least so many, however fast time runs.
+  double speed() const { return speed_; }      ///< a cloth that moves faster is not at rest [m/s]
+  double drift() const { return drift_; }      ///< the distance that a vertex at rest may move [m]
+  double stretch() const { return stretch_; }  ///< simulated time [s]
+  /// How often positions are compared in a stretch; at least `least_looks`, however fast time runs.
   static constexpr int least_looks = 16, most_looks = 32;
 
  private:
@@ -39,10 +39,10 @@ class Rest {
 
   bool driven_ = true;
   double speed_ = 0, drift_ = 0, stretch_ = 0;
-  std::optional<double> begun_;  ///< [s]
+  std::optional<double> begun_;  ///< beginning of the present stretch [s]
   double next_look_ = 0;         ///< [s]
-  int looks_ = 0;                ///< since `begun`
-  std::vector<glm::vec3> then_;  ///< [vertex] [m], at `begun`
+  int looks_ = 0;                ///< since `begun_`
+  std::vector<glm::vec3> then_;  ///< positions at `begun_`: [vertex] [m]
 };
 
 }  // namespace clothlab::session

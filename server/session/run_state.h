@@ -1,57 +1,58 @@
-// Whether a session runs: one state at a time, and named transitions between them. Plain logic, no
+// The state of a session, such as playing or paused, and the transitions between states. Plain logic, no
 // simulation.
 #pragma once
 
 namespace clothlab::session {
 
-/// Begins playing. A session steps by the clock in `playing` alone; what a transition may not do it leaves
-/// undone, and says so. What is given up for a while is remembered: `held` and `diverged` know what they go
-/// back to.
+/// The first state is `playing`, the only one in which a session steps by the clock. A transition that is not
+/// allowed changes nothing and returns false. In `held` and `diverged` the state to return to is remembered.
 class RunState {
  public:
   enum class State {
     playing,
     asleep,   ///< it plays, but the cloth is at rest: no steps until something happens
-    paused,   ///< by a client, who may step it by hand
-    held,     ///< by the lab, and nobody has said anything about that since
+    paused,   ///< stopped by a client, which may step it by hand
+    held,     ///< stopped by the lab; no client has played, paused or stepped it since
     diverged  ///< it has blown up, and shows the last good state
   };
 
   State state() const { return state_; }
   bool steps() const { return state_ == State::playing; }
-  /// To those who look it plays while it sleeps, too.
+  /// True while it plays or sleeps: clients are told that it plays in both states.
   bool plays() const { return state_ == State::playing || state_ == State::asleep; }
   bool diverged() const { return state_ == State::diverged; }
-  /// The cloth is at rest: in its sleep, and where it was held in its sleep.
+  /// True if the cloth is at rest: the session is asleep, or the lab holds it and it was asleep before.
   bool at_rest() const { return state_ == State::asleep || (state_ == State::held && resting_); }
-  /// Whether it plays once the lab lets it go and what made it diverge is changed: what is kept of it.
+  /// True if it plays, or would play after the lab's release and the repair of a blow-up. This is saved with
+  /// the session.
   bool would_play() const;
 
-  /// A client wants it to play. False: it has diverged, and only a change lets it go on.
+  /// A client plays it. False: it has diverged, and only a change lets it go on.
   [[nodiscard]] bool play();
-  /// A client wants it to stand still; one that has diverged stands still when it goes on, too.
+  /// A client pauses it. A diverged session will be paused after `go_on`.
   void pause();
   /// A client steps it by hand, which pauses it. False: it has diverged.
   [[nodiscard]] bool step_by_hand();
-  /// The lab wants it to stand still. False: it stands still already.
+  /// The lab stops it in order to measure. False: it stands still already.
   bool hold();
-  /// The lab is done. False: it was not held, or somebody has said something since.
+  /// The lab has measured: it plays or sleeps again. False: it is not held, e.g. because a client has played,
+  /// paused or stepped it since.
   bool release();
   /// The cloth has come to rest. False: it does not play.
   bool fall_asleep();
-  /// Something has happened to the cloth. False: it was not at rest.
+  /// Something has happened to the cloth: it is no longer at rest. False: it was not at rest.
   bool wake();
   /// It has blown up, and stands still from now on.
   void diverge();
-  /// What made it diverge was changed: as it went before. False: it has not diverged.
+  /// The cause of the blow-up was changed: returns to the state before it. False: it has not diverged.
   bool go_on();
-  /// The state was replaced by that of a beginning. One that had diverged stands still there.
+  /// The cloth's state was replaced, e.g. by a reset. A diverged session is then paused, or held as before.
   void begin_again();
 
  private:
   State state_ = State::playing;
-  bool resting_ = false;                  ///< of one that is held
-  State before_blow_up_ = State::paused;  ///< playing, paused or held
+  bool resting_ = false;                  ///< in `held`: the session was asleep before
+  State before_blow_up_ = State::paused;  ///< in `diverged`: playing, paused or held
 };
 
 }  // namespace clothlab::session

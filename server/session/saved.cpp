@@ -24,7 +24,7 @@ Error unreadable(const std::string& what) {
   return {"saved session", what, "what this version of the program wrote"};
 }
 
-/// Of a file that is not one of this version's: what its first line is, as far as it can be shown.
+/// The error for a file of another version or another kind. It quotes the beginning of the file's first line.
 Error other_file(const std::string& bytes) {
   if (bytes.empty()) return unreadable("it is empty");
   constexpr std::size_t longest = 40;
@@ -84,7 +84,7 @@ Result<Saved> saved_from(const std::string& bytes) {
     std::memcpy(saved.state.velocity.data(), bytes.data() + end + 1 + size, size);
     if (head->at("state_hash") != hash_text(saved.state)) return unreadable("its positions are damaged");
     return saved;
-  } catch (const std::exception& problem) {  // nlohmann's: a key that is missing or of another type
+  } catch (const std::exception& problem) {  // from nlohmann: a key is missing or of another type
     return unreadable(problem.what());
   }
 }

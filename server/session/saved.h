@@ -1,5 +1,5 @@
-// What a session is brought back from after its end, its thread's or its process's: its scene, where it was
-// and how it went on.
+// The saved form of a session, from which it is restored after its thread or its process has ended: its
+// scene, the cloth's state, and whether and how fast it played.
 #pragma once
 
 #include <cstdint>
@@ -14,18 +14,18 @@ namespace clothlab::session {
 using nlohmann::json;
 
 struct Saved {
-  json document;  ///< as scene.get tells it
+  json document;  ///< as scene.get returns it
   std::uint64_t revision = 1;
   bool playing = true;
-  double speed = 1;
-  double time = 0;  ///< [s]
+  double speed = 1;  ///< simulated seconds per second
+  double time = 0;   ///< [s]
   std::uint64_t step = 0;
   sim::State state;
 };
 
-/// A line that says what this is, a line of JSON, and the state's floats (little-endian).
+/// A title line with the format's version, a line of JSON, and the state's floats (little-endian).
 std::string to_bytes(const Saved& saved);
-/// Error: what of it is not as to_bytes writes it; the state is checked by its hash.
+/// Reads what to_bytes wrote; the state is checked by its hash. Error: where `bytes` are not of that form.
 Result<Saved> saved_from(const std::string& bytes);
 
 }  // namespace clothlab::session

@@ -13,7 +13,7 @@ namespace clothlab::session {
 
 namespace {
 
-/// What the thread before kept, else what the process before did; null: nothing.
+/// The state that the session's earlier thread saved, else the state in the session's file; null: neither.
 std::shared_ptr<const Saved> kept(const Beginning& beginning, Exchange& exchange) {
   if (beginning.saved || !beginning.file) return beginning.saved;
   Result<std::shared_ptr<const Saved>> loaded = load_session(*beginning.file);
@@ -76,7 +76,7 @@ Session::~Session() {
 }
 
 void Session::run(Beginning& beginning, const Limits& limits, std::optional<int> gpu) {
-  // Tried apart, so that no scene is blamed where there is no OpenGL.
+  // First a context without a scene, so that a lack of OpenGL is not reported as a fault of the scene.
   if (const Result<std::unique_ptr<gl::Context>> any = gl::Context::create(gpu); !any)
     return exchange_.emit(Failed{any.error(), true});
   Result<std::unique_ptr<Stepper>> stepper = begin(beginning, limits, gpu, exchange_);

@@ -1,5 +1,5 @@
-// A session: one simulation on a thread of its own, with a GL context of its own. This is the service
-// thread's handle.
+// A session: one simulation on a thread of its own, with a GL context of its own. The service thread owns a
+// session through this class.
 #pragma once
 
 #include <filesystem>
@@ -14,27 +14,27 @@
 
 namespace clothlab::session {
 
-/// What a session begins with.
+/// The input from which a session begins.
 struct Beginning {
   std::string name;
-  scene::Document document;                   ///< unless it is brought back from:
-  std::shared_ptr<const Saved> saved;         ///< what it kept of itself before it failed, else from
-  std::optional<std::filesystem::path> file;  ///< where it keeps itself, if anywhere
-  std::uint32_t last_frame = 0;               ///< the number of the last frame that viewers have had
+  scene::Document document;                   ///< used if the session is not restored from `saved` or `file`
+  std::shared_ptr<const Saved> saved;         ///< what a failed thread of this session saved, or null
+  std::optional<std::filesystem::path> file;  ///< where the session is saved; none: in memory only
+  std::uint32_t last_frame = 0;               ///< the last frame number that viewers may have seen
 };
 
 class Session {
  public:
-  /// Starts the thread; what becomes of it arrives as an event (Started or Failed).
+  /// Starts the thread. An event tells whether that succeeds (Started or Failed).
   Session(Beginning beginning, const Limits& limits, std::optional<int> gpu, std::function<void()> wake);
-  /// Ends the thread and waits for it: a turn at most.
+  /// Ends the thread and waits for its end, which comes after the present turn.
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
   Exchange& exchange() { return exchange_; }
   const Exchange& exchange() const { return exchange_; }
-  /// A thread that has not come round for this long is stuck [s].
+  /// A thread without a heartbeat for this long is taken for stuck [s].
   static constexpr double longest_silence = 10;
   bool beats() const {
     return static_cast<double>(now_us() - exchange_.heartbeat_us()) < longest_silence * 1e6;

@@ -8,7 +8,7 @@
 namespace clothlab::session {
 
 namespace {
-constexpr std::chrono::milliseconds worth_waiting{8};  // half a frame
+constexpr std::chrono::milliseconds worth_waiting{8};  // half a frame at 60 Hz
 }
 
 void StepLimit::follow(const model::Model& model, const scene::Scene& scene) {
@@ -22,19 +22,19 @@ void StepLimit::follow(const model::Model& model, const scene::Scene& scene) {
   dt_limit_ = model::dt_limit_bound(scene.solver.method, springs);
   search_ = std::async(std::launch::async, [springs = std::move(springs), method = scene.solver.method,
                                             stop = stop_.get_token()] {
-    lower_priority(10);  // of a large mesh it takes many seconds
+    lower_priority(10);  // the search on a large mesh takes many seconds
     return model::dt_limit(method, springs, stop);
   });
   search_.wait_for(worth_waiting);
   poll();
 }
 
-/// Of a large mesh an iteration takes long: the search before ends by itself, beside what follows. One at
-/// most does, as each holds the whole mesh.
+/// Asks the search to end without waiting for it, as an iteration on a large mesh takes long. At most one
+/// given-up search may still run, as each holds the whole mesh.
 void StepLimit::give_up_search() {
   stop_.request_stop();
   stop_ = std::stop_source();
-  if (search_.valid()) given_up_ = std::move(search_);  // waits for the one before
+  if (search_.valid()) given_up_ = std::move(search_);  // waits for the search given up before
 }
 
 bool StepLimit::poll() {
@@ -48,7 +48,7 @@ std::optional<std::string> StepLimit::take_warning() {
   if (looked_) return std::nullopt;
   const double share = dt_limit_ > 0.0 ? scene_.solver.dt / dt_limit_ : model::no_limit;
   const int risk = share > 1.0 ? 2 : share > model::margin_to_warn ? 1 : 0;
-  if (risk > 0 && !sharp()) return std::nullopt;  // the bound may cry wolf
+  if (risk > 0 && !sharp()) return std::nullopt;  // the bound may be too low
   looked_ = true;
   if (risk <= std::exchange(risk_, risk)) return std::nullopt;
   return model::step_warning(scene_.solver, dt_limit_);

@@ -118,7 +118,7 @@ void Stepper::advance(Clock::time_point now) {
 
 void Stepper::want_steps(Clock::time_point now, bool run) {
   if (!waiting_.empty())
-    // No further than the next answer, which tells the step it was asked for.
+    // No further than the step at which the next sim.step ends, as its answer reports that step.
     simulation().want(static_cast<std::uint32_t>(std::min<std::uint64_t>(
                           waiting_.front().until_step - simulation().step_index(), real_time_.affordable())),
                       &engine_->step_timer);
@@ -157,13 +157,13 @@ void Stepper::follow_diagnostics(Clock::time_point now) {
   }
   request_diagnosis(now);
   if (now < next_status_) return;
-  // The first status of a state that has come to rest tells of that one and no earlier.
+  // While nothing is stepped, a status waits for the diagnostics of the present state.
   if (!running(now) && waiting_.empty() && (guard_->asked() || diagnosed_version_ != state_version_)) return;
   next_status_ = std::max(next_status_ + period(status_rate), now);
   publish_status(now);
 }
 
-// Of a state that stands still once is enough.
+// A state that stands still is diagnosed once.
 void Stepper::request_diagnosis(Clock::time_point now) {
   if (guard_->asked() || diagnosed_version_ == state_version_ || now < next_diagnosis_) return;
   engine_->diagnosis_timer.begin();
@@ -208,7 +208,8 @@ void Stepper::diverge() {
   exchange_.emit(Diverged{std::move(reason), std::move(remedy.text), {{"solver", change}}});
 }
 
-// The scene was changed after a blow-up: from the last good state, as it went before.
+// After a blow-up and a change of scene the session goes on from the last good state, playing or paused as
+// before.
 void Stepper::go_on() {
   if (!run_.go_on()) return;
   real_time_.restart(Clock::now());
@@ -226,7 +227,7 @@ void Stepper::publish_status(Clock::time_point now) {
   status.dt_limit = step_limit_.dt_limit();
   status.margin = step_limit_.margin();
   status.diagnostics = guard_->state();
-  // The timers begin again once their times are taken: a few samples a second.
+  // The timers measure again only after their times are taken, which gives a few samples a second.
   engine_->step_timer.poll(status.pass_times);
   engine_->diagnosis_timer.poll(status.pass_times);
   frames().poll_times(status.pass_times);
@@ -267,7 +268,7 @@ void Stepper::warn_if_crowded() {
                         "a smaller thickness or a coarser mesh helps"});
 }
 
-// A few such steps are no news: a cloth that falls into its limit takes them.
+// A few steps that do not converge need no warning: they occur when a cloth falls into its strain limit.
 void Stepper::warn_if_unconverged() {
   constexpr std::uint64_t many = 50;
   const bool limit = simulation().strain_limit_work().unconverged > many;

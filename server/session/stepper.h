@@ -1,7 +1,7 @@
-// What a session's thread does, turn by turn: commands, a piece of a step or some steps, frames, diagnostics.
-// It owns the simulation and its GL context, which is current on the thread that calls it. The state after N
-// steps depends on the scene alone, never on who watches: viewers only decide when frames are packed, and
-// whether an unwatched session goes on at all.
+// The work of a session's thread, turn by turn: commands, a piece of a step or some steps, frames,
+// diagnostics. The stepper owns the simulation and its GL context, which is current on the thread that calls
+// the stepper. The state after N steps depends on the scene alone, not on viewers: they only decide when
+// frames are packed, and whether the session goes on stepping.
 #pragma once
 
 #include <memory>
@@ -24,28 +24,27 @@ namespace clothlab::session {
 
 class Stepper {
  public:
-  /// `document` is loaded and plays at once. Unwatched for `patience` [s], it stops until it is watched
-  /// again.
-  /// Its frames are numbered from after `last_frame`.
+  /// Loads `document`, which plays at once. Without viewers for `patience` [s] stepping stops until somebody
+  /// watches again. The first frame has the number `last_frame` + 1.
   static Result<std::unique_ptr<Stepper>> create(scene::Document document, Exchange& exchange,
                                                  const Limits& limits, std::optional<int> gpu = std::nullopt,
                                                  std::uint32_t last_frame = 0,
                                                  double patience = unwatched_seconds);
 
-  /// GL_RENDERER.
+  /// The name of the device (GL_RENDERER).
   const std::string& renderer() const { return engine_->context->device().name; }
-  /// The device was reset: nothing of this works any more.
+  /// True if the device was reset: nothing here works any more.
   bool lost() const { return engine_->context->lost(); }
 
-  /// Goes on from where a session of this document was. Error: it is of another mesh.
+  /// Restores a saved session of this document. Error: the saved state has another number of vertices.
   clothlab::Status bring_back(const Saved& saved);
-  /// What it can be brought back from; waits for the GPU.
+  /// The state from which the session can be restored. Waits for the GPU.
   Saved saved();
-  /// Rises with every change of what `saved` says.
+  /// Rises with every change of what `saved` returns.
   std::uint64_t version() const { return state_version_ + revision_; }
 
-  /// Handles `commands`, then does the work that is due; returns when the next turn is, if no command comes
-  /// before.
+  /// Handles `commands`, then does the work that is due. Returns the time of the next turn, unless a command
+  /// comes before.
   Clock::time_point turn(std::vector<Command>& commands);
 
  private:
@@ -65,12 +64,12 @@ class Stepper {
   sim::Simulation& simulation() const { return *engine_->simulation; }
   const scene::Scene& scene() const {
     return simulation().scene();
-  }  ///< as stepped: its method is never "auto"
+  }  ///< the scene as it is stepped: its method is never "auto"
   FrameMaker& frames() const { return *engine_->frames; }
-  /// The scene to step for a document (see Automatic), checked before anything is made for it.
+  /// The scene to step for a document (see Automatic). Error: it is over the limits, or cannot be built.
   Result<scene::Scene> prepare(const scene::Document& document);
 
-  // stepper_commands.cpp; each answers its ticket where it has one.
+  // In stepper_commands.cpp. Each `perform` answers its ticket if that has an id.
   void handle(Command& command);
   void perform(GetScene&, const Ticket& ticket);
   void perform(LoadScene& load, const Ticket& ticket);
@@ -101,7 +100,7 @@ class Stepper {
   void announce_parts();
   void announce_solver();
 
-  // stepper.cpp
+  // In stepper.cpp.
   void advance(Clock::time_point now);
   void want_steps(Clock::time_point now, bool run);
   void note_finished(Clock::time_point now);
@@ -123,7 +122,7 @@ class Stepper {
   bool running(Clock::time_point now) const { return run_.steps() && !suspended(now); }
   Clock::time_point next_turn(Clock::time_point now) const;
 
-  scene::Document document_;  ///< as the clients know it; see scene()
+  scene::Document document_;  ///< as clients see it: its method may be "auto"
   Exchange& exchange_;
   Limits limits_;
   std::optional<int> gpu_;
@@ -143,9 +142,9 @@ class Stepper {
   int watchers_ = 0;
   Clock::time_point last_watched_{};
 
-  std::optional<sim::GuardedRun> guard_;  ///< there is one as soon as there is an engine
+  std::optional<sim::GuardedRun> guard_;  ///< set as soon as `engine_` is set
   std::uint64_t state_version_ = 1,
-                diagnosed_version_ = 0;  ///< whether the diagnostics are of the present state
+                diagnosed_version_ = 0;  ///< the state version that was diagnosed last
   Clock::time_point next_status_{}, next_diagnosis_{};
   Clock::time_point slow_since_{};
   bool slow_announced_ = false, crowded_announced_ = false, unconverged_announced_ = false;

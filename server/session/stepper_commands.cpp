@@ -12,7 +12,7 @@ void Stepper::handle(Command& command) {
   try {
     std::visit([&](auto& what) { perform(what, command.ticket); }, command.what);
   } catch (const std::bad_alloc&) {
-    // What was to be made is gone again; what was there is as it was.
+    // All new objects have been freed, and the old ones are unchanged.
     const Error error{"session", "there is not enough memory for that", "a smaller scene, or fewer sessions"};
     if (command.ticket.id)
       reply(command.ticket, Refusal{Refusal::Reason::failed, error});
@@ -49,9 +49,9 @@ void Stepper::perform(LoadScene& load, const Ticket& ticket) {
   if (!scene) return reply(ticket, invalid_value(scene.error()));
   const Result<sim::ChangeDepth> depth = change_engine(*scene);
   if (!depth) return reply(ticket, invalid_value(depth.error()));
-  run_.go_on();  // as it went before, whether that has blown up or not
+  run_.go_on();  // after a blow-up the new scene plays or is paused as the old one was before
   adopt(std::move(*document), *depth);
-  // Another scene starts at its beginning, however alike the two are.
+  // A loaded scene always starts at its beginning, however little it differs from the old one.
   if (*depth != sim::ChangeDepth::cloth) restart();
   reply(ticket, json{{"revision", revision_}, {"applies", sim::name(sim::ChangeDepth::cloth)}});
   announce_scene(std::nullopt, ticket.asker);
@@ -78,8 +78,8 @@ void Stepper::perform(PatchScene& patch, const Ticket& ticket) {
     exchange_.emit(Notice{"info", "the cloth was rebuilt for this change: time starts again at 0"});
 }
 
-// The energies before and after the change, of the same state: what it adds is no growth, and growth cannot
-// hide behind one change after another.
+// If a change alters energies, the same state is diagnosed before and after: energy that the change adds does
+// not count as growth, and growth does not go unnoticed between changes.
 Result<sim::ChangeDepth> Stepper::change(const scene::Scene& scene) {
   if (!sim::changes_energy(this->scene(), scene)) return change_engine(scene);
   accept(guard_->look());
@@ -88,7 +88,8 @@ Result<sim::ChangeDepth> Stepper::change(const scene::Scene& scene) {
   return depth;
 }
 
-/// Where the scene becomes heavy or light it moves, and nothing of a step that is under way is kept.
+/// Applies a changed scene. A scene that becomes heavy or light on software OpenGL moves to another engine;
+/// the step that is under way is then given up.
 Result<sim::ChangeDepth> Stepper::change_engine(const scene::Scene& scene) {
   const gl::HelperThreads threads = Engine::threads_for(scene, engine_->threads);
   return engine_->software() && threads != engine_->threads ? move_to(scene, threads)
@@ -96,7 +97,7 @@ Result<sim::ChangeDepth> Stepper::change_engine(const scene::Scene& scene) {
 }
 
 Result<sim::ChangeDepth> Stepper::move_to(const scene::Scene& scene, gl::HelperThreads threads) {
-  struct Current {  // whatever happens
+  struct Current {  // makes the context of `engine_` current, however this function ends
     std::unique_ptr<Engine>& engine;
     ~Current() { (void)engine->context->make_current(); }
   } current{engine_};
@@ -126,7 +127,7 @@ void Stepper::take_over(scene::Document document, sim::ChangeDepth depth) {
   wake_up();
   rest_.follow(scene(), simulation().model());
   if (depth == sim::ChangeDepth::cloth) {
-    run_.go_on();  // as it went before a blow-up, like any other change
+    run_.go_on();  // like any other change: playing or paused as before a blow-up
     state_replaced();
   } else {
     frames().touch_now();
@@ -137,7 +138,7 @@ void Stepper::take_over(scene::Document document, sim::ChangeDepth depth) {
   if (depth == sim::ChangeDepth::none) return;
   warn_if_thin();
   step_limit_.follow(simulation().model(), scene());
-  follow_step_limit();  // at once: the next change may come before the next status
+  follow_step_limit();  // now, as another change may come before the next status
   if (depth == sim::ChangeDepth::cloth) return guard_->start(step_limit_.dt_limit());
   guard_->allow(step_limit_.dt_limit());
   go_on();
@@ -210,7 +211,7 @@ void Stepper::perform(ReachScene& reach, const Ticket&) {
 
 void Stepper::perform(Hold& hold, const Ticket&) {
   if (run_.hold()) {
-    simulation().finish();  // what is queued already would run beside the job
+    simulation().finish();  // otherwise work that is already queued would run beside the job
     exchange_.emit(Notice{"info", "paused while the lab measures"});
   }
   exchange_.emit(Held{hold.job});
@@ -227,7 +228,7 @@ void Stepper::perform(Export& what, const Ticket& ticket) {
                                  simulation().read_state().position, simulation().colliders_now()}});
 }
 
-// The document stays what it is; what steps it is shown by sim.status.
+// The document keeps the method "auto"; sim.status shows the settings that are stepped with.
 void Stepper::perform(Chosen& chosen, const Ticket&) {
   automatic_.take(*chosen.measured, chosen.choice);
   if (!document_.scene.solver.automatic) return;
@@ -244,7 +245,7 @@ void Stepper::perform(Chosen& chosen, const Ticket&) {
 }
 
 void Stepper::announce_scene(std::optional<json> patch, std::uint64_t by) {
-  // A topology precedes the frames that need it, so it goes out with the scene that changed it.
+  // Clients need a topology before its frames, so it is sent together with the scene that changed it.
   if (const std::uint32_t revision = simulation().topology_revision(); revision != topology_revision_) {
     topology_revision_ = revision;
     exchange_.emit(TopologyChanged{stream::encode_topology(simulation().model(), revision)});
@@ -260,7 +261,8 @@ void Stepper::announce_parts() {
   exchange_.emit(PartsChanged{std::move(parts)});
 }
 
-// Stiffness in N/m means the same under every method but PBD, which says what it makes of it.
+// A stiffness in N/m means the same in every method except PBD. For PBD clients also get, for each kind of
+// spring, the share of a spring's stretch that one visit removes.
 void Stepper::announce_solver() {
   json shares = nullptr;
   if (scene().solver.method == scene::Method::pbd) {
@@ -281,7 +283,7 @@ void Stepper::announce_solver() {
       {{"pbd_stiffness", shares}, {"auto", automatic_.facts()}, {"thickness_that_holds", thickness}}});
 }
 
-// Said once, when a change of scene made it so.
+// Warns once, after a change of scene that lets layers of cloth pass through each other.
 void Stepper::warn_if_thin() {
   const std::string warning = model::thickness_warning(simulation().model(), scene());
   if (!std::exchange(thin_, !warning.empty()) && thin_) exchange_.emit(Notice{"warning", warning});

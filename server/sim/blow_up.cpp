@@ -16,19 +16,20 @@ namespace clothlab::sim {
 namespace {
 
 constexpr double growth_that_proves = 4.0, proved_already = 1.0;
-constexpr int patience = 60;           // judgements, about a second of frames
-constexpr double share_of_good = 0.1;  // of what is allowed
+constexpr int patience = 60;           // judgements after which a doubt is reviewed: about a second
+constexpr double share_of_good = 0.1;  // a state is good up to this share of the excess that is allowed
 
 double total(const Diagnostics& state) {
   return state.kinetic + state.elastic + state.gravitational;
 }
-/// Forces overflow before energies do, and no work of an infinite force excuses a growth.
+/// True if the state, its energies and its forces are finite. Forces overflow before energies do, and the
+/// work of an infinite force would excuse any growth.
 bool finite(const Diagnostics& state) {
   return state.finite && std::isfinite(total(state)) && std::isfinite(state.pin_force) &&
          std::isfinite(state.contact_force);
 }
 
-/// The largest speed of a motion within `reach` [m] of `where`, at any time.
+/// The largest speed [m/s] that `motion` ever gives to a point within `reach` [m] of `where`.
 double largest_speed(const scene::Motion& motion, const glm::dvec3& where, double reach) {
   if (const auto* swing = std::get_if<scene::Oscillate>(&motion))
     return std::abs(2.0 * std::numbers::pi * swing->frequency * swing->amplitude);
@@ -40,7 +41,7 @@ double largest_speed(const scene::Motion& motion, const glm::dvec3& where, doubl
 
 double collider_speed(const scene::Collider& collider, double size) {
   const scene::Ball bounds = scene::bounds(collider.shape);
-  // What has no end is touched near the cloth.
+  // The cloth touches an unbounded shape (a plane) only near itself: points within the cloth's size count.
   return largest_speed(collider.motion, bounds.center, std::isinf(bounds.radius) ? size : bounds.radius);
 }
 
@@ -59,6 +60,7 @@ Extent extent(const model::Model& model) {
   return {glm::distance(low, high), std::max({far.x, far.y, far.z})};
 }
 
+/// Allowance::ratio.
 double stable_swing(double dt, double dt_limit) {
   constexpr double nearest = 0.95, at_least = 2.0, known_unstable = 4.0;
   if (std::isinf(dt_limit)) return at_least;
@@ -86,7 +88,7 @@ Allowance allowance(const scene::Scene& scene, const model::Model& model, double
     allowed.collider_speed = std::max(allowed.collider_speed, collider_speed(collider, cloth.size));
   const double push = scene.self_collision ? 0.2 * scene.self_collision->thickness : 0.0;
   model::each_element(model.elements, [&](const auto& element) {
-    // A thousandth of its size, and the last bits of a coordinate in float32.
+    // The push of self-collision, a thousandth of the element's size, and float32's rounding of coordinates.
     const double stretch = push + 1e-3 * element_size(element.law) + 1e-6 * cloth.farthest;
     elastic += 0.5 * element_stiffness(element.law) * stretch * stretch;
   });
@@ -117,8 +119,9 @@ void BlowUp::rebase(const Diagnostics& state) {
   last_ = state;
 }
 
-/// Forces do work where what they pull at moves; forces are seen at the two ends of the time between, the
-/// speed is the largest there ever is. A collider also throws what it hits.
+/// The work [J] that pins and colliders may have done since the last state: their largest speed at any time,
+/// times the larger of the forces in the two states, times the time between. A collider also throws the
+/// vertices that it hits, at up to twice its speed.
 double BlowUp::work_since_last(const Diagnostics& state) const {
   const double seconds = state.time - last_.time;
   const double pins = allowance_.pin_speed * std::max(state.pin_force, last_.pin_force);
@@ -157,7 +160,7 @@ BlowUp::Verdict BlowUp::doubt(const Diagnostics& state) {
   if (energy >= allowance_.growth * doubted_energy_) return Verdict::blown_up;
   if (++doubted_for_ < patience) return Verdict::doubtful;
   doubted_for_ = 0;
-  if (energy > doubted_energy_) return Verdict::doubtful;  // it grows on, slowly
+  if (energy > doubted_energy_) return Verdict::doubtful;  // the energy still grows, slowly
   start(allowance_, state);
   return Verdict::good;
 }

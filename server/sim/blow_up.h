@@ -1,5 +1,5 @@
-// Whether a run is blowing up, told from its energies: kinetic and elastic energy that grow although nobody
-// does the work. Plain arithmetic on diagnostics, frame after frame; no GL.
+// Detects from a run's energies that it is blowing up: kinetic and elastic energy grow by more than the work
+// done on the cloth, gravity's included. Plain arithmetic on the diagnostics of state after state; no GL.
 #pragma once
 
 #include <string>
@@ -8,49 +8,52 @@
 
 namespace clothlab::sim {
 
-/// What an honest run of a scene may do to its energy.
+/// How far the energy of a scene's run may change without being a blow-up.
 struct Allowance {
-  double slack = 0;           ///< [J]
-  double ratio = 2;           ///< kinetic + elastic energy over what is there for them
-  double growth = 4;          ///< from where a doubt begins to where it is proved; 1 beyond the step limit
-  double pin_speed = 0;       ///< of the fastest pin [m/s]
-  double collider_speed = 0;  ///< of the fastest point of a collider near the cloth [m/s]
-  bool stretch = true;        ///< whether elastic energy counts as growth
+  double slack = 0;           ///< energy [J] allowed beyond `ratio`
+  double ratio = 2;           ///< largest kinetic + elastic energy, over what the ledger leaves for them
+  double growth = 4;          ///< factor of growth that turns a doubt into a blow-up; 1 if dt > dt_limit
+  double pin_speed = 0;       ///< speed of the fastest pin [m/s]
+  double collider_speed = 0;  ///< speed of the fastest point of a collider near the cloth [m/s]
+  bool stretch = true;        ///< true if growth of elastic energy counts, false if only kinetic energy does
 };
 
-/// The slack is the scene's own scale of energy: the cloth lifted by a quarter of its size, set moving as
-/// fast as what moves it, each vertex pushed as far as self-collision does in a step, and what float32 rounds
-/// away. The ratio is how far the energy of a stable vibration swings under symplectic Euler at this share of
-/// the step limit, (1 + s) / (1 - s) with s = dt / dt_limit. What sweeps too few times holds the cloth with
-/// less than its stiffness: it stretches far, and by that stiffness with more energy than anybody gave, which
-/// is no blow-up; only motion is.
+/// The allowance for a scene. `slack` is the scene's own scale of energy, a sum: to lift the cloth by a
+/// quarter of its size; to move it at twice the speed of the pins and colliders; to stretch each element by a
+/// thousandth of its size, by the push of self-collision in a step and by the rounding of float32. `ratio` is
+/// how far the energy of a stable vibration varies under symplectic Euler, (1 + s) / (1 - s) with
+/// s = dt / dt_limit, and at least 2. `stretch` is false for methods that sweep (PBD, XPBD, VBD): with too
+/// few sweeps the cloth stretches far, and its full stiffness then gives an elastic energy that no work has
+/// put in. That is no blow-up.
 Allowance allowance(const scene::Scene& scene, const model::Model& model, double dt_limit);
 
-/// Whether a change of scene may change the energy of a state, as one of dt cannot.
+/// True if a change of scene may change the energy of a state. A change of the solver (e.g. of dt) cannot.
 bool changes_energy(const scene::Scene& from, scene::Scene to);
 
-/// Keeps a ledger: the energy at the start, plus the work that pins and colliders may have done since, less
-/// what was lost. If kinetic and elastic energy are more than `ratio` times what the ledger leaves for them,
-/// and `slack`, the run is in doubt. A jump that is over (a collider put into the cloth) does not grow on;
-/// one that grows by `growth` from there has blown up.
+/// Keeps a ledger: the total energy at the start, plus the work that pins and colliders may have done since,
+/// less the energy lost. What the ledger leaves for kinetic and elastic energy is the ledger less the
+/// gravitational energy. A run is in doubt if those two exceed `ratio` times that, plus `slack`. The run has
+/// blown up if they then grow by the factor `growth`. After a single jump (a collider put into the cloth)
+/// they do not grow further, and after a while the run is good again.
 class BlowUp {
  public:
   enum class Verdict {
-    good,      ///< a state to go back to
-    doubtful,  ///< goes on, but is not to be kept
+    good,      ///< the run may later go back to this state
+    doubtful,  ///< the run goes on, but this state must not be kept to go back to
     blown_up
   };
 
-  /// From `state` on, whatever it is.
+  /// Begins a new ledger with `state`, which counts as good whatever it is.
   void start(const Allowance& allowance, const Diagnostics& state);
-  /// The scene was changed under the state that was judged last, which has become `state`: that was no
-  /// growth.
+  /// To be called after a change of scene, before the next step. `state`: diagnosis, under the new scene, of
+  /// the state that was judged last. The energy that the change added does not count as growth.
   void rebase(const Diagnostics& state);
   void allow(const Allowance& allowance) { allowance_ = allowance; }
-  /// States must come in the order of time.
+  /// Judges a state. States must come in the order of time.
   Verdict judge(const Diagnostics& state);
 
-  /// After `blown_up`: what grew, from what to what, when; a sentence's first half.
+  /// After `blown_up`: the first half of a sentence that says which energy grew, between which values and
+  /// times.
   std::string reason() const;
   const Diagnostics& last_good() const { return last_good_; }
 
@@ -63,9 +66,9 @@ class BlowUp {
 
   Allowance allowance_;
   double ledger_ = 0;          ///< [J]
-  double work_ = 0;            ///< since the last good state [J]
-  double doubted_energy_ = 0;  ///< what grew when the doubt began [J]; 0: no doubt
-  int doubted_for_ = 0;        ///< judgements
+  double work_ = 0;            ///< work done since the last good state [J]
+  double doubted_energy_ = 0;  ///< growing_energy when the doubt began [J]; 0: no doubt
+  int doubted_for_ = 0;        ///< number of judgements since the doubt began or was last reviewed
   Diagnostics last_, last_good_;
 };
 

@@ -1,4 +1,5 @@
-// How deep a change of scene cuts: decided by comparing the two documents, before anything is touched.
+// Finds out how much of a simulation a change of scene replaces, by comparing the two scenes before anything
+// is changed.
 #include <algorithm>
 
 #include "server/sim/plan.h"
@@ -8,8 +9,8 @@ namespace clothlab::sim {
 
 namespace {
 
-/// A pin that appears would tear its vertex back to its home at once, so it starts the cloth anew; a pin that
-/// goes away lets its vertices fall.
+/// True if `to` has a pin that `from` lacks. A new pin would tear its vertices back to their rest positions
+/// at once, so it starts the cloth anew; a pin that is removed only lets its vertices fall.
 bool pins_were_added(const scene::Cloth& from, const scene::Cloth& to) {
   return std::any_of(to.pins.begin(), to.pins.end(), [&](const scene::Pin& pin) {
     return std::none_of(from.pins.begin(), from.pins.end(),
@@ -22,7 +23,8 @@ bool new_cloth(const scene::Cloth& from, const scene::Cloth& to) {
          pins_were_added(from, to);
 }
 
-/// Same springs, same pinned vertices, same list of motions, limited or not.
+/// True if both cloths have the same kinds of springs and number of pins, and either both or neither has a
+/// strain limit: then the same kernels and arrays serve both.
 bool same_structure(const scene::Cloth& from, const scene::Cloth& to) {
   const auto kinds = [](const scene::Springs& s) {
     return std::array{s.structural > 0, s.shear > 0, s.bend > 0};
@@ -31,7 +33,7 @@ bool same_structure(const scene::Cloth& from, const scene::Cloth& to) {
          from.material.strain_limit.has_value() == to.material.strain_limit.has_value();
 }
 
-/// Names, colours and textures mean nothing to the simulation.
+/// The scene without names, colours and textures, which the simulation does not use.
 scene::Scene without_looks(scene::Scene scene) {
   scene.name.clear();
   for (scene::Cloth& cloth : scene.cloths) {

@@ -18,7 +18,7 @@ double contact_margin(const scene::Scene& scene, const model::Model& model) {
 
 void set_colliders(const gl::Program& program, const scene::Scene& scene, const MotionTable& motions,
                    double margin) {
-  std::vector<glm::vec4> rows;  // three a solid
+  std::vector<glm::vec4> rows;  // three rows for each collider
   for (std::size_t kind = 0; kind < scene::shape_kinds; ++kind)
     for (const scene::Collider& collider : scene.colliders) {
       if (collider.shape.index() != kind) continue;

@@ -1,4 +1,5 @@
-// Hands the scene's colliders to the step kernel (shaders/collide/colliders.glsl), and tells where they are.
+// Passes the scene's colliders to the step kernels (shaders/collide/colliders.glsl), and finds where they are
+// at a given time.
 #pragma once
 
 #include "server/gl/program.h"
@@ -7,15 +8,17 @@
 
 namespace clothlab::sim {
 
-/// How far from a collider's surface a vertex is kept [m]: half the cloth's thickness where the scene gives
-/// one, else a hundredth of the mesh's mean edge, so that rounding never lets a vertex in.
+/// The distance at which vertices are kept from a collider's surface [m]: half of self-collision's thickness
+/// if the scene has one, else a hundredth of the mean edge (of the cloth with the longest), so that rounding
+/// never lets a vertex in.
 double contact_margin(const scene::Scene& scene, const model::Model& model);
 
-/// Sets the uniforms of `program`, which was compiled for this scene's number of solids of each kind.
+/// Sets the uniform `solids` of `program`, which must have been compiled for this scene's number of colliders
+/// of each kind of shape. `margin`: see contact_margin [m].
 void set_colliders(const gl::Program& program, const scene::Scene& scene, const MotionTable& motions,
                    double margin);
 
-/// Where the colliders are at `time` [s].
+/// The scene's colliders with their shapes moved to where they are at `time` [s].
 std::vector<scene::Collider> colliders_at(const scene::Scene& scene, double time);
 
 }  // namespace clothlab::sim

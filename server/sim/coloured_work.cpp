@@ -17,7 +17,7 @@ bool pinned(const model::Model& model, std::uint32_t vertex) {
   return model.pin_motion[vertex] != model::not_pinned;
 }
 
-/// Those for which `wanted`; colours that lose all their members go.
+/// The items of `all` for which `wanted(item)` is true. Colours that are left without items are removed.
 template <class Wanted>
 model::Colouring only(const model::Colouring& all, Wanted wanted) {
   model::Colouring kept;
@@ -74,7 +74,7 @@ std::uint32_t lanes_of_one_group(std::uint32_t vertex_count, bool self_collision
   if (needed > static_cast<std::size_t>(shared_bytes)) return 0;
   if (!gl::software_renderer()) return static_cast<std::uint32_t>(most_lanes);
   for (std::uint32_t lanes = 8; lanes <= 128; lanes *= 2)
-    if (turns(lanes) < 50000) return lanes;  // some to spare: how Mesa counts is not documented
+    if (turns(lanes) < 50000) return lanes;  // well below 65535: how Mesa counts is not documented
   return 0;
 }
 

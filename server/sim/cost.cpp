@@ -11,17 +11,17 @@ namespace clothlab::sim {
 
 namespace {
 
-// [s] a vertex, measured with tests/bench/step.mjs and methods.mjs.
+// Costs [s] for each vertex, measured with tests/bench/step.mjs and methods.mjs.
 constexpr double gather = 50e-9;     ///< one evaluation of the forces
-constexpr double contacts = 150e-9;  ///< self-collision, a step
+constexpr double contacts = 150e-9;  ///< self-collision in one step, without the neighbour search
 constexpr double sweep = 210e-9;     ///< one sweep of PBD, XPBD or VBD
 constexpr double newton = 3.4e-6;    ///< one Newton step of implicit Euler, which rarely takes more than two
-constexpr double limit = 20 * gather;  ///< the strain limit's sweeps
-constexpr double pair = 3e-9;          ///< one pair of a neighbour search
-constexpr double searches = 0.05;      ///< of them a step, while a cloth moves
+constexpr double limit = 20 * gather;  ///< the strain limit's sweeps in one step
+constexpr double pair = 3e-9;          ///< one other vertex that a neighbour search looks at
+constexpr double searches = 0.05;      ///< number of neighbour searches per step while a cloth moves
 
-/// Others that a neighbour search looks at for each vertex (crowding.h), from the grid's spacing; of another
-/// mesh, and of a cloth that does not start flat, as of one that lies in a heap.
+/// Number of other vertices that a neighbour search looks at for each vertex (crowding.h). For a grid that
+/// starts flat it follows from the spacing; any other cloth is taken to lie in a heap: all its vertices.
 double candidates(const scene::Cloth& cloth, double thickness) {
   const double vertices = static_cast<double>(scene::vertex_count(cloth.mesh));
   const auto* grid = std::get_if<scene::Grid>(&cloth.mesh);

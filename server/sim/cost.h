@@ -1,12 +1,12 @@
-// What a step of a scene is likely to cost, told from its numbers alone.
+// Estimates the time that a step of a scene takes, from the scene's numbers alone.
 #pragma once
 
 #include "server/scene/scene.h"
 
 namespace clothlab::sim {
 
-/// Seconds on one core of software OpenGL, right within a factor of some three: enough to tell a scene that
-/// such a machine steps in real time from one that it cannot.
+/// Estimated time of one step on one core with software OpenGL [s], right within a factor of about three:
+/// enough to tell if such a machine can step the scene in real time.
 double expected_step_seconds(const scene::Scene& scene);
 
 }  // namespace clothlab::sim

@@ -12,7 +12,7 @@ namespace clothlab::sim {
 
 namespace {
 
-/// As in diagnose.comp.
+/// The partial result of one work group, laid out as in diagnose.comp.
 struct Partial {
   float kinetic, elastic, gravitational, contacts;
   float strain, speed_squared, not_finite, unused;

@@ -1,6 +1,6 @@
-// Energies, strain, speed and contacts of the whole state: a reduction on the GPU
-// (shaders/diagnose.comp) whose partial results come back through a ring, without waiting unless asked
-// to.
+// Computes energies, strain, speed and contacts of the whole state: a reduction on the GPU
+// (shaders/diagnose.comp). Its partial results come back through a ring of buffers; the host waits for them
+// only if asked to.
 #pragma once
 
 #include <array>
@@ -16,11 +16,12 @@ class DiagnosticsPass {
  public:
   static Result<DiagnosticsPass> create(std::uint32_t vertex_count);
 
-  /// Queues the reduction. False if too many are still on their way. Springs and slices must be bound.
-  /// `self_collision` may be null.
+  /// Queues the reduction. Returns false, without queueing it, if too many results are still on their way.
+  /// The element lists and their slices must be bound. `self_collision` may be null.
   bool request(const StateBuffers& state, const SelfCollision* self_collision, const glm::dvec3& gravity,
                double time, std::uint64_t step);
-  /// True and the oldest result, if one has arrived or `wait` is set and one was requested.
+  /// Stores the oldest result in `out` and returns true if it has arrived; with `wait`, waits for it. Returns
+  /// false if no result is there.
   bool poll(Diagnostics& out, bool wait);
 
  private:

@@ -13,12 +13,13 @@ std::uint32_t word(double value) {
   return std::bit_cast<std::uint32_t>(static_cast<float>(value));
 }
 
-/// As the law's kernels read it (Spring_ENTRY in shaders/elements/spring.glsl).
+/// The entry of `spring` in the list of the vertex at its `corner`, as kernels read it (Spring_ENTRY in
+/// shaders/elements/spring.glsl).
 std::array<Words, 1> entry(const model::Spring& spring, std::size_t corner) {
   return {Words{spring.vertices[1 - corner], word(spring.law.rest_length), word(spring.law.stiffness),
                 word(spring.law.damping)}};
 }
-/// What gives no force: every corner is the vertex itself.
+/// An entry that gives no force, to pad a list: all its corners are `vertex` itself.
 std::array<Words, 1> padding(const model::Batch<elements::Spring>&, std::uint32_t vertex) {
   return {Words{vertex, 0, 0, 0}};
 }

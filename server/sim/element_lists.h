@@ -14,18 +14,18 @@ namespace clothlab::sim {
 
 struct Plan;
 
-/// A texel of an entry.
+/// One texel of an entry: four 32-bit words.
 using Words = std::array<std::uint32_t, 4>;
 
 struct ElementLists {
   std::vector<Words> entries;  ///< rows of group_size texels; an entry takes as many rows as it has texels
-  std::vector<std::uint32_t> slices;  ///< for each law [slices + 1] the first row of each slice
+  std::vector<std::uint32_t> slices;  ///< for each law [slices + 1]: first row of each slice, then the end
 };
 
 ElementLists element_lists(const model::Model& model);
 
-/// LAWS, for `#each Law`: all laws, or those of which the plan's scene has elements. And for each of all laws
-/// the number of its list: Spring_LIST, ...
+/// Defines LAWS for `#each Law`: all laws or, with a plan, only those of which the plan's scene has elements.
+/// Also defines for every law the number of its list: Spring_LIST, ...
 gl::Defines law_defines();
 gl::Defines law_defines(const Plan& plan);
 

@@ -1,5 +1,5 @@
-// PBD, XPBD and VBD: shaders/methods/gauss_seidel.comp, in one dispatch a step for small cloths, in one a
-// phase and colour for large ones.
+// PBD, XPBD and VBD: runs shaders/methods/gauss_seidel.comp, for small cloths with one dispatch per step, for
+// large ones with one dispatch for each phase and each colour.
 #include <algorithm>
 #include <array>
 
@@ -13,7 +13,7 @@ namespace clothlab::sim {
 
 namespace {
 
-/// Elements at a vertex.
+/// Number of elements at a vertex.
 std::uint64_t corners_at(const model::Model& model, std::uint32_t vertex) {
   std::uint64_t count = 0;
   model.elements.each([&](const auto& batch) {
@@ -71,7 +71,7 @@ class GaussSeidel : public Integrator {
     state.swap();
   }
 
-  /// No velocity before, and positions that were rounded by nobody.
+  /// Forgets what rounding took from the last state and, for VBD, the velocity at the last step's start.
   void restart() override {
     remainders_.fill(0);
     if (by_vertex_) velocity_before_.fill(0);
@@ -102,7 +102,8 @@ class GaussSeidel : public Integrator {
     for (gl::TextureBuffer& deviation : deviation_) deviation = per_vertex(vertex_count_);
   }
 
-  /// Of all loops in a step, at most, with so many lanes.
+  /// Upper bound of the turns that one thread takes in all loops of a step, if the work group has `lanes`
+  /// threads.
   std::uint64_t turns(const model::Model& model, const Plan& plan, std::uint32_t lanes) const {
     const auto rounds = [&](std::uint32_t items) { return std::uint64_t{(items + lanes - 1) / lanes}; };
     const std::uint64_t colliders = 2 + 6 * static_cast<std::uint64_t>(plan.solid_count());
@@ -166,7 +167,8 @@ class GaussSeidel : public Integrator {
     return ok();
   }
 
-  /// Of each cloth that nothing holds, as first and end.
+  /// Sets the uniform `free_vertices`: for each cloth the first and the end of its vertices, an empty range
+  /// if the cloth has pins.
   void set_free_vertices(const Surroundings& around) {
     std::vector<GLint> ranges;
     for (const model::ClothRange& cloth : around.model.cloths) {
@@ -227,11 +229,11 @@ class GaussSeidel : public Integrator {
   }
 
   bool by_vertex_, contacts_;
-  bool balanced_;            ///< cloths that nothing holds get back the momentum that sweeps left out
-  std::uint32_t lanes_ = 0;  ///< of the one work group; 0: many dispatches instead
+  bool balanced_;            ///< VBD without colliders: keep sweeps from giving free cloths a false momentum
+  std::uint32_t lanes_ = 0;  ///< threads of the one work group; 0: many dispatches instead
   std::uint32_t vertex_count_, cloths_;
   int sweeps_ = 1;
-  model::Colouring work_;  ///< springs, or vertices, to visit
+  model::Colouring work_;  ///< the springs (VBD: the vertices) that a sweep visits
   gl::Program whole_, begin_, visit_, meet_, balance_, finish_;
   std::array<gl::TextureBuffer, 2> deviation_;  ///< a pass of contacts reads one and writes the other
   gl::TextureBuffer projected_, gains_, visited_;

@@ -13,7 +13,7 @@ double timed_steps(Simulation& simulation, std::uint32_t count) {
 
 void GuardedRun::move_to(Simulation& simulation) {
   simulation_ = &simulation;
-  asked_ = false;  // what was asked for stays behind
+  asked_ = false;  // a diagnosis still on its way belongs to the old simulation
 }
 
 Allowance GuardedRun::allowance() const {

@@ -1,5 +1,6 @@
-// A simulation under watch: stepped, diagnosed and judged, its last good state at hand. Whoever runs a scene
-// runs it this way, so that all call the same run a blow-up and find the same remedy.
+// Steps a simulation and watches for a blow-up: diagnoses and judges its state, and keeps the last good state
+// to go back to. All parts of the program run scenes this way, so that they agree on what is a blow-up and on
+// its remedy.
 #pragma once
 
 #include <cstdint>
@@ -12,50 +13,50 @@
 
 namespace clothlab::sim {
 
-/// Steps and waits for the GPU; how long that took [s].
+/// Does `count` steps and waits for the GPU. Returns the time that this took [s].
 double timed_steps(Simulation& simulation, std::uint32_t count);
 
 class GuardedRun {
  public:
   using Verdict = BlowUp::Verdict;
 
-  /// Of a simulation that outlives it, or that `move_to` replaces; to be started before anything else.
+  /// `simulation` must live until this object ends or `move_to` replaces it. Call `start` first.
   explicit GuardedRun(Simulation& simulation) : simulation_(&simulation) {}
-  /// It goes on in another simulation, of the same state.
+  /// Continues with another simulation, which must have the same state.
   void move_to(Simulation& simulation);
 
-  /// Takes the present state for sound, whatever it is. `dt_limit` is the scene's longest stable step [s];
-  /// `swing` stands for the `ratio` of the Allowance that follows from it.
+  /// Takes the present state as good, whatever it is. `dt_limit` is the scene's longest stable step [s].
+  /// `swing`, if given, replaces the `ratio` of the Allowance that follows from `dt_limit`.
   void start(double dt_limit, std::optional<double> swing = std::nullopt);
-  /// The scene has changed, or its limit is known better [s].
+  /// To be called when the scene has changed or its longest stable step `dt_limit` [s] is known better.
   void allow(double dt_limit);
-  /// The scene was changed under the state that was looked at last: what that added to its energy was no
-  /// growth.
+  /// To be called after a look and a change of scene, with no step between: the energy that the change added
+  /// does not count as growth.
   void rebase();
 
-  /// As `timed_steps`.
+  /// Calls `timed_steps`.
   double step(std::uint32_t count) { return timed_steps(*simulation_, count); }
 
-  /// Diagnoses the present state, waiting for the GPU, and judges it; a good one is kept, to go back to.
+  /// Diagnoses the present state, waiting for the GPU, and judges it. A good state is kept, to go back to.
   Verdict look();
-  // The same without waiting: ask, and poll until the verdict comes.
+  // `look` without waiting for the GPU: call `ask`, then `poll` until it returns a verdict.
   void ask();
   bool asked() const { return asked_; }
   std::optional<Verdict> poll();
 
-  /// As of the last look, the start or `go_back`.
+  /// The diagnosis of the state that was judged, started from or gone back to last.
   const Diagnostics& state() const { return state_; }
-  /// The last good one.
+  /// The diagnosis of the last good state.
   const Diagnostics& last_good() const { return blow_up_.last_good(); }
 
-  /// After a blow-up: what grew, from what to what, when; a sentence's first half.
+  /// After a blow-up: BlowUp::reason.
   std::string reason() const { return blow_up_.reason(); }
 
   struct Setback {
-    std::string reason;    ///< and how the step stands to its limit
-    model::Remedy remedy;  ///< for it
+    std::string reason;    ///< which energy grew, and how dt compares with dt_limit
+    model::Remedy remedy;  ///< what to change in the scene
   };
-  /// After a blow-up: puts the last good state back, and says why and what to do.
+  /// After a blow-up: puts the last good state back. Returns why, and what to change.
   Setback go_back();
 
  private:

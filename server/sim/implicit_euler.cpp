@@ -1,5 +1,5 @@
-// Implicit Euler on the GPU: shaders/methods/implicit_*.comp. Vectors and sums stay there; the host only
-// asks, now and then, whether a solve has ended.
+// Implicit Euler on the GPU: shaders/methods/implicit_*.comp. Vectors and sums stay on the GPU; the host only
+// asks, every few iterations, if a solve has ended.
 #include <array>
 
 #include "server/sim/integrator.h"
@@ -8,14 +8,15 @@ namespace clothlab::sim {
 
 namespace {
 
-/// Iterations after which a solve ends without having met its tolerance. Each makes the error smaller, so an
-/// early end costs accuracy, not stability.
+/// Number of iterations after which a solve ends even if it has not met its tolerance. Each iteration makes
+/// the error smaller, so an early end costs accuracy, not stability.
 constexpr int most_iterations = 1000;
 constexpr int iterations_between_looks = 8;
-/// Of self-collision after the solve, each of which leaves half of an approach, or less.
+/// Passes of self-collision after the solve. Each pass leaves half of the speed at which two vertices
+/// approach each other, or less.
 constexpr int contact_passes = 4;
 
-/// As in implicit_update.comp.
+/// The start of the buffer Control in implicit_update.comp.
 struct Control {
   std::uint32_t groups = 0, groups_y = 1, groups_z = 1;
   std::uint32_t iterations = 0, converged = 0;
@@ -53,7 +54,7 @@ class ImplicitEuler : public Integrator {
     for (const gl::Program* program :
          {&start_, &system_, &multiply_, &update_, &search_, &advance_, &end_, &contacts_})
       if (program->id()) set_step_uniforms(*program, around);
-    if (around.scene.solver.dt != dt_) restart();  // the contacts' impulses are forces times dt
+    if (around.scene.solver.dt != dt_) restart();  // impulses kept in `grip_` are forces times dt
     dt_ = around.scene.solver.dt;
     most_newton_steps_ = around.scene.solver.iterations;
     system_.set("tolerance", static_cast<float>(around.scene.solver.tolerance));
@@ -73,7 +74,7 @@ class ImplicitEuler : public Integrator {
         last = &vectors_[0];
         break;
       }
-      if (solved.iterations == 0)  // the guess is the solution; it is where the next one goes
+      if (solved.iterations == 0)  // the guess is the solution: copy it to where `advance` reads
         glCopyNamedBufferSubData(guess_.buffer.id(), vectors_[0].change.buffer.id(), 0, 0,
                                  static_cast<GLsizeiptr>(guess_.buffer.bytes()));
       last = &vectors_[solved.iterations % 2];
@@ -84,7 +85,7 @@ class ImplicitEuler : public Integrator {
     finish(state, *last, row);
   }
 
-  /// No contact is known.
+  /// Forgets all contacts with colliders: -1 is `untouched` in implicit_friction.glsl.
   void restart() override {
     const std::vector<float> untouched(grip_.bytes() / sizeof(float), -1.0F);
     grip_.upload(untouched.data(), grip_.bytes());
@@ -93,7 +94,7 @@ class ImplicitEuler : public Integrator {
   SolverWork work() const override { return work_; }
 
  private:
-  /// What conjugate gradients carry from one iteration to the next.
+  /// The vectors that conjugate gradients carry from one iteration to the next.
   struct Vectors {
     gl::TextureBuffer change, residual, preconditioned, direction, direction_product;
   };
@@ -107,7 +108,7 @@ class ImplicitEuler : public Integrator {
            {&set.change, &set.residual, &set.preconditioned, &set.direction, &set.direction_product})
         *vector = {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
     grip_ = gl::Buffer(vertex_count * 4 * sizeof(float));
-    sums_ = {gl::Buffer(groups_ * 12 * sizeof(float)), GL_RGBA32F};  // three vec4 at most
+    sums_ = {gl::Buffer(groups_ * 12 * sizeof(float)), GL_RGBA32F};  // at most three vec4 per work group
     control_ = gl::Buffer(sizeof(Control) + most_iterations * 2 * sizeof(float));
   }
 
@@ -135,7 +136,7 @@ class ImplicitEuler : public Integrator {
     run(start_);
   }
 
-  /// What the passes before and after a solve write.
+  /// Binds the buffers that the passes before and after a solve write.
   void bind_estimate() {
     start_velocity_.buffer.bind_storage(slot_start_velocity);
     velocity_.buffer.bind_storage(slot_estimate);
@@ -145,7 +146,7 @@ class ImplicitEuler : public Integrator {
     grip_.bind_storage(slot_grip);
   }
 
-  /// The linear system at the estimate.
+  /// Sets up the linear system at the present estimate, whose positions are in `position`.
   void set_up(const gl::TextureBuffer& position) {
     position.bind(unit_position);
     velocity_.bind(unit_velocity);
@@ -157,7 +158,7 @@ class ImplicitEuler : public Integrator {
     run(system_);
   }
 
-  /// By conjugate gradients; `control`: how that ended.
+  /// Solves the linear system by conjugate gradients. `control` receives how the solve ended.
   Work solve(Control& control) {
     control = Control{};
     control.groups = groups_;
@@ -197,7 +198,8 @@ class ImplicitEuler : public Integrator {
     dispatches_ += 2;
   }
 
-  /// Line search, then the estimate takes its share of the change.
+  /// Does the line search, then adds the share of the solved change that it found best to the estimate.
+  /// `another`: a further Newton step may follow in this time step.
   void advance(const Vectors& solved, int row, bool another) {
     solved.change.bind(unit_change);
     solved.residual.bind(unit_residual);
@@ -210,7 +212,8 @@ class ImplicitEuler : public Integrator {
     run(advance_);
   }
 
-  /// The velocities go back and forth between two buffers, and end in the one they came from.
+  /// Does the passes of self-collision. Each pass reads the velocities from one of two buffers and writes
+  /// them to the other; after an even number of passes they are in `velocity_` again.
   void keep_apart() {
     static_assert(contact_passes % 2 == 0);
     position_.buffer.bind_storage(slot_next_position);
@@ -236,11 +239,11 @@ class ImplicitEuler : public Integrator {
   double dt_ = 0;
   int most_newton_steps_ = 1;
   gl::Program start_, system_, multiply_, update_, search_, advance_, end_, contacts_;
-  gl::TextureBuffer start_position_, start_velocity_;  ///< where the step starts, with self-collision's share
-  gl::TextureBuffer position_, velocity_;              ///< estimate of where it ends
-  gl::TextureBuffer guess_;                            ///< of the change of velocity that is solved for
-  gl::TextureBuffer constraint_, surface_;             ///< of the contacts with colliders
-  gl::Buffer grip_;                                    ///< of these, kept from step to step
+  gl::TextureBuffer start_position_, start_velocity_;  ///< state at the step's start, after self-collision
+  gl::TextureBuffer position_, velocity_;              ///< estimate of the state at the step's end
+  gl::TextureBuffer guess_;                            ///< first guess of the solved change of velocity
+  gl::TextureBuffer constraint_, surface_;             ///< for each vertex: its contact with a collider
+  gl::Buffer grip_;                                    ///< friction of the contacts, kept between steps
   gl::TextureBuffer block_a_, block_b_, product_, sums_;
   std::array<Vectors, 2> vectors_;  ///< each iteration reads one set and writes the other
   gl::Buffer control_;

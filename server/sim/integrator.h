@@ -1,4 +1,4 @@
-// One way of advancing the state by a step on the GPU. Each family of methods is one file: whole_step.cpp
+// A method that advances the state by one step on the GPU. Each family of methods is one file: whole_step.cpp
 // (one dispatch a step), rk4.cpp, implicit_euler.cpp, gauss_seidel.cpp.
 #pragma once
 
@@ -22,28 +22,28 @@ struct Surroundings {
   const scene::Scene& scene;
   const model::Model& model;
   const MotionTable& motions;
-  const SelfCollision* self_collision;  ///< null without
+  const SelfCollision* self_collision;  ///< null if the scene has none
 };
 
 class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// Takes over what may change without new kernels.
+  /// Takes over the numbers of the scene, which may change without new kernels.
   virtual void set_parameters(const Surroundings& around) = 0;
 
-  /// One step: reads the state, writes its other copy, swaps the two. `row` is the step's first in the pose
-  /// table. Springs, slices, rest positions, poses and neighbour lists must be bound. A step of many
-  /// dispatches may stop between them; the state must outlive it.
+  /// Does one step: reads the present copy of the state, writes the other copy, swaps the two. `row`: row of
+  /// the step's start in the pose table. The element lists, their slices, rest positions, poses and neighbour
+  /// lists must be bound. A step of many dispatches may stop between them; `state` must outlive the step.
   virtual Work step(StateBuffers& state, int row) = 0;
 
-  /// The state was not made by this object's last step, or that was given up half-way: forget what was
-  /// carried over from it.
+  /// Forgets what was carried over from the last step. To be called if the present state was not made by this
+  /// object's last step, or if that step was given up half-way.
   virtual void restart() {}
 
   virtual SolverWork work() const { return {}; }
 
-  /// Dispatches queued since it was made.
+  /// Number of dispatches queued since this object was made.
   std::uint64_t dispatches() const { return dispatches_; }
 
  protected:
@@ -54,24 +54,24 @@ class Integrator {
   std::uint64_t dispatches_ = 0;
 };
 
-/// The one that the scene's solver names, its parameters set.
+/// Makes the integrator for the scene's method and sets its parameters.
 Result<std::unique_ptr<Integrator>> make_integrator(const Surroundings& around, const Plan& plan);
 
-/// The families, for make_integrator.
+/// Make an integrator of one family; make_integrator calls these functions.
 Result<std::unique_ptr<Integrator>> make_whole_step(scene::Method method, std::uint32_t vertex_count,
                                                     const Plan& plan);
 Result<std::unique_ptr<Integrator>> make_rk4(std::uint32_t vertex_count, const Plan& plan);
 Result<std::unique_ptr<Integrator>> make_implicit_euler(std::uint32_t vertex_count, const Plan& plan);
 Result<std::unique_ptr<Integrator>> make_gauss_seidel(const Surroundings& around, const Plan& plan);
 
-/// What the kernels so far have written is there for the next one to read, for indirect dispatches and for
-/// copies.
+/// Makes everything that the kernels queued so far write visible to the next kernels, to indirect dispatches
+/// and to copies.
 inline void wait_for_writes() {
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
                   GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-/// Sets the uniforms that the kernels of all methods share, where the program has them.
+/// Sets those of the uniforms shared by the kernels of all methods that `program` has.
 void set_step_uniforms(const gl::Program& program, const Surroundings& around);
 
 }  // namespace clothlab::sim

@@ -55,7 +55,7 @@ Work Kernels::update_lists(const scene::Scene& scene) {
   larger.neighbour_slots = slots;
   Result<SelfCollision> grown = SelfCollision::create(model, slots);
   Result<std::unique_ptr<Integrator>> adapted = make_integrator(surroundings(scene), larger);
-  // Else it goes on with what there is.
+  // If the longer lists cannot be made, the present ones stay in use.
   if (!grown || !adapted || !grown->set_parameters(*scene.self_collision, model)) co_return;
   grown->take_counters(*self_collision);
   *self_collision = std::move(*grown);
@@ -67,7 +67,7 @@ Work Kernels::update_lists(const scene::Scene& scene) {
 }
 
 Status Kernels::update(const scene::Scene& scene, bool material_changed) {
-  // Masses and pins live in the model; building it again is cheap and cannot change its shape here.
+  // Masses and pins are part of the model. To build it again is cheap and cannot change its structure here.
   Result<model::Model> rebuilt = model::build(scene);
   if (!rebuilt) return rebuilt.error();
   if (self_collision)

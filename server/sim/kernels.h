@@ -1,5 +1,6 @@
-// What a simulation has that depends on the scene's structure but not on the state: the passes that step it
-// and the arrays they read. A change of structure replaces it as a whole, a change of numbers updates it.
+// The part of a simulation that depends on the scene but not on the state: the passes of a step and the
+// arrays that they read. A change of the scene's structure replaces this part as a whole; a change of the
+// scene's numbers only updates it.
 #pragma once
 
 #include <memory>
@@ -19,14 +20,15 @@ struct Kernels {
   std::unique_ptr<Integrator> integrator;
   std::optional<StrainLimit> strain_limit;
 
-  /// For a state that none of its steps made yet.
+  /// Makes the kernels of `scene`; nothing is carried over from an earlier step.
   static Result<Kernels> create(const scene::Scene& scene);
 
-  /// Takes over the numbers of a scene with the same structure; `material_changed`: that of any cloth.
+  /// Takes over the numbers of a scene with the same structure. `material_changed`: the material of at least
+  /// one cloth differs from before.
   Status update(const scene::Scene& scene, bool material_changed);
 
-  /// Brings the neighbour lists up to date, with more room where they need it: none of a step's pairs is left
-  /// out as long as that is to be had. There must be lists; may stop on its way.
+  /// Brings the neighbour lists up to date. Makes them longer if they have become too short for all pairs, as
+  /// far as the limits on their size allow. The scene must have self-collision. The work may stop on its way.
   Work update_lists(const scene::Scene& scene);
 
   Surroundings surroundings(const scene::Scene& scene) const {

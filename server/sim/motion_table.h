@@ -1,4 +1,4 @@
-// Poses of everything that moves, for each step of a batch: computed in double precision, read by
+// The poses of moving pins and colliders for each step of a batch: computed in double precision, read by
 // shaders/methods/motions.glsl.
 #pragma once
 
@@ -10,20 +10,21 @@
 
 namespace clothlab::sim {
 
-/// Most steps that are queued behind one upload of the table.
+/// Largest number of steps in a batch. The table is uploaded once for each batch.
 inline constexpr std::uint32_t batch_steps = 32;
 
 class MotionTable {
  public:
   MotionTable() = default;
-  /// Each step has `rows_a_step` rows after the one at its start.
+  /// `rows_a_step`: number of rows of each step after the row of its start (Plan::pose_rows).
   MotionTable(std::vector<scene::Motion> motions, int rows_a_step);
 
   bool empty() const { return motions_.empty(); }
-  /// The index kernels use, or -1 for a motion that is null.
+  /// The index under which kernels find `motion` in the table; -1 for a null motion.
   int index(const scene::Motion& motion) const;
 
-  /// Uploads the poses at `times` [s]: a row for the start of the batch and rows_a_step for each step.
+  /// Uploads the poses at `times` [s], one row each: the start of the batch, then rows_a_step rows for each
+  /// step.
   void upload(const std::vector<double>& times);
   void bind(GLuint unit) const { table_.bind(unit); }
 

@@ -15,7 +15,8 @@ bool moves(const scene::Motion& motion) {
   return !std::holds_alternative<std::monostate>(motion);
 }
 
-/// "meet(kind, first, end)" for each kind that there is, for shaders/collide/colliders.glsl.
+/// The text "meet(kind, first, end) " for each kind of shape that the scene has, for
+/// shaders/collide/colliders.glsl.
 std::string each_solid(const Plan& plan) {
   std::string list;
   int first = 0;

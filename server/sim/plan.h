@@ -1,4 +1,4 @@
-// Which passes a scene needs, and nothing else: derived from the scene alone (principle 2 of the design).
+// The passes and the parts of kernels that a scene needs, derived from the scene alone: no step runs others.
 #pragma once
 
 #include <array>
@@ -14,29 +14,30 @@
 
 namespace clothlab::sim {
 
-/// Threads in a work group and vertices in a slice of the element lists. Of 32 to 256, 128 was best or near
-/// it for cloths from 25x25 to 256x256 on llvmpipe.
+/// Number of threads in a work group and of vertices in a slice of the element lists. Among 32 to 256, 128
+/// was the fastest or nearly so for cloths from 25x25 to 256x256 on llvmpipe.
 inline constexpr int group_size = 128;
 
-/// Work groups of a kernel with one thread a vertex.
+/// Number of work groups for a kernel with one thread per vertex.
 constexpr std::uint32_t vertex_groups(std::uint32_t vertex_count) {
   return (vertex_count + group_size - 1) / group_size;
 }
 
-/// What the step kernel is specialised for. Two scenes with equal plans run the same kernels.
+/// The properties of a scene for which the step kernels are compiled. Scenes with equal plans run the same
+/// kernels.
 struct Plan {
   scene::Method method = scene::Method::symplectic_euler;
-  bool structural = false, shear = false, bend = false;  ///< in any cloth
+  bool structural = false, shear = false, bend = false;  ///< true if any cloth has such springs
   bool springs() const { return structural || shear || bend; }
   bool pins = false;
-  int moving = 0;                                ///< distinct motions of pins and colliders that are not null
-  std::array<int, scene::shape_kinds> solids{};  ///< colliders of each kind of shape
+  int moving = 0;                                ///< distinct motions of pins and colliders, null left out
+  std::array<int, scene::shape_kinds> solids{};  ///< number of colliders of each kind of shape
   bool self_collision = false;
-  std::uint32_t neighbour_slots = 64;  ///< of each vertex, for self-collision; not the scene's to say
-  bool strain_limit = false;           ///< of any cloth
-  int most_sweeps = 0;                 ///< at least the iterations of PBD, XPBD or VBD: 16, 64, 256, ...
-  /// Rows that a step has in the table of poses after the one at its start: its end, and before that its
-  /// middle if the method looks at it.
+  std::uint32_t neighbour_slots = 64;  ///< of each neighbour list; more are made if a list needs them
+  bool strain_limit = false;           ///< true if any cloth has one
+  int most_sweeps = 0;                 ///< 16, 64, 256, ...: at least the iterations of PBD, XPBD or VBD
+  /// Number of a step's rows in the pose table after the row of its start: the step's end and, before it, its
+  /// middle if the method uses poses there.
   int pose_rows() const { return scene::facts(method).looks_at_the_middle ? 2 : 1; }
   int solid_count() const { return std::accumulate(solids.begin(), solids.end(), 0); }
   bool operator==(const Plan&) const = default;
@@ -44,13 +45,13 @@ struct Plan {
 
 Plan plan(const scene::Scene& scene);
 
-/// The defines that specialise the step kernel.
+/// The defines with which the step kernels are compiled for a plan.
 gl::Defines step_defines(const Plan& plan);
 
 /// See Simulation::parts.
 std::vector<Simulation::Part> parts(const Plan& plan);
 
-/// The motions of pins and colliders that are not null, each once, in order of appearance.
+/// The motions of pins and colliders, each once, in order of appearance; null motions are left out.
 std::vector<scene::Motion> moving_motions(const scene::Scene& scene);
 
 }  // namespace clothlab::sim

@@ -47,7 +47,7 @@ class Rk4 : public Integrator {
   }
 
  private:
-  /// A state between the step's start and its end.
+  /// An intermediate state, between the step's start and its end.
   struct Between {
     gl::TextureBuffer position, velocity;
     void bind_for_reading() const {

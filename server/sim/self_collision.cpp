@@ -19,7 +19,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// As in neighbours.glsl.
+/// The buffer NeighbourControl in neighbours.glsl.
 struct Control {
   std::array<std::uint32_t, 3> rebuild{0, 1, 1};
   SelfCollision::Counters counters;
@@ -28,15 +28,15 @@ struct Control {
 };
 static_assert(offsetof(Control, counters) == SelfCollision::counters_offset);
 
-/// Pairs that one search may look at: some three seconds on a slow processor.
+/// Most pairs of vertices that one search may look at: about three seconds on a slow processor.
 constexpr double most_pairs = 1e9;
-/// Pairs of one dispatch: a few milliseconds there.
+/// Pairs that one dispatch of a search looks at, about: a few milliseconds on a slow processor.
 constexpr double pairs_a_dispatch = 2e6;
 constexpr std::chrono::milliseconds long_dispatch{10};
 
 constexpr std::uint64_t updates_between_looks = 8;
 constexpr std::uint32_t most_slots = 256;
-constexpr std::uint64_t most_entries = std::uint64_t{1} << 22;  // 32 MiB, and what walking them takes
+constexpr std::uint64_t most_entries = std::uint64_t{1} << 22;  // in all lists: 32 MiB, and time to read them
 constexpr std::uint32_t chain_end = 0xffffffffu;                // as in cells.glsl
 
 }  // namespace
@@ -46,7 +46,7 @@ Result<SelfCollision> SelfCollision::create(const model::Model& model, std::uint
   const std::uint32_t vertex_count = model.vertex_count();
   made.vertex_count_ = vertex_count;
   made.slots_ = slots;
-  // Two cells a vertex keep the chains short.
+  // With two cells per vertex the chains stay short.
   const std::uint32_t cells = std::bit_ceil(2 * vertex_count);
   const gl::Defines defines{{"GROUP_SIZE", std::to_string(group_size)},
                             {"CELL_COUNT", std::to_string(cells)},
@@ -63,7 +63,7 @@ Result<SelfCollision> SelfCollision::create(const model::Model& model, std::uint
   made.control_ = gl::Buffer(sizeof(Control), &nothing);
   made.seen_ = gl::ReadbackRing(sizeof(Control), 1);
   made.heads_ = {gl::Buffer(cells * sizeof(std::uint32_t)), GL_R32UI};
-  made.heads_.buffer.fill(chain_end);  // later each search leaves them empty
+  made.heads_.buffer.fill(chain_end);  // later each search empties them at its end
   made.chains_ = {gl::Buffer(vertex_count * sizeof(std::uint32_t)), GL_R32UI};
   made.counts_ = {gl::Buffer(vertex_count * sizeof(std::uint32_t)), GL_R32UI};
   made.lists_ = {gl::Buffer(std::size_t{vertex_count} * slots * 2 * sizeof(std::uint32_t)), GL_RG32UI};
@@ -74,8 +74,8 @@ Result<SelfCollision> SelfCollision::create(const model::Model& model, std::uint
 }
 
 Status SelfCollision::set_parameters(const scene::SelfCollision& parameters, const model::Model& model) {
-  // The skin trades rebuilds against list length: one edge of the mesh keeps a flat cloth's lists empty while
-  // its contact distance is below an edge, since everything that near has an element in common.
+  // A thicker skin makes rebuilds rarer but lists longer. With a skin of one mesh edge, and a thickness below
+  // one edge, the lists of a flat cloth are empty: vertices that near to each other share an element.
   double edge = 0.0;
   for (const model::ClothRange& cloth : model.cloths) edge = std::max(edge, cloth.mean_edge_length);
   const double skin = std::max(edge, 0.5 * parameters.thickness), reach = parameters.thickness + skin;
@@ -109,7 +109,7 @@ void SelfCollision::invalidate() {
   const Control control{{vertex_groups(vertex_count_), 1, 1}, {}, {range_groups_, 0, 1}, {0, 1, 1}};
   control_.upload(&control.rebuild, sizeof control.rebuild, offsetof(Control, rebuild));
   control_.upload(&control.search, sizeof control.search + sizeof control.finish, offsetof(Control, search));
-  heads_.buffer.fill(chain_end);  // a search that was given up has left vertices in it
+  heads_.buffer.fill(chain_end);  // a search that was given up has left vertices in the cells
   updates_ = 0;
 }
 
@@ -146,7 +146,8 @@ Work SelfCollision::update_lists() {
   }
   finish_.use();
   dispatch(offsetof(Control, finish));
-  // Software OpenGL is done when the call returns: a cloth that has crumpled since its start is told by that.
+  // With software OpenGL a dispatch has ended when the call returns. One that takes long shows that the cloth
+  // has crumpled since its start, and each range must become smaller.
   if (longest > long_dispatch && range_groups_ > 1) {
     limit_range(range_groups_ / 2);
     control_.upload(&range_groups_, sizeof range_groups_, offsetof(Control, search));
@@ -155,7 +156,8 @@ Work SelfCollision::update_lists() {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
-/// What the lists were like at the look before; lists that somebody has just asked for at once.
+/// Reads back the counters that the look before had copied, and queues a copy for the next look. The first
+/// look after `invalidate` reads its own copy at once.
 void SelfCollision::look() {
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   const auto take = [&] {

@@ -1,6 +1,7 @@
-// Keeps the neighbour lists that self-collision reads: a few dispatches that run only in the steps in which a
-// vertex has moved half the skin, which the GPU finds out by itself (indirect dispatch), so nothing waits and
-// nothing is guessed. The search is dispatched in ranges of vertices, short enough to stop between.
+// Keeps the neighbour lists that self-collision reads. A few dispatches rebuild them, only in a step in which
+// a vertex has moved half the skin since the last rebuild. The GPU itself finds that out (indirect dispatch),
+// so the host neither waits nor guesses. The search is dispatched in ranges of vertices, each short enough
+// that a step can stop between two of them.
 #pragma once
 
 #include "server/base/result.h"
@@ -12,50 +13,52 @@
 
 namespace clothlab::sim {
 
-/// Of a vertex's neighbour list, to begin with: NEIGHBOUR_SLOTS in shaders/collide/neighbours.glsl.
+/// Length of each neighbour list at the start of a run: NEIGHBOUR_SLOTS in shaders/collide/neighbours.glsl.
 inline constexpr std::uint32_t neighbour_slots = 64;
 
 class SelfCollision {
  public:
   static Result<SelfCollision> create(const model::Model& model, std::uint32_t slots = neighbour_slots);
 
-  /// The distances for this scene; the lists are rebuilt before the next step. Error: far too many vertices
-  /// start within reach of each other for a search to end in bearable time.
+  /// Sets the distances for a scene; the lists are rebuilt before the next step. Error: so many vertices
+  /// start within reach of each other that a search would take too long.
   Status set_parameters(const scene::SelfCollision& parameters, const model::Model& model);
 
-  /// Other vertices that the search looks at for one vertex, in the mean over a sample of the start.
+  /// Number of other vertices that the search looks at for one vertex: the mean over a sample of the
+  /// vertices, at their start positions.
   double candidates() const { return candidates_; }
 
-  /// Rebuilds the lists if a vertex has moved too far since. Needs position and rest
-  /// positions bound; leaves bound what the step kernel reads and writes of the lists. Looks now and then, by
-  /// the count of updates alone, whether the lists are long enough.
+  /// Rebuilds the lists if a vertex has moved too far since the last rebuild. Positions and rest positions
+  /// must be bound; leaves the buffers of the lists bound for the step kernels. Every few updates, at a fixed
+  /// count and not by time, reads back how long the lists need to be.
   Work update_lists();
-  /// Slots that lists as long as the last look found should have; as many as they have where those will do,
-  /// or where more would be too many. What has no room then is left out on both sides, and counted.
+  /// Number of slots that each list should have, by the length last read back: the present number if that is
+  /// enough, or if more would take too much memory or time. In that case a neighbour that finds no slot is
+  /// left out of the lists of both vertices, and counted in `dropped`.
   std::uint32_t slots_needed() const;
   std::uint32_t slots() const { return slots_; }
-  /// Goes on counting where another one, with fewer slots, was.
+  /// Takes over the counts of `other`, which this object replaces because it has more slots.
   void take_counters(const SelfCollision& other);
-  /// Rebuilds them before the next step whatever has moved.
+  /// Has the lists rebuilt before the next step, however far vertices have moved.
   void invalidate();
 
   float skin() const { return skin_; }
 
   struct Neighbour {
     std::uint32_t vertex = 0;
-    float distance = 0;  ///< that self-collision keeps [m]
+    float distance = 0;  ///< the distance that self-collision keeps from that vertex [m]
     bool operator==(const Neighbour&) const = default;
   };
-  /// Each vertex's list as it is now, nearest first. Waits for the GPU.
+  /// The present list of each vertex, nearest neighbour first. Waits for the GPU.
   std::vector<std::vector<Neighbour>> read_lists() const;
   float reach() const { return reach_; }
 
   struct Counters {
     std::uint32_t rebuilds = 0;  ///< how often the lists were built
-    std::uint32_t dropped = 0;   ///< neighbours beyond the slots of a list, over all rebuilds
-    std::uint32_t longest = 0;   ///< list there would have been, over all rebuilds; 0 up to half of the slots
+    std::uint32_t dropped = 0;   ///< neighbours that found no slot in a list, over all rebuilds
+    std::uint32_t longest = 0;   ///< longest list needed in any rebuild; 0: no list was over half full
   };
-  /// Where the GPU keeps the counters, to be copied along with other results.
+  /// The GPU's buffer with the Counters, at `counters_offset` [bytes], to be copied along with other results.
   const gl::Buffer& control() const { return control_; }
   static constexpr std::size_t counters_offset = 3 * sizeof(std::uint32_t);
 
@@ -66,8 +69,8 @@ class SelfCollision {
   std::uint32_t vertex_count_ = 0, slots_ = neighbour_slots;
   std::uint32_t range_groups_ = 1;  ///< work groups of one dispatch of the search
   double candidates_ = 0;
-  std::uint64_t updates_ = 0;  ///< since the lists were invalid
-  std::uint32_t longest_ = 0;  ///< as last seen
+  std::uint64_t updates_ = 0;  ///< calls of update_lists since `invalidate`
+  std::uint32_t longest_ = 0;  ///< Counters::longest as last read back
   float skin_ = 0;             ///< [m]
   float reach_ = 0;            ///< contact distance + skin: how far the lists look [m]
   gl::Program insert_, find_, finish_;

@@ -26,7 +26,7 @@ gl::TextureBuffer rest_positions(const model::Model& model) {
   return {gl::Buffer(words), GL_RGBA32F};
 }
 
-/// Whether the device can hold the scene's largest buffer: known before anything is made.
+/// Error: the device cannot hold the scene's largest buffer. To be checked before any buffer is made.
 Status fits_device(const scene::Scene& scene) {
   GLint texels = 0;
   glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
@@ -53,22 +53,22 @@ struct Simulation::Implementation {
   gl::TextureBuffer rest;
   StateBuffers state;
   DiagnosticsPass diagnostics;
-  std::uint64_t diagnosed_step = 0;  ///< of the diagnosis that came last
+  std::uint64_t diagnosed_step = 0;  ///< step_index of the diagnosis that arrived last
   LastGood last_good;
   std::uint32_t topology_revision = 0;
   std::uint64_t step_index = 0;
-  // Time is start_time + (step_index - start_step) dt: no sum that rounding could let drift. A change of dt
-  // starts anew.
+  // Time is start_time + (step_index - start_step) dt. A sum over the steps would drift by rounding. A change
+  // of dt sets start_time and start_step to the present.
   double start_time = 0.0;
   std::uint64_t start_step = 0;
   std::vector<double> batch_times;
-  std::uint32_t wanted = 0;  ///< steps to do
+  std::uint32_t wanted = 0;  ///< number of steps to do
   bool in_step = false;
   gl::StageTimer* next_timer = nullptr;
-  gl::Bindings bound;  ///< where `work` has stopped
-  Work work;           ///< a batch of steps under way; the last member: it refers to the others
+  gl::Bindings bound;  ///< what `work` had bound in GL when it stopped
+  Work work;           ///< the batch of steps under way; must be the last member, as it refers to the others
 
-  /// Of a step, or of a point `share` of a step after it.
+  /// The time [s] at the start of step number `step`, or `share` of a step later.
   double time_of(std::uint64_t step, double share = 0.0) const {
     return start_time + (static_cast<double>(step - start_step) + share) * scene.solver.dt;
   }
@@ -107,7 +107,7 @@ struct Simulation::Implementation {
     passed("strain_limit");
   }
 
-  /// Ends after `count` steps, or as soon as no more are wanted.
+  /// Does up to `count` steps; ends earlier if no more steps are wanted.
   Work run_batch(std::uint32_t count) {
     gl::StageTimer* timer = std::exchange(next_timer, nullptr);
     bind_constants();
@@ -138,7 +138,7 @@ struct Simulation::Implementation {
     }
   }
 
-  /// Nothing is under way any more, and nothing is wanted.
+  /// Gives up the batch under way, with any step that it has begun, and wants no more steps.
   void give_up_work() {
     wanted = 0;
     work = Work();
@@ -147,26 +147,28 @@ struct Simulation::Implementation {
     forget();
   }
 
-  /// What the passes carry over from step to step is not of this state.
+  /// Makes all passes forget what they carry over from step to step, which belongs to another state.
   void forget() {
     if (kernels.self_collision) kernels.self_collision->invalidate();
     kernels.integrator->restart();
     if (kernels.strain_limit) kernels.strain_limit->restart();
   }
 
-  /// The state was put there, by no step: nothing carried over from steps holds.
+  /// To be called when the state was set from outside and not made by a step: passes forget what they carry
+  /// over, and time and step number are set.
   void state_replaced(double time, std::uint64_t step) {
     forget();
     start_time = time;
     step_index = start_step = step;
   }
 
+  /// Makes the present state the good state.
   void keep_start() {
     last_good.put_aside(state, time_of(step_index), step_index);
     last_good.keep(step_index);
   }
 
-  /// Takes over what changed, the state kept.
+  /// Takes over a changed scene; positions, velocities and time stay as they are.
   void adopt(const scene::Scene& next) {
     if (next.solver.dt != scene.solver.dt) {
       start_time = time_of(step_index);
@@ -248,7 +250,7 @@ void Simulation::resume(Pace& pace) {
 void Simulation::reset() {
   Implementation& self = *implementation_;
   self.give_up_work();
-  // As in the beginning, so that the same steps follow.
+  // Kernels whose neighbour lists have grown are made anew: then the same steps follow as at the start.
   if (self.kernels.plan != sim::plan(self.scene))
     if (Result<Kernels> kernels = Kernels::create(self.scene)) self.kernels = std::move(*kernels);
   self.state.reset(self.kernels.model, self.kernels.motions);
@@ -264,7 +266,7 @@ void Simulation::go_back() {
   Implementation& self = *implementation_;
   self.give_up_work();
   const LastGood::When when = self.last_good.restore(self.state);
-  self.state.rewrite_constants(self.kernels.model, self.kernels.motions);  // they may have changed since
+  self.state.rewrite_constants(self.kernels.model, self.kernels.motions);  // masses and pins may have changed
   self.state_replaced(when.time, when.step);
 }
 
@@ -320,7 +322,7 @@ bool Simulation::poll_diagnostics(Diagnostics& out) {
 Diagnostics Simulation::diagnose() {
   Diagnostics result;
   while (implementation_->diagnostics.poll(result, true)) {
-  }  // older ones on their way
+  }  // take older results that are still on their way
   request_diagnostics();
   implementation_->diagnostics.poll(result, true);
   implementation_->diagnosed_step = result.step;

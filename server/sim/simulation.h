@@ -1,4 +1,4 @@
-// A scene being stepped on the GPU. One thread owns a Simulation, its GL context current there.
+// Steps a scene on the GPU. One thread owns a Simulation and has its GL context current.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +16,12 @@
 
 namespace clothlab::sim {
 
-/// How deep a change of scene cuts. Only `cloth` resets time and positions.
+/// How much of a simulation a change of scene replaces: nothing, only numbers, also the kernels, or all.
+/// Only `cloth` resets time and positions.
 enum class ChangeDepth { none, uniform, kernel, cloth };
 const char* name(ChangeDepth depth);  ///< "none", "uniform", "kernel", "cloth"
 
-/// How deep the change from one scene to another cuts; a pure comparison of documents.
+/// How much of a simulation the change from one scene to another replaces; only compares the two scenes.
 ChangeDepth change_depth(const scene::Scene& from, const scene::Scene& to);
 
 /// Sums over the whole state, made by a reduction on the GPU.
@@ -34,12 +35,12 @@ struct Diagnostics {
   double max_speed = 0;        ///< [m/s]
   std::uint32_t contacts = 0;  ///< vertices touching a collider or another vertex
   bool finite = true;          ///< no NaN or infinity anywhere
-  double pin_force = 0;        ///< sum of the springs' pulls at each moving pinned vertex [N]
-  double contact_force = 0;    ///< the same, with the weight, of free vertices that touch something [N]
-  double contact_mass = 0;     ///< of these [kg]
-  std::uint32_t neighbour_rebuilds = 0;  ///< of the neighbour lists, since the kernels were made
+  double pin_force = 0;        ///< springs' pull on a pinned vertex [N], summed over all that move
+  double contact_force = 0;    ///< springs' pull + weight of a free vertex [N], summed over all in contact
+  double contact_mass = 0;     ///< mass of the free vertices in contact [kg]
+  std::uint32_t neighbour_rebuilds = 0;  ///< rebuilds of the neighbour lists since the kernels were made
   std::uint32_t neighbours_dropped =
-      0;  ///< that found no room in a list: self_collision is too thick for the mesh
+      0;  ///< neighbours that found no room in a list: self_collision is too thick for the mesh
 };
 
 /// The state as floats, read back from the GPU.
@@ -51,14 +52,14 @@ struct State {
 /// FNV-1a, 64 bits, over the bytes of positions and velocities (little-endian float32).
 std::uint64_t state_hash(const State& state);
 
-/// What a method that solves equations has done.
+/// Counts of the work of a method that solves equations.
 struct SolverWork {
-  std::uint64_t linear_iterations = 0;  ///< of conjugate gradients
+  std::uint64_t linear_iterations = 0;  ///< iterations of conjugate gradients
   std::uint64_t newton_steps = 0;
   std::uint64_t unconverged = 0;  ///< linear solves that ended before the tolerance was met
 };
 
-/// What the strain limit has done.
+/// Counts of the work of the strain limit.
 struct StrainLimitWork {
   std::uint64_t sweeps = 0;
   std::uint64_t unconverged = 0;  ///< steps that ended with a spring longer than it may be
@@ -70,42 +71,46 @@ class Simulation {
                                                     std::uint32_t topology_revision = 1);
   ~Simulation();
 
-  /// Applies a changed scene live; on error the old one goes on.
+  /// Applies a changed scene to the running simulation. On error the simulation continues with the old scene.
   Result<ChangeDepth> change(const scene::Scene& scene);
 
-  /// Queues `count` fixed steps of dt on the GPU; returns without waiting for them. `timer` times the passes
-  /// of the first: neighbour_search, the method with all that its dispatches do (forces, contacts, pins), and
-  /// strain_limit.
+  /// Queues `count` steps of length dt on the GPU; returns without waiting for them. `timer` times the passes
+  /// of the first step: neighbour_search, the method with all that its dispatches do (forces, contacts,
+  /// pins), and strain_limit.
   void step(std::uint32_t count, gl::StageTimer* timer = nullptr);
 
-  // The same in pieces, for who has other things to do while a step takes long. Between two pieces all other
-  // calls are allowed, and see the state of the last step that has ended; those that change the state, or how
-  // it is stepped, give up the step that is under way.
-  /// So many steps are to be done, the one under way counted: 0 leaves it where it is. `timer` lives on.
+  // `step` in pieces, for a caller that has other things to do while a step takes long: call `want`, then
+  // `resume` for each piece. Between two pieces all other functions may be called and see the state at the
+  // end of the last complete step. Functions that change the state, or how it is stepped, give up the step
+  // under way.
+  /// Sets the number of steps to do, the step under way included; 0 leaves that step where it is. `timer`, as
+  /// in `step`, must outlive these steps.
   void want(std::uint32_t count, gl::StageTimer* timer = nullptr);
   std::uint32_t wanted() const;
-  /// Queues what is wanted until `pace` has enough.
+  /// Queues the wanted steps until they are done or `pace` has enough.
   void resume(Pace& pace);
 
-  /// Back to the start positions, at rest, at time 0.
+  /// Puts all vertices back to their start positions, at rest, at time 0.
   void reset();
 
-  double time() const;  ///< [s], exact sum of the steps' dt
+  double time() const;  ///< [s], sum of the steps' dt without accumulated rounding
   std::uint64_t step_index() const;
   const scene::Scene& scene() const;
   const model::Model& model() const;
 
-  /// Changes whenever triangles, vertex count or texture coordinates do.
+  /// A number that changes whenever the triangles, the vertex count or the texture coordinates change.
   std::uint32_t topology_revision() const;
 
-  /// What the present method's equation solver has done since the kernels were made.
+  /// The work of the present method's equation solver since the kernels were made.
   SolverWork solver_work() const;
-  /// What the strain limit has done since the kernels were made.
+  /// The work of the strain limit since the kernels were made.
   StrainLimitWork strain_limit_work() const;
-  /// Dispatches that the present method has queued since the kernels were made, without self-collision's.
+  /// Number of dispatches that the present method has queued since the kernels were made, without those of
+  /// the neighbour search and the strain limit.
   std::uint64_t dispatches() const;
 
-  /// Others that self-collision's search holds each vertex against, in the mean at the start; 0 without.
+  /// Mean number of other vertices that self-collision's search looks at for each vertex, at the start; 0 if
+  /// the scene has no self-collision.
   double search_candidates() const;
 
   /// A pass, which is dispatched, or a term, which is compiled into the kernels of a pass.
@@ -113,26 +118,29 @@ class Simulation {
     enum class Kind { pass, term };
     Kind kind;
     std::string name;
-    std::string skipped;  ///< empty: a step runs it; else why not
+    std::string skipped;  ///< why a step does not run this part; empty if a step runs it
   };
-  /// What a step can be made of: the passes in the order in which they run, then the terms.
+  /// All parts that a step can have: the passes in the order in which they run, then the terms.
   std::vector<Part> parts() const;
 
-  /// Diagnostics without stalling: request, then poll until a value comes back (usually a frame later).
+  /// Diagnostics without waiting for the GPU: call `request_diagnostics`, then `poll_diagnostics` until it
+  /// returns true with a result in `out` (usually a frame later).
   void request_diagnostics();
   bool poll_diagnostics(Diagnostics& out);
   /// Diagnostics of the present state, waiting for the GPU.
   Diagnostics diagnose();
 
-  /// The state of the diagnosis that came last is sound: one to go back to.
+  /// Keeps the state of the diagnosis that arrived last as the good state, for `go_back`.
   void keep_diagnosed();
-  /// Back to the last state that was kept, or to the start if none was since.
+  /// Goes back to the last good state. Until one is kept, that is the state at the start, or after the last
+  /// `reset` or `restore`.
   void go_back();
 
-  /// Positions and velocities, waiting for the GPU.
+  /// Reads positions and velocities back, waiting for the GPU.
   State read_state();
-  /// The inverse: goes on from there. `state` has the model's vertex count. What a method remembers between
-  /// steps is not in it and starts anew, so that the next step is not bit for bit what it would have been.
+  /// The inverse of `read_state`: continues from `state`, at `time` [s] and step number `step`. `state` must
+  /// have the model's vertex count. It does not hold what a method remembers between steps: that starts anew,
+  /// so the next step is not bit for bit the one that would have followed.
   void restore(const State& state, double time, std::uint64_t step);
 
   /// Waits until the GPU has finished every queued step.
@@ -140,7 +148,7 @@ class Simulation {
 
   /// Binds the positions for reading as READ_VEC4(name, unit).
   void bind_positions(unsigned unit) const;
-  /// Colliders' poses at the present time, for drawing: center of each sphere, point of each plane [m].
+  /// The colliders with their shapes moved to where they are at the present time, for drawing.
   std::vector<scene::Collider> colliders_now() const;
 
  private:

@@ -16,7 +16,7 @@ std::size_t bytes(const model::Model& model) {
   return model.vertex_count() * sizeof(glm::vec4);
 }
 
-/// The fourth components: constants of the vertex that travel with its state.
+/// Sets the fourth components (see state.h) from the model. A vertex that stays free keeps its contact count.
 void set_constants(Arrays& arrays, const model::Model& model, const MotionTable& motions) {
   for (std::uint32_t i = 0; i < model.vertex_count(); ++i) {
     const std::int32_t pin = model.pin_motion[i];

@@ -13,41 +13,42 @@ class MotionTable;
 class StateBuffers {
  public:
   StateBuffers() = default;
-  /// At rest: the model's start positions, no velocity.
+  /// The state at the start: the model's start positions, no velocity.
   StateBuffers(const model::Model& model, const MotionTable& motions);
 
-  /// The copy that a pass reads; after `swap` the other one.
+  /// The present copy, which a pass reads. `swap` makes the other copy the present one.
   const gl::TextureBuffer& position() const { return position_[current_]; }
   const gl::TextureBuffer& velocity() const { return velocity_[current_]; }
-  /// Where the last step began, until the next one.
+  /// The positions at the start of the last step, until the next step writes over them.
   const gl::TextureBuffer& previous_position() const { return position_[1 - current_]; }
   void bind_for_step() const;  ///< the present copy for reading, the other for writing
   void bind_outputs() const;   ///< the other copy for writing
   void swap() { current_ = 1 - current_; }
 
-  /// The step has ended: the present copy is what others than its passes see from now on.
+  /// To be called when a step has ended: everything outside of the step's passes now sees the present copy.
   void show() { shown_ = current_; }
-  /// What they see; while a step is under way, where it began.
+  /// The state that is seen outside of a step's passes. While a step is under way: the state at its start.
   const gl::TextureBuffer& shown_position() const { return position_[shown_]; }
   const gl::TextureBuffer& shown_velocity() const { return velocity_[shown_]; }
-  /// A step that has begun is not wanted: back to where it began, which it has not written over yet.
+  /// Gives up the step under way: goes back to the state at its start, which it has not written over yet.
   void give_up_step() { current_ = shown_; }
 
-  // What follows is for when no step is under way, but for `save` and `read`: they take what is shown.
-  /// Back to the start.
+  // The functions below may be called only while no step is under way, except `save` and `read`, which use
+  // the shown state.
+  /// Writes the state at the start: the model's start positions, no velocity.
   void reset(const model::Model& model, const MotionTable& motions);
   /// Writes changed masses and pins into the state, which otherwise stays as it is. Waits for the GPU.
   void rewrite_constants(const model::Model& model, const MotionTable& motions);
-  /// Copies the present state to, or from, buffers of the same size, on the GPU.
+  /// `save` copies the shown state to buffers of the same size, `load` copies it back. Both on the GPU.
   void save(gl::Buffer& position, gl::Buffer& velocity) const;
   void load(const gl::Buffer& position, const gl::Buffer& velocity);
   State read() const;
-  /// The inverse; masses and pins are the model's.
+  /// The inverse of `read`. Masses and pins are taken from the model.
   void write(const State& state, const model::Model& model, const MotionTable& motions);
 
  private:
   gl::TextureBuffer position_[2];  ///< xyz [m], w inverse mass [1/kg], 0 if pinned
-  gl::TextureBuffer velocity_[2];  ///< xyz [m/s], w contacts, or of a pinned vertex its motion's index or -1
+  gl::TextureBuffer velocity_[2];  ///< xyz [m/s], w number of contacts; if pinned: index of its motion, or -1
   int current_ = 0, shown_ = 0;
 };
 

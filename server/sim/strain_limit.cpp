@@ -11,15 +11,17 @@ namespace {
 constexpr int most_sweeps = 512;
 constexpr int sweeps_between_looks = 8;
 
-/// As in shaders/strain_limit/sweep.comp.
+/// The buffer Control in shaders/strain_limit/sweep.comp.
 struct Control {
   std::uint32_t groups = 0, groups_y = 1, groups_z = 1;
   std::uint32_t sweeps = 0;
 };
 
-/// Jacobi's iteration converges below 2 over the largest eigenvalue of the springs' coupling, which is at
-/// most that of sum n n^T over the springs of any one vertex, whatever the masses: (a - b)^2 / (v + w) <= a^2
-/// / v + b^2 / w. The largest row sum bounds that in turn. A margin is left for springs that turn.
+/// The relaxation factor of the sweeps. Jacobi's iteration converges with a factor below 2 / e, where e is
+/// the largest eigenvalue of the springs' coupling. Whatever the masses, e is at most the largest eigenvalue
+/// of sum n n^T over the springs of any one vertex (n: a spring's direction), since
+/// (a - b)^2 / (v + w) <= a^2 / v + b^2 / w. The largest row sum, used here, is a bound of that eigenvalue.
+/// 1.6 instead of 2 leaves a margin for springs that turn.
 float relaxation(const model::Model& model) {
   std::vector<glm::dmat3> coupling(model.vertex_count(), glm::dmat3(0.0));
   for (const model::Spring& spring : model.springs()) {
@@ -73,7 +75,7 @@ void StrainLimit::set_parameters(const Surroundings& around) {
     limits.push_back(static_cast<float>(cloth.material.strain_limit.value_or(-1.0)));
   glProgramUniform1fv(sweep_.id(), sweep_.location("limit"), static_cast<GLsizei>(limits.size()),
                       limits.data());
-  // A pull is a force times dt^2.
+  // The pulls carried over are forces times dt^2.
   if (around.scene.solver.dt != dt_) restart();
   dt_ = around.scene.solver.dt;
 }
@@ -117,7 +119,7 @@ Work StrainLimit::apply(StateBuffers& state) {
   glDispatchCompute(groups_, 1, 1);
   wait_for_writes();
   state.swap();
-  // Limits that cannot be met pull without bound: what that has come to must not begin the next step.
+  // If the limits cannot be met, the pulls grow without bound: the next step must not begin with them.
   if (control.groups > 0) restart();
 }
 

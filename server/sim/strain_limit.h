@@ -1,5 +1,5 @@
-// Provot's strain limit after a step of any method: shaders/strain_limit/. The sweeps end by
-// the GPU's own decision; the host only asks, now and then, whether they have.
+// Provot's strain limit after a step of any method: shaders/strain_limit/. The GPU itself decides when the
+// sweeps end; the host only asks, every few sweeps, if they have ended.
 #pragma once
 
 #include <array>
@@ -11,23 +11,23 @@ namespace clothlab::sim {
 
 class StrainLimit {
  public:
-  /// `entries`: slots of the element lists.
+  /// `entries`: number of entries in the element lists, padding included.
   static Result<StrainLimit> create(const Surroundings& around, const Plan& plan, std::size_t entries);
 
   void set_parameters(const Surroundings& around);
 
-  /// Shortens what is too long in the state that a step has just made. Springs, slices and rest positions
-  /// must be bound; it may stop between sweeps.
+  /// Shortens the springs that are too long in the state that a step has just made. The element lists, their
+  /// slices and rest positions must be bound. The work may stop between two sweeps.
   Work apply(StateBuffers& state);
 
-  /// The state was not made by the last step: forget what the limits pulled in it.
+  /// Forgets the pulls of the last step. To be called if the present state was not made by that step.
   void restart() { pulls_.fill(0); }
 
   StrainLimitWork work() const { return work_; }
 
  private:
   gl::Program start_, sweep_, end_;
-  std::array<gl::TextureBuffer, 2> position_, group_excess_;  ///< a sweep reads one, writes the other
+  std::array<gl::TextureBuffer, 2> position_, group_excess_;  ///< a sweep reads one and writes the other
   gl::Buffer pulls_, given_, control_;
   double dt_ = 0;  ///< [s]
   GLuint groups_ = 0;

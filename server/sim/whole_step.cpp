@@ -1,4 +1,4 @@
-// Methods that need one evaluation of the forces a step, and so one dispatch:
+// Methods that evaluate the forces once per step, and so need one dispatch per step:
 // shaders/methods/whole_step.glsl.
 #include <array>
 #include <string>
@@ -36,7 +36,7 @@ class WholeStep : public Integrator {
     return {};
   }
 
-  /// Nothing carried: the velocity is the velocity now.
+  /// For verlet: clears what was carried over, so that the state's velocity counts as the present velocity.
   void restart() override {
     if (carries()) carried_[current_].buffer.fill(0);
   }
@@ -45,7 +45,7 @@ class WholeStep : public Integrator {
   gl::Program program_;
   bool carries() const { return carried_[0].buffer.bytes() > 0; }
   std::array<gl::TextureBuffer, 2>
-      carried_;  ///< verlet's; none otherwise. A step reads one, writes the other
+      carried_;  ///< for verlet only, else empty; a step reads one and writes the other
   std::size_t current_ = 0;
   GLuint groups_;
 };

@@ -7,7 +7,7 @@ namespace clothlab::sim {
 
 namespace {
 
-/// What a thread has freed of late. A step has no more than a few frames at a time.
+/// Coroutine frames that a thread has freed, kept to be used again. A step has only a few frames at a time.
 class Frames {
  public:
   ~Frames() {

@@ -1,5 +1,5 @@
-// Work for the GPU that is queued a piece at a time: a coroutine that may stop between its dispatches and
-// goes on later, so that whoever steps a heavy scene can do something else in between.
+// Work for the GPU that is queued a piece at a time: a coroutine that may stop between its dispatches and is
+// resumed later, so that a thread that steps a heavy scene can do other things in between.
 #pragma once
 
 #include <chrono>
@@ -12,19 +12,20 @@
 
 namespace clothlab::sim {
 
-/// How much is queued before a Work stops. Without limits it goes on to its end.
+/// Limits how much a Work queues before it stops: until a time, and up to a number of places (`may_stop`).
+/// Without limits a Work runs to its end.
 struct Pace {
   using Clock = std::chrono::steady_clock;
 
   Clock::time_point until = Clock::time_point::max();
-  std::uint32_t most = std::numeric_limits<std::uint32_t>::max();  ///< places at which it may stop
-  std::uint32_t passed = 0;                                        ///< of those
+  std::uint32_t most = std::numeric_limits<std::uint32_t>::max();  ///< largest number of places
+  std::uint32_t passed = 0;                                        ///< places reached so far
 
   bool enough() { return ++passed >= most || (until != Clock::time_point::max() && Clock::now() >= until); }
 };
 
-/// `co_await may_stop` in a Work: it stops here if its pace has enough. What is bound in GL may be something
-/// else afterwards, unless whoever resumes it puts that back (gl::Bindings).
+/// `co_await may_stop` in a Work marks a place at which the Work stops if its pace has enough. Afterwards the
+/// GL bindings may have changed, unless the caller of `resume` restores them (gl::Bindings).
 struct MayStop {};
 inline constexpr MayStop may_stop;
 
@@ -33,7 +34,7 @@ class [[nodiscard]] Work {
   struct promise_type;
   using Handle = std::coroutine_handle<promise_type>;
 
-  /// Nothing to do.
+  /// An empty Work, which is done.
   Work() = default;
   Work(Work&& other) noexcept : handle_(std::exchange(other.handle_, nullptr)) {}
   Work& operator=(Work&& other) noexcept {
@@ -45,7 +46,7 @@ class [[nodiscard]] Work {
   }
 
   bool done() const { return !handle_ || handle_.done(); }
-  /// Goes on until `pace` has enough, or to the end. Throws what the work throws.
+  /// Continues until `pace` has enough or the work has ended. Throws what the work throws.
   void resume(Pace& pace);
 
  private:
@@ -54,20 +55,21 @@ class [[nodiscard]] Work {
   Handle handle_ = nullptr;
 };
 
-/// Work that waits for other work hands over to it; `resume` of the outermost runs whichever is innermost.
+/// A Work can await another Work, which can await a third. All of them share the Chain of the outermost Work,
+/// and `resume` of the outermost Work runs the innermost one.
 struct Work::promise_type {
   struct Chain {
     Handle innermost = nullptr;
     Pace* pace = nullptr;
     bool stopped = false;
   };
-  /// Frames come and go with each step: those that are freed are kept for the next.
+  /// Each step allocates and frees coroutine frames, so freed frames are kept and used again.
   static void* operator new(std::size_t bytes);
   static void operator delete(void* frame, std::size_t bytes);
 
   Chain own_chain;
   Chain* chain = &own_chain;
-  Handle waiting;  ///< for this one to end
+  Handle waiting;  ///< the Work that waits for this one to end; null for the outermost
   std::exception_ptr failure;
 
   Work get_return_object() {

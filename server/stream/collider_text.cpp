@@ -22,7 +22,7 @@ bool moves(const scene::Motion& motion) {
 
 std::string collider_text(const sim::Simulation& simulation) {
   const std::vector<scene::Collider>& home = simulation.scene().colliders;
-  // Most scenes' frames are to cost no allocation.
+  // In most scenes no collider moves: this function then allocates nothing.
   if (std::none_of(home.begin(), home.end(), [](const scene::Collider& each) { return moves(each.motion); }))
     return {};
   json moving = json::array();

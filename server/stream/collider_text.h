@@ -1,5 +1,5 @@
-// The notification `colliders`: where those that move are at the time of a frame. No client repeats a law of
-// motion.
+// The notification `colliders`: the places of the moving colliders at the time of a frame, so that clients
+// need not compute the motions.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace clothlab::stream {
 
-/// Empty where none moves.
+/// The notification as JSON text; empty if no collider moves.
 std::string collider_text(const sim::Simulation& simulation);
 
 }  // namespace clothlab::stream

@@ -1,5 +1,5 @@
-// The encodings of a frame's vertices: all that sets them apart on this side of the wire. The page's decoders
-// are in web/src, the layouts in server/net/README.md, the packing in shaders/stream/pack.comp.
+// The encodings of a frame's vertices, and all that the server's C++ knows of each. The page's decoders are
+// in web/src, the layouts in server/net/README.md, the packing in shaders/stream/pack.comp.
 #pragma once
 
 #include <array>
@@ -16,10 +16,10 @@ struct EncodingFacts {
   Encoding encoding;
   const char* name;  ///< as stream.subscribe spells it
   std::size_t bytes_per_vertex;
-  const char* define;  ///< what pack.comp is compiled with
+  const char* define;  ///< the define that pack.comp is compiled with
 };
 
-/// In the order of `Encoding`, whose numbers are on the wire.
+/// In the order of `Encoding`, whose numbers are sent in each header.
 inline constexpr std::array encodings{
     EncodingFacts{Encoding::f32, "f32", 24, "ENCODING_F32"},
     EncodingFacts{Encoding::q16, "q16", 8, "ENCODING_Q16"},

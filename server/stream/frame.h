@@ -1,5 +1,5 @@
-// What goes over the wire: the 64-byte header of server/net/README.md and a payload, encoded once for all
-// viewers.
+// The binary messages to viewers: the 64-byte header of server/net/README.md and a payload, encoded once for
+// all viewers.
 #pragma once
 
 #include <cstddef>
@@ -31,17 +31,17 @@ struct Header {
   std::uint32_t payload_bytes = 0;
 };
 
-/// Room libwebsockets wants in front of a message (LWS_PRE, checked where net/ includes lws).
+/// Spare bytes in front of a message, as libwebsockets requires (LWS_PRE; server/net/outbox.cpp checks that).
 inline constexpr std::size_t front_room = 64;
 
 /// An encoded message: front_room spare bytes, header, payload. Immutable once shared.
 struct Message {
   Header header;
   std::vector<std::uint8_t> bytes;
-  /// Text that goes before it, with front_room spare bytes in front: where its colliders are. Empty: as the
-  /// scene says.
+  /// The notification `colliders` that is sent before the frame, after front_room spare bytes. Empty: no
+  /// collider moves.
   std::vector<std::uint8_t> colliders;
-  std::int64_t made_at_us = 0;  ///< steady clock when its packing was asked for, its steps queued before [us]
+  std::int64_t made_at_us = 0;  ///< steady clock when its packing was requested, after its steps [us]
   const std::uint8_t* data() const { return bytes.data() + front_room; }
   std::size_t size() const { return bytes.size() - front_room; }
 };

@@ -15,7 +15,7 @@ namespace clothlab::stream {
 namespace {
 
 constexpr int group_size = 128;
-constexpr int ring_slots = 3;  ///< frames on their way back at once
+constexpr int ring_slots = 3;  ///< most frames on their way back at once
 constexpr std::size_t box_bytes = 32;
 
 std::int64_t now_us() {
@@ -34,12 +34,12 @@ struct Packer::Implementation {
   gl::Buffer box;
   gl::ReadbackRing ring;
   std::array<std::int64_t, ring_slots> requested_at_us{};
-  std::array<Header, ring_slots> headers;  ///< of the frames in the ring, by sequence number
+  std::array<Header, ring_slots> headers;  ///< of the frames in the ring, at (sequence - 1) % ring_slots
   std::array<std::vector<std::uint8_t>, ring_slots> colliders;
   std::uint32_t requested = 0, delivered = 0;
   std::uint32_t topology_revision = 0, vertex_count = 0;
 
-  /// Makes what depends on the mesh; frames of the old mesh still on their way are dropped.
+  /// Makes the buffers that depend on the mesh; frames of the old mesh that are on their way are dropped.
   void adopt(const model::Model& model, std::uint32_t revision) {
     topology_revision = revision;
     vertex_count = model.vertex_count();

@@ -1,5 +1,5 @@
-// Turns the present state into frames on the GPU: bounds, normals, quantisation, readback, without stalling
-// the steps.
+// Packs a simulation's present state into frames on the GPU: bounds, normals, quantisation, readback, without
+// stalling the steps.
 #pragma once
 
 #include <cstdint>
@@ -14,17 +14,17 @@ namespace clothlab::stream {
 
 class Packer {
  public:
-  /// Its frames are numbered from after `last`.
+  /// The first frame gets the sequence number `last` + 1.
   static Result<std::unique_ptr<Packer>> create(std::uint32_t last = 0);
   ~Packer();
 
-  /// Queues the packing of the present state after the steps queued so far; `colliders` goes with it. False
-  /// if the readback ring is full (the newest frames are still in flight): try again after the next poll.
+  /// Queues the packing of the present state after the steps queued so far; `colliders` becomes the frame's
+  /// Message::colliders. False if the readback ring is full: try again after the next poll.
   bool request(const sim::Simulation& simulation, Encoding encoding, std::uint16_t flags,
                std::string_view colliders = {});
 
-  /// The oldest finished frame, or null if none has finished. Never waits. Sequence numbers rise by one a
-  /// frame.
+  /// The oldest finished frame, or null if none has finished. Never waits. Sequence numbers rise by one with
+  /// each frame.
   SharedMessage poll();
 
   /// Waits for the oldest requested frame; null if none was requested.

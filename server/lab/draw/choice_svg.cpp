@@ -1,4 +1,4 @@
-// The choice as a picture: what was tried, the tolerance, and which won.
+// The choice as a picture: the settings that were tried, the tolerance, and the chosen setting.
 #include "server/lab/draw/drawings.h"
 
 namespace clothlab::lab {

@@ -10,7 +10,7 @@
 namespace clothlab::lab {
 
 namespace {
-constexpr double line_height = 1.35;  // of the font's size
+constexpr double line_height = 1.35;  // a multiple of the font size
 
 }  // namespace
 
@@ -119,7 +119,7 @@ void draw_axes(Svg& svg, const Scale& x, const Scale& y, const std::string& x_la
                    {"stroke", "#888888"}});
   double below = y.from + 38;
   for (const std::string& line : wrapped(x_label, picture_width - 2 * margin, text_size, 2)) {
-    // In the middle of the axis where there is room for that, else moved into the picture.
+    // Centred below the axis, but moved where the text would otherwise leave the picture.
     const double half = text_width(line, text_size) / 2, middle = (x.from + x.to) / 2;
     const double at = std::max(margin + half, std::min(middle, picture_width - margin - half));
     svg.text(at, below, line, text_size, "middle", {{"class", "text label"}, {"fill", ink}});

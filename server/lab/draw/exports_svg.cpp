@@ -4,7 +4,7 @@
 namespace clothlab::lab {
 
 namespace {
-// Only where errors are drawn is there an axis to choose.
+// Only charts and choices draw errors, so only they use `axis`.
 std::string picture(const Chart& chart, Axis axis) {
   return draw(chart, axis);
 }

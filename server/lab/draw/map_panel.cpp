@@ -14,7 +14,7 @@ namespace {
 struct Colour {
   double at, red, green, blue;
 };
-/// By growth: what loses energy is blue, what keeps it pale, what grows orange to brown.
+/// Colours by growth (`at`): blue if energy is lost, pale if it is kept, orange to brown if it grows.
 constexpr std::array<Colour, 6> shades{{{-3, 33, 102, 172},
                                         {-1, 146, 197, 222},
                                         {0, 244, 244, 240},
@@ -30,7 +30,7 @@ std::string with_unit(double value, const std::string& unit) {
   return brief(value) + (unit.empty() ? "" : " " + unit);
 }
 
-/// Where the cells of one thing end: half way to its neighbours on the picture.
+/// The two edges of each cell along one axis, in the view box: half way to the neighbouring cells' middles.
 std::vector<std::pair<double, double>> bounds(const std::vector<double>& middles, double low, double high) {
   std::vector<std::pair<double, double>> all;
   for (std::size_t index = 0; index < middles.size(); ++index) {
@@ -161,7 +161,7 @@ class Panel {
                  small_size, "start", {{"class", "text over"}, {"fill", ink}});
   }
 
-  /// A bar between the longest step that held and the shortest that failed.
+  /// A bar between the longest step that held and the shortest that failed, and a mark if theory disagrees.
   void draw_boundary(std::size_t index, const std::pair<double, double>& sides) {
     const MapColumn& column = method_.columns[index];
     std::string title = std::string(scene::name(method_.method)) + ", " + with_unit(column.value, map_.unit);
@@ -253,7 +253,7 @@ PanelScales panel_scales(const StabilityMap& map, double width) {
     }
   PanelScales scales;
   if (least > 0) {
-    // Half a column of room on both sides.
+    // About half a column of room on both sides.
     const double room = std::pow(std::max(most / least, 1.1), 0.06);
     scales.x = {least / room, most * room, 0, width, true};
   } else {

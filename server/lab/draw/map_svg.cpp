@@ -1,5 +1,5 @@
-// The stability map as a picture: a panel a method, the number that is varied against dt, every trial a cell
-// shaded by what it did to the energy; theory's line and the measured boundary over it.
+// The stability map as a picture. Each method has a panel: the varied number runs to the right, dt upwards.
+// Every trial is a cell, shaded by the growth of energy, with theory's line and the measured boundary on top.
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double panels_left = 70, panel_gap = 22, panel_title = 22, ticks_below = 24;
 
-/// The limited methods first: there is something to see.
+/// The methods in drawing order: first those with a stability limit, as only they have a boundary to see.
 std::vector<const MethodMap*> ordered(const StabilityMap& map) {
   std::vector<const MethodMap*> methods;
   for (const MethodMap& method : map.methods) methods.push_back(&method);

@@ -11,7 +11,7 @@ namespace clothlab::lab {
 
 namespace {
 
-/// A place in the view box: a hundredth of a unit is less than a screen shows.
+/// A coordinate in the view box as text, rounded to 0.01, which is less than a screen shows.
 std::string place(double value) {
   std::string text = formatted("%.2f", value);
   text.erase(text.find_last_not_of('0') + 1);
@@ -19,7 +19,7 @@ std::string place(double value) {
   return text == "-0" ? "0" : text;
 }
 
-/// A power of ten as people write it.
+/// 10^exponent as people write it: "100", "0.1", "10⁻³".
 std::string power_of_ten(int exponent) {
   if (exponent >= 0 && exponent <= 4) return std::string("1").append(static_cast<std::size_t>(exponent), '0');
   if (exponent == -1) return "0.1";
@@ -144,7 +144,7 @@ std::string Svg::finish() {
 }
 
 double Scale::operator()(double value) const {
-  // Also where the value is no number: such a mark is better on the edge than nowhere.
+  // NaN is placed at `high`: a mark on the edge is better than no mark.
   const double within = std::isnan(value) ? high : std::clamp(value, low, high);
   const double share = log ? std::log(within / low) / std::log(high / low) : (within - low) / (high - low);
   return from + share * (to - from);

@@ -1,4 +1,4 @@
-// The words of a picture: numbers, entities, and how much room they take.
+// Text in a picture: numbers as text, escaping, and the width of words.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -11,7 +11,7 @@ namespace clothlab::lab {
 
 namespace {
 
-/// Share of the font's size that a character takes in DejaVu Sans, the widest of the usual ones.
+/// The approximate width of a character in DejaVu Sans, the widest of the usual fonts, over the font size.
 double advance(unsigned char character) {
   if (std::strchr("ijlI.,:;'|! ", character)) return 0.32;
   if (std::strchr("ftr()[]/-\"", character)) return 0.42;
@@ -20,11 +20,12 @@ double advance(unsigned char character) {
   return 0.63;
 }
 
+/// True for a byte of a UTF-8 character after its first.
 bool continues(unsigned char byte) {
   return (byte & 0xC0) == 0x80;
 }
 
-/// The longest beginning that fits with an ellipsis, cut between characters.
+/// The longest beginning of `text` that fits into `width` with an ellipsis. It ends with a whole character.
 std::string cut(std::string text, double width, double font_size) {
   while (!text.empty() && text_width(text + "…", font_size) > width) {
     while (!text.empty() && continues(static_cast<unsigned char>(text.back()))) text.pop_back();
@@ -42,7 +43,7 @@ std::string brief(double value, int digits) {
   const std::size_t exponent = text.find('e');
   if (exponent == std::string::npos) return text;
   const int power = std::atoi(text.c_str() + exponent + 1);
-  // 5.7e4 is shorter than 57000, but nobody reads milliseconds that way.
+  // 5.7e4 is shorter than 57000, but 57000 is easier to read, e.g. as milliseconds.
   if (power >= 0 && power < 6) return formatted("%.0f", std::atof(text.c_str()));
   return text.substr(0, exponent) + "e" + std::to_string(power);
 }
@@ -102,7 +103,7 @@ std::vector<std::string> wrapped(const std::string& text, double width, double f
     }
     at = end + 1;
   }
-  // A word of its own may be too long for any line.
+  // A single word may be too long for a line.
   if (!line.empty())
     lines.push_back(text_width(line, font_size) > width ? cut(line, width, font_size) : line);
   return lines;

@@ -10,7 +10,8 @@ namespace {
 
 constexpr double plot_left = 78, plot_height = 360, strip_gap = 6;
 
-/// What the setting would have cost: as much a step as where the method held.
+/// The cost of a setting that blew up [ms per simulated second], if its steps cost what they do at the
+/// nearest measured dt of the same method and iterations.
 std::optional<double> inferred_cost(const std::vector<Point>& points, const Setting& blown) {
   std::optional<double> cost;
   double nearest = std::numeric_limits<double>::infinity();
@@ -25,7 +26,7 @@ std::optional<double> inferred_cost(const std::vector<Point>& points, const Sett
   return cost;
 }
 
-/// The smallest and the largest of what must be within the axis.
+/// The smallest and the largest value that an axis must show.
 struct Extent {
   double least = std::numeric_limits<double>::infinity(), most = 0;
   void hold(double value) {
@@ -65,7 +66,7 @@ void set_scales(Layout& layout, double top) {
   for (const Cross& cross : layout.crosses)
     if (cross.cost) costs.hold(*cross.cost);
   const double least = errors.least;
-  // A line far below every point would squeeze them; it is then named at the edge.
+  // A line far below all points would squeeze them together. The axis leaves it out; its name is at the edge.
   for (const PointsPlot::Line& line : layout.plot->lines)
     if (errors.empty() || line.value > least / 30) errors.hold(std::min(line.value, 1.0));
   if (layout.places.empty()) errors = {1e-4, 1};
@@ -73,7 +74,7 @@ void set_scales(Layout& layout, double top) {
   const double bottom = top + plot_height;
   const double right = picture_width - margin - (layout.crosses.empty() ? 0 : strip_width + strip_gap);
   layout.x = log_scale(errors.least, errors.most, plot_left, right);
-  layout.x.high = std::min(layout.x.high, 1.0);  // an error of the whole size is as wrong as can be
+  layout.x.high = std::min(layout.x.high, 1.0);  // larger errors are all drawn on the right edge
   layout.y = log_scale(costs.least, costs.most, bottom, top);
   layout.strip_left = layout.crosses.empty() ? right : right + strip_gap;
   for (Place& place : layout.places) {

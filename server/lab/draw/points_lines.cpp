@@ -1,4 +1,4 @@
-// The lines of a plot of error against cost, and the names of its points: what has to find room.
+// The lines, rings and names in a plot of error against cost: all that must find room for words.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -10,16 +10,17 @@ namespace clothlab::lab {
 
 namespace {
 
-/// A line's name above the plot.
+/// The name of a vertical line, written above the plot.
 struct LineName {
   const PointsPlot::Line* line = nullptr;
   std::string words;
-  double x = 0, left = 0, right = 0;
-  bool inside = true;  ///< else the line itself is beyond the left edge
-  std::size_t row = 0;
+  double x = 0, left = 0, right = 0;  ///< x of the line; x of the name's two ends [view box]
+  bool inside = true;                 ///< false: the line is beyond the left edge, and only its name is drawn
+  std::size_t row = 0;                ///< 0 is the lowest
 };
 
-/// What it costs the reader that two names are where they are: words over words, or a line through words.
+/// The penalty for two names that collide: their words overlap, or the line of one crosses the other's words;
+/// 0: they do not collide.
 std::size_t collision(const LineName& a, const LineName& b) {
   constexpr double gap = 6;
   constexpr std::size_t words = 100, through = 30;
@@ -28,11 +29,11 @@ std::size_t collision(const LineName& a, const LineName& b) {
   return upper.inside && upper.x > lower.left - 2 && upper.x < lower.right + 2 ? through : 0;
 }
 
-/// A name stands over the middle of its line, or to one side of its end.
-constexpr std::array<double, 3> alignments{-0.5, -1.0, 0.0};  ///< of its width, from the line
+/// The left end of a name, from its line, in widths of the name: name centred, left or right of the line.
+constexpr std::array<double, 3> alignments{-0.5, -1.0, 0.0};
 
-/// Puts the names into rows and beside their lines so that as few as can be collide, as low and as much in
-/// the middle as can be.
+/// Chooses a row and an alignment for each name by trying all combinations: as few collisions as possible,
+/// then low rows, then centred names.
 std::vector<LineName> line_names(const Layout& layout, std::size_t rows) {
   std::vector<LineName> names;
   for (const PointsPlot::Line& line : layout.plot->lines) {
@@ -96,7 +97,7 @@ void draw_rings(Svg& svg, const Layout& layout, Places& taken) {
   std::size_t before = std::numeric_limits<std::size_t>::max();
   for (const PointsPlot::Ring& ring : layout.plot->rings) {
     const auto at = where(layout, ring.index);
-    radius = ring.index == before ? radius + 4 : 9;  // one point may be two things
+    radius = ring.index == before ? radius + 4 : 9;  // two rings about one point differ in size
     before = ring.index;
     if (!at) continue;
     svg.add("circle", {{"class", std::string("ring ") + ring.kind},
@@ -115,7 +116,7 @@ void draw_rings(Svg& svg, const Layout& layout, Places& taken) {
 }
 
 namespace {
-/// "0.76 ms" or "1.1 ms x4".
+/// "0.76 ms" or "1.1 ms ×4": dt and, for a method that iterates, its iterations.
 std::string step_words(const Setting& setting) {
   std::string words = brief(1000 * setting.dt) + " ms";
   if (iterates(setting.method)) words += " ×" + std::to_string(setting.iterations);
@@ -126,7 +127,7 @@ std::string step_words(const Setting& setting) {
 
 void draw_labels(Svg& svg, const Layout& layout, Places& taken) {
   svg.open("g", {{"class", "labels"}, {"pointer-events", "none"}});
-  // The line of real time first: it can stand anywhere along the line.
+  // The name of the real-time line comes first. It may stand anywhere along the line, above or below it.
   const double now = layout.y(real_time), width = text_width("real time", small_size);
   const double above = now - 3 - small_size, below = now + 3;
   bool placed = false;

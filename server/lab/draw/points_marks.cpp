@@ -94,7 +94,7 @@ void draw_marks(Svg& svg, const Layout& layout, Places& taken) {
   svg.open("g", {{"class", "marks"}});
   for (const scene::Method method : scene::methods) {
     const std::vector<Place> own = of_method(layout, method), best = front(own);
-    for (const bool on_front : {false, true})  // those that count on top
+    for (const bool on_front : {false, true})  // marks of the method's front are drawn last, on top
       for (const Place& place : own) {
         const bool is = std::any_of(best.begin(), best.end(),
                                     [&](const Place& other) { return other.index == place.index; });

@@ -1,6 +1,6 @@
-// Error against cost, log-log: a thin curve through each method's points of equal iterations, a thick one
-// along its front, a broad band along the front of all. What blew up stands in a strip on the right, a lane a
-// method.
+// Error against cost, both logarithmic. A thin curve connects each method's points of equal iterations, a
+// thick curve the method's front, and a broad band the front of all methods. Settings that blew up are
+// crosses in a strip on the right, in one lane per method.
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double legend_column = 172, legend_row = 20;
 
-/// What stands in the legend: a way to draw the sign, and words.
+/// An entry of the legend: a function that draws its sign with the middle at (x, y), and its words.
 struct Entry {
   std::function<void(Svg&, double x, double y)> sign;
   std::string words;

@@ -1,5 +1,5 @@
-// What leaving out parts of the model is worth as a picture: a row a variant, what it costs beside what it
-// changes.
+// The simplification as a picture. Each variant, which leaves out a part of the model, has a row: its cost on
+// the left, and how much it changes the result on the right.
 #include <algorithm>
 #include <cmath>
 
@@ -14,8 +14,8 @@ constexpr const char *kept_colour = "#8c8c8c", *dropped_colour = "#1a7f37";
 
 struct Row {
   const Variant* variant = nullptr;
-  std::size_t index = 0;  ///< in the JSON's list
-  bool listed = false;    ///< it is in that list
+  std::size_t index = 0;  ///< in Simplification::variants, as in the JSON
+  bool listed = false;    ///< false: not one of these, but the whole scene or the recommendation
 };
 
 struct Plot {
@@ -37,7 +37,7 @@ Plot plot_of(const Simplification& simplification, double top) {
     if (!row.variant->measured) continue;
     const Spread& ratio = row.variant->cost_ratio;
     if (std::isfinite(ratio.median)) dearest = std::max(dearest, 1.05 * ratio.median);
-    // A wild round is not worth all of the axis.
+    // One round with a very high cost must not take up most of the axis.
     if (std::isfinite(ratio.high))
       dearest = std::max(dearest, 1.02 * std::min(ratio.high, 1.5 * ratio.median));
     if (const auto change = row.variant->change; change && *change > 0 && std::isfinite(*change)) {
@@ -89,7 +89,7 @@ std::string one_line(const std::string& words, double width) {
   return lines.empty() ? "" : lines.front();
 }
 
-/// From end to end of where the ratio may lie; one that goes on beyond the axis has no end there.
+/// Draws the interval that holds the cost ratio, with a mark at each end. An end beyond the axis has no mark.
 void draw_interval(Svg& svg, const Scale& cost, const Spread& ratio, double middle) {
   if (!std::isfinite(ratio.high) || ratio.high <= ratio.low) return;
   const double low = cost(std::min(ratio.low, cost.high)), high = cost(std::min(ratio.high, cost.high));

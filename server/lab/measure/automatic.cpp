@@ -14,7 +14,7 @@ namespace {
 
 constexpr double of_limit = 0.8;
 
-/// What moves nothing.
+/// Keys of a scene document that do not affect the motion, so that their values may differ.
 constexpr std::array only_seen{"name", "color", "texture"};
 
 bool alike(const json& a, const json& b) {

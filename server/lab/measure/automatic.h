@@ -1,5 +1,5 @@
-// The method "auto": what a scene is stepped with before the lab has chosen, and whether a choice still holds
-// for a scene that has been changed since.
+// The method "auto": the setting that steps a scene until the lab has chosen one, and whether a choice made
+// for a scene still holds after the scene was changed.
 #pragma once
 
 #include "server/lab/measure/setting.h"
@@ -8,20 +8,20 @@
 
 namespace clothlab::lab {
 
-/// Verlet at 0.8 of its step limit, or at the scene's own step where nothing limits it: stable, and for most
-/// scenes not far from what the lab would choose.
+/// The setting used until the lab has chosen: Verlet at 0.8 of its step limit, or at the scene's own step
+/// where there is no limit. It is stable, and for most scenes not far from what the lab would choose.
 Setting provisional(const model::Model& model, const scene::Scene& scene);
 
-/// The document with those settings in the place of the method "auto"; another document as it is. Error: its
-/// model cannot be built.
+/// The document with the provisional setting instead of the method "auto"; a document with another method is
+/// returned unchanged. Error: the model of its scene cannot be built.
 Result<scene::Document> settled(const scene::Document& document);
 
-/// Numbers of a scene that differ by less than this share are near what was measured.
+/// A measurement of one scene holds for another if all their numbers differ by at most this share.
 inline constexpr double same_regime = 0.1;
 
-/// Whether what was measured for `measured` may be relied on for `now`: the same parts and tolerance, and
-/// every number that moves the cloth within `same_regime`. Both are scene documents with their defaults
-/// filled in.
+/// True if a choice measured for the scene `measured` still holds for the scene `now`: both have the same
+/// parts, method and tolerance, and every number that affects the motion agrees within `same_regime`. Both
+/// are scene documents with their defaults filled in.
 bool covers(const json& measured, const json& now);
 
 }  // namespace clothlab::lab

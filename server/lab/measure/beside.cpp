@@ -16,10 +16,11 @@ namespace {
 
 using scene::Document;
 
-constexpr double truth_budget = 20.0;  // wall time [s]
-constexpr double timed = 0.15;  // of one timing at most, so that a round has one state of the machine [s]
-constexpr double timing_budget = 40.0;  // of what goes on after the first look [s]
-/// Of a copy that tells whether a motion without a reference is chaotic, and by how much it may grow.
+constexpr double truth_budget = 20.0;   // wall time of the reference [s]
+constexpr double timed = 0.15;          // longest timing, wall time [s]; a short round sees a steady machine
+constexpr double timing_budget = 40.0;  // wall time [s] after which no rounds beyond looks[0] are added
+/// Without a reference, a copy whose masses are larger by the share `heavier` shows if the motion is chaotic:
+/// if its distance over the size is more than `most_amplified` times that share.
 constexpr double heavier = 1e-4, most_amplified = 100.0;
 
 }  // namespace
@@ -45,7 +46,7 @@ Status Beside::start(double time, const std::function<void(double share)>& progr
   } else {
     notes.push_back("There is no reference (" + truth_.missing +
                     "): errors are not known, only what each part changes.");
-    // The samples' times remain, for runs to be compared with each other.
+    // The sample times are kept, so that runs can be compared with each other.
     without_truth_ = truth_.time = time;
     truth_.spacing = time / samples_to_horizon;
     truth_.energy.clear();
@@ -58,7 +59,8 @@ Status Beside::start(double time, const std::function<void(double share)>& progr
   return whole_.variant.measured && !truth_.missing.empty() ? compare_without_truth(notes) : ok();
 }
 
-/// Nothing has said until when the motion can be compared: a copy that starts almost alike does.
+/// Without a reference no horizon is known: a copy with slightly larger masses shows if positions can be
+/// compared at the end of the time.
 Status Beside::compare_without_truth(std::vector<std::string>& notes) {
   Substitute copy = whole_;
   for (scene::Cloth& cloth : copy.document.scene.cloths) cloth.mass.value *= 1.0 + heavier;
@@ -82,8 +84,8 @@ Status Beside::measure(Substitute& candidate, Document document) {
   return run(candidate);
 }
 
-/// A coarser mesh allows longer steps, which is where most of its saving is: its step is the same share of
-/// its limit.
+/// Sets the step of a coarser mesh to the same share of its limit as in the whole scene: a coarser mesh
+/// allows longer steps, which is most of its saving.
 Status Beside::same_share_of_limit(Substitute& candidate) {
   const Result<double> limit = limit_of(candidate.document.scene);
   if (!limit) return limit.error();
@@ -108,14 +110,14 @@ Result<double> Beside::limit_of(const scene::Scene& scene) const {
   return limit;
 }
 
-/// Errors, change and step limit; the cost comes later, taking turns.
+/// Runs the candidate and fills in errors, change and step limit; the cost is measured later, in turns.
 Status Beside::run(Substitute& candidate) {
   Variant& variant = candidate.variant;
   const scene::Scene& scene = candidate.document.scene;
   const Result<double> limit = limit_of(scene);
   if (!limit) return limit.error();
   variant.dt_limit = *limit;
-  // The vertices of a coarser mesh are others: positions are compared apart.
+  // A coarser mesh has different vertices: compare() interpolates its positions before it compares them.
   Truth others = truth_;
   others.position.clear();
   const Result<Trial> trial = bench_.run(scene, candidate.coarser() ? others : truth_, truth_.time, stop_);

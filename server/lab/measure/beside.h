@@ -1,4 +1,5 @@
-// Scenes that stand for a whole one, measured next to it: what they change, get wrong and cost.
+// Simplified scenes that may stand in for a whole scene. They are measured next to it: how much each changes
+// the result, how large its errors are and what it costs.
 #pragma once
 
 #include <functional>
@@ -16,40 +17,42 @@ namespace clothlab::lab {
 struct Substitute {
   Variant variant;
   scene::Document document;
-  std::vector<const Part*> parts;      ///< that it is without; none: the whole
-  std::vector<glm::dvec3> at_horizon;  ///< [vertex of the whole] [m]; empty: not known
+  std::vector<const Part*> parts;      ///< parts left out or made coarser; empty: this is the whole scene
+  std::vector<glm::dvec3> at_horizon;  ///< vertices of the whole scene at compared_at() [m]; empty: unknown
   bool coarser() const;
 };
 
-/// A whole scene, and the candidates to stand for it. Needs a current GL context.
+/// Measures a whole scene and the candidates that may stand in for it. Needs a current GL context.
 class Beside {
  public:
-  /// `timer` as in SimplifyRequest.
+  /// For `timer` see SimplifyRequest.
   Beside(const scene::Document& whole, const std::stop_token& stop,
          std::function<double(const scene::Scene&)> timer)
       : stop_(stop), timer_(std::move(timer)) {
     whole_.document = whole;
   }
 
-  /// The reference of the whole for `time` [s], and the whole itself measured; `notes` say what cannot be
-  /// compared. Error: the scene cannot be built, GL, or cancelled.
+  /// Computes the reference of the whole scene for `time` [s] and measures the whole scene. Sets `notes` to
+  /// sentences for the user about what can be compared. Error: the scene cannot be built, GL, or cancelled.
   Status start(double time, const std::function<void(double share)>& progress,
                std::vector<std::string>& notes);
 
-  /// Fills in the variant's patch, errors, change and step limit; a coarser mesh takes a step that is the
-  /// same share of its limit. Not measured, with the reason, where it blows up.
+  /// Runs `document` as the candidate's scene and fills in the variant's patch, errors, change and step
+  /// limit. The step of a coarser mesh becomes the same share of its limit as in the whole scene. A run that
+  /// blows up leaves the variant not measured, with the reason.
   Status measure(Substitute& candidate, scene::Document document);
 
-  /// Cost and its ratio to the whole's, of these and the whole taking turns; those whose change is at most
-  /// `tolerance` until it is known whether they save anything.
+  /// Times the candidates and the whole scene in turns; fills in their costs, and ratios to the whole's cost.
+  /// Candidates whose change is at most `tolerance` get more rounds until it is clear if they save anything.
   Status time(const std::vector<Substitute*>& candidates, double tolerance);
 
-  /// Cost and ratio of one more; what it costs over another of them, which it may be a further step from.
+  /// Times `candidate`, `other` and the whole scene in turns; fills in the candidate's cost and its ratio to
+  /// the whole's cost. Returns its cost compared with that of `other`, a scene simplified less.
   Result<CostComparison> time_over(Substitute& candidate, const Substitute& other);
 
   const Substitute& whole() const { return whole_; }
   const Truth& truth() const { return truth_; }
-  /// Positions are compared there [s]; 0: nowhere.
+  /// The time at which positions are compared [s]; 0: they cannot be compared.
   double compared_at() const { return truth_.missing.empty() ? truth_.horizon : without_truth_; }
 
  private:
@@ -67,7 +70,7 @@ class Beside {
   Bench bench_;
   Truth truth_;
   Substitute whole_;
-  double without_truth_ = 0;  ///< where positions are compared if there is no reference [s]
+  double without_truth_ = 0;  ///< compared_at() if there is no reference [s]
 };
 
 }  // namespace clothlab::lab

@@ -20,11 +20,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using scene::Method;
 
-constexpr double share_of_truth = 0.3;         // of the budget
-constexpr double share_of_rest = 0.2;          // kept for it
-constexpr double of_no_use = 0.3;              // an error, timed once only
-constexpr double far_dearer = 20.0;            // than the same method with other iterations at the same error
-constexpr double share_of_a_point = 1.0 / 25;  // of the budget, at most
+constexpr double share_of_truth = 0.3;         // share of the budget for the reference
+constexpr double share_of_rest = 0.2;          // share of the budget kept for the errors of Axis::rest
+constexpr double of_no_use = 0.3;              // a point with a larger error is useless and timed only once
+constexpr double far_dearer = 20.0;            // a ladder is left out if other iterations cost this much less
+constexpr double share_of_a_point = 1.0 / 25;  // share of the budget for one point at most
 constexpr double timed = 0.15;                 // wall time of one timing at most [s]
 constexpr int rounds_at_once = 3, rounds_later = 2;
 
@@ -55,7 +55,7 @@ class Maker {
   double elapsed() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   double left() const { return request_.budget - elapsed(); }
 
-  /// Cancelled: what there is stays what it is.
+  /// The result after an error: the chart so far if the job was cancelled and has points, else the error.
   Result<Chart> ended(const Error& error) {
     if (!was_cancelled(error) || chart_.points.empty()) return error;
     chart_.notes.push_back("Cancelled before it was complete.");
@@ -117,13 +117,13 @@ class Maker {
 
   AxisFacts& facts(Axis axis) { return chart_.axes[index(axis)]; }
 
-  /// What one point may take [s].
+  /// The wall time that one point may take at most [s].
   double most_a_point() const { return std::max(1.0, share_of_a_point * request_.budget); }
   double until() const { return truth_.time; }
   double horizon() const { return truth_.horizon > 0.0 ? truth_.horizon : truth_.time; }
 
-  /// The ladder whose next point costs least, so that whatever the budget, the curves are complete from their
-  /// cheap ends on. Null: all are done.
+  /// The ladder whose next point costs least, so that with any budget the curves are complete from their
+  /// cheap ends on. Ladders whose next point is not worth it are left out. Null: all ladders are done.
   Ladder* cheapest() {
     Ladder* best = nullptr;
     for (Ladder& ladder : ladders_) {
@@ -162,7 +162,7 @@ class Maker {
     });
   }
 
-  /// The error that says whether a shorter step is worth it.
+  /// The error that decides if a shorter step is worth it: of positions, else of energy; none: not known.
   std::optional<double> judged(const Errors& error) const {
     for (const Axis axis : {Axis::position, Axis::energy})
       if (chart_.axes[index(axis)].available) return error[index(axis)];
@@ -174,7 +174,7 @@ class Maker {
     point.setting = ladder.next;
     point.setting.dt = fitted_dt(ladder.next.dt, truth_);
     for (const Point& known : chart_.points)
-      if (known.setting == point.setting) {  // the scene's own, most likely
+      if (known.setting == point.setting) {  // most likely the scene's own setting
         ladder.go_on(judged(known.error), facts(Axis::position).reference_error);
         return ok();
       }
@@ -208,7 +208,7 @@ class Maker {
     return ok();
   }
 
-  /// The scene's own setting, where its method is asked for.
+  /// Measures the scene's own setting as the first point, if its method is asked for.
   Status measure_present() {
     Ladder present;
     present.next = chart_.present = setting_of(scene_);
@@ -220,8 +220,8 @@ class Maker {
     return climb(present);
   }
 
-  /// The shape of rest is another and a longer run: of the points whose other errors are known, cheapest
-  /// first.
+  /// Measures the errors of Axis::rest, cheapest points first, as far as the budget allows. Each takes a run
+  /// of its own, which is longer, so that points which blew up or whose error is useless are skipped.
   Status settle_points() {
     if (!settling_) return ok();
     std::vector<Point*> points;
@@ -250,7 +250,7 @@ class Maker {
     return ok();
   }
 
-  /// All points once more, taking turns, so that a slow minute of the machine is nobody's fault.
+  /// Times all points again, in turns, so that a slow minute of the machine affects all points alike.
   Status time_again() {
     for (int round = 0; round < rounds_later; ++round)
       for (std::size_t i = 0; i < chart_.points.size(); ++i) {
@@ -274,7 +274,7 @@ class Maker {
   std::optional<Settling> settling_;
   Bench bench_;
   std::vector<Ladder> ladders_;
-  std::vector<std::vector<double>> times_;  ///< of each point [ms per simulated second]
+  std::vector<std::vector<double>> times_;  ///< [point][timing] [ms per simulated second]
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Speed against accuracy: every method over a range of time steps and iterations on one scene, each point's
-// error against the double-precision reference and its cost in stepping.
+// The chart of speed against accuracy of one scene. Each point is a method with a time step and a number of
+// iterations; it has errors against the double-precision reference, and a cost of stepping.
 #pragma once
 
 #include <array>
@@ -13,89 +13,88 @@
 
 namespace clothlab::lab {
 
-/// What an error is an error of; each a share, so that 0.01 is one percent.
+/// The quantity that an error is measured in. Each error is a share, so that 0.01 is one percent.
 enum class Axis {
   position,  ///< RMS distance of the vertices to the reference at the horizon, over the cloth's size
-  energy,    ///< RMS over the sample times of the total energy's error, over the most that ever moved or
-             ///< stretched
-  strain,    ///< error of the largest strain within the time, over that strain
+  energy,    ///< RMS error of the total energy over the samples, over the largest kinetic + elastic energy
+  strain,    ///< error of the largest strain at any sample time, over the reference's largest strain
   rest,      ///< RMS distance to the shape of rest, over the cloth's size, after settling in thick air
 };
 inline constexpr std::array all_axes{Axis::position, Axis::energy, Axis::strain, Axis::rest};
-const char* name(Axis axis);  ///< "position", ...
+const char* name(Axis axis);  ///< "position", "energy", "strain" or "rest"
 constexpr std::size_t index(Axis axis) {
   return static_cast<std::size_t>(axis);
 }
 std::optional<Axis> axis_of(const std::string& name);
 
-/// Errors of one run by Axis; none where it could not be had.
+/// The errors of one run [Axis]; none: not known.
 using Errors = std::array<std::optional<double>, all_axes.size()>;
 
-/// One pixel where the cloth fills the 720 lines of a picture, as a share of its size.
+/// The error of one pixel, as a share of the cloth's size, where the cloth fills the 720 lines of a picture.
 inline constexpr double one_pixel = 1.0 / 720;
-/// Stepping that takes as long as what it simulates [ms per simulated second].
+/// The cost of stepping that takes as long as the motion that it simulates [ms per simulated second].
 inline constexpr double real_time = 1000.0;
 
 struct Cost {
   double median = 0, minimum = 0;  ///< stepping alone [ms per simulated second]
-  int runs = 0;                    ///< timed, after a warm-up that is not
-  /// Where the median lies, as far as these runs tell; infinite: they were too few. The machine may be
-  /// another one tomorrow.
+  int runs = 0;                    ///< number of timed runs, without the warm-up
+  /// The interval that holds the true median with a chance of 98 % [ms per simulated second]; infinite: too
+  /// few runs. It does not cover later changes of the machine's speed.
   double low = 0, high = std::numeric_limits<double>::infinity();
 };
 
 struct Point {
   Setting setting;
   Errors error;
-  std::optional<double> largest_position_error;  ///< at any sample time up to the horizon
-  /// Of a choice: between what the largest error at any step lies, see LargestError.
+  std::optional<double> largest_position_error;  ///< largest at any sample time up to the horizon
+  /// Bounds of the largest position error at any step, see LargestError; only a Choice fills them in.
   std::optional<double> error_low, error_high;
   std::optional<Cost> cost;
-  std::optional<double> blew_up_at;  ///< [s]; it has no errors then
-  std::optional<double>
-      dt_over_limit;  ///< of the sharp limit about the rest shape; none where nothing limits dt
+  std::optional<double> blew_up_at;     ///< [s]; a point that blew up has no errors
+  std::optional<double> dt_over_limit;  ///< dt over its sharp limit about the rest shape; none: no limit
 };
 
-/// What is not on the chart, and why.
+/// A method, or the shorter steps of a method, that are not on the chart, and why.
 struct LeftOut {
   scene::Method method = scene::Method::symplectic_euler;
-  std::optional<double> dt;  ///< [s]; none: the whole method
+  std::optional<double> dt;  ///< longest step left out [s]; none: the whole method
   std::optional<int> iterations;
   std::string reason;
 };
 
-/// What there is to know about an axis before any point.
+/// What is known about an axis before any point is measured.
 struct AxisFacts {
   bool available = false;
-  std::string reason;                     ///< why not, and what can be done about it
-  std::optional<double> reference_error;  ///< of the reference itself
-  std::optional<double> float32_floor;    ///< RK4 on the GPU against RK4 in double precision, same steps
+  std::string reason;                     ///< why it is not available, and what can be done about it
+  std::optional<double> reference_error;  ///< error of the reference itself
+  std::optional<double> float32_floor;    ///< distance of RK4 on the GPU to RK4 in double precision, same dt
 };
 
 struct Chart {
-  std::string scene;           ///< its name
-  std::string renderer;        ///< what it ran on
+  std::string scene;           ///< the scene's name
+  std::string renderer;        ///< the GL renderer that ran the points
   double size = 0;             ///< the cloth's largest extent at rest [m]
-  double time = 0;             ///< simulated by each point, from the start [s]
-  double horizon = 0;          ///< of position errors [s]: up to there a perturbed copy stays near; 0: none
-  std::string horizon_reason;  ///< how it was found, in a sentence
-  Setting present;  ///< the scene's own, its step fitted to the samples; the first point if its method is
-                    ///< asked for
+  double time = 0;             ///< simulated time of a point at most, from the start [s]
+  double horizon = 0;          ///< positions can be compared until this time [s]; 0: never
+  std::string horizon_reason;  ///< how the horizon was found, in a sentence
+  /// The scene's own setting, with dt fitted to the sample times; the first point if its method is asked for.
+  Setting present;
   std::array<AxisFacts, all_axes.size()> axes;
   std::vector<Point> points;  ///< in the order in which they were measured
   std::vector<LeftOut> left_out;
   std::vector<std::string> notes;  ///< for the user, whole sentences
-  bool complete = false;           ///< false while it is being measured and where it was cancelled
+  bool complete = false;           ///< false while the chart is being measured, and if it was cancelled
 };
 
 struct ChartRequest {
   std::vector<scene::Method> methods;  ///< empty: all
-  std::vector<int> iterations;  ///< empty: 1, 2, 4, 8, 16 for those that sweep; 1, 4 for implicit Euler
-  std::optional<double> time;   ///< [s]; none: 1
-  double budget = 120;          ///< wall time for the whole chart [s]; what comes too late is left out
+  std::vector<int> iterations;         ///< empty: 1, 4, 16 for methods that sweep; 1, 4 for implicit Euler
+  std::optional<double> time;          ///< simulated time [s]; none: 1
+  double budget = 120;                 ///< wall time of the chart [s]; points that do not fit are left out
 };
 
-/// Needs a current GL context. Error: the scene cannot be built, or cancelled.
+/// Measures the chart of a scene. Needs a current GL context. Error: the scene cannot be built, GL, or
+/// cancelled before the first point; a chart cancelled later is returned with the points that it has.
 Result<Chart> chart(const scene::Scene& scene, const ChartRequest& request, const Control<Chart>& control);
 
 }  // namespace clothlab::lab

@@ -20,16 +20,16 @@ namespace {
 
 using scene::Method;
 
-constexpr int rounds = 7;                                      // all on one side of the median: 1 / 128
-constexpr int looks_again = 3;                                 // at those whose step had to be shortened
+constexpr int rounds = 7;                                      // chance that all are above the median: 1/128
+constexpr int looks_again = 3;                                 // looks at a candidate at most, see promise()
 constexpr double timed = 0.2;                                  // wall time of one timing at most [s]
-constexpr double share_of_truth = 0.3, share_of_search = 0.9;  // of the progress
+constexpr double share_of_truth = 0.3, share_of_search = 0.9;  // of the progress, at their ends
 
 std::string times(double ratio) {
   return formatted("%.*f times", ratio < 10 ? 1 : 0, ratio);
 }
 
-/// "3.4e-04, at most 3.6e-04".
+/// The error seen and, if it differs, its upper bound: "0.00034 (at most 0.00036)".
 std::string error_text(const Point& point) {
   const std::string seen = significant(point.largest_position_error.value_or(unknown), 3);
   if (!point.error_high || significant(*point.error_high, 3) == seen) return seen;
@@ -103,8 +103,9 @@ class Chooser {
     return ok();
   }
 
-  /// What may be promised of those in the race: looked at again, at every step. Whose error turns out to be
-  /// above the tolerance tries shorter steps, and leaves the race if that does not help.
+  /// Looks again, at every step or nearly, at the errors of the candidates in the race, for bounds that a
+  /// choice may promise. A candidate whose upper bound misses the tolerance tries shorter steps, and leaves
+  /// the race if that does not help.
   Status promise(std::vector<Candidate*>& race) {
     std::vector<Candidate*> open = race;
     bool present = choice_.present.largest_position_error.has_value();
@@ -144,7 +145,7 @@ class Chooser {
     point.error_high = error->high;
   }
 
-  /// Times those in the race taking turns, the scene's own setting among them.
+  /// Times the candidates in the race and the scene's own setting, in turns.
   Status time_race(std::vector<Candidate*>& race) {
     std::vector<scene::Scene> scenes;
     for (const Candidate* candidate : race) scenes.push_back(with(scene_, candidate->best->setting));
@@ -198,7 +199,7 @@ class Chooser {
     return ok();
   }
 
-  /// The cheapest of another method than the cheapest of all.
+  /// Adds to the race the cheapest candidate whose method is not that of the cheapest in the race.
   void add_runner_up(std::vector<Candidate*>& race) {
     const Method winner =
         (*std::min_element(race.begin(), race.end(), [](const Candidate* a, const Candidate* b) {
@@ -212,7 +213,8 @@ class Chooser {
     if (second && std::find(race.begin(), race.end(), second) == race.end()) race.push_back(second);
   }
 
-  /// Neither it nor a step a ninth longer blows up within the whole time.
+  /// True if the candidate does not blow up within the whole time, neither at its own step nor, if its method
+  /// has a step limit, at a step a ninth longer.
   Result<bool> keeps_margin(const Candidate& candidate) {
     scene::Scene scene = with(scene_, candidate.best->setting);
     std::vector<double> steps{scene.solver.dt};
@@ -284,7 +286,7 @@ class Chooser {
   Truth truth_;
   Bench bench_;
   std::optional<StepSearch> search_;
-  std::vector<double> chosen_times_, runner_up_times_;  // by round
+  std::vector<double> chosen_times_, runner_up_times_;  // [round] [ms per simulated second]
 };
 
 }  // namespace

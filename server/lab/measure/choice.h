@@ -1,4 +1,4 @@
-// The cheapest way to step a scene that is good enough.
+// Chooses the cheapest setting that keeps a tolerance on a scene.
 #pragma once
 
 #include <string>
@@ -10,29 +10,29 @@ namespace clothlab::lab {
 
 struct Choice {
   std::string scene, renderer;
-  double tolerance = 0;          ///< asked for: RMS position error over the cloth's size
-  double time = 0, horizon = 0;  ///< [s]
-  double reference_error = 0;    ///< of the reference itself, in the same terms
-  bool met = false;              ///< else `chosen` is the most accurate that was found
-  Point
-      chosen;  ///< expected error: largest_position_error, from error_low to error_high; expected cost: cost
-  std::optional<Point> runner_up;  ///< the cheapest of another method that keeps the tolerance
+  double tolerance = 0;          ///< largest RMS position error allowed, over the cloth's size
+  double time = 0, horizon = 0;  ///< simulated, and until when positions can be compared [s]
+  double reference_error = 0;    ///< RMS position error of the reference itself, over the cloth's size
+  bool met = false;              ///< true: `chosen` keeps the tolerance; false: it is the most accurate found
+  /// Expected error: largest_position_error, between error_low and error_high; expected cost: cost.
+  Point chosen;
+  std::optional<Point> runner_up;  ///< the cheapest setting of another method that keeps the tolerance
   Point present;                   ///< the scene's own setting, measured the same way
-  std::string why;                 ///< one sentence
+  std::string why;                 ///< the reason for the choice, for the user
   std::vector<Point> tried;
   std::vector<std::string> notes;
   bool complete = false;
 };
 
 struct ChooseRequest {
-  double tolerance = 1e-2;             ///< (0, 1]
+  double tolerance = 1e-2;             ///< as Choice::tolerance, in (0, 1]
   std::vector<scene::Method> methods;  ///< empty: all
-  std::optional<double> time;          ///< [s]; none: 1
+  std::optional<double> time;          ///< simulated time [s]; none: 1
 };
 
-/// Needs a current GL context. The chosen step is at most 0.9 of the stability limit, and the run with a step
-/// a ninth longer did not blow up either. Error: no reference can be had (with what can be done), or
-/// cancelled.
+/// Needs a current GL context. The chosen step is at most 0.9 of the stability limit; if the tolerance is
+/// met, a run with a step a ninth longer did not blow up either. Error: a tolerance out of range, a reference
+/// that is missing or not accurate enough (with what can be done), all settings blew up, GL, or cancelled.
 Result<Choice> choose(const scene::Scene& scene, const ChooseRequest& request,
                       const Control<Choice>& control);
 

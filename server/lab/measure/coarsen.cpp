@@ -13,8 +13,8 @@ namespace {
 
 using scene::json;
 
-/// One number of springs on a line of `count` vertices, as a share of a number that does not depend on it:
-/// what k is multiplied by to keep the stiffness of the sheet from a fine line to a coarse one.
+// The sheet's stiffness over a spring's k, for `across` lines of `along` vertices each (see coarsen.h; for
+// bend springs without the factor of 4, which cancels).
 double structural_share(int across, int along) {
   return static_cast<double>(across) / (along - 1);
 }
@@ -22,6 +22,7 @@ double bend_share(int across, int along) {
   return static_cast<double>(across) * (along - 2) / ((along - 1.0) * (along - 1.0));
 }
 
+/// The factor on k that keeps the sheet's stiffness from one grid to the other.
 template <class Share>
 double factor_of(const scene::Grid& from, const scene::Grid& to, Share share) {
   const double columns = share(from.columns, from.rows) / share(to.columns, to.rows);
@@ -32,13 +33,14 @@ double factor_of(const scene::Grid& from, const scene::Grid& to, Share share) {
   return by_columns ? columns : by_rows ? rows : 1.0;
 }
 
-/// a b / (a^2 + b^2) of a cell.
+/// a b / (a^2 + b^2) of a cell of a x b: the sheet's shear stiffness over 2 k.
 double shear_share(const scene::Grid& grid) {
   const double a = grid.width / (grid.columns - 1), b = grid.height / (grid.rows - 1);
   return a * b / (a * a + b * b);
 }
 
-/// The place on a line of `to` vertices that is the one with this index on a line of `from`, if there is one.
+/// The index, on a line of `to` vertices, of the place that has `index` on a line of `from` vertices; none:
+/// no vertex is there.
 std::optional<int> counterpart(int index, int from, int to) {
   const double place = static_cast<double>(index) * (to - 1) / (from - 1);
   const double whole = std::round(place);
@@ -46,7 +48,7 @@ std::optional<int> counterpart(int index, int from, int to) {
   return static_cast<int>(whole);
 }
 
-/// What a pin or a weight is at on the coarser grid; null: no vertex is there.
+/// The place `at` of a pin or a weight, in the coarser grid's indices; null: no vertex is there.
 json moved(const json& value, const scene::At& at, const scene::Grid& from, const scene::Grid& to) {
   if (const auto* corner = std::get_if<scene::AtCorner>(&at)) {
     const auto column = counterpart(corner->column, from.columns, to.columns);
@@ -81,7 +83,7 @@ int in_box(const scene::AtBox& box, const model::Model& model, std::size_t cloth
   return count;
 }
 
-/// Vertices of a cloth that a weight is at, corners and single vertices apart.
+/// The number of vertices of a cloth that a weight is attached to; 1 for a corner or a single vertex.
 int held(const scene::At& at, const scene::Grid& grid, const model::Model& model, std::size_t cloth) {
   if (const auto* edge = std::get_if<scene::AtEdge>(&at))
     return edge->line == scene::AtEdge::Line::row ? grid.columns : grid.rows;
@@ -100,7 +102,8 @@ Error no_counterpart(const std::string& where, const json& at, const scene::Grid
           "a place that it has, too"};
 }
 
-/// Mesh, mass, material and pins; weights need to know where the vertices are.
+/// Coarsens the mesh, mass, material and pins of a cloth. Its weights follow in coarsen_weights, which needs
+/// the coarse vertices.
 Status coarsen_cloth(json& value, const scene::Cloth& cloth, std::size_t index, const scene::Grid& to) {
   const scene::Grid& from = std::get<scene::Grid>(cloth.mesh);
   value["mesh"]["grid"]["columns"] = to.columns;
@@ -122,7 +125,7 @@ Status coarsen_cloth(json& value, const scene::Cloth& cloth, std::size_t index, 
   return ok();
 }
 
-/// A weight on fewer vertices is as heavy as it was on all of them.
+/// Coarsens the weights of a cloth: the mass on each vertex grows so that a weight's total stays the same.
 Status coarsen_weights(json& value, const scene::Cloth& cloth, std::size_t index, const scene::Grid& to,
                        const model::Model& fine, const model::Model& coarse) {
   const scene::Grid& from = std::get<scene::Grid>(cloth.mesh);
@@ -148,7 +151,8 @@ std::optional<scene::Grid> coarser(const scene::Cloth& cloth, int factor) {
   return to;
 }
 
-/// Between the vertices of one grid, at the vertices of another on the same rectangle.
+/// Appends to `result` the positions [m] of the vertices of `fine`, bilinear between the vertices of `coarse`
+/// on the same rectangle.
 void interpolate(const scene::Grid& fine, const scene::Grid& coarse, const glm::vec3* position,
                  std::vector<glm::dvec3>& result) {
   const auto at = [&](int column, int row) { return glm::dvec3(position[row * coarse.columns + column]); };

@@ -1,4 +1,4 @@
-// What a job of the lab and whoever started it have to do with each other while it runs.
+// What a job of the lab and its caller exchange while the job runs: progress, partial results, a stop token.
 #pragma once
 
 #include <functional>
@@ -10,12 +10,12 @@
 namespace clothlab::lab {
 
 struct Progress {
-  double done = 0, total = 1;  ///< shares of the job; `total` may grow
-  std::string doing;           ///< "reference, 0.4 of 1 s", "verlet, dt 0.5 ms"
+  double done = 0, total = 1;  ///< work done out of the total, in any unit; `total` may grow
+  std::string doing;           ///< the present work: "verlet, dt 0.5 ms"
 };
 
-/// `Partial` is the job's own kind of result, as far as it has come. All calls come from the job's thread; a
-/// job looks at `stop` at least every 0.2 s and then returns `cancelled`.
+/// `Partial` is the type of the job's result; `arrived` gets the result as far as it has come. All calls come
+/// from the job's thread. A job checks `stop` at least every 0.2 s; if set, the job returns `cancelled`.
 template <class Partial>
 struct Control {
   std::stop_token stop = {};

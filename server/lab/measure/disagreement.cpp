@@ -15,14 +15,14 @@ namespace {
 
 using scene::Method;
 
-/// How far the least limit about the shapes that the cloth takes may lie above the measured boundary and
-/// still be its cause: the shapes are looked at now and then only.
+/// The factor by which the least limit about the cloth's shapes may exceed the measured boundary and still be
+/// its cause: only some of the shapes are looked at, and a shape between them may have a lower limit.
 constexpr double between_looks = 1.1;
 
-/// The limits about the shapes that a run takes.
+/// The step limits about the shapes that the cloth takes in a run.
 struct Shapes {
   double least = model::no_limit, median = model::no_limit;  ///< [s]
-  double longest = 1;                                        ///< a spring's length over that at rest
+  double longest = 1;                                        ///< largest length of a spring over that at rest
   bool blew_up = false;
 };
 
@@ -56,7 +56,7 @@ bool has_contacts(const scene::Scene& scene) {
   return scene.self_collision || !scene.colliders.empty();
 }
 
-/// Whether the step that failed holds without colliders and self-collision.
+/// True if the scene holds at the step `dt` [s] without colliders and self-collision.
 Result<bool> holds_bare(const Evidence& evidence, double dt, Runner& bare, const std::stop_token& stop) {
   scene::Scene scene = evidence.scene;
   scene.colliders.clear();

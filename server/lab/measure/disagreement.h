@@ -1,4 +1,4 @@
-// Why a measured boundary is not where theory has it, found by looking at what the cloth did.
+// Explains why a measured stability boundary differs from theory's, by looking at what the cloth did.
 #pragma once
 
 #include <functional>
@@ -9,27 +9,27 @@
 
 namespace clothlab::lab {
 
-/// Measured and theory this far apart are said to disagree.
+/// The largest relative difference between the measured boundary and theory's at which they agree.
 inline constexpr double agreement = 0.05;
 
-/// The vibration about the rest shape that grows first beyond the method's limit.
+/// The vibration about the rest shape that grows first when the step exceeds the method's limit.
 model::Mode fastest_growing(scene::Method method, const model::ElementOperator& springs,
                             const std::stop_token& stop);
 
-/// Where the boundary lies: between the longest step that held and the shortest that failed, or, if one of
-/// the two is missing, at the other.
+/// The measured boundary [s]: the geometric mean of the longest step that held and the shortest that failed;
+/// if one of the two is missing, the other. None: both are missing.
 std::optional<double> measured_boundary(const MapColumn& column);
 
 bool disagrees(const MapColumn& column);
 
-/// What is known of a column beside its cells.
+/// What explain() needs to know besides the column.
 struct Evidence {
   const scene::Scene& scene;
-  model::Mode mode;                     ///< that grows first
-  double visible = 0;                   ///< shortest step whose growth shows within `steps` [s]
-  int steps = 0;                        ///< of a trial at the limit
-  std::function<int(double)> steps_of;  ///< of a trial with that dt
-  std::string failure;                  ///< of the shortest step that failed, in numbers
+  model::Mode mode;                     ///< the vibration that grows first
+  double visible = 0;                   ///< shortest step whose growth shows within `steps` steps [s]
+  int steps = 0;                        ///< number of steps of a trial at the limit
+  std::function<int(double)> steps_of;  ///< number of steps of a trial with the given dt [s]
+  std::string failure;                  ///< what grew at the shortest step that failed, in numbers
 };
 
 struct Explanation {
@@ -37,7 +37,8 @@ struct Explanation {
   std::string reason;  ///< a sentence without its full stop
 };
 
-/// Runs the scene again at the boundary where that can tell. Error: GL, or cancelled.
+/// The likely cause of a disagreement. Runs the scene again near the boundary where that can show the cause:
+/// with `runner`, and with `bare` without contacts. Error: GL, or cancelled.
 Result<Explanation> explain(const MapColumn& column, const Evidence& evidence, Runner& runner, Runner& bare,
                             const std::stop_token& stop);
 

@@ -12,10 +12,11 @@ namespace clothlab::lab {
 
 namespace {
 
-/// Calls of AtLook in a trial.
+/// About how often a trial calls AtLook.
 constexpr int calls = 20;
 
-/// Counts what is queued to how long it takes, so that a cancelled job ends soon on a large cloth, too.
+/// Adapts the number of steps that are queued at once to the wall time that they take, so that a cancelled
+/// job ends soon even on a large cloth.
 class Pace {
  public:
   int next() const { return count_; }

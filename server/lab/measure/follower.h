@@ -1,4 +1,4 @@
-// Steps a reference on from one time to another.
+// Advances a reference simulation from one time to another.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace clothlab::lab {
 
-/// Steps the scene on, and knows when to stop.
+/// Advances states of `world` with RK4, in steps of at most `largest_step` [s], until `stop` is requested.
 class Follower {
  public:
   Follower(reference::World world, double largest_step, const std::stop_token& stop)
@@ -19,7 +19,7 @@ class Follower {
 
   reference::World& world() { return world_; }
 
-  /// From `from` to `to` [s] by equal steps; false: cancelled.
+  /// Advances `state` from time `from` to time `to` [s] in equal steps; false: cancelled.
   bool follow(reference::State& state, double from, double to) {
     const auto steps = static_cast<std::int64_t>(std::ceil((to - from) / largest_step_ - 1e-9));
     const double dt = (to - from) / static_cast<double>(steps);

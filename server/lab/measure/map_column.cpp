@@ -16,21 +16,21 @@ namespace {
 
 using scene::Method;
 
-constexpr int rows = 8;             // of trials around the limit ...
-constexpr double farthest = 1.7;    // ... up to this factor from it
-constexpr double precision = 1.01;  // of the boundary
+constexpr int rows = 8;             // number of first trials around the limit ...
+constexpr double farthest = 1.7;    // ... at steps up to this factor shorter or longer
+constexpr double precision = 1.01;  // the search ends at this ratio of the failed to the held step
 constexpr double most_growth = 6.0;
 constexpr int trials_expected = rows + 5;
-/// Steps that have to hold where any does [s].
+/// Steps that a method without a step limit is tried at; each has to hold [s].
 constexpr std::array long_steps{1.0 / 30, 1.0 / 10};
 constexpr int long_steps_run = 20;
 
-/// How many steps a trial at the limit takes. Beyond its limit by a share e, an undamped vibration under
-/// symplectic Euler or Verlet has 2 cosh(g) = 2 + 8 e: it grows by g = sqrt(8 e) a step, 0.4 at 2 %. With
-/// damping the root leaves -1 along the real axis, g = 2 e (4 - d) / d for d = damping dt; under RK4 it is
-/// 7.1 e. All of these are in mode_growth.h, and give the steps in which growth shows 2 % beyond the limit.
-/// Below `fewest` a cloth would have no time to leave its start; `most` bounds the work of large meshes and
-/// of explicit Euler, whose d e / 2 may ask for a million.
+/// The number of steps of a trial at the limit: so many that growth shows at a step 2 % beyond the limit, by
+/// the growth rates of mode_growth.h. With a step beyond the limit by a share x, a vibration grows by exp(g)
+/// a step. Under symplectic Euler and Verlet, without damping, 2 cosh(g) = 2 + 8 x: g = sqrt(8 x) = 0.4 at
+/// 2 %. With damping, the root leaves -1 along the real axis: g = 2 x (4 - d) / d for d = damping dt. Under
+/// RK4, g = 7.1 x. In fewer steps than `fewest` a cloth would not leave its start. `most_vertex_steps` bounds
+/// the work of large meshes, `most` that of explicit Euler, whose g = d x / 2 may ask for a million steps.
 int steps_at_limit(Method method, const model::Mode& mode, double limit, std::size_t vertices) {
   constexpr double fewest = 240, most = 600, most_vertex_steps = 3e6;
   const double affordable = std::clamp(most_vertex_steps / static_cast<double>(vertices), 200.0, most);
@@ -85,7 +85,8 @@ class Column {
               [](const EnergyTrial& a, const EnergyTrial& b) { return a.dt < b.dt; });
     return ok();
   }
-  /// All trials of a column simulate the same time, so that their energies can be compared.
+  /// The number of steps of a trial with the step `dt` [s]: within bounds, all trials of a column simulate
+  /// the same time, so that their energies can be compared.
   int steps_of(double dt) const {
     return std::clamp(static_cast<int>(std::round(time_ / dt)), 32, static_cast<int>(farthest * most_steps_));
   }
@@ -146,7 +147,8 @@ class Column {
     }
   }
 
-  /// The most energy of the shortest step that held; where it was cut short, of the one that came farthest.
+  /// The largest energy of the shortest step that held [J]; where the bound on steps cut its time short, of
+  /// a longer step that held for a longer time. If no step held: of the shortest step.
   double stable_energy() const {
     const EnergyTrial* stable = nullptr;
     for (const EnergyTrial& trial : trials_)
@@ -179,7 +181,7 @@ class Column {
   model::Mode mode_;
   double visible_ = 0, time_ = 0;
   int most_steps_ = 0;
-  std::vector<EnergyTrial> trials_;  // rising dt
+  std::vector<EnergyTrial> trials_;  // sorted by rising dt
   MeasuredColumn measured_;
 };
 

@@ -9,44 +9,44 @@
 
 namespace clothlab::lab {
 
-/// What is likely behind a boundary that is not where theory has it.
+/// The likely cause of a measured boundary that differs from theory's.
 enum class Cause {
-  none,       ///< it is where theory has it
+  none,       ///< the boundary is where theory has it
   too_short,  ///< growth beyond the limit is too slow to show in a trial
   tension,    ///< the springs are stretched, which stiffens the cloth
-  bounded,    ///< what grows comes to an end before it is a blow-up
-  shape,      ///< the springs are turned or slack
+  bounded,    ///< the growth ends by itself before it is a blow-up
+  shape,      ///< the cloth leaves its rest shape: its springs are turned or slack
   contacts,   ///< without colliders and self-collision the same step holds
   energy,     ///< a method that no step should make unstable gained energy
   unknown
 };
-/// A phrase: "the springs are stretched, which adds stiffness across them".
+/// The cause in words, such as "the cloth does not stay near its rest shape"; empty for Cause::none.
 const char* phrase(Cause cause);
 
 struct MeasuredColumn {
   MapColumn column;
   Cause cause = Cause::none;
-  double time = 0;           ///< simulated at most by one trial [s]
-  int steps = 0;             ///< at most
-  bool held_beyond = false;  ///< a step longer than the shortest that failed held
+  double time = 0;           ///< longest time that a trial simulated [s]
+  int steps = 0;             ///< largest number of steps of a trial
+  bool held_beyond = false;  ///< true if a step held that is longer than the shortest that failed
 };
 
-/// A way to run scenes with one method that keeps its kernels from one to the next.
+/// Runs scenes with one method, and keeps the compiled kernels from one scene to the next.
 class Runner {
  public:
-  /// The scene, ready to be run.
+  /// The simulation of `scene`, ready to run. It belongs to the Runner, which changes it at the next call.
   Result<sim::Simulation*> prepare(const scene::Scene& scene);
 
  private:
   std::unique_ptr<sim::Simulation> simulation_;
 };
 
-/// Told before each trial: its step [s] and the share of the column that is done.
+/// Called before each trial with its step [s] and the share of the column that is done.
 using AtTrial = std::function<void(double dt, double share)>;
 
-/// Measures the boundary of the scene's own method to 1 %, from steps around the theory's limit; a method
-/// without a limit is tried at a few long steps. `bare` runs the scene without contacts. Error: GL, or
-/// cancelled.
+/// Measures the stability boundary of the scene's own method to 1 %, from steps around theory's limit; a
+/// method without a limit is tried at a few long steps. `value` becomes the column's value; `bare` runs the
+/// scene without contacts. Error: GL, or cancelled.
 Result<MeasuredColumn> measure_column(const scene::Scene& scene, double value, Runner& runner, Runner& bare,
                                       const std::stop_token& stop, const AtTrial& at_trial);
 

@@ -15,7 +15,7 @@ using scene::json;
 
 const char* const stiffness = "stiffness";
 
-/// The value a pointer names, or null.
+/// The value that a JSON Pointer names; null: there is none.
 json* find_value(json& document, const std::string& pointer) {
   const auto tokens = scene::split_pointer(pointer);
   if (!tokens || tokens->empty()) return nullptr;
@@ -25,7 +25,7 @@ json* find_value(json& document, const std::string& pointer) {
   return at;
 }
 
-/// Multiplies the stiffnesses of every cloth.
+/// Multiplies all stiffnesses of every cloth by `factor`.
 void scale_stiffness(json& document, double factor) {
   for (json& cloth : document["cloths"])
     for (const char* kind : {"structural", "shear", "bend"})
@@ -59,7 +59,8 @@ Result<MapField> MapField::find(const scene::Document& document, const std::stri
   if (field == "/version")
     return Error{"field", "\"/version\"", "a number that means something to the cloth"};
   found.present_ = value->get<double>();
-  // Halfway to the next number on either side: where both are refused and it is whole, only such are allowed.
+  // Only whole numbers are allowed if the present value is whole, the scene refuses the values 0.5 above and
+  // below and allows one of the values 1 above and below.
   found.whole_ = found.present_ == std::round(found.present_) && !found.allowed(found.present_ + 0.5) &&
                  !found.allowed(found.present_ - 0.5) &&
                  (found.allowed(found.present_ + 1) || found.allowed(found.present_ - 1));
@@ -133,7 +134,7 @@ std::string MapField::unit() const {
       {"translate", "m"},    {"rotate", "degrees"}, {"size", "m"},
       {"vertices", "m"},     {"box", "m"},          {"degrees_per_second", "degrees/s"}};
   if (field_ == stiffness) return "times the present";
-  // The last key that is no index of an array says what it is.
+  // The unit follows from the last key of the pointer that is not an array index.
   const auto tokens = scene::split_pointer(field_);
   for (auto token = tokens->rbegin(); token != tokens->rend(); ++token) {
     if (scene::array_index(*token, 1u << 30)) continue;

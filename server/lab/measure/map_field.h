@@ -1,4 +1,4 @@
-// The number of a scene that a stability map varies.
+// The number of a scene that a stability map varies: its horizontal axis.
 #pragma once
 
 #include <optional>
@@ -9,20 +9,22 @@
 
 namespace clothlab::lab {
 
-/// All stiffnesses of all cloths times a factor, or one number of the scene by its JSON Pointer.
+/// Either one number of the scene, named by its JSON Pointer, or "stiffness": a factor on all stiffnesses of
+/// all cloths.
 class MapField {
  public:
-  /// Error: no such place, no number there, or a number that a map cannot have for an axis.
+  /// Error: `field` names nothing in the scene, no number, or a number that cannot be the map's axis (dt, the
+  /// document's version).
   static Result<MapField> find(const scene::Document& document, const std::string& field);
 
-  /// The scene with that value; where only whole numbers are allowed `value` becomes the nearest. Error: the
-  /// validator's.
+  /// The scene with the field set to `value`, which is first rounded where only whole numbers are allowed.
+  /// Error: why the scene does not allow the value.
   Result<scene::Document> with(double& value) const;
 
-  /// `columns` values from `from` to `to`, rising, each allowed in the scene and different from the others.
-  /// Without ends: a hundredth to a hundred times the present value, or as far as the scene allows, a quarter
-  /// to four times where only whole numbers are allowed; for one below 0, twice the present value to 0.
-  /// Evenly spaced in the logarithm where `from` is above 0. Error: what is wrong with the range.
+  /// The map's columns: `columns` rising values from `from` to `to` (fewer where whole numbers coincide),
+  /// evenly spaced, in the logarithm where `from` is above 0. Default range, as far as the scene allows: a
+  /// hundredth to a hundred times the present value; a quarter to four times where only whole numbers are
+  /// allowed; twice the present value to 0 where that value is negative. Error: what is wrong with the range.
   Result<std::vector<double>> values(std::optional<double> from, std::optional<double> to, int columns) const;
 
   double present() const { return present_; }
@@ -31,7 +33,7 @@ class MapField {
  private:
   MapField(const scene::Document& document, std::string field) : document_(document), field_(field) {}
   bool allowed(double value) const;
-  /// The value nearest to `end` on the way from the present one that the scene allows.
+  /// The allowed value nearest to `end`, searched between the present value and `end`.
   double nearest_allowed(double end) const;
 
   scene::Document document_;

@@ -12,13 +12,14 @@ namespace {
 
 using scene::Method;
 
-/// s dt for the root s of s^2 + damping s + omega^2 that is farthest from 0, and the other one.
+/// The two roots s of s^2 + damping s + omega^2 = 0, times dt; the root farther from 0 comes first.
 std::pair<std::complex<double>, std::complex<double>> roots(const model::Mode& mode, double dt) {
   const double half = 0.5 * mode.damping;
   const std::complex<double> spread = std::sqrt(std::complex<double>(half * half - mode.omega_squared));
   return {dt * (-half - spread), dt * (-half + spread)};
 }
 
+/// Explicit Euler's and RK4's factor on the amplitude in one step, for w = s dt.
 std::complex<double> explicit_factor(const std::complex<double>& w) {
   return 1.0 + w;
 }
@@ -26,15 +27,17 @@ std::complex<double> rk4_factor(const std::complex<double>& w) {
   return 1.0 + w * (1.0 + w / 2.0 * (1.0 + w / 3.0 * (1.0 + w / 4.0)));
 }
 
-/// With q = omega^2 dt^2 and d = damping dt: l^2 - (2 - q - d) l + 1 - d = 0, as v takes the damping of the
-/// step before. Beyond the limit, q + 2 d > 4, a root lies below -1.
+/// Symplectic Euler's factor l solves l^2 - (2 - q - d) l + 1 - d = 0, with q = omega^2 dt^2 and d = damping
+/// dt: the damping uses the velocity of the step before. Beyond the limit, q + 2 d > 4, one root lies below
+/// -1; returns its absolute value.
 double symplectic_factor(double q, double d) {
   const double half_trace = 0.5 * (2.0 - q - d);
   return -half_trace + std::sqrt(std::max(0.0, half_trace * half_trace - (1.0 - d)));
 }
 
-/// l^3 - (2 - q - 3/2 d) l^2 + (1 - 2 d) l + d / 2 = 0: place, velocity in the middle of the step, and the
-/// velocity predicted for the damping. Beyond the limit, q + 4 d > 4, a root lies below -1.
+/// Verlet's factor l solves l^3 - (2 - q - 3/2 d) l^2 + (1 - 2 d) l + d / 2 = 0. The three unknowns are the
+/// position, the velocity in the middle of the step, and the velocity predicted for the damping. Beyond the
+/// limit, q + 4 d > 4, one root lies below -1; returns its absolute value, found by bisection.
 double verlet_factor(double q, double d) {
   const auto value = [&](double l) {
     return ((l - (2.0 - q - 1.5 * d)) * l + (1.0 - 2.0 * d)) * l + 0.5 * d;

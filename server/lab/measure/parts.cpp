@@ -21,8 +21,8 @@ Result<Document> without_springs(const Document& document, const char* key) {
   for (json& cloth : value["cloths"]) cloth["material"][key] = 0.0;
   Result<Document> without = scene::validate(std::move(value));
   if (!without) return without;
-  // A stiffness alone makes no spring: a triangle mesh has no shear springs, and bend springs across edges
-  // only.
+  // The cloth may have no such springs in spite of its stiffness: a triangle mesh has no shear springs, and
+  // bend springs only across edges. So the springs are counted.
   const Result<model::Model> model = model::build(document.scene), fewer = model::build(without->scene);
   if (!model || !fewer) return model ? fewer.error() : model.error();
   if (model->springs().size() == fewer->springs().size())

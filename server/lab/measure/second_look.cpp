@@ -11,15 +11,15 @@ namespace clothlab::lab {
 
 namespace {
 
-constexpr int most_looks = 96, fewest_looks = 24;  // at a setting
-constexpr double most_positions = 2e6;             // kept of all of them
+constexpr int most_looks = 96, fewest_looks = 24;  // times at which one setting is compared
+constexpr double most_positions = 2e6;             // vertex positions kept for all settings together
 
-/// What one setting does, at the times that are looked at.
+/// The motion of one setting, at the times at which it is compared.
 struct Path {
   std::vector<double> time;                      ///< [s]
   std::vector<std::vector<glm::vec3>> position;  ///< [look][vertex] [m]
-  std::vector<double> error;                     ///< [look]
-  bool every_step = true;
+  std::vector<double> error;                     ///< [look] RMS position error over the cloth's size
+  bool every_step = true;                        ///< there is a look at every step
 };
 
 Result<Path> record(scene::Scene scene, const Truth& truth, int looks, Bench& bench,
@@ -53,11 +53,11 @@ double rms(const std::vector<glm::vec3>& position, const std::vector<glm::dvec3>
   return std::sqrt(sum / static_cast<double>(exact.size()));
 }
 
-/// Takes the reference through every time of every path; false: cancelled.
+/// Runs the reference through every time of every path and fills in the paths' errors. False: cancelled.
 bool compare(std::vector<Path>& paths, const Truth& truth, const std::stop_token& stop) {
   Follower follower(truth.world, truth.dt, stop);
   reference::State state = reference::at_rest(truth.world);
-  const double same = 1e-9 * truth.spacing;  // times that only rounding tells apart
+  const double same = 1e-9 * truth.spacing;  // times closer than this [s] differ only by rounding
   for (double now = 0.0;;) {
     double next = INFINITY;
     for (const Path& path : paths)
@@ -71,10 +71,10 @@ bool compare(std::vector<Path>& paths, const Truth& truth, const std::stop_token
   }
 }
 
-/// None: it blew up.
+/// The path's largest error; none if the setting blew up.
 std::optional<LargestError> largest(const Path& path, const Truth& truth) {
   LargestError result;
-  double before = 0.0, jump = 0.0;  // nothing is wrong at the start
+  double before = 0.0, jump = 0.0;  // the error is 0 at the start
   for (const double error : path.error) {
     if (!std::isfinite(error)) return std::nullopt;
     result.seen = std::max(result.seen, error);

@@ -1,6 +1,6 @@
-// The position errors of settings at every step, or nearly: what a choice may promise. A search looks at the
-// few times that its runs and the reference have in common, 4 of them where steps are long; the largest error
-// may lie between.
+// The largest position errors of settings, measured at every step or at many, so that a choice can promise
+// them. A search compares only at the times that its runs and the reference have in common, as few as 4 where
+// steps are long; the largest error may lie between these times.
 #pragma once
 
 #include <functional>
@@ -14,14 +14,16 @@
 
 namespace clothlab::lab {
 
-/// The largest position error up to the horizon, over the cloth's size. It is no more than `high`: to what
-/// was seen comes half of the largest change from one look to the next, where there are steps between, and
-/// the reference's own error; and no less than `low`.
+/// The largest position error up to the horizon, as a share of the cloth's size: between `low` and `high`.
+/// `low` is `seen`, the largest error at any look, less the reference's own error; `high` is `seen` plus the
+/// reference's own error and, if steps lie between two looks, half of the largest change of the error from
+/// one look to the next.
 struct LargestError {
   double seen = 0, low = 0, high = 0;
 };
 
-/// By setting; none where it blew up. The reference goes once more, through all the times that are looked at.
+/// The largest error of each setting, in the order of `settings`; none for a setting that blew up. Runs the
+/// reference once more, through all times at which the settings are compared.
 Result<std::vector<std::optional<LargestError>>> look_again(const scene::Scene& scene, const Truth& truth,
                                                             const std::vector<Setting>& settings,
                                                             Bench& bench, const std::stop_token& stop);

@@ -14,15 +14,17 @@ namespace clothlab::lab {
 
 namespace {
 
-/// In units of sqrt(g / size), about the slowest swing of a hanging cloth: drag that just lets it not swing.
+/// The thick air's drag in units of sqrt(g / size), about the angular frequency of a hanging cloth's slowest
+/// swing: with this drag the cloth comes to rest almost without swinging.
 constexpr double drag = 1.5;
-constexpr double swings = 16.0;  // in units of sqrt(size / g): the slowest motion falls to 1e-5 in that time
-constexpr std::uint32_t most_vertices = 4096;  // whose balance Newton's method finds in seconds
+constexpr double swings = 16.0;  // settling time in units of sqrt(size / g): the slowest motion falls to 1e-5
+constexpr std::uint32_t most_vertices = 4096;  // up to here Newton's method finds the balance in seconds
 
 bool moves(const scene::Motion& motion) {
   return !std::holds_alternative<std::monostate>(motion);
 }
 
+/// Why the scene has no shape of rest that can be computed; none if it may have one.
 std::optional<Error> unfit(const reference::World& world) {
   for (const scene::Motion& motion : world.model.motions)
     if (moves(motion)) return Error{"rest", "a pin moves, so nothing comes to rest", "pins that stand still"};

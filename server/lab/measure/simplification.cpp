@@ -14,7 +14,7 @@ namespace {
 
 using scene::Document;
 
-constexpr double share_of_truth = 0.4;  // of the job, for its progress
+constexpr double share_of_truth = 0.4;  // of the job's progress: computing the reference
 
 std::string percent(double share) {
   return significant(100.0 * share, 3) + " %";
@@ -100,7 +100,7 @@ class Maker {
     return variant.measured && variant.change && *variant.change <= request_.tolerance;
   }
 
-  /// From the part that saves most, one more at a time, as long as the next saves something besides.
+  /// Leaves out the part that saves most, then the others one by one, each only if it saves something more.
   Status recommend() {
     std::vector<Substitute*> saving;
     for (Substitute& candidate : candidates_)
@@ -117,14 +117,15 @@ class Maker {
         going.push_back(next);
         continue;
       }
-      if (next->coarser() && best.coarser()) continue;  // one resolution
+      if (next->coarser() && best.coarser()) continue;  // not twice
       if (Status tried = try_besides(best, going, next); !tried) return tried;
     }
     if (!going.empty()) recommended(going, best);
     return ok();
   }
 
-  /// Whether `next` can go too: together they keep the tolerance, and cost less than without it.
+  /// Adds `next` to the parts in `going` if all of them together keep the tolerance and cost less than
+  /// `best`, the scene without those in `going`; otherwise adds a note that says why not.
   Status try_besides(Substitute& best, std::vector<Substitute*>& going, Substitute* next) {
     std::vector<Substitute*> all = going;
     all.push_back(next);
@@ -153,7 +154,7 @@ class Maker {
     return ok();
   }
 
-  /// What these do when all are gone.
+  /// Measures the scene without all the parts in `going` at once.
   Status measure_together(const std::vector<Substitute*>& going, Substitute& together) {
     std::vector<std::string> names;
     Document document = document_;
@@ -162,7 +163,7 @@ class Maker {
       together.parts.push_back(candidate->parts.front());
     }
     together.variant.name = list(names);
-    // Meshes are made coarser last, of what is left.
+    // The mesh is made coarser last, after the other parts have been left out.
     for (const bool coarser : {false, true})
       for (const Part* part : together.parts) {
         if ((part->coarser > 1) != coarser) continue;

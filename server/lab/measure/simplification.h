@@ -1,4 +1,4 @@
-// What a scene's parts are worth: what leaving one out, or making it coarser, does to error and cost.
+// What a scene's parts are worth: how leaving a part out, or making the mesh coarser, changes error and cost.
 #pragma once
 
 #include <functional>
@@ -13,28 +13,28 @@
 namespace clothlab::lab {
 
 struct Variant {
-  std::string name;  ///< "without bend springs", "half the mesh resolution", ..., "all of these together"
-  json patch;        ///< merge patch of the scene that makes it so
+  std::string name;  ///< "without bend springs", "half the mesh resolution", ..., or some joined by "and"
+  json patch;        ///< merge patch that turns the scene into this variant
   bool measured = false;
-  std::string reason;  ///< why not measured: "the scene has no bend springs"
+  std::string reason;  ///< why the variant was not measured: "the scene has no bend springs"
   Errors error;        ///< against the reference of the whole scene
   std::optional<double>
-      change;  ///< RMS distance to the whole scene stepped alike, at the horizon, over the size
+      change;  ///< RMS distance to the whole scene with the same setting, at the horizon, over the size
   std::optional<Cost> cost;
-  Spread cost_ratio;  ///< over the whole scene's, timed taking turns
+  Spread cost_ratio;  ///< the variant's cost over the whole scene's, both timed in turns
   Saving saving = Saving::unknown;
   double dt_limit = 0;  ///< [s]; infinite: none
-  bool drop = false;    ///< recommended
+  bool drop = false;    ///< leaving this out is recommended
 };
 
 struct Simplification {
   std::string scene, renderer;
   double tolerance = 0, time = 0, horizon = 0, size = 0;
-  Setting setting;  ///< all variants are stepped by
+  Setting setting;  ///< the scene's own; a coarser mesh takes a step of the same share of its limit
   Variant whole;    ///< the scene as it is
   std::vector<Variant> variants;
-  Variant recommended;  ///< all that can go, together, measured; its patch is empty where nothing can
-  /// Whether `recommended` is none of the variants alone.
+  Variant recommended;  ///< the scene without all parts that can go; its patch is empty where none can
+  /// True if `recommended` leaves out more than one part, and so is none of `variants`.
   bool together() const;
   std::string why;  ///< one sentence
   std::vector<std::string> notes;
@@ -42,10 +42,10 @@ struct Simplification {
 };
 
 struct SimplifyRequest {
-  double tolerance = 1e-2;     ///< what a part may change, RMS position over size
-  std::optional<double> time;  ///< [s]; none: 1
-  /// Times a scene once, in ms a simulated second; none: a stopwatch. For tests, which no machine's other
-  /// work is to decide.
+  double tolerance = 1e-2;     ///< largest `change` allowed: RMS distance over the size; (0, 1]
+  std::optional<double> time;  ///< simulated time [s]; none: 1
+  /// Times a scene once [ms per simulated second]; none: the scene is run and timed by the clock. For tests,
+  /// whose outcome must not depend on the machine's other work.
   std::function<double(const scene::Scene&)> timer = {};
 };
 

@@ -15,7 +15,7 @@ Spread spread_of(std::vector<double> values, double doubt) {
   spread.median = count % 2 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
   // The chance that at most k of the values are above the median: a sum of binomials.
   double chance = std::exp2(-static_cast<double>(count)), sum = chance;
-  std::size_t from_the_end = 0;  // how many values may be left out at each end, and one
+  std::size_t from_the_end = 0;  // `low` and `high` are this many values from the ends; 0: too few values
   for (std::size_t k = 0; k < count / 2 && sum <= doubt; ++k) {
     from_the_end = k + 1;
     chance *= static_cast<double>(count - k) / static_cast<double>(k + 1);
@@ -28,7 +28,7 @@ Spread spread_of(std::vector<double> values, double doubt) {
 }
 
 std::string text(const Spread& ratio) {
-  // Hundredths, or two digits of what is smaller.
+  // Two decimals, or two significant digits below 0.1.
   const auto written = [](double value) {
     return value >= 0.1 ? formatted("%.2f", value) : significant(value, 2);
   };
@@ -57,6 +57,7 @@ Saving saving(const Spread& ratio) {
 
 namespace {
 
+/// Fills in the ratio and the saving from the rounds in which both things were timed.
 void judge(CostComparison& comparison, const std::vector<std::vector<double>>& times) {
   const std::vector<double>&own = times[comparison.thing], &other = times[comparison.over];
   std::vector<double> ratios;
@@ -80,7 +81,7 @@ Result<std::vector<std::vector<double>>> take_turns(std::size_t things,
     for (; round < look && (round < looks[0] || more()); ++round) {
       for (std::size_t turn = 0; turn < things; ++turn) {
         const std::size_t thing = round % 2 ? things - 1 - turn : turn;
-        // Rounds stay rounds: what is decided has no time in the later ones.
+        // A thing that is decided is no longer timed: NaN holds its place, so that rounds stay aligned.
         Result<double> spent = goes_on[thing] ? time(thing) : std::nan("");
         if (!spent) return spent.error();
         times[thing].push_back(*spent);
@@ -88,7 +89,7 @@ Result<std::vector<std::vector<double>>> take_turns(std::size_t things,
     }
     std::fill(goes_on.begin(), goes_on.end(), false);
     for (CostComparison& comparison : comparisons) {
-      if (look > looks[0] && comparison.saving != Saving::cannot_tell) continue;  // said is said
+      if (look > looks[0] && comparison.saving != Saving::cannot_tell) continue;  // already decided
       judge(comparison, times);
       if (comparison.matters && comparison.saving == Saving::cannot_tell)
         goes_on[comparison.thing] = goes_on[comparison.over] = true;

@@ -1,5 +1,5 @@
-// What repeated timings can tell: a median with the interval that holds it, whatever the law of the noise,
-// and whether one thing costs less than another by more than that.
+// What repeated timings can tell: a median with an interval that contains it, whatever the distribution of
+// the noise, and whether one thing costs less than another by more than the noise.
 #pragma once
 
 #include <functional>
@@ -13,49 +13,53 @@ namespace clothlab::lab {
 
 struct Spread {
   double median = 1;
-  double low = 0, high = std::numeric_limits<double>::infinity();  ///< 0 and infinite: too few to tell
+  double low = 0, high = std::numeric_limits<double>::infinity();  ///< 0 and infinite: too few values to tell
 };
 
-/// The median of what the values are drawn from lies between two of them, `low` and `high`: it is above
-/// `high` with a chance of at most `doubt`, and below `low` likewise. (Each value is above it with a chance
-/// of a half, so how many are is a matter of counting.)
+/// The median of `values`, and two of the values, `low` and `high`, as an interval for the median of the
+/// distribution they come from: that median is above `high` with a chance of at most `doubt`, and below `low`
+/// likewise. (Each value is above that median with a chance of a half, so the number of values above it is
+/// binomial.)
 Spread spread_of(std::vector<double> values, double doubt);
 
-/// "0.97 [0.85..1.08]"; without an interval where there is none.
+/// "0.97 [0.85..1.08]", or only the median where there are too few values for an interval.
 std::string text(const Spread& ratio);
 
 enum class Saving {
   unknown,     ///< not timed
-  yes,         ///< costs less than `worth_it` of the other
-  no,          ///< costs more than that
-  cannot_tell  ///< within the noise
+  yes,         ///< the whole interval of the costs' ratio is at most `worth_it`
+  no,          ///< the whole interval is above `worth_it`
+  cannot_tell  ///< `worth_it` lies within the interval
 };
 const char* name(Saving saving);  ///< "", "yes", "no", "cannot tell"
 
-/// Of the other's cost: what saves less is not worth a change of the model.
+/// The largest ratio of costs that counts as a saving: a smaller saving is not worth a change of the model.
 inline constexpr double worth_it = 0.95;
-/// What can be said of costs whose ratio was measured as this.
+/// The verdict on a measured ratio of costs: `yes` or `no` only if the whole interval says so.
 Saving saving(const Spread& ratio);
 
-/// How often a recommendation may save nothing, over all its comparisons, of which there are at most so many.
+/// The largest chance that any comparison behind a recommendation wrongly finds a saving, and the largest
+/// number of these comparisons: 6 parts against the whole scene, 5 combinations of parts against smaller
+/// ones.
 inline constexpr double most_doubt = 0.01;
 inline constexpr int most_comparisons = 11;
-/// Rounds after which is looked whether it is decided. After the first, the interval is from the least to the
-/// most: all of 12 on one side come with a chance of 2.4e-4.
+/// Numbers of rounds after which the timings are judged. After 12 rounds the interval reaches from the
+/// smallest to the largest ratio: all 12 are above the median (or all below) with a chance of 2.4e-4.
 inline constexpr int looks[] = {12, 24, 48};
 inline constexpr double doubt_a_look = most_doubt / (most_comparisons * 3);
 
-/// One thing's cost over another's.
+/// A comparison of the costs of two things.
 struct CostComparison {
-  std::size_t thing = 0, over = 0;
-  bool matters = true;  ///< rounds are added until it is decided
-  Spread ratio = {};
+  std::size_t thing = 0, over = 0;  ///< indices of the two things
+  bool matters = true;              ///< true: rounds are added until the comparison is decided
+  Spread ratio = {};                ///< the cost of `thing` over that of `over`
   Saving saving = Saving::unknown;
 };
 
-/// Times `things`, all in each round and in turns, every other round in the opposite order, so that a machine
-/// that grows slower flatters none; a ratio is of one round. `time` times one thing once; `more` says whether
-/// there is time left. Fills in the comparisons. [thing][round]
+/// Times the things 0 to `things` - 1 in turns, each once a round, and fills in `comparisons`. Every other
+/// round goes in the opposite order, so that a machine that becomes slower favours no thing; each ratio is
+/// taken within one round. `time` times one thing once; `more` returns true while there is time for further
+/// rounds. Returns the times, [thing][round].
 Result<std::vector<std::vector<double>>> take_turns(std::size_t things,
                                                     std::vector<CostComparison>& comparisons,
                                                     const std::function<Result<double>(std::size_t)>& time,

@@ -17,13 +17,13 @@ namespace {
 
 using scene::Method;
 
-/// "0.01", or "0.01 to 3.2".
+/// The columns' range of values: "0.01", or "0.01 to 3.2".
 std::string span(const std::vector<const MeasuredColumn*>& columns) {
   const std::string first = significant(columns.front()->column.value, 3);
   return columns.size() == 1 ? first : first + " to " + significant(columns.back()->column.value, 3);
 }
 
-/// Measured over theory, least and most.
+/// The measured limit over theory's, smallest to largest: "0.9 to 0.95 times theory's".
 std::string ratio(const std::vector<const MeasuredColumn*>& columns) {
   double least = model::no_limit, most = 0.0;
   for (const MeasuredColumn* column : columns) {
@@ -52,7 +52,7 @@ std::string disagreement(const StabilityMap& map, Method method,
   return text + " (at " + significant(first.value, 3) + ": " + first.reason + ").";
 }
 
-/// What is worth saying of one method's columns.
+/// Collects the map's notes, method by method.
 class Notes {
  public:
   void add(const StabilityMap& map, Method method, const std::vector<MeasuredColumn>& columns) {
@@ -95,11 +95,13 @@ class Notes {
   std::string unlimited_;
 };
 
+/// The scene with the varied number set to `value`.
 struct Varied {
   double value = 0;
   scene::Scene scene;
 };
 
+/// The scenes of the map's columns; fills in the map's field, unit and present value.
 Result<std::vector<Varied>> varied(const scene::Document& document, const MapRequest& request,
                                    StabilityMap& map) {
   const Result<MapField> field = MapField::find(document, request.field);

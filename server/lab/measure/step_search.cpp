@@ -14,13 +14,16 @@ namespace {
 
 using scene::Method;
 
-constexpr double longest_of_all = 1.0 / 30;  // step [s]: what comes between two of them nobody would see
-constexpr double most_of_others = 20;        // times the best cost: where a runner-up is no longer looked for
-constexpr double far_off = 2.0;     // too dear by the method's order, which need not hold at long steps
-constexpr double most_a_run = 8.0;  // wall time of one run [s]
-constexpr int glances = 3;
-constexpr double glanced = 0.03;  // wall time of one timing at most [s]
+constexpr double longest_of_all = 1.0 / 30;  // longest step tried [s]: 30 states a second still look smooth
+constexpr double most_of_others = 20;  // a runner-up that costs more than this times the best is not searched
+/// A step predicted by the method's order may be too short by this factor before the search gives up: the
+/// order need not hold at long steps.
+constexpr double far_off = 2.0;
+constexpr double most_a_run = 8.0;  // largest expected wall time of one run [s]
+constexpr int glances = 3;          // brief timings of each candidate
+constexpr double glanced = 0.03;    // wall time of one of these timings at most [s]
 
+/// The settings tried with a method, their steps not yet chosen.
 std::vector<Setting> settings_of(Method method) {
   if (scene::solves(method))
     return {{method, 0, 1, 1e-4}, {method, 0, 1, 1e-6}, {method, 0, 2, 1e-4}, {method, 0, 4, 1e-4}};
@@ -62,7 +65,7 @@ Status StepSearch::list(std::vector<Method> methods) {
   return ok();
 }
 
-/// What a step of each costs, about: the least of some short runs, taking turns.
+/// Estimates what a step of each candidate costs: the smallest of a few short timings, taken in turns.
 Status StepSearch::glance() {
   std::vector<scene::Scene> scenes;
   for (const Candidate& candidate : candidates_) scenes.push_back(with(scene_, candidate.setting));
@@ -95,8 +98,9 @@ Result<double> StepSearch::error_at(Candidate& candidate, double dt, Point& poin
              : unknown;
 }
 
-/// What a setting of the method may cost to be of interest [ms per simulated second]: as the best, or as
-/// the best of another method.
+/// The cost [ms per simulated second] up to which a setting of the method is of interest: that of the best so
+/// far if `method` has the best, else that of the runner-up, which is the best of the other methods, but at
+/// most `most_of_others` times the best.
 double StepSearch::of_interest(Method method) const {
   double best = unknown, other = unknown;
   Method best_method = method;
@@ -112,7 +116,8 @@ double StepSearch::of_interest(Method method) const {
   return std::min(other, most_of_others * best);
 }
 
-/// Whether what the best costs is known so well that one run shows what cannot beat it.
+/// True if the cost `most` [ms per simulated second] is below 3 times the best so far. A search then begins
+/// at the step that costs `most`, as one run there shows whether the candidate can compete.
 bool StepSearch::close_at_hand(double most) const {
   double best = unknown;
   for (const Candidate& candidate : candidates_)
@@ -125,7 +130,7 @@ Status StepSearch::search(Candidate& candidate) {
   const double longest = candidate.setting.dt;
   Point point;
   double kept = 0.0, missed = unknown;
-  const double dearest = 1000.0 * candidate.step_cost / most;  // the step at which it would cost too much
+  const double dearest = 1000.0 * candidate.step_cost / most;  // shorter steps cost more than `most` [s]
   for (double dt = close_at_hand(most) ? std::min(longest, dearest) : longest; kept == 0.0;) {
     if (candidate.cost(longest) > most || candidate.step_cost * truth_.horizon / dt > most_a_run) return ok();
     const Result<double> error = error_at(candidate, dt, point);
@@ -141,8 +146,9 @@ Status StepSearch::search(Candidate& candidate) {
     if (hoped * far_off < dearest || dt <= dearest) return ok();
     dt = std::clamp(hoped, missed / 16, missed / 1.3);
   }
-  if (missed == unknown && kept < longest) missed = near_enough * longest;  // which itself may keep it
-  // From a step that keeps the tolerance towards one that misses it: where the order says, then halfway.
+  if (missed == unknown && kept < longest) missed = near_enough * longest;  // `longest` itself may be good
+  // Between a step that keeps the tolerance and one that misses it, tries the step that the method's order
+  // predicts, then the geometric mean.
   double dt = kept * std::pow(tolerance_ / *candidate.best->largest_position_error,
                               1.0 / scene::facts(candidate.setting.method).order);
   while (kept < longest / near_enough && missed > near_enough * kept) {
@@ -150,7 +156,7 @@ Status StepSearch::search(Candidate& candidate) {
       dt = std::sqrt(kept * missed);
     const Result<double> error = error_at(candidate, std::min(dt, longest), point);
     if (!error) return error.error();
-    if (point.setting.dt <= kept || point.setting.dt >= missed) break;  // no step lies between
+    if (point.setting.dt <= kept || point.setting.dt >= missed) break;  // no other step lies between
     if (*error <= tolerance_) {
       kept = point.setting.dt;
       keep(candidate, point);

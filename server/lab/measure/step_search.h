@@ -1,5 +1,6 @@
-// For each method and number of iterations the longest step of a scene that keeps a tolerance: what a choice
-// is made from. What is found cheap spares the search for what must be dearer.
+// Searches, for each method and number of iterations, the longest step of a scene that keeps a tolerance; a
+// choice is made from the results. Candidates that are sure to cost too much to be the best or the runner-up
+// are not searched.
 #pragma once
 
 #include <limits>
@@ -11,22 +12,23 @@
 
 namespace clothlab::lab {
 
-/// A method with its iterations, whose longest step that keeps the tolerance is looked for.
+/// A method with its iterations and tolerance, for which the longest step that is accurate enough is
+/// searched.
 struct Candidate {
-  Setting setting;       ///< with the longest step that may be tried
-  double limit = 0;      ///< of the step [s]
-  double step_cost = 0;  ///< wall time of a step [s]
-  std::optional<Point> best;
-  std::vector<double> times = {};  ///< of the rounds of the last race [ms per simulated second]
+  Setting setting;                 ///< its dt is the longest step that may be tried
+  double limit = 0;                ///< the longest stable step [s]; infinite: any step is stable
+  double step_cost = 0;            ///< wall time of a step [s]
+  std::optional<Point> best;       ///< at the longest step found that keeps the tolerance
+  std::vector<double> times = {};  ///< [round] of the final timing in turns [ms per simulated second]
 
   double cost(double dt) const { return 1000.0 * step_cost / dt; }  ///< [ms per simulated second]
 };
 
-/// An error or a cost that is worse than any.
+/// Stands for an error or a cost that is not known: worse than any.
 inline constexpr double unknown = std::numeric_limits<double>::infinity();
-/// In estimated cost: who might still turn out to be the cheapest when timed properly.
+/// A candidate of at most this times the best estimated cost may turn out the cheapest when timed properly.
 inline constexpr double close_race = 1.35;
-/// Between a step that keeps the tolerance and one that does not, where a search ends.
+/// A search ends when a step that misses the tolerance is at most this times one that keeps it.
 inline constexpr double near_enough = 1.06;
 
 class StepSearch {
@@ -35,24 +37,26 @@ class StepSearch {
              std::stop_token stop)
       : scene_(scene), truth_(truth), tolerance_(tolerance), bench_(bench), stop_(std::move(stop)) {}
 
-  /// Lists the candidates of the methods (empty: of all) and glances at what a step of each costs. Those with
-  /// a step limit come first, as their longest step is most often accurate already; then those whose longest
-  /// step costs least. Error: none is stable at any step, GL, or cancelled.
+  /// Lists the candidates of `methods` (empty: of all methods) and times each briefly. Candidates with a step
+  /// limit come first, as their longest step is most often accurate already; within both groups the cheapest
+  /// at its longest step comes first. Error: no method is stable at any step, GL, or cancelled.
   Status list(std::vector<scene::Method> methods);
   std::vector<Candidate>& candidates() { return candidates_; }
 
-  /// Looks for the candidate's longest step that keeps the tolerance, as long as it may be of interest: as
-  /// cheap as the best so far, or as the best of another method.
+  /// Searches the candidate's longest step that keeps the tolerance, and fills in `best`. Gives up when the
+  /// candidate can become neither the cheapest of all nor the cheapest of the methods other than the best's.
   Status search(Candidate& candidate);
 
-  /// Runs the candidate at a step; its largest position error, or `unknown` if it blew up. `point` gets what
-  /// there is to tell.
+  /// Runs the candidate at a step of about `dt` [s] and writes the measurements to `point`. Returns the
+  /// largest position error over the cloth's size, or `unknown` if the run blew up.
   Result<double> error_at(Candidate& candidate, double dt, Point& point);
 
-  /// The candidate at a step that is short enough, so it is hoped, for `too_large` to become the tolerance.
+  /// Runs the candidate at a step so much shorter than its best that, by the method's order, the error
+  /// `too_large` should fall to the tolerance; keeps this step as the best unless the run blew up. Returns as
+  /// `error_at`.
   Result<double> shorten(Candidate& candidate, double too_large);
 
-  /// The sharp step limit about the rest shape [s].
+  /// The method's longest stable step about the rest shape [s], exact to about 0.1 %.
   double limit_of(scene::Method method) const;
 
   const std::vector<Point>& tried() const { return tried_; }

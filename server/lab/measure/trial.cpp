@@ -17,21 +17,22 @@ namespace clothlab::lab {
 
 namespace {
 
-constexpr int fewest_samples = 4;       // that a run meets
-constexpr double most_rounding = 0.04;  // of the step, to meet more samples
-constexpr double same_step = 1e-5;      // a step with six digits is the one it was rounded from
+constexpr int fewest_samples = 4;       // samples of the truth that a run meets at least
+constexpr double most_rounding = 0.04;  // largest share of steps added in order to meet more samples
+constexpr double same_step = 1e-5;      // relative error of a step that was rounded to six digits
 constexpr double patience = 0.1;        // wall time between two looks at the stop token [s]
 
 double total(const sim::Diagnostics& state) {
   return state.kinetic + state.elastic + state.gravitational;
 }
 
-/// Adds up what a run's samples are off by.
+/// Accumulates a run's errors, sample by sample.
 class Comparison {
  public:
   explicit Comparison(const Truth& truth) : truth_(truth) {}
 
-  /// The run is at sample `k`, counted from 1.
+  /// Compares the run's present state with the truth's sample `k`, counted from 1, and updates `trial`'s
+  /// errors.
   void add(int k, sim::Simulation& simulation, const sim::Diagnostics& state, Trial& trial) {
     const auto sample = static_cast<std::size_t>(k - 1);
     if (sample >= truth_.energy.size()) return;
@@ -59,13 +60,13 @@ class Comparison {
   int count_ = 0;
 };
 
-/// Steps in pieces that each take less than `patience`.
+/// Steps a simulation in batches that take about `patience` each, and adds up their wall time.
 class Stepping {
  public:
   explicit Stepping(sim::Simulation& simulation) : simulation_(simulation) {}
   double wall() const { return wall_; }
 
-  /// At most `most` steps; how many it was.
+  /// Takes one batch of at most `most` steps; returns the number of steps taken.
   std::uint32_t step(std::uint64_t most) {
     const auto count =
         static_cast<std::uint32_t>(std::min<std::uint64_t>(most, std::max<std::uint64_t>(1, affordable_)));
@@ -86,8 +87,9 @@ class Stepping {
 int steps_to_horizon(double dt, const Truth& truth) {
   const double whole = truth.spacing * samples_to_horizon / dt;
   const double fewest = std::max(1.0, std::ceil(whole * (1.0 - same_step)));
-  // The largest power of two up to a twenty-fifth of them, and 4 at least. As it changes at 200, 400, ...
-  // steps, which are multiples of it on both sides, what is rounded stays as it is when it is rounded again.
+  // `multiple` is the largest power of two up to 4 % of the steps, at least 4 and at most 64. It doubles at
+  // 200, 400, ... steps, which are multiples of the old and the new value: rounding twice is the same as
+  // once.
   int multiple = fewest_samples;
   while (multiple < samples_to_horizon && 2 * multiple <= most_rounding * fewest) multiple *= 2;
   return static_cast<int>(std::ceil(fewest / multiple)) * multiple;
@@ -173,7 +175,7 @@ Result<std::vector<std::vector<double>>> Bench::time(const std::vector<scene::Sc
   std::vector<std::vector<double>> samples(scenes.size());
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t turn = 0; turn < scenes.size(); ++turn) {
-      // Back and forth: a machine that grows slower flatters none.
+      // Every other round goes backwards, so that a machine that becomes slower favours no scene.
       const std::size_t i = round % 2 ? scenes.size() - 1 - turn : turn;
       const Result<sim::Simulation*> prepared = prepare(scenes[i]);
       if (!prepared) return prepared.error();

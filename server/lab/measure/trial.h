@@ -1,4 +1,4 @@
-// One setting run on the GPU: what it gets wrong, whether it blows up, what it costs.
+// Runs one setting on the GPU and measures its errors, its cost and whether it blows up.
 #pragma once
 
 #include <array>
@@ -15,48 +15,49 @@
 namespace clothlab::lab {
 
 struct Trial {
-  Errors error;  ///< by Axis, those that the run was long enough for
-  std::optional<double> largest_position_error;
-  std::optional<double> blew_up_at;   ///< [s]
-  double wall = 0, simulated = 0;     ///< stepping alone, GPU finished [s]; of simulated time [s]
-  std::vector<glm::vec3> at_horizon;  ///< [vertex] [m]
+  Errors error;                                  ///< [Axis]; none where the run was too short for a sample
+  std::optional<double> largest_position_error;  ///< at any sample up to the horizon, over the size
+  std::optional<double> blew_up_at;              ///< [s]
+  double wall = 0, simulated = 0;                ///< wall time of stepping alone [s]; simulated time [s]
+  std::vector<glm::vec3> at_horizon;  ///< [vertex] positions [m]; empty: the horizon was not reached
 };
 
-/// Simulations that are kept from one trial to the next, so that kernels are compiled once a method. Needs
-/// the GL context current in which it was made.
+/// Runs trials, and keeps its simulations from one trial to the next, so that kernels are compiled once for
+/// each method. Needs the GL context that was current when the Bench was made.
 class Bench {
  public:
-  /// Ready at time 0, kernels compiled and warm. The pointer is good until the next call.
+  /// A simulation of `scene` at time 0, its kernels compiled and warm. The pointer is valid until the next
+  /// call.
   Result<sim::Simulation*> prepare(const scene::Scene& scene);
 
-  /// Runs `scene`, its step no longer than now and the horizon a whole number of them, through the truth's
-  /// samples until `until` [s], and judges each look. Error: GL, or cancelled.
+  /// Runs `scene` until `until` [s], compares it with the truth's samples on the way, and stops at a blow-up.
+  /// Its step is first shortened so that a whole number of steps makes the horizon. Error: GL, or cancelled.
   Result<Trial> run(scene::Scene scene, const Truth& truth, double until, const std::stop_token& stop);
 
-  /// The state after `time` [s], rounded to whole steps; none if it blew up on the way. Error: GL, or
+  /// The state of `scene` after `time` [s], rounded to whole steps; none if the run blew up. Error: GL, or
   /// cancelled.
   Result<std::optional<sim::State>> run_to(const scene::Scene& scene, double time,
                                            const std::stop_token& stop);
 
-  /// Times scenes taking turns: a warm-up is discarded, then each runs from the start for `simulated` seconds
-  /// of its own time, or until `most` [s] of wall time, `rounds` times. [scene][round] in ms per simulated
-  /// second.
+  /// Times `scenes` in turns, `rounds` times each: after a warm-up that does not count, a scene runs from its
+  /// start for `simulated` seconds of simulated time, or until it has taken `most` [s] of wall time. Returns
+  /// [scene][round] [ms per simulated second].
   Result<std::vector<std::vector<double>>> time(const std::vector<scene::Scene>& scenes, double simulated,
                                                 double most, int rounds, const std::stop_token& stop);
 
  private:
-  /// By method and, where it sweeps, what its kernels are made for.
+  /// By method and the number of sweeps for which the kernels were made (0 for a method that does not sweep).
   std::map<std::pair<scene::Method, int>, std::unique_ptr<sim::Simulation>> simulations_;
 };
 
-/// Of one scene's times.
+/// Summarises the timings of one scene [ms per simulated second].
 Cost cost_of(const std::vector<double>& times);
 
-/// Steps from the start to `truth.horizon` (without one, `truth.time`) at a step of at most `dt` [s]: rounded
-/// up by at most 4 % to a multiple of 4, 8, ... 64 (few steps: to the next multiple of 4), so that many of
-/// the truth's samples are met.
+/// The number of steps from the start to `truth.horizon` (without one, to `truth.time`) with a step of at
+/// most `dt` [s]. It is rounded up by at most 4 % to a multiple of 4, 8, ... 64 (where there are few steps,
+/// to the next multiple of 4), so that many steps end at one of the truth's samples.
 int steps_to_horizon(double dt, const Truth& truth);
-/// The step that this makes, to six digits [s].
+/// The step [s] that belongs to `steps_to_horizon`, rounded to six digits.
 double fitted_dt(double dt, const Truth& truth);
 
 }  // namespace clothlab::lab

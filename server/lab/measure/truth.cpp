@@ -22,21 +22,22 @@ using reference::State;
 using reference::World;
 using Clock = std::chrono::steady_clock;
 
-/// Steps in units of 1 / (a bound of the fastest vibration): RK4 is stable to 2.6. At 1 its error on the
-/// swinging cloth is 1e-7 of the size already, which is what float32 leaves at best.
+/// The reference's longest step in units of 1 / fastest_rate. RK4 is stable up to 2.6; at 1 its error on the
+/// swinging cloth is already as small as float32 allows at best, 1e-7 of the size.
 constexpr double longest_step = 1.0;
-constexpr int looks = 128;             // at a perturbed copy, over the whole time
-constexpr double perturbation = 1e-7;  // of the size, RMS
-/// What a perturbation may grow by before positions are no longer compared: a method that is 1e-4 off would
-/// be near 1e-2 off by chaos alone.
+constexpr int looks = 128;             // comparisons with a perturbed copy, over the whole time
+constexpr double perturbation = 1e-7;  // of the copy's start, RMS over the size
+/// The horizon is where the perturbation has grown by this factor. There chaos alone turns an error of 1e-4
+/// into one of 1e-2.
 constexpr double most_amplified = 100.0;
-constexpr int fewest_steps = 64;  // for a reference worth the name
-constexpr int most_halvings = 8;
+constexpr int fewest_steps = 64;  // with fewer affordable steps there is no reference
+constexpr int most_halvings = 8;  // of the step
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// The largest extent of a cloth at rest along an axis [m].
 double largest_extent(const model::Model& model) {
   double most = 0.0;
   for (const model::ClothRange& cloth : model.cloths) {
@@ -59,7 +60,8 @@ double largest_strain(const World& world, const State& state) {
   return most;
 }
 
-/// Of the vertices that are not pinned, as the GPU's diagnostics count it.
+/// The energy without the kinetic and gravitational energy of pinned vertices, as the GPU's diagnostics count
+/// it.
 reference::Energy energy_of_free(const World& world, const State& state) {
   reference::Energy sum = reference::energy(world, state);
   for (std::size_t i = 0; i < state.position.size(); ++i) {
@@ -71,20 +73,20 @@ reference::Energy energy_of_free(const World& world, const State& state) {
   return sum;
 }
 
-/// What one run of the reference leaves behind.
+/// The samples of one run of the reference.
 struct Run {
-  std::vector<std::vector<glm::dvec3>> position;
-  std::vector<double> energy, moving, strain;
+  std::vector<std::vector<glm::dvec3>> position;  ///< [sample up to the horizon][vertex] [m]
+  std::vector<double> energy, moving, strain;     ///< [sample] total [J]; kinetic + elastic [J]; |l/L - 1|
 };
 
-/// The start with every free vertex moved a little, the same way at every run.
+/// The start with every free vertex moved a little in a random direction, the same in every run.
 State perturbed_start(const World& world, double size) {
   State state = reference::at_rest(world);
   std::mt19937 random(1);
   const auto next = [&] { return 2.0 * static_cast<double>(random()) / 4294967296.0 - 1.0; };
   for (std::size_t i = 0; i < state.position.size(); ++i) {
     const glm::dvec3 push(next(), next(), next());
-    if (!world.pinned(i)) state.position[i] += perturbation * size * push;  // RMS of the three together: 1
+    if (!world.pinned(i)) state.position[i] += perturbation * size * push;  // RMS length of `push`: 1
   }
   return state;
 }
@@ -110,8 +112,9 @@ class Search {
  private:
   double left() const { return request_.budget - seconds_since(start_); }
 
-  /// How long the reference may simulate: five of its longest steps' worth of work are needed, two for the
-  /// perturbed copy and three for a run and one at half the step.
+  /// Sets the time that the reference can afford to simulate, or the reason why there is no reference. The
+  /// work is that of five runs with the longest step: two for the motion and its perturbed copy, one to
+  /// record the samples, and two for the run with half the step.
   Status fit_time() {
     Follower follower(truth_.world, step_, stop_);
     State state = reference::at_rest(truth_.world);
@@ -133,6 +136,7 @@ class Search {
     return ok();
   }
 
+  /// Follows the motion and a perturbed copy until they are too far apart.
   Status find_horizon() {
     Follower follower(truth_.world, step_, stop_);
     State state = reference::at_rest(truth_.world), copy = perturbed_start(truth_.world, truth_.size);
@@ -175,6 +179,8 @@ class Search {
     }
   }
 
+  /// Runs the reference with steps of at most `largest_step` [s] and records its samples; the job's progress
+  /// goes from `share_from` to `share_to`.
   Result<Run> record(double largest_step, double share_from, double share_to) {
     Follower follower(truth_.world, largest_step, stop_);
     State state = reference::at_rest(truth_.world);
@@ -192,8 +198,8 @@ class Search {
     return run;
   }
 
-  /// Halves the step until the reference is accurate enough, or no longer better, or the next run would not
-  /// fit.
+  /// Halves the step until the reference is accurate enough, or no longer improves, or the next run would not
+  /// fit into the budget.
   Status refine() {
     truth_.spacing = (truth_.horizon > 0.0 ? truth_.horizon : truth_.time) / samples_to_horizon;
     Clock::time_point begun = Clock::now();
@@ -211,7 +217,7 @@ class Search {
       coarse = std::move(fine);
       if (truth_.horizon == 0.0 && halving > 1) break;
       if (truth_.position_error <= request_.accuracy * truth_.size) break;
-      if (halving > 2 && difference > 0.7 * difference_before) break;  // chaos or contacts: no better
+      if (halving > 2 && difference > 0.7 * difference_before) break;  // no better: chaos or contacts
       difference_before = difference;
     }
     truth_.position = std::move(coarse->position);
@@ -220,9 +226,9 @@ class Search {
     return ok();
   }
 
-  /// The difference of two runs, and what it says of the error of the finer one: Richardson's estimate with
-  /// the order that the last two differences show, never better than RK4's own; at first, the difference
-  /// itself.
+  /// Returns the difference of two runs at the horizon, RMS [m] (without a horizon 0), and estimates the
+  /// errors of the finer one. For positions that is Richardson's estimate with the order that `before`, the
+  /// last difference, shows, at most RK4's own order; at first it is the difference itself.
   double compare(const Run& coarse, const Run& fine, double before) {
     const double difference =
         truth_.horizon > 0.0 ? reference::rms_distance(coarse.position.back(), fine.position.back()) : 0.0;
@@ -259,7 +265,7 @@ Result<Truth> truth(const scene::Scene& scene, const TruthRequest& request, cons
   truth.world = std::move(*world);
   truth.size = largest_extent(truth.world.model);
   if (Status found = Search(truth, request, stop, progress).run(); !found) return found.error();
-  if (!truth.missing.empty()) {  // what steps and costs can be looked at all the same
+  if (!truth.missing.empty()) {  // steps and costs can be measured without it
     truth.time = request.time;
     truth.horizon = 0.0;
     truth.spacing = truth.time / samples_to_horizon;

@@ -1,5 +1,5 @@
-// What a scene really does, for the lab: the reference's motion at sample times, how far it can be trusted,
-// and until when a motion can be compared vertex by vertex at all.
+// The truth about a scene that the lab compares with: the reference's motion at sample times, its own error,
+// and the horizon, the time until which motions can be compared vertex by vertex at all.
 #pragma once
 
 #include <functional>
@@ -12,39 +12,39 @@
 
 namespace clothlab::lab {
 
-/// Samples from the start to the horizon, so that a run whose steps are a multiple of 2, 4, ... 64 meets 2,
-/// 4,
-/// ... 64 of them.
+/// The number of samples from the start to the horizon. A run whose number of steps to the horizon is a
+/// multiple of 2, 4, ... 64 meets 2, 4, ... 64 of the samples.
 inline constexpr int samples_to_horizon = 64;
 
 struct Truth {
   reference::World world;
   double size = 0;             ///< largest extent of a cloth at rest [m]
-  double time = 0;             ///< simulated [s]: what was asked for, or less where that was too much work
-  double horizon = 0;          ///< positions can be compared until then [s]; 0: at no time
-  std::string horizon_reason;  ///< how it was found, a sentence
-  std::string missing;  ///< why there is no reference at all, and what can be done; empty: there is one. Else
-                        ///< `time` and `spacing` are as asked for, and there are no samples
-  double spacing = 0;   ///< of the samples [s]; the horizon (without one, the time) is 64 of it
+  double time = 0;             ///< simulated [s]: as asked for, or less where that was too much work
+  double horizon = 0;          ///< positions can be compared up to this time [s]; 0: at no time
+  std::string horizon_reason;  ///< how the horizon was found, a sentence
+  std::string missing;  ///< why there is no reference, and what can be done; then `time` is as asked for and
+                        ///< there are no samples. Empty: there is a reference
+  double spacing = 0;   ///< between two samples [s]: a 64th of the horizon (without one, of the time)
   std::vector<std::vector<glm::dvec3>>
       position;                ///< [sample up to the horizon][vertex] [m]; sample 0 is at `spacing`
-  std::vector<double> energy;  ///< total, by sample, up to `time` [J]
-  std::vector<double> strain;  ///< largest |l/L - 1|, by sample
-  double energy_scale = 0;     ///< most kinetic + elastic energy over the samples [J]
-  double position_error = 0;   ///< of the reference at the horizon, RMS [m]
-  double energy_error = 0, strain_error = 0;  ///< of the reference, as shares (see Axis)
+  std::vector<double> energy;  ///< [sample up to `time`] total energy [J]
+  std::vector<double> strain;  ///< [sample up to `time`] largest |l/L - 1|
+  double energy_scale = 0;     ///< largest kinetic + elastic energy at any sample [J]
+  double position_error = 0;   ///< the reference's own error at the horizon, RMS [m]
+  double energy_error = 0, strain_error = 0;  ///< the reference's own errors, as shares (see Axis)
   double dt = 0;                              ///< the reference's step [s]
-  std::vector<std::string> notes;             ///< what the user should know of it, whole sentences
+  std::vector<std::string> notes;             ///< for the user, whole sentences
 };
 
 struct TruthRequest {
-  double time = 1.0;       ///< [s]
-  double accuracy = 1e-7;  ///< wanted of the reference, RMS over size at the horizon
-  double budget = 30.0;    ///< wall time [s]
+  double time = 1.0;       ///< to simulate [s]
+  double accuracy = 1e-7;  ///< error of the reference to aim for: RMS over size at the horizon
+  double budget = 30.0;    ///< wall time to spend [s]
 };
 
-/// RK4 in double precision, at steps halved until two runs agree or the budget is spent; the time is
-/// shortened where not even the longest step fits into it. Error: the scene cannot be built, or cancelled.
+/// Runs RK4 in double precision, halving the step until two runs agree or the budget is spent. Shortens the
+/// time where the budget is not enough for it even at the longest step. Error: the scene cannot be built, or
+/// cancelled.
 Result<Truth> truth(const scene::Scene& scene, const TruthRequest& request, const std::stop_token& stop,
                     const std::function<void(double share)>& progress);
 
