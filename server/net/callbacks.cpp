@@ -63,13 +63,22 @@ void await_request(lws* wsi) {
   lws_set_timer_usecs(wsi, lws_usec_t{server_of(wsi).hub().limits().header_seconds} * LWS_USEC_PER_SEC);
 }
 
-int finish_http(HttpSlot& slot, lws* wsi, int result) {
-  if (result == 0) return 0;
+/// Returns what the callback of libwebsockets returns: -1 closes the connection.
+int finish_http(HttpSlot& slot, lws* wsi, HttpRequest::Progress progress) {
+  if (progress == HttpRequest::Progress::waits) return 0;
   delete slot.request;
   slot.request = nullptr;
-  if (result < 0 || lws_http_transaction_completed(wsi)) return -1;  // `slot` is invalid now
+  if (progress == HttpRequest::Progress::close || lws_http_transaction_completed(wsi))
+    return -1;  // `slot` is invalid now
   await_request(wsi);
   return 0;
+}
+
+/// Ends a request that waited for a session.
+void finish_late(lws* wsi, HttpRequest::Progress progress) {
+  if (finish_http(*static_cast<HttpSlot*>(lws_wsi_user(wsi)), wsi, progress) != 0)
+    lws_set_timeout(wsi, PENDING_TIMEOUT_KILLED_BY_PARENT, LWS_TO_KILL_ASYNC);
+  lws_rx_flow_control(wsi, 1);
 }
 
 /// Refuses a new socket if too many are open. libwebsockets has no `lws` for the socket yet.
@@ -142,12 +151,10 @@ int on_http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::si
     case LWS_CALLBACK_HTTP:
       slot->asked = true;
       delete slot->request;
-      slot->request = new HttpRequest(server_of(wsi).hub(), server_of(wsi).files(), wsi);
+      slot->request = new HttpRequest(server_of(wsi).hub(), server_of(wsi).files(), wsi, finish_late);
       return finish_http(*slot, wsi, slot->request->begin(std::string(static_cast<const char*>(in), size)));
-    case LWS_CALLBACK_HTTP_WRITEABLE:
-      return slot->request ? finish_http(*slot, wsi, slot->request->writeable()) : 0;
     case LWS_CALLBACK_CLOSED_HTTP:
-      if (slot) finish_http(*slot, wsi, -1);
+      if (slot) finish_http(*slot, wsi, HttpRequest::Progress::close);
       return 0;
     case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
       return on_upgrade(wsi, static_cast<const char*>(in));

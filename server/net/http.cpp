@@ -44,8 +44,8 @@ int side(const std::string& text, int most) {
 
 }  // namespace
 
-HttpRequest::HttpRequest(Hub& hub, const WebFiles& files, lws* wsi)
-    : hub_(hub), files_(files), wsi_(wsi), id_(hub.next_id()) {
+HttpRequest::HttpRequest(Hub& hub, const WebFiles& files, lws* wsi, Finish finish)
+    : hub_(hub), files_(files), wsi_(wsi), finish_(finish), id_(hub.next_id()) {
   hub_.add(id_, *this);
 }
 
@@ -53,7 +53,7 @@ HttpRequest::~HttpRequest() {
   hub_.remove_request(id_);
 }
 
-int HttpRequest::begin(const std::string& path) {
+HttpRequest::Progress HttpRequest::begin(const std::string& path) {
   if (const std::optional<RequestFault> fault = request_fault(wsi_))
     return refuse(plain(fault->status, fault->why));
   head_ = lws_hdr_total_length(wsi_, WSI_TOKEN_HEAD_URI) > 0;
@@ -63,24 +63,24 @@ int HttpRequest::begin(const std::string& path) {
     refusal.headers = {{"allow:", "GET, HEAD"}};
     return refuse(std::move(refusal));  // the request may have a body
   }
-  find(path);
-  return 0;
+  if (const std::optional<HttpAnswer> answer = find(path)) return send(*answer);
+  lws_rx_flow_control(wsi_, 0);
+  return Progress::waits;
 }
 
-void HttpRequest::find(const std::string& path) {
+std::optional<HttpAnswer> HttpRequest::find(const std::string& path) {
   if (path == "/healthz")
-    return answer(hub_.all_sessions_beat() ? plain(200, "ok")
-                                           : plain(503, "a session's thread does not answer"));
+    return hub_.all_sessions_beat() ? plain(200, "ok") : plain(503, "a session's thread does not answer");
   if (const std::string why = hub_.host_refusal(header(wsi_, WSI_TOKEN_HOST)); !why.empty())
-    return answer(plain(403, why));
+    return plain(403, why);
   if (path == "/ws") {
     HttpAnswer refusal = plain(426, "connect with a WebSocket, subprotocol clothlab.v1");
     refusal.headers = {{"upgrade:", "websocket"}};
-    return answer(std::move(refusal));
+    return refusal;
   }
-  if (path != "/metrics" && path.rfind("/api/", 0) != 0) return answer(file(path));
-  if (std::optional<HttpAnswer> why = refusal()) return answer(std::move(*why));
-  inside(path);
+  if (path != "/metrics" && path.rfind("/api/", 0) != 0) return file(path);
+  if (std::optional<HttpAnswer> why = refusal()) return why;
+  return find_protected(path);
 }
 
 HttpAnswer HttpRequest::file(const std::string& path) const {
@@ -118,96 +118,81 @@ std::optional<HttpAnswer> HttpRequest::refusal() const {
   return refusal;
 }
 
-void HttpRequest::inside(const std::string& path) {
+std::optional<HttpAnswer> HttpRequest::find_protected(const std::string& path) {
   if (path == "/metrics")
-    return answer(
-        {200, "text/plain; version=0.0.4; charset=utf-8", metrics_text(hub_.metrics(), hub_.gauges()), {}});
+    return HttpAnswer{
+        200, "text/plain; version=0.0.4; charset=utf-8", metrics_text(hub_.metrics(), hub_.gauges()), {}};
   const std::string session = query(wsi_, "session", main_session);
   const bool mesh = path == "/api/mesh.obj", picture = path == "/api/snapshot.png";
   if (!mesh && !picture && path != "/api/scene")
-    return answer(plain(404, "the API has /api/scene, /api/mesh.obj and /api/snapshot.png"));
+    return plain(404, "the API has /api/scene, /api/mesh.obj and /api/snapshot.png");
   Room* room = hub_.find_room(session);
   if (!room || !room->started())
-    return answer(
-        plain(404, "no such session is open; one opens when a page or script connects to /ws?session=NAME"));
-  if (path == "/api/scene") return answer({200, "application/json", room->document().dump(2) + "\n", {}});
+    return plain(404,
+                 "no such session is open; one opens when a page or script connects to /ws?session=NAME");
+  if (path == "/api/scene") return HttpAnswer{200, "application/json", room->document().dump(2) + "\n", {}};
   if (mesh) return ask_session(session, {});
   const session::Export what{side(query(wsi_, "width", "1280"), max_snapshot_side),
                              side(query(wsi_, "height", "720"), max_snapshot_side)};
   if (what.width == 0 || what.height == 0)
-    return answer(
-        plain(400, "width and height are whole numbers from 1 to " + std::to_string(max_snapshot_side)));
-  ask_session(session, what);
+    return plain(400, "width and height are whole numbers from 1 to " + std::to_string(max_snapshot_side));
+  return ask_session(session, what);
 }
 
-void HttpRequest::ask_session(const std::string& session, session::Export what) {
+std::optional<HttpAnswer> HttpRequest::ask_session(const std::string& session, session::Export what) {
   if (hub_.exports_full() || !hub_.find_room(session)->capture(id_, what)) {
     HttpAnswer refusal =
         plain(503, "the server has as many pictures and meshes to make as it may; ask again");
     refusal.headers = {{"retry-after:", "1"}};
-    return answer(std::move(refusal));
+    return refusal;
   }
   constexpr int patience = 30;  // [s]
   lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, patience);
+  return std::nullopt;
 }
 
-// Asks the socket: libwebsockets does not notice that a connection has ended until it has written the answer.
+// Asks the socket: while nothing is read, libwebsockets does not notice that the client has gone.
 bool HttpRequest::hung_up() const {
   pollfd socket{lws_get_socket_fd(wsi_), POLLRDHUP, 0};
   return poll(&socket, 1, 0) > 0 && (socket.revents & (POLLRDHUP | POLLHUP | POLLERR)) != 0;
 }
 
 void HttpRequest::deliver(session::Exported exported) {
-  if (!exported.body) return answer(plain(500, exported.body.error().text()));
-  answer({200, exported.content_type, std::move(*exported.body), {{"cache-control:", "no-store"}}});
+  finish_(
+      wsi_,
+      exported.body
+          ? send({200, exported.content_type, std::move(*exported.body), {{"cache-control:", "no-store"}}})
+          : send(plain(500, exported.body.error().text())));
 }
 
-void HttpRequest::answer(HttpAnswer answer) {
-  answer_ = std::move(answer);
-  answered_ = true;
-  lws_callback_on_writable(wsi_);
-}
-
-int HttpRequest::refuse(HttpAnswer refusal) {
+HttpRequest::Progress HttpRequest::refuse(const HttpAnswer& refusal) {
   last_ = true;
-  answer_ = std::move(refusal);
-  if (send_headers() == 0) send_body();
-  return -1;
+  send(refusal);
+  return Progress::close;
 }
 
-bool HttpRequest::send_body() {
-  auto* body = reinterpret_cast<unsigned char*>(answer_.body.data());
-  return lws_write(wsi_, body, answer_.body.size(), LWS_WRITE_HTTP_FINAL) >= 0;
-}
-
-int HttpRequest::send_headers() {
-  unsigned char buffer[LWS_PRE + 4096];
-  unsigned char *at = buffer + LWS_PRE, *const start = at, *const end = buffer + sizeof buffer - 1;
+// Headers and body in one write: libwebsockets keeps what the socket does not take yet.
+HttpRequest::Progress HttpRequest::send(const HttpAnswer& answer) {
+  constexpr std::size_t longest_headers = 4096;
+  std::vector<unsigned char> bytes(LWS_PRE + longest_headers);
+  unsigned char *const start = bytes.data() + LWS_PRE, *at = start, *const end = start + longest_headers - 1;
   const auto add = [&](const char* name, const std::string& value) {
     return lws_add_http_header_by_name(wsi_, reinterpret_cast<const unsigned char*>(name),
                                        reinterpret_cast<const unsigned char*>(value.data()),
                                        static_cast<int>(value.size()), &at, end);
   };
-  int failed = lws_add_http_header_status(wsi_, answer_.status, &at, end);
-  failed |= add("content-type:", answer_.type);
-  failed |= lws_add_http_header_content_length(wsi_, answer_.body.size(), &at, end);
+  int failed = lws_add_http_header_status(wsi_, answer.status, &at, end);
+  failed |= add("content-type:", answer.type);
+  failed |= lws_add_http_header_content_length(wsi_, answer.body.size(), &at, end);
   failed |= add("content-security-policy:", content_security_policy);
   if (last_) failed |= add("connection:", "close");
   for (const auto& [name, value] : security_headers) failed |= add(name, value);
-  for (const auto& [name, value] : answer_.headers) failed |= add(name.c_str(), value);
-  if (failed || lws_finalize_http_header(wsi_, &at, end)) return -1;
-  headers_sent_ = true;
-  const auto size = static_cast<std::size_t>(at - start);
-  if (lws_write(wsi_, start, size, LWS_WRITE_HTTP_HEADERS) < 0) return -1;
-  if (head_ || answer_.body.empty()) return 1;
-  lws_callback_on_writable(wsi_);
-  return 0;
-}
-
-int HttpRequest::writeable() {
-  if (!answered_) return 0;
-  if (!headers_sent_) return send_headers();
-  return send_body() ? 1 : -1;
+  for (const auto& [name, value] : answer.headers) failed |= add(name.c_str(), value);
+  if (failed || lws_finalize_http_header(wsi_, &at, end)) return Progress::close;
+  bytes.resize(static_cast<std::size_t>(at - bytes.data()));
+  if (!head_) bytes.insert(bytes.end(), answer.body.begin(), answer.body.end());
+  const int written = lws_write(wsi_, bytes.data() + LWS_PRE, bytes.size() - LWS_PRE, LWS_WRITE_HTTP_HEADERS);
+  return written < 0 ? Progress::close : Progress::answered;
 }
 
 }  // namespace clothlab::net

@@ -25,47 +25,51 @@ struct HttpAnswer {
 
 class HttpRequest {
  public:
-  HttpRequest(Hub& hub, const WebFiles& files, lws* wsi);
+  enum class Progress {
+    waits,     ///< a session was asked; `deliver` answers
+    answered,  ///< the answer is written
+    close,     ///< the connection must be closed, after a refusal or a failed write
+  };
+
+  /// Ends a request that waited, and destroys it.
+  using Finish = void (*)(lws* wsi, Progress progress);
+
+  HttpRequest(Hub& hub, const WebFiles& files, lws* wsi, Finish finish);
   ~HttpRequest();
   HttpRequest(const HttpRequest&) = delete;
   HttpRequest& operator=(const HttpRequest&) = delete;
 
-  /// Starts the answer to the request. Returns 0, or -1 if the request is refused and its connection must be
-  /// closed.
-  int begin(const std::string& path);
-  /// Sends the next part of the answer. Returns 1 if the answer is complete, 0 if not yet, -1 to close the
-  /// connection.
-  int writeable();
-  /// Answers with the picture or mesh that this request asked for, or with the error.
+  /// Answers the request, or asks a session for the answer. libwebsockets 4.3 takes what the client sends
+  /// next for the next request even while this one waits for its answer. So an answer that is known is
+  /// written at once, and while a session is asked nothing more is read.
+  Progress begin(const std::string& path);
+  /// Answers with the picture or mesh that this request asked for, or with the error. The request is
+  /// destroyed.
   void deliver(session::Exported exported);
   /// True if the client has closed the connection, so that nobody waits for the answer.
   bool hung_up() const;
 
  private:
-  /// Answers with what is at this path, or asks a session for it.
-  void find(const std::string& path);
+  /// The answer for this path; empty: a session was asked for it.
+  std::optional<HttpAnswer> find(const std::string& path);
   HttpAnswer file(const std::string& path) const;
-  /// Answers the paths that need a token, if the server has one: /metrics and the API.
-  void inside(const std::string& path);
-  void ask_session(const std::string& session, session::Export what);
-  void answer(HttpAnswer answer);
-  /// Refuses a request that may have a body, and returns -1. The refusal is written at once: if it waited
-  /// until the socket is writeable, libwebsockets would take the body for the next request.
-  int refuse(HttpAnswer refusal);
-  /// Returns -1 if the headers could not be sent, 0 if the body follows, 1 if the answer has no body.
-  int send_headers();
-  bool send_body();
+  /// The same for the paths that need a token, if the server has one: /metrics and the API.
+  std::optional<HttpAnswer> find_protected(const std::string& path);
+  /// Asks the session for a picture or mesh. Returns the refusal if too many wait already.
+  std::optional<HttpAnswer> ask_session(const std::string& session, session::Export what);
+  Progress send(const HttpAnswer& answer);
+  /// Answers a request that may have a body, which is not read: the connection must be closed.
+  Progress refuse(const HttpAnswer& refusal);
   /// The answer that refuses a client without a valid token; empty: the client may go on.
   std::optional<HttpAnswer> refusal() const;
 
   Hub& hub_;
   const WebFiles& files_;
   lws* wsi_;
+  Finish finish_;
   std::uint64_t id_;
-  bool head_ = false;
+  bool head_ = false;  ///< the request is HEAD: its answer has no body
   bool last_ = false;  ///< the answer says that the connection will be closed
-  bool answered_ = false, headers_sent_ = false;
-  HttpAnswer answer_;
 };
 
 }  // namespace clothlab::net
