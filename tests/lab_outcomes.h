@@ -144,7 +144,7 @@ inline lab::Simplification made_up_simplification() {
     made.cost_ratio = {ratio, 0.96 * ratio, 1.03 * ratio};
     made.saving = lab::saving(made.cost_ratio);
     made.dt_limit = 1.9e-3;
-    made.drop = drop;
+    made.recommended_to_drop = drop;
     return made;
   };
   simplification.whole = variant("the whole scene", 0, 1, false);

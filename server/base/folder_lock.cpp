@@ -18,8 +18,8 @@ Result<FolderLock> FolderLock::take(const std::filesystem::path& folder) {
                  "give a folder that can be read and written"};
   FolderLock lock(descriptor);
   if (flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    return Error{folder.string(), "another process has it in use",
-                 "end that one, or give this one a folder of its own"};
+    return Error{folder.string(), "another process is using this folder",
+                 "end that process, or choose a different folder"};
   return lock;
 }
 

@@ -13,7 +13,7 @@ namespace clothlab {
 namespace {
 
 constexpr std::array<const char*, 4> names{"error", "warning", "info", "debug"};  // indexed by LogLevel
-std::atomic<LogLevel> least_urgent{LogLevel::info};
+std::atomic<LogLevel> log_threshold{LogLevel::info};
 
 /// The present time in UTC, to the millisecond (RFC 3339).
 std::string time_text() {
@@ -48,7 +48,7 @@ std::string quoted(const std::string& value) {
 }  // namespace
 
 void log(LogLevel level, const char* event, const std::vector<LogField>& fields) {
-  if (level > least_urgent) return;
+  if (level > log_threshold) return;
   std::string line =
       "time=" + time_text() + " level=" + names[static_cast<std::size_t>(level)] + " event=" + event;
   for (const LogField& field : fields) line += std::string(" ") + field.key + "=" + quoted(field.value);
@@ -56,7 +56,7 @@ void log(LogLevel level, const char* event, const std::vector<LogField>& fields)
 }
 
 void set_log_level(LogLevel least) {
-  least_urgent = least;
+  log_threshold = least;
 }
 
 std::optional<LogLevel> log_level(const std::string& name) {

@@ -17,7 +17,7 @@ std::string formatted(const char* form, ...) {
   return text;
 }
 
-std::string significant(double value, int digits) {
+std::string with_significant_digits(double value, int digits) {
   return formatted("%.*g", digits, value);
 }
 

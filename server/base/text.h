@@ -9,6 +9,6 @@ namespace clothlab {
 [[gnu::format(printf, 1, 2)]] std::string formatted(const char* form, ...);
 
 /// `value` with at most `digits` significant digits, trailing zeros left out.
-std::string significant(double value, int digits);
+std::string with_significant_digits(double value, int digits);
 
 }  // namespace clothlab

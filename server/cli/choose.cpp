@@ -77,7 +77,8 @@ void add_choose(CLI::App& app, int& exit_code) {
                    "the largest error: RMS distance to the reference over the cloth's size, (0, 1]")
       ->required()
       ->type_name("E");
-  add_time(*command, options->time, "how long it has to be kept [s], as far as motions can be compared");
+  add_time(*command, options->time,
+           "the simulated time over which the tolerance must be kept [s]; shorter where motions are chaotic");
   command->footer(std::string(R"(Examples:
   clothlab choose seed --tolerance 0.01
   clothlab choose curtain --tolerance 1e-3 --methods verlet,rk4 --json

@@ -45,7 +45,7 @@ CLI::Validator whole_number(int least, int most);
 
 /// Prints warnings on stderr, `about` before each: if the time step is near or beyond the longest stable one,
 /// and if the thickness of self-collision is too small for the mesh.
-void warn_of(const model::Model& model, const scene::Scene& scene, const std::string& about = "");
+void print_warnings(const model::Model& model, const scene::Scene& scene, const std::string& about = "");
 
 /// The scene a command works on: a preset's name or a file, then `--set POINTER=VALUE` in the order given.
 struct SceneChoice {

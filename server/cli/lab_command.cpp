@@ -55,9 +55,9 @@ class StopOnInterrupt {
 
  private:
   void wait() {
-    const timespec a_while{0, 50'000'000};
+    const timespec poll_interval{0, 50'000'000};
     while (!done_) {
-      if (sigtimedwait(&signals_, nullptr, &a_while) < 0) continue;
+      if (sigtimedwait(&signals_, nullptr, &poll_interval) < 0) continue;
       stop_.request_stop();
       pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);  // this thread's: the next signal ends the program
       while (!done_) std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -194,7 +194,8 @@ Result<std::vector<scene::Method>> methods_of(const LabOptions& options) {
 
 Status check_positive(const std::string& option, double value, double most) {
   if (std::isfinite(value) && value > 0 && value <= most) return ok();
-  return Error{option, significant(value, 6), "above 0, at most " + significant(most, 6)};
+  return Error{option, with_significant_digits(value, 6),
+               "above 0, at most " + with_significant_digits(most, 6)};
 }
 
 int run_lab(const LabOptions& options, const lab::Job& job, void (*print)(const lab::Outcome&)) {
@@ -228,8 +229,7 @@ int run_lab(const LabOptions& options, const lab::Job& job, void (*print)(const 
   if (!lab::was_cancelled(outcome.error())) return fail_job(outcome.error());
   if (so_far)
     if (const int code = report(options, *so_far, print); code != exit_done) return code;
-  note(so_far ? "interrupted: this is what there was, not complete"
-              : "interrupted before there was anything");
+  note(so_far ? "interrupted: the result is incomplete" : "interrupted before there was any result");
   return exit_interrupted;
 }
 
@@ -261,7 +261,7 @@ void print_notes(const std::vector<std::string>& notes) {
 }
 
 void print_heading(const std::string& what, double time, const std::string& renderer, bool complete) {
-  std::cout << what << ", " << significant(time, 6) << " s simulated on " << renderer
+  std::cout << what << ", " << with_significant_digits(time, 6) << " s simulated on " << renderer
             << (complete ? "" : ", NOT COMPLETE") << "\n";
 }
 

@@ -37,14 +37,14 @@ class Trace {
   Status add(const sim::Diagnostics& state) {
     for (const double value :
          {state.time, state.kinetic, state.elastic, state.gravitational, state.max_strain, state.max_speed})
-      file_ << significant(value, 9) << ',';
+      file_ << with_significant_digits(value, 9) << ',';
     file_ << state.contacts << '\n' << std::flush;
     if (!file_)
       return Error{path_, "could not be written", "check the disk's space and the file's permissions"};
     return ok();
   }
   void mark_diverged(double time) {
-    file_ << "# diverged by " << significant(time, 9) << " s\n" << std::flush;
+    file_ << "# diverged by " << with_significant_digits(time, 9) << " s\n" << std::flush;
   }
 
  private:
@@ -108,18 +108,20 @@ void print_summary(const Report& report, double simulated) {
   const double step_seconds = report["step_s"];
   std::printf("%s: %llu steps to %s s, stepping took %s s", report["scene"].get<std::string>().c_str(),
               static_cast<unsigned long long>(report["steps"].get<std::uint64_t>()),
-              significant(report["sim_time"], 9).c_str(), significant(step_seconds, 9).c_str());
+              with_significant_digits(report["sim_time"], 9).c_str(),
+              with_significant_digits(step_seconds, 9).c_str());
   if (step_seconds > 0)
     std::printf(" (%.1f times real time, %.1f ns per vertex and step)", simulated / step_seconds,
                 report["ns_per_vertex_step"].get<double>());
-  std::printf("\nlargest strain %s, state %s, on %s\n", significant(report["max_strain"], 9).c_str(),
+  std::printf("\nlargest strain %s, state %s, on %s\n",
+              with_significant_digits(report["max_strain"], 9).c_str(),
               report["state_hash"].get<std::string>().c_str(), report["renderer"].get<std::string>().c_str());
   std::fflush(stdout);
 }
 
 /// Prints notes on stderr about neighbours left out of self-collision, linear solves that missed their
 /// tolerance and springs beyond their strain limit.
-void note_left_out(const sim::Simulation& simulation, const sim::Diagnostics& state) {
+void print_shortcomings(const sim::Simulation& simulation, const sim::Diagnostics& state) {
   if (state.neighbours_dropped > 0)
     note("self-collision left out " + std::to_string(state.neighbours_dropped) +
          " neighbours, counted at each search, that had no room in a vertex's list: a smaller thickness or a "
@@ -141,7 +143,7 @@ struct Outputs {
 /// Checks every option that names a file, before anything is simulated. `run` opens the trace later.
 Result<Outputs> open_outputs(const Options& options) {
   if (options.every && options.out.empty() && options.trace.empty())
-    return Error{"--every", significant(*options.every, 9), "needs --out or --trace"};
+    return Error{"--every", with_significant_digits(*options.every, 9), "needs --out or --trace"};
   Outputs outputs;
   if (!options.out.empty()) {
     Result<StateFiles> states = StateFiles::create(options.out, options.every.has_value());
@@ -156,7 +158,7 @@ Result<Outputs> open_outputs(const Options& options) {
 }
 
 std::string comment(const sim::Diagnostics& state, const std::string& scene, bool diverged) {
-  return "Clothlab " CLOTHLAB_VERSION ", scene " + scene + " at " + significant(state.time, 9) +
+  return "Clothlab " CLOTHLAB_VERSION ", scene " + scene + " at " + with_significant_digits(state.time, 9) +
          " s, in metres" + (diverged ? "; the simulation diverged after this" : "");
 }
 
@@ -166,8 +168,8 @@ Result<std::uint64_t> stop_interval(const Options& options, std::uint64_t steps,
   if (!options.every)
     return std::max<std::uint64_t>(static_cast<std::uint64_t>(std::llround(default_every / dt)), 1);
   if (*options.every < dt / 2)
-    return Error{"--every", significant(*options.every, 9),
-                 "one step (" + significant(dt, 9) + " s) or more"};
+    return Error{"--every", with_significant_digits(*options.every, 9),
+                 "one step (" + with_significant_digits(dt, 9) + " s) or more"};
   return whole_steps("--every", *options.every, dt);
 }
 
@@ -210,7 +212,7 @@ int run(const Options& options) {
     if (Status written = write_file(options.report, report.dump(2) + "\n"); !written)
       return fail(written.error(), exit_internal);
   print_summary(report, static_cast<double>(progress->steps) * dt);
-  note_left_out(simulation, progress->state);
+  print_shortcomings(simulation, progress->state);
   if (progress->diverged) note_diverged(*progress);
   return progress->diverged ? exit_diverged : exit_done;
 }

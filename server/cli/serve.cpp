@@ -45,7 +45,9 @@ class StopOnSignal {
           sigtimedwait(&signals, nullptr, &patience);
           if (ended_) return;
           log(LogLevel::warning, "cut_short",
-              {{"why", "something did not end in time; sessions are what they were a second ago"}});
+              {{"why",
+                "the server did not stop within 3 s, or before a second signal; with --state-dir, sessions "
+                "were last saved up to about 1 s ago"}});
           std::_Exit(exit_done);
         }) {}
   /// To be called before the server is destroyed: from then on no signal calls the server.
@@ -128,8 +130,8 @@ int serve(ServeArguments& arguments) {
   if (!document) return fail(document.error(), exit_usage);
   const net::Limits& limits = arguments.options.limits;
   if (const Status small =
-          model::within(model::size_of(document->scene), static_cast<std::size_t>(limits.scene.vertices),
-                        static_cast<std::size_t>(limits.scene.springs));
+          model::check_size(model::size_of(document->scene), static_cast<std::size_t>(limits.scene.vertices),
+                            static_cast<std::size_t>(limits.scene.springs));
       !small)
     return fail(small.error(), exit_usage);
   if (const Result<model::Model> model = model::build(document->scene); !model)
@@ -164,19 +166,19 @@ void add_limits(CLI::App& command, net::Limits& limits) {
   add("--max-sessions", limits.sessions, 1, 1000, "scenes that run side by side (/?session=NAME)");
   add("--max-clients", limits.clients, 1, 100000, "WebSocket connections, over all sessions");
   add("--max-clients-per-address", limits.clients_per_address, 1, 100000,
-      "of them from one address; behind a proxy everybody has the proxy's");
-  add("--max-message-bytes", limits.message_bytes, 1024, 8 << 20, "of one message to the server");
+      "WebSocket connections from one address; behind a proxy everybody has the proxy's");
+  add("--max-message-bytes", limits.message_bytes, 1024, 8 << 20, "bytes in one message to the server");
   add("--max-message-rate", limits.message_rate, 10, 1000000,
       "messages a second from one client, twice that in a burst");
   add("--max-json-depth", limits.json_depth, 8, usual.json_depth, "levels of nesting in a message");
-  add("--max-vertices", limits.scene.vertices, 4, usual.scene.vertices, "of a scene");
-  add("--max-springs", limits.scene.springs, 4, usual.scene.springs, "of a scene");
-  add("--max-lab-seconds", limits.lab_seconds, 1, 86400, "that one measurement of the lab may take");
+  add("--max-vertices", limits.scene.vertices, 4, usual.scene.vertices, "vertices in a scene");
+  add("--max-springs", limits.scene.springs, 4, usual.scene.springs, "springs in a scene");
+  add("--max-lab-seconds", limits.lab_seconds, 1, 86400, "seconds that one measurement of the lab may take");
   add("--header-timeout", limits.header_seconds, 1, 3600,
       "seconds from connecting to the last of a request's headers, TLS included");
   add("--auth-timeout", limits.auth_seconds, 1, 3600, "seconds until a client's token must have come");
   add("--max-wrong-tokens", limits.wrong_tokens, 1, 1000000,
-      "a minute from one address; beyond them none of it is looked at for a while");
+      "wrong tokens a minute from one address; after that its tokens are refused for a while");
   add("--idle-timeout", limits.idle_seconds, 2, 3600,
       "seconds after which a connection that says nothing, not even pong, is closed");
 }

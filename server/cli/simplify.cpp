@@ -20,7 +20,7 @@ struct Options {
 };
 
 std::string verdict(const lab::Variant& variant, double tolerance) {
-  if (variant.drop) return "can go";
+  if (variant.recommended_to_drop) return "can go";
   if (!variant.change || *variant.change > tolerance || variant.saving != lab::Saving::cannot_tell)
     return "keep";
   return "keep: within the noise";
@@ -45,7 +45,7 @@ void print(const lab::Outcome& outcome) {
                                              row(result.whole, "")};
   for (const lab::Variant& variant : result.variants)
     rows.push_back(row(variant, verdict(variant, result.tolerance)));
-  if (result.together()) rows.push_back(row(result.recommended, "recommended"));
+  if (result.drops_several()) rows.push_back(row(result.recommended, "recommended"));
   print_table(rows);
   std::cout << "\n";
   if (!result.why.empty()) std::cout << result.why << "\n";
@@ -76,7 +76,8 @@ void add_simplify(CLI::App& app, int& exit_code) {
                    "what a part may change: RMS distance over the cloth's size, (0, 1]")
       ->type_name("E")
       ->capture_default_str();
-  add_time(*command, options->time, "how long is compared [s], as far as motions can be");
+  add_time(*command, options->time,
+           "the simulated time over which results are compared [s]; shorter where motions are chaotic");
   command->footer(std::string(R"(Examples:
   clothlab simplify seed
   clothlab simplify tablecloth --tolerance 0.05 --out results

@@ -18,7 +18,7 @@ constexpr double most_steps = 1e12;
 
 /// The number of steps between two checks for a blow-up. Usually a whole batch, so that checks cost little;
 /// fewer if `dt` is near or beyond `limit` [s], so that a blow-up is seen soon and more good steps are kept.
-std::uint64_t steps_between_looks(double dt, double limit) {
+std::uint64_t steps_between_checks(double dt, double limit) {
   return dt > model::margin_to_warn * limit ? sim::batch_steps / 8 : sim::batch_steps;
 }
 
@@ -26,8 +26,8 @@ std::uint64_t steps_between_looks(double dt, double limit) {
 /// choose; `chosen` receives the setting and the reason. A scene with another method is returned unchanged.
 Result<scene::Scene> settle_method(scene::Scene scene, std::string& chosen) {
   if (!scene.solver.automatic) return scene;
-  note("method auto: measuring what keeps a tolerance of " + significant(scene.solver.tolerance, 9) +
-       " at the least cost");
+  note("method auto: measuring what keeps a tolerance of " +
+       with_significant_digits(scene.solver.tolerance, 9) + " at the least cost");
   const Result<lab::Choice> choice = lab::choose(scene, {scene.solver.tolerance, {}, {}}, {});
   if (choice) {
     chosen = choice->why;
@@ -74,20 +74,20 @@ std::optional<Prepared> prepare(const SceneChoice& choice, std::optional<int> gp
         fail(simulation.error(), simulation.error().where.starts_with("/") ? exit_usage : exit_internal);
     return std::nullopt;
   }
-  warn_of((*simulation)->model(), *settled);
+  print_warnings((*simulation)->model(), *settled);
   return Prepared{std::move(*context), std::move(*simulation), chosen};
 }
 
 Result<std::uint64_t> whole_steps(const std::string& option, double seconds, double dt) {
   if (!std::isfinite(seconds) || seconds < 0)
-    return Error{option, significant(seconds, 9), "a time in seconds, 0 or more"};
+    return Error{option, with_significant_digits(seconds, 9), "a time in seconds, 0 or more"};
   const double steps = std::round(seconds / dt);
   if (steps > most_steps)
-    return Error{option, significant(seconds, 9),
-                 "at most " + significant(most_steps * dt, 9) + " s at this dt"};
+    return Error{option, with_significant_digits(seconds, 9),
+                 "at most " + with_significant_digits(most_steps * dt, 9) + " s at this dt"};
   if (std::abs(steps * dt - seconds) > 1e-6 * dt)
-    note(option + " " + significant(seconds, 9) + " is not a whole number of steps of " + significant(dt, 9) +
-         " s; taken as " + significant(steps * dt, 9));
+    note(option + " " + with_significant_digits(seconds, 9) + " is not a whole number of steps of " +
+         with_significant_digits(dt, 9) + " s; taken as " + with_significant_digits(steps * dt, 9));
   return static_cast<std::uint64_t>(steps);
 }
 
@@ -98,7 +98,7 @@ Result<Progress> advance(sim::Simulation& simulation, std::uint64_t steps, std::
   sim::timed_steps(simulation, 1);
   simulation.reset();
   const double limit = model::dt_limit_if_near(simulation.model(), simulation.scene());
-  const std::uint64_t look_every = steps_between_looks(simulation.scene().solver.dt, limit);
+  const std::uint64_t check_every = steps_between_checks(simulation.scene().solver.dt, limit);
   sim::GuardedRun run(simulation);
   run.start(limit);
   progress.state = run.state();
@@ -107,10 +107,10 @@ Result<Progress> advance(sim::Simulation& simulation, std::uint64_t steps, std::
   std::uint64_t next_stop = 0;
   while (progress.steps < steps) {
     if (progress.steps == next_stop) next_stop = std::min(next_stop + every, steps);
-    const std::uint64_t count = std::min(next_stop - progress.steps, look_every);
+    const std::uint64_t count = std::min(next_stop - progress.steps, check_every);
     progress.step_seconds += run.step(static_cast<std::uint32_t>(count));
     progress.steps += count;
-    progress.diverged = run.look() == sim::GuardedRun::Verdict::blown_up;
+    progress.diverged = run.judge_now() == sim::GuardedRun::Verdict::blown_up;
     if (progress.diverged) {
       progress.diverged_by = simulation.time();
       progress.setback = run.go_back();
@@ -126,9 +126,9 @@ Result<Progress> advance(sim::Simulation& simulation, std::uint64_t steps, std::
 void note_diverged(const Progress& progress) {
   const model::Remedy& remedy = progress.setback.remedy;
   note("the simulation diverged: " + progress.setback.reason + "; what was good, up to t = " +
-       significant(progress.state.time, 9) + " s, is kept. " + remedy.text + ": " +
+       with_significant_digits(progress.state.time, 9) + " s, is kept. " + remedy.text + ": " +
        (remedy.method ? std::string("--set /solver/method=") + scene::name(*remedy.method) + " " : "") +
-       "--set /solver/dt=" + significant(remedy.dt, 9));
+       "--set /solver/dt=" + with_significant_digits(remedy.dt, 9));
 }
 
 }  // namespace clothlab::cli

@@ -22,7 +22,7 @@ bool report(const std::string& name) {
     return false;
   }
   const Result<model::Model> model =
-      model::build(document->scene);  // finds e.g. a pin whose box holds no vertex
+      model::build(document->scene);  // finds e.g. a pin whose box selects no vertex
   if (!model) {
     std::cerr << name << ": " << model.error().text() << "\n";
     return false;
@@ -31,7 +31,7 @@ bool report(const std::string& name) {
             << counted(model->vertex_count(), "vertex", "vertices") << ", "
             << counted(model->springs().size(), "spring", "springs") << ", "
             << counted(document->scene.colliders.size(), "collider", "colliders") << ")\n";
-  warn_of(*model, document->scene, name + ": ");
+  print_warnings(*model, document->scene, name + ": ");
   return true;
 }
 

@@ -14,7 +14,7 @@ GLuint limit(GLenum name, GLuint ours) {
 
 }  // namespace
 
-Bindings Bindings::now() {
+Bindings Bindings::current() {
   Bindings bound;
   glGetIntegerv(GL_CURRENT_PROGRAM, &bound.program_);
   glGetIntegerv(GL_DISPATCH_INDIRECT_BUFFER_BINDING, &bound.indirect_);

@@ -13,7 +13,7 @@ namespace clothlab::gl {
 class Bindings {
  public:
   /// The present bindings. The driver knows them itself, so that nothing waits for the GPU.
-  static Bindings now();
+  static Bindings current();
   /// Binds the kept objects again, except those that have been deleted since.
   void restore() const;
 

@@ -59,7 +59,7 @@ std::string build_hash() {
 }
 
 /// The scene without what does not change the motion: names, colours and textures.
-json what_moves(json scene) {
+json without_appearance(json scene) {
   scene.erase("name");
   for (json& cloth : scene["cloths"])
     for (const char* key : {"name", "color", "texture"}) cloth.erase(key);
@@ -110,7 +110,7 @@ CacheKey cache_key(const scene::Document& document, const Job& job, const std::s
   hash.add(renderer);
   hash.add(name(job));
   hash.add(std::visit([](const auto& request) { return of(request); }, job).dump());
-  hash.add(what_moves(document.value).dump());
+  hash.add(without_appearance(document.value).dump());
   return {hash.text(), document.scene.name};
 }
 

@@ -32,7 +32,7 @@ class Table {
     return *this;
   }
   Table& add(const char* words) { return add(std::string(words)); }
-  Table& add(double value) { return add(std::isfinite(value) ? significant(value, 9) : ""); }
+  Table& add(double value) { return add(std::isfinite(value) ? with_significant_digits(value, 9) : ""); }
   Table& add(const std::optional<double>& value) { return value ? add(*value) : add(""); }
   Table& add(int value) { return add(std::to_string(value)); }
   Table& add(bool value) { return add(value ? "yes" : "no"); }
@@ -110,11 +110,11 @@ std::string of(const Simplification& simplification) {
     const bool tells = std::isfinite(variant.cost_ratio.high);
     table.add(tells ? std::optional(variant.cost_ratio.low) : std::nullopt);
     table.add(tells ? std::optional(variant.cost_ratio.high) : std::nullopt).add(name(variant.saving));
-    table.add(variant.dt_limit).add(variant.drop).add(variant.patch.dump());
+    table.add(variant.dt_limit).add(variant.recommended_to_drop).add(variant.patch.dump());
   };
   row(simplification.whole);
   for (const Variant& variant : simplification.variants) row(variant);
-  if (simplification.together()) row(simplification.recommended);
+  if (simplification.drops_several()) row(simplification.recommended);
   return table.finish();
 }
 

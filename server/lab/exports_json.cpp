@@ -159,7 +159,7 @@ json of(const Variant& variant) {
           {"cost_ratio_high", end_of(variant.cost_ratio, variant.cost_ratio.high)},
           {"saves", variant.saving == Saving::unknown ? json() : json(name(variant.saving))},
           {"dt_limit_s", number(variant.dt_limit)},
-          {"drop", variant.drop}};
+          {"drop", variant.recommended_to_drop}};
 }
 
 json of(const Simplification& simplification) {

@@ -68,7 +68,7 @@ Point point(const json& value) {
 
 template <class Item>
 std::vector<Item> list(const json& value, Item (*read)(const json&)) {
-  if (!value.is_array()) throw std::invalid_argument("no list where one should be");
+  if (!value.is_array()) throw std::invalid_argument("expected a list");
   std::vector<Item> items;
   for (const json& item : value) items.push_back(read(item));
   return items;
@@ -176,7 +176,7 @@ Variant variant(const json& value) {
                           number(value.at("cost_ratio_high"))};
   variant.saving = saving_of(value.at("saves"));
   variant.dt_limit = maybe(value.at("dt_limit_s")).value_or(std::numeric_limits<double>::infinity());
-  variant.drop = value.at("drop").get<bool>();
+  variant.recommended_to_drop = value.at("drop").get<bool>();
   return variant;
 }
 

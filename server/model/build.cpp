@@ -80,7 +80,7 @@ Result<std::vector<Index>> held_at(const std::string& where, const scene::Cloth&
   if (!held.empty()) return held;
   const auto* grid = std::get_if<scene::Grid>(&cloth.mesh);
   return Error{
-      where, "holds no vertex",
+      where, "selects no vertex",
       "a place on the mesh" + (grid ? ", which has " + std::to_string(grid->columns) + " columns and " +
                                           std::to_string(grid->rows) + " rows"
                                     : ", which has " + std::to_string(position.size()) + " vertices")};
@@ -168,11 +168,12 @@ Status add_cloth(Model& model, const scene::Cloth& cloth) {
   std::vector<double> mass = masses(cloth, arrays, position);
   const auto massless = std::find_if(mass.begin(), mass.end(), [](double m) { return !(m >= least_mass); });
   if (massless != mass.end())
-    return Error{where + "/mass",
-                 "vertex " + std::to_string(massless - mass.begin()) + " would " +
-                     (*massless > 0.0 ? "weigh " + significant(*massless, 3) + " kg" : "have no mass"),
-                 "with area_density every vertex belongs to triangles with an area, and weighs " +
-                     significant(least_mass, 3) + " kg or more"};
+    return Error{
+        where + "/mass",
+        "vertex " + std::to_string(massless - mass.begin()) + " would " +
+            (*massless > 0.0 ? "weigh " + with_significant_digits(*massless, 3) + " kg" : "have no mass"),
+        "with area_density every vertex belongs to triangles with an area, and weighs " +
+            with_significant_digits(least_mass, 3) + " kg or more"};
 
   std::vector<std::int32_t> pin_motion(position.size(), not_pinned);
   for (std::size_t i = 0; i < cloth.pins.size(); ++i) {

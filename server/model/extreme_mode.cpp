@@ -14,9 +14,9 @@ namespace clothlab::model {
 namespace {
 
 constexpr int most_iterations = 2000;
-constexpr int patience = 10;           // iterations between two checks of progress
-constexpr double still_moving = 1e-4;  // go on if the limit has fallen by this share since the last check
-constexpr double rounding = 1e-7;      // a residual below this share of its terms counts as rounding error
+constexpr int patience = 10;             // iterations between two checks of progress
+constexpr double least_progress = 1e-4;  // go on if the limit has fallen by this share since the last check
+constexpr double rounding = 1e-7;        // a residual below this share of its terms counts as rounding error
 
 double dot(const Field& a, const Field& b) {
   double sum = 0.0;
@@ -96,7 +96,7 @@ ExtremeMode extreme_mode(const ElementOperator& elements, const LimitOfMode& lim
     const double limit_now = limit(found.mode);
     if (!std::isfinite(limit_now) || limit_now <= 0.0) break;
     if (found.iterations % patience == 0) {
-      if (limit_before - limit_now < still_moving * limit_now) break;
+      if (limit_before - limit_now < least_progress * limit_now) break;
       limit_before = limit_now;
     }
     ++found.iterations;

@@ -13,8 +13,8 @@ namespace clothlab::model {
 namespace {
 
 constexpr double safe_share = 0.8;
-constexpr double too_slow = 0.1;   // a step below this share of the present one makes a run too slow
-constexpr double a_frame = 0.016;  // [s], a display frame at about 60 Hz
+constexpr double least_step_share = 0.1;  // a step below this share of the present one makes a run too slow
+constexpr double frame_time = 0.016;      // [s], a display frame at about 60 Hz
 
 double within_safe_share(double limit) {
   return std::max(rounded_down(safe_share * limit), scene::ranges::dt.minimum);
@@ -41,42 +41,46 @@ Remedy remedy(const Model& model, const scene::Scene& scene, double limit) {
     const double holds = dt_limit_bound(model, other);
     if (solver.dt > safe_share * holds) remedy.dt = within_safe_share(holds);
     remedy.method = other.solver.method;
-    remedy.text = std::string("use symplectic_euler, which costs the same") +
-                  (remedy.dt < solver.dt ? ", with dt = " + significant(remedy.dt, 4) + " s" : "");
-  } else if (safe_share * limit < std::max(too_slow * solver.dt, scene::ranges::dt.minimum)) {
-    remedy.dt = std::min(solver.dt, a_frame);
+    remedy.text =
+        std::string("use symplectic_euler, which costs the same") +
+        (remedy.dt < solver.dt ? ", with dt = " + with_significant_digits(remedy.dt, 4) + " s" : "");
+  } else if (safe_share * limit < std::max(least_step_share * solver.dt, scene::ranges::dt.minimum)) {
+    remedy.dt = std::min(solver.dt, frame_time);
     remedy.method = scene::Method::implicit_euler;
-    remedy.text = "use implicit_euler, which has no such limit, with dt = " + significant(remedy.dt, 4) +
-                  " s; " + scene::name(solver.method) + " would need a step below " + significant(limit, 4) +
-                  " s";
+    remedy.text =
+        "use implicit_euler, which has no such limit, with dt = " + with_significant_digits(remedy.dt, 4) +
+        " s; " + scene::name(solver.method) + " would need a step below " +
+        with_significant_digits(limit, 4) + " s";
   } else if (solver.dt > margin_to_warn * limit) {
     remedy.dt = within_safe_share(limit);
-    remedy.text = "set dt to " + significant(remedy.dt, 4) + " s, 80 % of the limit";
+    remedy.text = "set dt to " + with_significant_digits(remedy.dt, 4) + " s, 80 % of the limit";
   } else if (solver.method != scene::Method::implicit_euler) {
     // The limit about the rest shape is not the cause: the cloth is stiffer in its present shape, or some
     // other part adds energy. A shorter step might have to be shortened again and again.
-    remedy.dt = std::min(solver.dt, a_frame);
+    remedy.dt = std::min(solver.dt, frame_time);
     remedy.method = scene::Method::implicit_euler;
     remedy.text = "use implicit_euler, which holds whatever stiffens the cloth, with dt = " +
-                  significant(remedy.dt, 4) + " s; that of " + scene::name(solver.method) +
-                  " was short enough for the cloth at rest";
+                  with_significant_digits(remedy.dt, 4) + " s; the dt used with " +
+                  scene::name(solver.method) + " was within the limit for the cloth at rest";
   } else {
     remedy.dt = std::max(rounded_down(0.5 * solver.dt), scene::ranges::dt.minimum);
-    remedy.text = "halve the time step, to dt = " + significant(remedy.dt, 4) + " s";
+    remedy.text = "halve the time step, to dt = " + with_significant_digits(remedy.dt, 4) + " s";
   }
   return remedy;
 }
 
 std::string against_limit(const scene::Solver& solver, double limit) {
-  const std::string step = ": dt = " + significant(solver.dt, 4) + " s", method = scene::name(solver.method);
+  const std::string step = ": dt = " + with_significant_digits(solver.dt, 4) + " s",
+                    method = scene::name(solver.method);
   const std::optional<double> share = margin(solver.dt, limit);
   if (limit <= 0.0) return ": " + method + " without damping is stable at no step";
   if (!share) return step + ", for which " + method + " has no limit of stability";
   if (*share <= 1.0)
-    return step + " is only " + significant(*share, 4) + " of the longest stable step of " + method +
-           " about the rest shape, " + significant(limit, 4) + " s; here the cloth is stiffer than that";
-  return step + " is " + significant(*share, 4) + " times the longest stable step of " + method + ", " +
-         significant(limit, 4) + " s";
+    return step + " is only " + with_significant_digits(*share, 4) + " of the longest stable step of " +
+           method + " about the rest shape, " + with_significant_digits(limit, 4) +
+           " s; here the cloth is stiffer than that";
+  return step + " is " + with_significant_digits(*share, 4) + " times the longest stable step of " + method +
+         ", " + with_significant_digits(limit, 4) + " s";
 }
 
 }  // namespace clothlab::model

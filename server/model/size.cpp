@@ -30,7 +30,7 @@ std::size_t springs(const scene::TriangleMesh& mesh, const scene::Springs& mater
 
 Error too_large(const char* what, std::size_t found, std::size_t most, const char* flag) {
   return {"/cloths", std::to_string(found) + " " + what + " in all cloths together",
-          "at most " + std::to_string(most) + " here (" + flag + "): a coarser mesh, or fewer cloths"};
+          "at most " + std::to_string(most) + " (" + flag + "); use a coarser mesh or fewer cloths"};
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ Size size_of(const scene::Scene& scene) {
   return size;
 }
 
-Status within(const Size& size, std::size_t most_vertices, std::size_t most_springs) {
+Status check_size(const Size& size, std::size_t most_vertices, std::size_t most_springs) {
   if (size.vertices > most_vertices)
     return too_large("vertices", size.vertices, most_vertices, "--max-vertices");
   if (size.springs > most_springs) return too_large("springs", size.springs, most_springs, "--max-springs");

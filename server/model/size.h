@@ -19,6 +19,6 @@ struct Size {
 Size size_of(const scene::Scene& scene);
 
 /// An error if the scene has more vertices or springs than allowed; it says which, and what helps.
-Status within(const Size& size, std::size_t most_vertices, std::size_t most_springs);
+Status check_size(const Size& size, std::size_t most_vertices, std::size_t most_springs);
 
 }  // namespace clothlab::model

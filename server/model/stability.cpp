@@ -60,7 +60,7 @@ double overdamped_limit(const Mode& mode) {
 
 }  // namespace
 
-bool one_worst(Method method) {
+bool has_single_worst_mode(Method method) {
   return method == Method::symplectic_euler || method == Method::verlet;
 }
 
@@ -104,7 +104,7 @@ double dt_limit_bound(Method method, const ElementOperator& elements) {
   if (elements.empty() || scene::any_step_is_stable(method))
     return dt_limit(method, {0.0, elements.air_drag()});
   const Mode worst{elements.stiffness_bound(), elements.damping_bound()};
-  if (one_worst(method)) return dt_limit(method, worst);
+  if (has_single_worst_mode(method)) return dt_limit(method, worst);
   // No vibration's root s of s^2 + damping s + omega^2 is farther from 0 than this [1/s].
   const double farthest = std::max(std::sqrt(worst.omega_squared), worst.damping);
   if (method == Method::rk4) return 2.6 / farthest;
@@ -124,7 +124,7 @@ double dt_limit(Method method, const ElementOperator& elements, const std::stop_
     least = std::min(least, of_mode(extreme_mode(elements, of_mode, std::move(start), stop).mode));
   };
   const Field scattered = scattered_start(elements);
-  if (one_worst(method)) {
+  if (has_single_worst_mode(method)) {
     search(scattered);
   } else {
     // The worst vibration is near the stiffest or near the most damped one: search from both.
@@ -157,7 +157,7 @@ std::string step_warning(const scene::Solver& solver, double limit) {
   if (limit <= 0.0)
     return method +
            " without damping is stable at no step: whatever dt is, the cloth will blow up; "
-           "symplectic_euler costs the same and is not";
+           "use symplectic_euler, which costs the same and is stable below its limit";
   const std::optional<double> share = margin(solver.dt, limit);
   if (!share || *share <= margin_to_warn) return {};
   if (*share <= 1.0)

@@ -23,7 +23,7 @@ inline constexpr double no_limit = std::numeric_limits<double>::infinity();
 double dt_limit(scene::Method method, const Mode& mode);
 
 /// True if the worst vibration has the largest eigenvalue of a single matrix: any start of a search finds it.
-bool one_worst(scene::Method method);
+bool has_single_worst_mode(scene::Method method);
 
 /// An upper bound of omega_max about the rest shape [rad/s], at the cost of one pass over the elements.
 double omega_bound(const Model& model, const scene::Scene& scene);

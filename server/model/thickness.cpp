@@ -11,7 +11,7 @@ namespace {
 /// Thickness over covering radius. The thickness must exceed the radius, because a vertex that falls onto the
 /// middle of a grid cell pushes the cell's corners aside, and cloth is a little longer than at rest. Of two
 /// sheets, vertices over middles, one fell through the other at 1.06 times the radius, but not at 1.13.
-constexpr double with_some_room = 1.2;
+constexpr double thickness_over_covering_radius = 1.2;
 
 }  // namespace
 
@@ -27,22 +27,21 @@ double covering_radius(const dvec3& a, const dvec3& b, const dvec3& c) {
   return foot > 0.0 ? 0.5 * middle * middle / foot : 0.5 * longest;
 }
 
-double thickness_that_holds(const Model& model) {
+double least_safe_thickness(const Model& model) {
   double largest = 0.0;
   for (const auto& [a, b, c] : model.triangles)
     largest = std::max(
         largest, covering_radius(model.rest_position[a], model.rest_position[b], model.rest_position[c]));
-  return with_some_room * largest;
+  return thickness_over_covering_radius * largest;
 }
 
 std::string thickness_warning(const Model& model, const scene::Scene& scene) {
   if (!scene.self_collision) return {};
-  const double holds = thickness_that_holds(model), thickness = scene.self_collision->thickness;
+  const double holds = least_safe_thickness(model), thickness = scene.self_collision->thickness;
   if (!(thickness < holds)) return {};
   return formatted(
-      "self_collision.thickness = %.3g m is too thin for this mesh: vertices keep apart, and between those "
-      "of a "
-      "triangle others can slip through; layers stay apart from %.3g m on, or with a mesh %.2g times as fine",
+      "self_collision.thickness = %.3g m is too thin for this mesh: vertices can slip between the corners of "
+      "a triangle; use at least %.3g m, or a mesh %.2g times as fine",
       thickness, holds, holds / thickness);
 }
 

@@ -15,9 +15,9 @@ double covering_radius(const dvec3& a, const dvec3& b, const dvec3& c);
 
 /// The least self_collision.thickness [m] with which no vertex slips through a triangle at rest: 1.2 times
 /// the largest covering radius. On a square grid that is 0.85 of the spacing. 0 without triangles.
-double thickness_that_holds(const Model& model);
+double least_safe_thickness(const Model& model);
 
-/// A warning to the user if the scene's self-collision is thinner than thickness_that_holds; empty if it is
+/// A warning to the user if the scene's self-collision is thinner than least_safe_thickness; empty if it is
 /// not, or if the scene has no self-collision.
 std::string thickness_warning(const Model& model, const scene::Scene& scene);
 

@@ -113,7 +113,7 @@ int refuse(lws* wsi, const RequestFault& fault) {
   text += "HTTP/1.1 " + std::to_string(fault.status) + " " + reason(fault.status) +
           "\r\ncontent-type: text/plain; charset=utf-8\r\nx-content-type-options: nosniff\r\n"
           "connection: close\r\ncontent-length: " +
-          std::to_string(body.size()) + "\r\n" + fault.also + "\r\n" + body;
+          std::to_string(body.size()) + "\r\n" + fault.extra_header + "\r\n" + body;
   lws_write(wsi, reinterpret_cast<unsigned char*>(text.data()) + LWS_PRE, text.size() - LWS_PRE,
             LWS_WRITE_HTTP_HEADERS);
   return -1;
@@ -211,7 +211,7 @@ int on_client(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::
       return slot->client ? slot->client->writeable() : -1;
     case LWS_CALLBACK_WS_PEER_INITIATED_CLOSE:
       if (sent_unmasked(wsi)) return slot->ending = true, refuse_unmasked(wsi);
-      return slot->client && slot->client->close_said() ? -1 : 0;
+      return slot->client && slot->client->close_sent() ? -1 : 0;
     case LWS_CALLBACK_TIMER:
       if (slot && slot->client) slot->client->timer();
       return 0;

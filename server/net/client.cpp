@@ -188,7 +188,7 @@ void Client::schedule_frame(std::int64_t now) {
 }
 
 /// True if messages may be sent: after `hello`, or to a client without a role or room, which gets no `hello`.
-bool Client::may_speak() const {
+bool Client::may_send() const {
   return greeted_ || role_ == Role::none || !room_;
 }
 
@@ -196,16 +196,16 @@ int Client::writeable() {
   // A client whose session failed first gets the text that waits for it. In all other cases, a flood among
   // them, the close frame goes out at once.
   const bool finish_first = close_code_ == close_internal && !outbox_.empty();
-  if (close_code_ != 0 && !finish_first) return say_close();
-  if (!may_speak()) return 0;
+  if (close_code_ != 0 && !finish_first) return send_close();
+  if (!may_send()) return 0;
   return send_next();
 }
 
 // lws_close_reason would close the socket with the client's messages unread; the kernel would then reset the
 // connection, and the client would never learn the reason. So the close frame is written here, and further
 // messages are read and dropped until the client answers it, or for 2 s.
-int Client::say_close() {
-  if (std::exchange(close_said_, true)) return 0;
+int Client::send_close() {
+  if (std::exchange(close_sent_, true)) return 0;
   constexpr std::size_t longest = 123;  // bytes of a close frame's reason (RFC 6455, 5.5)
   const std::string reason = close_reason_.substr(0, longest);
   std::string frame{'\x88', static_cast<char>(reason.size() + 2), static_cast<char>(close_code_ >> 8),
@@ -238,8 +238,8 @@ int Client::send_next() {
 }
 
 int Client::send_frame(const stream::SharedMessage& frame) {
-  if (!frame->colliders.empty() && colliders_said_ != frame->header.sequence) {
-    colliders_said_ = frame->header.sequence;
+  if (!frame->colliders.empty() && colliders_sent_for_ != frame->header.sequence) {
+    colliders_sent_for_ = frame->header.sequence;
     wake();  // the next call sends the frame itself
     return write(const_cast<unsigned char*>(frame->colliders.data()) + stream::front_room,
                  frame->colliders.size() - stream::front_room, true);

@@ -35,7 +35,7 @@ class Client {
   int writeable();
   void timer();
   /// True once the server has sent its close frame; the client's close frame is then the answer to it.
-  bool close_said() const { return close_said_; }
+  bool close_sent() const { return close_sent_; }
   /// Makes libwebsockets call `writeable` soon, because something is ready to be sent.
   void wake();
 
@@ -64,8 +64,8 @@ class Client {
   bool enter_room();
   void handle(const std::string& text);
   void schedule_frame(std::int64_t now);
-  bool may_speak() const;
-  int say_close();
+  bool may_send() const;
+  int send_close();
   int send_next();
   int write(unsigned char* data, std::size_t size, bool text);
   int send_frame(const stream::SharedMessage& frame);
@@ -87,10 +87,10 @@ class Client {
   TokenBucket messages_;
   bool topology_sent_ = false;
   std::uint32_t topology_revision_ = 0;
-  std::uint32_t colliders_said_ = 0;  ///< sequence number of the frame whose colliders were sent last
+  std::uint32_t colliders_sent_for_ = 0;  ///< sequence number of the frame whose colliders were sent last
   bool frame_waits_ = false;
   int close_code_ = 0;
-  bool close_said_ = false;
+  bool close_sent_ = false;
   std::string close_reason_;
 };
 

@@ -31,13 +31,13 @@ std::unordered_map<int, Watched>& watched() {
   return all;
 }
 
-long look(int socket, void* buffer, long got, std::size_t room) {
+long inspect_read(int socket, void* buffer, long got, std::size_t room) {
   const auto found = got > 0 ? watched().find(socket) : watched().end();
   if (found == watched().end()) return got;
   Watched& connection = found->second;
   auto* data = static_cast<unsigned char*>(buffer);
   if (connection.wsi) {
-    const std::size_t left = connection.frames.pass(data, static_cast<std::size_t>(got), room);
+    const std::size_t left = connection.frames.filter(data, static_cast<std::size_t>(got), room);
     if (connection.frames.unmasked()) lws_callback_on_writable(connection.wsi);
     return static_cast<long>(left);
   }
@@ -50,7 +50,7 @@ long look(int socket, void* buffer, long got, std::size_t room) {
 
 }  // namespace
 
-std::size_t FrameWatch::pass(unsigned char* data, std::size_t size, std::size_t room) {
+std::size_t FrameWatch::filter(unsigned char* data, std::size_t size, std::size_t room) {
   constexpr std::array<unsigned char, 6> empty_pong{0x8A, 0x80, 0, 0, 0, 0};
   constexpr std::size_t mask_bytes = 4;
   std::size_t at = 0;
@@ -110,7 +110,7 @@ extern "C" {
 
 ssize_t recv(int socket, void* buffer, size_t size, int flags) {
   const ssize_t got = recvfrom(socket, buffer, size, flags, nullptr, nullptr);
-  return (flags & MSG_PEEK) != 0 ? got : clothlab::net::look(socket, buffer, got, size);
+  return (flags & MSG_PEEK) != 0 ? got : clothlab::net::inspect_read(socket, buffer, got, size);
 }
 
 int SSL_read(SSL* ssl, void* buffer, int size) {
@@ -119,6 +119,7 @@ int SSL_read(SSL* ssl, void* buffer, int size) {
   if (!read) return -1;
   const int got = read(ssl, buffer, size);
   if (got <= 0 || !socket_of) return got;
-  return static_cast<int>(clothlab::net::look(socket_of(ssl), buffer, got, static_cast<std::size_t>(size)));
+  return static_cast<int>(
+      clothlab::net::inspect_read(socket_of(ssl), buffer, got, static_cast<std::size_t>(size)));
 }
 }

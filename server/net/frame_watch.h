@@ -16,7 +16,7 @@ class FrameWatch {
   /// Inspects the next `size` bytes of the connection. An unmasked frame and all bytes after it are replaced
   /// by an empty masked frame, which has no effect. Returns the number of bytes then in `data`, which has
   /// space for `room` bytes.
-  std::size_t pass(unsigned char* data, std::size_t size, std::size_t room);
+  std::size_t filter(unsigned char* data, std::size_t size, std::size_t room);
   bool unmasked() const { return unmasked_; }
 
  private:

@@ -105,15 +105,16 @@ std::optional<HttpAnswer> HttpRequest::refusal() const {
   if (!hub_.needs_token()) return std::nullopt;
   const std::string given = header(wsi_, WSI_TOKEN_HTTP_AUTHORIZATION);
   const std::string scheme = "Bearer ";
-  Verdict verdict;
-  if (given.rfind(scheme, 0) == 0) verdict = hub_.judge(given.substr(scheme.size()), peer_address(wsi_), {});
+  TokenCheck verdict;
+  if (given.rfind(scheme, 0) == 0)
+    verdict = hub_.check_token(given.substr(scheme.size()), peer_address(wsi_), {});
   if (verdict.role != Role::none) return std::nullopt;
   if (verdict.wait == 0) {
     HttpAnswer refusal = plain(401, "send the server's token as `Authorization: Bearer TOKEN`");
     refusal.headers = {{"www-authenticate:", "Bearer"}};
     return refusal;
   }
-  HttpAnswer refusal = plain(429, not_looked_at(verdict.wait));
+  HttpAnswer refusal = plain(429, token_wait_message(verdict.wait));
   refusal.headers = {{"retry-after:", std::to_string(verdict.wait)}};
   return refusal;
 }

@@ -83,7 +83,7 @@ Role Hub::role_of(const std::string& token) const {
   return Role::none;
 }
 
-Verdict Hub::judge(const std::string& token, const std::string& address, std::vector<LogField> who) {
+TokenCheck Hub::check_token(const std::string& token, const std::string& address, std::vector<LogField> who) {
   const std::int64_t now = session::now_us();
   const std::string network = network_of(address);
   if (const int wait = token_guard_.wait(network, now)) return {Role::none, wait};
@@ -99,7 +99,7 @@ std::string Hub::host_refusal(const std::string& host) const {
   if (needs_token() || host_trusted(host, options_.allow_origin)) return {};
   const std::string name = host_text(host);
   const std::string scheme = options_.tls_certificate.empty() ? "http://" : "https://";
-  return "this server wants no token, and so answers under an address or localhost only, not as " + name +
+  return "this server requires no token, and so answers under an address or localhost only, not as " + name +
          ": open it as 127.0.0.1 or localhost, or start it with --allow-origin " + scheme + name +
          ", or with --token";
 }

@@ -30,7 +30,7 @@ enum class Role { none, viewer, operator_ };
 const char* name(Role role);
 
 /// The result of checking a token.
-struct Verdict {
+struct TokenCheck {
   Role role = Role::none;
   int wait = 0;  ///< above 0: the token was not checked, as no token from its address is for so long [s]
 };
@@ -51,7 +51,7 @@ class Hub {
   Role role_of(const std::string& token) const;
   /// The role of a token that came from `address`, or how long that address must wait after too many wrong
   /// tokens. A wrong token is counted, and logged with the fields `who`.
-  Verdict judge(const std::string& token, const std::string& address, std::vector<LogField> who);
+  TokenCheck check_token(const std::string& token, const std::string& address, std::vector<LogField> who);
   bool needs_token() const { return !options_.token.empty(); }
   /// Why a request with this Host header is refused; empty: it is not. With `--token` any name is allowed.
   std::string host_refusal(const std::string& host) const;

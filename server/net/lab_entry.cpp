@@ -68,7 +68,7 @@ json LabEntry::progress_message() const {
 json LabEntry::result_message() const {
   json message = summary();
   message["cached"] = cached;
-  message["beside"] = beside;
+  message["beside"] = disturbed;
   message["result"] = outcome ? lab::to_json(*outcome) : json(nullptr);
   if (error) message["error"] = {{"path", error->where}, {"found", error->what}, {"allowed", error->remedy}};
   return message;
@@ -81,7 +81,7 @@ void LabEntry::log_end(double seconds) const {
                                {"state", name(state)},
                                {"seconds", formatted("%.1f", seconds)}};
   if (cached) fields.push_back({"cached", "true"});
-  if (beside) fields.push_back({"beside", "true"});
+  if (disturbed) fields.push_back({"beside", "true"});
   if (error) fields.push_back({"why", error->text()});
   log(state == State::failed ? LogLevel::warning : LogLevel::info, "lab_job_ended", fields);
 }

@@ -30,13 +30,13 @@ struct LabEntry {
   SharedDocument document;
   std::uint64_t revision = 0;
   bool cached = false, stale = false, cancelling = false, overdue = false;
-  bool beside = false;  ///< a session stepped while the job ran, so its times may be too long
-  int ahead = 0;        ///< jobs before this one in the queue, the running one included
+  bool disturbed = false;  ///< a session stepped while the job ran, so its times may be too long
+  int ahead = 0;           ///< jobs before this one in the queue, the running one included
   lab::Progress progress;
   SharedOutcome outcome;  ///< the results so far; null: none yet
   std::optional<Error> error;
   std::int64_t began = 0, slow_since = 0;  ///< [us]; 0: it has not begun, or is not slow
-  bool said_slow = false;
+  bool slow_notice_sent = false;
   bool progress_due = false, result_due = false;
   std::int64_t progress_sent = 0, result_sent = 0;  ///< [us]
 

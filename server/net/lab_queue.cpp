@@ -123,24 +123,24 @@ void LabQueue::session_replaced(const std::string& session) {
   if (found->second.state == State::holding) begin(found->second, session::now_us());
 }
 
-void LabQueue::session_reaches(const std::string& session, double share, std::int64_t now) {
+void LabQueue::speed_reported(const std::string& session, double share, std::int64_t now) {
   const auto running = entries_.find(current_);
   if (running == entries_.end()) return;
   LabEntry& entry = running->second;
-  const bool concerns = entry.state == State::running && entry.session == session && !entry.said_slow;
+  const bool concerns = entry.state == State::running && entry.session == session && !entry.slow_notice_sent;
   if (!concerns || share >= least_share) {
     entry.slow_since = 0;
     return;
   }
   if (entry.slow_since == 0) entry.slow_since = now;
-  if (now - entry.slow_since < slow_before_said) return;
-  entry.said_slow = true;
+  if (now - entry.slow_since < slow_notice_delay) return;
+  entry.slow_notice_sent = true;
   const std::string percent = std::to_string(static_cast<int>(100 * share));
   port_.notify(entry.ticket.asker, "notice",
                {{"level", "warning"},
                 {"text", "while the lab measures, this session reaches " + percent +
-                             " % of its speed, and the times that are measured are too long: pause it, or "
-                             "measure with `pause`, and it plays on afterwards"}});
+                             " % of its speed, and the times that are measured are too long: pause the "
+                             "session, or start the job with `pause`, which resumes it afterwards"}});
 }
 
 const LabEntry* LabQueue::find(std::uint64_t client, std::uint64_t job) const {
@@ -190,7 +190,7 @@ void LabQueue::pump(std::int64_t now) {
   end_cancelled(now);
   if (current_ == 0) start_next(now);
   count_ahead();
-  for (auto& [id, entry] : entries_) tell(entry, now);
+  for (auto& [id, entry] : entries_) send_due_messages(entry, now);
 }
 
 void LabQueue::follow_running(std::int64_t now) {
@@ -198,7 +198,7 @@ void LabQueue::follow_running(std::int64_t now) {
   if (current_ == 0 || worker_->idle()) return;
   LabEntry& entry = entries_.at(current_);
   LabWorker::Mail mail = worker_->take();
-  entry.beside = entry.beside || steps > before;
+  entry.disturbed = entry.disturbed || steps > before;
   if (mail.progress) {
     entry.progress = std::move(*mail.progress);
     entry.progress_due = true;
@@ -219,7 +219,7 @@ void LabQueue::finish(LabEntry& entry, Result<lab::Outcome> outcome, std::int64_
   if (entry.cancelling) return close(entry, State::cancelled, now);
   if (outcome && !entry.overdue) {
     // Times measured while a session stepped may be too long, so they are not cached.
-    if (!entry.beside) port_.keep(*entry.document, entry.job, *entry.outcome);
+    if (!entry.disturbed) port_.keep(*entry.document, entry.job, *entry.outcome);
     return close(entry, State::finished, now);
   }
   entry.error = entry.overdue ? Error{"lab", "it took more than " + formatted("%d s", most_seconds_),
@@ -299,7 +299,7 @@ void LabQueue::count_ahead() {
   }
 }
 
-void LabQueue::tell(LabEntry& entry, std::int64_t now) {
+void LabQueue::send_due_messages(LabEntry& entry, std::int64_t now) {
   if (entry.ended() || entry.ticket.asker == 0) return;
   if (entry.progress_due && now - entry.progress_sent >= progress_period) {
     entry.progress_due = false;

@@ -62,8 +62,8 @@ class LabQueue {
   void held(std::uint64_t job);
 
   /// A session that plays reaches `share` of its set speed. If the running job was asked for in that session
-  /// and `share` stays below `least_share` for `slow_before_said`, the job's client gets one notice.
-  void session_reaches(const std::string& session, double share, std::int64_t now);
+  /// and `share` stays below `least_share` for `slow_notice_delay`, the job's client gets one notice.
+  void speed_reported(const std::string& session, double share, std::int64_t now);
 
   /// Cancels a job. False: the job had ended before. Error: the client has no such job.
   std::variant<bool, RpcError> cancel(std::uint64_t client, std::uint64_t job);
@@ -85,8 +85,8 @@ class LabQueue {
 
   /// The least time between two lab.progress, and between two lab.result, of one job [us].
   static constexpr std::int64_t progress_period = 200'000, result_period = 500'000;
-  static constexpr double least_share = 50.0 / 60;             ///< of a session's set speed
-  static constexpr std::int64_t slow_before_said = 1'500'000;  ///< time until the notice [us]
+  static constexpr double least_share = 50.0 / 60;              ///< of a session's set speed
+  static constexpr std::int64_t slow_notice_delay = 1'500'000;  ///< time until the notice [us]
 
  private:
   const LabEntry* find(std::uint64_t client, std::uint64_t job) const;
@@ -98,7 +98,7 @@ class LabQueue {
   void finish(LabEntry& entry, Result<lab::Outcome> outcome, std::int64_t now);
   void close(LabEntry& entry, LabEntry::State state, std::int64_t now);
   void count_ahead();
-  void tell(LabEntry& entry, std::int64_t now);
+  void send_due_messages(LabEntry& entry, std::int64_t now);
   void send_result(LabEntry& entry, std::int64_t now);
   void forget_oldest(std::uint64_t client);
 

@@ -21,10 +21,10 @@ Outcome auth(Client& client, const Request& request) {
   const std::string token = params.text("token", std::nullopt);
   if (auto error = params.check()) return *error;
   const auto [role, wait] =
-      client.hub().judge(token, client.address(), {{"client", std::to_string(client.id())}});
-  if (wait > 0) return RpcError{error_over_limit, not_looked_at(wait), nullptr};
+      client.hub().check_token(token, client.address(), {{"client", std::to_string(client.id())}});
+  if (wait > 0) return RpcError{error_over_limit, token_wait_message(wait), nullptr};
   if (role == Role::none)
-    return RpcError{error_not_allowed, "this token opens nothing here; see --token and --view-token",
+    return RpcError{error_not_allowed, "this token is not valid on this server; see --token and --view-token",
                     nullptr};
   if (role == Role::viewer && !client.hub().knows_session(client.session()))
     return RpcError{error_not_allowed,
@@ -37,7 +37,7 @@ Outcome auth(Client& client, const Request& request) {
 
 struct Method {
   const char* name;
-  bool changes;  ///< true: only operators may call the method
+  bool operators_only;  ///< true: only operators may call the method
   Outcome (*run)(Client&, const Request&);
 };
 
@@ -66,10 +66,11 @@ constexpr std::array methods{
 };
 
 // Methods of the protocol that this version of the server does not support yet.
-constexpr std::array later{"mesh.upload", "grab.start", "grab.move", "grab.end"};
+constexpr std::array unsupported_methods{"mesh.upload", "grab.start", "grab.move", "grab.end"};
 
 RpcError unknown(const std::string& method) {
-  const bool known = std::find(later.begin(), later.end(), method) != later.end();
+  const bool known =
+      std::find(unsupported_methods.begin(), unsupported_methods.end(), method) != unsupported_methods.end();
   return {error_unknown_method,
           method + (known ? " is not supported yet" : ": there is no such method"),
           {{"allowed", method_names()}}};
@@ -93,7 +94,7 @@ session::Ticket ticket(const Client& client, const Request& request) {
 }
 
 Outcome ask_session(Client& client, const Request& request, decltype(session::Command::what) what) {
-  if (client.room()->offer({ticket(client, request), std::move(what)})) return Later{};
+  if (client.room()->offer({ticket(client, request), std::move(what)})) return AnsweredLater{};
   return RpcError{error_over_limit,
                   std::to_string(session::max_waiting_commands) +
                       " of your requests wait already; wait for their answers",
@@ -102,11 +103,11 @@ Outcome ask_session(Client& client, const Request& request, decltype(session::Co
 
 Outcome call(Client& client, const Request& request) {
   if (client.role() == Role::none && request.method != "auth")
-    return RpcError{error_not_allowed, "this server wants a token: call auth {token} first", nullptr};
+    return RpcError{error_not_allowed, "this server requires a token: call auth {token} first", nullptr};
   const auto method = std::find_if(methods.begin(), methods.end(),
                                    [&](const Method& candidate) { return request.method == candidate.name; });
   if (method == methods.end()) return unknown(request.method);
-  if (method->changes && client.role() != Role::operator_)
+  if (method->operators_only && client.role() != Role::operator_)
     return RpcError{error_not_allowed, request.method + " changes something; a viewer may only look",
                     nullptr};
   if (!client.room() && request.method != "auth")

@@ -13,8 +13,8 @@ namespace clothlab::net {
 class Client;
 
 /// A request's outcome while no answer is known: the session's thread will answer.
-struct Later {};
-using Outcome = std::variant<json, RpcError, Later>;
+struct AnsweredLater {};
+using Outcome = std::variant<json, RpcError, AnsweredLater>;
 
 /// Checks the method's name, the client's role and the parameters, then carries the request out.
 Outcome call(Client& client, const Request& request);

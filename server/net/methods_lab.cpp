@@ -86,7 +86,7 @@ Outcome ask_lab(Client& client, const Request& request, Params& params, lab::Job
   if (const auto* refusal = std::get_if<RpcError>(&admitted)) return *refusal;
   const std::uint64_t id = std::get<std::uint64_t>(admitted);
   Outcome asked = ask_session(client, request, session::ReachScene{id});
-  if (!std::holds_alternative<Later>(asked)) lab.withdraw(id);
+  if (!std::holds_alternative<AnsweredLater>(asked)) lab.withdraw(id);
   return asked;
 }
 

@@ -49,11 +49,11 @@ void Histogram::write(std::string& out, const std::string& name, const std::stri
   std::uint64_t below = 0;
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     below += counts_[i];
-    out += name + "_bucket{" + first + "le=\"" + significant(edges_[i], 9) + "\"} " + std::to_string(below) +
-           "\n";
+    out += name + "_bucket{" + first + "le=\"" + with_significant_digits(edges_[i], 9) + "\"} " +
+           std::to_string(below) + "\n";
   }
   out += name + "_bucket{" + first + "le=\"+Inf\"} " + std::to_string(count_) + "\n";
-  out += name + "_sum" + alone + " " + significant(sum_, 9) + "\n";
+  out += name + "_sum" + alone + " " + with_significant_digits(sum_, 9) + "\n";
   out += name + "_count" + alone + " " + std::to_string(count_) + "\n";
 }
 
@@ -73,8 +73,8 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
     family(out, name, type, help, std::to_string(value));
   };
   count("clothlab_sessions", "gauge", "sessions open", gauges.sessions);
-  count("clothlab_sessions_asleep", "gauge", "sessions that play and do not step, their cloth at rest",
-        gauges.asleep);
+  count("clothlab_sessions_asleep", "gauge",
+        "playing sessions that do not step because their cloth is at rest", gauges.asleep);
   count("clothlab_clients", "gauge", "WebSocket connections", gauges.clients);
   count("clothlab_viewers", "gauge", "connections subscribed to frames", gauges.viewers);
   count("clothlab_steps_total", "counter", "simulation steps",
@@ -85,7 +85,7 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
   count("clothlab_bytes_sent_total", "counter", "bytes of WebSocket messages sent", metrics.bytes_sent);
   count("clothlab_messages_received_total", "counter", "messages received", metrics.messages_received);
   count("clothlab_refused_total", "counter", "WebSocket handshakes and connections refused", metrics.refused);
-  count("clothlab_sessions_brought_back_total", "counter", "sessions that failed and went on",
+  count("clothlab_sessions_brought_back_total", "counter", "sessions that failed and were restored",
         metrics.sessions_brought_back);
   count("clothlab_exports_waiting", "gauge", "pictures and meshes that wait or are being made",
         gauges.exports_waiting);
@@ -97,16 +97,17 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
         gauges.lab.cancelled);
   count("clothlab_lab_failed_total", "counter", "jobs of the lab that failed", gauges.lab.failed);
   family(out, "clothlab_lab_seconds_total", "counter", "seconds that jobs of the lab that have ended ran",
-         significant(gauges.lab.seconds, 9));
+         with_significant_digits(gauges.lab.seconds, 9));
   head(out, "clothlab_frame_latency_seconds", "histogram",
-       "from the end of a step to its frame's bytes leaving");
+       "from the request to pack a frame until its bytes are sent, without waits for the viewer");
   metrics.latency.write(out, "clothlab_frame_latency_seconds");
   family(out, "clothlab_frame_latency_p95_seconds", "gauge",
-         "95th percentile of clothlab_frame_latency_seconds", significant(metrics.latency.quantile(0.95), 9));
+         "95th percentile of clothlab_frame_latency_seconds",
+         with_significant_digits(metrics.latency.quantile(0.95), 9));
   head(out, "clothlab_request_seconds", "histogram", "from a request's arrival to its answer, by method");
   metrics.requests.write(out, "clothlab_request_seconds", "method");
   head(out, "clothlab_gpu_pass_seconds", "histogram",
-       "what a pass takes on the GPU, of one step, diagnosis or frame in about ten a second and session");
+       "time a pass takes on the GPU; about ten samples a second from each session");
   metrics.gpu_passes.write(out, "clothlab_gpu_pass_seconds", "pass");
   return out;
 }

@@ -13,7 +13,7 @@ void FramePacing::subscribe(stream::Encoding encoding, double rate, int in_fligh
   rate_ = rate;
   period_ = static_cast<std::int64_t>(1e6 / rate);
   in_flight_ = in_flight;
-  due_ = unblocked_ = now;
+  due_ = unblocked_since_ = now;
 }
 
 std::optional<std::int64_t> FramePacing::wait(std::int64_t now) const {
@@ -23,7 +23,7 @@ std::optional<std::int64_t> FramePacing::wait(std::int64_t now) const {
 }
 
 std::int64_t FramePacing::ready_since(std::int64_t now) const {
-  return std::min(now, std::max(unblocked_, due_ - period_ / 4));
+  return std::min(now, std::max(unblocked_since_, due_ - period_ / 4));
 }
 
 void FramePacing::sent(std::uint32_t sequence, std::int64_t now) {
@@ -42,7 +42,7 @@ void FramePacing::acknowledge(std::uint32_t sequence, std::int64_t now) {
     if (newer(waiting, sequence)) unacknowledged_[static_cast<std::size_t>(kept++)] = waiting;
   }
   count_ = kept;
-  if (blocked && count_ < in_flight_) unblocked_ = now;
+  if (blocked && count_ < in_flight_) unblocked_since_ = now;
 }
 
 double TokenBucket::left(std::int64_t now) const {

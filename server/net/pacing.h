@@ -45,7 +45,7 @@ class FramePacing {
   int in_flight_ = 2, count_ = 0;
   std::array<std::uint32_t, max_in_flight> unacknowledged_{};  ///< `count_` numbers, oldest first
   std::uint32_t last_sent_ = 0;
-  std::int64_t due_ = 0, unblocked_ = 0;
+  std::int64_t due_ = 0, unblocked_since_ = 0;
 };
 
 /// A rate limit: a bucket that gains `rate` tokens a second [1/s] and holds at most `burst` tokens.

@@ -25,7 +25,7 @@ std::string_view trimmed(std::string_view text) {
 }
 
 /// Returns the part of `text` before the first `separator`, trimmed; cuts that part and the separator off.
-std::string_view take(std::string_view& text, char separator) {
+std::string_view cut_first(std::string_view& text, char separator) {
   const std::size_t at = text.find(separator);
   const std::string_view part = text.substr(0, at);
   text = at == std::string_view::npos ? std::string_view() : text.substr(at + 1);
@@ -36,7 +36,7 @@ char lower(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
-bool same(std::string_view a, std::string_view b) {
+bool equal_ignoring_case(std::string_view a, std::string_view b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](char x, char y) { return lower(x) == lower(y); });
 }
@@ -45,7 +45,7 @@ bool same(std::string_view a, std::string_view b) {
 /// 0: without compression every client can read the answer.
 double weight(std::string_view parameters) {
   while (!parameters.empty()) {
-    const std::string_view parameter = take(parameters, ';');
+    const std::string_view parameter = cut_first(parameters, ';');
     if (parameter.size() < 2 || lower(parameter[0]) != 'q' || parameter[1] != '=') continue;
     double q = 0;
     const auto [end, failure] = std::from_chars(parameter.data() + 2, parameter.data() + parameter.size(), q);
@@ -62,7 +62,7 @@ int header_bytes(lws* wsi) {
   return bytes;
 }
 
-bool has(lws* wsi, lws_token_indexes token) {
+bool has_header(lws* wsi, lws_token_indexes token) {
   return lws_hdr_total_length(wsi, token) > 0;
 }
 
@@ -75,9 +75,9 @@ bool is_key(const std::string& text) {
          std::all_of(text.begin(), text.end() - 2, of_base64);
 }
 
-bool names(std::string_view list, std::string_view wanted) {
+bool list_contains(std::string_view list, std::string_view wanted) {
   while (!list.empty())
-    if (take(list, ',') == wanted) return true;
+    if (cut_first(list, ',') == wanted) return true;
   return false;
 }
 
@@ -91,13 +91,13 @@ std::optional<RequestFault> request_fault(lws* wsi) {
                             "; cookies of other programs on this host count: remove some, or use 127.0.0.1 "
                             "instead of localhost",
                         {}};
-  if (header(wsi, WSI_TOKEN_HTTP) == "HTTP/1.1" && !has(wsi, WSI_TOKEN_HOST))
+  if (header(wsi, WSI_TOKEN_HTTP) == "HTTP/1.1" && !has_header(wsi, WSI_TOKEN_HOST))
     return RequestFault{400, "the request has no Host header; HTTP/1.1 asks for one", {}};
   if (header(wsi, WSI_TOKEN_HOST).find(',') != std::string::npos)
     return RequestFault{400, "the request has several hosts; send one Host header", {}};
   const std::string length = header(wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH);
-  if (has(wsi, WSI_TOKEN_HTTP_TRANSFER_ENCODING) || length.find_first_not_of('0') != std::string::npos)
-    if (has(wsi, WSI_TOKEN_GET_URI) || has(wsi, WSI_TOKEN_HEAD_URI))
+  if (has_header(wsi, WSI_TOKEN_HTTP_TRANSFER_ENCODING) || length.find_first_not_of('0') != std::string::npos)
+    if (has_header(wsi, WSI_TOKEN_GET_URI) || has_header(wsi, WSI_TOKEN_HEAD_URI))
       return RequestFault{
           400, "the request has a body; send it without Content-Length and Transfer-Encoding", {}};
   return std::nullopt;
@@ -107,7 +107,7 @@ std::optional<RequestFault> handshake_fault(lws* wsi) {
   const std::string wanted = std::string("; connect with the subprotocol ") + subprotocol;
   const std::string offered = header(wsi, WSI_TOKEN_PROTOCOL);
   if (offered.empty()) return RequestFault{400, "the handshake has no Sec-WebSocket-Protocol" + wanted, {}};
-  if (!names(offered, subprotocol))
+  if (!list_contains(offered, subprotocol))
     return RequestFault{400, "the handshake offers other subprotocols only" + wanted, {}};
   if (offered.size() > longest_list)
     return RequestFault{400,
@@ -121,7 +121,7 @@ std::optional<RequestFault> handshake_fault(lws* wsi) {
     return RequestFault{400, "the handshake has no Sec-WebSocket-Key of 16 bytes in base64", {}};
   std::string connection = header(wsi, WSI_TOKEN_CONNECTION);
   std::transform(connection.begin(), connection.end(), connection.begin(), lower);
-  if (connection.size() > longest_list || !names(connection, "upgrade"))
+  if (connection.size() > longest_list || !list_contains(connection, "upgrade"))
     return RequestFault{400, "the handshake has no `Connection: Upgrade`, or much else beside it", {}};
   return std::nullopt;
 }
@@ -130,11 +130,11 @@ bool prefers_gzip(const std::string& accept_encoding) {
   std::optional<double> gzip, identity, any;
   std::string_view rest = accept_encoding;
   while (!rest.empty()) {
-    std::string_view item = take(rest, ',');
-    const std::string_view coding = take(item, ';');
+    std::string_view item = cut_first(rest, ',');
+    const std::string_view coding = cut_first(item, ';');
     const double q = weight(item);
-    if (same(coding, "gzip") || same(coding, "x-gzip")) gzip = q;
-    if (same(coding, "identity")) identity = q;
+    if (equal_ignoring_case(coding, "gzip") || equal_ignoring_case(coding, "x-gzip")) gzip = q;
+    if (equal_ignoring_case(coding, "identity")) identity = q;
     if (coding == "*") any = q;
   }
   const double wish = gzip.value_or(any.value_or(0));

@@ -16,9 +16,9 @@ inline constexpr int max_header_bytes = 16 * 1024;
 inline constexpr int header_room_bytes = 48 * 1024;
 
 struct RequestFault {
-  unsigned status;   ///< HTTP status to answer with
-  std::string why;   ///< what is wrong, and what to do
-  std::string also;  ///< a header line that the status requires; empty: none
+  unsigned status;           ///< HTTP status to answer with
+  std::string why;           ///< what is wrong, and what to do
+  std::string extra_header;  ///< a header line that the status requires; empty: none
 };
 
 /// The first fault of a request; empty: the request is well-formed. After a fault the connection must be

@@ -103,7 +103,7 @@ void Room::demand_changed(std::optional<stream::Encoding> fresh) {
 void Room::pump() {
   if (!session_) return;
   session_->exchange().take_events(events_);
-  for (session::Event& event : events_) std::visit([&](auto& what) { take(what); }, event);
+  for (session::Event& event : events_) std::visit([&](auto& what) { handle(what); }, event);
   const std::int64_t now = session::now_us();
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     const auto encoding = static_cast<stream::Encoding>(i);
@@ -114,7 +114,7 @@ void Room::pump() {
   }
 }
 
-void Room::take(session::Started& started) {
+void Room::handle(session::Started& started) {
   const bool again = this->started();
   renderer_ = started.renderer;
   log(LogLevel::info, "session_started", {{"session", name_}, {"renderer", renderer_}});
@@ -125,18 +125,18 @@ void Room::take(session::Started& started) {
 /// Replaces a failed session by one that goes on from its last saved state. False: the failed session had not
 /// started or saved anything, or this room has replaced 3 sessions in the last minute.
 bool Room::bring_back(const session::Failed& failed) {
-  constexpr std::int64_t a_while = 60'000'000;
+  constexpr std::int64_t one_minute = 60'000'000;
   constexpr std::size_t most = 3;
   const std::int64_t now = session::now_us();
-  std::erase_if(failed_at_, [&](std::int64_t at) { return now - at > a_while; });
-  const std::shared_ptr<const session::Saved> saved = session_->exchange().kept();
+  std::erase_if(failed_at_, [&](std::int64_t at) { return now - at > one_minute; });
+  const std::shared_ptr<const session::Saved> saved = session_->exchange().saved();
   if (!started() || !saved || failed_at_.size() >= most) return false;
   failed_at_.push_back(now);
   ++hub_.metrics().sessions_brought_back;
-  session_->exchange().give_up(failed.error, late_);
+  session_->exchange().give_up(failed.error, given_up_events_);
   begin_session(saved);
-  for (session::Event& event : late_) std::visit([&](auto& what) { take(what); }, event);
-  late_.clear();
+  for (session::Event& event : given_up_events_) std::visit([&](auto& what) { handle(what); }, event);
+  given_up_events_.clear();
   for (Client* client : clients_) client->session_replaced();
   post({{}, session::Watchers{static_cast<int>(clients_.size())}});
   for (std::size_t i = 0; i < stream::encoding_count; ++i) demand_changed(static_cast<stream::Encoding>(i));
@@ -147,11 +147,11 @@ bool Room::bring_back(const session::Failed& failed) {
   return true;
 }
 
-void Room::take(session::SceneLost& lost) {
+void Room::handle(session::SceneLost& lost) {
   hub_.lab().withdraw(lost.job);
 }
 
-void Room::take(session::Failed& failed) {
+void Room::handle(session::Failed& failed) {
   log(LogLevel::error, "session_failed", {{"session", name_}, {"why", failed.error.text()}});
   if (bring_back(failed)) return;
   broadcast("notice", {{"level", "error"}, {"text", failed.error.text()}});
@@ -163,7 +163,7 @@ void Room::take(session::Failed& failed) {
   failure_ = failed;
 }
 
-void Room::take(session::Reply& reply) {
+void Room::handle(session::Reply& reply) {
   Client* client = hub_.find_client(reply.ticket.asker);
   if (!client) return;
   if (const auto* refusal = std::get_if<session::Refusal>(&reply.answer))
@@ -172,7 +172,7 @@ void Room::take(session::Reply& reply) {
     client->answer(reply.ticket, std::get<json>(reply.answer));
 }
 
-void Room::take(session::SceneChanged& changed) {
+void Room::handle(session::SceneChanged& changed) {
   document_ = changed.document;
   revision_ = changed.revision;
   hub_.lab().scene_changed(name_, *document_);
@@ -182,22 +182,22 @@ void Room::take(session::SceneChanged& changed) {
     broadcast("scene", {{"document", document()}, {"revision", revision_}});
 }
 
-void Room::take(session::TopologyChanged& changed) {
+void Room::handle(session::TopologyChanged& changed) {
   topology_ = changed.message;
   for (Client* client : clients_) client->wake();
 }
 
-void Room::take(const session::Status& status) {
+void Room::handle(const session::Status& status) {
   asleep_ = status.run.state() == session::RunState::State::asleep;
-  take(status.pass_times);
+  handle(status.pass_times);
   if (status.real_time_factor > 0)
-    hub_.lab().session_reaches(name_, status.real_time_factor / status.speed, session::now_us());
+    hub_.lab().speed_reported(name_, status.real_time_factor / status.speed, session::now_us());
   if (clients_.empty() || !started()) return;
   const SharedText text = make_text(notification_text("sim.status", status_params(status)));
   for (Client* client : clients_) client->send_status(text);
 }
 
-void Room::take(const gl::StageTimes& times) {
+void Room::handle(const gl::StageTimes& times) {
   for (const auto& [pass, seconds] : times) {
     hub_.metrics().gpu_passes[pass].add(seconds);
     // The session may have replaced this pass since it was timed.
@@ -205,7 +205,7 @@ void Room::take(const gl::StageTimes& times) {
   }
 }
 
-void Room::take(session::PartsChanged& changed) {
+void Room::handle(session::PartsChanged& changed) {
   passes_ = terms_ = skipped_ = json::array();
   pass_seconds_ = json::object();
   for (const sim::Simulation::Part& part : changed.parts) {
@@ -216,33 +216,33 @@ void Room::take(session::PartsChanged& changed) {
   }
 }
 
-void Room::take(session::SolverChanged& changed) {
+void Room::handle(session::SolverChanged& changed) {
   solver_ = std::move(changed.facts);
 }
 
-void Room::take(session::Diverged& diverged) {
+void Room::handle(session::Diverged& diverged) {
   broadcast("sim.diverged", {{"reason", diverged.reason},
                              {"remedy", {{"text", diverged.remedy}, {"patch", diverged.patch}}}});
 }
 
-void Room::take(session::Notice& notice) {
+void Room::handle(session::Notice& notice) {
   broadcast("notice", {{"level", notice.level}, {"text", notice.text}});
 }
 
-void Room::take(session::Captured& captured) {
+void Room::handle(session::Captured& captured) {
   --capturing_;
   hub_.captured(std::move(captured));
 }
 
-void Room::take(session::SceneReached& reached) {
+void Room::handle(session::SceneReached& reached) {
   hub_.lab().scene_taken(reached.job, document_, revision_);
 }
 
-void Room::take(session::Held& held) {
+void Room::handle(session::Held& held) {
   hub_.lab().held(held.job);
 }
 
-void Room::take(session::ChoiceWanted&) {
+void Room::handle(session::ChoiceWanted&) {
   hub_.lab().choose_for(name_, document_);
 }
 

@@ -63,22 +63,22 @@ class Room {
   std::uint64_t steps() const { return session_ ? session_->exchange().steps() : 0; }
 
  private:
-  void take(session::Started& started);
-  void take(session::Failed& failed);
-  void take(session::Reply& reply);
-  void take(session::SceneChanged& changed);
-  void take(session::TopologyChanged& changed);
-  void take(session::PartsChanged& changed);
-  void take(session::SolverChanged& changed);
-  void take(session::Diverged& diverged);
-  void take(session::Notice& notice);
-  void take(session::Captured& captured);
-  void take(session::SceneReached& reached);
-  void take(session::SceneLost& lost);
-  void take(session::Held& held);
-  void take(session::ChoiceWanted&);
-  void take(const session::Status& status);
-  void take(const gl::StageTimes& times);
+  void handle(session::Started& started);
+  void handle(session::Failed& failed);
+  void handle(session::Reply& reply);
+  void handle(session::SceneChanged& changed);
+  void handle(session::TopologyChanged& changed);
+  void handle(session::PartsChanged& changed);
+  void handle(session::SolverChanged& changed);
+  void handle(session::Diverged& diverged);
+  void handle(session::Notice& notice);
+  void handle(session::Captured& captured);
+  void handle(session::SceneReached& reached);
+  void handle(session::SceneLost& lost);
+  void handle(session::Held& held);
+  void handle(session::ChoiceWanted&);
+  void handle(const session::Status& status);
+  void handle(const gl::StageTimes& times);
   void begin_session(std::shared_ptr<const session::Saved> saved);
   bool bring_back(const session::Failed& failed);
   void greet(Client& client);
@@ -91,7 +91,7 @@ class Room {
   std::function<void()> wake_;
   std::unique_ptr<session::Session> session_;
   std::vector<Client*> clients_;
-  std::vector<session::Event> events_, late_;
+  std::vector<session::Event> events_, given_up_events_;
   std::string renderer_;
   std::shared_ptr<const scene::Document> document_;
   std::uint64_t revision_ = 0;

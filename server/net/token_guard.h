@@ -14,22 +14,22 @@ namespace clothlab::net {
 
 class TokenGuard {
  public:
-  explicit TokenGuard(int wrong_a_minute) : most_(wrong_a_minute) {}
+  explicit TokenGuard(int wrong_a_minute) : wrong_a_minute_(wrong_a_minute) {}
 
   /// Seconds to wait before a token from this address is checked again, rounded up; 0: none.
   int wait(const std::string& address, std::int64_t now) const;
   /// Counts a token from this address that was checked and is wrong.
   void was_wrong(const std::string& address, std::int64_t now);
   /// Number of addresses remembered: an address is forgotten once it may send all its wrong tokens again.
-  std::size_t count() const { return left_.size(); }
+  std::size_t count() const { return allowance_.size(); }
 
  private:
-  double most_;
-  std::map<std::string, TokenBucket> left_;
+  double wrong_a_minute_;
+  std::map<std::string, TokenBucket> allowance_;
   std::int64_t forget_at_ = 0;
 };
 
 /// The message that refuses a token without checking it; `seconds` is the time to wait.
-std::string not_looked_at(int seconds);
+std::string token_wait_message(int seconds);
 
 }  // namespace clothlab::net

@@ -70,7 +70,7 @@ int meet_colliders(const World& world, double t, const dvec3& from, dvec3& x, dv
   return count;
 }
 
-int stop_on_way(const World& world, double t, const dvec3& from, dvec3& x, Surface& last) {
+int stop_at_colliders_position(const World& world, double t, const dvec3& from, dvec3& x, Surface& last) {
   return meet_each(world, t, from, x, [&](const Surface& met) { last = met; });
 }
 
@@ -142,8 +142,9 @@ SelfContact self_contact(const World& world, const State& state, const model::Ad
     ++contact.touched;
     // The two vertices share the correction by inverse mass. The share is smaller where several contacts
     // would add up to more than is needed.
-    const double crowd = std::max({2, state.contacts[i], state.contacts[j]});
-    const double share = inverse_mass(world, i) / (inverse_mass(world, i) + inverse_mass(world, j)) / crowd;
+    const double contact_count = std::max({2, state.contacts[i], state.contacts[j]});
+    const double share =
+        inverse_mass(world, i) / (inverse_mass(world, i) + inverse_mass(world, j)) / contact_count;
     contact.push += share * push;
     contact.impulse += share * impulse;
   }

@@ -22,7 +22,7 @@ struct Surface {
 
 /// Like meet_colliders, but changes only the position x. If it meets a collider, `last` becomes the surface
 /// met last.
-int stop_on_way(const World& world, double t, const dvec3& from, dvec3& x, Surface& last);
+int stop_at_colliders_position(const World& world, double t, const dvec3& from, dvec3& x, Surface& last);
 
 /// 1 / mass [1/kg], 0 if pinned.
 double inverse_mass(const World& world, std::uint32_t vertex);

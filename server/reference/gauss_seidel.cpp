@@ -35,7 +35,7 @@ bool hits(const SweepState& step, const Surface& met, const dvec3& v) {
 dvec3 first_guess(const SweepState& step, std::uint32_t i, const std::optional<dvec3>& velocity_before) {
   const World& world = step.world;
   const double dt = step.dt, drag = model::mobility(world.scene);
-  const dvec3 &v = step.v[i], &free = step.free[i];
+  const dvec3 &v = step.v[i], &free = step.free_displacement[i];
   dvec3 pull = world.scene.gravity, felt(0.0);
   if (velocity_before) felt = (v / drag - *velocity_before) / dt;
   const auto not_followed = [&] {
@@ -43,7 +43,7 @@ dvec3 first_guess(const SweepState& step, std::uint32_t i, const std::optional<d
   };
   dvec3 stopped = step.x[i] + free;
   Surface met;
-  if (stop_on_way(world, step.t, step.x[i], stopped, met) == 0) return free - not_followed();
+  if (stop_at_colliders_position(world, step.t, step.x[i], stopped, met) == 0) return free - not_followed();
   const dvec3& n = met.normal;
   const double depth = glm::dot(stopped - (step.x[i] + free), n);
   const dvec3 on_surface = free + n * depth, carried = dt * met.velocity;
@@ -55,12 +55,13 @@ dvec3 first_guess(const SweepState& step, std::uint32_t i, const std::optional<d
 
 /// The velocities at this step's start that the next step compares its own with; none at a vertex that hits a
 /// collider.
-std::vector<std::optional<dvec3>> to_remember(const SweepState& step) {
+std::vector<std::optional<dvec3>> velocities_to_keep(const SweepState& step) {
   std::vector<std::optional<dvec3>> before(step.v.begin(), step.v.end());
   for (std::uint32_t i = 0; i < before.size(); ++i) {
-    dvec3 stopped = step.x[i] + step.free[i];
+    dvec3 stopped = step.x[i] + step.free_displacement[i];
     Surface met;
-    if (stop_on_way(step.world, step.t, step.x[i], stopped, met) > 0 && hits(step, met, step.v[i]))
+    if (stop_at_colliders_position(step.world, step.t, step.x[i], stopped, met) > 0 &&
+        hits(step, met, step.v[i]))
       before[i].reset();
   }
   return before;
@@ -89,7 +90,7 @@ SweepState begin(const World& world, const State& state, double t, double t_next
   for (std::uint32_t i = 0; i < count; ++i) {
     const dvec3& v = state.velocity[i];
     step.mobility[i] = drag * inverse_mass(world, i);
-    step.displacement[i] = step.free[i] =
+    step.displacement[i] = step.free_displacement[i] =
         world.pinned(i) ? end[i] - state.position[i] : drag * (dt * v + dt * dt * gravity);
     if (guesses && !world.pinned(i))
       step.displacement[i] =
@@ -101,9 +102,11 @@ SweepState begin(const World& world, const State& state, double t, double t_next
 /// The velocity of vertex i after the step: v, but if its free motion hits a surface in an impact, with the
 /// normal part turned back by the surface's restitution.
 dvec3 bounced(const SweepState& step, std::uint32_t i, const dvec3& v) {
-  dvec3 stopped = step.x[i] + step.free[i];
+  dvec3 stopped = step.x[i] + step.free_displacement[i];
   Surface met;
-  if (stop_on_way(step.world, step.t, step.x[i], stopped, met) == 0 || !(met.restitution > 0.0)) return v;
+  if (stop_at_colliders_position(step.world, step.t, step.x[i], stopped, met) == 0 ||
+      !(met.restitution > 0.0))
+    return v;
   if (!hits(step, met, step.v[i])) return v;
   const double approach = glm::dot(met.velocity - step.v[i], met.normal);
   return v + met.normal * (met.restitution * approach - glm::dot(v - met.velocity, met.normal));
@@ -125,7 +128,7 @@ void gauss_seidel_step(const World& world, State& state, double t, double t_next
   State next;
   next.step = state.step + 1;
   next.contacts = step.contacts;
-  if (by_vertices) next.velocity_before = to_remember(step);
+  if (by_vertices) next.velocity_before = velocities_to_keep(step);
   for (std::uint32_t i = 0; i < step.x.size(); ++i) {
     next.position.push_back(step.now(i));
     next.velocity.push_back(bounced(step, i, step.displacement[i] / step.dt));

@@ -22,8 +22,8 @@ constexpr int most_newton_steps =
 /// for the velocity u at the end of the step [m/s].
 struct Equation {
   const World& world;
-  Vectors x, v;   ///< at the step's start [m], [m/s], with self-collision's push and impulse added
-  Vectors moved;  ///< (position at the end - x) / dt of pinned vertices, 0 of free ones [m/s]
+  Vectors x, v;          ///< at the step's start [m], [m/s], with self-collision's push and impulse added
+  Vectors pin_velocity;  ///< (position at the end - x) / dt of pinned vertices, 0 of free ones [m/s]
   double dt;
 
   explicit Equation(const StepStart& start)
@@ -33,9 +33,9 @@ struct Equation {
       v[i] += start.impulse[i];
     }
     Vectors unused(x.size());
-    moved = x;
-    place_pins(world, start.t + dt, moved, unused);
-    for (std::size_t i = 0; i < x.size(); ++i) moved[i] = (moved[i] - x[i]) / dt;
+    pin_velocity = x;
+    place_pins(world, start.t + dt, pin_velocity, unused);
+    for (std::size_t i = 0; i < x.size(); ++i) pin_velocity[i] = (pin_velocity[i] - x[i]) / dt;
   }
 
   Vectors end(const Vectors& u) const {
@@ -144,7 +144,7 @@ State backward_euler(const StepStart& start) {
   const Equation equation(start);
   Vectors u = equation.v;
   for (std::size_t i = 0; i < u.size(); ++i)
-    if (start.world.pinned(i)) u[i] = equation.moved[i];
+    if (start.world.pinned(i)) u[i] = equation.pin_velocity[i];
   const double scale = equation.scale(u);
   Vectors r = equation.residual(u);
   for (int n = 0; n < most_newton_steps && largest(r) > solved * scale; ++n) {
@@ -168,7 +168,8 @@ State baraff_witkin(const StepStart& start) {
   Vectors u(equation.x.size(), dvec3(0.0));
   for (int n = 0; n < start.world.scene.solver.iterations; ++n) {
     const Vectors r = equation.residual(u), wanted = plus(Vectors(u.size(), dvec3(0.0)), -1.0, r);
-    const Vectors to_pins = plus(equation.moved, -1.0, u);  // the first Newton step takes pins all the way
+    const Vectors to_pins =
+        plus(equation.pin_velocity, -1.0, u);  // the first Newton step takes pins all the way
     Vectors du;
     solve_with_pins(start.world, equation.jacobian(u, Across::dropped), wanted, to_pins, du);
     u = plus(u, 1.0, du);

@@ -26,7 +26,8 @@ struct Balance {
 Balance balance(const SweepState& step, std::uint32_t i) {
   const World& world = step.world;
   const double mass = 1.0 / step.mobility[i], dt = step.dt;
-  Balance result{mass * (step.free[i] + step.pushed[i] - step.displacement[i]), dmat3(mass)};
+  Balance result{mass * (step.free_displacement[i] + step.self_collision_push[i] - step.displacement[i]),
+                 dmat3(mass)};
   dvec3 diagonal(0.0), off_diagonal(0.0);
   world.model.elements.each([&](const auto& batch) {
     batch.at(i, [&](const auto& element, std::size_t corner) {
@@ -47,9 +48,9 @@ dvec3 stopped_move(SweepState& step, std::uint32_t i, const dmat3& inverse, dvec
   const dvec3 trial = step.now(i) + move;
   dvec3 stopped = trial;
   Surface met;
-  step.met[i] = stop_on_way(step.world, step.t, step.x[i], stopped, met);
-  if (!step.world.scene.self_collision) step.contacts[i] = step.met[i];  // else contact_pass counts
-  if (step.met[i] == 0) return move;
+  step.colliders_met[i] = stop_at_colliders_position(step.world, step.t, step.x[i], stopped, met);
+  if (!step.world.scene.self_collision) step.contacts[i] = step.colliders_met[i];  // else contact_pass counts
+  if (step.colliders_met[i] == 0) return move;
   const dvec3& n = met.normal;
   const dvec3 response = inverse * n;
   const double impulse = glm::dot(stopped - trial, n) / glm::dot(n, response);
@@ -70,17 +71,19 @@ dvec3 pair_push(const SweepState& step, std::uint32_t i, int& touched) {
   const World& world = step.world;
   const scene::SelfCollision& self = *world.scene.self_collision;
   // Removing an old overlap at once would act like a blow: remove a fifth in a step, less in short steps.
-  const double mend = std::min(0.2, 20.0 * step.dt);
+  const double overlap_share_removed = std::min(0.2, 20.0 * step.dt);
   dvec3 push(0.0);
   for (std::uint32_t j = 0; j < world.model.vertex_count(); ++j) {
     const dvec3 before = step.x[i] - step.x[j], now = step.now(i) - step.now(j);
     if (glm::length(before) > self.thickness + glm::distance(before, now)) continue;  // cannot meet
     const std::optional<double> keep = kept_distance(world, i, j);
     dvec3 correction;
-    if (!keep || !elements::pair_contact(before, now, *keep, self.friction, mend, correction)) continue;
+    if (!keep ||
+        !elements::pair_contact(before, now, *keep, self.friction, overlap_share_removed, correction))
+      continue;
     ++touched;
-    const double crowd = std::max({2, step.contacts[i], step.contacts[j]});
-    push += step.mobility[i] / (step.mobility[i] + step.mobility[j]) / crowd * correction;
+    const double contact_count = std::max({2, step.contacts[i], step.contacts[j]});
+    push += step.mobility[i] / (step.mobility[i] + step.mobility[j]) / contact_count * correction;
   }
   return push;
 }
@@ -128,12 +131,13 @@ void contact_pass(SweepState& step) {
     if (step.mobility[i] == 0.0) continue;
     dvec3& d = step.displacement[i];
     d += push[i];
-    if (remembers) step.pushed[i] += push[i];
+    if (remembers) step.self_collision_push[i] += push[i];
     const dvec3 trial = step.now(i);
     dvec3 stopped = trial;
     Surface met;
-    const int count = stop_on_way(world, step.t, step.x[i], stopped, met);
-    contacts[i] += std::max(count, step.met[i]);  // VBD's visit may have put the vertex on the surface
+    const int count = stop_at_colliders_position(world, step.t, step.x[i], stopped, met);
+    contacts[i] +=
+        std::max(count, step.colliders_met[i]);  // VBD's visit may have put the vertex on the surface
     if (count == 0) continue;
     d += stopped - trial;
     d -= elements::friction_displacement(d - step.dt * met.velocity, met.normal, met.friction,
@@ -152,7 +156,8 @@ void balance_momentum(SweepState& step) {
     const std::uint32_t first = cloth.first_vertex, end = first + cloth.vertex_count;
     for (std::uint32_t i = first; i < end; ++i) {
       free = free && !world.pinned(i);
-      lacking += world.model.mass[i] * (step.free[i] + step.pushed[i] - step.displacement[i]);
+      lacking += world.model.mass[i] *
+                 (step.free_displacement[i] + step.self_collision_push[i] - step.displacement[i]);
       mass += world.model.mass[i];
     }
     for (std::uint32_t i = first; free && i < end; ++i) step.displacement[i] += lacking / mass;

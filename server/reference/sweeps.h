@@ -8,14 +8,14 @@ namespace clothlab::reference {
 /// The state within a step. All displacements are from the step's start.
 struct SweepState {
   const World& world;
-  double t, dt;                      ///< time at the step's start, length of the step [s]
-  std::vector<dvec3> x, v;           ///< [vertex_count] at the step's start [m], [m/s]
-  std::vector<dvec3> displacement;   ///< [vertex_count] so far [m]; of the whole step for pinned vertices
-  std::vector<dvec3> free;           ///< [vertex_count] displacement by inertia, gravity and drag alone [m]
-  std::vector<dvec3> pushed;         ///< [vertex_count] VBD: displacement by self-collision so far [m]
+  double t, dt;                          ///< time at the step's start, length of the step [s]
+  std::vector<dvec3> x, v;               ///< [vertex_count] at the step's start [m], [m/s]
+  std::vector<dvec3> displacement;       ///< [vertex_count] so far [m]; of the whole step for pinned vertices
+  std::vector<dvec3> free_displacement;  ///< [vertex_count] by inertia, gravity and drag alone [m]
+  std::vector<dvec3> self_collision_push;  ///< [vertex_count] VBD: displacement by self-collision so far [m]
   std::vector<double> mobility;      ///< [vertex_count] 1 / ((1 + dt air drag) mass) [1/kg], 0 if pinned
   std::vector<dvec3> spring_pushed;  ///< [spring_count] XPBD: impulse times dt on the first end so far [kg m]
-  std::vector<int> met;              ///< [vertex_count] VBD: colliders met at the last visit of the vertex
+  std::vector<int> colliders_met;    ///< [vertex_count] VBD: colliders met at the last visit of the vertex
   std::vector<int> contacts;         ///< [vertex_count] contacts at the last count; 0 if pinned
 
   dvec3 now(std::size_t vertex) const { return x[vertex] + displacement[vertex]; }

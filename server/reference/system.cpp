@@ -19,10 +19,10 @@ Eigen::Map<const Eigen::VectorXd> flat(const std::vector<dvec3>& vectors) {
 /// Adds an element's matrix: the response of each corner to a unit move of every corner along each axis.
 template <class Law>
 void add_element(Triplets& triplets, const model::Element<Law>& element, const std::vector<dvec3>& x,
-                 Shares shares, Across kept) {
+                 Shares shares, Across across) {
   for (std::size_t row = 0; row < element.corners; ++row) {
     auto hessian = element_hessian(element.law, edges(element, row, x));
-    if (kept == Across::dropped) hessian = element_definite(hessian);
+    if (across == Across::dropped) hessian = element_definite(hessian);
     for (std::size_t column = 0; column < element.corners; ++column)
       for (int axis = 0; axis < 3; ++axis) {
         dvec3 along(0.0);
@@ -42,7 +42,7 @@ void add_element(Triplets& triplets, const model::Element<Law>& element, const s
 
 }  // namespace
 
-Matrix system_matrix(const World& world, const std::vector<dvec3>& x, Shares shares, Across kept) {
+Matrix system_matrix(const World& world, const std::vector<dvec3>& x, Shares shares, Across across) {
   const model::Model& model = world.model;
   Triplets triplets;
   triplets.reserve(36 * model.springs().size() + 3 * x.size());
@@ -51,7 +51,7 @@ Matrix system_matrix(const World& world, const std::vector<dvec3>& x, Shares sha
       triplets.emplace_back(3 * static_cast<Index>(i) + axis, 3 * static_cast<Index>(i) + axis,
                             shares.mass * model.mass[i]);
   model::each_element(model.elements,
-                      [&](const auto& element) { add_element(triplets, element, x, shares, kept); });
+                      [&](const auto& element) { add_element(triplets, element, x, shares, across); });
   const auto size = static_cast<Index>(3 * x.size());
   Matrix matrix(size, size);
   matrix.setFromTriplets(triplets.begin(), triplets.end());

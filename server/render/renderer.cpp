@@ -40,9 +40,9 @@ struct Renderer::Implementation {
   Implementation& operator=(const Implementation&) = delete;
 
   Status load_programs();
-  void set_frame(const Subject& subject, float aspect);
+  void set_frame(const DrawnMoment& moment, float aspect);
   void draw_shadow_map(const ClothMesh& cloth_mesh, const std::vector<scene::Collider>& colliders);
-  void draw_picture(const Subject& subject, const ClothMesh& cloth_mesh);
+  void draw_picture(const DrawnMoment& moment, const ClothMesh& cloth_mesh);
 };
 
 Status Renderer::Implementation::load_programs() {
@@ -60,10 +60,10 @@ Status Renderer::Implementation::load_programs() {
   return status;
 }
 
-void Renderer::Implementation::set_frame(const Subject& subject, float aspect) {
+void Renderer::Implementation::set_frame(const DrawnMoment& moment, float aspect) {
   Box box;
-  for (const glm::vec3& position : subject.positions) box.add(position);
-  for (const scene::Collider& collider : subject.colliders) {
+  for (const glm::vec3& position : moment.positions) box.add(position);
+  for (const scene::Collider& collider : moment.colliders) {
     const scene::Ball ball = scene::bounds(collider.shape);
     if (std::isfinite(ball.radius)) box.add(glm::vec3(ball.center), static_cast<float>(ball.radius));
   }
@@ -88,18 +88,18 @@ void Renderer::Implementation::draw_shadow_map(const ClothMesh& cloth_mesh,
   glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
-void Renderer::Implementation::draw_picture(const Subject& subject, const ClothMesh& cloth_mesh) {
+void Renderer::Implementation::draw_picture(const DrawnMoment& moment, const ClothMesh& cloth_mesh) {
   shadow_map.bind_texture();
   glDisable(GL_DEPTH_TEST);
   background.use();
   glBindVertexArray(empty_vertex_array);
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glEnable(GL_DEPTH_TEST);
-  solids.draw(Solids::Layer::ground, subject.colliders);
+  solids.draw(Solids::Layer::ground, moment.colliders);
   glEnable(GL_CULL_FACE);
-  solids.draw(Solids::Layer::body, subject.colliders);
+  solids.draw(Solids::Layer::body, moment.colliders);
   cloth.use();
-  cloth_mesh.draw(subject.scene);
+  cloth_mesh.draw(moment.scene);
   glDisable(GL_CULL_FACE);
 }
 
@@ -112,18 +112,18 @@ Result<std::unique_ptr<Renderer>> Renderer::create() {
   return renderer;
 }
 
-Result<Image> Renderer::render(const Subject& subject, int width, int height) {
+Result<Image> Renderer::render(const DrawnMoment& moment, int width, int height) {
   if (Status size = check_size(width, height); !size) return size.error();
   Result<Target> target = Target::create(width, height);
   if (!target) return target.error();
 
   Implementation& self = *implementation_;
-  self.set_frame(subject, static_cast<float>(width) / static_cast<float>(height));
-  const ClothMesh cloth_mesh(subject.model, subject.positions, self.normals);
+  self.set_frame(moment, static_cast<float>(width) / static_cast<float>(height));
+  const ClothMesh cloth_mesh(moment.model, moment.positions, self.normals);
   glEnable(GL_DEPTH_TEST);
-  self.draw_shadow_map(cloth_mesh, subject.colliders);
+  self.draw_shadow_map(cloth_mesh, moment.colliders);
   target->bind();
-  self.draw_picture(subject, cloth_mesh);
+  self.draw_picture(moment, cloth_mesh);
   Image image = target->read();
 
   // Leaves nothing of the drawing bound, because other work may follow in this context.

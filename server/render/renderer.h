@@ -15,7 +15,7 @@
 namespace clothlab::render {
 
 /// What is drawn: references, all valid until the drawing is done.
-struct Subject {
+struct DrawnMoment {
   const scene::Scene& scene;                      ///< for the cloths' colours and textures
   const model::Model& model;                      ///< of that scene
   const std::vector<glm::vec3>& positions;        ///< [vertex_count] [m]
@@ -28,9 +28,10 @@ class Renderer {
   static Result<std::unique_ptr<Renderer>> create();
   ~Renderer();
 
-  /// `width` x `height` pixels, each in [1, max_image_side], framed so that all of the subject is
-  /// seen. Waits for the GPU. A vertex that is not finite is left out of the framing.
-  Result<Image> render(const Subject& subject, int width, int height);
+  /// `width` x `height` pixels, each in [1, max_image_side], framed so that all of the moment's
+  /// cloths and finite colliders are seen. Waits for the GPU. A vertex that is not finite is left out of the
+  /// framing.
+  Result<Image> render(const DrawnMoment& moment, int width, int height);
 
  private:
   Renderer();

@@ -15,11 +15,11 @@ enum class Iterations { none, newton_steps, spring_sweeps, vertex_sweeps };
 
 struct MethodFacts {
   Method method;
-  const char* name;          ///< in the document, on the command line and in the protocol
-  int order;                 ///< the error of a run shrinks as dt^order
-  int evaluations;           ///< of all forces in one time step, iterations not counted
-  Iterations iterations;     ///< in one time step
-  bool looks_at_the_middle;  ///< a step also needs the poses of moving pins at its middle
+  const char* name;           ///< in the document, on the command line and in the protocol
+  int order;                  ///< the error of a run shrinks as dt^order
+  int evaluations;            ///< of all forces in one time step, iterations not counted
+  Iterations iterations;      ///< in one time step
+  bool needs_midpoint_poses;  ///< a step also needs the poses of moving pins at its middle
 };
 
 /// One entry for each method, in the order of `Method`.

@@ -17,11 +17,11 @@ json list(const dvec3& v) {
 }
 
 template <int kind, class Of>
-constexpr bool law_is_of = std::is_same_v<std::variant_alternative_t<kind, Shape>, Of>;
+constexpr bool kind_matches = std::is_same_v<std::variant_alternative_t<kind, Shape>, Of>;
 
 // The functions of each kind of shape, one kind after the other.
 
-static_assert(law_is_of<elements::solid_sphere, Sphere>);
+static_assert(kind_matches<elements::solid_sphere, Sphere>);
 const char* name(const Sphere&) {
   return "sphere";
 }
@@ -32,7 +32,7 @@ void read(const Reader& sphere, Sphere& into) {
 json numbers(const Sphere& sphere) {
   return {{"center", list(sphere.center)}, {"radius", sphere.radius}};
 }
-Solid law(const Sphere& sphere) {
+Solid contact_numbers(const Sphere& sphere) {
   return {elements::solid_sphere, sphere.center, dvec3(0.0), sphere.radius};
 }
 Ball ball(const Sphere& sphere) {
@@ -42,7 +42,7 @@ Sphere moved(const Sphere& home, const glm::dmat3& rotation, const dvec3& transl
   return {rotation * home.center + translation, home.radius};
 }
 
-static_assert(law_is_of<elements::solid_plane, Plane>);
+static_assert(kind_matches<elements::solid_plane, Plane>);
 const char* name(const Plane&) {
   return "plane";
 }
@@ -53,7 +53,7 @@ void read(const Reader& plane, Plane& into) {
 json numbers(const Plane& plane) {
   return {{"point", list(plane.point)}, {"normal", list(plane.normal)}};
 }
-Solid law(const Plane& plane) {
+Solid contact_numbers(const Plane& plane) {
   return {elements::solid_plane, plane.point, plane.normal, 0.0};
 }
 Ball ball(const Plane& plane) {
@@ -66,11 +66,11 @@ Plane moved(const Plane& home, const glm::dmat3& rotation, const dvec3& translat
 static_assert(elements::solid_kinds == shape_kinds, "each kind of shape has its law");
 
 template <std::size_t... kind>
-std::array<Shape, shape_kinds> one_of_each(std::index_sequence<kind...>) {
+std::array<Shape, shape_kinds> default_shapes(std::index_sequence<kind...>) {
   return {Shape(std::in_place_index<kind>)...};
 }
-std::array<Shape, shape_kinds> one_of_each() {
-  return one_of_each(std::make_index_sequence<shape_kinds>());
+std::array<Shape, shape_kinds> default_shapes() {
+  return default_shapes(std::make_index_sequence<shape_kinds>());
 }
 
 const char* name_of(const Shape& shape) {
@@ -82,21 +82,21 @@ const char* name_of(const Shape& shape) {
 const std::array<const char*, shape_kinds>& shape_names() {
   static const auto names = [] {
     std::array<const char*, shape_kinds> all{};
-    const std::array<Shape, shape_kinds> shapes = one_of_each();
+    const std::array<Shape, shape_kinds> shapes = default_shapes();
     std::transform(shapes.begin(), shapes.end(), all.begin(), name_of);
     return all;
   }();
   return names;
 }
 
-const Words& shapes_to_come() {
+const Words& unsupported_shapes() {
   static const Words names{"capsule", "box"};
   return names;
 }
 
 Shape read_shape(const Reader& collider) {
   const std::string given = collider.exactly_one({shape_names().begin(), shape_names().end()});
-  for (Shape& shape : one_of_each()) {
+  for (Shape& shape : default_shapes()) {
     if (given != name_of(shape)) continue;
     std::visit([&](auto& of) { read(collider.member(given), of); }, shape);
     return shape;
@@ -105,18 +105,18 @@ Shape read_shape(const Reader& collider) {
 }
 
 Solid solid(const Shape& shape) {
-  return std::visit([](const auto& of) { return law(of); }, shape);
+  return std::visit([](const auto& of) { return contact_numbers(of); }, shape);
 }
 
 Ball bounds(const Shape& shape) {
   return std::visit([](const auto& of) { return ball(of); }, shape);
 }
 
-Shape placed(const Shape& home, const glm::dmat3& rotation, const dvec3& translation) {
+Shape moved_shape(const Shape& home, const glm::dmat3& rotation, const dvec3& translation) {
   return std::visit([&](const auto& of) { return Shape(moved(of, rotation, translation)); }, home);
 }
 
-json written(const Shape& shape) {
+json shape_to_json(const Shape& shape) {
   json document = json::object();
   document[name_of(shape)] = std::visit([](const auto& of) { return numbers(of); }, shape);
   return document;

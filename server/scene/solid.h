@@ -34,9 +34,9 @@ struct Ball {
 Ball bounds(const Shape& shape);
 
 /// The shape turned by `rotation`, then moved by `translation` [m].
-Shape placed(const Shape& home, const glm::dmat3& rotation, const dvec3& translation);
+Shape moved_shape(const Shape& home, const glm::dmat3& rotation, const dvec3& translation);
 
 /// The shape as a document has it: {"sphere": {"center": [x, y, z], "radius": r}}.
-nlohmann::json written(const Shape& shape);
+nlohmann::json shape_to_json(const Shape& shape);
 
 }  // namespace clothlab::scene

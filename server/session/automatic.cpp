@@ -47,7 +47,8 @@ void Automatic::take(const scene::Document& measured, const Result<lab::Choice>&
 json Automatic::facts() const {
   if (!in_use_) return nullptr;
   json facts =
-      covered_ ? choice_->facts : json{{"state", "measuring"}, {"why", "stable until the lab has chosen"}};
+      covered_ ? choice_->facts
+               : json{{"state", "measuring"}, {"why", "stable settings are used until the lab has chosen"}};
   facts.update(lab::to_json(*in_use_));
   return facts;
 }

@@ -15,7 +15,7 @@ std::optional<Exchange::Awaited> Exchange::answer_to(const Command& command) {
   return std::nullopt;
 }
 
-void Exchange::settle(const Event& event) {
+void Exchange::remove_awaited(const Event& event) {
   const auto erase = [&](auto is_it) {
     const auto found = std::find_if(awaited_.begin(), awaited_.end(), is_it);
     if (found != awaited_.end()) awaited_.erase(found);
@@ -45,14 +45,14 @@ void Exchange::give_up(const Error& error, std::vector<Event>& out) {
   awaited_.clear();
 }
 
-void Exchange::keep(std::shared_ptr<const Saved> saved) {
+void Exchange::store_saved(std::shared_ptr<const Saved> saved) {
   const std::lock_guard lock(mutex_);
-  kept_.swap(saved);  // the older state is freed after the lock is released
+  saved_.swap(saved);  // the older state is freed after the lock is released
 }
 
-std::shared_ptr<const Saved> Exchange::kept() const {
+std::shared_ptr<const Saved> Exchange::saved() const {
   const std::lock_guard lock(mutex_);
-  return kept_;
+  return saved_;
 }
 
 bool Exchange::offer(Command command) {
@@ -104,7 +104,7 @@ bool Exchange::take_commands(std::vector<Command>& out, Clock::time_point until)
 void Exchange::emit(Event event) {
   {
     const std::lock_guard lock(mutex_);
-    settle(event);
+    remove_awaited(event);
     events_.push_back(std::move(event));
   }
   wake_();

@@ -121,7 +121,7 @@ class Exchange {
   void take_events(std::vector<Event>& out);  ///< `out` is emptied first
   stream::SharedMessage frame(stream::Encoding encoding) const;
   /// The newest saved state of the session, null before the first.
-  std::shared_ptr<const Saved> kept() const;
+  std::shared_ptr<const Saved> saved() const;
   /// After the session has failed: answers each of its open commands with `error`, as events added to `out`.
   void give_up(const Error& error, std::vector<Event>& out);
   std::int64_t heartbeat_us() const { return heartbeat_us_.load(std::memory_order_relaxed); }
@@ -140,7 +140,7 @@ class Exchange {
   void forget_frame(stream::Encoding encoding);  ///< called by the service thread
   void beat();                                   ///< sets the heartbeat to now
   /// Stores the state from which the session can be restored.
-  void keep(std::shared_ptr<const Saved> saved);
+  void store_saved(std::shared_ptr<const Saved> saved);
   void count_steps(std::uint64_t steps) { steps_.fetch_add(steps, std::memory_order_relaxed); }
 
  private:
@@ -150,7 +150,7 @@ class Exchange {
     std::optional<std::uint64_t> job;
   };
   static std::optional<Awaited> answer_to(const Command& command);
-  void settle(const Event& event);
+  void remove_awaited(const Event& event);
 
   std::function<void()> wake_;
   mutable std::mutex mutex_;
@@ -159,7 +159,7 @@ class Exchange {
   std::vector<Event> events_;
   std::array<stream::SharedMessage, encoding_count> frames_;
   std::list<Awaited> awaited_;  ///< in the order of asking, so the next to be answered is near the front
-  std::shared_ptr<const Saved> kept_;
+  std::shared_ptr<const Saved> saved_;
   bool stopping_ = false;
   std::atomic<std::int64_t> heartbeat_us_{0};
   std::atomic<std::uint64_t> steps_{0};

@@ -26,14 +26,18 @@ Result<std::unique_ptr<FrameMaker>> FrameMaker::create(Exchange& exchange, std::
 }
 
 FrameMaker::FrameMaker(Exchange& exchange, std::unique_ptr<stream::Packer> packer, std::uint32_t last)
-    : exchange_(exchange), packer_(std::move(packer)), requested_(last), arrived_(last), void_until_(last) {}
+    : exchange_(exchange),
+      packer_(std::move(packer)),
+      requested_(last),
+      arrived_(last),
+      discard_until_(last) {}
 
 void FrameMaker::take_over(const FrameMaker& other) {
   lanes_ = other.lanes_;
   version_ = other.version_;
   diverged_ = other.diverged_;
   asleep_ = other.asleep_;
-  touch_now();
+  state_changed_now();
 }
 
 void FrameMaker::demand(const Demand& demand, Clock::time_point now) {
@@ -45,15 +49,15 @@ void FrameMaker::demand(const Demand& demand, Clock::time_point now) {
   }
 }
 
-void FrameMaker::touch_now() {
-  touch();
+void FrameMaker::state_changed_now() {
+  state_changed();
   for (Lane& lane : lanes_) lane.urgent = true;
 }
 
 void FrameMaker::restart() {
-  void_until_ = arrived_ = requested_;  // frames under way may still arrive, or be dropped with their mesh
+  discard_until_ = arrived_ = requested_;  // frames under way may still arrive, or be dropped with their mesh
   diverged_ = false;
-  touch_now();
+  state_changed_now();
   exchange_.forget_frames();
 }
 
@@ -92,7 +96,7 @@ void FrameMaker::make_due(const sim::Simulation& simulation, Clock::time_point n
 
 void FrameMaker::poll() {
   while (stream::SharedMessage frame = packer_->poll()) {
-    if (frame->header.sequence <= void_until_) continue;
+    if (frame->header.sequence <= discard_until_) continue;
     arrived_ = frame->header.sequence;
     publish(std::move(frame));
   }
@@ -111,12 +115,12 @@ void FrameMaker::diverge() {
 
 void FrameMaker::go_on() {
   diverged_ = false;
-  touch_now();
+  state_changed_now();
 }
 
 void FrameMaker::asleep(bool asleep) {
   asleep_ = asleep;
-  touch_now();
+  state_changed_now();
 }
 
 bool FrameMaker::urgent() const {

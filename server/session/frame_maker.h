@@ -23,10 +23,10 @@ class FrameMaker {
 
   void demand(const Demand& demand, Clock::time_point now);
   /// The state has changed: a frame is made when the next is due.
-  void touch() { ++version_; }
+  void state_changed() { ++version_; }
   /// The state has changed, and a frame of each wanted encoding is made at once (an edit while paused, a step
   /// by hand).
-  void touch_now();
+  void state_changed_now();
   /// The state was replaced (reset, another scene): discards the frames of the old state.
   void restart();
 
@@ -68,9 +68,9 @@ class FrameMaker {
   std::unique_ptr<stream::Packer> packer_;
   gl::StageTimer timer_;
   std::array<Lane, encoding_count> lanes_{};
-  std::uint32_t requested_ = 0;   ///< sequence number of the newest requested frame, as in the packer
-  std::uint32_t arrived_ = 0;     ///< sequence number of the newest frame that arrived or was discarded
-  std::uint32_t void_until_ = 0;  ///< frames up to this number are discarded: their state was replaced
+  std::uint32_t requested_ = 0;      ///< sequence number of the newest requested frame, as in the packer
+  std::uint32_t arrived_ = 0;        ///< sequence number of the newest frame that arrived or was discarded
+  std::uint32_t discard_until_ = 0;  ///< frames up to this number are discarded: their state was replaced
   std::uint64_t version_ = 1;
   bool diverged_ = false, asleep_ = false;
 };

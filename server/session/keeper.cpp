@@ -31,22 +31,22 @@ Result<std::shared_ptr<const Saved>> load_session(const fs::path& file) {
   return Error{file.string(), saved.error().what, "it was moved to " + aside.string()};
 }
 
-void Keeper::look(Stepper& stepper, Clock::time_point now) {
-  if (now < next_ || stepper.version() == kept_version_) return;
+void Keeper::save_if_due(Stepper& stepper, Clock::time_point now) {
+  if (now < next_ || stepper.version() == saved_version_) return;
   const Clock::time_point begun = Clock::now();
-  keep(stepper);
+  save(stepper);
   // Reading a large state back takes long. Saving takes at most about a tenth of the session's time.
   next_ = now + std::max<Clock::duration>(period, 10 * (Clock::now() - begun));
 }
 
 void Keeper::finish(Stepper& stepper) {
-  if (stepper.version() != kept_version_) keep(stepper);
+  if (stepper.version() != saved_version_) save(stepper);
 }
 
-void Keeper::keep(Stepper& stepper) {
-  kept_version_ = stepper.version();
+void Keeper::save(Stepper& stepper) {
+  saved_version_ = stepper.version();
   auto saved = std::make_shared<const Saved>(stepper.saved());
-  exchange_.keep(saved);
+  exchange_.store_saved(saved);
   if (file_) write(*saved);
 }
 

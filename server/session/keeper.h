@@ -30,19 +30,19 @@ class Keeper {
       : exchange_(exchange), file_(std::move(file)) {}
 
   /// Saves the session if it has changed and the last save is long enough ago.
-  void look(Stepper& stepper, Clock::time_point now);
+  void save_if_due(Stepper& stepper, Clock::time_point now);
   /// Saves the session at its end, if it has changed, however recent the last save is.
   void finish(Stepper& stepper);
 
   static constexpr std::chrono::milliseconds period{900};  ///< so that at most a second is lost
 
  private:
-  void keep(Stepper& stepper);
+  void save(Stepper& stepper);
   void write(const Saved& saved);
 
   Exchange& exchange_;
   std::optional<std::filesystem::path> file_;
-  std::uint64_t kept_version_ = 0;
+  std::uint64_t saved_version_ = 0;
   Clock::time_point next_{};
   bool failing_ = false;
 };

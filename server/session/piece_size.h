@@ -18,20 +18,21 @@ class PieceSize {
 
   sim::Pace pace(sim::Pace::Clock::time_point now) const {
     using namespace std::chrono;
-    return {now + duration_cast<sim::Pace::Clock::duration>(duration<double>(budget)), most_};
+    return {now + duration_cast<sim::Pace::Clock::duration>(duration<double>(budget)), most_places_};
   }
 
   /// Takes in that a piece with `places` places to stop took `seconds` [s].
-  void measured(std::uint32_t places, double seconds) {
+  void add_piece_time(std::uint32_t places, double seconds) {
     if (seconds > 2 * budget && places > 0)
-      most_ = std::max(1u, static_cast<std::uint32_t>(std::min(places, most_) * budget / seconds));
-    else if (seconds < 0.5 * budget && places >= most_)
-      most_ = std::min(most_, largest / 2) * 2;
+      most_places_ =
+          std::max(1u, static_cast<std::uint32_t>(std::min(places, most_places_) * budget / seconds));
+    else if (seconds < 0.5 * budget && places >= most_places_)
+      most_places_ = std::min(most_places_, largest / 2) * 2;
   }
 
  private:
   static constexpr std::uint32_t largest = 1u << 20;
-  std::uint32_t most_ = 256;  ///< places to stop that a piece may pass
+  std::uint32_t most_places_ = 256;  ///< places to stop that a piece may pass
 };
 
 }  // namespace clothlab::session

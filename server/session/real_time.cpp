@@ -36,7 +36,7 @@ std::uint32_t RealTime::due(Time now, double dt) {
   return static_cast<std::uint32_t>(steps);
 }
 
-void RealTime::spent(std::uint32_t steps, double wall) {
+void RealTime::add_work_time(std::uint32_t steps, double wall) {
   unfinished_ += wall;
   if (steps == 0) return;
   const double cost = std::max(std::exchange(unfinished_, 0.0), 1e-9) / steps;

@@ -30,7 +30,7 @@ class RealTime {
   bool behind(double dt) const { return owed_ >= dt; }
   /// Takes in that a piece of work, in which `steps` steps ended, took `seconds` [s]. The times of several
   /// pieces of one step are added up.
-  void spent(std::uint32_t steps, double seconds);
+  void add_work_time(std::uint32_t steps, double seconds);
   /// The measured cost of a step [s], smoothed; at least the time spent so far on the unfinished step.
   double step_cost() const { return std::max(step_cost_, unfinished_); }
 

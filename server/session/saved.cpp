@@ -21,7 +21,7 @@ std::string hash_text(const sim::State& state) {
 }
 
 Error unreadable(const std::string& what) {
-  return {"saved session", what, "what this version of the program wrote"};
+  return {"saved session", what, "use a session file that this version of the program wrote"};
 }
 
 /// The error for a file of another version or another kind. It quotes the beginning of the file's first line.

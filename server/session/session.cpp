@@ -14,12 +14,12 @@ namespace clothlab::session {
 namespace {
 
 /// The state that the session's earlier thread saved, else the state in the session's file; null: neither.
-std::shared_ptr<const Saved> kept(const Beginning& beginning, Exchange& exchange) {
+std::shared_ptr<const Saved> state_to_restore(const Beginning& beginning, Exchange& exchange) {
   if (beginning.saved || !beginning.file) return beginning.saved;
   Result<std::shared_ptr<const Saved>> loaded = load_session(*beginning.file);
   if (loaded) return *loaded;
   log(LogLevel::error, "session_not_restored", {{"session", beginning.name}, {"why", loaded.error().text()}});
-  exchange.emit(Notice{"error", "what this session was cannot be read: " + loaded.error().text()});
+  exchange.emit(Notice{"error", "the saved session cannot be read: " + loaded.error().text()});
   return nullptr;
 }
 
@@ -41,12 +41,12 @@ Result<std::unique_ptr<Stepper>> bring_back(const Saved& saved, const Beginning&
 
 Result<std::unique_ptr<Stepper>> begin(Beginning& beginning, const Limits& limits, std::optional<int> gpu,
                                        Exchange& exchange) {
-  if (const std::shared_ptr<const Saved> saved = kept(beginning, exchange)) {
+  if (const std::shared_ptr<const Saved> saved = state_to_restore(beginning, exchange)) {
     Result<std::unique_ptr<Stepper>> stepper = bring_back(*saved, beginning, limits, gpu, exchange);
     if (stepper) return stepper;
     log(LogLevel::error, "session_not_restored",
         {{"session", beginning.name}, {"why", stepper.error().text()}});
-    exchange.emit(Notice{"error", "what this session was cannot go on: " + stepper.error().text()});
+    exchange.emit(Notice{"error", "the saved session cannot be restored: " + stepper.error().text()});
   }
   return Stepper::create(std::move(beginning.document), exchange, limits, gpu, beginning.last_frame);
 }
@@ -91,7 +91,7 @@ void Session::run(Beginning& beginning, const Limits& limits, std::optional<int>
     if ((*stepper)->lost() || fault_due(Fault::context_lost, beginning.name, exchange_.steps()))
       return exchange_.emit(Failed{{"OpenGL", "the device was reset, and all that was on it is lost",
                                     "if it happens again, see the driver's log"}});
-    keeper.look(**stepper, Clock::now());
+    keeper.save_if_due(**stepper, Clock::now());
   }
   keeper.finish(**stepper);
 }

@@ -11,8 +11,8 @@ namespace {
 constexpr std::chrono::milliseconds worth_waiting{8};  // half a frame at 60 Hz
 }
 
-void StepLimit::follow(const model::Model& model, const scene::Scene& scene) {
-  looked_ = false;
+void StepLimit::set_scene(const model::Model& model, const scene::Scene& scene) {
+  warning_checked_ = false;
   const bool same_limit = scene_.cloths == scene.cloths && scene_.air_drag == scene.air_drag &&
                           scene_.solver.method == scene.solver.method;
   scene_ = scene;
@@ -45,11 +45,11 @@ bool StepLimit::poll() {
 }
 
 std::optional<std::string> StepLimit::take_warning() {
-  if (looked_) return std::nullopt;
+  if (warning_checked_) return std::nullopt;
   const double share = dt_limit_ > 0.0 ? scene_.solver.dt / dt_limit_ : model::no_limit;
   const int risk = share > 1.0 ? 2 : share > model::margin_to_warn ? 1 : 0;
   if (risk > 0 && !sharp()) return std::nullopt;  // the bound may be too low
-  looked_ = true;
+  warning_checked_ = true;
   if (risk <= std::exchange(risk_, risk)) return std::nullopt;
   return model::step_warning(scene_.solver, dt_limit_);
 }

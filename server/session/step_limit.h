@@ -20,7 +20,7 @@ class StepLimit {
 
   /// Begins to compute the limit of a changed scene. Waits for the result for a few milliseconds at most,
   /// which is enough for a small cloth.
-  void follow(const model::Model& model, const scene::Scene& scene);
+  void set_scene(const model::Model& model, const scene::Scene& scene);
   /// Takes in the computed limit; true if this call received it.
   bool poll();
 
@@ -36,10 +36,10 @@ class StepLimit {
  private:
   void give_up_search();
 
-  scene::Scene scene_;  ///< the scene given to the last `follow`
+  scene::Scene scene_;  ///< the scene given to the last `set_scene`
   double dt_limit_ = model::no_limit;
-  bool looked_ = false;  ///< the present scene has been checked for a warning
-  int risk_ = 0;         ///< at the last check: 0 none, 1 near the limit, 2 beyond it
+  bool warning_checked_ = false;  ///< the present scene has been checked for a warning
+  int risk_ = 0;                  ///< at the last check: 0 none, 1 near the limit, 2 beyond it
   std::stop_source stop_;
   std::future<double> given_up_;  ///< the search of an earlier scene, which has been asked to end
   std::future<double> search_;    ///< the present search; the destructor waits for both

@@ -39,8 +39,8 @@ Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Excha
   stepper->announce_scene(std::nullopt, 0);
   stepper->announce_parts();
   stepper->announce_solver();
-  stepper->thin_ = !model::thickness_warning(stepper->simulation().model(), *scene).empty();
-  stepper->step_limit_.follow(stepper->simulation().model(), *scene);
+  stepper->layers_may_pass_ = !model::thickness_warning(stepper->simulation().model(), *scene).empty();
+  stepper->step_limit_.set_scene(stepper->simulation().model(), *scene);
   stepper->rest_.follow(*scene, stepper->simulation().model());
   stepper->guard_->start(stepper->step_limit_.dt_limit());
   return stepper;
@@ -51,7 +51,7 @@ clothlab::Status Stepper::bring_back(const Saved& saved) {
     return Error{"saved session",
                  std::to_string(saved.state.position.size()) + " vertices of a scene that has " +
                      std::to_string(simulation().model().vertex_count()),
-                 "what this version of the program wrote"};
+                 "use a session file that this version of the program wrote"};
   simulation().restore(saved.state, saved.time, saved.step);
   if (!saved.playing) run_.pause();
   real_time_.set_speed(std::clamp(saved.speed, min_speed, max_speed));
@@ -70,8 +70,8 @@ Saved Stepper::saved() {
 
 Result<scene::Scene> Stepper::prepare(const scene::Document& document) {
   const model::Size size = model::size_of(document.scene);
-  if (clothlab::Status fits = model::within(size, static_cast<std::size_t>(limits_.vertices),
-                                            static_cast<std::size_t>(limits_.springs));
+  if (clothlab::Status fits = model::check_size(size, static_cast<std::size_t>(limits_.vertices),
+                                                static_cast<std::size_t>(limits_.springs));
       !fits)
     return fits.error();
   if (fault_due(Fault::change_fails, "", engine_ ? simulation().step_index() : 0)) throw std::bad_alloc();
@@ -99,7 +99,7 @@ void Stepper::advance(Clock::time_point now) {
   was_running_ = run;
   if (engine_->backlog.full()) return;
   want_steps(now, run);
-  if (simulation().wanted() == 0) return;
+  if (simulation().steps_to_do() == 0) return;
   const std::uint64_t before = simulation().step_index();
   const Clock::time_point begun = Clock::now();
   sim::Pace pace = piece_size_.pace(begun);
@@ -110,28 +110,29 @@ void Stepper::advance(Clock::time_point now) {
   if (steps == 0) return;
   ++state_version_;
   exchange_.count_steps(steps);
-  frames().touch();
+  frames().state_changed();
   if (waiting_.empty()) return;
   finish_waiting(false);
-  if (waiting_.empty()) frames().touch_now();
+  if (waiting_.empty()) frames().state_changed_now();
 }
 
 void Stepper::want_steps(Clock::time_point now, bool run) {
   if (!waiting_.empty())
     // No further than the step at which the next sim.step ends, as its answer reports that step.
-    simulation().want(static_cast<std::uint32_t>(std::min<std::uint64_t>(
-                          waiting_.front().until_step - simulation().step_index(), real_time_.affordable())),
-                      &engine_->step_timer);
+    simulation().set_steps_to_do(
+        static_cast<std::uint32_t>(std::min<std::uint64_t>(
+            waiting_.front().until_step - simulation().step_index(), real_time_.affordable())),
+        &engine_->step_timer);
   else if (!run)
-    simulation().want(0);
-  else if (simulation().wanted() == 0)
-    simulation().want(real_time_.due(now, scene().solver.dt), &engine_->step_timer);
+    simulation().set_steps_to_do(0);
+  else if (simulation().steps_to_do() == 0)
+    simulation().set_steps_to_do(real_time_.due(now, scene().solver.dt), &engine_->step_timer);
 }
 
 void Stepper::note_finished(Clock::time_point now) {
   engine_->backlog.poll(now, [&](const GpuBacklog::Piece& piece, double seconds) {
-    real_time_.spent(piece.steps, seconds);
-    piece_size_.measured(piece.places, seconds);
+    real_time_.add_work_time(piece.steps, seconds);
+    piece_size_.add_piece_time(piece.places, seconds);
   });
 }
 
@@ -148,7 +149,7 @@ void Stepper::finish_waiting(bool all) {
 }
 
 void Stepper::follow_diagnostics(Clock::time_point now) {
-  if (const std::optional<sim::GuardedRun::Verdict> verdict = guard_->poll()) {
+  if (const std::optional<sim::GuardedRun::Verdict> verdict = guard_->poll_verdict()) {
     accept(*verdict);
     const sim::Diagnostics& arrived = guard_->state();
     if (running(now) &&
@@ -158,16 +159,18 @@ void Stepper::follow_diagnostics(Clock::time_point now) {
   request_diagnosis(now);
   if (now < next_status_) return;
   // While nothing is stepped, a status waits for the diagnostics of the present state.
-  if (!running(now) && waiting_.empty() && (guard_->asked() || diagnosed_version_ != state_version_)) return;
+  if (!running(now) && waiting_.empty() &&
+      (guard_->verdict_requested() || diagnosed_version_ != state_version_))
+    return;
   next_status_ = std::max(next_status_ + period(status_rate), now);
   publish_status(now);
 }
 
 // A state that stands still is diagnosed once.
 void Stepper::request_diagnosis(Clock::time_point now) {
-  if (guard_->asked() || diagnosed_version_ == state_version_ || now < next_diagnosis_) return;
+  if (guard_->verdict_requested() || diagnosed_version_ == state_version_ || now < next_diagnosis_) return;
   engine_->diagnosis_timer.begin();
-  guard_->ask();
+  guard_->request_verdict();
   engine_->diagnosis_timer.stage("diagnose");
   engine_->diagnosis_timer.end();
   diagnosed_version_ = state_version_;
@@ -236,7 +239,7 @@ void Stepper::publish_status(Clock::time_point now) {
 }
 
 void Stepper::follow_step_limit() {
-  if (step_limit_.poll()) guard_->allow(step_limit_.dt_limit());
+  if (step_limit_.poll()) guard_->set_dt_limit(step_limit_.dt_limit());
   if (std::optional<std::string> warning = step_limit_.take_warning())
     exchange_.emit(Notice{"warning", std::move(*warning)});
 }
@@ -254,8 +257,8 @@ void Stepper::warn_if_slow(Clock::time_point now) {
   text += "; a smaller cloth, ";
   if (scene::iterates(scene().solver.method)) text += "fewer iterations, ";
   if (const double others = simulation().search_candidates(); others >= 500)
-    text +=
-        formatted("a smaller self_collision thickness (each vertex is held against %.0f others), ", others);
+    text += formatted("a smaller self_collision thickness (each vertex is compared with about %.0f others), ",
+                      others);
   exchange_.emit(Notice{"warning", text + "a longer time step or a lower speed helps"});
 }
 
@@ -287,8 +290,8 @@ bool Stepper::suspended(Clock::time_point now) const {
 }
 
 Clock::time_point Stepper::next_turn(Clock::time_point now) const {
-  if ((simulation().wanted() > 0 || !waiting_.empty()) && !engine_->backlog.full()) return now;
-  if (frames().urgent() || frames().in_flight() || guard_->asked() || !engine_->backlog.empty())
+  if ((simulation().steps_to_do() > 0 || !waiting_.empty()) && !engine_->backlog.full()) return now;
+  if (frames().urgent() || frames().in_flight() || guard_->verdict_requested() || !engine_->backlog.empty())
     return now + microseconds(500);
   if (!running(now)) return suspended(now) ? now + milliseconds(250) : std::max(next_status_, now);
   if (real_time_.behind(scene().solver.dt)) return now;

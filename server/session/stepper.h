@@ -148,7 +148,7 @@ class Stepper {
   Clock::time_point next_status_{}, next_diagnosis_{};
   Clock::time_point slow_since_{};
   bool slow_announced_ = false, crowded_announced_ = false, unconverged_announced_ = false;
-  bool thin_ = false;  ///< layers of cloth can pass through each other
+  bool layers_may_pass_ = false;  ///< layers of cloth can pass through each other
 };
 
 }  // namespace clothlab::session

@@ -82,7 +82,7 @@ void Stepper::perform(PatchScene& patch, const Ticket& ticket) {
 // not count as growth, and growth does not go unnoticed between changes.
 Result<sim::ChangeDepth> Stepper::change(const scene::Scene& scene) {
   if (!sim::changes_energy(this->scene(), scene)) return change_engine(scene);
-  accept(guard_->look());
+  accept(guard_->judge_now());
   const Result<sim::ChangeDepth> depth = change_engine(scene);
   if (depth && *depth != sim::ChangeDepth::cloth) guard_->rebase();
   return depth;
@@ -130,17 +130,17 @@ void Stepper::take_over(scene::Document document, sim::ChangeDepth depth) {
     run_.go_on();  // like any other change: playing or paused as before a blow-up
     state_replaced();
   } else {
-    frames().touch_now();
+    frames().state_changed_now();
   }
   ++state_version_;
   announce_parts();
   announce_solver();
   if (depth == sim::ChangeDepth::none) return;
   warn_if_thin();
-  step_limit_.follow(simulation().model(), scene());
+  step_limit_.set_scene(simulation().model(), scene());
   follow_step_limit();  // now, as another change may come before the next status
   if (depth == sim::ChangeDepth::cloth) return guard_->start(step_limit_.dt_limit());
-  guard_->allow(step_limit_.dt_limit());
+  guard_->set_dt_limit(step_limit_.dt_limit());
   go_on();
 }
 
@@ -278,7 +278,7 @@ void Stepper::announce_solver() {
     }
   }
   json thickness = nullptr;
-  if (scene().self_collision) thickness = model::thickness_that_holds(simulation().model());
+  if (scene().self_collision) thickness = model::least_safe_thickness(simulation().model());
   exchange_.emit(SolverChanged{
       {{"pbd_stiffness", shares}, {"auto", automatic_.facts()}, {"thickness_that_holds", thickness}}});
 }
@@ -286,7 +286,8 @@ void Stepper::announce_solver() {
 // Warns once, after a change of scene that lets layers of cloth pass through each other.
 void Stepper::warn_if_thin() {
   const std::string warning = model::thickness_warning(simulation().model(), scene());
-  if (!std::exchange(thin_, !warning.empty()) && thin_) exchange_.emit(Notice{"warning", warning});
+  if (!std::exchange(layers_may_pass_, !warning.empty()) && layers_may_pass_)
+    exchange_.emit(Notice{"warning", warning});
 }
 
 }  // namespace clothlab::session

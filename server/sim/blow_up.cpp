@@ -60,7 +60,7 @@ Extent extent(const model::Model& model) {
   return {glm::distance(low, high), std::max({far.x, far.y, far.z})};
 }
 
-/// Allowance::ratio.
+/// Allowance::energy_ratio.
 double stable_swing(double dt, double dt_limit) {
   constexpr double nearest = 0.95, at_least = 2.0, known_unstable = 4.0;
   if (std::isinf(dt_limit)) return at_least;
@@ -93,9 +93,10 @@ Allowance allowance(const scene::Scene& scene, const model::Model& model, double
     elastic += 0.5 * element_stiffness(element.law) * stretch * stretch;
   });
   const double speed = allowed.pin_speed + allowed.collider_speed;
-  allowed.slack = mass * (0.25 * glm::length(scene.gravity) * cloth.size + 2.0 * speed * speed) + elastic;
-  allowed.ratio = stable_swing(scene.solver.dt, dt_limit);
-  allowed.stretch = !scene::sweeps(scene.solver.method);
+  allowed.slack_energy =
+      mass * (0.25 * glm::length(scene.gravity) * cloth.size + 2.0 * speed * speed) + elastic;
+  allowed.energy_ratio = stable_swing(scene.solver.dt, dt_limit);
+  allowed.counts_elastic = !scene::sweeps(scene.solver.method);
   allowed.growth = scene.solver.dt > dt_limit ? proved_already : growth_that_proves;
   return allowed;
 }
@@ -138,20 +139,20 @@ BlowUp::Verdict BlowUp::judge(const Diagnostics& state) {
   const double work = work_since_last(state);
   work_ += work;
   ledger_ += work;
-  const double there_is = std::max(0.0, ledger_ - state.gravitational);
-  const double beyond = (allowance_.ratio - 1.0) * there_is + allowance_.slack;
-  const double excess = growing_energy(state) - there_is;
+  const double available = std::max(0.0, ledger_ - state.gravitational);
+  const double allowed_excess = (allowance_.energy_ratio - 1.0) * available + allowance_.slack_energy;
+  const double excess = growing_energy(state) - available;
   ledger_ = std::min(ledger_, total(state));
   last_ = state;
-  if (excess > beyond) return doubt(state);
+  if (excess > allowed_excess) return judge_doubtful(state);
   doubted_energy_ = 0.0;
-  if (excess > share_of_good * beyond) return Verdict::doubtful;
+  if (excess > share_of_good * allowed_excess) return Verdict::doubtful;
   last_good_ = state;
   work_ = 0.0;
   return Verdict::good;
 }
 
-BlowUp::Verdict BlowUp::doubt(const Diagnostics& state) {
+BlowUp::Verdict BlowUp::judge_doubtful(const Diagnostics& state) {
   const double energy = growing_energy(state);
   if (doubted_energy_ == 0.0) {
     doubted_energy_ = energy;
@@ -172,8 +173,8 @@ std::string BlowUp::reason() const {
         last_good_.time, last_.time);
   return formatted(
       "the energy of motion%s grew from %.3g J at t = %.4g s to %.3g J at t = %.4g s, "
-      "with at most %.3g J of work done on the cloth and %.3g J of fall",
-      allowance_.stretch ? " and stretch" : "", growing_energy(last_good_), last_good_.time,
+      "with at most %.3g J of work done on the cloth and %.3g J released by falling",
+      allowance_.counts_elastic ? " and stretch" : "", growing_energy(last_good_), last_good_.time,
       growing_energy(last_), last_.time, work_,
       std::max(0.0, last_good_.gravitational - last_.gravitational));
 }

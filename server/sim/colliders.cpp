@@ -36,7 +36,7 @@ std::vector<scene::Collider> colliders_at(const scene::Scene& scene, double time
   std::vector<scene::Collider> colliders = scene.colliders;
   for (scene::Collider& collider : colliders) {
     const model::Pose pose = model::pose(collider.motion, time);
-    collider.shape = scene::placed(collider.shape, pose.rotation, pose.translation);
+    collider.shape = scene::moved_shape(collider.shape, pose.rotation, pose.translation);
   }
   return colliders;
 }

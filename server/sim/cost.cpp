@@ -16,9 +16,9 @@ constexpr double gather = 50e-9;     ///< one evaluation of the forces
 constexpr double contacts = 150e-9;  ///< self-collision in one step, without the neighbour search
 constexpr double sweep = 210e-9;     ///< one sweep of PBD, XPBD or VBD
 constexpr double newton = 3.4e-6;    ///< one Newton step of implicit Euler, which rarely takes more than two
-constexpr double limit = 20 * gather;  ///< the strain limit's sweeps in one step
-constexpr double pair = 3e-9;          ///< one other vertex that a neighbour search looks at
-constexpr double searches = 0.05;      ///< number of neighbour searches per step while a cloth moves
+constexpr double strain_limit_cost = 20 * gather;  ///< the strain limit's sweeps in one step
+constexpr double pair_cost = 3e-9;                 ///< one other vertex that a neighbour search looks at
+constexpr double searches_per_step = 0.05;  ///< number of neighbour searches per step while a cloth moves
 
 /// Number of other vertices that a neighbour search looks at for each vertex (crowding.h). For a grid that
 /// starts flat it follows from the spacing; any other cloth is taken to lie in a heap: all its vertices.
@@ -36,15 +36,15 @@ double candidates(const scene::Cloth& cloth, double thickness) {
 
 double expected_step_seconds(const scene::Scene& scene) {
   const double iterations = scene.solver.iterations;
-  double a_vertex = scene::facts(scene.solver.method).evaluations * gather;
-  if (scene::sweeps(scene.solver.method)) a_vertex += iterations * sweep;
-  if (scene::solves(scene.solver.method)) a_vertex += std::min(iterations, 2.0) * newton;
+  double cost_per_vertex = scene::facts(scene.solver.method).evaluations * gather;
+  if (scene::sweeps(scene.solver.method)) cost_per_vertex += iterations * sweep;
+  if (scene::solves(scene.solver.method)) cost_per_vertex += std::min(iterations, 2.0) * newton;
   double total = 0.0;
   for (const scene::Cloth& cloth : scene.cloths) {
-    double cost = a_vertex;
-    if (cloth.material.strain_limit) cost += limit;
+    double cost = cost_per_vertex;
+    if (cloth.material.strain_limit) cost += strain_limit_cost;
     if (scene.self_collision)
-      cost += contacts + searches * pair * candidates(cloth, scene.self_collision->thickness);
+      cost += contacts + searches_per_step * pair_cost * candidates(cloth, scene.self_collision->thickness);
     total += cost * static_cast<double>(scene::vertex_count(cloth.mesh));
   }
   return total;

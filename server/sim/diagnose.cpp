@@ -52,7 +52,7 @@ bool DiagnosticsPass::request(const StateBuffers& state, const SelfCollision* se
                              sizeof(SelfCollision::Counters));
   }
   ring_.push(results_, results_.bytes());
-  shown_[requested_++ % ring_slots] = {time, step};
+  pending_times_[requested_++ % ring_slots] = {time, step};
   return true;
 }
 
@@ -60,7 +60,7 @@ bool DiagnosticsPass::poll(Diagnostics& out, bool wait) {
   const std::span<const std::byte> bytes = ring_.front(wait);
   if (bytes.empty()) return false;
   out = Diagnostics{};
-  std::tie(out.time, out.step) = shown_[delivered_++ % ring_slots];
+  std::tie(out.time, out.step) = pending_times_[delivered_++ % ring_slots];
   double contacts = 0.0, speed_squared = 0.0;
   for (std::size_t group = 0; group < groups_; ++group) {
     Partial partial;

@@ -30,7 +30,7 @@ class DiagnosticsPass {
   gl::ReadbackRing ring_;
   static constexpr std::size_t ring_slots = 3;
   std::array<std::pair<double, std::uint64_t>, ring_slots>
-      shown_{};  ///< time and step of each result on its way
+      pending_times_{};  ///< time and step of each result on its way
   std::size_t requested_ = 0, delivered_ = 0;
   std::uint32_t groups_ = 0;
 };

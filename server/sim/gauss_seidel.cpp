@@ -38,13 +38,13 @@ class GaussSeidel : public Integrator {
   void set_parameters(const Surroundings& around) override {
     sweeps_ = around.scene.solver.iterations;
     const float mobility = static_cast<float>(model::mobility(around.scene));
-    for (const gl::Program* program : {&whole_, &begin_, &visit_, &meet_, &balance_, &finish_}) {
+    for (const gl::Program* program : {&whole_, &begin_, &visit_, &contacts_pass_, &balance_, &finish_}) {
       if (!program->id()) continue;
       set_step_uniforms(*program, around);
       program->set("mobility", mobility);
       program->set("last_sweep", sweeps_ - 1);
     }
-    if (balanced_) set_free_vertices(around);
+    if (restores_momentum_) set_free_vertices(around);
     if (by_vertex_) return;
     const ProjectedSprings springs = projected_springs(work_, around.model, around.scene);
     projected_ = {gl::Buffer(springs.entries), GL_RGBA32UI};
@@ -58,7 +58,7 @@ class GaussSeidel : public Integrator {
       visited_.bind(unit_visited);
       velocity_before_.bind_storage(slot_velocity_before);
       targets_.bind_storage(slot_targets);
-      if (balanced_) lacking_.bind_storage(slot_lacking);
+      if (restores_momentum_) momentum_sums_.bind_storage(slot_lacking);
     } else {
       projected_.bind(unit_projected);
       gains_.bind(unit_gains);
@@ -81,7 +81,7 @@ class GaussSeidel : public Integrator {
   GaussSeidel(const Surroundings& around, const Plan& plan)
       : by_vertex_(scene::sweeps_vertices(plan.method)),
         contacts_(plan.self_collision || (!by_vertex_ && plan.solid_count() > 0)),
-        balanced_(by_vertex_ && plan.solid_count() == 0),
+        restores_momentum_(by_vertex_ && plan.solid_count() == 0),
         vertex_count_(around.model.vertex_count()),
         cloths_(static_cast<std::uint32_t>(around.model.cloths.size())),
         work_(by_vertex_ ? visited_vertices(around.model, around.scene)
@@ -93,8 +93,8 @@ class GaussSeidel : public Integrator {
       visited_ = {gl::Buffer(work_.order), GL_R32UI};
       velocity_before_ = gl::Buffer(vertex_count_ * 4 * sizeof(float));
       targets_ = gl::Buffer(vertex_count_ * 4 * sizeof(float));
-      if (balanced_)
-        lacking_ = gl::Buffer(cloths_ * std::max<std::size_t>(lanes_, group_size) * 4 * sizeof(float));
+      if (restores_momentum_)
+        momentum_sums_ = gl::Buffer(cloths_ * std::max<std::size_t>(lanes_, group_size) * 4 * sizeof(float));
     } else if (plan.method == scene::Method::xpbd) {
       spring_pushes_ = gl::Buffer(std::max<std::size_t>(work_.order.size(), 1) * 4 * sizeof(float));
     }
@@ -113,7 +113,7 @@ class GaussSeidel : public Integrator {
     std::uint64_t sweep = 0;
     for (std::uint32_t colour = 0; colour < work_.colours(); ++colour)
       sweep += 1 + rounds(work_.offsets[colour + 1] - work_.offsets[colour]) * visit;
-    const std::uint64_t balance = balanced_ ? cloths_ * (2 * rounds(vertex_count_) + lanes) : 0;
+    const std::uint64_t balance = restores_momentum_ ? cloths_ * (2 * rounds(vertex_count_) + lanes) : 0;
     if (contacts_)
       sweep += rounds(vertex_count_) * (colliders + (plan.self_collision ? plan.neighbour_slots : 0));
     return static_cast<std::uint64_t>(plan.most_sweeps) * sweep + balance +
@@ -125,7 +125,7 @@ class GaussSeidel : public Integrator {
     if (by_vertex_) list.emplace_back("BY_VERTEX", "1");
     if (plan.method == scene::Method::xpbd) list.emplace_back("MEMORY", "1");
     if (contacts_) list.emplace_back("CONTACTS", "1");
-    if (balanced_) {
+    if (restores_momentum_) {
       list.emplace_back("BALANCED", "1");
       list.emplace_back("CLOTH_COUNT", std::to_string(cloths_));
     }
@@ -151,14 +151,14 @@ class GaussSeidel : public Integrator {
 
   Status load_phases(const Plan& plan) {
     for (auto [program, phase] :
-         {std::pair{&begin_, "begin"}, {&visit_, "visit"}, {&meet_, "meet"}, {&finish_, "finish"}}) {
+         {std::pair{&begin_, "begin"}, {&visit_, "visit"}, {&contacts_pass_, "meet"}, {&finish_, "finish"}}) {
       gl::Defines list = defines(plan);
       list.emplace_back("PHASE", phase);
       Result<gl::Program> loaded = gl::Program::load({"methods/gauss_seidel.comp"}, list);
       if (!loaded) return loaded.error();
       *program = std::move(*loaded);
     }
-    if (!balanced_) return ok();
+    if (!restores_momentum_) return ok();
     gl::Defines list = defines(plan);
     list.emplace_back("EACH_CLOTH", "1");
     Result<gl::Program> loaded = gl::Program::load({"methods/gauss_seidel.comp"}, list);
@@ -214,12 +214,12 @@ class GaussSeidel : public Integrator {
         co_await may_stop;
       }
       if (!contacts_) continue;
-      use(meet_, current, 1 - current);
-      run(meet_, 0, vertex_count_);
+      use(contacts_pass_, current, 1 - current);
+      run(contacts_pass_, 0, vertex_count_);
       current = 1 - current;
       co_await may_stop;
     }
-    if (balanced_) {
+    if (restores_momentum_) {
       use(balance_, current, current);
       dispatch(cloths_);
       wait_for_writes();
@@ -229,15 +229,15 @@ class GaussSeidel : public Integrator {
   }
 
   bool by_vertex_, contacts_;
-  bool balanced_;            ///< VBD without colliders: keep sweeps from giving free cloths a false momentum
+  bool restores_momentum_;   ///< VBD without colliders: keep sweeps from giving free cloths a false momentum
   std::uint32_t lanes_ = 0;  ///< threads of the one work group; 0: many dispatches instead
   std::uint32_t vertex_count_, cloths_;
   int sweeps_ = 1;
   model::Colouring work_;  ///< the springs (VBD: the vertices) that a sweep visits
-  gl::Program whole_, begin_, visit_, meet_, balance_, finish_;
+  gl::Program whole_, begin_, visit_, contacts_pass_, balance_, finish_;
   std::array<gl::TextureBuffer, 2> deviation_;  ///< a pass of contacts reads one and writes the other
   gl::TextureBuffer projected_, gains_, visited_;
-  gl::Buffer spring_pushes_, targets_, velocity_before_, lacking_, remainders_;
+  gl::Buffer spring_pushes_, targets_, velocity_before_, momentum_sums_, remainders_;
 };
 
 }  // namespace

@@ -13,12 +13,12 @@ double timed_steps(Simulation& simulation, std::uint32_t count) {
 
 void GuardedRun::move_to(Simulation& simulation) {
   simulation_ = &simulation;
-  asked_ = false;  // a diagnosis still on its way belongs to the old simulation
+  verdict_requested_ = false;  // a diagnosis still on its way belongs to the old simulation
 }
 
 Allowance GuardedRun::allowance() const {
   Allowance allowed = sim::allowance(simulation_->scene(), simulation_->model(), dt_limit_);
-  if (swing_) allowed.ratio = *swing_;
+  if (swing_) allowed.energy_ratio = *swing_;
   return allowed;
 }
 
@@ -26,40 +26,40 @@ void GuardedRun::start(double dt_limit, std::optional<double> swing) {
   dt_limit_ = dt_limit;
   swing_ = swing;
   state_ = simulation_->diagnose();
-  asked_ = false;
+  verdict_requested_ = false;
   blow_up_.start(allowance(), state_);
 }
 
-void GuardedRun::allow(double dt_limit) {
+void GuardedRun::set_dt_limit(double dt_limit) {
   dt_limit_ = dt_limit;
-  blow_up_.allow(allowance());
+  blow_up_.set_allowance(allowance());
 }
 
 void GuardedRun::rebase() {
   blow_up_.rebase(simulation_->diagnose());
-  asked_ = false;
+  verdict_requested_ = false;
 }
 
 GuardedRun::Verdict GuardedRun::judge(const Diagnostics& state) {
-  asked_ = false;
+  verdict_requested_ = false;
   state_ = state;
   const Verdict verdict = blow_up_.judge(state);
   if (verdict == Verdict::good) simulation_->keep_diagnosed();
   return verdict;
 }
 
-GuardedRun::Verdict GuardedRun::look() {
+GuardedRun::Verdict GuardedRun::judge_now() {
   return judge(simulation_->diagnose());
 }
 
-void GuardedRun::ask() {
+void GuardedRun::request_verdict() {
   simulation_->request_diagnostics();
-  asked_ = true;
+  verdict_requested_ = true;
 }
 
-std::optional<GuardedRun::Verdict> GuardedRun::poll() {
+std::optional<GuardedRun::Verdict> GuardedRun::poll_verdict() {
   Diagnostics arrived;
-  if (!asked_ || !simulation_->poll_diagnostics(arrived)) return std::nullopt;
+  if (!verdict_requested_ || !simulation_->poll_diagnostics(arrived)) return std::nullopt;
   return judge(arrived);
 }
 

@@ -26,23 +26,24 @@ class GuardedRun {
   void move_to(Simulation& simulation);
 
   /// Takes the present state as good, whatever it is. `dt_limit` is the scene's longest stable step [s].
-  /// `swing`, if given, replaces the `ratio` of the Allowance that follows from `dt_limit`.
+  /// `swing`, if given, replaces the `energy_ratio` of the Allowance that follows from `dt_limit`.
   void start(double dt_limit, std::optional<double> swing = std::nullopt);
   /// To be called when the scene has changed or its longest stable step `dt_limit` [s] is known better.
-  void allow(double dt_limit);
-  /// To be called after a look and a change of scene, with no step between: the energy that the change added
-  /// does not count as growth.
+  void set_dt_limit(double dt_limit);
+  /// To be called after a judgement and a change of scene, with no step between: the energy that the change
+  /// added does not count as growth.
   void rebase();
 
   /// Calls `timed_steps`.
   double step(std::uint32_t count) { return timed_steps(*simulation_, count); }
 
   /// Diagnoses the present state, waiting for the GPU, and judges it. A good state is kept, to go back to.
-  Verdict look();
-  // `look` without waiting for the GPU: call `ask`, then `poll` until it returns a verdict.
-  void ask();
-  bool asked() const { return asked_; }
-  std::optional<Verdict> poll();
+  Verdict judge_now();
+  // `judge_now` without waiting for the GPU: call `request_verdict`, then `poll_verdict` until it returns a
+  // verdict.
+  void request_verdict();
+  bool verdict_requested() const { return verdict_requested_; }
+  std::optional<Verdict> poll_verdict();
 
   /// The diagnosis of the state that was judged, started from or gone back to last.
   const Diagnostics& state() const { return state_; }
@@ -68,7 +69,7 @@ class GuardedRun {
   Diagnostics state_;
   double dt_limit_ = 0;  ///< [s]
   std::optional<double> swing_;
-  bool asked_ = false;
+  bool verdict_requested_ = false;
 };
 
 }  // namespace clothlab::sim

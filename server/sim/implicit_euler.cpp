@@ -54,7 +54,7 @@ class ImplicitEuler : public Integrator {
     for (const gl::Program* program :
          {&start_, &system_, &multiply_, &update_, &search_, &advance_, &end_, &contacts_})
       if (program->id()) set_step_uniforms(*program, around);
-    if (around.scene.solver.dt != dt_) restart();  // impulses kept in `grip_` are forces times dt
+    if (around.scene.solver.dt != dt_) restart();  // impulses kept in `contact_friction_` are forces times dt
     dt_ = around.scene.solver.dt;
     most_newton_steps_ = around.scene.solver.iterations;
     system_.set("tolerance", static_cast<float>(around.scene.solver.tolerance));
@@ -87,8 +87,8 @@ class ImplicitEuler : public Integrator {
 
   /// Forgets all contacts with colliders: -1 is `untouched` in implicit_friction.glsl.
   void restart() override {
-    const std::vector<float> untouched(grip_.bytes() / sizeof(float), -1.0F);
-    grip_.upload(untouched.data(), grip_.bytes());
+    const std::vector<float> untouched(contact_friction_.bytes() / sizeof(float), -1.0F);
+    contact_friction_.upload(untouched.data(), contact_friction_.bytes());
   }
 
   SolverWork work() const override { return work_; }
@@ -107,7 +107,7 @@ class ImplicitEuler : public Integrator {
       for (gl::TextureBuffer* vector :
            {&set.change, &set.residual, &set.preconditioned, &set.direction, &set.direction_product})
         *vector = {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
-    grip_ = gl::Buffer(vertex_count * 4 * sizeof(float));
+    contact_friction_ = gl::Buffer(vertex_count * 4 * sizeof(float));
     sums_ = {gl::Buffer(groups_ * 12 * sizeof(float)), GL_RGBA32F};  // at most three vec4 per work group
     control_ = gl::Buffer(sizeof(Control) + most_iterations * 2 * sizeof(float));
   }
@@ -143,7 +143,7 @@ class ImplicitEuler : public Integrator {
     guess_.buffer.bind_storage(slot_guess);
     constraint_.buffer.bind_storage(slot_constraint);
     surface_.buffer.bind_storage(slot_surface);
-    grip_.bind_storage(slot_grip);
+    contact_friction_.bind_storage(slot_grip);
   }
 
   /// Sets up the linear system at the present estimate, whose positions are in `position`.
@@ -228,7 +228,7 @@ class ImplicitEuler : public Integrator {
     position_.bind(unit_position);
     velocity_.bind(unit_velocity);
     solved.residual.bind(unit_residual);
-    grip_.bind_storage(slot_grip);
+    contact_friction_.bind_storage(slot_grip);
     state.bind_outputs();
     end_.set("start_row", row);
     run(end_);
@@ -243,7 +243,7 @@ class ImplicitEuler : public Integrator {
   gl::TextureBuffer position_, velocity_;              ///< estimate of the state at the step's end
   gl::TextureBuffer guess_;                            ///< first guess of the solved change of velocity
   gl::TextureBuffer constraint_, surface_;             ///< for each vertex: its contact with a collider
-  gl::Buffer grip_;                                    ///< friction of the contacts, kept between steps
+  gl::Buffer contact_friction_;                        ///< friction of the contacts, kept between steps
   gl::TextureBuffer block_a_, block_b_, product_, sums_;
   std::array<Vectors, 2> vectors_;  ///< each iteration reads one set and writes the other
   gl::Buffer control_;

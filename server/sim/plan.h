@@ -38,7 +38,7 @@ struct Plan {
   int most_sweeps = 0;                 ///< 16, 64, 256, ...: at least the iterations of PBD, XPBD or VBD
   /// Number of a step's rows in the pose table after the row of its start: the step's end and, before it, its
   /// middle if the method uses poses there.
-  int pose_rows() const { return scene::facts(method).looks_at_the_middle ? 2 : 1; }
+  int pose_rows() const { return scene::facts(method).needs_midpoint_poses ? 2 : 1; }
   int solid_count() const { return std::accumulate(solids.begin(), solids.end(), 0); }
   bool operator==(const Plan&) const = default;
 };

@@ -61,7 +61,7 @@ Result<SelfCollision> SelfCollision::create(const model::Model& model, std::uint
   }
   const Control nothing;
   made.control_ = gl::Buffer(sizeof(Control), &nothing);
-  made.seen_ = gl::ReadbackRing(sizeof(Control), 1);
+  made.counters_ring_ = gl::ReadbackRing(sizeof(Control), 1);
   made.heads_ = {gl::Buffer(cells * sizeof(std::uint32_t)), GL_R32UI};
   made.heads_.buffer.fill(chain_end);  // later each search empties them at its end
   made.chains_ = {gl::Buffer(vertex_count * sizeof(std::uint32_t)), GL_R32UI};
@@ -84,9 +84,10 @@ Status SelfCollision::set_parameters(const scene::SelfCollision& parameters, con
   const double pairs = candidates * vertex_count_;
   if (pairs > most_pairs)
     return Error{"/self_collision/thickness",
-                 significant(parameters.thickness, 3) + " m on a mesh with edges of " + significant(edge, 3) +
-                     " m: to find what may touch, each of " + std::to_string(vertex_count_) +
-                     " vertices would be held against " + formatted("%.0f", candidates) + " others",
+                 with_significant_digits(parameters.thickness, 3) + " m on a mesh with edges of " +
+                     with_significant_digits(edge, 3) + " m: the neighbour search would compare each of " +
+                     std::to_string(vertex_count_) + " vertices with about " + formatted("%.0f", candidates) +
+                     " others",
                  "at most " + formatted("%.0e", most_pairs) +
                      " pairs in a search: a thickness of about one edge, or a coarser mesh"};
   candidates_ = candidates;
@@ -152,25 +153,25 @@ Work SelfCollision::update_lists() {
     limit_range(range_groups_ / 2);
     control_.upload(&range_groups_, sizeof range_groups_, offsetof(Control, search));
   }
-  if (updates_++ % updates_between_looks == 0) look();
+  if (updates_++ % updates_between_looks == 0) read_counters();
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
 /// Reads back the counters that the look before had copied, and queues a copy for the next look. The first
 /// look after `invalidate` reads its own copy at once.
-void SelfCollision::look() {
+void SelfCollision::read_counters() {
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   const auto take = [&] {
-    const std::span<const std::byte> seen = seen_.front(true);
+    const std::span<const std::byte> seen = counters_ring_.front(true);
     Control control;
     if (seen.size() < sizeof control) return;  // the device is lost
     std::memcpy(&control, seen.data(), sizeof control);
     longest_ = control.counters.longest;
-    seen_.pop();
+    counters_ring_.pop();
   };
-  if (!seen_.empty()) take();
-  if (seen_.full()) return;
-  seen_.push(control_, sizeof(Control));
+  if (!counters_ring_.empty()) take();
+  if (counters_ring_.full()) return;
+  counters_ring_.push(control_, sizeof(Control));
   if (updates_ == 1) take();
 }
 

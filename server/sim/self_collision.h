@@ -64,7 +64,7 @@ class SelfCollision {
 
  private:
   void limit_range(std::uint32_t groups);
-  void look();
+  void read_counters();
 
   std::uint32_t vertex_count_ = 0, slots_ = neighbour_slots;
   std::uint32_t range_groups_ = 1;  ///< work groups of one dispatch of the search
@@ -75,7 +75,7 @@ class SelfCollision {
   float reach_ = 0;            ///< contact distance + skin: how far the lists look [m]
   gl::Program insert_, find_, finish_;
   gl::Buffer control_;
-  gl::ReadbackRing seen_;
+  gl::ReadbackRing counters_ring_;
   gl::TextureBuffer heads_, chains_, counts_, lists_, built_position_, excluded_, first_excluded_;
 };
 

@@ -62,7 +62,7 @@ struct Simulation::Implementation {
   double start_time = 0.0;
   std::uint64_t start_step = 0;
   std::vector<double> batch_times;
-  std::uint32_t wanted = 0;  ///< number of steps to do
+  std::uint32_t steps_to_do = 0;  ///< number of steps to do
   bool in_step = false;
   gl::StageTimer* next_timer = nullptr;
   gl::Bindings bound;  ///< what `work` had bound in GL when it stopped
@@ -107,12 +107,12 @@ struct Simulation::Implementation {
     passed("strain_limit");
   }
 
-  /// Does up to `count` steps; ends earlier if no more steps are wanted.
+  /// Does up to `count` steps; ends earlier if no steps are left to do.
   Work run_batch(std::uint32_t count) {
     gl::StageTimer* timer = std::exchange(next_timer, nullptr);
     bind_constants();
     upload_poses(count);
-    for (std::uint32_t step = 0; step < count && wanted > 0; ++step) {
+    for (std::uint32_t step = 0; step < count && steps_to_do > 0; ++step) {
       if (timer) timer->begin();
       in_step = true;
       co_await run_step(static_cast<int>(step) * kernels.plan.pose_rows(), timer);
@@ -120,27 +120,27 @@ struct Simulation::Implementation {
       in_step = false;
       state.show();
       ++step_index;
-      --wanted;
+      --steps_to_do;
       co_await may_stop;
     }
   }
 
   void resume(Pace& pace) {
-    while (wanted > 0) {
+    while (steps_to_do > 0) {
       if (work.done())
-        work = run_batch(std::min(wanted, batch_steps));
+        work = run_batch(std::min(steps_to_do, batch_steps));
       else
         bound.restore();
       work.resume(pace);
       if (work.done()) continue;
-      bound = gl::Bindings::now();
+      bound = gl::Bindings::current();
       return;
     }
   }
 
-  /// Gives up the batch under way, with any step that it has begun, and wants no more steps.
+  /// Gives up the batch under way, with any step that it has begun, and leaves no steps to do.
   void give_up_work() {
-    wanted = 0;
+    steps_to_do = 0;
     work = Work();
     if (!std::exchange(in_step, false)) return;
     state.give_up_step();
@@ -229,18 +229,18 @@ Result<ChangeDepth> Simulation::change(const scene::Scene& scene) {
 }
 
 void Simulation::step(std::uint32_t count, gl::StageTimer* timer) {
-  want(count, timer);
+  set_steps_to_do(count, timer);
   Pace unlimited;
-  while (wanted() > 0) resume(unlimited);
+  while (steps_to_do() > 0) resume(unlimited);
 }
 
-void Simulation::want(std::uint32_t count, gl::StageTimer* timer) {
-  implementation_->wanted = count;
+void Simulation::set_steps_to_do(std::uint32_t count, gl::StageTimer* timer) {
+  implementation_->steps_to_do = count;
   implementation_->next_timer = timer;
 }
 
-std::uint32_t Simulation::wanted() const {
-  return implementation_->wanted;
+std::uint32_t Simulation::steps_to_do() const {
+  return implementation_->steps_to_do;
 }
 
 void Simulation::resume(Pace& pace) {

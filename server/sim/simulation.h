@@ -79,15 +79,15 @@ class Simulation {
   /// pins), and strain_limit.
   void step(std::uint32_t count, gl::StageTimer* timer = nullptr);
 
-  // `step` in pieces, for a caller that has other things to do while a step takes long: call `want`, then
-  // `resume` for each piece. Between two pieces all other functions may be called and see the state at the
-  // end of the last complete step. Functions that change the state, or how it is stepped, give up the step
-  // under way.
+  // `step` in pieces, for a caller that has other things to do while a step takes long: call
+  // `set_steps_to_do`, then `resume` for each piece. Between two pieces all other functions may be called and
+  // see the state at the end of the last complete step. Functions that change the state, or how it is
+  // stepped, give up the step under way.
   /// Sets the number of steps to do, the step under way included; 0 leaves that step where it is. `timer`, as
   /// in `step`, must outlive these steps.
-  void want(std::uint32_t count, gl::StageTimer* timer = nullptr);
-  std::uint32_t wanted() const;
-  /// Queues the wanted steps until they are done or `pace` has enough.
+  void set_steps_to_do(std::uint32_t count, gl::StageTimer* timer = nullptr);
+  std::uint32_t steps_to_do() const;
+  /// Queues the steps to do until they are done or `pace` has enough.
   void resume(Pace& pace);
 
   /// Puts all vertices back to their start positions, at rest, at time 0.

@@ -61,7 +61,7 @@ Result<StrainLimit> StrainLimit::create(const Surroundings& around, const Plan& 
   for (gl::TextureBuffer& excess : made.group_excess_)
     excess = {gl::Buffer(made.groups_ * 4 * sizeof(float)), GL_RGBA32F};
   made.pulls_ = gl::Buffer(std::max<std::size_t>(entries, 1) * sizeof(float));
-  made.given_ = gl::Buffer(count * 4 * sizeof(float));
+  made.pull_impulses_ = gl::Buffer(count * 4 * sizeof(float));
   made.control_ = gl::Buffer(sizeof(Control));
   made.sweep_.set("relaxation", relaxation(around.model));
   made.set_parameters(around);
@@ -85,7 +85,7 @@ Work StrainLimit::apply(StateBuffers& state) {
   state.previous_position().bind(unit_start_position);
   position_[0].buffer.bind_storage(slot_next_position);
   pulls_.bind_storage(slot_pulls);
-  given_.bind_storage(slot_given);
+  pull_impulses_.bind_storage(slot_given);
   start_.use();
   glDispatchCompute(groups_, 1, 1);
   wait_for_writes();

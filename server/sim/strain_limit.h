@@ -28,7 +28,7 @@ class StrainLimit {
  private:
   gl::Program start_, sweep_, end_;
   std::array<gl::TextureBuffer, 2> position_, group_excess_;  ///< a sweep reads one and writes the other
-  gl::Buffer pulls_, given_, control_;
+  gl::Buffer pulls_, pull_impulses_, control_;
   double dt_ = 0;  ///< [s]
   GLuint groups_ = 0;
   StrainLimitWork work_;

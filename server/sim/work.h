@@ -18,10 +18,12 @@ struct Pace {
   using Clock = std::chrono::steady_clock;
 
   Clock::time_point until = Clock::time_point::max();
-  std::uint32_t most = std::numeric_limits<std::uint32_t>::max();  ///< largest number of places
-  std::uint32_t passed = 0;                                        ///< places reached so far
+  std::uint32_t most_places = std::numeric_limits<std::uint32_t>::max();  ///< largest number of places
+  std::uint32_t passed = 0;                                               ///< places reached so far
 
-  bool enough() { return ++passed >= most || (until != Clock::time_point::max() && Clock::now() >= until); }
+  bool enough() {
+    return ++passed >= most_places || (until != Clock::time_point::max() && Clock::now() >= until);
+  }
 };
 
 /// `co_await may_stop` in a Work marks a place at which the Work stops if its pace has enough. Afterwards the

@@ -29,7 +29,7 @@ std::string collider_text(const sim::Simulation& simulation) {
   const std::vector<scene::Collider> now = simulation.colliders_now();
   for (std::size_t i = 0; i < now.size(); ++i) {
     if (!moves(now[i].motion)) continue;
-    json of = scene::written(now[i].shape);
+    json of = scene::shape_to_json(now[i].shape);
     of["index"] = i;
     moving.push_back(std::move(of));
   }

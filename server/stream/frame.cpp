@@ -7,7 +7,8 @@ namespace clothlab::stream {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "the wire format is the memory's");
+static_assert(std::endian::native == std::endian::little,
+              "the wire format is little-endian, and so must the machine be");
 
 template <class T>
 std::uint8_t* put(std::uint8_t* out, const T& value) {

@@ -40,7 +40,7 @@ struct Packer::Implementation {
   std::uint32_t topology_revision = 0, vertex_count = 0;
 
   /// Makes the buffers that depend on the mesh; frames of the old mesh that are on their way are dropped.
-  void adopt(const model::Model& model, std::uint32_t revision) {
+  void set_mesh(const model::Model& model, std::uint32_t revision) {
     topology_revision = revision;
     vertex_count = model.vertex_count();
     fan_offsets = {gl::Buffer(model.vertex_triangles.offsets), GL_R32UI};
@@ -110,7 +110,7 @@ bool Packer::request(const sim::Simulation& simulation, Encoding encoding, std::
   const std::int64_t begun_us = now_us();
   Implementation& self = *implementation_;
   if (self.topology_revision != simulation.topology_revision() || self.vertex_count == 0)
-    self.adopt(simulation.model(), simulation.topology_revision());
+    self.set_mesh(simulation.model(), simulation.topology_revision());
   if (self.ring.full()) return false;
 
   const auto index = static_cast<std::size_t>(encoding);

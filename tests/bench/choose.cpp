@@ -86,7 +86,7 @@ std::vector<int> iterations_of(Method method) {
   return {1};
 }
 
-Grid search(const Case& of, const lab::Choice& choice, const lab::Truth& truth, lab::Bench& bench) {
+Grid search(const Case& of, const lab::Choice& choice, const lab::Truth& truth, lab::TrialRunner& trials) {
   Grid grid;
   const model::Model& model = truth.world.model;
   for (const Method method : scene::methods) {
@@ -98,11 +98,11 @@ Grid search(const Case& of, const lab::Choice& choice, const lab::Truth& truth, 
                       iterations, 1e-4};
       setting.dt = lab::fitted_dt(setting.dt, truth);
       // The least of several timings: a setting that is cheaper at a quiet moment counts as cheaper.
-      const auto glance = *bench.time({lab::with(of.scene, setting)}, truth.horizon, 0.03, glances, {});
+      const auto glance = *trials.time({lab::with(of.scene, setting)}, truth.horizon, 0.03, glances, {});
       double step_cost = lab::cost_of(glance.front()).minimum * setting.dt;
       for (; step_cost / setting.dt < choice.chosen.cost->median;
            setting.dt = lab::fitted_dt(setting.dt / finer, truth)) {
-        const auto trial = *bench.run(lab::with(of.scene, setting), truth, truth.horizon, {});
+        const auto trial = *trials.run(lab::with(of.scene, setting), truth, truth.horizon, {});
         ++grid.tried;
         step_cost = std::min(step_cost, 1000.0 * trial.wall / trial.simulated * setting.dt);
         if (trial.largest_position_error && *trial.largest_position_error <= choice.tolerance) {
@@ -131,11 +131,11 @@ void print(const Case& of, double tolerance, bool last) {
       *lab::truth(of.scene, {of.time, 1e-3 * std::min(1e-4, tolerance), 60.0}, {}, [](double) {});
   const Setting& chosen = choice->chosen.setting;
   const double error = independent_error(of, chosen, truth);
-  lab::Bench bench;
-  const Grid grid = search(of, *choice, truth, bench);
+  lab::TrialRunner trials;
+  const Grid grid = search(of, *choice, truth, trials);
   std::vector<scene::Scene> scenes{lab::with(of.scene, chosen), of.scene};
   for (const Setting& setting : grid.better) scenes.push_back(lab::with(of.scene, setting));
-  const auto times = *bench.time(scenes, truth.horizon, long_enough, rounds, {});
+  const auto times = *trials.time(scenes, truth.horizon, long_enough, rounds, {});
   const double cost = lab::cost_of(times[0]).median;
   double best = cost;
   std::string best_name = lab::text(chosen);

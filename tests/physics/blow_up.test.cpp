@@ -26,7 +26,7 @@ Watched watch(sim::Simulation& simulation, double time, std::uint32_t stride) {
   run.guard.start(model::dt_limit(simulation.model(), simulation.scene()));
   while (run.verdict != Verdict::blown_up && simulation.time() < time) {
     run.guard.step(stride);
-    run.verdict = run.guard.look();
+    run.verdict = run.guard.judge_now();
     ++run.looks;
     if (run.verdict == Verdict::good) ++run.good;
   }
@@ -160,12 +160,12 @@ TEST_CASE("a look without waiting decides like one with waiting, and goes back t
   while (verdict != Verdict::blown_up && waited->time() < 1.0) {
     one.step(2);
     other.step(2);
-    other.ask();
+    other.request_verdict();
     std::optional<Verdict> arrived;
-    while (!arrived) arrived = other.poll();
-    verdict = one.look();
+    while (!arrived) arrived = other.poll_verdict();
+    verdict = one.judge_now();
     REQUIRE(*arrived == verdict);
-    CHECK_FALSE(other.asked());
+    CHECK_FALSE(other.verdict_requested());
   }
   REQUIRE(verdict == Verdict::blown_up);
   CHECK(one.go_back().reason == other.go_back().reason);

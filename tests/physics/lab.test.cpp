@@ -67,7 +67,7 @@ TEST_CASE("the lab's steps meet many samples, are no longer than asked for, and 
 
 TEST_CASE("the lab's reference of the swinging cloth is as exact as it says, for the whole time") {
   const Truth found = truth_of(swinging(), {0.3, 1e-7, 30.0});
-  CHECK(found.missing.empty());
+  CHECK(found.why_no_reference.empty());
   CHECK(found.horizon == 0.3);  // it buckles at 0.5 s
   REQUIRE(found.position.size() == samples_to_horizon);
   const auto exact = reference::trajectory(found.world, {0.3}, test::cloth_unit / 100);
@@ -103,7 +103,7 @@ TEST_CASE(
   stiff.cloths[0].material.structural = 1e12;
   const Truth none = truth_of(stiff, {1.0, 1e-5, 0.5});
   CHECK(none.energy.empty());
-  CHECK(none.missing.find("softer") != std::string::npos);
+  CHECK(none.why_no_reference.find("softer") != std::string::npos);
   const Chart made = chart_of(stiff, {{Method::xpbd, Method::verlet}, {1}, 0.02, 1.5});
   REQUIRE_FALSE(made.points.empty());
   for (const Axis axis : {Axis::position, Axis::energy, Axis::strain}) {

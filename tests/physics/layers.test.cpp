@@ -46,7 +46,7 @@ TEST_CASE(
   const auto context = test::context();
   for (const double degrees : {0.0, 45.0}) {
     scene::Scene scene = falling_sheet(degrees);
-    const double holds = model::thickness_that_holds(*model::build(scene));
+    const double holds = model::least_safe_thickness(*model::build(scene));
     INFO(degrees << " degrees, " << holds << " m holds");
     scene.self_collision = scene::SelfCollision{holds, 0.2};
     CHECK(most_crossings(scene) == 0);

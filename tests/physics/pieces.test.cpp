@@ -54,15 +54,15 @@ TEST_CASE("a step that stops wherever it may, while frames and diagnostics are m
   const auto pieces = test::simulation(busy(method, side));
   auto packer = stream::Packer::create();
   REQUIRE(packer);
-  pieces->want(steps);
+  pieces->set_steps_to_do(steps);
   std::uint64_t stops = 0, last_step = 0;
-  while (pieces->wanted() > 0) {
+  while (pieces->steps_to_do() > 0) {
     sim::Pace one;
-    one.most = 1;
+    one.most_places = 1;
     pieces->resume(one);
     REQUIRE(pieces->step_index() >= last_step);
     last_step = pieces->step_index();
-    REQUIRE(pieces->step_index() + pieces->wanted() == steps);
+    REQUIRE(pieces->step_index() + pieces->steps_to_do() == steps);
     if (++stops % 29 != 0) continue;
     (*packer)->request(*pieces, stream::Encoding::q16, 0);
     const stream::SharedMessage frame = (*packer)->wait();
@@ -81,11 +81,11 @@ TEST_CASE("between two pieces the state shown is that of the last whole step, un
     const auto simulation = test::simulation(busy(method, 33));
     simulation->step(3);
     const std::uint64_t before = sim::state_hash(simulation->read_state());
-    simulation->want(1);
+    simulation->set_steps_to_do(1);
     for (int stops = 0; simulation->step_index() == 3; ++stops) {
       if (stops % 29 < 2) REQUIRE(sim::state_hash(simulation->read_state()) == before);
       sim::Pace one;
-      one.most = 1;
+      one.most_places = 1;
       simulation->resume(one);
     }
     CHECK(sim::state_hash(simulation->read_state()) != before);
@@ -100,14 +100,14 @@ TEST_CASE("a step given up half-way for a change leaves the state where it was, 
     const auto simulation = test::simulation(scene);
     simulation->step(3);
     const std::uint64_t before = sim::state_hash(simulation->read_state());
-    simulation->want(5);
+    simulation->set_steps_to_do(5);
     sim::Pace three;
-    three.most = 3;
+    three.most_places = 3;
     simulation->resume(three);
     if (simulation->step_index() > 3) continue;  // it cannot stop within a step
     scene.gravity.y = -5.0;
     REQUIRE(simulation->change(scene));
-    CHECK(simulation->wanted() == 0);
+    CHECK(simulation->steps_to_do() == 0);
     CHECK(simulation->step_index() == 3);
     CHECK(sim::state_hash(simulation->read_state()) == before);
     simulation->step(5);
@@ -127,14 +127,14 @@ TEST_CASE("steps that are not wanted any more are not made, and the one under wa
   const auto context = test::context();
   const auto simulation = test::simulation(busy(scene::Method::xpbd, 33));
   sim::Pace few;
-  few.most = 3;
-  simulation->want(5);
+  few.most_places = 3;
+  simulation->set_steps_to_do(5);
   simulation->resume(few);
-  simulation->want(0);
+  simulation->set_steps_to_do(0);
   sim::Pace unlimited;
   simulation->resume(unlimited);
   CHECK(simulation->step_index() == 0);
-  simulation->want(1);
+  simulation->set_steps_to_do(1);
   simulation->resume(unlimited);
   CHECK(simulation->step_index() == 1);
   simulation->step(2);

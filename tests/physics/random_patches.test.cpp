@@ -48,7 +48,7 @@ class Session {
     const Result<scene::Document> again = scene::validate(next->value);
     if (!again || !(*again == *next)) return "the patched document does not validate to itself";
     const bool changes_energy = sim::changes_energy(document_.scene, next->scene);
-    if (changes_energy && guard_.look() == Verdict::blown_up)
+    if (changes_energy && guard_.judge_now() == Verdict::blown_up)
       if (const std::string wrong = recover(); !wrong.empty()) return wrong;
     const Result<sim::ChangeDepth> depth = simulation_->change(next->scene);
     if (!depth) {
@@ -60,7 +60,7 @@ class Session {
       watch();
     } else if (*depth != sim::ChangeDepth::none) {
       if (changes_energy) guard_.rebase();
-      guard_.allow(limit());
+      guard_.set_dt_limit(limit());
     }
     if (simulation_->model().vertex_count() != model::build(document_.scene)->vertex_count())
       return "the simulation is not of the document's mesh";
@@ -71,7 +71,7 @@ class Session {
   std::string run(int batches, std::uint32_t steps) {
     for (int batch = 0; batch < batches; ++batch) {
       simulation_->step(steps);
-      if (guard_.look() == Verdict::blown_up) return recover();
+      if (guard_.judge_now() == Verdict::blown_up) return recover();
       if (const std::string wrong = still_goes(); !wrong.empty()) return wrong;
     }
     return "";

@@ -47,12 +47,12 @@ TEST_CASE(
   const auto gpu = test::context();
   constexpr double time = 1.0;
   const Truth truth = true_spring(time);
-  Bench bench;
+  TrialRunner trials;
   // 20 steps have 4 of the 64 samples in common; of 60 steps each is looked at, of 600 every seventh.
   const std::vector<Setting> settings{{Method::symplectic_euler, time / 20, 1, 1e-4},
                                       {Method::verlet, time / 60, 1, 1e-4},
                                       {Method::symplectic_euler, time / 600, 1, 1e-4}};
-  const auto errors = look_again(spring, truth, settings, bench, {});
+  const auto errors = measure_largest_errors(spring, truth, settings, trials, {});
   REQUIRE(errors);
   for (std::size_t i = 0; i < settings.size(); ++i) {
     INFO(text(settings[i]));
@@ -67,7 +67,7 @@ TEST_CASE(
   }
   // At the 4 common times, quarters of the time, the error seems smaller than it is: without a second look
   // the choice would promise that.
-  const auto trial = bench.run(with(spring, settings[0]), truth, time, {});
+  const auto trial = trials.run(with(spring, settings[0]), truth, time, {});
   REQUIRE(trial);
   CHECK(*trial->largest_position_error < 0.98 * (*errors)[0]->seen);
 }
@@ -100,11 +100,11 @@ TEST_CASE("a choice keeps the tolerance at every step, and its error bar holds a
 TEST_CASE("a second look that is cancelled ends") {
   const auto gpu = test::context();
   const Truth truth = true_spring(1.0);
-  Bench bench;
+  TrialRunner trials;
   std::stop_source stop;
   stop.request_stop();
   const std::vector<Setting> settings{{Method::explicit_euler, 1.0 / 64, 1, 1e-4}};
-  const auto none = look_again(spring, truth, settings, bench, stop.get_token());
+  const auto none = measure_largest_errors(spring, truth, settings, trials, stop.get_token());
   REQUIRE_FALSE(none);
   CHECK(was_cancelled(none.error()));
 }

@@ -62,7 +62,7 @@ TEST_CASE("a flat pulled sheet needs neither bend springs nor self-collision nor
     CHECK(part.error[lab::index(lab::Axis::position)]);
   }
   CHECK(variant(result, "without bend springs").cost_ratio.median == 1.0);
-  CHECK_FALSE(variant(result, "without bend springs").drop);
+  CHECK_FALSE(variant(result, "without bend springs").recommended_to_drop);
   CHECK(variant(result, "without self-collision").cost_ratio.median == 0.5);
   CHECK(*variant(result, "without self-collision").change < 1e-7);
   const Variant& half = variant(result, "half the mesh resolution");
@@ -71,13 +71,13 @@ TEST_CASE("a flat pulled sheet needs neither bend springs nor self-collision nor
   const double dt_of_half = half.patch["solver"]["dt"], dt_of_quarter = quarter.patch["solver"]["dt"];
   CHECK(half.cost_ratio.median == Approx(289.0 / 1089.0 * 0.0005 / dt_of_half));
   CHECK(quarter.cost_ratio.median == Approx(81.0 / 1089.0 * 0.0005 / dt_of_quarter));
-  CHECK(quarter.drop);
-  CHECK_FALSE(half.drop);
+  CHECK(quarter.recommended_to_drop);
+  CHECK_FALSE(half.recommended_to_drop);
   // The step keeps its share of the limit, which is twice as long on cells twice as wide, except for the
   // edges.
   CHECK(dt_of_half / half.dt_limit == Approx(0.0005 / result.whole.dt_limit).epsilon(1e-9));
   CHECK(half.dt_limit / result.whole.dt_limit == Approx(2.0).epsilon(0.05));
-  REQUIRE(result.recommended.drop);
+  REQUIRE(result.recommended.recommended_to_drop);
   CHECK(*result.recommended.change <= result.tolerance);
   CHECK(result.recommended.cost_ratio.median == Approx(0.5 * quarter.cost_ratio.median));
   const auto patched = scene::apply_patch(whole, result.recommended.patch);
@@ -110,9 +110,9 @@ TEST_CASE("parts that save nothing are not recommended, however noisy the machin
   for (const double noise : {0.0, 0.1, 0.3}) {
     INFO(noise);
     const Simplification result = with_savings(1.0, 1.0, 1.0, noise);
-    CHECK_FALSE(result.recommended.drop);
+    CHECK_FALSE(result.recommended.recommended_to_drop);
     CHECK(result.recommended.patch.empty());
-    for (const Variant& part : result.variants) CHECK_FALSE(part.drop);
+    for (const Variant& part : result.variants) CHECK_FALSE(part.recommended_to_drop);
     if (noise > 0.2) CHECK(result.why.find("cannot tell") != std::string::npos);
     if (noise == 0.0) CHECK(result.why.find("saves less than 5 %") != std::string::npos);
   }
@@ -123,15 +123,15 @@ TEST_CASE("a combination is recommended only where it costs less than its best p
   // the two together cost more than one alone
   const Simplification best = with_savings(0.8, 0.6, 0.62, 0.03);
   CHECK(best.recommended.name == "without self-collision");
-  CHECK_FALSE(best.together());
-  CHECK_FALSE(variant(best, "without bend springs").drop);
+  CHECK_FALSE(best.drops_several());
+  CHECK_FALSE(variant(best, "without bend springs").recommended_to_drop);
   CHECK(std::any_of(best.notes.begin(), best.notes.end(), [](const std::string& note) {
-    return note.find("\"without bend springs\" is not recommended besides") != std::string::npos;
+    return note.find("\"without bend springs\" is not recommended in addition") != std::string::npos;
   }));
   const Simplification both = with_savings(0.8, 0.6, 0.45, 0.03);
   CHECK(both.recommended.name == "without self-collision and without bend springs");
-  CHECK(both.together());
-  CHECK(variant(both, "without bend springs").drop);
+  CHECK(both.drops_several());
+  CHECK(variant(both, "without bend springs").recommended_to_drop);
   CHECK(both.recommended.cost_ratio.median == Approx(0.45).epsilon(0.05));
 }
 
@@ -144,8 +144,8 @@ TEST_CASE("parts that a scene does not have are not measured, and parts that cha
   const Variant& half = variant(result, "half the mesh resolution");
   CHECK(half.measured);
   CHECK(*half.change > 1e-4);
-  CHECK_FALSE(half.drop);
-  CHECK_FALSE(result.recommended.drop);
+  CHECK_FALSE(half.recommended_to_drop);
+  CHECK_FALSE(result.recommended.recommended_to_drop);
   CHECK(result.recommended.patch.empty());
   CHECK(result.why.starts_with("Nothing "));
 }

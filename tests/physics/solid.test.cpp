@@ -32,7 +32,7 @@ TEST_CASE("no vertex is left inside a solid, of any kind, that stands, moves or 
   for (const scene::Shape& shape : a_shape_of_each_kind)
     for (const scene::Motion& motion : motions)
       for (const Side side : sides) {
-        INFO(scene::written(shape) << " motion " << motion.index() << ", " << name(side));
+        INFO(scene::shape_to_json(shape) << " motion " << motion.index() << ", " << name(side));
         // No friction: it acts along the surface as it was, and this one turns by degrees per step.
         const scene::Scene scene = loose_vertices({{"solid", shape, 0.0, 0.2, motion}});
         Stepped stepped(side, scene), free(side, loose_vertices({}));
@@ -42,7 +42,7 @@ TEST_CASE("no vertex is left inside a solid, of any kind, that stands, moves or 
           stepped.step(1);
           free.step(1);
           const model::Pose pose = model::pose(motion, n * scene.solver.dt);
-          const scene::Shape now = scene::placed(shape, pose.rotation, pose.translation);
+          const scene::Shape now = scene::moved_shape(shape, pose.rotation, pose.translation);
           double deepest = -1.0;
           const reference::State state = stepped.state();
           for (const glm::dvec3& x : state.position) deepest = std::max(deepest, depth(now, x));

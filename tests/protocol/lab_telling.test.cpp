@@ -54,7 +54,7 @@ TEST_CASE("a client whose job slows the session below 50 of 60 frames is told so
   };
   const auto reaches = [&](const char* session, double share, double seconds) {
     static std::int64_t now = now_us();
-    for (int i = 0; i < 10 * seconds; ++i) lab.queue.session_reaches(session, share, now += 100'000);
+    for (int i = 0; i < 10 * seconds; ++i) lab.queue.speed_reported(session, share, now += 100'000);
   };
   reaches("main", 0.84, 10);
   reaches("other", 0.2, 10);

@@ -151,7 +151,7 @@ test("a scene beyond --max-vertices or --max-springs is refused with the number 
   const error = await columns(26);
   assert.equal(error.code, -32602);
   assert.deepEqual([error.data.path, error.data.found], ["/cloths", "650 vertices in all cloths together"]);
-  assert.match(error.data.allowed, /at most 625 here \(--max-vertices\)/);
+  assert.match(error.data.allowed, /at most 625 \(--max-vertices\)/);
   const mesh = {
     vertices: [
       [0, 0, 0],
@@ -175,7 +175,7 @@ test("a scene beyond --max-vertices or --max-springs is refused with the number 
   ]) {
     const { code, stderr } = await runProgram(["serve", "--port", "0", flag, String(most)]);
     assert.equal(code, 2, flag);
-    assert.match(stderr, new RegExp(`/cloths: .* at most ${most} here \\(${flag}\\)`));
+    assert.match(stderr, new RegExp(`/cloths: .* at most ${most} \\(${flag}\\)`));
   }
 });
 
@@ -232,7 +232,7 @@ test("a client that sends no token within --auth-timeout is closed with 1008", a
   assert.equal((await withTimeout(client.closed, "the close")).code, 1008);
 });
 
-test("after --max-wrong-tokens no token of that address is looked at for a while; others never notice", async () => {
+test("after --max-wrong-tokens no token from that address is checked for a while; others never notice", async () => {
   const server = await start("--token", "secret", "--max-wrong-tokens", "20", "--auth-timeout", "60");
   const [inside, guesser] = [await Client.connect(server), await Client.connect(server)];
   await inside.request("auth", { token: "secret" });

@@ -16,7 +16,7 @@ const accepts = new Ajv2020({ strict: true, strictTypes: false, strictRequired: 
 const crossFieldRules = {
   "a pin lies in its mesh": /\/at: .*allowed: (a place in this grid|a vertex of this mesh|"vertex:N" or)/,
   "a pin's box has its smaller corner first": /the smaller corner first/,
-  "a pin's box holds a vertex": /holds no vertex/,
+  "a pin's box holds a vertex": /selects no vertex/,
   "a triangle's vertices exist": /\/triangles\/\d+\/\d+: .*\[vertex\]/,
   "with area_density every vertex has an area": /would have no mass/,
   "names are unique": /a name that no earlier one has/,

@@ -104,7 +104,7 @@ class Trial {
       const std::uint32_t now = std::min(stride, steps - done);
       simulation.step(now);
       done += now;
-      verdict.alarm = guard.look() == sim::GuardedRun::Verdict::blown_up || verdict.alarm;
+      verdict.alarm = guard.judge_now() == sim::GuardedRun::Verdict::blown_up || verdict.alarm;
       const sim::Diagnostics& state = guard.state();
       const double t = state.time;
       if (!state.finite || !std::isfinite(state.kinetic))

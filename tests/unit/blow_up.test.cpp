@@ -43,9 +43,9 @@ struct Oscillator {
 
 sim::Allowance allowed(double share_of_limit, double pin_speed = 0.0) {
   sim::Allowance allowance;
-  allowance.slack = 1.0;
+  allowance.slack_energy = 1.0;
   const double s = std::min(share_of_limit, 0.95);
-  allowance.ratio = share_of_limit > 1.0 ? 4.0 : std::max(2.0, (1 + s) / (1 - s));
+  allowance.energy_ratio = share_of_limit > 1.0 ? 4.0 : std::max(2.0, (1 + s) / (1 - s));
   allowance.pin_speed = pin_speed;
   return allowance;
 }
@@ -142,7 +142,7 @@ TEST_CASE("a method that may be softer than the cloth is judged by its motion, n
   sim::Allowance allowance = allowed(0.5);
   for (const bool stretch : {true, false}) {
     for (double sim::Diagnostics::*energy : {&sim::Diagnostics::elastic, &sim::Diagnostics::kinetic}) {
-      allowance.stretch = stretch;
+      allowance.counts_elastic = stretch;
       sim::Diagnostics state;
       sim::BlowUp blow_up;
       blow_up.start(allowance, state);
@@ -230,12 +230,12 @@ TEST_CASE("a falling cloth, and one that colliders throw and carry, is within th
   const sim::Allowance allowance = sim::allowance(seed, model, 0.0017);
   // 62.3 kg move, 1 m x 1 m; pins at 2 pi 0.5 Hz 0.2 m; dt / limit = 0.588.
   const double lifted = 0.25 * 62.3 * 9.8 * std::sqrt(2.0);
-  CHECK(allowance.slack > lifted);
-  CHECK(allowance.slack < 2.0 * lifted);
+  CHECK(allowance.slack_energy > lifted);
+  CHECK(allowance.slack_energy < 2.0 * lifted);
   CHECK(allowance.growth == 4.0);
   CHECK(allowance.pin_speed == Approx(0.2 * 3.14159265).epsilon(1e-6));
   CHECK(allowance.collider_speed == 0.0);
-  CHECK(allowance.ratio == Approx((1 + 0.588) / (1 - 0.588)).epsilon(1e-2));
+  CHECK(allowance.energy_ratio == Approx((1 + 0.588) / (1 - 0.588)).epsilon(1e-2));
   scene::Scene beyond = seed;
   beyond.solver.dt = 0.0018;  // no doubt is left
   CHECK(sim::allowance(beyond, model, 0.0017).growth == 1.0);

@@ -31,7 +31,7 @@ std::string passed(FrameWatch& watch, const std::string& bytes, std::size_t piec
     std::string part = bytes.substr(at, piece);
     const std::size_t size = part.size();
     part.resize(1000000);
-    all += part.substr(0, watch.pass(reinterpret_cast<unsigned char*>(part.data()), size, part.size()));
+    all += part.substr(0, watch.filter(reinterpret_cast<unsigned char*>(part.data()), size, part.size()));
   }
   return all;
 }
@@ -69,7 +69,7 @@ TEST_CASE("an unmasked frame and all that follows is replaced by empty masked fr
 TEST_CASE("a replacement is never longer than the room there is") {
   FrameWatch watch;
   unsigned char data[3] = {0x81, 0x01, 'x'};
-  CHECK(watch.pass(data, 3, 3) == 3);
+  CHECK(watch.filter(data, 3, 3) == 3);
   unsigned char more[2] = {1, 2};
-  CHECK(watch.pass(more, 2, 2) == 2);
+  CHECK(watch.filter(more, 2, 2) == 2);
 }

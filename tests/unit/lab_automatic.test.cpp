@@ -34,12 +34,12 @@ TEST_CASE("a scene with the method auto steps by verlet, stably, until something
 }
 
 TEST_CASE("a document whose method auto is settled says so itself, and its scene is what it says") {
-  const scene::Document document = *lab::settled(seed_with(automatic));
+  const scene::Document document = *lab::with_provisional_setting(seed_with(automatic));
   CHECK_FALSE(document.scene.solver.automatic);
   CHECK(document.value["solver"]["method"] == "verlet");
   CHECK(document.scene == scene::validate(document.value)->scene);
   const scene::Document other = seed_with({{"solver", {{"method", "rk4"}}}});
-  CHECK(*lab::settled(other) == other);
+  CHECK(*lab::with_provisional_setting(other) == other);
 }
 
 TEST_CASE("a choice holds while numbers stay within a tenth, and no longer") {

@@ -56,8 +56,8 @@ TEST_CASE("a thing that costs the same is not called cheaper under any noise") {
   // At the ratio that is just worth it a look errs with a chance of 3e-4, three looks with at most 9e-4: more
   // than 5 of 1000 come with a chance of 4e-4. A thing that saves nothing at all is farther off.
   for (const auto& noise : {even, bursts}) {
-    CHECK(count(worth_it, noise, Saving::yes) <= 5);
-    CHECK(count(worth_it, noise, Saving::no) <= 5);
+    CHECK(count(largest_worthwhile_ratio, noise, Saving::yes) <= 5);
+    CHECK(count(largest_worthwhile_ratio, noise, Saving::no) <= 5);
     CHECK(count(1.0, noise, Saving::yes) == 0);
   }
 }
@@ -81,16 +81,16 @@ TEST_CASE("a clear verdict takes no more rounds than the first look, an unclear 
   const auto clear = machine.compare({{1, 0}, {2, 0}});
   CHECK(clear[0].saving == Saving::yes);
   CHECK(clear[1].saving == Saving::no);
-  CHECK(machine.timed == 3 * looks[0]);
+  CHECK(machine.timed == 3 * rounds_at_look[0]);
   machine.timed = 0;
-  machine.cost[1] = worth_it * 0.999;
+  machine.cost[1] = largest_worthwhile_ratio * 0.999;
   machine.noise = even;
   CHECK(machine.compare({{1, 0}, {2, 0}})[0].saving == Saving::cannot_tell);
   // The third is decided at the first look, and is timed no more.
-  CHECK(machine.timed == 2 * looks[2] + looks[0]);
+  CHECK(machine.timed == 2 * rounds_at_look[2] + rounds_at_look[0]);
   machine.timed = 0;
   CHECK(machine.compare({{1, 0, false}})[0].saving == Saving::cannot_tell);
-  CHECK(machine.timed == 3 * looks[0]);
+  CHECK(machine.timed == 3 * rounds_at_look[0]);
 }
 
 TEST_CASE("a machine that slows down while it is timed flatters nothing") {

@@ -19,7 +19,7 @@ double run(RealTime& clock, double seconds, double turn, double cost) {
   double now = 0, steps = 0;
   while (now < seconds) {
     const std::uint32_t due = clock.due(at(now), dt);
-    clock.spent(due, due * cost);
+    clock.add_work_time(due, due * cost);
     steps += due;
     now += std::max(turn, due * cost);
   }
@@ -50,7 +50,7 @@ TEST_CASE("a machine that cannot keep up slows time instead of doing ever more a
   double now = 0, longest = 0, steps = 0;
   while (now < 20.0) {
     const std::uint32_t due = clock.due(at(now), dt);
-    clock.spent(due, due * cost);
+    clock.add_work_time(due, due * cost);
     if (now > 1.0) longest = std::max(longest, due * cost);
     steps += due;
     now += std::max(1e-4, due * cost);
@@ -70,7 +70,7 @@ TEST_CASE("even the dearest step is done, one a turn") {
   RealTime clock;
   clock.restart(at(0));
   clock.due(at(0.01), dt);
-  clock.spent(1, 5.0);
+  clock.add_work_time(1, 5.0);
   CHECK(clock.affordable() == 1);
   CHECK(clock.due(at(0.02), dt) == 1);
 }
@@ -82,7 +82,7 @@ TEST_CASE("a step longer than the debt allowed is still done in its time") {
   int steps = 0;
   for (int turn = 0; turn <= 1000; ++turn) {
     const std::uint32_t due = clock.due(at(turn * 0.01), long_dt);
-    clock.spent(due, due * 1e-4);
+    clock.add_work_time(due, due * 1e-4);
     steps += static_cast<int>(due);
   }
   CHECK(steps >= 49);

@@ -58,11 +58,12 @@ TEST_CASE("there is a shape of each kind to try") {
 TEST_CASE("no path ends within the margin of a solid, of any kind, that moves and turns meanwhile") {
   std::mt19937 random(5);
   for (const Shape& home : a_shape_of_each_kind) {
-    INFO(scene::written(home));
+    INFO(scene::shape_to_json(home));
     int met = 0, passed = 0;
     for (int round = 0; round < 20000; ++round) {
-      const Shape before = scene::placed(home, glm::dmat3(1.0), dvec3(0.0));
-      const Shape after = scene::placed(home, turned_by(random_vector(random)), 0.5 * random_vector(random));
+      const Shape before = scene::moved_shape(home, glm::dmat3(1.0), dvec3(0.0));
+      const Shape after =
+          scene::moved_shape(home, turned_by(random_vector(random)), 0.5 * random_vector(random));
       const double reach = std::pow(10.0, static_cast<double>(random() % 5) - 2.0);
       const dvec3 from = 1.5 * random_vector(random), to = from + reach * random_vector(random);
       const Outcome outcome = path(before, after, from, to);
@@ -87,7 +88,7 @@ TEST_CASE(
     "a path that leads into a solid of any kind that stands still is stopped there, however long it is") {
   std::mt19937 random(6);
   for (const Shape& shape : a_shape_of_each_kind) {
-    INFO(scene::written(shape));
+    INFO(scene::shape_to_json(shape));
     int entered = 0;
     for (int round = 0; round < 5000; ++round) {
       const dvec3 from = 1.5 * random_vector(random), to = from + 3.0 * random_vector(random);
@@ -123,7 +124,7 @@ TEST_CASE("a shape that is placed has the numbers of the shape at home, placed")
     const glm::dmat3 rotation = turned_by(random_vector(random));
     const dvec3 translation = random_vector(random);
     const scene::Solid solid = scene::solid(home);
-    const Shape there = scene::placed(home, rotation, translation);
+    const Shape there = scene::moved_shape(home, rotation, translation);
     CHECK(there.index() == home.index());
     CHECK(scene::solid(there).point == rotation * solid.point + translation);
     CHECK(scene::solid(there).direction == rotation * solid.direction);
@@ -134,7 +135,7 @@ TEST_CASE("a shape that is placed has the numbers of the shape at home, placed")
 TEST_CASE("a shape that is written is read as the same shape") {
   for (const Shape& shape : a_shape_of_each_kind) {
     scene::json document = {{"version", 1}, {"cloths", {{{"mesh", {{"grid", scene::json::object()}}}}}}};
-    document["colliders"] = scene::json::array({scene::written(shape)});
+    document["colliders"] = scene::json::array({scene::shape_to_json(shape)});
     INFO(document);
     const Result<scene::Document> read = scene::validate(document);
     REQUIRE(read);

@@ -50,8 +50,8 @@ TEST_CASE("a triangle's covering radius is the largest distance of its points fr
 }
 
 TEST_CASE("the thickness that holds on a grid is 1.2 times half the diagonal of a cell") {
-  CHECK(model::thickness_that_holds(grid(0.5, 11)) == Approx(1.2 * 0.5 * std::hypot(0.05, 0.05)));
-  CHECK(model::thickness_that_holds(grid(1.0, 11)) == Approx(1.2 * 0.5 * std::hypot(0.1, 0.05)));
+  CHECK(model::least_safe_thickness(grid(0.5, 11)) == Approx(1.2 * 0.5 * std::hypot(0.05, 0.05)));
+  CHECK(model::least_safe_thickness(grid(1.0, 11)) == Approx(1.2 * 0.5 * std::hypot(0.1, 0.05)));
 }
 
 TEST_CASE(

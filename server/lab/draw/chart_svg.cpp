@@ -14,7 +14,7 @@ std::string x_label(const Chart& chart, Axis axis) {
       return "position error at " + brief(chart.horizon) + " s: RMS distance to the reference, as a share" +
              size;
     case Axis::energy:
-      return "error of the total energy: RMS over time, as a share of the most that ever moved or stretched";
+      return "error of the total energy: RMS over time, as a share of the largest kinetic + elastic energy";
     case Axis::strain:
       return "error of the largest strain within " + brief(chart.time) + " s, as a share of it";
     case Axis::rest:

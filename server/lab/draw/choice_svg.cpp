@@ -5,7 +5,7 @@ namespace clothlab::lab {
 
 std::string draw(const Choice& choice, Axis axis) {
   PointsPlot plot;
-  plot.title = "The cheapest that keeps " + brief(choice.tolerance) + ": " + choice.scene;
+  plot.title = "Cheapest setting with an error of at most " + brief(choice.tolerance) + ": " + choice.scene;
   plot.heading.push_back(brief(choice.time) + " s simulated" +
                          (choice.renderer.empty() ? "" : " on " + choice.renderer) +
                          (choice.complete ? "" : "; not complete"));

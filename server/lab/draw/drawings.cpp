@@ -21,7 +21,7 @@ const char* colour(scene::Method method) {
   return colours[static_cast<std::size_t>(method) % colours.size()];
 }
 
-std::size_t shape(scene::Method method) {
+std::size_t mark_shape(scene::Method method) {
   return static_cast<std::size_t>(method);
 }
 
@@ -75,10 +75,10 @@ void write_over(Svg& svg, double x, double y, const std::string& words, double f
 }
 
 Attributes scale_attributes(const Scale& x, const Scale& y) {
-  return {{"data-x0", significant(x.low, 9)},
-          {"data-x1", significant(x.high, 9)},
-          {"data-y0", significant(y.low, 9)},
-          {"data-y1", significant(y.high, 9)},
+  return {{"data-x0", with_significant_digits(x.low, 9)},
+          {"data-x1", with_significant_digits(x.high, 9)},
+          {"data-y0", with_significant_digits(y.low, 9)},
+          {"data-y1", with_significant_digits(y.high, 9)},
           {"data-left", x.from},
           {"data-right", x.to},
           {"data-top", y.to},

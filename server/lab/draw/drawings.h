@@ -26,7 +26,7 @@ inline constexpr const char *ink = "#222222", *soft_ink = "#555555", *paper = "#
 /// and Ito 2008), on a white page and on a dark one.
 const char* colour(scene::Method method);
 /// The shape of a method's mark, for mark_path.
-std::size_t shape(scene::Method method);
+std::size_t mark_shape(scene::Method method);
 
 /// Writes the title and, below it, `lines`, each wrapped to at most two. Returns y of the next line of text.
 double write_heading(Svg& svg, const std::string& title, const std::vector<std::string>& lines);

@@ -236,7 +236,7 @@ std::string shade(double growth) {
 PanelScales panel_scales(const StabilityMap& map, double width) {
   double least = map.present_value, most = map.present_value;
   double shortest = map.present_dt > 0 ? map.present_dt : 1e-3, longest = shortest;
-  const auto hold = [&](double dt) {
+  const auto include = [&](double dt) {
     if (!(dt > 0) || !std::isfinite(dt)) return;
     shortest = std::min(shortest, dt);
     longest = std::max(longest, dt);
@@ -247,9 +247,9 @@ PanelScales panel_scales(const StabilityMap& map, double width) {
       least = first ? column.value : std::min(least, column.value);
       most = first ? column.value : std::max(most, column.value);
       first = false;
-      if (column.held) hold(*column.held);
-      if (column.failed) hold(*column.failed);
-      for (const MapCell& cell : column.cells) hold(cell.dt);
+      if (column.held) include(*column.held);
+      if (column.failed) include(*column.failed);
+      for (const MapCell& cell : column.cells) include(cell.dt);
     }
   PanelScales scales;
   if (least > 0) {

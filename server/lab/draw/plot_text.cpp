@@ -39,7 +39,7 @@ std::string cut(std::string text, double width, double font_size) {
 
 std::string brief(double value, int digits) {
   if (!std::isfinite(value)) return "-";
-  const std::string text = significant(value, digits);
+  const std::string text = with_significant_digits(value, digits);
   const std::size_t exponent = text.find('e');
   if (exponent == std::string::npos) return text;
   const int power = std::atoi(text.c_str() + exponent + 1);

@@ -29,7 +29,7 @@ std::optional<double> inferred_cost(const std::vector<Point>& points, const Sett
 /// The smallest and the largest value that an axis must show.
 struct Extent {
   double least = std::numeric_limits<double>::infinity(), most = 0;
-  void hold(double value) {
+  void include(double value) {
     if (!(value > 0) || !std::isfinite(value)) return;
     least = std::min(least, value);
     most = std::max(most, value);
@@ -59,18 +59,18 @@ void collect(Layout& layout) {
 void set_scales(Layout& layout, double top) {
   Extent errors, costs;
   for (const Place& place : layout.places) {
-    errors.hold(std::min(place.error, 1.0));
-    costs.hold(place.cost);
-    if (place.error > 1) ++layout.beyond;
+    errors.include(std::min(place.error, 1.0));
+    costs.include(place.cost);
+    if (place.error > 1) ++layout.points_above_one;
   }
   for (const Cross& cross : layout.crosses)
-    if (cross.cost) costs.hold(*cross.cost);
+    if (cross.cost) costs.include(*cross.cost);
   const double least = errors.least;
   // A line far below all points would squeeze them together. The axis leaves it out; its name is at the edge.
   for (const PointsPlot::Line& line : layout.plot->lines)
-    if (errors.empty() || line.value > least / 30) errors.hold(std::min(line.value, 1.0));
+    if (errors.empty() || line.value > least / 30) errors.include(std::min(line.value, 1.0));
   if (layout.places.empty()) errors = {1e-4, 1};
-  costs.hold(real_time);
+  costs.include(real_time);
   const double bottom = top + plot_height;
   const double right = picture_width - margin - (layout.crosses.empty() ? 0 : strip_width + strip_gap);
   layout.x = log_scale(errors.least, errors.most, plot_left, right);

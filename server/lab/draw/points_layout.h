@@ -34,14 +34,15 @@ struct Layout {
   double strip_left = 0;  ///< left edge of the strip of crosses; without crosses the plot's right edge
   std::vector<Place> places;
   std::vector<Cross> crosses;
-  std::size_t beyond = 0;  ///< points with an error above 1
+  std::size_t points_above_one = 0;  ///< points with an error above 1
 
   const Point& point(std::size_t index) const { return (*plot->points)[index]; }
   scene::Method method(std::size_t index) const { return point(index).setting.method; }
   /// x of a point's cross in the strip, where each method has a lane.
   double lane(std::size_t index) const {
     const double lanes = static_cast<double>(scene_methods);
-    return strip_left + 3 + (strip_width - 6) * (static_cast<double>(shape(method(index))) + 0.5) / lanes;
+    return strip_left + 3 +
+           (strip_width - 6) * (static_cast<double>(mark_shape(method(index))) + 0.5) / lanes;
   }
   double height(const Cross& cross) const { return cross.cost ? y(*cross.cost) : y.from - 5; }
   static constexpr std::size_t scene_methods = 8;

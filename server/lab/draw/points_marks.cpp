@@ -30,7 +30,7 @@ std::string title_of(const Layout& layout, const Cross& cross) {
   if (point.dt_over_limit) title += ", " + brief(*point.dt_over_limit) + " times the stability limit";
   if (cross.cost)
     title += ", " + brief(*cross.cost) +
-             (cross.inferred ? " ms/s if a step cost what it does where it holds" : " ms/s");
+             (cross.inferred ? " ms/s, estimated from steps that did not blow up" : " ms/s");
   return title;
 }
 
@@ -40,7 +40,7 @@ void draw_mark(Svg& svg, const Layout& layout, const Place& place, bool on_front
       {"class", on_front ? "mark" : "mark beside"},
       {"data-index", std::to_string(place.index)},
       {"data-method", scene::name(method)},
-      {"d", mark_path(shape(method), place.x, place.y, on_front ? mark_radius : small_radius)},
+      {"d", mark_path(mark_shape(method), place.x, place.y, on_front ? mark_radius : small_radius)},
       {"fill", colour(method)},
       {"stroke", paper},
       {"stroke-width", 0.8}};
@@ -61,7 +61,7 @@ void draw_curves(Svg& svg, const Layout& layout) {
              {"stroke-width", 13.0},
              {"stroke-opacity", "0.45"},
              {"stroke-linecap", "round"}},
-            "the front of all: nothing that was measured is both cheaper and more accurate");
+            "the front of all methods: no measured setting is both cheaper and more accurate");
   for (const scene::Method method : scene::methods) {
     const std::vector<Place> own = of_method(layout, method);
     std::map<int, std::vector<Place>> alike;

@@ -40,7 +40,7 @@ std::vector<Entry> legend(const Layout& layout) {
                                    {"stroke-width", 2.4}});
                          svg.add("path", {{"class", "sign"},
                                           {"data-method", scene::name(method)},
-                                          {"d", mark_path(shape(method), x, y, mark_radius)},
+                                          {"d", mark_path(mark_shape(method), x, y, mark_radius)},
                                           {"fill", colour(method)},
                                           {"stroke", paper},
                                           {"stroke-width", 0.8}});
@@ -107,9 +107,9 @@ std::string draw(const PointsPlot& plot) {
   const double top = 46 + 17.55 * heading_lines + 17 * static_cast<double>(line_rows);
   const Layout layout = layout_of(plot, top);
   std::vector<std::string> notes = plot.notes;
-  if (layout.beyond > 0)
-    notes.push_back(count(layout.beyond, "point") + " with an error above 1 " +
-                    (layout.beyond == 1 ? "stands" : "stand") + " on the right edge.");
+  if (layout.points_above_one > 0)
+    notes.push_back(count(layout.points_above_one, "point") + " with an error above 1 " +
+                    (layout.points_above_one == 1 ? "stands" : "stand") + " on the right edge.");
   const std::vector<Entry> entries = legend(layout);
   const double label_lines =
       static_cast<double>(wrapped(plot.x_label, picture_width - 2 * margin, text_size, 2).size());

@@ -19,7 +19,7 @@ struct Row {
 };
 
 struct Plot {
-  const Simplification* of = nullptr;
+  const Simplification* simplification = nullptr;
   std::vector<Row> rows;
   Scale cost, change;
   double top = 0, bottom = 0;
@@ -27,11 +27,11 @@ struct Plot {
 
 Plot plot_of(const Simplification& simplification, double top) {
   Plot plot;
-  plot.of = &simplification;
+  plot.simplification = &simplification;
   plot.rows.push_back({&simplification.whole, 0, false});
   for (std::size_t index = 0; index < simplification.variants.size(); ++index)
     plot.rows.push_back({&simplification.variants[index], index, true});
-  if (simplification.together()) plot.rows.push_back({&simplification.recommended, 0, false});
+  if (simplification.drops_several()) plot.rows.push_back({&simplification.recommended, 0, false});
   double dearest = 1.1, least = simplification.tolerance, most = simplification.tolerance;
   for (const Row& row : plot.rows) {
     if (!row.variant->measured) continue;
@@ -80,8 +80,8 @@ std::string title_of(const Variant& variant) {
   if (variant.error[0]) title += ", error " + brief(*variant.error[0], 2);
   if (std::isfinite(variant.dt_limit) && variant.dt_limit > 0)
     title += ", steps up to " + brief(1000 * variant.dt_limit) + " ms";
-  if (variant.saving == Saving::cannot_tell) title += "; whether it saves 5 % is within the noise";
-  return title + (variant.drop ? "; recommended" : "");
+  if (variant.saving == Saving::cannot_tell) title += "; the noise hides whether it saves 5 %";
+  return title + (variant.recommended_to_drop ? "; recommended" : "");
 }
 
 std::string one_line(const std::string& words, double width) {
@@ -103,7 +103,7 @@ void draw_row(Svg& svg, const Plot& plot, std::size_t place) {
   const Row& row = plot.rows[place];
   const Variant& variant = *row.variant;
   const double middle = plot.top + row_height * (static_cast<double>(place) + 0.5);
-  const bool recommended = variant.drop && variant.measured;
+  const bool recommended = variant.recommended_to_drop && variant.measured;
   Attributes attributes{{"class", variant.measured ? (recommended ? "mark drop" : "mark") : "absent"}};
   if (row.listed) attributes.push_back({"data-index", std::to_string(row.index)});
   svg.open("g", attributes, title_of(variant));
@@ -128,7 +128,7 @@ void draw_row(Svg& svg, const Plot& plot, std::size_t place) {
                    {"height", 14.0},
                    {"fill", fill}});
   draw_interval(svg, plot.cost, variant.cost_ratio, middle);
-  if (variant.change && &variant != &plot.of->whole) {
+  if (variant.change && &variant != &plot.simplification->whole) {
     const double at = plot.change(*variant.change > 0 ? *variant.change : plot.change.low);
     svg.add("path", {{"class", recommended ? "dot drop" : "dot"},
                      {"d", mark_path(1, at, middle, 6)},
@@ -141,7 +141,7 @@ void draw_row(Svg& svg, const Plot& plot, std::size_t place) {
 }  // namespace
 
 std::string draw(const Simplification& simplification) {
-  const std::string title = "What the parts of " + simplification.scene + " are worth";
+  const std::string title = "What each part of " + simplification.scene + " costs and changes";
   std::vector<std::string> heading{text(simplification.setting) + ", " + brief(simplification.time) +
                                    " s simulated" +
                                    (simplification.renderer.empty() ? "" : " on " + simplification.renderer) +
@@ -157,8 +157,8 @@ std::string draw(const Simplification& simplification) {
 
   Svg svg(picture_width, std::ceil(height), title, body_attributes(top - 26, notes_top - 14));
   write_heading(svg, title, heading);
-  draw_axis(svg, plot, plot.cost, 4, "cost, over the whole scene's");
-  draw_axis(svg, plot, plot.change, 4, "change, over the size");
+  draw_axis(svg, plot, plot.cost, 4, "cost / cost of the whole scene");
+  draw_axis(svg, plot, plot.change, 4, "change / size of the cloth");
   const double whole = plot.cost(1), tolerance = plot.change(simplification.tolerance);
   svg.line(whole, plot.top, whole, plot.bottom,
            {{"class", "line whole"}, {"stroke", soft_ink}, {"stroke-dasharray", "6 4"}});

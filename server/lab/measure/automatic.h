@@ -14,14 +14,14 @@ Setting provisional(const model::Model& model, const scene::Scene& scene);
 
 /// The document with the provisional setting instead of the method "auto"; a document with another method is
 /// returned unchanged. Error: the model of its scene cannot be built.
-Result<scene::Document> settled(const scene::Document& document);
+Result<scene::Document> with_provisional_setting(const scene::Document& document);
 
 /// A measurement of one scene holds for another if all their numbers differ by at most this share.
-inline constexpr double same_regime = 0.1;
+inline constexpr double covered_difference = 0.1;
 
 /// True if a choice measured for the scene `measured` still holds for the scene `now`: both have the same
-/// parts, method and tolerance, and every number that affects the motion agrees within `same_regime`. Both
-/// are scene documents with their defaults filled in.
+/// parts, method and tolerance, and every number that affects the motion agrees within `covered_difference`.
+/// Both are scene documents with their defaults filled in.
 bool covers(const json& measured, const json& now);
 
 }  // namespace clothlab::lab

@@ -22,21 +22,21 @@ using scene::Method;
 
 constexpr double share_of_truth = 0.3;         // share of the budget for the reference
 constexpr double share_of_rest = 0.2;          // share of the budget kept for the errors of Axis::rest
-constexpr double of_no_use = 0.3;              // a point with a larger error is useless and timed only once
-constexpr double far_dearer = 20.0;            // a ladder is left out if other iterations cost this much less
+constexpr double useless_error = 0.3;          // a point with a larger error is useless and timed only once
+constexpr double dominated_cost_ratio = 20.0;  // a ladder is left out if other iterations cost this much less
 constexpr double share_of_a_point = 1.0 / 25;  // share of the budget for one point at most
 constexpr double timed = 0.15;                 // wall time of one timing at most [s]
 constexpr int rounds_at_once = 3, rounds_later = 2;
 
-class Maker {
+class ChartMeasurement {
  public:
-  Maker(const scene::Scene& scene, const ChartRequest& request, const Control<Chart>& control)
+  ChartMeasurement(const scene::Scene& scene, const ChartRequest& request, const Control<Chart>& control)
       : scene_(scene), request_(request), control_(control), start_(Clock::now()) {}
 
-  Result<Chart> make() {
+  Result<Chart> run() {
     chart_.scene = scene_.name;
     chart_.renderer = gl::renderer_name();
-    if (Status known = know_truth(); !known) return known.error();
+    if (Status computed = compute_truth(); !computed) return computed.error();
     ladders_ = make_ladders(scene_, request_, truth_);
     if (Status measured = measure_present(); !measured) return ended(measured.error());
     control_.arrived(chart_);
@@ -62,7 +62,7 @@ class Maker {
     return chart_;
   }
 
-  Status know_truth() {
+  Status compute_truth() {
     const auto progress = [this](double share) {
       control_.progress({share * share_of_truth, 1.0, "the reference, in double precision"});
     };
@@ -76,10 +76,10 @@ class Maker {
     chart_.horizon_reason = truth_.horizon_reason;
     chart_.notes = truth_.notes;
     AxisFacts& position = facts(Axis::position);
-    if (!truth_.missing.empty()) {
-      const std::string why = "There is no reference: " + truth_.missing + ".";
+    if (!truth_.why_no_reference.empty()) {
+      const std::string why = "There is no reference: " + truth_.why_no_reference + ".";
       for (const Axis axis : {Axis::position, Axis::energy, Axis::strain}) facts(axis) = {false, why, {}, {}};
-      chart_.notes.push_back(why + " What it costs and what blows up can still be charted" +
+      chart_.notes.push_back(why + " Costs and blow-ups can still be charted" +
                              (settling_ ? ", and the shape of rest." : "."));
     } else {
       position = {truth_.horizon > 0.0, truth_.horizon > 0.0 ? "" : truth_.horizon_reason, {}, {}};
@@ -90,11 +90,11 @@ class Maker {
         chart_.notes.push_back(truth_.horizon_reason +
                                " Energy and the largest strain can still be compared, statistically.");
     }
-    if (Status settles = know_rest(); !settles) return settles;
-    return position.available ? know_floor() : ok();
+    if (Status settles = compute_rest(); !settles) return settles;
+    return position.available ? compute_floor() : ok();
   }
 
-  Status know_rest() {
+  Status compute_rest() {
     Result<Settling> settling = settle(truth_.world, truth_.size, 0.1 * request_.budget, control_.stop);
     if (!settling && was_cancelled(settling.error())) return settling.error();
     if (!settling) {
@@ -106,10 +106,10 @@ class Maker {
     return ok();
   }
 
-  Status know_floor() {
+  Status compute_floor() {
     const double limit = limit_of(Method::rk4, scene_, truth_);
     Result<std::optional<double>> floor =
-        float32_floor(scene_, truth_, 0.5 * limit, 0.1 * request_.budget, bench_, control_.stop);
+        float32_floor(scene_, truth_, 0.5 * limit, 0.1 * request_.budget, trials_, control_.stop);
     if (!floor) return floor.error();
     facts(Axis::position).float32_floor = *floor;
     return ok();
@@ -130,10 +130,11 @@ class Maker {
       if (ladder.done) continue;
       const double least = ladder.price(horizon());
       if (least > most_a_point())
-        leave_out(ladder, "a run takes about " + significant(least, 3) + " s, more than the " +
-                              significant(most_a_point(), 3) + " s a point may take of this budget");
+        leave_out(ladder, "a run takes about " + with_significant_digits(least, 3) + " s, more than the " +
+                              with_significant_digits(most_a_point(), 3) +
+                              " s a point may take of this budget");
       else if (least > left() - (settling_ ? share_of_rest * request_.budget : 0.0))
-        leave_out(ladder, "the budget of " + significant(request_.budget, 3) + " s is spent");
+        leave_out(ladder, "the budget of " + with_significant_digits(request_.budget, 3) + " s is spent");
       else if (dominated(ladder))
         leave_out(ladder, "other iterations of the method reach this error for a twentieth of the cost");
       if (!ladder.done && (!best || least < best->price(horizon()))) best = &ladder;
@@ -147,7 +148,7 @@ class Maker {
     left.method = ladder.next.method;
     left.dt = ladder.next.dt;
     if (iterates(left.method)) left.iterations = ladder.next.iterations;
-    left.reason = reason + "; shorter steps too";
+    left.reason = reason + "; shorter steps are left out, too";
     chart_.left_out.push_back(left);
   }
 
@@ -155,15 +156,15 @@ class Maker {
     if (!std::isfinite(ladder.least_error)) return false;
     const double cost = 1000.0 * ladder.step_cost / ladder.next.dt;
     return std::any_of(chart_.points.begin(), chart_.points.end(), [&](const Point& point) {
-      const std::optional<double> error = judged(point.error);
+      const std::optional<double> error = decisive_error(point.error);
       return point.setting.method == ladder.next.method &&
              point.setting.iterations != ladder.next.iterations && error && point.cost &&
-             *error < ladder.least_error / rung && far_dearer * point.cost->median < cost;
+             *error < ladder.least_error / step_ratio && dominated_cost_ratio * point.cost->median < cost;
     });
   }
 
   /// The error that decides if a shorter step is worth it: of positions, else of energy; none: not known.
-  std::optional<double> judged(const Errors& error) const {
+  std::optional<double> decisive_error(const Errors& error) const {
     for (const Axis axis : {Axis::position, Axis::energy})
       if (chart_.axes[index(axis)].available) return error[index(axis)];
     return std::nullopt;
@@ -175,14 +176,14 @@ class Maker {
     point.setting.dt = fitted_dt(ladder.next.dt, truth_);
     for (const Point& known : chart_.points)
       if (known.setting == point.setting) {  // most likely the scene's own setting
-        ladder.go_on(judged(known.error), facts(Axis::position).reference_error);
+        ladder.go_on(decisive_error(known.error), facts(Axis::position).reference_error);
         return ok();
       }
     control_.progress(
         {std::clamp(elapsed() / request_.budget, share_of_truth, 0.99), 1.0, text(point.setting)});
     const scene::Scene scene = with(scene_, point.setting);
     const double long_enough = ladder.price(until()) <= most_a_point() ? until() : horizon();
-    Result<Trial> trial = bench_.run(scene, truth_, long_enough, control_.stop);
+    Result<Trial> trial = trials_.run(scene, truth_, long_enough, control_.stop);
     if (!trial) return trial.error();
     point.error = trial->error;
     point.largest_position_error = trial->largest_position_error;
@@ -191,11 +192,11 @@ class Maker {
       point.dt_over_limit = point.setting.dt / ladder.limit;
     std::vector<double> times;
     if (!point.blew_up_at) {
-      if (judged(point.error).value_or(0.0) > of_no_use) {
+      if (decisive_error(point.error).value_or(0.0) > useless_error) {
         times = {1000.0 * trial->wall / trial->simulated};
       } else {
         Result<std::vector<std::vector<double>>> measured =
-            bench_.time({scene}, until(), timed, rounds_at_once, control_.stop);
+            trials_.time({scene}, until(), timed, rounds_at_once, control_.stop);
         if (!measured) return measured.error();
         times = std::move(measured->front());
       }
@@ -204,7 +205,7 @@ class Maker {
     }
     chart_.points.push_back(point);
     times_.push_back(std::move(times));
-    ladder.go_on(judged(point.error), facts(Axis::position).reference_error);
+    ladder.go_on(decisive_error(point.error), facts(Axis::position).reference_error);
     return ok();
   }
 
@@ -226,7 +227,7 @@ class Maker {
     if (!settling_) return ok();
     std::vector<Point*> points;
     for (Point& point : chart_.points)
-      if (point.cost && judged(point.error).value_or(0.0) <= of_no_use) points.push_back(&point);
+      if (point.cost && decisive_error(point.error).value_or(0.0) <= useless_error) points.push_back(&point);
     std::sort(points.begin(), points.end(),
               [](const Point* a, const Point* b) { return a->cost->median < b->cost->median; });
     std::size_t without = 0;
@@ -238,14 +239,14 @@ class Maker {
       }
       control_.progress({0.95, 1.0, "coming to rest: " + text(point->setting)});
       Result<std::optional<double>> error =
-          rest_error(*settling_, with(settling_->scene, point->setting), truth_.size, bench_, control_.stop);
+          rest_error(*settling_, with(settling_->scene, point->setting), truth_.size, trials_, control_.stop);
       if (!error) return error.error();
       point->error[index(Axis::rest)] = *error;
       control_.arrived(chart_);
     }
     if (without > 0)
-      chart_.notes.push_back("Of " + std::to_string(without) +
-                             " points the shape of rest is not known: " + significant(settling_->time, 3) +
+      chart_.notes.push_back("The error of the shape of rest is not known for " + std::to_string(without) +
+                             " points: " + with_significant_digits(settling_->time, 3) +
                              " s until they rest take too long for this budget.");
     return ok();
   }
@@ -257,7 +258,7 @@ class Maker {
         if (times_[i].empty() || left() < 0.0) continue;
         control_.progress({0.99, 1.0, "timing once more, taking turns"});
         Result<std::vector<std::vector<double>>> measured =
-            bench_.time({with(scene_, chart_.points[i].setting)}, until(), timed, 1, control_.stop);
+            trials_.time({with(scene_, chart_.points[i].setting)}, until(), timed, 1, control_.stop);
         if (!measured) return measured.error();
         times_[i].push_back(measured->front().front());
         chart_.points[i].cost = cost_of(times_[i]);
@@ -272,7 +273,7 @@ class Maker {
   Chart chart_;
   Truth truth_;
   std::optional<Settling> settling_;
-  Bench bench_;
+  TrialRunner trials_;
   std::vector<Ladder> ladders_;
   std::vector<std::vector<double>> times_;  ///< [point][timing] [ms per simulated second]
 };
@@ -280,7 +281,7 @@ class Maker {
 }  // namespace
 
 Result<Chart> chart(const scene::Scene& scene, const ChartRequest& request, const Control<Chart>& control) {
-  return Maker(scene, request, control).make();
+  return ChartMeasurement(scene, request, control).run();
 }
 
 }  // namespace clothlab::lab

@@ -20,9 +20,9 @@ namespace {
 
 using scene::Method;
 
-constexpr int rounds = 7;                                      // chance that all are above the median: 1/128
-constexpr int looks_again = 3;                                 // looks at a candidate at most, see promise()
-constexpr double timed = 0.2;                                  // wall time of one timing at most [s]
+constexpr int rounds = 7;       // chance that all are above the median: 1/128
+constexpr int looks_again = 3;  // looks at a candidate at most, see bound_errors()
+constexpr double timed = 0.2;   // wall time of one timing at most [s]
 constexpr double share_of_truth = 0.3, share_of_search = 0.9;  // of the progress, at their ends
 
 std::string times(double ratio) {
@@ -31,9 +31,9 @@ std::string times(double ratio) {
 
 /// The error seen and, if it differs, its upper bound: "0.00034 (at most 0.00036)".
 std::string error_text(const Point& point) {
-  const std::string seen = significant(point.largest_position_error.value_or(unknown), 3);
-  if (!point.error_high || significant(*point.error_high, 3) == seen) return seen;
-  return seen + " (at most " + significant(*point.error_high, 3) + ")";
+  const std::string seen = with_significant_digits(point.largest_position_error.value_or(worst), 3);
+  if (!point.error_high || with_significant_digits(*point.error_high, 3) == seen) return seen;
+  return seen + " (at most " + with_significant_digits(*point.error_high, 3) + ")";
 }
 
 class Chooser {
@@ -45,8 +45,8 @@ class Chooser {
     choice_.scene = scene_.name;
     choice_.renderer = gl::renderer_name();
     choice_.tolerance = request_.tolerance;
-    if (Status known = know_truth(); !known) return known.error();
-    search_.emplace(scene_, truth_, request_.tolerance, bench_, control_.stop);
+    if (Status computed = compute_truth(); !computed) return computed.error();
+    search_.emplace(scene_, truth_, request_.tolerance, trials_, control_.stop);
     if (Status listed = search_->list(request_.methods); !listed) return listed.error();
     choice_.notes.insert(choice_.notes.end(), search_->notes().begin(), search_->notes().end());
     if (Status measured = measure_present(); !measured) return measured.error();
@@ -66,7 +66,7 @@ class Chooser {
   }
 
  private:
-  Status know_truth() {
+  Status compute_truth() {
     const auto progress = [this](double share) {
       control_.progress({share * share_of_truth, 1.0, "the reference, in double precision"});
     };
@@ -79,25 +79,25 @@ class Chooser {
     choice_.horizon = truth_.horizon;
     choice_.reference_error = truth_.position_error / truth_.size;
     choice_.notes = truth_.notes;
-    if (!truth_.missing.empty())
-      return Error{"choose", "there is no reference: " + truth_.missing,
+    if (!truth_.why_no_reference.empty())
+      return Error{"choose", "there is no reference: " + truth_.why_no_reference,
                    "the chart still shows what each method costs and what blows up"};
     if (truth_.horizon == 0.0)
       return Error{
           "choose", "positions cannot be compared: " + truth_.horizon_reason,
           "the chart still compares energy, the largest strain and, where there is one, the shape of rest"};
     if (choice_.reference_error > 0.3 * request_.tolerance)
-      return Error{
-          "choose",
-          "the reference itself is known to " + significant(choice_.reference_error, 3) +
-              " of the cloth's size only, a tolerance of " + significant(request_.tolerance, 3) +
-              " was asked for",
-          "a tolerance of " + significant(choice_.reference_error / 0.3, 3) + " or more, or a shorter time"};
+      return Error{"choose",
+                   "the reference itself is known to " + with_significant_digits(choice_.reference_error, 3) +
+                       " of the cloth's size only, a tolerance of " +
+                       with_significant_digits(request_.tolerance, 3) + " was asked for",
+                   "a tolerance of " + with_significant_digits(choice_.reference_error / 0.3, 3) +
+                       " or more, or a shorter time"};
     return ok();
   }
 
   Status measure_present() {
-    Candidate present{setting_of(scene_), search_->limit_of(scene_.solver.method), unknown, {}};
+    Candidate present{setting_of(scene_), search_->limit_of(scene_.solver.method), worst, {}};
     const Result<double> error = search_->error_at(present, scene_.solver.dt, choice_.present);
     if (!error) return error.error();
     return ok();
@@ -106,24 +106,24 @@ class Chooser {
   /// Looks again, at every step or nearly, at the errors of the candidates in the race, for bounds that a
   /// choice may promise. A candidate whose upper bound misses the tolerance tries shorter steps, and leaves
   /// the race if that does not help.
-  Status promise(std::vector<Candidate*>& race) {
+  Status bound_errors(std::vector<Candidate*>& race) {
     std::vector<Candidate*> open = race;
     bool present = choice_.present.largest_position_error.has_value();
     for (int look = 0; look < looks_again && !open.empty(); ++look) {
       std::vector<Setting> settings;
       for (const Candidate* candidate : open) settings.push_back(candidate->best->setting);
       if (present) settings.push_back(choice_.present.setting);
-      const auto errors = look_again(scene_, truth_, settings, bench_, control_.stop);
+      const auto errors = measure_largest_errors(scene_, truth_, settings, trials_, control_.stop);
       if (!errors) return errors.error();
       if (present) set_error(choice_.present, errors->back());
       present = false;
       std::vector<Candidate*> again;
       for (std::size_t i = 0; i < open.size(); ++i) {
         set_error(*open[i]->best, (*errors)[i]);
-        const double high = (*errors)[i] ? (*errors)[i]->high : unknown;
+        const double high = (*errors)[i] ? (*errors)[i]->high : worst;
         if (high <= request_.tolerance) continue;
         again.push_back(open[i]);
-        if (look + 1 == looks_again || high == unknown) continue;
+        if (look + 1 == looks_again || high == worst) continue;
         const Result<double> shorter = search_->shorten(*open[i], high);
         if (!shorter) return shorter.error();
       }
@@ -152,7 +152,7 @@ class Chooser {
     const bool present = choice_.present.cost.has_value();
     if (present) scenes.push_back(with(scene_, choice_.present.setting));
     Result<std::vector<std::vector<double>>> measured =
-        bench_.time(scenes, truth_.horizon, timed, rounds, control_.stop);
+        trials_.time(scenes, truth_.horizon, timed, rounds, control_.stop);
     if (!measured) return measured.error();
     for (std::size_t i = 0; i < race.size(); ++i) {
       race[i]->best->cost = cost_of((*measured)[i]);
@@ -164,7 +164,7 @@ class Chooser {
 
   Status decide() {
     std::vector<Candidate*> race;
-    double best = unknown;
+    double best = worst;
     for (const Candidate& candidate : search_->candidates())
       if (candidate.best) best = std::min(best, candidate.best->cost->median);
     for (Candidate& candidate : search_->candidates())
@@ -172,7 +172,7 @@ class Chooser {
     if (race.empty()) return give_most_accurate();
     add_runner_up(race);
     control_.progress({share_of_search, 1.0, "looking at the best at every step"});
-    if (Status looked = promise(race); !looked) return looked;
+    if (Status looked = bound_errors(race); !looked) return looked;
     if (race.empty()) return give_most_accurate();
     control_.progress({0.5 * (1.0 + share_of_search), 1.0, "timing the best, taking turns"});
     if (Status timed_all = time_race(race); !timed_all) return timed_all;
@@ -222,12 +222,12 @@ class Chooser {
       steps.push_back(scene.solver.dt / model::margin_to_warn);
     for (const double dt : steps) {
       scene.solver.dt = dt;
-      const Result<Trial> trial = bench_.run(scene, truth_, truth_.time, control_.stop);
+      const Result<Trial> trial = trials_.run(scene, truth_, truth_.time, control_.stop);
       if (!trial) return trial.error();
       if (!trial->blew_up_at) continue;
       choice_.notes.push_back(text(candidate.best->setting) + " keeps the tolerance, but blows up " +
                               (dt == steps.front() ? "later" : "with a step a ninth longer") + ", at " +
-                              significant(*trial->blew_up_at, 3) + " s.");
+                              with_significant_digits(*trial->blew_up_at, 3) + " s.");
       return false;
     }
     return true;
@@ -242,11 +242,13 @@ class Chooser {
     if (!best)
       return Error{"choose", "everything that was tried blew up", "a stabler method, a shorter time"};
     choice_.chosen = *best;
-    const auto errors = look_again(scene_, truth_, {choice_.chosen.setting}, bench_, control_.stop);
+    const auto errors =
+        measure_largest_errors(scene_, truth_, {choice_.chosen.setting}, trials_, control_.stop);
     if (!errors) return errors.error();
     set_error(choice_.chosen, errors->front());
-    choice_.why = "Nothing that was tried keeps " + significant(request_.tolerance, 3) + "; nearest came " +
-                  text(choice_.chosen.setting) + " with an error of " + error_text(choice_.chosen) + ".";
+    choice_.why = "Nothing that was tried keeps " + with_significant_digits(request_.tolerance, 3) +
+                  "; nearest came " + text(choice_.chosen.setting) + " with an error of " +
+                  error_text(choice_.chosen) + ".";
     return ok();
   }
 
@@ -260,7 +262,8 @@ class Chooser {
   std::string explain() const {
     const Point& chosen = choice_.chosen;
     const double cost = chosen.cost->median;
-    std::string why = text(chosen.setting) + " costs " + significant(cost, 3) + " ms a simulated second";
+    std::string why =
+        text(chosen.setting) + " costs " + with_significant_digits(cost, 3) + " ms a simulated second";
     if (choice_.runner_up) {
       const double ratio = choice_.runner_up->cost->median / cost;
       const bool cheaper = ratio_to_runner_up().low > 1.0;
@@ -269,7 +272,7 @@ class Chooser {
                              : ", " + times(ratio) + " less than") +
              " the next best (" + text(choice_.runner_up->setting) + ")";
     }
-    if (chosen.dt_over_limit && *chosen.dt_over_limit > model::margin_to_warn / near_enough)
+    if (chosen.dt_over_limit && *chosen.dt_over_limit > model::margin_to_warn / search_precision)
       why += "; its step is as long as stability allows, where its error of " + error_text(chosen) +
              " is already " + times(request_.tolerance / *chosen.error_high) + " below the tolerance";
     else
@@ -284,7 +287,7 @@ class Chooser {
   const Control<Choice>& control_;
   Choice choice_;
   Truth truth_;
-  Bench bench_;
+  TrialRunner trials_;
   std::optional<StepSearch> search_;
   std::vector<double> chosen_times_, runner_up_times_;  // [round] [ms per simulated second]
 };
@@ -294,7 +297,7 @@ class Chooser {
 Result<Choice> choose(const scene::Scene& scene, const ChooseRequest& request,
                       const Control<Choice>& control) {
   if (!(request.tolerance > 0.0 && request.tolerance <= 1.0))
-    return Error{"tolerance", significant(request.tolerance, 3),
+    return Error{"tolerance", with_significant_digits(request.tolerance, 3),
                  "above 0, at most 1: a share of the cloth's size"};
   return Chooser(scene, request, control).choose();
 }

@@ -84,7 +84,8 @@ int in_box(const scene::AtBox& box, const model::Model& model, std::size_t cloth
 }
 
 /// The number of vertices of a cloth that a weight is attached to; 1 for a corner or a single vertex.
-int held(const scene::At& at, const scene::Grid& grid, const model::Model& model, std::size_t cloth) {
+int weighted_vertex_count(const scene::At& at, const scene::Grid& grid, const model::Model& model,
+                          std::size_t cloth) {
   if (const auto* edge = std::get_if<scene::AtEdge>(&at))
     return edge->line == scene::AtEdge::Line::row ? grid.columns : grid.rows;
   if (const auto* box = std::get_if<scene::AtBox>(&at)) return in_box(*box, model, cloth);
@@ -99,7 +100,7 @@ Error no_counterpart(const std::string& where, const json& at, const scene::Grid
   return {where,
           scene::compact(at) + " is between the vertices of the coarser mesh of " +
               std::to_string(to.columns) + " x " + std::to_string(to.rows),
-          "a place that it has, too"};
+          "a place that is also a vertex of the coarser mesh"};
 }
 
 /// Coarsens the mesh, mass, material and pins of a cloth. Its weights follow in coarsen_weights, which needs
@@ -133,7 +134,8 @@ Status coarsen_weights(json& value, const scene::Cloth& cloth, std::size_t index
     const scene::Weight& weight = cloth.weights[i];
     json& at = value["weights"][i]["at"];
     json there = moved(at, weight.at, from, to);
-    const int before = held(weight.at, from, fine, index), after = held(weight.at, to, coarse, index);
+    const int before = weighted_vertex_count(weight.at, from, fine, index),
+              after = weighted_vertex_count(weight.at, to, coarse, index);
     if (there.is_null() || after == 0) return no_counterpart(pointer(index, "weights", i), at, to);
     at = std::move(there);
     value["weights"][i]["mass"] = weight.mass * before / after;

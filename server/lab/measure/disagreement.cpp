@@ -17,7 +17,7 @@ using scene::Method;
 
 /// The factor by which the least limit about the cloth's shapes may exceed the measured boundary and still be
 /// its cause: only some of the shapes are looked at, and a shape between them may have a lower limit.
-constexpr double between_looks = 1.1;
+constexpr double limit_tolerance = 1.1;
 
 /// The step limits about the shapes that the cloth takes in a run.
 struct Shapes {
@@ -26,10 +26,10 @@ struct Shapes {
   bool blew_up = false;
 };
 
-Result<Shapes> shapes_of(scene::Scene scene, double dt, int steps, Runner& runner,
+Result<Shapes> shapes_of(scene::Scene scene, double dt, int steps, ReusedSimulation& full,
                          const std::stop_token& stop) {
   scene.solver.dt = dt;
-  const Result<sim::Simulation*> simulation = runner.prepare(scene);
+  const Result<sim::Simulation*> simulation = full.prepare(scene);
   if (!simulation) return simulation.error();
   const model::Model& model = (*simulation)->model();
   Shapes shapes;
@@ -57,7 +57,8 @@ bool has_contacts(const scene::Scene& scene) {
 }
 
 /// True if the scene holds at the step `dt` [s] without colliders and self-collision.
-Result<bool> holds_bare(const Evidence& evidence, double dt, Runner& bare, const std::stop_token& stop) {
+Result<bool> holds_bare(const Evidence& evidence, double dt, ReusedSimulation& bare,
+                        const std::stop_token& stop) {
   scene::Scene scene = evidence.scene;
   scene.colliders.clear();
   scene.self_collision.reset();
@@ -75,7 +76,7 @@ Explanation too_short(const MapColumn& column, const Evidence& evidence, double 
         Cause::too_short,
         formatted("without damping no step is stable, but slow growth does not show: %d steps of less than "
                   "%.3g s multiply an amplitude by less than e^%.3g",
-                  evidence.steps, evidence.visible, e_folds_to_show)};
+                  evidence.steps, evidence.shortest_visible_dt, e_folds_to_show)};
   const Method method = evidence.scene.solver.method;
   const double limit = std::max(*column.theory, model::dt_limit(method, evidence.mode));
   return {
@@ -83,15 +84,16 @@ Explanation too_short(const MapColumn& column, const Evidence& evidence, double 
       formatted(
           "5 %% beyond the limit an amplitude grows by e^%.2g a step, and %d steps show it only from about "
           "%.3g s on; measured %.3g s",
-          growth_a_step(method, evidence.mode, 1.05 * limit), evidence.steps, evidence.visible, measured)};
+          growth_a_step(method, evidence.mode, 1.05 * limit), evidence.steps, evidence.shortest_visible_dt,
+          measured)};
 }
 
 Result<Explanation> held_too_long(const MapColumn& column, const Evidence& evidence, double measured,
-                                  Runner& runner, const std::stop_token& stop) {
+                                  ReusedSimulation& full, const std::stop_token& stop) {
   const double theory = *column.theory;
-  if (evidence.visible > (1.0 + agreement) * theory) return too_short(column, evidence, measured);
+  if (evidence.shortest_visible_dt > (1.0 + agreement) * theory) return too_short(column, evidence, measured);
   const int longer = 2 * evidence.steps_of(*column.held);
-  const Result<Shapes> shapes = shapes_of(evidence.scene, *column.held, longer, runner, stop);
+  const Result<Shapes> shapes = shapes_of(evidence.scene, *column.held, longer, full, stop);
   if (!shapes) return shapes.error();
   if (shapes->blew_up)
     return Explanation{Cause::too_short, formatted("in twice as many steps %.3g s fails, too", *column.held)};
@@ -104,17 +106,18 @@ Result<Explanation> held_too_long(const MapColumn& column, const Evidence& evide
                                  [&](const MapCell& each) { return each.dt == *column.held; });
   return Explanation{
       Cause::bounded,
-      formatted("at %.3g s it comes to %.3g times the energy of a stable step and in twice as many "
-                "steps does not blow up",
+      formatted("at %.3g s the energy reaches %.3g times that of a stable step, but the run does not blow "
+                "up in twice as many steps",
                 *column.held, std::pow(10.0, cell->growth))};
 }
 
 Result<Explanation> failed_too_soon(const MapColumn& column, const Evidence& evidence, double measured,
-                                    Runner& runner, Runner& bare, const std::stop_token& stop) {
+                                    ReusedSimulation& full, ReusedSimulation& bare,
+                                    const std::stop_token& stop) {
   std::string seen = evidence.failure;
   if (column.held) {
     const Result<Shapes> shapes =
-        shapes_of(evidence.scene, *column.held, evidence.steps_of(*column.held), runner, stop);
+        shapes_of(evidence.scene, *column.held, evidence.steps_of(*column.held), full, stop);
     if (!shapes) return shapes.error();
     const std::string tension =
         formatted("springs are stretched to %.3g times their length", shapes->longest) +
@@ -122,7 +125,7 @@ Result<Explanation> failed_too_soon(const MapColumn& column, const Evidence& evi
              ? formatted(": about that shape the limit is %.3g s", shapes->least)
              : ", and nothing damps what moves across them: about that shape no step is stable");
     const bool shorter = shapes->least < (1.0 - agreement) * *column.theory;
-    if (shorter && shapes->least < between_looks * measured) return Explanation{Cause::tension, tension};
+    if (shorter && shapes->least < limit_tolerance * measured) return Explanation{Cause::tension, tension};
     if (shorter) seen = tension + "; " + seen;
   }
   if (has_contacts(evidence.scene)) {
@@ -165,7 +168,8 @@ model::Mode fastest_growing(Method method, const model::ElementOperator& springs
   const auto of_mode = [&](const model::Mode& mode) { return model::dt_limit(method, mode); };
   const auto stiffest = [](const model::Mode& mode) { return 1.0 / std::sqrt(mode.omega_squared); };
   const model::Field scattered = model::scattered_start(springs);
-  if (model::one_worst(method)) return model::extreme_mode(springs, of_mode, scattered, stop).mode;
+  if (model::has_single_worst_mode(method))
+    return model::extreme_mode(springs, of_mode, scattered, stop).mode;
   const model::ExtremeMode first = model::extreme_mode(springs, stiffest, scattered, stop);
   // Under explicit Euler many vibrations share the limit, and the fastest of them grows the fastest.
   if (method == Method::explicit_euler) return first.mode;
@@ -183,12 +187,12 @@ bool disagrees(const MapColumn& column) {
   return measured && !(std::abs(*measured - *column.theory) <= agreement * *column.theory);
 }
 
-Result<Explanation> explain(const MapColumn& column, const Evidence& evidence, Runner& runner, Runner& bare,
-                            const std::stop_token& stop) {
+Result<Explanation> explain(const MapColumn& column, const Evidence& evidence, ReusedSimulation& full,
+                            ReusedSimulation& bare, const std::stop_token& stop) {
   if (!column.theory) return Explanation{Cause::energy, evidence.failure};
   const double measured = *measured_boundary(column);
-  if (measured > *column.theory) return held_too_long(column, evidence, measured, runner, stop);
-  return failed_too_soon(column, evidence, measured, runner, bare, stop);
+  if (measured > *column.theory) return held_too_long(column, evidence, measured, full, stop);
+  return failed_too_soon(column, evidence, measured, full, bare, stop);
 }
 
 }  // namespace clothlab::lab

@@ -26,7 +26,7 @@ bool disagrees(const MapColumn& column);
 struct Evidence {
   const scene::Scene& scene;
   model::Mode mode;                     ///< the vibration that grows first
-  double visible = 0;                   ///< shortest step whose growth shows within `steps` steps [s]
+  double shortest_visible_dt = 0;       ///< shortest step whose growth shows within `steps` steps [s]
   int steps = 0;                        ///< number of steps of a trial at the limit
   std::function<int(double)> steps_of;  ///< number of steps of a trial with the given dt [s]
   std::string failure;                  ///< what grew at the shortest step that failed, in numbers
@@ -38,8 +38,8 @@ struct Explanation {
 };
 
 /// The likely cause of a disagreement. Runs the scene again near the boundary where that can show the cause:
-/// with `runner`, and with `bare` without contacts. Error: GL, or cancelled.
-Result<Explanation> explain(const MapColumn& column, const Evidence& evidence, Runner& runner, Runner& bare,
-                            const std::stop_token& stop);
+/// with `full`, and with `bare` without contacts. Error: GL, or cancelled.
+Result<Explanation> explain(const MapColumn& column, const Evidence& evidence, ReusedSimulation& full,
+                            ReusedSimulation& bare, const std::stop_token& stop);
 
 }  // namespace clothlab::lab

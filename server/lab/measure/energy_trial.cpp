@@ -50,7 +50,7 @@ Result<EnergyTrial> run_trial(sim::Simulation& simulation, int steps, const std:
       pace.took(guard.step(static_cast<std::uint32_t>(count)));
       done += count;
     }
-    const sim::GuardedRun::Verdict verdict = guard.look();
+    const sim::GuardedRun::Verdict verdict = guard.judge_now();
     const sim::Diagnostics& state = guard.state();
     trial.time = state.time;
     trial.touched = trial.touched || state.contacts > 0;

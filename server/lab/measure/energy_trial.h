@@ -10,8 +10,8 @@
 
 namespace clothlab::lab {
 
-/// The factor by which the energy of a stable run may rise (sim::Allowance::ratio). It is the same for every
-/// dt and does not depend on the theoretical limit, or else the map would only show the theory again. A
+/// The factor by which the energy of a stable run may rise (sim::Allowance::energy_ratio). It is the same for
+/// every dt and does not depend on the theoretical limit, or else the map would only show the theory again. A
 /// vibration at the share s = 0.99 of its limit swings by (1 + s) / (1 - s) = 199 in energy without growing;
 /// a run whose energy rises beyond this, and by another factor of 4, has blown up.
 inline constexpr double stable_swing = 199.0;

@@ -9,10 +9,10 @@
 namespace clothlab::lab {
 
 Result<std::optional<double>> float32_floor(const scene::Scene& scene, const Truth& truth, double dt,
-                                            double budget, Bench& bench, const std::stop_token& stop) {
+                                            double budget, TrialRunner& trials, const std::stop_token& stop) {
   const Setting setting{scene::Method::rk4, fitted_dt(dt, truth), 1, 1e-4};
   const scene::Scene stepped = with(scene, setting);
-  Result<Trial> trial = bench.run(stepped, truth, truth.horizon, stop);
+  Result<Trial> trial = trials.run(stepped, truth, truth.horizon, stop);
   if (!trial) return trial.error();
   if (trial->at_horizon.empty()) return std::optional<double>();
   reference::World world = truth.world;

@@ -12,6 +12,6 @@ namespace clothlab::lab {
 /// with the same step of at most `dt` [s]. None: the run in double precision takes longer than `budget` [s]
 /// of wall time, or the run on the GPU blows up. Error: GL, or cancelled.
 Result<std::optional<double>> float32_floor(const scene::Scene& scene, const Truth& truth, double dt,
-                                            double budget, Bench& bench, const std::stop_token& stop);
+                                            double budget, TrialRunner& trials, const std::stop_token& stop);
 
 }  // namespace clothlab::lab

@@ -33,18 +33,18 @@ double longest_step(const Truth& truth) {
 
 }  // namespace
 
-void Ladder::go_on(std::optional<double> error, std::optional<double> own) {
+void Ladder::go_on(std::optional<double> error, std::optional<double> reference_error) {
   const bool first = std::isfinite(limit) && limit > 0.0 && next.dt > within * limit;
-  next.dt = first ? std::min(within * limit, next.dt / 1.01) : next.dt / rung;
+  next.dt = first ? std::min(within * limit, next.dt / 1.01) : next.dt / step_ratio;
   if (first) return;  // its error says nothing of how errors fall with dt
   if (!error) {
-    done = ++risen > most_unknown;
+    done = ++steps_without_gain > most_unknown;
     return;
   }
-  risen = *error < no_better * least_error ? 0 : risen + 1;
+  steps_without_gain = *error < no_better * least_error ? 0 : steps_without_gain + 1;
   least_error = std::min(least_error, *error);
-  if (risen >= most_no_better && least_error < 0.1) done = true;
-  if (own && *error < *own) done = true;
+  if (steps_without_gain >= most_no_better && least_error < 0.1) done = true;
+  if (reference_error && *error < *reference_error) done = true;
 }
 
 double limit_of(Method method, const scene::Scene& scene, const Truth& truth) {

@@ -40,12 +40,12 @@ int steps_at_limit(Method method, const model::Mode& mode, double limit, std::si
 
 class Column {
  public:
-  Column(const scene::Scene& scene, Runner& runner, Runner& bare, const std::stop_token& stop,
-         const AtTrial& at_trial)
-      : scene_(scene), runner_(runner), bare_(bare), stop_(stop), at_trial_(at_trial) {}
+  Column(const scene::Scene& scene, ReusedSimulation& full, ReusedSimulation& bare,
+         const std::stop_token& stop, const AtTrial& at_trial)
+      : scene_(scene), full_(full), bare_(bare), stop_(stop), at_trial_(at_trial) {}
 
   Result<MeasuredColumn> measure(double value) {
-    const Result<sim::Simulation*> simulation = runner_.prepare(scene_);
+    const Result<sim::Simulation*> simulation = full_.prepare(scene_);
     if (!simulation) return simulation.error();
     measured_.column.value = value;
     const Status found = find_theory((*simulation)->model());
@@ -66,7 +66,7 @@ class Column {
     theory_ = measured_.column.theory = limit;
     mode_ = fastest_growing(method, springs, stop_);
     most_steps_ = steps_at_limit(method, mode_, limit, model.vertex_count());
-    visible_ = shortest_visible(method, mode_, most_steps_, e_folds_to_show);
+    shortest_visible_dt_ = shortest_visible(method, mode_, most_steps_, e_folds_to_show);
     return ok();
   }
 
@@ -74,7 +74,7 @@ class Column {
     at_trial_(dt, std::min(0.95, static_cast<double>(trials_.size()) / trials_expected));
     scene::Scene scene = scene_;
     scene.solver.dt = dt;
-    const Result<sim::Simulation*> simulation = runner_.prepare(scene);
+    const Result<sim::Simulation*> simulation = full_.prepare(scene);
     if (!simulation) return simulation.error();
     Result<EnergyTrial> trial = run_trial(**simulation, steps, stop_);
     if (!trial) return trial.error();
@@ -107,7 +107,8 @@ class Column {
   }
 
   Status try_around_limit() {
-    const double shown = std::isfinite(visible_) ? std::max(*theory_, visible_) : *theory_;
+    const double shown =
+        std::isfinite(shortest_visible_dt_) ? std::max(*theory_, shortest_visible_dt_) : *theory_;
     const double low = (*theory_ > 0.0 ? *theory_ : shown) / farthest, high = shown * farthest;
     time_ = most_steps_ * shown;
     for (int row = 0; row < rows; ++row)
@@ -162,11 +163,11 @@ class Column {
     column.disagrees = true;
     const Evidence evidence{scene_,
                             mode_,
-                            visible_,
+                            shortest_visible_dt_,
                             most_steps_,
                             [this](double dt) { return theory_ ? steps_of(dt) : long_steps_run; },
                             shortest_failed() ? shortest_failed()->why : ""};
-    const Result<Explanation> found = lab::explain(column, evidence, runner_, bare_, stop_);
+    const Result<Explanation> found = lab::explain(column, evidence, full_, bare_, stop_);
     if (!found) return found.error();
     measured_.cause = found->cause;
     column.reason = found->reason;
@@ -174,12 +175,12 @@ class Column {
   }
 
   const scene::Scene& scene_;
-  Runner &runner_, &bare_;
+  ReusedSimulation &full_, &bare_;
   const std::stop_token& stop_;
   const AtTrial& at_trial_;
   std::optional<double> theory_;
   model::Mode mode_;
-  double visible_ = 0, time_ = 0;
+  double shortest_visible_dt_ = 0, time_ = 0;
   int most_steps_ = 0;
   std::vector<EnergyTrial> trials_;  // sorted by rising dt
   MeasuredColumn measured_;
@@ -187,7 +188,7 @@ class Column {
 
 }  // namespace
 
-Result<sim::Simulation*> Runner::prepare(const scene::Scene& scene) {
+Result<sim::Simulation*> ReusedSimulation::prepare(const scene::Scene& scene) {
   if (!simulation_) {
     Result<std::unique_ptr<sim::Simulation>> made = sim::Simulation::create(scene);
     if (!made) return made.error();
@@ -198,9 +199,10 @@ Result<sim::Simulation*> Runner::prepare(const scene::Scene& scene) {
   return simulation_.get();
 }
 
-Result<MeasuredColumn> measure_column(const scene::Scene& scene, double value, Runner& runner, Runner& bare,
-                                      const std::stop_token& stop, const AtTrial& at_trial) {
-  return Column(scene, runner, bare, stop, at_trial).measure(value);
+Result<MeasuredColumn> measure_column(const scene::Scene& scene, double value, ReusedSimulation& full,
+                                      ReusedSimulation& bare, const std::stop_token& stop,
+                                      const AtTrial& at_trial) {
+  return Column(scene, full, bare, stop, at_trial).measure(value);
 }
 
 }  // namespace clothlab::lab

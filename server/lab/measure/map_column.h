@@ -31,10 +31,10 @@ struct MeasuredColumn {
   bool held_beyond = false;  ///< true if a step held that is longer than the shortest that failed
 };
 
-/// Runs scenes with one method, and keeps the compiled kernels from one scene to the next.
-class Runner {
+/// A simulation that is changed from one scene to the next, so that its kernels are compiled once.
+class ReusedSimulation {
  public:
-  /// The simulation of `scene`, ready to run. It belongs to the Runner, which changes it at the next call.
+  /// The simulation of `scene`, ready to run. The next call changes it.
   Result<sim::Simulation*> prepare(const scene::Scene& scene);
 
  private:
@@ -45,9 +45,10 @@ class Runner {
 using AtTrial = std::function<void(double dt, double share)>;
 
 /// Measures the stability boundary of the scene's own method to 1 %, from steps around theory's limit; a
-/// method without a limit is tried at a few long steps. `value` becomes the column's value; `bare` runs the
-/// scene without contacts. Error: GL, or cancelled.
-Result<MeasuredColumn> measure_column(const scene::Scene& scene, double value, Runner& runner, Runner& bare,
-                                      const std::stop_token& stop, const AtTrial& at_trial);
+/// method without a limit is tried at a few long steps. `value` becomes the column's value; `full` runs the
+/// scene as it is, `bare` without contacts. Error: GL, or cancelled.
+Result<MeasuredColumn> measure_column(const scene::Scene& scene, double value, ReusedSimulation& full,
+                                      ReusedSimulation& bare, const std::stop_token& stop,
+                                      const AtTrial& at_trial);
 
 }  // namespace clothlab::lab

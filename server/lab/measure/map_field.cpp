@@ -98,17 +98,18 @@ Result<std::vector<double>> MapField::values(std::optional<double> from, std::op
                                              int columns) const {
   if (columns < 2 || columns > 41) return Error{"columns", std::to_string(columns), "2 to 41"};
   for (const auto& [name, end] : {std::pair("from", from), std::pair("to", to)})
-    if (end && !std::isfinite(*end)) return Error{name, "no finite number", "a number"};
+    if (end && !std::isfinite(*end)) return Error{name, "not a finite number", "a number"};
   if (present_ == 0.0 && (!from || !to))
-    return Error{from ? "to" : "from", "nothing", "a number: the present value is 0 and gives no scale"};
+    return Error{from ? "to" : "from", "not given", "a number: the present value is 0 and gives no scale"};
   const double reach = whole_ ? 4.0 : 100.0;
   const double low =
       from ? *from
            : nearest_allowed(present_ > 0 ? std::min(present_, to.value_or(present_)) / reach : 2 * present_);
   const double high = to ? *to : nearest_allowed(present_ > 0 ? std::max(present_, low) * reach : 0.0);
   if (!(low < high))
-    return Error{to ? "to" : "from", significant(to ? high : low, 6),
-                 to ? "above " + significant(low, 6) : "below " + significant(high, 6)};
+    return Error{
+        to ? "to" : "from", with_significant_digits(to ? high : low, 6),
+        to ? "above " + with_significant_digits(low, 6) : "below " + with_significant_digits(high, 6)};
   std::vector<double> values;
   for (int i = 0; i < columns; ++i) {
     const double share = static_cast<double>(i) / (columns - 1);
@@ -119,7 +120,7 @@ Result<std::vector<double>> MapField::values(std::optional<double> from, std::op
     if (values.empty() || value > values.back()) values.push_back(value);
   }
   if (values.size() < 2)
-    return Error{"to", significant(high, 6), "at least one more than from, in whole numbers"};
+    return Error{"to", with_significant_digits(high, 6), "at least one more than from, in whole numbers"};
   return values;
 }
 

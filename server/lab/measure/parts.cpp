@@ -53,10 +53,10 @@ Result<Document> undamped(const Document& document) {
   return scene::validate(std::move(value));
 }
 
-Result<Document> half(const Document& document) {
+Result<Document> half_resolution(const Document& document) {
   return coarsen(document, 2);
 }
-Result<Document> quarter(const Document& document) {
+Result<Document> quarter_resolution(const Document& document) {
   return coarsen(document, 4);
 }
 
@@ -67,8 +67,8 @@ const std::vector<Part>& parts() {
                                      {"without shear springs", 1, without_shear},
                                      {"without self-collision", 1, without_self_collision},
                                      {without_damping, 1, undamped},
-                                     {"half the mesh resolution", 2, half},
-                                     {"a quarter of the mesh resolution", 4, quarter}};
+                                     {"half the mesh resolution", 2, half_resolution},
+                                     {"a quarter of the mesh resolution", 4, quarter_resolution}};
   return all;
 }
 

@@ -22,12 +22,12 @@ struct Path {
   bool every_step = true;                        ///< there is a look at every step
 };
 
-Result<Path> record(scene::Scene scene, const Truth& truth, int looks, Bench& bench,
+Result<Path> record(scene::Scene scene, const Truth& truth, int looks, TrialRunner& trials,
                     const std::stop_token& stop) {
   const int steps = steps_to_horizon(scene.solver.dt, truth);
   const double horizon = truth.spacing * samples_to_horizon;
   scene.solver.dt = horizon / steps;
-  const Result<sim::Simulation*> simulation = bench.prepare(scene);
+  const Result<sim::Simulation*> simulation = trials.prepare(scene);
   if (!simulation) return simulation.error();
   Path path;
   const int stride = (steps + looks - 1) / looks;
@@ -81,17 +81,19 @@ std::optional<LargestError> largest(const Path& path, const Truth& truth) {
     jump = std::max(jump, std::abs(error - before));
     before = error;
   }
-  const double own = truth.position_error / truth.size;
-  result.low = std::max(0.0, result.seen - own);
-  result.high = result.seen + own + (path.every_step ? 0.0 : 0.5 * jump);
+  const double reference_error = truth.position_error / truth.size;
+  result.low = std::max(0.0, result.seen - reference_error);
+  result.high = result.seen + reference_error + (path.every_step ? 0.0 : 0.5 * jump);
   return result;
 }
 
 }  // namespace
 
-Result<std::vector<std::optional<LargestError>>> look_again(const scene::Scene& scene, const Truth& truth,
-                                                            const std::vector<Setting>& settings,
-                                                            Bench& bench, const std::stop_token& stop) {
+Result<std::vector<std::optional<LargestError>>> measure_largest_errors(const scene::Scene& scene,
+                                                                        const Truth& truth,
+                                                                        const std::vector<Setting>& settings,
+                                                                        TrialRunner& trials,
+                                                                        const std::stop_token& stop) {
   const double vertices = static_cast<double>(truth.world.model.vertex_count());
   const int looks = std::clamp(
       static_cast<int>(most_positions /
@@ -99,7 +101,7 @@ Result<std::vector<std::optional<LargestError>>> look_again(const scene::Scene& 
       fewest_looks, most_looks);
   std::vector<Path> paths;
   for (const Setting& setting : settings) {
-    Result<Path> path = record(with(scene, setting), truth, looks, bench, stop);
+    Result<Path> path = record(with(scene, setting), truth, looks, trials, stop);
     if (!path) return path.error();
     paths.push_back(std::move(*path));
   }

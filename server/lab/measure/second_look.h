@@ -24,8 +24,10 @@ struct LargestError {
 
 /// The largest error of each setting, in the order of `settings`; none for a setting that blew up. Runs the
 /// reference once more, through all times at which the settings are compared.
-Result<std::vector<std::optional<LargestError>>> look_again(const scene::Scene& scene, const Truth& truth,
-                                                            const std::vector<Setting>& settings,
-                                                            Bench& bench, const std::stop_token& stop);
+Result<std::vector<std::optional<LargestError>>> measure_largest_errors(const scene::Scene& scene,
+                                                                        const Truth& truth,
+                                                                        const std::vector<Setting>& settings,
+                                                                        TrialRunner& trials,
+                                                                        const std::stop_token& stop);
 
 }  // namespace clothlab::lab

@@ -17,7 +17,8 @@ namespace {
 /// The thick air's drag in units of sqrt(g / size), about the angular frequency of a hanging cloth's slowest
 /// swing: with this drag the cloth comes to rest almost without swinging.
 constexpr double drag = 1.5;
-constexpr double swings = 16.0;  // settling time in units of sqrt(size / g): the slowest motion falls to 1e-5
+/// Settling time in units of sqrt(size / g): the slowest motion falls to 1e-5.
+constexpr double settling_time_in_swings = 16.0;
 constexpr std::uint32_t most_vertices = 4096;  // up to here Newton's method finds the balance in seconds
 
 bool moves(const scene::Motion& motion) {
@@ -29,7 +30,7 @@ std::optional<Error> unfit(const reference::World& world) {
   for (const scene::Motion& motion : world.model.motions)
     if (moves(motion)) return Error{"rest", "a pin moves, so nothing comes to rest", "pins that stand still"};
   if (!(glm::length(world.scene.gravity) > 0.0))
-    return Error{"rest", "there is no gravity to hang in", "gravity"};
+    return Error{"rest", "there is no gravity, so there is no shape of rest", "gravity"};
   if (world.model.vertex_count() > most_vertices)
     return Error{"rest",
                  std::to_string(world.model.vertex_count()) + " vertices are too many to find their balance",
@@ -46,7 +47,7 @@ Result<Settling> settle(const reference::World& world, double size, double budge
   const double g = glm::length(world.scene.gravity);
   settling.scene = world.scene;
   settling.scene.air_drag = std::max(world.scene.air_drag, drag * std::sqrt(g / size));
-  settling.time = swings * std::sqrt(size / g);
+  settling.time = settling_time_in_swings * std::sqrt(size / g);
 
   reference::World thick = world;
   thick.scene = settling.scene;
@@ -70,8 +71,8 @@ Result<Settling> settle(const reference::World& world, double size, double budge
 }
 
 Result<std::optional<double>> rest_error(const Settling& settling, const scene::Scene& scene, double size,
-                                         Bench& bench, const std::stop_token& stop) {
-  const Result<std::optional<sim::State>> end = bench.run_to(scene, settling.time, stop);
+                                         TrialRunner& trials, const std::stop_token& stop) {
+  const Result<std::optional<sim::State>> end = trials.run_to(scene, settling.time, stop);
   if (!end) return end.error();
   if (!*end) return std::optional<double>();
   const std::vector<glm::vec3>& read = (*end)->position;

@@ -24,6 +24,6 @@ Result<Settling> settle(const reference::World& world, double size, double budge
 /// Runs `scene`, which is `settling.scene` with any setting, for the settling time. Returns the RMS distance
 /// to the shape of rest as a share of `size`; none if the run blew up.
 Result<std::optional<double>> rest_error(const Settling& settling, const scene::Scene& scene, double size,
-                                         Bench& bench, const std::stop_token& stop);
+                                         TrialRunner& trials, const std::stop_token& stop);
 
 }  // namespace clothlab::lab

@@ -6,7 +6,7 @@
 #include "server/base/text.h"
 #include "server/gl/context.h"
 #include "server/lab/measure/automatic.h"
-#include "server/lab/measure/beside.h"
+#include "server/lab/measure/substitutes.h"
 
 namespace clothlab::lab {
 
@@ -17,7 +17,7 @@ using scene::Document;
 constexpr double share_of_truth = 0.4;  // of the job's progress: computing the reference
 
 std::string percent(double share) {
-  return significant(100.0 * share, 3) + " %";
+  return with_significant_digits(100.0 * share, 3) + " %";
 }
 
 /// "a", "a and b", "a, b and c".
@@ -28,15 +28,16 @@ std::string list(const std::vector<std::string>& names) {
   return text;
 }
 
-class Maker {
+class SimplificationMeasurement {
  public:
-  Maker(const Document& document, const SimplifyRequest& request, const Control<Simplification>& control)
+  SimplificationMeasurement(const Document& document, const SimplifyRequest& request,
+                            const Control<Simplification>& control)
       : document_(document),
         request_(request),
         control_(control),
-        beside_(document, control.stop, request.timer) {}
+        substitutes_(document, control.stop, request.timer) {}
 
-  Result<Simplification> make() {
+  Result<Simplification> run() {
     found_.scene = document_.scene.name;
     found_.renderer = gl::renderer_name();
     found_.tolerance = request_.tolerance;
@@ -58,12 +59,12 @@ class Maker {
     const auto progress = [this](double share) {
       control_.progress({share_of_truth * share, 1.0, "the reference, in double precision"});
     };
-    Status started = beside_.start(request_.time.value_or(1.0), progress, found_.notes);
+    Status started = substitutes_.start(request_.time.value_or(1.0), progress, found_.notes);
     if (!started) return started;
-    found_.size = beside_.truth().size;
-    found_.time = beside_.truth().time;
-    found_.horizon = beside_.compared_at();
-    found_.whole = beside_.whole().variant;
+    found_.size = substitutes_.truth().size;
+    found_.time = substitutes_.truth().time;
+    found_.horizon = substitutes_.compared_at();
+    found_.whole = substitutes_.whole().variant;
     control_.arrived(found_);
     return ok();
   }
@@ -80,7 +81,7 @@ class Maker {
         candidate.variant.reason = without.error().where.empty()
                                        ? without.error().what
                                        : without.error().where + ": " + without.error().what;
-      } else if (Status measured = beside_.measure(candidate, std::move(*without)); !measured) {
+      } else if (Status measured = substitutes_.measure(candidate, std::move(*without)); !measured) {
         return measured;
       }
       candidates_.push_back(std::move(candidate));
@@ -91,7 +92,7 @@ class Maker {
     for (Substitute& candidate : candidates_)
       if (candidate.variant.measured) timed.push_back(&candidate);
     control_.progress({progress(), 1.0, "timing, taking turns"});
-    if (Status done = beside_.time(timed, request_.tolerance); !done) return done;
+    if (Status done = substitutes_.time(timed, request_.tolerance); !done) return done;
     show();
     return ok();
   }
@@ -134,11 +135,11 @@ class Maker {
     const Variant& variant = together.variant;
     std::string why_not;
     if (!variant.change) {
-      why_not = "together they cannot be had, " + variant.reason;
+      why_not = "together they could not be measured: " + variant.reason;
     } else if (*variant.change > request_.tolerance) {
       why_not = "together they change " + percent(*variant.change) + " of the size";
     } else {
-      const Result<CostComparison> over = beside_.time_over(together, best);
+      const Result<CostComparison> over = substitutes_.time_over(together, best);
       if (!over) return over.error();
       if (over->saving != Saving::yes)
         why_not = "that costs " + text(over->ratio) + " times " + best.variant.name + " alone" +
@@ -149,7 +150,7 @@ class Maker {
       going = std::move(all);
     } else {
       found_.notes.push_back(variant.name + ": " + why_not + ", so \"" + next->variant.name +
-                             "\" is not recommended besides.");
+                             "\" is not recommended in addition.");
     }
     return ok();
   }
@@ -175,22 +176,22 @@ class Maker {
         document = std::move(*without);
       }
     control_.progress({progress(), 1.0, "what can go, together"});
-    return beside_.measure(together, std::move(document));
+    return substitutes_.measure(together, std::move(document));
   }
 
   void recommended(const std::vector<Substitute*>& going, const Substitute& together) {
-    for (Substitute* candidate : going) candidate->variant.drop = true;
+    for (Substitute* candidate : going) candidate->variant.recommended_to_drop = true;
     show();
     found_.recommended = together.variant;
-    found_.recommended.drop = true;
+    found_.recommended.recommended_to_drop = true;
     if (std::any_of(going.begin(), going.end(),
                     [](const Substitute* each) { return each->variant.name == without_damping; }))
-      found_.notes.push_back("Damping was judged within " + significant(found_.time, 3) +
+      found_.notes.push_back("Damping was judged within " + with_significant_digits(found_.time, 3) +
                              " s: in the long run it is what brings a cloth to rest.");
   }
 
   void show() {
-    found_.whole = beside_.whole().variant;
+    found_.whole = substitutes_.whole().variant;
     found_.variants.clear();
     for (const Substitute& candidate : candidates_) found_.variants.push_back(candidate.variant);
     control_.arrived(found_);
@@ -205,21 +206,22 @@ class Maker {
   void explain() {
     const std::string allowed = " (" + percent(request_.tolerance) + " allowed)";
     if (!found_.whole.measured) {
-      found_.why = "Nothing was compared, as the scene as it is does not hold: " + found_.whole.reason +
+      found_.why = "Nothing was compared, as the unchanged scene blows up: " + found_.whole.reason +
                    ". A stable step comes first.";
-    } else if (found_.recommended.drop) {
+    } else if (found_.recommended.recommended_to_drop) {
       const Variant& best = found_.recommended;
       const double dt = best.patch.contains("solver") ? best.patch["solver"]["dt"].get<double>()
                                                       : document_.scene.solver.dt;
-      found_.why =
-          "The scene can do with this: " + best.name +
-          (dt > document_.scene.solver.dt ? ", with a step of " + significant(1000 * dt, 3) + " ms" : "") +
-          "; that takes " + text(best.cost_ratio) + " times the time and changes positions by " +
-          percent(*best.change) + " of the size" + allowed + ".";
+      found_.why = "The scene can do with this: " + best.name +
+                   (dt > document_.scene.solver.dt
+                        ? ", with a step of " + with_significant_digits(1000 * dt, 3) + " ms"
+                        : "") +
+                   "; that takes " + text(best.cost_ratio) + " times the time and changes positions by " +
+                   percent(*best.change) + " of the size" + allowed + ".";
     } else if (found_.horizon == 0.0) {
       found_.why = std::string("Nothing is recommended, because positions cannot be compared; ") +
-                   (beside_.truth().missing.empty() ? "energy and the largest strain are."
-                                                    : "only what each part costs is known.");
+                   (substitutes_.truth().why_no_reference.empty() ? "energy and the largest strain are."
+                                                                  : "only what each part costs is known.");
     } else {
       found_.why = nothing_can_go(allowed);
     }
@@ -230,7 +232,7 @@ class Maker {
     for (const Substitute& candidate : candidates_)
       if (candidate.variant.change && (!least || *candidate.variant.change < *least->change))
         least = &candidate.variant;
-    if (!least) return "Nothing can go: no part could be measured without.";
+    if (!least) return "Nothing can go: the scene could not be measured with any part left out.";
     if (*least->change > request_.tolerance)
       return "Nothing can go: the least that a part changes is " + percent(*least->change) +
              " of the size, " + least->name + allowed + ".";
@@ -251,14 +253,14 @@ class Maker {
   const Document& document_;
   const SimplifyRequest& request_;
   const Control<Simplification>& control_;
-  Beside beside_;
+  Substitutes substitutes_;
   std::vector<Substitute> candidates_;
   Simplification found_;
 };
 
 }  // namespace
 
-bool Simplification::together() const {
+bool Simplification::drops_several() const {
   return recommended.measured && std::none_of(variants.begin(), variants.end(), [&](const Variant& each) {
            return each.name == recommended.name;
          });
@@ -267,12 +269,12 @@ bool Simplification::together() const {
 Result<Simplification> simplify(const Document& document, const SimplifyRequest& request,
                                 const Control<Simplification>& control) {
   if (!(request.tolerance > 0.0) || request.tolerance > 1.0)
-    return Error{"tolerance", significant(request.tolerance, 3), "above 0, at most 1"};
+    return Error{"tolerance", with_significant_digits(request.tolerance, 3), "above 0, at most 1"};
   if (request.time && !(*request.time > 0.0 && std::isfinite(*request.time)))
-    return Error{"time", significant(*request.time, 3), "a time in seconds, above 0"};
-  const Result<Document> settled = lab::settled(document);
-  if (!settled) return settled.error();
-  return Maker(*settled, request, control).make();
+    return Error{"time", with_significant_digits(*request.time, 3), "a time in seconds, above 0"};
+  const Result<Document> concrete = with_provisional_setting(document);
+  if (!concrete) return concrete.error();
+  return SimplificationMeasurement(*concrete, request, control).run();
 }
 
 }  // namespace clothlab::lab

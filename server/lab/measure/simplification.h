@@ -23,8 +23,8 @@ struct Variant {
   std::optional<Cost> cost;
   Spread cost_ratio;  ///< the variant's cost over the whole scene's, both timed in turns
   Saving saving = Saving::unknown;
-  double dt_limit = 0;  ///< [s]; infinite: none
-  bool drop = false;    ///< leaving this out is recommended
+  double dt_limit = 0;               ///< [s]; infinite: none
+  bool recommended_to_drop = false;  ///< leaving this out is recommended
 };
 
 struct Simplification {
@@ -35,7 +35,7 @@ struct Simplification {
   std::vector<Variant> variants;
   Variant recommended;  ///< the scene without all parts that can go; its patch is empty where none can
   /// True if `recommended` leaves out more than one part, and so is none of `variants`.
-  bool together() const;
+  bool drops_several() const;
   std::string why;  ///< one sentence
   std::vector<std::string> notes;
   bool complete = false;

@@ -15,22 +15,22 @@ Spread spread_of(std::vector<double> values, double doubt) {
   spread.median = count % 2 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
   // The chance that at most k of the values are above the median: a sum of binomials.
   double chance = std::exp2(-static_cast<double>(count)), sum = chance;
-  std::size_t from_the_end = 0;  // `low` and `high` are this many values from the ends; 0: too few values
+  std::size_t rank = 0;  // `low` and `high` are this many values from the ends; 0: too few values
   for (std::size_t k = 0; k < count / 2 && sum <= doubt; ++k) {
-    from_the_end = k + 1;
+    rank = k + 1;
     chance *= static_cast<double>(count - k) / static_cast<double>(k + 1);
     sum += chance;
   }
-  if (from_the_end == 0) return spread;
-  spread.low = values[from_the_end - 1];
-  spread.high = values[count - from_the_end];
+  if (rank == 0) return spread;
+  spread.low = values[rank - 1];
+  spread.high = values[count - rank];
   return spread;
 }
 
 std::string text(const Spread& ratio) {
   // Two decimals, or two significant digits below 0.1.
   const auto written = [](double value) {
-    return value >= 0.1 ? formatted("%.2f", value) : significant(value, 2);
+    return value >= 0.1 ? formatted("%.2f", value) : with_significant_digits(value, 2);
   };
   if (!std::isfinite(ratio.high)) return written(ratio.median);
   return written(ratio.median) + " [" + written(ratio.low) + ".." + written(ratio.high) + "]";
@@ -51,20 +51,20 @@ const char* name(Saving saving) {
 }
 
 Saving saving(const Spread& ratio) {
-  if (ratio.high <= worth_it) return Saving::yes;
-  return ratio.low > worth_it ? Saving::no : Saving::cannot_tell;
+  if (ratio.high <= largest_worthwhile_ratio) return Saving::yes;
+  return ratio.low > largest_worthwhile_ratio ? Saving::no : Saving::cannot_tell;
 }
 
 namespace {
 
 /// Fills in the ratio and the saving from the rounds in which both things were timed.
 void judge(CostComparison& comparison, const std::vector<std::vector<double>>& times) {
-  const std::vector<double>&own = times[comparison.thing], &other = times[comparison.over];
+  const std::vector<double>&candidate = times[comparison.candidate], &baseline = times[comparison.baseline];
   std::vector<double> ratios;
-  for (std::size_t round = 0; round < std::min(own.size(), other.size()); ++round)
-    if (std::isfinite(own[round]) && std::isfinite(other[round]) && other[round] > 0.0)
-      ratios.push_back(own[round] / other[round]);
-  comparison.ratio = spread_of(std::move(ratios), doubt_a_look);
+  for (std::size_t round = 0; round < std::min(candidate.size(), baseline.size()); ++round)
+    if (std::isfinite(candidate[round]) && std::isfinite(baseline[round]) && baseline[round] > 0.0)
+      ratios.push_back(candidate[round] / baseline[round]);
+  comparison.ratio = spread_of(std::move(ratios), doubt_per_look);
   comparison.saving = saving(comparison.ratio);
 }
 
@@ -77,8 +77,8 @@ Result<std::vector<std::vector<double>>> take_turns(std::size_t things,
   std::vector<std::vector<double>> times(things);
   std::vector<bool> goes_on(things, true);
   int round = 0;
-  for (const int look : looks) {
-    for (; round < look && (round < looks[0] || more()); ++round) {
+  for (const int look : rounds_at_look) {
+    for (; round < look && (round < rounds_at_look[0] || more()); ++round) {
       for (std::size_t turn = 0; turn < things; ++turn) {
         const std::size_t thing = round % 2 ? things - 1 - turn : turn;
         // A thing that is decided is no longer timed: NaN holds its place, so that rounds stay aligned.
@@ -89,10 +89,10 @@ Result<std::vector<std::vector<double>>> take_turns(std::size_t things,
     }
     std::fill(goes_on.begin(), goes_on.end(), false);
     for (CostComparison& comparison : comparisons) {
-      if (look > looks[0] && comparison.saving != Saving::cannot_tell) continue;  // already decided
+      if (look > rounds_at_look[0] && comparison.saving != Saving::cannot_tell) continue;  // already decided
       judge(comparison, times);
       if (comparison.matters && comparison.saving == Saving::cannot_tell)
-        goes_on[comparison.thing] = goes_on[comparison.over] = true;
+        goes_on[comparison.candidate] = goes_on[comparison.baseline] = true;
     }
     if (std::none_of(goes_on.begin(), goes_on.end(), [](bool going) { return going; }) || !more()) break;
   }

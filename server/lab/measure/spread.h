@@ -27,14 +27,14 @@ std::string text(const Spread& ratio);
 
 enum class Saving {
   unknown,     ///< not timed
-  yes,         ///< the whole interval of the costs' ratio is at most `worth_it`
-  no,          ///< the whole interval is above `worth_it`
-  cannot_tell  ///< `worth_it` lies within the interval
+  yes,         ///< the whole interval of the costs' ratio is at most `largest_worthwhile_ratio`
+  no,          ///< the whole interval is above `largest_worthwhile_ratio`
+  cannot_tell  ///< `largest_worthwhile_ratio` lies within the interval
 };
 const char* name(Saving saving);  ///< "", "yes", "no", "cannot tell"
 
 /// The largest ratio of costs that counts as a saving: a smaller saving is not worth a change of the model.
-inline constexpr double worth_it = 0.95;
+inline constexpr double largest_worthwhile_ratio = 0.95;
 /// The verdict on a measured ratio of costs: `yes` or `no` only if the whole interval says so.
 Saving saving(const Spread& ratio);
 
@@ -45,14 +45,14 @@ inline constexpr double most_doubt = 0.01;
 inline constexpr int most_comparisons = 11;
 /// Numbers of rounds after which the timings are judged. After 12 rounds the interval reaches from the
 /// smallest to the largest ratio: all 12 are above the median (or all below) with a chance of 2.4e-4.
-inline constexpr int looks[] = {12, 24, 48};
-inline constexpr double doubt_a_look = most_doubt / (most_comparisons * 3);
+inline constexpr int rounds_at_look[] = {12, 24, 48};
+inline constexpr double doubt_per_look = most_doubt / (most_comparisons * 3);
 
 /// A comparison of the costs of two things.
 struct CostComparison {
-  std::size_t thing = 0, over = 0;  ///< indices of the two things
-  bool matters = true;              ///< true: rounds are added until the comparison is decided
-  Spread ratio = {};                ///< the cost of `thing` over that of `over`
+  std::size_t candidate = 0, baseline = 0;  ///< indices of the two things
+  bool matters = true;                      ///< true: rounds are added until the comparison is decided
+  Spread ratio = {};                        ///< the cost of `candidate` over that of `baseline`
   Saving saving = Saving::unknown;
 };
 

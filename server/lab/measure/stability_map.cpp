@@ -19,8 +19,9 @@ using scene::Method;
 
 /// The columns' range of values: "0.01", or "0.01 to 3.2".
 std::string span(const std::vector<const MeasuredColumn*>& columns) {
-  const std::string first = significant(columns.front()->column.value, 3);
-  return columns.size() == 1 ? first : first + " to " + significant(columns.back()->column.value, 3);
+  const std::string first = with_significant_digits(columns.front()->column.value, 3);
+  return columns.size() == 1 ? first
+                             : first + " to " + with_significant_digits(columns.back()->column.value, 3);
 }
 
 /// The measured limit over theory's, smallest to largest: "0.9 to 0.95 times theory's".
@@ -31,8 +32,10 @@ std::string ratio(const std::vector<const MeasuredColumn*>& columns) {
     least = std::min(least, share);
     most = std::max(most, share);
   }
-  return significant(least, 3) +
-         (significant(most, 3) == significant(least, 3) ? "" : " to " + significant(most, 3)) +
+  return with_significant_digits(least, 3) +
+         (with_significant_digits(most, 3) == with_significant_digits(least, 3)
+              ? ""
+              : " to " + with_significant_digits(most, 3)) +
          " times theory's";
 }
 
@@ -42,14 +45,14 @@ std::string disagreement(const StabilityMap& map, Method method,
   const MapColumn& first = columns.front()->column;
   std::string text = std::string(scene::name(method)) + ", " + map.field + " " + span(columns) + ": ";
   if (!first.theory)
-    text += "no step should be unstable, but " + significant(*first.failed, 3) + " s failed";
+    text += "no step should be unstable, but " + with_significant_digits(*first.failed, 3) + " s failed";
   else if (*first.theory == 0.0)
-    text += "theory allows no step at all, yet steps up to " + significant(first.held.value_or(0.0), 3) +
-            " s held";
+    text += "theory allows no step at all, yet steps up to " +
+            with_significant_digits(first.held.value_or(0.0), 3) + " s held";
   else
     text += "the measured limit is " + ratio(columns);
   text += std::string("; ") + phrase(columns.front()->cause);
-  return text + " (at " + significant(first.value, 3) + ": " + first.reason + ").";
+  return text + " (at " + with_significant_digits(first.value, 3) + ": " + first.reason + ").";
 }
 
 /// Collects the map's notes, method by method.
@@ -65,10 +68,11 @@ class Notes {
       if (!alike.empty() && alike.back()->cause != column.cause) flush();
       if (column.column.disagrees) alike.push_back(&column);
       if (column.held_beyond)
-        others_.push_back(
-            std::string(scene::name(method)) + ", " + map.field + " " + significant(column.column.value, 3) +
-            ": some steps longer than the shortest that failed (" + significant(*column.column.failed, 3) +
-            " s) held; the boundary shown is the lower end.");
+        others_.push_back(std::string(scene::name(method)) + ", " + map.field + " " +
+                          with_significant_digits(column.column.value, 3) +
+                          ": some steps longer than the shortest that failed (" +
+                          with_significant_digits(*column.column.failed, 3) +
+                          " s) held; the boundary shown is the lower end.");
     }
     flush();
     if (std::all_of(columns.begin(), columns.end(),
@@ -85,8 +89,8 @@ class Notes {
           "Nothing failed up to 0.1 s with " + unlimited_ +
           ", as theory has it: no step makes them unstable. That says nothing of how right they are.");
     notes.push_back("A trial runs " + std::to_string(map.steps) + " steps at most, " +
-                    significant(map.time, 3) +
-                    " s at most; what grows more slowly than that shows is taken to hold.");
+                    with_significant_digits(map.time, 3) +
+                    " s at most; a vibration that grows too slowly to show in that time counts as stable.");
     return notes;
   }
 
@@ -140,17 +144,16 @@ Result<StabilityMap> stability_map(const scene::Document& document, const MapReq
   for (const Method method : methods) {
     map.methods.push_back({method, {}});
     std::vector<MeasuredColumn> measured;
-    Runner runner, bare;
+    ReusedSimulation full, bare;
     for (const Varied& column : *columns) {
       scene::Scene scene = column.scene;
       scene.solver.method = method;
       const auto at_trial = [&](double dt, double share) {
         control.progress({done + share, total,
                           text(Setting{method, dt, scene.solver.iterations}) + ", " + map.field + " " +
-                              significant(column.value, 3)});
+                              with_significant_digits(column.value, 3)});
       };
-      Result<MeasuredColumn> found =
-          measure_column(scene, column.value, runner, bare, control.stop, at_trial);
+      Result<MeasuredColumn> found = measure_column(scene, column.value, full, bare, control.stop, at_trial);
       if (!found) return found.error();
       map.time = std::max(map.time, found->time);
       map.steps = std::max(map.steps, found->steps);

@@ -14,14 +14,14 @@ namespace {
 
 using scene::Method;
 
-constexpr double longest_of_all = 1.0 / 30;  // longest step tried [s]: 30 states a second still look smooth
-constexpr double most_of_others = 20;  // a runner-up that costs more than this times the best is not searched
+constexpr double longest_step = 1.0 / 30;    // longest step tried [s]: 30 states a second still look smooth
+constexpr double runner_up_cost_limit = 20;  // times the best: a runner-up that costs more is not searched
 /// A step predicted by the method's order may be too short by this factor before the search gives up: the
 /// order need not hold at long steps.
-constexpr double far_off = 2.0;
-constexpr double most_a_run = 8.0;  // largest expected wall time of one run [s]
-constexpr int glances = 3;          // brief timings of each candidate
-constexpr double glanced = 0.03;    // wall time of one of these timings at most [s]
+constexpr double order_slack = 2.0;
+constexpr double most_a_run = 8.0;           // largest expected wall time of one run [s]
+constexpr int estimate_rounds = 3;           // brief timings of each candidate
+constexpr double estimate_wall_time = 0.03;  // wall time of one of these timings at most [s]
 
 /// The settings tried with a method, their steps not yet chosen.
 std::vector<Setting> settings_of(Method method) {
@@ -50,14 +50,14 @@ Status StepSearch::list(std::vector<Method> methods) {
       continue;
     }
     for (Setting setting : settings_of(method)) {
-      setting.dt = std::min({model::margin_to_warn * limit, truth_.horizon / 8, longest_of_all});
+      setting.dt = std::min({model::margin_to_warn * limit, truth_.horizon / 8, longest_step});
       setting.dt = fitted_dt(setting.dt, truth_);
-      candidates_.push_back({setting, limit, unknown, {}});
+      candidates_.push_back({setting, limit, worst, {}});
     }
   }
   if (candidates_.empty())
     return Error{"methods", "none of them is stable at any step here", "other methods, or damping"};
-  if (Status glanced_at = glance(); !glanced_at) return glanced_at;
+  if (Status estimated = estimate_costs(); !estimated) return estimated;
   std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
     const bool a_free = std::isinf(a.limit), b_free = std::isinf(b.limit);
     return a_free != b_free ? b_free : a.cost(a.setting.dt) < b.cost(b.setting.dt);
@@ -66,11 +66,11 @@ Status StepSearch::list(std::vector<Method> methods) {
 }
 
 /// Estimates what a step of each candidate costs: the smallest of a few short timings, taken in turns.
-Status StepSearch::glance() {
+Status StepSearch::estimate_costs() {
   std::vector<scene::Scene> scenes;
   for (const Candidate& candidate : candidates_) scenes.push_back(with(scene_, candidate.setting));
   Result<std::vector<std::vector<double>>> times =
-      bench_.time(scenes, truth_.horizon, glanced, glances, stop_);
+      trials_.time(scenes, truth_.horizon, estimate_wall_time, estimate_rounds, stop_);
   if (!times) return times.error();
   for (std::size_t i = 0; i < candidates_.size(); ++i)
     candidates_[i].step_cost = cost_of((*times)[i]).minimum * candidates_[i].setting.dt / 1000.0;
@@ -81,7 +81,7 @@ Result<double> StepSearch::error_at(Candidate& candidate, double dt, Point& poin
   point = {};
   point.setting = candidate.setting;
   point.setting.dt = fitted_dt(dt, truth_);
-  const Result<Trial> trial = bench_.run(with(scene_, point.setting), truth_, truth_.horizon, stop_);
+  const Result<Trial> trial = trials_.run(with(scene_, point.setting), truth_, truth_.horizon, stop_);
   if (!trial) return trial.error();
   point.error = trial->error;
   point.largest_position_error = trial->largest_position_error;
@@ -95,14 +95,14 @@ Result<double> StepSearch::error_at(Candidate& candidate, double dt, Point& poin
   tried_.push_back(point);
   return point.largest_position_error && std::isfinite(*point.largest_position_error)
              ? *point.largest_position_error
-             : unknown;
+             : worst;
 }
 
 /// The cost [ms per simulated second] up to which a setting of the method is of interest: that of the best so
 /// far if `method` has the best, else that of the runner-up, which is the best of the other methods, but at
-/// most `most_of_others` times the best.
+/// most `runner_up_cost_limit` times the best.
 double StepSearch::of_interest(Method method) const {
-  double best = unknown, other = unknown;
+  double best = worst, other = worst;
   Method best_method = method;
   for (const Candidate& candidate : candidates_)
     if (candidate.best && candidate.best->cost->median < best) {
@@ -113,13 +113,13 @@ double StepSearch::of_interest(Method method) const {
   for (const Candidate& candidate : candidates_)
     if (candidate.best && candidate.setting.method != best_method)
       other = std::min(other, candidate.best->cost->median);
-  return std::min(other, most_of_others * best);
+  return std::min(other, runner_up_cost_limit * best);
 }
 
 /// True if the cost `most` [ms per simulated second] is below 3 times the best so far. A search then begins
 /// at the step that costs `most`, as one run there shows whether the candidate can compete.
-bool StepSearch::close_at_hand(double most) const {
-  double best = unknown;
+bool StepSearch::cost_bound_is_close(double most) const {
+  double best = worst;
   for (const Candidate& candidate : candidates_)
     if (candidate.best) best = std::min(best, candidate.best->cost->median);
   return most < 3.0 * best;
@@ -129,9 +129,9 @@ Status StepSearch::search(Candidate& candidate) {
   const double most = close_race * of_interest(candidate.setting.method);
   const double longest = candidate.setting.dt;
   Point point;
-  double kept = 0.0, missed = unknown;
+  double kept = 0.0, missed = worst;
   const double dearest = 1000.0 * candidate.step_cost / most;  // shorter steps cost more than `most` [s]
-  for (double dt = close_at_hand(most) ? std::min(longest, dearest) : longest; kept == 0.0;) {
+  for (double dt = cost_bound_is_close(most) ? std::min(longest, dearest) : longest; kept == 0.0;) {
     if (candidate.cost(longest) > most || candidate.step_cost * truth_.horizon / dt > most_a_run) return ok();
     const Result<double> error = error_at(candidate, dt, point);
     if (!error) return error.error();
@@ -143,16 +143,16 @@ Status StepSearch::search(Candidate& candidate) {
     missed = point.setting.dt;
     const double hoped =
         missed * 0.95 * std::pow(tolerance_ / *error, 1.0 / scene::facts(candidate.setting.method).order);
-    if (hoped * far_off < dearest || dt <= dearest) return ok();
+    if (hoped * order_slack < dearest || dt <= dearest) return ok();
     dt = std::clamp(hoped, missed / 16, missed / 1.3);
   }
-  if (missed == unknown && kept < longest) missed = near_enough * longest;  // `longest` itself may be good
+  if (missed == worst && kept < longest) missed = search_precision * longest;  // `longest` itself may be good
   // Between a step that keeps the tolerance and one that misses it, tries the step that the method's order
   // predicts, then the geometric mean.
   double dt = kept * std::pow(tolerance_ / *candidate.best->largest_position_error,
                               1.0 / scene::facts(candidate.setting.method).order);
-  while (kept < longest / near_enough && missed > near_enough * kept) {
-    if (!(dt > kept * std::sqrt(near_enough) && dt < missed / std::sqrt(near_enough)))
+  while (kept < longest / search_precision && missed > search_precision * kept) {
+    if (!(dt > kept * std::sqrt(search_precision) && dt < missed / std::sqrt(search_precision)))
       dt = std::sqrt(kept * missed);
     const Result<double> error = error_at(candidate, std::min(dt, longest), point);
     if (!error) return error.error();
@@ -175,7 +175,7 @@ Result<double> StepSearch::shorten(Candidate& candidate, double too_large) {
                  0.25, 0.97);
   Point point;
   const Result<double> error = error_at(candidate, dt, point);
-  if (error && *error < unknown) keep(candidate, point);
+  if (error && *error < worst) keep(candidate, point);
   return error;
 }
 

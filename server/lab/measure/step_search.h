@@ -25,17 +25,17 @@ struct Candidate {
 };
 
 /// Stands for an error or a cost that is not known: worse than any.
-inline constexpr double unknown = std::numeric_limits<double>::infinity();
+inline constexpr double worst = std::numeric_limits<double>::infinity();
 /// A candidate of at most this times the best estimated cost may turn out the cheapest when timed properly.
 inline constexpr double close_race = 1.35;
 /// A search ends when a step that misses the tolerance is at most this times one that keeps it.
-inline constexpr double near_enough = 1.06;
+inline constexpr double search_precision = 1.06;
 
 class StepSearch {
  public:
-  StepSearch(const scene::Scene& scene, const Truth& truth, double tolerance, Bench& bench,
+  StepSearch(const scene::Scene& scene, const Truth& truth, double tolerance, TrialRunner& trials,
              std::stop_token stop)
-      : scene_(scene), truth_(truth), tolerance_(tolerance), bench_(bench), stop_(std::move(stop)) {}
+      : scene_(scene), truth_(truth), tolerance_(tolerance), trials_(trials), stop_(std::move(stop)) {}
 
   /// Lists the candidates of `methods` (empty: of all methods) and times each briefly. Candidates with a step
   /// limit come first, as their longest step is most often accurate already; within both groups the cheapest
@@ -48,7 +48,7 @@ class StepSearch {
   Status search(Candidate& candidate);
 
   /// Runs the candidate at a step of about `dt` [s] and writes the measurements to `point`. Returns the
-  /// largest position error over the cloth's size, or `unknown` if the run blew up.
+  /// largest position error over the cloth's size, or `worst` if the run blew up.
   Result<double> error_at(Candidate& candidate, double dt, Point& point);
 
   /// Runs the candidate at a step so much shorter than its best that, by the method's order, the error
@@ -63,15 +63,15 @@ class StepSearch {
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:
-  Status glance();
+  Status estimate_costs();
   double of_interest(scene::Method method) const;
-  bool close_at_hand(double most) const;
+  bool cost_bound_is_close(double most) const;
   void keep(Candidate& candidate, const Point& point) const;
 
   const scene::Scene& scene_;
   const Truth& truth_;
   double tolerance_;
-  Bench& bench_;
+  TrialRunner& trials_;
   std::stop_token stop_;
   std::vector<Candidate> candidates_;
   std::vector<Point> tried_;

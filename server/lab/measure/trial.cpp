@@ -97,10 +97,10 @@ int steps_to_horizon(double dt, const Truth& truth) {
 
 double fitted_dt(double dt, const Truth& truth) {
   const double fitted = truth.spacing * samples_to_horizon / steps_to_horizon(dt, truth);
-  return std::strtod(significant(fitted, 6).c_str(), nullptr);
+  return std::strtod(with_significant_digits(fitted, 6).c_str(), nullptr);
 }
 
-Result<sim::Simulation*> Bench::prepare(const scene::Scene& scene) {
+Result<sim::Simulation*> TrialRunner::prepare(const scene::Scene& scene) {
   std::unique_ptr<sim::Simulation>& simulation =
       simulations_[{scene.solver.method, sim::plan(scene).most_sweeps}];
   if (!simulation) {
@@ -117,7 +117,8 @@ Result<sim::Simulation*> Bench::prepare(const scene::Scene& scene) {
   return simulation.get();
 }
 
-Result<Trial> Bench::run(scene::Scene scene, const Truth& truth, double until, const std::stop_token& stop) {
+Result<Trial> TrialRunner::run(scene::Scene scene, const Truth& truth, double until,
+                               const std::stop_token& stop) {
   const int steps = steps_to_horizon(scene.solver.dt, truth);
   scene.solver.dt = truth.spacing * samples_to_horizon / steps;
   const Result<sim::Simulation*> prepared = prepare(scene);
@@ -139,7 +140,7 @@ Result<Trial> Bench::run(scene::Scene scene, const Truth& truth, double until, c
     step += stepping.step(next - step);
     trial.wall = stepping.wall();
     trial.simulated = static_cast<double>(step) * scene.solver.dt;
-    if (guard.look() == sim::GuardedRun::Verdict::blown_up) {
+    if (guard.judge_now() == sim::GuardedRun::Verdict::blown_up) {
       trial.blew_up_at = trial.simulated;
       trial.error = {};
       trial.largest_position_error.reset();
@@ -152,8 +153,8 @@ Result<Trial> Bench::run(scene::Scene scene, const Truth& truth, double until, c
   return trial;
 }
 
-Result<std::optional<sim::State>> Bench::run_to(const scene::Scene& scene, double time,
-                                                const std::stop_token& stop) {
+Result<std::optional<sim::State>> TrialRunner::run_to(const scene::Scene& scene, double time,
+                                                      const std::stop_token& stop) {
   const Result<sim::Simulation*> prepared = prepare(scene);
   if (!prepared) return prepared.error();
   sim::Simulation& simulation = **prepared;
@@ -164,14 +165,14 @@ Result<std::optional<sim::State>> Bench::run_to(const scene::Scene& scene, doubl
   for (std::uint64_t done = 0; done < steps;) {
     if (stop.stop_requested()) return cancelled;
     done += stepping.step(steps - done);
-    if (guard.look() == sim::GuardedRun::Verdict::blown_up) return std::optional<sim::State>();
+    if (guard.judge_now() == sim::GuardedRun::Verdict::blown_up) return std::optional<sim::State>();
   }
   return std::optional<sim::State>(simulation.read_state());
 }
 
-Result<std::vector<std::vector<double>>> Bench::time(const std::vector<scene::Scene>& scenes,
-                                                     double simulated, double most, int rounds,
-                                                     const std::stop_token& stop) {
+Result<std::vector<std::vector<double>>> TrialRunner::time(const std::vector<scene::Scene>& scenes,
+                                                           double simulated, double most, int rounds,
+                                                           const std::stop_token& stop) {
   std::vector<std::vector<double>> samples(scenes.size());
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t turn = 0; turn < scenes.size(); ++turn) {

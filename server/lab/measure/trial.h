@@ -23,8 +23,8 @@ struct Trial {
 };
 
 /// Runs trials, and keeps its simulations from one trial to the next, so that kernels are compiled once for
-/// each method. Needs the GL context that was current when the Bench was made.
-class Bench {
+/// each method. Needs the GL context that was current when the TrialRunner was made.
+class TrialRunner {
  public:
   /// A simulation of `scene` at time 0, its kernels compiled and warm. The pointer is valid until the next
   /// call.

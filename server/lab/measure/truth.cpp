@@ -75,8 +75,9 @@ reference::Energy energy_of_free(const World& world, const State& state) {
 
 /// The samples of one run of the reference.
 struct Run {
-  std::vector<std::vector<glm::dvec3>> position;  ///< [sample up to the horizon][vertex] [m]
-  std::vector<double> energy, moving, strain;     ///< [sample] total [J]; kinetic + elastic [J]; |l/L - 1|
+  std::vector<std::vector<glm::dvec3>> position;    ///< [sample up to the horizon][vertex] [m]
+  std::vector<double> energy, kinetic_and_elastic;  ///< [sample] [J]; `energy`: the total
+  std::vector<double> strain;                       ///< [sample] |l/L - 1|
 };
 
 /// The start with every free vertex moved a little in a random direction, the same in every run.
@@ -104,8 +105,8 @@ class Search {
 
   Status run() {
     step_ = longest_step / reference::fastest_rate(truth_.world);
-    if (Status fits = fit_time(); !fits || !truth_.missing.empty()) return fits;
-    if (Status found = find_horizon(); !found || !truth_.missing.empty()) return found;
+    if (Status fits = fit_time(); !fits || !truth_.why_no_reference.empty()) return fits;
+    if (Status found = find_horizon(); !found || !truth_.why_no_reference.empty()) return found;
     return refine();
   }
 
@@ -126,13 +127,15 @@ class Search {
     const double affordable = 0.6 * request_.budget / (5.0 * cost) * step_;
     truth_.time = std::min(request_.time, affordable);
     if (truth_.time == request_.time) return ok();
-    const std::string work = "a second of the reference takes " + significant(1.0 / step_, 3) + " steps of " +
-                             significant(1000.0 * cost, 3) + " ms";
+    const std::string work = "a second of the reference takes " + with_significant_digits(1.0 / step_, 3) +
+                             " steps of " + with_significant_digits(1000.0 * cost, 3) + " ms";
     if (truth_.time < fewest_steps * step_ || truth_.time < 0.02 * request_.time)
-      truth_.missing = work + ", more than fits into " + significant(request_.budget, 3) +
-                       " s; softer or heavier springs, a coarser mesh or a shorter time would bring it back";
+      truth_.why_no_reference =
+          work + ", more than fits into " + with_significant_digits(request_.budget, 3) +
+          " s; softer or heavier springs, a coarser mesh or a shorter time would bring it back";
     else
-      truth_.notes.push_back("The reference ends at " + significant(truth_.time, 3) + " s: " + work + ".");
+      truth_.notes.push_back("The reference ends at " + with_significant_digits(truth_.time, 3) +
+                             " s: " + work + ".");
     return ok();
   }
 
@@ -146,7 +149,8 @@ class Search {
       const double from = truth_.time * (look - 1) / looks, to = truth_.time * look / looks;
       if (!follower.follow(state, from, to) || !follower.follow(copy, from, to)) return cancelled;
       if (!finite(state)) {
-        truth_.missing = "the reference's own motion is not finite after " + significant(to, 3) + " s";
+        truth_.why_no_reference =
+            "the reference's own motion is not finite after " + with_significant_digits(to, 3) + " s";
         return ok();
       }
       most = std::max(most, reference::rms_distance(state.position, copy.position) / begun);
@@ -160,22 +164,24 @@ class Search {
   }
 
   void explain_horizon(double most) {
-    const std::string copy = "a copy that starts " + significant(perturbation, 3) + " of the size away";
+    const std::string copy =
+        "a copy that starts " + with_significant_digits(perturbation, 3) + " of the size away";
     if (truth_.horizon < 4.0 * truth_.time / looks) {
       truth_.horizon = 0.0;
       truth_.horizon_reason = "The motion is chaotic at once: " + copy + " is more than " +
-                              significant(most_amplified, 3) + " times as far away after " +
-                              significant(4.0 * truth_.time / looks, 3) + " s.";
+                              with_significant_digits(most_amplified, 3) + " times as far away after " +
+                              with_significant_digits(4.0 * truth_.time / looks, 3) + " s.";
     } else if (truth_.horizon < truth_.time) {
-      truth_.horizon_reason = "Positions are compared at " + significant(truth_.horizon, 3) + " s: " + copy +
-                              " is up to " + significant(amplified_, 3) +
-                              " times as far away until then, and over " + significant(most_amplified, 3) +
-                              " times soon after.";
+      truth_.horizon_reason = "Positions are compared at " + with_significant_digits(truth_.horizon, 3) +
+                              " s: " + copy + " is up to " + with_significant_digits(amplified_, 3) +
+                              " times as far away until then, and over " +
+                              with_significant_digits(most_amplified, 3) + " times soon after.";
     } else {
       truth_.horizon_reason =
-          "Positions are compared at " + significant(truth_.horizon, 3) + " s, the whole time: " + copy +
+          "Positions are compared at " + with_significant_digits(truth_.horizon, 3) +
+          " s, the whole time: " + copy +
           (most < 1.5 ? " stays as near."
-                      : " comes no more than " + significant(most, 3) + " times as far away.");
+                      : " comes no more than " + with_significant_digits(most, 3) + " times as far away.");
     }
   }
 
@@ -191,7 +197,7 @@ class Search {
       if (truth_.horizon > 0.0 && k <= samples_to_horizon) run.position.push_back(state.position);
       const reference::Energy energy = energy_of_free(truth_.world, state);
       run.energy.push_back(energy.total());
-      run.moving.push_back(energy.kinetic + energy.elastic);
+      run.kinetic_and_elastic.push_back(energy.kinetic + energy.elastic);
       run.strain.push_back(largest_strain(truth_.world, state));
       progress_(share_from + (share_to - share_from) * k / count);
     }
@@ -234,7 +240,7 @@ class Search {
         truth_.horizon > 0.0 ? reference::rms_distance(coarse.position.back(), fine.position.back()) : 0.0;
     const double ratio = before > 0.0 && difference > 0.0 ? std::clamp(before / difference, 1.0, 16.0) : 2.0;
     truth_.position_error = difference / std::max(ratio - 1.0, 1.0);
-    truth_.energy_scale = *std::max_element(fine.moving.begin(), fine.moving.end());
+    truth_.energy_scale = *std::max_element(fine.kinetic_and_elastic.begin(), fine.kinetic_and_elastic.end());
     double sum = 0.0;
     for (std::size_t k = 0; k < fine.energy.size(); ++k)
       sum += (fine.energy[k] - coarse.energy[k]) * (fine.energy[k] - coarse.energy[k]);
@@ -265,7 +271,7 @@ Result<Truth> truth(const scene::Scene& scene, const TruthRequest& request, cons
   truth.world = std::move(*world);
   truth.size = largest_extent(truth.world.model);
   if (Status found = Search(truth, request, stop, progress).run(); !found) return found.error();
-  if (!truth.missing.empty()) {  // steps and costs can be measured without it
+  if (!truth.why_no_reference.empty()) {  // steps and costs can be measured without it
     truth.time = request.time;
     truth.horizon = 0.0;
     truth.spacing = truth.time / samples_to_horizon;

@@ -18,13 +18,13 @@ inline constexpr int samples_to_horizon = 64;
 
 struct Truth {
   reference::World world;
-  double size = 0;             ///< largest extent of a cloth at rest [m]
-  double time = 0;             ///< simulated [s]: as asked for, or less where that was too much work
-  double horizon = 0;          ///< positions can be compared up to this time [s]; 0: at no time
-  std::string horizon_reason;  ///< how the horizon was found, a sentence
-  std::string missing;  ///< why there is no reference, and what can be done; then `time` is as asked for and
-                        ///< there are no samples. Empty: there is a reference
-  double spacing = 0;   ///< between two samples [s]: a 64th of the horizon (without one, of the time)
+  double size = 0;               ///< largest extent of a cloth at rest [m]
+  double time = 0;               ///< simulated [s]: as asked for, or less where that was too much work
+  double horizon = 0;            ///< positions can be compared up to this time [s]; 0: at no time
+  std::string horizon_reason;    ///< how the horizon was found, a sentence
+  std::string why_no_reference;  ///< why there is no reference, and what can be done; then `time` is as asked
+                                 ///< for and there are no samples. Empty: there is a reference
+  double spacing = 0;  ///< between two samples [s]: a 64th of the horizon (without one, of the time)
   std::vector<std::vector<glm::dvec3>>
       position;                ///< [sample up to the horizon][vertex] [m]; sample 0 is at `spacing`
   std::vector<double> energy;  ///< [sample up to `time`] total energy [J]

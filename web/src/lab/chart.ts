@@ -5,7 +5,7 @@ import { Drawing } from "./drawing";
 import { Picture } from "./picture";
 import { curveOf, leftOutText, onAxis, pointTip, PointTable, type Shown } from "./points";
 import { placeOf } from "./present";
-import { presentSetting, Tab, type Surroundings } from "./tab";
+import { presentSetting, Tab, type TabHost } from "./tab";
 import { axisMeanings, axisNames, costText, errorText, settingText } from "./text";
 import { axes, type Axis, type Chart, type Point } from "./types";
 
@@ -32,7 +32,7 @@ export class ChartTab extends Tab<"chart"> {
     {
       tip: (key) => {
         const point = this.point(key);
-        return point ? pointTip(point, this.shown, this.around.mayEdit()) : null;
+        return point ? pointTip(point, this.shown, this.host.mayEdit()) : null;
       },
       choose: (key) => this.applyPoint(this.point(key)),
       order: (key) => {
@@ -44,17 +44,17 @@ export class ChartTab extends Tab<"chart"> {
   );
   private readonly drawing = new Drawing(
     "chart",
-    this.around.jobs,
+    this.host.jobs,
     this.picture,
     "Speed against accuracy: arrow keys go from point to point, Enter applies one",
-    (error) => this.around.problem("The chart could not be drawn", error),
+    (error) => this.host.problem("The chart could not be drawn", error),
   );
   private readonly table = new PointTable((point) => this.applyPoint(point), "All points as a table");
   private onAxis: Axis = "position";
   private result: Chart | null = null;
 
-  constructor(around: Surroundings) {
-    super("chart", around, {
+  constructor(host: TabHost) {
+    super("chart", host, {
       lead:
         "What does each method cost on this scene, and how far from the truth does it end? " +
         "Every method is run with many time steps, against a reference in double precision.",
@@ -154,7 +154,7 @@ export class ChartTab extends Tab<"chart"> {
   }
 
   private showPresent(): void {
-    const document = this.around.document();
+    const document = this.host.document();
     if (!this.result || !document) return;
     const setting = presentSetting(document);
     const place = placeOf(setting, this.result.points, this.onAxis);
@@ -177,6 +177,6 @@ export class ChartTab extends Tab<"chart"> {
   }
 
   private applyPoint(point: Point | undefined): void {
-    if (point) this.around.apply(point.patch, settingText(point));
+    if (point) this.host.apply(point.patch, settingText(point));
   }
 }

@@ -3,7 +3,7 @@ import { labelled, make, makeButton, makeNumber, numberIn, say } from "./dom";
 import { Drawing } from "./drawing";
 import { Picture } from "./picture";
 import { applyButton, curveOf, largestOnTheWay, pointTip, PointTable } from "./points";
-import { Tab, type Surroundings } from "./tab";
+import { Tab, type TabHost } from "./tab";
 import { comparedText, costRange, costText, errorText, settingText } from "./text";
 import type { Choice, Point } from "./types";
 
@@ -50,7 +50,7 @@ export class ChooseTab extends Tab<"choose"> {
   private readonly picture = new Picture({
     tip: (key) => {
       const point = this.point(key);
-      return point ? pointTip(point, largestOnTheWay, this.around.mayEdit()) : null;
+      return point ? pointTip(point, largestOnTheWay, this.host.mayEdit()) : null;
     },
     choose: (key) => this.applyPoint(this.point(key)),
     order: (key) => {
@@ -60,16 +60,16 @@ export class ChooseTab extends Tab<"choose"> {
   });
   private readonly drawing = new Drawing(
     "choose",
-    this.around.jobs,
+    this.host.jobs,
     this.picture,
     "What was tried: arrow keys go from point to point, Enter applies one",
-    (error) => this.around.problem("The picture could not be drawn", error),
+    (error) => this.host.problem("The picture could not be drawn", error),
   );
   private readonly table = new PointTable((point) => this.applyPoint(point), "All that was tried");
   private result: Choice | null = null;
 
-  constructor(around: Surroundings) {
-    super("choose", around, {
+  constructor(host: TabHost) {
+    super("choose", host, {
       lead: "Say how exact the motion has to be; the lab finds the cheapest method and time step that keep it, with a margin of stability.",
       start: "Find the cheapest",
       file: "choice",
@@ -132,7 +132,7 @@ export class ChooseTab extends Tab<"choose"> {
     if (className !== "present") {
       const button = applyButton(`Apply ${settingText(point)}`, () => this.applyPoint(point));
       if (className === "chosen") button.className = "lab-primary";
-      button.disabled = !this.around.mayEdit();
+      button.disabled = !this.host.mayEdit();
       card.append(button);
     }
     return card;
@@ -143,6 +143,6 @@ export class ChooseTab extends Tab<"choose"> {
   }
 
   private applyPoint(point: Point | undefined): void {
-    if (point) this.around.apply(point.patch, settingText(point));
+    if (point) this.host.apply(point.patch, settingText(point));
   }
 }

@@ -7,7 +7,7 @@ import { make } from "./dom";
 import { Jobs } from "./jobs";
 import { SimplifyTab } from "./simplify";
 import { StabilityTab } from "./stability";
-import type { Surroundings } from "./tab";
+import type { TabHost } from "./tab";
 import type { Arrival, Kind, Progress } from "./types";
 import { notice, noticeError } from "../panel/notices";
 import type { Patch, SceneDocument } from "../link/scene_types";
@@ -30,7 +30,7 @@ export class Lab {
     changed: (kind) => this.changed(kind),
     refused: (error) => noticeError("The lab refused this", error),
   });
-  private readonly around: Surroundings = {
+  private readonly host: TabHost = {
     jobs: this.jobs,
     apply: (patch, what) => void this.apply(patch, what),
     problem: (title, error) => noticeError(title, error),
@@ -38,10 +38,10 @@ export class Lab {
     document: () => this.events.document(),
   };
   private readonly tabs = {
-    chart: new ChartTab(this.around),
-    stability: new StabilityTab(this.around),
-    choose: new ChooseTab(this.around),
-    simplify: new SimplifyTab(this.around),
+    chart: new ChartTab(this.host),
+    stability: new StabilityTab(this.host),
+    choose: new ChooseTab(this.host),
+    simplify: new SimplifyTab(this.host),
   };
   private readonly heads = new Map<Kind, HTMLButtonElement>();
   private active: Kind = "chart";

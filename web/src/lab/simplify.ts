@@ -4,7 +4,7 @@ import { Drawing } from "./drawing";
 import { Picture } from "./picture";
 import { applyButton } from "./points";
 import { readTolerance, toleranceField } from "./choose";
-import { Tab, type Surroundings } from "./tab";
+import { Tab, type TabHost } from "./tab";
 import { Table } from "./table";
 import { costText, errorText, settingText } from "./text";
 import type { Simplification, Variant } from "./types";
@@ -36,7 +36,7 @@ export class SimplifyTab extends Tab<"simplify"> {
   private readonly time = makeNumber("1", "1");
   private readonly answer = make("p", "lab-answer");
   private readonly applyAll = makeButton("Apply recommended", "lab-primary", () => {
-    if (this.result) this.around.apply(this.result.recommended.patch, this.result.recommended.name);
+    if (this.result) this.host.apply(this.result.recommended.patch, this.result.recommended.name);
   });
   private readonly stepped = make("p", "lab-fine");
   private readonly table = new Table<Variant>(
@@ -74,7 +74,7 @@ export class SimplifyTab extends Tab<"simplify"> {
           `changes the motion by ${errorText(variant.change)}`,
           `cost ${savedText(variant.cost_ratio)}${variant.saves === "cannot tell" ? ", within the noise" : ""}`,
         ],
-        action: this.around.mayEdit() ? "Apply" : null,
+        action: this.host.mayEdit() ? "Apply" : null,
       };
     },
     choose: (key) => this.applyVariant(this.result?.variants[Number(key)]),
@@ -82,15 +82,15 @@ export class SimplifyTab extends Tab<"simplify"> {
   });
   private readonly drawing = new Drawing(
     "simplify",
-    this.around.jobs,
+    this.host.jobs,
     this.picture,
     "What each part is worth: arrow keys go from one to the next",
-    (error) => this.around.problem("The picture could not be drawn", error),
+    (error) => this.host.problem("The picture could not be drawn", error),
   );
   private result: Simplification | null = null;
 
-  constructor(around: Surroundings) {
-    super("simplify", around, {
+  constructor(host: TabHost) {
+    super("simplify", host, {
       lead:
         "Which parts of this scene does its motion need? Each is left out or made coarser in turn: " +
         "what that changes, and what it saves.",
@@ -116,7 +116,7 @@ export class SimplifyTab extends Tab<"simplify"> {
     this.result = result;
     say(this.answer, result.complete ? result.why : "");
     this.applyAll.hidden = !result.complete || isEmpty(result.recommended.patch);
-    this.applyAll.disabled = !this.around.mayEdit();
+    this.applyAll.disabled = !this.host.mayEdit();
     const { recommended, variants } = result;
     const together =
       result.complete &&
@@ -151,11 +151,11 @@ export class SimplifyTab extends Tab<"simplify"> {
   private buttonOf(variant: Variant): Node {
     if (!variant.measured || isEmpty(variant.patch)) return make("span");
     const button = applyButton(`Apply ${variant.name}`, () => this.applyVariant(variant));
-    button.disabled = !this.around.mayEdit();
+    button.disabled = !this.host.mayEdit();
     return button;
   }
 
   private applyVariant(variant: Variant | undefined): void {
-    if (variant && !isEmpty(variant.patch)) this.around.apply(variant.patch, variant.name);
+    if (variant && !isEmpty(variant.patch)) this.host.apply(variant.patch, variant.name);
   }
 }

@@ -3,7 +3,7 @@ import { labelled, make, makeNumber, makeSelect, numberIn } from "./dom";
 import { Drawing } from "./drawing";
 import { numbersOf } from "./numbers";
 import { Picture, type Tip } from "./picture";
-import { Tab, type Surroundings } from "./tab";
+import { Tab, type TabHost } from "./tab";
 import { Table } from "./table";
 import { stepText } from "./text";
 import type { MapCell, MapColumn, StabilityMap } from "./types";
@@ -54,10 +54,10 @@ export class StabilityTab extends Tab<"stability"> {
   );
   private readonly drawing = new Drawing(
     "stability",
-    this.around.jobs,
+    this.host.jobs,
     this.picture,
     "Stability map: arrow keys go from trial to trial, Enter applies one",
-    (error) => this.around.problem("The map could not be drawn", error),
+    (error) => this.host.problem("The map could not be drawn", error),
   );
   private readonly tableTitle = make("summary");
   private readonly table = new Table<Row>(
@@ -109,8 +109,8 @@ export class StabilityTab extends Tab<"stability"> {
   private result: StabilityMap | null = null;
   private offered = "";
 
-  constructor(around: Surroundings) {
-    super("stability", around, {
+  constructor(host: TabHost) {
+    super("stability", host, {
       lead: "How long may a time step be before a method blows up? Measured by trial on this scene, over one of its numbers, with theory's line beside it.",
       start: "Measure the map",
       file: "stability",
@@ -131,7 +131,7 @@ export class StabilityTab extends Tab<"stability"> {
 
   /// Updates the list of numbers to the scene.
   override sceneChanged(): void {
-    const document = this.around.document();
+    const document = this.host.document();
     if (!document) return;
     this.showPresent(document);
     const numbers = numbersOf(document);
@@ -175,7 +175,7 @@ export class StabilityTab extends Tab<"stability"> {
     const rows = map.methods.flatMap(({ method, columns }) => columns.map((column) => ({ method, column })));
     this.tableTitle.textContent = `All boundaries as a table (${rows.length})`;
     this.table.show(rows);
-    const document = this.around.document();
+    const document = this.host.document();
     if (document) this.showPresent(document);
   }
 
@@ -216,7 +216,7 @@ export class StabilityTab extends Tab<"stability"> {
         `theory's limit: ${limit(column.theory_s)}`,
         ...(column.disagrees ? [`measured and theory disagree: ${column.reason}`] : []),
       ],
-      action: this.around.mayEdit() && this.operations(found) ? "Apply" : null,
+      action: this.host.mayEdit() && this.operations(found) ? "Apply" : null,
     };
   }
 
@@ -230,8 +230,8 @@ export class StabilityTab extends Tab<"stability"> {
     ];
     if (near(column.value, map.present.value)) return solver;
     if (map.field !== allStiffnesses) return [...solver, { op: "replace", path: map.field, value: column.value }];
-    const document = this.around.document();
-    if (!document || this.around.jobs.of("stability").stale) return null;
+    const document = this.host.document();
+    if (!document || this.host.jobs.of("stability").stale) return null;
     const scaled = document.cloths.flatMap(({ material }, i) =>
       stiffnesses.map(
         (kind): Operation => ({
@@ -248,7 +248,7 @@ export class StabilityTab extends Tab<"stability"> {
     const found = this.found(key);
     const operations = found && this.operations(found);
     if (found && operations)
-      this.around.apply(
+      this.host.apply(
         operations,
         `${methodText(found.method).name}, dt ${stepText(found.cell.dt_s)}, ${this.valueText(found.column.value)}`,
       );

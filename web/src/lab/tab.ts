@@ -7,7 +7,7 @@ import { methodText } from "../panel/methods";
 import type { Patch, SceneDocument } from "../link/scene_types";
 
 /// The page around a tab, as the tab uses it.
-export interface Surroundings {
+export interface TabHost {
   jobs: Jobs;
   apply(patch: Patch, what: string): void;
   problem(title: string, error: Error): void;
@@ -40,7 +40,7 @@ export abstract class Tab<K extends Kind> {
   private readonly running = make("div", "lab-running");
   private readonly bar = make("div", "lab-bar", make("i"));
   private readonly doing = make("span", "lab-doing");
-  private readonly cancelButton = makeButton("Cancel", "lab-small", () => void this.around.jobs.cancel(this.kind));
+  private readonly cancelButton = makeButton("Cancel", "lab-small", () => void this.host.jobs.cancel(this.kind));
   private readonly badges = make("div", "lab-badges");
   private readonly about = make("p", "lab-fine");
   private readonly notesTitle = make("summary");
@@ -53,7 +53,7 @@ export abstract class Tab<K extends Kind> {
 
   constructor(
     readonly kind: K,
-    protected readonly around: Surroundings,
+    protected readonly host: TabHost,
     private readonly texts: Texts,
   ) {
     this.lead = make("p", "lab-lead", texts.lead);
@@ -88,11 +88,11 @@ export abstract class Tab<K extends Kind> {
 
   /// Shows the job's state. Call it once more when the tab is selected.
   update(): void {
-    const job = this.around.jobs.of(this.kind);
+    const job = this.host.jobs.of(this.kind);
     const busy = working(job as Job);
     this.element.dataset.state = job.state;
-    this.startButton.disabled = busy || !this.around.mayEdit();
-    this.startButton.title = this.around.mayEdit() ? "" : "A viewer may look at the cloth, not measure it";
+    this.startButton.disabled = busy || !this.host.mayEdit();
+    this.startButton.title = this.host.mayEdit() ? "" : "A viewer may look at the cloth, not measure it";
     this.startButton.textContent = job.result && !busy ? "Measure again" : this.texts.start;
     // hidden for good at the first start: the Cancel button must not move under the pointer
     this.lead.hidden = busy || job.result !== null;
@@ -163,10 +163,10 @@ export abstract class Tab<K extends Kind> {
   protected start(afresh: boolean, paused = this.pause.input.checked): void {
     try {
       const params = { ...this.params(), ...this.chosenMethods(), pause: paused, ...(afresh ? { fresh: true } : {}) };
-      void this.around.jobs.start(this.kind, params);
+      void this.host.jobs.start(this.kind, params);
     } catch (error) {
       this.showOptions(true);
-      this.around.problem("Not measured", error as Error);
+      this.host.problem("Not measured", error as Error);
     }
   }
 
@@ -246,10 +246,10 @@ export abstract class Tab<K extends Kind> {
   }
 
   private async download(format: Format): Promise<void> {
-    const job = this.around.jobs.of(this.kind);
+    const job = this.host.jobs.of(this.kind);
     try {
       const text =
-        job.ofJob !== null ? await this.around.jobs.exported(this.kind, format, this.axis()) : this.kept(format);
+        job.ofJob !== null ? await this.host.jobs.exported(this.kind, format, this.axis()) : this.kept(format);
       const types = { svg: "image/svg+xml", csv: "text/csv", json: "application/json" };
       const address = URL.createObjectURL(new Blob([text], { type: types[format] }));
       const link = make("a");
@@ -258,7 +258,7 @@ export abstract class Tab<K extends Kind> {
       link.click();
       setTimeout(() => URL.revokeObjectURL(address), 10_000);
     } catch (error) {
-      this.around.problem("Not exported", error as Error);
+      this.host.problem("Not exported", error as Error);
     }
   }
 
@@ -266,7 +266,7 @@ export abstract class Tab<K extends Kind> {
   private kept(format: Format): string {
     const text =
       format === "json"
-        ? JSON.stringify(this.around.jobs.of(this.kind).result, null, 1)
+        ? JSON.stringify(this.host.jobs.of(this.kind).result, null, 1)
         : format === "svg"
           ? this.drawn()
           : null;

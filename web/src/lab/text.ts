@@ -60,7 +60,7 @@ export const axisNames: Record<Axis, string> = {
 };
 export const axisMeanings: Record<Axis, string> = {
   position: "RMS distance of the vertices to the exact motion, over the cloth's size",
-  energy: "error of the total energy, over the most that ever moved or stretched",
+  energy: "error of the total energy, over the largest kinetic + elastic energy",
   strain: "error of the largest strain, over that strain",
   rest: "RMS distance to the shape of rest, over the cloth's size",
 };

@@ -1,4 +1,4 @@
-#include "server/lab/measure/beside.h"
+#include "server/lab/measure/substitutes.h"
 
 #include <algorithm>
 #include <chrono>
@@ -19,9 +19,9 @@ using scene::Document;
 constexpr double truth_budget = 20.0;   // wall time of the reference [s]
 constexpr double timed = 0.15;          // longest timing, wall time [s]; a short round sees a steady machine
 constexpr double timing_budget = 40.0;  // wall time [s] after which no rounds beyond looks[0] are added
-/// Without a reference, a copy whose masses are larger by the share `heavier` shows if the motion is chaotic:
-/// if its distance over the size is more than `most_amplified` times that share.
-constexpr double heavier = 1e-4, most_amplified = 100.0;
+/// Without a reference, a copy whose masses are larger by the share `copy_mass_increase` shows if the motion
+/// is chaotic: if its distance over the size is more than `most_amplified` times that share.
+constexpr double copy_mass_increase = 1e-4, most_amplified = 100.0;
 
 }  // namespace
 
@@ -29,22 +29,23 @@ bool Substitute::coarser() const {
   return std::any_of(parts.begin(), parts.end(), [](const Part* part) { return part->coarser > 1; });
 }
 
-Status Beside::start(double time, const std::function<void(double share)>& progress,
-                     std::vector<std::string>& notes) {
+Status Substitutes::start(double time, const std::function<void(double share)>& progress,
+                          std::vector<std::string>& notes) {
   Result<Truth> truth = lab::truth(whole_.document.scene, {time, 1e-6, truth_budget}, stop_, progress);
   if (!truth) return truth.error();
   truth_ = std::move(*truth);
   notes = truth_.notes;
-  if (truth_.missing.empty()) {
+  if (truth_.why_no_reference.empty()) {
     notes.push_back(truth_.horizon_reason);
     if (truth_.horizon > 0.0 && truth_.horizon < truth_.time)
-      notes.push_back("What a part does only later, such as a contact, is no part of its change.");
+      notes.push_back(
+          "Effects of a part after the horizon, such as a later contact, are not counted in its change.");
     if (truth_.horizon == 0.0)
       notes.push_back(
           "Energy and the largest strain can still be compared, and are given; a part is recommended to be "
           "dropped only where positions can be.");
   } else {
-    notes.push_back("There is no reference (" + truth_.missing +
+    notes.push_back("There is no reference (" + truth_.why_no_reference +
                     "): errors are not known, only what each part changes.");
     // The sample times are kept, so that runs can be compared with each other.
     without_truth_ = truth_.time = time;
@@ -56,27 +57,27 @@ Status Beside::start(double time, const std::function<void(double share)>& progr
   whole_.variant.name = "the whole scene";
   whole_.variant.patch = scene::json::object();
   if (Status measured = run(whole_); !measured) return measured;
-  return whole_.variant.measured && !truth_.missing.empty() ? compare_without_truth(notes) : ok();
+  return whole_.variant.measured && !truth_.why_no_reference.empty() ? compare_without_truth(notes) : ok();
 }
 
 /// Without a reference no horizon is known: a copy with slightly larger masses shows if positions can be
 /// compared at the end of the time.
-Status Beside::compare_without_truth(std::vector<std::string>& notes) {
+Status Substitutes::compare_without_truth(std::vector<std::string>& notes) {
   Substitute copy = whole_;
-  for (scene::Cloth& cloth : copy.document.scene.cloths) cloth.mass.value *= 1.0 + heavier;
+  for (scene::Cloth& cloth : copy.document.scene.cloths) cloth.mass.value *= 1.0 + copy_mass_increase;
   if (Status measured = run(copy); !measured) return measured;
   const double apart = copy.variant.change.value_or(1.0);
-  if (copy.variant.measured && apart <= most_amplified * heavier) return ok();
-  notes.push_back(
-      formatted("A copy whose masses are %.3g %% larger", 100 * heavier) +
-      formatted(" is %.3g %% of the size elsewhere", 100 * apart) +
-      formatted(" after %.3g s: positions cannot be compared, and nothing is recommended.", truth_.time));
+  if (copy.variant.measured && apart <= most_amplified * copy_mass_increase) return ok();
+  notes.push_back(formatted(
+      "The vertices of a copy with masses %.3g %% larger are off by %.3g %% of the cloth's size after "
+      "%.3g s: positions cannot be compared, and nothing is recommended.",
+      100 * copy_mass_increase, 100 * apart, truth_.time));
   without_truth_ = 0.0;
   whole_.variant.change.reset();
   return ok();
 }
 
-Status Beside::measure(Substitute& candidate, Document document) {
+Status Substitutes::measure(Substitute& candidate, Document document) {
   candidate.document = std::move(document);
   if (candidate.coarser())
     if (Status stepped = same_share_of_limit(candidate); !stepped) return stepped;
@@ -86,7 +87,7 @@ Status Beside::measure(Substitute& candidate, Document document) {
 
 /// Sets the step of a coarser mesh to the same share of its limit as in the whole scene: a coarser mesh
 /// allows longer steps, which is most of its saving.
-Status Beside::same_share_of_limit(Substitute& candidate) {
+Status Substitutes::same_share_of_limit(Substitute& candidate) {
   const Result<double> limit = limit_of(candidate.document.scene);
   if (!limit) return limit.error();
   const double before = whole_.variant.dt_limit;
@@ -101,7 +102,7 @@ Status Beside::same_share_of_limit(Substitute& candidate) {
   return ok();
 }
 
-Result<double> Beside::limit_of(const scene::Scene& scene) const {
+Result<double> Substitutes::limit_of(const scene::Scene& scene) const {
   const Result<model::Model> model = model::build(scene);
   if (!model) return model.error();
   const double limit = model::dt_limit(scene.solver.method,
@@ -111,16 +112,17 @@ Result<double> Beside::limit_of(const scene::Scene& scene) const {
 }
 
 /// Runs the candidate and fills in errors, change and step limit; the cost is measured later, in turns.
-Status Beside::run(Substitute& candidate) {
+Status Substitutes::run(Substitute& candidate) {
   Variant& variant = candidate.variant;
   const scene::Scene& scene = candidate.document.scene;
   const Result<double> limit = limit_of(scene);
   if (!limit) return limit.error();
   variant.dt_limit = *limit;
   // A coarser mesh has different vertices: compare() interpolates its positions before it compares them.
-  Truth others = truth_;
-  others.position.clear();
-  const Result<Trial> trial = bench_.run(scene, candidate.coarser() ? others : truth_, truth_.time, stop_);
+  Truth truth_without_positions = truth_;
+  truth_without_positions.position.clear();
+  const Result<Trial> trial =
+      trials_.run(scene, candidate.coarser() ? truth_without_positions : truth_, truth_.time, stop_);
   if (!trial) return trial.error();
   if (trial->blew_up_at) {
     variant.reason = "it blew up at " + formatted("%.3g s", *trial->blew_up_at);
@@ -131,13 +133,13 @@ Status Beside::run(Substitute& candidate) {
   return compared_at() > 0.0 ? compare(candidate, *trial) : ok();
 }
 
-Status Beside::compare(Substitute& candidate, const Trial& trial) {
+Status Substitutes::compare(Substitute& candidate, const Trial& trial) {
   if (!trial.at_horizon.empty()) {
     candidate.at_horizon.assign(trial.at_horizon.begin(), trial.at_horizon.end());
   } else {
     scene::Scene scene = candidate.document.scene;
     scene.solver.dt = fitted_dt(scene.solver.dt, truth_);
-    const auto state = bench_.run_to(scene, compared_at(), stop_);
+    const auto state = trials_.run_to(scene, compared_at(), stop_);
     if (!state) return state.error();
     if (!*state) return ok();
     candidate.at_horizon = at_fine_vertices(whole_.document.scene, scene, (*state)->position);
@@ -150,12 +152,12 @@ Status Beside::compare(Substitute& candidate, const Trial& trial) {
   return ok();
 }
 
-Result<std::vector<std::vector<double>>> Beside::turns(const std::vector<const scene::Scene*>& scenes,
-                                                       std::vector<CostComparison>& comparisons) {
+Result<std::vector<std::vector<double>>> Substitutes::turns(const std::vector<const scene::Scene*>& scenes,
+                                                            std::vector<CostComparison>& comparisons) {
   const auto time = [&](std::size_t thing) -> Result<double> {
     if (stop_.stop_requested()) return cancelled;
     if (timer_) return timer_(*scenes[thing]);
-    const auto times = bench_.time({*scenes[thing]}, truth_.time, timed, 1, stop_);
+    const auto times = trials_.time({*scenes[thing]}, truth_.time, timed, 1, stop_);
     if (!times) return times.error();
     return times->front().front();
   };
@@ -166,7 +168,7 @@ Result<std::vector<std::vector<double>>> Beside::turns(const std::vector<const s
   return take_turns(scenes.size(), comparisons, time, more);
 }
 
-Status Beside::time(const std::vector<Substitute*>& candidates, double tolerance) {
+Status Substitutes::time(const std::vector<Substitute*>& candidates, double tolerance) {
   std::vector<const scene::Scene*> scenes{&whole_.document.scene};
   std::vector<CostComparison> comparisons;
   for (const Substitute* candidate : candidates) {
@@ -187,7 +189,7 @@ Status Beside::time(const std::vector<Substitute*>& candidates, double tolerance
   return ok();
 }
 
-Result<CostComparison> Beside::time_over(Substitute& candidate, const Substitute& other) {
+Result<CostComparison> Substitutes::time_over(Substitute& candidate, const Substitute& other) {
   std::vector<CostComparison> comparisons{{2, 1, true}, {2, 0, false}};
   const auto times =
       turns({&whole_.document.scene, &other.document.scene, &candidate.document.scene}, comparisons);

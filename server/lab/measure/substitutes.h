@@ -23,11 +23,11 @@ struct Substitute {
 };
 
 /// Measures a whole scene and the candidates that may stand in for it. Needs a current GL context.
-class Beside {
+class Substitutes {
  public:
   /// For `timer` see SimplifyRequest.
-  Beside(const scene::Document& whole, const std::stop_token& stop,
-         std::function<double(const scene::Scene&)> timer)
+  Substitutes(const scene::Document& whole, const std::stop_token& stop,
+              std::function<double(const scene::Scene&)> timer)
       : stop_(stop), timer_(std::move(timer)) {
     whole_.document = whole;
   }
@@ -53,7 +53,7 @@ class Beside {
   const Substitute& whole() const { return whole_; }
   const Truth& truth() const { return truth_; }
   /// The time at which positions are compared [s]; 0: they cannot be compared.
-  double compared_at() const { return truth_.missing.empty() ? truth_.horizon : without_truth_; }
+  double compared_at() const { return truth_.why_no_reference.empty() ? truth_.horizon : without_truth_; }
 
  private:
   Status same_share_of_limit(Substitute& candidate);
@@ -67,7 +67,7 @@ class Beside {
 
   std::stop_token stop_;
   std::function<double(const scene::Scene&)> timer_;
-  Bench bench_;
+  TrialRunner trials_;
   Truth truth_;
   Substitute whole_;
   double without_truth_ = 0;  ///< compared_at() if there is no reference [s]
