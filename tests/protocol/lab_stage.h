@@ -21,7 +21,7 @@ struct Message {
   std::uint64_t client = 0;
   std::string method;
   json params;
-  std::int64_t at = 0;
+  std::int64_t at = 0;  ///< the queue's time when it was sent [us]
 };
 
 /// Made-up jobs of a test; they check their stop token every millisecond.
@@ -73,6 +73,7 @@ inline scene::Document seed_with(const std::string& assignment) {
 struct Lab {
   Jobs jobs;
   std::vector<Message> messages;
+  std::int64_t now = now_us();  ///< the time of the last pump [us]
   std::map<std::string, json> answers;  ///< by the id of the request
   std::vector<std::uint64_t> holds;
   int releases = 0;
@@ -93,7 +94,7 @@ struct Lab {
   LabQueue::Port port() {
     return {.notify =
                 [this](std::uint64_t client, const char* method, const json& params) {
-                  messages.push_back({client, method, params, now_us()});
+                  messages.push_back({client, method, params, now});
                 },
             .answer = [this](const session::Ticket& ticket,
                              const json& answer) { answers[ticket.id->get<std::string>()] = answer; },
@@ -123,10 +124,14 @@ struct Lab {
     queue.choose_for(session, std::make_shared<const scene::Document>(seed_with(assignment)));
   }
 
+  void pump(std::int64_t time) {
+    now = time;
+    queue.pump(now);
+  }
   template <class Predicate>
   bool until(Predicate predicate) {
     for (const std::int64_t end = now_us() + 10'000'000; now_us() < end;) {
-      queue.pump(now_us());
+      pump(now_us());
       if (predicate()) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }

@@ -5,7 +5,7 @@ import { once } from "node:events";
 import net from "node:net";
 import { after, before, test } from "node:test";
 import { gunzipSync } from "node:zlib";
-import { Server, sleep, withTimeout } from "./harness.mjs";
+import { Client, Server, sleep, withTimeout } from "./harness.mjs";
 
 let server;
 before(async () => (server = await Server.start()));
@@ -124,6 +124,18 @@ test("a request with a body is refused and its connection closed, so that nothin
     3,
     "no body, and requests one after the other",
   );
+});
+
+test("requests in one packet are answered one after the other, also behind a picture or mesh that a session makes", async () => {
+  const viewer = await Client.connect(server);
+  await viewer.notification("hello"); // the session has begun
+  for (const paths of [
+    ["/app.js", "/healthz", "/app.js"],
+    ["/api/mesh.obj", "/healthz", "/api/scene"],
+    ["/api/snapshot.png", "/api/mesh.obj", "/healthz"],
+  ])
+    assert.equal(await answers(paths.map((path) => get(host, path)).join(""), 3), 3, paths.join(" "));
+  await viewer.close();
 });
 
 test("CONNECT is no way to keep a connection that speaks no HTTP", async () => {
