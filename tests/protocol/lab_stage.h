@@ -73,7 +73,7 @@ inline scene::Document seed_with(const std::string& assignment) {
 struct Lab {
   Jobs jobs;
   std::vector<Message> messages;
-  std::int64_t now = now_us();  ///< the time of the last pump [us]
+  std::int64_t now = now_us();          ///< the time of the last pump [us]
   std::map<std::string, json> answers;  ///< by the id of the request
   std::vector<std::uint64_t> holds;
   int releases = 0;
