@@ -181,6 +181,9 @@ void add_limits(CLI::App& command, net::Limits& limits) {
       "wrong tokens a minute from one address; after that its tokens are refused for a while");
   add("--idle-timeout", limits.idle_seconds, 2, 3600,
       "seconds after which a connection that says nothing, not even pong, is closed");
+  add("--unwatched-timeout", limits.scene.unwatched_seconds, 1, 86400,
+      "seconds without viewers after which a session stops stepping, and may be closed to make room for a "
+      "new one");
 }
 
 }  // namespace

@@ -104,12 +104,23 @@ double dt_limit_bound(Method method, const ElementOperator& elements) {
   if (elements.empty() || scene::any_step_is_stable(method))
     return dt_limit(method, {0.0, elements.air_drag()});
   const Mode worst{elements.stiffness_bound(), elements.damping_bound()};
-  if (has_single_worst_mode(method)) return dt_limit(method, worst);
-  // No vibration's root s of s^2 + damping s + omega^2 is farther from 0 than this [1/s].
-  const double farthest = std::max(std::sqrt(worst.omega_squared), worst.damping);
-  if (method == Method::rk4) return 2.6 / farthest;
-  return std::min(elements.least_damping_time() + elements.air_drag() / worst.omega_squared,
-                  worst.damping > 0.0 ? 2.0 / worst.damping : no_limit);
+  switch (method) {
+    case Method::explicit_euler:
+      return std::min(elements.least_damping_time() + elements.air_drag() / worst.omega_squared,
+                      worst.damping > 0.0 ? 2.0 / worst.damping : no_limit);
+    case Method::symplectic_euler:
+    case Method::verlet:
+      return dt_limit(method, worst);
+    case Method::rk4:
+      // No vibration's root s of s^2 + damping s + omega^2 is farther from 0 than this divisor [1/s].
+      return 2.6 / std::max(std::sqrt(worst.omega_squared), worst.damping);
+    case Method::implicit_euler:
+    case Method::pbd:
+    case Method::xpbd:
+    case Method::vbd:
+      break;  // stable at any step
+  }
+  return no_limit;
 }
 
 double dt_limit(Method method, const ElementOperator& elements, const std::stop_token& stop) {

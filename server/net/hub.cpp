@@ -130,7 +130,7 @@ bool Hub::knows_session(const std::string& name) {
 
 std::string Hub::sleeping_room() const {
   std::string longest;
-  std::int64_t since = session::now_us() - static_cast<std::int64_t>(session::unwatched_seconds * 1e6);
+  std::int64_t since = session::now_us() - std::int64_t{limits().scene.unwatched_seconds} * 1'000'000;
   for (const auto& [name, room] : rooms_) {
     if (name == main_session || !room->empty() || room->unwatched_since() > since) continue;
     since = room->unwatched_since();

@@ -58,7 +58,7 @@ class Hub {
 
   Room* find_room(const std::string& name);
   /// The room of this name, opened if it is new; null beyond --max-sessions. To make place, the room that has
-  /// been without clients for the longest time, at least unwatched_seconds, is closed, but never `main`.
+  /// been without clients for the longest time, at least --unwatched-timeout, is closed, but never `main`.
   Room* open_room(const std::string& name);
   bool has_place_for(const std::string& name);
   /// True if the session is open or kept in the state folder. A viewer may enter no other session, because

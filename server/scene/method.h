@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
-#include "server/scene/scene.h"
-
 namespace clothlab::scene {
+
+enum class Method { explicit_euler, symplectic_euler, verlet, rk4, implicit_euler, pbd, xpbd, vbd };
 
 /// The kind of iteration that `solver.iterations` counts.
 enum class Iterations { none, newton_steps, spring_sweeps, vertex_sweeps };

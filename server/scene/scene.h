@@ -10,6 +10,8 @@
 #include <variant>
 #include <vector>
 
+#include "server/scene/method.h"
+
 namespace clothlab::scene {
 
 using glm::dvec3;
@@ -176,9 +178,6 @@ struct SelfCollision {
   double friction = 0.0;    ///< Coulomb coefficient, 0 or more
   bool operator==(const SelfCollision&) const = default;
 };
-
-/// The methods of time stepping. scene/method.h has their names.
-enum class Method { explicit_euler, symplectic_euler, verlet, rk4, implicit_euler, pbd, xpbd, vbd };
 
 struct Solver {
   Method method = Method::symplectic_euler;

@@ -14,14 +14,14 @@ namespace clothlab::scene {
 
 inline constexpr std::size_t shape_kinds = std::variant_size_v<Shape>;
 
-/// The names of the kinds in a document, in the order of Shape: "sphere", "plane".
+/// The names of the kinds in a document, in the order of Shape.
 const std::array<const char*, shape_kinds>& shape_names();
 
 /// The numbers of a shape that its contact code needs (shaders/elements/solid.glsl).
 struct Solid {
   int kind = 0;          ///< the index of the kind in Shape
   dvec3 point{0.0};      ///< [m]
-  dvec3 direction{0.0};  ///< unit length; 0 if the kind has none
+  dvec3 direction{0.0};  ///< turns with the shape (a plane's normal); 0 if the kind has none
   double radius = 0;     ///< [m]
 };
 Solid solid(const Shape& shape);

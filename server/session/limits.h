@@ -11,13 +11,12 @@ namespace clothlab::session {
 struct Limits {
   int vertices = static_cast<int>(scene::max_vertices);      ///< at most, per scene
   int springs = 16 * static_cast<int>(scene::max_vertices);  ///< at most, per scene
+  int unwatched_seconds = 30;  ///< without viewers for so long, a session stops stepping until one comes [s]
 };
 
 inline constexpr std::size_t max_waiting_commands = 1024;   ///< per client
 inline constexpr double min_speed = 0.01, max_speed = 100;  ///< simulated seconds per second
 inline constexpr double status_rate = 10;                   ///< statuses per second
 inline constexpr double diagnosis_rate = 60;                ///< checks for a blow-up per second
-/// A session without viewers for this long stops stepping until somebody watches it again [s].
-inline constexpr double unwatched_seconds = 30;
 
 }  // namespace clothlab::session

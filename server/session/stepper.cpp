@@ -26,8 +26,8 @@ Clock::duration period(double rate) {
 
 Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Exchange& exchange,
                                                  const Limits& limits, std::optional<int> gpu,
-                                                 std::uint32_t last_frame, double patience) {
-  auto stepper = std::unique_ptr<Stepper>(new Stepper(std::move(document), exchange, limits, gpu, patience));
+                                                 std::uint32_t last_frame) {
+  auto stepper = std::unique_ptr<Stepper>(new Stepper(std::move(document), exchange, limits, gpu));
   const Result<scene::Scene> scene = stepper->prepare(stepper->document_);
   if (!scene) return scene.error();
   Result<std::unique_ptr<Engine>> engine =
@@ -286,7 +286,7 @@ void Stepper::warn_if_unconverged() {
 }
 
 bool Stepper::suspended(Clock::time_point now) const {
-  return watchers_ == 0 && duration<double>(now - last_watched_).count() > patience_;
+  return watchers_ == 0 && duration<double>(now - last_watched_).count() > limits_.unwatched_seconds;
 }
 
 Clock::time_point Stepper::next_turn(Clock::time_point now) const {

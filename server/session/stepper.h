@@ -24,12 +24,10 @@ namespace clothlab::session {
 
 class Stepper {
  public:
-  /// Loads `document`, which plays at once. Without viewers for `patience` [s] stepping stops until somebody
-  /// watches again. The first frame has the number `last_frame` + 1.
+  /// Loads `document`, which plays at once. The first frame has the number `last_frame` + 1.
   static Result<std::unique_ptr<Stepper>> create(scene::Document document, Exchange& exchange,
                                                  const Limits& limits, std::optional<int> gpu = std::nullopt,
-                                                 std::uint32_t last_frame = 0,
-                                                 double patience = unwatched_seconds);
+                                                 std::uint32_t last_frame = 0);
 
   /// The name of the device (GL_RENDERER).
   const std::string& renderer() const { return engine_->context->device().name; }
@@ -54,13 +52,8 @@ class Stepper {
   };
   using Answer = std::variant<json, Refusal>;
 
-  Stepper(scene::Document document, Exchange& exchange, const Limits& limits, std::optional<int> gpu,
-          double patience)
-      : document_(std::move(document)),
-        exchange_(exchange),
-        limits_(limits),
-        gpu_(gpu),
-        patience_(patience) {}
+  Stepper(scene::Document document, Exchange& exchange, const Limits& limits, std::optional<int> gpu)
+      : document_(std::move(document)), exchange_(exchange), limits_(limits), gpu_(gpu) {}
   sim::Simulation& simulation() const { return *engine_->simulation; }
   const scene::Scene& scene() const {
     return simulation().scene();
@@ -126,7 +119,6 @@ class Stepper {
   Exchange& exchange_;
   Limits limits_;
   std::optional<int> gpu_;
-  double patience_;  ///< [s]
   std::unique_ptr<Engine> engine_;
   PieceSize piece_size_;
   RealTime real_time_;

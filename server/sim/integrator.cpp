@@ -22,7 +22,7 @@ Result<std::unique_ptr<Integrator>> make(const Surroundings& around, const Plan&
     case scene::Method::vbd:
       return make_gauss_seidel(around, plan);
   }
-  return Error{"/solver/method", scene::name(around.scene.solver.method), "a method that has kernels"};
+  return Error{"/solver/method", "a method without kernels", "use another one"};
 }
 
 }  // namespace

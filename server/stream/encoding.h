@@ -1,5 +1,5 @@
-// The encodings of a frame's vertices, and all that the server's C++ knows of each. The page's decoders are
-// in web/src, the layouts in server/net/README.md, the packing in shaders/stream/pack.comp.
+// The encodings of a frame's vertices, and all that the server's C++ knows of each. The page's decoder,
+// of q16 alone, is in web/src, the layouts in server/net/README.md, the packing in shaders/stream/pack.comp.
 #pragma once
 
 #include <array>
@@ -25,6 +25,13 @@ inline constexpr std::array encodings{
     EncodingFacts{Encoding::q16, "q16", 8, "ENCODING_Q16"},
 };
 inline constexpr std::size_t encoding_count = encodings.size();
+static_assert(
+    [] {
+      for (std::size_t i = 0; i < encoding_count; ++i)
+        if (static_cast<std::size_t>(encodings[i].encoding) != i) return false;
+      return true;
+    }(),
+    "the rows are in the order of Encoding");
 
 constexpr const EncodingFacts& facts(Encoding encoding) {
   return encodings[static_cast<std::size_t>(encoding)];

@@ -36,11 +36,13 @@ void main() {
     packed_vertices[at + axis] = floatBitsToUint(x[axis]);
     packed_vertices[at + 3 + axis] = floatBitsToUint(n[axis]);
   }
-#else
+#elif defined(ENCODING_Q16)
   vec3 share = clamp((x - low) / max(extent, vec3(1e-30)), vec3(0.0), vec3(1.0));
   uvec3 u = uvec3(share * 65535.0 + 0.5);
   ivec2 o = ivec2(round(octahedral(n) * 127.0));
   packed_vertices[2 * i] = u.x | u.y << 16;
   packed_vertices[2 * i + 1] = u.z | uint(o.x & 255) << 16 | uint(o.y & 255) << 24;
+#else
+#error this encoding has no branch in pack.comp
 #endif
 }

@@ -59,6 +59,7 @@ export async function launch() {
       "--disable-background-networking",
       "--disable-component-update",
       "--disable-sync",
+      "--disable-gpu-compositing",
     ],
   });
   return running;
@@ -99,14 +100,16 @@ export function withServer(...args) {
 }
 
 export class Viewer {
-  /// Opens the page on a session of its own, and waits until it has drawn.
+  /// Opens the page on a session of its own, and waits until it has drawn. Pixels in software take most of the time
+  /// of these tests: unless the picture must be `sharp`, there is one for every 4x4 of the layout's.
   static async open(
     browser,
     server,
-    { session = "main", width = 900, height = 600, colorScheme = "light", drawn = 3 } = {},
+    { session = "main", width = 900, height = 600, colorScheme = "light", drawn = 3, sharp = false } = {},
   ) {
     const viewer = new Viewer();
-    viewer.page = await browser.newPage({ viewport: { width, height }, colorScheme });
+    const deviceScaleFactor = sharp ? 1 : 0.25;
+    viewer.page = await browser.newPage({ viewport: { width, height }, deviceScaleFactor, colorScheme });
     viewer.page.setDefaultTimeout(patience);
     viewer.complaints = [];
     viewer.page.on("console", (message) => {

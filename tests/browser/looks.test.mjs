@@ -33,7 +33,13 @@ for (const [width, height] of [
 ]) {
   for (const colorScheme of ["dark", "light"]) {
     browserTest(`at ${width}x${height}, ${colorScheme}, nothing is cut off and the console is silent`, async () => {
-      const viewer = await here.open({ session: `looks-${width}-${colorScheme}`, width, height, colorScheme });
+      const viewer = await here.open({
+        sharp: true,
+        session: `looks-${width}-${colorScheme}`,
+        width,
+        height,
+        colorScheme,
+      });
       await viewer.until(() => window.clothlab.simTime > 1.1);
       await viewer.page.keyboard.press(" ");
       await viewer.page.waitForTimeout(900); // a picture at rest is drawn at full resolution

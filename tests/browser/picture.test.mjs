@@ -4,7 +4,7 @@ import { browserTest, withServer } from "./browser.mjs";
 const { open } = withServer();
 
 browserTest("the cloth is on the screen: a large, shaded, red surface where the seed scene hangs", async () => {
-  const viewer = await open({ session: "drawn" });
+  const viewer = await open({ session: "drawn", sharp: true });
   await viewer.until(() => window.clothlab.simTime > 0.7);
   await viewer.page.waitForTimeout(400); // past the fade-in
   const seen = await viewer.cloth();
@@ -13,7 +13,7 @@ browserTest("the cloth is on the screen: a large, shaded, red surface where the 
 });
 
 browserTest("the cloth moves: two screenshots a moment apart differ, and it has fallen", async () => {
-  const viewer = await open({ session: "moves" });
+  const viewer = await open({ session: "moves", sharp: true });
   await viewer.page.waitForTimeout(400);
   const before = await viewer.cloth();
   const time = await viewer.read("simTime");
@@ -37,7 +37,7 @@ browserTest("the cloth hits the sphere and lies on it: vertices touch its surfac
 });
 
 browserTest("the picture follows the scene: a change of colour shows on the screen", async () => {
-  const viewer = await open({ session: "colour" });
+  const viewer = await open({ session: "colour", sharp: true });
   await viewer.until(() => window.clothlab.simTime > 0.5);
   const red = await viewer.cloth();
   assert.ok(red.share > 0.03);

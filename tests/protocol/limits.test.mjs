@@ -43,6 +43,7 @@ const limits = {
   "--auth-timeout": 1,
   "--max-wrong-tokens": 1,
   "--idle-timeout": 2,
+  "--unwatched-timeout": 1,
 };
 
 test("each limit has a flag with a default in the help, and refuses less than its least value with what is allowed", async () => {

@@ -55,11 +55,11 @@ struct Fixture {
   std::unique_ptr<session::Stepper> stepper;
   std::vector<session::Command> commands;
 
-  explicit Fixture(double patience = session::unwatched_seconds) {
+  explicit Fixture(const session::Limits& limits = {}) {
     Result<scene::Document> seed = scene::load_preset("seed");
     REQUIRE(seed);
     Result<std::unique_ptr<session::Stepper>> created =
-        session::Stepper::create(std::move(*seed), exchange, session::Limits(), std::nullopt, 0, patience);
+        session::Stepper::create(std::move(*seed), exchange, limits);
     REQUIRE(created);
     stepper = std::move(*created);
   }
@@ -104,12 +104,14 @@ TEST_CASE("in steady state the stepping thread allocates nothing but the frames 
   CHECK(counted <= frames * a_frame + a_notice);
 }
 
-TEST_CASE("an unwatched session steps until its patience ends, sleeps, and goes on when somebody comes") {
-  Fixture session(1.5);
+TEST_CASE("an unwatched session steps until --unwatched-timeout, sleeps, and goes on when somebody comes") {
+  session::Limits limits;
+  limits.unwatched_seconds = 1;
+  Fixture session(limits);
   session.turn_for(0.2);
   const std::uint64_t early = session.exchange.steps();
   CHECK(early > 0);
-  session.turn_for(2.5);
+  session.turn_for(2.0);
   const std::uint64_t asleep = session.exchange.steps();
   CHECK(asleep > early);
   session.turn_for(0.5);

@@ -18,7 +18,8 @@ const char* colour(scene::Method method) {
   // In the order of scene::Method.
   constexpr std::array<const char*, 8> colours{"#8c8c8c", "#e69f00", "#0072b2", "#56b4e9",
                                                "#d55e00", "#cc79a7", "#009e73", "#7a5fb5"};
-  return colours[static_cast<std::size_t>(method) % colours.size()];
+  static_assert(colours.size() >= scene::methods.size(), "each method needs a colour, and a mark (plot.cpp)");
+  return colours[static_cast<std::size_t>(method)];
 }
 
 std::size_t mark_shape(scene::Method method) {

@@ -57,15 +57,24 @@ double growth_a_step(Method method, const model::Mode& mode, double dt) {
   if (!(dt > limit)) return 0.0;
   const double q = mode.omega_squared * dt * dt, d = mode.damping * dt;
   const auto [far, near] = roots(mode, dt);
-  double factor = 1.0;
-  if (method == Method::explicit_euler)
-    factor = std::max(std::abs(explicit_factor(far)), std::abs(explicit_factor(near)));
-  else if (method == Method::rk4)
-    factor = std::max(std::abs(rk4_factor(far)), std::abs(rk4_factor(near)));
-  else if (method == Method::symplectic_euler)
-    factor = symplectic_factor(q, d);
-  else if (method == Method::verlet)
-    factor = verlet_factor(q, d);
+  const double factor = [&, far = far, near = near] {
+    switch (method) {
+      case Method::explicit_euler:
+        return std::max(std::abs(explicit_factor(far)), std::abs(explicit_factor(near)));
+      case Method::rk4:
+        return std::max(std::abs(rk4_factor(far)), std::abs(rk4_factor(near)));
+      case Method::symplectic_euler:
+        return symplectic_factor(q, d);
+      case Method::verlet:
+        return verlet_factor(q, d);
+      case Method::implicit_euler:
+      case Method::pbd:
+      case Method::xpbd:
+      case Method::vbd:
+        break;  // stable at any step
+    }
+    return 1.0;
+  }();
   return std::max(0.0, std::log(factor));
 }
 
