@@ -96,7 +96,8 @@ async function check(viewer, moment, found = []) {
       await viewer.page.screenshot({ path: `${screenshots}framing-${seen.scene}-${moment}-${width}x${height}.png` });
     if (seen.hidden)
       found.push(
-        `${seen.scene} ${moment} at ${width}x${height}: ${seen.hidden} of ${seen.of} vertices, up to ${seen.worst} px into ${seen.where}; cloth ${seen.box}`,
+        `${seen.scene} ${moment} at ${width}x${height}: ${seen.hidden} of ${seen.of} vertices, ` +
+          `up to ${seen.worst} px into ${seen.where}; cloth ${seen.box}`,
       );
     else if (seen.cut) found.push(`at ${width}x${height} ${seen.cut} is cut off`);
     else if (seen.fill < 0.15)

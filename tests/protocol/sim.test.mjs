@@ -41,7 +41,7 @@ test("sim.status comes about 10 times a second, playing or not", async () => {
   }
 });
 
-test("under PBD sim.status tells for each cloth what it makes of N/m at this dt and these iterations, under the others nothing", async () => {
+test("under PBD alone sim.status tells for each cloth what it makes of N/m at this dt and these iterations", async () => {
   const stiffness = async (predicate) =>
     (await client.nextNotification("sim.status", ({ solver }) => predicate(solver.pbd_stiffness))).solver.pbd_stiffness;
   const {

@@ -125,7 +125,10 @@ test("a folder belongs to one server: another is refused until that one has ende
       assert.equal(code, 2);
       assert.match(
         stderr,
-        /^clothlab: error: --state-dir .*clothlab-state-.*: another process is using this folder; end that process, or choose a different folder\n$/,
+        new RegExp(
+          "^clothlab: error: --state-dir .*clothlab-state-.*: another process is using this folder; " +
+            "end that process, or choose a different folder\\n$",
+        ),
       );
     }
     const beside = await Server.start("--state-dir", join(kept, "below"));

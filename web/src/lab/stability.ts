@@ -111,7 +111,9 @@ export class StabilityTab extends Tab<"stability"> {
 
   constructor(host: TabHost) {
     super("stability", host, {
-      lead: "How long may a time step be before a method blows up? Measured by trial on this scene, over one of its numbers, with theory's line beside it.",
+      lead:
+        "How long may a time step be before a method blows up? Measured by trial on this scene, " +
+        "over one of its numbers, with theory's line beside it.",
       start: "Measure the map",
       file: "stability",
       awaits: "The map: a picture for each method, the time step over the stiffness, coloured by what the energy does.",
