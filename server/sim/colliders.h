@@ -13,8 +13,8 @@ namespace clothlab::sim {
 /// never lets a vertex in.
 double contact_margin(const scene::Scene& scene, const model::Model& model);
 
-/// Sets the uniform `solids` of `program`, which must have been compiled for this scene's number of colliders
-/// of each kind of shape. `margin`: see contact_margin [m].
+/// Sets the uniform `solids` of `program`, which must have been compiled for this scene's solids
+/// (Plan::solids). `margin`: see contact_margin [m].
 void set_colliders(const gl::Program& program, const scene::Scene& scene, const MotionTable& motions,
                    double margin);
 

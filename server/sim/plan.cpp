@@ -15,14 +15,25 @@ bool moves(const scene::Motion& motion) {
   return !std::holds_alternative<std::monostate>(motion);
 }
 
-/// The text "meet(kind, first, end) " for each kind of shape that the scene has, for
-/// shaders/collide/colliders.glsl.
+std::vector<SolidRun> solid_runs(const scene::Scene& scene) {
+  std::vector<SolidRun> runs;
+  for (std::size_t kind = 0; kind < scene::shape_kinds; ++kind)
+    for (const scene::Collider& collider : scene.colliders) {
+      if (collider.shape.index() != kind) continue;
+      const SolidRun next{kind, moves(collider.motion)};
+      if (runs.empty() || runs.back().kind != kind || runs.back().moves != next.moves) runs.push_back(next);
+      ++runs.back().count;
+    }
+  return runs;
+}
+
+/// The text "meet(kind, moves, first, end) " for each run of solids, for shaders/collide/colliders.glsl.
 std::string each_solid(const Plan& plan) {
   std::string list;
   int first = 0;
-  for (std::size_t kind = 0; kind < plan.solids.size(); ++kind) {
-    const int end = first + plan.solids[kind];
-    if (end > first) list += formatted("meet(%d, %d, %d) ", static_cast<int>(kind), first, end);
+  for (const SolidRun& run : plan.solids) {
+    const int end = first + run.count;
+    list += formatted("meet(%zu, %s, %d, %d) ", run.kind, run.moves ? "true" : "false", first, end);
     first = end;
   }
   return list;
@@ -52,7 +63,7 @@ Plan plan(const scene::Scene& scene) {
     plan.pins |= !cloth.pins.empty();
     plan.strain_limit |= cloth.material.strain_limit.has_value();
   }
-  for (const scene::Collider& collider : scene.colliders) ++plan.solids[collider.shape.index()];
+  plan.solids = solid_runs(scene);
   plan.moving = static_cast<int>(moving_motions(scene).size());
   plan.self_collision = scene.self_collision.has_value();
   if (scene::sweeps(plan.method))
@@ -88,9 +99,11 @@ std::vector<Simulation::Part> parts(const Plan& plan) {
   add(Kind::term, "bend_springs", plan.bend, "their stiffness is 0 in every cloth");
   add(Kind::term, "self_contacts", plan.self_collision, "self_collision is null");
   add(Kind::term, "moving_poses", plan.moving > 0, "no pin and no collider moves");
-  for (std::size_t kind = 0; kind < plan.solids.size(); ++kind) {
+  for (std::size_t kind = 0; kind < scene::shape_kinds; ++kind) {
     const std::string name = scene::shape_names()[kind];
-    add(Kind::term, name + "s", plan.solids[kind] > 0, "the scene has no " + name);
+    const bool any = std::any_of(plan.solids.begin(), plan.solids.end(),
+                                 [&](const auto& run) { return run.kind == kind; });
+    add(Kind::term, name + "s", any, "the scene has no " + name);
   }
   return list;
 }

@@ -1,7 +1,7 @@
 // The passes and the parts of kernels that a scene needs, derived from the scene alone: no step runs others.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <numeric>
 #include <string>
@@ -23,6 +23,14 @@ constexpr std::uint32_t vertex_groups(std::uint32_t vertex_count) {
   return (vertex_count + group_size - 1) / group_size;
 }
 
+/// Colliders in a row, as the kernels meet them: kind after kind, within a kind in the scene's order.
+struct SolidRun {
+  std::size_t kind = 0;  ///< scene::Shape's index
+  bool moves = false;    ///< true if each of them has a motion, false if none has
+  int count = 0;
+  bool operator==(const SolidRun&) const = default;
+};
+
 /// The properties of a scene for which the step kernels are compiled. Scenes with equal plans run the same
 /// kernels.
 struct Plan {
@@ -30,8 +38,8 @@ struct Plan {
   bool structural = false, shear = false, bend = false;  ///< true if any cloth has such springs
   bool springs() const { return structural || shear || bend; }
   bool pins = false;
-  int moving = 0;                                ///< distinct motions of pins and colliders, null left out
-  std::array<int, scene::shape_kinds> solids{};  ///< number of colliders of each kind of shape
+  int moving = 0;                ///< distinct motions of pins and colliders, null left out
+  std::vector<SolidRun> solids;  ///< in runs as long as possible
   bool self_collision = false;
   std::uint32_t neighbour_slots = 64;  ///< of each neighbour list; more are made if a list needs them
   bool strain_limit = false;           ///< true if any cloth has one
@@ -39,7 +47,10 @@ struct Plan {
   /// Number of a step's rows in the pose table after the row of its start: the step's end and, before it, its
   /// middle if the method uses poses there.
   int pose_rows() const { return scene::facts(method).needs_midpoint_poses ? 2 : 1; }
-  int solid_count() const { return std::accumulate(solids.begin(), solids.end(), 0); }
+  int solid_count() const {
+    return std::accumulate(solids.begin(), solids.end(), 0,
+                           [](int sum, const SolidRun& run) { return sum + run.count; });
+  }
   bool operator==(const Plan&) const = default;
 };
 

@@ -1,6 +1,6 @@
 // Stops a vertex's step at the surfaces of solids, by the law of each kind (elements/solid.glsl). Solids are met kind
-// after kind, within a kind in the scene's order. A kernel is compiled for the kinds that its scene has:
-// EACH_SOLID(meet) calls `meet(kind, first, end)` for each of them; solids first to end - 1 are of that kind.
+// after kind, within a kind in the scene's order. A kernel is compiled for the solids of its scene: EACH_SOLID(meet) calls
+// `meet(kind, moves, first, end)` for each run of them that are of one kind and all move or all rest.
 #include "../elements/contact.glsl"
 #include "../elements/solid.glsl"
 #include "../rarely.glsl"
@@ -21,7 +21,9 @@ vec3 met_braking;
 vec3 second_velocity;  // a second velocity of the vertex: contacts change it, too
 #endif
 
-void meet_surface(int motion, vec3 surface, vec3 normal, vec3 from, vec3 x, inout vec3 v) {
+/// `surface`: friction, restitution, motion.
+void meet_surface(vec3 surface, vec3 normal, vec3 from, vec3 x, inout vec3 v) {
+  int motion = int(surface.z);
   vec3 moving = vec3(0.0);
   RARELY(motion >= 0) moving = velocity_at(motion, END_ROW, x);
   met_normal = normal;
@@ -35,28 +37,27 @@ void meet_surface(int motion, vec3 surface, vec3 normal, vec3 from, vec3 x, inou
 }
 
 #if SOLID_COUNT > 0
-/// Solid i at a row of the step, thicker by `reach` [m].
-Solid solid_at(int i, int motion, int row, float reach) {
-  vec3 point = solids[3 * i].xyz, direction = solids[3 * i + 1].xyz;
-  RARELY(motion >= 0) {
-    point = placed(motion, row, point);
-    direction = turned(motion, row, direction);
-  }
-  return Solid(point, direction, solids[3 * i].w + reach);
+/// Where its motion takes a solid, at a row of the step.
+Solid moved_to(int motion, int row, Solid solid) {
+  return Solid(placed(motion, row, solid.point), turned(motion, row, solid.direction), solid.radius);
 }
 
-/// Stops the step from -> x at solid i, and changes the end velocity v. Returns true if they meet.
-bool meet_solid(int kind, int i, vec3 from, inout vec3 x, inout vec3 v, float reach) {
+/// Stops the step from -> x at solid i, thicker by `reach` [m], and changes the end velocity v. Returns the number of
+/// contacts, 0 or 1.
+int meet_solid(int kind, bool moves, int i, vec3 from, inout vec3 x, inout vec3 v, float reach) {
   vec3 surface = solids[3 * i + 2].xyz;
-  int motion = int(surface.z);
-  Solid before = solid_at(i, motion, 0, reach), after = solid_at(i, motion, END_ROW, reach);
-  bool met = false;
+  int met = 0;
+  Solid before = Solid(solids[3 * i].xyz, solids[3 * i + 1].xyz, solids[3 * i].w + reach), after = before;
+  if (moves) {
+    after = moved_to(int(surface.z), END_ROW, before);
+    before = moved_to(int(surface.z), 0, before);
+  }
   RARELY(solid_near(kind, before, after, from, x)) {
     vec3 stopped, normal;
     if (solid_contact(kind, before, after, from, x, stopped, normal)) {
       x = stopped;
-      meet_surface(motion, surface, normal, from, x, v);
-      met = true;
+      meet_surface(surface, normal, from, x, v);
+      met = 1;
     }
   }
   return met;
@@ -69,8 +70,8 @@ int resolve_colliders(vec3 from, inout vec3 x, inout vec3 v, float reach) {
   int contacts = 0;
   met_braking = vec3(0.0);
 #if SOLID_COUNT > 0
-#define MEET(kind, first, end) \
-  for (int i = first; i < end; ++i) contacts += int(meet_solid(kind, i, from, x, v, reach));
+#define MEET(kind, moves, first, end) \
+  for (int i = first; i < end; ++i) contacts += meet_solid(kind, moves, i, from, x, v, reach);
   EACH_SOLID(MEET)
 #endif
   return contacts;

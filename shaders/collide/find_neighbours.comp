@@ -22,11 +22,28 @@ float rest_distance(int i, int j) {
   return a.w == b.w ? distance(a.xyz, b.xyz) : thickness;
 }
 
-/// True if j is in entries first to end - 1 of `excluded`.
-bool left_out(int first, int end, uint j) {
-  for (int at = first; at < end; ++at)
-    if (FETCH_UINT(excluded, at) == j) return true;
-  return false;
+/// Vertices that self-collision leaves out at one vertex. The first twelve, as many as a grid's vertex has springs, are
+/// held in registers: the search asks for each near pair, and memory is slow to ask. The others are entries `next` to
+/// `end` - 1 of `excluded`.
+struct LeftOut {
+  uvec4 held[3];
+  int next, end;
+};
+
+LeftOut left_out_at(int i) {
+  int first = int(FETCH_UINT(first_excluded, i)), end = int(FETCH_UINT(first_excluded, i + 1));
+  LeftOut list = LeftOut(uvec4[](uvec4(i), uvec4(i), uvec4(i)), first + 12, end);
+  for (int k = 0; k < 12; ++k)
+    if (first + k < end) list.held[k / 4][k % 4] = FETCH_UINT(excluded, first + k);
+  return list;
+}
+
+bool is_in(LeftOut list, uint j) {
+  uvec4 other = uvec4(j);
+  bool found = any(equal(list.held[0], other)) || any(equal(list.held[1], other)) || any(equal(list.held[2], other));
+  for (int at = list.next; at < list.end; ++at)
+    if (FETCH_UINT(excluded, at) == j) found = true;
+  return found;
 }
 
 void main() {
@@ -43,7 +60,7 @@ void main() {
   // each cell.
   ivec3 corner = corner_of(x);
   int first = i * NEIGHBOUR_SLOTS;
-  int first_left_out = int(FETCH_UINT(first_excluded, i)), end_left_out = int(FETCH_UINT(first_excluded, i + 1));
+  LeftOut left_out = left_out_at(i);
   int count = 0;
   uint lost = 0;
   ivec3 cell = corner;
@@ -58,7 +75,7 @@ void main() {
     vec3 y = FETCH(position, j).xyz;
     float gap = distance(x, y);
     // A bucket may hold several cells; only vertices of this cell count, so that no vertex is listed twice.
-    if (j != uint(i) && gap < reach && cell_of(y) == cell && !left_out(first_left_out, end_left_out, j)) {
+    if (j != uint(i) && gap < reach && cell_of(y) == cell && !is_in(left_out, j)) {
       int slot = count;
       if (count < NEIGHBOUR_SLOTS) ++count;
       else ++lost;
