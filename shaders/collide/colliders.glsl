@@ -1,6 +1,6 @@
 // Stops a vertex's step at the surfaces of solids, by the law of each kind (elements/solid.glsl). Solids are met kind
-// after kind, within a kind in the scene's order. A kernel is compiled for the solids of its scene: EACH_SOLID(meet) calls
-// `meet(kind, moves, first, end)` for each run of them that are of one kind and all move or all rest.
+// after kind, within a kind in the scene's order. A kernel is compiled for the solids of its scene: EACH_SOLID(meet)
+// calls `meet(kind, moves, first, end)` for each run of them that are of one kind and all move or all rest.
 #include "../elements/contact.glsl"
 #include "../elements/solid.glsl"
 #include "../rarely.glsl"
