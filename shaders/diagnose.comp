@@ -28,15 +28,18 @@ void main() {
     vec4 x = FETCH(position, i), v = FETCH(velocity, i);
     bool moving_pin = x.w == 0.0 && v.w >= 0.0, touching = x.w > 0.0 && v.w > 0.0;
     vec3 force = vec3(0.0);
-#define PLACE(j) (x.xyz - FETCH(position, j).xyz)
-#define VELOCITY(j) (v.xyz - FETCH(velocity, j).xyz)
 #each Law
     for (EntryRange at = entry_range(Law_LIST, i); at.first < at.end; at.first += Law_TEXELS * SLICE_SIZE) {
-      LawEntry entry = Law_ENTRY(at.first);
-      LawEdges place = Law_EDGES(entry, PLACE);
-      sum.y += element_energy(entry.law, place) / Law_CORNERS;  // the other corners count the rest
-      most.x = max(most.x, element_strain(entry.law, place));
-      if (moving_pin || touching) force += element_force(entry.law, place, Law_EDGES(entry, VELOCITY));
+      LawEntry entry = entry_of_Law(at.first);
+      LawEdges dx, dv;
+      for (int k = 0; k < Law_CORNERS - 1; ++k) {
+        int j = entry.others[k];
+        dx.d[k] = x.xyz - FETCH(position, j).xyz;
+        dv.d[k] = v.xyz - FETCH(velocity, j).xyz;
+      }
+      sum.y += element_energy(entry.law, dx) / float(Law_CORNERS);  // the other corners count the rest
+      most.x = max(most.x, element_strain(entry.law, dx));
+      if (moving_pin || touching) force += element_force(entry.law, dx, dv);
     }
 #end
     float speed_squared = dot(v.xyz, v.xyz);

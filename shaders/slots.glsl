@@ -43,9 +43,8 @@ const int slot_slope = 3;
 
 // Those of PBD, XPBD and VBD: methods/gauss_seidel.comp writes and reads the slots.
 const int unit_deviation = 9;        // the pass before; methods/deviation.glsl
-const int unit_projected = 10;       // server/sim/gauss_seidel.cpp; methods/spring_projection.glsl
-const int unit_gains = 11;           // the same
-const int unit_visited = 12;         // server/sim/gauss_seidel.cpp; methods/vertex_descent.glsl
+const int unit_visits = 10;          // PBD, XPBD: server/sim/gauss_seidel.cpp; methods/element_projection.glsl
+const int unit_visited = 11;         // VBD: server/sim/gauss_seidel.cpp; methods/vertex_descent.glsl
 const int slot_deviation = 3;        // each pass; the next one, as unit_deviation
 const int slot_pushed = 4;           // XPBD
 const int slot_lacking = 4;          // VBD

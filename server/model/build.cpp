@@ -193,7 +193,7 @@ Status add_cloth(Model& model, const scene::Cloth& cloth) {
   const Index first = model.vertex_count();
   ClothRange range{first, static_cast<Index>(position.size()), model.triangle_count(),
                    static_cast<Index>(arrays.triangles.size()), mean_edge_length(arrays, position)};
-  Batch<elements::Spring>& springs = model.elements.springs;
+  Batch<elements::Spring>& springs = model.elements.of<elements::Spring>();
   springs.reserve(springs.size() + arrays.springs.size());
   for (const MeshSpring& spring : arrays.springs)
     springs.push_back({{spring.a + first, spring.b + first},

@@ -86,10 +86,8 @@ const scene::Grid* grid_of(const scene::Scene& scene, Index cloth) {
   return std::get_if<scene::Grid>(&scene.cloths[cloth].mesh);
 }
 
-}  // namespace
-
 template <class Law>
-Colouring colour_elements(const Model& model, const scene::Scene& scene, const Batch<Law>& batch) {
+Colouring colour_batch(const Model& model, const scene::Scene& scene, const Batch<Law>& batch) {
   constexpr auto corners = static_cast<Index>(Element<Law>::corners);
   std::vector<Index> colour(batch.size(), uncoloured), queue;
   for (Index i = 0; i < batch.size(); ++i) {
@@ -107,7 +105,27 @@ Colouring colour_elements(const Model& model, const scene::Scene& scene, const B
   return group(colour);
 }
 
-template Colouring colour_elements(const Model&, const scene::Scene&, const Batch<elements::Spring>&);
+/// Takes the colours from the grids in which an element joins two vertices of one colour.
+void drop_clashes(const Model& model, const scene::Scene& scene, std::vector<Index>& colour) {
+  std::vector<char> clashes(scene.cloths.size(), 0);
+  each_element(model.elements, [&](const auto& element) {
+    for (std::size_t b = 1; b < element.vertices.size(); ++b)
+      for (std::size_t a = 0; a < b; ++a)
+        if (colour[element.vertices[a]] == colour[element.vertices[b]])
+          clashes[model.vertex_cloth[element.vertices[a]]] = 1;
+  });
+  for (Index i = 0; i < colour.size(); ++i)
+    if (clashes[model.vertex_cloth[i]]) colour[i] = uncoloured;
+}
+
+}  // namespace
+
+std::array<Colouring, elements::law_count> colour_elements(const Model& model, const scene::Scene& scene) {
+  std::array<Colouring, elements::law_count> colourings;
+  std::size_t law = 0;
+  model.elements.each([&](const auto& batch) { colourings[law++] = colour_batch(model, scene, batch); });
+  return colourings;
+}
 
 Colouring colour_vertices(const Model& model, const scene::Scene& scene) {
   std::vector<Index> colour(model.vertex_count(), uncoloured), queue;
@@ -116,10 +134,11 @@ Colouring colour_vertices(const Model& model, const scene::Scene& scene) {
     if (const scene::Grid* grid = grid_of(scene, cloth)) {
       const GridPlace at = place(*grid, i - model.cloths[cloth].first_vertex);
       colour[i] = (at.column + 2 * at.row) % 5;
-    } else {
-      queue.push_back(i);
     }
   }
+  drop_clashes(model, scene, colour);
+  for (Index i = 0; i < model.vertex_count(); ++i)
+    if (colour[i] == uncoloured) queue.push_back(i);
   std::vector<Index> degree(model.vertex_count(), 0);
   model.elements.each([&](const auto& batch) {
     for (Index i = 0; i < degree.size(); ++i)

@@ -3,6 +3,7 @@
 // order does not change the result.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -17,16 +18,15 @@ struct Colouring {
   std::uint32_t colours() const { return static_cast<std::uint32_t>(offsets.size()) - 1; }
 };
 
-/// Colours elements so that those of one colour share no vertex. A grid's springs get 12 colours in closed
-/// form, two for each of six pairs of direction and length, and fewer where kinds of springs are missing. All
-/// other elements are coloured greedily: each gets the colour with fewest members. Deterministic. Defined for
-/// every law.
-template <class Law>
-Colouring colour_elements(const Model& model, const scene::Scene& scene, const Batch<Law>& batch);
+/// Colours each law's elements so that those of one colour share no vertex. A grid's springs get 12 colours
+/// in closed form, two for each of six pairs of direction and length, and fewer where kinds of springs are
+/// missing. All other elements are coloured greedily: each gets the colour with fewest members.
+/// Deterministic.
+std::array<Colouring, elements::law_count> colour_elements(const Model& model, const scene::Scene& scene);
 
-/// Colours vertices so that those of one colour share no element. A grid, with springs as its only elements,
-/// gets 5 colours: (column + 2 row) mod 5. Other meshes are coloured greedily: vertices with most elements
-/// first (Welsh & Powell 1967), each with the colour that has fewest members. Deterministic.
+/// Colours vertices so that those of one colour share no element. A grid gets 5 colours, (column + 2 row) mod
+/// 5, if its elements allow it, as springs do. Other meshes are coloured greedily: vertices with most
+/// elements first (Welsh & Powell 1967), each with the colour that has fewest members. Deterministic.
 Colouring colour_vertices(const Model& model, const scene::Scene& scene);
 
 }  // namespace clothlab::model

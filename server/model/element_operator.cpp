@@ -60,7 +60,7 @@ ElementOperator::ElementOperator(const Model& model, const scene::Scene& scene, 
 
 template <class Law>
 void ElementOperator::add(const Batch<Law>& batch, const Field& shape) {
-  auto& linears = std::get<std::vector<Linear<Law>>>(linears_);
+  auto& linears = std::get<LinearList<Law>>(linears_);
   linears.reserve(batch.size());
   for (const Element<Law>& element : batch) {
     const auto held = [&](std::uint32_t vertex) { return pinned(vertex); };

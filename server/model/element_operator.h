@@ -4,8 +4,6 @@
 // displacement is 0.
 #pragma once
 
-#include <tuple>
-
 #include "server/model/model.h"
 
 namespace clothlab::model {
@@ -44,14 +42,15 @@ class ElementOperator {
     std::array<std::uint32_t, Element<Law>::corners> vertices;
     std::array<elements::Hessian<Law>, Element<Law>::corners - 1> hessian;
   };
-  using Linears = std::tuple<std::vector<Linear<elements::Spring>>>;  // one list for each law
+  template <class Law>
+  using LinearList = std::vector<Linear<Law>>;
 
   template <class Law>
   void add(const Batch<Law>& batch, const Field& shape);
   template <class MatrixOf>
   double bound(MatrixOf matrix_of) const;
 
-  Linears linears_;
+  elements::PerLaw<LinearList> linears_;
   std::vector<double> scale_;  ///< [vertex_count] mass^(-1/2), 0 if pinned
   double air_drag_ = 0;
 };

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "shaders/elements/elements.h"
@@ -24,6 +25,10 @@ struct Element {
   static constexpr std::size_t corners = elements::corners<Law>;
   std::array<std::uint32_t, corners> vertices{};  ///< the corners; a spring's are in rising order
   Law law;                                        ///< rest values and material
+
+  bool operator==(const Element& other) const {
+    return vertices == other.vertices && elements::numbers(law) == elements::numbers(other.law);
+  }
 };
 using Spring = Element<elements::Spring>;
 
@@ -41,18 +46,31 @@ struct Batch : std::vector<Element<Law>> {
   }
 };
 
-/// The batches of a model, one for each law. A new law adds its batch here.
-struct Batches {
-  Batch<elements::Spring> springs;
-
+/// The batches of a model, one for each law.
+class Batches {
+ public:
+  template <class Law>
+  const Batch<Law>& of() const {
+    return std::get<Batch<Law>>(batches_);
+  }
+  template <class Law>
+  Batch<Law>& of() {
+    return std::get<Batch<Law>>(batches_);
+  }
+  /// Calls visit(batch) for each law's batch, in the order of the laws.
   template <class Visit>
   void each(Visit&& visit) const {
-    visit(springs);
+    std::apply([&](const auto&... batch) { (visit(batch), ...); }, batches_);
   }
   template <class Visit>
   void each(Visit&& visit) {
-    visit(springs);
+    std::apply([&](auto&... batch) { (visit(batch), ...); }, batches_);
   }
+  /// True if both have the same elements in the same order.
+  bool operator==(const Batches& other) const { return batches_ == other.batches_; }
+
+ private:
+  elements::PerLaw<Batch> batches_;
 };
 
 /// An element's edges as seen from one of its corners. `difference(vertex)` must return the value at this

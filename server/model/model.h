@@ -46,7 +46,7 @@ struct Model {
   Adjacency contact_exclusions;
   std::vector<ClothRange> cloths;
 
-  const Batch<elements::Spring>& springs() const { return elements.springs; }
+  const Batch<elements::Spring>& springs() const { return elements.of<elements::Spring>(); }
   std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(rest_position.size()); }
   std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(triangles.size()); }
 };

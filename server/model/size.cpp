@@ -1,5 +1,6 @@
 #include "server/model/size.h"
 
+#include <type_traits>
 #include <variant>
 
 #include "server/scene/sections.h"
@@ -14,16 +15,18 @@ std::size_t pairs(const scene::Grid& grid, int columns_on, int rows_on) {
   return columns > 0 && rows > 0 ? static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows) : 0;
 }
 
-std::size_t springs(const scene::Grid& grid, const scene::Springs& material) {
-  std::size_t count = 0;
-  if (material.structural != 0.0) count += pairs(grid, 1, 0) + pairs(grid, 0, 1);
-  if (material.shear != 0.0) count += 2 * pairs(grid, 1, 1);
-  if (material.bend != 0.0) count += pairs(grid, 2, 0) + pairs(grid, 0, 2);
-  return count;
+using OfSpring = std::type_identity<elements::Spring>;
+
+std::size_t count(OfSpring, const scene::Grid& grid, const scene::Springs& material) {
+  std::size_t springs = 0;
+  if (material.structural != 0.0) springs += pairs(grid, 1, 0) + pairs(grid, 0, 1);
+  if (material.shear != 0.0) springs += 2 * pairs(grid, 1, 1);
+  if (material.bend != 0.0) springs += pairs(grid, 2, 0) + pairs(grid, 0, 2);
+  return springs;
 }
 
 /// The most springs that a mesh can have: structural ones if no triangles share an edge, bend ones if all do.
-std::size_t springs(const scene::TriangleMesh& mesh, const scene::Springs& material) {
+std::size_t count(OfSpring, const scene::TriangleMesh& mesh, const scene::Springs& material) {
   const std::size_t edges = 3 * mesh.triangles.size();
   return (material.structural != 0.0 ? edges : 0) + (material.bend != 0.0 ? edges / 2 : 0);
 }
@@ -40,15 +43,28 @@ Size size_of(const scene::Scene& scene) {
   for (const scene::Cloth& cloth : scene.cloths) {
     size.vertices += scene::vertex_count(cloth.mesh);
     size.triangles += scene::triangle_count(cloth.mesh);
-    size.springs += std::visit([&](const auto& mesh) { return springs(mesh, cloth.material); }, cloth.mesh);
+    std::size_t* of_law = size.elements.data();
+    elements::each_law([&](auto law) {
+      *of_law++ += std::visit([&](const auto& mesh) { return count(law, mesh, cloth.material); }, cloth.mesh);
+    });
   }
   return size;
+}
+
+std::size_t Size::list_texels() const {
+  std::size_t sum = 0;
+  const std::size_t* of_law = elements.data();
+  elements::each_law([&]<class Law>(std::type_identity<Law>) {
+    sum += elements::corners<Law> * elements::entry_texels<Law> * *of_law++;
+  });
+  return sum;
 }
 
 Status check_size(const Size& size, std::size_t most_vertices, std::size_t most_springs) {
   if (size.vertices > most_vertices)
     return too_large("vertices", size.vertices, most_vertices, "--max-vertices");
-  if (size.springs > most_springs) return too_large("springs", size.springs, most_springs, "--max-springs");
+  if (size.all_elements() > most_springs)
+    return too_large("springs", size.all_elements(), most_springs, "--max-springs");
   return ok();
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
-#include "server/model/spring_gains.h"
+#include "server/model/constraint_gains.h"
 #include "server/reference/contacts.h"
 #include "server/reference/strain_limit.h"
 #include "server/reference/sweeps.h"
@@ -80,10 +80,13 @@ SweepState begin(const World& world, const State& state, double t, double t_next
                   Vectors(count),
                   Vectors(count, dvec3(0.0)),
                   std::vector<double>(count),
-                  Vectors(world.model.springs().size(), dvec3(0.0)),
+                  {},
                   std::vector<int>(count, 0),
                   state.contacts};
   step.contacts.resize(count, 0);
+  world.model.elements.each([&]<class Law>(const model::Batch<Law>& batch) {
+    std::get<Pushes<Law>>(step.pushed).resize(batch.size());
+  });
   Vectors end = state.position, unused(count);
   place_pins(world, t_next, end, unused);
   const bool guesses = scene::sweeps_vertices(world.scene.solver.method);
@@ -120,7 +123,7 @@ void gauss_seidel_step(const World& world, State& state, double t, double t_next
   const bool passes = scene.self_collision || (!by_vertices && !scene.colliders.empty());
   SweepState step = begin(world, state, t, t_next);
   for (int n = 0; n < scene.solver.iterations; ++n) {
-    by_vertices ? sweep_vertices(step) : sweep_springs(step);
+    by_vertices ? sweep_vertices(step) : sweep_elements(step);
     if (passes) contact_pass(step);
   }
   if (by_vertices) balance_momentum(step);

@@ -34,7 +34,7 @@ Result<World> make_world(const scene::Scene& scene, double contact_margin) {
   Result<model::Model> model = model::build(scene);
   if (!model) return model.error();
   World world{scene, std::move(*model), contact_margin, {}, {}};
-  world.spring_colours = model::colour_elements(world.model, scene, world.model.springs());
+  world.element_colours = model::colour_elements(world.model, scene);
   world.vertex_colours = model::colour_vertices(world.model, scene);
   return world;
 }

@@ -21,8 +21,10 @@ using glm::dvec3;
 struct World {
   scene::Scene scene;
   model::Model model;
-  double contact_margin = 0;                        ///< distance kept from a collider's surface [m]
-  model::Colouring spring_colours, vertex_colours;  ///< the orders of Gauss-Seidel sweeps
+  double contact_margin = 0;  ///< distance kept from a collider's surface [m]
+  std::array<model::Colouring, elements::law_count>
+      element_colours;              ///< the orders of PBD's and XPBD's sweeps
+  model::Colouring vertex_colours;  ///< the order of VBD's sweeps
 
   bool pinned(std::size_t vertex) const { return model.pin_motion[vertex] != model::not_pinned; }
 };

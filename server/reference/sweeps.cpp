@@ -5,7 +5,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
-#include "server/model/spring_gains.h"
+#include "server/model/constraint_gains.h"
 #include "server/reference/contacts.h"
 #include "server/scene/method.h"
 #include "shaders/elements/elements.h"
@@ -88,25 +88,35 @@ dvec3 pair_push(const SweepState& step, std::uint32_t i, int& touched) {
   return push;
 }
 
+template <class Law>
+void visit(SweepState& step, const model::Element<Law>& element, elements::Edges<Law>& pushed) {
+  const auto& vertices = element.vertices;
+  double inverse_mass = 0.0;
+  for (const std::uint32_t vertex : vertices) inverse_mass += step.mobility[vertex];
+  if (inverse_mass == 0.0) return;
+  const elements::ConstraintGains gains =
+      model::constraint_gains(step.world.scene.solver, element.law, inverse_mass);
+  const SweepState& so_far = step;
+  const auto moved = model::edges(element, 0, so_far.displacement);
+  auto place = model::edges(element, 0, so_far.x);
+  for (std::size_t k = 0; k + 1 < vertices.size(); ++k) place.d[k] += moved.d[k];
+  const auto push = elements::element_projection(element.law, gains, place, moved, pushed);
+  for (std::size_t k = 0; k + 1 < vertices.size(); ++k) {
+    if (gains.memory > 0.0) pushed.d[k] += push.d[k];
+    step.displacement[vertices[0]] += step.mobility[vertices[0]] * push.d[k];
+    step.displacement[vertices[k + 1]] -= step.mobility[vertices[k + 1]] * push.d[k];
+  }
+}
+
 }  // namespace
 
-void sweep_springs(SweepState& step) {
+void sweep_elements(SweepState& step) {
   const World& world = step.world;
-  for (const std::uint32_t s : world.spring_colours.order) {
-    const auto& [vertices, law] = world.model.springs()[s];
-    const auto [a, b] = vertices;
-    const double wa = step.mobility[a], wb = step.mobility[b];
-    if (wa + wb == 0.0) continue;
-    const elements::SpringGains gains =
-        model::spring_gains(world.scene.solver, law.stiffness, law.damping, wa + wb);
-    const dvec3 moved = step.displacement[a] - step.displacement[b];
-    const dvec3 push = elements::element_projection(law.rest_length, gains, {(step.x[a] - step.x[b]) + moved},
-                                                    {moved}, {step.spring_pushed[s]})
-                           .d;
-    if (gains.memory > 0.0) step.spring_pushed[s] += push;
-    step.displacement[a] += wa * push;
-    step.displacement[b] -= wb * push;
-  }
+  std::size_t law = 0;
+  world.model.elements.each([&]<class Law>(const model::Batch<Law>& batch) {
+    for (const std::uint32_t element : world.element_colours[law++].order)
+      visit(step, batch[element], std::get<Pushes<Law>>(step.pushed)[element]);
+  });
 }
 
 void sweep_vertices(SweepState& step) {

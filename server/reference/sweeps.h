@@ -5,6 +5,10 @@
 
 namespace clothlab::reference {
 
+/// What the first corner of each element has pushed off from the others.
+template <class Law>
+using Pushes = std::vector<elements::Edges<Law>>;
+
 /// The state within a step. All displacements are from the step's start.
 struct SweepState {
   const World& world;
@@ -13,16 +17,16 @@ struct SweepState {
   std::vector<dvec3> displacement;       ///< [vertex_count] so far [m]; of the whole step for pinned vertices
   std::vector<dvec3> free_displacement;  ///< [vertex_count] by inertia, gravity and drag alone [m]
   std::vector<dvec3> self_collision_push;  ///< [vertex_count] VBD: displacement by self-collision so far [m]
-  std::vector<double> mobility;      ///< [vertex_count] 1 / ((1 + dt air drag) mass) [1/kg], 0 if pinned
-  std::vector<dvec3> spring_pushed;  ///< [spring_count] XPBD: impulse times dt on the first end so far [kg m]
-  std::vector<int> colliders_met;    ///< [vertex_count] VBD: colliders met at the last visit of the vertex
-  std::vector<int> contacts;         ///< [vertex_count] contacts at the last count; 0 if pinned
+  std::vector<double> mobility;     ///< [vertex_count] 1 / ((1 + dt air drag) mass) [1/kg], 0 if pinned
+  elements::PerLaw<Pushes> pushed;  ///< XPBD, for each law [element_count]: impulses times dt so far [kg m]
+  std::vector<int> colliders_met;   ///< [vertex_count] VBD: colliders met at the last visit of the vertex
+  std::vector<int> contacts;        ///< [vertex_count] contacts at the last count; 0 if pinned
 
   dvec3 now(std::size_t vertex) const { return x[vertex] + displacement[vertex]; }
 };
 
-/// PBD and XPBD: visits every spring once, colour by colour.
-void sweep_springs(SweepState& step);
+/// PBD and XPBD: visits every element once, law by law and colour by colour.
+void sweep_elements(SweepState& step);
 
 /// VBD: moves every free vertex, colour by colour, towards the balance of its own forces by one Newton step.
 /// A collider in the way stops the vertex.

@@ -2,7 +2,7 @@
 #include <new>
 #include <utility>
 
-#include "server/model/spring_gains.h"
+#include "server/model/constraint_gains.h"
 #include "server/model/thickness.h"
 #include "server/session/stepper.h"
 

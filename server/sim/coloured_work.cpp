@@ -3,11 +3,14 @@
 #include <glad/gl.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <string_view>
+#include <type_traits>
 
+#include "server/base/text.h"
 #include "server/gl/context.h"
-#include "server/model/spring_gains.h"
+#include "server/model/constraint_gains.h"
 
 namespace clothlab::sim {
 
@@ -17,50 +20,112 @@ bool pinned(const model::Model& model, std::uint32_t vertex) {
   return model.pin_motion[vertex] != model::not_pinned;
 }
 
-/// The items of `all` for which `wanted(item)` is true. Colours that are left without items are removed.
+/// Adds a function that visits the items of `all` for which `wanted(item)` is true. Colours that are left
+/// without items are removed.
 template <class Wanted>
-model::Colouring only(const model::Colouring& all, Wanted wanted) {
-  model::Colouring kept;
-  kept.offsets.push_back(0);
+void add(Visits& visits, const std::string& function, const model::Colouring& all, Wanted wanted) {
+  if (visits.offsets.empty()) visits.offsets.push_back(0);
+  const std::uint32_t first = visits.colours();
   for (std::uint32_t colour = 0; colour < all.colours(); ++colour) {
     for (std::uint32_t k = all.offsets[colour]; k < all.offsets[colour + 1]; ++k)
-      if (wanted(all.order[k])) kept.order.push_back(all.order[k]);
-    if (kept.order.size() > kept.offsets.back())
-      kept.offsets.push_back(static_cast<std::uint32_t>(kept.order.size()));
+      if (wanted(all.order[k])) visits.order.push_back(all.order[k]);
+    if (visits.order.size() > visits.offsets.back())
+      visits.offsets.push_back(static_cast<std::uint32_t>(visits.order.size()));
   }
-  return kept;
+  visits.functions.push_back({function, first, visits.colours()});
+}
+
+/// The items of one law's visits: first and end in the order of all.
+struct Items {
+  std::uint32_t first = 0, end = 0;
+  std::size_t count() const { return end - first; }
+};
+
+Items items(const Visits& visits, std::size_t law) {
+  const Visits::Function& function = visits.functions[law];
+  return {visits.offsets[function.first_colour], visits.offsets[function.end_colour]};
+}
+
+template <class Law>
+std::array<Words, elements::visit_texels<Law>> visit(const model::Element<Law>& element,
+                                                     const elements::ConstraintGains& gains) {
+  std::array<Words, elements::visit_texels<Law>> texels{};
+  std::size_t at = 0;
+  for (const std::uint32_t vertex : element.vertices) put(texels, at, vertex);
+  const auto numbers = elements::numbers(element.law);
+  for (std::size_t k = 0; k < elements::Facts<Law>::rest_values; ++k) put(texels, at, word(numbers[k]));
+  for (const double gain : {gains.stretch, gains.damping, gains.memory}) put(texels, at, word(gain));
+  return texels;
 }
 
 }  // namespace
 
-model::Colouring visited_springs(const model::Model& model, const scene::Scene& scene) {
-  return only(model::colour_elements(model, scene, model.springs()), [&](std::uint32_t spring) {
-    const auto [a, b] = model.springs()[spring].vertices;
-    return !pinned(model, a) || !pinned(model, b);
+Visits visited_elements(const model::Model& model, const scene::Scene& scene) {
+  const auto colours = model::colour_elements(model, scene);
+  Visits visits;
+  model.elements.each([&]<class Law>(const model::Batch<Law>& batch) {
+    add(visits, std::string("visit_") + elements::Facts<Law>::name, colours[visits.functions.size()],
+        [&](std::uint32_t element) {
+          const auto& vertices = batch[element].vertices;
+          return std::any_of(vertices.begin(), vertices.end(),
+                             [&](std::uint32_t vertex) { return !pinned(model, vertex); });
+        });
   });
+  return visits;
 }
 
-model::Colouring visited_vertices(const model::Model& model, const scene::Scene& scene) {
-  return only(model::colour_vertices(model, scene),
-              [&](std::uint32_t vertex) { return !pinned(model, vertex); });
+Visits visited_vertices(const model::Model& model, const scene::Scene& scene) {
+  Visits visits;
+  add(visits, "visit_vertex", model::colour_vertices(model, scene),
+      [&](std::uint32_t vertex) { return !pinned(model, vertex); });
+  return visits;
 }
 
-ProjectedSprings projected_springs(const model::Colouring& visited, const model::Model& model,
-                                   const scene::Scene& scene) {
-  ProjectedSprings list;
+std::vector<Words> visit_list(const Visits& visits, const model::Model& model, const scene::Scene& scene) {
+  std::vector<Words> list;
   const double mobility = model::mobility(scene);
-  const auto inverse_mass = [&](std::uint32_t vertex) {
-    return pinned(model, vertex) ? 0.0 : mobility / model.mass[vertex];
-  };
-  for (const std::uint32_t index : visited.order) {
-    const auto& [vertices, law] = model.springs()[index];
-    const auto [a, b] = vertices;
-    const elements::SpringGains gains =
-        model::spring_gains(scene.solver, law.stiffness, law.damping, inverse_mass(a) + inverse_mass(b));
-    list.entries.push_back({a, b, static_cast<float>(law.rest_length), static_cast<float>(gains.stretch)});
-    list.gains.push_back({static_cast<float>(gains.damping), static_cast<float>(gains.memory)});
-  }
+  std::size_t law = 0;
+  model.elements.each([&](const auto& batch) {
+    const Items of_law = items(visits, law++);
+    for (std::uint32_t item = of_law.first; item < of_law.end; ++item) {
+      const auto& element = batch[visits.order[item]];
+      double inverse_mass = 0.0;
+      for (const std::uint32_t vertex : element.vertices)
+        if (!pinned(model, vertex)) inverse_mass += mobility / model.mass[vertex];
+      const auto texels = visit(element, model::constraint_gains(scene.solver, element.law, inverse_mass));
+      list.insert(list.end(), texels.begin(), texels.end());
+    }
+  });
   return list;
+}
+
+std::size_t remembered_pushes(const Visits& visits) {
+  std::size_t pushes = 0, law = 0;
+  elements::each_law([&]<class Law>(std::type_identity<Law>) {
+    pushes += items(visits, law++).count() * (elements::corners<Law> - 1);
+  });
+  return pushes;
+}
+
+gl::Defines visit_defines(const Visits& visits, bool elements) {
+  std::string each;
+  for (const Visits::Function& function : visits.functions)
+    if (function.end_colour > function.first_colour)
+      each +=
+          formatted("sweep(%s, %u, %u) ", function.name.c_str(), function.first_colour, function.end_colour);
+  gl::Defines defines{{"EACH_VISIT(sweep)", each}};
+  if (!elements) return defines;
+  std::size_t law = 0, texel = 0, push = 0;
+  elements::each_law([&]<class Law>(std::type_identity<Law>) {
+    const std::string name = elements::Facts<Law>::name;
+    const Items of_law = items(visits, law++);
+    defines.emplace_back(name + "_FIRST_ITEM", std::to_string(of_law.first));
+    defines.emplace_back(name + "_FIRST_TEXEL", std::to_string(texel));
+    defines.emplace_back(name + "_FIRST_PUSH", std::to_string(push));
+    texel += of_law.count() * elements::visit_texels<Law>;
+    push += of_law.count() * (elements::corners<Law> - 1);
+  });
+  return defines;
 }
 
 std::uint32_t lanes_of_one_group(std::uint32_t vertex_count, bool self_collision,

@@ -1,32 +1,42 @@
-// The lists of springs or vertices that the sweeps of PBD, XPBD and VBD visit, colour after colour, as
+// The lists of elements or vertices that the sweeps of PBD, XPBD and VBD visit, colour after colour, as
 // shaders/methods/gauss_seidel.comp reads them; and the choice between the two forms of that kernel.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
+#include "server/gl/program.h"
 #include "server/model/colouring.h"
+#include "server/sim/element_lists.h"
 
 namespace clothlab::sim {
 
-/// Colours of the springs with at least one free end. The items are indices into model.springs().
-model::Colouring visited_springs(const model::Model& model, const scene::Scene& scene);
-/// Colours of the vertices that are not pinned. The items are indices of vertices.
-model::Colouring visited_vertices(const model::Model& model, const scene::Scene& scene);
-
-/// Constants of the springs for PBD and XPBD: `projected` and `gains` in spring_projection.glsl.
-struct ProjectedSprings {
-  struct Entry {
-    std::uint32_t a = 0, b = 0;
-    float rest_length = 0, stretch_gain = 0;
+/// What a sweep visits, colour after colour: each law's elements (PBD, XPBD), or the vertices (VBD). The
+/// colours of one function follow each other; items are numbered over all of them.
+struct Visits : model::Colouring {
+  struct Function {
+    std::string name;  ///< in shaders/methods/: visit_vertex, or visit_Spring and so on for each law
+    std::uint32_t first_colour = 0, end_colour = 0;
   };
-  std::vector<Entry> entries;               ///< in the order of `visited`
-  std::vector<std::array<float, 2>> gains;  ///< in the same order: damping gain [kg], memory
+  std::vector<Function> functions;
 };
-ProjectedSprings projected_springs(const model::Colouring& visited, const model::Model& model,
-                                   const scene::Scene& scene);
+
+/// The elements of each law with at least one free corner: functions[k] visits law number k. The items are
+/// indices into the law's batch.
+Visits visited_elements(const model::Model& model, const scene::Scene& scene);
+/// The vertices that are not pinned. The items are indices of vertices.
+Visits visited_vertices(const model::Model& model, const scene::Scene& scene);
+
+/// The vertices, rest values and gains of visited elements, as shaders/methods/element_projection.glsl reads
+/// them.
+std::vector<Words> visit_list(const Visits& visits, const model::Model& model, const scene::Scene& scene);
+/// Number of pushes that XPBD remembers of the visited elements: one for each corner but the first.
+std::size_t remembered_pushes(const Visits& visits);
+/// Defines EACH_VISIT, and for each law where its visits, items and pushes begin: Spring_FIRST_TEXEL, ...
+gl::Defines visit_defines(const Visits& visits, bool elements);
 
 /// Number of threads in the one work group that does a whole step; 0 if a step must take many dispatches
 /// instead, because a work group has too little shared memory or a thread would have too many turns of loops.

@@ -23,7 +23,9 @@ struct Partial {
 
 Result<DiagnosticsPass> DiagnosticsPass::create(std::uint32_t vertex_count) {
   DiagnosticsPass pass;
-  gl::Defines defines = law_defines();
+  LawSet all_laws;
+  all_laws.fill(true);
+  gl::Defines defines = law_defines(all_laws);
   defines.emplace_back("GROUP_SIZE", std::to_string(group_size));
   Result<gl::Program> program = gl::Program::load({"diagnose.comp"}, defines);
   if (!program) return program.error();

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <string>
+#include <type_traits>
+#include <utility>
 
 #include "server/sim/plan.h"
 
@@ -9,19 +12,25 @@ namespace clothlab::sim {
 
 namespace {
 
-std::uint32_t word(double value) {
-  return std::bit_cast<std::uint32_t>(static_cast<float>(value));
+/// The entry of `element` in the list of the vertex at its `corner`: the other corners, then the law's
+/// numbers.
+template <class Law>
+auto entry(const model::Element<Law>& element, std::size_t corner) {
+  constexpr std::size_t corners = elements::corners<Law>;
+  std::array<Words, elements::entry_texels<Law>> texels{};
+  std::size_t at = 0;
+  for (std::size_t other = 1; other < corners; ++other)
+    put(texels, at, element.vertices[(corner + other) % corners]);
+  for (const double number : elements::numbers(element.law)) put(texels, at, word(number));
+  return texels;
 }
 
-/// The entry of `spring` in the list of the vertex at its `corner`, as kernels read it (Spring_ENTRY in
-/// shaders/elements/spring.glsl).
-std::array<Words, 1> entry(const model::Spring& spring, std::size_t corner) {
-  return {Words{spring.vertices[1 - corner], word(spring.law.rest_length), word(spring.law.stiffness),
-                word(spring.law.damping)}};
-}
-/// An entry that gives no force, to pad a list: all its corners are `vertex` itself.
-std::array<Words, 1> padding(const model::Batch<elements::Spring>&, std::uint32_t vertex) {
-  return {Words{vertex, 0, 0, 0}};
+/// An entry that gives no force, to pad a list: all its corners are `vertex` itself, and its numbers are 0.
+template <class Law>
+auto padding(std::uint32_t vertex) {
+  model::Element<Law> element{{}, Law{}};
+  element.vertices.fill(vertex);
+  return entry(element, 0);
 }
 
 template <class Law>
@@ -34,9 +43,9 @@ void add_list(ElementLists& lists, const model::Batch<Law>& batch, std::uint32_t
     std::uint32_t longest = 0;
     for (std::uint32_t i = first; i < last; ++i) longest = std::max(longest, offsets[i + 1] - offsets[i]);
     const std::size_t start = lists.entries.size();
-    constexpr std::size_t texels = std::tuple_size_v<decltype(padding(batch, 0))>;
+    constexpr std::size_t texels = elements::entry_texels<Law>;
     lists.entries.resize(start + longest * texels * group_size);
-    const auto put = [&](std::uint32_t lane, std::size_t slot, const std::array<Words, texels>& words) {
+    const auto place = [&](std::uint32_t lane, std::size_t slot, const std::array<Words, texels>& words) {
       for (std::size_t t = 0; t < texels; ++t)
         lists.entries[start + (slot * texels + t) * group_size + lane] = words[t];
     };
@@ -44,9 +53,9 @@ void add_list(ElementLists& lists, const model::Batch<Law>& batch, std::uint32_t
       const std::uint32_t i = std::min(first + lane, vertex_count - 1);
       std::size_t slot = 0;
       if (first + lane < last)
-        batch.at(i,
-                 [&](const auto& element, std::size_t corner) { put(lane, slot++, entry(element, corner)); });
-      while (slot < longest) put(lane, slot++, padding(batch, i));
+        batch.at(
+            i, [&](const auto& element, std::size_t corner) { place(lane, slot++, entry(element, corner)); });
+      while (slot < longest) place(lane, slot++, padding<Law>(i));
     }
   }
   lists.slices.push_back(row());
@@ -63,13 +72,24 @@ ElementLists element_lists(const model::Model& model) {
   return lists;
 }
 
-gl::Defines law_defines() {
-  return {{"LAWS", "Spring"}, {"Spring_LIST", "0"}};
+std::uint32_t word(double number) {
+  return std::bit_cast<std::uint32_t>(static_cast<float>(number));
 }
 
-gl::Defines law_defines(const Plan& plan) {
-  gl::Defines defines = law_defines();
-  if (!plan.springs()) defines.front().second.clear();
+gl::Defines law_defines(const LawSet& compiled) {
+  gl::Defines defines{{"LAWS", ""}};
+  std::size_t list = 0;
+  elements::each_law([&]<class Law>(std::type_identity<Law>) {
+    using elements::Facts;
+    const std::string name = Facts<Law>::name;
+    if (compiled[list]) defines.front().second += name + " ";
+    for (const auto& [fact, number] : {std::pair{"_LIST", list++},
+                                       {"_CORNERS", Facts<Law>::corners},
+                                       {"_REST_VALUES", Facts<Law>::rest_values},
+                                       {"_TEXELS", elements::entry_texels<Law>},
+                                       {"_VISIT_TEXELS", elements::visit_texels<Law>}})
+      defines.emplace_back(name + fact, std::to_string(number));
+  });
   return defines;
 }
 

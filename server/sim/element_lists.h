@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -11,8 +12,6 @@
 #include "server/model/model.h"
 
 namespace clothlab::sim {
-
-struct Plan;
 
 /// One texel of an entry: four 32-bit words.
 using Words = std::array<std::uint32_t, 4>;
@@ -24,9 +23,21 @@ struct ElementLists {
 
 ElementLists element_lists(const model::Model& model);
 
-/// Defines LAWS for `#each Law`: all laws or, with a plan, only those of which the plan's scene has elements.
-/// Also defines for every law the number of its list: Spring_LIST, ...
-gl::Defines law_defines();
-gl::Defines law_defines(const Plan& plan);
+/// A number as kernels read it: the bits of its float32.
+std::uint32_t word(double number);
+
+/// Writes a word into texels, at the word number `at`, which it increases.
+template <std::size_t count>
+void put(std::array<Words, count>& texels, std::size_t& at, std::uint32_t written) {
+  texels[at / 4][at % 4] = written;
+  ++at;
+}
+
+/// For each law true if kernels are compiled with it.
+using LawSet = std::array<bool, elements::law_count>;
+
+/// Defines LAWS for `#each Law`: the laws of the set. Also defines for every law the numbers that kernels
+/// need of it: Spring_LIST, the number of its list, Spring_CORNERS, ...
+gl::Defines law_defines(const LawSet& compiled);
 
 }  // namespace clothlab::sim

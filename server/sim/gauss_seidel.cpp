@@ -2,9 +2,12 @@
 // large ones with one dispatch for each phase and each colour.
 #include <algorithm>
 #include <array>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "server/model/colouring.h"
-#include "server/model/spring_gains.h"
+#include "server/model/constraint_gains.h"
 #include "server/scene/method.h"
 #include "server/sim/coloured_work.h"
 #include "server/sim/integrator.h"
@@ -38,17 +41,12 @@ class GaussSeidel : public Integrator {
   void set_parameters(const Surroundings& around) override {
     sweeps_ = around.scene.solver.iterations;
     const float mobility = static_cast<float>(model::mobility(around.scene));
-    for (const gl::Program* program : {&whole_, &begin_, &visit_, &contacts_pass_, &balance_, &finish_}) {
-      if (!program->id()) continue;
-      set_step_uniforms(*program, around);
-      program->set("mobility", mobility);
-      program->set("last_sweep", sweeps_ - 1);
-    }
+    for (const gl::Program* program : {&whole_, &begin_, &contacts_pass_, &balance_, &finish_})
+      set_parameters(*program, around, mobility);
+    for (const gl::Program& program : visits_) set_parameters(program, around, mobility);
     if (restores_momentum_) set_free_vertices(around);
     if (by_vertex_) return;
-    const ProjectedSprings springs = projected_springs(work_, around.model, around.scene);
-    projected_ = {gl::Buffer(springs.entries), GL_RGBA32UI};
-    gains_ = {gl::Buffer(springs.gains), GL_RG32UI};
+    visit_list_ = {gl::Buffer(visit_list(work_, around.model, around.scene)), GL_RGBA32UI};
   }
 
   Work step(StateBuffers& state, int row) override {
@@ -60,9 +58,8 @@ class GaussSeidel : public Integrator {
       targets_.bind_storage(slot_targets);
       if (restores_momentum_) momentum_sums_.bind_storage(slot_lacking);
     } else {
-      projected_.bind(unit_projected);
-      gains_.bind(unit_gains);
-      if (spring_pushes_.bytes() > 0) spring_pushes_.bind_storage(slot_pushed);
+      visit_list_.bind(unit_visits);
+      if (pushes_.bytes() > 0) pushes_.bind_storage(slot_pushed);
     }
     if (lanes_ > 0)
       step_in_one_group(row);
@@ -85,7 +82,7 @@ class GaussSeidel : public Integrator {
         vertex_count_(around.model.vertex_count()),
         cloths_(static_cast<std::uint32_t>(around.model.cloths.size())),
         work_(by_vertex_ ? visited_vertices(around.model, around.scene)
-                         : visited_springs(around.model, around.scene)) {
+                         : visited_elements(around.model, around.scene)) {
     lanes_ = lanes_of_one_group(vertex_count_, plan.self_collision,
                                 [&](std::uint32_t lanes) { return turns(around.model, plan, lanes); });
     remainders_ = gl::Buffer(vertex_count_ * 8 * sizeof(float));
@@ -96,7 +93,7 @@ class GaussSeidel : public Integrator {
       if (restores_momentum_)
         momentum_sums_ = gl::Buffer(cloths_ * std::max<std::size_t>(lanes_, group_size) * 4 * sizeof(float));
     } else if (plan.method == scene::Method::xpbd) {
-      spring_pushes_ = gl::Buffer(std::max<std::size_t>(work_.order.size(), 1) * 4 * sizeof(float));
+      pushes_ = gl::Buffer(std::max<std::size_t>(remembered_pushes(work_), 1) * 4 * sizeof(float));
     }
     if (lanes_ > 0) return;
     for (gl::TextureBuffer& deviation : deviation_) deviation = per_vertex(vertex_count_);
@@ -122,6 +119,8 @@ class GaussSeidel : public Integrator {
 
   gl::Defines defines(const Plan& plan) const {
     gl::Defines list = step_defines(plan);
+    for (gl::Defines::value_type& define : visit_defines(work_, !by_vertex_))
+      list.push_back(std::move(define));
     if (by_vertex_) list.emplace_back("BY_VERTEX", "1");
     if (plan.method == scene::Method::xpbd) list.emplace_back("MEMORY", "1");
     if (contacts_) list.emplace_back("CONTACTS", "1");
@@ -130,6 +129,13 @@ class GaussSeidel : public Integrator {
       list.emplace_back("CLOTH_COUNT", std::to_string(cloths_));
     }
     return list;
+  }
+
+  void set_parameters(const gl::Program& program, const Surroundings& around, float mobility) const {
+    if (!program.id()) return;
+    set_step_uniforms(program, around);
+    program.set("mobility", mobility);
+    program.set("last_sweep", sweeps_ - 1);
   }
 
   Status load_one_group(const Plan& plan) {
@@ -150,8 +156,13 @@ class GaussSeidel : public Integrator {
   }
 
   Status load_phases(const Plan& plan) {
-    for (auto [program, phase] :
-         {std::pair{&begin_, "begin"}, {&visit_, "visit"}, {&contacts_pass_, "meet"}, {&finish_, "finish"}}) {
+    visits_.resize(work_.functions.size());
+    std::vector<std::pair<gl::Program*, std::string>> phases{
+        {&begin_, "begin"}, {&contacts_pass_, "meet"}, {&finish_, "finish"}};
+    for (std::size_t k = 0; k < visits_.size(); ++k)
+      if (work_.functions[k].end_colour > work_.functions[k].first_colour)
+        phases.emplace_back(&visits_[k], work_.functions[k].name);
+    for (auto& [program, phase] : phases) {
       gl::Defines list = defines(plan);
       list.emplace_back("PHASE", phase);
       Result<gl::Program> loaded = gl::Program::load({"methods/gauss_seidel.comp"}, list);
@@ -207,11 +218,15 @@ class GaussSeidel : public Integrator {
     use(begin_, current, current);
     run(begin_, 0, vertex_count_);
     for (int sweep = 0; sweep < sweeps_; ++sweep) {
-      use(visit_, current, current);
-      visit_.set("sweep", sweep);
-      for (std::uint32_t colour = 0; colour < work_.colours(); ++colour) {
-        run(visit_, work_.offsets[colour], work_.offsets[colour + 1]);
-        co_await may_stop;
+      for (std::size_t k = 0; k < visits_.size(); ++k) {
+        const Visits::Function& function = work_.functions[k];
+        if (function.first_colour == function.end_colour) continue;
+        use(visits_[k], current, current);
+        visits_[k].set("sweep", sweep);
+        for (std::uint32_t colour = function.first_colour; colour < function.end_colour; ++colour) {
+          run(visits_[k], work_.offsets[colour], work_.offsets[colour + 1]);
+          co_await may_stop;
+        }
       }
       if (!contacts_) continue;
       use(contacts_pass_, current, 1 - current);
@@ -233,11 +248,12 @@ class GaussSeidel : public Integrator {
   std::uint32_t lanes_ = 0;  ///< threads of the one work group; 0: many dispatches instead
   std::uint32_t vertex_count_, cloths_;
   int sweeps_ = 1;
-  model::Colouring work_;  ///< the springs (VBD: the vertices) that a sweep visits
-  gl::Program whole_, begin_, visit_, contacts_pass_, balance_, finish_;
+  Visits work_;  ///< what a sweep visits
+  gl::Program whole_, begin_, contacts_pass_, balance_, finish_;
+  std::vector<gl::Program> visits_;  ///< for each of work_.functions; without a program if it has no items
   std::array<gl::TextureBuffer, 2> deviation_;  ///< a pass of contacts reads one and writes the other
-  gl::TextureBuffer projected_, gains_, visited_;
-  gl::Buffer spring_pushes_, targets_, velocity_before_, momentum_sums_, remainders_;
+  gl::TextureBuffer visit_list_, visited_;
+  gl::Buffer pushes_, targets_, velocity_before_, momentum_sums_, remainders_;
 };
 
 }  // namespace

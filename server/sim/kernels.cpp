@@ -66,16 +66,17 @@ Work Kernels::update_lists(const scene::Scene& scene) {
   co_await self_collision->update_lists();
 }
 
-Status Kernels::update(const scene::Scene& scene, bool material_changed) {
+Status Kernels::update(const scene::Scene& scene) {
   // Masses and pins are part of the model. To build it again is cheap and cannot change its structure here.
   Result<model::Model> rebuilt = model::build(scene);
   if (!rebuilt) return rebuilt.error();
   if (self_collision)
     if (Status set = self_collision->set_parameters(*scene.self_collision, *rebuilt); !set)
       return set.error();
+  const bool new_elements = model.elements != rebuilt->elements;
   model = std::move(*rebuilt);
   motions = motion_table(scene, plan);
-  if (material_changed) upload_elements(*this);
+  if (new_elements) upload_elements(*this);
   integrator->set_parameters(surroundings(scene));
   if (strain_limit) strain_limit->set_parameters(surroundings(scene));
   return ok();

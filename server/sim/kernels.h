@@ -23,9 +23,8 @@ struct Kernels {
   /// Makes the kernels of `scene`; nothing is carried over from an earlier step.
   static Result<Kernels> create(const scene::Scene& scene);
 
-  /// Takes over the numbers of a scene with the same structure. `material_changed`: the material of at least
-  /// one cloth differs from before.
-  Status update(const scene::Scene& scene, bool material_changed);
+  /// Takes over the numbers of a scene with the same structure.
+  Status update(const scene::Scene& scene);
 
   /// Brings the neighbour lists up to date. Makes them longer if they have become too short for all pairs, as
   /// far as the limits on their size allow. The scene must have self-collision. The work may stop on its way.

@@ -4,8 +4,8 @@
 #include <cstddef>
 
 #include "server/base/text.h"
+#include "server/model/size.h"
 #include "server/scene/method.h"
-#include "server/sim/element_lists.h"
 
 namespace clothlab::sim {
 
@@ -56,12 +56,15 @@ std::vector<scene::Motion> moving_motions(const scene::Scene& scene) {
 Plan plan(const scene::Scene& scene) {
   Plan plan;
   plan.method = scene.solver.method;
+  const model::Size size = model::size_of(scene);
+  for (std::size_t law = 0; law < plan.laws.size(); ++law) plan.laws[law] = size.elements[law] > 0;
+  const bool springs = plan.laws[elements::law_number<elements::Spring>];
   for (const scene::Cloth& cloth : scene.cloths) {
     plan.structural |= cloth.material.structural > 0.0;
     plan.shear |= cloth.material.shear > 0.0;
     plan.bend |= cloth.material.bend > 0.0;
     plan.pins |= !cloth.pins.empty();
-    plan.strain_limit |= cloth.material.strain_limit.has_value();
+    plan.strain_limit |= springs && cloth.material.strain_limit.has_value();
   }
   plan.solids = solid_runs(scene);
   plan.moving = static_cast<int>(moving_motions(scene).size());
@@ -77,7 +80,7 @@ gl::Defines step_defines(const Plan& plan) {
                       {"END_ROW", std::to_string(plan.pose_rows())},
                       {"SOLID_COUNT", std::to_string(plan.solid_count())},
                       {"EACH_SOLID(meet)", each_solid(plan)}};
-  for (gl::Defines::value_type& define : law_defines(plan)) defines.push_back(std::move(define));
+  for (gl::Defines::value_type& define : law_defines(plan.laws)) defines.push_back(std::move(define));
   if (plan.self_collision) {
     defines.emplace_back("SELF_COLLISION", "1");
     defines.emplace_back("NEIGHBOUR_SLOTS", std::to_string(plan.neighbour_slots));
@@ -93,7 +96,7 @@ std::vector<Simulation::Part> parts(const Plan& plan) {
   };
   add(Kind::pass, "neighbour_search", plan.self_collision, "self_collision is null");
   add(Kind::pass, scene::name(plan.method), true, "");
-  add(Kind::pass, "strain_limit", plan.strain_limit, "no cloth has a strain_limit");
+  add(Kind::pass, "strain_limit", plan.strain_limit, "no cloth with springs has a strain_limit");
   add(Kind::term, "structural_springs", plan.structural, "their stiffness is 0 in every cloth");
   add(Kind::term, "shear_springs", plan.shear, "their stiffness is 0 in every cloth");
   add(Kind::term, "bend_springs", plan.bend, "their stiffness is 0 in every cloth");

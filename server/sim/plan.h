@@ -10,6 +10,7 @@
 #include "server/gl/program.h"
 #include "server/scene/method.h"
 #include "server/scene/solid.h"
+#include "server/sim/element_lists.h"
 #include "server/sim/simulation.h"
 
 namespace clothlab::sim {
@@ -35,14 +36,14 @@ struct SolidRun {
 /// kernels.
 struct Plan {
   scene::Method method = scene::Method::symplectic_euler;
+  LawSet laws{};                                         ///< the laws of which the scene has elements
   bool structural = false, shear = false, bend = false;  ///< true if any cloth has such springs
-  bool springs() const { return structural || shear || bend; }
   bool pins = false;
   int moving = 0;                ///< distinct motions of pins and colliders, null left out
   std::vector<SolidRun> solids;  ///< in runs as long as possible
   bool self_collision = false;
   std::uint32_t neighbour_slots = 64;  ///< of each neighbour list; more are made if a list needs them
-  bool strain_limit = false;           ///< true if any cloth has one
+  bool strain_limit = false;           ///< true if any cloth has one, and there are springs
   int most_sweeps = 0;                 ///< 16, 64, 256, ...: at least the iterations of PBD, XPBD or VBD
   /// Number of a step's rows in the pose table after the row of its start: the step's end and, before it, its
   /// middle if the method uses poses there.

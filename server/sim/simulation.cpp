@@ -31,12 +31,13 @@ Status fits_device(const scene::Scene& scene) {
   GLint texels = 0;
   glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
   const model::Size size = model::size_of(scene);
-  const std::size_t wanted = std::max(size.vertices, size.entries());
+  const std::size_t wanted = std::max(size.vertices, size.list_texels());
   if (wanted <= static_cast<std::size_t>(texels)) return ok();
-  return Error{"/cloths",
-               std::to_string(size.vertices) + " vertices and " + std::to_string(size.springs) + " springs",
-               "lists of at most " + std::to_string(texels) +
-                   " entries on this device (GL_MAX_TEXTURE_BUFFER_SIZE): a coarser mesh, or fewer springs"};
+  return Error{
+      "/cloths",
+      std::to_string(size.vertices) + " vertices and " + std::to_string(size.all_elements()) + " springs",
+      "lists of at most " + std::to_string(texels) +
+          " entries on this device (GL_MAX_TEXTURE_BUFFER_SIZE): a coarser mesh, or fewer springs"};
 }
 
 template <class Part>
@@ -62,7 +63,7 @@ struct Simulation::Implementation {
   double start_time = 0.0;
   std::uint64_t start_step = 0;
   std::vector<double> batch_times;
-  std::uint32_t steps_to_do = 0;  ///< number of steps to do
+  std::uint32_t steps_to_do = 0;
   bool in_step = false;
   gl::StageTimer* next_timer = nullptr;
   gl::Bindings bound;  ///< what `work` had bound in GL when it stopped
@@ -221,8 +222,7 @@ Result<ChangeDepth> Simulation::change(const scene::Scene& scene) {
     self.kernels = std::move(*kernels);
   } else if (depth == ChangeDepth::uniform) {
     self.give_up_work();
-    const bool material = differs(self.scene, scene, &scene::Cloth::material);
-    if (Status updated = self.kernels.update(scene, material); !updated) return updated.error();
+    if (Status updated = self.kernels.update(scene); !updated) return updated.error();
   }
   self.adopt(scene);
   return depth;

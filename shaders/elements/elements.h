@@ -2,11 +2,15 @@
 // include; and the types that templates over laws need.
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
+#include <tuple>
+#include <type_traits>
 #include <utility>
 
 namespace clothlab::elements {
@@ -23,6 +27,7 @@ using std::sqrt;
 #define PRECISE
 #define OUT(T) T&
 #define INOUT(T) T&
+#include "shaders/elements/constraint.glsl"
 #include "shaders/elements/contact.glsl"
 #include "shaders/elements/solid.glsl"
 #include "shaders/elements/spring.glsl"
@@ -31,23 +36,63 @@ using std::sqrt;
 #undef OUT
 #undef INOUT
 
-/// Number of corners of an element of that law.
+/// What C++ must know of a law: its name in kernels, the number of its element's corners, and how many of its
+/// numbers are rest values. Those come first; the others are the material.
 template <class Law>
-inline constexpr std::size_t corners = 0;
+struct Facts;
 template <>
-inline constexpr std::size_t corners<Spring> = 2;
-
-template <class Law>
-struct EdgesOf;
-template <>
-struct EdgesOf<Spring> {
-  using type = SpringEdges;
+struct Facts<Spring> {
+  static constexpr const char* name = "Spring";
+  static constexpr std::size_t corners = 2, rest_values = 1;
+  using Edges = SpringEdges;
 };
-template <class Law>
-using Edges = typename EdgesOf<Law>::type;
 
+/// All laws, in the order of their batches and lists.
+using Laws = std::tuple<Spring>;
+inline constexpr std::size_t law_count = std::tuple_size_v<Laws>;
+
+template <class Law>
+inline constexpr std::size_t corners = Facts<Law>::corners;
+template <class Law>
+using Edges = typename Facts<Law>::Edges;
 template <class Law>
 using Hessian = decltype(element_hessian(Law{}, Edges<Law>{}));
+
+/// Texels of four numbers that kernels read of an element: in an entry of a vertex's list
+/// (elements/lists.glsl) the other corners and the law; in a visit of a sweep
+/// (methods/element_projection.glsl) all corners, the rest values and three gains.
+template <class Law>
+inline constexpr std::size_t entry_texels = (corners<Law> - 1 + sizeof(Law) / sizeof(real) + 3) / 4;
+template <class Law>
+inline constexpr std::size_t visit_texels = (corners<Law> + Facts<Law>::rest_values + 3 + 3) / 4;
+
+/// A tuple with an Of<Law> for each law.
+template <template <class> class Of, class... All>
+std::tuple<Of<All>...> per_law(const std::tuple<All...>*);
+template <template <class> class Of>
+using PerLaw = decltype(per_law<Of>(static_cast<const Laws*>(nullptr)));
+
+/// Calls visit(std::type_identity<Law>{}) for each law.
+template <class Visit>
+void each_law(Visit&& visit) {
+  const auto all = [&]<class... All>(const std::tuple<All...>*) { (visit(std::type_identity<All>{}), ...); };
+  all(static_cast<const Laws*>(nullptr));
+}
+
+/// A law's place among all.
+template <class Law>
+inline constexpr std::size_t law_number = []<class... All>(const std::tuple<All...>*) {
+  std::size_t number = 0;
+  bool found = false;
+  ((found = found || std::is_same_v<All, Law>, number += found ? 0 : 1), ...);
+  return number;
+}(static_cast<const Laws*>(nullptr));
+
+/// The law's rest values and material as numbers, in the order of its members.
+template <class Law>
+auto numbers(const Law& law) {
+  return std::bit_cast<std::array<real, sizeof(Law) / sizeof(real)>>(law);
+}
 
 /// Edges of a corner: `difference(k)` is the corner's value less that of the k-th other corner, k
 /// from 0.

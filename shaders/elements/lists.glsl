@@ -3,11 +3,12 @@
 // neighbouring entries. server/sim/element_lists.h makes the lists. Needs vertex_count. A kernel gathers with
 //   #each Law
 //     for (EntryRange at = entry_range(Law_LIST, i); at.first < at.end; at.first += Law_TEXELS * SLICE_SIZE) {
-//       LawEntry entry = Law_ENTRY(at.first);
+//       LawEntry entry = entry_of_Law(at.first);
 //       ...
 //   #end
 // server/gl/program.h repeats this for each law of which the scene has elements, and puts its name in place of Law.
 #include "types.glsl"
+#include "constraint.glsl"
 #include "spring.glsl"
 
 #ifndef SLICE_SIZE
@@ -27,3 +28,24 @@ EntryRange entry_range(int list, int i) {
   return EntryRange(int(FETCH_UINT(element_slices, at)) * SLICE_SIZE + lane,
                     int(FETCH_UINT(element_slices, at + 1)) * SLICE_SIZE);
 }
+
+#each Law
+/// An element as one of its corners sees it.
+struct LawEntry {
+  int others[Law_CORNERS - 1];  // the vertices at its other corners, in cyclic order
+  Law law;
+};
+
+/// The entry whose first texel is number `at`: the other vertices, then the law's numbers. An entry of padding has the
+/// vertex itself as its other corners, and zeros: it gives no force.
+LawEntry entry_of_Law(int at) {
+  uvec4 texels[Law_TEXELS];
+  for (int t = 0; t < Law_TEXELS; ++t) texels[t] = FETCH(elements, at + t * SLICE_SIZE);
+  LawEntry entry;
+  for (int k = 0; k < Law_CORNERS - 1; ++k) entry.others[k] = int(texels[k / 4][k % 4]);
+#define NUMBER(k) uintBitsToFloat(texels[(Law_CORNERS - 1 + k) / 4][(Law_CORNERS - 1 + k) % 4])
+  entry.law = Law_OF(NUMBER);
+#undef NUMBER
+  return entry;
+}
+#end

@@ -12,34 +12,29 @@ struct Spring {
 };
 
 struct SpringEdges {
-  vec3 d;  // this corner's value less the other's
+  vec3 d[1];  // this corner's value less the other's
 };
-
-FUNCTION SpringEdges edges_sum(SpringEdges a, SpringEdges b) {
-  a.d = a.d + b.d;
-  return a;
-}
 
 /// Force [N] on the corner. A spring of length 0 has no direction and gives no force. Damping acts on the relative
 /// velocity projected on the spring: it does not act on a rigid rotation.
 FUNCTION vec3 element_force(Spring s, SpringEdges place, SpringEdges velocity) {
-  real length_squared = dot(place.d, place.d);
+  real length_squared = dot(place.d[0], place.d[0]);
   real inverse_length = length_squared > real(0.0) ? real(1.0) / sqrt(length_squared) : real(0.0);
-  vec3 n = place.d * inverse_length;
+  vec3 n = place.d[0] * inverse_length;
   real length_now = length_squared * inverse_length;
-  real tension = s.stiffness * (length_now - s.rest_length) + s.damping * dot(n, velocity.d);
+  real tension = s.stiffness * (length_now - s.rest_length) + s.damping * dot(n, velocity.d[0]);
   return n * (-tension);
 }
 
 /// Elastic energy [J] of the spring.
 FUNCTION real element_energy(Spring s, SpringEdges place) {
-  real stretch = sqrt(dot(place.d, place.d)) - s.rest_length;
+  real stretch = sqrt(dot(place.d[0], place.d[0])) - s.rest_length;
   return real(0.5) * s.stiffness * stretch * stretch;
 }
 
 /// Stretch l/L - 1; 0 for a spring without rest length.
 FUNCTION real element_stretch(Spring s, SpringEdges place) {
-  real stretch = sqrt(dot(place.d, place.d)) - s.rest_length;
+  real stretch = sqrt(dot(place.d[0], place.d[0])) - s.rest_length;
   return s.rest_length > real(0.0) ? stretch / s.rest_length : real(0.0);
 }
 
@@ -56,8 +51,8 @@ FUNCTION real element_damping(Spring s) { return s.damping; }      // the larges
 
 /// The terms of the force [N] added up without their signs: rounding errors are a share of it.
 FUNCTION real element_force_scale(Spring s, SpringEdges place, SpringEdges velocity) {
-  return s.stiffness * (sqrt(dot(place.d, place.d)) + s.rest_length) +
-         s.damping * sqrt(dot(velocity.d, velocity.d));
+  return s.stiffness * (sqrt(dot(place.d[0], place.d[0])) + s.rest_length) +
+         s.damping * sqrt(dot(velocity.d[0], velocity.d[0]));
 }
 
 /// Second derivatives of energy and dissipation with respect to the corner's place and velocity, -df/dx [N/m] and
@@ -70,10 +65,10 @@ struct SpringHessian {
 };
 
 FUNCTION SpringHessian element_hessian(Spring s, SpringEdges place) {
-  real length_squared = dot(place.d, place.d);
+  real length_squared = dot(place.d[0], place.d[0]);
   real inverse_length = length_squared > real(0.0) ? real(1.0) / sqrt(length_squared) : real(0.0);
   SpringHessian h;
-  h.n = place.d * inverse_length;
+  h.n = place.d[0] * inverse_length;
   h.along = s.stiffness;
   h.across = s.stiffness * (real(1.0) - s.rest_length * inverse_length);
   h.damping = s.damping;
@@ -125,7 +120,7 @@ FUNCTION SpringMatrix step_matrix(SpringHessian h, real dt) {
 
 /// The corner's row of the matrix, times a vector of all corners.
 FUNCTION vec3 matrix_product(SpringMatrix m, SpringEdges vector) {
-  return m.across * vector.d + m.n * ((m.along - m.across) * dot(m.n, vector.d));
+  return m.across * vector.d[0] + m.n * ((m.along - m.across) * dot(m.n, vector.d[0]));
 }
 
 /// Adds the corner's own 3x3 block: its diagonal, and its off-diagonal (21, 31, 32).
@@ -147,7 +142,7 @@ FUNCTION void add_descent(Spring s, real dt, SpringEdges place, SpringEdges move
                           INOUT(vec3) diagonal, INOUT(vec3) off_diagonal) {
   SpringHessian h = element_definite(element_hessian(s, place));
   real along = h.along * (dt * dt), across = dt * dt * h.across, damping = dt * h.damping;
-  residual -= (along * (dot(h.n, place.d) - s.rest_length) + damping * dot(h.n, moved.d)) * h.n;
+  residual -= (along * (dot(h.n, place.d[0]) - s.rest_length) + damping * dot(h.n, moved.d[0])) * h.n;
   PRECISE real more = along + damping - across;
   diagonal += across + more * h.n * h.n;
   off_diagonal += vec3(more * h.n.x * h.n.y, more * h.n.x * h.n.z, more * h.n.y * h.n.z);
@@ -163,12 +158,12 @@ struct SpringLine {
 /// `change` [m/s]: change of velocity in a whole step of the search; over dt [s] it moves the corners, too.
 FUNCTION SpringLine element_line(SpringEdges place, SpringEdges velocity, SpringEdges change) {
   SpringLine line;
-  line.place = place.d;
-  line.change = change.d;
-  line.length_before = sqrt(dot(place.d, place.d));
-  vec3 n = line.length_before > real(0.0) ? place.d / line.length_before : vec3(real(0.0));
-  line.closing = dot(n, velocity.d);
-  line.closing_change = dot(n, change.d);
+  line.place = place.d[0];
+  line.change = change.d[0];
+  line.length_before = sqrt(dot(place.d[0], place.d[0]));
+  vec3 n = line.length_before > real(0.0) ? place.d[0] / line.length_before : vec3(real(0.0));
+  line.closing = dot(n, velocity.d[0]);
+  line.closing_change = dot(n, change.d[0]);
   return line;
 }
 
@@ -181,51 +176,29 @@ FUNCTION real line_energy(Spring s, SpringLine line, real dt, real share) {
                       dt * s.damping * more * (real(2.0) * line.closing + more));
 }
 
-/// Factors of the spring as a constraint that Gauss-Seidel sweeps project, for one dt. They follow from stiffness,
-/// damping, masses and dt: server/model/spring_gains.h.
-struct SpringGains {
-  real stretch, damping;  // [kg]
-  real memory;            // factor on what the spring has pushed in this step so far, [0, 1)
-  real turning;           // stiffness relative to the inertia of both ends, w k dt^2; 0 without memory
-};
-
 /// One visit of a sweep, in PBD and XPBD (Mueller et al. 2007, section 3.3; Macklin et al. 2016, equations 18 and 26):
 /// the impulse times dt [kg m] that the spring adds to its first end and takes from its second. `place`: difference of
 /// its ends now, `moved`: its change since the step's start, `pushed`: impulses given since then. Earlier impulses are
 /// turned to the spring's present direction; published XPBD leaves their direction, and so misses implicit Euler's
 /// solution when springs turn within a step. `turning` accounts for the spring's own resistance (Newton's method, if it
 /// is stretched).
-FUNCTION SpringEdges element_projection(real rest_length, SpringGains gains, SpringEdges place, SpringEdges moved,
+FUNCTION SpringEdges element_projection(Spring s, ConstraintGains gains, SpringEdges place, SpringEdges moved,
                                         SpringEdges pushed) {
   SpringEdges push;
-  push.d = vec3(real(0.0));
-  real length_squared = dot(place.d, place.d);
+  push.d[0] = vec3(real(0.0));
+  real length_squared = dot(place.d[0], place.d[0]);
   if (!(length_squared > real(0.0))) return push;
   real inverse_length = real(1.0) / sqrt(length_squared);
-  vec3 n = place.d * inverse_length;
-  real stretch = length_squared * inverse_length - rest_length;
-  real along = dot(n, pushed.d);
-  real change = -(gains.stretch * stretch + gains.damping * dot(n, moved.d) + gains.memory * along);
+  vec3 n = place.d[0] * inverse_length;
+  real stretch = length_squared * inverse_length - s.rest_length;
+  real along = dot(n, pushed.d[0]);
+  real change = -(gains.stretch * stretch + gains.damping * dot(n, moved.d[0]) + gains.memory * along);
   real resisted = gains.turning * inverse_length * max(stretch, -stretch);
-  push.d = n * change - (pushed.d - n * along) * (real(1.0) / (real(1.0) + resisted));
+  push.d[0] = n * change - (pushed.d[0] - n * along) * (real(1.0) / (real(1.0) + resisted));
   return push;
 }
 
 #ifndef __cplusplus
-// Entry in the lists of elements/lists.glsl: (other vertex, rest length, stiffness, damping). Padding is the vertex
-// itself and zeros: it gives no force.
-struct SpringEntry {
-  int other;
-  Spring law;
-};
-#define Spring_CORNERS 2.0
-#define Spring_TEXELS 1
-#define Spring_ENTRY(at) spring_entry(FETCH(elements, at))
-/// DIFFERENCE(j): macro for this corner's value less that of vertex j.
-#define Spring_EDGES(entry, DIFFERENCE) SpringEdges(DIFFERENCE(entry.other))
-
-SpringEntry spring_entry(uvec4 words) {
-  return SpringEntry(int(words.x),
-                     Spring(uintBitsToFloat(words.y), uintBitsToFloat(words.z), uintBitsToFloat(words.w)));
-}
+/// NUMBER(k): macro for the law's number k, in the order of its members.
+#define Spring_OF(NUMBER) Spring(NUMBER(0), NUMBER(1), NUMBER(2))
 #endif

@@ -13,16 +13,18 @@ uniform vec4 gravity;  // xyz [m/s^2], w: air drag [1/s]
 
 vec3 element_forces(int i, vec3 x, vec3 v) {
   vec3 force = vec3(0.0);
-#define PLACE(j) (x - FETCH(position, j).xyz)
-#define VELOCITY(j) (v - FETCH(velocity, j).xyz)
 #each Law
   for (EntryRange at = entry_range(Law_LIST, i); at.first < at.end; at.first += Law_TEXELS * SLICE_SIZE) {
-    LawEntry entry = Law_ENTRY(at.first);
-    force += element_force(entry.law, Law_EDGES(entry, PLACE), Law_EDGES(entry, VELOCITY));
+    LawEntry entry = entry_of_Law(at.first);
+    LawEdges dx, dv;
+    for (int k = 0; k < Law_CORNERS - 1; ++k) {
+      int j = entry.others[k];
+      dx.d[k] = x - FETCH(position, j).xyz;
+      dv.d[k] = v - FETCH(velocity, j).xyz;
+    }
+    force += element_force(entry.law, dx, dv);
   }
 #end
-#undef PLACE
-#undef VELOCITY
   return force;
 }
 

@@ -1,4 +1,4 @@
-// PBD, XPBD and VBD. A step begins with a guess of where each vertex will be. Sweeps over the springs (VBD: vertices),
+// PBD, XPBD and VBD. A step begins with a guess of where each vertex will be. Sweeps over the elements (VBD: vertices),
 // colour after colour, improve the guess; a pass of contacts follows each sweep. The last guess is the new state. Items
 // of one colour do not touch each other, so the outcome depends on no order of threads (server/model/colouring.h).
 // There are two forms, for small cloths and for large: with ONE_GROUP the whole step runs in one work group, with
@@ -14,7 +14,7 @@ bool hits(vec3 v) { return dot(met_velocity - v, met_normal) > 2.0 * dt * length
 #ifdef BY_VERTEX
 #include "vertex_descent.glsl"
 #else
-#include "spring_projection.glsl"
+#include "element_projection.glsl"
 #endif
 #include "sweep_contacts.glsl"
 
@@ -102,14 +102,19 @@ void finish(int i) {
 uniform int colour_first[COLOUR_COUNT + 1];  // item
 
 #define EACH(item, first, end) int item = first + int(gl_LocalInvocationID.x); item < end; item += GROUP_SIZE
+// EACH_VISIT(sweep) calls `sweep(visit, first, end)` for each function that visits items, and its colours first to
+// end - 1.
+#define SWEEP(visit, first, end)                                                              \
+  for (int colour = first; colour < end; ++colour) {                                          \
+    for (EACH(item, colour_first[colour], colour_first[colour + 1])) visit(item);             \
+    wait();                                                                                   \
+  }
+
 void main() {
   for (EACH(i, 0, VERTEX_COUNT)) begin(i);
   wait();
   for (sweep = 0; sweep <= last_sweep; ++sweep) {
-    for (int colour = 0; colour < COLOUR_COUNT; ++colour) {
-      for (EACH(item, colour_first[colour], colour_first[colour + 1])) visit(item);
-      wait();
-    }
+    EACH_VISIT(SWEEP)
 #ifdef CONTACTS
     copy_written = DEVIATIONS - 1 - copy_read;
     for (EACH(i, 0, VERTEX_COUNT)) meet(i);

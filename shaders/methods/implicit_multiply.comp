@@ -11,13 +11,16 @@ layout(std430, binding = slot_group_sums) writeonly buffer Sums { vec4 group_sum
 
 vec3 multiply(int i, vec4 x, vec3 z) {
   vec3 result = z * ((1.0 + dt * gravity.w) / x.w);
-#define PLACE(j) (x.xyz - FETCH(position, j).xyz)
-#define VECTOR(j) (z - FETCH(preconditioned, j).xyz)
 #each Law
   for (EntryRange at = entry_range(Law_LIST, i); at.first < at.end; at.first += Law_TEXELS * SLICE_SIZE) {
-    LawEntry entry = Law_ENTRY(at.first);
-    LawMatrix matrix = step_matrix(element_hessian(entry.law, Law_EDGES(entry, PLACE)), dt);
-    result += matrix_product(matrix, Law_EDGES(entry, VECTOR));
+    LawEntry entry = entry_of_Law(at.first);
+    LawEdges dx, dz;
+    for (int k = 0; k < Law_CORNERS - 1; ++k) {
+      int j = entry.others[k];
+      dx.d[k] = x.xyz - FETCH(position, j).xyz;
+      dz.d[k] = z - FETCH(preconditioned, j).xyz;
+    }
+    result += matrix_product(step_matrix(element_hessian(entry.law, dx), dt), dz);
   }
 #end
   return result;

@@ -30,16 +30,20 @@ void main() {
   if (i < vertex_count) {
     vec3 u = FETCH(velocity, i).xyz, d = FETCH(change, i).xyz;
     vec3 fixed_change = if_pinned(d, x.w), scaled_change = if_free(d, x.w);
-#define FIXED(j) (fixed_change - if_pinned(FETCH(change, j).xyz, FETCH(position, j).w))
-#define SCALED(j) (scaled_change - if_free(FETCH(change, j).xyz, FETCH(position, j).w))
-#define PLACE(j) (x.xyz - FETCH(position, j).xyz + dt * FIXED(j))
-#define VELOCITY(j) (u - FETCH(velocity, j).xyz + FIXED(j))
 #each Law
     for (EntryRange at = entry_range(Law_LIST, i); at.first < at.end; at.first += Law_TEXELS * SLICE_SIZE) {
-      LawEntry entry = Law_ENTRY(at.first);
-      LawLine line = element_line(Law_EDGES(entry, PLACE), Law_EDGES(entry, VELOCITY), Law_EDGES(entry, SCALED));
+      LawEntry entry = entry_of_Law(at.first);
+      LawEdges dx, du, scaled;
+      for (int k = 0; k < Law_CORNERS - 1; ++k) {
+        vec4 y = FETCH(position, entry.others[k]);
+        vec3 dy = FETCH(change, entry.others[k]).xyz, fixed_edge = fixed_change - if_pinned(dy, y.w);
+        dx.d[k] = x.xyz - y.xyz + dt * fixed_edge;
+        du.d[k] = u - FETCH(velocity, entry.others[k]).xyz + fixed_edge;
+        scaled.d[k] = scaled_change - if_free(dy, y.w);
+      }
+      LawLine line = element_line(dx, du, scaled);
       for (int k = 0; k < SHARES; ++k)
-        energy[k] += line_energy(entry.law, line, dt, shares[k]) / Law_CORNERS;  // the other corners count the rest
+        energy[k] += line_energy(entry.law, line, dt, shares[k]) / float(Law_CORNERS);  // others count the rest
     }
 #end
     if (x.w > 0.0) {

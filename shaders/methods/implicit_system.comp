@@ -27,17 +27,20 @@ void main() {
   vec3 u = FETCH(velocity, i).xyz, d = FETCH(change, i).xyz;
   vec3 force = vec3(0.0), product = vec3(0.0), diagonal = vec3(0.0), corner = vec3(0.0);
   float stiffness = 0.0;
-#define PLACE(j) (x.xyz - FETCH(position, j).xyz)
-#define VELOCITY(j) (u - FETCH(velocity, j).xyz)
-#define CHANGE(j) (d - FETCH(change, j).xyz)
 #each Law
   for (EntryRange at = entry_range(Law_LIST, i); at.first < at.end; at.first += Law_TEXELS * SLICE_SIZE) {
-    LawEntry entry = Law_ENTRY(at.first);
-    LawEdges place = Law_EDGES(entry, PLACE);
-    LawMatrix matrix = step_matrix(element_hessian(entry.law, place), dt);
-    force += element_force(entry.law, place, Law_EDGES(entry, VELOCITY));
+    LawEntry entry = entry_of_Law(at.first);
+    LawEdges dx, du, dd;
+    for (int k = 0; k < Law_CORNERS - 1; ++k) {
+      int j = entry.others[k];
+      dx.d[k] = x.xyz - FETCH(position, j).xyz;
+      du.d[k] = u - FETCH(velocity, j).xyz;
+      dd.d[k] = d - FETCH(change, j).xyz;
+    }
+    LawMatrix matrix = step_matrix(element_hessian(entry.law, dx), dt);
+    force += element_force(entry.law, dx, du);
     stiffness += element_stiffness(entry.law) + element_damping(entry.law) / dt;
-    product += matrix_product(matrix, Law_EDGES(entry, CHANGE));
+    product += matrix_product(matrix, dd);
     add_block(matrix, diagonal, corner);
   }
 #end

@@ -64,24 +64,25 @@ int stop(vec3 x, vec3 d, vec3 a, vec3 b, inout vec3 descent) {
   return met;
 }
 
-void visit(int item) {
+void visit_vertex(int item) {
   int i = int(FETCH_UINT(visited, item));
   vec4 x = FETCH(position, i);
   float inertia = 1.0 / (x.w * mobility);
   vec3 v = FETCH(velocity, i).xyz, d = deviation(i).xyz;
   // precise: both forms of the kernel are compiled apart and must round alike.
   precise vec3 residual = inertia * (targets[i].xyz - d), diagonal = vec3(inertia), corner = vec3(0.0);
-#define MOVED(j) (drift(v - FETCH(velocity, j).xyz) + (d - deviation(j).xyz))
-#define START(j) (x.xyz - FETCH(position, j).xyz)
 #each Law
   for (EntryRange at = entry_range(Law_LIST, i); at.first < at.end; at.first += Law_TEXELS * SLICE_SIZE) {
-    LawEntry entry = Law_ENTRY(at.first);
-    LawEdges moved = Law_EDGES(entry, MOVED), place = edges_sum(Law_EDGES(entry, START), moved);
+    LawEntry entry = entry_of_Law(at.first);
+    LawEdges place, moved;
+    for (int k = 0; k < Law_CORNERS - 1; ++k) {
+      int j = entry.others[k];
+      moved.d[k] = drift(v - FETCH(velocity, j).xyz) + (d - deviation(j).xyz);
+      place.d[k] = (x.xyz - FETCH(position, j).xyz) + moved.d[k];
+    }
     add_descent(entry.law, dt, place, moved, residual, diagonal, corner);
   }
 #end
-#undef MOVED
-#undef START
   vec3 a, b;
   factorise(diagonal, corner, inertia, a, b);
   precise vec3 descent = solve_block(a, b, residual);

@@ -10,7 +10,7 @@ void main() {
   for (EntryRange at = entry_range(Spring_LIST, i); at.first < at.end; at.first += SLICE_SIZE) {
     float pull = pulls[at.first];
     RARELY(pull > 0.0) {
-      int j = Spring_ENTRY(at.first).other;
+      int j = entry_of_Spring(at.first).others[0];
       float growth;
       moved -= pull * pull_direction(x.xyz - FETCH(position, j).xyz, x_start - FETCH(start_position, j).xyz, growth);
     }

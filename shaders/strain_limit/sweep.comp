@@ -42,15 +42,16 @@ void main() {
     vec3 x_start = FETCH(start_position, i).xyz, moved = vec3(0.0);
     float largest_strain = limit[int(FETCH(rest_position, i).w)];
     for (EntryRange at = entry_range(Spring_LIST, i); at.first < at.end; at.first += SLICE_SIZE) {
-      SpringEntry entry = Spring_ENTRY(at.first);
-      vec4 y = FETCH(position, entry.other);
+      SpringEntry entry = entry_of_Spring(at.first);
+      int j = entry.others[0];
+      vec4 y = FETCH(position, j);
       vec3 d = x.xyz - y.xyz;
       float pull = pulls[at.first];
       float rest_length = entry.law.rest_length, allowed = largest_strain * rest_length, mobility = x.w + y.w;
       float excess = length(d) - rest_length - allowed * (1.0 - margin);
       RARELY((excess > 0.0 || pull > 0.0) && allowed > 0.0 && mobility > 0.0) {
         float growth;
-        vec3 n = pull_direction(d, x_start - FETCH(start_position, entry.other).xyz, growth);
+        vec3 n = pull_direction(d, x_start - FETCH(start_position, j).xyz, growth);
         float changed = max(pull + relaxation * excess / (mobility * growth), 0.0);
         pulls[at.first] = changed;
         moved -= (changed - pull) * n;

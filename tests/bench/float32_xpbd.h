@@ -7,7 +7,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "server/model/spring_gains.h"
+#include "server/model/constraint_gains.h"
 #include "server/reference/reference.h"
 
 namespace clothlab::bench {
@@ -24,13 +24,13 @@ inline std::vector<glm::dvec3> xpbd_by_differences(const reference::World& world
     x_prev = x;
     for (std::size_t i = 0; i < x.size(); ++i)
       if (w[i] > 0.0f) x[i] += dt * (v[i] + dt * gravity);
-    for (const std::uint32_t index : world.spring_colours.order) {
+    for (const std::uint32_t index : world.element_colours[0].order) {
       const model::Spring& spring = model.springs()[index];
       const float wa = w[spring.vertices[0]], wb = w[spring.vertices[1]];
       if (wa + wb == 0.0f) continue;
       const auto gain =
-          static_cast<float>(model::spring_gains(world.scene.solver, spring.law.stiffness, spring.law.damping,
-                                                 static_cast<double>(wa + wb))
+          static_cast<float>(model::constraint_gains(world.scene.solver, spring.law.stiffness,
+                                                     spring.law.damping, static_cast<double>(wa + wb))
                                  .stretch);
       const glm::vec3 d = x[spring.vertices[0]] - x[spring.vertices[1]];
       const float length = glm::length(d);

@@ -14,7 +14,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "server/model/spring_gains.h"
+#include "server/model/constraint_gains.h"
 #include "server/reference/contacts.h"
 #include "server/reference/reference.h"
 #include "shaders/elements/elements.h"
@@ -49,17 +49,17 @@ struct Step {
 
   double weight(const model::Spring& spring) const { return w[spring.vertices[0]] + w[spring.vertices[1]]; }
 
-  elements::SpringGains gains(const model::Spring& spring) const {
-    return model::spring_gains(world.scene.solver, spring.law.stiffness, spring.law.damping, weight(spring));
+  elements::ConstraintGains gains(const model::Spring& spring) const {
+    return model::constraint_gains(world.scene.solver, spring.law.stiffness, spring.law.damping,
+                                   weight(spring));
   }
 
   glm::dvec3 change(const model::Spring& spring, const Vectors& d, const glm::dvec3& pushed) const {
-    const elements::SpringGains gain = gains(spring);
+    const elements::ConstraintGains gain = gains(spring);
     const glm::dvec3 moved = d[spring.vertices[0]] - d[spring.vertices[1]];
-    return elements::element_projection(spring.law.rest_length, gain,
-                                        {(x[spring.vertices[0]] - x[spring.vertices[1]]) + moved}, {moved},
-                                        {pushed})
-        .d;
+    return elements::element_projection(
+               spring.law, gain, {(x[spring.vertices[0]] - x[spring.vertices[1]]) + moved}, {moved}, {pushed})
+        .d[0];
   }
 
   void push(const model::Spring& spring, const glm::dvec3& by, Vectors& d) const {
@@ -94,7 +94,7 @@ int iterations_needed(const Step& step, Order order, double eigenvalue = 0.0) {
   Vectors d = step.free, pushed(springs.size(), glm::dvec3(0.0)), by(pushed);
   const double start = step.residual(d);
   for (int n = 1; n < most_iterations; ++n) {
-    for (const std::uint32_t s : step.world.spring_colours.order) {
+    for (const std::uint32_t s : step.world.element_colours[0].order) {
       if (step.weight(springs[s]) == 0.0) continue;
       by[s] = step.change(springs[s], d, pushed[s]);
       if (order == Order::shared)
@@ -122,7 +122,7 @@ Spectrum spectrum(const Step& step) {
   std::vector<double> diagonal, p(springs.size());
   for (const model::Spring& spring : springs) {
     n.push_back(glm::normalize(step.x[spring.vertices[0]] - step.x[spring.vertices[1]]));
-    const elements::SpringGains gains = step.gains(spring);
+    const elements::ConstraintGains gains = step.gains(spring);
     diagonal.push_back(1.0 / (gains.stretch + gains.damping));  // W + 1 / (k dt^2 + c dt)
   }
   Spectrum found;

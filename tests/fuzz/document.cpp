@@ -74,7 +74,7 @@ void require_colouring(const model::Colouring& colouring, std::size_t items, Con
 
 void require_colourings(const model::Model& model, const scene::Scene& scene) {
   if (model.springs().empty()) return;
-  require_colouring(model::colour_elements(model, scene, model.springs()), model.springs().size(),
+  require_colouring(model::colour_elements(model, scene)[0], model.springs().size(),
                     [&](const auto* begin, const auto* end) {
                       std::set<std::uint32_t> taken;
                       for (; begin != end; ++begin)

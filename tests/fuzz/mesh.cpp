@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "server/model/constraint_gains.h"
 #include "server/model/mesh_file.h"
-#include "server/model/spring_gains.h"
 #include "server/stream/frame.h"
 #include "tests/fuzz/decode_frame.h"
 #include "tests/fuzz/document.h"

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "server/model/spring_gains.h"
+#include "server/model/constraint_gains.h"
 #include "server/model/stability.h"
 #include "tests/stress/trial.h"
 
@@ -96,8 +96,8 @@ class Column {
           const Link& link = springs_[s];
           const auto a = static_cast<std::size_t>(link.bottom), b = static_cast<std::size_t>(link.top);
           const double w = mobility(link.bottom) + mobility(link.top), moved = d[a] - d[b];
-          const elements::SpringGains gains =
-              model::spring_gains(scene_.solver, link.stiffness, scene_.cloths[0].material.damping, w);
+          const elements::ConstraintGains gains =
+              model::constraint_gains(scene_.solver, link.stiffness, scene_.cloths[0].material.damping, w);
           const double now = x[a] - x[b] + moved;
           const double push =
               -(gains.stretch * (now - link.length) + gains.damping * moved + gains.memory * pushed[s]);

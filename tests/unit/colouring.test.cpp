@@ -77,7 +77,7 @@ TEST_CASE("a grid's springs take 12 colours, its vertices 5, and no two neighbou
   for (const auto& [columns, rows] : {std::pair{25, 25}, {5, 41}, {7, 4}, {30, 3}}) {
     const scene::Scene scene = scene_of(scene::Grid{columns, rows, 1.0, 1.0});
     const model::Model model = *model::build(scene);
-    const model::Colouring springs = model::colour_elements(model, scene, model.springs());
+    const model::Colouring springs = model::colour_elements(model, scene)[0];
     check_springs(model, springs);
     CHECK(springs.colours() <= 12);
     if (columns > 4 && rows > 4) CHECK(springs.colours() == 12);
@@ -91,7 +91,7 @@ TEST_CASE("kinds of springs that a grid lacks take no colour") {
   scene::Scene scene = scene_of(scene::Grid{9, 9, 1.0, 1.0});
   scene.cloths[0].material.bend = scene.cloths[0].material.shear = 0.0;
   const model::Model model = *model::build(scene);
-  const model::Colouring springs = model::colour_elements(model, scene, model.springs());
+  const model::Colouring springs = model::colour_elements(model, scene)[0];
   check_springs(model, springs);
   CHECK(springs.colours() == 4);
 }
@@ -103,7 +103,7 @@ TEST_CASE("random meshes are coloured validly, within the bounds of greedy colou
     std::uint32_t most = 0;
     for (std::uint32_t i = 0; i < model.vertex_count(); ++i)
       most = std::max(most, model.springs().at_vertex.offsets[i + 1] - model.springs().at_vertex.offsets[i]);
-    const model::Colouring springs = model::colour_elements(model, scene, model.springs());
+    const model::Colouring springs = model::colour_elements(model, scene)[0];
     check_springs(model, springs);
     CHECK(springs.colours() >= most);      // springs at one vertex have different colours
     CHECK(springs.colours() <= 2 * most);  // a spring has at most 2 (most - 1) neighbours
@@ -118,11 +118,11 @@ TEST_CASE("several cloths are coloured together, and the same way every time") {
   scene.cloths.push_back(scene.cloths[0]);
   scene.cloths[1].mesh = random_mesh(3, 40);
   const model::Model model = *model::build(scene);
-  const model::Colouring springs = model::colour_elements(model, scene, model.springs());
+  const model::Colouring springs = model::colour_elements(model, scene)[0];
   const model::Colouring vertices = model::colour_vertices(model, scene);
   check_springs(model, springs);
   check_vertices(model, vertices);
-  CHECK(model::colour_elements(model, scene, model.springs()).order == springs.order);
+  CHECK(model::colour_elements(model, scene)[0].order == springs.order);
   CHECK(model::colour_vertices(model, scene).order == vertices.order);
 }
 
@@ -130,7 +130,7 @@ TEST_CASE("greedy colours are balanced: the largest has at most half as many mem
   const scene::Scene scene = scene_of(random_mesh(5, 600));
   const model::Model model = *model::build(scene);
   for (const model::Colouring& colouring :
-       {model::colour_vertices(model, scene), model::colour_elements(model, scene, model.springs())}) {
+       {model::colour_vertices(model, scene), model::colour_elements(model, scene)[0]}) {
     const double mean = static_cast<double>(colouring.order.size()) / colouring.colours();
     for (std::uint32_t c = 0; c < colouring.colours(); ++c)
       CHECK(colouring.offsets[c + 1] - colouring.offsets[c] <= 1.5 * mean);

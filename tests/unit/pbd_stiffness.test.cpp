@@ -1,7 +1,7 @@
 // The stiffness that is reported for PBD, which has none in N/m.
 #include <cmath>
 
-#include "server/model/spring_gains.h"
+#include "server/model/constraint_gains.h"
 #include "tests/scenes.h"
 
 using namespace clothlab;

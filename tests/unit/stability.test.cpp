@@ -42,7 +42,7 @@ Sheet one_spring() {
   two.model.rest_position.resize(2);
   two.model.mass.resize(2);
   two.model.pin_motion.resize(2);
-  two.model.elements.springs.resize(1);
+  two.model.elements.of<elements::Spring>().resize(1);
   return two;
 }
 
@@ -67,7 +67,7 @@ Sheet tangle(std::uint32_t seed, double decades, bool damped, bool pins) {
     const auto kind = static_cast<model::SpringKind>(random() % 3);
     const double length = glm::distance(model.rest_position[a], model.rest_position[b]);
     const scene::Springs& material = sheet.scene.cloths[0].material;
-    model.elements.springs.push_back(
+    model.elements.of<elements::Spring>().push_back(
         {{std::min(a, b), std::max(a, b)}, {length, model::stiffness(material, kind), material.damping}});
   }
   return sheet;
@@ -163,7 +163,7 @@ TEST_CASE("a spring in space: both ends free, one heavy, one pinned") {
     CHECK(model::omega_bound(two.model, two.scene) == Approx(std::sqrt(200.0)).epsilon(1e-12));
   }
   two.model.mass = {1.0, 1.0};
-  two.model.elements.springs[0].law.damping = 3.0;  // M^-1 C of the one vibration: 2 c / m
+  two.model.elements.of<elements::Spring>()[0].law.damping = 3.0;  // M^-1 C of the one vibration: 2 c / m
   two.scene.air_drag = 5.0;
   for (const Method method :
        {Method::explicit_euler, Method::symplectic_euler, Method::verlet, Method::rk4}) {
@@ -249,9 +249,9 @@ TEST_CASE("without springs, only the air limits the step") {
 
 TEST_CASE("two vertices in one place, joined by a spring without length, have a limit and no NaN") {
   Sheet two = one_spring();
-  two.model.elements.springs[0].law.damping = 1.0;
+  two.model.elements.of<elements::Spring>()[0].law.damping = 1.0;
   two.model.rest_position[1] = two.model.rest_position[0];
-  two.model.elements.springs[0].law.rest_length = 0.0;
+  two.model.elements.of<elements::Spring>()[0].law.rest_length = 0.0;
   CHECK(model::dt_limit(two.model, two.scene) == Approx(2 / std::sqrt(200.0)));
   two.scene.solver.method = Method::explicit_euler;
   CHECK(model::dt_limit(two.model, two.scene) == 0.0);

@@ -1,4 +1,4 @@
-#include "server/model/spring_gains.h"
+#include "server/model/constraint_gains.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,8 @@ double mobility(const scene::Scene& scene) {
   return 1.0 / (1.0 + scene.solver.dt * scene.air_drag);
 }
 
-SpringGains spring_gains(const scene::Solver& solver, double stiffness, double damping, double inverse_mass) {
+elements::ConstraintGains constraint_gains(const scene::Solver& solver, double stiffness, double damping,
+                                           double inverse_mass) {
   const double k = stiffness * solver.dt * solver.dt, c = damping * solver.dt;
   const double coupling = inverse_mass * (k + c);
   if (solver.method == scene::Method::xpbd) {
@@ -42,7 +43,7 @@ std::vector<PbdStiffness> pbd_stiffness(const Model& model, const scene::Scene& 
       const double k = stiffness(material, kind);
       if (k > 0.0)
         result[i][static_cast<std::size_t>(kind)] =
-            inverse_mass * spring_gains(scene.solver, k, material.damping, inverse_mass).stretch;
+            inverse_mass * constraint_gains(scene.solver, k, material.damping, inverse_mass).stretch;
     }
   }
   return result;

@@ -1,0 +1,66 @@
+// PBD (Mueller et al. 2007, section 3.3) and XPBD (Macklin et al. 2016, equations 17, 18 and 26): a visit to an element
+// moves its corners, each by its inverse mass. XPBD remembers what an element has pushed in this step.
+READ_UVEC4(visits, unit_visits);  // law after law, colour after colour: server/sim/coloured_work.h
+#ifdef MEMORY
+// For each element, and each corner but the first: the first's pushes away from that corner in this step so far [kg m].
+layout(std430, binding = slot_pushed) buffer Pushed { vec4 pushed[]; };
+#endif
+
+vec3 first_deviation(int i, vec3 x, vec3 v) { return vec3(0.0); }
+
+#each Law
+/// A visit's layout: all vertices, the law's rest values, then the gains. What the law's material does is in the gains.
+struct LawVisit {
+  int vertices[Law_CORNERS];
+  Law law;
+  ConstraintGains gains;
+};
+
+LawVisit visit_of_Law(int at) {
+  uvec4 texels[Law_VISIT_TEXELS];
+  for (int t = 0; t < Law_VISIT_TEXELS; ++t) texels[t] = FETCH(visits, at + t);
+  LawVisit visit;
+  for (int k = 0; k < Law_CORNERS; ++k) visit.vertices[k] = int(texels[k / 4][k % 4]);
+#define WORD(k) uintBitsToFloat(texels[(Law_CORNERS + k) / 4][(Law_CORNERS + k) % 4])
+#define NUMBER(k) (k < Law_REST_VALUES ? WORD(k) : 0.0)
+  visit.law = Law_OF(NUMBER);
+  visit.gains = ConstraintGains(WORD(Law_REST_VALUES), WORD(Law_REST_VALUES + 1), WORD(Law_REST_VALUES + 2), 0.0);
+#undef NUMBER
+#undef WORD
+  return visit;
+}
+
+void visit_Law(int item) {
+  int number = item - Law_FIRST_ITEM, first_push = Law_FIRST_PUSH + number * (Law_CORNERS - 1);
+  LawVisit visit = visit_of_Law(Law_FIRST_TEXEL + number * Law_VISIT_TEXELS);
+  vec3 d[Law_CORNERS];
+  float w[Law_CORNERS], w_all = 0.0;
+  for (int k = 0; k < Law_CORNERS; ++k) {
+    d[k] = deviation(visit.vertices[k]).xyz;
+    w[k] = FETCH(position, visit.vertices[k]).w * mobility;
+    w_all += w[k];
+  }
+  LawEdges place, moved, before;
+  for (int k = 0; k < Law_CORNERS - 1; ++k) {
+    int i = visit.vertices[0], j = visit.vertices[k + 1];
+    moved.d[k] = drift(FETCH(velocity, i).xyz - FETCH(velocity, j).xyz) + (d[0] - d[k + 1]);
+    place.d[k] = (FETCH(position, i).xyz - FETCH(position, j).xyz) + moved.d[k];
+    before.d[k] = vec3(0.0);
+#ifdef MEMORY
+    if (sweep > 0) before.d[k] = pushed[first_push + k].xyz;
+#endif
+  }
+#ifdef MEMORY
+  visit.gains.turning = w_all * visit.gains.stretch / visit.gains.memory;
+#endif
+  LawEdges push = element_projection(visit.law, visit.gains, place, moved, before);
+  for (int k = 0; k < Law_CORNERS - 1; ++k) {
+#ifdef MEMORY
+    if (sweep < last_sweep) pushed[first_push + k].xyz = before.d[k] + push.d[k];
+#endif
+    d[0] += w[0] * push.d[k];
+    set_deviation(visit.vertices[k + 1], d[k + 1] - w[k + 1] * push.d[k]);
+  }
+  set_deviation(visit.vertices[0], d[0]);
+}
+#end
