@@ -67,8 +67,8 @@ void ElementOperator::add(const Batch<Law>& batch, const Field& shape) {
     if (std::all_of(element.vertices.begin(), element.vertices.end(), held)) continue;
     Linear<Law> linear{element.vertices, {}};
     for (std::size_t c = 0; c < linear.hessian.size(); ++c)
-      linear.hessian[c] = elements::without_rounding(
-          elements::element_definite(elements::element_hessian(element.law, edges(element, c, shape))));
+      linear.hessian[c] = elements::without_rounding(elements::element_definite(
+          elements::element_hessian(law_at(element, c), edges(element, c, shape))));
     linears.push_back(linear);
   }
 }

@@ -89,6 +89,12 @@ elements::Edges<Law> edges(const Element<Law>& element, std::size_t corner, cons
   return edges(element, corner, [&](std::uint32_t vertex) { return here - field[vertex]; });
 }
 
+/// An element's law as seen from one of its corners.
+template <class Law>
+Law law_at(const Element<Law>& element, std::size_t corner) {
+  return elements::seen_from(element.law, static_cast<int>(corner));
+}
+
 /// Calls visit(element) for every element of every law.
 template <class Visit>
 void each_element(const Batches& batches, Visit&& visit) {

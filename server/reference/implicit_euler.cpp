@@ -70,8 +70,8 @@ struct Equation {
     model::each_element(world.model.elements, [&](const auto& element) {
       for (std::size_t corner = 0; corner < element.corners; ++corner)
         sum[element.vertices[corner]].x +=
-            dt *
-            element_force_scale(element.law, edges(element, corner, positions), edges(element, corner, u));
+            dt * element_force_scale(law_at(element, corner), edges(element, corner, positions),
+                                     edges(element, corner, u));
     });
     double largest = 1e-300;
     for (const dvec3& s : sum) largest = std::max(largest, s.x);

@@ -50,7 +50,7 @@ Vectors element_forces(const World& world, const Vectors& x, const Vectors& v) {
     dvec3& on_last = force[element.vertices.back()];  // the forces within an element sum to zero
     for (std::size_t corner = 0; corner + 1 < element.corners; ++corner) {
       const dvec3 on_corner =
-          element_force(element.law, edges(element, corner, x), edges(element, corner, v));
+          element_force(law_at(element, corner), edges(element, corner, x), edges(element, corner, v));
       force[element.vertices[corner]] += on_corner;
       on_last -= on_corner;
     }

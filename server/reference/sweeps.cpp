@@ -32,8 +32,8 @@ Balance balance(const SweepState& step, std::uint32_t i) {
   world.model.elements.each([&](const auto& batch) {
     batch.at(i, [&](const auto& element, std::size_t corner) {
       const auto now = [&](std::uint32_t other) { return step.now(i) - step.now(other); };
-      add_descent(element.law, dt, edges(element, corner, now), edges(element, corner, step.displacement),
-                  result.residual, diagonal, off_diagonal);
+      add_descent(law_at(element, corner), dt, edges(element, corner, now),
+                  edges(element, corner, step.displacement), result.residual, diagonal, off_diagonal);
     });
   });
   result.hessian += dmat3(diagonal.x, off_diagonal.x, off_diagonal.y, off_diagonal.x, diagonal.y,

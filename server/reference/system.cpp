@@ -21,7 +21,7 @@ template <class Law>
 void add_element(Triplets& triplets, const model::Element<Law>& element, const std::vector<dvec3>& x,
                  Shares shares, Across across) {
   for (std::size_t row = 0; row < element.corners; ++row) {
-    auto hessian = element_hessian(element.law, edges(element, row, x));
+    auto hessian = element_hessian(law_at(element, row), edges(element, row, x));
     if (across == Across::dropped) hessian = element_definite(hessian);
     for (std::size_t column = 0; column < element.corners; ++column)
       for (int axis = 0; axis < 3; ++axis) {

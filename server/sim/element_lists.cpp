@@ -21,7 +21,7 @@ auto entry(const model::Element<Law>& element, std::size_t corner) {
   std::size_t at = 0;
   for (std::size_t other = 1; other < corners; ++other)
     put(texels, at, element.vertices[(corner + other) % corners]);
-  for (const double number : elements::numbers(element.law)) put(texels, at, word(number));
+  for (const double number : elements::numbers(law_at(element, corner))) put(texels, at, word(number));
   return texels;
 }
 

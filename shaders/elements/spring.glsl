@@ -15,6 +15,9 @@ struct SpringEdges {
   vec3 d[1];  // this corner's value less the other's
 };
 
+/// The law's numbers as the element's corner number `corner` sees them: the same from both ends of a spring.
+FUNCTION Spring seen_from(Spring s, int) { return s; }
+
 /// Force [N] on the corner. A spring of length 0 has no direction and gives no force. Damping acts on the relative
 /// velocity projected on the spring: it does not act on a rigid rotation.
 FUNCTION vec3 element_force(Spring s, SpringEdges place, SpringEdges velocity) {
