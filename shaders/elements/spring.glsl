@@ -159,7 +159,7 @@ struct SpringLine {
 };
 
 /// `change` [m/s]: change of velocity in a whole step of the search; over dt [s] it moves the corners, too.
-FUNCTION SpringLine element_line(SpringEdges place, SpringEdges velocity, SpringEdges change) {
+FUNCTION SpringLine element_line(Spring, SpringEdges place, SpringEdges velocity, SpringEdges change) {
   SpringLine line;
   line.place = place.d[0];
   line.change = change.d[0];

@@ -41,7 +41,7 @@ void main() {
         du.d[k] = u - FETCH(velocity, entry.others[k]).xyz + fixed_edge;
         scaled.d[k] = scaled_change - if_free(dy, y.w);
       }
-      LawLine line = element_line(dx, du, scaled);
+      LawLine line = element_line(entry.law, dx, du, scaled);
       for (int k = 0; k < SHARES; ++k)
         energy[k] += line_energy(entry.law, line, dt, shares[k]) / float(Law_CORNERS);  // others count the rest
     }
