@@ -25,6 +25,7 @@ using std::sqrt;
 
 #define FUNCTION inline
 #define PRECISE
+#define UNUSED(name)
 #define OUT(T) T&
 #define INOUT(T) T&
 #include "shaders/elements/constraint.glsl"
@@ -33,6 +34,7 @@ using std::sqrt;
 #include "shaders/elements/spring.glsl"
 #undef FUNCTION
 #undef PRECISE
+#undef UNUSED
 #undef OUT
 #undef INOUT
 

@@ -16,7 +16,7 @@ struct SpringEdges {
 };
 
 /// The law's numbers as the element's corner number `corner` sees them: the same from both ends of a spring.
-FUNCTION Spring seen_from(Spring s, int) { return s; }
+FUNCTION Spring seen_from(Spring s, int UNUSED(corner)) { return s; }
 
 /// Force [N] on the corner. A spring of length 0 has no direction and gives no force. Damping acts on the relative
 /// velocity projected on the spring: it does not act on a rigid rotation.
@@ -159,7 +159,7 @@ struct SpringLine {
 };
 
 /// `change` [m/s]: change of velocity in a whole step of the search; over dt [s] it moves the corners, too.
-FUNCTION SpringLine element_line(Spring, SpringEdges place, SpringEdges velocity, SpringEdges change) {
+FUNCTION SpringLine element_line(Spring UNUSED(s), SpringEdges place, SpringEdges velocity, SpringEdges change) {
   SpringLine line;
   line.place = place.d[0];
   line.change = change.d[0];

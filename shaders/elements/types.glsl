@@ -4,3 +4,4 @@
 #define PRECISE precise
 #define OUT(T) out T
 #define INOUT(T) inout T
+#define UNUSED(name) name  // of a parameter
