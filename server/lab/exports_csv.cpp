@@ -74,15 +74,15 @@ std::string of_points(const std::vector<Point>& points) {
   return table.finish();
 }
 
-std::string of(const Chart& chart) {
+std::string table_of(const Chart& chart) {
   return of_points(chart.points);
 }
 
-std::string of(const Choice& choice) {
+std::string table_of(const Choice& choice) {
   return of_points(choice.tried);
 }
 
-std::string of(const StabilityMap& map) {
+std::string table_of(const StabilityMap& map) {
   const std::string unit = map.unit.empty() ? "" : " [" + map.unit + "]";
   Table table("method,field,value" + unit +
               ",dt_s,log10_energy_growth,blew_up,theory_s,held_s,failed_s,disagrees,reason");
@@ -100,7 +100,7 @@ std::string of(const StabilityMap& map) {
   return table.finish();
 }
 
-std::string of(const Simplification& simplification) {
+std::string table_of(const Simplification& simplification) {
   Table table("variant,measured,reason," + errors_header + ",change_over_size," + cost_header +
               ",cost_ratio,cost_ratio_low,cost_ratio_high,saves,dt_limit_s,drop,patch");
   const auto row = [&](const Variant& variant) {
@@ -121,7 +121,7 @@ std::string of(const Simplification& simplification) {
 }  // namespace
 
 std::string csv(const Outcome& outcome) {
-  return std::visit([](const auto& result) { return of(result); }, outcome);
+  return std::visit([](const auto& result) { return table_of(result); }, outcome);
 }
 
 }  // namespace clothlab::lab

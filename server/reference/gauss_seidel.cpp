@@ -7,14 +7,13 @@
 #include "server/reference/contacts.h"
 #include "server/reference/strain_limit.h"
 #include "server/reference/sweeps.h"
+#include "server/reference/vectors.h"
 #include "server/scene/method.h"
 #include "shaders/elements/elements.h"
 
 namespace clothlab::reference {
 
 namespace {
-
-using Vectors = std::vector<dvec3>;
 
 /// The share of `pull` [m/s^2] that a vertex followed in the step before (Chen et al. 2024, section 3.7): 0
 /// at rest, so that a cloth at rest starts its step where it stays; 1 in free fall, in air too. A share just

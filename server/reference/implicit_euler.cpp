@@ -6,13 +6,12 @@
 
 #include "server/reference/methods.h"
 #include "server/reference/system.h"
+#include "server/reference/vectors.h"
 #include "shaders/elements/elements.h"
 
 namespace clothlab::reference {
 
 namespace {
-
-using Vectors = std::vector<dvec3>;
 
 constexpr double solved = 1e-13;  // residual over Equation::scale: a few hundred roundings
 constexpr int most_newton_steps =
@@ -97,18 +96,6 @@ struct Equation {
     return sum + energy(world, State{end(u), Vectors(x.size(), dvec3(0.0)), {}}).elastic;
   }
 };
-
-double largest(const Vectors& r) {
-  double most = 0.0;
-  for (const dvec3& one : r) most = std::max(most, glm::length(one));
-  return most;
-}
-
-Vectors plus(const Vectors& a, double scale, const Vectors& b) {
-  Vectors sum = a;
-  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += scale * b[i];
-  return sum;
-}
 
 /// The Newton step from u. With the true matrix it converges quadratically, but that matrix is not always
 /// positive definite; the matrix without the negative part of compressed springs always is.

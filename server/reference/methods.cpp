@@ -1,19 +1,7 @@
 #include "server/reference/methods.h"
+#include "server/reference/vectors.h"
 
 namespace clothlab::reference {
-
-namespace {
-
-using Vectors = std::vector<dvec3>;
-
-/// a + scale * b, vertex by vertex.
-Vectors plus(const Vectors& a, double scale, const Vectors& b) {
-  Vectors sum = a;
-  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += scale * b[i];
-  return sum;
-}
-
-}  // namespace
 
 State explicit_euler(const StepStart& start) {
   const State& state = start.state;

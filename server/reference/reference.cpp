@@ -7,14 +7,13 @@
 #include "server/reference/gauss_seidel.h"
 #include "server/reference/methods.h"
 #include "server/reference/strain_limit.h"
+#include "server/reference/vectors.h"
 #include "server/scene/method.h"
 #include "shaders/elements/elements.h"
 
 namespace clothlab::reference {
 
 namespace {
-
-using Vectors = std::vector<dvec3>;
 
 /// Stops the free vertices of `next` at the colliders on their way from `before`.
 void stop_at_colliders(const World& world, const State& before, double t, State& next) {

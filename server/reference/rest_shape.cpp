@@ -7,15 +7,14 @@
 
 #include "server/reference/contacts.h"
 #include "server/reference/system.h"
+#include "server/reference/vectors.h"
 
 namespace clothlab::reference {
 
 namespace {
 
-using Vectors = std::vector<dvec3>;
-
 constexpr double balanced = 1e-12;  // force left over Scale::force: some thousand roundings
-constexpr int most_newton_steps = 2000;
+constexpr int most_iterations = 2000;
 
 /// The sum of forces on each free vertex [N]; 0 on pinned vertices.
 Vectors forces(const World& world, const Vectors& x) {
@@ -23,12 +22,6 @@ Vectors forces(const World& world, const Vectors& x) {
   for (std::size_t i = 0; i < x.size(); ++i)
     force[i] = world.pinned(i) ? dvec3(0.0) : force[i] + world.model.mass[i] * world.scene.gravity;
   return force;
-}
-
-double largest(const Vectors& vectors) {
-  double most = 0.0;
-  for (const dvec3& one : vectors) most = std::max(most, glm::length(one));
-  return most;
 }
 
 /// The largest stiffness over mass of any vertex [1/s^2], and the largest sum of forces, without signs, that
@@ -95,7 +88,7 @@ RestShape descend(const World& world, const Vectors& start, const std::stop_toke
   RestShape shape{start, 0.0, 0};
   double shift = 1e-2 * scales.stiffness, height = potential(world, shape.position);
   Vectors force = forces(world, shape.position);
-  for (; shape.iterations < most_newton_steps; ++shape.iterations) {
+  for (; shape.iterations < most_iterations; ++shape.iterations) {
     if (largest(force) <= balanced * scales.force || !(shift < 1e6 * scales.stiffness)) break;
     if (stop.stop_requested()) break;
     Vectors next = shifted_step(world, shape.position, force, shift);

@@ -31,6 +31,11 @@ namespace clothlab::session {
 
 using Clock = std::chrono::steady_clock;
 
+/// Time between two events of `rate` events per second.
+inline Clock::duration period(double rate) {
+  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / rate));
+}
+
 // Events from a session.
 struct Started {
   std::string renderer;

@@ -9,10 +9,6 @@ namespace clothlab::session {
 
 namespace {
 
-Clock::duration period(double rate) {
-  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / rate));
-}
-
 bool finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }

@@ -9,7 +9,7 @@ namespace clothlab::session {
 namespace {
 constexpr std::uint32_t first_steps = 32;      // per turn, while the cost is unknown
 constexpr std::uint32_t most_steps = 100'000;  // per turn, however low the cost
-double seconds(std::chrono::steady_clock::duration duration) {
+double in_seconds(std::chrono::steady_clock::duration duration) {
   return std::chrono::duration<double>(duration).count();
 }
 }  // namespace
@@ -27,7 +27,7 @@ std::uint32_t RealTime::affordable() const {
 }
 
 std::uint32_t RealTime::due(Time now, double dt) {
-  owed_ = std::min(owed_ + seconds(now - last_) * speed_, std::max(most_owed * speed_, dt));
+  owed_ = std::min(owed_ + in_seconds(now - last_) * speed_, std::max(most_owed * speed_, dt));
   last_ = now;
   // 1e-9 makes up for rounding: a debt that is 17 steps but for rounding counts as 17.
   const double whole = std::floor(owed_ / dt + 1e-9);
@@ -55,7 +55,7 @@ double RealTime::factor() const {
   if (sample_count_ < 2) return 0;
   const Sample& last = samples_[newest_];
   const Sample& first = samples_[(newest_ + samples_.size() - sample_count_ + 1) % samples_.size()];
-  const double wall = seconds(last.wall - first.wall);
+  const double wall = in_seconds(last.wall - first.wall);
   return wall > 0 ? (last.simulated - first.simulated) / wall : 0;
 }
 

@@ -18,12 +18,6 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-namespace {
-Clock::duration period(double rate) {
-  return duration_cast<Clock::duration>(duration<double>(1.0 / rate));
-}
-}  // namespace
-
 Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Exchange& exchange,
                                                  const Limits& limits, std::optional<int> gpu,
                                                  std::uint32_t last_frame) {

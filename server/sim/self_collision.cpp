@@ -20,13 +20,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// The buffer NeighbourControl in neighbours.glsl.
-struct Control {
+struct NeighbourControl {
   std::array<std::uint32_t, 3> rebuild{0, 1, 1};
   SelfCollision::Counters counters;
   std::array<std::uint32_t, 3> search{0, 0, 1};
   std::array<std::uint32_t, 3> finish{0, 1, 1};
 };
-static_assert(offsetof(Control, counters) == SelfCollision::counters_offset);
+static_assert(offsetof(NeighbourControl, counters) == SelfCollision::counters_offset);
 
 /// Most pairs of vertices that one search may look at: about three seconds on a slow processor.
 constexpr double most_pairs = 1e9;
@@ -59,9 +59,9 @@ Result<SelfCollision> SelfCollision::create(const model::Model& model, std::uint
     *program = std::move(*loaded);
     program->set("vertex_count", static_cast<GLint>(vertex_count));
   }
-  const Control nothing;
-  made.control_ = gl::Buffer(sizeof(Control), &nothing);
-  made.counters_ring_ = gl::ReadbackRing(sizeof(Control), 1);
+  const NeighbourControl nothing;
+  made.control_ = gl::Buffer(sizeof(NeighbourControl), &nothing);
+  made.counters_ring_ = gl::ReadbackRing(sizeof(NeighbourControl), 1);
   made.heads_ = {gl::Buffer(cells * sizeof(std::uint32_t)), GL_R32UI};
   made.heads_.buffer.fill(chain_end);  // later each search empties them at its end
   made.chains_ = {gl::Buffer(vertex_count * sizeof(std::uint32_t)), GL_R32UI};
@@ -107,9 +107,10 @@ void SelfCollision::limit_range(std::uint32_t groups) {
 }
 
 void SelfCollision::invalidate() {
-  const Control control{{vertex_groups(vertex_count_), 1, 1}, {}, {range_groups_, 0, 1}, {0, 1, 1}};
-  control_.upload(&control.rebuild, sizeof control.rebuild, offsetof(Control, rebuild));
-  control_.upload(&control.search, sizeof control.search + sizeof control.finish, offsetof(Control, search));
+  const NeighbourControl control{{vertex_groups(vertex_count_), 1, 1}, {}, {range_groups_, 0, 1}, {0, 1, 1}};
+  control_.upload(&control.rebuild, sizeof control.rebuild, offsetof(NeighbourControl, rebuild));
+  control_.upload(&control.search, sizeof control.search + sizeof control.finish,
+                  offsetof(NeighbourControl, search));
   heads_.buffer.fill(chain_end);  // a search that was given up has left vertices in the cells
   updates_ = 0;
 }
@@ -134,24 +135,24 @@ Work SelfCollision::update_lists() {
     glDispatchComputeIndirect(static_cast<GLintptr>(arguments));
   };
   insert_.use();
-  dispatch(offsetof(Control, rebuild));
+  dispatch(offsetof(NeighbourControl, rebuild));
   find_.use();
   const auto range = static_cast<GLint>(range_groups_) * group_size;
   Clock::duration longest{};
   for (GLint first = 0; first < static_cast<GLint>(vertex_count_); first += range) {
     find_.set("first_vertex", first);
     const Clock::time_point begun = Clock::now();
-    dispatch(offsetof(Control, search));
+    dispatch(offsetof(NeighbourControl, search));
     longest = std::max(longest, Clock::now() - begun);
     if (range < static_cast<GLint>(vertex_count_)) co_await may_stop;
   }
   finish_.use();
-  dispatch(offsetof(Control, finish));
+  dispatch(offsetof(NeighbourControl, finish));
   // With software OpenGL a dispatch has ended when the call returns. One that takes long shows that the cloth
   // has crumpled since its start, and each range must become smaller.
   if (longest > long_dispatch && range_groups_ > 1) {
     limit_range(range_groups_ / 2);
-    control_.upload(&range_groups_, sizeof range_groups_, offsetof(Control, search));
+    control_.upload(&range_groups_, sizeof range_groups_, offsetof(NeighbourControl, search));
   }
   if (updates_++ % updates_between_looks == 0) read_counters();
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
@@ -163,7 +164,7 @@ void SelfCollision::read_counters() {
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   const auto take = [&] {
     const std::span<const std::byte> seen = counters_ring_.front(true);
-    Control control;
+    NeighbourControl control;
     if (seen.size() < sizeof control) return;  // the device is lost
     std::memcpy(&control, seen.data(), sizeof control);
     longest_ = control.counters.longest;
@@ -171,7 +172,7 @@ void SelfCollision::read_counters() {
   };
   if (!counters_ring_.empty()) take();
   if (counters_ring_.full()) return;
-  counters_ring_.push(control_, sizeof(Control));
+  counters_ring_.push(control_, sizeof(NeighbourControl));
   if (updates_ == 1) take();
 }
 

@@ -12,7 +12,7 @@ constexpr int most_sweeps = 512;
 constexpr int sweeps_between_looks = 8;
 
 /// The buffer Control in shaders/strain_limit/sweep.comp.
-struct Control {
+struct LimitControl {
   std::uint32_t groups = 0, groups_y = 1, groups_z = 1;
   std::uint32_t sweeps = 0;
 };
@@ -62,7 +62,7 @@ Result<StrainLimit> StrainLimit::create(const Surroundings& around, const Plan& 
     excess = {gl::Buffer(made.groups_ * 4 * sizeof(float)), GL_RGBA32F};
   made.pulls_ = gl::Buffer(std::max<std::size_t>(entries, 1) * sizeof(float));
   made.pull_impulses_ = gl::Buffer(count * 4 * sizeof(float));
-  made.control_ = gl::Buffer(sizeof(Control));
+  made.control_ = gl::Buffer(sizeof(LimitControl));
   made.sweep_.set("relaxation", relaxation(around.model));
   made.set_parameters(around);
   return made;
@@ -90,7 +90,7 @@ Work StrainLimit::apply(StateBuffers& state) {
   glDispatchCompute(groups_, 1, 1);
   wait_for_writes();
 
-  Control control;
+  LimitControl control;
   control.groups = groups_;
   control_.upload(&control, sizeof control);
   sweep_.use();

@@ -429,7 +429,7 @@ const cutOff = () => {
 browserTest(
   "on a wide window and on a phone, light and dark, nothing of the drawer is cut off, and each tab has its say",
   async () => {
-    const { viewer, page, panel } = await charted("lab-looks");
+    const { viewer, page, panel } = await charted("lab-looks", { sharp: true });
     for (const [width, height, colorSchemes] of [
       [1280, 800, ["light", "dark"]],
       [900, 700, ["light"]],

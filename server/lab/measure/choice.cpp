@@ -20,10 +20,10 @@ namespace {
 
 using scene::Method;
 
-constexpr int rounds = 7;       // chance that all are above the median: 1/128
-constexpr int looks_again = 3;  // looks at a candidate at most, see bound_errors()
-constexpr double timed = 0.2;   // wall time of one timing at most [s]
-constexpr double share_of_truth = 0.3, share_of_search = 0.9;  // of the progress, at their ends
+constexpr int rounds = 7;                      // chance that all are above the median: 1/128
+constexpr int looks_again = 3;                 // looks at a candidate at most, see bound_errors()
+constexpr double longest_choice_timing = 0.2;  // wall time of one timing at most [s]
+constexpr double progress_after_truth = 0.3, progress_after_search = 0.9;  // of the progress, at their ends
 
 std::string times(double ratio) {
   return formatted("%.*f times", ratio < 10 ? 1 : 0, ratio);
@@ -52,9 +52,10 @@ class Chooser {
     if (Status measured = measure_present(); !measured) return measured.error();
     std::vector<Candidate>& candidates = search_->candidates();
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-      control_.progress({share_of_truth + (share_of_search - share_of_truth) * static_cast<double>(i) /
-                                              static_cast<double>(candidates.size()),
-                         1.0, text(candidates[i].setting)});
+      control_.progress(
+          {progress_after_truth + (progress_after_search - progress_after_truth) * static_cast<double>(i) /
+                                      static_cast<double>(candidates.size()),
+           1.0, text(candidates[i].setting)});
       if (Status searched = search_->search(candidates[i]); !searched) return searched.error();
       choice_.tried = search_->tried();
       control_.arrived(choice_);
@@ -68,7 +69,7 @@ class Chooser {
  private:
   Status compute_truth() {
     const auto progress = [this](double share) {
-      control_.progress({share * share_of_truth, 1.0, "the reference, in double precision"});
+      control_.progress({share * progress_after_truth, 1.0, "the reference, in double precision"});
     };
     const double accuracy = std::min(1e-7, 1e-3 * request_.tolerance);
     Result<Truth> found =
@@ -152,7 +153,7 @@ class Chooser {
     const bool present = choice_.present.cost.has_value();
     if (present) scenes.push_back(with(scene_, choice_.present.setting));
     Result<std::vector<std::vector<double>>> measured =
-        trials_.time(scenes, truth_.horizon, timed, rounds, control_.stop);
+        trials_.time(scenes, truth_.horizon, longest_choice_timing, rounds, control_.stop);
     if (!measured) return measured.error();
     for (std::size_t i = 0; i < race.size(); ++i) {
       race[i]->best->cost = cost_of((*measured)[i]);
@@ -171,10 +172,10 @@ class Chooser {
       if (candidate.best && candidate.best->cost->median <= close_race * best) race.push_back(&candidate);
     if (race.empty()) return give_most_accurate();
     add_runner_up(race);
-    control_.progress({share_of_search, 1.0, "looking at the best at every step"});
+    control_.progress({progress_after_search, 1.0, "looking at the best at every step"});
     if (Status looked = bound_errors(race); !looked) return looked;
     if (race.empty()) return give_most_accurate();
-    control_.progress({0.5 * (1.0 + share_of_search), 1.0, "timing the best, taking turns"});
+    control_.progress({0.5 * (1.0 + progress_after_search), 1.0, "timing the best, taking turns"});
     if (Status timed_all = time_race(race); !timed_all) return timed_all;
     const auto cheaper = [](const Candidate* a, const Candidate* b) {
       return a->best->cost->median < b->best->cost->median;

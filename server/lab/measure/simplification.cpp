@@ -14,7 +14,7 @@ namespace {
 
 using scene::Document;
 
-constexpr double share_of_truth = 0.4;  // of the job's progress: computing the reference
+constexpr double truth_progress = 0.4;  // of the job's progress: computing the reference
 
 std::string percent(double share) {
   return with_significant_digits(100.0 * share, 3) + " %";
@@ -57,7 +57,7 @@ class SimplificationMeasurement {
  private:
   Status measure_whole() {
     const auto progress = [this](double share) {
-      control_.progress({share_of_truth * share, 1.0, "the reference, in double precision"});
+      control_.progress({truth_progress * share, 1.0, "the reference, in double precision"});
     };
     Status started = substitutes_.start(request_.time.value_or(1.0), progress, found_.notes);
     if (!started) return started;
@@ -200,7 +200,7 @@ class SimplificationMeasurement {
   double progress() const {
     const double share =
         static_cast<double>(found_.variants.size()) / static_cast<double>(parts().size() + 2);
-    return share_of_truth + (1.0 - share_of_truth) * share;
+    return truth_progress + (1.0 - truth_progress) * share;
   }
 
   void explain() {

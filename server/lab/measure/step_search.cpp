@@ -14,7 +14,8 @@ namespace {
 
 using scene::Method;
 
-constexpr double longest_step = 1.0 / 30;    // longest step tried [s]: 30 states a second still look smooth
+constexpr double longest_smooth_step =
+    1.0 / 30;                                // longest step tried [s]: 30 states a second still look smooth
 constexpr double runner_up_cost_limit = 20;  // times the best: a runner-up that costs more is not searched
 /// A step predicted by the method's order may be too short by this factor before the search gives up: the
 /// order need not hold at long steps.
@@ -50,7 +51,7 @@ Status StepSearch::list(std::vector<Method> methods) {
       continue;
     }
     for (Setting setting : settings_of(method)) {
-      setting.dt = std::min({model::margin_to_warn * limit, truth_.horizon / 8, longest_step});
+      setting.dt = std::min({model::margin_to_warn * limit, truth_.horizon / 8, longest_smooth_step});
       setting.dt = fitted_dt(setting.dt, truth_);
       candidates_.push_back({setting, limit, worst, {}});
     }

@@ -16,8 +16,9 @@ namespace {
 
 using scene::Document;
 
-constexpr double truth_budget = 20.0;   // wall time of the reference [s]
-constexpr double timed = 0.15;          // longest timing, wall time [s]; a short round sees a steady machine
+constexpr double truth_budget = 20.0;  // wall time of the reference [s]
+constexpr double longest_substitute_timing =
+    0.15;                               // longest timing, wall time [s]; a short round sees a steady machine
 constexpr double timing_budget = 40.0;  // wall time [s] after which no rounds beyond looks[0] are added
 /// Without a reference, a copy whose masses are larger by the share `copy_mass_increase` shows if the motion
 /// is chaotic: if its distance over the size is more than `most_amplified` times that share.
@@ -157,7 +158,7 @@ Result<std::vector<std::vector<double>>> Substitutes::turns(const std::vector<co
   const auto time = [&](std::size_t thing) -> Result<double> {
     if (stop_.stop_requested()) return cancelled;
     if (timer_) return timer_(*scenes[thing]);
-    const auto times = trials_.time({*scenes[thing]}, truth_.time, timed, 1, stop_);
+    const auto times = trials_.time({*scenes[thing]}, truth_.time, longest_substitute_timing, 1, stop_);
     if (!times) return times.error();
     return times->front().front();
   };

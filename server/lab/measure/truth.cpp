@@ -24,12 +24,12 @@ using Clock = std::chrono::steady_clock;
 
 /// The reference's longest step in units of 1 / fastest_rate. RK4 is stable up to 2.6; at 1 its error on the
 /// swinging cloth is already as small as float32 allows at best, 1e-7 of the size.
-constexpr double longest_step = 1.0;
+constexpr double longest_phase_step = 1.0;
 constexpr int looks = 128;             // comparisons with a perturbed copy, over the whole time
 constexpr double perturbation = 1e-7;  // of the copy's start, RMS over the size
 /// The horizon is where the perturbation has grown by this factor. There chaos alone turns an error of 1e-4
 /// into one of 1e-2.
-constexpr double most_amplified = 100.0;
+constexpr double growth_by_chaos = 100.0;
 constexpr int fewest_steps = 64;  // with fewer affordable steps there is no reference
 constexpr int most_halvings = 8;  // of the step
 
@@ -104,7 +104,7 @@ class Search {
       : truth_(truth), request_(request), stop_(stop), progress_(progress), start_(Clock::now()) {}
 
   Status run() {
-    step_ = longest_step / reference::fastest_rate(truth_.world);
+    step_ = longest_phase_step / reference::fastest_rate(truth_.world);
     if (Status fits = fit_time(); !fits || !truth_.why_no_reference.empty()) return fits;
     if (Status found = find_horizon(); !found || !truth_.why_no_reference.empty()) return found;
     return refine();
@@ -155,7 +155,7 @@ class Search {
       }
       most = std::max(most, reference::rms_distance(state.position, copy.position) / begun);
       progress_(0.3 * look / looks);
-      if (most > most_amplified) break;
+      if (most > growth_by_chaos) break;
       truth_.horizon = to;
       amplified_ = most;
     }
@@ -169,13 +169,13 @@ class Search {
     if (truth_.horizon < 4.0 * truth_.time / looks) {
       truth_.horizon = 0.0;
       truth_.horizon_reason = "The motion is chaotic at once: " + copy + " is more than " +
-                              with_significant_digits(most_amplified, 3) + " times as far away after " +
+                              with_significant_digits(growth_by_chaos, 3) + " times as far away after " +
                               with_significant_digits(4.0 * truth_.time / looks, 3) + " s.";
     } else if (truth_.horizon < truth_.time) {
       truth_.horizon_reason = "Positions are compared at " + with_significant_digits(truth_.horizon, 3) +
                               " s: " + copy + " is up to " + with_significant_digits(amplified_, 3) +
                               " times as far away until then, and over " +
-                              with_significant_digits(most_amplified, 3) + " times soon after.";
+                              with_significant_digits(growth_by_chaos, 3) + " times soon after.";
     } else {
       truth_.horizon_reason =
           "Positions are compared at " + with_significant_digits(truth_.horizon, 3) +
