@@ -113,6 +113,24 @@ TEST_CASE("random meshes are coloured validly, within the bounds of greedy colou
   }
 }
 
+TEST_CASE("a grid whose elements the five colours do not fit gets others") {
+  constexpr std::uint32_t columns = 6;
+  const scene::Scene scene = scene_of(scene::Grid{columns, 5, 1.0, 1.0});
+  model::Model model = *model::build(scene);
+  model::Batch<elements::Spring>& springs = model.elements.of<elements::Spring>();
+  // (column + 2 row) mod 5 is the same one column and two rows further.
+  springs[0].vertices = {0, 1 + 2 * columns};
+  model::Adjacency& at_vertex = springs.at_vertex;
+  at_vertex.items.clear();
+  for (std::uint32_t vertex = 0; vertex < model.vertex_count(); ++vertex) {
+    at_vertex.offsets[vertex] = static_cast<std::uint32_t>(at_vertex.items.size());
+    for (std::uint32_t i = 0; i < springs.size(); ++i)
+      for (std::uint32_t corner = 0; corner < 2; ++corner)
+        if (springs[i].vertices[corner] == vertex) at_vertex.items.push_back(2 * i + corner);
+  }
+  check_vertices(model, model::colour_vertices(model, scene));
+}
+
 TEST_CASE("several cloths are coloured together, and the same way every time") {
   scene::Scene scene = scene_of(scene::Grid{6, 5, 1.0, 1.0});
   scene.cloths.push_back(scene.cloths[0]);
