@@ -16,7 +16,7 @@ namespace {
 
 using lab::brief;
 
-struct Options {
+struct ChartOptions {
   LabOptions lab;
   std::string iterations;
   double time = 1, budget = 120;
@@ -68,7 +68,7 @@ void print_blown_up(const lab::Chart& chart) {
     std::cout << "blew up: " << lab::text(point->setting) << ", at " << brief(*point->blew_up_at) << " s\n";
 }
 
-void print(const lab::Outcome& outcome) {
+void print_chart(const lab::Outcome& outcome) {
   const lab::Chart& chart = std::get<lab::Chart>(outcome);
   print_heading(chart.scene, chart.time, chart.renderer, chart.complete);
   if (!chart.horizon_reason.empty()) std::cout << chart.horizon_reason << "\n";
@@ -98,7 +98,7 @@ Result<std::vector<int>> iterations_of(const std::string& list) {
   return iterations;
 }
 
-int chart(const Options& options) {
+int chart(const ChartOptions& options) {
   const auto methods = methods_of(options.lab);
   if (!methods) return fail(methods.error(), exit_usage);
   const Result<std::vector<int>> iterations = iterations_of(options.iterations);
@@ -106,7 +106,8 @@ int chart(const Options& options) {
   for (const Status& checked : {check_positive("--time", options.time, most_lab_time),
                                 check_positive("--budget", options.budget, 86400)})
     if (!checked) return fail(checked.error(), exit_usage);
-  return run_lab(options.lab, lab::ChartRequest{*methods, *iterations, options.time, options.budget}, print);
+  return run_lab(options.lab, lab::ChartRequest{*methods, *iterations, options.time, options.budget},
+                 print_chart);
 }
 
 }  // namespace
@@ -114,7 +115,7 @@ int chart(const Options& options) {
 void add_chart(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("chart", "measure every method's speed against its accuracy on a scene");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ChartOptions>();
   add_lab_options(*command, options->lab);
   add_methods(*command, options->lab);
   command

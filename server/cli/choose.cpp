@@ -12,7 +12,7 @@ namespace {
 
 using lab::brief;
 
-struct Options {
+struct ChooseOptions {
   LabOptions lab;
   double tolerance = 0.01, time = 1;
 };
@@ -34,7 +34,7 @@ std::vector<std::string> row(const char* what, const lab::Point& point) {
                      : ""};
 }
 
-void print(const lab::Outcome& outcome) {
+void print_choice(const lab::Outcome& outcome) {
   const lab::Choice& choice = std::get<lab::Choice>(outcome);
   print_heading(choice.scene, choice.time, choice.renderer, choice.complete);
   std::cout << "wanted: an error of at most " << brief(choice.tolerance) << " up to " << brief(choice.horizon)
@@ -55,13 +55,13 @@ void print(const lab::Outcome& outcome) {
   if (choice.complete && !choice.met) note("nothing that was tried keeps the tolerance");
 }
 
-int choose(const Options& options) {
+int choose(const ChooseOptions& options) {
   const auto methods = methods_of(options.lab);
   if (!methods) return fail(methods.error(), exit_usage);
   for (const Status& checked : {check_positive("--tolerance", options.tolerance, 1),
                                 check_positive("--time", options.time, most_lab_time)})
     if (!checked) return fail(checked.error(), exit_usage);
-  return run_lab(options.lab, lab::ChooseRequest{options.tolerance, *methods, options.time}, print);
+  return run_lab(options.lab, lab::ChooseRequest{options.tolerance, *methods, options.time}, print_choice);
 }
 
 }  // namespace
@@ -69,7 +69,7 @@ int choose(const Options& options) {
 void add_choose(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("choose", "find the cheapest method and step that keep a tolerance on a scene");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ChooseOptions>();
   add_lab_options(*command, options->lab);
   add_methods(*command, options->lab);
   command

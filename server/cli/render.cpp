@@ -14,7 +14,7 @@ namespace clothlab::cli {
 
 namespace {
 
-struct Options {
+struct RenderOptions {
   SceneChoice scene;
   double time = 0;  // [s]
   std::string out, size = "1280x720";
@@ -38,7 +38,7 @@ Result<Size> parse_size(const std::string& text) {
   return size;
 }
 
-Result<Size> check_outputs(const Options& options) {
+Result<Size> check_outputs(const RenderOptions& options) {
   Result<Size> size = parse_size(options.size);
   if (!size) return size;
   if (std::filesystem::path(options.out).extension() != ".png")
@@ -60,7 +60,7 @@ Status draw(sim::Simulation& simulation, Size size, const std::string& path) {
   return write_file(path, std::string(png->begin(), png->end()));
 }
 
-int render_scene(const Options& options) {
+int render_scene(const RenderOptions& options) {
   const Result<Size> size = check_outputs(options);
   if (!size) return fail(size.error(), exit_usage);
   int exit_code = exit_done;
@@ -86,7 +86,7 @@ int render_scene(const Options& options) {
 void add_render(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("render", "simulate up to a moment and draw it to a PNG, without a window");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RenderOptions>();
   options->scene.add_positional(*command);
   command->add_option("--time", options->time, "the moment to draw [s]; rounded to whole steps")
       ->required()

@@ -18,7 +18,7 @@ namespace {
 
 using Report = nlohmann::ordered_json;
 
-struct Options {
+struct RunOptions {
   SceneChoice scene;
   double time = 0;  // [s]
   std::string out, trace, report;
@@ -141,7 +141,7 @@ struct Outputs {
 };
 
 /// Checks every option that names a file, before anything is simulated. `run` opens the trace later.
-Result<Outputs> open_outputs(const Options& options) {
+Result<Outputs> open_outputs(const RunOptions& options) {
   if (options.every && options.out.empty() && options.trace.empty())
     return Error{"--every", with_significant_digits(*options.every, 9), "needs --out or --trace"};
   Outputs outputs;
@@ -163,7 +163,7 @@ std::string comment(const sim::Diagnostics& state, const std::string& scene, boo
 }
 
 /// The steps between two stops: those of --every; else default_every if there is a trace; else all `steps`.
-Result<std::uint64_t> stop_interval(const Options& options, std::uint64_t steps, double dt) {
+Result<std::uint64_t> stop_interval(const RunOptions& options, std::uint64_t steps, double dt) {
   if (!options.every && options.trace.empty()) return std::max<std::uint64_t>(steps, 1);
   if (!options.every)
     return std::max<std::uint64_t>(static_cast<std::uint64_t>(std::llround(default_every / dt)), 1);
@@ -173,7 +173,7 @@ Result<std::uint64_t> stop_interval(const Options& options, std::uint64_t steps,
   return whole_steps("--every", *options.every, dt);
 }
 
-int run(const Options& options) {
+int run(const RunOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   Result<Outputs> outputs = open_outputs(options);
   if (!outputs) return fail(outputs.error(), exit_usage);
@@ -222,7 +222,7 @@ int run(const Options& options) {
 void add_run(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("run", "simulate a scene as fast as it goes; write meshes, a trace, a report");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RunOptions>();
   options->scene.add_positional(*command);
   command->add_option("--time", options->time, "how long to simulate [s]; rounded to whole steps")
       ->required()

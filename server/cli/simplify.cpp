@@ -14,7 +14,7 @@ using lab::brief;
 
 constexpr std::size_t longest_patch = 2000;  // [bytes] to print; a patch with a triangle mesh is longer
 
-struct Options {
+struct SimplifyOptions {
   LabOptions lab;
   double tolerance = 0.01, time = 1;
 };
@@ -36,7 +36,7 @@ std::vector<std::string> row(const lab::Variant& variant, const std::string& ver
           verdict};
 }
 
-void print(const lab::Outcome& outcome) {
+void print_simplification(const lab::Outcome& outcome) {
   const lab::Simplification& result = std::get<lab::Simplification>(outcome);
   print_heading(result.scene, result.time, result.renderer, result.complete);
   std::cout << "stepped by " << lab::text(result.setting) << "; a part may change at most "
@@ -57,11 +57,11 @@ void print(const lab::Outcome& outcome) {
   print_notes(result.notes);
 }
 
-int simplify(const Options& options) {
+int simplify(const SimplifyOptions& options) {
   for (const Status& checked : {check_positive("--tolerance", options.tolerance, 1),
                                 check_positive("--time", options.time, most_lab_time)})
     if (!checked) return fail(checked.error(), exit_usage);
-  return run_lab(options.lab, lab::SimplifyRequest{options.tolerance, options.time}, print);
+  return run_lab(options.lab, lab::SimplifyRequest{options.tolerance, options.time}, print_simplification);
 }
 
 }  // namespace
@@ -69,7 +69,7 @@ int simplify(const Options& options) {
 void add_simplify(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("simplify", "measure what parts of a scene's model are worth, and which can go");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SimplifyOptions>();
   add_lab_options(*command, options->lab);
   command
       ->add_option("--tolerance", options->tolerance,

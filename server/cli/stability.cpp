@@ -12,7 +12,7 @@ namespace {
 
 using lab::brief;
 
-struct Options {
+struct StabilityOptions {
   LabOptions lab;
   std::string field = "stiffness";
   std::optional<double> from, to;
@@ -38,7 +38,7 @@ void print_method(const lab::MethodMap& method) {
   print_table(rows);
 }
 
-void print(const lab::Outcome& outcome) {
+void print_map(const lab::Outcome& outcome) {
   const lab::StabilityMap& map = std::get<lab::StabilityMap>(outcome);
   std::cout << map.scene << ", dt against " << map.field << (map.unit.empty() ? "" : " [" + map.unit + "]")
             << ", at most " << brief(map.time) << " s and " << map.steps << " steps a trial, on "
@@ -50,11 +50,12 @@ void print(const lab::Outcome& outcome) {
   print_notes(map.notes);
 }
 
-int stability(const Options& options) {
+int stability(const StabilityOptions& options) {
   const auto methods = methods_of(options.lab);
   if (!methods) return fail(methods.error(), exit_usage);
   return run_lab(options.lab,
-                 lab::MapRequest{*methods, options.field, options.from, options.to, options.columns}, print);
+                 lab::MapRequest{*methods, options.field, options.from, options.to, options.columns},
+                 print_map);
 }
 
 }  // namespace
@@ -62,7 +63,7 @@ int stability(const Options& options) {
 void add_stability(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("stability", "map where each method becomes unstable, measured and by theory");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<StabilityOptions>();
   add_lab_options(*command, options->lab);
   add_methods(*command, options->lab);
   command

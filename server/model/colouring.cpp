@@ -122,8 +122,9 @@ void drop_clashes(const Model& model, const scene::Scene& scene, std::vector<Ind
 
 std::array<Colouring, elements::law_count> colour_elements(const Model& model, const scene::Scene& scene) {
   std::array<Colouring, elements::law_count> colourings;
-  std::size_t law = 0;
-  model.elements.each([&](const auto& batch) { colourings[law++] = colour_batch(model, scene, batch); });
+  model.elements.each([&]<class Law>(const Batch<Law>& batch) {
+    colourings[elements::law_number<Law>] = colour_batch(model, scene, batch);
+  });
   return colourings;
 }
 

@@ -43,9 +43,9 @@ Size size_of(const scene::Scene& scene) {
   for (const scene::Cloth& cloth : scene.cloths) {
     size.vertices += scene::vertex_count(cloth.mesh);
     size.triangles += scene::triangle_count(cloth.mesh);
-    std::size_t* of_law = size.elements.data();
-    elements::each_law([&](auto law) {
-      *of_law++ += std::visit([&](const auto& mesh) { return count(law, mesh, cloth.material); }, cloth.mesh);
+    elements::each_law([&]<class Law>(std::type_identity<Law> law) {
+      size.elements[elements::law_number<Law>] +=
+          std::visit([&](const auto& mesh) { return count(law, mesh, cloth.material); }, cloth.mesh);
     });
   }
   return size;
@@ -53,9 +53,8 @@ Size size_of(const scene::Scene& scene) {
 
 std::size_t Size::list_texels() const {
   std::size_t sum = 0;
-  const std::size_t* of_law = elements.data();
   elements::each_law([&]<class Law>(std::type_identity<Law>) {
-    sum += elements::corners<Law> * elements::entry_texels<Law> * *of_law++;
+    sum += elements::corners<Law> * elements::entry_texels<Law> * elements[elements::law_number<Law>];
   });
   return sum;
 }

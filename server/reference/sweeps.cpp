@@ -112,9 +112,8 @@ void visit(SweepState& step, const model::Element<Law>& element, elements::Edges
 
 void sweep_elements(SweepState& step) {
   const World& world = step.world;
-  std::size_t law = 0;
   world.model.elements.each([&]<class Law>(const model::Batch<Law>& batch) {
-    for (const std::uint32_t element : world.element_colours[law++].order)
+    for (const std::uint32_t element : world.element_colours[elements::law_number<Law>].order)
       visit(step, batch[element], std::get<Pushes<Law>>(step.pushed)[element]);
   });
 }

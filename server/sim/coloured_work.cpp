@@ -41,8 +41,9 @@ struct Items {
   std::size_t count() const { return end - first; }
 };
 
-Items items(const Visits& visits, std::size_t law) {
-  const Visits::Function& function = visits.functions[law];
+template <class Law>
+Items items(const Visits& visits) {
+  const Visits::Function& function = visits.functions[elements::law_number<Law>];
   return {visits.offsets[function.first_colour], visits.offsets[function.end_colour]};
 }
 
@@ -64,7 +65,7 @@ Visits visited_elements(const model::Model& model, const scene::Scene& scene) {
   const auto colours = model::colour_elements(model, scene);
   Visits visits;
   model.elements.each([&]<class Law>(const model::Batch<Law>& batch) {
-    add(visits, std::string("visit_") + elements::Facts<Law>::name, colours[visits.functions.size()],
+    add(visits, std::string("visit_") + elements::Facts<Law>::name, colours[elements::law_number<Law>],
         [&](std::uint32_t element) {
           const auto& vertices = batch[element].vertices;
           return std::any_of(vertices.begin(), vertices.end(),
@@ -84,9 +85,8 @@ Visits visited_vertices(const model::Model& model, const scene::Scene& scene) {
 std::vector<Words> visit_list(const Visits& visits, const model::Model& model, const scene::Scene& scene) {
   std::vector<Words> list;
   const double mobility = model::mobility(scene);
-  std::size_t law = 0;
-  model.elements.each([&](const auto& batch) {
-    const Items of_law = items(visits, law++);
+  model.elements.each([&]<class Law>(const model::Batch<Law>& batch) {
+    const Items of_law = items<Law>(visits);
     for (std::uint32_t item = of_law.first; item < of_law.end; ++item) {
       const auto& element = batch[visits.order[item]];
       double inverse_mass = 0.0;
@@ -100,9 +100,9 @@ std::vector<Words> visit_list(const Visits& visits, const model::Model& model, c
 }
 
 std::size_t remembered_pushes(const Visits& visits) {
-  std::size_t pushes = 0, law = 0;
+  std::size_t pushes = 0;
   elements::each_law([&]<class Law>(std::type_identity<Law>) {
-    pushes += items(visits, law++).count() * (elements::corners<Law> - 1);
+    pushes += items<Law>(visits).count() * (elements::corners<Law> - 1);
   });
   return pushes;
 }
@@ -115,10 +115,10 @@ gl::Defines visit_defines(const Visits& visits, bool elements) {
           formatted("sweep(%s, %u, %u) ", function.name.c_str(), function.first_colour, function.end_colour);
   gl::Defines defines{{"EACH_VISIT(sweep)", each}};
   if (!elements) return defines;
-  std::size_t law = 0, texel = 0, push = 0;
+  std::size_t texel = 0, push = 0;
   elements::each_law([&]<class Law>(std::type_identity<Law>) {
     const std::string name = elements::Facts<Law>::name;
-    const Items of_law = items(visits, law++);
+    const Items of_law = items<Law>(visits);
     defines.emplace_back(name + "_FIRST_ITEM", std::to_string(of_law.first));
     defines.emplace_back(name + "_FIRST_TEXEL", std::to_string(texel));
     defines.emplace_back(name + "_FIRST_PUSH", std::to_string(push));

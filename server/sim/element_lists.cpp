@@ -78,12 +78,11 @@ std::uint32_t word(double number) {
 
 gl::Defines law_defines(const LawSet& compiled) {
   gl::Defines defines{{"LAWS", ""}};
-  std::size_t list = 0;
   elements::each_law([&]<class Law>(std::type_identity<Law>) {
     using elements::Facts;
     const std::string name = Facts<Law>::name;
-    if (compiled[list]) defines.front().second += name + " ";
-    for (const auto& [fact, number] : {std::pair{"_LIST", list++},
+    if (compiled[elements::law_number<Law>]) defines.front().second += name + " ";
+    for (const auto& [fact, number] : {std::pair{"_LIST", elements::law_number<Law>},
                                        {"_CORNERS", Facts<Law>::corners},
                                        {"_REST_VALUES", Facts<Law>::rest_values},
                                        {"_TEXELS", elements::entry_texels<Law>},

@@ -11,7 +11,8 @@ const sizes = [
   [1920, 1080],
   [320, 568],
 ];
-const moments = process.env.FRAMING_PICTURES ? [0.4, 0.8, 1.4, 2.2, 3] : [0.5, 1.4]; // [s] simulated
+const pictures = !!process.env.FRAMING_PICTURES; // take pictures of all, for people to look at
+const moments = pictures ? [0.4, 0.8, 1.4, 2.2, 3] : [0.5, 1.4]; // [s] simulated
 const margin = 4; // [CSS pixels] between the cloth and an edge or a card
 
 /// How much of the frame's vertices and spheres lies outside the window or behind a card: number of points, and the
@@ -92,7 +93,7 @@ async function check(viewer, moment, found = []) {
       ({ hidden, cut }) => hidden === 0 && cut === "",
       12_000,
     ).catch(async () => viewer.page.evaluate(hiddenPoints, margin));
-    if (process.env.FRAMING_PICTURES)
+    if (pictures)
       await viewer.page.screenshot({ path: `${screenshots}framing-${seen.scene}-${moment}-${width}x${height}.png` });
     if (seen.hidden)
       found.push(
@@ -133,13 +134,17 @@ for (const preset of presets) {
   browserTest(
     `all of the cloth of ${preset} is seen on phones and screens, at the start and while it moves`,
     async () => {
-      const { viewer, client, scene } = await here.both(`framing-${preset}`, { width: 390, height: 844 });
+      const { viewer, client, scene } = await here.both(`framing-${preset}`, {
+        width: 390,
+        height: 844,
+        sharp: pictures,
+      });
       await client.request("sim.pause", {});
       await client.request("scene.load", { preset });
       await client.request("sim.pause", {});
       await client.request("sim.reset", {});
       await viewer.until((name) => window.clothlab.document?.name === name && window.clothlab.simTime === 0, preset);
-      if (!process.env.FRAMING_PICTURES) await viewer.page.evaluate(onlyPlace);
+      if (!pictures) await viewer.page.evaluate(onlyPlace);
       const found = await check(viewer, "start");
       const { dt } = (await scene()).solver;
       for (const time of moments) {

@@ -362,10 +362,10 @@ browserTest(
     assert.match(await panel.locator(".lab-answer").innerText(), /^\S.{20,}/);
     const card = panel.locator(".lab-card.chosen");
     const text = await card.innerText();
-    const [, name, error, atMost] =
-      /\n(Verlet|Symplectic Euler), dt [^]*expected error ([^\s,]+)(?: \(at most (\S+)\))?, \S+\s(?:ms|s)(?: \(\S+\s\S+ … \S+\s\S+\))? a simulated second/.exec(
-        text,
-      ) ?? assert.fail(text);
+    const cost = String.raw`\S+\s(?:ms|s)(?: \(\S+\s\S+ … \S+\s\S+\))? a simulated second`; // and its interval
+    const expected = String.raw`expected error ([^\s,]+)(?: \(at most (\S+)\))?`;
+    const answer = new RegExp(String.raw`\n(Verlet|Symplectic Euler), dt [^]*${expected}, ${cost}`);
+    const [, name, error, atMost] = answer.exec(text) ?? assert.fail(text);
     assert.ok(
       Number(error) <= Number(atMost ?? error) && Number(atMost ?? error) <= 1e-2,
       `${error}, at most ${atMost}, is expected`,
