@@ -17,7 +17,7 @@ const executablePath = candidates.find((path) => path && existsSync(path));
 /// A test that needs a browser. It is skipped, with a message, only if there is none.
 export function browserTest(name, body) {
   const skip = executablePath ? false : "no Chromium here: install chromium, or name one in CLOTHLAB_BROWSER";
-  test(name, { skip, timeout: 240_000 }, async () => {
+  test(name, { skip, timeout: 600_000 }, async () => {
     try {
       await body();
     } finally {

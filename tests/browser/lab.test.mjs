@@ -61,7 +61,7 @@ const finished = (panel) =>
     "the measurement",
     () => panel.getAttribute("data-state"),
     (state) => state === "finished",
-    180_000,
+    500_000,
   );
 
 async function charted(session, options) {
@@ -231,7 +231,7 @@ browserTest("while a chart grows, the point that has the keyboard's focus keeps 
     "a first point",
     () => marks.count(),
     (count) => count >= 1,
-    180_000,
+    500_000,
   );
   await panel.locator('.lab-picture [data-index][tabindex="0"]').focus();
   const key = await page.evaluate(() => document.activeElement.dataset.index);
@@ -243,7 +243,7 @@ browserTest("while a chart grows, the point that has the keyboard's focus keeps 
       "a new drawing",
       () => panel.locator(".lab-picture svg[data-old]").count(),
       (count) => count === 0,
-      180_000,
+      500_000,
     );
     assert.equal(await page.evaluate(() => document.activeElement.dataset.index), key);
     assert.ok(await page.getByRole("tooltip").isVisible());

@@ -48,7 +48,7 @@ const answerTo = (client, id) =>
 /// Waits for a message of the lab, which has the lowest priority on the machine.
 async function inTime(client, method, predicate) {
   const fits = (message) => message.method === method && predicate(message.params);
-  return (await client.until(() => client.messages, fits, method, 240_000)).params;
+  return (await client.until(() => client.messages, fits, method, 900_000)).params;
 }
 const receives = operations.filter(({ action }) => action === "receive");
 const there = receives.filter((asked) => !asked["x-not-yet"]);

@@ -13,7 +13,7 @@ after(() => server.stop());
 
 // A choice takes seconds, many on a busy machine.
 const auto = (client, accept) =>
-  client.nextNotification("sim.status", ({ solver }) => solver?.auto && accept(solver.auto), 240_000);
+  client.nextNotification("sim.status", ({ solver }) => solver?.auto && accept(solver.auto), 900_000);
 
 test("a session with the method auto plays stably at once, then with what the lab has chosen, and says so", async () => {
   const client = await Client.connect(server, { session: "auto" });

@@ -38,7 +38,9 @@ async function watch(server, session) {
   return client;
 }
 
-const notices = (client) => client.messages.filter((message) => message.method === "notice");
+/// What a session was told, but for how fast the machine is: tests run beside others.
+const notices = (client) =>
+  client.messages.filter(({ method, params }) => method === "notice" && !/cannot keep up/.test(params.text));
 
 for (const [kind, why] of [
   ["exception", /a fault on purpose/],

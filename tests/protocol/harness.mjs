@@ -13,7 +13,7 @@ const program = process.env.CLOTHLAB;
 if (!program) throw new Error("CLOTHLAB must name the program to test");
 
 /// [ms], generous: a busy machine under a sanitizer must not fail a test.
-export const patience = 30_000;
+export const patience = 120_000;
 
 export const sleep = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
 
