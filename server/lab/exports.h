@@ -1,7 +1,7 @@
 // Results of the lab as JSON, CSV and SVG. The command line and the page use the same drawings.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 

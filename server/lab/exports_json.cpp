@@ -1,5 +1,6 @@
 // Results of the lab as JSON. A number that is not finite becomes null.
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "server/lab/exports.h"
 #include "server/scene/method.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <exception>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "server/lab/exports.h"

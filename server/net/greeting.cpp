@@ -1,5 +1,7 @@
 #include "server/net/greeting.h"
 
+#include <nlohmann/json.hpp>
+
 #include "server/net/client.h"
 #include "server/net/hub.h"
 #include "server/net/limits.h"

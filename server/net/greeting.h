@@ -1,7 +1,7 @@
 // The parameters of `hello`, the first message to a client: the server, the client's role and its limits.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 namespace clothlab::net {
 

@@ -1,5 +1,7 @@
 #include "server/lab/measure/setting.h"
 
+#include <nlohmann/json.hpp>
+
 #include "server/base/text.h"
 #include "server/scene/method.h"
 

@@ -2,7 +2,7 @@
 // as patches.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 
 #include "server/scene/scene.h"
