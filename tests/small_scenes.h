@@ -23,7 +23,7 @@ inline scene::Scene hung_strip(scene::Method method, double dt, int columns, int
   scene::Cloth& cloth = scene.cloths.emplace_back();
   cloth.mesh = scene::Grid{columns, rows, width, height};
   cloth.mass = {scene::Mass::Kind::per_vertex, 1.0};
-  cloth.material = {0.0, 0.0, 0.0, 0.0};
+  cloth.material = scene::Springs{0.0, 0.0, 0.0, 0.0};
   cloth.pins = {{scene::AtEdge{scene::AtEdge::Line::row, 0}, {}}};
   return scene;
 }
@@ -35,7 +35,7 @@ inline scene::Scene one_spring(scene::Method method, double dt, double damping =
                                double amplitude = 0.1) {
   scene::Scene scene = hung_strip(method, dt, 2, 3, 1.0, 1.0);
   scene.gravity = {0.0, 0.0, 16.0 * amplitude};
-  scene.cloths[0].material = {0.0, 0.0, 16.0, damping};
+  scene.cloths[0].material = scene::Springs{0.0, 0.0, 16.0, damping};
   scene.cloths[0].pins.push_back({scene::AtEdge{scene::AtEdge::Line::row, 1}, {}});
   return scene;
 }
@@ -49,7 +49,7 @@ inline constexpr double spring_amplitude = -0.1;  ///< z - balance at the start 
 inline scene::Scene chain(scene::Method method, double dt, int links, double k, double mass) {
   scene::Scene scene = hung_strip(method, dt, 2, links + 1, 1.0, 1.0);
   scene.cloths[0].mass.value = mass;
-  scene.cloths[0].material.structural = k;
+  scene.cloths[0].springs().structural = k;
   return scene;
 }
 
@@ -62,7 +62,7 @@ inline scene::Scene pendulum(scene::Method method, double dt, double degrees, do
   scene.gravity =
       // the grid's +z axis makes this angle with gravity
       9.81 * glm::dvec3(0.0, -std::sin(angle), std::cos(angle));
-  scene.cloths[0].material.bend = k;
+  scene.cloths[0].springs().bend = k;
   return scene;
 }
 
@@ -74,7 +74,7 @@ inline scene::Scene swinging_cloth(scene::Method method, double dt) {
   scene::Cloth& cloth = scene.cloths.emplace_back();
   cloth.mesh = scene::Grid{17, 17, 0.5, 0.5};
   cloth.mass = {scene::Mass::Kind::per_vertex, 1.4648e-4};
-  cloth.material = {100.0, 100.0, 100.0, 0.0};
+  cloth.material = scene::Springs{100.0, 100.0, 100.0, 0.0};
   cloth.pins = {{scene::AtCorner{0, 0}, {}}, {scene::AtCorner{16, 0}, {}}};
   return scene;
 }

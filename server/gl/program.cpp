@@ -29,13 +29,7 @@ struct Source {
 
 class Expansion {
  public:
-  Expansion(Source& source, const Defines& defines) : source_(source) {
-    for (const auto& [name, value] : defines) {
-      if (name != "LAWS") continue;
-      std::istringstream names(value);
-      for (std::string law; names >> law;) laws_.push_back(law);
-    }
-  }
+  Expansion(Source& source, const Defines& defines) : source_(source), defines_(defines) {}
 
   Status add(const std::string& path) {
     if (!seen_.insert(path).second) return ok();  // every file is included once
@@ -44,20 +38,22 @@ class Expansion {
     Result<std::string> text = read_file(*found);
     if (!text) return text.error();
 
-    static const std::regex include(R"(^\s*#include\s+"([^"]+)\".*$)"), each(R"(^\s*#each Law\s*$)"),
-        end(R"(^\s*#end\s*$)");
+    static const std::regex include(R"(^\s*#include\s+"([^"]+)\".*$)"),
+        each(R"(^\s*#each Law(?: of (\w+))?\s*$)"), end(R"(^\s*#end\s*$)");
     std::istringstream lines(*text);
     std::string line;
     std::vector<std::pair<std::string, std::string>> repeated;  // lines and their origins
+    std::vector<std::string> laws;
     bool repeats = false;
     for (int number = 1; std::getline(lines, line); ++number) {
       const std::string origin = "shaders/" + path + ":" + std::to_string(number);
       std::smatch match;
       const bool directive = line.find('#') != std::string::npos;  // saves most lines the slow regex
-      if (directive && std::regex_match(line, each)) {
+      if (directive && std::regex_match(line, match, each)) {
         repeats = true;
+        laws = names_in(match[1].matched ? match[1].str() : "LAWS");
       } else if (directive && std::regex_match(line, end)) {
-        for (const std::string& law : laws_)
+        for (const std::string& law : laws)
           for (const auto& [text_of, origin_of] : repeated) source_.add_line(of_law(text_of, law), origin_of);
         repeated.clear();
         repeats = false;
@@ -79,6 +75,17 @@ class Expansion {
   }
 
  private:
+  /// The names in the define `list`; none if it is not defined.
+  std::vector<std::string> names_in(const std::string& list) const {
+    std::vector<std::string> result;
+    for (const auto& [name, value] : defines_) {
+      if (name != list) continue;
+      std::istringstream names(value);
+      for (std::string law; names >> law;) result.push_back(law);
+    }
+    return result;
+  }
+
   static std::string of_law(std::string line, const std::string& law) {
     const std::string placeholder = "Law";
     for (std::size_t at = 0; (at = line.find(placeholder, at)) != std::string::npos; at += law.size())
@@ -87,7 +94,7 @@ class Expansion {
   }
 
   Source& source_;
-  std::vector<std::string> laws_;
+  const Defines& defines_;
   std::set<std::string> seen_;
 };
 

@@ -1,6 +1,6 @@
 // A linked program made from shader files below shaders/, with #include, #define and a repetition: the lines
-// between `#each Law` and `#end` are repeated for each name in the define LAWS, with that name in place of
-// `Law`. (GLSL has neither templates nor ##.)
+// between `#each Law of LIST` and `#end` are repeated for each name in the define LIST, with that name in
+// place of `Law`. `#each Law` alone takes the list LAWS. (GLSL has neither templates nor ##.)
 #pragma once
 
 #include <glad/gl.h>

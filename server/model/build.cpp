@@ -7,6 +7,7 @@
 
 #include "server/base/text.h"
 #include "server/model/mesh_arrays.h"
+#include "server/model/plate.h"
 #include "server/model/start.h"
 
 namespace clothlab::model {
@@ -157,14 +158,108 @@ double mean_edge_length(const MeshArrays& arrays, const std::vector<dvec3>& posi
   return arrays.triangles.empty() ? 0.0 : sum / (3.0 * static_cast<double>(arrays.triangles.size()));
 }
 
+/// Appends the springs of a cloth, whose vertices are the model's from `first` on.
+void add_springs(Model& model, const scene::Springs& material, const std::vector<MeshSpring>& list,
+                 Index first) {
+  Batch<elements::Spring>& springs = model.elements.of<elements::Spring>();
+  springs.reserve(springs.size() + list.size());
+  const std::vector<dvec3>& rest = model.rest_position;
+  for (const MeshSpring& spring : list) {
+    const Index a = spring.a + first, b = spring.b + first;
+    springs.push_back(
+        {{a, b}, {glm::distance(rest[a], rest[b]), stiffness(material, spring.kind), material.damping}});
+  }
+}
+
+/// The axes of a mesh's texture, in space.
+struct TextureAxes {
+  dvec3 first, second;
+};
+
+/// A triangle in its own plane, with x along the warp: `grain` [degrees] from the first texture axis, towards
+/// the second.
+FlatTriangle laid_flat(const std::array<dvec3, 3>& corners, const TextureAxes& axes, double grain) {
+  const dvec3 normal = glm::normalize(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+  const auto in_plane = [&](const dvec3& axis) { return axis - normal * glm::dot(normal, axis); };
+  dvec3 along = in_plane(axes.first);
+  if (glm::length(along) < 1e-6) along = in_plane(axes.second);
+  along = glm::normalize(along);
+  const dvec3 across = glm::cross(normal, along);
+  const double turn = glm::radians(glm::dot(across, axes.second) < 0.0 ? -grain : grain);
+  const dvec3 warp = std::cos(turn) * along + std::sin(turn) * across, weft = glm::cross(normal, warp);
+  FlatTriangle flat;
+  for (std::size_t i = 0; i < 3; ++i)
+    flat[i] = {glm::dot(corners[i] - corners[0], warp), glm::dot(corners[i] - corners[0], weft)};
+  return flat;
+}
+
+elements::Membrane membrane(const FlatTriangle& flat, const scene::Fem& material) {
+  const dvec2 a = flat[1] - flat[0], b = flat[2] - flat[0];
+  const double twice_area = a.x * b.y - a.y * b.x, area = 0.5 * twice_area;
+  const double ratio = material.weft / material.warp;
+  const double scale = area / (1.0 - material.poisson * material.poisson * ratio);
+  return {b.y / twice_area,
+          -b.x / twice_area,
+          -a.y / twice_area,
+          a.x / twice_area,
+          scale * material.warp,
+          scale * material.weft,
+          scale * material.poisson * material.weft,
+          area * material.shear,
+          material.damping};
+}
+
+/// Twice the least area of a triangle over the square of its longest edge. Places in 32-bit floats cannot
+/// tell a triangle below it from a line.
+constexpr double least_area = 1e-7;
+
+/// Appends the finite elements of a cloth, whose vertices and triangles are the model's from `first` and
+/// `first_triangle` on; those that only sweeps visit if `sweeps_elements`.
+Status add_sheet(Model& model, const scene::Fem& material, const TextureAxes& axes, Index first,
+                 Index first_triangle, bool sweeps_elements, const std::string& where) {
+  std::vector<FlatTriangle> flat;
+  std::vector<std::array<Index, 3>> triangles;
+  Batch<elements::Membrane>& membranes = model.elements.of<elements::Membrane>();
+  for (Index t = first_triangle; t < model.triangle_count(); ++t) {
+    const auto& [a, b, c] = model.triangles[t];
+    const std::vector<dvec3>& rest = model.rest_position;
+    const double longest = std::max(
+        {glm::distance(rest[a], rest[b]), glm::distance(rest[b], rest[c]), glm::distance(rest[c], rest[a])});
+    if (!(glm::length(glm::cross(rest[b] - rest[a], rest[c] - rest[a])) > least_area * longest * longest))
+      return Error{where + "/mesh/triangles/" + std::to_string(t - first_triangle), "a triangle without area",
+                   "with \"model\": \"fem\" every triangle has an area; springs need none"};
+    flat.push_back(laid_flat({rest[a], rest[b], rest[c]}, axes, material.grain));
+    membranes.push_back({{a, b, c}, membrane(flat.back(), material)});
+    triangles.push_back({a - first, b - first, c - first});
+  }
+  std::vector<char> held;
+  for (Index i = first; i < model.vertex_count(); ++i) held.push_back(model.pin_motion[i] != not_pinned);
+  const auto& [warp, weft, twist] = material.bending;
+  const PlateStiffness plate{warp, weft, twist.value_or(0.5 * std::sqrt(warp * weft))};
+  Batch<elements::Bending>& bending = model.elements.of<elements::Bending>();
+  for (const BendingPair& pair : bending_pairs(triangles, flat, held, plate))
+    bending.push_back({{pair.a + first, pair.b + first}, {pair.stiffness, material.damping}});
+  if (!sweeps_elements) return ok();
+  Batch<elements::Curvature>& curvature = model.elements.of<elements::Curvature>();
+  for (const CurvatureRows& rows : curvature_rows(triangles, flat, held, plate)) {
+    Element<elements::Curvature> element{rows.vertices, {{}, material.damping}};
+    for (std::uint32_t& vertex : element.vertices) vertex += first;
+    for (std::size_t a = 0; a < 3; ++a)
+      std::copy(rows.row[a].begin(), rows.row[a].end(), element.law.row + a * CurvatureRows::most_vertices);
+    curvature.push_back(element);
+  }
+  return ok();
+}
+
 /// Appends one cloth to the model.
-Status add_cloth(Model& model, const scene::Cloth& cloth) {
+Status add_cloth(Model& model, const scene::Cloth& cloth, bool sweeps_elements) {
   const auto cloth_index = static_cast<Index>(model.cloths.size());
   const std::string where = "/cloths/" + std::to_string(cloth_index);
   const auto* grid = std::get_if<scene::Grid>(&cloth.mesh);
-  MeshArrays arrays = grid ? grid_arrays(*grid, cloth.material)
-                           : triangle_mesh_arrays(std::get<scene::TriangleMesh>(cloth.mesh), cloth.material);
-  const std::vector<dvec3> position = placed(cloth.transform, std::move(arrays.position));
+  const MeshArrays arrays =
+      grid ? grid_arrays(*grid, cloth.material)
+           : triangle_mesh_arrays(std::get<scene::TriangleMesh>(cloth.mesh), cloth.material);
+  const std::vector<dvec3> position = placed(cloth.transform, arrays.position);
   std::vector<double> mass = masses(cloth, arrays, position);
   const auto massless = std::find_if(mass.begin(), mass.end(), [](double m) { return !(m >= least_mass); });
   if (massless != mass.end())
@@ -193,12 +288,6 @@ Status add_cloth(Model& model, const scene::Cloth& cloth) {
   const Index first = model.vertex_count();
   ClothRange range{first, static_cast<Index>(position.size()), model.triangle_count(),
                    static_cast<Index>(arrays.triangles.size()), mean_edge_length(arrays, position)};
-  Batch<elements::Spring>& springs = model.elements.of<elements::Spring>();
-  springs.reserve(springs.size() + arrays.springs.size());
-  for (const MeshSpring& spring : arrays.springs)
-    springs.push_back({{spring.a + first, spring.b + first},
-                       {glm::distance(position[spring.a], position[spring.b]),
-                        stiffness(cloth.material, spring.kind), cloth.material.damping}});
   for (const auto& [a, b, c] : arrays.triangles) model.triangles.push_back({a + first, b + first, c + first});
   const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
   append(model.rest_position, position);
@@ -208,7 +297,15 @@ Status add_cloth(Model& model, const scene::Cloth& cloth) {
   append(model.texture_coordinates, arrays.texture_coordinates);
   model.vertex_cloth.resize(model.rest_position.size(), cloth_index);
   model.cloths.push_back(range);
-  return ok();
+  if (const auto* springs = std::get_if<scene::Springs>(&cloth.material)) {
+    add_springs(model, *springs, arrays.springs, first);
+    return ok();
+  }
+  const std::vector<dvec3> axes =
+      placed(cloth.transform, {dvec3(0.0), arrays.first_axis, arrays.second_axis});
+  return add_sheet(model, std::get<scene::Fem>(cloth.material),
+                   {glm::normalize(axes[1] - axes[0]), glm::normalize(axes[2] - axes[0])}, first,
+                   range.first_triangle, sweeps_elements, where);
 }
 
 }  // namespace
@@ -227,9 +324,11 @@ double stiffness(const scene::Springs& material, SpringKind kind) {
 
 Result<Model> build(const scene::Scene& scene) {
   Model model;
+  const bool sweeps_elements =
+      scene::sweeps(scene.solver.method) && !scene::sweeps_vertices(scene.solver.method);
   for (const scene::Cloth& cloth : scene.cloths)
-    if (Status added = add_cloth(model, cloth); !added) return added.error();
-  model.elements.each([&](auto& batch) { batch.at_vertex = corners_at(model.vertex_count(), batch); });
+    if (Status added = add_cloth(model, cloth, sweeps_elements); !added) return added.error();
+  model.elements.each_of_all([&](auto& batch) { batch.at_vertex = corners_at(model.vertex_count(), batch); });
   if (scene.self_collision) model.contact_exclusions = contact_exclusions(model);
   model.vertex_triangles =
       adjacency(model.vertex_count(), model.triangles, [](const auto& corners) { return corners; });

@@ -120,10 +120,10 @@ void drop_clashes(const Model& model, const scene::Scene& scene, std::vector<Ind
 
 }  // namespace
 
-std::array<Colouring, elements::law_count> colour_elements(const Model& model, const scene::Scene& scene) {
-  std::array<Colouring, elements::law_count> colourings;
-  model.elements.each([&]<class Law>(const Batch<Law>& batch) {
-    colourings[elements::law_number<Law>] = colour_batch(model, scene, batch);
+std::array<Colouring, elements::swept_count> colour_elements(const Model& model, const scene::Scene& scene) {
+  std::array<Colouring, elements::swept_count> colourings;
+  model.elements.each_swept([&]<class Law>(const Batch<Law>& batch) {
+    colourings[elements::law_number<Law, elements::SweptLaws>] = colour_batch(model, scene, batch);
   });
   return colourings;
 }

@@ -22,7 +22,7 @@ struct Colouring {
 /// in closed form, two for each of six pairs of direction and length, and fewer where kinds of springs are
 /// missing. All other elements are coloured greedily: each gets the colour with fewest members.
 /// Deterministic.
-std::array<Colouring, elements::law_count> colour_elements(const Model& model, const scene::Scene& scene);
+std::array<Colouring, elements::swept_count> colour_elements(const Model& model, const scene::Scene& scene);
 
 /// Colours vertices so that those of one colour share no element. A grid gets 5 colours, (column + 2 row) mod
 /// 5, if its elements allow it, as springs do. Other meshes are coloured greedily: vertices with most

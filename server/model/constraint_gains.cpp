@@ -37,7 +37,7 @@ double median_mass(const Model& model, const ClothRange& cloth) {
 std::vector<PbdStiffness> pbd_stiffness(const Model& model, const scene::Scene& scene) {
   std::vector<PbdStiffness> result(scene.cloths.size());
   for (std::size_t i = 0; i < result.size(); ++i) {
-    const scene::Springs& material = scene.cloths[i].material;
+    const scene::Springs& material = scene.cloths[i].springs();
     const double inverse_mass = 2.0 * mobility(scene) / median_mass(model, model.cloths[i]);
     for (const SpringKind kind : {SpringKind::structural, SpringKind::shear, SpringKind::bend}) {
       const double k = stiffness(material, kind);

@@ -21,10 +21,14 @@ double mobility(const scene::Scene& scene);
 /// c))^(-1/iterations).
 elements::ConstraintGains constraint_gains(const scene::Solver& solver, double stiffness, double damping,
                                            double inverse_mass);
+inline elements::ConstraintGains constraint_gains(const scene::Solver& solver, const elements::Spring& law,
+                                                  double inverse_mass) {
+  return constraint_gains(solver, law.stiffness, law.damping, inverse_mass);
+}
+/// Laws whose constraint has more than one number know their stiffness themselves: dt^2, dt, and memory.
 template <class Law>
-elements::ConstraintGains constraint_gains(const scene::Solver& solver, const Law& law, double inverse_mass) {
-  return constraint_gains(solver, elements::element_stiffness(law), elements::element_damping(law),
-                          inverse_mass);
+elements::ConstraintGains constraint_gains(const scene::Solver& solver, const Law&, double) {
+  return {solver.dt * solver.dt, solver.dt, 1.0, 0.0};
 }
 
 /// For each SpringKind the share of a spring's stretch that one visit removes, in (0, 1]; none for a kind

@@ -112,12 +112,14 @@ double ElementOperator::bound(MatrixOf matrix_of) const {
     constexpr std::size_t corners = Element<Law>::corners;
     const auto free = std::count_if(linear.vertices.begin(), linear.vertices.end(),
                                     [&](std::uint32_t vertex) { return !pinned(vertex); });
+    auto bounds = linear.hessian;
+    for (auto& hessian : bounds) hessian = elements::element_bound(hessian);
     for (std::size_t c = 0; c < corners; ++c) {
       glm::dmat3 own(0.0);  // the corner's own block K_cc, one column for each axis
       for (int axis = 0; axis < 3; ++axis) {
         std::array<dvec3, corners> vector{};
         vector[c][axis] = 1.0;
-        own[axis] = product<Law>(linear.hessian, vector, matrix_of)[c];
+        own[axis] = product<Law>(bounds, vector, matrix_of)[c];
       }
       const double scale = scale_[linear.vertices[c]];
       block[linear.vertices[c]] += static_cast<double>(free) * scale * scale * own;

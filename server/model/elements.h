@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <tuple>
+#include <type_traits>
 #include <vector>
 
 #include "shaders/elements/elements.h"
@@ -46,7 +47,8 @@ struct Batch : std::vector<Element<Law>> {
   }
 };
 
-/// The batches of a model, one for each law.
+/// The batches of a model, one for each law. Those of laws that only sweeps visit are empty under other
+/// methods.
 class Batches {
  public:
   template <class Law>
@@ -57,20 +59,27 @@ class Batches {
   Batch<Law>& of() {
     return std::get<Batch<Law>>(batches_);
   }
-  /// Calls visit(batch) for each law's batch, in the order of the laws.
+  /// Calls visit(batch) for the batch of each law whose forces add up, in the order of the laws.
   template <class Visit>
   void each(Visit&& visit) const {
-    std::apply([&](const auto&... batch) { (visit(batch), ...); }, batches_);
+    elements::each_law([&]<class Law>(std::type_identity<Law>) { visit(of<Law>()); });
+  }
+  /// Calls visit(batch) for the batch of each law that PBD and XPBD visit.
+  template <class Visit>
+  void each_swept(Visit&& visit) const {
+    elements::each_law<elements::SweptLaws>([&]<class Law>(std::type_identity<Law>) { visit(of<Law>()); });
   }
   template <class Visit>
-  void each(Visit&& visit) {
+  void each_of_all(Visit&& visit) {
     std::apply([&](auto&... batch) { (visit(batch), ...); }, batches_);
   }
   /// True if both have the same elements in the same order.
   bool operator==(const Batches& other) const { return batches_ == other.batches_; }
 
  private:
-  elements::PerLaw<Batch> batches_;
+  std::tuple<Batch<elements::Spring>, Batch<elements::Membrane>, Batch<elements::Bending>,
+             Batch<elements::Curvature>>
+      batches_;
 };
 
 /// An element's edges as seen from one of its corners. `difference(vertex)` must return the value at this

@@ -19,9 +19,53 @@ MeshSpring spring(Edge edge, SpringKind kind) {
   return {edge.first, edge.second, kind};
 }
 
+void connect_grid(MeshArrays& arrays, const scene::Grid& grid, const scene::Springs& springs) {
+  const int columns = grid.columns, rows = grid.rows;
+  const auto index = [&](int column, int row) { return static_cast<std::uint32_t>(row * columns + column); };
+  arrays.springs.reserve(6 * arrays.position.size());
+  const auto connect = [&](SpringKind kind, double stiffness, int columns_on, int rows_on) {
+    if (stiffness == 0.0) return;
+    for (int row = 0; row < rows; ++row) {
+      for (int column = 0; column < columns; ++column) {
+        const int to_column = column + columns_on, to_row = row + rows_on;
+        if (to_column < 0 || to_column >= columns || to_row >= rows) continue;
+        arrays.springs.push_back(spring(sorted(index(column, row), index(to_column, to_row)), kind));
+      }
+    }
+  };
+  connect(SpringKind::structural, springs.structural, 1, 0);
+  connect(SpringKind::structural, springs.structural, 0, 1);
+  connect(SpringKind::shear, springs.shear, 1, 1);
+  connect(SpringKind::shear, springs.shear, -1, 1);
+  connect(SpringKind::bend, springs.bend, 2, 0);
+  connect(SpringKind::bend, springs.bend, 0, 2);
+}
+
+void connect_triangles(MeshArrays& arrays, const scene::Springs& springs) {
+  std::map<Edge, std::vector<std::uint32_t>> opposite;  // edge -> the third vertex of each triangle on it
+  for (const auto& triangle : arrays.triangles)
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      opposite[sorted(triangle[corner], triangle[(corner + 1) % 3])].push_back(triangle[(corner + 2) % 3]);
+  for (const auto& [edge, corners] : opposite) {
+    if (springs.structural != 0.0) arrays.springs.push_back(spring(edge, SpringKind::structural));
+    if (springs.bend == 0.0 || corners.size() != 2 || corners[0] == corners[1]) continue;
+    const Edge across = sorted(corners[0], corners[1]);
+    if (!opposite.contains(across)) arrays.springs.push_back(spring(across, SpringKind::bend));
+  }
+  // Two edges may have the same pair of vertices opposite them; one spring is enough.
+  std::stable_sort(arrays.springs.begin(), arrays.springs.end(),
+                   [](const MeshSpring& a, const MeshSpring& b) {
+                     return std::tie(a.kind, a.a, a.b) < std::tie(b.kind, b.a, b.b);
+                   });
+  const auto same = [](const MeshSpring& a, const MeshSpring& b) {
+    return a.a == b.a && a.b == b.b && a.kind == b.kind;
+  };
+  arrays.springs.erase(std::unique(arrays.springs.begin(), arrays.springs.end(), same), arrays.springs.end());
+}
+
 }  // namespace
 
-MeshArrays grid_arrays(const scene::Grid& grid, const scene::Springs& material) {
+MeshArrays grid_arrays(const scene::Grid& grid, const scene::Material& material) {
   MeshArrays arrays;
   const int columns = grid.columns, rows = grid.rows;
   const auto index = [&](int column, int row) { return static_cast<std::uint32_t>(row * columns + column); };
@@ -40,27 +84,11 @@ MeshArrays grid_arrays(const scene::Grid& grid, const scene::Springs& material) 
     }
   }
 
-  arrays.springs.reserve(6 * arrays.position.size());
-  const auto connect = [&](SpringKind kind, double stiffness, int columns_on, int rows_on) {
-    if (stiffness == 0.0) return;
-    for (int row = 0; row < rows; ++row) {
-      for (int column = 0; column < columns; ++column) {
-        const int to_column = column + columns_on, to_row = row + rows_on;
-        if (to_column < 0 || to_column >= columns || to_row >= rows) continue;
-        arrays.springs.push_back(spring(sorted(index(column, row), index(to_column, to_row)), kind));
-      }
-    }
-  };
-  connect(SpringKind::structural, material.structural, 1, 0);
-  connect(SpringKind::structural, material.structural, 0, 1);
-  connect(SpringKind::shear, material.shear, 1, 1);
-  connect(SpringKind::shear, material.shear, -1, 1);
-  connect(SpringKind::bend, material.bend, 2, 0);
-  connect(SpringKind::bend, material.bend, 0, 2);
+  if (const auto* springs = std::get_if<scene::Springs>(&material)) connect_grid(arrays, grid, *springs);
   return arrays;
 }
 
-MeshArrays triangle_mesh_arrays(const scene::TriangleMesh& mesh, const scene::Springs& material) {
+MeshArrays triangle_mesh_arrays(const scene::TriangleMesh& mesh, const scene::Material& material) {
   MeshArrays arrays;
   arrays.position = mesh.vertices;
   arrays.triangles = mesh.triangles;
@@ -76,29 +104,13 @@ MeshArrays triangle_mesh_arrays(const scene::TriangleMesh& mesh, const scene::Sp
   std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return extent[a] > extent[b]; });
   const int u = std::min(axes[0], axes[1]), v = std::max(axes[0], axes[1]);
   const double size = std::max(extent[axes[0]], 1e-9);
+  arrays.first_axis = arrays.second_axis = dvec3(0.0);
+  arrays.first_axis[u] = arrays.second_axis[v] = 1.0;
   for (const dvec3& point : mesh.vertices)
     arrays.texture_coordinates.emplace_back(static_cast<float>((point[u] - low[u]) / size),
                                             static_cast<float>((point[v] - low[v]) / size));
 
-  std::map<Edge, std::vector<std::uint32_t>> opposite;  // edge -> the third vertex of each triangle on it
-  for (const auto& triangle : mesh.triangles)
-    for (std::size_t corner = 0; corner < 3; ++corner)
-      opposite[sorted(triangle[corner], triangle[(corner + 1) % 3])].push_back(triangle[(corner + 2) % 3]);
-  for (const auto& [edge, corners] : opposite) {
-    if (material.structural != 0.0) arrays.springs.push_back(spring(edge, SpringKind::structural));
-    if (material.bend == 0.0 || corners.size() != 2 || corners[0] == corners[1]) continue;
-    const Edge across = sorted(corners[0], corners[1]);
-    if (!opposite.contains(across)) arrays.springs.push_back(spring(across, SpringKind::bend));
-  }
-  // Two edges may have the same pair of vertices opposite them; one spring is enough.
-  std::stable_sort(arrays.springs.begin(), arrays.springs.end(),
-                   [](const MeshSpring& a, const MeshSpring& b) {
-                     return std::tie(a.kind, a.a, a.b) < std::tie(b.kind, b.a, b.b);
-                   });
-  const auto same = [](const MeshSpring& a, const MeshSpring& b) {
-    return a.a == b.a && a.b == b.b && a.kind == b.kind;
-  };
-  arrays.springs.erase(std::unique(arrays.springs.begin(), arrays.springs.end(), same), arrays.springs.end());
+  if (const auto* springs = std::get_if<scene::Springs>(&material)) connect_triangles(arrays, *springs);
   return arrays;
 }
 

@@ -17,14 +17,16 @@ struct MeshArrays {
   /// [vertex_count], each in [0, 1]: over the width and height of a grid, or over a mesh's largest extent.
   std::vector<glm::vec2> texture_coordinates;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<MeshSpring> springs;  ///< without duplicates
+  dvec3 first_axis{1, 0, 0};        ///< the direction in which the first texture coordinate grows
+  dvec3 second_axis{0, 0, 1};       ///< the same of the second
+  std::vector<MeshSpring> springs;  ///< without duplicates; none for finite elements
 };
 
 /// The arrays of a grid. Kinds of springs whose stiffness is 0 are left out.
-MeshArrays grid_arrays(const scene::Grid& grid, const scene::Springs& material);
+MeshArrays grid_arrays(const scene::Grid& grid, const scene::Material& material);
 
 /// The arrays of a triangle mesh: structural springs along the edges, bend springs between the two vertices
 /// opposite an edge of two triangles. Kinds of springs whose stiffness is 0 are left out.
-MeshArrays triangle_mesh_arrays(const scene::TriangleMesh& mesh, const scene::Springs& material);
+MeshArrays triangle_mesh_arrays(const scene::TriangleMesh& mesh, const scene::Material& material);
 
 }  // namespace clothlab::model

@@ -83,7 +83,7 @@ SweepState begin(const World& world, const State& state, double t, double t_next
                   std::vector<int>(count, 0),
                   state.contacts};
   step.contacts.resize(count, 0);
-  world.model.elements.each([&]<class Law>(const model::Batch<Law>& batch) {
+  world.model.elements.each_swept([&]<class Law>(const model::Batch<Law>& batch) {
     std::get<Pushes<Law>>(step.pushed).resize(batch.size());
   });
   Vectors end = state.position, unused(count);

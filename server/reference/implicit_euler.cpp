@@ -80,7 +80,7 @@ struct Equation {
   /// The value that a line search lowers. Without damping it is the incremental potential [J], whose gradient
   /// is r. With damping there is no such potential, and it is |r|^2.
   double merit(const Vectors& u) const {
-    const auto damped = [](const scene::Cloth& cloth) { return cloth.material.damping > 0.0; };
+    const auto damped = [](const scene::Cloth& cloth) { return cloth.damping() > 0.0; };
     const std::vector<scene::Cloth>& cloths = world.scene.cloths;
     double sum = 0.0;
     if (std::any_of(cloths.begin(), cloths.end(), damped)) {

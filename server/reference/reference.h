@@ -22,7 +22,7 @@ struct World {
   scene::Scene scene;
   model::Model model;
   double contact_margin = 0;  ///< distance kept from a collider's surface [m]
-  std::array<model::Colouring, elements::law_count>
+  std::array<model::Colouring, elements::swept_count>
       element_colours;              ///< the orders of PBD's and XPBD's sweeps
   model::Colouring vertex_colours;  ///< the order of VBD's sweeps
 

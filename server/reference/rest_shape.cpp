@@ -124,7 +124,7 @@ std::optional<Error> violated(const World& world, const Vectors& x) {
   for (const model::Spring& spring : world.model.springs()) {
     const auto [a, b] = spring.vertices;
     const std::uint32_t cloth = world.model.vertex_cloth[a];
-    const std::optional<double>& limit = world.scene.cloths[cloth].material.strain_limit;
+    const std::optional<double> limit = world.scene.cloths[cloth].strain_limit();
     if (limit && glm::distance(x[a], x[b]) > (1.0 + *limit) * spring.law.rest_length)
       return Error{"/cloths/" + std::to_string(cloth) + "/material/strain_limit",
                    "the spring between vertices " + std::to_string(a) + " and " + std::to_string(b) +

@@ -30,7 +30,7 @@ double sweep(const World& world, std::vector<dvec3>& x) {
   double worst = 0.0;
   for (const model::Spring& spring : world.model.springs()) {
     const std::uint32_t cloth = world.model.vertex_cloth[spring.vertices[0]];
-    const std::optional<double>& limit = world.scene.cloths[cloth].material.strain_limit;
+    const std::optional<double> limit = world.scene.cloths[cloth].strain_limit();
     if (limit) worst = std::max(worst, shorten(world, spring, *limit, x));
   }
   return worst;
@@ -39,7 +39,7 @@ double sweep(const World& world, std::vector<dvec3>& x) {
 }  // namespace
 
 double limit_strain(const World& world, State& state) {
-  const auto limited = [](const scene::Cloth& cloth) { return cloth.material.strain_limit.has_value(); };
+  const auto limited = [](const scene::Cloth& cloth) { return cloth.strain_limit().has_value(); };
   if (std::none_of(world.scene.cloths.begin(), world.scene.cloths.end(), limited)) return 0.0;
   const std::vector<dvec3> before = state.position;
   double worst = sweep(world, state.position);

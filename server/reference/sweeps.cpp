@@ -100,9 +100,12 @@ void visit(SweepState& step, const model::Element<Law>& element, elements::Edges
   const auto moved = model::edges(element, 0, so_far.displacement);
   auto place = model::edges(element, 0, so_far.x);
   for (std::size_t k = 0; k + 1 < vertices.size(); ++k) place.d[k] += moved.d[k];
-  const auto push = elements::element_projection(element.law, gains, place, moved, pushed);
+  double mobility[element.corners];
+  for (std::size_t k = 0; k < vertices.size(); ++k) mobility[k] = step.mobility[vertices[k]];
+  auto remembered = pushed;
+  const auto push = elements::element_visit(element.law, gains, mobility, place, moved, remembered);
+  if (gains.memory > 0.0) pushed = remembered;
   for (std::size_t k = 0; k + 1 < vertices.size(); ++k) {
-    if (gains.memory > 0.0) pushed.d[k] += push.d[k];
     step.displacement[vertices[0]] += step.mobility[vertices[0]] * push.d[k];
     step.displacement[vertices[k + 1]] -= step.mobility[vertices[k + 1]] * push.d[k];
   }
@@ -112,8 +115,9 @@ void visit(SweepState& step, const model::Element<Law>& element, elements::Edges
 
 void sweep_elements(SweepState& step) {
   const World& world = step.world;
-  world.model.elements.each([&]<class Law>(const model::Batch<Law>& batch) {
-    for (const std::uint32_t element : world.element_colours[elements::law_number<Law>].order)
+  world.model.elements.each_swept([&]<class Law>(const model::Batch<Law>& batch) {
+    for (const std::uint32_t element :
+         world.element_colours[elements::law_number<Law, elements::SweptLaws>].order)
       visit(step, batch[element], std::get<Pushes<Law>>(step.pushed)[element]);
   });
 }

@@ -17,10 +17,11 @@ struct SweepState {
   std::vector<dvec3> displacement;       ///< [vertex_count] so far [m]; of the whole step for pinned vertices
   std::vector<dvec3> free_displacement;  ///< [vertex_count] by inertia, gravity and drag alone [m]
   std::vector<dvec3> self_collision_push;  ///< [vertex_count] VBD: displacement by self-collision so far [m]
-  std::vector<double> mobility;     ///< [vertex_count] 1 / ((1 + dt air drag) mass) [1/kg], 0 if pinned
-  elements::PerLaw<Pushes> pushed;  ///< XPBD, for each law [element_count]: impulses times dt so far [kg m]
-  std::vector<int> colliders_met;   ///< [vertex_count] VBD: colliders met at the last visit of the vertex
-  std::vector<int> contacts;        ///< [vertex_count] contacts at the last count; 0 if pinned
+  std::vector<double> mobility;  ///< [vertex_count] 1 / ((1 + dt air drag) mass) [1/kg], 0 if pinned
+  /// XPBD, for each law [element_count]: impulses times dt so far [kg m].
+  elements::PerLaw<Pushes, elements::SweptLaws> pushed;
+  std::vector<int> colliders_met;  ///< [vertex_count] VBD: colliders met at the last visit of the vertex
+  std::vector<int> contacts;       ///< [vertex_count] contacts at the last count; 0 if pinned
 
   dvec3 now(std::size_t vertex) const { return x[vertex] + displacement[vertex]; }
 };

@@ -45,7 +45,6 @@ void add_element(Triplets& triplets, const model::Element<Law>& element, const s
 Matrix system_matrix(const World& world, const std::vector<dvec3>& x, Shares shares, Across across) {
   const model::Model& model = world.model;
   Triplets triplets;
-  triplets.reserve(36 * model.springs().size() + 3 * x.size());
   for (std::size_t i = 0; i < x.size(); ++i)
     for (int axis = 0; axis < 3; ++axis)
       triplets.emplace_back(3 * static_cast<Index>(i) + axis, 3 * static_cast<Index>(i) + axis,

@@ -32,6 +32,11 @@ inline constexpr Range weight{1e-9, 1e6, "kg"};  ///< added to a vertex
 inline constexpr Range stiffness{0, 1e12, "N/m"};
 inline constexpr Range damping{0, 1e9, "N s/m"};
 inline constexpr Range strain_limit{1e-3, 10, "of the rest length; or null"};
+inline constexpr Range modulus{1e-3, 1e9, "N/m"};  ///< of pulling a sheet along its threads
+inline constexpr Range shear_modulus{0, 1e9, "N/m"};
+inline constexpr Range poisson{-10, 10};  ///< besides, poisson^2 < warp / weft
+inline constexpr Range bending{0, 1e6, "N m"};
+inline constexpr Range damping_time{0, 10, "s"};
 
 inline constexpr Range start_scale{-1e3, 1e3};
 inline constexpr Range seed{0, 1e9};

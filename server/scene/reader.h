@@ -38,6 +38,7 @@ class Reader {
   Reader element(std::size_t index) const;
 
   bool is_null() const { return value_ && value_->is_null(); }
+  bool is_object() const { return value_ && value_->is_object(); }
   bool is_string() const { return value_ && value_->is_string(); }
   double number(const Range& range) const;
   int integer(const Range& range) const;  ///< accepts 3.0, too: to JSON it is the same number as 3

@@ -61,6 +61,29 @@ struct Springs {
   bool operator==(const Springs&) const = default;
 };
 
+/// Woven or knitted material as a continuum: finite elements. Warp and weft are the two directions of its
+/// threads.
+struct Fem {
+  double warp = 2365.0;  ///< tension [N] a metre of width over strain, pulled along the warp alone, above 0
+  double weft = 3801.0;  ///< the same along the weft
+  double poisson =
+      0.311;            ///< contraction along the weft over stretch along the warp; poisson^2 < warp / weft
+  double shear = 97.0;  ///< [N/m]
+  /// Moment [N m] a metre of width over curvature: bent along the warp, along the weft, and twisted.
+  struct Bending {
+    double warp = 8e-6, weft = 12e-6;
+    std::optional<double> twist =
+        std::nullopt;  ///< none: half of what warp and weft have on (geometric) average
+    bool operator==(const Bending&) const = default;
+  } bending;
+  double damping = 0.001;  ///< time by which stress and moment run ahead of strain and curvature [s]
+  double grain = 0.0;      ///< from the mesh's first texture axis to the warp [degrees]
+  /// The largest extension along warp or weft after a step, as a share of the rest length. None: no limit.
+  std::optional<double> strain_limit = std::nullopt;
+  bool operator==(const Fem&) const = default;
+};
+using Material = std::variant<Springs, Fem>;
+
 /// The place at time t is home + amplitude * axis * sin(2 pi frequency t), where home is the place at time 0.
 struct Oscillate {
   dvec3 axis{0.0, 0.0, 1.0};  ///< unit length
@@ -141,12 +164,23 @@ struct Cloth {
   Mesh mesh;
   Transform transform;
   Mass mass;
-  Springs material;
+  Material material;
   std::vector<Pin> pins;
   std::vector<Weight> weights;
   Start start;
   std::string color = "#b03a2e";  ///< #rrggbb
   std::string texture = "weave";  ///< weave | checker | stripes | plain
+
+  /// The material of a cloth of springs; to be called of such a cloth only.
+  Springs& springs() { return std::get<Springs>(material); }
+  const Springs& springs() const { return std::get<Springs>(material); }
+  /// Whatever the material.
+  double damping() const {
+    return std::visit([](const auto& of) { return of.damping; }, material);
+  }
+  std::optional<double> strain_limit() const {
+    return std::visit([](const auto& of) { return of.strain_limit; }, material);
+  }
   bool operator==(const Cloth&) const = default;
 };
 

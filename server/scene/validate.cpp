@@ -1,4 +1,5 @@
 // Reads the top level of the scene document and checks the rules that span several sections.
+#include <algorithm>
 #include <set>
 
 #include "server/scene/document.h"
@@ -73,6 +74,14 @@ Scene read_scene(const Reader& top) {
   if (!wind.is_null()) wind.fail("null; wind is not supported yet (air_drag is)");
   scene.air_drag = top.member("air_drag", 0.0).number(ranges::air_drag);
   scene.solver = read_solver(top.member("solver", json::object()));
+  const bool fem = std::any_of(scene.cloths.begin(), scene.cloths.end(), [](const Cloth& cloth) {
+    return std::holds_alternative<Fem>(cloth.material);
+  });
+  if (fem && scene.solver.method == Method::pbd)
+    top.member("solver").member("method").fail(
+        "another method where a cloth has \"model\": \"fem\": PBD's stiffness is no N/m; \"xpbd\" is like it "
+        "and "
+        "keeps the material");
   return scene;
 }
 

@@ -23,14 +23,19 @@ bool new_cloth(const scene::Cloth& from, const scene::Cloth& to) {
          pins_were_added(from, to);
 }
 
-/// True if both cloths have the same kinds of springs and number of pins, and either both or neither has a
+/// The kinds of elements that a material has: springs of three kinds, or a sheet that bends or does not.
+std::array<bool, 5> kinds(const scene::Material& material) {
+  if (const auto* springs = std::get_if<scene::Springs>(&material))
+    return {springs->structural > 0, springs->shear > 0, springs->bend > 0};
+  const scene::Fem::Bending& bending = std::get<scene::Fem>(material).bending;
+  return {false, false, false, true, bending.warp > 0 || bending.weft > 0 || bending.twist.value_or(0) > 0};
+}
+
+/// True if both cloths have the same kinds of elements and number of pins, and either both or neither has a
 /// strain limit: then the same kernels and arrays serve both.
 bool same_structure(const scene::Cloth& from, const scene::Cloth& to) {
-  const auto kinds = [](const scene::Springs& s) {
-    return std::array{s.structural > 0, s.shear > 0, s.bend > 0};
-  };
   return kinds(from.material) == kinds(to.material) && from.pins.size() == to.pins.size() &&
-         from.material.strain_limit.has_value() == to.material.strain_limit.has_value();
+         from.strain_limit().has_value() == to.strain_limit().has_value();
 }
 
 /// The scene without names, colours and textures, which the simulation does not use.

@@ -43,7 +43,7 @@ struct Items {
 
 template <class Law>
 Items items(const Visits& visits) {
-  const Visits::Function& function = visits.functions[elements::law_number<Law>];
+  const Visits::Function& function = visits.functions[elements::law_number<Law, elements::SweptLaws>];
   return {visits.offsets[function.first_colour], visits.offsets[function.end_colour]};
 }
 
@@ -54,7 +54,7 @@ std::array<Words, elements::visit_texels<Law>> visit(const model::Element<Law>& 
   std::size_t at = 0;
   for (const std::uint32_t vertex : element.vertices) put(texels, at, vertex);
   const auto numbers = elements::numbers(element.law);
-  for (std::size_t k = 0; k < elements::Facts<Law>::rest_values; ++k) put(texels, at, word(numbers[k]));
+  for (std::size_t k = 0; k < elements::Facts<Law>::visit_numbers; ++k) put(texels, at, word(numbers[k]));
   for (const double gain : {gains.stretch, gains.damping, gains.memory}) put(texels, at, word(gain));
   return texels;
 }
@@ -64,9 +64,9 @@ std::array<Words, elements::visit_texels<Law>> visit(const model::Element<Law>& 
 Visits visited_elements(const model::Model& model, const scene::Scene& scene) {
   const auto colours = model::colour_elements(model, scene);
   Visits visits;
-  model.elements.each([&]<class Law>(const model::Batch<Law>& batch) {
-    add(visits, std::string("visit_") + elements::Facts<Law>::name, colours[elements::law_number<Law>],
-        [&](std::uint32_t element) {
+  model.elements.each_swept([&]<class Law>(const model::Batch<Law>& batch) {
+    add(visits, std::string("visit_") + elements::Facts<Law>::name,
+        colours[elements::law_number<Law, elements::SweptLaws>], [&](std::uint32_t element) {
           const auto& vertices = batch[element].vertices;
           return std::any_of(vertices.begin(), vertices.end(),
                              [&](std::uint32_t vertex) { return !pinned(model, vertex); });
@@ -85,7 +85,7 @@ Visits visited_vertices(const model::Model& model, const scene::Scene& scene) {
 std::vector<Words> visit_list(const Visits& visits, const model::Model& model, const scene::Scene& scene) {
   std::vector<Words> list;
   const double mobility = model::mobility(scene);
-  model.elements.each([&]<class Law>(const model::Batch<Law>& batch) {
+  model.elements.each_swept([&]<class Law>(const model::Batch<Law>& batch) {
     const Items of_law = items<Law>(visits);
     for (std::uint32_t item = of_law.first; item < of_law.end; ++item) {
       const auto& element = batch[visits.order[item]];
@@ -101,7 +101,7 @@ std::vector<Words> visit_list(const Visits& visits, const model::Model& model, c
 
 std::size_t remembered_pushes(const Visits& visits) {
   std::size_t pushes = 0;
-  elements::each_law([&]<class Law>(std::type_identity<Law>) {
+  elements::each_law<elements::SweptLaws>([&]<class Law>(std::type_identity<Law>) {
     pushes += items<Law>(visits).count() * (elements::corners<Law> - 1);
   });
   return pushes;
@@ -116,15 +116,22 @@ gl::Defines visit_defines(const Visits& visits, bool elements) {
   gl::Defines defines{{"EACH_VISIT(sweep)", each}};
   if (!elements) return defines;
   std::size_t texel = 0, push = 0;
-  elements::each_law([&]<class Law>(std::type_identity<Law>) {
+  std::string swept;
+  elements::each_law<elements::SweptLaws>([&]<class Law>(std::type_identity<Law>) {
     const std::string name = elements::Facts<Law>::name;
     const Items of_law = items<Law>(visits);
+    if (of_law.count() > 0) swept += name + " ";
+    for (const auto& [fact, number] : {std::pair{"_CORNERS", elements::corners<Law>},
+                                       {"_VISIT_NUMBERS", elements::Facts<Law>::visit_numbers},
+                                       {"_VISIT_TEXELS", elements::visit_texels<Law>}})
+      defines.emplace_back(name + fact, std::to_string(number));
     defines.emplace_back(name + "_FIRST_ITEM", std::to_string(of_law.first));
     defines.emplace_back(name + "_FIRST_TEXEL", std::to_string(texel));
     defines.emplace_back(name + "_FIRST_PUSH", std::to_string(push));
     texel += of_law.count() * elements::visit_texels<Law>;
     push += of_law.count() * (elements::corners<Law> - 1);
   });
+  defines.emplace_back("SWEPT_LAWS", swept);
   return defines;
 }
 

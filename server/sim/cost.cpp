@@ -42,7 +42,7 @@ double expected_step_seconds(const scene::Scene& scene) {
   double total = 0.0;
   for (const scene::Cloth& cloth : scene.cloths) {
     double cost = cost_per_vertex;
-    if (cloth.material.strain_limit) cost += strain_limit_cost;
+    if (cloth.strain_limit()) cost += strain_limit_cost;
     if (scene.self_collision)
       cost += contacts + searches_per_step * pair_cost * candidates(cloth, scene.self_collision->thickness);
     total += cost * static_cast<double>(scene::vertex_count(cloth.mesh));

@@ -84,9 +84,7 @@ gl::Defines law_defines(const LawSet& compiled) {
     if (compiled[elements::law_number<Law>]) defines.front().second += name + " ";
     for (const auto& [fact, number] : {std::pair{"_LIST", elements::law_number<Law>},
                                        {"_CORNERS", Facts<Law>::corners},
-                                       {"_REST_VALUES", Facts<Law>::rest_values},
-                                       {"_TEXELS", elements::entry_texels<Law>},
-                                       {"_VISIT_TEXELS", elements::visit_texels<Law>}})
+                                       {"_TEXELS", elements::entry_texels<Law>}})
       defines.emplace_back(name + fact, std::to_string(number));
   });
   return defines;

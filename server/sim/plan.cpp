@@ -60,11 +60,13 @@ Plan plan(const scene::Scene& scene) {
   for (std::size_t law = 0; law < plan.laws.size(); ++law) plan.laws[law] = size.elements[law] > 0;
   const bool springs = plan.laws[elements::law_number<elements::Spring>];
   for (const scene::Cloth& cloth : scene.cloths) {
-    plan.structural |= cloth.material.structural > 0.0;
-    plan.shear |= cloth.material.shear > 0.0;
-    plan.bend |= cloth.material.bend > 0.0;
+    if (const auto* material = std::get_if<scene::Springs>(&cloth.material)) {
+      plan.structural |= material->structural > 0.0;
+      plan.shear |= material->shear > 0.0;
+      plan.bend |= material->bend > 0.0;
+      plan.strain_limit |= springs && material->strain_limit.has_value();
+    }
     plan.pins |= !cloth.pins.empty();
-    plan.strain_limit |= springs && cloth.material.strain_limit.has_value();
   }
   plan.solids = solid_runs(scene);
   plan.moving = static_cast<int>(moving_motions(scene).size());
@@ -100,6 +102,10 @@ std::vector<Simulation::Part> parts(const Plan& plan) {
   add(Kind::term, "structural_springs", plan.structural, "their stiffness is 0 in every cloth");
   add(Kind::term, "shear_springs", plan.shear, "their stiffness is 0 in every cloth");
   add(Kind::term, "bend_springs", plan.bend, "their stiffness is 0 in every cloth");
+  add(Kind::term, "membrane", plan.laws[elements::law_number<elements::Membrane>],
+      "no cloth has the model fem");
+  add(Kind::term, "bending", plan.laws[elements::law_number<elements::Bending>],
+      "no cloth has the model fem and a bending stiffness above 0");
   add(Kind::term, "self_contacts", plan.self_collision, "self_collision is null");
   add(Kind::term, "moving_poses", plan.moving > 0, "no pin and no collider moves");
   for (std::size_t kind = 0; kind < scene::shape_kinds; ++kind) {

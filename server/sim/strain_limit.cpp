@@ -72,7 +72,7 @@ void StrainLimit::set_parameters(const Surroundings& around) {
   for (const gl::Program* program : {&start_, &sweep_, &end_}) set_step_uniforms(*program, around);
   std::vector<float> limits;
   for (const scene::Cloth& cloth : around.scene.cloths)
-    limits.push_back(static_cast<float>(cloth.material.strain_limit.value_or(-1.0)));
+    limits.push_back(static_cast<float>(cloth.strain_limit().value_or(-1.0)));
   glProgramUniform1fv(sweep_.id(), sweep_.location("limit"), static_cast<GLsizei>(limits.size()),
                       limits.data());
   // The pulls carried over are forces times dt^2.

@@ -28,8 +28,11 @@ using std::sqrt;
 #define UNUSED(name)
 #define OUT(T) T&
 #define INOUT(T) T&
+#include "shaders/elements/bending.glsl"
 #include "shaders/elements/constraint.glsl"
 #include "shaders/elements/contact.glsl"
+#include "shaders/elements/curvature.glsl"
+#include "shaders/elements/membrane.glsl"
 #include "shaders/elements/solid.glsl"
 #include "shaders/elements/spring.glsl"
 #undef FUNCTION
@@ -39,19 +42,43 @@ using std::sqrt;
 #undef INOUT
 
 /// What C++ must know of a law: its name in kernels, the number of its element's corners, and how many of its
-/// numbers are rest values. Those come first; the others are the material.
+/// numbers, the first ones, a visit of PBD or XPBD reads; what the others do is in the gains.
 template <class Law>
 struct Facts;
 template <>
 struct Facts<Spring> {
   static constexpr const char* name = "Spring";
-  static constexpr std::size_t corners = 2, rest_values = 1;
+  static constexpr std::size_t corners = 2, visit_numbers = 1;
   using Edges = SpringEdges;
 };
 
-/// All laws, in the order of their batches and lists.
-using Laws = std::tuple<Spring>;
+template <>
+struct Facts<Membrane> {
+  static constexpr const char* name = "Membrane";
+  static constexpr std::size_t corners = 3, visit_numbers = 9;
+  using Edges = MembraneEdges;
+};
+template <>
+struct Facts<Bending> {
+  static constexpr const char* name = "Bending";
+  static constexpr std::size_t corners = 2, visit_numbers = 0;
+  using Edges = BendingEdges;
+};
+template <>
+struct Facts<Curvature> {
+  static constexpr const char* name = "Curvature";
+  static constexpr std::size_t corners = 12, visit_numbers = 37;
+  using Edges = CurvatureEdges;
+};
+
+/// The laws whose forces and energies add up to the sheet's, in the order of their batches and lists.
+using Laws = std::tuple<Spring, Membrane, Bending>;
 inline constexpr std::size_t law_count = std::tuple_size_v<Laws>;
+
+/// The laws that PBD and XPBD visit. Bending is the same to them as to the others, in another form: pairs of
+/// either sign cannot be visited one by one.
+using SweptLaws = std::tuple<Spring, Membrane, Curvature>;
+inline constexpr std::size_t swept_count = std::tuple_size_v<SweptLaws>;
 
 template <class Law>
 inline constexpr std::size_t corners = Facts<Law>::corners;
@@ -62,33 +89,33 @@ using Hessian = decltype(element_hessian(Law{}, Edges<Law>{}));
 
 /// Texels of four numbers that kernels read of an element: in an entry of a vertex's list
 /// (elements/lists.glsl) the other corners and the law; in a visit of a sweep
-/// (methods/element_projection.glsl) all corners, the rest values and three gains.
+/// (methods/element_projection.glsl) all corners, some numbers and three gains.
 template <class Law>
 inline constexpr std::size_t entry_texels = (corners<Law> - 1 + sizeof(Law) / sizeof(real) + 3) / 4;
 template <class Law>
-inline constexpr std::size_t visit_texels = (corners<Law> + Facts<Law>::rest_values + 3 + 3) / 4;
+inline constexpr std::size_t visit_texels = (corners<Law> + Facts<Law>::visit_numbers + 3 + 3) / 4;
 
-/// A tuple with an Of<Law> for each law.
+/// A tuple with an Of<Law> for each law of a list.
 template <template <class> class Of, class... All>
 std::tuple<Of<All>...> per_law(const std::tuple<All...>*);
-template <template <class> class Of>
-using PerLaw = decltype(per_law<Of>(static_cast<const Laws*>(nullptr)));
+template <template <class> class Of, class List = Laws>
+using PerLaw = decltype(per_law<Of>(static_cast<const List*>(nullptr)));
 
-/// Calls visit(std::type_identity<Law>{}) for each law.
-template <class Visit>
+/// Calls visit(std::type_identity<Law>{}) for each law of a list.
+template <class List = Laws, class Visit>
 void each_law(Visit&& visit) {
   const auto all = [&]<class... All>(const std::tuple<All...>*) { (visit(std::type_identity<All>{}), ...); };
-  all(static_cast<const Laws*>(nullptr));
+  all(static_cast<const List*>(nullptr));
 }
 
-/// A law's place among all.
-template <class Law>
+/// A law's place in a list.
+template <class Law, class List = Laws>
 inline constexpr std::size_t law_number = []<class... All>(const std::tuple<All...>*) {
   std::size_t number = 0;
   bool found = false;
   ((found = found || std::is_same_v<All, Law>, number += found ? 0 : 1), ...);
   return number;
-}(static_cast<const Laws*>(nullptr));
+}(static_cast<const List*>(nullptr));
 
 /// The law's rest values and material as numbers, in the order of its members.
 template <class Law>

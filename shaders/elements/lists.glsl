@@ -8,7 +8,9 @@
 //   #end
 // server/gl/program.h repeats this for each law of which the scene has elements, and puts its name in place of Law.
 #include "types.glsl"
+#include "bending.glsl"
 #include "constraint.glsl"
+#include "membrane.glsl"
 #include "spring.glsl"
 
 #ifndef SLICE_SIZE

@@ -90,6 +90,9 @@ FUNCTION SpringHessian without_rounding(SpringHessian h) {
   return h;
 }
 
+/// A matrix that is at least the element's: a definite one's is itself.
+FUNCTION SpringHessian element_bound(SpringHessian h) { return h; }
+
 /// A matrix of a spring: along n n^T + across (I - n n^T).
 struct SpringMatrix {
   vec3 n;
@@ -198,6 +201,14 @@ FUNCTION SpringEdges element_projection(Spring s, ConstraintGains gains, SpringE
   real change = -(gains.stretch * stretch + gains.damping * dot(n, moved.d[0]) + gains.memory * along);
   real resisted = gains.turning * inverse_length * max(stretch, -stretch);
   push.d[0] = n * change - (pushed.d[0] - n * along) * (real(1.0) / (real(1.0) + resisted));
+  return push;
+}
+
+/// The same, with what it remembers. `mobility`: of the ends; a spring's gains know them.
+FUNCTION SpringEdges element_visit(Spring s, ConstraintGains gains, real UNUSED(mobility)[2], SpringEdges place,
+                                   SpringEdges moved, INOUT(SpringEdges) pushed) {
+  SpringEdges push = element_projection(s, gains, place, moved, pushed);
+  pushed.d[0] += push.d[0];
   return push;
 }
 

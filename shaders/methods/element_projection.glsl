@@ -1,5 +1,6 @@
 // PBD (Mueller et al. 2007, section 3.3) and XPBD (Macklin et al. 2016, equations 17, 18 and 26): a visit to an element
 // moves its corners, each by its inverse mass. XPBD remembers what an element has pushed in this step.
+#include "../elements/curvature.glsl"
 READ_UVEC4(visits, unit_visits);  // law after law, colour after colour: server/sim/coloured_work.h
 #ifdef MEMORY
 // For each element, and each corner but the first: the first's pushes away from that corner in this step so far [kg m].
@@ -8,8 +9,8 @@ layout(std430, binding = slot_pushed) buffer Pushed { vec4 pushed[]; };
 
 vec3 first_deviation(int i, vec3 x, vec3 v) { return vec3(0.0); }
 
-#each Law
-/// A visit's layout: all vertices, the law's rest values, then the gains. What the law's material does is in the gains.
+#each Law of SWEPT_LAWS
+/// A visit's layout: all vertices, numbers of the law, then the gains.
 struct LawVisit {
   int vertices[Law_CORNERS];
   Law law;
@@ -22,9 +23,9 @@ LawVisit visit_of_Law(int at) {
   LawVisit visit;
   for (int k = 0; k < Law_CORNERS; ++k) visit.vertices[k] = int(texels[k / 4][k % 4]);
 #define WORD(k) uintBitsToFloat(texels[(Law_CORNERS + k) / 4][(Law_CORNERS + k) % 4])
-#define NUMBER(k) (k < Law_REST_VALUES ? WORD(k) : 0.0)
+#define NUMBER(k) (k < Law_VISIT_NUMBERS ? WORD(k) : 0.0)
   visit.law = Law_OF(NUMBER);
-  visit.gains = ConstraintGains(WORD(Law_REST_VALUES), WORD(Law_REST_VALUES + 1), WORD(Law_REST_VALUES + 2), 0.0);
+  visit.gains = ConstraintGains(WORD(Law_VISIT_NUMBERS), WORD(Law_VISIT_NUMBERS + 1), WORD(Law_VISIT_NUMBERS + 2), 0.0);
 #undef NUMBER
 #undef WORD
   return visit;
@@ -53,10 +54,10 @@ void visit_Law(int item) {
 #ifdef MEMORY
   visit.gains.turning = w_all * visit.gains.stretch / visit.gains.memory;
 #endif
-  LawEdges push = element_projection(visit.law, visit.gains, place, moved, before);
+  LawEdges push = element_visit(visit.law, visit.gains, w, place, moved, before);
   for (int k = 0; k < Law_CORNERS - 1; ++k) {
 #ifdef MEMORY
-    if (sweep < last_sweep) pushed[first_push + k].xyz = before.d[k] + push.d[k];
+    if (sweep < last_sweep) pushed[first_push + k].xyz = before.d[k];
 #endif
     d[0] += w[0] * push.d[k];
     set_deviation(visit.vertices[k + 1], d[k + 1] - w[k + 1] * push.d[k]);

@@ -18,7 +18,7 @@ scene::Scene heavy(double limit) {
   cloth.transform.translate = {0.0, 1.0, 0.0};
   cloth.mesh = scene::Grid{25, 25, 1.0, 1.0};
   cloth.pins = {{scene::AtCorner{0, 0}, {}}, {scene::AtCorner{24, 0}, {}}};
-  if (limit > 0) cloth.material.strain_limit = limit;
+  if (limit > 0) cloth.springs().strain_limit = limit;
   scene.cloths = {cloth};
   return scene;
 }

@@ -166,7 +166,7 @@ TEST_CASE("a cloth without a pin falls as a whole under every method") {
 TEST_CASE("the smallest cloths, one triangle and four vertices, hang under every method") {
   const auto context = test::context();
   scene::Scene square = test::sheet(2, 2);
-  square.cloths[0].material = {200.0, 100.0, 20.0, 0.1};
+  square.cloths[0].material = scene::Springs{200.0, 100.0, 20.0, 0.1};
   square.cloths[0].pins = {{scene::AtCorner{0, 0}, {}}};
   const scene::Scene triangle = scene_of(R"({"version": 1, "cloths": [{
     "mesh": {"vertices": [[0,1,0], [0,1,1], [1,1,0]], "triangles": [[0,1,2]]}, "pins": [{"at": "vertex:0"}],
@@ -207,7 +207,7 @@ TEST_CASE("a strain limit that pins or springs without length make impossible le
     "material": {"structural": 2000, "shear": 0, "bend": 200, "damping": 0.2}}]})");
   for (scene::Scene scene : {torn, held, lengthless}) {
     for (const double limit : {scene::ranges::strain_limit.minimum, scene::ranges::strain_limit.maximum}) {
-      scene.cloths[0].material.strain_limit = limit;
+      scene.cloths[0].springs().strain_limit = limit;
       INFO("limit " << limit);
       under_every_method(scene, [](const scene::Scene& each) {
         const auto simulation = test::simulation(each);

@@ -84,7 +84,7 @@ TEST_CASE("a strain limit, which moves vertices without a force, is no blow-up")
     scene::Scene scene = test::sheet(9, 9);
     scene.solver.method = method;
     scene.cloths[0].mass.value = 0.5;
-    scene.cloths[0].material.strain_limit = 0.05;
+    scene.cloths[0].springs().strain_limit = 0.05;
     scene.cloths[0].pins = {{scene::AtCorner{0, 0}, {}}, {scene::AtCorner{8, 0}, {}}};
     const auto simulation = test::simulation(scene);
     const Watched run = watch(*simulation, 2.0, 16);
@@ -192,7 +192,7 @@ TEST_CASE("after a blow-up below the limit, of a cloth that is pulled tight, one
     scene::Scene scene = test::sheet(9, 9);
     scene.gravity = {2.0, -9.8, 0.0};  // so that it swings across the pull
     scene.cloths[0].mass.value = 0.01;
-    scene.cloths[0].material = {800.0, 0.0, 0.0, 0.0};
+    scene.cloths[0].material = scene::Springs{800.0, 0.0, 0.0, 0.0};
     scene.cloths[0].pins = {{scene::AtEdge{scene::AtEdge::Line::row, 0}, scene::Linear{{0.0, 0.0, -1.0}}},
                             {scene::AtEdge{scene::AtEdge::Line::row, 8}, scene::Linear{{0.0, 0.0, 1.0}}}};
     scene.solver.method = method;

@@ -20,7 +20,7 @@ TEST_CASE("a change says how deep it cuts") {
   const auto depth = [](auto edit) { return sim::change_depth(test::seed(), edited(edit)); };
   CHECK(depth([](scene::Scene&) {}) == ChangeDepth::none);
   CHECK(depth([](scene::Scene& s) { s.cloths[0].color = "#000000"; }) == ChangeDepth::none);
-  CHECK(depth([](scene::Scene& s) { s.cloths[0].material.structural = 100.0; }) == ChangeDepth::uniform);
+  CHECK(depth([](scene::Scene& s) { s.cloths[0].springs().structural = 100.0; }) == ChangeDepth::uniform);
   CHECK(depth([](scene::Scene& s) { s.cloths[0].mass.value = 0.2; }) == ChangeDepth::uniform);
   CHECK(depth([](scene::Scene& s) { s.solver.dt = 0.0005; }) == ChangeDepth::uniform);
   CHECK(depth([](scene::Scene& s) { s.gravity = glm::dvec3(0.0); }) == ChangeDepth::uniform);
@@ -29,12 +29,12 @@ TEST_CASE("a change says how deep it cuts") {
   CHECK(depth([](scene::Scene& s) {
           std::get<scene::Oscillate>(s.cloths[0].pins[0].motion).amplitude = 0.1;
         }) == ChangeDepth::kernel);  // now the two pins move differently
-  CHECK(depth([](scene::Scene& s) { s.cloths[0].material.bend = 0.0; }) == ChangeDepth::kernel);
+  CHECK(depth([](scene::Scene& s) { s.cloths[0].springs().bend = 0.0; }) == ChangeDepth::kernel);
   CHECK(depth([](scene::Scene& s) { s.cloths[0].pins.pop_back(); }) == ChangeDepth::kernel);
   CHECK(depth([](scene::Scene& s) { s.colliders.clear(); }) == ChangeDepth::kernel);
   CHECK(depth([](scene::Scene& s) { s.self_collision.reset(); }) == ChangeDepth::kernel);
   CHECK(depth([](scene::Scene& s) { s.solver.method = scene::Method::rk4; }) == ChangeDepth::kernel);
-  CHECK(depth([](scene::Scene& s) { s.cloths[0].material.strain_limit = 0.1; }) == ChangeDepth::kernel);
+  CHECK(depth([](scene::Scene& s) { s.cloths[0].springs().strain_limit = 0.1; }) == ChangeDepth::kernel);
   CHECK(depth([](scene::Scene& s) {
           s.cloths[0].mesh = scene::Grid{10, 10, 1.0, 1.0};
         }) == ChangeDepth::cloth);
@@ -50,8 +50,8 @@ TEST_CASE("a change says how deep it cuts") {
 }
 
 TEST_CASE("a strain limit that is there is changed as a number, one that comes or goes is another kernel") {
-  const scene::Scene limited = edited([](scene::Scene& s) { s.cloths[0].material.strain_limit = 0.1; });
-  const scene::Scene tighter = edited([](scene::Scene& s) { s.cloths[0].material.strain_limit = 0.05; });
+  const scene::Scene limited = edited([](scene::Scene& s) { s.cloths[0].springs().strain_limit = 0.1; });
+  const scene::Scene tighter = edited([](scene::Scene& s) { s.cloths[0].springs().strain_limit = 0.05; });
   CHECK(sim::change_depth(limited, tighter) == ChangeDepth::uniform);
   CHECK(sim::change_depth(limited, test::seed()) == ChangeDepth::kernel);
 }
@@ -84,7 +84,7 @@ TEST_CASE("uniforms and kernels change under a running cloth, only a new cloth s
   simulation->step(100);
   const sim::State before = simulation->read_state();
 
-  const scene::Scene stiffer = edited([](scene::Scene& s) { s.cloths[0].material.structural = 10000.0; });
+  const scene::Scene stiffer = edited([](scene::Scene& s) { s.cloths[0].springs().structural = 10000.0; });
   REQUIRE(*simulation->change(stiffer) == ChangeDepth::uniform);
   const scene::Scene bare = edited([](scene::Scene& s) { s.self_collision.reset(); });
   REQUIRE(*simulation->change(bare) == ChangeDepth::kernel);
@@ -105,7 +105,7 @@ TEST_CASE("uniforms and kernels change under a running cloth, only a new cloth s
 TEST_CASE("a live change of every parameter does what starting with it does") {
   const auto context = test::context();
   const scene::Scene target = edited([](scene::Scene& s) {
-    s.cloths[0].material = {15000.0, 8000.0, 0.0, 1.0};
+    s.cloths[0].material = scene::Springs{15000.0, 8000.0, 0.0, 1.0};
     s.cloths[0].mass.value = 0.15;
     s.gravity = {0.5, -5.0, 0.0};
     s.air_drag = 0.3;
@@ -125,7 +125,7 @@ TEST_CASE("a live change of every parameter does what starting with it does") {
 TEST_CASE("a pin taken away lets its vertex fall from where it is") {
   const auto context = test::context();
   scene::Scene scene = test::sheet(2, 2);
-  scene.cloths[0].material = {0.0, 0.0, 0.0, 0.0};  // no springs: each vertex moves on its own
+  scene.cloths[0].material = scene::Springs{0.0, 0.0, 0.0, 0.0};  // no springs: each vertex moves on its own
   scene.cloths[0].pins = {{scene::AtVertex{0}, {}}};
   const auto simulation = test::simulation(scene);
   simulation->step(10);

@@ -23,7 +23,7 @@ scene::Scene one_spring(double omega_dt, double damping = 0.0) {
     "cloths": [{"mesh": {"grid": {"columns": 2, "rows": 2, "width": 1, "height": 1}}, "mass": {"per_vertex": 1},
                 "material": {"structural": 16, "shear": 0, "bend": 0, "damping": 0},
                 "pins": [{"at": "edge:row:0"}]}]})");
-  scene.cloths[0].material.damping = damping;
+  scene.cloths[0].springs().damping = damping;
   scene.solver.dt = omega_dt / 4.0;  // omega = sqrt(k/m) = 4 / s
   return scene;
 }

@@ -18,7 +18,7 @@ scene::Scene fold(const scene::Motion& motion, Method method, double dt) {
   scene::Scene scene = sheet_on_slope(0.0, 0.3, 17);
   scene::Cloth& cloth = scene.cloths[0];
   cloth.mass = {scene::Mass::Kind::per_vertex, 0.001};
-  cloth.material = {100.0, 50.0, 0.0, 0.0};
+  cloth.material = scene::Springs{100.0, 50.0, 0.0, 0.0};
   cloth.pins = {{scene::AtEdge{scene::AtEdge::Line::row, 0}, {}},
                 {scene::AtEdge{scene::AtEdge::Line::row, 16}, motion}};
   scene.self_collision = scene::SelfCollision{0.02, 0.2};

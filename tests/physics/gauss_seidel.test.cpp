@@ -75,7 +75,7 @@ TEST_CASE(
   for (const Method method : methods) {
     for (const int iterations : {1, 10}) {
       scene::Scene scene = test::swinging_cloth(method, 2 * test::cloth_unit);
-      scene.cloths[0].material.damping = 0.01;
+      scene.cloths[0].springs().damping = 0.01;
       scene.cloths[0].pins[0].motion = scene::Oscillate{{0.0, 0.0, 1.0}, 0.02, 5.0};
       scene.air_drag = 0.5;
       scene.solver.iterations = iterations;

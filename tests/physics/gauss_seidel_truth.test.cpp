@@ -53,7 +53,7 @@ TEST_CASE(
     Side side = Side::gpu;  ///< side that runs implicit Euler
   };
   scene::Scene damped = swinging_cloth(Method::implicit_euler, 2 * cloth_unit);
-  damped.cloths[0].material.damping = 0.01;
+  damped.cloths[0].springs().damping = 0.01;
   // (With such strong damping the GPU's Newton steps stop 4e-5 m short of the reference, which both other
   // methods reach.)
   damped.air_drag = 0.5;
@@ -92,7 +92,7 @@ TEST_CASE(
     scene::Scene scene = hung_strip(method, dt, 5, links + 1, 0.1, 0.4);
     scene.gravity = {0.0, 0.0, g};
     scene.cloths[0].mass.value = mass;
-    scene.cloths[0].material = {k, 0.0, 0.0, damping};
+    scene.cloths[0].material = scene::Springs{k, 0.0, 0.0, damping};
     scene.air_drag = air;  // the slowest mode dies away without swinging: e^-12 of it is left
     scene.solver.iterations = iterations;
     Stepped gpu(Side::gpu, scene);

@@ -18,7 +18,7 @@ TEST_CASE(
   const auto context = test::context();
   for (const int iterations : {1, 2}) {
     scene::Scene scene = swinging_cloth(Method::implicit_euler, 3 * cloth_unit);
-    scene.cloths[0].material.damping = 0.01;
+    scene.cloths[0].springs().damping = 0.01;
     scene.cloths[0].pins[0].motion = scene::Oscillate{{0.0, 0.0, 1.0}, 0.02, 5.0};
     scene.air_drag = 0.5;
     scene.solver.iterations = iterations;

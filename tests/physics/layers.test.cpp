@@ -18,7 +18,7 @@ scene::Scene falling_sheet(double degrees) {
     cloth.transform.translate = {0.0, 0.05, -0.2};
     if (upper) cloth.transform = {{half_cell, 0.15, half_cell - 0.2}, {0.0, degrees, 0.0}, 1.0};
     cloth.mass = {scene::Mass::Kind::per_vertex, 0.0007};
-    cloth.material = {300.0, 150.0, 20.0, 0.02};
+    cloth.material = scene::Springs{300.0, 150.0, 20.0, 0.02};
   }
   for (const int row : {0, 12})
     scene.cloths[0].pins.push_back({scene::AtEdge{scene::AtEdge::Line::row, row}, {}});

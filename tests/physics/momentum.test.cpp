@@ -45,7 +45,7 @@ scene::Scene held(Method method, double dt) {
   cloth.mass = {scene::Mass::Kind::per_vertex, 1.4648e-4};
   // Explicit Euler is stable below damping / stiffness: 0.3 u.
   const double damping = method == Method::explicit_euler ? 0.3 * cloth_unit * 100.0 : 0.0;
-  cloth.material = {100.0, 100.0, 100.0, damping};
+  cloth.material = scene::Springs{100.0, 100.0, 100.0, damping};
   const scene::Oscillate shaken{{0.0, 1.0, 0.3}, 0.03, 15.0};
   const scene::Spin turned{{0.0, 1.0, 0.0}, {-0.125, 0.0, 0.0}, 720.0};
   cloth.pins = {{scene::AtCorner{0, 0}, shaken}, {scene::AtCorner{8, 8}, turned}};

@@ -216,7 +216,7 @@ TEST_CASE("a sheet that falls on another one comes to lie a thickness above it")
   scene.cloths[1].transform.translate.y = 1.05;
   for (const auto line : {scene::AtEdge::Line::row, scene::AtEdge::Line::column})
     for (const int index : {0, 12}) scene.cloths[0].pins.push_back({scene::AtEdge{line, index}, {}});
-  scene.cloths[0].material = {200000.0, 100000.0, 20000.0, 2.0};
+  scene.cloths[0].material = scene::Springs{200000.0, 100000.0, 20000.0, 2.0};
   scene.solver.dt = 0.0002;
   const auto simulation = test::simulation(scene);
   simulation->step(2500);

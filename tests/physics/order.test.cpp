@@ -130,7 +130,7 @@ TEST_CASE("a damped swinging cloth: explicit Euler has order 1, in float32 too")
   // With damping of 0.3 u times the stiffness, explicit Euler is stable below 0.3 u.
   const SceneOf scene = [](Method method, double dt) {
     scene::Scene damped = swinging_cloth(method, dt);
-    damped.cloths[0].material.damping = 0.3 * cloth_unit * 100.0;
+    damped.cloths[0].springs().damping = 0.3 * cloth_unit * 100.0;
     return damped;
   };
   check_orders(scene, 0.15, 2000, {{Method::explicit_euler, 1240, 3, 2e-5}});

@@ -14,7 +14,7 @@ scene::Scene busy(scene::Method method, int side) {
   scene::Scene scene = test::seed();
   scene.cloths[0].mesh = scene::Grid{side, side, 1.0, 1.0};
   scene.cloths[0].pins = {{scene::AtCorner{0, 0}, scene::Oscillate{{0, 0, 1}, 0.2, 5.0}}};
-  scene.cloths[0].material.strain_limit = 0.05;
+  scene.cloths[0].springs().strain_limit = 0.05;
   scene.colliders[0].shape = scene::Sphere{{0.0, 0.99, 0.5}, 0.25};
   scene.self_collision->thickness = 1.2 / side;
   scene.solver.method = method;
@@ -25,7 +25,7 @@ scene::Scene busy(scene::Method method, int side) {
 
 scene::Scene busy_without_limit(scene::Method method) {
   scene::Scene scene = busy(method, 33);
-  scene.cloths[0].material.strain_limit = std::nullopt;
+  scene.cloths[0].springs().strain_limit = std::nullopt;
   return scene;
 }
 

@@ -96,7 +96,7 @@ Simplification with_savings(double bend, double self_collision, double both, dou
   std::mt19937 random(1);
   lab::SimplifyRequest request{1e-2, 0.1};
   request.timer = [=](const scene::Scene& scene) mutable {
-    const bool bends = scene.cloths[0].material.bend > 0.0, collides = scene.self_collision.has_value();
+    const bool bends = scene.cloths[0].springs().bend > 0.0, collides = scene.self_collision.has_value();
     const double cost = bends ? (collides ? 1.0 : self_collision) : collides ? bend : both;
     return cost * std::max(0.1, 1.0 + noise * std::normal_distribution<>()(random));
   };

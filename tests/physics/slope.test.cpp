@@ -29,7 +29,7 @@ scene::Scene on_slope(Method method, double degrees, double friction, double dt,
   scene::Cloth& cloth = scene.cloths.emplace_back();
   cloth.mesh = scene::Grid{9, 9, 0.4, 0.4};
   cloth.mass = {scene::Mass::Kind::per_vertex, 0.01};
-  cloth.material = {800.0, 400.0, 80.0, 0.02};
+  cloth.material = scene::Springs{800.0, 400.0, 80.0, 0.02};
   scene.colliders = {{"slope", scene::Plane{}, friction, 0.0, {}}};
   const Result<model::Model> model = model::build(scene);
   REQUIRE(model);

@@ -17,7 +17,7 @@ const scene::Motion motions[] = {
 /// Unconnected vertices that fall, in a heap that fills and surrounds the places of the shapes.
 scene::Scene loose_vertices(std::vector<scene::Collider> colliders) {
   scene::Scene scene = sheet(24, 24);
-  scene.cloths[0].material = {0.0, 0.0, 0.0, 0.0};
+  scene.cloths[0].material = scene::Springs{0.0, 0.0, 0.0, 0.0};
   scene.cloths[0].transform.translate = {0.0, 0.0, -0.5};
   scene.cloths[0].start = scene::Scatter{1.0, 3};
   scene.colliders = std::move(colliders);

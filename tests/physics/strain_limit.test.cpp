@@ -15,7 +15,7 @@ namespace {
 scene::Scene heavy(scene::Method method, std::optional<double> limit) {
   scene::Scene scene = test::sheet(25, 25);
   scene.cloths[0].pins = {{scene::AtCorner{0, 0}, {}}, {scene::AtCorner{24, 0}, {}}};
-  scene.cloths[0].material.strain_limit = limit;
+  scene.cloths[0].springs().strain_limit = limit;
   scene.solver.method = method;
   scene.solver.iterations = 1;
   // Explicit Euler is stable only below damping / stiffness, 1e-4 s; implicit Euler at any step.
@@ -57,7 +57,7 @@ TEST_CASE("the strain limit leaves pins exactly where their motion takes them") 
   scene::Scene scene = heavy(scene::Method::symplectic_euler, 0.1);
   const auto free = test::simulation([&] {
     scene::Scene other = scene;
-    other.cloths[0].material.strain_limit.reset();
+    other.cloths[0].springs().strain_limit.reset();
     return other;
   }());
   const auto limited = test::simulation(scene);
@@ -73,7 +73,7 @@ TEST_CASE("the strain limit keeps the momentum of a free sheet whose springs are
   scene.gravity = {0.0, 0.0, 0.0};
   scene.cloths[0].mass = {scene::Mass::Kind::area_density, 0.5};
   // A spin about the cloth's normal so fast that it would tear: v^2 / r = 100 m/s^2 at the edge.
-  scene.cloths[0].material = {50.0, 50.0, 0.0, 0.0, 0.02};
+  scene.cloths[0].material = scene::Springs{50.0, 50.0, 0.0, 0.0, 0.02};
   scene.cloths[0].pins = {{scene::AtVertex{31}, scene::Spin{{0.0, 1.0, 0.0}, {0.0, 1.0, 0.5}, 2000.0}},
                           {scene::AtVertex{32}, scene::Spin{{0.0, 1.0, 0.0}, {0.0, 1.0, 0.5}, 2000.0}}};
   const auto simulation = test::simulation(scene);
@@ -111,7 +111,7 @@ TEST_CASE("a strain limit that nothing reaches changes no bit of the outcome") {
   const auto context = test::context();
   scene::Scene scene = heavy(scene::Method::symplectic_euler, 10.0);
   const auto limited = test::simulation(scene);
-  scene.cloths[0].material.strain_limit.reset();
+  scene.cloths[0].springs().strain_limit.reset();
   const auto free = test::simulation(scene);
   for (sim::Simulation* simulation : {free.get(), limited.get()}) simulation->step(100);
   CHECK(sim::state_hash(limited->read_state()) == sim::state_hash(free->read_state()));

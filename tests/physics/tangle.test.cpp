@@ -20,7 +20,7 @@ scene::Scene tangle(Method method, double dt) {
     scene::Cloth& cloth = scene.cloths.emplace_back();
     cloth.mesh = scene::Grid{9, 9, 0.4, 0.4};
     cloth.mass = {scene::Mass::Kind::per_vertex, 0.01};
-    cloth.material = {800.0, 400.0, 80.0, 0.05};
+    cloth.material = scene::Springs{800.0, 400.0, 80.0, 0.05};
     cloth.start = scene::Scatter{0.6, seed};
   }
   return scene;
@@ -98,7 +98,7 @@ TEST_CASE("lists that get no more room leave out a pair on both sides: counted, 
   for (scene::Cloth& cloth : scene.cloths) {
     cloth.mesh = scene::Grid{23, 23, 0.2, 0.2};  // far more than 256 vertices within reach of each
     cloth.start = scene::Scatter{0.1, 1 + static_cast<unsigned>(&cloth - scene.cloths.data())};
-    cloth.material = {20.0, 10.0, 2.0, 0.05};
+    cloth.material = scene::Springs{20.0, 10.0, 2.0, 0.05};
   }
   scene.self_collision = scene::SelfCollision{0.08, 0.2};
   const auto simulation = test::simulation(scene);
@@ -128,7 +128,7 @@ TEST_CASE("a strain limit keeps a free sheet's momentum") {
   const auto context = test::context();
   for (const Side side : sides) {
     scene::Scene scene = tangle(Method::symplectic_euler, 1e-3);
-    for (scene::Cloth& cloth : scene.cloths) cloth.material.strain_limit = 0.1;
+    for (scene::Cloth& cloth : scene.cloths) cloth.springs().strain_limit = 0.1;
     const Drift found = drift(side, scene, side == Side::gpu ? 2.0 : 0.2);
     INFO(name(side) << ": " << found.momentum << ", centre " << found.centre);
     CHECK(found.momentum < most(side));

@@ -19,6 +19,8 @@ const crossFieldRules = {
   "a pin's box holds a vertex": /selects no vertex/,
   "a triangle's vertices exist": /\/triangles\/\d+\/\d+: .*\[vertex\]/,
   "with area_density every vertex has an area": /would have no mass/,
+  "poisson^2 is below warp / weft": /\/poisson: .*the square root of warp \/ weft/,
+  "pbd has no finite elements": /\/solver\/method: .*PBD's stiffness is no N\/m/,
   "names are unique": /a name that no earlier one has/,
   "all cloths together are not too large": /vertices so far/,
 };
@@ -97,6 +99,24 @@ const whole = {
   solver: { method: "symplectic_euler", dt: 0.001, iterations: 10, tolerance: 1e-4 },
 };
 const least = { version: 1, cloths: [{ mesh: { grid: {} } }] };
+const sheet = {
+  warp: 300,
+  weft: 200,
+  poisson: 0.2,
+  shear: 40,
+  bending: { warp: 1e-5, weft: 2e-5, twist: 1e-6 },
+  damping: 0.001,
+  grain: 30,
+  strain_limit: 0.1,
+};
+const sheets = {
+  version: 1,
+  cloths: [
+    { mesh: grid, material: { model: "fem", ...sheet } },
+    { mesh: grid, material: { model: "fem", bending: 1e-5 } },
+  ],
+  solver: { method: "verlet" },
+};
 
 /** Every path into a value, the top included. */
 function* paths(value, path = []) {
@@ -167,7 +187,7 @@ function* mutations() {
     "tab\t",
     "del\u007f",
   ];
-  for (const base of [whole, least]) {
+  for (const base of [whole, least, sheets]) {
     yield base;
     for (const path of paths(base)) {
       const value = at(base, path);

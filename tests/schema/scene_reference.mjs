@@ -17,7 +17,12 @@ const tables = [
   ["`mesh: {vertices, triangles}`", ["$defs", "cloth", "properties", "mesh", "oneOf", 1]],
   ["`transform`", ["$defs", "cloth", "properties", "transform"]],
   ["`mass: {per_vertex}` or `{area_density}`", ["$defs", "cloth", "properties", "mass"]],
-  ["`material`", ["$defs", "cloth", "properties", "material"]],
+  ["`material`, of springs", ["$defs", "cloth", "properties", "material", "oneOf", 0]],
+  ["`material`, of finite elements", ["$defs", "cloth", "properties", "material", "oneOf", 1]],
+  [
+    "`bending`, of finite elements",
+    ["$defs", "cloth", "properties", "material", "oneOf", 1, "properties", "bending", "oneOf", 1],
+  ],
   ["`pins[]`", ["$defs", "cloth", "properties", "pins", "items"]],
   ["`weights[]`", ["$defs", "cloth", "properties", "weights", "items"]],
   ["`start: {scatter}` or `{scale}`", ["$defs", "cloth", "properties", "start"]],

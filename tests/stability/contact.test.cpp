@@ -22,9 +22,9 @@ std::vector<Case> cases(double friction) {
   made.push_back({"rests", sheet_on_slope(0.0, friction)});
   made.push_back({"slides", sheet_on_slope(25.0, friction)});
   made.push_back({"slides, sheared and bent", sheet_on_slope(25.0, friction)});
-  made.back().scene.cloths[0].material = {800.0, 400.0, 50.0, 0.0};
+  made.back().scene.cloths[0].material = scene::Springs{800.0, 400.0, 50.0, 0.0};
   made.push_back({"slides, damped", sheet_on_slope(25.0, friction)});
-  made.back().scene.cloths[0].material.damping = 0.02;
+  made.back().scene.cloths[0].springs().damping = 0.02;
   made.push_back({"lands", sheet_on_slope(10.0, friction)});
   made.back().scene.cloths[0].transform.translate = {0.0, 0.1, 0.0};
   made.back().scene.cloths[0].transform.rotate = {0.0, 0.0, 10.0};
@@ -32,12 +32,12 @@ std::vector<Case> cases(double friction) {
   made.back().scene.colliders[0].restitution = 0.5;
   // Springs that turn stiffen a cloth without shear springs: the limit about its rest shape no longer holds.
   made.push_back({"lands on a ball", sheet_over_sphere(0.05, friction)});
-  made.back().scene.cloths[0].material = {800.0, 800.0, 80.0, 0.0};
+  made.back().scene.cloths[0].material = scene::Springs{800.0, 800.0, 80.0, 0.0};
   made.push_back({"lands on a ball, itself in the way", sheet_over_sphere(0.05, friction)});
-  made.back().scene.cloths[0].material = {800.0, 800.0, 80.0, 0.0};
+  made.back().scene.cloths[0].material = scene::Springs{800.0, 800.0, 80.0, 0.0};
   made.back().scene.self_collision = scene::SelfCollision{0.04, 0.2};
   made.push_back({"hangs by a corner and lies", sheet_on_slope(20.0, friction)});
-  made.back().scene.cloths[0].material = {800.0, 800.0, 80.0, 0.0};
+  made.back().scene.cloths[0].material = scene::Springs{800.0, 800.0, 80.0, 0.0};
   made.back().scene.cloths[0].pins = {{scene::AtCorner{8, 0}, {}}};
   return made;
 }

@@ -87,7 +87,7 @@ scene::Scene hanging_grid(Method method, double k, double mass) {
   scene::Cloth cloth;
   cloth.mesh = scene::Grid{9, 7, 0.8, 0.6};
   cloth.mass = {scene::Mass::Kind::per_vertex, mass};
-  cloth.material = {k, k, k, 0.0};
+  cloth.material = scene::Springs{k, k, k, 0.0};
   cloth.pins = {{scene::AtEdge{scene::AtEdge::Line::row, 0}, {}}};
   scene.cloths = {cloth};
   scene.gravity = {0.0, 0.0, 1e-5 * k / mass};
@@ -128,7 +128,7 @@ TEST_CASE("on a chain the limit is that of its fastest vibration, 2 sqrt(k/m) si
     scene::Scene scene = chain(method, 1e-3, links, k, mass);
     scene.gravity = {0.0, 0.0, 1.0};
     double z = 0.0;
-    if (method == Method::explicit_euler) scene.cloths[0].material.damping = 2 * (z = 0.5) * k / omega;
+    if (method == Method::explicit_euler) scene.cloths[0].springs().damping = 2 * (z = 0.5) * k / omega;
     check_limit(scene, limit_of(method, z) / omega, omega);
   }
 }
@@ -141,7 +141,7 @@ TEST_CASE("on a grid the limit is that of its fastest vibration, found by power 
     scene::Scene scene = hanging_grid(method, k, mass);
     const double omega = model::omega_max(*model::build(scene), scene);
     double z = 0.0;
-    if (method == Method::explicit_euler) scene.cloths[0].material.damping = 2 * (z = 0.5) * k / omega;
+    if (method == Method::explicit_euler) scene.cloths[0].springs().damping = 2 * (z = 0.5) * k / omega;
     INFO("omega " << omega << " /s, in sqrt(k/m) " << omega / std::sqrt(k / mass));
     check_limit(scene, limit_of(method, z) / omega, omega);
     CHECK(model::dt_limit(*model::build(scene), scene) == Approx(limit_of(method, z) / omega).epsilon(0.002));

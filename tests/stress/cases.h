@@ -50,7 +50,7 @@ inline Knob time_step() {
 inline Knob stiffness() {
   return {"stiffness", "N/m", {1e8, 1e7, 1e6, 1e5, 1e4, 1e3, 1e2, 1e1}, [](scene::Scene& scene, double k) {
             scene.solver.dt = 1.0 / 30;
-            scene::Springs& material = scene.cloths[0].material;
+            scene::Springs& material = scene.cloths[0].springs();
             material.structural = material.shear = material.bend = k;
           }};
 }

@@ -34,10 +34,10 @@ class Column {
     if (!cloth.weights.empty()) mass_.back() += cloth.weights[0].mass;
     for (int first : {0, 1})
       for (int top = first; top < links_; top += 2)
-        springs_.push_back({top, top + 1, length_, cloth.material.structural + cloth.material.shear});
+        springs_.push_back({top, top + 1, length_, cloth.springs().structural + cloth.springs().shear});
     for (int first : {0, 1, 2, 3})
-      for (int top = first; cloth.material.bend > 0 && top + 2 <= links_; top += 4)
-        springs_.push_back({top, top + 2, 2 * length_, cloth.material.bend});
+      for (int top = first; cloth.springs().bend > 0 && top + 2 <= links_; top += 4)
+        springs_.push_back({top, top + 2, 2 * length_, cloth.springs().bend});
   }
 
   /// RMS distance [m] between the hanging column under the scene's method and its exact balance.
@@ -97,7 +97,7 @@ class Column {
           const auto a = static_cast<std::size_t>(link.bottom), b = static_cast<std::size_t>(link.top);
           const double w = mobility(link.bottom) + mobility(link.top), moved = d[a] - d[b];
           const elements::ConstraintGains gains =
-              model::constraint_gains(scene_.solver, link.stiffness, scene_.cloths[0].material.damping, w);
+              model::constraint_gains(scene_.solver, link.stiffness, scene_.cloths[0].springs().damping, w);
           const double now = x[a] - x[b] + moved;
           const double push =
               -(gains.stretch * (now - link.length) + gains.damping * moved + gains.memory * pushed[s]);
@@ -165,7 +165,7 @@ inline Prediction predict_limited(const Case& test, const scene::Scene& base) {
 inline double reach_of_sweeps(const scene::Scene& scene) {
   const scene::Cloth& cloth = scene.cloths[0];
   return (std::get<scene::Grid>(cloth.mesh).rows - 1) *
-         std::sqrt(scene.solver.iterations * cloth.mass.value / cloth.material.structural);
+         std::sqrt(scene.solver.iterations * cloth.mass.value / cloth.springs().structural);
 }
 
 inline Prediction predict_settling(const Case& test, const scene::Scene& base) {

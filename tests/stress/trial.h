@@ -55,7 +55,7 @@ inline const std::vector<dvec3>& rest_shape(scene::Scene scene) {
   static std::map<std::string, std::vector<dvec3>> known;
   scene.cloths[0].transform.rotate = {90, 0, 0};
   scene.cloths[0].start = {};
-  const scene::Springs& k = scene.cloths[0].material;
+  const scene::Springs& k = scene.cloths[0].springs();
   char key[200];
   std::snprintf(key, sizeof key, "%g %g %g %g %g %g", k.structural, k.shear, k.bend,
                 scene.cloths[0].mass.value,

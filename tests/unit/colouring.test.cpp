@@ -89,7 +89,7 @@ TEST_CASE("a grid's springs take 12 colours, its vertices 5, and no two neighbou
 
 TEST_CASE("kinds of springs that a grid lacks take no colour") {
   scene::Scene scene = scene_of(scene::Grid{9, 9, 1.0, 1.0});
-  scene.cloths[0].material.bend = scene.cloths[0].material.shear = 0.0;
+  scene.cloths[0].springs().bend = scene.cloths[0].springs().shear = 0.0;
   const model::Model model = *model::build(scene);
   const model::Colouring springs = model::colour_elements(model, scene)[0];
   check_springs(model, springs);

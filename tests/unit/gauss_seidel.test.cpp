@@ -34,7 +34,7 @@ scene::Scene with(scene::Scene scene, Method method, int iterations) {
 /// The swinging cloth with damping and air drag, shaken at one corner.
 scene::Scene shaken_cloth(double dt) {
   scene::Scene scene = test::swinging_cloth(Method::implicit_euler, dt);
-  scene.cloths[0].material.damping = 0.01;
+  scene.cloths[0].springs().damping = 0.01;
   scene.cloths[0].pins[0].motion = scene::Oscillate{{0.0, 0.0, 1.0}, 0.02, 5.0};
   scene.air_drag = 0.5;
   return scene;
@@ -62,7 +62,7 @@ TEST_CASE(
     for (const int steps : {1, 10}) {
       const reference::State exact = stepped(scene, start, steps);
       const reference::State found = stepped(with(scene, Method::vbd, 400), start, steps);
-      INFO(steps << " steps, damping " << scene.cloths[0].material.damping << ": " << apart(found, exact)
+      INFO(steps << " steps, damping " << scene.cloths[0].springs().damping << ": " << apart(found, exact)
                  << " m");
       CHECK(apart(found, exact) < 1e-12);
       CHECK(apart(exact, start) > 1e-4);

@@ -27,7 +27,7 @@ scene::Scene on_slope(Method method, double degrees, double friction) {
   scene.solver.iterations = 5;
   scene.cloths.emplace_back().mesh = scene::Grid{5, 5, 0.4, 0.4};
   scene.cloths[0].mass.value = 0.01;
-  scene.cloths[0].material = {200.0, 200.0, 20.0, 0.02};
+  scene.cloths[0].material = scene::Springs{200.0, 200.0, 20.0, 0.02};
   scene.colliders = {{"slope", scene::Plane{}, friction, 0.0, {}}};
   return scene;
 }
@@ -142,7 +142,7 @@ TEST_CASE("two sheets that meet keep their distance, and all their momentum unde
     scene::Cloth& lower = scene.cloths.emplace_back();
     lower.mesh = scene::Grid{6, 6, 0.2, 0.2};
     lower.mass.value = 0.002;
-    lower.material = {200.0, 100.0, 20.0, 0.02};
+    lower.material = scene::Springs{200.0, 100.0, 20.0, 0.02};
     scene::Cloth upper = lower;
     upper.mass.value = 0.001;
     upper.transform.translate = {0.013, 0.04, 0.017};

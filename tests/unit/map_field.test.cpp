@@ -79,9 +79,9 @@ TEST_CASE("a factor multiplies every stiffness of every cloth and nothing else")
   const scene::Scene before = seed().scene, after = MapField::find(seed(), "stiffness")->with(factor)->scene;
   scene::Scene expected = before;
   for (scene::Cloth& cloth : expected.cloths) {
-    cloth.material.structural *= 0.5;
-    cloth.material.shear *= 0.5;
-    cloth.material.bend *= 0.5;
+    cloth.springs().structural *= 0.5;
+    cloth.springs().shear *= 0.5;
+    cloth.springs().bend *= 0.5;
   }
   CHECK(after == expected);
 }

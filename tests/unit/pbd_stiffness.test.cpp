@@ -12,7 +12,7 @@ namespace {
 scene::Scene undamped(int iterations) {
   scene::Scene scene = test::seed();
   scene.solver = {Method::pbd, 0.002, iterations, 1e-4};
-  scene.cloths[0].material.damping = 0.0;
+  scene.cloths[0].springs().damping = 0.0;
   return scene;
 }
 
@@ -23,8 +23,8 @@ TEST_CASE("PBD's shares, one after another, leave of a stretch what implicit Eul
     const scene::Scene scene = undamped(iterations);
     const auto shares = model::pbd_stiffness(*model::build(scene), scene);
     REQUIRE(shares.size() == 1);
-    const double k[] = {scene.cloths[0].material.structural, scene.cloths[0].material.shear,
-                        scene.cloths[0].material.bend};
+    const double k[] = {scene.cloths[0].springs().structural, scene.cloths[0].springs().shear,
+                        scene.cloths[0].springs().bend};
     for (int kind = 0; kind < 3; ++kind) {
       REQUIRE(shares[0][kind]);
       // Both ends of a spring between free vertices of 0.1 kg move: 2 / m.
@@ -36,7 +36,7 @@ TEST_CASE("PBD's shares, one after another, leave of a stretch what implicit Eul
 
 TEST_CASE("PBD's share is told for each cloth by its own mass, and only for springs that are there") {
   scene::Scene scene = undamped(1);
-  scene.cloths[0].material.bend = 0.0;
+  scene.cloths[0].springs().bend = 0.0;
   scene.cloths.push_back(scene.cloths[0]);
   scene.cloths[1].name = "lighter";
   // An inner vertex has the mass of a cell of 1/24 m; those on the border have less.
@@ -44,7 +44,7 @@ TEST_CASE("PBD's share is told for each cloth by its own mass, and only for spri
   const auto shares = model::pbd_stiffness(*model::build(scene), scene);
   REQUIRE(shares.size() == 2);
   for (const model::PbdStiffness& cloth : shares) CHECK_FALSE(cloth[2]);
-  const double k = scene.cloths[0].material.structural * 0.002 * 0.002;
+  const double k = scene.cloths[0].springs().structural * 0.002 * 0.002;
   CHECK(*shares[0][0] == Approx(1.0 - 1.0 / (1.0 + 20.0 * k)));
   CHECK(*shares[1][0] == Approx(1.0 - 1.0 / (1.0 + 40.0 * k)));
 }

@@ -135,7 +135,7 @@ TEST_CASE(
     "same") {
   for (const double damping : {0.0, 1e-3}) {
     scene::Scene scene = test::swinging_cloth(Method::implicit_euler, 5e-3);
-    scene.cloths[0].material.damping = damping;
+    scene.cloths[0].springs().damping = damping;
     scene.solver.iterations = 40;
     const reference::World world = world_of(scene);
     reference::State state = reference::at_rest(world);

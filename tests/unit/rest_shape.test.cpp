@@ -40,7 +40,7 @@ scene::Scene hanging_band(int links, double length, double span, double k) {
   scene::Cloth cloth;
   cloth.mesh = mesh;
   cloth.mass = {scene::Mass::Kind::per_vertex, 0.5 / links};
-  cloth.material = {k, 0.0, 0.0, 0.0};
+  cloth.material = scene::Springs{k, 0.0, 0.0, 0.0};
   const auto last = static_cast<std::uint32_t>(2 * links);
   for (const std::uint32_t vertex : {0u, 1u, last, last + 1})
     cloth.pins.push_back({scene::AtVertex{vertex}, {}});
@@ -124,7 +124,7 @@ TEST_CASE("a rest shape that cannot be is an error that says why") {
   };
   const scene::Scene cloth = small_cloth();
   scene::Scene scene = cloth;
-  scene.cloths[0].material.strain_limit = 0.001;
+  scene.cloths[0].springs().strain_limit = 0.001;
   CHECK(error_of(scene).where == "/cloths/0/material/strain_limit");
 
   scene = cloth;

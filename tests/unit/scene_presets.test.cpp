@@ -58,7 +58,7 @@ TEST_CASE("the seed is the contract's scene, floor and wind left out") {
   const scene::Scene seed = scene::load_preset("seed")->scene;
   CHECK(seed.cloths.size() == 1);
   CHECK(seed.colliders.size() == 1);
-  CHECK(seed.cloths[0].material == scene::Springs{20000, 10000, 2000, 2});
+  CHECK(seed.cloths[0].springs() == scene::Springs{20000, 10000, 2000, 2});
   CHECK(seed.solver == scene::Solver{});
 }
 

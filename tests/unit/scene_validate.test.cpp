@@ -117,7 +117,6 @@ TEST_CASE(
 
 TEST_CASE("features that are not simulated yet are refused by name, never ignored") {
   const std::vector<std::pair<std::string, std::string>> not_yet = {
-      {"/cloths/0/material", R"({"model": "fem", "warp": 300})"},
       {"/cloths/0/material/fabric", R"("cotton")"},
       {"/cloths/0/mesh", R"({"obj": "shirt.obj"})"},
       {"/colliders/0", R"({"capsule": {"a": [0,0,0], "b": [0,1,0], "radius": 0.1}})"},
@@ -133,6 +132,45 @@ TEST_CASE("features that are not simulated yet are refused by name, never ignore
     CHECK(document.error().where.rfind(pointer, 0) == 0);
     CHECK(document.error().remedy.find("not supported yet") != std::string::npos);
   }
+}
+
+TEST_CASE(
+    "finite elements have the material's numbers, one bending stiffness or three, and defaults for the "
+    "rest") {
+  json value = base();
+  value["cloths"][0]["material"] =
+      json::parse(R"({"model": "fem", "warp": 300, "weft": 200, "poisson": 0.2, "shear": 40, "bending": 2e-5,
+                      "damping": 0.002, "grain": 30, "strain_limit": 0.2})");
+  const auto all = std::get<scene::Fem>(scene::validate(value)->scene.cloths[0].material);
+  CHECK(all == scene::Fem{300, 200, 0.2, 40, {2e-5, 2e-5, std::nullopt}, 0.002, 30, 0.2});
+  value["cloths"][0]["material"]["bending"] = {{"warp", 1e-5}, {"weft", 3e-5}, {"twist", 2e-6}};
+  const auto three = std::get<scene::Fem>(scene::validate(value)->scene.cloths[0].material);
+  CHECK(three.bending == scene::Fem::Bending{1e-5, 3e-5, 2e-6});
+  value["cloths"][0]["material"] = {{"model", "fem"}};
+  const Result<scene::Document> plain = scene::validate(value);
+  CHECK(std::get<scene::Fem>(plain->scene.cloths[0].material) == scene::Fem{});
+  CHECK(plain->value["cloths"][0]["material"]["weft"] == 3801.0);
+}
+
+TEST_CASE("what makes no sheet is refused with its place: Poisson's ratio, negative moduli, PBD") {
+  const auto refused = [](const char* material, const char* method) {
+    json value = base();
+    value["cloths"][0]["material"] = json::parse(material);
+    value["cloths"][0]["material"]["model"] = "fem";
+    value["solver"]["method"] = method;
+    const Result<scene::Document> document = scene::validate(value);
+    REQUIRE_FALSE(document);
+    return document.error().text();
+  };
+  // 0.9^2 = 0.81 is above 3 / 4.
+  CHECK_THAT(
+      refused(R"({"warp": 300, "weft": 400, "poisson": 0.9})", "verlet"),
+      Catch::Contains("/cloths/0/material/poisson") && Catch::Contains("0.9") && Catch::Contains("0.866"));
+  CHECK_THAT(refused(R"({"warp": -1})", "verlet"), Catch::Contains("/cloths/0/material/warp"));
+  CHECK_THAT(refused(R"({"bending": {"warp": 1e-5}})", "verlet"),
+             Catch::Contains("/cloths/0/material/bending/weft"));
+  CHECK_THAT(refused(R"({"structural": 100})", "verlet"), Catch::Contains("/cloths/0/material/structural"));
+  CHECK_THAT(refused("{}", "pbd"), Catch::Contains("/solver/method") && Catch::Contains("xpbd"));
 }
 
 TEST_CASE("every method can be named, and is the one the scene gets") {
@@ -270,10 +308,10 @@ TEST_CASE("the smallest document is a whole scene, with every default in its JSO
 TEST_CASE("a strain limit is a number or null, and null takes it away") {
   const auto limited = scene::set_value(*scene::load_preset("seed"), "/cloths/0/material/strain_limit=0.1");
   REQUIRE(limited);
-  CHECK(limited->scene.cloths[0].material.strain_limit == std::optional(0.1));
+  CHECK(limited->scene.cloths[0].springs().strain_limit == std::optional(0.1));
   const auto free = scene::set_value(*limited, "/cloths/0/material/strain_limit=null");
   REQUIRE(free);
-  CHECK_FALSE(free->scene.cloths[0].material.strain_limit);
+  CHECK_FALSE(free->scene.cloths[0].springs().strain_limit);
 }
 
 TEST_CASE("a start and weights are read, a seed is filled in, and null or an empty list takes them away") {
@@ -298,7 +336,7 @@ TEST_CASE("a start and weights are read, a seed is filled in, and null or an emp
 TEST_CASE("the typed scene holds what the document says, directions normalised") {
   const scene::Scene scene = scene::validate(base())->scene;
   CHECK(std::get<scene::Grid>(scene.cloths[0].mesh).columns == 25);
-  CHECK(scene.cloths[0].material.structural == 20000);
+  CHECK(scene.cloths[0].springs().structural == 20000);
   CHECK(std::get<scene::AtCorner>(scene.cloths[0].pins[1].at) == scene::AtCorner{24, 0});
   CHECK(std::get<scene::Oscillate>(scene.cloths[0].pins[1].motion).amplitude == 0.2);
   CHECK(std::get<scene::TriangleMesh>(scene.cloths[1].mesh).triangles[0] ==

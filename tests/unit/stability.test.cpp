@@ -28,7 +28,7 @@ Sheet grid(int columns, int rows, double structural, double shear, double bend, 
   scene::Cloth cloth;
   cloth.mesh = scene::Grid{columns, rows, columns - 1.0, rows - 1.0};
   cloth.mass.value = 1.0;
-  cloth.material = {structural, shear, bend, damping, std::nullopt};
+  cloth.material = scene::Springs{structural, shear, bend, damping, std::nullopt};
   sheet.scene.cloths = {cloth};
   Result<model::Model> built = model::build(sheet.scene);
   REQUIRE(built);
@@ -66,7 +66,7 @@ Sheet tangle(std::uint32_t seed, double decades, bool damped, bool pins) {
     if (a == b) continue;
     const auto kind = static_cast<model::SpringKind>(random() % 3);
     const double length = glm::distance(model.rest_position[a], model.rest_position[b]);
-    const scene::Springs& material = sheet.scene.cloths[0].material;
+    const scene::Springs& material = sheet.scene.cloths[0].springs();
     model.elements.of<elements::Spring>().push_back(
         {{std::min(a, b), std::max(a, b)}, {length, model::stiffness(material, kind), material.damping}});
   }

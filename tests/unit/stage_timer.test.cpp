@@ -68,7 +68,7 @@ TEST_CASE("a simulation's step is timed pass by pass, as its scene has them") {
   const auto context = test::context();
   const auto names = [](scene::Scene scene, scene::Method method, bool strain_limit) {
     scene.solver.method = method;
-    if (strain_limit) scene.cloths[0].material.strain_limit = 0.1;
+    if (strain_limit) scene.cloths[0].springs().strain_limit = 0.1;
     const auto simulation = test::simulation(scene);
     gl::StageTimer timer;
     simulation->step(5, &timer);

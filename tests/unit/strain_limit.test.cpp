@@ -48,7 +48,7 @@ TEST_CASE(
     for (int n = 0; n < steps; ++n) reference::step(world, state);
     CHECK(largest_stretch(world, state) > 0.1);
 
-    world.scene.cloths[0].material.strain_limit = 0.05;
+    world.scene.cloths[0].springs().strain_limit = 0.05;
     state = reference::at_rest(world);
     for (int n = 0; n < steps; ++n) {
       reference::step(world, state);
@@ -61,7 +61,7 @@ TEST_CASE(
 TEST_CASE("the strain limit keeps a free sheet's momentum and angular momentum, with unequal masses too") {
   scene::Scene scene = test::swinging_cloth(Method::symplectic_euler, 1e-3);
   scene.cloths[0].pins.clear();
-  scene.cloths[0].material.strain_limit = 0.05;
+  scene.cloths[0].springs().strain_limit = 0.05;
   scene.cloths[0].mass = {scene::Mass::Kind::area_density, 0.2};
   const reference::World world = world_of(scene);
   reference::State state = reference::at_rest(world);
@@ -95,8 +95,8 @@ TEST_CASE("the strain limit keeps a free sheet's momentum and angular momentum, 
 
 TEST_CASE("a limit that the pins forbid is reported, and the free vertices still go as far as they can") {
   scene::Scene scene = test::hung_strip(Method::symplectic_euler, 0.01, 2, 3, 1.0, 2.0);
-  scene.cloths[0].material.structural = 16.0;
-  scene.cloths[0].material.strain_limit = 0.1;
+  scene.cloths[0].springs().structural = 16.0;
+  scene.cloths[0].springs().strain_limit = 0.1;
   scene.cloths[0].pins.push_back(
       {scene::AtEdge{scene::AtEdge::Line::row, 2}, scene::Linear{{0.0, 0.0, 1.0}}});
   const reference::World world = world_of(scene);

@@ -112,11 +112,14 @@ Status coarsen_cloth(json& value, const scene::Cloth& cloth, std::size_t index, 
   if (cloth.mass.kind == scene::Mass::Kind::per_vertex)
     value["mass"]["per_vertex"] = cloth.mass.value * (static_cast<double>(from.columns) * from.rows) /
                                   (static_cast<double>(to.columns) * to.rows);
-  const double structural = factor_of(from, to, structural_share);
-  value["material"]["structural"] = cloth.material.structural * structural;
-  value["material"]["shear"] = cloth.material.shear * shear_share(from) / shear_share(to);
-  value["material"]["bend"] = cloth.material.bend * factor_of(from, to, bend_share);
-  value["material"]["damping"] = cloth.material.damping * structural;
+  // The moduli of finite elements are the sheet's own, on any mesh.
+  if (const auto* springs = std::get_if<scene::Springs>(&cloth.material)) {
+    const double structural = factor_of(from, to, structural_share);
+    value["material"]["structural"] = springs->structural * structural;
+    value["material"]["shear"] = springs->shear * shear_share(from) / shear_share(to);
+    value["material"]["bend"] = springs->bend * factor_of(from, to, bend_share);
+    value["material"]["damping"] = springs->damping * structural;
+  }
   for (std::size_t i = 0; i < cloth.pins.size(); ++i) {
     json& at = value["pins"][i]["at"];
     json there = moved(at, cloth.pins[i].at, from, to);

@@ -25,16 +25,24 @@ json* find_value(json& document, const std::string& pointer) {
   return at;
 }
 
-/// Multiplies all stiffnesses of every cloth by `factor`.
+/// Multiplies all numbers of a value, and of an object's members, by `factor`.
+void scale(json& value, double factor) {
+  if (value.is_number()) value = factor * value.get<double>();
+  if (value.is_object())
+    for (json& member : value) scale(member, factor);
+}
+
+/// Multiplies all stiffnesses of every cloth by `factor`: of springs, or of a sheet.
 void scale_stiffness(json& document, double factor) {
   for (json& cloth : document["cloths"])
-    for (const char* kind : {"structural", "shear", "bend"})
-      cloth["material"][kind] = factor * cloth["material"][kind].get<double>();
+    for (const char* kind : {"structural", "shear", "bend", "warp", "weft", "bending"})
+      if (json* stiffness = scene::child(cloth["material"], kind)) scale(*stiffness, factor);
 }
 
 bool any_spring(const scene::Scene& scene) {
   return std::any_of(scene.cloths.begin(), scene.cloths.end(), [](const scene::Cloth& cloth) {
-    return cloth.material.structural > 0 || cloth.material.shear > 0 || cloth.material.bend > 0;
+    const auto* springs = std::get_if<scene::Springs>(&cloth.material);
+    return !springs || springs->structural > 0 || springs->shear > 0 || springs->bend > 0;
   });
 }
 

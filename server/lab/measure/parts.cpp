@@ -16,25 +16,34 @@ Error not_there(const char* what) {
   return {"", std::string("the scene has no ") + what, ""};
 }
 
-Result<Document> without_springs(const Document& document, const char* key) {
+std::size_t elements(const model::Model& model) {
+  std::size_t count = 0;
+  model.elements.each([&](const auto& batch) { count += batch.size(); });
+  return count;
+}
+
+/// `key`: of springs; `key_of_sheet`: of finite elements, or null.
+Result<Document> without_elements(const Document& document, const char* key, const char* key_of_sheet) {
   json value = document.value;
-  for (json& cloth : value["cloths"]) cloth["material"][key] = 0.0;
+  for (json& cloth : value["cloths"]) {
+    const bool springs = cloth["material"]["model"] == "springs";
+    if (const char* removed = springs ? key : key_of_sheet) cloth["material"][removed] = 0.0;
+  }
   Result<Document> without = scene::validate(std::move(value));
   if (!without) return without;
   // The cloth may have no such springs in spite of its stiffness: a triangle mesh has no shear springs, and
-  // bend springs only across edges. So the springs are counted.
+  // bend springs only across edges. So the elements are counted.
   const Result<model::Model> model = model::build(document.scene), fewer = model::build(without->scene);
   if (!model || !fewer) return model ? fewer.error() : model.error();
-  if (model->springs().size() == fewer->springs().size())
-    return not_there((std::string(key) + " springs").c_str());
+  if (elements(*model) == elements(*fewer)) return not_there((std::string(key) + " springs").c_str());
   return without;
 }
 
 Result<Document> without_bend(const Document& document) {
-  return without_springs(document, "bend");
+  return without_elements(document, "bend", "bending");
 }
 Result<Document> without_shear(const Document& document) {
-  return without_springs(document, "shear");
+  return without_elements(document, "shear", nullptr);
 }
 
 Result<Document> without_self_collision(const Document& document) {
@@ -46,7 +55,7 @@ Result<Document> without_self_collision(const Document& document) {
 
 Result<Document> undamped(const Document& document) {
   if (std::none_of(document.scene.cloths.begin(), document.scene.cloths.end(),
-                   [](const scene::Cloth& cloth) { return cloth.material.damping > 0.0; }))
+                   [](const scene::Cloth& cloth) { return cloth.damping() > 0.0; }))
     return not_there("damping");
   json value = document.value;
   for (json& cloth : value["cloths"]) cloth["material"]["damping"] = 0.0;

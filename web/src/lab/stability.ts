@@ -9,10 +9,29 @@ import { stepText } from "./text";
 import type { MapCell, MapColumn, StabilityMap } from "./types";
 import { methodText } from "../panel/methods";
 import { valueAt } from "../link/json_patch";
-import type { Operation, SceneDocument } from "../link/scene_types";
+import type { Material, Operation, SceneDocument } from "../link/scene_types";
 
 const allStiffnesses = "stiffness";
-const stiffnesses = ["structural", "shear", "bend"] as const;
+/// All stiffnesses of a material: their places in it, and their values.
+function stiffnessesOf(material: Material): [string, number][] {
+  if (material.model === "springs")
+    return [
+      ["structural", material.structural],
+      ["shear", material.shear],
+      ["bend", material.bend],
+    ];
+  const { warp, weft, shear, bending } = material;
+  const sheet: [string, number][] = [
+    ["warp", warp],
+    ["weft", weft],
+    ["shear", shear],
+  ];
+  if (typeof bending === "number") return [...sheet, ["bending", bending]];
+  const parts = Object.entries(bending).flatMap(([key, value]): [string, number][] =>
+    value === null ? [] : [[`bending/${key}`, value]],
+  );
+  return [...sheet, ...parts];
+}
 
 interface Row {
   method: string;
@@ -235,11 +254,11 @@ export class StabilityTab extends Tab<"stability"> {
     const document = this.host.document();
     if (!document || this.host.jobs.of("stability").stale) return null;
     const scaled = document.cloths.flatMap(({ material }, i) =>
-      stiffnesses.map(
-        (kind): Operation => ({
+      stiffnessesOf(material).map(
+        ([path, value]): Operation => ({
           op: "replace",
-          path: `/cloths/${i}/material/${kind}`,
-          value: Number((material[kind] * column.value).toPrecision(6)),
+          path: `/cloths/${i}/material/${path}`,
+          value: Number((value * column.value).toPrecision(6)),
         }),
       ),
     );

@@ -48,13 +48,26 @@ export interface Springs {
   damping: number;
   strain_limit: number | null;
 }
+export interface Fem {
+  model: "fem";
+  warp: number;
+  weft: number;
+  poisson: number;
+  shear: number;
+  bending: number | { warp: number; weft: number; twist: number | null };
+  damping: number;
+  grain: number;
+  strain_limit: number | null;
+}
+
+export type Material = Springs | Fem;
 
 export interface Cloth {
   name: string;
   mesh: Mesh;
   transform: { translate: Vec3; rotate: Vec3; scale: number };
   mass: { per_vertex: number } | { area_density: number };
-  material: Springs;
+  material: Material;
   pins: Pin[];
   weights: Weight[];
   start: Start;

@@ -4,7 +4,7 @@ import { motionFields } from "./motion_fields";
 import { readable } from "./slider";
 import { solverSection } from "./solver_section";
 import { valueAt } from "../link/json_patch";
-import { type At, byKind, type Motion, type SceneDocument, type Shape, type Vec3 } from "../link/scene_types";
+import { type At, byKind, type Fem, type Motion, type SceneDocument, type Shape, type Vec3 } from "../link/scene_types";
 
 const pinTitle = (at: At | undefined): string => (typeof at === "string" ? `Pin ${at}` : "Pin in a box");
 
@@ -28,13 +28,13 @@ function pinSections(document: SceneDocument, cloth: number): Section[] {
 }
 
 /// The strain limit in percent. The slider's left end is null: no limit.
-function strainLimit(paths: string[]): Field {
+function strainLimit(paths: string[], hint: string): Field {
   return number(
     "strain limit",
     paths,
     { min: 0.1, max: 100, log: true, zero: true, zeroText: "off", unit: "%" },
     {
-      hint: "The most a spring may stretch, after Provot 1995",
+      hint,
       read: (document) => 100 * ((valueAt(document, paths[0] as string) as number | null) ?? 0),
       write: (percent) => (Number(percent) > 0 ? Number((Number(percent) / 100).toPrecision(6)) : null),
     },
@@ -53,10 +53,41 @@ function pbdStiffness(index: number, { pbd_stiffness }: SolverFacts): Note {
   };
 }
 
+function springFields(index: number, base: string): Field[] {
+  const stiffness = { min: 10, max: 200000, log: true, zero: true, unit: "N/m" };
+  return [
+    number("structural", [`${base}/material/structural`], stiffness),
+    number("shear", [`${base}/material/shear`], stiffness),
+    number("bend", [`${base}/material/bend`], stiffness, { note: (_, facts) => pbdStiffness(index, facts) }),
+    number("damping", [`${base}/material/damping`], { min: 0.01, max: 100, log: true, zero: true, unit: "N s/m" }),
+    strainLimit([`${base}/material/strain_limit`], "The most a spring may stretch, after Provot 1995"),
+  ];
+}
+
+/// The fields of a sheet of finite elements.
+function sheetFields(material: Fem, base: string): Field[] {
+  const at = (key: string): string[] => [`${base}/material/${key}`];
+  const modulus = { min: 10, max: 20000, log: true, unit: "N/m" };
+  const moment = { min: 1e-7, max: 1e-2, log: true, zero: true, unit: "N m" };
+  const bending =
+    typeof material.bending === "number"
+      ? [number("bending", at("bending"), moment)]
+      : [number("bending, warp", at("bending/warp"), moment), number("bending, weft", at("bending/weft"), moment)];
+  return [
+    number("warp", at("warp"), modulus, { hint: "Tension a metre of width over strain along the warp" }),
+    number("weft", at("weft"), modulus, { hint: "Tension a metre of width over strain along the weft" }),
+    number("shear", at("shear"), { ...modulus, min: 1, zero: true }, { hint: "Resistance to slanting the threads" }),
+    number("poisson", at("poisson"), { min: 0, max: 1, step: 0.01 }, { hint: "How much it narrows when pulled" }),
+    ...bending,
+    number("damping", at("damping"), { min: 1e-5, max: 0.1, log: true, zero: true, unit: "s" }),
+    number("grain", at("grain"), { min: -90, max: 90, step: 1, unit: "°" }, { hint: "From the columns to the warp" }),
+    strainLimit(at("strain_limit"), "The most that warp and weft may stretch"),
+  ];
+}
+
 function clothSection(document: SceneDocument, index: number): Section {
   const cloth = document.cloths[index] as SceneDocument["cloths"][number];
   const base = `/cloths/${index}`;
-  const stiffness = { min: 10, max: 200000, log: true, zero: true, unit: "N/m" };
   const mass: Field =
     "per_vertex" in cloth.mass
       ? number("mass", [`${base}/mass/per_vertex`], { min: 1e-5, max: 1, log: true, unit: "kg/vertex" })
@@ -74,11 +105,7 @@ function clothSection(document: SceneDocument, index: number): Section {
     title: document.cloths.length === 1 && cloth.name === "cloth" ? "Cloth" : `Cloth: ${cloth.name}`,
     open: true,
     fields: [
-      number("structural", [`${base}/material/structural`], stiffness),
-      number("shear", [`${base}/material/shear`], stiffness),
-      number("bend", [`${base}/material/bend`], stiffness, { note: (_, facts) => pbdStiffness(index, facts) }),
-      number("damping", [`${base}/material/damping`], { min: 0.01, max: 100, log: true, zero: true, unit: "N s/m" }),
-      strainLimit([`${base}/material/strain_limit`]),
+      ...(cloth.material.model === "fem" ? sheetFields(cloth.material, base) : springFields(index, base)),
       mass,
       ...grid,
       { key: `${base}/color`, label: "colour", paths: [`${base}/color`], kind: "color" },
