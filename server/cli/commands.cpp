@@ -1,6 +1,7 @@
 #include "server/cli/commands.h"
 
 #include <charconv>
+#include <filesystem>
 #include <iostream>
 #include <string>
 #include <system_error>
@@ -64,10 +65,38 @@ void SceneChoice::add_set(CLI::App& command) {
       ->type_name("POINTER=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  add_asset_root(command, asset_root);
+}
+
+void add_asset_root(CLI::App& command, std::string& folder) {
+  command
+      .add_option("--asset-root", folder,
+                  "the folder of the .obj and .ply files that a scene names; without it, the folder that the "
+                  "scene file is in")
+      ->type_name("FOLDER");
+}
+
+Result<std::shared_ptr<scene::FolderAssets>> folder_of_meshes(const std::string& folder,
+                                                              const std::string& scene) {
+  std::error_code failure;
+  if (!folder.empty() && !std::filesystem::is_directory(folder, failure))
+    return Error{"--asset-root " + folder, "is not a folder", "give a folder that exists"};
+  std::filesystem::path root = folder;
+  if (root.empty() && !scene::is_preset(scene)) root = std::filesystem::path(scene).parent_path();
+  return std::make_shared<scene::FolderAssets>(root.empty() ? "." : root);
+}
+
+Result<std::shared_ptr<scene::FolderAssets>> SceneChoice::assets() const {
+  return folder_of_meshes(asset_root, name);
 }
 
 Result<scene::Document> SceneChoice::load() const {
-  Result<scene::Document> document = scene::load(name);
+  const auto meshes = assets();
+  return meshes ? load(*meshes) : meshes.error();
+}
+
+Result<scene::Document> SceneChoice::load(std::shared_ptr<const scene::Assets> assets) const {
+  Result<scene::Document> document = scene::load(name, std::move(assets));
   for (const std::string& assignment : set) {
     if (!document) break;
     document = scene::set_value(*document, assignment);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -47,17 +48,29 @@ CLI::Validator whole_number(int least, int most);
 /// and if the thickness of self-collision is too small for the mesh.
 void print_warnings(const model::Model& model, const scene::Scene& scene, const std::string& about = "");
 
+/// Adds `--asset-root FOLDER`.
+void add_asset_root(CLI::App& command, std::string& folder);
+/// The meshes of `folder`; empty: of the folder that the scene file `scene` is in, or of the present folder
+/// if it is a preset. Error: `folder` is none.
+Result<std::shared_ptr<scene::FolderAssets>> folder_of_meshes(const std::string& folder,
+                                                              const std::string& scene);
+
 /// The scene a command works on: a preset's name or a file, then `--set POINTER=VALUE` in the order given.
 struct SceneChoice {
   std::string name;              ///< from the command line, else the command's default
   std::vector<std::string> set;  ///< e.g. "/solver/dt=0.0005"
+  std::string asset_root{};      ///< the folder of meshes; empty: see folder_of_meshes
 
   /// Adds S as a required positional argument, and `--set`.
   void add_positional(CLI::App& command);
   /// Adds `--scene S` with the present `name` as its default, and `--set`.
   void add_option(CLI::App& command);
-  /// Loads the scene and applies every `--set`.
+  /// Loads the scene and applies every `--set`. Error: also an --asset-root that is no folder.
   Result<scene::Document> load() const;
+  /// The same with meshes from `assets`.
+  Result<scene::Document> load(std::shared_ptr<const scene::Assets> assets) const;
+  /// The meshes that the scene may name, or an error if --asset-root is no folder.
+  Result<std::shared_ptr<scene::FolderAssets>> assets() const;
 
  private:
   void add_set(CLI::App& command);

@@ -24,7 +24,7 @@ namespace {
 struct ServeArguments {
   SceneChoice scene{"seed", {}};
   net::Options options;
-  std::string asset_root, log_level = "info";
+  std::string log_level = "info";
   int gpu = -1;
 };
 
@@ -102,8 +102,6 @@ Status check(const ServeArguments& arguments) {
   for (const std::string& file : {options.tls_certificate, options.tls_key})
     if (!file.empty() && !std::filesystem::is_regular_file(file))
       return Error{file, "is not a file", "give a PEM file"};
-  if (!arguments.asset_root.empty() && !std::filesystem::is_directory(arguments.asset_root))
-    return Error{"--asset-root " + arguments.asset_root, "is not a folder", "give a folder that exists"};
   return ok();
 }
 
@@ -126,7 +124,9 @@ Result<FolderLock> claim_state_folder(const net::Options& options) {
 
 int serve(ServeArguments& arguments) {
   if (const Status checked = check(arguments); !checked) return fail(checked.error(), exit_usage);
-  Result<scene::Document> document = arguments.scene.load();
+  const Result<std::shared_ptr<scene::FolderAssets>> assets = arguments.scene.assets();
+  if (!assets) return fail(assets.error(), exit_usage);
+  Result<scene::Document> document = arguments.scene.load(*assets);
   if (!document) return fail(document.error(), exit_usage);
   const net::Limits& limits = arguments.options.limits;
   if (const Status small =
@@ -138,6 +138,9 @@ int serve(ServeArguments& arguments) {
     return fail(model.error(), exit_usage);
   const Result<FolderLock> state_folder = claim_state_folder(arguments.options);
   if (!state_folder) return fail(state_folder.error(), exit_usage);
+  // Clients reach the files of a folder only if the user has named it.
+  if (arguments.scene.asset_root.empty()) (*assets)->close();
+  arguments.options.assets = *assets;
   arguments.options.document = std::move(*document);
   if (arguments.gpu >= 0) arguments.options.gpu = arguments.gpu;
   set_log_level(*log_level(arguments.log_level));
@@ -216,10 +219,6 @@ void add_serve(CLI::App& app, int& exit_code) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   add_limits(*command, options.limits);
-  command
-      ->add_option("--asset-root", arguments->asset_root,
-                   "the folder for meshes a scene names; no scene can name one yet")
-      ->type_name("FOLDER");
   command
       ->add_option("--state-dir", options.state_folder,
                    "a folder that keeps each session's scene and state, and brings them back after a restart")

@@ -15,8 +15,9 @@ std::string counted(std::size_t count, const std::string& one, const std::string
 
 /// Prints "seed.json: valid (...)" on stdout, or the error on stderr. Warnings about a valid scene go to
 /// stderr, too. Returns true if the scene is valid.
-bool report(const std::string& name) {
-  const Result<scene::Document> document = scene::load(name);
+bool report(const std::string& name, const std::string& asset_root) {
+  const auto assets = folder_of_meshes(asset_root, name);
+  const Result<scene::Document> document = assets ? scene::load(name, *assets) : assets.error();
   if (!document) {
     std::cerr << document.error().text() << "\n";
     return false;
@@ -41,11 +42,13 @@ void add_validate(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("validate", "check scene files: what is wrong, where, and what is allowed");
   const auto names = std::make_shared<std::vector<std::string>>();
+  const auto asset_root = std::make_shared<std::string>();
   command->add_option("scene", *names, "scene files, or names of presets")->required();
+  add_asset_root(*command, *asset_root);
   command->footer("Exit code 2 if any of them is not valid.");
-  command->callback([names, &exit_code] {
+  command->callback([names, asset_root, &exit_code] {
     bool all_valid = true;
-    for (const std::string& name : *names) all_valid = report(name) && all_valid;
+    for (const std::string& name : *names) all_valid = report(name, *asset_root) && all_valid;
     exit_code = all_valid ? exit_done : exit_usage;
   });
 }

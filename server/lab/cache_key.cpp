@@ -67,6 +67,20 @@ json without_appearance(json scene) {
   return scene;
 }
 
+/// What the document does not contain: the meshes that it names.
+void add_named_meshes(Hash& hash, const scene::Scene& scene) {
+  const auto add = [&](const auto& list) {
+    hash.add(std::string(reinterpret_cast<const char*>(list.data()), list.size() * sizeof(list[0])));
+  };
+  for (const scene::Cloth& cloth : scene.cloths) {
+    const auto* mesh = std::get_if<scene::TriangleMesh>(&cloth.mesh);
+    if (!mesh || mesh->vertex_of.empty()) continue;
+    add(mesh->vertices);
+    add(mesh->triangles);
+    add(mesh->pattern);
+  }
+}
+
 /// The names of `methods` (empty: of all), sorted, as their order does not change a result.
 json names(std::vector<scene::Method> methods) {
   if (methods.empty()) methods.assign(scene::methods.begin(), scene::methods.end());
@@ -111,6 +125,7 @@ CacheKey cache_key(const scene::Document& document, const Job& job, const std::s
   hash.add(name(job));
   hash.add(std::visit([](const auto& request) { return of(request); }, job).dump());
   hash.add(without_appearance(document.value).dump());
+  add_named_meshes(hash, document.scene);
   return {hash.text(), document.scene.name};
 }
 

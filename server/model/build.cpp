@@ -138,13 +138,30 @@ Adjacency contact_exclusions(const Model& model) {
   return result;
 }
 
+double cross(const dvec2& a, const dvec2& b) {
+  return a.x * b.y - a.y * b.x;
+}
+
+/// The flat pattern of a cloth, or null: its rest shape is that of its vertices.
+const std::vector<FlatTriangle>* pattern_of(const scene::Cloth& cloth) {
+  const auto* mesh = std::get_if<scene::TriangleMesh>(&cloth.mesh);
+  return mesh && !mesh->pattern.empty() ? &mesh->pattern : nullptr;
+}
+
 std::vector<double> masses(const scene::Cloth& cloth, const MeshArrays& arrays,
                            const std::vector<dvec3>& position) {
   if (cloth.mass.kind == scene::Mass::Kind::per_vertex)
     return std::vector<double>(position.size(), cloth.mass.value);
   std::vector<double> mass(position.size(), 0.0);
-  for (const auto& [a, b, c] : arrays.triangles) {
-    const double area = 0.5 * glm::length(glm::cross(position[b] - position[a], position[c] - position[a]));
+  const std::vector<FlatTriangle>* pattern = pattern_of(cloth);
+  const double scale = cloth.transform.scale;
+  for (std::size_t i = 0; i < arrays.triangles.size(); ++i) {
+    const auto& [a, b, c] = arrays.triangles[i];
+    double area = 0.5 * glm::length(glm::cross(position[b] - position[a], position[c] - position[a]));
+    if (pattern) {
+      const auto& [first, second, third] = (*pattern)[i];
+      area = 0.5 * scale * scale * std::abs(cross(second - first, third - first));
+    }
     for (const Index corner : {a, b, c}) mass[corner] += cloth.mass.value * area / 3.0;
   }
   return mass;
@@ -158,16 +175,16 @@ double mean_edge_length(const MeshArrays& arrays, const std::vector<dvec3>& posi
   return arrays.triangles.empty() ? 0.0 : sum / (3.0 * static_cast<double>(arrays.triangles.size()));
 }
 
-/// Appends the springs of a cloth, whose vertices are the model's from `first` on.
+/// Appends the springs of a cloth, whose vertices are the model's from `first` on. `scale`: of its transform.
 void add_springs(Model& model, const scene::Springs& material, const std::vector<MeshSpring>& list,
-                 Index first) {
+                 Index first, double scale) {
   Batch<elements::Spring>& springs = model.elements.of<elements::Spring>();
   springs.reserve(springs.size() + list.size());
   const std::vector<dvec3>& rest = model.rest_position;
   for (const MeshSpring& spring : list) {
     const Index a = spring.a + first, b = spring.b + first;
-    springs.push_back(
-        {{a, b}, {glm::distance(rest[a], rest[b]), stiffness(material, spring.kind), material.damping}});
+    const double length = spring.rest > 0.0 ? spring.rest * scale : glm::distance(rest[a], rest[b]);
+    springs.push_back({{a, b}, {length, stiffness(material, spring.kind), material.damping}});
   }
 }
 
@@ -193,6 +210,42 @@ FlatTriangle laid_flat(const std::array<dvec3, 3>& corners, const TextureAxes& a
   return flat;
 }
 
+/// A triangle of a pattern, with x along the warp: `grain` [degrees] from the pattern's first axis towards
+/// its second. Pieces that were cut with the pattern turned over are turned back.
+FlatTriangle cut_out(const FlatTriangle& piece, double scale, double grain) {
+  const double turn = glm::radians(grain);
+  const dvec2 warp = scale * dvec2(std::cos(turn), std::sin(turn)), weft(-warp.y, warp.x);
+  const double side = cross(piece[1] - piece[0], piece[2] - piece[0]) < 0.0 ? -1.0 : 1.0;
+  FlatTriangle flat;
+  for (std::size_t i = 0; i < 3; ++i)
+    flat[i] = {glm::dot(piece[i] - piece[0], warp), side * glm::dot(piece[i] - piece[0], weft)};
+  return flat;
+}
+
+/// The rest shapes of a cloth's triangles, which are the model's from `first_triangle` on. An error if one
+/// has no area, or if the cloth is curved and has no pattern.
+Result<std::vector<FlatTriangle>> rest_shapes(const Model& model, const scene::Cloth& cloth, double grain,
+                                              const TextureAxes& axes, Index first_triangle,
+                                              const std::string& where) {
+  std::vector<FlatTriangle> flat;
+  const std::vector<FlatTriangle>* pattern = pattern_of(cloth);
+  const std::vector<dvec3>& rest = model.rest_position;
+  for (Index t = first_triangle; t < model.triangle_count(); ++t) {
+    if (pattern) {
+      flat.push_back(cut_out((*pattern)[t - first_triangle], cloth.transform.scale, grain));
+      continue;
+    }
+    const auto& [a, b, c] = model.triangles[t];
+    const double longest = std::max(
+        {glm::distance(rest[a], rest[b]), glm::distance(rest[b], rest[c]), glm::distance(rest[c], rest[a])});
+    if (!(glm::length(glm::cross(rest[b] - rest[a], rest[c] - rest[a])) > least_area * longest * longest))
+      return Error{where + "/mesh/triangles/" + std::to_string(t - first_triangle), "a triangle without area",
+                   "with \"model\": \"fem\" every triangle has an area; springs need none"};
+    flat.push_back(laid_flat({rest[a], rest[b], rest[c]}, axes, grain));
+  }
+  return flat;
+}
+
 elements::Membrane membrane(const FlatTriangle& flat, const scene::Fem& material) {
   const dvec2 a = flat[1] - flat[0], b = flat[2] - flat[0];
   const double twice_area = a.x * b.y - a.y * b.x, area = 0.5 * twice_area;
@@ -215,21 +268,13 @@ constexpr double least_area = 1e-7;
 
 /// Appends the finite elements of a cloth, whose vertices and triangles are the model's from `first` and
 /// `first_triangle` on; those that only sweeps visit if `sweeps_elements`.
-Status add_sheet(Model& model, const scene::Fem& material, const TextureAxes& axes, Index first,
-                 Index first_triangle, bool sweeps_elements, const std::string& where) {
-  std::vector<FlatTriangle> flat;
+void add_sheet(Model& model, const scene::Fem& material, const std::vector<FlatTriangle>& flat, Index first,
+               Index first_triangle, bool sweeps_elements) {
   std::vector<std::array<Index, 3>> triangles;
   Batch<elements::Membrane>& membranes = model.elements.of<elements::Membrane>();
-  for (Index t = first_triangle; t < model.triangle_count(); ++t) {
-    const auto& [a, b, c] = model.triangles[t];
-    const std::vector<dvec3>& rest = model.rest_position;
-    const double longest = std::max(
-        {glm::distance(rest[a], rest[b]), glm::distance(rest[b], rest[c]), glm::distance(rest[c], rest[a])});
-    if (!(glm::length(glm::cross(rest[b] - rest[a], rest[c] - rest[a])) > least_area * longest * longest))
-      return Error{where + "/mesh/triangles/" + std::to_string(t - first_triangle), "a triangle without area",
-                   "with \"model\": \"fem\" every triangle has an area; springs need none"};
-    flat.push_back(laid_flat({rest[a], rest[b], rest[c]}, axes, material.grain));
-    membranes.push_back({{a, b, c}, membrane(flat.back(), material)});
+  for (std::size_t i = 0; i < flat.size(); ++i) {
+    const auto& [a, b, c] = model.triangles[first_triangle + i];
+    membranes.push_back({{a, b, c}, membrane(flat[i], material)});
     triangles.push_back({a - first, b - first, c - first});
   }
   std::vector<char> held;
@@ -239,7 +284,7 @@ Status add_sheet(Model& model, const scene::Fem& material, const TextureAxes& ax
   Batch<elements::Bending>& bending = model.elements.of<elements::Bending>();
   for (const BendingPair& pair : bending_pairs(triangles, flat, held, plate))
     bending.push_back({{pair.a + first, pair.b + first}, {pair.stiffness, material.damping}});
-  if (!sweeps_elements) return ok();
+  if (!sweeps_elements) return;
   Batch<elements::Curvature>& curvature = model.elements.of<elements::Curvature>();
   for (const CurvatureRows& rows : curvature_rows(triangles, flat, held, plate)) {
     Element<elements::Curvature> element{rows.vertices, {{}, material.damping}};
@@ -248,7 +293,6 @@ Status add_sheet(Model& model, const scene::Fem& material, const TextureAxes& ax
       std::copy(rows.row[a].begin(), rows.row[a].end(), element.law.row + a * CurvatureRows::most_vertices);
     curvature.push_back(element);
   }
-  return ok();
 }
 
 /// Appends one cloth to the model.
@@ -298,14 +342,18 @@ Status add_cloth(Model& model, const scene::Cloth& cloth, bool sweeps_elements) 
   model.vertex_cloth.resize(model.rest_position.size(), cloth_index);
   model.cloths.push_back(range);
   if (const auto* springs = std::get_if<scene::Springs>(&cloth.material)) {
-    add_springs(model, *springs, arrays.springs, first);
+    add_springs(model, *springs, arrays.springs, first, cloth.transform.scale);
     return ok();
   }
   const std::vector<dvec3> axes =
       placed(cloth.transform, {dvec3(0.0), arrays.first_axis, arrays.second_axis});
-  return add_sheet(model, std::get<scene::Fem>(cloth.material),
-                   {glm::normalize(axes[1] - axes[0]), glm::normalize(axes[2] - axes[0])}, first,
-                   range.first_triangle, sweeps_elements, where);
+  const auto& sheet = std::get<scene::Fem>(cloth.material);
+  const Result<std::vector<FlatTriangle>> flat = rest_shapes(
+      model, cloth, sheet.grain, {glm::normalize(axes[1] - axes[0]), glm::normalize(axes[2] - axes[0])},
+      range.first_triangle, where);
+  if (!flat) return flat.error();
+  add_sheet(model, sheet, *flat, first, range.first_triangle, sweeps_elements);
+  return ok();
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include "server/model/mesh_arrays.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <map>
 #include <tuple>
 
@@ -15,9 +17,54 @@ Edge sorted(std::uint32_t a, std::uint32_t b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-MeshSpring spring(Edge edge, SpringKind kind) {
-  return {edge.first, edge.second, kind};
+MeshSpring spring(Edge edge, SpringKind kind, double rest = 0.0) {
+  return {edge.first, edge.second, kind, rest};
 }
+
+/// A triangle at an edge: its third vertex, and where in the triangle the edge begins.
+struct AtEdge {
+  std::uint32_t opposite = 0, triangle = 0;
+  std::size_t corner = 0;
+};
+
+/// Lengths in the flat pattern of a mesh.
+class Pattern {
+ public:
+  explicit Pattern(const scene::TriangleMesh& mesh) : mesh_(mesh) {}
+
+  /// Of an edge. On a seam each panel has its own length; the mean is between them.
+  double edge(const std::vector<AtEdge>& at) const {
+    if (mesh_.pattern.empty()) return 0.0;
+    double sum = 0.0;
+    for (const AtEdge& side : at) sum += unfolded(side).length;
+    return sum / static_cast<double>(at.size());
+  }
+
+  /// Between the two vertices opposite an edge, if the triangles lie flat beside each other there.
+  double across(const AtEdge& one, const AtEdge& other) const {
+    if (mesh_.pattern.empty()) return 0.0;
+    const Unfolded a = unfolded(one), b = unfolded(other);
+    return std::hypot(a.along - b.along, a.height + b.height);
+  }
+
+ private:
+  struct Unfolded {
+    double length;         ///< of the edge
+    double along, height;  ///< the third corner: along the edge from its lower vertex, and beside it
+  };
+  Unfolded unfolded(const AtEdge& side) const {
+    const auto& corners = mesh_.triangles[side.triangle];
+    const auto& places = mesh_.pattern[side.triangle];
+    const std::size_t next = (side.corner + 1) % 3;
+    const bool forward = corners[side.corner] < corners[next];
+    const glm::dvec2 from = places[forward ? side.corner : next], to = places[forward ? next : side.corner];
+    const double length = glm::distance(from, to);
+    const glm::dvec2 direction = (to - from) / length, third = places[(side.corner + 2) % 3] - from;
+    return {length, glm::dot(third, direction), std::abs(direction.x * third.y - direction.y * third.x)};
+  }
+
+  const scene::TriangleMesh& mesh_;
+};
 
 void connect_grid(MeshArrays& arrays, const scene::Grid& grid, const scene::Springs& springs) {
   const int columns = grid.columns, rows = grid.rows;
@@ -41,16 +88,22 @@ void connect_grid(MeshArrays& arrays, const scene::Grid& grid, const scene::Spri
   connect(SpringKind::bend, springs.bend, 0, 2);
 }
 
-void connect_triangles(MeshArrays& arrays, const scene::Springs& springs) {
-  std::map<Edge, std::vector<std::uint32_t>> opposite;  // edge -> the third vertex of each triangle on it
-  for (const auto& triangle : arrays.triangles)
+void connect_triangles(MeshArrays& arrays, const scene::TriangleMesh& mesh, const scene::Springs& springs) {
+  const Pattern pattern(mesh);
+  std::map<Edge, std::vector<AtEdge>> edges;  // edge -> the triangles on it
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& triangle = mesh.triangles[i];
     for (std::size_t corner = 0; corner < 3; ++corner)
-      opposite[sorted(triangle[corner], triangle[(corner + 1) % 3])].push_back(triangle[(corner + 2) % 3]);
-  for (const auto& [edge, corners] : opposite) {
-    if (springs.structural != 0.0) arrays.springs.push_back(spring(edge, SpringKind::structural));
-    if (springs.bend == 0.0 || corners.size() != 2 || corners[0] == corners[1]) continue;
-    const Edge across = sorted(corners[0], corners[1]);
-    if (!opposite.contains(across)) arrays.springs.push_back(spring(across, SpringKind::bend));
+      edges[sorted(triangle[corner], triangle[(corner + 1) % 3])].push_back(
+          {triangle[(corner + 2) % 3], i, corner});
+  }
+  for (const auto& [edge, at] : edges) {
+    if (springs.structural != 0.0)
+      arrays.springs.push_back(spring(edge, SpringKind::structural, pattern.edge(at)));
+    if (springs.bend == 0.0 || at.size() != 2 || at[0].opposite == at[1].opposite) continue;
+    const Edge across = sorted(at[0].opposite, at[1].opposite);
+    if (!edges.contains(across))
+      arrays.springs.push_back(spring(across, SpringKind::bend, pattern.across(at[0], at[1])));
   }
   // Two edges may have the same pair of vertices opposite them; one spring is enough.
   std::stable_sort(arrays.springs.begin(), arrays.springs.end(),
@@ -110,7 +163,7 @@ MeshArrays triangle_mesh_arrays(const scene::TriangleMesh& mesh, const scene::Ma
     arrays.texture_coordinates.emplace_back(static_cast<float>((point[u] - low[u]) / size),
                                             static_cast<float>((point[v] - low[v]) / size));
 
-  if (const auto* springs = std::get_if<scene::Springs>(&material)) connect_triangles(arrays, *springs);
+  if (const auto* springs = std::get_if<scene::Springs>(&material)) connect_triangles(arrays, mesh, *springs);
   return arrays;
 }
 

@@ -9,6 +9,7 @@ namespace clothlab::model {
 struct MeshSpring {
   std::uint32_t a = 0, b = 0;  ///< vertices, a < b
   SpringKind kind = SpringKind::structural;
+  double rest = 0.0;  ///< length in the flat pattern, before the cloth's transform [m]; 0: as the mesh has it
 };
 
 /// The arrays of one mesh; vertex indices count within its cloth.
@@ -26,7 +27,8 @@ struct MeshArrays {
 MeshArrays grid_arrays(const scene::Grid& grid, const scene::Material& material);
 
 /// The arrays of a triangle mesh: structural springs along the edges, bend springs between the two vertices
-/// opposite an edge of two triangles. Kinds of springs whose stiffness is 0 are left out.
+/// opposite an edge of two triangles; rest lengths are those of its pattern if it has one. Kinds of springs
+/// whose stiffness is 0 are left out.
 MeshArrays triangle_mesh_arrays(const scene::TriangleMesh& mesh, const scene::Material& material);
 
 }  // namespace clothlab::model

@@ -72,37 +72,68 @@ int Client::receive(const char* data, std::size_t size) {
   if (lws_is_first_fragment(wsi_)) {
     incoming_.clear();
     incoming_text_ = !lws_frame_is_binary(wsi_);
+    incoming_mesh_ = false;
   }
-  const int most = role_ == Role::none ? std::min(max_unadmitted_bytes, hub_.limits().message_bytes)
-                                       : hub_.limits().message_bytes;
-  if (incoming_.size() + size + lws_remaining_packet_payload(wsi_) > static_cast<std::size_t>(most)) {
-    close(close_too_big, "a message may have " + std::to_string(most) + " bytes" +
-                             (role_ == Role::none ? " before auth" : ""));
-    return 0;
-  }
+  std::size_t most = most_bytes({});
+  const std::size_t begun = incoming_.size() + size + lws_remaining_packet_payload(wsi_);
+  if (begun > most) most = most_bytes({data, size});
+  if (begun > most) return refuse_too_long(most);
   incoming_.append(data, size);
   if (!lws_is_final_fragment(wsi_) || lws_remaining_packet_payload(wsi_) > 0) return 0;
   ++hub_.metrics().messages_received;
-  // A long message takes as long to read as many short ones, and counts as many.
-  if (!messages_.take(session::now_us(),
-                      std::ceil(static_cast<double>(incoming_.size()) / message_unit_bytes)))
+  if (!messages_.take(session::now_us(), price_of_message()))
     close(close_policy, "too many messages");
   else if (incoming_text_)
     handle(incoming_);
   else
     send(error_text(nullptr, {error_invalid_request, "only text messages are understood", nullptr}));
+  if (incoming_mesh_) incoming_ = std::string();  // gives its memory back
   return 0;
 }
 
+int Client::refuse_too_long(std::size_t most) {
+  close(close_too_big, "a message may have " + std::to_string(most) + " bytes" +
+                           (role_ == Role::none ? " before auth" : ""));
+  return 0;
+}
+
+// Whether a message is a mesh.upload is known only once all of it is read; until then it is enough that it
+// says so before it is too long for any other. `handle` refuses a long one of another method.
+std::size_t Client::most_bytes(std::string_view data) {
+  const auto usual = static_cast<std::size_t>(hub_.limits().message_bytes);
+  if (role_ == Role::none) return std::min(std::size_t{max_unadmitted_bytes}, usual);
+  if (role_ == Role::operator_ && incoming_text_ && !incoming_mesh_) {
+    constexpr std::string_view word = "\"mesh.upload\"";
+    incoming_mesh_ = data.find(word) != std::string_view::npos ||
+                     (!data.empty() && incoming_.find(word) != std::string::npos);
+  }
+  return incoming_mesh_ ? std::max(usual, session::max_upload_bytes) : usual;
+}
+
+/// A long message takes as long to read as many short ones, and counts as many; a mesh, as many as half of
+/// those that may come at once.
+double Client::price_of_message() const {
+  const double units = std::ceil(static_cast<double>(incoming_.size()) / message_unit_bytes);
+  return incoming_mesh_ ? std::min(units, burst_of(hub_.limits()) / 2.0) : units;
+}
+
+std::shared_ptr<void> Client::begin_upload() {
+  if (!upload_.expired()) return nullptr;
+  auto begun = std::make_shared<int>();
+  upload_ = begun;
+  return begun;
+}
+
 void Client::handle(const std::string& text) {
+  const std::size_t usual = static_cast<std::size_t>(hub_.limits().message_bytes);
   std::variant<Request, BadRequest> parsed =
-      parse_request(text, {static_cast<std::size_t>(hub_.limits().message_bytes),
-                           static_cast<std::size_t>(hub_.limits().json_depth)});
+      parse_request(text, {std::max(text.size(), usual), static_cast<std::size_t>(hub_.limits().json_depth)});
   if (const auto* bad = std::get_if<BadRequest>(&parsed)) {
     if (!bad->notification) send(error_text(bad->id, bad->error));
     return;
   }
   auto& request = std::get<Request>(parsed);
+  if (text.size() > usual && request.method != "mesh.upload") return void(refuse_too_long(usual));
   request.received_us = session::now_us();
   const Outcome outcome = call(*this, request);
   if (const json* result = std::get_if<json>(&outcome)) answer(ticket(*this, request), *result);

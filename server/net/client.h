@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <string_view>
 
 #include "server/net/hub.h"
 #include "server/net/json_rpc.h"
@@ -45,6 +47,8 @@ class Client {
   void unsubscribe();
   void acknowledge(std::uint32_t sequence);
   void leave_room();
+  /// What a mesh.upload keeps until the session has read its mesh; null while an earlier one does.
+  std::shared_ptr<void> begin_upload();
 
   // Mostly called by the room.
   void greet(const std::string& hello);  ///< sends `hello` before all text that waits
@@ -62,6 +66,10 @@ class Client {
 
  private:
   bool enter_room();
+  /// The bytes that the message may have which is being received, of which `data` has just come.
+  std::size_t most_bytes(std::string_view data);
+  int refuse_too_long(std::size_t most);
+  double price_of_message() const;
   void handle(const std::string& text);
   void schedule_frame(std::int64_t now);
   bool may_send() const;
@@ -82,6 +90,8 @@ class Client {
   bool greeted_ = false;
   std::string incoming_;  ///< the message being received, its fragments so far
   bool incoming_text_ = true;
+  bool incoming_mesh_ = false;  ///< it is a mesh.upload, which may be longer than other messages
+  std::weak_ptr<void> upload_;  ///< what begin_upload made last
   Outbox outbox_;
   FramePacing pacing_;
   TokenBucket messages_;

@@ -59,6 +59,8 @@ RpcError rpc_error(const session::Refusal& refusal) {
       return {error_revision_conflict, refusal.error.text(), {{"revision", refusal.revision}}};
     case Reason::diverged:
       return {error_diverged, refusal.error.text(), nullptr};
+    case Reason::over_limit:
+      return {error_over_limit, refusal.error.text(), nullptr};
     case Reason::failed:
       break;
   }

@@ -50,6 +50,7 @@ constexpr std::array methods{
     Method{"lab.jobs", true, lab_jobs},
     Method{"lab.simplify", true, lab_simplify},
     Method{"lab.stability", true, lab_stability},
+    Method{"mesh.upload", true, mesh_upload},
     Method{"ping", false, ping},
     Method{"scene.get", false, scene_get},
     Method{"scene.load", true, scene_load},
@@ -66,7 +67,7 @@ constexpr std::array methods{
 };
 
 // Methods of the protocol that this version of the server does not support yet.
-constexpr std::array unsupported_methods{"mesh.upload", "grab.start", "grab.move", "grab.end"};
+constexpr std::array unsupported_methods{"grab.start", "grab.move", "grab.end"};
 
 RpcError unknown(const std::string& method) {
   const bool known =

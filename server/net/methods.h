@@ -30,6 +30,7 @@ session::Ticket ticket(const Client& client, const Request& request);
 Outcome ask_session(Client& client, const Request& request, decltype(session::Command::what) what);
 
 // The groups of methods, each in its own file methods_GROUP.cpp.
+Outcome mesh_upload(Client& client, const Request& request);
 Outcome scene_get(Client& client, const Request& request);
 Outcome scene_load(Client& client, const Request& request);
 Outcome scene_patch(Client& client, const Request& request);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,7 +13,8 @@
 namespace clothlab::net {
 
 struct Options {
-  scene::Document document;  ///< the scene that every new session starts with
+  scene::Document document;                     ///< the scene that every new session starts with
+  std::shared_ptr<const scene::Assets> assets;  ///< the meshes that scenes may name besides uploaded ones
   std::string bind = "127.0.0.1";
   int port = 8080;                        ///< 0: any free port
   std::string token;                      ///< makes a client an operator; empty: every client is one

@@ -21,6 +21,10 @@ bool is_session_name(const std::string& name) {
 
 Room::Room(Hub& hub, std::string name, const std::function<void()>& wake)
     : hub_(hub), name_(std::move(name)), wake_(wake), unwatched_since_(session::now_us()) {
+  const Options& options = hub_.options();
+  std::optional<std::filesystem::path> stem;
+  if (!options.state_folder.empty()) stem = options.state_folder / name_;
+  meshes_ = std::make_shared<session::MeshShelf>(options.assets, std::move(stem));
   begin_session(nullptr);
 }
 
@@ -30,7 +34,8 @@ constexpr std::uint32_t frames_unseen = 64;
 
 void Room::begin_session(std::shared_ptr<const session::Saved> saved) {
   const Options& options = hub_.options();
-  session::Beginning beginning{name_, options.document, std::move(saved), {}, last_frame_ + frames_unseen};
+  session::Beginning beginning{name_,  options.document, std::move(saved), {}, last_frame_ + frames_unseen,
+                               meshes_};
   if (!options.state_folder.empty()) beginning.file = session::session_file(options.state_folder, name_);
   give_up_session().reset();
   session_ =

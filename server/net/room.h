@@ -89,6 +89,7 @@ class Room {
   Hub& hub_;
   std::string name_;
   std::function<void()> wake_;
+  std::shared_ptr<session::MeshShelf> meshes_;  ///< outlives `session_`, which may be replaced
   std::unique_ptr<session::Session> session_;
   std::vector<Client*> clients_;
   std::vector<session::Event> events_, given_up_events_;

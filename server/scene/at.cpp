@@ -46,13 +46,20 @@ std::string up_to(const char* what, std::size_t count) {
   return std::string(what) + " 0 to " + std::to_string(count - 1);
 }
 
+/// The number in a document is the file's; that in a scene is the mesh's. Empty if the vertex exists, else
+/// what is allowed.
+std::string find_vertex(AtVertex& at, const Mesh& mesh) {
+  const TriangleMesh* triangles = std::get_if<TriangleMesh>(&mesh);
+  const bool renumbered = triangles && !triangles->vertex_of.empty();
+  const std::size_t count = renumbered ? triangles->vertex_of.size() : vertex_count(mesh);
+  if (at.vertex >= count) return "a vertex of this mesh: " + up_to("vertex", count);
+  if (renumbered) at.vertex = triangles->vertex_of[at.vertex];
+  return at.vertex == mesh::no_vertex ? "a vertex of a face: this one is part of none, and left out" : "";
+}
+
 /// Empty if `at` lies in the mesh, else what is allowed. Boxes are checked later, by model::build.
 std::string outside(const At& at, const Mesh& mesh) {
   const Grid* grid = std::get_if<Grid>(&mesh);
-  if (const AtVertex* vertex = std::get_if<AtVertex>(&at))
-    return vertex->vertex < vertex_count(mesh)
-               ? ""
-               : "a vertex of this mesh: " + up_to("vertex", vertex_count(mesh));
   if (std::holds_alternative<AtBox>(at)) return "";
   if (!grid) return "\"vertex:N\" or {\"box\": ...}: this mesh is no grid and has no rows and columns";
   const auto columns = static_cast<std::size_t>(grid->columns), rows = static_cast<std::size_t>(grid->rows);
@@ -78,12 +85,13 @@ At read_box(const Reader& at) {
 
 At read_at(const Reader& at, const Mesh& mesh) {
   if (at.has("box")) return read_box(at);
-  const std::optional<At> parsed = parse_at(at.string(at_forms));
+  std::optional<At> parsed = parse_at(at.string(at_forms));
   if (!parsed) {
     at.fail(at_forms);
     return AtVertex{};
   }
-  const std::string allowed = outside(*parsed, mesh);
+  AtVertex* vertex = std::get_if<AtVertex>(&*parsed);
+  const std::string allowed = vertex ? find_vertex(*vertex, mesh) : outside(*parsed, mesh);
   if (!allowed.empty()) at.fail(allowed);
   return *parsed;
 }

@@ -57,13 +57,54 @@ TriangleMesh read_triangle_mesh(const Reader& mesh) {
   return result;
 }
 
-Mesh read_mesh(const Reader& mesh) {
-  mesh.object({"grid", "vertices", "triangles"}, {"obj"});
+/// The texture coordinates of a file as a pattern. An error if a triangle has no place in it.
+void read_pattern(const Reader& pattern, const std::string& name, const mesh::Mesh& file,
+                  TriangleMesh& result) {
+  pattern.choice({"uv"});
+  if (file.texture.empty())
+    return pattern.fail("\"uv\", and " + name + " has faces without texture coordinates",
+                        "null, or a mesh with texture coordinates at every corner of every face");
+  for (std::size_t i = 0; i < file.texture.size(); ++i) {
+    const auto& [a, b, c] = file.texture[i];
+    if (mesh::has_no_area({a, 0.0}, {b, 0.0}, {c, 0.0}))
+      return pattern.fail(
+          "\"uv\", and the texture coordinates of " + name + ", " + file.place_of(i) + ", have no area",
+          "null, or a flat pattern in which every triangle has an area");
+  }
+  result.pattern = file.texture;
+}
+
+/// A mesh that `assets` has: a file, or one that was uploaded.
+TriangleMesh read_named_mesh(const Reader& mesh, const Assets* assets) {
+  TriangleMesh result;
+  const Reader obj = mesh.member("obj"), pattern = mesh.member("pattern", json(nullptr));
+  const std::string name = obj.string("the name of a mesh: an .obj or .ply file, or one of mesh.upload");
+  if (!obj.is_string()) return result;
+  const Result<SharedMesh> found =
+      assets ? assets->mesh(name)
+             : Error{name, "there are no meshes to name here", "a grid, or vertices and triangles"};
+  if (!found) {
+    obj.fail(found.error().where + ": " + found.error().what, found.error().remedy);
+    return result;
+  }
+  result.vertices = (*found)->vertices;
+  result.triangles = (*found)->triangles;
+  result.vertex_of = (*found)->vertex_of;
+  if (!pattern.is_null()) read_pattern(pattern, name, **found, result);
+  return result;
+}
+
+Mesh read_mesh(const Reader& mesh, const Assets* assets) {
+  mesh.object({"grid", "vertices", "triangles", "obj", "pattern"});
+  if (mesh.has("pattern") && !mesh.has("obj")) mesh.fail("\"pattern\" only beside \"obj\"");
   if (mesh.has("triangles")) {
-    if (mesh.has("grid")) mesh.fail("either \"grid\", or \"vertices\" and \"triangles\"");
+    if (mesh.has("grid") || mesh.has("obj"))
+      mesh.fail("either \"grid\", or \"obj\", or \"vertices\" and \"triangles\"");
     return read_triangle_mesh(mesh);
   }
-  if (mesh.exactly_one({"grid", "vertices"}) == "vertices") return read_triangle_mesh(mesh);
+  const std::string kind = mesh.exactly_one({"grid", "vertices", "obj"});
+  if (kind == "vertices") return read_triangle_mesh(mesh);
+  if (kind == "obj") return read_named_mesh(mesh, assets);
   return read_grid(mesh.member("grid"));
 }
 
@@ -181,12 +222,12 @@ std::string read_color(const Reader& color) {
 
 }  // namespace
 
-Cloth read_cloth(const Reader& cloth, std::size_t index) {
+Cloth read_cloth(const Reader& cloth, std::size_t index, const Assets* assets) {
   cloth.object(
       {"name", "mesh", "transform", "mass", "material", "pins", "weights", "start", "color", "texture"});
   Cloth result;
   result.name = cloth.member("name", default_name("cloth", index)).name();
-  result.mesh = read_mesh(cloth.member("mesh"));
+  result.mesh = read_mesh(cloth.member("mesh"), assets);
   result.transform = read_transform(cloth.member("transform", json::object()));
   result.mass = read_mass(cloth.member("mass", json{{"per_vertex", 0.1}}));
   result.material = read_material(cloth.member("material", json::object()));

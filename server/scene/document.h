@@ -2,11 +2,13 @@
 // patches. No function here throws: on bad input it returns an Error.
 #pragma once
 
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "server/base/result.h"
+#include "server/scene/assets.h"
 #include "server/scene/scene.h"
 
 namespace clothlab::scene {
@@ -17,7 +19,8 @@ using nlohmann::json;
 struct Document {
   json value;  ///< with every key of the schema, defaults filled in; the user's numbers are unchanged
   Scene scene;
-  bool operator==(const Document&) const = default;
+  std::shared_ptr<const Assets> assets{};  ///< where the meshes that it names are; null: it may name none
+  bool operator==(const Document& other) const { return value == other.value && scene == other.scene; }
 };
 
 /// Limits on untrusted text, checked before or while it is parsed.
@@ -37,9 +40,9 @@ struct TextLimits {
 Result<json> parse_json(const std::string& text, const std::string& source, bool comments = false,
                         TextLimits limits = {});
 
-/// Validates the whole document and fills in defaults. Errors say the JSON Pointer, what was found and
-/// what is allowed.
-Result<Document> validate(json value);
+/// Validates the whole document, fills in defaults and gets the meshes that it names from `assets`. Errors
+/// say the JSON Pointer, what was found and what is allowed.
+Result<Document> validate(json value, std::shared_ptr<const Assets> assets = nullptr);
 
 /// Applies an RFC 7396 merge patch (object) or an RFC 6902 patch (array) and validates the outcome. A merge
 /// patch removes a key with null; an absent key means its default, and the default of a key that may be null
@@ -63,9 +66,12 @@ const std::vector<Preset>& presets();
 std::vector<std::string> preset_names();
 
 /// Loads a preset by its name. The error for an unknown name lists the presets.
-Result<Document> load_preset(const std::string& name);
+Result<Document> load_preset(const std::string& name, std::shared_ptr<const Assets> assets = nullptr);
 
 /// Loads a preset by its name, or a scene file by its path (JSON, comments allowed).
-Result<Document> load(const std::string& preset_or_path);
+Result<Document> load(const std::string& preset_or_path, std::shared_ptr<const Assets> assets = nullptr);
+
+/// True if it is the name of a preset, else it is the path of a scene file.
+bool is_preset(const std::string& name);
 
 }  // namespace clothlab::scene

@@ -167,7 +167,7 @@ Result<Document> apply_patch(const Document& document, const json& patch) {
   json target = document.value;
   if (patch.is_object()) {
     target.merge_patch(patch);
-    return validate(std::move(target));
+    return validate(std::move(target), document.assets);
   }
   if (!patch.is_array())
     return Error{"/patch", compact(patch), "an object (RFC 7396 merge patch) or an array (RFC 6902 patch)"};
@@ -179,7 +179,7 @@ Result<Document> apply_patch(const Document& document, const json& patch) {
     const Status done = operations.apply(patch[i], i);
     if (!done) return done.error();
   }
-  return validate(std::move(target));
+  return validate(std::move(target), document.assets);
 }
 
 }  // namespace clothlab::scene

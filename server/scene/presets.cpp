@@ -32,7 +32,7 @@ std::vector<std::string> preset_names() {
 
 namespace {
 
-Result<Document> load_file(const std::filesystem::path& path) {
+Result<Document> load_file(const std::filesystem::path& path, std::shared_ptr<const Assets> assets) {
   std::error_code failure;
   if (!std::filesystem::is_regular_file(path, failure))
     return Error{path.string(), "no such file",
@@ -41,12 +41,14 @@ Result<Document> load_file(const std::filesystem::path& path) {
   if (!text) return text.error();
   Result<json> value = parse_json(*text, path.string(), true, {max_file_bytes});
   if (!value) return value.error();
-  Result<Document> document = validate(std::move(*value));
+  Result<Document> document = validate(std::move(*value), std::move(assets));
   if (document) return document;
   const Error& error = document.error();
   return Error{path.string() + (error.where.empty() ? "" : ": ") + error.where, "found " + error.what,
                "allowed: " + error.remedy};
 }
+
+}  // namespace
 
 bool is_preset(const std::string& name) {
   for (const Preset& preset : presets())
@@ -54,19 +56,18 @@ bool is_preset(const std::string& name) {
   return false;
 }
 
-}  // namespace
-
-Result<Document> load_preset(const std::string& name) {
+Result<Document> load_preset(const std::string& name, std::shared_ptr<const Assets> assets) {
   if (!is_preset(name))
     return Error{"preset", json(name).dump(-1, ' ', false, json::error_handler_t::replace),
                  "one of " + quoted(preset_names())};
   const Result<std::filesystem::path> path = data_path("server/scene/presets/" + name + ".json");
   if (!path) return path.error();
-  return load_file(*path);
+  return load_file(*path, std::move(assets));
 }
 
-Result<Document> load(const std::string& preset_or_path) {
-  return is_preset(preset_or_path) ? load_preset(preset_or_path) : load_file(preset_or_path);
+Result<Document> load(const std::string& preset_or_path, std::shared_ptr<const Assets> assets) {
+  return is_preset(preset_or_path) ? load_preset(preset_or_path, std::move(assets))
+                                   : load_file(preset_or_path, std::move(assets));
 }
 
 }  // namespace clothlab::scene

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
@@ -25,10 +26,17 @@ struct Grid {
   bool operator==(const Grid&) const = default;
 };
 
-/// A mesh given in the document itself.
+/// A mesh given in the document itself, or read from a file that the document names.
 struct TriangleMesh {
   std::vector<dvec3> vertices;                          ///< [vertex_count] [m]
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< [triangle_count], counter-clockwise
+  /// [triangle_count] where each triangle's corners lie in the flat pattern that the cloth was cut by [m], to
+  /// be scaled like `vertices`; empty: the cloth at rest has the shape of `vertices`. A vertex on a seam has
+  /// a place in each panel.
+  std::vector<std::array<glm::dvec2, 3>> pattern;
+  /// Of a file: [vertices of the file] the vertex that became of each, or mesh::no_vertex. Documents count
+  /// the vertices of the file. Empty: every vertex has its own number.
+  std::vector<std::uint32_t> vertex_of;
   bool operator==(const TriangleMesh&) const = default;
 };
 

@@ -1,13 +1,15 @@
 // Functions that read and check the sections of the scene document. Internal to server/scene.
 #pragma once
 
+#include "server/scene/assets.h"
 #include "server/scene/reader.h"
 #include "server/scene/scene.h"
 
 namespace clothlab::scene {
 
-/// `index` is the place in the list; the default name follows from it: "cloth", "cloth-2", ...
-Cloth read_cloth(const Reader& cloth, std::size_t index);
+/// `index` is the place in the list; the default name follows from it: "cloth", "cloth-2", ... `assets` (may
+/// be null) has the meshes that documents name.
+Cloth read_cloth(const Reader& cloth, std::size_t index, const Assets* assets);
 Collider read_collider(const Reader& collider, std::size_t index);
 /// Reads the shape of a collider, which is the member with the name of its kind, e.g. "sphere".
 Shape read_shape(const Reader& collider);

@@ -56,7 +56,7 @@ Result<Document> set_value(const Document& document, const std::string& assignme
     return Error{pointer, "no such place (" + compact((*tokens)[reached]) + ")",
                  "an existing key or index; `-` appends to an array"};
   *place = std::move(*value);
-  return validate(std::move(target));
+  return validate(std::move(target), document.assets);
 }
 
 }  // namespace clothlab::scene

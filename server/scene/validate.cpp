@@ -14,13 +14,13 @@ void require_unique_name(const Reader& named, const std::string& name, std::set<
   if (!taken.insert(name).second) named.member("name").fail("a name that no earlier one has");
 }
 
-std::vector<Cloth> read_cloths(const Reader& cloths) {
+std::vector<Cloth> read_cloths(const Reader& cloths, const Assets* assets) {
   std::vector<Cloth> result(cloths.array(1, max_cloths));
   std::set<std::string> names;
   std::size_t vertices = 0, triangles = 0;
   for (std::size_t i = 0; i < result.size(); ++i) {
     const Reader cloth = cloths.element(i);
-    result[i] = read_cloth(cloth, i);
+    result[i] = read_cloth(cloth, i, assets);
     require_unique_name(cloth, result[i].name, names);
     vertices += vertex_count(result[i].mesh);
     triangles += triangle_count(result[i].mesh);
@@ -60,14 +60,14 @@ Solver read_solver(const Reader& solver) {
                 solver.member("tolerance", 1e-4).number(ranges::tolerance), method == automatic_method};
 }
 
-Scene read_scene(const Reader& top) {
+Scene read_scene(const Reader& top, const Assets* assets) {
   top.object(
       {"version", "name", "gravity", "cloths", "colliders", "self_collision", "wind", "air_drag", "solver"});
   top.member("version").integer({1, 1});
   Scene scene;
   scene.name = top.member("name", "scene").name();
   scene.gravity = top.member("gravity", json{0, -9.8, 0}).vector(ranges::gravity);
-  scene.cloths = read_cloths(top.member("cloths"));
+  scene.cloths = read_cloths(top.member("cloths"), assets);
   scene.colliders = read_colliders(top.member("colliders", json::array()));
   scene.self_collision = read_self_collision(top.member("self_collision", json(nullptr)));
   const Reader wind = top.member("wind", json(nullptr));
@@ -87,10 +87,10 @@ Scene read_scene(const Reader& top) {
 
 }  // namespace
 
-Result<Document> validate(json value) {
+Result<Document> validate(json value, std::shared_ptr<const Assets> assets) {
   std::optional<Error> error;
-  Document document{std::move(value), {}};
-  document.scene = read_scene(Reader(&document.value, "", error));
+  Document document{std::move(value), {}, std::move(assets)};
+  document.scene = read_scene(Reader(&document.value, "", error), document.assets.get());
   if (error) return *error;
   return document;
 }

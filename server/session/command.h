@@ -30,6 +30,12 @@ struct LoadScene {
   std::string preset;  ///< the preset's name; empty: `document` is loaded
   json document;
 };
+/// A mesh's file, for scenes to name.
+struct UploadMesh {
+  std::string name;
+  std::string bytes;
+  std::shared_ptr<void> in_hand{};  ///< freed once the bytes are read: the client may send others then
+};
 struct PatchScene {
   json patch;
   std::optional<std::uint64_t> revision;  ///< the scene revision that the patch was made for; none: any
@@ -73,8 +79,8 @@ struct Chosen {
 };
 struct Command {
   Ticket ticket;
-  std::variant<GetScene, LoadScene, PatchScene, Play, Pause, Step, Reset, Speed, Demand, Watchers, Export,
-               ReachScene, Hold, Release, Chosen>
+  std::variant<GetScene, LoadScene, UploadMesh, PatchScene, Play, Pause, Step, Reset, Speed, Demand, Watchers,
+               Export, ReachScene, Hold, Release, Chosen>
       what;
 };
 

@@ -13,6 +13,7 @@ struct Refusal {
   enum class Reason {
     invalid_value,   ///< `error`: where (a JSON Pointer), what was found there, and what is allowed
     other_revision,  ///< the request was made for another revision of the scene than `revision`
+    over_limit,      ///< `error` says of what there is too much
     diverged,        ///< the simulation has blown up, and waits for a change
     failed           ///< the session could not do it; `error` says why
   };

@@ -26,10 +26,10 @@ std::shared_ptr<const Saved> state_to_restore(const Beginning& beginning, Exchan
 Result<std::unique_ptr<Stepper>> bring_back(const Saved& saved, const Beginning& beginning,
                                             const Limits& limits, std::optional<int> gpu,
                                             Exchange& exchange) {
-  Result<scene::Document> document = scene::validate(saved.document);
+  Result<scene::Document> document = scene::validate(saved.document, beginning.meshes);
   if (!document) return document.error();
   Result<std::unique_ptr<Stepper>> stepper =
-      Stepper::create(std::move(*document), exchange, limits, gpu, beginning.last_frame);
+      Stepper::create(std::move(*document), exchange, limits, gpu, beginning.last_frame, beginning.meshes);
   if (!stepper) return stepper.error();
   if (clothlab::Status back = (*stepper)->bring_back(saved); !back) return back.error();
   log(LogLevel::info, "session_restored",
@@ -41,6 +41,9 @@ Result<std::unique_ptr<Stepper>> bring_back(const Saved& saved, const Beginning&
 
 Result<std::unique_ptr<Stepper>> begin(Beginning& beginning, const Limits& limits, std::optional<int> gpu,
                                        Exchange& exchange) {
+  if (beginning.meshes && !beginning.saved)  // else they are on the shelf already
+    for (const Error& error : beginning.meshes->restore())
+      log(LogLevel::error, "mesh_not_restored", {{"session", beginning.name}, {"why", error.text()}});
   if (const std::shared_ptr<const Saved> saved = state_to_restore(beginning, exchange)) {
     Result<std::unique_ptr<Stepper>> stepper = bring_back(*saved, beginning, limits, gpu, exchange);
     if (stepper) return stepper;
@@ -48,7 +51,8 @@ Result<std::unique_ptr<Stepper>> begin(Beginning& beginning, const Limits& limit
         {{"session", beginning.name}, {"why", stepper.error().text()}});
     exchange.emit(Notice{"error", "the saved session cannot be restored: " + stepper.error().text()});
   }
-  return Stepper::create(std::move(beginning.document), exchange, limits, gpu, beginning.last_frame);
+  return Stepper::create(std::move(beginning.document), exchange, limits, gpu, beginning.last_frame,
+                         beginning.meshes);
 }
 
 }  // namespace

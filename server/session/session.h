@@ -11,6 +11,7 @@
 #include "server/scene/document.h"
 #include "server/session/exchange.h"
 #include "server/session/limits.h"
+#include "server/session/mesh_shelf.h"
 
 namespace clothlab::session {
 
@@ -21,6 +22,7 @@ struct Beginning {
   std::shared_ptr<const Saved> saved;         ///< what a failed thread of this session saved, or null
   std::optional<std::filesystem::path> file;  ///< where the session is saved; none: in memory only
   std::uint32_t last_frame = 0;               ///< the last frame number that viewers may have seen
+  std::shared_ptr<MeshShelf> meshes;          ///< that scenes may name; null: none
 };
 
 class Session {

@@ -20,8 +20,11 @@ using std::chrono::seconds;
 
 Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Exchange& exchange,
                                                  const Limits& limits, std::optional<int> gpu,
-                                                 std::uint32_t last_frame) {
-  auto stepper = std::unique_ptr<Stepper>(new Stepper(std::move(document), exchange, limits, gpu));
+                                                 std::uint32_t last_frame,
+                                                 std::shared_ptr<MeshShelf> meshes) {
+  if (!meshes) meshes = std::make_shared<MeshShelf>(document.assets);
+  auto stepper =
+      std::unique_ptr<Stepper>(new Stepper(std::move(document), exchange, limits, gpu, std::move(meshes)));
   const Result<scene::Scene> scene = stepper->prepare(stepper->document_);
   if (!scene) return scene.error();
   Result<std::unique_ptr<Engine>> engine =

@@ -13,6 +13,7 @@
 #include "server/session/engine.h"
 #include "server/session/exchange.h"
 #include "server/session/limits.h"
+#include "server/session/mesh_shelf.h"
 #include "server/session/piece_size.h"
 #include "server/session/real_time.h"
 #include "server/session/rest.h"
@@ -27,7 +28,8 @@ class Stepper {
   /// Loads `document`, which plays at once. The first frame has the number `last_frame` + 1.
   static Result<std::unique_ptr<Stepper>> create(scene::Document document, Exchange& exchange,
                                                  const Limits& limits, std::optional<int> gpu = std::nullopt,
-                                                 std::uint32_t last_frame = 0);
+                                                 std::uint32_t last_frame = 0,
+                                                 std::shared_ptr<MeshShelf> meshes = nullptr);
 
   /// The name of the device (GL_RENDERER).
   const std::string& renderer() const { return engine_->context->device().name; }
@@ -52,8 +54,15 @@ class Stepper {
   };
   using Answer = std::variant<json, Refusal>;
 
-  Stepper(scene::Document document, Exchange& exchange, const Limits& limits, std::optional<int> gpu)
-      : document_(std::move(document)), exchange_(exchange), limits_(limits), gpu_(gpu) {}
+  Stepper(scene::Document document, Exchange& exchange, const Limits& limits, std::optional<int> gpu,
+          std::shared_ptr<MeshShelf> meshes)
+      : meshes_(std::move(meshes)),
+        document_(std::move(document)),
+        exchange_(exchange),
+        limits_(limits),
+        gpu_(gpu) {
+    document_.assets = meshes_;
+  }
   sim::Simulation& simulation() const { return *engine_->simulation; }
   const scene::Scene& scene() const {
     return simulation().scene();
@@ -66,6 +75,7 @@ class Stepper {
   void handle(Command& command);
   void perform(GetScene&, const Ticket& ticket);
   void perform(LoadScene& load, const Ticket& ticket);
+  void perform(UploadMesh& upload, const Ticket& ticket);
   void perform(PatchScene& patch, const Ticket& ticket);
   void perform(Play&, const Ticket& ticket);
   void perform(Pause&, const Ticket& ticket);
@@ -82,6 +92,7 @@ class Stepper {
   void reply(const Ticket& ticket, Answer answer);
   json where_we_are() const;
   static Refusal diverged_refusal();
+  clothlab::Status use_again(const std::string& mesh, const Ticket& ticket);
   Result<sim::ChangeDepth> change(const scene::Scene& scene);
   Result<sim::ChangeDepth> change_engine(const scene::Scene& scene);
   Result<sim::ChangeDepth> move_to(const scene::Scene& scene, gl::HelperThreads threads);
@@ -115,6 +126,7 @@ class Stepper {
   bool running(Clock::time_point now) const { return run_.steps() && !suspended(now); }
   Clock::time_point next_turn(Clock::time_point now) const;
 
+  std::shared_ptr<MeshShelf> meshes_;
   scene::Document document_;  ///< as clients see it: its method may be "auto"
   Exchange& exchange_;
   Limits limits_;

@@ -40,8 +40,8 @@ void Stepper::perform(GetScene&, const Ticket& ticket) {
 }
 
 void Stepper::perform(LoadScene& load, const Ticket& ticket) {
-  Result<scene::Document> document =
-      load.preset.empty() ? scene::validate(std::move(load.document)) : scene::load_preset(load.preset);
+  Result<scene::Document> document = load.preset.empty() ? scene::validate(std::move(load.document), meshes_)
+                                                         : scene::load_preset(load.preset, meshes_);
   if (!document && !load.preset.empty())
     return reply(ticket, invalid_value({"/preset", json(load.preset).dump(), document.error().remedy}));
   if (!document) return reply(ticket, invalid_value(document.error()));

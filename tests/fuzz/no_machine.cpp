@@ -71,6 +71,7 @@ class Scribe {
  public:
   Scribe(scene::Document document, Exchange& exchange)
       : document_(std::move(document)), exchange_(&exchange) {
+    document_.assets = meshes_;
     tell({}, 0);
     exchange_->emit(Started{"none"});
     exchange_->emit(SolverChanged{json::object()});
@@ -82,8 +83,15 @@ class Scribe {
       return reply(ticket, json{{"document", document_.value}, {"revision", revision_}});
     if (const auto* load = std::get_if<LoadScene>(&command.what))
       return take(ticket,
-                  load->preset.empty() ? scene::validate(load->document) : scene::load_preset(load->preset),
+                  load->preset.empty() ? scene::validate(load->document, meshes_)
+                                       : scene::load_preset(load->preset, meshes_),
                   {});
+    if (const auto* upload = std::get_if<UploadMesh>(&command.what)) {
+      const Result<MeshShelf::SharedItem> item = meshes_->read(upload->name, upload->bytes);
+      if (!item) return reply(ticket, invalid_value({"/obj", item.error().text(), item.error().remedy}));
+      if (const auto place = meshes_->make_place(upload->name, upload->bytes.size(), {}); place)
+        meshes_->exchange(upload->name, *item);
+    }
     if (const auto* patch = std::get_if<PatchScene>(&command.what)) {
       if (patch->revision && *patch->revision != revision_)
         return reply(ticket, Refusal{Refusal::Reason::other_revision, {"", "conflict", ""}, revision_});
@@ -111,6 +119,7 @@ class Scribe {
         SceneChanged{std::make_shared<const scene::Document>(document_), revision_, std::move(patch), by});
   }
 
+  std::shared_ptr<MeshShelf> meshes_ = std::make_shared<MeshShelf>();
   scene::Document document_;
   Exchange* exchange_;
   std::uint64_t revision_ = 0;

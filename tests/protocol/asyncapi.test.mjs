@@ -63,7 +63,6 @@ test("the document's methods are those that hello names, and those that are anno
     "grab.start": { cloth: 0, vertex: 0, target: [0, 1, 0] },
     "grab.move": { target: [0, 1, 0] },
     "grab.end": {},
-    "mesh.upload": { name: "shirt", obj: "v 0 0 0" },
   };
   assert.deepEqual(
     receives
@@ -172,6 +171,7 @@ test("requests and their answers are as it says, with and without parameters, fo
     ["stream.unsubscribe"],
     ["stream.subscribe", { encoding: "f32", rate: 120, in_flight: 8 }],
     ["lab.jobs"],
+    ["mesh.upload", { name: "leaf", obj: "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n" }],
   ];
   for (const [method, params] of asked) await client.request(method, params);
   await client.frame((frame) => frame.encoding === 0);

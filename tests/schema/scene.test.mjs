@@ -23,6 +23,7 @@ const crossFieldRules = {
   "pbd has no finite elements": /\/solver\/method: .*PBD's stiffness is no N\/m/,
   "names are unique": /a name that no earlier one has/,
   "all cloths together are not too large": /vertices so far/,
+  "a mesh's file is there and is one": /\/mesh\/obj: /,
 };
 
 const grid = { grid: { columns: 5, rows: 4, width: 1, height: 0.8 } };
@@ -88,6 +89,7 @@ const whole = {
       weights: [{ at: "vertex:1", mass: 1 }],
       start: { scale: [1, 0, -1] },
     },
+    { mesh: { obj: "leaf.obj", pattern: "uv" }, pins: [{ at: "vertex:3" }] },
   ],
   colliders: [
     { name: "ball", sphere: { center: [0, 0.6, 0], radius: 0.25 }, friction: 0.3, restitution: 0, motion: linear },
@@ -98,6 +100,8 @@ const whole = {
   air_drag: 0,
   solver: { method: "symplectic_euler", dt: 0.001, iterations: 10, tolerance: 1e-4 },
 };
+/// The file beside it; its first vertex is part of no face.
+const leaf = "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 2/1 3/2 4/3\n";
 const least = { version: 1, cloths: [{ mesh: { grid: {} } }] };
 const sheet = {
   warp: 300,
@@ -240,6 +244,7 @@ function* mutations() {
 function verdicts(texts) {
   const folder = mkdtempSync(join(tmpdir(), "clothlab-schema-"));
   try {
+    writeFileSync(join(folder, "leaf.obj"), leaf);
     const names = texts.map((text, i) => (writeFileSync(join(folder, `${i}.json`), text), `${i}.json`));
     const run = spawnSync(process.env.CLOTHLAB, ["validate", ...names], {
       cwd: folder,

@@ -118,7 +118,6 @@ TEST_CASE(
 TEST_CASE("features that are not simulated yet are refused by name, never ignored") {
   const std::vector<std::pair<std::string, std::string>> not_yet = {
       {"/cloths/0/material/fabric", R"("cotton")"},
-      {"/cloths/0/mesh", R"({"obj": "shirt.obj"})"},
       {"/colliders/0", R"({"capsule": {"a": [0,0,0], "b": [0,1,0], "radius": 0.1}})"},
       {"/colliders/0", R"({"box": {"center": [0,0,0], "half": [1,1,1], "rotate": [0,0,0]}})"},
       {"/wind", R"({"velocity": [2,0,0]})"},

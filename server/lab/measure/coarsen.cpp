@@ -200,7 +200,7 @@ Result<scene::Document> coarsen(const scene::Document& document, int factor) {
     return Error{"/cloths",
                  any_grid ? "the grids have too few vertices" : "triangle meshes are not made coarser",
                  any_grid ? "a finer grid" : "a grid"};
-  Result<scene::Document> without_weights = scene::validate(value);
+  Result<scene::Document> without_weights = scene::validate(value, document.assets);
   if (!without_weights) return without_weights;
   const Result<model::Model> fine = model::build(document.scene);
   if (!fine) return fine.error();
@@ -213,7 +213,7 @@ Result<scene::Document> coarsen(const scene::Document& document, int factor) {
     if (Status done = coarsen_weights(value["cloths"][i], cloths[i], i, *to, *fine, *coarse); !done)
       return done.error();
   }
-  return scene::validate(std::move(value));
+  return scene::validate(std::move(value), document.assets);
 }
 
 std::vector<glm::dvec3> at_fine_vertices(const scene::Scene& fine, const scene::Scene& coarse,

@@ -82,7 +82,7 @@ Result<scene::Document> MapField::with(double& value) const {
     scale_stiffness(changed, value);
   else
     *find_value(changed, field_) = whole_ ? json(static_cast<std::int64_t>(value)) : json(value);
-  return scene::validate(std::move(changed));
+  return scene::validate(std::move(changed), document_.assets);
 }
 
 bool MapField::allowed(double value) const {

@@ -29,7 +29,7 @@ Result<Document> without_elements(const Document& document, const char* key, con
     const bool springs = cloth["material"]["model"] == "springs";
     if (const char* removed = springs ? key : key_of_sheet) cloth["material"][removed] = 0.0;
   }
-  Result<Document> without = scene::validate(std::move(value));
+  Result<Document> without = scene::validate(std::move(value), document.assets);
   if (!without) return without;
   // The cloth may have no such springs in spite of its stiffness: a triangle mesh has no shear springs, and
   // bend springs only across edges. So the elements are counted.
@@ -50,7 +50,7 @@ Result<Document> without_self_collision(const Document& document) {
   if (!document.scene.self_collision) return not_there("self-collision");
   json value = document.value;
   value["self_collision"] = nullptr;
-  return scene::validate(std::move(value));
+  return scene::validate(std::move(value), document.assets);
 }
 
 Result<Document> undamped(const Document& document) {
@@ -59,7 +59,7 @@ Result<Document> undamped(const Document& document) {
     return not_there("damping");
   json value = document.value;
   for (json& cloth : value["cloths"]) cloth["material"]["damping"] = 0.0;
-  return scene::validate(std::move(value));
+  return scene::validate(std::move(value), document.assets);
 }
 
 Result<Document> half_resolution(const Document& document) {

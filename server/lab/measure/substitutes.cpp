@@ -97,7 +97,7 @@ Status Substitutes::same_share_of_limit(Substitute& candidate) {
                               truth_.spacing * samples_to_horizon / 4});
   scene::json value = candidate.document.value;
   value["solver"]["dt"] = dt;
-  Result<Document> stepped = scene::validate(std::move(value));
+  Result<Document> stepped = scene::validate(std::move(value), candidate.document.assets);
   if (!stepped) return stepped.error();
   candidate.document = std::move(*stepped);
   return ok();

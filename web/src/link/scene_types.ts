@@ -27,7 +27,12 @@ export interface InlineMesh {
   vertices: Vec3[];
   triangles: Vec3[];
 }
-export type Mesh = { grid: Grid } | InlineMesh;
+/// A file, or a mesh that was uploaded.
+export interface NamedMesh {
+  obj: string;
+  pattern: null | "uv";
+}
+export type Mesh = { grid: Grid } | InlineMesh | NamedMesh;
 
 export type At = string | { box: [Vec3, Vec3] };
 export interface Pin {

@@ -1,0 +1,62 @@
+#include "server/mesh/mesh.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "server/mesh/raw.h"
+
+namespace clothlab::mesh {
+
+namespace {
+
+bool ends_in_ply(const std::string& name) {
+  if (name.size() < 4) return false;
+  std::string end = name.substr(name.size() - 4);
+  std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
+  return end == ".ply";
+}
+
+}  // namespace
+
+std::string Mesh::place_of(std::size_t triangle) const {
+  return line_word + (" " + std::to_string(face_line[triangle]));
+}
+
+Error Raw::error(std::size_t line, std::string what, std::string remedy) const {
+  return Error{name + ", " + line_word + " " + std::to_string(line), std::move(what), std::move(remedy)};
+}
+
+Status Raw::add_vertex(const glm::dvec3& place, std::size_t line, const Limits& limits) {
+  if (vertices.size() >= limits.vertices)
+    return error(line, "more than " + std::to_string(limits.vertices) + " vertices", "at most so many");
+  vertices.push_back(place);
+  return ok();
+}
+
+Status Raw::add_face(const std::vector<Corner>& of, std::size_t line, const Limits& limits) {
+  if (of.size() < 3 || of.size() > max_corners)
+    return error(line,
+                 "a face of " +
+                     (of.size() > max_corners ? "more than " + std::to_string(max_corners)
+                                              : std::to_string(of.size())) +
+                     " corners",
+                 "3 to " + std::to_string(max_corners));
+  triangles += of.size() - 2;
+  if (triangles > limits.triangles)
+    return error(line, "more than " + std::to_string(limits.triangles) + " triangles", "at most so many");
+  faces.push_back({static_cast<std::uint32_t>(corners.size()), static_cast<std::uint32_t>(of.size()),
+                   static_cast<std::uint32_t>(line)});
+  corners.insert(corners.end(), of.begin(), of.end());
+  return ok();
+}
+
+Result<Mesh> read(std::string_view bytes, const std::string& name, const Limits& limits) {
+  if (bytes.size() > limits.bytes)
+    return Error{name, std::to_string(bytes.size()) + " bytes", "at most " + std::to_string(limits.bytes)};
+  const bool ply = ends_in_ply(name) || bytes.starts_with("ply\n") || bytes.starts_with("ply\r");
+  Result<Raw> raw = ply ? read_ply(bytes, name, limits) : read_obj(bytes, name, limits);
+  if (!raw) return raw.error();
+  return assemble(std::move(*raw));
+}
+
+}  // namespace clothlab::mesh

@@ -1,0 +1,136 @@
+#include "server/session/mesh_shelf.h"
+
+#include <algorithm>
+
+#include "server/base/files.h"
+#include "server/base/text.h"
+
+namespace clothlab::session {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string mesh_title = "clothlab mesh 1\n";
+
+mesh::Limits upload_limits() {
+  mesh::Limits limits = scene::file_limits();
+  limits.bytes = max_upload_bytes;
+  return limits;
+}
+
+}  // namespace
+
+Result<scene::SharedMesh> MeshShelf::mesh(const std::string& name) const {
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = items_.find(name); found != items_.end()) return found->second->mesh;
+  }
+  if (files_) return files_->mesh(name);
+  return Error{name, "no such mesh",
+               "the name of a mesh.upload; for files start the server with --asset-root"};
+}
+
+Result<MeshShelf::SharedItem> MeshShelf::read(const std::string& name, std::string bytes) {
+  Result<mesh::Mesh> mesh = mesh::read(bytes, name, upload_limits());
+  if (!mesh) return mesh.error();
+  const std::lock_guard lock(mutex_);
+  return std::make_shared<const Item>(
+      Item{std::move(bytes), std::make_shared<const mesh::Mesh>(std::move(*mesh)), ++last_number_});
+}
+
+Result<std::vector<std::string>> MeshShelf::make_place(const std::string& name, std::size_t bytes,
+                                                       const std::set<std::string>& named) {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> removed;
+  for (;;) {
+    std::size_t total = bytes, count = 1;
+    auto oldest = items_.end();
+    for (auto item = items_.begin(); item != items_.end(); ++item) {
+      if (item->first == name) continue;  // makes way in any case
+      total += item->second->bytes.size();
+      ++count;
+      if (!named.contains(item->first) &&
+          (oldest == items_.end() || item->second->number < oldest->second->number))
+        oldest = item;
+    }
+    if (total <= max_mesh_bytes && count <= max_meshes) return removed;
+    if (oldest == items_.end())
+      return Error{
+          "mesh.upload",
+          std::to_string(count) + " meshes of " + std::to_string(total) + " bytes, which the scene names",
+          "at most " + std::to_string(max_meshes) + " of " + std::to_string(max_mesh_bytes) +
+              " bytes in a session"};
+    removed.push_back(oldest->first);
+    remove(oldest->first);
+    items_.erase(oldest);
+  }
+}
+
+MeshShelf::SharedItem MeshShelf::exchange(const std::string& name, SharedItem item) {
+  const std::lock_guard lock(mutex_);
+  SharedItem before;
+  if (const auto found = items_.find(name); found != items_.end()) before = found->second;
+  if (item)
+    items_[name] = std::move(item);
+  else
+    items_.erase(name);
+  return before;
+}
+
+/// Names may hold any characters, so that the file's name has their hash (FNV-1a).
+fs::path MeshShelf::file_of(const std::string& name) const {
+  std::uint64_t hash = 0xcbf29ce484222325ull;
+  for (const char byte : name) hash = (hash ^ static_cast<std::uint8_t>(byte)) * 0x100000001b3ull;
+  fs::path file = *stem_;
+  file += formatted(".mesh-%016llx", static_cast<unsigned long long>(hash));
+  return file;
+}
+
+void MeshShelf::remove(const std::string& name) {
+  std::error_code ignored;
+  if (stem_) fs::remove(file_of(name), ignored);
+}
+
+clothlab::Status MeshShelf::keep(const std::string& name) const {
+  SharedItem item;
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = items_.find(name); found != items_.end()) item = found->second;
+  }
+  if (!stem_ || !item) return ok();
+  return replace_file(file_of(name), mesh_title + name + "\n" + item->bytes);
+}
+
+std::vector<Error> MeshShelf::restore() {
+  std::vector<Error> errors;
+  if (!stem_) return errors;
+  const std::string begin = stem_->filename().string() + ".mesh-";
+  std::vector<std::pair<fs::file_time_type, fs::path>> files;
+  std::error_code failure;
+  for (fs::directory_iterator at(stem_->parent_path(), failure), end; !failure && at != end;
+       at.increment(failure))
+    if (at->path().filename().string().starts_with(begin) && at->path().extension() != unfinished_suffix &&
+        at->is_regular_file(failure) && at->file_size(failure) <= max_upload_bytes + 1024)
+      files.emplace_back(at->last_write_time(failure), at->path());
+  std::sort(files.begin(), files.end());  // the oldest first, as they were uploaded
+  if (files.size() > max_meshes) files.resize(max_meshes);
+  for (const auto& [time, file] : files) {
+    const Result<std::string> bytes = read_file(file);
+    const std::size_t end =
+        bytes && bytes->starts_with(mesh_title) ? bytes->find('\n', mesh_title.size()) : std::string::npos;
+    if (end == std::string::npos) {
+      errors.push_back({file.string(), "is no uploaded mesh", "move it away"});
+      continue;
+    }
+    const std::string name = bytes->substr(mesh_title.size(), end - mesh_title.size());
+    Result<SharedItem> item = read(name, bytes->substr(end + 1));
+    if (item)
+      exchange(name, *item);
+    else
+      errors.push_back({file.string(), item.error().text(), "move it away"});
+  }
+  return errors;
+}
+
+}  // namespace clothlab::session

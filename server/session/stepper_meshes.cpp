@@ -1,0 +1,81 @@
+// mesh.upload, as a session's thread carries it out.
+#include <glm/common.hpp>
+#include <set>
+
+#include "server/session/stepper.h"
+
+namespace clothlab::session {
+
+namespace {
+
+/// The names of the meshes that the cloths of a document have.
+std::set<std::string> mesh_names(const json& document) {
+  std::set<std::string> names;
+  for (const json& cloth : document["cloths"])
+    if (cloth["mesh"].contains("obj")) names.insert(cloth["mesh"]["obj"].get<std::string>());
+  return names;
+}
+
+json point_list(const glm::dvec3& point) {
+  return json::array({point.x, point.y, point.z});
+}
+
+json facts(const std::string& name, const mesh::Mesh& mesh) {
+  glm::dvec3 low = mesh.vertices[0], high = low;
+  for (const glm::dvec3& vertex : mesh.vertices) {
+    low = glm::min(low, vertex);
+    high = glm::max(high, vertex);
+  }
+  return {{"name", name},
+          {"vertices", mesh.vertices.size()},
+          {"triangles", mesh.triangles.size()},
+          {"parts", mesh.parts},
+          {"merged", mesh.merged},
+          {"unused", mesh.unused},
+          {"flipped", mesh.flipped},
+          {"pattern", !mesh.texture.empty()},
+          {"box", json::array({point_list(low), point_list(high)})}};
+}
+
+}  // namespace
+
+void Stepper::perform(UploadMesh& upload, const Ticket& ticket) {
+  const std::size_t bytes = upload.bytes.size();
+  const Result<MeshShelf::SharedItem> item = meshes_->read(upload.name, std::move(upload.bytes));
+  upload.in_hand.reset();
+  if (!item)
+    return reply(ticket,
+                 invalid_value({"/obj", item.error().where + ": " + item.error().what, item.error().remedy}));
+  const std::set<std::string> named = mesh_names(document_.value);
+  const Result<std::vector<std::string>> removed = meshes_->make_place(upload.name, bytes, named);
+  if (!removed) return reply(ticket, Refusal{Refusal::Reason::over_limit, removed.error()});
+  MeshShelf::SharedItem before = meshes_->exchange(upload.name, *item);
+  if (named.contains(upload.name)) {
+    if (const clothlab::Status used = use_again(upload.name, ticket); !used) {
+      meshes_->exchange(upload.name, std::move(before));
+      return reply(ticket, invalid_value(used.error()));
+    }
+  }
+  if (const clothlab::Status kept = meshes_->keep(upload.name); !kept)
+    exchange_.emit(Notice{"error", "the mesh " + upload.name + " cannot be saved: " + kept.error().what +
+                                       "; it would be lost with the server"});
+  json answer = facts(upload.name, *(*item)->mesh);
+  answer["removed"] = *removed;
+  reply(ticket, std::move(answer));
+}
+
+/// The scene has a mesh of which another version has come: the cloth is built anew.
+clothlab::Status Stepper::use_again(const std::string& mesh, const Ticket& ticket) {
+  Result<scene::Document> document = scene::validate(document_.value, meshes_);
+  if (!document) return document.error();
+  const Result<scene::Scene> scene = prepare(*document);
+  if (!scene) return scene.error();
+  const Result<sim::ChangeDepth> depth = change(*scene);
+  if (!depth) return depth.error();
+  adopt(std::move(*document), *depth);
+  announce_scene(std::nullopt, ticket.asker);
+  exchange_.emit(Notice{"info", "the mesh " + mesh + " was replaced: time starts again at 0"});
+  return ok();
+}
+
+}  // namespace clothlab::session
