@@ -3,6 +3,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
+#include <map>
 #include <utility>
 
 #include "server/base/text.h"
@@ -222,6 +223,29 @@ FlatTriangle cut_out(const FlatTriangle& piece, double scale, double grain) {
   return flat;
 }
 
+/// Twice the least area of a triangle over the square of its longest edge. Places in 32-bit floats cannot
+/// tell a triangle below it from a line.
+constexpr double least_area = 1e-7;
+
+/// True if two triangles at an edge, of those from `first_triangle` on, meet at an angle [rad] that is more
+/// than what rounding makes.
+bool is_curved(const Model& model, Index first_triangle) {
+  constexpr double most_angle = 1e-3;
+  const auto normal = [&](Index t) {
+    const auto& [a, b, c] = model.triangles[t];
+    const std::vector<dvec3>& rest = model.rest_position;
+    return glm::normalize(glm::cross(rest[b] - rest[a], rest[c] - rest[a]));
+  };
+  std::map<std::pair<Index, Index>, Index> at_edge;
+  for (Index t = first_triangle; t < model.triangle_count(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [a, b] = std::minmax(model.triangles[t][k], model.triangles[t][(k + 1) % 3]);
+      const auto [other, is_new] = at_edge.try_emplace({a, b}, t);
+      if (!is_new && glm::length(glm::cross(normal(other->second), normal(t))) > most_angle) return true;
+    }
+  return false;
+}
+
 /// The rest shapes of a cloth's triangles, which are the model's from `first_triangle` on. An error if one
 /// has no area, or if the cloth is curved and has no pattern.
 Result<std::vector<FlatTriangle>> rest_shapes(const Model& model, const scene::Cloth& cloth, double grain,
@@ -243,6 +267,9 @@ Result<std::vector<FlatTriangle>> rest_shapes(const Model& model, const scene::C
                    "with \"model\": \"fem\" every triangle has an area; springs need none"};
     flat.push_back(laid_flat({rest[a], rest[b], rest[c]}, axes, grain));
   }
+  if (!pattern && is_curved(model, first_triangle))
+    return Error{where + "/mesh", "a mesh that is not flat",
+                 "with \"model\": \"fem\" a flat mesh, or a file with a flat \"pattern\"; or springs"};
   return flat;
 }
 
@@ -261,10 +288,6 @@ elements::Membrane membrane(const FlatTriangle& flat, const scene::Fem& material
           area * material.shear,
           material.damping};
 }
-
-/// Twice the least area of a triangle over the square of its longest edge. Places in 32-bit floats cannot
-/// tell a triangle below it from a line.
-constexpr double least_area = 1e-7;
 
 /// Appends the finite elements of a cloth, whose vertices and triangles are the model's from `first` and
 /// `first_triangle` on; those that only sweeps visit if `sweeps_elements`.

@@ -33,10 +33,10 @@ struct TriangleMesh {
   /// [triangle_count] where each triangle's corners lie in the flat pattern that the cloth was cut by [m], to
   /// be scaled like `vertices`; empty: the cloth at rest has the shape of `vertices`. A vertex on a seam has
   /// a place in each panel.
-  std::vector<std::array<glm::dvec2, 3>> pattern;
+  std::vector<std::array<glm::dvec2, 3>> pattern{};
   /// Of a file: [vertices of the file] the vertex that became of each, or mesh::no_vertex. Documents count
   /// the vertices of the file. Empty: every vertex has its own number.
-  std::vector<std::uint32_t> vertex_of;
+  std::vector<std::uint32_t> vertex_of{};
   bool operator==(const TriangleMesh&) const = default;
 };
 

@@ -127,7 +127,7 @@ TEST_CASE("a pattern gives the lengths at rest, and needs texture coordinates wi
   for (const auto& spring : model->springs()) {
     const double length =
         glm::distance(model->rest_position[spring.vertices[0]], model->rest_position[spring.vertices[1]]);
-    CHECK(spring.rest[0] == Approx(2 * length));
+    CHECK(spring.law.rest_length == Approx(2 * length));
   }
   CHECK(model->springs().size() == 6);  // five edges, and one across the diagonal
   for (const char* name : {"flat.obj", "leaf.obj"})

@@ -185,11 +185,12 @@ TEST_CASE("what is wrong in an .obj file is named with its line, what was found 
        {std::string("v 0 0 \0\n", 8), ", line 1", "the byte 0x00"},
        {std::string(limits.bytes + 1, ' '), "", "1048577 bytes"}},
       "a.obj");
-  // A strip of three squares closed with half a turn.
-  check_refusals({{"v 0 0 0\nv 0 1 0\nv 1 0 1\nv 1 1 1\nv 2 0 -1\nv 2 1 -1\n"
-                   "f 1 3 4 2\nf 3 5 6 4\nf 5 2 1 6\n",
-                   ", line 3", "one side only"}},
-                 "moebius.obj");
+  // The Moebius band of five triangles: each shares an edge with the next, and the last, turned over, with
+  // the first.
+  check_refusals(
+      {{"v 0 0 0\nv 3 0 1\nv 1 2 0\nv 0 1 3\nv 2 2 2\nf 1 2 3\nf 2 3 4\nf 3 4 5\nf 4 5 1\nf 5 1 2\n",
+        ", line 10", "one side only"}},
+      "moebius.obj");
 }
 
 TEST_CASE("what is wrong in a .ply file is named with its line or face") {

@@ -17,6 +17,7 @@ import {
   type Diverged,
   type Level,
 } from "./panel/notices";
+import { takeDroppedMeshes } from "./panel/mesh_drop";
 import { Panel } from "./panel/panel";
 import type { ShownFrame } from "./link/protocol";
 import { RpcError } from "./link/rpc";
@@ -50,6 +51,7 @@ export class Page {
   private sceneName = "";
   private toldOfDivergence = false;
   private diverged = false; // in the last status
+  private fitNext = false; // the next frame is the first of another cloth
   private mayEdit = true; // false for a viewer, who may only watch
 
   constructor() {
@@ -92,6 +94,13 @@ export class Page {
       help: () => help.showModal(),
       lab: () => this.lab.toggle(),
     });
+    takeDroppedMeshes({
+      request: (method, params) => this.connection.request(method, params),
+      mayEdit: () => this.mayEdit,
+      hung: () => {
+        this.fitNext = true;
+      },
+    });
     button("fit").onclick = fit;
     button("help").onclick = () => help.showModal();
     button("theme").onclick = () => theme.toggle();
@@ -114,6 +123,8 @@ export class Page {
     hook.simTime = frame.header.time;
     hook.step = frame.header.step;
     hook.firstFrameAt ||= performance.now();
+    if (this.fitNext) this.stage.fit();
+    this.fitNext = false;
   }
 
   private linkEvents(): LinkEvents {

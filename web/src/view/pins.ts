@@ -2,7 +2,7 @@
 import { Euler, MathUtils, Vector3 } from "three";
 import type { At, Cloth, Motion, Vec3 } from "../link/scene_types";
 
-/// Rest positions of a cloth in world space [m].
+/// Rest positions of a cloth in world space [m]; none of a mesh from a file, which the page does not have.
 export function restPositions(cloth: Cloth): Vector3[] {
   const { translate, rotate, scale } = cloth.transform;
   const [x, y, z] = rotate.map(MathUtils.degToRad) as Vec3;
@@ -13,6 +13,7 @@ export function restPositions(cloth: Cloth): Vector3[] {
       .multiplyScalar(scale)
       .applyEuler(turn)
       .add(new Vector3(...translate));
+  if ("obj" in cloth.mesh) return [];
   if (!("grid" in cloth.mesh)) return cloth.mesh.vertices.map((vertex) => place(new Vector3(...vertex)));
   const { columns, rows, width, height } = cloth.mesh.grid;
   const points: Vector3[] = [];

@@ -1,0 +1,160 @@
+// Meshes from files and by mesh.upload, over the WebSocket.
+import assert from "node:assert/strict";
+import { mkdirSync, mkdtempSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { Client, Server } from "./harness.mjs";
+
+const leaf = "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 4\n";
+const square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+const named = (obj) => [
+  { op: "replace", path: "/cloths/0/mesh", value: { obj } },
+  { op: "replace", path: "/cloths/0/pins", value: [{ at: "vertex:3" }] },
+];
+
+let server, folder;
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), "clothlab-meshes-"));
+  mkdirSync(join(folder, "root"));
+  writeFileSync(join(folder, "root/leaf.obj"), leaf);
+  writeFileSync(join(folder, "root/bad.obj"), "v 0 0 0\nv 1 nan 0\n");
+  writeFileSync(join(folder, "secret.obj"), leaf);
+  symlinkSync("../secret.obj", join(folder, "root/link.obj"));
+  server = await Server.start("--asset-root", join(folder, "root"), "--max-sessions", "16");
+});
+after(async () => {
+  await server.stop();
+  rmSync(folder, { recursive: true });
+});
+
+let sessions = 0;
+async function enter(at = server) {
+  const client = await Client.connect(at, { session: `mesh-${++sessions}` });
+  await client.notification("scene");
+  return client;
+}
+
+test("a scene names a file below --asset-root, whose vertices its pins count", async () => {
+  const client = await enter();
+  await client.request("scene.patch", { patch: named("leaf.obj") });
+  await client.request("stream.subscribe", { encoding: "f32" });
+  const frame = await client.frame((frame) => frame.vertexCount === 3 || frame.vertices === 3);
+  assert.ok(frame);
+  await client.close();
+});
+
+test("what is wrong with a file is told by pointer, line, value and allowance, and the scene goes on", async () => {
+  const client = await enter();
+  const before = await client.request("scene.get");
+  for (const [name, found] of [
+    ["bad.obj", /bad\.obj, line 2: "nan" as y/],
+    ["../secret.obj", /"\.\."/],
+    ["link.obj", /symbolic link/],
+    [join(folder, "secret.obj"), /absolute/],
+    ["none.obj", /no such file/],
+  ]) {
+    const { code, data } = await client.refusal("scene.patch", { patch: named(name) });
+    assert.equal(code, -32602, name);
+    assert.equal(data.path, "/cloths/0/mesh/obj");
+    assert.match(data.found, found);
+    assert.ok(data.allowed.length > 0);
+  }
+  assert.deepEqual(await client.request("scene.get"), before);
+  await client.close();
+});
+
+test("without --asset-root no file is opened for a client", async (t) => {
+  const scene = { version: 1, cloths: [{ mesh: { obj: "leaf.obj" } }] };
+  writeFileSync(join(folder, "root/scene.json"), JSON.stringify(scene));
+  const closed = await Server.start("--scene", join(folder, "root/scene.json"));
+  t.after(() => closed.stop());
+  const client = await enter(closed);
+  await client.request("scene.patch", { patch: { gravity: [0, -1, 0] } });
+  const { data } = await client.refusal("scene.patch", { patch: named("bad.obj") });
+  assert.match(data.allowed, /--asset-root/);
+  await client.close();
+});
+
+test("an uploaded mesh is read, answered for and named by the scene of its session alone", async () => {
+  const [client, other] = [await enter(), await enter()];
+  const answer = await client.request("mesh.upload", { name: "leaf.obj", obj: square });
+  assert.deepEqual(answer, {
+    name: "leaf.obj",
+    vertices: 4,
+    triangles: 2,
+    parts: 1,
+    merged: 0,
+    unused: 0,
+    flipped: 0,
+    pattern: false,
+    box: [
+      [0, 0, 0],
+      [1, 1, 0],
+    ],
+    removed: [],
+  });
+  await client.request("scene.patch", { patch: named("leaf.obj") });
+  const base64 = Buffer.from(square).toString("base64");
+  await client.request("mesh.upload", { name: "é", obj: base64, encoding: "base64" });
+  assert.match((await other.refusal("scene.patch", { patch: named("é") })).data.found, /neither \.obj nor \.ply/);
+  for (const [params, path] of [
+    [{ name: "", obj: square }, "/name"],
+    [{ name: "a\n", obj: square }, "/name"],
+    [{ name: "x".repeat(65), obj: square }, "/name"],
+    [{ name: "a", obj: "v 0 0\n" }, "/obj"],
+    [{ name: "a", obj: "a b", encoding: "base64" }, "/obj"],
+    [{ name: "a", obj: square, encoding: "hex" }, "/encoding"],
+  ])
+    assert.equal((await client.refusal("mesh.upload", params)).data.path, path, JSON.stringify(params));
+  await client.close();
+  await other.close();
+});
+
+test("a mesh that the scene names can be replaced, and is not if its pins do not fit", async () => {
+  const client = await enter();
+  await client.request("mesh.upload", { name: "a", obj: leaf });
+  await client.request("scene.patch", { patch: named("a") });
+  const scene = client.nextNotification("scene");
+  await client.request("mesh.upload", { name: "a", obj: square });
+  await scene;
+  const { data } = await client.refusal("mesh.upload", { name: "a", obj: "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n" });
+  assert.equal(data.path, "/cloths/0/pins/0/at");
+  await client.request("scene.patch", { patch: { gravity: [0, -1, 0] } }); // the mesh before is still there
+  await client.close();
+});
+
+test("an upload may have 8 MiB, other messages and other clients' may not", async () => {
+  const comment = (bytes) => `#${"x".repeat(98)}\n`.repeat(bytes / 100);
+  const client = await enter();
+  const { vertices } = await client.request("mesh.upload", { name: "a", obj: square + comment(6 << 20) });
+  assert.equal(vertices, 4);
+  for (const [method, params] of [
+    ["mesh.upload", { name: "a", obj: square + comment(9 << 20) }],
+    ["ping", { t: "x".repeat(100_000) }],
+    ["ping", { "mesh.upload": "mesh.upload", t: "x".repeat(100_000) }],
+  ]) {
+    const bold = await enter();
+    bold.send(JSON.stringify({ jsonrpc: "2.0", id: 1, method, params }));
+    assert.equal((await bold.closed).code, 1009, method);
+  }
+  await client.request("ping", {});
+  await client.close();
+});
+
+test("uploads are there again after a restart with --state-dir", async () => {
+  const state = join(folder, "state");
+  const first = await Server.start("--state-dir", state);
+  const client = await Client.connect(first, { session: "kept" });
+  await client.notification("scene");
+  await client.request("mesh.upload", { name: "my shirt", obj: square });
+  await client.request("scene.patch", { patch: named("my shirt") });
+  await client.close();
+  await first.stop();
+  const second = await Server.start("--state-dir", state);
+  const again = await Client.connect(second, { session: "kept" });
+  const { document } = await again.notification("scene");
+  assert.equal(document.cloths[0].mesh.obj, "my shirt");
+  await again.close();
+  await second.stop();
+});
