@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <initializer_list>
 
 #include "server/mesh/raw.h"
 #include "server/mesh/text.h"

@@ -1,6 +1,7 @@
 #include "server/scene/assets.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include "server/base/files.h"
 #include "server/scene/document.h"
