@@ -194,7 +194,8 @@ class PlyReader {
       return in_header("an element face without vertex_indices", "property list uchar int vertex_indices");
     const auto over = [&](const Element& element, std::size_t most) {
       return Error{raw_.name + ", line " + std::to_string(element.line),
-                   std::to_string(element.count) + " of " + element.name, "at most " + std::to_string(most)};
+                   std::to_string(element.count) + " of " + quoted(element.name),
+                   "at most " + std::to_string(most)};
     };
     if (vertex->count > limits_.vertices) return over(*vertex, limits_.vertices);
     if (face->count > limits_.triangles) return over(*face, limits_.triangles);
@@ -208,8 +209,8 @@ class PlyReader {
         least += format_ == Format::text ? 2 : (property.count ? property.count : property.type)->bytes;
       if (least > 0 && element.count > (left + 1) / least)
         return Error{raw_.name + ", line " + std::to_string(element.line),
-                     std::to_string(element.count) + " of " + element.name + ", and " + std::to_string(left) +
-                         " bytes after the header",
+                     std::to_string(element.count) + " of " + quoted(element.name) + ", and " +
+                         std::to_string(left) + " bytes after the header",
                      "as many as the file holds: is it whole?"};
     }
     return ok();
@@ -250,17 +251,23 @@ class PlyReader {
     return ok();
   }
 
+  /// Its name without quotation marks, if that is text.
+  static std::string element_word(const Element& element) {
+    const std::string name = quoted(element.name);
+    return name.substr(1, name.size() - 2);
+  }
+
   /// Goes to the line of the next element.
   Status begin(const Element& element, std::size_t index) {
     number_ = index + 1;
     if (format_ != Format::text) {
-      at_ = element.name + " " + std::to_string(number_);
+      at_ = element_word(element) + " " + std::to_string(number_);
       return ok();
     }
     do {
       if (!lines_.next()) {
         at_ = "line " + std::to_string(lines_.number());
-        return wrong("the end of the file after " + std::to_string(index) + " of " + element.name,
+        return wrong("the end of the file after " + std::to_string(index) + " of " + quoted(element.name),
                      "all " + std::to_string(element.count) + ": is the file whole?");
       }
       words_ = lines_.line();

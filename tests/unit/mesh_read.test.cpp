@@ -102,6 +102,14 @@ TEST_CASE("polygons are cut into triangles that cover them, convex or not") {
       read("v 0 0 0\nv 2 -1 0\nv 0 2 0\nv -2 -1 0\nf 1 2 3 4\n");  // a dart: corner 1 is reflex
   CHECK(arrow.triangles.size() == 2);
   CHECK(area_of(arrow) == Approx(4.0));
+  // Its shortest cut, between corners 2 and 4, would have corners 1 and 5 inside.
+  const mesh::Mesh notched =
+      read("v 0.2 -0.5 0\nv 1 -1 0\nv 0 10 0\nv -1 -1 0\nv -0.2 -0.5 0\nf 1 2 3 4 5\n");
+  CHECK(notched.triangles.size() == 3);
+  CHECK(area_of(notched) == Approx(10.4));
+  // A convex quad is cut between corners 2 and 4, which are nearer to each other.
+  for (const auto& corners : read("v 0 0 0\nv 3 0 0\nv 4 1 0\nv 0.5 1 0\nf 1 2 3 4\n").triangles)
+    CHECK(std::count(corners.begin(), corners.end(), 1u) == 1);
   // A comb with two teeth, counter-clockwise.
   const mesh::Mesh comb = read(
       "v 0 0 0\nv 5 0 0\nv 5 3 0\nv 4 3 0\nv 4 1 0\nv 3 1 0\nv 3 3 0\nv 2 3 0\nv 2 1 0\nv 1 1 0\nv 1 3 0\nv "
@@ -132,8 +140,9 @@ TEST_CASE("vertices at exactly the same place are one, unused ones are left out,
 
 TEST_CASE("several parts, holes and edges of three triangles are meshes") {
   CHECK(read(square + "v 5 0 0\nv 6 0 0\nv 5 1 0\nf 1 2 3 4\nf 5 6 7\n").parts == 2);
-  const mesh::Mesh fin = read(square + "v 0.5 0.5 1\nf 1 2 3\nf 1 3 4\nf 1 3 5\n");
+  const mesh::Mesh fin = read(square + "v 0.5 0.5 1\nf 1 3 2\nf 1 3 4\nf 1 3 5\n");
   CHECK(fin.triangles.size() == 3);
+  CHECK(fin.flipped == 0);
 }
 
 TEST_CASE("neighbours get the same side outside, their texture coordinates with them") {
@@ -195,6 +204,9 @@ TEST_CASE("what is wrong in an .obj file is named with its line, what was found 
 
 TEST_CASE("what is wrong in a .ply file is named with its line or face") {
   const std::string corners = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+  std::string many = ply("ascii", "");
+  many.replace(many.find("vertex 4"), 8, "vertex 1001");
+  for (int i = 0; i < 1001; ++i) many += "0 0 " + std::to_string(i) + "\n";
   std::string far = binary_square(false);
   far[far.size() - 4] = 4;  // the last index
   check_refusals(
@@ -207,11 +219,12 @@ TEST_CASE("what is wrong in a .ply file is named with its line or face") {
        {"ply\nformat ascii 1.0\nelement vertex 99999999999\nproperty float x\nproperty float y\nproperty "
         "float "
         "z\nelement face 1\nproperty list uchar int vertex_index\nend_header\n",
-        ", line 3", "99999999999 of vertex"},
+        ", line 3", "99999999999 of \"vertex\""},
        {"ply\nformat binary_little_endian 1.0\nelement void 99999999999\nelement vertex 1\nproperty float "
         "x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int "
         "vertex_index\nend_header\n",
         ", line 3", "without properties"},
+       {many, ", line 4", "1001 of \"vertex\""},
        {ply("ascii", corners + "4 0 1 2 4\n"), ", line 15", "as a vertex"},
        {ply("ascii", corners + "4 0 1 2\n"), ", line 15", "too few numbers"},
        {ply("ascii", corners + "3 0 1 2 3\n"), ", line 15", "after the last property"},
