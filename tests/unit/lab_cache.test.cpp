@@ -6,6 +6,7 @@
 #include <chrono>
 #include <fstream>
 #include <iterator>
+#include <memory>
 
 #include "server/lab/exports.h"
 #include "server/scene/method.h"
@@ -40,11 +41,33 @@ std::string hash(const scene::Document& document, const Job& job = ChartRequest{
   return cache_key(document, job, renderer).hash;
 }
 
+/// Has one mesh, of any name: a square of this height.
+struct Square : scene::Assets {
+  explicit Square(double height) {
+    mesh::Mesh square;
+    square.vertices = {{0, 0, 0}, {1, 0, 0}, {1, height, 0}, {0, height, 0}};
+    square.triangles = {{0, 1, 2}, {0, 2, 3}};
+    square.vertex_of = {0, 1, 2, 3};
+    shared = std::make_shared<const mesh::Mesh>(std::move(square));
+  }
+  Result<scene::SharedMesh> mesh(const std::string&) const override { return shared; }
+  scene::SharedMesh shared;
+};
+
 CacheKey key(int number) {
   return {std::string(31, '0') + std::to_string(number), "seed"};
 }
 
 }  // namespace
+
+TEST_CASE("another mesh under the same name is another scene to the cache") {
+  const json value = json::parse(R"({"version": 1, "cloths": [{"mesh": {"obj": "a.obj"}}]})");
+  const auto of = [&](double height) {
+    return hash(*scene::validate(value, std::make_shared<Square>(height)));
+  };
+  CHECK(of(1) == of(1));
+  CHECK(of(1) != of(2));
+}
 
 TEST_CASE("every kind of result comes back from its JSON as it was") {
   for (const Outcome& outcome :
