@@ -28,9 +28,12 @@ bool report(const std::string& name, const std::string& asset_root) {
     std::cerr << name << ": " << model.error().text() << "\n";
     return false;
   }
+  const std::size_t springs = model->springs().size(),
+                    triangles = model->elements.of<elements::Membrane>().size();
   std::cout << name << ": valid (" << counted(model->cloths.size(), "cloth", "cloths") << ", "
             << counted(model->vertex_count(), "vertex", "vertices") << ", "
-            << counted(model->springs().size(), "spring", "springs") << ", "
+            << (springs > 0 || triangles == 0 ? counted(springs, "spring", "springs") + ", " : "")
+            << (triangles > 0 ? counted(triangles, "finite element", "finite elements") + ", " : "")
             << counted(document->scene.colliders.size(), "collider", "colliders") << ")\n";
   print_warnings(*model, document->scene, name + ": ");
   return true;

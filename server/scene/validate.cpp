@@ -5,6 +5,7 @@
 #include "server/scene/document.h"
 #include "server/scene/method.h"
 #include "server/scene/sections.h"
+#include "server/scene/suited.h"
 
 namespace clothlab::scene {
 
@@ -74,14 +75,8 @@ Scene read_scene(const Reader& top, const Assets* assets) {
   if (!wind.is_null()) wind.fail("null; wind is not supported yet (air_drag is)");
   scene.air_drag = top.member("air_drag", 0.0).number(ranges::air_drag);
   scene.solver = read_solver(top.member("solver", json::object()));
-  const bool fem = std::any_of(scene.cloths.begin(), scene.cloths.end(), [](const Cloth& cloth) {
-    return std::holds_alternative<Fem>(cloth.material);
-  });
-  if (fem && scene.solver.method == Method::pbd)
-    top.member("solver").member("method").fail(
-        "another method where a cloth has \"model\": \"fem\": PBD's stiffness is no N/m; \"xpbd\" is like it "
-        "and "
-        "keeps the material");
+  if (const char* reason = unsuited(scene.solver.method, scene))
+    top.member("solver").member("method").fail(reason);
   return scene;
 }
 

@@ -35,9 +35,9 @@ Status fits_device(const scene::Scene& scene) {
   if (wanted <= static_cast<std::size_t>(texels)) return ok();
   return Error{
       "/cloths",
-      std::to_string(size.vertices) + " vertices and " + std::to_string(size.all_elements()) + " springs",
+      std::to_string(size.vertices) + " vertices and " + std::to_string(size.all_elements()) + " elements",
       "lists of at most " + std::to_string(texels) +
-          " entries on this device (GL_MAX_TEXTURE_BUFFER_SIZE): a coarser mesh, or fewer springs"};
+          " entries on this device (GL_MAX_TEXTURE_BUFFER_SIZE): a coarser mesh, or fewer elements"};
 }
 
 template <class Part>

@@ -4,8 +4,8 @@
 //
 // F = [f0, f1] are the images of the unit vectors along warp and weft at rest. The Green strain is
 // E = ((|f0|^2 - 1)/2, (|f1|^2 - 1)/2, f0.f1), the energy area/2 E.K E with
-// K = [[warp, coupling, 0], [coupling, weft, 0], [0, 0, shear]]. Compressed to less than 0.58 of its length it yields: a
-// sheet buckles long before.
+// K = [[warp, coupling, 0], [coupling, weft, 0], [0, 0, shear]]. Compressed to less than 0.58 of its length it yields:
+// a sheet buckles long before.
 
 struct Membrane {
   // Share of the first and of the second other corner in F [1/m]:

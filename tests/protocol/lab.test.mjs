@@ -61,6 +61,35 @@ test("a chart arrives point by point, is finished, and can be exported as JSON, 
   await client.close();
 });
 
+test("a sheet of finite elements is charted, mapped, chosen for and simplified, all but by pbd", async () => {
+  const client = await enter();
+  const sheet = { model: "fem", warp: 40, weft: 60, poisson: 0.2, shear: 10, bending: 1e-5, damping: 0.01 };
+  const scene = { ...strip, cloths: [{ ...strip.cloths[0], material: sheet }] };
+  await client.request("scene.load", { scene });
+  const jobs = [
+    ["lab.chart", { ...short, methods: undefined, iterations: [1] }],
+    ["lab.stability", { columns: 2, field: "/cloths/0/material/warp" }],
+    ["lab.choose", { tolerance: 0.1, time: 0.1 }],
+    ["lab.simplify", { tolerance: 0.1, time: 0.1 }],
+  ];
+  for (const [method, params] of jobs) {
+    const { job } = await client.request(method, params);
+    const { state, result, error } = await client.until(
+      () => client.messages,
+      (m) => m.method === "lab.result" && m.params.job === job && m.params.state !== "running",
+      method,
+      900_000,
+    ).then(({ params }) => params);
+    assert.equal(state, "finished", `${method}: ${JSON.stringify(error)}`);
+    assert.ok(!JSON.stringify(result).includes('"pbd"'), method);
+  }
+  const { job } = await client.request("lab.stability", { columns: 2, methods: ["pbd"] });
+  const { state, error } = await ends(client, job);
+  assert.equal(state, "failed");
+  assert.match(error.allowed, /xpbd/);
+  await client.close();
+});
+
 test("a job measures the scene as the requests before it have left it", async () => {
   const client = await enter();
   const [{ revision }, { job }] = await Promise.all([

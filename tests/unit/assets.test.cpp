@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <fstream>
 #include <glm/geometric.hpp>
+#include <numeric>
 #include <set>
 
 #include "server/model/model.h"
 #include "server/scene/document.h"
 #include "server/session/mesh_shelf.h"
+#include "shaders/elements/elements.h"
 #include "tests/catch.h"
 
 using namespace clothlab;
@@ -135,6 +137,38 @@ TEST_CASE("a pattern gives the lengths at rest, and needs texture coordinates wi
           "/cloths/0/mesh/pattern");
   CHECK(scene::validate(document_with({{"grid", json::object()}, {"pattern", "uv"}}), assets).error().where ==
         "/cloths/0/mesh");
+}
+
+TEST_CASE(
+    "a folded sheet of finite elements has its pattern's shape at rest; without a pattern it is refused") {
+  const Folder folder;
+  const auto assets = std::make_shared<scene::FolderAssets>(folder.root);
+  // Folded at right angles along the diagonal; the pattern of its second half lies elsewhere, and turned
+  // over.
+  Folder::write(folder.root / "folded.obj",
+                "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0.5 0.5 0.70710678118654752\n"
+                "vt 0 0\nvt 1 0\nvt 1 1\nvt 5 5\nvt 6 4\nvt 5 4\nf 1/1 2/2 3/3\nf 1/4 3/5 4/6\n");
+  json value = document_with({{"obj", "folded.obj"}, {"pattern", "uv"}});
+  value["cloths"][0]["material"] = {{"model", "fem"}, {"grain", 20}};
+  value["cloths"][0]["mass"] = {{"area_density", 0.3}};
+  value["cloths"][0]["transform"] = {{"scale", 2.0}};
+  const auto document = scene::validate(value, assets);
+  REQUIRE(document);
+  const auto model = model::build(document->scene);
+  REQUIRE(model);
+  for (const auto& element : model->elements.of<elements::Membrane>()) {
+    const auto at = [&](std::size_t corner) { return model->rest_position[element.vertices[corner]]; };
+    const elements::Edges<elements::Membrane> place{{at(0) - at(1), at(0) - at(2)}};
+    CHECK(elements::element_energy(element.law, place) < 1e-12);  // rounding; a tenth of strain costs 10 J
+  }
+  CHECK(std::accumulate(model->mass.begin(), model->mass.end(), 0.0) == Approx(0.3 * 4.0));
+  value["cloths"][0]["mesh"].erase("pattern");
+  const auto curved = scene::validate(value, assets);
+  REQUIRE(curved);
+  const auto refused = model::build(curved->scene);
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().where == "/cloths/0/mesh");
+  CHECK_THAT(refused.error().text(), Catch::Contains("not flat") && Catch::Contains("pattern"));
 }
 
 TEST_CASE("a session's uploads are bounded, come before files and are there again after a restart") {

@@ -1,9 +1,11 @@
 // The scene document, rule by rule: values that just pass and values that just fail.
+#include <algorithm>
 #include <limits>
 
 #include "server/scene/document.h"
 #include "server/scene/method.h"
 #include "server/scene/ranges.h"
+#include "server/scene/suited.h"
 #include "tests/catch.h"
 
 using namespace clothlab;
@@ -170,6 +172,20 @@ TEST_CASE("what makes no sheet is refused with its place: Poisson's ratio, negat
              Catch::Contains("/cloths/0/material/bending/weft"));
   CHECK_THAT(refused(R"({"structural": 100})", "verlet"), Catch::Contains("/cloths/0/material/structural"));
   CHECK_THAT(refused("{}", "pbd"), Catch::Contains("/solver/method") && Catch::Contains("xpbd"));
+}
+
+TEST_CASE("the lab leaves out what has no meaning for a scene, and refuses it if it is asked for by name") {
+  json value = base();
+  CHECK(scene::suited_methods(scene::validate(value)->scene, {})->size() == scene::methods.size());
+  value["cloths"][0]["material"] = {{"model", "fem"}};
+  const scene::Scene sheet = scene::validate(value)->scene;
+  const std::vector<scene::Method> suited = *scene::suited_methods(sheet, {});
+  CHECK(suited.size() == scene::methods.size() - 1);
+  CHECK(std::count(suited.begin(), suited.end(), scene::Method::pbd) == 0);
+  CHECK(scene::suited_methods(sheet, {scene::Method::vbd})->size() == 1);
+  const auto refused = scene::suited_methods(sheet, {scene::Method::vbd, scene::Method::pbd});
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().what == "pbd");
 }
 
 TEST_CASE("every method can be named, and is the one the scene gets") {

@@ -12,6 +12,7 @@
 #include "server/lab/measure/trial.h"
 #include "server/lab/measure/truth.h"
 #include "server/scene/method.h"
+#include "server/scene/suited.h"
 
 namespace clothlab::lab {
 
@@ -281,7 +282,11 @@ class ChartMeasurement {
 }  // namespace
 
 Result<Chart> chart(const scene::Scene& scene, const ChartRequest& request, const Control<Chart>& control) {
-  return ChartMeasurement(scene, request, control).run();
+  const Result<std::vector<Method>> methods = scene::suited_methods(scene, request.methods);
+  if (!methods) return methods.error();
+  ChartRequest suited = request;
+  suited.methods = *methods;
+  return ChartMeasurement(scene, suited, control).run();
 }
 
 }  // namespace clothlab::lab

@@ -87,7 +87,7 @@ struct Chart {
 };
 
 struct ChartRequest {
-  std::vector<scene::Method> methods;  ///< empty: all
+  std::vector<scene::Method> methods;  ///< empty: all that suit the scene
   std::vector<int> iterations;         ///< empty: 1, 4, 16 for methods that sweep; 1, 4 for implicit Euler
   std::optional<double> time;          ///< simulated time [s]; none: 1
   double budget = 120;                 ///< wall time of the chart [s]; points that do not fit are left out

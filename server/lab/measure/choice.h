@@ -26,7 +26,7 @@ struct Choice {
 
 struct ChooseRequest {
   double tolerance = 1e-2;             ///< as Choice::tolerance, in (0, 1]
-  std::vector<scene::Method> methods;  ///< empty: all
+  std::vector<scene::Method> methods;  ///< empty: all that suit the scene
   std::optional<double> time;          ///< simulated time [s]; none: 1
 };
 

@@ -54,10 +54,8 @@ double limit_of(Method method, const scene::Scene& scene, const Truth& truth) {
 
 std::vector<Ladder> make_ladders(const scene::Scene& scene, const ChartRequest& request, const Truth& truth) {
   std::vector<Ladder> ladders;
-  std::vector<Method> methods = request.methods;
-  if (methods.empty()) methods.assign(scene::methods.begin(), scene::methods.end());
   const double a_step = 2e-7 * truth.world.model.vertex_count();  // wall time of a step [s], a first guess
-  for (const Method method : methods) {
+  for (const Method method : request.methods) {
     for (const int iterations : iterations_of(method, request)) {
       Ladder ladder;
       // With a tolerance of 1e-4, small steps would be solved without any iteration, and that error adds up.

@@ -34,8 +34,8 @@ inline constexpr double step_ratio = 2.0;
 /// The longest stable step of a method about the scene's rest shape [s].
 double limit_of(scene::Method method, const scene::Scene& scene, const Truth& truth);
 
-/// One ladder for each method and number of iterations that is asked for. A ladder with a step limit begins
-/// 5 % beyond the limit, but not with more than the longest step that is tried without a limit.
+/// One ladder for each method of `request` and number of iterations that is asked for. A ladder with a step
+/// limit begins 5 % beyond the limit, but not with more than the longest step that is tried without a limit.
 std::vector<Ladder> make_ladders(const scene::Scene& scene, const ChartRequest& request, const Truth& truth);
 
 }  // namespace clothlab::lab

@@ -10,6 +10,7 @@
 #include "server/lab/measure/map_field.h"
 #include "server/model/stability.h"
 #include "server/scene/method.h"
+#include "server/scene/suited.h"
 
 namespace clothlab::lab {
 
@@ -135,13 +136,12 @@ Result<StabilityMap> stability_map(const scene::Document& document, const MapReq
   map.present_method = document.scene.solver.method;
   const Result<std::vector<Varied>> columns = varied(document, request, map);
   if (!columns) return columns.error();
-  const std::vector<Method> methods = request.methods.empty()
-                                          ? std::vector<Method>(scene::methods.begin(), scene::methods.end())
-                                          : request.methods;
-  const double total = static_cast<double>(methods.size() * columns->size());
+  const Result<std::vector<Method>> methods = scene::suited_methods(document.scene, request.methods);
+  if (!methods) return methods.error();
+  const double total = static_cast<double>(methods->size() * columns->size());
   double done = 0.0;
   Notes notes;
-  for (const Method method : methods) {
+  for (const Method method : *methods) {
     map.methods.push_back({method, {}});
     std::vector<MeasuredColumn> measured;
     ReusedSimulation full, bare;

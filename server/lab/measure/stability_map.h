@@ -49,7 +49,7 @@ struct StabilityMap {
 };
 
 struct MapRequest {
-  std::vector<scene::Method> methods;  ///< empty: all
+  std::vector<scene::Method> methods;  ///< empty: all that suit the scene
   std::string field = "stiffness";     ///< or the JSON Pointer of a number of the scene
   /// The range of the field. None, as far as the scene allows: a hundredth and a hundred times the present
   /// value; a quarter and four times where only whole numbers are allowed; twice the present value and 0

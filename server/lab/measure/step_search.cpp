@@ -7,6 +7,7 @@
 #include "server/model/element_operator.h"
 #include "server/model/stability.h"
 #include "server/scene/method.h"
+#include "server/scene/suited.h"
 
 namespace clothlab::lab {
 
@@ -42,9 +43,10 @@ double StepSearch::limit_of(Method method) const {
   return model::dt_limit(method, model::ElementOperator(model, scene_, model.rest_position));
 }
 
-Status StepSearch::list(std::vector<Method> methods) {
-  if (methods.empty()) methods.assign(scene::methods.begin(), scene::methods.end());
-  for (const Method method : methods) {
+Status StepSearch::list(const std::vector<Method>& wanted) {
+  const Result<std::vector<Method>> methods = scene::suited_methods(scene_, wanted);
+  if (!methods) return methods.error();
+  for (const Method method : *methods) {
     const double limit = limit_of(method);
     if (limit == 0.0) {
       notes_.push_back(std::string(scene::name(method)) + " is stable at no step here.");

@@ -37,10 +37,11 @@ class StepSearch {
              std::stop_token stop)
       : scene_(scene), truth_(truth), tolerance_(tolerance), trials_(trials), stop_(std::move(stop)) {}
 
-  /// Lists the candidates of `methods` (empty: of all methods) and times each briefly. Candidates with a step
-  /// limit come first, as their longest step is most often accurate already; within both groups the cheapest
-  /// at its longest step comes first. Error: no method is stable at any step, GL, or cancelled.
-  Status list(std::vector<scene::Method> methods);
+  /// Lists the candidates of `wanted` (empty: of all methods that suit the scene) and times each briefly.
+  /// Candidates with a step limit come first, as their longest step is most often accurate already; within
+  /// both groups the cheapest at its longest step comes first. Error: one of `wanted` has no meaning for the
+  /// scene, no method is stable at any step, GL, or cancelled.
+  Status list(const std::vector<scene::Method>& wanted);
   std::vector<Candidate>& candidates() { return candidates_; }
 
   /// Searches the candidate's longest step that keeps the tolerance, and fills in `best`. Gives up when the
