@@ -11,7 +11,8 @@ const char* unsuited(Method method, const Scene& scene) {
     return std::holds_alternative<Fem>(cloth.material);
   });
   if (!sheet || method != Method::pbd) return nullptr;
-  return "another method where a cloth has \"model\": \"fem\": PBD's stiffness is no N/m; \"xpbd\" is like it and keeps "
+  return "another method where a cloth has \"model\": \"fem\": PBD's stiffness is no N/m; \"xpbd\" is like "
+         "it and keeps "
          "the material";
 }
 

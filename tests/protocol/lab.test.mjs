@@ -74,12 +74,14 @@ test("a sheet of finite elements is charted, mapped, chosen for and simplified, 
   ];
   for (const [method, params] of jobs) {
     const { job } = await client.request(method, params);
-    const { state, result, error } = await client.until(
-      () => client.messages,
-      (m) => m.method === "lab.result" && m.params.job === job && m.params.state !== "running",
-      method,
-      900_000,
-    ).then(({ params }) => params);
+    const { state, result, error } = await client
+      .until(
+        () => client.messages,
+        (m) => m.method === "lab.result" && m.params.job === job && m.params.state !== "running",
+        method,
+        900_000,
+      )
+      .then(({ params }) => params);
     assert.equal(state, "finished", `${method}: ${JSON.stringify(error)}`);
     assert.ok(!JSON.stringify(result).includes('"pbd"'), method);
   }
