@@ -69,13 +69,14 @@ layout(std430, binding = slot_lacking) coherent buffer Lacking { vec4 lacking[];
 void balance(int cloth) {
   int first_sum = cloth * GROUP_SIZE, lane = int(gl_LocalInvocationID.x), end = free_vertices[cloth].y;
   vec4 sum = vec4(0.0);
-  for (int i = free_vertices[cloth].x + lane; i < end; i += GROUP_SIZE)
+  for (int i = free_vertices[cloth].x + lane; i < end; i += GROUP_SIZE) {
 #ifdef WIND
     float mass = 1.0 / FETCH(position, i).w + mobility * remainders[i].position.w;
     sum += mass * vec4(targets[i].xyz - deviation(i).xyz, 1.0);
 #else
     sum += vec4(targets[i].xyz - deviation(i).xyz, 1.0) / FETCH(position, i).w;
 #endif
+  }
   lacking[first_sum + lane] = sum;
   wait();
   sum = vec4(0.0);
