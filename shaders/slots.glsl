@@ -16,6 +16,10 @@ const int slot_next_position = 0;        // the end of a step, or of a part of i
 const int slot_next_velocity = 1;        // the same, as unit_velocity
 const int slot_neighbour_control = 2;    // collide/*.comp, methods/step_end.glsl; collide/*.comp, indirect dispatches
 
+// The wind's, of every method; and of frames and pictures.
+const int unit_fan_offsets = 24;  // server/model/fans.cpp; methods/wind.glsl, stream/normal.glsl
+const int unit_fans = 25;         // the same
+
 // The neighbour search's: collide/*.comp. The slots are read as the units of the same name, too.
 const int unit_excluded = 9;             // server/sim/self_collision.cpp; find_neighbours
 const int unit_first_excluded = 10;      // the same
@@ -66,6 +70,7 @@ const int unit_block_a = 20;            // system; update
 const int unit_block_b = 21;            // system; update
 const int unit_before_position = 22;    // the step before; end
 const int unit_before_velocity = 23;    // the step before; end
+const int unit_wind = 26;               // wind; start, system, multiply, search
 const int slot_start_position = 0;      // start
 const int slot_start_velocity = 1;      // start, advance; advance
 const int slot_estimate = 3;            // start, advance, contacts; advance, and all as unit_velocity
@@ -83,6 +88,7 @@ const int slot_solver_control = 3;      // update; update, indirect dispatches, 
 const int slot_direction = 4;           // update
 const int slot_direction_product = 5;   // update
 const int slot_change = 6;              // update
+const int slot_wind = 0;                // wind
 
 // The strain limit's: strain_limit/NAME.comp.
 const int unit_group_excess = 10;        // sweep; the next sweep
@@ -96,13 +102,11 @@ const int slot_given = 5;                // start, sweep; sweep, end
 const int slot_partials = 0;  // diagnose.comp; server/sim/diagnose.cpp
 
 // Those of frames and pictures.
-const int unit_fan_offsets = 9;  // server/model/fans.cpp; stream/normal.glsl
-const int unit_fans = 10;        // the same
-const int slot_packed = 0;       // stream/pack.comp; server/stream/packer.cpp
-const int slot_bounds = 2;       // stream/bounds.comp; stream/pack.comp
-const int slot_normals = 0;      // render/normals.comp; render/cloth.vert, as attribute_normal
-const int unit_shadow_map = 0;   // render/depth.vert; render/light.glsl
-const int block_frame = 0;       // a uniform block: server/render/renderer.cpp; render/frame.glsl
+const int slot_packed = 0;      // stream/pack.comp; server/stream/packer.cpp
+const int slot_bounds = 2;      // stream/bounds.comp; stream/pack.comp
+const int slot_normals = 0;     // render/normals.comp; render/cloth.vert, as attribute_normal
+const int unit_shadow_map = 0;  // render/depth.vert; render/light.glsl
+const int block_frame = 0;      // a uniform block: server/render/renderer.cpp; render/frame.glsl
 
 // Locations of a picture's attributes, and of uniforms of whichever program is in use: who reads them in render/.
 const int attribute_position = 0;            // cloth.vert, depth.vert, sphere.vert
@@ -115,5 +119,5 @@ const int uniform_color = 0;                 // cloth.frag
 const int uniform_pattern = 1;               // cloth.frag
 
 // All of them; with READ_STORAGE units are slots too, after the others.
-const int number_of_units = 24;
+const int number_of_units = 27;
 const int number_of_slots = 8;

@@ -1,5 +1,7 @@
 #include "server/gl/program.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <regex>
 #include <set>
@@ -98,14 +100,16 @@ class Expansion {
   std::set<std::string> seen_;
 };
 
-/// The driver's first message, with its line of the expanded text replaced by the source file's name and
-/// line.
+/// The driver's first error (its first message, if none says so), with its line of the expanded text replaced
+/// by the source file's name and line.
 Error compile_error(const Source& source, const std::string& log) {
   const std::string remedy = "mend the shader and start again";
   // Mesa: "0:12(5): error: ..."; NVIDIA: "0(12) : error C0000: ..."; AMD, Intel: "ERROR: 0:12: ..."
   static const std::regex position(R"(\d+[:(](\d+)\)?(?:\(\d+\))?\s*:?\s*([^\n]*))");
   std::smatch match;
-  if (std::regex_search(log, match, position)) {
+  const std::size_t first = std::min(log.find("error"), log.find("ERROR"));  // warnings may come before it
+  const std::size_t line_start = first == std::string::npos ? 0 : log.rfind('\n', first) + 1;
+  if (std::regex_search(log.begin() + static_cast<std::ptrdiff_t>(line_start), log.end(), match, position)) {
     const std::size_t line = std::stoul(match[1].str());
     if (line >= 1 && line <= source.origins.size())
       return Error{source.origins[line - 1], match[2].str(), remedy};

@@ -62,4 +62,8 @@ Pose pose(const scene::Motion& motion, double time) {
   return std::visit([time](const auto& kind) { return pose_of(kind, time); }, motion);
 }
 
+dvec3 wind_velocity(const scene::Wind& wind, double time) {
+  return wind.velocity * (1.0 + wind.gust * std::sin(2.0 * std::numbers::pi * wind.gust_frequency * time));
+}
+
 }  // namespace clothlab::model

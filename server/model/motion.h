@@ -1,5 +1,5 @@
-// The motion of pins and colliders as closed forms of time, in double precision. Shared by the GPU path and
-// the reference.
+// The motion of pins, colliders and the wind as closed forms of time, in double precision. Shared by the GPU
+// path and the reference.
 #pragma once
 
 #include <glm/mat3x3.hpp>
@@ -22,5 +22,8 @@ struct Pose {
 
 /// The pose of `motion` at `time` [s] since the start.
 Pose pose(const scene::Motion& motion, double time);
+
+/// Velocity of the air [m/s] at `time` [s] since the start.
+glm::dvec3 wind_velocity(const scene::Wind& wind, double time);
 
 }  // namespace clothlab::model

@@ -1,6 +1,8 @@
 // The longest stable time step: each method's limit for one vibration, and the limit of a whole scene, which
-// is that of its worst vibration about the rest shape. The limit does not account for contacts, large bends
-// or Provot's strain_limit.
+// is that of its worst vibration about the rest shape. The limit does not account for contacts, large bends,
+// Provot's strain_limit or wind. With s = dt braking / mass (shaders/elements/wind.glsl, which keeps s below
+// 1, or a half under Verlet), wind makes it sqrt(1 - s / 2) times as long under symplectic Euler, sqrt(1 - s)
+// times under Verlet.
 #pragma once
 
 #include <limits>

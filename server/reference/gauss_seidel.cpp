@@ -8,6 +8,7 @@
 #include "server/reference/strain_limit.h"
 #include "server/reference/sweeps.h"
 #include "server/reference/vectors.h"
+#include "server/reference/wind.h"
 #include "server/scene/method.h"
 #include "shaders/elements/elements.h"
 
@@ -30,12 +31,12 @@ bool hits(const SweepState& step, const Surface& met, const dvec3& v) {
 }
 
 /// The displacement from which VBD's sweeps start [m]: inertia's displacement plus the followed share of
-/// gravity's. Where the free motion meets a collider, the surface and friction cut both down.
+/// gravity's and the wind's. Where the free motion meets a collider, the surface and friction cut both down.
 dvec3 first_guess(const SweepState& step, std::uint32_t i, const std::optional<dvec3>& velocity_before) {
   const World& world = step.world;
   const double dt = step.dt, drag = model::mobility(world.scene);
-  const dvec3 &v = step.v[i], &free = step.free_displacement[i];
-  dvec3 pull = world.scene.gravity, felt(0.0);
+  const dvec3 &v = step.v[i], free = step.free_displacement[i] + step.blown[i];
+  dvec3 pull = world.scene.gravity + step.blown[i] / (drag * dt * dt), felt(0.0);
   if (velocity_before) felt = (v / drag - *velocity_before) / dt;
   const auto not_followed = [&] {
     return velocity_before ? (1.0 - followed(felt, pull)) * drag * dt * dt * pull : dvec3(0.0);
@@ -57,13 +58,38 @@ dvec3 first_guess(const SweepState& step, std::uint32_t i, const std::optional<d
 std::vector<std::optional<dvec3>> velocities_to_keep(const SweepState& step) {
   std::vector<std::optional<dvec3>> before(step.v.begin(), step.v.end());
   for (std::uint32_t i = 0; i < before.size(); ++i) {
-    dvec3 stopped = step.x[i] + step.free_displacement[i];
+    dvec3 stopped = step.x[i] + step.free_displacement[i] + step.blown[i];
     Surface met;
     if (stop_at_colliders_position(step.world, step.t, step.x[i], stopped, met) > 0 &&
         hits(step, met, step.v[i]))
       before[i].reset();
   }
   return before;
+}
+
+/// Sets what the wind at the step's end adds. To PBD and XPBD it is a force, as in an explicit step. To VBD
+/// its force on a vertex is f - braking (u - v), with u the velocity at the step's end, as in implicit Euler:
+/// what is added is then the solution of m (1 + dt drag) (u - u_0) = dt (f - braking (u - v)), with u_0 the
+/// velocity without wind.
+void blow(SweepState& step, double t_next) {
+  const World& world = step.world;
+  const double dt = step.dt, air_drag = 1.0 / model::mobility(world.scene);
+  const bool by_vertices = scene::sweeps_vertices(world.scene.solver.method);
+  Vectors gained(step.x.size(), dvec3(0.0));
+  add_wind(world, step.x, step.v, t_next, gained);
+  const std::vector<elements::WindLoad> loads = wind_loads(world, step.x, step.v, t_next);
+  for (std::uint32_t i = 0; i < step.x.size(); ++i) {
+    if (world.pinned(i)) continue;
+    if (!by_vertices) {
+      step.blown[i] = dt * dt / air_drag * gained[i];
+      continue;
+    }
+    const double inertia = world.model.mass[i] * air_drag;
+    step.added_inertia[i] = dt * loads[i].braking;
+    const dvec3 without = (step.v[i] + dt * world.scene.gravity) / air_drag;
+    step.blown[i] = dt * (dt * loads[i].force + step.added_inertia[i] * (step.v[i] - without)) /
+                    (inertia + step.added_inertia[i]);
+  }
 }
 
 SweepState begin(const World& world, const State& state, double t, double t_next) {
@@ -78,6 +104,8 @@ SweepState begin(const World& world, const State& state, double t, double t_next
                   Vectors(count),
                   Vectors(count),
                   Vectors(count, dvec3(0.0)),
+                  std::vector<double>(count, 0.0),
+                  Vectors(count, dvec3(0.0)),
                   std::vector<double>(count),
                   {},
                   std::vector<int>(count, 0),
@@ -89,11 +117,13 @@ SweepState begin(const World& world, const State& state, double t, double t_next
   Vectors end = state.position, unused(count);
   place_pins(world, t_next, end, unused);
   const bool guesses = scene::sweeps_vertices(world.scene.solver.method);
+  if (world.scene.wind) blow(step, t_next);
   for (std::uint32_t i = 0; i < count; ++i) {
     const dvec3& v = state.velocity[i];
     step.mobility[i] = drag * inverse_mass(world, i);
     step.displacement[i] = step.free_displacement[i] =
         world.pinned(i) ? end[i] - state.position[i] : drag * (dt * v + dt * dt * gravity);
+    step.displacement[i] += step.blown[i];
     if (guesses && !world.pinned(i))
       step.displacement[i] =
           first_guess(step, i, state.velocity_before.empty() ? std::nullopt : state.velocity_before[i]);

@@ -7,6 +7,7 @@
 #include "server/reference/methods.h"
 #include "server/reference/system.h"
 #include "server/reference/vectors.h"
+#include "server/reference/wind.h"
 #include "shaders/elements/elements.h"
 
 namespace clothlab::reference {
@@ -18,18 +19,28 @@ constexpr int most_newton_steps =
     200;  // far from the solution convergence is only linear, where the negative `across` is dropped
 
 /// The equation r(u) = 0 at the free vertices, r(u) = M (1 + dt drag) u - M (v + dt g) - dt f(x + dt u, u),
-/// for the velocity u at the end of the step [m/s].
+/// for the velocity u at the end of the step [m/s]. The wind's force on a vertex is taken from the state at
+/// the step's start, in the air at its end, and as linear in u: w - braking (u - v). So it adds to v and to
+/// the drag.
 struct Equation {
   const World& world;
-  Vectors x, v;          ///< at the step's start [m], [m/s], with self-collision's push and impulse added
-  Vectors pin_velocity;  ///< (position at the end - x) / dt of pinned vertices, 0 of free ones [m/s]
+  Vectors x, v;              ///< at the step's start [m], [m/s], with self-collision's push and impulse added
+  std::vector<double> drag;  ///< [vertex_count] of the air [1/s]
+  Vectors pin_velocity;      ///< (position at the end - x) / dt of pinned vertices, 0 of free ones [m/s]
   double dt;
 
   explicit Equation(const StepStart& start)
-      : world(start.world), x(start.state.position), v(start.state.velocity), dt(start.dt) {
+      : world(start.world),
+        x(start.state.position),
+        v(start.state.velocity),
+        drag(x.size(), start.world.scene.air_drag),
+        dt(start.dt) {
+    const std::vector<elements::WindLoad> wind = wind_loads(world, x, v, start.t + dt);
     for (std::size_t i = 0; i < x.size(); ++i) {
+      const double mass = world.model.mass[i];
+      drag[i] += wind[i].braking / mass;
+      v[i] += start.impulse[i] + dt / mass * (wind[i].force + wind[i].braking * v[i]);
       x[i] += start.push[i];
-      v[i] += start.impulse[i];
     }
     Vectors unused(x.size());
     pin_velocity = x;
@@ -49,14 +60,19 @@ struct Equation {
     for (std::size_t i = 0; i < x.size(); ++i) {
       if (world.pinned(i)) continue;
       const double mass = world.model.mass[i];
-      r[i] =
-          mass * ((1.0 + dt * world.scene.air_drag) * u[i] - v[i] - dt * world.scene.gravity) - dt * force[i];
+      r[i] = mass * ((1.0 + dt * drag[i]) * u[i] - v[i] - dt * world.scene.gravity) - dt * force[i];
     }
     return r;
   }
 
   Matrix jacobian(const Vectors& u, Across across) const {
-    return system_matrix(world, end(u), {1.0 + dt * world.scene.air_drag, dt, dt * dt}, across);
+    Matrix matrix = system_matrix(world, end(u), {1.0, dt, dt * dt}, across);
+    for (std::size_t i = 0; i < x.size(); ++i)
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto row = 3 * static_cast<Matrix::StorageIndex>(i) + axis;
+        matrix.coeffRef(row, row) += world.model.mass[i] * dt * drag[i];
+      }
+    return matrix;
   }
 
   /// The largest sum of momenta in the equation of any vertex [kg m/s]; rounding errors are a share of it.
@@ -90,8 +106,8 @@ struct Equation {
     for (std::size_t i = 0; i < x.size(); ++i) {
       if (world.pinned(i)) continue;
       const dvec3 driven = v[i] + dt * world.scene.gravity;
-      sum += world.model.mass[i] *
-             (0.5 * (1.0 + dt * world.scene.air_drag) * glm::dot(u[i], u[i]) - glm::dot(u[i], driven));
+      sum +=
+          world.model.mass[i] * (0.5 * (1.0 + dt * drag[i]) * glm::dot(u[i], u[i]) - glm::dot(u[i], driven));
     }
     return sum + energy(world, State{end(u), Vectors(x.size(), dvec3(0.0)), {}}).elastic;
   }
@@ -130,6 +146,8 @@ State end_state(const StepStart& start, const Equation& equation, const Vectors&
 State backward_euler(const StepStart& start) {
   const Equation equation(start);
   Vectors u = equation.v;
+  for (std::size_t i = 0; i < u.size(); ++i)
+    u[i] /= 1.0 + equation.dt * (equation.drag[i] - start.world.scene.air_drag);
   for (std::size_t i = 0; i < u.size(); ++i)
     if (start.world.pinned(i)) u[i] = equation.pin_velocity[i];
   const double scale = equation.scale(u);

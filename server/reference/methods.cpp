@@ -5,7 +5,7 @@ namespace clothlab::reference {
 
 State explicit_euler(const StepStart& start) {
   const State& state = start.state;
-  const Vectors a = accelerations(start.world, state.position, state.velocity);
+  const Vectors a = accelerations(start.world, state.position, state.velocity, start.t);
   State next = state;
   for (std::size_t i = 0; i < a.size(); ++i) {
     const dvec3 v = state.velocity[i] + start.impulse[i];
@@ -17,7 +17,7 @@ State explicit_euler(const StepStart& start) {
 
 State symplectic_euler(const StepStart& start) {
   const State& state = start.state;
-  const Vectors a = accelerations(start.world, state.position, state.velocity);
+  const Vectors a = accelerations(start.world, state.position, state.velocity, start.t);
   State next = state;
   for (std::size_t i = 0; i < a.size(); ++i) {
     next.velocity[i] = state.velocity[i] + start.dt * a[i] + start.impulse[i];
@@ -28,7 +28,7 @@ State symplectic_euler(const StepStart& start) {
 
 State verlet(const StepStart& start) {
   const State& state = start.state;
-  const Vectors a = accelerations(start.world, state.position, state.velocity);
+  const Vectors a = accelerations(start.world, state.position, state.velocity, start.t);
   State next = state;
   next.half_velocity.resize(a.size());
   next.half_dt.assign(a.size(), start.dt);
@@ -48,19 +48,19 @@ State rk4(const StepStart& start) {
   const double t = start.t, dt = start.dt;
   Vectors x = start.state.position, v = start.state.velocity;
   place_pins(world, t, x, v);
-  const Vectors a1 = accelerations(world, x, v);
+  const Vectors a1 = accelerations(world, x, v, t);
 
   Vectors x2 = plus(x, dt / 2, v), v2 = plus(v, dt / 2, a1);
   place_pins(world, t + dt / 2, x2, v2);
-  const Vectors a2 = accelerations(world, x2, v2);
+  const Vectors a2 = accelerations(world, x2, v2, t + dt / 2);
 
   Vectors x3 = plus(x, dt / 2, v2), v3 = plus(v, dt / 2, a2);
   place_pins(world, t + dt / 2, x3, v3);
-  const Vectors a3 = accelerations(world, x3, v3);
+  const Vectors a3 = accelerations(world, x3, v3, t + dt / 2);
 
   Vectors x4 = plus(x, dt, v3), v4 = plus(v, dt, a3);
   place_pins(world, t + dt, x4, v4);
-  const Vectors a4 = accelerations(world, x4, v4);
+  const Vectors a4 = accelerations(world, x4, v4, t + dt);
 
   State next = start.state;
   for (std::size_t i = 0; i < x.size(); ++i) {

@@ -8,6 +8,7 @@
 #include "server/reference/methods.h"
 #include "server/reference/strain_limit.h"
 #include "server/reference/vectors.h"
+#include "server/reference/wind.h"
 #include "server/scene/method.h"
 #include "shaders/elements/elements.h"
 
@@ -57,10 +58,11 @@ Vectors element_forces(const World& world, const Vectors& x, const Vectors& v) {
   return force;
 }
 
-Vectors accelerations(const World& world, const Vectors& x, const Vectors& v) {
+Vectors accelerations(const World& world, const Vectors& x, const Vectors& v, double t) {
   Vectors a = element_forces(world, x, v);
   for (std::size_t i = 0; i < a.size(); ++i)
     a[i] = a[i] / world.model.mass[i] + world.scene.gravity - world.scene.air_drag * v[i];
+  add_wind(world, x, v, t, a);
   return a;
 }
 

@@ -69,9 +69,10 @@ void baraff_witkin_step(const World& world, State& state);
 std::vector<dvec3> element_forces(const World& world, const std::vector<dvec3>& position,
                                   const std::vector<dvec3>& velocity);
 
-/// The acceleration of each vertex by elements, gravity and air drag, as if no vertex were pinned [m/s^2].
+/// The acceleration of each vertex by elements, gravity, air drag and the wind at time t [s], as if no vertex
+/// were pinned [m/s^2].
 std::vector<dvec3> accelerations(const World& world, const std::vector<dvec3>& position,
-                                 const std::vector<dvec3>& velocity);
+                                 const std::vector<dvec3>& velocity, double t);
 
 /// Sets position and velocity of the pinned vertices to those of their motions at time t [s].
 void place_pins(const World& world, double t, std::vector<dvec3>& position, std::vector<dvec3>& velocity);

@@ -25,9 +25,10 @@ struct Balance {
 
 Balance balance(const SweepState& step, std::uint32_t i) {
   const World& world = step.world;
-  const double mass = 1.0 / step.mobility[i], dt = step.dt;
-  Balance result{mass * (step.free_displacement[i] + step.self_collision_push[i] - step.displacement[i]),
-                 dmat3(mass)};
+  const double mass = 1.0 / step.mobility[i] + step.added_inertia[i], dt = step.dt;
+  Balance result{
+      mass * (step.free_displacement[i] + step.blown[i] + step.self_collision_push[i] - step.displacement[i]),
+      dmat3(mass)};
   dvec3 diagonal(0.0), off_diagonal(0.0);
   world.model.elements.each([&](const auto& batch) {
     batch.at(i, [&](const auto& element, std::size_t corner) {
@@ -169,9 +170,10 @@ void balance_momentum(SweepState& step) {
     const std::uint32_t first = cloth.first_vertex, end = first + cloth.vertex_count;
     for (std::uint32_t i = first; i < end; ++i) {
       free = free && !world.pinned(i);
-      lacking += world.model.mass[i] *
-                 (step.free_displacement[i] + step.self_collision_push[i] - step.displacement[i]);
-      mass += world.model.mass[i];
+      const double inertia = step.added_inertia[i] + world.model.mass[i] / model::mobility(world.scene);
+      lacking += inertia * (step.free_displacement[i] + step.blown[i] + step.self_collision_push[i] -
+                            step.displacement[i]);
+      mass += inertia;
     }
     for (std::uint32_t i = first; free && i < end; ++i) step.displacement[i] += lacking / mass;
   }

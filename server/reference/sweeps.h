@@ -16,6 +16,11 @@ struct SweepState {
   std::vector<dvec3> x, v;               ///< [vertex_count] at the step's start [m], [m/s]
   std::vector<dvec3> displacement;       ///< [vertex_count] so far [m]; of the whole step for pinned vertices
   std::vector<dvec3> free_displacement;  ///< [vertex_count] by inertia, gravity and drag alone [m]
+  /// [vertex_count] What the wind adds to the displacement that inertia, gravity and drag give [m].
+  std::vector<dvec3> blown;
+  /// [vertex_count] VBD: what the wind, whose force is linear in the velocity at the step's end, adds to the
+  /// inertia of a vertex [kg].
+  std::vector<double> added_inertia;
   std::vector<dvec3> self_collision_push;  ///< [vertex_count] VBD: displacement by self-collision so far [m]
   std::vector<double> mobility;  ///< [vertex_count] 1 / ((1 + dt air drag) mass) [1/kg], 0 if pinned
   /// XPBD, for each law [element_count]: impulses times dt so far [kg m].

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numbers>
 
+#include "server/model/wind.h"
 #include "server/reference/methods.h"
 
 namespace clothlab::reference {
@@ -60,7 +62,10 @@ double fastest_rate(const World& world) {
       damping[vertex] += element_damping(element.law);
     }
   });
-  double fastest = std::max(world.scene.air_drag, 1e-3);  // never 0: a sheet without springs moves too
+  // Never 0: a sheet without springs moves too. The wind brakes, and gusts.
+  double fastest = std::max({world.scene.air_drag, 2.0 * model::wind_rate(world.model, world.scene), 1e-3});
+  if (world.scene.wind && world.scene.wind->gust > 0.0)
+    fastest = std::max(fastest, 2.0 * std::numbers::pi * world.scene.wind->gust_frequency);
   for (std::size_t i = 0; i < count; ++i) {
     const double mass = world.model.mass[i];
     fastest = std::max(

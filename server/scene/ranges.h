@@ -44,6 +44,9 @@ inline constexpr Range seed{0, 1e9};
 inline constexpr Range friction{0, 10};
 inline constexpr Range restitution{0, 1};
 inline constexpr Range thickness{1e-6, 10, "m"};
+inline constexpr Range wind_speed{-1e3, 1e3, "m/s"};  ///< along an axis
+inline constexpr Range gust{0, 10, "of the wind's velocity"};
+inline constexpr Range air_coefficient{0, 100};  ///< of drag or lift
 inline constexpr Range air_drag{0, 1e6, "1/s"};
 
 inline constexpr Range dt{1e-9, 1, "s"};

@@ -221,6 +221,17 @@ struct SelfCollision {
   bool operator==(const SelfCollision&) const = default;
 };
 
+/// Air that flows past the cloths, the same everywhere. At time t it flows with velocity * (1 + gust * sin(2
+/// pi gust_frequency t)). It blows through cloths and colliders onto what is behind them.
+struct Wind {
+  dvec3 velocity{0.0};          ///< [m/s]; 0: air at rest, which brakes
+  double gust = 0.0;            ///< share of the velocity, 0 or more
+  double gust_frequency = 0.7;  ///< [Hz]
+  double drag = 1.0;            ///< coefficient, of a triangle's area, 0 or more
+  double lift = 0.2;            ///< coefficient, 0 or more
+  bool operator==(const Wind&) const = default;
+};
+
 struct Solver {
   Method method = Method::symplectic_euler;
   double dt = 0.001;  ///< [s]
@@ -239,6 +250,7 @@ struct Scene {
   std::vector<Cloth> cloths;      ///< one or more
   std::vector<Collider> colliders;
   std::optional<SelfCollision> self_collision;
+  std::optional<Wind> wind;
   double air_drag = 0.0;  ///< [1/s]
   Solver solver;
   bool operator==(const Scene&) const = default;

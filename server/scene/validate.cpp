@@ -50,6 +50,16 @@ std::optional<SelfCollision> read_self_collision(const Reader& self_collision) {
                        self_collision.member("friction", 0.2).number(ranges::friction)};
 }
 
+std::optional<Wind> read_wind(const Reader& wind) {
+  if (wind.is_null()) return std::nullopt;
+  wind.object({"velocity", "gust", "gust_frequency", "drag", "lift"});
+  return Wind{wind.member("velocity").vector(ranges::wind_speed),
+              wind.member("gust", Wind{}.gust).number(ranges::gust),
+              wind.member("gust_frequency", Wind{}.gust_frequency).number(ranges::frequency),
+              wind.member("drag", Wind{}.drag).number(ranges::air_coefficient),
+              wind.member("lift", Wind{}.lift).number(ranges::air_coefficient)};
+}
+
 Solver read_solver(const Reader& solver) {
   solver.object({"method", "dt", "iterations", "tolerance"});
   Words names;
@@ -71,8 +81,7 @@ Scene read_scene(const Reader& top, const Assets* assets) {
   scene.cloths = read_cloths(top.member("cloths"), assets);
   scene.colliders = read_colliders(top.member("colliders", json::array()));
   scene.self_collision = read_self_collision(top.member("self_collision", json(nullptr)));
-  const Reader wind = top.member("wind", json(nullptr));
-  if (!wind.is_null()) wind.fail("null; wind is not supported yet (air_drag is)");
+  scene.wind = read_wind(top.member("wind", json(nullptr)));
   scene.air_drag = top.member("air_drag", 0.0).number(ranges::air_drag);
   scene.solver = read_solver(top.member("solver", json::object()));
   if (const char* reason = unsuited(scene.solver.method, scene))

@@ -31,8 +31,13 @@ bool moves(const scene::Motion& motion) {
   return false;
 }
 
+bool gusts(const scene::Wind& wind) {
+  return wind.velocity != scene::dvec3(0.0) && wind.gust != 0 && wind.gust_frequency != 0;
+}
+
 bool is_driven(const scene::Scene& scene) {
   const auto moving = [](const auto& holder) { return moves(holder.motion); };
+  if (scene.wind && gusts(*scene.wind)) return true;
   return std::any_of(scene.colliders.begin(), scene.colliders.end(), moving) ||
          std::any_of(scene.cloths.begin(), scene.cloths.end(), [&](const scene::Cloth& cloth) {
            return std::any_of(cloth.pins.begin(), cloth.pins.end(), moving);

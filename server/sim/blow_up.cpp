@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "server/base/text.h"
+#include "server/model/wind.h"
 #include "server/scene/method.h"
 #include "server/scene/solid.h"
 
@@ -93,8 +94,11 @@ Allowance allowance(const scene::Scene& scene, const model::Model& model, double
     elastic += 0.5 * element_stiffness(element.law) * stretch * stretch;
   });
   const double speed = allowed.pin_speed + allowed.collider_speed;
+  const double wind = scene.wind ? model::largest_wind_speed(*scene.wind) : 0.0;
+  allowed.wind_power = model::largest_wind_power(model, scene);
   allowed.slack_energy =
-      mass * (0.25 * glm::length(scene.gravity) * cloth.size + 2.0 * speed * speed) + elastic;
+      mass * (0.25 * glm::length(scene.gravity) * cloth.size + 2.0 * speed * speed + 0.5 * wind * wind) +
+      elastic;
   allowed.energy_ratio = stable_swing(scene.solver.dt, dt_limit);
   allowed.counts_elastic = !scene::sweeps(scene.solver.method);
   allowed.growth = scene.solver.dt > dt_limit ? proved_already : growth_that_proves;
@@ -120,15 +124,15 @@ void BlowUp::rebase(const Diagnostics& state) {
   last_ = state;
 }
 
-/// The work [J] that pins and colliders may have done since the last state: their largest speed at any time,
-/// times the larger of the forces in the two states, times the time between. A collider also throws the
-/// vertices that it hits, at up to twice its speed.
+/// The work [J] that pins, colliders and wind may have done since the last state. Of pins and colliders:
+/// their largest speed at any time, times the larger of the forces in the two states, times the time between.
+/// A collider also throws the vertices that it hits, at up to twice its speed.
 double BlowUp::work_since_last(const Diagnostics& state) const {
   const double seconds = state.time - last_.time;
   const double pins = allowance_.pin_speed * std::max(state.pin_force, last_.pin_force);
   const double colliders = allowance_.collider_speed * std::max(state.contact_force, last_.contact_force);
   const double thrown = 2.0 * allowance_.collider_speed * allowance_.collider_speed * state.contact_mass;
-  return seconds * (pins + colliders) + thrown;
+  return seconds * (pins + colliders + allowance_.wind_power) + thrown;
 }
 
 BlowUp::Verdict BlowUp::judge(const Diagnostics& state) {

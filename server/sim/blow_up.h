@@ -15,23 +15,24 @@ struct Allowance {
   double growth = 4;           ///< factor of growth that turns a doubt into a blow-up; 1 if dt > dt_limit
   double pin_speed = 0;        ///< speed of the fastest pin [m/s]
   double collider_speed = 0;   ///< speed of the fastest point of a collider near the cloth [m/s]
+  double wind_power = 0;       ///< the most that the wind does [W]
   bool counts_elastic = true;  ///< true if growth of elastic energy counts, false if only kinetic energy does
 };
 
 /// The allowance for a scene. `slack_energy` is the scene's own scale of energy, a sum: to lift the cloth by
-/// a quarter of its size; to move it at twice the speed of the pins and colliders; to stretch each element by
-/// a thousandth of its size, by the push of self-collision in a step and by the rounding of float32.
-/// `energy_ratio` is how far the energy of a stable vibration varies under symplectic Euler, (1 + s) / (1 -
-/// s) with s = dt / dt_limit, and at least 2. `counts_elastic` is false for methods that sweep (PBD, XPBD,
-/// VBD): with too few sweeps the cloth stretches far, and its full stiffness then gives an elastic energy
-/// that no work has put in. That is no blow-up.
+/// a quarter of its size; to move it at twice the speed of the pins and colliders, and at the wind's; to
+/// stretch each element by a thousandth of its size, by the push of self-collision in a step and by the
+/// rounding of float32. `energy_ratio` is how far the energy of a stable vibration varies under symplectic
+/// Euler, (1 + s) / (1 - s) with s = dt / dt_limit, and at least 2. `counts_elastic` is false for methods
+/// that sweep (PBD, XPBD, VBD): with too few sweeps the cloth stretches far, and its full stiffness then
+/// gives an elastic energy that no work has put in. That is no blow-up.
 Allowance allowance(const scene::Scene& scene, const model::Model& model, double dt_limit);
 
 /// True if a change of scene may change the energy of a state. A change of the solver (e.g. of dt) cannot.
 bool changes_energy(const scene::Scene& from, scene::Scene to);
 
-/// Keeps a ledger: the total energy at the start, plus the work that pins and colliders may have done since,
-/// less the energy lost. What the ledger leaves for kinetic and elastic energy is the ledger less the
+/// Keeps a ledger: the total energy at the start, plus the work that pins, colliders and wind may have done
+/// since, less the energy lost. What the ledger leaves for kinetic and elastic energy is the ledger less the
 /// gravitational energy. A run is in doubt if those two exceed `energy_ratio` times that, plus
 /// `slack_energy`. The run has blown up if they then grow by the factor `growth`. After a single jump (a
 /// collider put into the cloth) they do not grow further, and after a while the run is good again.

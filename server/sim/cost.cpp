@@ -12,7 +12,9 @@ namespace clothlab::sim {
 namespace {
 
 // Costs [s] for each vertex, measured with tests/bench/step.mjs and methods.mjs.
-constexpr double gather = 50e-9;     ///< one evaluation of the forces
+constexpr double gather = 50e-9;  ///< one evaluation of the forces
+constexpr double wind =
+    1.5 * gather;  ///< on one evaluation: it reads as many vertices, and has two roots a triangle
 constexpr double contacts = 150e-9;  ///< self-collision in one step, without the neighbour search
 constexpr double sweep = 210e-9;     ///< one sweep of PBD, XPBD or VBD
 constexpr double newton = 3.4e-6;    ///< one Newton step of implicit Euler, which rarely takes more than two
@@ -37,6 +39,7 @@ double candidates(const scene::Cloth& cloth, double thickness) {
 double expected_step_seconds(const scene::Scene& scene) {
   const double iterations = scene.solver.iterations;
   double cost_per_vertex = scene::facts(scene.solver.method).evaluations * gather;
+  if (scene.wind) cost_per_vertex += scene::facts(scene.solver.method).evaluations * wind;
   if (scene::sweeps(scene.solver.method)) cost_per_vertex += iterations * sweep;
   if (scene::solves(scene.solver.method)) cost_per_vertex += std::min(iterations, 2.0) * newton;
   double total = 0.0;

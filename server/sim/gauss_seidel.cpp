@@ -113,8 +113,12 @@ class GaussSeidel : public Integrator {
     const std::uint64_t balance = restores_momentum_ ? cloths_ * (2 * rounds(vertex_count_) + lanes) : 0;
     if (contacts_)
       sweep += rounds(vertex_count_) * (colliders + (plan.self_collision ? plan.neighbour_slots : 0));
+    std::uint64_t fan = 0;
+    const std::vector<std::uint32_t>& fans = model.vertex_triangles.offsets;
+    for (std::uint32_t i = 0; plan.wind && i < vertex_count_; ++i)
+      fan = std::max<std::uint64_t>(fan, fans[i + 1] - fans[i]);
     return static_cast<std::uint64_t>(plan.most_sweeps) * sweep + balance +
-           2 * rounds(vertex_count_) * colliders;
+           rounds(vertex_count_) * (2 * colliders + fan);
   }
 
   gl::Defines defines(const Plan& plan) const {

@@ -47,12 +47,18 @@ class ImplicitEuler : public Integrator {
       if (!loaded) return loaded.error();
       made->contacts_ = std::move(*loaded);
     }
+    if (plan.wind) {
+      Result<gl::Program> loaded = gl::Program::load({"methods/implicit_wind.comp"}, defines);
+      if (!loaded) return loaded.error();
+      made->wind_ = std::move(*loaded);
+      made->wind_loads_ = {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
+    }
     return std::unique_ptr<Integrator>(std::move(made));
   }
 
   void set_parameters(const Surroundings& around) override {
     for (const gl::Program* program :
-         {&start_, &system_, &multiply_, &update_, &search_, &advance_, &end_, &contacts_})
+         {&start_, &system_, &multiply_, &update_, &search_, &advance_, &end_, &contacts_, &wind_})
       if (program->id()) set_step_uniforms(*program, around);
     if (around.scene.solver.dt != dt_) restart();  // impulses kept in `contact_friction_` are forces times dt
     dt_ = around.scene.solver.dt;
@@ -130,6 +136,12 @@ class ImplicitEuler : public Integrator {
     sums_.bind(unit_group_sums);
     block_a_.bind(unit_block_a);
     block_b_.bind(unit_block_b);
+    if (wind_.id()) {
+      wind_loads_.buffer.bind_storage(slot_wind);
+      wind_loads_.bind(unit_wind);
+      wind_.set("start_row", row);
+      run(wind_);
+    }
     start_position_.buffer.bind_storage(slot_start_position);
     bind_estimate();
     start_.set("start_row", row);
@@ -238,11 +250,13 @@ class ImplicitEuler : public Integrator {
   GLuint groups_;
   double dt_ = 0;
   int most_newton_steps_ = 1;
-  gl::Program start_, system_, multiply_, update_, search_, advance_, end_, contacts_;
+  gl::Program start_, system_, multiply_, update_, search_, advance_, end_;
+  gl::Program contacts_, wind_;                        ///< none if the scene has no self-collision, no wind
   gl::TextureBuffer start_position_, start_velocity_;  ///< state at the step's start, after self-collision
   gl::TextureBuffer position_, velocity_;              ///< estimate of the state at the step's end
   gl::TextureBuffer guess_;                            ///< first guess of the solved change of velocity
   gl::TextureBuffer constraint_, surface_;             ///< for each vertex: its contact with a collider
+  gl::TextureBuffer wind_loads_;                       ///< for each vertex: the wind at the step's start
   gl::Buffer contact_friction_;                        ///< friction of the contacts, kept between steps
   gl::TextureBuffer block_a_, block_b_, product_, sums_;
   std::array<Vectors, 2> vectors_;  ///< each iteration reads one set and writes the other

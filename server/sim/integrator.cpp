@@ -41,6 +41,9 @@ void set_step_uniforms(const gl::Program& program, const Surroundings& around) {
                      static_cast<float>(scene.gravity.y), static_cast<float>(scene.gravity.z),
                      static_cast<float>(scene.air_drag));
   set_colliders(program, scene, around.motions, contact_margin(scene, around.model));
+  if (scene.wind)
+    glProgramUniform2f(program.id(), program.location("wind_coefficients"),
+                       static_cast<float>(scene.wind->drag), static_cast<float>(scene.wind->lift));
   if (!around.self_collision) return;
   program.set("self_friction", static_cast<float>(scene.self_collision->friction));
   program.set("skin", around.self_collision->skin());

@@ -15,7 +15,7 @@ std::size_t upload_elements(Kernels& kernels) {
 }
 
 MotionTable motion_table(const scene::Scene& scene, const Plan& plan) {
-  return MotionTable(moving_motions(scene), plan.pose_rows());
+  return MotionTable(moving_motions(scene), scene.wind, plan.pose_rows());
 }
 
 }  // namespace
@@ -35,6 +35,10 @@ Result<Kernels> Kernels::create(const scene::Scene& scene) {
       return set.error();
   }
   const std::size_t entries = upload_elements(kernels);
+  if (kernels.plan.wind) {
+    kernels.fan_offsets = {gl::Buffer(kernels.model.vertex_triangles.offsets), GL_R32UI};
+    kernels.fans = {gl::Buffer(model::vertex_fans(kernels.model)), GL_RG32UI};
+  }
   Result<std::unique_ptr<Integrator>> integrator = make_integrator(kernels.surroundings(scene), kernels.plan);
   if (!integrator) return integrator.error();
   kernels.integrator = std::move(*integrator);

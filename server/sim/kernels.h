@@ -17,6 +17,7 @@ struct Kernels {
   MotionTable motions;
   std::optional<SelfCollision> self_collision;
   gl::TextureBuffer elements, slices;
+  gl::TextureBuffer fan_offsets, fans;  ///< the triangles at each vertex, for the wind; else empty
   std::unique_ptr<Integrator> integrator;
   std::optional<StrainLimit> strain_limit;
 

@@ -7,13 +7,14 @@
 namespace clothlab::sim {
 
 namespace {
-constexpr std::size_t floats_a_pose = 20;
+constexpr std::size_t floats_a_pose = 20, floats_a_wind = 4;
 }
 
-MotionTable::MotionTable(std::vector<scene::Motion> motions, int rows_a_step) : motions_(std::move(motions)) {
-  if (motions_.empty()) return;
+MotionTable::MotionTable(std::vector<scene::Motion> motions, std::optional<scene::Wind> wind, int rows_a_step)
+    : motions_(std::move(motions)), wind_(wind) {
+  if (empty()) return;
   const std::size_t rows = batch_steps * static_cast<std::size_t>(rows_a_step) + 1;
-  rows_.resize(rows * motions_.size() * floats_a_pose);
+  rows_.resize(rows * (motions_.size() * floats_a_pose + (wind_ ? floats_a_wind : 0)));
   table_ = gl::TextureBuffer(gl::Buffer(rows_.size() * sizeof(float)), GL_RGBA32F);
 }
 
@@ -36,6 +37,7 @@ void MotionTable::upload(const std::vector<double>& times) {
       write(pose.linear_velocity, 0.0);
       write(pose.angular_velocity, 0.0);
     }
+    if (wind_) write(model::wind_velocity(*wind_, time), 0.0);
   }
   table_.buffer.upload(rows_.data(), static_cast<std::size_t>(out - rows_.data()) * sizeof(float));
 }

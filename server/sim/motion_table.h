@@ -1,8 +1,9 @@
-// The poses of moving pins and colliders for each step of a batch: computed in double precision, read by
-// shaders/methods/motions.glsl.
+// The poses of moving pins and colliders, and the wind, for each step of a batch: computed in double
+// precision, read by shaders/methods/motions.glsl.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "server/gl/buffer.h"
@@ -17,19 +18,20 @@ class MotionTable {
  public:
   MotionTable() = default;
   /// `rows_a_step`: number of rows of each step after the row of its start (Plan::pose_rows).
-  MotionTable(std::vector<scene::Motion> motions, int rows_a_step);
+  MotionTable(std::vector<scene::Motion> motions, std::optional<scene::Wind> wind, int rows_a_step);
 
-  bool empty() const { return motions_.empty(); }
+  bool empty() const { return motions_.empty() && !wind_; }
   /// The index under which kernels find `motion` in the table; -1 for a null motion.
   int index(const scene::Motion& motion) const;
 
-  /// Uploads the poses at `times` [s], one row each: the start of the batch, then rows_a_step rows for each
-  /// step.
+  /// Uploads the poses and the wind at `times` [s], one row each: the start of the batch, then rows_a_step
+  /// rows for each step.
   void upload(const std::vector<double>& times);
   void bind(GLuint unit) const { table_.bind(unit); }
 
  private:
   std::vector<scene::Motion> motions_;
+  std::optional<scene::Wind> wind_;
   std::vector<float> rows_;
   gl::TextureBuffer table_;
 };

@@ -71,6 +71,7 @@ Plan plan(const scene::Scene& scene) {
   plan.solids = solid_runs(scene);
   plan.moving = static_cast<int>(moving_motions(scene).size());
   plan.self_collision = scene.self_collision.has_value();
+  plan.wind = scene.wind.has_value();
   if (scene::sweeps(plan.method))
     for (plan.most_sweeps = 16; plan.most_sweeps < scene.solver.iterations;) plan.most_sweeps *= 4;
   return plan;
@@ -83,6 +84,7 @@ gl::Defines step_defines(const Plan& plan) {
                       {"SOLID_COUNT", std::to_string(plan.solid_count())},
                       {"EACH_SOLID(meet)", each_solid(plan)}};
   for (gl::Defines::value_type& define : law_defines(plan.laws)) defines.push_back(std::move(define));
+  if (plan.wind) defines.emplace_back("WIND", "1");
   if (plan.self_collision) {
     defines.emplace_back("SELF_COLLISION", "1");
     defines.emplace_back("NEIGHBOUR_SLOTS", std::to_string(plan.neighbour_slots));
@@ -107,6 +109,7 @@ std::vector<Simulation::Part> parts(const Plan& plan) {
   add(Kind::term, "bending", plan.laws[elements::law_number<elements::Bending>],
       "no cloth has the model fem and a bending stiffness above 0");
   add(Kind::term, "self_contacts", plan.self_collision, "self_collision is null");
+  add(Kind::term, "wind", plan.wind, "wind is null");
   add(Kind::term, "moving_poses", plan.moving > 0, "no pin and no collider moves");
   for (std::size_t kind = 0; kind < scene::shape_kinds; ++kind) {
     const std::string name = scene::shape_names()[kind];

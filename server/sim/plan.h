@@ -42,6 +42,7 @@ struct Plan {
   int moving = 0;                ///< distinct motions of pins and colliders, null left out
   std::vector<SolidRun> solids;  ///< in runs as long as possible
   bool self_collision = false;
+  bool wind = false;
   std::uint32_t neighbour_slots = 64;  ///< of each neighbour list; more are made if a list needs them
   bool strain_limit = false;           ///< true if any cloth has one, and there are springs
   int most_sweeps = 0;                 ///< 16, 64, 256, ...: at least the iterations of PBD, XPBD or VBD

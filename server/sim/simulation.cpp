@@ -78,6 +78,9 @@ struct Simulation::Implementation {
     kernels.elements.bind(unit_elements);
     kernels.slices.bind(unit_element_slices);
     rest.bind(unit_rest_position);
+    if (!kernels.plan.wind) return;
+    kernels.fan_offsets.bind(unit_fan_offsets);
+    kernels.fans.bind(unit_fans);
   }
 
   void upload_poses(std::uint32_t steps) {

@@ -35,6 +35,7 @@ using std::sqrt;
 #include "shaders/elements/membrane.glsl"
 #include "shaders/elements/solid.glsl"
 #include "shaders/elements/spring.glsl"
+#include "shaders/elements/wind.glsl"
 #undef FUNCTION
 #undef PRECISE
 #undef UNUSED

@@ -26,6 +26,9 @@ void set_deviation(uint i, vec3 d) { deviation_written[i].xyz = d; }
 /// it keeps many small steps from adding up their roundings (compensated summation: Kahan 1965), which are the same in
 /// every step of a fall. Only the vertex itself reads them.
 struct Remainder { vec4 position, velocity; };
+#ifdef WIND
+coherent  // VBD keeps a vertex's added inertia in position.w, which another thread may read
+#endif
 layout(std430, binding = slot_remainders) buffer Remainders { Remainder remainders[]; };
 uniform int last_sweep;
 uniform float mobility;  // 1 / (1 + dt air drag): air drag acts like more mass

@@ -7,7 +7,14 @@ READ_UVEC4(visits, unit_visits);  // law after law, colour after colour: server/
 layout(std430, binding = slot_pushed) buffer Pushed { vec4 pushed[]; };
 #endif
 
-vec3 first_deviation(int i, vec3 x, vec3 v) { return vec3(0.0); }
+#ifdef WIND
+/// The wind acts as in an explicit step: the elements' gains are for the vertices' true masses.
+vec3 first_deviation(int i, vec4 x, vec3 v) {
+  return drift(dt * wind_acceleration(i, x, v, wind_velocity(END_ROW)));
+}
+#else
+vec3 first_deviation(int i, vec4 x, vec3 v) { return vec3(0.0); }
+#endif
 
 #each Law of SWEPT_LAWS
 /// A visit's layout: all vertices, numbers of the law, then the gains.

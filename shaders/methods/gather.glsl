@@ -28,8 +28,16 @@ vec3 element_forces(int i, vec3 x, vec3 v) {
   return force;
 }
 
-/// Acceleration by elements, gravity and air drag [m/s^2].
-vec3 acceleration(int i, vec4 x, vec3 v) { return element_forces(i, x.xyz, v) * x.w + gravity.xyz - gravity.w * v; }
+#include "wind.glsl"
+
+/// Acceleration by elements, gravity, air drag and wind [m/s^2]. `row`: of the wind, counted from the step's start.
+vec3 acceleration(int i, vec4 x, vec3 v, int row) {
+  vec3 a = element_forces(i, x.xyz, v) * x.w + gravity.xyz - gravity.w * v;
+#ifdef WIND
+  a += wind_acceleration(i, x, v, wind_velocity(row));
+#endif
+  return a;
+}
 
 /// State of a pinned vertex, by its motion: at the pose table's row `row`, counted from the step's start.
 void follow_motion(int i, float motion_index, int row, out vec3 x, out vec3 v) {

@@ -22,7 +22,7 @@ void begin(int i) {
   vec4 x = FETCH(position, i), v = FETCH(velocity, i);
   vec3 there, moving;
   if (x.w > 0.0) {
-    set_deviation(i, vec4(remainder(i) + first_deviation(i, x.xyz, v.xyz), v.w));
+    set_deviation(i, vec4(remainder(i) + first_deviation(i, x, v.xyz), v.w));
   } else {
     follow_motion(i, v.w, END_ROW, there, moving);
     set_deviation(i, vec4((there - x.xyz) - free_displacement(v.xyz), 0.0));
@@ -69,8 +69,14 @@ layout(std430, binding = slot_lacking) coherent buffer Lacking { vec4 lacking[];
 void balance(int cloth) {
   int first_sum = cloth * GROUP_SIZE, lane = int(gl_LocalInvocationID.x), end = free_vertices[cloth].y;
   vec4 sum = vec4(0.0);
-  for (int i = free_vertices[cloth].x + lane; i < end; i += GROUP_SIZE)
+  for (int i = free_vertices[cloth].x + lane; i < end; i += GROUP_SIZE) {
+#ifdef WIND
+    float mass = 1.0 / FETCH(position, i).w + mobility * remainders[i].position.w;
+    sum += mass * vec4(targets[i].xyz - deviation(i).xyz, 1.0);
+#else
     sum += vec4(targets[i].xyz - deviation(i).xyz, 1.0) / FETCH(position, i).w;
+#endif
+  }
   lacking[first_sum + lane] = sum;
   wait();
   sum = vec4(0.0);

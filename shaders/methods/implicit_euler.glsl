@@ -1,6 +1,6 @@
 // Implicit Euler: Baraff & Witkin 1998. The unknown is the velocity u at the step's end. From an estimate of u, with x
 // = start + dt u, each Newton step solves
-//   J change = m (v - u) + dt f(x, u),   J = m (1 + dt air_drag) + dt C + dt^2 K,
+//   J change = m (v - u) + dt f(x, u),   J = m (1 + dt drag) + dt C + dt^2 K,
 // with C and K the matrices of the elements' damping and stiffness at x, without the indefinite part of K. The first
 // estimate is u = 0: one Newton step from there is their method. A motion that a pin or a collider prevents is filtered
 // out of every vector of the solver (sections 5.1 to 5.3). A full Newton step can overshoot if elements turn by much in
@@ -12,6 +12,14 @@
 // `constraint`: how a collider holds a vertex. xyz: unit normal of the contact, 0 without a contact; w: speed of the
 // rebound [m/s], or -1 minus that speed if the vertex sticks to the surface.
 bool sticks(vec4 constraint) { return constraint.w < 0.0; }
+
+#ifdef WIND
+READ_VEC4(wind_loads, unit_wind);  // implicit_wind.comp
+/// Drag of the air on a vertex [1/s].
+float drag(int i) { return gravity.w + FETCH(wind_loads, i).w; }
+#else
+float drag(int i) { return gravity.w; }
+#endif
 
 /// v without the part along a contact's normal; 0 for a vertex that is pinned or sticks.
 vec3 filtered(vec3 v, float inverse_mass, vec4 constraint) {

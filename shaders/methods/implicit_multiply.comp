@@ -10,7 +10,7 @@ layout(std430, binding = slot_product) writeonly buffer Product { vec4 product[]
 layout(std430, binding = slot_group_sums) writeonly buffer Sums { vec4 group_sums[]; };  // one per work group
 
 vec3 multiply(int i, vec4 x, vec3 z) {
-  vec3 result = z * ((1.0 + dt * gravity.w) / x.w);
+  vec3 result = z * ((1.0 + dt * drag(i)) / x.w);
 #each Law
   for (EntryRange at = entry_range(Law_LIST, i); at.first < at.end; at.first += Law_TEXELS * SLICE_SIZE) {
     LawEntry entry = entry_of_Law(at.first);

@@ -1,5 +1,5 @@
 // Implicit Euler's line search: the change of the incremental potential
-//   m/2 |u - v|^2 + elastic(start + dt u) - dt m g.u + dt m air_drag/2 |u|^2 + dt c/2 sum (n.(u_i - u_j))^2
+//   m/2 |u - v|^2 + elastic(start + dt u) - dt m g.u + dt m drag/2 |u|^2 + dt c/2 sum (n.(u_i - u_j))^2
 // for each share of the Newton step. A pin moves its whole way at any share.
 #include "implicit_euler.glsl"
 #include "group_sums.glsl"
@@ -13,7 +13,7 @@ layout(std430, binding = slot_group_sums) writeonly buffer Sums { vec4 group_sum
 /// velocity [kg].
 vec4 momentum_left_out(int i, vec4 x) {
   vec3 v = FETCH(start_velocity, i).xyz, u = FETCH(velocity, i).xyz + FETCH(change, i).xyz;
-  return vec4(v - u + dt * (gravity.xyz - gravity.w * u), 1.0 + dt * gravity.w) / x.w;
+  return vec4(v - u + dt * (gravity.xyz - drag(i) * u), 1.0 + dt * drag(i)) / x.w;
 }
 #endif
 
@@ -48,8 +48,8 @@ void main() {
 #end
     if (x.w > 0.0) {
       float m = 1.0 / x.w;
-      float slope = m * dot(d, u - FETCH(start_velocity, i).xyz - dt * gravity.xyz + dt * gravity.w * u);
-      float curvature = m * (1.0 + dt * gravity.w) * dot(d, d);
+      float slope = m * dot(d, u - FETCH(start_velocity, i).xyz - dt * gravity.xyz + dt * drag(i) * u);
+      float curvature = m * (1.0 + dt * drag(i)) * dot(d, d);
       for (int k = 0; k < SHARES; ++k) energy[k] += shares[k] * (slope + 0.5 * shares[k] * curvature);
     }
   }

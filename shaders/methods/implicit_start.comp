@@ -46,6 +46,10 @@ void rub(int i, float inverse_mass, float impulse, inout Beginning start) {
 /// a quarter of its way: a vertex that slides over a sphere must not count as leaving.
 Beginning foresee(int i, vec3 x, vec3 v, float inverse_mass) {
   Beginning start = Beginning(v, v + dt * gravity.xyz);
+#ifdef WIND
+  vec4 load = FETCH(wind_loads, i);
+  start.guess = (start.guess + load.xyz) / (1.0 + dt * load.w);
+#endif
   vec3 stopped = x + dt * start.guess, after = start.guess;
   bool pulled = grip[i].w == pulled_away;
   constraint[i] = vec4(0.0);
@@ -77,6 +81,9 @@ void main() {
     contacts = self_contacts(i, x, v, push, impulse);
 #endif
     start = foresee(i, x.xyz + push, v.xyz + impulse, x.w);
+#ifdef WIND
+    start.velocity += FETCH(wind_loads, i).xyz;
+#endif
   }
   start_position[i] = vec4(x.xyz + push, x.w);
   start_velocity[i] = vec4(start.velocity, float(contacts));

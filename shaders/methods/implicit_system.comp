@@ -48,10 +48,10 @@ void main() {
     residual[i] = preconditioned[i] = block_a[i] = block_b[i] = vec4(0.0);
     return;
   }
-  float m = 1.0 / x.w, inertia = m * (1.0 + dt * gravity.w);
+  float m = 1.0 / x.w, inertia = m * (1.0 + dt * drag(i));
   vec3 v = FETCH(start_velocity, i).xyz;
   vec4 held = FETCH(constraint, i);
-  vec3 r = m * (v - u + dt * (gravity.xyz - gravity.w * u)) + dt * force - inertia * d - product;
+  vec3 r = m * (v - u + dt * (gravity.xyz - drag(i) * u)) + dt * force - inertia * d - product;
 
   vec3 a, b;
   factorise(diagonal + inertia, corner, inertia, a, b);

@@ -1,11 +1,21 @@
-// Poses of moving pins and colliders, computed by the host in double precision for each step of a batch.
+// Poses of moving pins and colliders, and the wind, computed by the host in double precision for each step of a batch.
 // A step has END_ROW rows after the row of its start: the last is its end, the one before it, if any, its middle.
-// A pose takes five vec4: three rows (rotation, translation), the velocity of the origin, the angular velocity.
-#if MOTION_COUNT > 0
+// A pose takes five vec4: three rows (rotation, translation), the velocity of the origin, the angular velocity. The
+// wind's velocity follows the poses of its row.
+#if MOTION_COUNT > 0 || defined(WIND)
 READ_VEC4(motion_table, unit_motion_table);
 uniform int start_row;  // row of the step's start in the batch
+#endif
 
-int pose_at(int motion, int row) { return ((start_row + row) * MOTION_COUNT + motion) * 5; }
+#ifdef WIND
+#define ROW_TEXELS (MOTION_COUNT * 5 + 1)
+vec3 wind_velocity(int row) { return FETCH(motion_table, (start_row + row) * ROW_TEXELS + MOTION_COUNT * 5).xyz; }
+#else
+#define ROW_TEXELS (MOTION_COUNT * 5)
+#endif
+
+#if MOTION_COUNT > 0
+int pose_at(int motion, int row) { return (start_row + row) * ROW_TEXELS + motion * 5; }
 
 vec3 turned(int motion, int row, vec3 home) {
   int base = pose_at(motion, row);

@@ -36,7 +36,7 @@ void main() {
     follow_motion(i, v.w, STAGE < 3 ? 1 : END_ROW, x_next, v_next);
   } else {
     vec4 x_now = FETCH(position, i), v_now = FETCH(velocity, i);
-    vec3 a = acceleration(i, x_now, v_now.xyz);
+    vec3 a = acceleration(i, x_now, v_now.xyz, STAGE - 1 - (STAGE > 2 ? 1 : 0));
     float ahead = STAGE < 3 ? 0.5 * dt : dt;
     x_next = x.xyz + ahead * v_now.xyz;
     v_next = v.xyz + ahead * a;
@@ -50,7 +50,7 @@ void main() {
 /// first.
 int move_freely(int i, vec4 x, vec4 v, out vec3 x_next, out vec3 v_next) {
   vec3 a1 = FETCH(slope_1, i).xyz, a2 = FETCH(slope_2, i).xyz, a3 = FETCH(slope_3, i).xyz;
-  vec3 a4 = acceleration(i, FETCH(position, i), FETCH(velocity, i).xyz);
+  vec3 a4 = acceleration(i, FETCH(position, i), FETCH(velocity, i).xyz, END_ROW);
   vec3 push = vec3(0.0), impulse = vec3(0.0);
   int contacts = 0;
 #ifdef SELF_COLLISION

@@ -4,6 +4,7 @@
 // vertex needs to find the velocity in the middle of the last step. A contact is an impulse within the step: it changes
 // the velocity in the step's middle, with which the vertex has moved, and the prediction likewise. If the step after a
 // contact began anew from the velocity at its start, a sliding or resting vertex would be stepped by explicit Euler.
+#define MOST_OF_FLOW most_of_flow_predicted
 #include "gather.glsl"
 #include "step_end.glsl"
 #define SECOND_VELOCITY

@@ -5,9 +5,22 @@
 READ_UINT(visited, unit_visited);  // free vertices, colour after colour
 /// Velocity at the last step's start [m/s]; w: 0 if there is none to use.
 layout(std430, binding = slot_velocity_before) buffer VelocityBefore { vec4 velocity_before[]; };
-/// Where inertia would take each vertex, as a deviation [m], with the pushes of self-collision since the step's start;
-/// w: number of colliders met at the last visit.
+/// Where inertia and wind would take each vertex, as a deviation [m], with the pushes of self-collision since the
+/// step's start; w: number of colliders met at the last visit.
 layout(std430, binding = slot_targets) coherent buffer Targets { vec4 targets[]; };
+
+#ifdef WIND
+/// Displacement of a vertex on which nothing but wind and gravity acts, less that without wind [m]. As under implicit
+/// Euler (implicit_wind.comp) the force is linear in the velocity at the step's end, and so adds to the inertia [kg],
+/// which is kept with the remainders.
+vec3 displacement_by_wind(int i, vec4 x, vec3 v) {
+  WindLoad load = wind_on(i, x.xyz, v, wind_velocity(END_ROW));
+  float share = mobility * dt * x.w * load.braking;  // added inertia over the vertex's own
+  remainders[i].position.w = dt * load.braking;
+  precise vec3 gain = x.w * load.force - share * (gravity.xyz - gravity.w * v);
+  return drift(dt * gain) / (1.0 + share);
+}
+#endif
 
 /// Share of `pull` that an acceleration has followed, [0, 1]. Nearly all counts as all: rounding just below 1 would
 /// brake a falling cloth, step after step.
@@ -16,18 +29,26 @@ float followed(vec3 acceleration, vec3 pull) {
   return squared > 0.0 ? clamp(1.02 * dot(acceleration, pull) / squared, 0.0, 1.0) : 1.0;
 }
 
-/// Their adaptive guess (section 3.7): as much of gravity as the vertex has followed lately, so that a cloth at rest
-/// starts from rest. If its free motion meets a collider, the guess is that motion stopped there, with friction, and of
-/// gravity the part along the surface: sweeps move a stiff cloth so little that one on a slope would stay where it was.
-vec3 first_deviation(int i, vec3 x, vec3 v) {
+/// Their adaptive guess (section 3.7): as much of gravity and wind as the vertex has followed lately, so that a cloth
+/// at rest starts from rest. If its free motion meets a collider, the guess is that motion stopped there, with friction,
+/// and of both the part along the surface: sweeps move a stiff cloth so little that one on a slope would stay where it
+/// was.
+vec3 first_deviation(int i, vec4 x, vec3 v) {
   vec4 before = velocity_before[i];
   velocity_before[i] = vec4(v, 1.0);
   targets[i] = vec4(remainder(i), 0.0);
   vec3 felt = (v / mobility - before.xyz) / dt, pull = gravity.xyz, back = vec3(0.0), sliding = vec3(0.0);
-  vec3 free = free_displacement(v), stopped = x + free, unused = v;
-  int met = resolve_colliders(x, stopped, unused, 0.0);
+  vec3 free = free_displacement(v);
+#ifdef WIND
+  vec3 blown = displacement_by_wind(i, x, v);
+  targets[i].xyz += blown;
+  pull += blown / (mobility * dt * dt);
+  free += blown;
+#endif
+  vec3 stopped = x.xyz + free, unused = v;
+  int met = resolve_colliders(x.xyz, stopped, unused, 0.0);
   RARELY(met > 0) {
-    back = met_normal * dot(stopped - (x + free), met_normal);
+    back = met_normal * dot(stopped - (x.xyz + free), met_normal);
     pull -= met_normal * dot(pull, met_normal);
     sliding = free + back - dt * met_velocity;
     vec3 taken = friction_displacement(sliding, met_normal, met_surface.x, dot(back, met_normal));
@@ -38,6 +59,9 @@ vec3 first_deviation(int i, vec3 x, vec3 v) {
   float share = before.w == 0.0 ? 1.0 : followed(felt, pull);
   vec3 less = drift(dt * (share - 1.0) * pull);
   RARELY(met > 0) back -= friction_displacement(sliding + less, met_normal, met_surface.x, dot(back, met_normal));
+#ifdef WIND
+  less += blown;
+#endif
   return less + back;
 }
 
@@ -68,6 +92,9 @@ void visit_vertex(int item) {
   int i = int(FETCH_UINT(visited, item));
   vec4 x = FETCH(position, i);
   float inertia = 1.0 / (x.w * mobility);
+#ifdef WIND
+  inertia += remainders[i].position.w;
+#endif
   vec3 v = FETCH(velocity, i).xyz, d = deviation(i).xyz;
   // precise: both forms of the kernel are compiled apart and must round alike.
   precise vec3 residual = inertia * (targets[i].xyz - d), diagonal = vec3(inertia), corner = vec3(0.0);

@@ -14,7 +14,7 @@ void end(int i, int met, inout vec3 v_next);
 
 /// Moves a free vertex. Returns the number of things that it touches.
 int move_freely(int i, vec4 x, vec4 v, out vec3 x_next, out vec3 v_next) {
-  vec3 a = acceleration(i, x, v.xyz);
+  vec3 a = acceleration(i, x, v.xyz, 0);
   vec3 push = vec3(0.0), impulse = vec3(0.0);
   int contacts = 0;
 #ifdef SELF_COLLISION

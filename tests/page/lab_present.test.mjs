@@ -55,6 +55,7 @@ test("a step between the longest that held and one that blew up has no place, an
 
 const scene = {
   name: "seed",
+  wind: null,
   air_drag: 0,
   self_collision: { thickness: 0.01, friction: 0.2 },
   gravity: [0, -9.8, 0],

@@ -245,6 +245,16 @@ json RandomPatch::change_self_collision() {
             {"friction", usual(0.1, 1.0, ranges::friction)}}}};
 }
 
+json RandomPatch::change_wind() {
+  if (chance(0.4)) return {{"wind", nullptr}};
+  return {{"wind",
+           {{"velocity", vector(0.1, 20.0, ranges::wind_speed)},
+            {"gust", usual(0.01, 1.0, ranges::gust)},
+            {"gust_frequency", usual(0.01, 5.0, ranges::frequency)},
+            {"drag", usual(0.1, 2.0, ranges::air_coefficient)},
+            {"lift", usual(0.1, 2.0, ranges::air_coefficient)}}}};
+}
+
 /// One operation of RFC 6902 for each key of a merge patch, which holds whole values.
 json RandomPatch::as_operations(const json& document, const json& patch) {
   json merged = document, operations = json::array();
@@ -266,7 +276,7 @@ json RandomPatch::first_scene() {
 
 json RandomPatch::next(const scene::Document& document) {
   json patch;
-  switch (whole(0, 9)) {
+  switch (whole(0, 10)) {
     case 0:
       patch = {{"gravity", vector(0.1, 20.0, ranges::gravity)}};
       break;
@@ -280,7 +290,10 @@ json RandomPatch::next(const scene::Document& document) {
       patch = change_colliders(document.value);
       break;
     case 4:
+      patch = change_wind();
+      break;
     case 5:
+    case 6:
       patch = change_solver();
       break;
     default:

@@ -57,6 +57,7 @@ class RandomPatch {
   json change_colliders(const json& document);
   json change_solver();
   json change_self_collision();
+  json change_wind();
   json as_operations(const json& document, const json& patch);
 
   std::mt19937_64 random_;

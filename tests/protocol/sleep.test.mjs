@@ -76,6 +76,7 @@ test("any change wakes a cloth that sleeps: a patch, reset, play, speed, another
   await client.request("stream.subscribe", { rate: 30 });
   const changes = [
     ["scene.patch", { patch: { gravity: [1, -9, 0] } }],
+    ["scene.patch", { patch: { wind: { velocity: [0, 0, 4] } } }],
     ["sim.reset", {}],
     ["sim.play", {}],
     ["sim.speed", { factor: 2 }],

@@ -96,7 +96,7 @@ const whole = {
     { plane: { point: [0, 0, 0], normal: [0, 1, 0] }, friction: 0.5 },
   ],
   self_collision: { thickness: 0.01, friction: 0.2 },
-  wind: null,
+  wind: { velocity: [2, 0, 0], gust: 0.3, gust_frequency: 0.7, drag: 1, lift: 0.2 },
   air_drag: 0,
   solver: { method: "symplectic_euler", dt: 0.001, iterations: 10, tolerance: 1e-4 },
 };

@@ -11,6 +11,7 @@ const begin = "<!-- made by tests/schema/scene_reference.mjs from scene.schema.j
 const tables = [
   ["The document", []],
   ["`self_collision`", ["properties", "self_collision", "oneOf", 1]],
+  ["`wind`", ["properties", "wind", "oneOf", 1]],
   ["`solver`", ["properties", "solver"]],
   ["A cloth: `cloths[]`", ["$defs", "cloth"]],
   ["`mesh: {grid}`", ["$defs", "cloth", "properties", "mesh", "oneOf", 0, "properties", "grid"]],

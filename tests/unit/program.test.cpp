@@ -22,6 +22,9 @@ TEST_CASE("a shader error names file and line of the source file, also in an inc
         "layout(local_size_x = 1) in;\n#include \"good.glsl\"\n#include \"part/bad.glsl\"\nvoid main() {}\n");
   write("inner.comp",
         "layout(local_size_x = 1) in;\n#include \"good.glsl\"\nvoid main() {\n\n  undefined_call();\n}\n");
+  write("warned.comp",
+        "layout(local_size_x = 1) in;\nfloat unset;\nvoid main() {\n  unset += unset;\n  "
+        "undefined_call();\n}\n");
   write("lost.comp", "layout(local_size_x = 1) in;\n#include \"nowhere.glsl\"\n");
   setenv("CLOTHLAB_DATA", root.c_str(), 1);
 
@@ -32,6 +35,7 @@ TEST_CASE("a shader error names file and line of the source file, also in an inc
   };
   CHECK(where("outer.comp") == "shaders/part/bad.glsl:2");
   CHECK(where("inner.comp") == "shaders/inner.comp:5");
+  CHECK(where("warned.comp") == "shaders/warned.comp:5");
   CHECK(where("lost.comp").find("shaders/lost.comp:2") == 0);
   unsetenv("CLOTHLAB_DATA");
   fs::remove_all(root);

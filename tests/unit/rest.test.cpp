@@ -133,3 +133,11 @@ TEST_CASE("a vertex that is not finite is not at rest") {
   for (int i = 0; i < 1000; ++i)
     CHECK_FALSE(rest.look(0.1 * i, std::nan(""), [] { return std::vector<glm::vec3>(1); }));
 }
+
+TEST_CASE("a cloth in gusts is never at rest, one in steady wind may be") {
+  const auto in = [](const char* wind) { return watching(strip({std::string("/wind=") + wind})).driven(); };
+  CHECK(in(R"({"velocity": [0, 0, 3], "gust": 0.3, "gust_frequency": 0.5})"));
+  CHECK_FALSE(in(R"({"velocity": [0, 0, 3]})"));
+  CHECK_FALSE(in(R"({"velocity": [0, 0, 3], "gust": 0.3, "gust_frequency": 0})"));
+  CHECK_FALSE(in(R"({"velocity": [0, 0, 0], "gust": 0.3, "gust_frequency": 0.5})"));
+}

@@ -134,14 +134,15 @@ Result<std::vector<double>> MapField::values(std::optional<double> from, std::op
 
 std::string MapField::unit() const {
   static const std::map<std::string, std::string> units{
-      {"structural", "N/m"}, {"shear", "N/m"},      {"bend", "N/m"},
-      {"damping", "N s/m"},  {"per_vertex", "kg"},  {"area_density", "kg/m^2"},
-      {"mass", "kg"},        {"width", "m"},        {"height", "m"},
-      {"gravity", "m/s^2"},  {"air_drag", "1/s"},   {"thickness", "m"},
-      {"radius", "m"},       {"amplitude", "m"},    {"frequency", "Hz"},
-      {"velocity", "m/s"},   {"center", "m"},       {"point", "m"},
-      {"translate", "m"},    {"rotate", "degrees"}, {"size", "m"},
-      {"vertices", "m"},     {"box", "m"},          {"degrees_per_second", "degrees/s"}};
+      {"structural", "N/m"},   {"shear", "N/m"},      {"bend", "N/m"},
+      {"damping", "N s/m"},    {"per_vertex", "kg"},  {"area_density", "kg/m^2"},
+      {"mass", "kg"},          {"width", "m"},        {"height", "m"},
+      {"gravity", "m/s^2"},    {"air_drag", "1/s"},   {"thickness", "m"},
+      {"radius", "m"},         {"amplitude", "m"},    {"frequency", "Hz"},
+      {"velocity", "m/s"},     {"center", "m"},       {"point", "m"},
+      {"translate", "m"},      {"rotate", "degrees"}, {"size", "m"},
+      {"vertices", "m"},       {"box", "m"},          {"degrees_per_second", "degrees/s"},
+      {"gust_frequency", "Hz"}};
   if (field_ == stiffness) return "times the present";
   // The unit follows from the last key of the pointer that is not an array index.
   const auto tokens = scene::split_pointer(field_);

@@ -53,6 +53,13 @@ Result<Document> without_self_collision(const Document& document) {
   return scene::validate(std::move(value), document.assets);
 }
 
+Result<Document> without_wind(const Document& document) {
+  if (!document.scene.wind) return not_there("wind");
+  json value = document.value;
+  value["wind"] = nullptr;
+  return scene::validate(std::move(value), document.assets);
+}
+
 Result<Document> undamped(const Document& document) {
   if (std::none_of(document.scene.cloths.begin(), document.scene.cloths.end(),
                    [](const scene::Cloth& cloth) { return cloth.damping() > 0.0; }))
@@ -75,6 +82,7 @@ const std::vector<Part>& parts() {
   static const std::vector<Part> all{{"without bend springs", 1, without_bend},
                                      {"without shear springs", 1, without_shear},
                                      {"without self-collision", 1, without_self_collision},
+                                     {"without wind", 1, without_wind},
                                      {without_damping, 1, undamped},
                                      {"half the mesh resolution", 2, half_resolution},
                                      {"a quarter of the mesh resolution", 4, quarter_resolution}};

@@ -44,6 +44,7 @@ export function numbersOf(document: SceneDocument): SceneNumber[] {
       cloths: document.cloths,
       air_drag: document.air_drag,
       gravity: document.gravity,
+      wind: document.wind,
       self_collision: document.self_collision,
       colliders: document.colliders,
     },

@@ -118,6 +118,14 @@ export type Collider = Shape & {
 /// Where a moving collider is at the time of a frame. `index`: its place in the document's list.
 export type MovedCollider = Shape & { index: number };
 
+export interface Wind {
+  velocity: Vec3;
+  gust: number;
+  gust_frequency: number;
+  drag: number;
+  lift: number;
+}
+
 export interface SceneDocument {
   version: number;
   name: string;
@@ -125,6 +133,7 @@ export interface SceneDocument {
   cloths: Cloth[];
   colliders: Collider[];
   self_collision: null | { thickness: number; friction: number };
+  wind: null | Wind;
   air_drag: number;
   solver: { method: string; dt: number; iterations: number; tolerance: number };
 }

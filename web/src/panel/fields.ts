@@ -200,11 +200,35 @@ function selfCollisionSection(document: SceneDocument): Section {
   return { key: base, title: "Self-collision", open: true, fields: [toggle, ...more], sections: [] };
 }
 
+function windSection(document: SceneDocument): Section {
+  const base = "/wind";
+  const toggle: Field = {
+    key: base,
+    label: "on",
+    paths: [base],
+    kind: "toggle",
+    read: (current) => current.wind !== null,
+    write: (value) => (value ? { velocity: [3, 0, 0], gust: 0.3, gust_frequency: 0.7, drag: 1, lift: 0.2 } : null),
+  };
+  const coefficient = { min: 0, max: 3, step: 0.01 };
+  const more: Field[] = document.wind
+    ? [
+        ...vector("velocity", [`${base}/velocity`], { min: -15, max: 15, step: 0.1, unit: "m/s" }),
+        number("gust", [`${base}/gust`], { min: 0, max: 2, step: 0.01 }, { hint: "How much it swells and dies down" }),
+        number("gust frequency", [`${base}/gust_frequency`], { min: 0, max: 5, step: 0.01, unit: "Hz" }),
+        number("drag", [`${base}/drag`], coefficient, { hint: "Of each triangle, along the wind" }),
+        number("lift", [`${base}/lift`], coefficient, { hint: "Of each triangle, across the wind" }),
+      ]
+    : [];
+  return { key: base, title: "Wind", open: true, fields: [toggle, ...more], sections: [] };
+}
+
 export function sectionsOf(document: SceneDocument, methods: string[]): Section[] {
   return [
     solverSection(document, methods),
     ...document.cloths.map((_, i) => clothSection(document, i)),
     worldSection(),
+    windSection(document),
     selfCollisionSection(document),
     ...document.colliders.map((_, i) => colliderSection(document, i)),
   ];
