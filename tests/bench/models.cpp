@@ -2,6 +2,7 @@
 // on the same grid, under each explicit method. They take turns in every round, so that a noisy machine
 // disturbs all alike and their ratios stay valid. Usage: bench_models SIDE ROUNDS; it prints one JSON line
 // per method and model. models.mjs runs it for all sizes.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>

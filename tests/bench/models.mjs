@@ -95,6 +95,7 @@ const summary = {
 };
 const out = values.out ?? join(here, `results/models-${machine}.json`);
 writeFileSync(out, `${JSON.stringify(summary, null, 1)}\n`);
+rmSync(folder, { recursive: true });
 console.table(
   steps.map(({ side, method, model, median_ns, to_springs }) => ({ side, method, model, median_ns, to_springs })),
 );

@@ -1,5 +1,6 @@
 // A whole sheet of finite elements, as a scene makes it, against closed forms: the patch test, pulling and
 // shearing along the grain and off it, bending off it, and what a rigid rotation feels.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
