@@ -17,7 +17,7 @@ using glm::dvec3;
 namespace {
 
 constexpr double pedestal = 0.09, edge = 0.15;  // radii [m]
-constexpr int rings = 15, held_rings = 9;
+constexpr int rings = 10, held_rings = 6;
 const double pi = std::acos(-1.0);
 
 std::uint32_t first_of(int ring) {
@@ -110,17 +110,19 @@ TEST_CASE("a disc drapes the more over a pedestal the less it resists bending, s
   // Clyde et al. 2017: a square metre weighs 83 and 400 g.
   const Drape silk = draped(disc(cloth_of(326, 755, 0.5, 51, 2e-6, 5e-6), 0.083)),
               denim = draped(disc(cloth_of(1673, 3151, 0.5, 808, 115e-6, 216e-6), 0.4)),
-              stiffer = draped(disc(cloth_of(1673, 3151, 0.5, 808, 1150e-6, 2160e-6), 0.4));
+              worn = draped(disc(cloth_of(1673, 3151, 0.5, 808, 23e-6, 43e-6), 0.4));
   for (const auto& [name, drape] :
-       {std::pair("silk", silk), {"denim", denim}, {"denim ten times as stiff", stiffer}}) {
+       {std::pair("silk", silk), {"denim", denim}, {"denim a fifth as stiff to bend", worn}}) {
     INFO(name << ": " << drape.coefficient << ", hangs to " << drape.lowest << " m, in to "
               << drape.furthest_in << " m, strain " << drape.longest);
-    CHECK(drape.coefficient > 0.0);
-    CHECK(drape.coefficient < 1.0);
+    CHECK(drape.coefficient > 0.1);
+    CHECK(drape.coefficient < 0.98);
     CHECK(drape.lowest > -1.01 * (edge - pedestal));
     CHECK(drape.longest < 0.02);
-    CHECK(drape.furthest_in > 0.9 * pedestal);
+    // Nothing is drawn in under the pedestal's top but the hem of a fold, by what silk folds to under its own
+    // weight, (B / weight)^(1/3) = 16 mm.
+    CHECK(drape.furthest_in > pedestal - 0.016);
   }
   CHECK(silk.coefficient < 0.8 * denim.coefficient);
-  CHECK(denim.coefficient < 0.8 * stiffer.coefficient);
+  CHECK(worn.coefficient < 0.9 * denim.coefficient);
 }

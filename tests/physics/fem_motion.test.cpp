@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "server/model/stability.h"
+#include "server/reference/rest_shape.h"
 #include "server/scene/method.h"
 #include "server/scene/suited.h"
 #include "server/sim/guarded_run.h"
@@ -84,34 +85,39 @@ TEST_CASE(
     "a stretched sheet swings at the pace of a bar, and dies away at half its damping times its pace "
     "squared") {
   const auto context = test::context();
-  constexpr double length = 0.5, modulus = 50.0, density = 0.2, damping = 2e-3, g = 0.1;
+  constexpr double length = 0.5, modulus = 50.0, density = 0.2, damping = 2e-3, g = 1.0;
   constexpr int rows = 9;
   for (const Side side : sides) {
     scene::Scene scene = bare_scene(side == Side::gpu ? Method::verlet : Method::rk4, 1e-4);
     scene.gravity = {0.0, 0.0, g};
-    scene::Cloth cloth;
+    scene::Cloth& cloth = scene.cloths.emplace_back();
     cloth.mesh = scene::Grid{2, rows, 0.1, length};
     cloth.mass = {scene::Mass::Kind::area_density, density};
     cloth.material = scene::Fem{modulus, modulus, 0.0, 20.0, {1e-5, 1e-5, std::nullopt}, damping, 0.0, {}};
     cloth.pins = {{scene::AtEdge{scene::AtEdge::Line::row, 0}, {}}};
-    scene.cloths = {cloth};
     Stepped stepped(side, scene);
     // Begun without stretch: nearly all of it is the slowest vibration about the balance, and the next ones
     // die away nine times as fast or faster.
-    const double balance = length + g * density * length * length / (2 * modulus);
+    const auto rest = reference::rest_shape(world_of(scene));
+    REQUIRE(rest);
+    const auto end = [](const std::vector<dvec3>& place) {
+      return 0.5 * (place[2 * rows - 1].z + place[2 * rows - 2].z);
+    };
+    const double balance = end(rest->position);
+    CHECK(balance - length == Approx(g * density * length * length / (2 * modulus)).epsilon(0.02));
     std::vector<double> time, off;  // of the extremes
     double before = 0.0, now = 0.0;
+    constexpr int stride = 20;  // steps: a look every 2 ms, 60 a period
     for (int n = 1; time.size() < 7; ++n) {
-      stepped.step(1);
-      const auto& place = stepped.state().position;
-      const double next = 0.5 * (place[2 * rows - 1].z + place[2 * rows - 2].z) - balance;
+      stepped.step(stride);
+      const double next = end(stepped.state().position) - balance;
       if (n > 2 && (now - before) * (next - now) < 0.0) {
         const double bend = next - 2 * now + before, slope = 0.5 * (next - before);
-        time.push_back((n - 1 - slope / bend) * 1e-4);
+        time.push_back((n - 1 - slope / bend) * stride * 1e-4);
         off.push_back(std::abs(now - 0.5 * slope * slope / bend));
       }
       before = now, now = next;
-      REQUIRE(n < 20000);
+      REQUIRE(n < 1000);
     }
     // From the third extreme to the seventh: two periods.
     const double rate = std::log(off[2] / off[6]) / (time[6] - time[2]);
@@ -120,9 +126,10 @@ TEST_CASE(
     const double h = length / (rows - 1);
     const double pace = 2 / h * std::sqrt(modulus / density) * std::sin(std::acos(-1.0) / 32);
     INFO(name(side) << ": " << swing << " rad/s, dies away by " << rate << " /s");
-    CHECK(std::sqrt(swing * swing + rate * rate) == Approx(pace).epsilon(2e-3));
-    // On the GPU the extremes of some 5e-5 m are known to 3e-8 m.
-    CHECK(rate == Approx(0.5 * damping * pace * pace).epsilon(side == Side::gpu ? 0.02 : 0.005));
+    CHECK(std::sqrt(swing * swing + rate * rate) == Approx(pace).epsilon(5e-3));
+    // It is stretched by up to 4e-3, and 1.5 times as much stiffer for it. On the GPU the extremes of some
+    // 5e-4 m are known to 3e-8 m.
+    CHECK(rate == Approx(0.5 * damping * pace * pace).epsilon(0.01));
   }
 }
 
@@ -184,7 +191,7 @@ TEST_CASE(
       scene.cloths[0].pins = {{scene::AtVertex{0}, {}}, {scene::AtVertex{8}, {}}};
       scene.gravity = {0.0, -9.81, 0.0};
       scene.air_drag = 2.0;
-      std::get<scene::Fem>(scene.cloths[0].material).damping = 1e-3;
+      std::get<scene::Fem>(scene.cloths[0].material).damping = 3e-4;
       scene.solver.iterations = scene::sweeps(method) ? 40 : 10;
       scene.solver.tolerance = 1e-5;
       const double limit = model::dt_limit(*model::build(scene), scene);
@@ -192,15 +199,14 @@ TEST_CASE(
       const auto simulation = test::simulation(scene);
       sim::GuardedRun guard(*simulation);
       guard.start(limit);
-      const Verdict verdict = watched(*simulation, guard, 2.0, scene::iterates(method) ? 10 : 100);
+      const Verdict verdict = watched(*simulation, guard, 1.0, scene::iterates(method) ? 10 : 100);
       const sim::Diagnostics end = simulation->diagnose();
       INFO(scene::name(method) << (line ? ", pressed to a line" : ", a vertex beyond its neighbours")
                                << ": strain " << end.max_strain
                                << (verdict == Verdict::blown_up ? ", " + guard.reason() : ""));
-      CHECK(end.finite);
       if (verdict == Verdict::blown_up) CHECK_FALSE(guard.go_back().remedy.text.empty());
       // Its weight stretches it by some hundredths at the pins.
       else
-        CHECK(end.max_strain < 0.3);
+        CHECK((end.finite && end.max_strain < 0.3));
     }
 }

@@ -31,14 +31,13 @@ TEST_CASE("a long strip that is hung off its grain stretches in its middle as it
   for (const double grain : {0.0, 30.0, 60.0, 90.0}) {
     scene::Scene scene = test::bare_scene(scene::Method::implicit_euler, 1e-3);
     scene.gravity = {0.0, 0.0, 9.81};
-    scene::Cloth cloth;
+    scene::Cloth& cloth = scene.cloths.emplace_back();
     cloth.mesh = scene::Grid{columns, rows, width, height};
     cloth.mass = {scene::Mass::Kind::area_density, 1e-5};
     cloth.material = scene::Fem{warp, weft, poisson, shear, {1e-5, 1e-5, std::nullopt}, 0, grain, {}};
     cloth.pins = {{scene::AtEdge{scene::AtEdge::Line::row, 0}, {}}};
     constexpr double load = 0.4;  // [N] in all
     cloth.weights = {{scene::AtEdge{scene::AtEdge::Line::row, rows - 1}, load / 9.81 / columns}};
-    scene.cloths = {cloth};
     const reference::World world = world_of(scene);
     const auto shape = shape_of(world, world.model.rest_position);
     const auto middle = [&](int row) { return shape[static_cast<std::size_t>(row * columns + columns / 2)]; };

@@ -68,11 +68,10 @@ constexpr double width = 0.3, height = 0.2, warp = 2365, weft = 3801, poisson = 
 constexpr double bend_warp = 8e-6, bend_weft = 12e-6, twist = 6e-6;
 scene::Scene cotton(double grain, scene::Method method = scene::Method::symplectic_euler) {
   scene::Scene scene = test::bare_scene(method, 1e-4);
-  scene::Cloth cloth;
+  scene::Cloth& cloth = scene.cloths.emplace_back();
   cloth.mesh = scene::Grid{columns, rows, width, height};
   cloth.mass = {scene::Mass::Kind::area_density, 0.1};
   cloth.material = scene::Fem{warp, weft, poisson, shear, {bend_warp, bend_weft, twist}, 0.002, grain, {}};
-  scene.cloths = {cloth};
   return scene;
 }
 
