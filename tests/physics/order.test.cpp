@@ -143,7 +143,7 @@ TEST_CASE("a sheet of finite elements hung by two corners: every method has its 
                                 {Method::symplectic_euler, 300, 3, 1e-5},
                                 {Method::verlet, 300, -1, 1e-6},
                                 {Method::rk4, 150, -1, 1e-6},
-                                {Method::implicit_euler, 100, 3, 1e-5},
+                                {Method::implicit_euler, 100, 3, 2e-5},
                                 {Method::xpbd, 200, 2, 1e-5},
                                 {Method::vbd, 200, 2, 1e-5}};
   CHECK(plans.size() == scene::suited_methods(scene(Method::verlet, 1e-4), {})->size());
