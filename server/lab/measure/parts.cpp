@@ -109,6 +109,9 @@ Result<Document> springs_instead(const Document& document) {
       return Error{"/cloths/" + std::to_string(i) + "/mesh", "springs are fitted to a sheet on grids only",
                    "a grid"};
     value["cloths"][i]["material"] = fitted_springs(cloth, *grid);
+    // Springs have no fabric that a document could leave the mass to.
+    const bool by_area = cloth.mass.kind == scene::Mass::Kind::area_density;
+    value["cloths"][i]["mass"] = {{by_area ? "area_density" : "per_vertex", cloth.mass.value}};
   }
   return scene::validate(std::move(value), document.assets);
 }
