@@ -101,9 +101,10 @@ std::vector<Simulation::Part> parts(const Plan& plan) {
   add(Kind::pass, "neighbour_search", plan.self_collision, "self_collision is null");
   add(Kind::pass, scene::name(plan.method), true, "");
   add(Kind::pass, "strain_limit", plan.strain_limit, "no cloth with springs has a strain_limit");
-  add(Kind::term, "structural_springs", plan.structural, "their stiffness is 0 in every cloth");
-  add(Kind::term, "shear_springs", plan.shear, "their stiffness is 0 in every cloth");
-  add(Kind::term, "bend_springs", plan.bend, "their stiffness is 0 in every cloth");
+  const char* const no_springs = "no cloth has the model springs and this stiffness above 0";
+  add(Kind::term, "structural_springs", plan.structural, no_springs);
+  add(Kind::term, "shear_springs", plan.shear, no_springs);
+  add(Kind::term, "bend_springs", plan.bend, no_springs);
   add(Kind::term, "membrane", plan.laws[elements::law_number<elements::Membrane>],
       "no cloth has the model fem");
   add(Kind::term, "bending", plan.laws[elements::law_number<elements::Bending>],

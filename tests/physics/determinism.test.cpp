@@ -1,6 +1,8 @@
 // The same scene, device and build give the same bits.
+#include "server/scene/suited.h"
 #include "server/stream/packer.h"
 #include "tests/scenes.h"
+#include "tests/small_scenes.h"
 
 using namespace clothlab;
 
@@ -22,6 +24,25 @@ TEST_CASE("two runs of the seed scene in one process end in the same bits, howev
   scene::Scene heavier = test::seed();
   heavier.cloths[0].mass.value *= 1.0001;
   REQUIRE(hash_after(heavier, {1500}) != expected);  // the hash differs for another scene
+}
+
+TEST_CASE("two runs of a sheet of finite elements end in the same bits, under every method") {
+  const auto context = test::context();
+  for (const scene::Method method : scene::methods) {
+    scene::Scene scene = test::sheet_of_elements(method, scene::iterates(method) ? 2e-3 : 5e-5, 33, 2e-4);
+    if (scene::unsuited(method, scene)) continue;
+    scene.gravity = {0.0, -9.81, 0.0};
+    scene.cloths[0].pins = {{scene::AtCorner{0, 0}, {}}, {scene::AtCorner{32, 0}, {}}};
+    scene.colliders = {{"ball", scene::Sphere{{0.0, -0.1, 0.15}, 0.05}, 0.3, 0.0, {}}};
+    scene.self_collision = scene::SelfCollision{0.003, 0.2};
+    const std::uint32_t steps = scene::iterates(method) ? 40 : 400;
+    INFO(scene::name(method));
+    const std::uint64_t expected = hash_after(scene, {steps});
+    CHECK(hash_after(scene, {steps}) == expected);
+    CHECK(hash_after(scene, {1, steps / 4, steps - 1 - steps / 4}) == expected);
+    std::get<scene::Fem>(scene.cloths[0].material).grain += 1.0;
+    CHECK(hash_after(scene, {steps}) != expected);
+  }
 }
 
 TEST_CASE("watching does not change what is watched: frames and diagnostics leave the state's bits alone") {

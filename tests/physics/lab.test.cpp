@@ -198,3 +198,29 @@ TEST_CASE("a job of the lab that is cancelled ends, and says that it is not comp
   REQUIRE_FALSE(none);
   CHECK(was_cancelled(none.error()));
 }
+
+TEST_CASE(
+    "the choice for a sheet that its weight stretches and stiffens is a step that holds there, with a "
+    "margin") {
+  const auto context = test::context();
+  scene::Scene scene = test::sheet_of_elements(Method::verlet, 1e-4, 9, 1e-4);
+  scene.gravity = {0.0, -9.81, 0.0};
+  scene.cloths[0].mass.value = 0.8;
+  scene.cloths[0].pins = {{scene::AtCorner{0, 0}, {}}, {scene::AtCorner{8, 0}, {}}};
+  const Result<Choice> choice = choose(scene, {1e-2, {Method::verlet}, 0.5}, {});
+  INFO((choice ? choice->why : choice.error().text()));
+  REQUIRE(choice);
+  CHECK(choice->met);
+  CHECK(choice->why.find("as long as holds with a margin") != std::string::npos);
+  // About the shape of rest 0.9 of the limit would do; a ninth longer than that blows up in this scene.
+  CHECK(*choice->chosen.dt_over_limit < 0.85);
+  CHECK(*choice->chosen.error_high <= 1e-2);
+  for (const double longer : {1.0, 1.0 / 0.9}) {
+    scene::Scene held = scene;
+    held.solver.dt = longer * choice->chosen.setting.dt;
+    TrialRunner trials;
+    const Result<Trial> trial = trials.run(held, truth_of(scene, {0.5, 1e-7, 30.0}), 0.5, {});
+    REQUIRE(trial);
+    CHECK_FALSE(trial->blew_up_at);
+  }
+}

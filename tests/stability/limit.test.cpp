@@ -147,3 +147,38 @@ TEST_CASE("on a grid the limit is that of its fastest vibration, found by power 
     CHECK(model::dt_limit(*model::build(scene), scene) == Approx(limit_of(method, z) / omega).epsilon(0.002));
   }
 }
+
+TEST_CASE(
+    "on a sheet of finite elements the limit is that of its fastest vibration, for every explicit method") {
+  const auto context = test::context();
+  for (const Method method :
+       {Method::explicit_euler, Method::symplectic_euler, Method::verlet, Method::rk4}) {
+    scene::Scene scene = sheet_of_elements(method, 1e-3, 7);
+    scene.cloths[0].pins = {{scene::AtEdge{scene::AtEdge::Line::row, 0}, {}}};
+    // In its plane, and so weak that the sheet stretches by 1e-4: its weight is 0.2 kg/m^2 x 0.25 m.
+    scene.gravity = {0.0, 0.0, 1e-4 * 40.0 / (0.2 * 0.25)};
+    const double omega = model::omega_max(*model::build(scene), scene);
+    // Stiffness-proportional: a vibration's damping ratio is damping x omega / 2.
+    const double z = 0.5;
+    if (method == Method::explicit_euler)
+      std::get<scene::Fem>(scene.cloths[0].material).damping = 2 * z / omega;
+    const double limit = limit_of(method, method == Method::explicit_euler ? z : 0.0) / omega;
+    INFO("omega " << omega << " /s");
+    check_limit(scene, limit, omega);
+    CHECK(model::dt_limit(*model::build(scene), scene) == Approx(limit).epsilon(0.002));
+  }
+}
+
+TEST_CASE("a sheet's stiffness-proportional damping moves its limit as each method's closed form says") {
+  const auto context = test::context();
+  for (const Method method : {Method::symplectic_euler, Method::verlet, Method::rk4}) {
+    scene::Scene scene = sheet_of_elements(method, 1e-3, 5);
+    scene.cloths[0].pins = {{scene::AtEdge{scene::AtEdge::Line::row, 0}, {}}};
+    scene.gravity = {0.0, 0.0, 1e-4 * 40.0 / (0.2 * 0.25)};
+    const double omega = model::omega_max(*model::build(scene), scene), z = 0.5;
+    std::get<scene::Fem>(scene.cloths[0].material).damping = 2 * z / omega;
+    INFO("omega " << omega << " /s");
+    check_limit(scene, limit_of(method, z) / omega, omega);
+    CHECK(model::dt_limit(*model::build(scene), scene) == Approx(limit_of(method, z) / omega).epsilon(0.002));
+  }
+}

@@ -103,7 +103,7 @@ TEST_CASE("where gravity stretches a cloth far the map says that theory is off, 
   INFO(soft.reason);
   CHECK(soft.disagrees);
   CHECK(*soft.failed < 0.95 * *soft.theory);
-  CHECK(soft.reason.find("springs are stretched to") == 0);
+  CHECK(soft.reason.find("it is stretched to") == 0);
   CHECK_FALSE(stiff.disagrees);
   REQUIRE_FALSE(map.notes.empty());
   CHECK(map.notes[0].find("symplectic_euler, stiffness 0.001: the measured limit is 0.") == 0);

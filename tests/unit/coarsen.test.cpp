@@ -7,6 +7,7 @@
 
 #include "server/lab/measure/parts.h"
 #include "server/reference/rest_shape.h"
+#include "server/scene/fitted_springs.h"
 #include "tests/scenes.h"
 
 using namespace clothlab;
@@ -155,9 +156,138 @@ TEST_CASE(
     CHECK(glm::distance(found[i], bent(from.rest_position[i])) < 1e-6);
 }
 
+namespace {
+
+/// A knit that differs along warp and weft; with self-collision, so that it has all parts.
+scene::Document sheet(const std::string& more = "") {
+  return test::document_of(R"({"version": 1, "cloths": [
+      {"mesh": {"grid": {"columns": 9, "rows": 17, "width": 0.5, "height": 1}}, "mass": {"area_density": 0.2},
+       "material": {"model": "fem", "warp": 60, "weft": 90, "poisson": 0.2, "shear": 20,
+                    "bending": {"warp": 2e-5, "weft": 8e-5}, "damping": 0.001, "grain": 30, "strain_limit": null},
+       "pins": [{"at": "edge:row:0"}]})" +
+                           more + R"(], "self_collision": {"thickness": 0.02}})");
+}
+constexpr const char* spring_cloth =
+    R"(, {"mesh": {"grid": {"columns": 5, "rows": 5, "width": 1, "height": 1}}, "mass": {"per_vertex": 0.01},
+         "transform": {"translate": [2, 0, 0]}})";
+
+const lab::Part& part_of(const std::vector<lab::Part>& parts, const std::string& name) {
+  const auto found =
+      std::find_if(parts.begin(), parts.end(), [&](const lab::Part& part) { return part.name == name; });
+  INFO(name);
+  REQUIRE(found != parts.end());
+  return *found;
+}
+
+std::vector<std::string> names(const std::vector<lab::Part>& parts) {
+  std::vector<std::string> result;
+  for (const lab::Part& part : parts) result.push_back(part.name);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("the parts of a scene are named after what its cloths are made of") {
+  const std::vector<std::string> springs{"without bend springs",     "without shear springs",
+                                         "without self-collision",   "without damping",
+                                         "half the mesh resolution", "a quarter of the mesh resolution"};
+  CHECK(names(lab::parts(*scene::load_preset("seed"))) == springs);
+  const std::vector<std::string> sheets{"without bending",
+                                        "with warp and weft alike",
+                                        "with springs instead of finite elements",
+                                        "without self-collision",
+                                        "without damping",
+                                        "half the mesh resolution",
+                                        "a quarter of the mesh resolution"};
+  CHECK(names(lab::parts(sheet())) == sheets);
+  CHECK(names(lab::parts(sheet(spring_cloth))).size() == 8);
+}
+
+TEST_CASE("springs instead of finite elements weigh the same and carry the same, and other cloths stay") {
+  const scene::Document fem = sheet(spring_cloth);
+  const auto parts = lab::parts(fem);
+  const Result<scene::Document> made = part_of(parts, "with springs instead of finite elements").without(fem);
+  INFO((made ? "" : made.error().text()));
+  REQUIRE(made);
+  CHECK(made->scene.cloths[1] == fem.scene.cloths[1]);
+  scene::Cloth expected = fem.scene.cloths[0];
+  expected.material = scene::springs_like(std::get<scene::Fem>(fem.scene.cloths[0].material), 0.0625, 0.2);
+  CHECK(made->scene.cloths[0] == expected);
+  // A mass by vertex is 9 x 17 of them over half a square metre.
+  scene::json by_vertex = fem.value;
+  by_vertex["cloths"][0]["mass"] = {{"per_vertex", 0.2 * 0.5 / (9 * 17)}};
+  const auto same =
+      part_of(parts, "with springs instead of finite elements").without(*scene::validate(by_vertex));
+  REQUIRE(same);
+  CHECK(same->scene.cloths[0].springs().bend == Approx(made->scene.cloths[0].springs().bend).epsilon(1e-12));
+  // On a triangle mesh nothing is fitted, and the answer says where.
+  scene::json mesh = fem.value;
+  mesh["cloths"][0]["mesh"] = {{"vertices", {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}}, {"triangles", {{0, 2, 1}}}};
+  mesh["cloths"][0]["pins"] = scene::json::array();
+  const auto refused =
+      part_of(parts, "with springs instead of finite elements").without(*scene::validate(mesh));
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().where == "/cloths/0/mesh");
+}
+
+TEST_CASE("warp and weft alike have the mean moduli, the same coupling and the same resistance to slanting") {
+  const scene::Document fem = sheet();
+  const auto parts = lab::parts(fem);
+  const Result<scene::Document> made = part_of(parts, "with warp and weft alike").without(fem);
+  REQUIRE(made);
+  const auto &before = std::get<scene::Fem>(fem.scene.cloths[0].material),
+             &after = std::get<scene::Fem>(made->scene.cloths[0].material);
+  CHECK(after.warp == Approx(std::sqrt(60.0 * 90.0)));
+  CHECK(after.weft == after.warp);
+  CHECK(after.bending.warp == Approx(4e-5));
+  CHECK(after.bending.weft == after.bending.warp);
+  CHECK(after.shear == before.shear);
+  CHECK(after.grain == before.grain);
+  // K01 = poisson weft / (1 - poisson^2 weft / warp)
+  const auto coupling = [](const scene::Fem& of) {
+    return of.poisson * of.weft / (1 - of.poisson * of.poisson * of.weft / of.warp);
+  };
+  CHECK(coupling(after) == Approx(coupling(before)).epsilon(1e-12));
+  const auto again = part_of(parts, "with warp and weft alike").without(*made);
+  REQUIRE_FALSE(again);
+  CHECK(again.error().what == "the scene has no cloth of finite elements whose warp and weft differ");
+}
+
+TEST_CASE("a coarser sheet of finite elements keeps its material, and stretches as far when it is hung") {
+  const scene::Document fine = hung(17, R"({"model": "fem", "warp": 30, "weft": 40, "poisson": 0.2,
+      "shear": 15, "bending": 1e-4})");
+  const scene::Document coarse = coarsened(fine, 2);
+  CHECK(coarse.scene.cloths[0].material == fine.scene.cloths[0].material);
+  // The stretch near the pinned row, where the sheet cannot narrow, is resolved to one cell: 1/8 of the
+  // height.
+  CHECK(stretch(coarse) == Approx(stretch(fine)).epsilon(0.05));
+}
+
+TEST_CASE("each part of a sheet is left out by a merge patch that makes the same scene, or is not there") {
+  const scene::Document whole = sheet();
+  for (const lab::Part& part : lab::parts(whole)) {
+    INFO(part.name);
+    const Result<scene::Document> without = part.without(whole);
+    REQUIRE(without);
+    CHECK_FALSE(*without == whole);
+    const auto patched = scene::apply_patch(whole, lab::merge_patch(whole.value, without->value));
+    REQUIRE(patched);
+    CHECK(patched->scene == without->scene);
+  }
+  const scene::Document bare =
+      hung(9, R"({"model": "fem", "warp": 30, "weft": 30, "bending": 0, "damping": 0})");
+  std::vector<std::string> reasons;
+  for (const lab::Part& part : lab::parts(bare))
+    if (const auto without = part.without(bare); !without) reasons.push_back(without.error().what);
+  CHECK(reasons ==
+        std::vector<std::string>{"the scene has no bending stiffness",
+                                 "the scene has no cloth of finite elements whose warp and weft differ",
+                                 "the scene has no self-collision", "the scene has no damping"});
+}
+
 TEST_CASE("each part is left out by a merge patch that makes the same scene, or is not there") {
   const scene::Document seed = *scene::load_preset("seed");
-  for (const lab::Part& part : lab::parts()) {
+  for (const lab::Part& part : lab::parts(seed)) {
     INFO(part.name);
     const Result<scene::Document> without = part.without(seed);
     REQUIRE(without);
@@ -168,7 +298,7 @@ TEST_CASE("each part is left out by a merge patch that makes the same scene, or 
   }
   const scene::Document bare = hung(9, R"({"structural": 20, "shear": 0, "bend": 0, "damping": 0})");
   std::vector<std::string> reasons;
-  for (const lab::Part& part : lab::parts())
+  for (const lab::Part& part : lab::parts(bare))
     if (const auto without = part.without(bare); !without) reasons.push_back(without.error().what);
   CHECK(reasons == std::vector<std::string>{"the scene has no bend springs", "the scene has no shear springs",
                                             "the scene has no self-collision", "the scene has no damping"});

@@ -86,6 +86,60 @@ TEST_CASE("a factor multiplies every stiffness of every cloth and nothing else")
   CHECK(after == expected);
 }
 
+namespace {
+
+scene::Document sheet() {
+  return *scene::apply_patch(
+      seed(), scene::json::array({{{"op", "replace"},
+                                   {"path", "/cloths/0/material"},
+                                   {"value",
+                                    {{"model", "fem"},
+                                     {"shear", 97},
+                                     {"bending", {{"warp", 8e-6}, {"weft", 12e-6}, {"twist", 5e-6}}}}}}}));
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a factor on the stiffness multiplies a sheet's moduli and bending, not its ratio nor its damping") {
+  double factor = 0.5;
+  const scene::Scene before = sheet().scene;
+  const scene::Scene after = MapField::find(sheet(), "stiffness")->with(factor)->scene;
+  scene::Scene expected = before;
+  auto& fem = std::get<scene::Fem>(expected.cloths[0].material);
+  fem.warp *= 0.5;
+  fem.weft *= 0.5;
+  fem.shear *= 0.5;
+  fem.bending = {4e-6, 6e-6, 2.5e-6};
+  CHECK(after == expected);
+}
+
+TEST_CASE("a field of a sheet's material has its own unit, where springs have another") {
+  const auto unit = [](const std::string& key) {
+    return MapField::find(sheet(), "/cloths/0/material/" + key)->unit();
+  };
+  CHECK(unit("warp") == "N/m");
+  CHECK(unit("weft") == "N/m");
+  CHECK(unit("shear") == "N/m");
+  CHECK(unit("damping") == "s");
+  CHECK(unit("poisson") == "");
+  CHECK(unit("grain") == "degrees");
+  CHECK(unit("bending/warp") == "N m");
+  CHECK(unit("bending/weft") == "N m");
+  CHECK(unit("bending/twist") == "N m");
+  CHECK(MapField::find(seed(), "/cloths/0/material/damping")->unit() == "N s/m");
+  CHECK(MapField::find(seed(), "/cloths/0/material/shear")->unit() == "N/m");
+  CHECK(MapField::find(sheet(), "/cloths/0/mass/per_vertex")->unit() == "kg");
+}
+
+TEST_CASE("a field of a sheet varies as far as its ratio of moduli allows") {
+  // poisson^2 < warp / weft, by default 0.311 of 2365 and 3801.
+  const auto poisson = *MapField::find(sheet(), "/cloths/0/material/poisson")->values({}, {}, 3);
+  CHECK(poisson.back() == Approx(std::sqrt(2365.0 / 3801.0)).epsilon(2e-3));
+  const auto warp = *MapField::find(sheet(), "/cloths/0/material/warp")->values({}, {}, 3);
+  CHECK(warp.front() == Approx(0.311 * 0.311 * 3801).epsilon(2e-3));
+}
+
 TEST_CASE("a field has its unit") {
   CHECK(MapField::find(seed(), "stiffness")->unit() == "times the present");
   CHECK(MapField::find(seed(), "/cloths/0/mass/per_vertex")->unit() == "kg");

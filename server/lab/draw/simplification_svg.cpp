@@ -2,6 +2,7 @@
 // the left, and how much it changes the result on the right.
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "server/lab/draw/drawings.h"
 
@@ -146,7 +147,8 @@ std::string draw(const Simplification& simplification) {
                                    " s simulated" +
                                    (simplification.renderer.empty() ? "" : " on " + simplification.renderer) +
                                    (simplification.complete ? "" : "; not complete")};
-  if (!simplification.why.empty()) heading.push_back(simplification.why);
+  std::istringstream why(simplification.why);
+  for (std::string line; std::getline(why, line);) heading.push_back(line);
   double lines = 0;
   for (const std::string& words : heading)
     lines += static_cast<double>(wrapped(words, picture_width - 2 * margin, small_size, 2).size());

@@ -6,6 +6,7 @@
 
 #include "server/base/text.h"
 #include "server/gl/context.h"
+#include "server/lab/measure/choice_words.h"
 #include "server/lab/measure/second_look.h"
 #include "server/lab/measure/spread.h"
 #include "server/lab/measure/step_search.h"
@@ -20,21 +21,14 @@ namespace {
 
 using scene::Method;
 
-constexpr int rounds = 7;                      // chance that all are above the median: 1/128
-constexpr int looks_again = 3;                 // looks at a candidate at most, see bound_errors()
+constexpr int rounds = 7;       // chance that all are above the median: 1/128
+constexpr int looks_again = 3;  // looks at a candidate at most, see bound_errors()
+/// A candidate that blows up for want of a margin gets a step shorter by this factor, this often at most: a
+/// cloth that its weight stretches may be some times as stiff as about the shape of rest.
+constexpr double shorter_for_margin = 0.8;
+constexpr int most_margins = 8;
 constexpr double longest_choice_timing = 0.2;  // wall time of one timing at most [s]
 constexpr double progress_after_truth = 0.3, progress_after_search = 0.9;  // of the progress, at their ends
-
-std::string times(double ratio) {
-  return formatted("%.*f times", ratio < 10 ? 1 : 0, ratio);
-}
-
-/// The error seen and, if it differs, its upper bound: "0.00034 (at most 0.00036)".
-std::string error_text(const Point& point) {
-  const std::string seen = with_significant_digits(point.largest_position_error.value_or(worst), 3);
-  if (!point.error_high || with_significant_digits(*point.error_high, 3) == seen) return seen;
-  return seen + " (at most " + with_significant_digits(*point.error_high, 3) + ")";
-}
 
 class Chooser {
  public:
@@ -172,31 +166,50 @@ class Chooser {
       if (candidate.best && candidate.best->cost->median <= close_race * best) race.push_back(&candidate);
     if (race.empty()) return give_most_accurate();
     add_runner_up(race);
-    control_.progress({progress_after_search, 1.0, "looking at the best at every step"});
-    if (Status looked = bound_errors(race); !looked) return looked;
-    if (race.empty()) return give_most_accurate();
-    control_.progress({0.5 * (1.0 + progress_after_search), 1.0, "timing the best, taking turns"});
-    if (Status timed_all = time_race(race); !timed_all) return timed_all;
-    const auto cheaper = [](const Candidate* a, const Candidate* b) {
-      return a->best->cost->median < b->best->cost->median;
-    };
-    std::sort(race.begin(), race.end(), cheaper);
-    for (Candidate* candidate : race) {
-      Result<bool> holds = keeps_margin(*candidate);
-      if (!holds) return holds.error();
-      if (!*holds) continue;
-      choice_.met = true;
-      choice_.chosen = *candidate->best;
-      chosen_times_ = candidate->times;
-      break;
+    for (int margins = 0; margins < most_margins && !choice_.met; ++margins) {
+      control_.progress({progress_after_search, 1.0, "looking at the best at every step"});
+      if (Status looked = bound_errors(race); !looked) return looked;
+      if (race.empty()) return give_most_accurate();
+      control_.progress({0.5 * (1.0 + progress_after_search), 1.0, "timing the best, taking turns"});
+      if (Status timed_all = time_race(race); !timed_all) return timed_all;
+      std::sort(race.begin(), race.end(), [](const Candidate* a, const Candidate* b) {
+        return a->best->cost->median < b->best->cost->median;
+      });
+      if (Status picked = pick(race); !picked) return picked;
     }
+    choice_.tried = search_->tried();
     if (!choice_.met) return give_most_accurate();
     for (const Candidate* candidate : race)
       if (!choice_.runner_up && candidate->setting.method != choice_.chosen.setting.method) {
         choice_.runner_up = *candidate->best;
         runner_up_times_ = candidate->times;
       }
-    choice_.why = explain();
+    choice_.why = why_chosen(choice_, ratio_to_runner_up(), for_margin_);
+    return ok();
+  }
+
+  /// Chooses the cheapest in the race if it holds with a margin. Those that do not get a shorter step, down
+  /// to the first that does; then all must be looked at and timed again.
+  Status pick(std::vector<Candidate*>& race) {
+    bool shortened = false;
+    std::vector<Candidate*> out;
+    for (Candidate* candidate : race) {
+      const Result<bool> holds = keeps_margin(*candidate);
+      if (!holds) return holds.error();
+      if (*holds && !shortened) {
+        choice_.met = true;
+        choice_.chosen = *candidate->best;
+        chosen_times_ = candidate->times;
+        for_margin_ = candidate->for_margin;
+      }
+      if (*holds) break;
+      shortened = candidate->for_margin = true;
+      const Result<double> error =
+          search_->step_at(*candidate, shorter_for_margin * candidate->best->setting.dt);
+      if (!error) return error.error();
+      if (*error == worst) out.push_back(candidate);
+    }
+    for (const Candidate* candidate : out) std::erase(race, candidate);
     return ok();
   }
 
@@ -247,9 +260,10 @@ class Chooser {
         measure_largest_errors(scene_, truth_, {choice_.chosen.setting}, trials_, control_.stop);
     if (!errors) return errors.error();
     set_error(choice_.chosen, errors->front());
+    const double error = choice_.chosen.error_high.value_or(worst);
     choice_.why = "Nothing that was tried keeps " + with_significant_digits(request_.tolerance, 3) +
-                  "; nearest came " + text(choice_.chosen.setting) + " with an error of " +
-                  error_text(choice_.chosen) + ".";
+                  (error <= request_.tolerance ? " and holds with a margin" : "") + "; nearest came " +
+                  text(choice_.chosen.setting) + " with an error of " + error_text(choice_.chosen) + ".";
     return ok();
   }
 
@@ -260,29 +274,6 @@ class Chooser {
     return spread_of(std::move(ratios), 0.01);
   }
 
-  std::string explain() const {
-    const Point& chosen = choice_.chosen;
-    const double cost = chosen.cost->median;
-    std::string why =
-        text(chosen.setting) + " costs " + with_significant_digits(cost, 3) + " ms a simulated second";
-    if (choice_.runner_up) {
-      const double ratio = choice_.runner_up->cost->median / cost;
-      const bool cheaper = ratio_to_runner_up().low > 1.0;
-      why += (!cheaper       ? ", too near to tell from"
-              : ratio < 1.05 ? ", about as much as"
-                             : ", " + times(ratio) + " less than") +
-             " the next best (" + text(choice_.runner_up->setting) + ")";
-    }
-    if (chosen.dt_over_limit && *chosen.dt_over_limit > model::margin_to_warn / search_precision)
-      why += "; its step is as long as stability allows, where its error of " + error_text(chosen) +
-             " is already " + times(request_.tolerance / *chosen.error_high) + " below the tolerance";
-    else
-      why += "; with an error of " + error_text(chosen) + ", a longer step would miss the tolerance";
-    if (choice_.present.cost)
-      why += ". The scene's own setting costs " + times(choice_.present.cost->median / cost) + " as much";
-    return why + ".";
-  }
-
   const scene::Scene& scene_;
   const ChooseRequest& request_;
   const Control<Choice>& control_;
@@ -290,6 +281,7 @@ class Chooser {
   Truth truth_;
   TrialRunner trials_;
   std::optional<StepSearch> search_;
+  bool for_margin_ = false;                             // of the chosen candidate
   std::vector<double> chosen_times_, runner_up_times_;  // [round] [ms per simulated second]
 };
 

@@ -120,7 +120,7 @@ Result<Explanation> failed_too_soon(const MapColumn& column, const Evidence& evi
         shapes_of(evidence.scene, *column.held, evidence.steps_of(*column.held), full, stop);
     if (!shapes) return shapes.error();
     const std::string tension =
-        formatted("springs are stretched to %.3g times their length", shapes->longest) +
+        formatted("it is stretched to %.3g times its length at rest", shapes->longest) +
         (shapes->least > 0.0
              ? formatted(": about that shape the limit is %.3g s", shapes->least)
              : ", and nothing damps what moves across them: about that shape no step is stable");
@@ -148,7 +148,8 @@ const char* phrase(Cause cause) {
     case Cause::too_short:
       return "growth beyond the limit is too slow to show in a trial";
     case Cause::tension:
-      return "stretched springs add stiffness across them, which theory about the rest shape does not know";
+      return "a stretched cloth is stiffer across the stretch, which theory about the rest shape does not "
+             "know";
     case Cause::bounded:
       return "beyond the limit the cloth trembles and does not blow up: what grows comes to an end by itself";
     case Cause::shape:

@@ -13,7 +13,7 @@ namespace clothlab::lab {
 enum class Cause {
   none,       ///< the boundary is where theory has it
   too_short,  ///< growth beyond the limit is too slow to show in a trial
-  tension,    ///< the springs are stretched, which stiffens the cloth
+  tension,    ///< it is stretched, which stiffens the cloth
   bounded,    ///< the growth ends by itself before it is a blow-up
   shape,      ///< the cloth leaves its rest shape: its springs are turned or slack
   contacts,   ///< without colliders and self-collision the same step holds

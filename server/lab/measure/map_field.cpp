@@ -39,11 +39,17 @@ void scale_stiffness(json& document, double factor) {
       if (json* stiffness = scene::child(cloth["material"], kind)) scale(*stiffness, factor);
 }
 
-bool any_spring(const scene::Scene& scene) {
+bool any_stiffness(const scene::Scene& scene) {
   return std::any_of(scene.cloths.begin(), scene.cloths.end(), [](const scene::Cloth& cloth) {
     const auto* springs = std::get_if<scene::Springs>(&cloth.material);
     return !springs || springs->structural > 0 || springs->shear > 0 || springs->bend > 0;
   });
+}
+
+/// True if a pointer, /cloths/0/material/..., names something of a cloth of finite elements.
+bool is_of_sheet(const scene::Scene& scene, const std::vector<std::string>& tokens) {
+  const auto index = tokens.size() > 1 ? scene::array_index(tokens[1], scene.cloths.size()) : std::nullopt;
+  return index && std::holds_alternative<scene::Fem>(scene.cloths[*index].material);
 }
 
 }  // namespace
@@ -51,7 +57,7 @@ bool any_spring(const scene::Scene& scene) {
 Result<MapField> MapField::find(const scene::Document& document, const std::string& field) {
   MapField found(document, field);
   if (field == stiffness) {
-    if (!any_spring(document.scene))
+    if (!any_stiffness(document.scene))
       return Error{"field", "\"stiffness\", but no cloth has a spring", "the JSON Pointer of another number"};
     return found;
   }
@@ -143,9 +149,20 @@ std::string MapField::unit() const {
       {"translate", "m"},      {"rotate", "degrees"}, {"size", "m"},
       {"vertices", "m"},       {"box", "m"},          {"degrees_per_second", "degrees/s"},
       {"gust_frequency", "Hz"}};
+  /// Of a sheet's material, where springs have other units or nothing of that name.
+  static const std::map<std::string, std::string> of_sheets{
+      {"warp", "N/m"}, {"weft", "N/m"}, {"shear", "N/m"}, {"damping", "s"}, {"grain", "degrees"}};
   if (field_ == stiffness) return "times the present";
-  // The unit follows from the last key of the pointer that is not an array index.
   const auto tokens = scene::split_pointer(field_);
+  const auto has = [&](const char* key) {
+    return std::find(tokens->begin(), tokens->end(), key) != tokens->end();
+  };
+  if (has("bending")) return "N m";
+  if (has("material") && is_of_sheet(document_.scene, *tokens)) {
+    const auto found = of_sheets.find(tokens->back());
+    return found == of_sheets.end() ? "" : found->second;
+  }
+  // The unit follows from the last key of the pointer that is not an array index.
   for (auto token = tokens->rbegin(); token != tokens->rend(); ++token) {
     if (scene::array_index(*token, 1u << 30)) continue;
     const auto found = units.find(*token);

@@ -1,9 +1,11 @@
 #include "server/lab/measure/parts.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "server/lab/measure/coarsen.h"
 #include "server/model/model.h"
+#include "server/scene/fitted_springs.h"
 
 namespace clothlab::lab {
 
@@ -22,8 +24,19 @@ std::size_t elements(const model::Model& model) {
   return count;
 }
 
-/// `key`: of springs; `key_of_sheet`: of finite elements, or null.
-Result<Document> without_elements(const Document& document, const char* key, const char* key_of_sheet) {
+bool is_sheet(const scene::Cloth& cloth) {
+  return std::holds_alternative<scene::Fem>(cloth.material);
+}
+bool any_sheet(const scene::Scene& scene) {
+  return std::any_of(scene.cloths.begin(), scene.cloths.end(), is_sheet);
+}
+bool all_sheets(const scene::Scene& scene) {
+  return std::all_of(scene.cloths.begin(), scene.cloths.end(), is_sheet);
+}
+
+/// `key`: of springs; `key_of_sheet`: of finite elements, or null; `what`: both, in words.
+Result<Document> without_elements(const Document& document, const char* key, const char* key_of_sheet,
+                                  const char* what) {
   json value = document.value;
   for (json& cloth : value["cloths"]) {
     const bool springs = cloth["material"]["model"] == "springs";
@@ -35,15 +48,16 @@ Result<Document> without_elements(const Document& document, const char* key, con
   // bend springs only across edges. So the elements are counted.
   const Result<model::Model> model = model::build(document.scene), fewer = model::build(without->scene);
   if (!model || !fewer) return model ? fewer.error() : model.error();
-  if (elements(*model) == elements(*fewer)) return not_there((std::string(key) + " springs").c_str());
+  if (elements(*model) == elements(*fewer)) return not_there(what);
   return without;
 }
 
 Result<Document> without_bend(const Document& document) {
-  return without_elements(document, "bend", "bending");
+  return without_elements(document, "bend", "bending",
+                          any_sheet(document.scene) ? "bending stiffness" : "bend springs");
 }
 Result<Document> without_shear(const Document& document) {
-  return without_elements(document, "shear", nullptr);
+  return without_elements(document, "shear", nullptr, "shear springs");
 }
 
 Result<Document> without_self_collision(const Document& document) {
@@ -69,6 +83,68 @@ Result<Document> undamped(const Document& document) {
   return scene::validate(std::move(value), document.assets);
 }
 
+/// The mass of a square metre of a grid [kg/m^2]; weights not counted.
+double area_density(const scene::Cloth& cloth, const scene::Grid& grid) {
+  if (cloth.mass.kind == scene::Mass::Kind::area_density) return cloth.mass.value;
+  const double area = grid.width * grid.height * cloth.transform.scale * cloth.transform.scale;
+  return cloth.mass.value * grid.columns * grid.rows / area;
+}
+
+json fitted_springs(const scene::Cloth& cloth, const scene::Grid& grid) {
+  const double cells = static_cast<double>(grid.columns - 1) * (grid.rows - 1);
+  const double spacing = cloth.transform.scale * std::sqrt(grid.width * grid.height / cells);
+  const scene::Springs springs =
+      scene::springs_like(std::get<scene::Fem>(cloth.material), spacing, area_density(cloth, grid));
+  json material{{"model", "springs"},
+                {"structural", springs.structural},
+                {"shear", springs.shear},
+                {"bend", springs.bend},
+                {"damping", springs.damping}};
+  if (springs.strain_limit) material["strain_limit"] = *springs.strain_limit;
+  return material;
+}
+
+/// Every cloth of finite elements as springs that are fitted to it (scene/fitted_springs.h).
+Result<Document> springs_instead(const Document& document) {
+  if (!any_sheet(document.scene)) return not_there("finite elements");
+  json value = document.value;
+  for (std::size_t i = 0; i < document.scene.cloths.size(); ++i) {
+    const scene::Cloth& cloth = document.scene.cloths[i];
+    if (!is_sheet(cloth)) continue;
+    const auto* grid = std::get_if<scene::Grid>(&cloth.mesh);
+    if (!grid)
+      return Error{"/cloths/" + std::to_string(i) + "/mesh", "springs are fitted to a sheet on grids only",
+                   "a grid"};
+    value["cloths"][i]["material"] = fitted_springs(cloth, *grid);
+    // Springs have no fabric that a document could leave the mass to.
+    const bool by_area = cloth.mass.kind == scene::Mass::Kind::area_density;
+    value["cloths"][i]["mass"] = {{by_area ? "area_density" : "per_vertex", cloth.mass.value}};
+  }
+  return scene::validate(std::move(value), document.assets);
+}
+
+/// Every sheet with one modulus and one bending stiffness for warp and weft, the (geometric) means, and with
+/// the Poisson's ratio that keeps the coupling of both. What the sheet resists when its threads slant stays:
+/// that of woven cloth is some twentieth of what an isotropic sheet has, and nobody would call it a detail.
+Result<Document> alike_along_both(const Document& document) {
+  json value = document.value;
+  bool differs = false;
+  for (std::size_t i = 0; i < document.scene.cloths.size(); ++i) {
+    const auto* sheet = std::get_if<scene::Fem>(&document.scene.cloths[i].material);
+    if (!sheet) continue;
+    const scene::Fem::Bending& bending = sheet->bending;
+    differs = differs || sheet->warp != sheet->weft || bending.warp != bending.weft;
+    json& material = value["cloths"][i]["material"];
+    material["warp"] = material["weft"] = std::sqrt(sheet->warp * sheet->weft);
+    material["poisson"] = sheet->poisson * std::sqrt(sheet->weft / sheet->warp);
+    const double mean = std::sqrt(bending.warp * bending.weft);
+    material["bending"] = {{"warp", mean}, {"weft", mean}};
+    if (bending.twist) material["bending"]["twist"] = *bending.twist;
+  }
+  if (!differs) return not_there("cloth of finite elements whose warp and weft differ");
+  return scene::validate(std::move(value), document.assets);
+}
+
 Result<Document> half_resolution(const Document& document) {
   return coarsen(document, 2);
 }
@@ -78,14 +154,25 @@ Result<Document> quarter_resolution(const Document& document) {
 
 }  // namespace
 
-const std::vector<Part>& parts() {
-  static const std::vector<Part> all{{"without bend springs", 1, without_bend},
-                                     {"without shear springs", 1, without_shear},
-                                     {"without self-collision", 1, without_self_collision},
-                                     {"without wind", 1, without_wind},
-                                     {without_damping, 1, undamped},
-                                     {"half the mesh resolution", 2, half_resolution},
-                                     {"a quarter of the mesh resolution", 4, quarter_resolution}};
+std::vector<Part> parts(const Document& document) {
+  const auto left_out = [](const char* name, auto* without, bool own_step = false) {
+    return Part{name, 1, "", "", own_step, without};
+  };
+  const bool sheets = any_sheet(document.scene);
+  std::vector<Part> all{left_out(sheets ? "without bending" : "without bend springs", without_bend)};
+  if (!all_sheets(document.scene)) all.push_back(left_out("without shear springs", without_shear));
+  if (sheets) {
+    all.push_back({"with warp and weft alike", 1, "Isotropic suffices", "Isotropic does not suffice", true,
+                   alike_along_both});
+    all.push_back({"with springs instead of finite elements", 1, "Springs suffice", "Springs do not suffice",
+                   true, springs_instead});
+  }
+  all.push_back(left_out("without self-collision", without_self_collision));
+  all.push_back(left_out("without wind", without_wind));
+  // A sheet's damping grows with its stiffness, and shortens the steps of explicit methods several times.
+  all.push_back(left_out(without_damping, undamped, sheets));
+  all.push_back({"half the mesh resolution", 2, "", "", true, half_resolution});
+  all.push_back({"a quarter of the mesh resolution", 4, "", "", true, quarter_resolution});
   return all;
 }
 

@@ -1,4 +1,5 @@
-// The parts of a scene that can be left out or made coarser, each as a change of the scene document.
+// The parts of a scene that can be left out, made coarser or replaced by a simpler model, each as a change of
+// the scene document.
 #pragma once
 
 #include <string>
@@ -11,6 +12,11 @@ namespace clothlab::lab {
 struct Part {
   std::string name;  ///< of the changed scene: "without bend springs", "half the mesh resolution"
   int coarser = 1;   ///< the mesh resolution is divided by this factor; 1: the mesh stays as it is
+  /// Of a simpler model of the cloth: both verdicts, "Springs suffice" and "Springs do not suffice". Empty:
+  /// the part is left out or made coarser. Of two simpler models only one can be taken.
+  std::string suffices, falls_short;
+  /// True if the step becomes the same share of the changed scene's limit.
+  bool own_step = false;
   /// Returns the document without the part. Error: why there is nothing to leave out; its `where` may be
   /// empty.
   Result<scene::Document> (*without)(const scene::Document&);
@@ -18,8 +24,9 @@ struct Part {
 
 inline constexpr const char* without_damping = "without damping";
 
-/// All parts, in the order in which they are listed to a user.
-const std::vector<Part>& parts();
+/// The parts that a scene may have, in the order in which they are listed to a user. Only scenes with a cloth
+/// of finite elements have simpler models.
+std::vector<Part> parts(const scene::Document& document);
 
 /// The merge patch (RFC 7396) that turns `from` into `to`.
 scene::json merge_patch(const scene::json& from, const scene::json& to);

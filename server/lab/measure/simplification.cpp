@@ -35,6 +35,7 @@ class SimplificationMeasurement {
       : document_(document),
         request_(request),
         control_(control),
+        parts_(parts(document)),
         substitutes_(document, control.stop, request.timer) {}
 
   Result<Simplification> run() {
@@ -70,7 +71,7 @@ class SimplificationMeasurement {
   }
 
   Status measure_parts() {
-    for (const Part& part : parts()) {
+    for (const Part& part : parts_) {
       control_.progress({progress(), 1.0, part.name});
       Substitute candidate;
       candidate.variant.name = part.name;
@@ -118,7 +119,8 @@ class SimplificationMeasurement {
         going.push_back(next);
         continue;
       }
-      if (next->coarser() && best.coarser()) continue;  // not twice
+      if (next->coarser() && best.coarser()) continue;    // not twice
+      if (next->replaced() && best.replaced()) continue;  // one model of a cloth
       if (Status tried = try_besides(best, going, next); !tried) return tried;
     }
     if (!going.empty()) recommended(going, best);
@@ -164,17 +166,21 @@ class SimplificationMeasurement {
       together.parts.push_back(candidate->parts.front());
     }
     together.variant.name = list(names);
-    // The mesh is made coarser last, after the other parts have been left out.
-    for (const bool coarser : {false, true})
-      for (const Part* part : together.parts) {
-        if ((part->coarser > 1) != coarser) continue;
-        Result<Document> without = part->without(document);
-        if (!without) {
-          together.variant.reason = without.error().what;
-          return ok();
-        }
-        document = std::move(*without);
+    // The mesh is made coarser after the other parts have been left out; a simpler model is fitted to the
+    // rest.
+    std::vector<const Part*> in_order = together.parts;
+    std::stable_sort(in_order.begin(), in_order.end(), [](const Part* a, const Part* b) {
+      return std::pair(!a->suffices.empty(), a->coarser > 1) <
+             std::pair(!b->suffices.empty(), b->coarser > 1);
+    });
+    for (const Part* part : in_order) {
+      Result<Document> without = part->without(document);
+      if (!without) {
+        together.variant.reason = without.error().what;
+        return ok();
       }
+      document = std::move(*without);
+    }
     control_.progress({progress(), 1.0, "what can go, together"});
     return substitutes_.measure(together, std::move(document));
   }
@@ -198,9 +204,22 @@ class SimplificationMeasurement {
   }
 
   double progress() const {
-    const double share =
-        static_cast<double>(found_.variants.size()) / static_cast<double>(parts().size() + 2);
+    const double share = static_cast<double>(found_.variants.size()) / static_cast<double>(parts_.size() + 2);
     return truth_progress + (1.0 - truth_progress) * share;
+  }
+
+  /// A line on each simpler model that was compared: whether it suffices here.
+  std::string verdicts(const std::string& allowed) const {
+    std::string lines;
+    for (const Substitute& candidate : candidates_) {
+      const Variant& variant = candidate.variant;
+      if (!candidate.replaced() || !variant.change) continue;
+      const Part& part = *candidate.parts.front();
+      lines += (keeps_tolerance(variant) ? part.suffices : part.falls_short) +
+               " here: " + percent(*variant.change) + " of the size" + allowed + ", " +
+               text(variant.cost_ratio) + " times the time.\n";
+    }
+    return lines;
   }
 
   void explain() {
@@ -225,6 +244,7 @@ class SimplificationMeasurement {
     } else {
       found_.why = nothing_can_go(allowed);
     }
+    found_.why = verdicts(allowed) + found_.why;
   }
 
   std::string nothing_can_go(const std::string& allowed) const {
@@ -253,6 +273,7 @@ class SimplificationMeasurement {
   const Document& document_;
   const SimplifyRequest& request_;
   const Control<Simplification>& control_;
+  std::vector<Part> parts_;
   Substitutes substitutes_;
   std::vector<Substitute> candidates_;
   Simplification found_;

@@ -30,13 +30,13 @@ struct Variant {
 struct Simplification {
   std::string scene, renderer;
   double tolerance = 0, time = 0, horizon = 0, size = 0;
-  Setting setting;  ///< the scene's own; a coarser mesh takes a step of the same share of its limit
+  Setting setting;  ///< the scene's own; a coarser mesh or another model takes the same share of its limit
   Variant whole;    ///< the scene as it is
   std::vector<Variant> variants;
   Variant recommended;  ///< the scene without all parts that can go; its patch is empty where none can
   /// True if `recommended` leaves out more than one part, and so is none of `variants`.
   bool drops_several() const;
-  std::string why;  ///< one sentence
+  std::string why;  ///< a sentence a line: on each simpler model of the cloth, then on what can go
   std::vector<std::string> notes;
   bool complete = false;
 };

@@ -176,6 +176,10 @@ Result<double> StepSearch::shorten(Candidate& candidate, double too_large) {
       candidate.best->setting.dt *
       std::clamp(0.97 * std::pow(tolerance_ / too_large, 1.0 / scene::facts(candidate.setting.method).order),
                  0.25, 0.97);
+  return step_at(candidate, dt);
+}
+
+Result<double> StepSearch::step_at(Candidate& candidate, double dt) {
   Point point;
   const Result<double> error = error_at(candidate, dt, point);
   if (error && *error < worst) keep(candidate, point);

@@ -19,6 +19,7 @@ struct Candidate {
   double limit = 0;                ///< the longest stable step [s]; infinite: any step is stable
   double step_cost = 0;            ///< wall time of a step [s]
   std::optional<Point> best;       ///< at the longest step found that keeps the tolerance
+  bool for_margin = false;         ///< its step was made shorter because longer ones blow up
   std::vector<double> times = {};  ///< [round] of the final timing in turns [ms per simulated second]
 
   double cost(double dt) const { return 1000.0 * step_cost / dt; }  ///< [ms per simulated second]
@@ -56,6 +57,9 @@ class StepSearch {
   /// `too_large` should fall to the tolerance; keeps this step as the best unless the run blew up. Returns as
   /// `error_at`.
   Result<double> shorten(Candidate& candidate, double too_large);
+  /// Runs the candidate at a step of about `dt` [s] and keeps it as the best unless the run blew up. Returns
+  /// as `error_at`.
+  Result<double> step_at(Candidate& candidate, double dt);
 
   /// The method's longest stable step about the rest shape [s], exact to about 0.1 %.
   double limit_of(scene::Method method) const;

@@ -30,6 +30,13 @@ bool Substitute::coarser() const {
   return std::any_of(parts.begin(), parts.end(), [](const Part* part) { return part->coarser > 1; });
 }
 
+bool Substitute::own_step() const {
+  return std::any_of(parts.begin(), parts.end(), [](const Part* part) { return part->own_step; });
+}
+bool Substitute::replaced() const {
+  return std::any_of(parts.begin(), parts.end(), [](const Part* part) { return !part->suffices.empty(); });
+}
+
 Status Substitutes::start(double time, const std::function<void(double share)>& progress,
                           std::vector<std::string>& notes) {
   Result<Truth> truth = lab::truth(whole_.document.scene, {time, 1e-6, truth_budget}, stop_, progress);
@@ -80,14 +87,14 @@ Status Substitutes::compare_without_truth(std::vector<std::string>& notes) {
 
 Status Substitutes::measure(Substitute& candidate, Document document) {
   candidate.document = std::move(document);
-  if (candidate.coarser())
+  if (candidate.own_step())
     if (Status stepped = same_share_of_limit(candidate); !stepped) return stepped;
   candidate.variant.patch = merge_patch(whole_.document.value, candidate.document.value);
   return run(candidate);
 }
 
-/// Sets the step of a coarser mesh to the same share of its limit as in the whole scene: a coarser mesh
-/// allows longer steps, which is most of its saving.
+/// Sets the step to the same share of the limit as in the whole scene: a coarser mesh or a simpler model may
+/// allow longer steps, which are most of its saving, or need shorter ones.
 Status Substitutes::same_share_of_limit(Substitute& candidate) {
   const Result<double> limit = limit_of(candidate.document.scene);
   if (!limit) return limit.error();

@@ -20,6 +20,9 @@ struct Substitute {
   std::vector<const Part*> parts;      ///< parts left out or made coarser; empty: this is the whole scene
   std::vector<glm::dvec3> at_horizon;  ///< vertices of the whole scene at compared_at() [m]; empty: unknown
   bool coarser() const;
+  bool own_step() const;
+  /// True if a part of it is a simpler model of the cloth.
+  bool replaced() const;
 };
 
 /// Measures a whole scene and the candidates that may stand in for it. Needs a current GL context.
@@ -38,8 +41,8 @@ class Substitutes {
                std::vector<std::string>& notes);
 
   /// Runs `document` as the candidate's scene and fills in the variant's patch, errors, change and step
-  /// limit. The step of a coarser mesh becomes the same share of its limit as in the whole scene. A run that
-  /// blows up leaves the variant not measured, with the reason.
+  /// limit. With a part that has its own step, the step becomes the same share of its limit as in the whole
+  /// scene. A run that blows up leaves the variant not measured, with the reason.
   Status measure(Substitute& candidate, scene::Document document);
 
   /// Times the candidates and the whole scene in turns; fills in their costs, and ratios to the whole's cost.

@@ -92,7 +92,7 @@ export class SimplifyTab extends Tab<"simplify"> {
   constructor(host: TabHost) {
     super("simplify", host, {
       lead:
-        "Which parts of this scene does its motion need? Each is left out or made coarser in turn: " +
+        "Which parts of this scene does its motion need? Each is left out, or made simpler or coarser, in turn: " +
         "what that changes, and what it saves.",
       start: "Measure the parts",
       file: "parts",
