@@ -1,6 +1,6 @@
 // Applies what the lab found to the scene: the patch that undoes a change, and the replaced values in words.
 import { inverse, valueAt } from "../link/json_patch";
-import type { Operation, Patch } from "../link/scene_types";
+import type { Patch } from "../link/scene_types";
 
 type Tree = Record<string, unknown>;
 
