@@ -1,4 +1,5 @@
-// Finds the files that are installed with the program: shaders/, server/scene/presets/, web/dist/.
+// Finds the files that are installed with the program: shaders/, server/scene/presets/,
+// server/scene/fabrics.json, web/dist/.
 #pragma once
 
 #include <filesystem>

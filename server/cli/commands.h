@@ -33,6 +33,7 @@ void add_choose(CLI::App& app, int& exit_code);
 void add_simplify(CLI::App& app, int& exit_code);
 void add_validate(CLI::App& app, int& exit_code);
 void add_presets(CLI::App& app, int& exit_code);
+void add_fabrics(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);
 
 /// Prints "clothlab: error: where: what; remedy" on stderr and returns `code`.

@@ -1,7 +1,8 @@
 // scene.*: read, replace and patch the document: the session's thread validates the request and answers.
-// scene.presets lists the presets without the session.
+// scene.presets lists the presets and the fabrics without the session.
 #include "server/net/client.h"
 #include "server/net/methods.h"
+#include "server/scene/fabrics.h"
 
 namespace clothlab::net {
 
@@ -37,7 +38,11 @@ Outcome scene_patch(Client& client, const Request& request) {
 Outcome scene_presets(Client&, const Request& request) {
   Params params(request.params);
   if (auto error = params.check()) return *error;
-  return json{{"presets", scene::preset_names()}};
+  json fabrics = json::array();
+  if (const auto& all = scene::fabrics())
+    for (const scene::Fabric& fabric : *all)
+      fabrics.push_back({{"name", fabric.name}, {"feel", fabric.feel}, {"source", fabric.source}});
+  return json{{"presets", scene::preset_names()}, {"fabrics", std::move(fabrics)}};
 }
 
 }  // namespace clothlab::net

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/base/text.h"
+#include "server/scene/fabrics.h"
 #include "server/scene/sections.h"
 
 namespace clothlab::scene {
@@ -124,61 +124,6 @@ Mass read_mass(const Reader& mass) {
   return Mass{Mass::Kind::per_vertex, mass.member("per_vertex").number(ranges::mass_per_vertex)};
 }
 
-/// A member that may be null, which is its default.
-std::optional<double> read_optional(const Reader& object, const std::string& key, const Range& range) {
-  const Reader member = object.member(key, json(nullptr));
-  return member.is_null() ? std::nullopt : std::optional(member.number(range));
-}
-
-Springs read_springs(const Reader& material) {
-  material.object({"model", "structural", "shear", "bend", "damping", "strain_limit"}, {"fabric"});
-  return Springs{material.member("structural", 20000).number(ranges::stiffness),
-                 material.member("shear", 10000).number(ranges::stiffness),
-                 material.member("bend", 2000).number(ranges::stiffness),
-                 material.member("damping", 2.0).number(ranges::damping),
-                 read_optional(material, "strain_limit", ranges::strain_limit)};
-}
-
-/// Of a sheet that bends alike in all directions, or one number for each.
-Fem::Bending read_bending(const Reader& bending) {
-  if (!bending.is_object()) {
-    const double alike = bending.number(ranges::bending);
-    return {alike, alike, std::nullopt};
-  }
-  bending.object({"warp", "weft", "twist"});
-  return {bending.member("warp").number(ranges::bending), bending.member("weft").number(ranges::bending),
-          read_optional(bending, "twist", ranges::bending)};
-}
-
-Fem read_fem(const Reader& material) {
-  material.object(
-      {"model", "warp", "weft", "poisson", "shear", "bending", "damping", "grain", "strain_limit"},
-      {"fabric"});
-  const Fem standard;
-  Fem fem;
-  fem.warp = material.member("warp", standard.warp).number(ranges::modulus);
-  fem.weft = material.member("weft", standard.weft).number(ranges::modulus);
-  const Reader poisson = material.member("poisson", standard.poisson);
-  fem.poisson = poisson.number(ranges::poisson);
-  if (!(fem.poisson * fem.poisson < fem.warp / fem.weft))
-    poisson.fail("below " + with_significant_digits(std::sqrt(fem.warp / fem.weft), 3) +
-                 ", the square root of warp / weft (or the sheet would gain energy by being stretched)");
-  fem.shear = material.member("shear", standard.shear).number(ranges::shear_modulus);
-  fem.bending = read_bending(
-      material.member("bending", json{{"warp", standard.bending.warp}, {"weft", standard.bending.weft}}));
-  fem.damping = material.member("damping", standard.damping).number(ranges::damping_time);
-  fem.grain = material.member("grain", standard.grain).number(ranges::angle);
-  fem.strain_limit = read_optional(material, "strain_limit", ranges::strain_limit);
-  return fem;
-}
-
-Material read_material(const Reader& material) {
-  if (!material.is_object()) return read_springs(material);
-  const std::string model = material.member("model", "springs").choice({"springs", "fem"});
-  if (model == "fem") return read_fem(material);
-  return read_springs(material);
-}
-
 std::vector<Pin> read_pins(const Reader& pins, const Mesh& mesh) {
   std::vector<Pin> result(pins.array(0, max_pins));
   for (std::size_t i = 0; i < result.size(); ++i) {
@@ -229,8 +174,13 @@ Cloth read_cloth(const Reader& cloth, std::size_t index, const Assets* assets) {
   result.name = cloth.member("name", default_name("cloth", index)).name();
   result.mesh = read_mesh(cloth.member("mesh"), assets);
   result.transform = read_transform(cloth.member("transform", json::object()));
-  result.mass = read_mass(cloth.member("mass", json{{"per_vertex", 0.1}}));
-  result.material = read_material(cloth.member("material", json::object()));
+  const FabricMaterial made =
+      read_material(cloth.member("material", json::object()), result.mesh, result.transform.scale);
+  result.material = made.material;
+  // A fabric's own density is not written into the document, so that it changes with the fabric.
+  result.mass = made.fabric && !cloth.has("mass")
+                    ? Mass{Mass::Kind::area_density, made.fabric->area_density}
+                    : read_mass(cloth.member("mass", json{{"per_vertex", 0.1}}));
   result.pins = read_pins(cloth.member("pins", json::array()), result.mesh);
   result.weights = read_weights(cloth.member("weights", json::array()), result.mesh);
   result.start = read_start(cloth.member("start", json(nullptr)));

@@ -17,7 +17,9 @@ using nlohmann::json;
 
 /// A valid scene in two forms, JSON and plain data, which always agree.
 struct Document {
-  json value;  ///< with every key of the schema, defaults filled in; the user's numbers are unchanged
+  /// With every key of the schema, defaults filled in; the user's numbers are unchanged. What a cloth leaves
+  /// to the fabric that it names stays absent: see named_fabric.h.
+  json value;
   Scene scene;
   std::shared_ptr<const Assets> assets{};  ///< where the meshes that it names are; null: it may name none
   bool operator==(const Document& other) const { return value == other.value && scene == other.scene; }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "server/scene/document.h"
+#include "server/scene/named_fabric.h"
 #include "server/scene/pointer.h"
 
 namespace clothlab::scene {
@@ -167,6 +168,7 @@ Result<Document> apply_patch(const Document& document, const json& patch) {
   json target = document.value;
   if (patch.is_object()) {
     target.merge_patch(patch);
+    give_way_to_fabrics(document.value, target);
     return validate(std::move(target), document.assets);
   }
   if (!patch.is_array())
@@ -179,6 +181,7 @@ Result<Document> apply_patch(const Document& document, const json& patch) {
     const Status done = operations.apply(patch[i], i);
     if (!done) return done.error();
   }
+  give_way_to_fabrics(document.value, target);
   return validate(std::move(target), document.assets);
 }
 

@@ -19,6 +19,7 @@ const std::vector<Preset>& presets() {
       {"hanging-strip", "a narrow strip under its own weight: elongation has a closed form"},
       {"cantilever", "a stiff strip held level at one end bends under its weight"},
       {"trampoline", "held along its four edges, with a sphere driven into it from above"},
+      {"fabrics", "cotton, silk, denim and a knit over equal balls"},
       {"blowup", "a time step beyond the stability limit, on purpose"},
   };
   return list;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "server/scene/assets.h"
+#include "server/scene/fabrics.h"
 #include "server/scene/reader.h"
 #include "server/scene/scene.h"
 
@@ -10,6 +11,18 @@ namespace clothlab::scene {
 /// `index` is the place in the list; the default name follows from it: "cloth", "cloth-2", ... `assets` (may
 /// be null) has the meshes that documents name.
 Cloth read_cloth(const Reader& cloth, std::size_t index, const Assets* assets);
+
+/// A material, and the fabric that it names, or null.
+struct FabricMaterial {
+  Material material;
+  const Fabric* fabric = nullptr;
+};
+/// `mesh` and `scale` (of its transform): springs fitted to a fabric depend on the distance of the vertices.
+FabricMaterial read_material(const Reader& material, const Mesh& mesh, double scale);
+/// A material of finite elements: with the numbers of `fabric` where it has none, or, without one, the
+/// standard ones.
+Fem read_sheet(const Reader& material, const Fabric* fabric);
+
 Collider read_collider(const Reader& collider, std::size_t index);
 /// Reads the shape of a collider, which is the member with the name of its kind, e.g. "sphere".
 Shape read_shape(const Reader& collider);

@@ -1,5 +1,6 @@
 // `--set /solver/dt=0.0005`: sets one value of the document, which a JSON Pointer names.
 #include "server/scene/document.h"
+#include "server/scene/named_fabric.h"
 #include "server/scene/pointer.h"
 
 namespace clothlab::scene {
@@ -56,6 +57,7 @@ Result<Document> set_value(const Document& document, const std::string& assignme
     return Error{pointer, "no such place (" + compact((*tokens)[reached]) + ")",
                  "an existing key or index; `-` appends to an array"};
   *place = std::move(*value);
+  give_way_to_fabrics(document.value, target);
   return validate(std::move(target), document.assets);
 }
 

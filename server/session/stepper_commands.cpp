@@ -4,6 +4,7 @@
 
 #include "server/model/constraint_gains.h"
 #include "server/model/thickness.h"
+#include "server/scene/named_fabric.h"
 #include "server/session/stepper.h"
 
 namespace clothlab::session {
@@ -279,8 +280,10 @@ void Stepper::announce_solver() {
   }
   json thickness = nullptr;
   if (scene().self_collision) thickness = model::least_safe_thickness(simulation().model());
-  exchange_.emit(SolverChanged{
-      {{"pbd_stiffness", shares}, {"auto", automatic_.facts()}, {"thickness_that_holds", thickness}}});
+  exchange_.emit(SolverChanged{{{"pbd_stiffness", shares},
+                                {"auto", automatic_.facts()},
+                                {"thickness_that_holds", thickness},
+                                {"from_fabrics", scene::left_to_fabrics(document_)}}});
 }
 
 // Warns once, after a change of scene that lets layers of cloth pass through each other.

@@ -10,4 +10,7 @@ void main() {
   position = placed.xyz + placed.w * unit;
   normal = unit;
   gl_Position = view_projection * vec4(position, 1.0);
+  // A little deeper than it is: the middles of the triangles of cloth that lies on it are inside it.
+  vec4 deeper = view_projection * vec4(position + 0.08 * placed.w * normalize(position - eye.xyz), 1.0);
+  gl_Position.z = deeper.z / deeper.w * gl_Position.w;
 }

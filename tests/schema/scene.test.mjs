@@ -118,6 +118,8 @@ const sheets = {
   cloths: [
     { mesh: grid, material: { model: "fem", ...sheet } },
     { mesh: grid, material: { model: "fem", bending: 1e-5 } },
+    { mesh: grid, material: { fabric: "silk", damping: 1e-4 } },
+    { mesh: grid, material: { model: "springs", fabric: "interlock", bend: 0 } },
   ],
   solver: { method: "verlet" },
 };
@@ -172,6 +174,7 @@ function* mutations() {
     "checker",
     "stripes",
     "velvet",
+    "denim",
     "fem",
     "springs",
     "explicit_euler",
@@ -288,6 +291,14 @@ test("the schema and the program agree on every scene, valid or broken", () => {
     `${scenes.length} scenes, ${valid} valid`,
   );
   assert.deepEqual([...seen].sort(), Object.keys(crossFieldRules).sort(), "a rule that no scene above breaks");
+});
+
+test("the schema names the fabrics of fabrics.json", () => {
+  const fabrics = JSON.parse(readFileSync(new URL("fabrics.json", sceneFolder)));
+  assert.deepEqual(
+    schema.$defs.fabric.enum,
+    fabrics.map(({ name }) => name),
+  );
 });
 
 test("every preset satisfies the schema", () => {

@@ -1,10 +1,12 @@
-// Makes the tables of server/scene/README.md from server/scene/scene.schema.json. After a change of the schema:
+// Makes the tables of server/scene/README.md from scene.schema.json and fabrics.json beside it. After a change of
+// either:
 //   node tests/schema/scene_reference.mjs
 import { readFileSync, writeFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 
 const folder = new URL("../../server/scene/", import.meta.url);
 const begin = "<!-- made by tests/schema/scene_reference.mjs from scene.schema.json -->\n",
+  beginFabrics = "<!-- made by tests/schema/scene_reference.mjs from fabrics.json -->\n",
   end = "<!-- end of what is made -->\n";
 
 /// Each table: its title, its place in the schema, and the text above it.
@@ -124,17 +126,35 @@ export function reference(schema) {
     .join("\n");
 }
 
+/// The fabrics and what they are like.
+function fabricTable(fabrics) {
+  const micro = (value) => (value === null ? "" : String(Number((1e6 * value).toPrecision(4))));
+  const rows = fabrics.map(({ name, feel, area_density, material, locks_at }) => {
+    const { warp, weft, poisson, shear, bending } = material;
+    const bends = [bending.warp, bending.weft, bending.twist].map(micro).filter((text) => text !== "");
+    const locks = locks_at ? `${locks_at.warp} / ${locks_at.weft}` : "";
+    const numbers = [(1000 * area_density).toFixed(1), `${warp} / ${weft}`, poisson, shear, bends.join(" / "), locks];
+    return `| ${[code(name), feel, ...numbers].join(" | ")} |`;
+  });
+  const head = "| | what it is like | g/m^2 | warp / weft | poisson | shear | bending [uN m] | locks at |";
+  return [head, "|---|---|---|---|---|---|---|---|", ...rows].join("\n") + "\n";
+}
+
+function replaced(text, from, to, made) {
+  const [first, last] = [text.indexOf(from), text.indexOf(to, text.indexOf(from))];
+  if (first < 0 || last < first) throw new Error("server/scene/README.md has lost its markers");
+  return text.slice(0, first) + from + "\n" + made + "\n" + text.slice(last);
+}
+
 /// The README with its tables made anew.
-export function updated(readme, schema) {
-  const [from, to] = [readme.indexOf(begin), readme.indexOf(end)];
-  if (from < 0 || to < from) throw new Error("server/scene/README.md has lost its markers");
-  return readme.slice(0, from) + begin + "\n" + reference(schema) + "\n" + readme.slice(to);
+export function updated(readme, schema, fabrics) {
+  return replaced(replaced(readme, begin, end, reference(schema)), beginFabrics, end, fabricTable(fabrics));
 }
 
 if (process.argv[1] === fileURLToPath(import.meta.url)) {
   const file = new URL("README.md", folder);
-  writeFileSync(
-    file,
-    updated(readFileSync(file, "utf8"), JSON.parse(readFileSync(new URL("scene.schema.json", folder)))),
+  const [schema, fabrics] = ["scene.schema.json", "fabrics.json"].map((name) =>
+    JSON.parse(readFileSync(new URL(name, folder))),
   );
+  writeFileSync(file, updated(readFileSync(file, "utf8"), schema, fabrics));
 }

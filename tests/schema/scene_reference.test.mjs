@@ -1,4 +1,4 @@
-// The tables of server/scene/README.md agree with the schema.
+// The tables of server/scene/README.md agree with the schema and the fabrics.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
@@ -8,5 +8,8 @@ const folder = new URL("../../server/scene/", import.meta.url);
 
 test("the scene's README has every key of the schema, with its range and default (else: node tests/schema/scene_reference.mjs)", () => {
   const readme = readFileSync(new URL("README.md", folder), "utf8");
-  assert.equal(readme, updated(readme, JSON.parse(readFileSync(new URL("scene.schema.json", folder)))));
+  const [schema, fabrics] = ["scene.schema.json", "fabrics.json"].map((name) =>
+    JSON.parse(readFileSync(new URL(name, folder))),
+  );
+  assert.equal(readme, updated(readme, schema, fabrics));
 });

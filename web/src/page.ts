@@ -19,6 +19,7 @@ import {
 } from "./panel/notices";
 import { takeDroppedMeshes } from "./panel/mesh_drop";
 import { Panel } from "./panel/panel";
+import type { Fabric } from "./link/fabrics";
 import type { ShownFrame } from "./link/protocol";
 import { RpcError } from "./link/rpc";
 import { SlowWatch } from "./panel/slow_watch";
@@ -181,6 +182,10 @@ export class Page {
     return new Lab({
       request: (method, params) => this.connection.request(method, params),
       document: () => this.store.document,
+      addressed: (patch) => ({
+        stored: this.store.stored,
+        patch: Array.isArray(patch) ? this.store.addressed(patch) : patch,
+      }),
       mayEdit: () => this.mayEdit,
       applied: showApplied,
       toggled: (open) => this.layout?.labToggled(open),
@@ -200,6 +205,7 @@ export class Page {
         this.transport.status(params as Status);
         this.slow.told(params as Status);
         if (params.stability) this.panel.showStability(params.stability as Stability);
+        if (params.solver) this.store.fabricsGive((params.solver as SolverFacts).from_fabrics ?? []);
         if (params.solver) this.panel.showSolver(params.solver as SolverFacts);
         this.followDivergence(params as Status);
       },
@@ -219,8 +225,8 @@ export class Page {
     this.lab.roleChanged();
     document.body.classList.toggle("viewer", !this.mayEdit);
     this.transport.enable(this.connection.open && this.mayEdit);
-    this.connection.request<{ presets: string[] }>("scene.presets").then(
-      ({ presets }) => this.panel.setPresets(presets),
+    this.connection.request<{ presets: string[]; fabrics?: Fabric[] }>("scene.presets").then(
+      ({ presets, fabrics }) => this.panel.setOffers(presets, fabrics ?? []),
       () => undefined,
     );
   }

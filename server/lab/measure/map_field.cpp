@@ -5,6 +5,7 @@
 #include <map>
 
 #include "server/base/text.h"
+#include "server/scene/named_fabric.h"
 #include "server/scene/pointer.h"
 
 namespace clothlab::lab {
@@ -56,6 +57,7 @@ bool is_of_sheet(const scene::Scene& scene, const std::vector<std::string>& toke
 
 Result<MapField> MapField::find(const scene::Document& document, const std::string& field) {
   MapField found(document, field);
+  found.document_.value = scene::spelled_out(document);
   if (field == stiffness) {
     if (!any_stiffness(document.scene))
       return Error{"field", "\"stiffness\", but no cloth has a spring", "the JSON Pointer of another number"};

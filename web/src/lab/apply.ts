@@ -1,6 +1,6 @@
 // Applies what the lab found to the scene: the patch that undoes a change, and the replaced values in words.
-import { valueAt } from "../link/json_patch";
-import type { Operation, Patch } from "../link/scene_types";
+import { inverse, valueAt } from "../link/json_patch";
+import type { Patch } from "../link/scene_types";
 
 type Tree = Record<string, unknown>;
 
@@ -9,7 +9,8 @@ const isTree = (value: unknown): value is Tree => typeof value === "object" && v
 /// The patch that undoes `patch` and restores `document`. Arrays are restored whole.
 export function reverseOf(document: unknown, patch: Patch): Patch {
   if (Array.isArray(patch)) {
-    return patch.map(({ path }): Operation => ({ op: "replace", path, value: valueAt(document, path) })).reverse();
+    const back = patch.map((operation) => inverse(document, operation)).filter((each) => each !== null);
+    return back.reverse();
   }
   return mergeBack(document as Tree, patch);
 }

@@ -15,6 +15,8 @@ import type { Patch, SceneDocument } from "../link/scene_types";
 export interface LabEvents {
   request<T>(method: string, params: Record<string, unknown>): Promise<T>;
   document(): SceneDocument | null;
+  /// The document as the server keeps it, and a patch of it that does what `patch` does to the one that is shown.
+  addressed(patch: Patch): { stored: SceneDocument | null; patch: Patch };
   mayEdit(): boolean;
   applied(depth: string): void;
   toggled(open: boolean): void; ///< changes the free part of the window
@@ -150,9 +152,10 @@ export class Lab {
   private async apply(patch: Patch, what: string): Promise<void> {
     const before = this.events.document();
     if (!before || !this.events.mayEdit()) return;
-    const undo = reverseOf(before, patch);
+    const { stored, patch: sent } = this.events.addressed(patch);
+    const undo = reverseOf(stored, sent);
     const was = formerly(before, patch);
-    if (!(await this.send(patch))) return;
+    if (!(await this.send(sent))) return;
     notice("info", {
       title: `Applied: ${what}`,
       lines: was === "" ? [] : [`Before: ${was}.`],

@@ -1,6 +1,7 @@
 // The page's copy of the scene: the server's last document, and the edits on their way to the server.
 // Edits to the same place are merged into one message per `sendEvery`; the last value is always sent.
-import { applyPatch, valueAt } from "./json_patch";
+import { addressed, type LeftToFabric, withFabrics } from "./fabrics";
+import { applyPatch, inverse } from "./json_patch";
 import type { Operation, Patch, SceneDocument } from "./scene_types";
 
 const sendEvery = 50; // [ms]
@@ -16,8 +17,10 @@ export interface StoreEvents {
 }
 
 export class SceneStore {
-  document: SceneDocument | null = null;
+  document: SceneDocument | null = null; ///< as it is shown, with the numbers that it leaves to fabrics
+  stored: SceneDocument | null = null; ///< as the server keeps it
   revision = 0;
+  private left: LeftToFabric[] = [];
   private readonly queue = new Map<string, Operation>();
   private inFlight: Operation[] | null = null;
   private timer = 0;
@@ -28,23 +31,33 @@ export class SceneStore {
 
   /// Takes a whole document, from `scene` or from the answer to `scene.get`.
   replace(document: SceneDocument, revision: number): void {
-    this.document = document;
+    this.take(document, revision, true);
+  }
+
+  private take(stored: SceneDocument, revision: number, whole: boolean): void {
+    this.stored = stored;
     this.revision = revision;
-    this.events.changed(document, true);
+    this.document = withFabrics(stored, this.left);
+    this.events.changed(this.document, whole);
+  }
+
+  /// Takes the numbers that the document leaves to fabrics.
+  fabricsGive(left: LeftToFabric[]): void {
+    if (JSON.stringify(left) === JSON.stringify(this.left)) return;
+    this.left = left;
+    if (this.stored) this.take(this.stored, this.revision, false);
   }
 
   /// Takes a patch, this page's or another viewer's. A revision is applied once, though several messages may tell it.
   patched(revision: number, patch: Patch): void {
-    if (!this.document || revision <= this.revision) return;
+    if (!this.stored || revision <= this.revision) return;
     // A patch lacks the defaults that the server filled in: anything but plain values makes the page fetch the
     // document.
     if (revision !== this.revision + 1 || !isPlain(patch)) {
       void this.events.fetch();
       return;
     }
-    this.document = applyPatch(this.document, patch);
-    this.revision = revision;
-    this.events.changed(this.document, false);
+    this.take(applyPatch(this.stored, patch), revision, false);
   }
 
   edit(operations: Operation[]): void {
@@ -76,10 +89,15 @@ export class SceneStore {
     this.timer = window.setTimeout(() => void this.flush(), wait);
   }
 
+  /// Operations on `document` as ones on `stored`.
+  addressed(operations: Operation[]): Operation[] {
+    return this.stored && this.document ? addressed(this.stored, this.document, operations) : operations;
+  }
+
   private remember(operations: Operation[]): void {
     for (const operation of operations) {
-      if (!this.document || this.before.has(operation.path)) continue;
-      const back = inverse(this.document, operation);
+      if (!this.stored || this.before.has(operation.path)) continue;
+      const back = inverse(this.stored, operation);
       if (back) this.before.set(operation.path, back);
     }
   }
@@ -88,7 +106,7 @@ export class SceneStore {
     this.timer = 0;
     if (performance.now() - this.lastSent > oneChange) this.before.clear();
     this.lastSent = performance.now();
-    const operations = [...this.queue.values()];
+    const operations = this.addressed([...this.queue.values()]);
     this.queue.clear();
     this.inFlight = operations;
     this.remember(operations);
@@ -104,14 +122,6 @@ export class SceneStore {
     }
     this.schedule();
   }
-}
-
-/// The operation that undoes another; null if it is none of replace, add, remove.
-function inverse(document: SceneDocument, { op, path }: Operation): Operation | null {
-  if (op !== "replace" && op !== "add" && op !== "remove") return null;
-  const value = valueAt(document, path);
-  if (value === undefined) return { op: "remove", path };
-  return { op: op === "remove" ? "add" : "replace", path, value };
 }
 
 const isScalar = (value: unknown): boolean => typeof value !== "object" || value === null;

@@ -1,4 +1,5 @@
-// The scene document (server/scene/README.md): the parts that the page shows. The server fills in every default.
+// The scene document (server/scene/README.md): the parts that the page shows. The server fills in every default but the
+// numbers that a cloth leaves to a fabric: `fabrics.ts` does.
 
 export type Vec3 = [number, number, number];
 
@@ -47,6 +48,7 @@ export type Start = null | { scatter: { size: number; seed: number } } | { scale
 
 export interface Springs {
   model: "springs";
+  fabric?: string;
   structural: number;
   shear: number;
   bend: number;
@@ -55,6 +57,7 @@ export interface Springs {
 }
 export interface Fem {
   model: "fem";
+  fabric?: string;
   warp: number;
   weft: number;
   poisson: number;

@@ -1,5 +1,6 @@
 // A field of the panel: the value it shows, the places of the document it writes (JSON Pointers), and its note.
 import type { Scale } from "./slider";
+import type { LeftToFabric } from "../link/fabrics";
 import { valueAt } from "../link/json_patch";
 import type { Operation, SceneDocument } from "../link/scene_types";
 
@@ -19,9 +20,14 @@ export interface SolverFacts {
   } | null;
   /// Share of a spring's stretch that one visit removes, for each cloth; under PBD only.
   pbd_stiffness?: Record<(typeof kinds)[number], number | null>[] | null;
+  /// For each cloth the numbers that its document leaves to the fabric that it names.
+  from_fabrics?: LeftToFabric[];
   /// Least thickness of self-collision at which no vertex slips between the vertices of a triangle [m].
   thickness_that_holds?: number | null;
 }
+
+/// The values of the panel's controls, by the keys of their fields.
+export type Values = Record<string, unknown>;
 
 /// A line below a control; `offer`: a button in it and the change it makes.
 export interface Note {
@@ -35,9 +41,10 @@ export interface FieldBase {
   paths: string[]; ///< the places it writes; it reads the first
   onRelease?: boolean; ///< sent when the slider is released: each value rebuilds the cloth
   hint?: string; ///< a tooltip
-  note?(values: Record<string, unknown>, facts: SolverFacts): Note; ///< `values` by the keys of all fields
+  note?(values: Values, facts: SolverFacts): Note;
   read?(document: SceneDocument): unknown;
   write?(value: unknown): unknown;
+  change?(value: unknown, document: SceneDocument): Operation[]; ///< instead of `write`: more than one value changes
 }
 export type Field =
   | (FieldBase & { kind: "number"; scale: Scale })
@@ -74,7 +81,8 @@ export function readField(field: Field, document: SceneDocument): unknown {
   return field.read ? field.read(document) : valueAt(document, field.paths[0] as string);
 }
 
-export function operationsFor(field: Field, value: unknown): Operation[] {
+export function operationsFor(field: Field, value: unknown, document: SceneDocument): Operation[] {
+  if (field.change) return field.change(value, document);
   const written = field.write ? field.write(value) : value;
   return field.paths.map((path) => ({ op: "replace", path, value: written }));
 }

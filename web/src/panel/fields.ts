@@ -1,10 +1,21 @@
 // Lists the panel's sections and fields for a scene, each tied to JSON Pointers of the document.
+import { fabricFields, isKnown } from "./fabric_fields";
 import { type Field, kinds, meter, type Note, number, type Section, type SolverFacts, vector } from "./field";
 import { motionFields } from "./motion_fields";
 import { readable } from "./slider";
 import { solverSection } from "./solver_section";
+import type { Fabric } from "../link/fabrics";
 import { valueAt } from "../link/json_patch";
-import { type At, byKind, type Fem, type Motion, type SceneDocument, type Shape, type Vec3 } from "../link/scene_types";
+import {
+  type At,
+  byKind,
+  type Cloth,
+  type Fem,
+  type Motion,
+  type SceneDocument,
+  type Shape,
+  type Vec3,
+} from "../link/scene_types";
 
 const pinTitle = (at: At | undefined): string => (typeof at === "string" ? `Pin ${at}` : "Pin in a box");
 
@@ -85,13 +96,18 @@ function sheetFields(material: Fem, base: string): Field[] {
   ];
 }
 
-function clothSection(document: SceneDocument, index: number): Section {
-  const cloth = document.cloths[index] as SceneDocument["cloths"][number];
-  const base = `/cloths/${index}`;
-  const mass: Field =
-    "per_vertex" in cloth.mass
+function materialFields({ material, mass }: Cloth, index: number, base: string): Field[] {
+  if (!isKnown(material)) return [];
+  const weight =
+    "per_vertex" in mass
       ? number("mass", [`${base}/mass/per_vertex`], { min: 1e-5, max: 1, log: true, unit: "kg/vertex" })
       : number("mass", [`${base}/mass/area_density`], { min: 0.02, max: 20, log: true, unit: "kg/m²" });
+  return [...(material.model === "fem" ? sheetFields(material, base) : springFields(index, base)), weight];
+}
+
+function clothSection(document: SceneDocument, index: number, fabrics: Fabric[]): Section {
+  const cloth = document.cloths[index] as SceneDocument["cloths"][number];
+  const base = `/cloths/${index}`;
   const count = { min: 3, max: 150, step: 1, whole: true };
   const grid: Field[] =
     "grid" in cloth.mesh
@@ -105,8 +121,8 @@ function clothSection(document: SceneDocument, index: number): Section {
     title: document.cloths.length === 1 && cloth.name === "cloth" ? "Cloth" : `Cloth: ${cloth.name}`,
     open: true,
     fields: [
-      ...(cloth.material.model === "fem" ? sheetFields(cloth.material, base) : springFields(index, base)),
-      mass,
+      ...fabricFields(document, index, fabrics),
+      ...materialFields(cloth, index, base),
       ...grid,
       { key: `${base}/color`, label: "colour", paths: [`${base}/color`], kind: "color" },
       {
@@ -223,10 +239,10 @@ function windSection(document: SceneDocument): Section {
   return { key: base, title: "Wind", open: true, fields: [toggle, ...more], sections: [] };
 }
 
-export function sectionsOf(document: SceneDocument, methods: string[]): Section[] {
+export function sectionsOf(document: SceneDocument, methods: string[], fabrics: Fabric[]): Section[] {
   return [
     solverSection(document, methods),
-    ...document.cloths.map((_, i) => clothSection(document, i)),
+    ...document.cloths.map((_, i) => clothSection(document, i, fabrics)),
     worldSection(),
     windSection(document),
     selfCollisionSection(document),

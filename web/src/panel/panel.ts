@@ -3,6 +3,7 @@ import GUI, { type Controller } from "lil-gui";
 import { type Field, type Note, operationsFor, readField, type Section, type SolverFacts } from "./field";
 import { sectionsOf } from "./fields";
 import { Gauge, type Stability } from "./gauge";
+import type { Fabric } from "../link/fabrics";
 import type { Operation, SceneDocument } from "../link/scene_types";
 import { SliderController } from "./slider";
 import { timeStep } from "./solver_section";
@@ -25,6 +26,7 @@ export class Panel {
   private controls: Control[] = [];
   private values: Record<string, unknown> = {};
   private presets: string[] = [];
+  private fabrics: Fabric[] = [];
   private methods: string[] = [];
   private stability: Stability | null = null;
   private facts: SolverFacts = {};
@@ -39,8 +41,10 @@ export class Panel {
     private readonly events: PanelEvents,
   ) {}
 
-  setPresets(presets: string[]): void {
+  /// Takes the scenes and the fabrics that come with the server.
+  setOffers(presets: string[], fabrics: Fabric[]): void {
     this.presets = presets;
+    this.fabrics = fabrics;
     this.rebuildIfNeeded();
   }
 
@@ -85,7 +89,7 @@ export class Panel {
 
   private rebuildIfNeeded(): void {
     if (!this.document) return;
-    const sections = sectionsOf(this.document, this.methods);
+    const sections = sectionsOf(this.document, this.methods, this.fabrics);
     const shape = JSON.stringify([sections, this.presets], (key, value: unknown) =>
       key === "open" ? undefined : value,
     );
@@ -133,13 +137,17 @@ export class Panel {
     if (field.key === timeStep) folder.$children.append(this.gauge.element);
     controller.onChange((value: unknown) => {
       control.held = field.onRelease === true;
-      if (!field.onRelease) this.events.edit(operationsFor(field, value));
+      if (!field.onRelease) this.edit(field, value);
       this.accompany();
     });
     controller.onFinishChange((value: unknown) => {
-      if (field.onRelease && control.held) this.events.edit(operationsFor(field, value));
+      if (field.onRelease && control.held) this.edit(field, value);
       control.held = false;
     });
+  }
+
+  private edit(field: Field, value: unknown): void {
+    if (this.document) this.events.edit(operationsFor(field, value, this.document));
   }
 
   private controllerFor(folder: GUI, field: Field): Controller {

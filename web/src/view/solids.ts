@@ -83,6 +83,14 @@ export const place = ({ mesh, caster }: Shown, shape: Shape): void => {
 function sphereMaterial(stage: StageUniforms): MeshLambertMaterial {
   const material = new MeshLambertMaterial({ color: 0xd9d4c8 });
   material.onBeforeCompile = (shader) => {
+    // A little deeper than it is: the middles of the triangles of cloth that lies on it are inside it.
+    shader.vertexShader = shader.vertexShader.replace(
+      "#include <project_vertex>",
+      `#include <project_vertex>
+      float more = 1.0 + 0.08 * length(modelViewMatrix[0]) / length(mvPosition.xyz);
+      vec4 deeper = projectionMatrix * vec4(more * mvPosition.xyz, 1.0);
+      gl_Position.z = deeper.z / deeper.w * gl_Position.w;`,
+    );
     shader.fragmentShader = shader.fragmentShader.replace(
       "#include <opaque_fragment>",
       `${porcelain}\n#include <opaque_fragment>`,

@@ -1,0 +1,136 @@
+// Reads the material of a cloth: springs or a sheet, with numbers of its own or those of a fabric.
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "server/base/text.h"
+#include "server/scene/fabrics.h"
+#include "server/scene/fitted_springs.h"
+#include "server/scene/pointer.h"
+#include "server/scene/sections.h"
+
+namespace clothlab::scene {
+
+namespace {
+
+/// Reads the numbers of a material. A fabric's are not written into the document, so that another fabric
+/// changes them; the numbers that the document has are its own, whatever the fabric.
+struct Numbers {
+  const Reader& material;
+  bool of_fabric;
+
+  bool stays_absent(const std::string& key) const { return of_fabric && !material.has(key); }
+  double operator()(const std::string& key, double standard, const Range& range) const {
+    return stays_absent(key) ? standard : material.member(key, standard).number(range);
+  }
+};
+
+/// A member that may be null, which is its default.
+std::optional<double> read_optional(const Reader& object, const std::string& key, const Range& range) {
+  const Reader member = object.member(key, json(nullptr));
+  return member.is_null() ? std::nullopt : std::optional(member.number(range));
+}
+
+double twice_area_of(const TriangleMesh& mesh, std::size_t triangle) {
+  if (!mesh.pattern.empty()) {
+    const auto& [a, b, c] = mesh.pattern[triangle];
+    return std::abs((b - a).x * (c - a).y - (b - a).y * (c - a).x);
+  }
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  return glm::length(glm::cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]));
+}
+
+/// Of the square grid that has as many vertices on the same area [m], were its transform's scale 1.
+double spacing(const Mesh& mesh) {
+  if (const Grid* grid = std::get_if<Grid>(&mesh))
+    return std::sqrt(grid->width / (grid->columns - 1) * grid->height / (grid->rows - 1));
+  const TriangleMesh& triangles = std::get<TriangleMesh>(mesh);
+  double twice_area = 0.0;
+  for (std::size_t i = 0; i < triangles.triangles.size(); ++i) twice_area += twice_area_of(triangles, i);
+  return std::sqrt(0.5 * twice_area /
+                   static_cast<double>(std::max<std::size_t>(1, triangles.vertices.size())));
+}
+
+Springs read_springs(const Reader& material, const Fabric* fabric, double spacing) {
+  material.object({"model", "fabric", "structural", "shear", "bend", "damping", "strain_limit"});
+  const Springs standard =
+      fabric && spacing > 0.0 ? springs_like(fabric->sheet, spacing, fabric->area_density) : Springs{};
+  const Numbers number{material, fabric != nullptr};
+  return Springs{number("structural", standard.structural, ranges::stiffness),
+                 number("shear", standard.shear, ranges::stiffness),
+                 number("bend", standard.bend, ranges::stiffness),
+                 number("damping", standard.damping, ranges::damping),
+                 read_optional(material, "strain_limit", ranges::strain_limit)};
+}
+
+/// Of a sheet that bends alike in all directions, or one number for each.
+Fem::Bending read_bending(const Reader& bending) {
+  if (!bending.is_object()) {
+    const double alike = bending.number(ranges::bending);
+    return {alike, alike, std::nullopt};
+  }
+  bending.object({"warp", "weft", "twist"});
+  return {bending.member("warp").number(ranges::bending), bending.member("weft").number(ranges::bending),
+          read_optional(bending, "twist", ranges::bending)};
+}
+
+void check_poisson(const Reader& material, const Fem& fem) {
+  if (fem.poisson * fem.poisson < fem.warp / fem.weft) return;
+  const std::string found = material.has("poisson")
+                                ? compact(fem.poisson)
+                                : with_significant_digits(fem.poisson, 6) + ", the fabric's";
+  material.member("poisson").fail(found, "below " +
+                                             with_significant_digits(std::sqrt(fem.warp / fem.weft), 3) +
+                                             ", the square root of warp / weft (or the sheet would gain "
+                                             "energy by being stretched)");
+}
+
+/// The fabric that a material names, or null.
+const Fabric* read_fabric_name(const Reader& material) {
+  if (!material.has("fabric")) return nullptr;
+  const Reader named = material.member("fabric");
+  const Result<std::vector<Fabric>>& all = fabrics();
+  if (!all) {
+    named.fail(all.error().text());
+    return nullptr;
+  }
+  Words names;
+  for (const Fabric& fabric : *all) names.push_back(fabric.name);
+  const std::string name = named.choice(names);
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? nullptr : &(*all)[static_cast<std::size_t>(found - names.begin())];
+}
+
+}  // namespace
+
+Fem read_sheet(const Reader& material, const Fabric* fabric) {
+  material.object(
+      {"model", "fabric", "warp", "weft", "poisson", "shear", "bending", "damping", "grain", "strain_limit"});
+  const Fem standard = fabric ? fabric->sheet : Fem{};
+  const Numbers number{material, fabric != nullptr};
+  Fem fem;
+  fem.warp = number("warp", standard.warp, ranges::modulus);
+  fem.weft = number("weft", standard.weft, ranges::modulus);
+  fem.poisson = number("poisson", standard.poisson, ranges::poisson);
+  check_poisson(material, fem);
+  fem.shear = number("shear", standard.shear, ranges::shear_modulus);
+  fem.bending = number.stays_absent("bending")
+                    ? standard.bending
+                    : read_bending(material.member(
+                          "bending", json{{"warp", standard.bending.warp}, {"weft", standard.bending.weft}}));
+  fem.damping = number("damping", standard.damping, ranges::damping_time);
+  fem.grain = material.member("grain", standard.grain).number(ranges::angle);
+  fem.strain_limit = read_optional(material, "strain_limit", ranges::strain_limit);
+  return fem;
+}
+
+FabricMaterial read_material(const Reader& material, const Mesh& mesh, double scale) {
+  if (!material.is_object()) return {read_springs(material, nullptr, 0.0)};
+  const Fabric* fabric = read_fabric_name(material);
+  const char* standard = material.has("fabric") ? "fem" : "springs";
+  const std::string model = material.member("model", standard).choice({"springs", "fem"});
+  if (model == "fem") return {read_sheet(material, fabric), fabric};
+  return {read_springs(material, fabric, fabric ? scale * spacing(mesh) : 0.0), fabric};
+}
+
+}  // namespace clothlab::scene
