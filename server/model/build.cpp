@@ -177,15 +177,14 @@ double mean_edge_length(const MeshArrays& arrays, const std::vector<dvec3>& posi
 }
 
 /// Appends the springs of a cloth, whose vertices are the model's from `first` on. `scale`: of its transform.
-void add_springs(Model& model, const scene::Springs& material, const std::vector<MeshSpring>& list,
-                 Index first, double scale) {
+void add_springs(Model& model, const std::vector<MeshSpring>& list, Index first, double scale) {
   Batch<elements::Spring>& springs = model.elements.of<elements::Spring>();
   springs.reserve(springs.size() + list.size());
   const std::vector<dvec3>& rest = model.rest_position;
   for (const MeshSpring& spring : list) {
     const Index a = spring.a + first, b = spring.b + first;
     const double length = spring.rest > 0.0 ? spring.rest * scale : glm::distance(rest[a], rest[b]);
-    springs.push_back({{a, b}, {length, stiffness(material, spring.kind), material.damping}});
+    springs.push_back({{a, b}, {length, spring.stiffness, spring.damping}});
   }
 }
 
@@ -364,8 +363,8 @@ Status add_cloth(Model& model, const scene::Cloth& cloth, bool sweeps_elements) 
   append(model.texture_coordinates, arrays.texture_coordinates);
   model.vertex_cloth.resize(model.rest_position.size(), cloth_index);
   model.cloths.push_back(range);
-  if (const auto* springs = std::get_if<scene::Springs>(&cloth.material)) {
-    add_springs(model, *springs, arrays.springs, first, cloth.transform.scale);
+  if (std::holds_alternative<scene::Springs>(cloth.material)) {
+    add_springs(model, arrays.springs, first, cloth.transform.scale);
     return ok();
   }
   const std::vector<dvec3> axes =
