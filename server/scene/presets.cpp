@@ -19,6 +19,8 @@ const std::vector<Preset>& presets() {
       {"hanging-strip", "a narrow strip under its own weight: elongation has a closed form"},
       {"cantilever", "a stiff strip held level at one end bends under its weight"},
       {"trampoline", "held along its four edges, with a sphere driven into it from above"},
+      {"skirt", "two panels sewn together, on a waistband that turns"},
+      {"poncho", "a square with a hole for the neck falls over a head and shoulders that sway"},
       {"blowup", "a time step beyond the stability limit, on purpose"},
   };
   return list;

@@ -40,6 +40,7 @@ void print_table(const scene::Springs& springs, bool alike) {
               if (alike && cut != test::Cut::grid) make_alike(model, springs);
             });
         std::printf("%12.3f", found / unit[i]);
+        std::fflush(stdout);
       }
       std::printf("\n");
     }
