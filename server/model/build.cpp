@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "server/base/text.h"
+#include "server/model/adjacency.h"
 #include "server/model/mesh_arrays.h"
 #include "server/model/plate.h"
 #include "server/model/start.h"
@@ -94,51 +95,6 @@ Index motion_index(std::vector<scene::Motion>& motions, const scene::Motion& mot
   return index;
 }
 
-/// Lists for each vertex the items that have it as a corner; `corners(item)` gives an item's vertices.
-template <class Items, class Corners>
-Adjacency adjacency(std::size_t vertex_count, const Items& items, Corners corners) {
-  Adjacency result;
-  result.offsets.assign(vertex_count + 1, 0);
-  for (const auto& item : items)
-    for (const Index vertex : corners(item)) ++result.offsets[vertex + 1];
-  for (std::size_t i = 0; i < vertex_count; ++i) result.offsets[i + 1] += result.offsets[i];
-  result.items.resize(result.offsets.back());
-  std::vector<Index> next(result.offsets.begin(), result.offsets.end() - 1);
-  for (std::size_t i = 0; i < items.size(); ++i)
-    for (const Index vertex : corners(items[i])) result.items[next[vertex]++] = static_cast<Index>(i);
-  return result;
-}
-
-/// Lists for each vertex the element corners at it, as in Batch::at_vertex.
-template <class Law>
-Adjacency corners_at(std::size_t vertex_count, const Batch<Law>& batch) {
-  std::vector<Index> corners;
-  corners.reserve(batch.size() * Element<Law>::corners);
-  for (const Element<Law>& element : batch)
-    corners.insert(corners.end(), element.vertices.begin(), element.vertices.end());
-  return adjacency(vertex_count, corners, [](Index vertex) { return std::array{vertex}; });
-}
-
-Adjacency contact_exclusions(const Model& model) {
-  Adjacency result;
-  result.offsets.push_back(0);
-  std::vector<Index> others;
-  for (Index i = 0; i < model.vertex_count(); ++i) {
-    others.clear();
-    model.elements.each([&](const auto& batch) {
-      batch.at(i, [&](const auto& element, std::size_t) {
-        for (const Index vertex : element.vertices)
-          if (vertex != i) others.push_back(vertex);
-      });
-    });
-    std::sort(others.begin(), others.end());
-    others.erase(std::unique(others.begin(), others.end()), others.end());
-    result.items.insert(result.items.end(), others.begin(), others.end());
-    result.offsets.push_back(static_cast<Index>(result.items.size()));
-  }
-  return result;
-}
-
 double cross(const dvec2& a, const dvec2& b) {
   return a.x * b.y - a.y * b.x;
 }
@@ -177,15 +133,14 @@ double mean_edge_length(const MeshArrays& arrays, const std::vector<dvec3>& posi
 }
 
 /// Appends the springs of a cloth, whose vertices are the model's from `first` on. `scale`: of its transform.
-void add_springs(Model& model, const scene::Springs& material, const std::vector<MeshSpring>& list,
-                 Index first, double scale) {
+void add_springs(Model& model, const std::vector<MeshSpring>& list, Index first, double scale) {
   Batch<elements::Spring>& springs = model.elements.of<elements::Spring>();
   springs.reserve(springs.size() + list.size());
   const std::vector<dvec3>& rest = model.rest_position;
   for (const MeshSpring& spring : list) {
     const Index a = spring.a + first, b = spring.b + first;
     const double length = spring.rest > 0.0 ? spring.rest * scale : glm::distance(rest[a], rest[b]);
-    springs.push_back({{a, b}, {length, stiffness(material, spring.kind), material.damping}});
+    springs.push_back({{a, b}, {length, spring.stiffness, spring.damping}});
   }
 }
 
@@ -364,8 +319,8 @@ Status add_cloth(Model& model, const scene::Cloth& cloth, bool sweeps_elements) 
   append(model.texture_coordinates, arrays.texture_coordinates);
   model.vertex_cloth.resize(model.rest_position.size(), cloth_index);
   model.cloths.push_back(range);
-  if (const auto* springs = std::get_if<scene::Springs>(&cloth.material)) {
-    add_springs(model, *springs, arrays.springs, first, cloth.transform.scale);
+  if (std::holds_alternative<scene::Springs>(cloth.material)) {
+    add_springs(model, arrays.springs, first, cloth.transform.scale);
     return ok();
   }
   const std::vector<dvec3> axes =
@@ -399,10 +354,7 @@ Result<Model> build(const scene::Scene& scene) {
       scene::sweeps(scene.solver.method) && !scene::sweeps_vertices(scene.solver.method);
   for (const scene::Cloth& cloth : scene.cloths)
     if (Status added = add_cloth(model, cloth, sweeps_elements); !added) return added.error();
-  model.elements.each_of_all([&](auto& batch) { batch.at_vertex = corners_at(model.vertex_count(), batch); });
-  if (scene.self_collision) model.contact_exclusions = contact_exclusions(model);
-  model.vertex_triangles =
-      adjacency(model.vertex_count(), model.triangles, [](const auto& corners) { return corners; });
+  list_neighbours(model, scene.self_collision.has_value());
   return model;
 }
 

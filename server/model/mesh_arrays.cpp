@@ -5,7 +5,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <map>
-#include <tuple>
+
+#include "server/model/sheet_springs.h"
 
 namespace clothlab::model {
 
@@ -15,10 +16,6 @@ using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
 Edge sorted(std::uint32_t a, std::uint32_t b) {
   return {std::min(a, b), std::max(a, b)};
-}
-
-MeshSpring spring(Edge edge, SpringKind kind, double rest = 0.0) {
-  return {edge.first, edge.second, kind, rest};
 }
 
 /// A triangle at an edge: its third vertex, and where in the triangle the edge begins.
@@ -70,25 +67,49 @@ void connect_grid(MeshArrays& arrays, const scene::Grid& grid, const scene::Spri
   const int columns = grid.columns, rows = grid.rows;
   const auto index = [&](int column, int row) { return static_cast<std::uint32_t>(row * columns + column); };
   arrays.springs.reserve(6 * arrays.position.size());
-  const auto connect = [&](SpringKind kind, double stiffness, int columns_on, int rows_on) {
+  const auto connect = [&](double stiffness, int columns_on, int rows_on) {
     if (stiffness == 0.0) return;
     for (int row = 0; row < rows; ++row) {
       for (int column = 0; column < columns; ++column) {
         const int to_column = column + columns_on, to_row = row + rows_on;
         if (to_column < 0 || to_column >= columns || to_row >= rows) continue;
-        arrays.springs.push_back(spring(sorted(index(column, row), index(to_column, to_row)), kind));
+        const auto [a, b] = sorted(index(column, row), index(to_column, to_row));
+        arrays.springs.push_back({a, b, stiffness, springs.damping});
       }
     }
   };
-  connect(SpringKind::structural, springs.structural, 1, 0);
-  connect(SpringKind::structural, springs.structural, 0, 1);
-  connect(SpringKind::shear, springs.shear, 1, 1);
-  connect(SpringKind::shear, springs.shear, -1, 1);
-  connect(SpringKind::bend, springs.bend, 2, 0);
-  connect(SpringKind::bend, springs.bend, 0, 2);
+  connect(springs.structural, 1, 0);
+  connect(springs.structural, 0, 1);
+  connect(springs.shear, 1, 1);
+  connect(springs.shear, -1, 1);
+  connect(springs.bend, 2, 0);
+  connect(springs.bend, 0, 2);
 }
 
-void connect_triangles(MeshArrays& arrays, const scene::TriangleMesh& mesh, const scene::Springs& springs) {
+/// What a grid with these springs is as a sheet, on the average over all directions.
+struct GridMean {
+  SpringSheet sheet;
+  double damping_time;  ///< its viscosity over its stiffness [s]
+};
+
+/// Springs two away count four times, as they are stretched twice as far, and diagonals twice, as they resist
+/// shear too: a square grid's tensions over strains are (structural + shear + 4 bend) along the threads, and
+/// shear between them and against shear.
+GridMean mean_of(const scene::Springs& springs) {
+  const double whole = springs.structural + 2.0 * springs.shear + 4.0 * springs.bend;
+  const double viscous =
+      springs.damping * ((springs.structural > 0.0 ? 1.0 : 0.0) + (springs.shear > 0.0 ? 2.0 : 0.0) +
+                         (springs.bend > 0.0 ? 4.0 : 0.0));
+  return {{whole / 4.0, springs.bend}, viscous / whole};
+}
+
+/// Edges in rising order, then the pairs of vertices that are opposite an edge, in rising order.
+struct Pairs {
+  std::vector<SheetPair> pairs;
+  std::vector<double> rest;  ///< [pair_count] as in MeshSpring
+};
+
+Pairs pairs_of(const scene::TriangleMesh& mesh) {
   const Pattern pattern(mesh);
   std::map<Edge, std::vector<AtEdge>> edges;  // edge -> the triangles on it
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -97,23 +118,39 @@ void connect_triangles(MeshArrays& arrays, const scene::TriangleMesh& mesh, cons
       edges[sorted(triangle[corner], triangle[(corner + 1) % 3])].push_back(
           {triangle[(corner + 2) % 3], i, corner});
   }
-  for (const auto& [edge, at] : edges) {
-    if (springs.structural != 0.0)
-      arrays.springs.push_back(spring(edge, SpringKind::structural, pattern.edge(at)));
-    if (springs.bend == 0.0 || at.size() != 2 || at[0].opposite == at[1].opposite) continue;
-    const Edge across = sorted(at[0].opposite, at[1].opposite);
-    if (!edges.contains(across))
-      arrays.springs.push_back(spring(across, SpringKind::bend, pattern.across(at[0], at[1])));
-  }
-  // Two edges may have the same pair of vertices opposite them; one spring is enough.
-  std::stable_sort(arrays.springs.begin(), arrays.springs.end(),
-                   [](const MeshSpring& a, const MeshSpring& b) {
-                     return std::tie(a.kind, a.a, a.b) < std::tie(b.kind, b.a, b.b);
-                   });
-  const auto same = [](const MeshSpring& a, const MeshSpring& b) {
-    return a.a == b.a && a.b == b.b && a.kind == b.kind;
+  const auto area = [&](const AtEdge& at) {
+    const auto& [a, b, c] = mesh.triangles[at.triangle];
+    const dvec3 &from = mesh.vertices[a], u = mesh.vertices[b] - from, v = mesh.vertices[c] - from;
+    return 0.5 * glm::length(glm::cross(u, v));
   };
-  arrays.springs.erase(std::unique(arrays.springs.begin(), arrays.springs.end(), same), arrays.springs.end());
+  Pairs result;
+  std::map<Edge, std::pair<double, double>> across;  // pair -> area, rest; two edges may have the same pair
+  for (const auto& [edge, at] : edges) {
+    double third = 0.0;
+    for (const AtEdge& side : at) third += area(side) / 3.0;
+    result.pairs.push_back({edge.first, edge.second, false, third});
+    result.rest.push_back(pattern.edge(at));
+    if (at.size() != 2 || at[0].opposite == at[1].opposite) continue;
+    const Edge pair = sorted(at[0].opposite, at[1].opposite);
+    if (!edges.contains(pair)) across.try_emplace(pair, third, pattern.across(at[0], at[1]));
+  }
+  for (const auto& [pair, of] : across) {
+    result.pairs.push_back({pair.first, pair.second, true, of.first});
+    result.rest.push_back(of.second);
+  }
+  return result;
+}
+
+void connect_triangles(MeshArrays& arrays, const scene::TriangleMesh& mesh, const scene::Springs& springs) {
+  const auto [sheet, damping_time] = mean_of(springs);
+  if (!(sheet.modulus > 0.0)) return;
+  const auto [pairs, rest] = pairs_of(mesh);
+  const std::vector<double> stiffness = sheet_stiffness(mesh.vertices, mesh.triangles, pairs, sheet);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const bool needless = pairs[i].across && springs.bend == 0.0 && stiffness[i] < 1e-3 * sheet.modulus;
+    if (!needless)
+      arrays.springs.push_back({pairs[i].a, pairs[i].b, stiffness[i], damping_time * stiffness[i], rest[i]});
+  }
 }
 
 }  // namespace

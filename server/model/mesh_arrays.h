@@ -5,10 +5,11 @@
 
 namespace clothlab::model {
 
-/// A spring of a mesh, whose rest length and stiffness are not yet known.
+/// A spring of a mesh.
 struct MeshSpring {
   std::uint32_t a = 0, b = 0;  ///< vertices, a < b
-  SpringKind kind = SpringKind::structural;
+  double stiffness = 0.0;      ///< [N/m]
+  double damping = 0.0;        ///< [N s/m]
   double rest = 0.0;  ///< length in the flat pattern, before the cloth's transform [m]; 0: as the mesh has it
 };
 
@@ -26,9 +27,9 @@ struct MeshArrays {
 /// The arrays of a grid. Kinds of springs whose stiffness is 0 are left out.
 MeshArrays grid_arrays(const scene::Grid& grid, const scene::Material& material);
 
-/// The arrays of a triangle mesh: structural springs along the edges, bend springs between the two vertices
-/// opposite an edge of two triangles; rest lengths are those of its pattern if it has one. Kinds of springs
-/// whose stiffness is 0 are left out.
+/// The arrays of a triangle mesh. Springs join the ends of its edges, and the vertices opposite an edge of
+/// two triangles. Together they act like a grid with the same material whose threads run in all directions
+/// (sheet_springs.h); rest lengths are those of its pattern if it has one.
 MeshArrays triangle_mesh_arrays(const scene::TriangleMesh& mesh, const scene::Material& material);
 
 }  // namespace clothlab::model

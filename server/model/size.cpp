@@ -32,10 +32,10 @@ std::size_t count(Of<elements::Spring>, const scene::Grid& grid, const scene::Sp
   return springs;
 }
 
-/// The most springs that a mesh can have: structural ones if no triangles share an edge, bend ones if all do.
+/// The most springs that a mesh can have: along three edges a triangle if none is shared, across if all are.
 std::size_t count(Of<elements::Spring>, const scene::TriangleMesh& mesh, const scene::Springs& material) {
-  const std::size_t edges = 3 * mesh.triangles.size();
-  return (material.structural != 0.0 ? edges : 0) + (material.bend != 0.0 ? edges / 2 : 0);
+  const bool any = material.structural != 0.0 || material.shear != 0.0 || material.bend != 0.0;
+  return any ? 3 * mesh.triangles.size() + 3 * mesh.triangles.size() / 2 : 0;
 }
 
 std::size_t triangles(const scene::Grid& grid) {

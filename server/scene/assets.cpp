@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "server/base/data_files.h"
 #include "server/base/files.h"
 #include "server/scene/document.h"
 #include "server/scene/ranges.h"
@@ -75,6 +76,14 @@ Result<SharedMesh> FolderAssets::mesh(const std::string& name) const {
   for (const auto& [other, earlier] : read_) total += earlier.bytes;
   if (total > 2 * max_file_bytes) read_.clear();
   return (read_[name] = std::move(read)).mesh;
+}
+
+Result<SharedMesh> preset_mesh(const std::string& name) {
+  if (name.rfind("presets/", 0) != 0) return Error{name, "no mesh of a preset", "presets/NAME.obj"};
+  static const Result<fs::path> presets = data_path("server/scene/presets");
+  if (!presets) return presets.error();
+  static const FolderAssets own(presets->parent_path());
+  return own.mesh(name);
 }
 
 void FolderAssets::close() {

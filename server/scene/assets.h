@@ -25,6 +25,9 @@ class Assets {
   virtual Result<SharedMesh> mesh(const std::string& name) const = 0;
 };
 
+/// The meshes of the scenes that come with the program, "presets/NAME.obj"; an error for all other names.
+Result<SharedMesh> preset_mesh(const std::string& name);
+
 /// The .obj and .ply files below a folder. A file is read once, and again after it has changed.
 class FolderAssets : public Assets {
  public:

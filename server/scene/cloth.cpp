@@ -80,9 +80,10 @@ TriangleMesh read_named_mesh(const Reader& mesh, const Assets* assets) {
   const Reader obj = mesh.member("obj"), pattern = mesh.member("pattern", json(nullptr));
   const std::string name = obj.string("the name of a mesh: an .obj or .ply file, or one of mesh.upload");
   if (!obj.is_string()) return result;
-  const Result<SharedMesh> found =
-      assets ? assets->mesh(name)
-             : Error{name, "there are no meshes to name here", "a grid, or vertices and triangles"};
+  Result<SharedMesh> found = preset_mesh(name);
+  if (!found)
+    found = assets ? assets->mesh(name)
+                   : Error{name, "there are no meshes to name here", "a grid, or vertices and triangles"};
   if (!found) {
     obj.fail(found.error().where + ": " + found.error().what, found.error().remedy);
     return result;

@@ -20,6 +20,8 @@ const std::vector<Preset>& presets() {
       {"cantilever", "a stiff strip held level at one end bends under its weight"},
       {"trampoline", "held along its four edges, with a sphere driven into it from above"},
       {"fabrics", "cotton, silk, denim and a knit over equal balls"},
+      {"skirt", "two panels sewn together, on a waistband that turns"},
+      {"poncho", "a square with a hole for the neck falls over a head and shoulders that sway"},
       {"blowup", "a time step beyond the stability limit, on purpose"},
   };
   return list;

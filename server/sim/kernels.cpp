@@ -1,5 +1,6 @@
 #include "server/sim/kernels.h"
 
+#include "server/model/numbering.h"
 #include "server/sim/element_lists.h"
 
 namespace clothlab::sim {
@@ -18,13 +19,24 @@ MotionTable motion_table(const scene::Scene& scene, const Plan& plan) {
   return MotionTable(moving_motions(scene), scene.wind, plan.pose_rows());
 }
 
+/// Takes over a model that is in the scene's order.
+void take_model(Kernels& kernels, model::Model model) {
+  if (kernels.places.empty()) {
+    kernels.model = std::move(model);
+    return;
+  }
+  kernels.model = model::renumbered(model, kernels.places);
+  kernels.as_in_scene = std::move(model);
+}
+
 }  // namespace
 
 Result<Kernels> Kernels::create(const scene::Scene& scene) {
   Kernels kernels;
   Result<model::Model> model = model::build(scene);
   if (!model) return model.error();
-  kernels.model = std::move(*model);
+  kernels.places = model::near_places(*model, scene);
+  take_model(kernels, std::move(*model));
   kernels.plan = sim::plan(scene);
   kernels.motions = motion_table(scene, kernels.plan);
   if (kernels.plan.self_collision) {
@@ -77,8 +89,8 @@ Status Kernels::update(const scene::Scene& scene) {
   if (self_collision)
     if (Status set = self_collision->set_parameters(*scene.self_collision, *rebuilt); !set)
       return set.error();
-  const bool new_elements = model.elements != rebuilt->elements;
-  model = std::move(*rebuilt);
+  const bool new_elements = scene_model().elements != rebuilt->elements;
+  take_model(*this, std::move(*rebuilt));
   motions = motion_table(scene, plan);
   if (new_elements) upload_elements(*this);
   integrator->set_parameters(surroundings(scene));

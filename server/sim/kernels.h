@@ -13,7 +13,9 @@ namespace clothlab::sim {
 
 struct Kernels {
   Plan plan;
-  model::Model model;
+  model::Model model;                         ///< its vertices in the order in which they lie in memory
+  std::vector<std::uint32_t> places;          ///< of the scene's vertices in `model`; empty: the same
+  std::optional<model::Model> as_in_scene{};  ///< `model` in the scene's order, if that is another
   MotionTable motions;
   std::optional<SelfCollision> self_collision;
   gl::TextureBuffer elements, slices;
@@ -23,6 +25,8 @@ struct Kernels {
 
   /// Makes the kernels of `scene`; nothing is carried over from an earlier step.
   static Result<Kernels> create(const scene::Scene& scene);
+
+  const model::Model& scene_model() const { return as_in_scene ? *as_in_scene : model; }
 
   /// Takes over the numbers of a scene with the same structure.
   Status update(const scene::Scene& scene);

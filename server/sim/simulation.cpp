@@ -11,6 +11,7 @@
 #include "server/sim/diagnose.h"
 #include "server/sim/kernels.h"
 #include "server/sim/last_good.h"
+#include "server/sim/scene_order.h"
 #include "server/sim/state.h"
 
 namespace clothlab::sim {
@@ -51,6 +52,7 @@ bool differs(const scene::Scene& from, const scene::Scene& to, Part part) {
 struct Simulation::Implementation {
   scene::Scene scene;
   Kernels kernels;
+  SceneOrder scene_order;
   gl::TextureBuffer rest;
   StateBuffers state;
   DiagnosticsPass diagnostics;
@@ -200,6 +202,9 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const scene::Scene& scene
   Result<DiagnosticsPass> diagnostics = DiagnosticsPass::create(self.kernels.model.vertex_count());
   if (!diagnostics) return diagnostics.error();
   self.diagnostics = std::move(*diagnostics);
+  Result<SceneOrder> scene_order = SceneOrder::create(self.kernels.places);
+  if (!scene_order) return scene_order.error();
+  self.scene_order = std::move(*scene_order);
   self.scene = scene;
   self.topology_revision = topology_revision;
   self.rest = rest_positions(self.kernels.model);
@@ -283,7 +288,7 @@ const scene::Scene& Simulation::scene() const {
   return implementation_->scene;
 }
 const model::Model& Simulation::model() const {
-  return implementation_->kernels.model;
+  return implementation_->kernels.scene_model();
 }
 std::uint32_t Simulation::topology_revision() const {
   return implementation_->topology_revision;
@@ -335,19 +340,19 @@ Diagnostics Simulation::diagnose() {
 void Simulation::restore(const State& state, double time, std::uint64_t step) {
   Implementation& self = *implementation_;
   self.give_up_work();
-  self.state.write(state, self.kernels.model, self.kernels.motions);
+  self.state.write(self.scene_order.to_memory(state), self.kernels.model, self.kernels.motions);
   self.state_replaced(time, step);
   self.keep_start();
 }
 
 State Simulation::read_state() {
-  return implementation_->state.read();
+  return implementation_->scene_order.to_scene(implementation_->state.read());
 }
 void Simulation::finish() {
   glFinish();
 }
 void Simulation::bind_positions(unsigned unit) const {
-  implementation_->state.shown_position().bind(unit);
+  implementation_->scene_order.to_scene(implementation_->state.shown_position()).bind(unit);
 }
 
 std::vector<scene::Collider> Simulation::colliders_now() const {
