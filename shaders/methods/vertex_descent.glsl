@@ -30,9 +30,9 @@ float followed(vec3 acceleration, vec3 pull) {
 }
 
 /// Their adaptive guess (section 3.7): as much of gravity and wind as the vertex has followed lately, so that a cloth
-/// at rest starts from rest. If its free motion meets a collider, the guess is that motion stopped there, with friction,
-/// and of both the part along the surface: sweeps move a stiff cloth so little that one on a slope would stay where it
-/// was.
+/// at rest starts from rest. If its free motion meets a collider, the guess is that motion stopped there, with
+/// friction, and of both the part along the surface: sweeps move a stiff cloth so little that one on a slope would stay
+/// where it was.
 vec3 first_deviation(int i, vec4 x, vec3 v) {
   vec4 before = velocity_before[i];
   velocity_before[i] = vec4(v, 1.0);

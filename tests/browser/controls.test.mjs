@@ -43,6 +43,21 @@ browserTest("a slider moved by keyboard changes the server's scene", async () =>
   await client.close();
 });
 
+browserTest("wind is switched on and off, and its strength follows a slider while it blows", async () => {
+  const { viewer, client, scene } = await both("wind");
+  const wind = async () => (await scene()).wind;
+  const box = viewer.page.locator('.lil-gui:has(> .lil-title:text-is("Wind")) input[type=checkbox]').first();
+  await box.check();
+  await eventually("wind", wind, (value) => value?.drag === 1 && value.gust === 0.3);
+  const drag = await viewer.slider("Wind", "drag");
+  await drag.focus();
+  for (let i = 0; i < 5; ++i) await viewer.page.keyboard.press("ArrowRight");
+  await eventually("drag", wind, (value) => value.drag > 1);
+  await box.uncheck();
+  await eventually("no wind", wind, (value) => value === null);
+  await client.close();
+});
+
 browserTest("both pins are edited together, and the sphere by its own fields", async () => {
   const { viewer, client, scene } = await both("members");
   const amplitude = await viewer.slider("2 pins", "amplitude");

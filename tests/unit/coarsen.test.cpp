@@ -158,14 +158,15 @@ TEST_CASE(
 
 namespace {
 
-/// A knit that differs along warp and weft; with self-collision, so that it has all parts.
+/// A knit that differs along warp and weft; with self-collision and wind, so that it has all parts.
 scene::Document sheet(const std::string& more = "") {
   return test::document_of(R"({"version": 1, "cloths": [
       {"mesh": {"grid": {"columns": 9, "rows": 17, "width": 0.5, "height": 1}}, "mass": {"area_density": 0.2},
        "material": {"model": "fem", "warp": 60, "weft": 90, "poisson": 0.2, "shear": 20,
                     "bending": {"warp": 2e-5, "weft": 8e-5}, "damping": 0.001, "grain": 30, "strain_limit": null},
        "pins": [{"at": "edge:row:0"}]})" +
-                           more + R"(], "self_collision": {"thickness": 0.02}})");
+                           more +
+                           R"(], "self_collision": {"thickness": 0.02}, "wind": {"velocity": [1, 0, 0]}})");
 }
 constexpr const char* spring_cloth =
     R"(, {"mesh": {"grid": {"columns": 5, "rows": 5, "width": 1, "height": 1}}, "mass": {"per_vertex": 0.01},
@@ -188,19 +189,20 @@ std::vector<std::string> names(const std::vector<lab::Part>& parts) {
 }  // namespace
 
 TEST_CASE("the parts of a scene are named after what its cloths are made of") {
-  const std::vector<std::string> springs{"without bend springs",     "without shear springs",
-                                         "without self-collision",   "without damping",
-                                         "half the mesh resolution", "a quarter of the mesh resolution"};
+  const std::vector<std::string> springs{
+      "without bend springs", "without shear springs",    "without self-collision",          "without wind",
+      "without damping",      "half the mesh resolution", "a quarter of the mesh resolution"};
   CHECK(names(lab::parts(*scene::load_preset("seed"))) == springs);
   const std::vector<std::string> sheets{"without bending",
                                         "with warp and weft alike",
                                         "with springs instead of finite elements",
                                         "without self-collision",
+                                        "without wind",
                                         "without damping",
                                         "half the mesh resolution",
                                         "a quarter of the mesh resolution"};
   CHECK(names(lab::parts(sheet())) == sheets);
-  CHECK(names(lab::parts(sheet(spring_cloth))).size() == 8);
+  CHECK(names(lab::parts(sheet(spring_cloth))).size() == 9);
 }
 
 TEST_CASE("springs instead of finite elements weigh the same and carry the same, and other cloths stay") {
@@ -282,17 +284,18 @@ TEST_CASE("each part of a sheet is left out by a merge patch that makes the same
   CHECK(reasons ==
         std::vector<std::string>{"the scene has no bending stiffness",
                                  "the scene has no cloth of finite elements whose warp and weft differ",
-                                 "the scene has no self-collision", "the scene has no damping"});
+                                 "the scene has no self-collision", "the scene has no wind",
+                                 "the scene has no damping"});
 }
 
 TEST_CASE("each part is left out by a merge patch that makes the same scene, or is not there") {
-  const scene::Document seed = *scene::load_preset("seed");
-  for (const lab::Part& part : lab::parts(seed)) {
+  const scene::Document flag = *scene::load_preset("flag");
+  for (const lab::Part& part : lab::parts(flag)) {
     INFO(part.name);
-    const Result<scene::Document> without = part.without(seed);
+    const Result<scene::Document> without = part.without(flag);
     REQUIRE(without);
-    CHECK_FALSE(*without == seed);
-    const auto patched = scene::apply_patch(seed, lab::merge_patch(seed.value, without->value));
+    CHECK_FALSE(*without == flag);
+    const auto patched = scene::apply_patch(flag, lab::merge_patch(flag.value, without->value));
     REQUIRE(patched);
     CHECK(patched->scene == without->scene);
   }
@@ -301,5 +304,6 @@ TEST_CASE("each part is left out by a merge patch that makes the same scene, or 
   for (const lab::Part& part : lab::parts(bare))
     if (const auto without = part.without(bare); !without) reasons.push_back(without.error().what);
   CHECK(reasons == std::vector<std::string>{"the scene has no bend springs", "the scene has no shear springs",
-                                            "the scene has no self-collision", "the scene has no damping"});
+                                            "the scene has no self-collision", "the scene has no wind",
+                                            "the scene has no damping"});
 }

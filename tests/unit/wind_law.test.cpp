@@ -1,4 +1,5 @@
 // The law of the wind on a triangle, and what is known of a whole scene's wind, in double precision.
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
