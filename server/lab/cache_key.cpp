@@ -7,6 +7,7 @@
 #include "server/base/text.h"
 #include "server/lab/cache.h"
 #include "server/scene/method.h"
+#include "server/scene/named_fabric.h"
 
 namespace clothlab::lab {
 
@@ -124,7 +125,7 @@ CacheKey cache_key(const scene::Document& document, const Job& job, const std::s
   hash.add(renderer);
   hash.add(name(job));
   hash.add(std::visit([](const auto& request) { return of(request); }, job).dump());
-  hash.add(without_appearance(document.value).dump());
+  hash.add(without_appearance(scene::spelled_out(document)).dump());
   add_named_meshes(hash, document.scene);
   return {hash.text(), document.scene.name};
 }

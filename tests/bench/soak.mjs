@@ -122,6 +122,7 @@ const presets = [
   "hanging-strip",
   "cantilever",
   "trampoline",
+  "fabrics",
   "blowup",
 ];
 const patches = [

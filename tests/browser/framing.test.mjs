@@ -129,6 +129,7 @@ const presets = [
   "twist",
   "hanging-strip",
   "cantilever",
+  "fabrics",
 ];
 for (const preset of presets) {
   browserTest(

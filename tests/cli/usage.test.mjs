@@ -5,7 +5,19 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { clothlab, folder } from "./program.mjs";
 
-const commands = ["run", "render", "chart", "stability", "choose", "simplify", "validate", "presets", "info", "serve"];
+const commands = [
+  "run",
+  "render",
+  "chart",
+  "stability",
+  "choose",
+  "simplify",
+  "validate",
+  "presets",
+  "fabrics",
+  "info",
+  "serve",
+];
 
 test("without a subcommand the help goes to stderr and the exit code is 2", () => {
   const { status, stdout, stderr } = clothlab([]);

@@ -73,10 +73,10 @@ test("below the menu is what the fabric is like, and an offer to give up numbers
     [`${base}/warp`]: 2365,
     [`${base}/bending/warp`]: 8e-6,
   };
-  assert.deepEqual(menu.note(values, { from_fabrics: left }), { text: "cotton feels." });
+  assert.deepEqual(menu.note(values, { from_fabrics: left }), { text: "Cotton feels." });
   const { bending: _, ...rest } = left[1].material;
   const note = menu.note(values, { from_fabrics: [null, { material: rest }] });
-  assert.equal(note.text, "cotton feels. Here with a bending, mass of its own.");
+  assert.equal(note.text, "Cotton feels. Here with its own bending, mass.");
   assert.deepEqual(after(...note.offer.operations).cloths[1], { material: { model: "fem", fabric: "cotton" } });
   assert.deepEqual(fabricFields(shown, 0, fabrics)[0].note({ "/cloths/0/material/fabric": "custom" }, {}), {
     text: "",

@@ -38,9 +38,46 @@ test("scene.presets lists the presets of the contract, the seed first", async ()
     "hanging-strip",
     "cantilever",
     "trampoline",
+    "fabrics",
     "blowup",
   ])
     assert.ok(presets.includes(name), name);
+});
+
+test("scene.presets lists the fabrics, with what each is like and where its numbers are from", async () => {
+  const { fabrics } = await client.request("scene.presets");
+  assert.ok(fabrics.some(({ name }) => name === "cotton") && fabrics.some(({ name }) => name === "interlock"));
+  for (const { name, feel, source } of fabrics) assert.ok(/^[a-z]+$/.test(name) && feel && source, name);
+});
+
+test("the name of a fabric is kept in the document, and sim.status has the numbers that are left to it", async () => {
+  const { document } = await client.request("scene.get");
+  const own = { material: document.cloths[0].material, mass: document.cloths[0].mass };
+  const patched = async (...patch) => {
+    await client.request("scene.patch", { patch });
+    const shear = ({ solver }) => solver.from_fabrics[0]?.material.shear;
+    return { shear, after: (is) => client.nextNotification("sim.status", (status) => is(shear(status))) };
+  };
+  const fabric = (name) => ({ op: "add", path: "/cloths/0/material/fabric", value: name });
+  await (
+    await patched(
+      { op: "replace", path: "/cloths/0/material", value: { model: "springs", fabric: "cotton", bend: 0 } },
+      { op: "remove", path: "/cloths/0/mass" },
+    )
+  ).after((shear) => shear === 97);
+  await (await patched(fabric("silk"))).after((shear) => shear === 51);
+  const { document: named } = await client.request("scene.get");
+  assert.deepEqual(named.cloths[0].material, { model: "springs", fabric: "silk", bend: 0, strain_limit: null });
+  assert.equal("mass" in named.cloths[0], false);
+  const refusal = await client.request("scene.patch", { patch: [fabric("slik")] }).catch((error) => error);
+  assert.equal(refusal.data.path, "/cloths/0/material/fabric");
+  assert.match(refusal.data.allowed, /did you mean "silk"/);
+  await client.request("scene.patch", {
+    patch: [
+      { op: "replace", path: "/cloths/0/material", value: own.material },
+      { op: "add", path: "/cloths/0/mass", value: own.mass },
+    ],
+  });
 });
 
 test("a merge patch changes the scene and raises the revision by one", async () => {

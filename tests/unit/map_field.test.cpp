@@ -147,3 +147,19 @@ TEST_CASE("a field has its unit") {
   CHECK(MapField::find(seed(), "/colliders/0/sphere/center/2")->unit() == "m");
   CHECK(MapField::find(seed(), "/solver/iterations")->unit() == "");
 }
+
+TEST_CASE("a number that a cloth leaves to its fabric can be the field, and other fields leave it there") {
+  const scene::Document silk = *scene::set_value(
+      *scene::set_value(seed(), R"(/cloths/0/material={"model": "springs", "fabric": "silk"})"),
+      "/name=silk");
+  const std::string shear = "/cloths/0/material/shear", columns = "/cloths/0/mesh/grid/columns";
+  CHECK(*MapField::find(silk, shear)->values(51.0, 102.0, 2) == std::vector<double>{51, 102});
+  double value = 102;
+  CHECK(MapField::find(silk, shear)->with(value)->scene.cloths[0].springs().shear == 102);
+  value = 49;
+  const double bend = silk.scene.cloths[0].springs().bend;
+  CHECK(MapField::find(silk, columns)->with(value)->scene.cloths[0].springs().bend > 1.5 * bend);
+  value = 2;
+  CHECK(MapField::find(silk, "stiffness")->with(value)->scene.cloths[0].springs().bend ==
+        Approx(2 * bend).epsilon(1e-12));
+}

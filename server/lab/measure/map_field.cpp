@@ -57,7 +57,9 @@ bool is_of_sheet(const scene::Scene& scene, const std::vector<std::string>& toke
 
 Result<MapField> MapField::find(const scene::Document& document, const std::string& field) {
   MapField found(document, field);
-  found.document_.value = scene::spelled_out(document);
+  // Only then: what stays left to a fabric follows the field, such as springs the distance of the vertices.
+  if (field == stiffness || !find_value(found.document_.value, field))
+    found.document_.value = scene::spelled_out(document);
   if (field == stiffness) {
     if (!any_stiffness(document.scene))
       return Error{"field", "\"stiffness\", but no cloth has a spring", "the JSON Pointer of another number"};

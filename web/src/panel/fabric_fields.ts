@@ -41,11 +41,12 @@ function fabricNote(index: number, base: string, fabrics: Fabric[], values: Valu
   );
   const own = left ? here.filter((key) => !(key in left.material)) : [];
   if (left && !("mass" in left)) own.push("mass");
-  if (own.length === 0) return { text: `${fabric.feel}.` };
+  const feel = `${fabric.feel.charAt(0).toUpperCase()}${fabric.feel.slice(1)}.`;
+  if (own.length === 0) return { text: feel };
   const grain = Number(values[`${base}/material/grain`] ?? 0);
   const material = { model, fabric: name, ...(grain && model === "fem" ? { grain } : {}) };
   return {
-    text: `${fabric.feel}. Here with a ${own.join(", ")} of its own.`,
+    text: `${feel} Here with its own ${own.join(", ")}.`,
     offer: {
       text: `All of ${name}`,
       operations: [
