@@ -38,6 +38,8 @@ test("scene.presets lists the presets of the contract, the seed first", async ()
     "hanging-strip",
     "cantilever",
     "trampoline",
+    "skirt",
+    "poncho",
     "blowup",
   ])
     assert.ok(presets.includes(name), name);
