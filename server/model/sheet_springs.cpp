@@ -79,12 +79,12 @@ class Fit {
     std::vector<double> stiffness;
     stiffness.reserve(springs_.size());
     for (const Spring& spring : springs_)
-      stiffness.push_back(spring.length > 0.0 ? spring.w / (spring.length * spring.length) : most_stiffness);
+      stiffness.push_back(spring.length > 0.0 ? spring.w / (spring.length * spring.length) : of_a_grid);
     return stiffness;
   }
 
  private:
-  static constexpr double most_stiffness = 8.0;
+  static constexpr double most_stiffness = 8.0, least_stiffness = 0.05, of_a_grid = 2.0;
   /// An edge keeps this part of its share at least, or a mesh could come apart into hinges.
   static constexpr double least_share = 0.1;
   /// How much less a departure from equal shares counts than a force out of balance.
@@ -123,7 +123,10 @@ class Fit {
       spring.direction = along(between / length);
       spring.scale = std::max(whole, 1e-6 * length * length);
       spring.most = most_stiffness * length * length;
-      spring.least = std::min(pair.across ? share * whole : least_share * (1.0 - share) * whole, spring.most);
+      spring.least = pair.across ? share * whole
+                                 : std::max(least_share * (1.0 - share) * whole,
+                                            least_stiffness * length * length);  // of triangles without area
+      spring.least = std::min(spring.least, spring.most);
       spring.wanted = std::clamp((pair.across ? share : 1.0 - share) * whole, spring.least, spring.most);
       move(pair, spring, spring.wanted);
     }

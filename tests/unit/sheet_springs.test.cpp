@@ -1,6 +1,8 @@
 // Stiffnesses of the springs of triangle meshes.
 #include "server/model/sheet_springs.h"
 
+#include <algorithm>
+
 #include "server/model/model.h"
 #include "tests/catch.h"
 #include "tests/sheets.h"
@@ -92,6 +94,14 @@ TEST_CASE(
   const model::Model model = built(scene);
   constexpr double modulus = (200.0 + 2 * 100.0 + 4 * 20.0) / 4;
   CHECK(model.springs().size() >= 10);
+  for (const auto& [a, b] : {std::pair{0u, 1u}, {0u, 2u}, {1u, 2u}, {1u, 4u}, {4u, 5u}}) {
+    const auto found = std::find_if(model.springs().begin(), model.springs().end(), [&](const auto& spring) {
+      return spring.vertices[0] == a && spring.vertices[1] == b;
+    });
+    INFO(a << " - " << b);
+    REQUIRE(found != model.springs().end());
+    CHECK(found->law.stiffness >= 0.05 * modulus);
+  }
   for (const model::Spring& spring : model.springs()) {
     INFO(spring.vertices[0] << " - " << spring.vertices[1]);
     CHECK(spring.law.stiffness >= 0.0);
