@@ -29,7 +29,8 @@ scene::Scene scene_with(const scene::TriangleMesh& mesh, const scene::Springs& s
 TEST_CASE("a grid's triangles get the grid's springs, half as stiff along the border") {
   constexpr int cells = 8, n = cells + 1;
   for (const Cut cut : {Cut::one_diagonal, Cut::other_diagonal}) {
-    for (const model::Spring& spring : built(test::sheet_of(cut, cells, isotropic)).springs()) {
+    const model::Model model = built(test::sheet_of(cut, cells, isotropic));
+    for (const model::Spring& spring : model.springs()) {
       const auto column = [](std::uint32_t i) { return static_cast<int>(i) % n; };
       const auto row = [](std::uint32_t i) { return static_cast<int>(i) / n; };
       const auto [a, b] = spring.vertices;
