@@ -124,19 +124,23 @@ Pairs pairs_of(const scene::TriangleMesh& mesh) {
     return 0.5 * glm::length(glm::cross(u, v));
   };
   Pairs result;
-  std::map<Edge, std::pair<double, double>> across;  // pair -> area, rest; two edges may have the same pair
+  struct Across {
+    double area, crossed, rest;
+  };
+  std::map<Edge, Across> across;  // two edges may have the same pair
   for (const auto& [edge, at] : edges) {
     double third = 0.0;
     for (const AtEdge& side : at) third += area(side) / 3.0;
-    result.pairs.push_back({edge.first, edge.second, false, third});
+    result.pairs.push_back({edge.first, edge.second, false, third, 0.0});
     result.rest.push_back(pattern.edge(at));
     if (at.size() != 2 || at[0].opposite == at[1].opposite) continue;
     const Edge pair = sorted(at[0].opposite, at[1].opposite);
-    if (!edges.contains(pair)) across.try_emplace(pair, third, pattern.across(at[0], at[1]));
+    const double length = glm::distance(mesh.vertices[edge.first], mesh.vertices[edge.second]);
+    if (!edges.contains(pair)) across.try_emplace(pair, Across{third, length, pattern.across(at[0], at[1])});
   }
   for (const auto& [pair, of] : across) {
-    result.pairs.push_back({pair.first, pair.second, true, of.first});
-    result.rest.push_back(of.second);
+    result.pairs.push_back({pair.first, pair.second, true, of.area, of.crossed});
+    result.rest.push_back(of.rest);
   }
   return result;
 }

@@ -60,6 +60,29 @@ Felt all_round(const dvec3& u, const dvec3& v) {
   return sum;
 }
 
+/// The part of a triangle that is nearest to each corner; of an obtuse one half, and two quarters (Meyer,
+/// Desbrun, Schroeder & Barr 2003, section 3.3). Vertices of a regular mesh get the same, however many of its
+/// triangles' corners meet at each.
+std::array<double, 3> areas_at(const std::array<dvec3, 3>& corners) {
+  std::array<double, 3> cosine, squared, areas;  // |a| |b| cos, opposite side, result
+  const double twice = glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+  for (std::size_t i = 0; i < 3; ++i) {
+    const dvec3 a = corners[(i + 1) % 3] - corners[i], b = corners[(i + 2) % 3] - corners[i];
+    cosine[i] = glm::dot(a, b);
+    squared[i] = glm::dot(a - b, a - b);
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    if (cosine[i] <= 0.0)
+      areas[i] = twice / 4.0;
+    else if (cosine[j] <= 0.0 || cosine[k] <= 0.0)
+      areas[i] = twice / 8.0;
+    else
+      areas[i] = (cosine[j] * squared[j] + cosine[k] * squared[k]) / (8.0 * twice);
+  }
+  return areas;
+}
+
 class Fit {
  public:
   Fit(const std::vector<dvec3>& position, const std::vector<std::array<std::uint32_t, 3>>& triangles,
@@ -79,12 +102,14 @@ class Fit {
     std::vector<double> stiffness;
     stiffness.reserve(springs_.size());
     for (const Spring& spring : springs_)
-      stiffness.push_back(spring.length > 0.0 ? spring.w / (spring.length * spring.length) : most_stiffness);
+      stiffness.push_back(spring.length > 0.0 ? spring.w / (spring.length * spring.length) : of_a_grid);
     return stiffness;
   }
 
  private:
-  static constexpr double most_stiffness = 8.0;
+  static constexpr double most_stiffness = 8.0, least_stiffness = 0.05, of_a_grid = 2.0;
+  /// The two diagonals of cells beside each other; of a square's they are equal.
+  static constexpr double longest_diagonal = 1.9;
   /// An edge keeps this part of its share at least, or a mesh could come apart into hinges.
   static constexpr double least_share = 0.1;
   /// How much less a departure from equal shares counts than a force out of balance.
@@ -96,6 +121,8 @@ class Fit {
   };
 
   void add_triangle(const std::vector<dvec3>& position, const std::array<std::uint32_t, 3>& corners) {
+    const std::array<double, 3> shares =
+        areas_at({position[corners[0]], position[corners[1]], position[corners[2]]});
     for (std::size_t i = 0; i < 3; ++i) {
       const dvec3 &at = position[corners[i]], &from = position[corners[(i + 1) % 3]];
       const dvec3 along = position[corners[(i + 2) % 3]] - from;
@@ -106,11 +133,10 @@ class Fit {
       up -= u * glm::dot(u, up);
       const double height = glm::length(up);
       if (!(height > 1e-7 * length)) continue;
-      const double third = length * height / 6.0;
       const Felt sheet = all_round(u, up / height);
       add(residual_[corners[i]].force, 0.5 * length, sheet.force);
-      add(residual_[corners[i]].tension, -third, sheet.tension);
-      importance_[corners[i]] += third;
+      add(residual_[corners[i]].tension, -shares[i], sheet.tension);
+      importance_[corners[i]] += shares[i];
     }
   }
 
@@ -123,7 +149,11 @@ class Fit {
       spring.direction = along(between / length);
       spring.scale = std::max(whole, 1e-6 * length * length);
       spring.most = most_stiffness * length * length;
-      spring.least = std::min(pair.across ? share * whole : least_share * (1.0 - share) * whole, spring.most);
+      spring.least = pair.across ? share * whole
+                                 : std::max(least_share * (1.0 - share) * whole,
+                                            least_stiffness * length * length);  // of triangles without area
+      spring.least = std::min(spring.least, spring.most);
+      if (pair.across && length > longest_diagonal * pair.crossed) spring.most = spring.least;
       spring.wanted = std::clamp((pair.across ? share : 1.0 - share) * whole, spring.least, spring.most);
       move(pair, spring, spring.wanted);
     }

@@ -1,5 +1,8 @@
 #include "server/sim/kernels.h"
 
+#include <cstdlib>
+#include <string_view>
+
 #include "server/model/numbering.h"
 #include "server/sim/element_lists.h"
 
@@ -19,6 +22,13 @@ MotionTable motion_table(const scene::Scene& scene, const Plan& plan) {
   return MotionTable(moving_motions(scene), scene.wind, plan.pose_rows());
 }
 
+/// CLOTHLAB_NUMBERING=scene in the environment leaves vertices where they are: tests/bench/numbering.mjs
+/// measures what that costs.
+bool keeps_numbering() {
+  const char* numbering = std::getenv("CLOTHLAB_NUMBERING");
+  return numbering && std::string_view(numbering) == "scene";
+}
+
 /// Takes over a model that is in the scene's order.
 void take_model(Kernels& kernels, model::Model model) {
   if (kernels.places.empty()) {
@@ -35,7 +45,7 @@ Result<Kernels> Kernels::create(const scene::Scene& scene) {
   Kernels kernels;
   Result<model::Model> model = model::build(scene);
   if (!model) return model.error();
-  kernels.places = model::near_places(*model, scene);
+  if (!keeps_numbering()) kernels.places = model::near_places(*model, scene);
   take_model(kernels, std::move(*model));
   kernels.plan = sim::plan(scene);
   kernels.motions = motion_table(scene, kernels.plan);

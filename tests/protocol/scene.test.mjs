@@ -39,6 +39,8 @@ test("scene.presets lists the presets of the contract, the seed first", async ()
     "cantilever",
     "trampoline",
     "fabrics",
+    "skirt",
+    "poncho",
     "blowup",
   ])
     assert.ok(presets.includes(name), name);

@@ -1,6 +1,8 @@
 // Stiffnesses of the springs of triangle meshes.
 #include "server/model/sheet_springs.h"
 
+#include <algorithm>
+
 #include "server/model/model.h"
 #include "tests/catch.h"
 #include "tests/sheets.h"
@@ -27,7 +29,8 @@ scene::Scene scene_with(const scene::TriangleMesh& mesh, const scene::Springs& s
 TEST_CASE("a grid's triangles get the grid's springs, half as stiff along the border") {
   constexpr int cells = 8, n = cells + 1;
   for (const Cut cut : {Cut::one_diagonal, Cut::other_diagonal}) {
-    for (const model::Spring& spring : built(test::sheet_of(cut, cells, isotropic)).springs()) {
+    const model::Model model = built(test::sheet_of(cut, cells, isotropic));
+    for (const model::Spring& spring : model.springs()) {
       const auto column = [](std::uint32_t i) { return static_cast<int>(i) % n; };
       const auto row = [](std::uint32_t i) { return static_cast<int>(i) / n; };
       const auto [a, b] = spring.vertices;
@@ -92,6 +95,14 @@ TEST_CASE(
   const model::Model model = built(scene);
   constexpr double modulus = (200.0 + 2 * 100.0 + 4 * 20.0) / 4;
   CHECK(model.springs().size() >= 10);
+  for (const auto& [a, b] : {std::pair{0u, 1u}, {0u, 2u}, {1u, 2u}, {1u, 4u}, {4u, 5u}}) {
+    const auto found = std::find_if(model.springs().begin(), model.springs().end(), [&](const auto& spring) {
+      return spring.vertices[0] == a && spring.vertices[1] == b;
+    });
+    INFO(a << " - " << b);
+    REQUIRE(found != model.springs().end());
+    CHECK(found->law.stiffness >= 0.05 * modulus);
+  }
   for (const model::Spring& spring : model.springs()) {
     INFO(spring.vertices[0] << " - " << spring.vertices[1]);
     CHECK(spring.law.stiffness >= 0.0);
