@@ -39,7 +39,7 @@ void scale_stiffness(json& document, double factor) {
       if (json* stiffness = scene::child(cloth["material"], kind)) scale(*stiffness, factor);
 }
 
-bool any_stiffness(const scene::Scene& scene) {
+bool any_spring(const scene::Scene& scene) {
   return std::any_of(scene.cloths.begin(), scene.cloths.end(), [](const scene::Cloth& cloth) {
     const auto* springs = std::get_if<scene::Springs>(&cloth.material);
     return !springs || springs->structural > 0 || springs->shear > 0 || springs->bend > 0;
@@ -57,7 +57,7 @@ bool is_of_sheet(const scene::Scene& scene, const std::vector<std::string>& toke
 Result<MapField> MapField::find(const scene::Document& document, const std::string& field) {
   MapField found(document, field);
   if (field == stiffness) {
-    if (!any_stiffness(document.scene))
+    if (!any_spring(document.scene))
       return Error{"field", "\"stiffness\", but no cloth has a spring", "the JSON Pointer of another number"};
     return found;
   }
