@@ -237,6 +237,10 @@ TEST_CASE("of two simpler models of a cloth one is recommended, and it is fitted
   const bool springs = result.recommended.name.find("springs instead") != std::string::npos,
              alike = result.recommended.name.find("alike") != std::string::npos;
   CHECK(springs != alike);
+  // The other one is not even tried in addition.
+  CHECK(std::none_of(result.notes.begin(), result.notes.end(), [](const std::string& note) {
+    return note.find("springs instead") != std::string::npos && note.find("alike") != std::string::npos;
+  }));
   const auto patched = scene::apply_patch(whole, result.recommended.patch);
   REQUIRE(patched);
   CHECK(std::get<scene::Grid>(patched->scene.cloths[0].mesh).columns < 9);

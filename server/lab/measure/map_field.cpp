@@ -40,7 +40,7 @@ void scale_stiffness(json& document, double factor) {
       if (json* stiffness = scene::child(cloth["material"], kind)) scale(*stiffness, factor);
 }
 
-bool any_stiffness(const scene::Scene& scene) {
+bool any_spring(const scene::Scene& scene) {
   return std::any_of(scene.cloths.begin(), scene.cloths.end(), [](const scene::Cloth& cloth) {
     const auto* springs = std::get_if<scene::Springs>(&cloth.material);
     return !springs || springs->structural > 0 || springs->shear > 0 || springs->bend > 0;
@@ -61,7 +61,7 @@ Result<MapField> MapField::find(const scene::Document& document, const std::stri
   if (field == stiffness || !find_value(found.document_.value, field))
     found.document_.value = scene::spelled_out(document);
   if (field == stiffness) {
-    if (!any_stiffness(document.scene))
+    if (!any_spring(document.scene))
       return Error{"field", "\"stiffness\", but no cloth has a spring", "the JSON Pointer of another number"};
     return found;
   }

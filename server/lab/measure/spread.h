@@ -39,13 +39,13 @@ inline constexpr double largest_worthwhile_ratio = 0.95;
 Saving saving(const Spread& ratio);
 
 /// The largest chance that any comparison behind a recommendation wrongly finds a saving, and the largest
-/// number of these comparisons: 8 parts against the whole scene, 5 combinations of parts against smaller
-/// ones.
+/// number of these comparisons: 9 parts against the whole scene at most, 8 combinations of parts against
+/// smaller ones.
 inline constexpr double most_doubt = 0.01;
-inline constexpr int most_comparisons = 13;
-/// Numbers of rounds after which the timings are judged. After 12 rounds the interval reaches from the
-/// smallest to the largest ratio: all 12 are above the median (or all below) with a chance of 2.4e-4.
-inline constexpr int rounds_at_look[] = {12, 24, 48};
+inline constexpr int most_comparisons = 17;
+/// Numbers of rounds after which the timings are judged. After 13 rounds the interval reaches from the
+/// smallest to the largest ratio: all 13 are above the median (or all below) with a chance of 1.2e-4.
+inline constexpr int rounds_at_look[] = {13, 26, 52};
 inline constexpr double doubt_per_look = most_doubt / (most_comparisons * 3);
 
 /// A comparison of the costs of two things.
