@@ -9,6 +9,7 @@
 #include "server/base/text.h"
 #include "server/model/mesh_arrays.h"
 #include "server/model/plate.h"
+#include "server/model/shell.h"
 #include "server/model/start.h"
 
 namespace clothlab::model {
@@ -228,26 +229,25 @@ FlatTriangle cut_out(const FlatTriangle& piece, double scale, double grain) {
 constexpr double least_area = 1e-7;
 
 /// True if two triangles at an edge, of those from `first_triangle` on, meet at an angle [rad] that is more
-/// than what rounding makes.
+/// than what rounding makes, or lie on each other.
 bool is_curved(const Model& model, Index first_triangle) {
   constexpr double most_angle = 1e-3;
-  const auto normal = [&](Index t) {
-    const auto& [a, b, c] = model.triangles[t];
-    const std::vector<dvec3>& rest = model.rest_position;
-    return glm::normalize(glm::cross(rest[b] - rest[a], rest[c] - rest[a]));
-  };
-  std::map<std::pair<Index, Index>, Index> at_edge;
+  std::map<std::pair<Index, Index>, dvec3> at_edge;  // from the edge into the first triangle there
+  const std::vector<dvec3>& rest = model.rest_position;
   for (Index t = first_triangle; t < model.triangle_count(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto [a, b] = std::minmax(model.triangles[t][k], model.triangles[t][(k + 1) % 3]);
-      const auto [other, is_new] = at_edge.try_emplace({a, b}, t);
-      if (!is_new && glm::length(glm::cross(normal(other->second), normal(t))) > most_angle) return true;
+      const Index a = model.triangles[t][k], b = model.triangles[t][(k + 1) % 3];
+      const dvec3 along = glm::normalize(rest[b] - rest[a]),
+                  across = rest[model.triangles[t][(k + 2) % 3]] - rest[a];
+      const dvec3 inwards = glm::normalize(across - along * glm::dot(across, along));
+      const auto [other, is_new] = at_edge.try_emplace(std::minmax(a, b), inwards);
+      if (!is_new && glm::length(other->second + inwards) > most_angle) return true;
     }
   return false;
 }
 
 /// The rest shapes of a cloth's triangles, which are the model's from `first_triangle` on. An error if one
-/// has no area, or if the cloth is curved and has no pattern.
+/// has no area.
 Result<std::vector<FlatTriangle>> rest_shapes(const Model& model, const scene::Cloth& cloth, double grain,
                                               const TextureAxes& axes, Index first_triangle,
                                               const std::string& where) {
@@ -267,9 +267,6 @@ Result<std::vector<FlatTriangle>> rest_shapes(const Model& model, const scene::C
                    "with \"model\": \"fem\" every triangle has an area; springs need none"};
     flat.push_back(laid_flat({rest[a], rest[b], rest[c]}, axes, grain));
   }
-  if (!pattern && is_curved(model, first_triangle))
-    return Error{where + "/mesh", "a mesh that is not flat",
-                 "with \"model\": \"fem\" a flat mesh, or a file with a flat \"pattern\"; or springs"};
   return flat;
 }
 
@@ -289,10 +286,47 @@ elements::Membrane membrane(const FlatTriangle& flat, const scene::Fem& material
           material.damping};
 }
 
+void add_pairs(Model& model, const std::vector<BendingPair>& pairs, Index first, double damping) {
+  Batch<elements::Bending>& bending = model.elements.of<elements::Bending>();
+  for (const BendingPair& pair : pairs)
+    bending.push_back({{pair.a + first, pair.b + first}, {pair.stiffness, damping}});
+}
+
+/// Appends what XPBD visits of a triangle that bends.
+void add_curvature(Model& model, const CurvedTriangle& triangle, Index first, double damping) {
+  Element<elements::Curvature> element{triangle.rows.vertices, {{}, {}, damping}};
+  for (std::uint32_t& vertex : element.vertices) vertex += first;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto& row = triangle.rows.row[a];
+    std::copy(row.begin(), row.end(), element.law.row + a * CurvatureRows::most_vertices);
+    element.law.rest[a] = triangle.along_normal[a];
+  }
+  model.elements.of<elements::Curvature>().push_back(element);
+}
+
+/// Appends the bending of a sheet whose rest shape is that of its vertices, which are curved.
+void add_shell(Model& model, std::vector<CurvatureRows> rows, const std::vector<char>& held, Index first,
+               double damping, bool sweeps_elements) {
+  constexpr double flattened = 0.1;  // share of its area below which a triangle has no whole normal
+  const std::vector<dvec3> rest(model.rest_position.begin() + first, model.rest_position.end());
+  const std::vector<CurvedTriangle> triangles = curved_triangles(std::move(rows), rest);
+  std::vector<CurvatureRows> curved;
+  for (const CurvedTriangle& triangle : triangles) curved.push_back(triangle.rows);
+  add_pairs(model, bending_pairs(curved, held), first, damping);
+  Batch<elements::Shell>& shell = model.elements.of<elements::Shell>();
+  for (const Rise& rise : rises(triangles, rest, held)) {
+    const auto& [a, b, c] = rise.triangle;
+    shell.push_back({{a + first, b + first, c + first, rise.vertex + first},
+                     {rise.pull, 0.5 * rise.pull * rise.height, damping, flattened * rise.twice_area, 0.0}});
+  }
+  for (const CurvedTriangle& triangle : triangles)
+    if (sweeps_elements) add_curvature(model, triangle, first, damping);
+}
+
 /// Appends the finite elements of a cloth, whose vertices and triangles are the model's from `first` and
-/// `first_triangle` on; those that only sweeps visit if `sweeps_elements`.
+/// `first_triangle` on; those that only sweeps visit if `sweeps_elements`. `curved`: at rest.
 void add_sheet(Model& model, const scene::Fem& material, const std::vector<FlatTriangle>& flat, Index first,
-               Index first_triangle, bool sweeps_elements) {
+               Index first_triangle, bool curved, bool sweeps_elements) {
   std::vector<std::array<Index, 3>> triangles;
   Batch<elements::Membrane>& membranes = model.elements.of<elements::Membrane>();
   for (std::size_t i = 0; i < flat.size(); ++i) {
@@ -304,18 +338,15 @@ void add_sheet(Model& model, const scene::Fem& material, const std::vector<FlatT
   for (Index i = first; i < model.vertex_count(); ++i) held.push_back(model.pin_motion[i] != not_pinned);
   const auto& [warp, weft, twist] = material.bending;
   const PlateStiffness plate{warp, weft, twist.value_or(0.5 * std::sqrt(warp * weft))};
-  Batch<elements::Bending>& bending = model.elements.of<elements::Bending>();
-  for (const BendingPair& pair : bending_pairs(triangles, flat, held, plate))
-    bending.push_back({{pair.a + first, pair.b + first}, {pair.stiffness, material.damping}});
-  if (!sweeps_elements) return;
-  Batch<elements::Curvature>& curvature = model.elements.of<elements::Curvature>();
-  for (const CurvatureRows& rows : curvature_rows(triangles, flat, held, plate)) {
-    Element<elements::Curvature> element{rows.vertices, {{}, material.damping}};
-    for (std::uint32_t& vertex : element.vertices) vertex += first;
-    for (std::size_t a = 0; a < 3; ++a)
-      std::copy(rows.row[a].begin(), rows.row[a].end(), element.law.row + a * CurvatureRows::most_vertices);
-    curvature.push_back(element);
+  if (curved) {
+    add_shell(model, curvature_rows(triangles, flat, held, plate), held, first, material.damping,
+              sweeps_elements);
+    return;
   }
+  add_pairs(model, bending_pairs(triangles, flat, held, plate), first, material.damping);
+  if (!sweeps_elements) return;
+  for (const CurvatureRows& rows : curvature_rows(triangles, flat, held, plate))
+    add_curvature(model, {rows, {}}, first, material.damping);
 }
 
 /// Appends one cloth to the model.
@@ -375,7 +406,8 @@ Status add_cloth(Model& model, const scene::Cloth& cloth, bool sweeps_elements) 
       model, cloth, sheet.grain, {glm::normalize(axes[1] - axes[0]), glm::normalize(axes[2] - axes[0])},
       range.first_triangle, where);
   if (!flat) return flat.error();
-  add_sheet(model, sheet, *flat, first, range.first_triangle, sweeps_elements);
+  const bool curved = !pattern_of(cloth) && is_curved(model, range.first_triangle);
+  add_sheet(model, sheet, *flat, first, range.first_triangle, curved, sweeps_elements);
   return ok();
 }
 

@@ -106,6 +106,8 @@ std::vector<Simulation::Part> parts(const Plan& plan) {
       "no cloth has the model fem");
   add(Kind::term, "bending", plan.laws[elements::law_number<elements::Bending>],
       "no cloth has the model fem and a bending stiffness above 0");
+  add(Kind::term, "rest_curvature", plan.laws[elements::law_number<elements::Shell>],
+      "no cloth that bends under the model fem is curved at rest");
   add(Kind::term, "self_contacts", plan.self_collision, "self_collision is null");
   add(Kind::term, "moving_poses", plan.moving > 0, "no pin and no collider moves");
   for (std::size_t kind = 0; kind < scene::shape_kinds; ++kind) {
