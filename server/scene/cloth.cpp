@@ -150,6 +150,16 @@ Fem::Bending read_bending(const Reader& bending) {
           read_optional(bending, "twist", ranges::bending)};
 }
 
+/// One number for both directions, or one for each.
+std::optional<StrainLimit> read_strain_limit(const Reader& material) {
+  const Reader limit = material.member("strain_limit", json(nullptr));
+  if (limit.is_null()) return std::nullopt;
+  if (!limit.is_object()) return StrainLimit(limit.number(ranges::strain_limit));
+  limit.object({"warp", "weft"});
+  return StrainLimit(limit.member("warp").number(ranges::strain_limit),
+                     limit.member("weft").number(ranges::strain_limit));
+}
+
 Fem read_fem(const Reader& material) {
   material.object(
       {"model", "warp", "weft", "poisson", "shear", "bending", "damping", "grain", "strain_limit"},
@@ -168,7 +178,7 @@ Fem read_fem(const Reader& material) {
       material.member("bending", json{{"warp", standard.bending.warp}, {"weft", standard.bending.weft}}));
   fem.damping = material.member("damping", standard.damping).number(ranges::damping_time);
   fem.grain = material.member("grain", standard.grain).number(ranges::angle);
-  fem.strain_limit = read_optional(material, "strain_limit", ranges::strain_limit);
+  fem.strain_limit = read_strain_limit(material);
   return fem;
 }
 

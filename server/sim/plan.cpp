@@ -64,7 +64,9 @@ Plan plan(const scene::Scene& scene) {
       plan.structural |= material->structural > 0.0;
       plan.shear |= material->shear > 0.0;
       plan.bend |= material->bend > 0.0;
-      plan.strain_limit |= springs && material->strain_limit.has_value();
+      plan.limits_springs |= springs && material->strain_limit.has_value();
+    } else {
+      plan.limits_sheets |= cloth.strain_limit().has_value();
     }
     plan.pins |= !cloth.pins.empty();
   }
@@ -98,7 +100,7 @@ std::vector<Simulation::Part> parts(const Plan& plan) {
   };
   add(Kind::pass, "neighbour_search", plan.self_collision, "self_collision is null");
   add(Kind::pass, scene::name(plan.method), true, "");
-  add(Kind::pass, "strain_limit", plan.strain_limit, "no cloth with springs has a strain_limit");
+  add(Kind::pass, "strain_limit", plan.strain_limit(), "no cloth has a strain_limit");
   add(Kind::term, "structural_springs", plan.structural, "their stiffness is 0 in every cloth");
   add(Kind::term, "shear_springs", plan.shear, "their stiffness is 0 in every cloth");
   add(Kind::term, "bend_springs", plan.bend, "their stiffness is 0 in every cloth");
