@@ -93,10 +93,14 @@ const int slot_wind = 0;                // wind
 // The strain limit's: strain_limit/NAME.comp.
 const int unit_group_excess = 10;        // sweep; the next sweep
 const int unit_corrected_position = 11;  // sweep; end
+const int unit_first_corner = 12;        // server/sim/thread_limit.cpp; sheet
+const int unit_corners = 13;             // the same
+const int unit_limited_triangles = 14;   // the same
 const int slot_group_excess = 1;         // sweep; the next sweep, as unit_group_excess
 const int slot_pulls = 3;                // sweep; sweep, and start in the next step
 const int slot_limit_control = 4;        // sweep; indirect dispatches, server/sim/strain_limit.cpp
 const int slot_given = 5;                // start, sweep; sweep, end
+const int slot_thread_pulls = 6;         // as slot_pulls, of finite elements
 
 // The diagnosis's.
 const int slot_partials = 0;  // diagnose.comp; server/sim/diagnose.cpp

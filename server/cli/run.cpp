@@ -131,7 +131,8 @@ void print_shortcomings(const sim::Simulation& simulation, const sim::Diagnostic
          " linear solves ended before they met solver.tolerance; a smaller dt or a larger tolerance helps");
   if (const std::uint64_t steps = simulation.strain_limit_work().unconverged; steps > 0)
     note(std::to_string(steps) +
-         " steps ended with a spring longer than its strain_limit; a smaller dt or a larger limit helps");
+         " steps ended with a spring or thread longer than its strain_limit; a smaller dt or a larger limit "
+         "helps");
 }
 
 /// The files of --out and --trace, if given.

@@ -2,14 +2,15 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/mat2x2.hpp>
+#include <glm/matrix.hpp>
 #include <glm/trigonometric.hpp>
-#include <map>
 #include <utility>
 
 #include "server/base/text.h"
 #include "server/model/adjacency.h"
 #include "server/model/mesh_arrays.h"
-#include "server/model/plate.h"
+#include "server/model/sheet.h"
 #include "server/model/start.h"
 
 namespace clothlab::model {
@@ -95,16 +96,6 @@ Index motion_index(std::vector<scene::Motion>& motions, const scene::Motion& mot
   return index;
 }
 
-double cross(const dvec2& a, const dvec2& b) {
-  return a.x * b.y - a.y * b.x;
-}
-
-/// The flat pattern of a cloth, or null: its rest shape is that of its vertices.
-const std::vector<FlatTriangle>* pattern_of(const scene::Cloth& cloth) {
-  const auto* mesh = std::get_if<scene::TriangleMesh>(&cloth.mesh);
-  return mesh && !mesh->pattern.empty() ? &mesh->pattern : nullptr;
-}
-
 std::vector<double> masses(const scene::Cloth& cloth, const MeshArrays& arrays,
                            const std::vector<dvec3>& position) {
   if (cloth.mass.kind == scene::Mass::Kind::per_vertex)
@@ -117,7 +108,7 @@ std::vector<double> masses(const scene::Cloth& cloth, const MeshArrays& arrays,
     double area = 0.5 * glm::length(glm::cross(position[b] - position[a], position[c] - position[a]));
     if (pattern) {
       const auto& [first, second, third] = (*pattern)[i];
-      area = 0.5 * scale * scale * std::abs(cross(second - first, third - first));
+      area = 0.5 * scale * scale * std::abs(glm::determinant(glm::dmat2(second - first, third - first)));
     }
     for (const Index corner : {a, b, c}) mass[corner] += cloth.mass.value * area / 3.0;
   }
@@ -141,135 +132,6 @@ void add_springs(Model& model, const std::vector<MeshSpring>& list, Index first,
     const Index a = spring.a + first, b = spring.b + first;
     const double length = spring.rest > 0.0 ? spring.rest * scale : glm::distance(rest[a], rest[b]);
     springs.push_back({{a, b}, {length, spring.stiffness, spring.damping}});
-  }
-}
-
-/// The axes of a mesh's texture, in space.
-struct TextureAxes {
-  dvec3 first, second;
-};
-
-/// A triangle in its own plane, with x along the warp: `grain` [degrees] from the first texture axis, towards
-/// the second.
-FlatTriangle laid_flat(const std::array<dvec3, 3>& corners, const TextureAxes& axes, double grain) {
-  const dvec3 normal = glm::normalize(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
-  const auto in_plane = [&](const dvec3& axis) { return axis - normal * glm::dot(normal, axis); };
-  dvec3 along = in_plane(axes.first);
-  if (glm::length(along) < 1e-6) along = in_plane(axes.second);
-  along = glm::normalize(along);
-  const dvec3 across = glm::cross(normal, along);
-  const double turn = glm::radians(glm::dot(across, axes.second) < 0.0 ? -grain : grain);
-  const dvec3 warp = std::cos(turn) * along + std::sin(turn) * across, weft = glm::cross(normal, warp);
-  FlatTriangle flat;
-  for (std::size_t i = 0; i < 3; ++i)
-    flat[i] = {glm::dot(corners[i] - corners[0], warp), glm::dot(corners[i] - corners[0], weft)};
-  return flat;
-}
-
-/// A triangle of a pattern, with x along the warp: `grain` [degrees] from the pattern's first axis towards
-/// its second. Pieces that were cut with the pattern turned over are turned back.
-FlatTriangle cut_out(const FlatTriangle& piece, double scale, double grain) {
-  const double turn = glm::radians(grain);
-  const dvec2 warp = scale * dvec2(std::cos(turn), std::sin(turn)), weft(-warp.y, warp.x);
-  const double side = cross(piece[1] - piece[0], piece[2] - piece[0]) < 0.0 ? -1.0 : 1.0;
-  FlatTriangle flat;
-  for (std::size_t i = 0; i < 3; ++i)
-    flat[i] = {glm::dot(piece[i] - piece[0], warp), side * glm::dot(piece[i] - piece[0], weft)};
-  return flat;
-}
-
-/// Twice the least area of a triangle over the square of its longest edge. Places in 32-bit floats cannot
-/// tell a triangle below it from a line.
-constexpr double least_area = 1e-7;
-
-/// True if two triangles at an edge, of those from `first_triangle` on, meet at an angle [rad] that is more
-/// than what rounding makes.
-bool is_curved(const Model& model, Index first_triangle) {
-  constexpr double most_angle = 1e-3;
-  const auto normal = [&](Index t) {
-    const auto& [a, b, c] = model.triangles[t];
-    const std::vector<dvec3>& rest = model.rest_position;
-    return glm::normalize(glm::cross(rest[b] - rest[a], rest[c] - rest[a]));
-  };
-  std::map<std::pair<Index, Index>, Index> at_edge;
-  for (Index t = first_triangle; t < model.triangle_count(); ++t)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [a, b] = std::minmax(model.triangles[t][k], model.triangles[t][(k + 1) % 3]);
-      const auto [other, is_new] = at_edge.try_emplace({a, b}, t);
-      if (!is_new && glm::length(glm::cross(normal(other->second), normal(t))) > most_angle) return true;
-    }
-  return false;
-}
-
-/// The rest shapes of a cloth's triangles, which are the model's from `first_triangle` on. An error if one
-/// has no area, or if the cloth is curved and has no pattern.
-Result<std::vector<FlatTriangle>> rest_shapes(const Model& model, const scene::Cloth& cloth, double grain,
-                                              const TextureAxes& axes, Index first_triangle,
-                                              const std::string& where) {
-  std::vector<FlatTriangle> flat;
-  const std::vector<FlatTriangle>* pattern = pattern_of(cloth);
-  const std::vector<dvec3>& rest = model.rest_position;
-  for (Index t = first_triangle; t < model.triangle_count(); ++t) {
-    if (pattern) {
-      flat.push_back(cut_out((*pattern)[t - first_triangle], cloth.transform.scale, grain));
-      continue;
-    }
-    const auto& [a, b, c] = model.triangles[t];
-    const double longest = std::max(
-        {glm::distance(rest[a], rest[b]), glm::distance(rest[b], rest[c]), glm::distance(rest[c], rest[a])});
-    if (!(glm::length(glm::cross(rest[b] - rest[a], rest[c] - rest[a])) > least_area * longest * longest))
-      return Error{where + "/mesh/triangles/" + std::to_string(t - first_triangle), "a triangle without area",
-                   "with \"model\": \"fem\" every triangle has an area; springs need none"};
-    flat.push_back(laid_flat({rest[a], rest[b], rest[c]}, axes, grain));
-  }
-  if (!pattern && is_curved(model, first_triangle))
-    return Error{where + "/mesh", "a mesh that is not flat",
-                 "with \"model\": \"fem\" a flat mesh, or a file with a flat \"pattern\"; or springs"};
-  return flat;
-}
-
-elements::Membrane membrane(const FlatTriangle& flat, const scene::Fem& material) {
-  const dvec2 a = flat[1] - flat[0], b = flat[2] - flat[0];
-  const double twice_area = a.x * b.y - a.y * b.x, area = 0.5 * twice_area;
-  const double ratio = material.weft / material.warp;
-  const double scale = area / (1.0 - material.poisson * material.poisson * ratio);
-  return {b.y / twice_area,
-          -b.x / twice_area,
-          -a.y / twice_area,
-          a.x / twice_area,
-          scale * material.warp,
-          scale * material.weft,
-          scale * material.poisson * material.weft,
-          area * material.shear,
-          material.damping};
-}
-
-/// Appends the finite elements of a cloth, whose vertices and triangles are the model's from `first` and
-/// `first_triangle` on; those that only sweeps visit if `sweeps_elements`.
-void add_sheet(Model& model, const scene::Fem& material, const std::vector<FlatTriangle>& flat, Index first,
-               Index first_triangle, bool sweeps_elements) {
-  std::vector<std::array<Index, 3>> triangles;
-  Batch<elements::Membrane>& membranes = model.elements.of<elements::Membrane>();
-  for (std::size_t i = 0; i < flat.size(); ++i) {
-    const auto& [a, b, c] = model.triangles[first_triangle + i];
-    membranes.push_back({{a, b, c}, membrane(flat[i], material)});
-    triangles.push_back({a - first, b - first, c - first});
-  }
-  std::vector<char> held;
-  for (Index i = first; i < model.vertex_count(); ++i) held.push_back(model.pin_motion[i] != not_pinned);
-  const auto& [warp, weft, twist] = material.bending;
-  const PlateStiffness plate{warp, weft, twist.value_or(0.5 * std::sqrt(warp * weft))};
-  Batch<elements::Bending>& bending = model.elements.of<elements::Bending>();
-  for (const BendingPair& pair : bending_pairs(triangles, flat, held, plate))
-    bending.push_back({{pair.a + first, pair.b + first}, {pair.stiffness, material.damping}});
-  if (!sweeps_elements) return;
-  Batch<elements::Curvature>& curvature = model.elements.of<elements::Curvature>();
-  for (const CurvatureRows& rows : curvature_rows(triangles, flat, held, plate)) {
-    Element<elements::Curvature> element{rows.vertices, {{}, material.damping}};
-    for (std::uint32_t& vertex : element.vertices) vertex += first;
-    for (std::size_t a = 0; a < 3; ++a)
-      std::copy(rows.row[a].begin(), rows.row[a].end(), element.law.row + a * CurvatureRows::most_vertices);
-    curvature.push_back(element);
   }
 }
 
@@ -325,13 +187,8 @@ Status add_cloth(Model& model, const scene::Cloth& cloth, bool sweeps_elements) 
   }
   const std::vector<dvec3> axes =
       placed(cloth.transform, {dvec3(0.0), arrays.first_axis, arrays.second_axis});
-  const auto& sheet = std::get<scene::Fem>(cloth.material);
-  const Result<std::vector<FlatTriangle>> flat = rest_shapes(
-      model, cloth, sheet.grain, {glm::normalize(axes[1] - axes[0]), glm::normalize(axes[2] - axes[0])},
-      range.first_triangle, where);
-  if (!flat) return flat.error();
-  add_sheet(model, sheet, *flat, first, range.first_triangle, sweeps_elements);
-  return ok();
+  return add_sheet(model, cloth, {glm::normalize(axes[1] - axes[0]), glm::normalize(axes[2] - axes[0])},
+                   sweeps_elements);
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ class Batches {
 
  private:
   std::tuple<Batch<elements::Spring>, Batch<elements::Membrane>, Batch<elements::Bending>,
-             Batch<elements::Curvature>>
+             Batch<elements::Shell>, Batch<elements::Curvature>>
       batches_;
 };
 

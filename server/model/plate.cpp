@@ -340,15 +340,15 @@ std::vector<CurvatureRows> curvature_rows(const Triangles& triangles, const std:
   return result;
 }
 
-std::vector<BendingPair> bending_pairs(const Triangles& triangles, const std::vector<FlatTriangle>& flat,
-                                       const std::vector<char>& held, const PlateStiffness& stiffness) {
+/// The sum of the pairs of all triangles, each once: add(triangle, pairs) appends those of one triangle.
+template <class Add>
+std::vector<BendingPair> summed_pairs(std::size_t triangles, const std::vector<char>& held, Add add) {
   constexpr std::size_t most_unmerged = 1u << 22;  // 64 MiB
   constexpr double rounding = 1e-10;               // share of the largest stiffness
-  const Plate plate{triangles, flat, held, stiffness, neighbours(triangles)};
   std::vector<BendingPair> pairs;
   std::size_t merged = 0;
-  for (Index triangle = 0; triangle < triangles.size(); ++triangle) {
-    add_triangle(plate, triangle, pairs);
+  for (std::size_t triangle = 0; triangle < triangles; ++triangle) {
+    add(triangle, pairs);
     if (pairs.size() < 2 * merged + most_unmerged) continue;
     merge(pairs);
     merged = pairs.size();
@@ -360,6 +360,27 @@ std::vector<BendingPair> bending_pairs(const Triangles& triangles, const std::ve
     return std::abs(pair.stiffness) <= rounding * largest || (held[pair.a] && held[pair.b]);
   });
   return pairs;
+}
+
+std::vector<BendingPair> bending_pairs(const Triangles& triangles, const std::vector<FlatTriangle>& flat,
+                                       const std::vector<char>& held, const PlateStiffness& stiffness) {
+  const Plate plate{triangles, flat, held, stiffness, neighbours(triangles)};
+  return summed_pairs(triangles.size(), held, [&](std::size_t triangle, std::vector<BendingPair>& pairs) {
+    add_triangle(plate, static_cast<Index>(triangle), pairs);
+  });
+}
+
+std::vector<BendingPair> bending_pairs(const std::vector<CurvatureRows>& triangles,
+                                       const std::vector<char>& held) {
+  return summed_pairs(triangles.size(), held, [&](std::size_t triangle, std::vector<BendingPair>& pairs) {
+    const auto& [vertices, row] = triangles[triangle];
+    for (std::size_t v = 0; v < vertices.size(); ++v)
+      for (std::size_t w = 0; w < v; ++w) {
+        const double q = row[0][v] * row[0][w] + row[1][v] * row[1][w] + row[2][v] * row[2][w];
+        const auto [a, b] = std::minmax(vertices[v], vertices[w]);
+        if (q != 0.0) pairs.push_back({a, b, -q});
+      }
+  });
 }
 
 }  // namespace clothlab::model

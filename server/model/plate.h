@@ -42,7 +42,8 @@ std::vector<BendingPair> bending_pairs(const std::vector<std::array<std::uint32_
                                        const PlateStiffness& stiffness);
 
 /// The energy of one triangle of a plate as half the sum of three squares, each of a linear form of the
-/// places of the vertices around it. Unused places repeat the first vertex, with 0 as its share.
+/// places of the vertices around it: the triangle's own corners first. Unused places repeat the first vertex,
+/// with 0 as its share.
 struct CurvatureRows {
   static constexpr std::size_t most_vertices = 12;
   std::array<std::uint32_t, most_vertices> vertices{};
@@ -53,5 +54,9 @@ struct CurvatureRows {
 std::vector<CurvatureRows> curvature_rows(const std::vector<std::array<std::uint32_t, 3>>& triangles,
                                           const std::vector<FlatTriangle>& flat,
                                           const std::vector<char>& held, const PlateStiffness& stiffness);
+
+/// The pairs that have the energy of the rows, each once, in rising order; none of two `held` vertices.
+std::vector<BendingPair> bending_pairs(const std::vector<CurvatureRows>& triangles,
+                                       const std::vector<char>& held);
 
 }  // namespace clothlab::model

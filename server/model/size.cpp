@@ -1,5 +1,7 @@
 #include "server/model/size.h"
 
+#include <algorithm>
+#include <glm/geometric.hpp>
 #include <type_traits>
 #include <variant>
 
@@ -57,6 +59,28 @@ std::size_t count(Of<elements::Bending>, const Mesh& mesh, const scene::Fem& mat
   if (!(warp > 0.0 || weft > 0.0 || twist.value_or(0.0) > 0.0)) return 0;
   constexpr bool grid = std::is_same_v<Mesh, scene::Grid>;
   return (grid ? 9 : 20) * scene::vertex_count(mesh);
+}
+
+/// Whether all triangles of a mesh lie in parallel planes: its rest shape is certainly not curved.
+bool in_parallel_planes(const scene::TriangleMesh& mesh) {
+  constexpr double most_angle = 1e-3;
+  const auto normal = [&](const auto& triangle) {
+    const auto& [a, b, c] = triangle;
+    return glm::normalize(
+        glm::cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]));
+  };
+  if (mesh.triangles.empty()) return true;
+  const glm::dvec3 first = normal(mesh.triangles[0]);
+  // Turned over is another plane: of two such triangles at an edge, one may lie on the other.
+  return std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const auto& triangle) {
+    return glm::distance(normal(triangle), first) <= most_angle;
+  });
+}
+
+/// At most 9 vertices around a triangle have a height over it that counts.
+std::size_t count(Of<elements::Shell>, const scene::TriangleMesh& mesh, const scene::Fem& material) {
+  const bool bends = count(Of<elements::Bending>(), mesh, material) > 0;
+  return bends && mesh.pattern.empty() && !in_parallel_planes(mesh) ? 9 * mesh.triangles.size() : 0;
 }
 
 Error too_large(const char* what, std::size_t found, std::size_t most, const char* flag) {

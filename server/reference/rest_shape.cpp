@@ -113,7 +113,8 @@ RestShape descend(const World& world, const Vectors& start, const std::stop_toke
   return shape;
 }
 
-/// An error if a free vertex of the shape x is inside a collider, or a spring is beyond its strain limit.
+/// An error if a free vertex of the shape x is inside a collider, or a spring or triangle is beyond its
+/// strain limit.
 std::optional<Error> violated(const World& world, const Vectors& x) {
   for (std::size_t i = 0; i < x.size(); ++i) {
     dvec3 stopped = x[i], v(0.0);
@@ -124,10 +125,21 @@ std::optional<Error> violated(const World& world, const Vectors& x) {
   for (const model::Spring& spring : world.model.springs()) {
     const auto [a, b] = spring.vertices;
     const std::uint32_t cloth = world.model.vertex_cloth[a];
-    const std::optional<double> limit = world.scene.cloths[cloth].strain_limit();
-    if (limit && glm::distance(x[a], x[b]) > (1.0 + *limit) * spring.law.rest_length)
+    const std::optional<scene::StrainLimit> limit = world.scene.cloths[cloth].strain_limit();
+    if (limit && glm::distance(x[a], x[b]) > (1.0 + limit->warp) * spring.law.rest_length)
       return Error{"/cloths/" + std::to_string(cloth) + "/material/strain_limit",
                    "the spring between vertices " + std::to_string(a) + " and " + std::to_string(b) +
+                       " would be longer than its limit",
+                   "a rest shape is found only where the limit does not act"};
+  }
+  for (const auto& triangle : world.model.elements.of<elements::Membrane>()) {
+    const std::uint32_t cloth = world.model.vertex_cloth[triangle.vertices[0]];
+    const std::optional<scene::StrainLimit> limit = world.scene.cloths[cloth].strain_limit();
+    if (!limit) continue;
+    const elements::Gradient f = elements::gradient(triangle.law, model::edges(triangle, 0, x));
+    if (glm::length(f.warp) > 1.0 + limit->warp || glm::length(f.weft) > 1.0 + limit->weft)
+      return Error{"/cloths/" + std::to_string(cloth) + "/material/strain_limit",
+                   "the triangle at vertex " + std::to_string(triangle.vertices[0]) +
                        " would be longer than its limit",
                    "a rest shape is found only where the limit does not act"};
   }

@@ -1,7 +1,9 @@
 #include "server/reference/strain_limit.h"
 
 #include <algorithm>
+#include <array>
 #include <glm/geometric.hpp>
+#include <utility>
 
 namespace clothlab::reference {
 
@@ -26,12 +28,42 @@ double shorten(const World& world, const model::Spring& spring, double limit, st
   return rest_length > 0.0 ? excess / rest_length : 0.0;
 }
 
+/// The same of a triangle's thread along warp (0) or weft (1), which has length 1 at rest.
+double shorten(const World& world, const model::Element<elements::Membrane>& triangle, int along,
+               double limit, std::vector<dvec3>& x) {
+  const auto [first, second] = along == 0 ? std::pair(triangle.law.first_warp, triangle.law.second_warp)
+                                          : std::pair(triangle.law.first_weft, triangle.law.second_weft);
+  const std::array share{-(first + second), first, second};
+  dvec3 thread(0.0);
+  double growth = 0.0;
+  for (std::size_t k = 0; k < share.size(); ++k) {
+    const std::uint32_t corner = triangle.vertices[k];
+    if (k > 0) thread += share[k] * (x[corner] - x[triangle.vertices[0]]);
+    growth += share[k] * share[k] * (world.pinned(corner) ? 0.0 : 1.0 / world.model.mass[corner]);
+  }
+  const double length = glm::length(thread), excess = length - (1.0 + limit);
+  if (!(excess > 0.0) || growth == 0.0) return 0.0;
+  const dvec3 pull = thread * (excess / (length * growth));
+  for (std::size_t k = 0; k < share.size(); ++k) {
+    const std::uint32_t corner = triangle.vertices[k];
+    if (!world.pinned(corner)) x[corner] -= share[k] / world.model.mass[corner] * pull;
+  }
+  return excess;
+}
+
 double sweep(const World& world, std::vector<dvec3>& x) {
   double worst = 0.0;
   for (const model::Spring& spring : world.model.springs()) {
     const std::uint32_t cloth = world.model.vertex_cloth[spring.vertices[0]];
-    const std::optional<double> limit = world.scene.cloths[cloth].strain_limit();
-    if (limit) worst = std::max(worst, shorten(world, spring, *limit, x));
+    const std::optional<scene::StrainLimit> limit = world.scene.cloths[cloth].strain_limit();
+    if (limit) worst = std::max(worst, shorten(world, spring, limit->warp, x));
+  }
+  for (const auto& triangle : world.model.elements.of<elements::Membrane>()) {
+    const std::uint32_t cloth = world.model.vertex_cloth[triangle.vertices[0]];
+    const std::optional<scene::StrainLimit> limit = world.scene.cloths[cloth].strain_limit();
+    if (!limit) continue;
+    worst = std::max(
+        {worst, shorten(world, triangle, 0, limit->warp, x), shorten(world, triangle, 1, limit->weft, x)});
   }
   return worst;
 }

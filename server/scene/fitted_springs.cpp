@@ -36,7 +36,8 @@ Springs springs_like(const Fem& sheet, double spacing, double area_density) {
   const double dampers = 1.0 + (shear > 0.0 ? 1.0 : 0.0) + (springs.bend > 0.0 ? 4.0 : 0.0);
   const double stretching = sheet.damping * along / dampers, slanting = sheet.damping * shear;
   springs.damping = shear > 0.0 ? std::min(stretching, slanting) : stretching;
-  springs.strain_limit = sheet.strain_limit;
+  if (sheet.strain_limit)
+    springs.strain_limit = std::min(sheet.strain_limit->warp, sheet.strain_limit->weft);  // springs have one
   return springs;
 }
 

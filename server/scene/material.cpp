@@ -85,6 +85,16 @@ void check_poisson(const Reader& material, const Fem& fem) {
                                              "energy by being stretched)");
 }
 
+/// One number for both directions, or one for each.
+std::optional<StrainLimit> read_strain_limit(const Reader& material) {
+  const Reader limit = material.member("strain_limit", json(nullptr));
+  if (limit.is_null()) return std::nullopt;
+  if (!limit.is_object()) return StrainLimit(limit.number(ranges::strain_limit));
+  limit.object({"warp", "weft"});
+  return StrainLimit(limit.member("warp").number(ranges::strain_limit),
+                     limit.member("weft").number(ranges::strain_limit));
+}
+
 /// The fabric that a material names, or null.
 const Fabric* read_fabric_name(const Reader& material) {
   if (!material.has("fabric")) return nullptr;
@@ -120,7 +130,7 @@ Fem read_sheet(const Reader& material, const Fabric* fabric) {
                           "bending", json{{"warp", standard.bending.warp}, {"weft", standard.bending.weft}}));
   fem.damping = number("damping", standard.damping, ranges::damping_time);
   fem.grain = material.member("grain", standard.grain).number(ranges::angle);
-  fem.strain_limit = read_optional(material, "strain_limit", ranges::strain_limit);
+  fem.strain_limit = read_strain_limit(material);
   return fem;
 }
 

@@ -69,6 +69,14 @@ struct Springs {
   bool operator==(const Springs&) const = default;
 };
 
+/// The largest extension along warp and weft after a step, as a share of the rest length.
+struct StrainLimit {
+  double warp, weft;
+  StrainLimit(double alike) : warp(alike), weft(alike) {}
+  StrainLimit(double along_warp, double along_weft) : warp(along_warp), weft(along_weft) {}
+  bool operator==(const StrainLimit&) const = default;
+};
+
 /// Woven or knitted material as a continuum: finite elements. Warp and weft are the two directions of its
 /// threads.
 struct Fem {
@@ -86,8 +94,7 @@ struct Fem {
   } bending;
   double damping = 0.001;  ///< time by which stress and moment run ahead of strain and curvature [s]
   double grain = 0.0;      ///< from the mesh's first texture axis to the warp [degrees]
-  /// The largest extension along warp or weft after a step, as a share of the rest length. None: no limit.
-  std::optional<double> strain_limit = std::nullopt;
+  std::optional<StrainLimit> strain_limit = std::nullopt;  ///< none: no limit
   bool operator==(const Fem&) const = default;
 };
 using Material = std::variant<Springs, Fem>;
@@ -186,8 +193,9 @@ struct Cloth {
   double damping() const {
     return std::visit([](const auto& of) { return of.damping; }, material);
   }
-  std::optional<double> strain_limit() const {
-    return std::visit([](const auto& of) { return of.strain_limit; }, material);
+  /// That of its springs counts for both directions.
+  std::optional<StrainLimit> strain_limit() const {
+    return std::visit([](const auto& of) -> std::optional<StrainLimit> { return of.strain_limit; }, material);
   }
   bool operator==(const Cloth&) const = default;
 };

@@ -275,11 +275,11 @@ void Stepper::warn_if_unconverged() {
   const bool solver = simulation().solver_work().unconverged > many;
   if (unconverged_announced_ || !(limit || solver)) return;
   unconverged_announced_ = true;
-  exchange_.emit(
-      Notice{"warning", limit ? "strain_limit: some springs stay longer than it allows; a larger limit, "
-                                "a shorter time step or pins that leave room helps"
-                              : "the linear solver often ends before it meets solver.tolerance; a "
-                                "shorter time step or a larger tolerance helps"});
+  exchange_.emit(Notice{
+      "warning", limit ? "strain_limit: some springs or threads stay longer than it allows; a larger limit, "
+                         "a shorter time step or pins that leave room helps"
+                       : "the linear solver often ends before it meets solver.tolerance; a "
+                         "shorter time step or a larger tolerance helps"});
 }
 
 bool Stepper::suspended(Clock::time_point now) const {

@@ -65,7 +65,7 @@ Result<Kernels> Kernels::create(const scene::Scene& scene) {
   if (!integrator) return integrator.error();
   kernels.integrator = std::move(*integrator);
   kernels.integrator->restart();
-  if (kernels.plan.strain_limit) {
+  if (kernels.plan.strain_limit()) {
     Result<StrainLimit> limit = StrainLimit::create(kernels.surroundings(scene), kernels.plan, entries);
     if (!limit) return limit.error();
     kernels.strain_limit = std::move(*limit);

@@ -64,7 +64,9 @@ Plan plan(const scene::Scene& scene) {
       plan.structural |= material->structural > 0.0;
       plan.shear |= material->shear > 0.0;
       plan.bend |= material->bend > 0.0;
-      plan.strain_limit |= springs && material->strain_limit.has_value();
+      plan.limits_springs |= springs && material->strain_limit.has_value();
+    } else {
+      plan.limits_sheets |= cloth.strain_limit().has_value();
     }
     plan.pins |= !cloth.pins.empty();
   }
@@ -100,7 +102,7 @@ std::vector<Simulation::Part> parts(const Plan& plan) {
   };
   add(Kind::pass, "neighbour_search", plan.self_collision, "self_collision is null");
   add(Kind::pass, scene::name(plan.method), true, "");
-  add(Kind::pass, "strain_limit", plan.strain_limit, "no cloth with springs has a strain_limit");
+  add(Kind::pass, "strain_limit", plan.strain_limit(), "no cloth has a strain_limit");
   const char* const no_springs = "no cloth has the model springs and this stiffness above 0";
   add(Kind::term, "structural_springs", plan.structural, no_springs);
   add(Kind::term, "shear_springs", plan.shear, no_springs);
@@ -109,6 +111,8 @@ std::vector<Simulation::Part> parts(const Plan& plan) {
       "no cloth has the model fem");
   add(Kind::term, "bending", plan.laws[elements::law_number<elements::Bending>],
       "no cloth has the model fem and a bending stiffness above 0");
+  add(Kind::term, "rest_curvature", plan.laws[elements::law_number<elements::Shell>],
+      "no cloth that bends under the model fem is curved at rest");
   add(Kind::term, "self_contacts", plan.self_collision, "self_collision is null");
   add(Kind::term, "wind", plan.wind, "wind is null");
   add(Kind::term, "moving_poses", plan.moving > 0, "no pin and no collider moves");

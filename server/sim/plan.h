@@ -44,11 +44,13 @@ struct Plan {
   bool self_collision = false;
   bool wind = false;
   std::uint32_t neighbour_slots = 64;  ///< of each neighbour list; more are made if a list needs them
-  bool strain_limit = false;           ///< true if any cloth has one, and there are springs
+  bool limits_springs = false;         ///< true if any cloth with springs has a strain limit
+  bool limits_sheets = false;          ///< the same of finite elements
   int most_sweeps = 0;                 ///< 16, 64, 256, ...: at least the iterations of PBD, XPBD or VBD
   /// Number of a step's rows in the pose table after the row of its start: the step's end and, before it, its
   /// middle if the method uses poses there.
   int pose_rows() const { return scene::facts(method).needs_midpoint_poses ? 2 : 1; }
+  bool strain_limit() const { return limits_springs || limits_sheets; }
   int solid_count() const {
     return std::accumulate(solids.begin(), solids.end(), 0,
                            [](int sum, const SolidRun& run) { return sum + run.count; });

@@ -47,6 +47,11 @@ Result<StrainLimit> StrainLimit::create(const Surroundings& around, const Plan& 
   gl::Defines defines = step_defines(plan);
   defines.emplace_back("GROUP_COUNT", std::to_string(vertex_groups(around.model.vertex_count())));
   defines.emplace_back("CLOTH_COUNT", std::to_string(around.scene.cloths.size()));
+  if (plan.limits_springs) defines.emplace_back("SPRINGS", "1");
+  if (plan.limits_sheets) {
+    defines.emplace_back("SHEETS", "1");
+    made.threads_ = ThreadLimit(around.model, around.scene);
+  }
   for (auto [program, path] : {std::pair{&made.start_, "strain_limit/start.comp"},
                                {&made.sweep_, "strain_limit/sweep.comp"},
                                {&made.end_, "strain_limit/end.comp"}}) {
@@ -63,7 +68,7 @@ Result<StrainLimit> StrainLimit::create(const Surroundings& around, const Plan& 
   made.pulls_ = gl::Buffer(std::max<std::size_t>(entries, 1) * sizeof(float));
   made.pull_impulses_ = gl::Buffer(count * 4 * sizeof(float));
   made.control_ = gl::Buffer(sizeof(LimitControl));
-  made.sweep_.set("relaxation", relaxation(around.model));
+  if (plan.limits_springs) made.sweep_.set("relaxation", relaxation(around.model));
   made.set_parameters(around);
   return made;
 }
@@ -71,13 +76,22 @@ Result<StrainLimit> StrainLimit::create(const Surroundings& around, const Plan& 
 void StrainLimit::set_parameters(const Surroundings& around) {
   for (const gl::Program* program : {&start_, &sweep_, &end_}) set_step_uniforms(*program, around);
   std::vector<float> limits;
-  for (const scene::Cloth& cloth : around.scene.cloths)
-    limits.push_back(static_cast<float>(cloth.strain_limit().value_or(-1.0)));
-  glProgramUniform1fv(sweep_.id(), sweep_.location("limit"), static_cast<GLsizei>(limits.size()),
+  for (const scene::Cloth& cloth : around.scene.cloths) {
+    const scene::StrainLimit limit = cloth.strain_limit().value_or(-1.0);
+    limits.push_back(static_cast<float>(limit.warp));
+    limits.push_back(static_cast<float>(limit.weft));
+  }
+  glProgramUniform2fv(sweep_.id(), sweep_.location("limit"), static_cast<GLsizei>(limits.size() / 2),
                       limits.data());
+  if (threads_) threads_->set_parameters(around.model);
   // The pulls carried over are forces times dt^2.
   if (around.scene.solver.dt != dt_) restart();
   dt_ = around.scene.solver.dt;
+}
+
+void StrainLimit::restart() {
+  pulls_.fill(0);
+  if (threads_) threads_->restart();
 }
 
 Work StrainLimit::apply(StateBuffers& state) {
@@ -86,6 +100,7 @@ Work StrainLimit::apply(StateBuffers& state) {
   position_[0].buffer.bind_storage(slot_next_position);
   pulls_.bind_storage(slot_pulls);
   pull_impulses_.bind_storage(slot_given);
+  if (threads_) threads_->bind();
   start_.use();
   glDispatchCompute(groups_, 1, 1);
   wait_for_writes();

@@ -4,8 +4,10 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "server/sim/integrator.h"
+#include "server/sim/thread_limit.h"
 
 namespace clothlab::sim {
 
@@ -16,12 +18,13 @@ class StrainLimit {
 
   void set_parameters(const Surroundings& around);
 
-  /// Shortens the springs that are too long in the state that a step has just made. The element lists, their
-  /// slices and rest positions must be bound. The work may stop between two sweeps.
+  /// Shortens the springs, and threads of triangles, that are too long in the state that a step has just
+  /// made. The element lists, their slices and rest positions must be bound. The work may stop between two
+  /// sweeps.
   Work apply(StateBuffers& state);
 
   /// Forgets the pulls of the last step. To be called if the present state was not made by that step.
-  void restart() { pulls_.fill(0); }
+  void restart();
 
   StrainLimitWork work() const { return work_; }
 
@@ -29,7 +32,8 @@ class StrainLimit {
   gl::Program start_, sweep_, end_;
   std::array<gl::TextureBuffer, 2> position_, group_excess_;  ///< a sweep reads one and writes the other
   gl::Buffer pulls_, pull_impulses_, control_;
-  double dt_ = 0;  ///< [s]
+  std::optional<ThreadLimit> threads_;  ///< if cloths of finite elements have a limit
+  double dt_ = 0;                       ///< [s]
   GLuint groups_ = 0;
   StrainLimitWork work_;
 };

@@ -33,6 +33,7 @@ using std::sqrt;
 #include "shaders/elements/contact.glsl"
 #include "shaders/elements/curvature.glsl"
 #include "shaders/elements/membrane.glsl"
+#include "shaders/elements/shell.glsl"
 #include "shaders/elements/solid.glsl"
 #include "shaders/elements/spring.glsl"
 #include "shaders/elements/wind.glsl"
@@ -66,18 +67,24 @@ struct Facts<Bending> {
   using Edges = BendingEdges;
 };
 template <>
+struct Facts<Shell> {
+  static constexpr const char* name = "Shell";
+  static constexpr std::size_t corners = 4, visit_numbers = 0;
+  using Edges = ShellEdges;
+};
+template <>
 struct Facts<Curvature> {
   static constexpr const char* name = "Curvature";
-  static constexpr std::size_t corners = 12, visit_numbers = 37;
+  static constexpr std::size_t corners = 12, visit_numbers = 40;
   using Edges = CurvatureEdges;
 };
 
 /// The laws whose forces and energies add up to the sheet's, in the order of their batches and lists.
-using Laws = std::tuple<Spring, Membrane, Bending>;
+using Laws = std::tuple<Spring, Membrane, Bending, Shell>;
 inline constexpr std::size_t law_count = std::tuple_size_v<Laws>;
 
-/// The laws that PBD and XPBD visit. Bending is the same to them as to the others, in another form: pairs of
-/// either sign cannot be visited one by one.
+/// The laws that PBD and XPBD visit. Bending is the same to them as to the others, in another form: elements
+/// of either sign cannot be visited one by one.
 using SweptLaws = std::tuple<Spring, Membrane, Curvature>;
 inline constexpr std::size_t swept_count = std::tuple_size_v<SweptLaws>;
 

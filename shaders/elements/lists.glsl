@@ -11,6 +11,7 @@
 #include "bending.glsl"
 #include "constraint.glsl"
 #include "membrane.glsl"
+#include "shell.glsl"
 #include "spring.glsl"
 
 #ifndef SLICE_SIZE

@@ -1,4 +1,4 @@
-// Provot 1995, section 4: after a step of any method, springs beyond their limit are shortened by moving their ends,
+// Provot 1995, section 4: after a step of any method, springs (and threads of triangles: sheet.glsl) beyond their limit are shortened by moving their ends,
 // each by its inverse mass, until none is too long; the velocities take the same correction. All springs are handled at
 // once, from the positions of the sweep before (projected Jacobi), so the outcome depends on no order. A spring pulls
 // along its direction at the step's start, as in SHAKE (Ryckaert, Ciccotti & Berendsen 1977), which keeps the angular
@@ -19,7 +19,7 @@ layout(std430, binding = slot_pulls) buffer Pulls { float pulls[]; };
 /// Impulse of the pulls on each vertex since the step ended, times dt [kg m]. The velocities follow from it: a
 /// difference of positions would carry their float32 rounding into the velocities, and so into the momentum.
 layout(std430, binding = slot_given) buffer Given { vec4 given[]; };
-uniform float limit[CLOTH_COUNT];  // largest strain of each cloth's springs; negative: no limit
+uniform vec2 limit[CLOTH_COUNT];  // largest strain of each cloth, along warp and weft; negative: no limit
 
 /// Springs are pulled to less than the limit by this share of it, so that the sweeps can end with none above the limit.
 const float margin = 0.02;

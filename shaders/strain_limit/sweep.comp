@@ -1,6 +1,9 @@
-// The strain limit, one sweep: each spring's pull changes by a part of what it lacks, and its ends move accordingly. A
+// The strain limit, one sweep: each spring's or thread's pull changes by a part of what it lacks, and its ends move accordingly. A
 // work group first reads what the sweep before found; if that was good enough, all groups leave everything as it is.
 #include "strain_limit.glsl"
+#ifdef SHEETS
+#include "sheet.glsl"
+#endif
 #include "../methods/group_sums.glsl"
 READ_VEC4(group_excess, unit_group_excess);
 layout(std430, binding = slot_next_position) writeonly buffer NextPosition { vec4 next_position[]; };
@@ -11,7 +14,7 @@ layout(std430, binding = slot_limit_control) buffer Control {
   uint sweeps;
 };
 uniform int sweep;
-uniform float relaxation;
+uniform float relaxation;  // of springs
 
 #if GROUP_COUNT <= 16  // too few groups to be worth a barrier
 float excess_before() {
@@ -40,7 +43,9 @@ void main() {
   if (i < vertex_count) {
     vec4 x = FETCH(position, i);
     vec3 x_start = FETCH(start_position, i).xyz, moved = vec3(0.0);
-    float largest_strain = limit[int(FETCH(rest_position, i).w)];
+    vec2 limits = limit[int(FETCH(rest_position, i).w)];
+#ifdef SPRINGS
+    float largest_strain = limits.x;
     for (EntryRange at = entry_range(Spring_LIST, i); at.first < at.end; at.first += SLICE_SIZE) {
       SpringEntry entry = entry_of_Spring(at.first);
       int j = entry.others[0];
@@ -59,6 +64,10 @@ void main() {
         most = max(most, (changed > 0.0 ? abs(excess) : excess) / allowed);
       }
     }
+#endif
+#ifdef SHEETS
+    if (limits.x > 0.0) sweep_threads(i, limits, moved, most);
+#endif
     next_position[i] = vec4(x.xyz + x.w * moved, x.w);
     RARELY(moved != vec3(0.0)) given[i].xyz += moved;
   }

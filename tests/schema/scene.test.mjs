@@ -111,13 +111,13 @@ const sheet = {
   bending: { warp: 1e-5, weft: 2e-5, twist: 1e-6 },
   damping: 0.001,
   grain: 30,
-  strain_limit: 0.1,
+  strain_limit: { warp: 0.1, weft: 0.2 },
 };
 const sheets = {
   version: 1,
   cloths: [
     { mesh: grid, material: { model: "fem", ...sheet } },
-    { mesh: grid, material: { model: "fem", bending: 1e-5 } },
+    { mesh: grid, material: { model: "fem", bending: 1e-5, strain_limit: 0.1 } },
     { mesh: grid, material: { fabric: "silk", damping: 1e-4 } },
     { mesh: grid, material: { model: "springs", fabric: "interlock", bend: 0 } },
   ],

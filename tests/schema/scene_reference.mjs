@@ -27,6 +27,10 @@ const tables = [
     "`bending`, of finite elements",
     ["$defs", "cloth", "properties", "material", "oneOf", 1, "properties", "bending", "oneOf", 1],
   ],
+  [
+    "`strain_limit`, of finite elements",
+    ["$defs", "cloth", "properties", "material", "oneOf", 1, "properties", "strain_limit", "oneOf", 2],
+  ],
   ["`pins[]`", ["$defs", "cloth", "properties", "pins", "items"]],
   ["`weights[]`", ["$defs", "cloth", "properties", "weights", "items"]],
   ["`start: {scatter}` or `{scale}`", ["$defs", "cloth", "properties", "start"]],

@@ -12,6 +12,7 @@
 using namespace clothlab;
 using elements::Bending;
 using elements::Membrane;
+using elements::Shell;
 using glm::dvec3;
 
 namespace {
@@ -172,6 +173,54 @@ TEST_CASE("a pair that bends has a force and matrices that are the derivatives o
     check_line(law, random_field<Bending>(random, 1.0), random_field<Bending>(random, 1.0),
                random_field<Bending>(random, 1.0));
   }
+}
+
+TEST_CASE(
+    "a vertex pulled along a triangle's normal has a force and matrices that are derivatives of its energy") {
+  std::mt19937 random(6);
+  for (int n = 0; n < 30; ++n) {
+    // Triangles of some 0.5 m^2 and more: the derivatives of smaller ones' normals are beyond `near`.
+    Corners<Shell> place{dvec3(0, 0, 0), dvec3(1, 0, 0), dvec3(0, 1, 0), dvec3(0, 0, 0)};
+    const auto moved = random_field<Shell>(random, 0.25);
+    for (std::size_t c = 0; c < place.size(); ++c) place[c] += (c == 3 ? 4.0 : 1.0) * moved[c];
+    // The second half of them flattened below the area under which the normal gets short.
+    const Shell law{between(random, -50, 50), between(random, -1, 1), 0.05, n < 15 ? 0.1 : 5.0, 0};
+    check_derivatives(law, place, random_field<Shell>(random, 1.0));
+    check_line(law, place, random_field<Shell>(random, 0.1), random_field<Shell>(random, 0.1));
+    // The bound's quadratic form is at least the element's for any motion, whatever its sign.
+    const auto v = random_field<Shell>(random, 1.0);
+    double own = 0.0, bound = 0.0;
+    for (std::size_t c = 0; c < place.size(); ++c) {
+      const auto hessian = element_hessian(seen(law, c), edges<Shell>(place, c));
+      own += glm::dot(v[c], matrix_product(stiffness_matrix(hessian), edges<Shell>(v, c)));
+      bound += element_bound(hessian).bound * glm::dot(v[c], v[c]);
+    }
+    CHECK(std::abs(own) <= bound);
+  }
+}
+
+TEST_CASE("a vertex over a triangle that is a line, a point or far away has a finite force and matrix") {
+  const Shell law{2.0, 0.1, 0.05, 0.1, 0};
+  const auto check = [&](const Corners<Shell>& place) {
+    for (std::size_t c = 0; c < place.size(); ++c) {
+      const auto hessian = element_hessian(seen(law, c), edges<Shell>(place, c));
+      dvec3 diagonal(0.0), off_diagonal(0.0);
+      add_block(stiffness_matrix(hessian), diagonal, off_diagonal);
+      const dvec3 force = element_force(seen(law, c), edges<Shell>(place, c), edges<Shell>(place, c));
+      // The lever is at most the vertex's distance over least / side: 20 here.
+      CHECK(glm::length(force) < 1e3);
+      CHECK(glm::length(diagonal) + glm::length(off_diagonal) < 1e4);
+      CHECK(std::isfinite(element_energy(seen(law, c), edges<Shell>(place, c))));
+    }
+  };
+  check({dvec3(0, 0, 0), dvec3(1, 0, 0), dvec3(2, 0, 0), dvec3(0, 1, 1)});
+  check({dvec3(0, 0, 0), dvec3(1, 0, 0), dvec3(2, 1e-9, 0), dvec3(0, 1, 1)});
+  check({dvec3(0.0), dvec3(0.0), dvec3(0.0), dvec3(0.0)});
+  check({dvec3(0.0), dvec3(0.0), dvec3(0.0), dvec3(1.0)});
+  Shell padding = law;
+  padding.pull = padding.energy = padding.damping = padding.least = 0.0;
+  CHECK(element_energy(padding, elements::ShellEdges{}) == 0.0);
+  CHECK(element_force(padding, elements::ShellEdges{}, elements::ShellEdges{}) == dvec3(0.0));
 }
 
 TEST_CASE(

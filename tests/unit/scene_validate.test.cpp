@@ -155,6 +155,8 @@ TEST_CASE(
   value["cloths"][0]["material"]["bending"] = {{"warp", 1e-5}, {"weft", 3e-5}, {"twist", 2e-6}};
   const auto three = std::get<scene::Fem>(scene::validate(value)->scene.cloths[0].material);
   CHECK(three.bending == scene::Fem::Bending{1e-5, 3e-5, 2e-6});
+  value["cloths"][0]["material"]["strain_limit"] = {{"warp", 0.1}, {"weft", 0.3}};
+  CHECK(scene::validate(value)->scene.cloths[0].strain_limit() == scene::StrainLimit(0.1, 0.3));
   value["cloths"][0]["material"] = {{"model", "fem"}};
   const Result<scene::Document> plain = scene::validate(value);
   CHECK(std::get<scene::Fem>(plain->scene.cloths[0].material) == scene::Fem{});
@@ -178,6 +180,12 @@ TEST_CASE("what makes no sheet is refused with its place: Poisson's ratio, negat
   CHECK_THAT(refused(R"({"warp": -1})", "verlet"), Catch::Contains("/cloths/0/material/warp"));
   CHECK_THAT(refused(R"({"bending": {"warp": 1e-5}})", "verlet"),
              Catch::Contains("/cloths/0/material/bending/weft"));
+  CHECK_THAT(refused(R"({"strain_limit": {"warp": 0.1}})", "verlet"),
+             Catch::Contains("/cloths/0/material/strain_limit/weft"));
+  CHECK_THAT(refused(R"({"strain_limit": {"warp": 0.1, "weft": 0}})", "verlet"),
+             Catch::Contains("/cloths/0/material/strain_limit/weft"));
+  CHECK_THAT(refused(R"({"strain_limit": 11})", "verlet"),
+             Catch::Contains("/cloths/0/material/strain_limit"));
   CHECK_THAT(refused(R"({"structural": 100})", "verlet"), Catch::Contains("/cloths/0/material/structural"));
   CHECK_THAT(refused("{}", "pbd"), Catch::Contains("/solver/method") && Catch::Contains("xpbd"));
 }

@@ -65,7 +65,7 @@ export interface Fem {
   bending: number | { warp: number; weft: number; twist: number | null };
   damping: number;
   grain: number;
-  strain_limit: number | null;
+  strain_limit: number | { warp: number; weft: number } | null;
 }
 
 export type Material = Springs | Fem;

@@ -84,6 +84,12 @@ function sheetFields(material: Fem, base: string): Field[] {
     typeof material.bending === "number"
       ? [number("bending", at("bending"), moment)]
       : [number("bending, warp", at("bending/warp"), moment), number("bending, weft", at("bending/weft"), moment)];
+  const limits =
+    typeof material.strain_limit === "number" || material.strain_limit === null
+      ? [strainLimit(at("strain_limit"), "The most that warp and weft may stretch")]
+      : ["warp", "weft"].map((direction) =>
+          number(`strain limit, ${direction}`, at(`strain_limit/${direction}`), { min: 0.001, max: 1, log: true }),
+        );
   return [
     number("warp", at("warp"), modulus, { hint: "Tension a metre of width over strain along the warp" }),
     number("weft", at("weft"), modulus, { hint: "Tension a metre of width over strain along the weft" }),
@@ -92,7 +98,7 @@ function sheetFields(material: Fem, base: string): Field[] {
     ...bending,
     number("damping", at("damping"), { min: 1e-5, max: 0.1, log: true, zero: true, unit: "s" }),
     number("grain", at("grain"), { min: -90, max: 90, step: 1, unit: "°" }, { hint: "From the columns to the warp" }),
-    strainLimit(at("strain_limit"), "The most that warp and weft may stretch"),
+    ...limits,
   ];
 }
 

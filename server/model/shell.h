@@ -1,0 +1,44 @@
+// The bending of a sheet that is curved at rest: a plate's triangles (plate.h), each of whose curvatures is
+// measured from the one that it has at rest (shaders/elements/shell.glsl).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "server/model/plate.h"
+
+namespace clothlab::model {
+
+using glm::dvec3;
+
+/// A vertex that is pulled along the normal of a triangle nearby.
+struct Rise {
+  std::array<std::uint32_t, 3> triangle{};
+  std::uint32_t vertex = 0;
+  double pull = 0;        ///< [N], of either sign
+  double height = 0;      ///< of the vertex over the triangle at rest [m]
+  double twice_area = 0;  ///< of the triangle at rest [m^2]
+};
+
+/// A triangle's three forms, which at rest are `along_normal` times its normal, and their energy: half the
+/// sum of squares of what they differ from that.
+struct CurvedTriangle {
+  CurvatureRows rows;
+  std::array<double, 3> along_normal{};  ///< [sqrt(N m)]
+};
+
+/// The triangles of the plate (see curvature_rows) with the curvatures that `rest` [vertex_count] [m] gives
+/// them. What a form has at rest along the triangle's plane is taken off it as a form of the triangle's own
+/// corners, which turns and stretches with them.
+std::vector<CurvedTriangle> curved_triangles(std::vector<CurvatureRows> plate,
+                                             const std::vector<dvec3>& rest);
+
+/// The part of the triangles' energy that the pairs of their rows have not: the sum over all rises of
+///   pull (rest height / 2 - height).
+/// None of held vertices alone.
+std::vector<Rise> rises(const std::vector<CurvedTriangle>& triangles, const std::vector<dvec3>& rest,
+                        const std::vector<char>& held);
+
+}  // namespace clothlab::model
