@@ -109,6 +109,7 @@ async function hashOf(scene, method, place) {
   try {
     await run(program, ["run", scene, "--time", "1", "--set", `/solver/method="${method}"`, "--report", report]);
   } catch (error) {
+    if (error.stderr?.includes("clothlab: error: /solver/method")) return "refused"; // the method does not suit it
     if (error.code !== 4) throw error; // 4: the scene blew up, which has a hash too
   }
   const { state_hash, diverged, renderer } = JSON.parse(readFileSync(report, "utf8"));
