@@ -42,7 +42,7 @@ TEST_CASE("a grid's triangles get the grid's springs, half as stiff along the bo
       if (edge < 2) continue;
       CHECK(std::max(across, down) == 1);
       // Springs that would be equal in an endless grid differ by how far the solution of least squares is.
-      CHECK(spring.law.stiffness == Approx(across + down == 1 ? 200.0 : 100.0).epsilon(0.05));
+      CHECK(spring.law.stiffness == Approx(across + down == 1 ? 200.0 : 100.0).epsilon(0.01));
     }
   }
 }
@@ -67,7 +67,7 @@ TEST_CASE("the same sheet gives way alike however it is cut into triangles, and 
       // Lines of tension bend in irregular meshes, whose springs cannot all be balanced: that makes them
       // softer. Without stiffnesses of their own, diagonals of one direction would make this a factor of 3.
       CHECK(test::yielding(test::sheet_of(cut, cells, isotropic), load) / triangles ==
-            Approx(1.0).margin(cut == Cut::irregular ? 0.08 : 0.03));
+            Approx(1.0).margin(cut == Cut::irregular ? 0.08 : 0.05));
     }
   }
 }
