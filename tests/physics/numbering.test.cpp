@@ -106,7 +106,8 @@ TEST_CASE("what a renumbered simulation hands out and takes back is in the scene
   pair.shuffled.cloths[0].pins.push_back({scene::AtVertex{pair.to[2485]}, {}});
   REQUIRE(shuffled->change(pair.shuffled));
   shuffled->step(20);
-  CHECK(shuffled->read_state().position[pair.to[2485]] == state.position[pair.to[2485]]);
+  CHECK(state.position[pair.to[2485]].y < 0.0f);
+  CHECK(shuffled->read_state().position[pair.to[2485]] == glm::vec3(mesh.vertices[pair.to[2485]]));
   shuffled->reset();
   CHECK(shuffled->read_state().position[pair.to[35]] == glm::vec3(mesh.vertices[pair.to[35]]));
 }

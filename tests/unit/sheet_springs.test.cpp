@@ -42,28 +42,32 @@ TEST_CASE("a grid's triangles get the grid's springs, half as stiff along the bo
       if (edge < 2) continue;
       CHECK(std::max(across, down) == 1);
       // Springs that would be equal in an endless grid differ by how far the solution of least squares is.
-      CHECK(spring.law.stiffness == Approx(across + down == 1 ? 200.0 : 100.0).epsilon(0.05));
+      CHECK(spring.law.stiffness == Approx(across + down == 1 ? 200.0 : 100.0).epsilon(0.01));
     }
   }
 }
 
 TEST_CASE("the same sheet gives way alike however it is cut into triangles, and like a grid") {
-  // The border of a grid of n cells has springs for a half cell more: (n + 1)/n as stiff along it, and where
-  // only a quarter of a side is held, that counts twice. Irregular meshes bend the lines of tension.
+  // The border of a grid of n cells has springs for a half cell more: (n + 1)/n as stiff along it, and more
+  // where only a quarter of a side is held.
   constexpr int cells = 10;
-  constexpr double border = 1.0 / cells, irregular = 0.08;
+  constexpr double border = 1.0 / cells;
   std::vector<test::Load> loads = test::loads(9.8);
   loads.pop_back();  // sags are in tests/bench/triangulations.cpp: they depend least on the cut
   for (const test::Load& load : loads) {
+    const bool at_a_corner = load.held.size() == 2 && load.gravity.z != 0.0;
     const double grid = test::yielding(test::sheet_of(Cut::grid, cells, isotropic), load);
     const double triangles = test::yielding(test::sheet_of(Cut::one_diagonal, cells, isotropic), load);
     INFO(load.name);
-    CHECK(triangles / grid == Approx(1.0 + border / 2).margin(border / 2));
+    CHECK(triangles > grid);
+    CHECK(triangles < (1.0 + (at_a_corner ? 1.5 : 1.0) * border) * grid);
     for (const Cut cut : test::all_cuts) {
       if (cut == Cut::grid) continue;
       INFO(test::name_of(cut));
+      // Lines of tension bend in irregular meshes, whose springs cannot all be balanced: that makes them
+      // softer. Without stiffnesses of their own, diagonals of one direction would make this a factor of 3.
       CHECK(test::yielding(test::sheet_of(cut, cells, isotropic), load) / triangles ==
-            Approx(1.0).margin(cut == Cut::irregular ? irregular : 0.06));
+            Approx(1.0).margin(cut == Cut::irregular ? 0.08 : 0.05));
     }
   }
 }
