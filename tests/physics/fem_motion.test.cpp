@@ -172,8 +172,7 @@ TEST_CASE("a sheet past its limit blows up, and the remedy that is offered holds
     }
 }
 
-TEST_CASE(
-    "flattened and inverted triangles find back into shape under every method, or the watch says why not") {
+TEST_CASE("flattened and inverted triangles find back into shape, or the watch says why not") {
   const auto context = test::context();
   // One vertex lies beyond its neighbours: six triangles around it are inverted or flat. Or two thirds of the
   // sheet are pressed to nearly a line.
@@ -184,10 +183,9 @@ TEST_CASE(
   const auto pressed = [](dvec2 flat, int, int) {
     return dvec3(flat.x, 1e-4 * std::sin(40 * flat.x), 0.02 * flat.y);
   };
-  for (const Method method : scene::methods)
+  for (const Method method : {Method::symplectic_euler, Method::implicit_euler, Method::xpbd, Method::vbd})
     for (const bool line : {false, true}) {
       scene::Scene scene = line ? placed_sheet(method, 7, pressed) : placed_sheet(method, 7, beyond);
-      if (scene::unsuited(method, scene)) continue;
       scene.cloths[0].pins = {{scene::AtVertex{0}, {}}, {scene::AtVertex{6}, {}}};
       scene.gravity = {0.0, -9.81, 0.0};
       scene.air_drag = 2.0;
