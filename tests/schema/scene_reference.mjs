@@ -124,11 +124,14 @@ export function reference(schema) {
   return each
     .map(([title, path]) => {
       const part = find(path);
-      const said = path.length > 0 && part.description ? [part.description, ""] : [];
+      const said = path.length > 0 && part.description ? [wrapped(part.description), ""] : [];
       return [`### ${title}`, "", ...said, ...table(part, title), ""].join("\n");
     })
     .join("\n");
 }
+
+/// A paragraph in lines of at most 120 characters.
+const wrapped = (text) => text.replace(/(?=.{121})(.{1,120}) /g, "$1\n");
 
 /// The fabrics and what they are like.
 function fabricTable(fabrics) {

@@ -1,6 +1,7 @@
 // Springs that act as a sheet of finite elements.
 #include "server/scene/fitted_springs.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "server/model/model.h"

@@ -25,7 +25,7 @@ export function withFabrics(document: SceneDocument, left: LeftToFabric[]): Scen
 
 const parentOf = (path: string): string => path.slice(0, path.lastIndexOf("/"));
 
-/// One operation on `shown`, as one on the document, which lacks what it leaves to fabrics. Null: there is nothing to do.
+/// One operation on `shown`, as one on the document, which lacks what it leaves to fabrics. Null: nothing to do.
 function addressedOne(document: SceneDocument, shown: SceneDocument, operation: Operation): Operation | null {
   const { op, path } = operation;
   if (valueAt(document, path) !== undefined) return operation;
