@@ -61,7 +61,7 @@ HttpRequest::Progress HttpRequest::begin(const std::string& path) {
     HttpAnswer refusal =
         plain(405, "only GET and HEAD are answered here; changes go over the WebSocket at /ws");
     refusal.headers = {{"allow:", "GET, HEAD"}};
-    return refuse(std::move(refusal));  // the request may have a body
+    return refuse(refusal);  // the request may have a body
   }
   if (const std::optional<HttpAnswer> answer = find(path)) return send(*answer);
   lws_rx_flow_control(wsi_, 0);

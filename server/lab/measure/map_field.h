@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/scene/document.h"
@@ -31,7 +32,8 @@ class MapField {
   std::string unit() const;
 
  private:
-  MapField(const scene::Document& document, std::string field) : document_(document), field_(field) {}
+  MapField(const scene::Document& document, std::string field)
+      : document_(document), field_(std::move(field)) {}
   bool allowed(double value) const;
   /// The allowed value nearest to `end`, searched between the present value and `end`.
   double nearest_allowed(double end) const;
