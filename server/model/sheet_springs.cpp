@@ -130,7 +130,7 @@ class Fit {
     for (const SheetPair& pair : pairs_)
       if (!pair.across) sheet += 8.0 * pair.area;
     constexpr double most = 1.25;
-    return carried > 0.0 ? std::clamp(sheet / carried, 1.0 / most, most) : 1.0;
+    return carried > 0.0 ? std::clamp(sheet / carried, 1.0, most) : 1.0;
   }
 
   void add_triangle(const std::vector<dvec3>& position, const std::array<std::uint32_t, 3>& corners) {
