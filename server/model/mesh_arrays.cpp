@@ -123,23 +123,34 @@ Pairs pairs_of(const scene::TriangleMesh& mesh) {
     const dvec3 &from = mesh.vertices[a], u = mesh.vertices[b] - from, v = mesh.vertices[c] - from;
     return 0.5 * glm::length(glm::cross(u, v));
   };
+  const auto is_longest = [&](const AtEdge& at) {
+    const auto& corners = mesh.triangles[at.triangle];
+    const auto length = [&](std::size_t from) {
+      return glm::distance(mesh.vertices[corners[from % 3]], mesh.vertices[corners[(from + 1) % 3]]);
+    };
+    const double own = (1.0 + 1e-6) * length(at.corner);
+    return own >= length(at.corner + 1) && own >= length(at.corner + 2);
+  };
   Pairs result;
   struct Across {
-    double area, crossed, rest;
+    double area;
+    bool diagonal;
+    double rest;
   };
   std::map<Edge, Across> across;  // two edges may have the same pair
   for (const auto& [edge, at] : edges) {
     double third = 0.0;
     for (const AtEdge& side : at) third += area(side) / 3.0;
-    result.pairs.push_back({edge.first, edge.second, false, third, 0.0});
+    result.pairs.push_back({edge.first, edge.second, false, third, false});
     result.rest.push_back(pattern.edge(at));
     if (at.size() != 2 || at[0].opposite == at[1].opposite) continue;
     const Edge pair = sorted(at[0].opposite, at[1].opposite);
-    const double length = glm::distance(mesh.vertices[edge.first], mesh.vertices[edge.second]);
-    if (!edges.contains(pair)) across.try_emplace(pair, Across{third, length, pattern.across(at[0], at[1])});
+    const bool diagonal = is_longest(at[0]) && is_longest(at[1]);
+    if (!edges.contains(pair))
+      across.try_emplace(pair, Across{third, diagonal, pattern.across(at[0], at[1])});
   }
   for (const auto& [pair, of] : across) {
-    result.pairs.push_back({pair.first, pair.second, true, of.area, of.crossed});
+    result.pairs.push_back({pair.first, pair.second, true, of.area, of.diagonal});
     result.rest.push_back(of.rest);
   }
   return result;

@@ -99,17 +99,18 @@ class Fit {
     constexpr int rounds = 20;  // more change no load of tests/bench/triangulations.cpp by 1 %
     for (int round = 0; round < rounds; ++round)
       for (std::size_t i = 0; i < springs_.size(); ++i) improve(i);
+    const double short_by = shortfall();
     std::vector<double> stiffness;
     stiffness.reserve(springs_.size());
     for (const Spring& spring : springs_)
-      stiffness.push_back(spring.length > 0.0 ? spring.w / (spring.length * spring.length) : of_a_grid);
+      stiffness.push_back(spring.length > 0.0 ? std::min(short_by * spring.w, spring.most_w()) /
+                                                    (spring.length * spring.length)
+                                              : of_a_grid);
     return stiffness;
   }
 
  private:
   static constexpr double most_stiffness = 8.0, least_stiffness = 0.05, of_a_grid = 2.0;
-  /// The two diagonals of cells beside each other; of a square's they are equal.
-  static constexpr double longest_diagonal = 1.9;
   /// An edge keeps this part of its share at least, or a mesh could come apart into hinges.
   static constexpr double least_share = 0.1;
   /// How much less a departure from equal shares counts than a force out of balance.
@@ -118,7 +119,19 @@ class Fit {
   struct Spring {
     Felt direction;
     double length, w, wanted, scale, least, most;
+    double most_w() const { return most_stiffness * length * length; }
   };
+
+  /// What all springs together would carry under a stretch in all directions, over what they do: 1 in regular
+  /// meshes, up to 1.1 in irregular ones, where bounds keep springs from what they should do.
+  double shortfall() const {
+    double sheet = 0.0, carried = 0.0;
+    for (const Spring& spring : springs_) carried += spring.w;
+    for (const SheetPair& pair : pairs_)
+      if (!pair.across) sheet += 8.0 * pair.area;
+    constexpr double most = 1.25;
+    return carried > 0.0 ? std::clamp(sheet / carried, 1.0, most) : 1.0;
+  }
 
   void add_triangle(const std::vector<dvec3>& position, const std::array<std::uint32_t, 3>& corners) {
     const std::array<double, 3> shares =
@@ -148,12 +161,12 @@ class Fit {
     if (length > 0.0) {
       spring.direction = along(between / length);
       spring.scale = std::max(whole, 1e-6 * length * length);
-      spring.most = most_stiffness * length * length;
+      spring.most = spring.most_w();
       spring.least = pair.across ? share * whole
                                  : std::max(least_share * (1.0 - share) * whole,
                                             least_stiffness * length * length);  // of triangles without area
       spring.least = std::min(spring.least, spring.most);
-      if (pair.across && length > longest_diagonal * pair.crossed) spring.most = spring.least;
+      if (pair.across && !pair.diagonal) spring.most = spring.least;
       spring.wanted = std::clamp((pair.across ? share : 1.0 - share) * whole, spring.least, spring.most);
       move(pair, spring, spring.wanted);
     }

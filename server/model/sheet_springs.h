@@ -21,16 +21,15 @@ struct SpringSheet {
 /// A pair of vertices that a spring may join.
 struct SheetPair {
   std::uint32_t a = 0, b = 0;
-  bool across = false;  ///< opposite an edge of two triangles, and no edge itself
-  double area = 0;      ///< a third of the triangles at the edge [m^2]
-  double crossed = 0;   ///< length of the edge that it is across [m]
+  bool across = false;    ///< opposite an edge of two triangles, and no edge itself
+  double area = 0;        ///< a third of the triangles at the edge [m^2]
+  bool diagonal = false;  ///< across the longest edge of both triangles, like the other diagonal of a square
 };
 
 /// A stiffness [N/m] for each pair, 0 or more. Those of edges are never 0, nor those across edges if
-/// `sheet.across` is not; if it is, only pairs that are little longer than the edge between them get one,
-/// like the second diagonals of a grid: longer ones would keep a sheet from folding that bends freely. None
-/// is more than 8 times the modulus, however thin a triangle is. `position` [vertex_count], `triangles`
-/// [triangle_count].
+/// `sheet.across` is not; if it is, only diagonals get one: others would keep a sheet from folding that bends
+/// freely. None is more than 8 times the modulus, however thin a triangle is. `position` [vertex_count],
+/// `triangles` [triangle_count].
 std::vector<double> sheet_stiffness(const std::vector<dvec3>& position,
                                     const std::vector<std::array<std::uint32_t, 3>>& triangles,
                                     const std::vector<SheetPair>& pairs, const SpringSheet& sheet);
