@@ -203,8 +203,14 @@ struct Plane {
   dvec3 normal{0.0, 1.0, 0.0};  ///< normalised
   bool operator==(const Plane&) const = default;
 };
+/// Everything within `radius` of the line from `a` to `b`; a sphere if they are the same point.
+struct Capsule {
+  dvec3 a{0.0}, b{0.0};  ///< [m]
+  double radius = 0.1;   ///< [m]
+  bool operator==(const Capsule&) const = default;
+};
 /// The shape of a collider. solid.h has the functions for code that need not know which kind it is.
-using Shape = std::variant<Sphere, Plane>;
+using Shape = std::variant<Sphere, Plane, Capsule>;
 
 struct Collider {
   std::string name;

@@ -1,6 +1,8 @@
 #include "server/scene/solid.h"
 
 #include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -63,6 +65,36 @@ Plane moved(const Plane& home, const glm::dmat3& rotation, const dvec3& translat
   return {rotation * home.point + translation, rotation * home.normal};
 }
 
+static_assert(kind_matches<elements::solid_capsule, Capsule>);
+const char* name(const Capsule&) {
+  return "capsule";
+}
+void read(const Reader& capsule, Capsule& into) {
+  capsule.object({"a", "b", "radius"});
+  into = {capsule.member("a").vector(ranges::position), capsule.member("b").vector(ranges::position),
+          capsule.member("radius").number(ranges::length)};
+}
+json numbers(const Capsule& capsule) {
+  return {{"a", list(capsule.a)}, {"b", list(capsule.b)}, {"radius", capsule.radius}};
+}
+Solid contact_numbers(const Capsule& capsule) {
+  const double length = glm::distance(capsule.a, capsule.b);
+  const dvec3 axis = length > 0.0 ? (capsule.b - capsule.a) / length : dvec3(1.0, 0.0, 0.0);
+  const dvec3 across = std::abs(axis.y) < 0.9 ? dvec3(0.0, 1.0, 0.0) : dvec3(1.0, 0.0, 0.0);
+  return {elements::solid_capsule,
+          0.5 * (capsule.a + capsule.b),
+          axis,
+          capsule.radius,
+          glm::normalize(glm::cross(axis, across)),
+          {0.5 * length, 0.0, 0.0}};
+}
+Ball ball(const Capsule& capsule) {
+  return {0.5 * (capsule.a + capsule.b), 0.5 * glm::distance(capsule.a, capsule.b) + capsule.radius};
+}
+Capsule moved(const Capsule& home, const glm::dmat3& rotation, const dvec3& translation) {
+  return {rotation * home.a + translation, rotation * home.b + translation, home.radius};
+}
+
 static_assert(elements::solid_kinds == shape_kinds, "each kind of shape has its law");
 
 template <std::size_t... kind>
@@ -90,7 +122,7 @@ const std::array<const char*, shape_kinds>& shape_names() {
 }
 
 const Words& unsupported_shapes() {
-  static const Words names{"capsule", "box"};
+  static const Words names{"box"};
   return names;
 }
 

@@ -88,10 +88,16 @@ export interface Plane {
   point: Vec3;
   normal: Vec3;
 }
+export interface Capsule {
+  a: Vec3;
+  b: Vec3;
+  radius: number;
+}
 /// The kinds of shape, under their names in the document.
 export interface Shapes {
   sphere: Sphere;
   plane: Plane;
+  capsule: Capsule;
 }
 type Kind = keyof Shapes;
 /// One shape, under the name of its kind.

@@ -1,6 +1,8 @@
 // Draws each kind of shape, and knows what a view needs of it. collider_view.ts has what all kinds share.
 import {
   Box3,
+  type BufferGeometry,
+  CapsuleGeometry,
   CircleGeometry,
   DoubleSide,
   type IUniform,
@@ -14,16 +16,18 @@ import {
   type Vector4,
 } from "three";
 import { casterMaterial, type StageUniforms } from "./fabric_material";
-import { byKind, type Motion, type Plane, type Shape } from "../link/scene_types";
+import { byKind, type Capsule, type Motion, type Plane, type Shape } from "../link/scene_types";
 import { sweep } from "./motion";
 import { groundFragment, groundVertex, porcelain } from "./shaders";
 
 export const forward = new Vector3(0, 0, 1); // the normal of a disc
+const upwards = new Vector3(0, 1, 0); // a capsule's axis
 
 /// A shape of the scene on the stage, and the mesh that casts its shadow on the ground.
 export interface Shown {
   mesh: Mesh;
   caster: Mesh | null;
+  dispose?: () => void; ///< frees what no other shape shares
 }
 
 const levelled = 0.7; // a plane counts as a floor if its normal rises more than this
@@ -31,11 +35,22 @@ const rises = ({ normal }: Plane): boolean => new Vector3(...normal).normalize()
 
 /// Height of the floor that a shape is [m]; null if it is none.
 export const floorOf = (shape: Shape): number | null =>
-  byKind<number | null>(shape, { sphere: () => null, plane: (plane) => (rises(plane) ? plane.point[1] : null) });
+  byKind<number | null>(shape, {
+    sphere: () => null,
+    plane: (plane) => (rises(plane) ? plane.point[1] : null),
+    capsule: () => null,
+  });
+
+const middleOf = ({ a, b }: Capsule): Vector3 => new Vector3(...a).add(new Vector3(...b)).multiplyScalar(0.5);
+const axisOf = ({ a, b }: Capsule): Vector3 => new Vector3(...b).sub(new Vector3(...a));
 
 /// Lowest point of a shape [m]; null if it has none.
 export const bottomOf = (shape: Shape): number | null =>
-  byKind<number | null>(shape, { sphere: ({ center, radius }) => center[1] - radius, plane: () => null });
+  byKind<number | null>(shape, {
+    sphere: ({ center, radius }) => center[1] - radius,
+    plane: () => null,
+    capsule: ({ a, b, radius }) => Math.min(a[1], b[1]) - radius,
+  });
 
 const corners = (box: Box3): Vector3[] =>
   Array.from(
@@ -54,9 +69,12 @@ export const outlineOf = (shape: Shape, motion: Motion): Vector3[] =>
   byKind<Vector3[]>(shape, {
     sphere: ({ center, radius }) => sweep(center, motion).flatMap((point) => ballPoints(point, radius)),
     plane: () => [],
+    capsule: ({ a, b, radius }) =>
+      [...sweep(a, motion), ...sweep(b, motion)].flatMap((point) => ballPoints(point, radius)),
   }) ?? [];
 
-/// Sets `occluder` to the ball (centre, radius) with which a shape hides the sky; false if it hides none.
+/// Sets `occluder` to the ball (centre, radius) with which a shape hides the sky: a large one inside it; false if it
+/// hides none.
 export const occlude = (shape: Shape, occluder: Vector4 | undefined): boolean =>
   byKind<boolean>(shape, {
     sphere: ({ center, radius }) => {
@@ -64,6 +82,10 @@ export const occlude = (shape: Shape, occluder: Vector4 | undefined): boolean =>
       return true;
     },
     plane: () => false,
+    capsule: (capsule) => {
+      occluder?.set(...middleOf(capsule).toArray(), capsule.radius);
+      return true;
+    },
   }) ?? false;
 
 /// Moves a shape's meshes to the shape.
@@ -77,10 +99,16 @@ export const place = ({ mesh, caster }: Shown, shape: Shape): void => {
       mesh.position.set(...point);
       mesh.quaternion.setFromUnitVectors(forward, new Vector3(...normal).normalize());
     },
+    capsule: (capsule) => {
+      for (const each of [mesh, caster]) {
+        each?.position.copy(middleOf(capsule));
+        each?.quaternion.setFromUnitVectors(upwards, axisOf(capsule).normalize());
+      }
+    },
   });
 };
 
-function sphereMaterial(stage: StageUniforms): MeshLambertMaterial {
+function bodyMaterial(stage: StageUniforms): MeshLambertMaterial {
   const material = new MeshLambertMaterial({ color: 0xd9d4c8 });
   material.onBeforeCompile = (shader) => {
     shader.fragmentShader = shader.fragmentShader.replace(
@@ -104,18 +132,18 @@ export function groundMaterial(uniforms: Record<string, IUniform>, solid: boolea
   });
 }
 
-/// Makes the meshes of shapes; these share their geometries and materials.
+/// Makes the meshes of shapes; these share their materials, and the geometries that a scale fits to a shape.
 export class SolidMaker {
   readonly disc = new CircleGeometry(1, 64);
   private readonly sphere = new SphereGeometry(1, 40, 24);
   private readonly coarseSphere = new SphereGeometry(1, 16, 10); // enough for a blurred shadow
-  private readonly sphereMaterial;
+  private readonly bodyMaterial;
   private readonly planeMaterial;
   private readonly casterMaterial = casterMaterial();
   private readonly depthMaterial = casterMaterial();
 
   constructor(stage: StageUniforms, ground: Record<string, IUniform>) {
-    this.sphereMaterial = sphereMaterial(stage);
+    this.bodyMaterial = bodyMaterial(stage);
     this.planeMaterial = groundMaterial(ground, true);
   }
 
@@ -123,10 +151,8 @@ export class SolidMaker {
   make(shape: Shape, far: number): Shown | null {
     return byKind<Shown>(shape, {
       sphere: ({ radius }) => {
-        const mesh = new Mesh(this.sphere, this.sphereMaterial);
+        const mesh = this.body(this.sphere);
         mesh.scale.setScalar(radius);
-        mesh.castShadow = mesh.receiveShadow = true;
-        mesh.customDepthMaterial = this.depthMaterial;
         const caster = new Mesh(this.coarseSphere, this.casterMaterial);
         caster.scale.setScalar(radius);
         return { mesh, caster };
@@ -136,13 +162,30 @@ export class SolidMaker {
         mesh.scale.setScalar(far);
         return { mesh, caster: null };
       },
+      capsule: (capsule) => this.own(new CapsuleGeometry(capsule.radius, axisOf(capsule).length(), 12, 40)),
     });
+  }
+
+  private body(geometry: BufferGeometry): Mesh {
+    const mesh = new Mesh(geometry, this.bodyMaterial);
+    mesh.castShadow = mesh.receiveShadow = true;
+    mesh.customDepthMaterial = this.depthMaterial;
+    return mesh;
+  }
+
+  /// A body with a geometry of its own.
+  private own(geometry: BufferGeometry): Shown {
+    return {
+      mesh: this.body(geometry),
+      caster: new Mesh(geometry, this.casterMaterial),
+      dispose: () => geometry.dispose(),
+    };
   }
 
   /// Objects with the materials of every body and of its shadow: see ClothView.samples.
   samples(): { shown: Object3D[]; cast: Object3D[] } {
     return {
-      shown: [new Mesh(this.sphere, this.sphereMaterial)],
+      shown: [new Mesh(this.sphere, this.bodyMaterial)],
       cast: [new Mesh(this.coarseSphere, this.casterMaterial)],
     };
   }
