@@ -46,6 +46,24 @@ std::vector<std::vector<Vertex>> round_strips() {
   return strips;
 }
 
+/// The six faces of a cuboid.
+std::vector<std::vector<Vertex>> face_strips() {
+  std::vector<std::vector<Vertex>> strips;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const float side : {-1.0f, 1.0f}) {
+      std::vector<Vertex>& strip = strips.emplace_back();
+      glm::vec3 outwards(0.0f);
+      outwards[axis] = side;
+      for (int n = 0; n < 4; ++n) {
+        glm::vec3 corner = outwards;
+        corner[(axis + 1) % 3] = (n & 1) ? side : -side;
+        corner[(axis + 2) % 3] = (n & 2) ? 1.0f : -1.0f;
+        strip.push_back({corner, outwards});
+      }
+    }
+  return strips;
+}
+
 /// A surface in triangle strips, which face outwards.
 class Strips {
  public:
@@ -97,7 +115,7 @@ Solids::Place place_of(const scene::Shape& body) {
 
 struct Solids::Implementation {
   gl::Program body, plane;
-  Strips round{round_strips()};
+  Strips round{round_strips()}, cuboid{face_strips()};
   GLuint empty_array = 0;
 
   Implementation() { glCreateVertexArrays(1, &empty_array); }
@@ -107,6 +125,7 @@ struct Solids::Implementation {
 
   void draw(Layer layer, const scene::Sphere& shape) const { draw_body(layer, shape, round); }
   void draw(Layer layer, const scene::Capsule& shape) const { draw_body(layer, shape, round); }
+  void draw(Layer layer, const scene::Box& shape) const { draw_body(layer, shape, cuboid); }
 
   /// A plane receives shadows, but casts none.
   void draw(Layer layer, const scene::Plane& shape) const {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -209,8 +210,15 @@ struct Capsule {
   double radius = 0.1;   ///< [m]
   bool operator==(const Capsule&) const = default;
 };
+/// A cuboid. Its edges at home are along x, y and z.
+struct Box {
+  dvec3 center{0.0};     ///< [m]
+  dvec3 half{0.1};       ///< of the edges [m]
+  glm::dmat3 axes{1.0};  ///< turns it out of its home
+  bool operator==(const Box&) const = default;
+};
 /// The shape of a collider. solid.h has the functions for code that need not know which kind it is.
-using Shape = std::variant<Sphere, Plane, Capsule>;
+using Shape = std::variant<Sphere, Plane, Capsule, Box>;
 
 struct Collider {
   std::string name;

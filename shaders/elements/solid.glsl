@@ -1,13 +1,14 @@
 // The solids that cloth meets. Each kind is everything within a radius of a core: of a point (sphere), of the
-// half-space behind a plane through the point whose normal is the direction (plane), of a line (capsule). A vertex is
-// stopped by a swept test (Bridson, Fedkiw & Anderson 2002, section 4), so that a fast one does not pass through.
+// half-space behind a plane through the point whose normal is the direction (plane), of a line (capsule), of a cuboid
+// (box: its own radius is 0, that of the distance kept from it is not). A vertex is stopped by a swept test (Bridson, Fedkiw & Anderson 2002, section 4), so that a fast one does not pass through.
 // In the common subset of GLSL and C++ (see types.glsl, elements.h). Needs contact.glsl.
 
 /// The kinds, in the order of scene::Shape.
 const int solid_sphere = 0;
 const int solid_plane = 1;
 const int solid_capsule = 2;
-const int solid_kinds = 3;
+const int solid_box = 3;
+const int solid_kinds = 4;
 
 /// Place of a solid at one time. What a kind has no use for is 0.
 struct Solid {
@@ -19,7 +20,7 @@ struct Solid {
 };
 
 /// True for a kind whose core is a box with axes, if one without width: a body.
-FUNCTION bool solid_has_axes(int kind) { return kind == solid_capsule; }
+FUNCTION bool solid_has_axes(int kind) { return kind == solid_capsule || kind == solid_box; }
 
 /// Vectors of four numbers in which the kernels get a solid: friction and motion in one of them, axes and extent in the
 /// last ones of a body (collide/colliders.glsl).

@@ -93,11 +93,17 @@ export interface Capsule {
   b: Vec3;
   radius: number;
 }
+export interface Box {
+  center: Vec3;
+  half: Vec3;
+  rotate: Vec3; ///< [degrees]
+}
 /// The kinds of shape, under their names in the document.
 export interface Shapes {
   sphere: Sphere;
   plane: Plane;
   capsule: Capsule;
+  box: Box;
 }
 type Kind = keyof Shapes;
 /// One shape, under the name of its kind.

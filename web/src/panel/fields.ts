@@ -142,6 +142,14 @@ function shapeFields(shape: Shape, base: string): { fields: Field[]; center: Vec
       ],
       center: a.map((value, axis) => (value + (b[axis] as number)) / 2) as Vec3,
     }),
+    box: ({ center }) => ({
+      fields: [
+        ...vector("center", [`${base}/box/center`], place),
+        ...vector("half", [`${base}/box/half`], { min: 0.005, max: 1, step: 0.005, ...meter }),
+        ...vector("turned about", [`${base}/box/rotate`], { min: -180, max: 180, step: 1, unit: "°" }),
+      ],
+      center,
+    }),
   });
   return made ?? { fields: [], center: [0, 0, 0] };
 }

@@ -1,11 +1,14 @@
 // Draws each kind of shape, and knows what a view needs of it. collider_view.ts has what all kinds share.
 import {
   Box3,
+  BoxGeometry,
   type BufferGeometry,
   CapsuleGeometry,
   CircleGeometry,
   DoubleSide,
+  Euler,
   type IUniform,
+  MathUtils,
   Mesh,
   MeshLambertMaterial,
   type Object3D,
@@ -16,7 +19,7 @@ import {
   type Vector4,
 } from "three";
 import { casterMaterial, type StageUniforms } from "./fabric_material";
-import { byKind, type Capsule, type Motion, type Plane, type Shape } from "../link/scene_types";
+import { type Box, byKind, type Capsule, type Motion, type Plane, type Shape } from "../link/scene_types";
 import { sweep } from "./motion";
 import { groundFragment, groundVertex, porcelain } from "./shaders";
 
@@ -39,9 +42,19 @@ export const floorOf = (shape: Shape): number | null =>
     sphere: () => null,
     plane: (plane) => (rises(plane) ? plane.point[1] : null),
     capsule: () => null,
+    box: () => null,
   });
 
 const middleOf = ({ a, b }: Capsule): Vector3 => new Vector3(...a).add(new Vector3(...b)).multiplyScalar(0.5);
+const turnOf = ({ rotate: [x, y, z] }: Box): Euler =>
+  new Euler(MathUtils.degToRad(x), MathUtils.degToRad(y), MathUtils.degToRad(z), "ZYX"); // about x first
+
+const cornersOf = (box: Box): Vector3[] => {
+  const half = new Vector3(...box.half);
+  return corners(new Box3(half.clone().negate(), half)).map((corner) =>
+    corner.applyEuler(turnOf(box)).add(new Vector3(...box.center)),
+  );
+};
 const axisOf = ({ a, b }: Capsule): Vector3 => new Vector3(...b).sub(new Vector3(...a));
 
 /// Lowest point of a shape [m]; null if it has none.
@@ -50,6 +63,7 @@ export const bottomOf = (shape: Shape): number | null =>
     sphere: ({ center, radius }) => center[1] - radius,
     plane: () => null,
     capsule: ({ a, b, radius }) => Math.min(a[1], b[1]) - radius,
+    box: (box) => Math.min(...cornersOf(box).map(({ y }) => y)),
   });
 
 const corners = (box: Box3): Vector3[] =>
@@ -71,6 +85,7 @@ export const outlineOf = (shape: Shape, motion: Motion): Vector3[] =>
     plane: () => [],
     capsule: ({ a, b, radius }) =>
       [...sweep(a, motion), ...sweep(b, motion)].flatMap((point) => ballPoints(point, radius)),
+    box: (box) => cornersOf(box).flatMap((corner) => sweep(corner.toArray(), motion)),
   }) ?? [];
 
 /// Sets `occluder` to the ball (centre, radius) with which a shape hides the sky: a large one inside it; false if it
@@ -84,6 +99,10 @@ export const occlude = (shape: Shape, occluder: Vector4 | undefined): boolean =>
     plane: () => false,
     capsule: (capsule) => {
       occluder?.set(...middleOf(capsule).toArray(), capsule.radius);
+      return true;
+    },
+    box: ({ center, half }) => {
+      occluder?.set(...center, Math.min(...half));
       return true;
     },
   }) ?? false;
@@ -103,6 +122,12 @@ export const place = ({ mesh, caster }: Shown, shape: Shape): void => {
       for (const each of [mesh, caster]) {
         each?.position.copy(middleOf(capsule));
         each?.quaternion.setFromUnitVectors(upwards, axisOf(capsule).normalize());
+      }
+    },
+    box: (box) => {
+      for (const each of [mesh, caster]) {
+        each?.position.set(...box.center);
+        each?.quaternion.setFromEuler(turnOf(box));
       }
     },
   });
@@ -163,6 +188,7 @@ export class SolidMaker {
         return { mesh, caster: null };
       },
       capsule: (capsule) => this.own(new CapsuleGeometry(capsule.radius, axisOf(capsule).length(), 12, 40)),
+      box: ({ half: [x, y, z] }) => this.own(new BoxGeometry(2 * x, 2 * y, 2 * z)),
     });
   }
 
