@@ -115,10 +115,12 @@ const int unit_shadow_map = 0;      // render/depth.vert; render/light.glsl
 const int block_frame = 0;          // a uniform block: server/render/renderer.cpp; render/frame.glsl
 
 // Locations of a picture's attributes, and of uniforms of whichever program is in use: who reads them in render/.
-const int attribute_position = 0;            // cloth.vert, depth.vert, sphere.vert
-const int attribute_normal = 1;              // cloth.vert
+const int attribute_position = 0;            // cloth.vert, placed.glsl
+const int attribute_normal = 1;              // the same
 const int attribute_texture_coordinate = 2;  // cloth.vert
-const int uniform_placed = 0;                // depth.vert, sphere.vert
+const int uniform_placed = 0;                // placed.glsl
+const int uniform_axes = 1;                  // the same
+const int uniform_extent = 2;                // the same
 const int uniform_point = 0;                 // plane.vert
 const int uniform_normal = 1;                // plane.vert, plane.frag
 const int uniform_color = 0;                 // cloth.frag

@@ -15,7 +15,8 @@ namespace {
 
 /// The collider `home` moved to `pose` and grown by the contact margin, in the form that its law takes.
 elements::Solid solid_at(const World& world, const scene::Solid& home, const model::Pose& pose) {
-  return {pose.place(home.point), pose.rotation * home.direction, home.radius + world.contact_margin};
+  return {pose.place(home.point), pose.rotation * home.direction, home.radius + world.contact_margin,
+          pose.rotation * home.second, home.extent};
 }
 
 /// Stops the step from -> x at one collider; true if the collider is in the way.

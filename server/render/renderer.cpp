@@ -83,7 +83,7 @@ void Renderer::Implementation::draw_shadow_map(const ClothMesh& cloth_mesh,
   glPolygonOffset(1.5f, 2.0f);
   depth.use();
   solids.draw(Solids::Layer::shadow, colliders);
-  glUniform4f(uniform_placed, 0, 0, 0, 1);
+  Solids::place({});
   cloth_mesh.draw_plain();
   glDisable(GL_POLYGON_OFFSET_FILL);
 }

@@ -2,6 +2,7 @@
 // does not compile.
 #pragma once
 
+#include <glm/mat3x3.hpp>
 #include <memory>
 #include <vector>
 
@@ -21,9 +22,19 @@ class Solids {
   Solids& operator=(const Solids&) = delete;
 
   Status load();
-  /// Draws one layer of the colliders. `shadow` is drawn with the program in use, whose uniform_placed places
-  /// a unit shape (shaders/render/depth.vert).
+  /// Draws one layer of the colliders. `shadow` is drawn with the program in use, whose vertex shader
+  /// includes shaders/render/placed.glsl.
   void draw(Layer layer, const std::vector<scene::Collider>& colliders) const;
+
+  /// Where the program in use, whose vertex shader includes shaders/render/placed.glsl, places a mesh. By
+  /// default a vertex stays where it is.
+  struct Place {
+    glm::vec3 middle{0.0f};  ///< [m]
+    float radius = 0;        ///< [m]
+    glm::mat3 axes{1.0f};    ///< columns of unit length
+    glm::vec3 extent{1.0f};  ///< [m]
+  };
+  static void place(const Place& place);
 
  private:
   struct Implementation;

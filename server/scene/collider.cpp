@@ -7,7 +7,7 @@ Collider read_collider(const Reader& collider, std::size_t index) {
   Words keys{"name"};
   keys.insert(keys.end(), shape_names().begin(), shape_names().end());
   keys.insert(keys.end(), {"friction", "restitution", "motion"});
-  collider.object(keys, unsupported_shapes());
+  collider.object(keys, {"mesh"});
   Collider result;
   result.name = collider.member("name", default_name("collider", index)).name();
   result.shape = read_shape(collider);

@@ -173,12 +173,9 @@ std::string Reader::name() const {
   return text;
 }
 
-std::string Reader::choice(const Words& choices, const Words& later) const {
+std::string Reader::choice(const Words& choices) const {
   const std::string text = string("one of " + quoted(choices));
-  if (contains(later, text))
-    fail("not supported yet; supported: " + quoted(choices));
-  else if (!contains(choices, text))
-    fail("one of " + quoted(choices) + suggestion(text, choices));
+  if (!contains(choices, text)) fail("one of " + quoted(choices) + suggestion(text, choices));
   return text;
 }
 

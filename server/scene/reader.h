@@ -46,7 +46,7 @@ class Reader {
   dvec3 direction() const;  ///< three numbers, not all 0, scaled to unit length
   std::string string(const std::string& allowed) const;
   std::string name() const;
-  std::string choice(const Words& choices, const Words& later = {}) const;
+  std::string choice(const Words& choices) const;
 
   /// Records that this value is wrong, unless an earlier error is recorded; `allowed` says what it may be.
   void fail(const std::string& allowed) const;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -211,8 +212,21 @@ struct Plane {
   dvec3 normal{0.0, 1.0, 0.0};  ///< normalised
   bool operator==(const Plane&) const = default;
 };
+/// Everything within `radius` of the line from `a` to `b`; a sphere if they are the same point.
+struct Capsule {
+  dvec3 a{0.0}, b{0.0};  ///< [m]
+  double radius = 0.1;   ///< [m]
+  bool operator==(const Capsule&) const = default;
+};
+/// A cuboid. Its edges at home are along x, y and z.
+struct Box {
+  dvec3 center{0.0};     ///< [m]
+  dvec3 half{0.1};       ///< of the edges [m]
+  glm::dmat3 axes{1.0};  ///< turns it out of its home
+  bool operator==(const Box&) const = default;
+};
 /// The shape of a collider. solid.h has the functions for code that need not know which kind it is.
-using Shape = std::variant<Sphere, Plane>;
+using Shape = std::variant<Sphere, Plane, Capsule, Box>;
 
 struct Collider {
   std::string name;

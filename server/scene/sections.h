@@ -26,8 +26,6 @@ Fem read_sheet(const Reader& material, const Fabric* fabric);
 Collider read_collider(const Reader& collider, std::size_t index);
 /// Reads the shape of a collider, which is the member with the name of its kind, e.g. "sphere".
 Shape read_shape(const Reader& collider);
-/// The names of the kinds of shape that are planned but not supported yet.
-const Words& unsupported_shapes();
 Motion read_motion(const Reader& motion);
 
 /// Reads the `at` of a pin or a weight and checks it against the mesh of its cloth.

@@ -1,6 +1,9 @@
 #include "server/scene/solid.h"
 
 #include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -63,6 +66,76 @@ Plane moved(const Plane& home, const glm::dmat3& rotation, const dvec3& translat
   return {rotation * home.point + translation, rotation * home.normal};
 }
 
+static_assert(kind_matches<elements::solid_capsule, Capsule>);
+const char* name(const Capsule&) {
+  return "capsule";
+}
+void read(const Reader& capsule, Capsule& into) {
+  capsule.object({"a", "b", "radius"});
+  into = {capsule.member("a").vector(ranges::position), capsule.member("b").vector(ranges::position),
+          capsule.member("radius").number(ranges::length)};
+}
+json numbers(const Capsule& capsule) {
+  return {{"a", list(capsule.a)}, {"b", list(capsule.b)}, {"radius", capsule.radius}};
+}
+Solid contact_numbers(const Capsule& capsule) {
+  const double length = glm::distance(capsule.a, capsule.b);
+  const dvec3 axis = length > 0.0 ? (capsule.b - capsule.a) / length : dvec3(1.0, 0.0, 0.0);
+  const dvec3 across = std::abs(axis.y) < 0.9 ? dvec3(0.0, 1.0, 0.0) : dvec3(1.0, 0.0, 0.0);
+  return {elements::solid_capsule,
+          0.5 * (capsule.a + capsule.b),
+          axis,
+          capsule.radius,
+          glm::normalize(glm::cross(axis, across)),
+          {0.5 * length, 0.0, 0.0}};
+}
+Ball ball(const Capsule& capsule) {
+  return {0.5 * (capsule.a + capsule.b), 0.5 * glm::distance(capsule.a, capsule.b) + capsule.radius};
+}
+Capsule moved(const Capsule& home, const glm::dmat3& rotation, const dvec3& translation) {
+  return {rotation * home.a + translation, rotation * home.b + translation, home.radius};
+}
+
+static_assert(kind_matches<elements::solid_box, Box>);
+const char* name(const Box&) {
+  return "box";
+}
+/// About x, then y, then z [degrees].
+glm::dmat3 turn(const dvec3& degrees) {
+  glm::dmat4 all(1.0);
+  for (int axis = 2; axis >= 0; --axis) {
+    dvec3 about(0.0);
+    about[axis] = 1.0;
+    all = glm::rotate(all, glm::radians(degrees[axis]), about);
+  }
+  return glm::dmat3(all);
+}
+/// The angles whose turn() is `axes`. Where y is a right angle, x and z turn alike: z is 0 then.
+dvec3 angles(const glm::dmat3& axes) {
+  const double level = std::hypot(axes[0][0], axes[0][1]);
+  const bool upright = level < 1e-12;
+  return glm::degrees(
+      dvec3(upright ? std::atan2(-axes[2][1], axes[1][1]) : std::atan2(axes[1][2], axes[2][2]),
+            std::atan2(-axes[0][2], level), upright ? 0.0 : std::atan2(axes[0][1], axes[0][0])));
+}
+void read(const Reader& box, Box& into) {
+  box.object({"center", "half", "rotate"});
+  into = {box.member("center").vector(ranges::position), box.member("half").vector(ranges::length),
+          turn(box.member("rotate", json::array({0.0, 0.0, 0.0})).vector(ranges::angle))};
+}
+json numbers(const Box& box) {
+  return {{"center", list(box.center)}, {"half", list(box.half)}, {"rotate", list(angles(box.axes))}};
+}
+Solid contact_numbers(const Box& box) {
+  return {elements::solid_box, box.center, box.axes[0], 0.0, box.axes[1], box.half};
+}
+Ball ball(const Box& box) {
+  return {box.center, glm::length(box.half)};
+}
+Box moved(const Box& home, const glm::dmat3& rotation, const dvec3& translation) {
+  return {rotation * home.center + translation, home.half, rotation * home.axes};
+}
+
 static_assert(elements::solid_kinds == shape_kinds, "each kind of shape has its law");
 
 template <std::size_t... kind>
@@ -86,11 +159,6 @@ const std::array<const char*, shape_kinds>& shape_names() {
     std::transform(shapes.begin(), shapes.end(), all.begin(), name_of);
     return all;
   }();
-  return names;
-}
-
-const Words& unsupported_shapes() {
-  static const Words names{"capsule", "box"};
   return names;
 }
 

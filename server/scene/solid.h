@@ -17,12 +17,15 @@ inline constexpr std::size_t shape_kinds = std::variant_size_v<Shape>;
 /// The names of the kinds in a document, in the order of Shape.
 const std::array<const char*, shape_kinds>& shape_names();
 
-/// The numbers of a shape that its contact code needs (shaders/elements/solid.glsl).
+/// The numbers of a shape that its contact code needs (shaders/elements/solid.glsl). A kind that has no use
+/// for one of them leaves it 0.
 struct Solid {
   int kind = 0;          ///< the index of the kind in Shape
   dvec3 point{0.0};      ///< [m]
-  dvec3 direction{0.0};  ///< turns with the shape (a plane's normal); 0 if the kind has none
+  dvec3 direction{0.0};  ///< unit length, turns with the shape: a plane's normal, a body's first axis
   double radius = 0;     ///< [m]
+  dvec3 second{0.0};     ///< a body's second axis, unit length; the third is their cross product
+  dvec3 extent{0.0};     ///< half of the edges of a body's core, along its axes [m]
 };
 Solid solid(const Shape& shape);
 

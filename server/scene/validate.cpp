@@ -45,7 +45,7 @@ std::vector<Collider> read_colliders(const Reader& colliders) {
 
 std::optional<SelfCollision> read_self_collision(const Reader& self_collision) {
   if (self_collision.is_null()) return std::nullopt;
-  self_collision.object({"thickness", "friction"});
+  self_collision.object({"thickness", "friction"}, {"kind"});
   return SelfCollision{self_collision.member("thickness", 0.01).number(ranges::thickness),
                        self_collision.member("friction", 0.2).number(ranges::friction)};
 }

@@ -6,6 +6,7 @@
 
 #include "server/model/motion.h"
 #include "server/scene/solid.h"
+#include "shaders/elements/elements.h"
 
 namespace clothlab::sim {
 
@@ -18,14 +19,17 @@ double contact_margin(const scene::Scene& scene, const model::Model& model) {
 
 void set_colliders(const gl::Program& program, const scene::Scene& scene, const MotionTable& motions,
                    double margin) {
-  std::vector<glm::vec4> rows;  // three rows for each collider
+  std::vector<glm::vec4> rows;  // those of each collider as shaders/collide/colliders.glsl has them
   for (std::size_t kind = 0; kind < scene::shape_kinds; ++kind)
     for (const scene::Collider& collider : scene.colliders) {
       if (collider.shape.index() != kind) continue;
       const scene::Solid solid = scene::solid(collider.shape);
       rows.emplace_back(glm::vec3(solid.point), static_cast<float>(solid.radius + margin));
-      rows.emplace_back(glm::vec3(solid.direction), 0.0f);
-      rows.emplace_back(collider.friction, collider.restitution, motions.index(collider.motion), 0.0f);
+      rows.emplace_back(glm::vec3(solid.direction), static_cast<float>(solid.extent.x));
+      rows.emplace_back(collider.friction, collider.restitution, motions.index(collider.motion),
+                        solid.extent.y);
+      if (elements::solid_has_axes(solid.kind))
+        rows.emplace_back(glm::vec3(solid.second), static_cast<float>(solid.extent.z));
     }
   if (rows.empty()) return;
   glProgramUniform4fv(program.id(), program.location("solids"), static_cast<GLsizei>(rows.size()),

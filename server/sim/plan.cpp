@@ -27,12 +27,22 @@ std::vector<SolidRun> solid_runs(const scene::Scene& scene) {
   return runs;
 }
 
-/// The text "meet(kind, moves, first, end) " for each run of solids, for shaders/collide/colliders.glsl.
+int rows_of(const SolidRun& run) {
+  return run.count * elements::solid_rows(static_cast<int>(run.kind));
+}
+
+int solid_rows(const Plan& plan) {
+  return std::accumulate(plan.solids.begin(), plan.solids.end(), 0,
+                         [](int sum, const SolidRun& run) { return sum + rows_of(run); });
+}
+
+/// The text "meet(kind, moves, first, end) " for the rows of each run of solids, for
+/// shaders/collide/colliders.glsl.
 std::string each_solid(const Plan& plan) {
   std::string list;
   int first = 0;
   for (const SolidRun& run : plan.solids) {
-    const int end = first + run.count;
+    const int end = first + rows_of(run);
     list += formatted("meet(%zu, %s, %d, %d) ", run.kind, run.moves ? "true" : "false", first, end);
     first = end;
   }
@@ -83,7 +93,7 @@ gl::Defines step_defines(const Plan& plan) {
   gl::Defines defines{{"GROUP_SIZE", std::to_string(group_size)},
                       {"MOTION_COUNT", std::to_string(plan.moving)},
                       {"END_ROW", std::to_string(plan.pose_rows())},
-                      {"SOLID_COUNT", std::to_string(plan.solid_count())},
+                      {"SOLID_ROWS", std::to_string(solid_rows(plan))},
                       {"EACH_SOLID(meet)", each_solid(plan)}};
   for (gl::Defines::value_type& define : law_defines(plan.laws)) defines.push_back(std::move(define));
   if (plan.wind) defines.emplace_back("WIND", "1");
@@ -117,10 +127,10 @@ std::vector<Simulation::Part> parts(const Plan& plan) {
   add(Kind::term, "wind", plan.wind, "wind is null");
   add(Kind::term, "moving_poses", plan.moving > 0, "no pin and no collider moves");
   for (std::size_t kind = 0; kind < scene::shape_kinds; ++kind) {
-    const std::string name = scene::shape_names()[kind];
+    const std::string name = scene::shape_names()[kind], names = name + (name.back() == 'x' ? "es" : "s");
     const bool any = std::any_of(plan.solids.begin(), plan.solids.end(),
                                  [&](const auto& run) { return run.kind == kind; });
-    add(Kind::term, name + "s", any, "the scene has no " + name);
+    add(Kind::term, names, any, "the scene has no " + name);
   }
   return list;
 }

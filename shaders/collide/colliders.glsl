@@ -1,14 +1,14 @@
 // Stops a vertex's step at the surfaces of solids, by the law of each kind (elements/solid.glsl). Solids are met kind
 // after kind, within a kind in the scene's order. A kernel is compiled for the solids of its scene: EACH_SOLID(meet)
-// calls `meet(kind, moves, first, end)` for each run of them that are of one kind and all move or all rest.
+// calls `meet(kind, moves, first, end)` for the rows of each run of them that are of one kind and all move or all rest.
 #include "../elements/contact.glsl"
 #include "../elements/solid.glsl"
 #include "../rarely.glsl"
 
-#if SOLID_COUNT > 0
-// For each solid: point before any motion [m], radius + margin [m]; direction before any motion; friction, restitution,
-// motion.
-uniform vec4 solids[3 * SOLID_COUNT];
+#if SOLID_ROWS > 0
+// The rows of each solid before any motion: point [m], radius + margin [m]; direction, extent.x [m]; friction,
+// restitution, motion, extent.y; for a kind with axes also second, extent.z.
+uniform vec4 solids[SOLID_ROWS];
 #endif
 
 // The surface met last: its unit normal, its velocity [m/s] at the contact, friction and restitution.
@@ -36,21 +36,36 @@ void meet_surface(vec3 surface, vec3 normal, vec3 from, vec3 x, inout vec3 v) {
 #endif
 }
 
-#if SOLID_COUNT > 0
-/// Where its motion takes a solid, at a row of the step.
-Solid moved_to(int motion, int row, Solid solid) {
-  return Solid(placed(motion, row, solid.point), turned(motion, row, solid.direction), solid.radius);
+#if SOLID_ROWS > 0
+/// The solid whose first row is given, thicker by `reach` [m], before any motion.
+Solid solid_at(int kind, int first, float reach) {
+  vec4 place = solids[first], direction = solids[first + 1];
+  Solid solid = Solid(place.xyz, direction.xyz, place.w + reach, vec3(0.0), vec3(0.0));
+  if (solid_has_axes(kind)) {
+    vec4 second = solids[first + 3];
+    solid.second = second.xyz;
+    solid.extent = vec3(direction.w, solids[first + 2].w, second.w);
+  }
+  return solid;
 }
 
-/// Stops the step from -> x at solid i, thicker by `reach` [m], and changes the end velocity v. Returns the number of
-/// contacts, 0 or 1.
-int meet_solid(int kind, bool moves, int i, vec3 from, inout vec3 x, inout vec3 v, float reach) {
-  vec3 surface = solids[3 * i + 2].xyz;
+/// Where its motion takes a solid, at a row of the step.
+Solid moved_to(int kind, int motion, int row, Solid solid) {
+  solid.point = placed(motion, row, solid.point);
+  solid.direction = turned(motion, row, solid.direction);
+  if (solid_has_axes(kind)) solid.second = turned(motion, row, solid.second);
+  return solid;
+}
+
+/// Stops the step from -> x at a solid, thicker by `reach` [m], and changes the end velocity v. `first`: its first row.
+/// Returns the number of contacts, 0 or 1.
+int meet_solid(int kind, bool moves, int first, vec3 from, inout vec3 x, inout vec3 v, float reach) {
+  vec3 surface = solids[first + 2].xyz;
   int met = 0;
-  Solid before = Solid(solids[3 * i].xyz, solids[3 * i + 1].xyz, solids[3 * i].w + reach), after = before;
+  Solid before = solid_at(kind, first, reach), after = before;
   if (moves) {
-    after = moved_to(int(surface.z), END_ROW, before);
-    before = moved_to(int(surface.z), 0, before);
+    after = moved_to(kind, int(surface.z), END_ROW, before);
+    before = moved_to(kind, int(surface.z), 0, before);
   }
   RARELY(solid_near(kind, before, after, from, x)) {
     vec3 stopped, normal;
@@ -69,9 +84,10 @@ int meet_solid(int kind, bool moves, int i, vec3 from, inout vec3 x, inout vec3 
 int resolve_colliders(vec3 from, inout vec3 x, inout vec3 v, float reach) {
   int contacts = 0;
   met_braking = vec3(0.0);
-#if SOLID_COUNT > 0
-#define MEET(kind, moves, first, end) \
-  for (int i = first; i < end; ++i) contacts += meet_solid(kind, moves, i, from, x, v, reach);
+#if SOLID_ROWS > 0
+#define MEET(kind, moves, first, end)                              \
+  for (int row = first; row < end; row += solid_rows(kind))        \
+    contacts += meet_solid(kind, moves, row, from, x, v, reach);
   EACH_SOLID(MEET)
 #endif
   return contacts;

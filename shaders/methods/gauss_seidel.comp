@@ -94,7 +94,7 @@ void finish(int i) {
   float tag = v.w;
   if (x.w > 0.0) {
     advance(i, x.xyz, v.xyz, d.xyz, x_next, v_next);
-#if SOLID_COUNT > 0
+#if SOLID_ROWS > 0
     v_next = rebound(x.xyz, v.xyz, v_next);
 #endif
     tag = d.w;

@@ -1,7 +1,4 @@
-// Draws into the shadow map. A sphere is the unit sphere, placed here; a cloth is in place already.
-#include "frame.glsl"
+// Draws into the shadow map: bodies, and cloths, whose vertices are the corners of a core of 1 m.
+#include "placed.glsl"
 
-layout(location = attribute_position) in vec3 position;
-layout(location = uniform_placed) uniform vec4 placed;  // xyz centre [m], w scale
-
-void main() { gl_Position = light_view_projection * vec4(placed.xyz + placed.w * position, 1.0); }
+void main() { gl_Position = light_view_projection * vec4(placed_point(), 1.0); }

@@ -5,6 +5,74 @@ import { browserTest, eventually, withServer } from "./browser.mjs";
 const { both } = withServer();
 
 browserTest(
+  "a capsule and a box that spin are on the screen where the session says, and turned as it says",
+  async () => {
+    const { viewer, client } = await both("bodies");
+    const spin = { axis: [0, 1, 0], center: [0, 0.2, 0], degrees_per_second: 60 };
+    await client.request("scene.patch", {
+      patch: {
+        colliders: [
+          { capsule: { a: [0.2, 0.2, 0], b: [0.6, 0.4, 0], radius: 0.1 }, motion: { spin } },
+          { box: { center: [0, 0.2, 0], half: [0.2, 0.1, 0.15], rotate: [20, 30, 40] }, motion: { spin } },
+          { box: { center: [0, -0.4, 0], half: [0.2, 0.1, 0.15], rotate: [20, 30, 40] } },
+        ],
+      },
+    });
+    await viewer.until(() => window.clothlab.document?.colliders.length === 3);
+    await client.request("sim.reset", {});
+    await eventually(
+      "half a second",
+      () => viewer.read("simTime"),
+      (time) => time > 0.5 && time < 5,
+    );
+    await client.request("sim.pause", {});
+    await viewer.page.waitForTimeout(500);
+    const seen = await viewer.page.evaluate(() => {
+      const { stage, simTime } = window.clothlab;
+      const at = (mesh, ...point) => mesh.localToWorld(mesh.position.clone().set(...point)).toArray();
+      const [capsule, box, still] = stage.colliders.shown.map(({ mesh }) => mesh);
+      for (const mesh of [capsule, box, still]) mesh.updateMatrixWorld();
+      // A capsule's geometry is along its own y axis; a box's edges are along its own axes.
+      const half = Math.hypot(0.4, 0.2) / 2;
+      return {
+        time: simTime,
+        ends: [at(capsule, 0, -half, 0), at(capsule, 0, half, 0)],
+        length: capsule.geometry.parameters.height,
+        corner: at(box, 0.2, 0.1, 0.15),
+        still: at(still, 0.2, 0.1, 0.15),
+      };
+    });
+    const near = (found, wanted, what) =>
+      assert.ok(
+        Math.hypot(...found.map((value, axis) => value - wanted[axis])) < 1e-6,
+        `${what} at ${seen.time} s: ${found}, not ${wanted}`,
+      );
+    const about = (axis, degrees) => (v) => {
+      const [p, q] = [(axis + 1) % 3, (axis + 2) % 3];
+      const [c, s] = [Math.cos((degrees * Math.PI) / 180), Math.sin((degrees * Math.PI) / 180)];
+      const turned = [...v];
+      [turned[p], turned[q]] = [c * v[p] - s * v[q], s * v[p] + c * v[q]];
+      return turned;
+    };
+    const spun = about(1, 60 * seen.time);
+    near([seen.length], [Math.hypot(0.4, 0.2)], "the capsule's length");
+    near(seen.ends[0], spun([0.2, 0.2, 0]), "the capsule's one end");
+    near(seen.ends[1], spun([0.6, 0.4, 0]), "the capsule's other end");
+    const corner = about(2, 40)(about(1, 30)(about(0, 20)([0.2, 0.1, 0.15])));
+    near(
+      seen.corner,
+      spun(corner).map((value, axis) => value + [0, 0.2, 0][axis]),
+      "the box's corner",
+    );
+    near(
+      seen.still,
+      corner.map((value, axis) => value + [0, -0.4, 0][axis]),
+      "the still box's corner",
+    );
+  },
+);
+
+browserTest(
   "a plane that spins turns on the screen, and a sphere that swings is where it is in the frame",
   async () => {
     const { viewer, client } = await both("spinning");

@@ -79,6 +79,31 @@ browserTest("both pins are edited together, and the sphere by its own fields", a
   await client.close();
 });
 
+browserTest("a capsule's and a box's fields change them", async () => {
+  const { viewer, client, scene } = await both("bodies");
+  await client.request("scene.patch", {
+    patch: {
+      colliders: [
+        { name: "arm", capsule: { a: [0, 0, 0], b: [0, 0.5, 0], radius: 0.1 } },
+        { name: "table", box: { center: [0, -0.5, 0], half: [0.3, 0.1, 0.2] } },
+      ],
+    },
+  });
+  await viewer.until(() => window.clothlab.document?.colliders.length === 2);
+  for (const [section, label, value] of [
+    ["Collider: arm", "to x", (of) => of[0].capsule.b[0] > 0],
+    ["Collider: arm", "radius", (of) => of[0].capsule.radius > 0.1],
+    ["Collider: table", "half y", (of) => of[1].box.half[1] > 0.1],
+    ["Collider: table", "turned about z", (of) => of[1].box.rotate[2] > 0],
+  ]) {
+    const slider = await viewer.slider(section, label);
+    await slider.focus();
+    await viewer.page.keyboard.press("ArrowRight");
+    await eventually(label, async () => (await scene()).colliders, value);
+  }
+  await client.close();
+});
+
 browserTest("self-collision is switched off and on", async () => {
   const { viewer, client, scene } = await both("toggle");
   const box = viewer.page.locator('.lil-gui:has(> .lil-title:text-is("Self-collision")) input[type=checkbox]').first();

@@ -87,6 +87,39 @@ test("both sides of the cloth are drawn: turned over, it covers the same pixels"
   assert.ok(Math.abs(front.count - back.count) < 0.05 * front.count, `${front.count} and ${back.count} pixels`);
 });
 
+test("a capsule and a box are drawn where they are, and are shaded by their sides", () => {
+  const scene = (...colliders) => [
+    ...["seed", "--time", "0", "--size", "240x180", "--set", `/colliders=${JSON.stringify(colliders)}`],
+    ...["--set", "/cloths/0/pins=[]", "--set", "/cloths/0/transform/translate=[0,1,-0.5]"],
+  ];
+  const far = { plane: { point: [0, -9, 0], normal: [0, 1, 0] } };
+  const bodies = [
+    { capsule: { a: [-0.4, 0, -0.4], b: [0.3, 0.3, -0.4], radius: 0.12 } },
+    { box: { center: [0, 0, 0.4], half: [0.35, 0.12, 0.2], rotate: [0, 30, 10] } },
+  ];
+  for (const [n, body] of bodies.entries()) {
+    const other =
+      "capsule" in body
+        ? { capsule: { ...body.capsule, radius: 1e-6 } }
+        : { box: { ...body.box, half: [1e-6, 1e-6, 1e-6] } };
+    // A ball as large as the body's surroundings frames both pictures alike.
+    const frame = { sphere: { center: [0, -0.6, 0], radius: 0.3 } };
+    const with_ = render(`body-${n}.png`, ...scene(far, frame, body)),
+      without = render(`none-${n}.png`, ...scene(far, frame, other));
+    const shades = new Set();
+    let changed = 0;
+    for (let y = 0; y < 180; ++y)
+      for (let x = 0; x < 240; ++x) {
+        const [a, b] = [with_.at(x, y), without.at(x, y)];
+        if (Math.max(...a.map((value, channel) => Math.abs(value - b[channel]))) < 12) continue;
+        ++changed;
+        shades.add(a[1] >> 3);
+      }
+    assert.ok(changed > 400, `${changed} pixels show the ${Object.keys(body)[0]}`);
+    assert.ok(shades.size >= 2, `${shades.size} shades`);
+  }
+});
+
 test("the colour is the scene's", () => {
   const image = render("blue.png", "seed", "--time", "0", "--size", "160x90", "--set", "/cloths/0/color=#2040d0");
   assert.equal(region(image, isRed).count, 0);

@@ -166,11 +166,23 @@ json RandomPatch::collider(const std::string& name) {
                {"friction", usual(0.1, 1.0, ranges::friction)},
                {"restitution", uniform(0.0, 1.0)},
                {"motion", motion()}};
-  if (chance(0.5))
-    made["plane"] = {{"point", vector(0.1, 2.0, ranges::position)}, {"normal", direction()}};
-  else
-    made["sphere"] = {{"center", vector(0.1, 2.0, ranges::position)},
-                      {"radius", usual(0.05, 1.0, ranges::length)}};
+  const auto place = [this] { return vector(0.1, 2.0, ranges::position); };
+  const auto length = [this] { return usual(0.05, 1.0, ranges::length); };
+  switch (whole(0, 3)) {
+    case 0:
+      made["plane"] = {{"point", place()}, {"normal", direction()}};
+      break;
+    case 1:
+      made["sphere"] = {{"center", place()}, {"radius", length()}};
+      break;
+    case 2:
+      made["capsule"] = {{"a", place()}, {"b", place()}, {"radius", length()}};
+      break;
+    default:
+      made["box"] = {{"center", place()},
+                     {"half", json::array({length(), length(), length()})},
+                     {"rotate", vector(1.0, 180.0, ranges::angle)}};
+  }
   return made;
 }
 

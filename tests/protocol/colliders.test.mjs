@@ -20,6 +20,8 @@ const colliders = [
     motion: { oscillate: { axis: [0, 0, 1], amplitude: 0.2, frequency: 0.5 } },
   },
   { name: "cart", sphere: { center: [2, 0, 0], radius: 0.1 }, motion: { linear: { velocity: [0.5, 0, -0.25] } } },
+  { name: "arm", capsule: { a: [0, 1, 0], b: [0.5, 1, 0.2], radius: 0.1 }, motion: { spin } },
+  { name: "plank", box: { center: [1, 1, 0], half: [0.3, 0.1, 0.2], rotate: [30, 0, 10] }, motion: { spin } },
 ];
 const near = (found, wanted, what) =>
   found.forEach((value, axis) =>
@@ -27,7 +29,7 @@ const near = (found, wanted, what) =>
   );
 
 for (const encoding of ["f32", "q16"])
-  test(`before each ${encoding} frame the session tells where what moves is: a spinning plane has turned, too`, async () => {
+  test(`before each ${encoding} frame the session tells where what moves is: what spins has turned, too`, async () => {
     const client = await Client.connect(server, { session: encoding });
     await client.request("scene.patch", { patch: { colliders } });
     await client.request("stream.subscribe", { encoding, rate: 60, in_flight: 2 });
@@ -37,7 +39,7 @@ for (const encoding of ["f32", "q16"])
     assert.equal(time, frame.time);
     assert.deepEqual(
       moving.map(({ index }) => index),
-      [1, 2, 3],
+      [1, 2, 3, 4, 5],
     ); // a still collider stays where the scene places it
     const angle = (Math.PI / 2) * time;
     near(
@@ -48,6 +50,15 @@ for (const encoding of ["f32", "q16"])
     near(moving[0].plane.normal, [-Math.sin(angle), Math.cos(angle), 0], "the wheel's normal");
     near(moving[1].sphere.center, [1, 0, 0.2 * Math.sin(Math.PI * time)], "the pendulum");
     near(moving[2].sphere.center, [2 + 0.5 * time, 0, -0.25 * time], "the cart");
+    const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
+    near(moving[3].capsule.a, [0, 1, 0], "the arm's end on the axis");
+    near(moving[3].capsule.b, [0.5 * cos, 1 + 0.5 * sin, 0.2], "the arm's other end");
+    near([moving[3].capsule.radius], [0.1], "the arm's radius");
+    near(moving[4].box.center, [cos, 1 + sin, 0], "the plank's center");
+    near(moving[4].box.half, [0.3, 0.1, 0.2], "the plank's edges");
+    // It spins about the axis that it is turned about last.
+    const turned = moving[4].box.rotate;
+    near([turned[0], turned[1], Math.cos(((turned[2] - 10) * Math.PI) / 180)], [30, 0, cos], "the plank's turn");
     await client.close();
   });
 

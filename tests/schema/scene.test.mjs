@@ -94,6 +94,8 @@ const whole = {
   colliders: [
     { name: "ball", sphere: { center: [0, 0.6, 0], radius: 0.25 }, friction: 0.3, restitution: 0, motion: linear },
     { plane: { point: [0, 0, 0], normal: [0, 1, 0] }, friction: 0.5 },
+    { capsule: { a: [0, 0.5, 0], b: [0, 1, 0], radius: 0.1 }, motion: spin },
+    { box: { center: [0, 0, 0], half: [0.1, 0.2, 0.3], rotate: [0, 30, 0] } },
   ],
   self_collision: { thickness: 0.01, friction: 0.2 },
   wind: { velocity: [2, 0, 0], gust: 0.3, gust_frequency: 0.7, drag: 1, lift: 0.2 },

@@ -91,10 +91,22 @@ export interface Plane {
   point: Vec3;
   normal: Vec3;
 }
+export interface Capsule {
+  a: Vec3;
+  b: Vec3;
+  radius: number;
+}
+export interface Box {
+  center: Vec3;
+  half: Vec3;
+  rotate: Vec3; ///< [degrees]
+}
 /// The kinds of shape, under their names in the document.
 export interface Shapes {
   sphere: Sphere;
   plane: Plane;
+  capsule: Capsule;
+  box: Box;
 }
 type Kind = keyof Shapes;
 /// One shape, under the name of its kind.

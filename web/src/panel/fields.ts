@@ -146,15 +146,32 @@ function clothSection(document: SceneDocument, index: number, fabrics: Fabric[])
 /// The fields of a shape, and the center around which it spins by default.
 function shapeFields(shape: Shape, base: string): { fields: Field[]; center: Vec3 } {
   const place = { min: -2, max: 2, step: 0.005, ...meter };
+  const radius = { min: 0.02, max: 1, step: 0.005, ...meter };
   const made = byKind<{ fields: Field[]; center: Vec3 }>(shape, {
     sphere: ({ center }) => ({
       fields: [
         ...vector("center", [`${base}/sphere/center`], place),
-        number("radius", [`${base}/sphere/radius`], { min: 0.02, max: 1, step: 0.005, ...meter }),
+        number("radius", [`${base}/sphere/radius`], radius),
       ],
       center,
     }),
     plane: () => ({ fields: [number("height", [`${base}/plane/point/1`], place)], center: [0, 0, 0] }),
+    capsule: ({ a, b }) => ({
+      fields: [
+        ...vector("from", [`${base}/capsule/a`], place),
+        ...vector("to", [`${base}/capsule/b`], place),
+        number("radius", [`${base}/capsule/radius`], radius),
+      ],
+      center: a.map((value, axis) => (value + (b[axis] as number)) / 2) as Vec3,
+    }),
+    box: ({ center }) => ({
+      fields: [
+        ...vector("center", [`${base}/box/center`], place),
+        ...vector("half", [`${base}/box/half`], { min: 0.005, max: 1, step: 0.005, ...meter }),
+        ...vector("turned about", [`${base}/box/rotate`], { min: -180, max: 180, step: 1, unit: "°" }),
+      ],
+      center,
+    }),
   });
   return made ?? { fields: [], center: [0, 0, 0] };
 }

@@ -38,6 +38,7 @@ export class ColliderView {
   setDocument(document: SceneDocument, sceneRadius: number): void {
     this.object.clear();
     this.caster.clear();
+    for (const { dispose } of this.shown) dispose?.();
     this.radius.value = sceneRadius * 2.8;
     this.shown = document.colliders.flatMap((collider, index) => {
       const made = this.maker.make(collider, this.radius.value);

@@ -1,9 +1,14 @@
 // Draws each kind of shape, and knows what a view needs of it. collider_view.ts has what all kinds share.
 import {
   Box3,
+  BoxGeometry,
+  type BufferGeometry,
+  CapsuleGeometry,
   CircleGeometry,
   DoubleSide,
+  Euler,
   type IUniform,
+  MathUtils,
   Mesh,
   MeshLambertMaterial,
   type Object3D,
@@ -14,16 +19,18 @@ import {
   type Vector4,
 } from "three";
 import { casterMaterial, type StageUniforms } from "./fabric_material";
-import { byKind, type Motion, type Plane, type Shape } from "../link/scene_types";
+import { type Box, byKind, type Capsule, type Motion, type Plane, type Shape } from "../link/scene_types";
 import { sweep } from "./motion";
 import { groundFragment, groundVertex, porcelain } from "./shaders";
 
 export const forward = new Vector3(0, 0, 1); // the normal of a disc
+const upwards = new Vector3(0, 1, 0); // a capsule's axis
 
 /// A shape of the scene on the stage, and the mesh that casts its shadow on the ground.
 export interface Shown {
   mesh: Mesh;
   caster: Mesh | null;
+  dispose?: () => void; ///< frees what no other shape shares
 }
 
 const levelled = 0.7; // a plane counts as a floor if its normal rises more than this
@@ -31,11 +38,33 @@ const rises = ({ normal }: Plane): boolean => new Vector3(...normal).normalize()
 
 /// Height of the floor that a shape is [m]; null if it is none.
 export const floorOf = (shape: Shape): number | null =>
-  byKind<number | null>(shape, { sphere: () => null, plane: (plane) => (rises(plane) ? plane.point[1] : null) });
+  byKind<number | null>(shape, {
+    sphere: () => null,
+    plane: (plane) => (rises(plane) ? plane.point[1] : null),
+    capsule: () => null,
+    box: () => null,
+  });
+
+const middleOf = ({ a, b }: Capsule): Vector3 => new Vector3(...a).add(new Vector3(...b)).multiplyScalar(0.5);
+const turnOf = ({ rotate: [x, y, z] }: Box): Euler =>
+  new Euler(MathUtils.degToRad(x), MathUtils.degToRad(y), MathUtils.degToRad(z), "ZYX"); // about x first
+
+const cornersOf = (box: Box): Vector3[] => {
+  const half = new Vector3(...box.half);
+  return corners(new Box3(half.clone().negate(), half)).map((corner) =>
+    corner.applyEuler(turnOf(box)).add(new Vector3(...box.center)),
+  );
+};
+const axisOf = ({ a, b }: Capsule): Vector3 => new Vector3(...b).sub(new Vector3(...a));
 
 /// Lowest point of a shape [m]; null if it has none.
 export const bottomOf = (shape: Shape): number | null =>
-  byKind<number | null>(shape, { sphere: ({ center, radius }) => center[1] - radius, plane: () => null });
+  byKind<number | null>(shape, {
+    sphere: ({ center, radius }) => center[1] - radius,
+    plane: () => null,
+    capsule: ({ a, b, radius }) => Math.min(a[1], b[1]) - radius,
+    box: (box) => Math.min(...cornersOf(box).map(({ y }) => y)),
+  });
 
 const corners = (box: Box3): Vector3[] =>
   Array.from(
@@ -54,9 +83,13 @@ export const outlineOf = (shape: Shape, motion: Motion): Vector3[] =>
   byKind<Vector3[]>(shape, {
     sphere: ({ center, radius }) => sweep(center, motion).flatMap((point) => ballPoints(point, radius)),
     plane: () => [],
+    capsule: ({ a, b, radius }) =>
+      [...sweep(a, motion), ...sweep(b, motion)].flatMap((point) => ballPoints(point, radius)),
+    box: (box) => cornersOf(box).flatMap((corner) => sweep(corner.toArray(), motion)),
   }) ?? [];
 
-/// Sets `occluder` to the ball (centre, radius) with which a shape hides the sky; false if it hides none.
+/// Sets `occluder` to the ball (centre, radius) with which a shape hides the sky: a large one inside it; false if it
+/// hides none.
 export const occlude = (shape: Shape, occluder: Vector4 | undefined): boolean =>
   byKind<boolean>(shape, {
     sphere: ({ center, radius }) => {
@@ -64,6 +97,14 @@ export const occlude = (shape: Shape, occluder: Vector4 | undefined): boolean =>
       return true;
     },
     plane: () => false,
+    capsule: (capsule) => {
+      occluder?.set(...middleOf(capsule).toArray(), capsule.radius);
+      return true;
+    },
+    box: ({ center, half }) => {
+      occluder?.set(...center, Math.min(...half));
+      return true;
+    },
   }) ?? false;
 
 /// Moves a shape's meshes to the shape.
@@ -77,20 +118,34 @@ export const place = ({ mesh, caster }: Shown, shape: Shape): void => {
       mesh.position.set(...point);
       mesh.quaternion.setFromUnitVectors(forward, new Vector3(...normal).normalize());
     },
+    capsule: (capsule) => {
+      for (const each of [mesh, caster]) {
+        each?.position.copy(middleOf(capsule));
+        each?.quaternion.setFromUnitVectors(upwards, axisOf(capsule).normalize());
+      }
+    },
+    box: (box) => {
+      for (const each of [mesh, caster]) {
+        each?.position.set(...box.center);
+        each?.quaternion.setFromEuler(turnOf(box));
+      }
+    },
   });
 };
 
-function sphereMaterial(stage: StageUniforms): MeshLambertMaterial {
+/// Of bodies. A round one's mesh is scaled by its radius.
+function bodyMaterial(stage: StageUniforms, round: boolean): MeshLambertMaterial {
   const material = new MeshLambertMaterial({ color: 0xd9d4c8 });
   material.onBeforeCompile = (shader) => {
-    // A little deeper than it is: the middles of the triangles of cloth that lies on it are inside it.
-    shader.vertexShader = shader.vertexShader.replace(
-      "#include <project_vertex>",
-      `#include <project_vertex>
+    // A little deeper than it is where it is round: the middles of the triangles of cloth that lies on it are inside it.
+    if (round)
+      shader.vertexShader = shader.vertexShader.replace(
+        "#include <project_vertex>",
+        `#include <project_vertex>
       float more = 1.0 + 0.08 * length(modelViewMatrix[0]) / length(mvPosition.xyz);
       vec4 deeper = projectionMatrix * vec4(more * mvPosition.xyz, 1.0);
       gl_Position.z = deeper.z / deeper.w * gl_Position.w;`,
-    );
+      );
     shader.fragmentShader = shader.fragmentShader.replace(
       "#include <opaque_fragment>",
       `${porcelain}\n#include <opaque_fragment>`,
@@ -112,18 +167,20 @@ export function groundMaterial(uniforms: Record<string, IUniform>, solid: boolea
   });
 }
 
-/// Makes the meshes of shapes; these share their geometries and materials.
+/// Makes the meshes of shapes; these share their materials, and the geometries that a scale fits to a shape.
 export class SolidMaker {
   readonly disc = new CircleGeometry(1, 64);
   private readonly sphere = new SphereGeometry(1, 40, 24);
   private readonly coarseSphere = new SphereGeometry(1, 16, 10); // enough for a blurred shadow
-  private readonly sphereMaterial;
+  private readonly roundMaterial;
+  private readonly flatMaterial;
   private readonly planeMaterial;
   private readonly casterMaterial = casterMaterial();
   private readonly depthMaterial = casterMaterial();
 
   constructor(stage: StageUniforms, ground: Record<string, IUniform>) {
-    this.sphereMaterial = sphereMaterial(stage);
+    this.roundMaterial = bodyMaterial(stage, true);
+    this.flatMaterial = bodyMaterial(stage, false);
     this.planeMaterial = groundMaterial(ground, true);
   }
 
@@ -131,10 +188,8 @@ export class SolidMaker {
   make(shape: Shape, far: number): Shown | null {
     return byKind<Shown>(shape, {
       sphere: ({ radius }) => {
-        const mesh = new Mesh(this.sphere, this.sphereMaterial);
+        const mesh = this.body(this.sphere, this.roundMaterial);
         mesh.scale.setScalar(radius);
-        mesh.castShadow = mesh.receiveShadow = true;
-        mesh.customDepthMaterial = this.depthMaterial;
         const caster = new Mesh(this.coarseSphere, this.casterMaterial);
         caster.scale.setScalar(radius);
         return { mesh, caster };
@@ -144,13 +199,33 @@ export class SolidMaker {
         mesh.scale.setScalar(far);
         return { mesh, caster: null };
       },
+      capsule: (capsule) => {
+        const lengths = axisOf(capsule).length() / capsule.radius;
+        return this.own(new CapsuleGeometry(1, lengths, 12, 40), this.roundMaterial, capsule.radius);
+      },
+      box: ({ half: [x, y, z] }) => this.own(new BoxGeometry(2 * x, 2 * y, 2 * z), this.flatMaterial, 1),
     });
+  }
+
+  private body(geometry: BufferGeometry, material: MeshLambertMaterial): Mesh {
+    const mesh = new Mesh(geometry, material);
+    mesh.castShadow = mesh.receiveShadow = true;
+    mesh.customDepthMaterial = this.depthMaterial;
+    return mesh;
+  }
+
+  /// A body with a geometry of its own.
+  private own(geometry: BufferGeometry, material: MeshLambertMaterial, scale: number): Shown {
+    const mesh = this.body(geometry, material);
+    const caster = new Mesh(geometry, this.casterMaterial);
+    for (const each of [mesh, caster]) each.scale.setScalar(scale);
+    return { mesh, caster, dispose: () => geometry.dispose() };
   }
 
   /// Objects with the materials of every body and of its shadow: see ClothView.samples.
   samples(): { shown: Object3D[]; cast: Object3D[] } {
     return {
-      shown: [new Mesh(this.sphere, this.sphereMaterial)],
+      shown: [this.roundMaterial, this.flatMaterial].map((material) => new Mesh(this.sphere, material)),
       cast: [new Mesh(this.coarseSphere, this.casterMaterial)],
     };
   }
