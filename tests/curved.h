@@ -1,7 +1,10 @@
 // Meshes that are curved at rest, for tests of finite elements.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <map>
 #include <random>
 #include <utility>

