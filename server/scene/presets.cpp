@@ -21,7 +21,7 @@ const std::vector<Preset>& presets() {
       {"trampoline", "held along its four edges, with a sphere driven into it from above"},
       {"fabrics", "cotton, silk, denim and a knit over equal balls"},
       {"skirt", "two panels sewn together, on a waistband that turns"},
-      {"poncho", "a square with a hole for the neck falls over a head and shoulders that sway"},
+      {"poncho", "a square with a hole for the neck hangs from a collar on shoulders that sway"},
       {"blowup", "a time step beyond the stability limit, on purpose"},
   };
   return list;

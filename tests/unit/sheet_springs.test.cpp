@@ -67,7 +67,7 @@ TEST_CASE("the same sheet gives way alike however it is cut into triangles, and 
       // Lines of tension bend in irregular meshes, whose springs cannot all be balanced: that makes them
       // softer. Without stiffnesses of their own, diagonals of one direction would make this a factor of 3.
       CHECK(test::yielding(test::sheet_of(cut, cells, isotropic), load) / triangles ==
-            Approx(1.0).margin(cut == Cut::irregular ? 0.08 : 0.05));
+            Approx(1.0).margin(cut == Cut::irregular ? 0.1 : 0.05));
     }
   }
 }
