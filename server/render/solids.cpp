@@ -76,7 +76,6 @@ class Strips {
     }
     vertices_ = gl::Buffer(all);
     glCreateVertexArrays(1, &array_);
-    glVertexArrayVertexBuffer(array_, 0, vertices_.id(), 0, sizeof(Vertex));
     attribute(attribute_position, offsetof(Vertex, corner));
     attribute(attribute_normal, offsetof(Vertex, direction));
   }
@@ -92,8 +91,9 @@ class Strips {
  private:
   void attribute(GLuint index, std::size_t offset) const {
     glEnableVertexArrayAttrib(array_, index);
-    glVertexArrayAttribFormat(array_, index, 3, GL_FLOAT, GL_FALSE, static_cast<GLuint>(offset));
-    glVertexArrayAttribBinding(array_, index, 0);
+    glVertexArrayAttribFormat(array_, index, 3, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayVertexBuffer(array_, index, vertices_.id(), static_cast<GLintptr>(offset), sizeof(Vertex));
+    glVertexArrayAttribBinding(array_, index, index);
   }
 
   gl::Buffer vertices_;

@@ -1,7 +1,8 @@
 // The solids that cloth meets. Each kind is everything within a radius of a core: of a point (sphere), of the
 // half-space behind a plane through the point whose normal is the direction (plane), of a line (capsule), of a cuboid
-// (box: its own radius is 0, that of the distance kept from it is not). A vertex is stopped by a swept test (Bridson, Fedkiw & Anderson 2002, section 4), so that a fast one does not pass through.
-// In the common subset of GLSL and C++ (see types.glsl, elements.h). Needs contact.glsl.
+// (box: its own radius is 0, that of the distance kept from it is not). A vertex is stopped by a swept test (Bridson,
+// Fedkiw & Anderson 2002, section 4), so that a fast one does not pass through. In the common subset of GLSL and C++
+// (see types.glsl, elements.h). Needs contact.glsl.
 
 /// The kinds, in the order of scene::Shape.
 const int solid_sphere = 0;

@@ -137,7 +137,7 @@ export const place = ({ mesh, caster }: Shown, shape: Shape): void => {
 function bodyMaterial(stage: StageUniforms, round: boolean): MeshLambertMaterial {
   const material = new MeshLambertMaterial({ color: 0xd9d4c8 });
   material.onBeforeCompile = (shader) => {
-    // A little deeper than it is where it is round: the middles of the triangles of cloth that lies on it are inside it.
+    // A round one is drawn a little deeper than it is: the middles of the triangles of cloth on it are inside it.
     if (round)
       shader.vertexShader = shader.vertexShader.replace(
         "#include <project_vertex>",
