@@ -1,10 +1,10 @@
-// Provot 1995, section 4: after a step of any method, springs (and threads of triangles: sheet.glsl) beyond their limit are shortened by moving their ends,
-// each by its inverse mass, until none is too long; the velocities take the same correction. All springs are handled at
-// once, from the positions of the sweep before (projected Jacobi), so the outcome depends on no order. A spring pulls
-// along its direction at the step's start, as in SHAKE (Ryckaert, Ciccotti & Berendsen 1977), which keeps the angular
-// momentum; if it has turned by more than 60 degrees in the step, along its present direction. Each spring's pull is
-// kept and begins the next step (warm starting): otherwise the weight of a hanging cloth would have to find its way up
-// to the pins anew in every step.
+// Provot 1995, section 4: after a step of any method, springs beyond their limit (sheet.glsl: threads of triangles) are
+// shortened by moving their ends, each by its inverse mass, until none is too long; the velocities take the same
+// correction. All are handled at once, from the positions of the sweep before (projected Jacobi), so the outcome
+// depends on no order. A spring pulls along its direction at the step's start, as in SHAKE (Ryckaert, Ciccotti &
+// Berendsen 1977), which keeps the angular momentum; if it has turned by more than 60 degrees in the step, along its
+// present direction. Each spring's pull is kept and begins the next step (warm starting): otherwise the weight of a
+// hanging cloth would have to find its way up to the pins anew in every step.
 layout(local_size_x = GROUP_SIZE) in;
 #include "../access.glsl"
 #include "../rarely.glsl"

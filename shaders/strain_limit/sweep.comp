@@ -1,5 +1,6 @@
-// The strain limit, one sweep: each spring's or thread's pull changes by a part of what it lacks, and its ends move accordingly. A
-// work group first reads what the sweep before found; if that was good enough, all groups leave everything as it is.
+// The strain limit, one sweep: the pull of each spring or thread changes by a part of what it lacks, and its ends move
+// accordingly. A work group first reads what the sweep before found; if that was good enough, all groups leave
+// everything as it is.
 #include "strain_limit.glsl"
 #ifdef SHEETS
 #include "sheet.glsl"
