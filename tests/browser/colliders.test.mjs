@@ -32,12 +32,12 @@ browserTest(
       const at = (mesh, ...point) => mesh.localToWorld(mesh.position.clone().set(...point)).toArray();
       const [capsule, box, still] = stage.colliders.shown.map(({ mesh }) => mesh);
       for (const mesh of [capsule, box, still]) mesh.updateMatrixWorld();
-      // A capsule's geometry is along its own y axis; a box's edges are along its own axes.
-      const half = Math.hypot(0.4, 0.2) / 2;
+      // A capsule's geometry is along its own y axis, in radii; a box's edges are along its own axes.
+      const half = Math.hypot(0.4, 0.2) / 2 / capsule.scale.y;
       return {
         time: simTime,
         ends: [at(capsule, 0, -half, 0), at(capsule, 0, half, 0)],
-        length: capsule.geometry.parameters.height,
+        length: capsule.geometry.parameters.height * capsule.scale.y,
         corner: at(box, 0.2, 0.1, 0.15),
         still: at(still, 0.2, 0.1, 0.15),
       };

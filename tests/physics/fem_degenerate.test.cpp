@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <string_view>
 
 #include "server/model/stability.h"
 #include "server/scene/method.h"
@@ -37,8 +38,8 @@ scene::Scene sheet(Method method, const scene::TriangleMesh& mesh) {
   scene.gravity = {0.0, -9.81, 0.0};
   scene.air_drag = 2.0;
   scene.cloths = {
-      curved_cloth(mesh, {60.0, 40.0, 0.3, 15.0, {1e-5, 2e-5, std::nullopt}, 2e-3, 30.0, std::nullopt})};
-  scene.cloths[0].pins = {{scene::AtVertex{0}, {}}, {scene::AtVertex{6}, {}}};
+      curved_cloth(mesh, {60.0, 40.0, 0.3, 15.0, {1e-5, 2e-5, std::nullopt}, 1e-3, 30.0, std::nullopt})};
+  scene.cloths[0].pins = {{scene::AtVertex{0}, {}}, {scene::AtVertex{4}, {}}};
   if (scene::iterates(method)) scene.solver.iterations = 20;
   if (!scene::any_step_is_stable(method))
     scene.solver.dt = 0.3 * model::dt_limit(*model::build(scene), scene);
@@ -74,8 +75,8 @@ TEST_CASE(
     "a sheet that starts as a line, a plane, a point, inside out or in a heap recovers, or a blow-up is "
     "told") {
   const auto context = test::context();
-  const scene::TriangleMesh flat = rectangle(6, 6, 0.2, 0.2, 0.2),
-                            curved = cylinder(6, 6, 0.2, 0.2, 8.0, 0.2);
+  const scene::TriangleMesh flat = rectangle(4, 4, 0.2, 0.2, 0.2),
+                            curved = cylinder(4, 4, 0.2, 0.2, 8.0, 0.2);
   struct Case {
     const char* what;
     const scene::TriangleMesh* mesh;
@@ -90,15 +91,18 @@ TEST_CASE(
                                    {"heap of a curved one", &curved, scene::Scatter{0.2, 3}}}};
   for (const Method method : methods)
     for (const auto& [what, mesh, start] : cases) {
+      const bool any_step = scene::any_step_is_stable(method);
+      if (!any_step && std::string_view(what).starts_with("line"))
+        continue;  // many short steps: the rest will do
       scene::Scene scene = sheet(method, *mesh);
       scene.cloths[0].start = start;
-      const Outcome found = outcome(scene, 1.5);
+      const Outcome found = outcome(scene, 1.2);
       INFO(scene::name(method) << ", " << what << ": strain " << found.strain);
       CHECK(found.finite);
       // Hanging still it is strained by 4 to 7 %; the rest is what still swings.
       CHECK((found.blown_up || found.strain < 0.15));
       // What is stable at any step takes any start.
-      if (scene::any_step_is_stable(method)) CHECK_FALSE(found.blown_up);
+      if (any_step) CHECK_FALSE(found.blown_up);
     }
 }
 
@@ -120,7 +124,7 @@ TEST_CASE("a vertex that starts pushed through the far side of its triangles com
     scene.cloths[0].start = scene::Stretch{{-4.5, 1.0, 1.0}};
     const auto start = test::simulation(scene)->read_state().position[0];
     CHECK(start.x < -0.09f);
-    const Outcome found = outcome(scene, 1.5);
+    const Outcome found = outcome(scene, 1.2);
     INFO(scene::name(method) << ": strain " << found.strain);
     CHECK(found.finite);
     CHECK((found.blown_up || found.strain < 0.01));
