@@ -154,7 +154,7 @@ test("an invalid patch answers -32602 with the scene's pointer and changes nothi
 
 test("keys that are not supported yet are refused with that reason", async () => {
   const error = await client.refusal("scene.patch", {
-    patch: { colliders: [{ capsule: { a: [0, 0, 0], b: [0, 1, 0], radius: 0.1 } }] },
+    patch: { colliders: [{ mesh: { obj: "body.obj" } }] },
   });
   assert.equal(error.code, -32602);
   assert.match(error.message, /not supported yet/);

@@ -63,8 +63,8 @@ TEST_CASE("every fabric has a name of one word, says what it is like and where i
     CHECK(each.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz") == std::string::npos);
     CHECK(++names[each.name] == 1);
     CHECK(each.feel.size() > 20);
-    CHECK(each.feel.size() < 90);                    // one line of the menu
-    CHECK_THAT(each.source, Catch::Contains("20"));  // a year
+    CHECK(each.feel.size() < 90);                      // one line of the menu
+    CHECK_THAT(each.source, ContainsSubstring("20"));  // a year
     CHECK(each.sheet.grain == 0.0);
     CHECK_FALSE(each.sheet.strain_limit);
   }
@@ -114,7 +114,7 @@ TEST_CASE("an unknown fabric is refused with its place, the name and the nearest
   CHECK(document.error().where == "/cloths/0/material/fabric");
   CHECK(document.error().what == "\"coton\"");
   CHECK_THAT(document.error().remedy,
-             Catch::Contains("did you mean \"cotton\"?") && Catch::Contains("\"interlock\""));
+             ContainsSubstring("did you mean \"cotton\"?") && ContainsSubstring("\"interlock\""));
 }
 
 TEST_CASE("a Poisson's ratio that a fabric's does not fit an own modulus is refused at its place") {
@@ -122,7 +122,7 @@ TEST_CASE("a Poisson's ratio that a fabric's does not fit an own modulus is refu
   const auto document = scene::validate(scene_with({{"fabric", "silk"}, {"warp", 100}}));
   REQUIRE_FALSE(document);
   CHECK(document.error().where == "/cloths/0/material/poisson");
-  CHECK_THAT(document.error().what, Catch::Contains("0.5, the fabric's"));
+  CHECK_THAT(document.error().what, ContainsSubstring("0.5, the fabric's"));
 }
 
 TEST_CASE("another name changes every number that the document does not have, and no other") {

@@ -182,20 +182,20 @@ TEST_CASE("what makes no sheet is refused with its place: Poisson's ratio, negat
     return document.error().text();
   };
   // 0.9^2 = 0.81 is above 3 / 4.
-  CHECK_THAT(
-      refused(R"({"warp": 300, "weft": 400, "poisson": 0.9})", "verlet"),
-      Catch::Contains("/cloths/0/material/poisson") && Catch::Contains("0.9") && Catch::Contains("0.866"));
-  CHECK_THAT(refused(R"({"warp": -1})", "verlet"), Catch::Contains("/cloths/0/material/warp"));
+  CHECK_THAT(refused(R"({"warp": 300, "weft": 400, "poisson": 0.9})", "verlet"),
+             ContainsSubstring("/cloths/0/material/poisson") && ContainsSubstring("0.9") &&
+                 ContainsSubstring("0.866"));
+  CHECK_THAT(refused(R"({"warp": -1})", "verlet"), ContainsSubstring("/cloths/0/material/warp"));
   CHECK_THAT(refused(R"({"bending": {"warp": 1e-5}})", "verlet"),
-             Catch::Contains("/cloths/0/material/bending/weft"));
+             ContainsSubstring("/cloths/0/material/bending/weft"));
   CHECK_THAT(refused(R"({"strain_limit": {"warp": 0.1}})", "verlet"),
-             Catch::Contains("/cloths/0/material/strain_limit/weft"));
+             ContainsSubstring("/cloths/0/material/strain_limit/weft"));
   CHECK_THAT(refused(R"({"strain_limit": {"warp": 0.1, "weft": 0}})", "verlet"),
-             Catch::Contains("/cloths/0/material/strain_limit/weft"));
+             ContainsSubstring("/cloths/0/material/strain_limit/weft"));
   CHECK_THAT(refused(R"({"strain_limit": 11})", "verlet"),
-             Catch::Contains("/cloths/0/material/strain_limit"));
-  CHECK_THAT(refused(R"({"structural": 100})", "verlet"), Catch::Contains("/cloths/0/material/structural"));
-  CHECK_THAT(refused("{}", "pbd"), Catch::Contains("/solver/method") && Catch::Contains("xpbd"));
+             ContainsSubstring("/cloths/0/material/strain_limit"));
+  CHECK_THAT(refused(R"({"structural": 100})", "verlet"), ContainsSubstring("/cloths/0/material/structural"));
+  CHECK_THAT(refused("{}", "pbd"), ContainsSubstring("/solver/method") && ContainsSubstring("xpbd"));
 }
 
 TEST_CASE("the lab leaves out what has no meaning for a scene, and refuses it if it is asked for by name") {
