@@ -9,8 +9,8 @@
 
 #include "server/reference/rest_shape.h"
 #include "tests/catch.h"
-#include "tests/physics/stage.h"
 #include "tests/small_scenes.h"
+#include "tests/unit/world.h"
 
 using namespace clothlab;
 using glm::dmat2;
