@@ -162,7 +162,9 @@ void connect_triangles(MeshArrays& arrays, const scene::TriangleMesh& mesh, cons
   const auto [pairs, rest] = pairs_of(mesh);
   const std::vector<double> stiffness = sheet_stiffness(mesh.vertices, mesh.triangles, pairs, sheet);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const bool needless = pairs[i].across && springs.bend == 0.0 && stiffness[i] < 1e-3 * sheet.modulus;
+    // Across an edge of triangles without area there is nothing to hold.
+    const double least = springs.bend == 0.0 ? 1e-3 * sheet.modulus : 0.0;
+    const bool needless = pairs[i].across && stiffness[i] <= least;
     if (!needless)
       arrays.springs.push_back({pairs[i].a, pairs[i].b, stiffness[i], damping_time * stiffness[i], rest[i]});
   }
