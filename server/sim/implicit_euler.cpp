@@ -70,7 +70,7 @@ class ImplicitEuler : public Integrator {
     begin(state, row);
     const Vectors* last = nullptr;
     for (int newton = 0; newton < most_newton_steps_; ++newton) {
-      set_up(newton == 0 ? start_position_ : position_);
+      set_up(newton == 0);
       Control solved;
       co_await solve(solved);
       ++work_.newton_steps;
@@ -158,9 +158,10 @@ class ImplicitEuler : public Integrator {
     contact_friction_.bind_storage(slot_grip);
   }
 
-  /// Sets up the linear system at the present estimate, whose positions are in `position`.
-  void set_up(const gl::TextureBuffer& position) {
-    position.bind(unit_position);
+  /// Sets up the linear system at the present estimate, in the first Newton step the state at the step's start.
+  void set_up(bool first) {
+    (first ? start_position_ : position_).bind(unit_position);
+    system_.set("first", first ? 1 : 0);
     velocity_.bind(unit_velocity);
     guess_.bind(unit_change);
     vectors_[0].residual.buffer.bind_storage(slot_residual);

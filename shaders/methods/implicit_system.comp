@@ -10,13 +10,17 @@ layout(std430, binding = slot_preconditioned) writeonly buffer Preconditioned { 
 layout(std430, binding = slot_block_a) writeonly buffer BlockA { vec4 block_a[]; };
 layout(std430, binding = slot_block_b) writeonly buffer BlockB { vec4 block_b[]; };
 uniform float tolerance;  // relative, of the residual
+uniform bool first;       // the first Newton step of the time step
 
 /// Allowed residual of the vertex, squared and over its mass [J]: relative to its own energy and to what forces add in
-/// one step, but not less than the error that rounding of its position makes in its elements' forces.
-float good_enough(float inverse_mass, vec3 v, vec3 force, float stiffness, vec3 x, vec3 d) {
+/// one step. From the second Newton step on it is not less than a tenth of the error that rounding the estimate makes in
+/// forces: a float of size x is off by 2.4e-8 x, the root of the mean square over all floats. A tenth, because rounding
+/// errors of neighbours cancel, and what is left of the residual may push them all the same way. The state at the step's
+/// start counts as exact.
+float good_enough(float inverse_mass, vec3 v, vec3 force, float stiffness, float damping, vec3 x, vec3 u) {
   float own = (dot(v, v) + dt * dt * dot(gravity.xyz, gravity.xyz)) / inverse_mass +
               dt * dt * inverse_mass * dot(force, force);
-  float rounding = 5.96e-8 * dt * stiffness * (length(x) + dt * length(d));
+  float rounding = first ? 0.0 : 2.4e-9 * dt * (stiffness * length(x) + damping * length(u));
   return tolerance * tolerance * own + inverse_mass * rounding * rounding;
 }
 
@@ -26,7 +30,7 @@ void main() {
   vec4 x = FETCH(position, i);
   vec3 u = FETCH(velocity, i).xyz, d = FETCH(change, i).xyz;
   vec3 force = vec3(0.0), product = vec3(0.0), diagonal = vec3(0.0), corner = vec3(0.0);
-  float stiffness = 0.0;
+  float stiffness = 0.0, damping = 0.0;
 #each Law
   for (EntryRange at = entry_range(Law_LIST, i); at.first < at.end; at.first += Law_TEXELS * SLICE_SIZE) {
     LawEntry entry = entry_of_Law(at.first);
@@ -39,7 +43,8 @@ void main() {
     }
     LawMatrix matrix = step_matrix(element_hessian(entry.law, dx), dt);
     force += element_force(entry.law, dx, du);
-    stiffness += element_stiffness(entry.law) + element_damping(entry.law) / dt;
+    stiffness += element_stiffness(entry.law);
+    damping += element_damping(entry.law);
     product += matrix_product(matrix, dd);
     add_block(matrix, diagonal, corner);
   }
@@ -57,6 +62,6 @@ void main() {
   factorise(diagonal + inertia, corner, inertia, a, b);
   block_a[i] = vec4(a, 0.0);
   block_b[i] = vec4(b, 0.0);
-  residual[i] = vec4(r, good_enough(x.w, v, force, stiffness, x.xyz, d));
+  residual[i] = vec4(r, good_enough(x.w, v, force, stiffness, damping, x.xyz, u));
   preconditioned[i] = vec4(filtered(solve_block(a, b, filtered(r, x.w, held)), x.w, held), 0.0);
 }
