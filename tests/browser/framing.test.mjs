@@ -157,6 +157,21 @@ for (const preset of presets) {
   );
 }
 
+browserTest("a page that opens on a wide scene shows all of it beside the panel, which fills later", async () => {
+  const session = "framing-open";
+  const { client } = await here.both(session);
+  await client.request("scene.load", { preset: "fabrics" });
+  await client.request("sim.pause", {});
+  const viewer = await here.open({ session, width: 1280, height: 800, drawn: 1 });
+  await viewer.until(() => window.clothlab.document?.name === "fabrics");
+  await eventually(
+    "all in view",
+    () => viewer.page.evaluate(hiddenPoints, margin),
+    ({ hidden }) => hidden === 0,
+    5000,
+  );
+});
+
 browserTest(
   "a camera that somebody moved stays when the phone is turned, and F brings all of the cloth back",
   async () => {

@@ -39,6 +39,7 @@ export class Layout {
   private readonly handle = button("sheet-handle");
   private readonly hud = element("hud", HTMLDetailsElement);
   private readonly lab = element("lab", HTMLElement);
+  private readonly panel = element("panel", HTMLElement);
   private foldedForLab = false;
 
   constructor(private readonly changed: () => void) {
@@ -77,11 +78,10 @@ export class Layout {
     return [...document.querySelectorAll<HTMLElement>(".card")].flatMap((card) => {
       if (card.hidden || getComputedStyle(card).visibility === "hidden") return [];
       // The lab slides in: its final place counts.
-      return [
-        card === this.lab
-          ? new DOMRect(card.offsetLeft, card.offsetTop, card.offsetWidth, card.offsetHeight)
-          : card.getBoundingClientRect(),
-      ];
+      if (card === this.lab) return [new DOMRect(card.offsetLeft, card.offsetTop, card.offsetWidth, card.offsetHeight)];
+      const box = card.getBoundingClientRect();
+      // The panel fills after the picture, and its sections fold: it has all of its column, or the picture would move.
+      return [card === this.panel && !narrow.matches ? new DOMRect(box.x, 0, box.width, innerHeight) : box];
     });
   }
 
