@@ -52,7 +52,7 @@ void SceneChoice::add_positional(CLI::App& command) {
 }
 
 void SceneChoice::add_option(CLI::App& command) {
-  command.add_option("--scene", name, "a preset's name (see `clothlab presets`) or a scene file")
+  command.add_option("--scene,scene", name, "a preset's name (see `clothlab presets`) or a scene file")
       ->type_name("S")
       ->capture_default_str();
   add_set(command);

@@ -43,6 +43,7 @@ test("--bind beyond loopback with --token serves", async () => {
 test("wrong usage and invalid scenes end with 2 and say what is wrong", async () => {
   const cases = [
     [["--scene", "no-such-preset"], /no-such-preset/],
+    [["no-such-preset"], /no-such-preset: no such file/],
     [["--set", "/solver/dt=-1"], /\/solver\/dt/],
     [["--set", "/cloths/0/pins/0/at=corner:99,0"], /\/cloths\/0\/pins\/0\/at/],
     [["--port", "70000"], /port/],
