@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 namespace clothlab::scene {
 
@@ -22,6 +23,15 @@ double bend_of(const Fem& sheet, double spacing, double area_density) {
   return bending * curvature * curvature / (16.0 * std::pow(shortened, 4.0));
 }
 
+double twice_area_of(const TriangleMesh& mesh, std::size_t triangle) {
+  if (!mesh.pattern.empty()) {
+    const auto& [a, b, c] = mesh.pattern[triangle];
+    return std::abs((b - a).x * (c - a).y - (b - a).y * (c - a).x);
+  }
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  return glm::length(glm::cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]));
+}
+
 }  // namespace
 
 Springs springs_like(const Fem& sheet, double spacing, double area_density) {
@@ -39,6 +49,21 @@ Springs springs_like(const Fem& sheet, double spacing, double area_density) {
   if (sheet.strain_limit)
     springs.strain_limit = std::min(sheet.strain_limit->warp, sheet.strain_limit->weft);  // springs have one
   return springs;
+}
+
+double area(const Mesh& mesh) {
+  if (const Grid* grid = std::get_if<Grid>(&mesh)) return grid->width * grid->height;
+  const TriangleMesh& triangles = std::get<TriangleMesh>(mesh);
+  double twice_area = 0.0;
+  for (std::size_t i = 0; i < triangles.triangles.size(); ++i) twice_area += twice_area_of(triangles, i);
+  return 0.5 * twice_area;
+}
+
+double grid_spacing(const Mesh& mesh) {
+  if (const Grid* grid = std::get_if<Grid>(&mesh))
+    return std::sqrt(grid->width / (grid->columns - 1) * grid->height / (grid->rows - 1));
+  const std::size_t vertices = std::get<TriangleMesh>(mesh).vertices.size();
+  return std::sqrt(area(mesh) / static_cast<double>(std::max<std::size_t>(1, vertices)));
 }
 
 }  // namespace clothlab::scene

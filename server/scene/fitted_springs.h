@@ -25,4 +25,10 @@ namespace clothlab::scene {
 /// fine grid (where it would) the springs are softer than the sheet when bent.
 Springs springs_like(const Fem& sheet, double spacing, double area_density);
 
+/// Area of the mesh at rest [m^2], of its flat pattern if it has one, were its transform's scale 1.
+double area(const Mesh& mesh);
+
+/// Spacing of the square grid that has as many vertices on the same area [m], were its transform's scale 1.
+double grid_spacing(const Mesh& mesh);
+
 }  // namespace clothlab::scene

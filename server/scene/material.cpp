@@ -1,7 +1,5 @@
 // Reads the material of a cloth: springs or a sheet, with numbers of its own or those of a fabric.
-#include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 
 #include "server/base/text.h"
 #include "server/scene/fabrics.h"
@@ -29,26 +27,6 @@ struct Numbers {
 std::optional<double> read_optional(const Reader& object, const std::string& key, const Range& range) {
   const Reader member = object.member(key, json(nullptr));
   return member.is_null() ? std::nullopt : std::optional(member.number(range));
-}
-
-double twice_area_of(const TriangleMesh& mesh, std::size_t triangle) {
-  if (!mesh.pattern.empty()) {
-    const auto& [a, b, c] = mesh.pattern[triangle];
-    return std::abs((b - a).x * (c - a).y - (b - a).y * (c - a).x);
-  }
-  const auto& [a, b, c] = mesh.triangles[triangle];
-  return glm::length(glm::cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]));
-}
-
-/// Of the square grid that has as many vertices on the same area [m], were its transform's scale 1.
-double spacing(const Mesh& mesh) {
-  if (const Grid* grid = std::get_if<Grid>(&mesh))
-    return std::sqrt(grid->width / (grid->columns - 1) * grid->height / (grid->rows - 1));
-  const TriangleMesh& triangles = std::get<TriangleMesh>(mesh);
-  double twice_area = 0.0;
-  for (std::size_t i = 0; i < triangles.triangles.size(); ++i) twice_area += twice_area_of(triangles, i);
-  return std::sqrt(0.5 * twice_area /
-                   static_cast<double>(std::max<std::size_t>(1, triangles.vertices.size())));
 }
 
 Springs read_springs(const Reader& material, const Fabric* fabric, double spacing) {
@@ -140,7 +118,7 @@ FabricMaterial read_material(const Reader& material, const Mesh& mesh, double sc
   const char* standard = material.has("fabric") ? "fem" : "springs";
   const std::string model = material.member("model", standard).choice({"springs", "fem"});
   if (model == "fem") return {read_sheet(material, fabric), fabric};
-  return {read_springs(material, fabric, fabric ? scale * spacing(mesh) : 0.0), fabric};
+  return {read_springs(material, fabric, fabric ? scale * grid_spacing(mesh) : 0.0), fabric};
 }
 
 }  // namespace clothlab::scene

@@ -200,6 +200,41 @@ TEST_CASE("a sheet that is alike along warp and weft and hangs stiff needs no mo
   CHECK(isotropic.reason == "the scene has no cloth of finite elements whose warp and weft differ");
 }
 
+TEST_CASE("springs are fitted to a sheet of triangles, too, and suffice where it is isotropic") {
+  const auto context = test::context();
+  // Springs on triangles act as an isotropic sheet that contracts by a third of its stretch.
+  nlohmann::json value =
+      swinging_sheet(
+          R"("warp": 90, "weft": 90, "poisson": 0.3333, "shear": 33.75, "bending": 1e-5, "damping": 0.0005)")
+          .value;
+  nlohmann::json& cloth = value["cloths"][0];
+  cloth["mesh"] = {{"vertices", nlohmann::json::array()}, {"triangles", nlohmann::json::array()}};
+  cloth["pins"] = nlohmann::json::array();
+  for (int row = 0; row < 9; ++row)
+    for (int column = 0; column < 9; ++column) {
+      cloth["mesh"]["vertices"].push_back({0.05 * column, 0.0, 0.05 * row});
+      const int a = 9 * row + column, b = a + 1, c = a + 10, d = a + 9;
+      if (row == 0) cloth["pins"].push_back({{"at", "vertex:" + std::to_string(a)}});
+      if (row == 8 || column == 8) continue;
+      const bool turned = (row + column) % 2 == 1;
+      cloth["mesh"]["triangles"].push_back({a, b, turned ? d : c});
+      cloth["mesh"]["triangles"].push_back({turned ? b : a, c, d});
+    }
+  const scene::Document whole = document_of(value.dump());
+  lab::SimplifyRequest request{2e-2, 0.2};
+  request.timer = [](const scene::Scene& scene) {
+    return (std::holds_alternative<scene::Fem>(scene.cloths[0].material) ? 2.0 : 1.0) / scene.solver.dt;
+  };
+  const Simplification result = simplified(whole, request);
+  REQUIRE(result.whole.measured);
+  const Variant& springs = variant(result, "with springs instead of finite elements");
+  INFO((springs.measured ? result.why : springs.reason));
+  REQUIRE(springs.measured);
+  CHECK(*springs.change > 1e-6);
+  CHECK(*springs.change < 2e-2);
+  CHECK(result.why.find("Springs suffice here: ") == 0);
+}
+
 TEST_CASE(
     "where warp and weft differ much and the grain is oblique, neither springs nor one stiffness suffices") {
   const auto context = test::context();

@@ -6,6 +6,7 @@
 #include "server/lab/measure/coarsen.h"
 #include "server/model/model.h"
 #include "server/scene/fitted_springs.h"
+#include "server/scene/sections.h"
 
 namespace clothlab::lab {
 
@@ -83,18 +84,18 @@ Result<Document> undamped(const Document& document) {
   return scene::validate(std::move(value), document.assets);
 }
 
-/// The mass of a square metre of a grid [kg/m^2]; weights not counted.
-double area_density(const scene::Cloth& cloth, const scene::Grid& grid) {
+/// The mass of a square metre of the sheet [kg/m^2]; weights not counted.
+double area_density(const scene::Cloth& cloth) {
   if (cloth.mass.kind == scene::Mass::Kind::area_density) return cloth.mass.value;
-  const double area = grid.width * grid.height * cloth.transform.scale * cloth.transform.scale;
-  return cloth.mass.value * grid.columns * grid.rows / area;
+  const double scale = cloth.transform.scale;
+  return cloth.mass.value * static_cast<double>(scene::vertex_count(cloth.mesh)) /
+         (scene::area(cloth.mesh) * scale * scale);
 }
 
-json fitted_springs(const scene::Cloth& cloth, const scene::Grid& grid) {
-  const double cells = static_cast<double>(grid.columns - 1) * (grid.rows - 1);
-  const double spacing = cloth.transform.scale * std::sqrt(grid.width * grid.height / cells);
+json fitted_springs(const scene::Cloth& cloth) {
+  const double spacing = cloth.transform.scale * scene::grid_spacing(cloth.mesh);
   const scene::Springs springs =
-      scene::springs_like(std::get<scene::Fem>(cloth.material), spacing, area_density(cloth, grid));
+      scene::springs_like(std::get<scene::Fem>(cloth.material), spacing, area_density(cloth));
   json material{{"model", "springs"},
                 {"structural", springs.structural},
                 {"shear", springs.shear},
@@ -111,11 +112,7 @@ Result<Document> springs_instead(const Document& document) {
   for (std::size_t i = 0; i < document.scene.cloths.size(); ++i) {
     const scene::Cloth& cloth = document.scene.cloths[i];
     if (!is_sheet(cloth)) continue;
-    const auto* grid = std::get_if<scene::Grid>(&cloth.mesh);
-    if (!grid)
-      return Error{"/cloths/" + std::to_string(i) + "/mesh", "springs are fitted to a sheet on grids only",
-                   "a grid"};
-    value["cloths"][i]["material"] = fitted_springs(cloth, *grid);
+    value["cloths"][i]["material"] = fitted_springs(cloth);
     // Springs have no fabric that a document could leave the mass to.
     const bool by_area = cloth.mass.kind == scene::Mass::Kind::area_density;
     value["cloths"][i]["mass"] = {{by_area ? "area_density" : "per_vertex", cloth.mass.value}};
