@@ -20,7 +20,7 @@ namespace clothlab::scene {
 ///
 /// Lost are the difference of warp and weft, the grain, Poisson's ratio (it follows from shear: a soft knit's
 /// comes out too large), and bending itself: a spring to the second neighbour resists small curvatures not at
-/// all and large ones more than in proportion, resists no twist, and bent along the diagonal does an eighth.
+/// all, large ones more than in proportion, no twist, and bending along the diagonal with an eighth.
 /// No stiffness is ever negative. Bend never stiffens the sheet by more than half of what is structural: on a
 /// fine grid (where it would) the springs are softer than the sheet when bent.
 Springs springs_like(const Fem& sheet, double spacing, double area_density);

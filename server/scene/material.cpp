@@ -40,7 +40,7 @@ double twice_area_of(const TriangleMesh& mesh, std::size_t triangle) {
   return glm::length(glm::cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]));
 }
 
-/// Of the square grid that has as many vertices on the same area [m], were its transform's scale 1.
+/// Spacing [m] of the square grid with as many vertices on the same area, at a transform's scale of 1.
 double spacing(const Mesh& mesh) {
   if (const Grid* grid = std::get_if<Grid>(&mesh))
     return std::sqrt(grid->width / (grid->columns - 1) * grid->height / (grid->rows - 1));
@@ -63,7 +63,7 @@ Springs read_springs(const Reader& material, const Fabric* fabric, double spacin
                  read_optional(material, "strain_limit", ranges::strain_limit)};
 }
 
-/// Of a sheet that bends alike in all directions, or one number for each.
+/// Bending stiffness: one number for all directions, or one for each of them.
 Fem::Bending read_bending(const Reader& bending) {
   if (!bending.is_object()) {
     const double alike = bending.number(ranges::bending);

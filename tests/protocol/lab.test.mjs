@@ -18,8 +18,8 @@ let server;
 before(async () => (server = await Server.start("--max-sessions", "32")));
 after(() => server.stop());
 
-// Sessions are paused but where a test wants one that plays: they go on after their test, and would leave the lab, whose
-// thread has the lowest priority, little of a small machine.
+// Sessions are paused but where a test wants one that plays: they go on after their test, and would leave little of a
+// small machine to the lab, whose thread has the lowest priority.
 let sessions = 0;
 async function enter({ at = server, session = `lab-${++sessions}`, plays = false } = {}) {
   const client = await Client.connect(at, { session });
