@@ -1,6 +1,7 @@
 // Scenes as plain data for the tests, and the OpenGL context they run in.
 #pragma once
 
+#include <cstdlib>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
@@ -20,6 +21,14 @@ inline std::unique_ptr<gl::Context> context() {
   INFO((made ? "" : made.error().text()));
   REQUIRE(made);
   return std::move(*made);
+}
+
+/// Such a context whose work groups four threads compute, in an order that differs from run to run, if it is
+/// Mesa's software OpenGL and the process has made no other context before. (Other tests compute on one
+/// thread.)
+inline std::unique_ptr<gl::Context> threaded_context() {
+  setenv("LP_NUM_THREADS", "4", 1);
+  return context();
 }
 
 inline std::unique_ptr<sim::Simulation> simulation(const scene::Scene& scene) {

@@ -4,8 +4,11 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <vector>
 
+#include "server/scene/method.h"
 #include "server/scene/scene.h"
+#include "server/scene/suited.h"
 
 namespace clothlab::test {
 
@@ -89,6 +92,19 @@ inline scene::Scene sheet_of_elements(scene::Method method, double dt, int side,
   cloth.mass = {scene::Mass::Kind::area_density, 0.2};
   cloth.material = scene::Fem{60.0, 40.0, 0.3, 15.0, {1e-5, 4e-5, std::nullopt}, damping, 30.0, std::nullopt};
   return scene;
+}
+
+/// The methods that step a sheet of finite elements.
+inline std::vector<scene::Method> sheet_methods() {
+  return *scene::suited_methods(sheet_of_elements(scene::Method::verlet, 1e-4, 3), {});
+}
+
+/// Gives a method that iterates steps of 2 ms, and iterations enough for sheets of some hundred vertices.
+inline void iterate_well(scene::Solver& solver) {
+  if (!scene::iterates(solver.method)) return;
+  solver.dt = 2e-3;
+  solver.iterations = scene::solves(solver.method) ? 20 : 30;
+  solver.tolerance = 1e-6;
 }
 
 }  // namespace clothlab::test

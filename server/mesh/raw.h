@@ -1,4 +1,4 @@
-// A mesh as its file has it: polygons, and corners that name places and texture coordinates. Internal to
+// A mesh as its file has it: polygons, and corners as numbers of places and texture coordinates. Internal to
 // server/mesh.
 #pragma once
 
@@ -24,7 +24,7 @@ struct Raw {
   std::vector<glm::dvec2> texture;
   std::vector<Corner> corners;
   std::vector<Face> faces;
-  std::size_t triangles = 0;  ///< of which the faces will be made
+  std::size_t triangles = 0;  ///< into which the faces will be cut
   const char* line_word = "line";
 
   Error error(std::size_t line, std::string what, std::string remedy) const;

@@ -25,7 +25,7 @@ inline elements::ConstraintGains constraint_gains(const scene::Solver& solver, c
                                                   double inverse_mass) {
   return constraint_gains(solver, law.stiffness, law.damping, inverse_mass);
 }
-/// Laws whose constraint has more than one number know their stiffness themselves: dt^2, dt, and memory.
+/// For a law whose constraint is several numbers, and holds its stiffness itself: dt^2, dt, and full memory.
 template <class Law>
 elements::ConstraintGains constraint_gains(const scene::Solver& solver, const Law&, double) {
   return {solver.dt * solver.dt, solver.dt, 1.0, 0.0};

@@ -77,9 +77,7 @@ class Batches {
   bool operator==(const Batches& other) const { return batches_ == other.batches_; }
 
  private:
-  std::tuple<Batch<elements::Spring>, Batch<elements::Membrane>, Batch<elements::Bending>,
-             Batch<elements::Shell>, Batch<elements::Curvature>>
-      batches_;
+  elements::PerLaw<Batch, elements::AllLaws> batches_;
 };
 
 /// An element's edges as seen from one of its corners. `difference(vertex)` must return the value at this

@@ -4,25 +4,16 @@
 
 #include <array>
 #include <cstdint>
-#include <glm/vec2.hpp>
 #include <vector>
 
+#include "server/model/bending_pairs.h"
+#include "server/model/unfold.h"
+
 namespace clothlab::model {
-
-using glm::dvec2;
-
-/// A triangle at rest, laid flat: its corners counter-clockwise [m], x along the warp and y along the weft.
-using FlatTriangle = std::array<dvec2, 3>;
 
 /// Moment a metre of width over curvature [N m].
 struct PlateStiffness {
   double warp = 0, weft = 0, twist = 0;
-};
-
-/// Stiffness of one pair of vertices [N/m], of either sign.
-struct BendingPair {
-  std::uint32_t a = 0, b = 0;  ///< a < b
-  double stiffness = 0;
 };
 
 /// The pairs of a plate, each once, in rising order. Its energy is the sum of
@@ -37,9 +28,8 @@ struct BendingPair {
 /// `triangles` [triangle_count] index `held` [vertex_count]; `flat` [triangle_count] are their rest shapes,
 /// each in its own place in the plane: neighbours are unfolded across their common edge. An edge of more than
 /// two triangles passes no moment.
-std::vector<BendingPair> bending_pairs(const std::vector<std::array<std::uint32_t, 3>>& triangles,
-                                       const std::vector<FlatTriangle>& flat, const std::vector<char>& held,
-                                       const PlateStiffness& stiffness);
+std::vector<BendingPair> bending_pairs(const Triangles& triangles, const std::vector<FlatTriangle>& flat,
+                                       const std::vector<char>& held, const PlateStiffness& stiffness);
 
 /// The energy of one triangle of a plate as half the sum of three squares, each of a linear form of the
 /// places of the vertices around it: the triangle's own corners first. Unused places repeat the first vertex,
@@ -51,8 +41,7 @@ struct CurvatureRows {
 };
 
 /// The same energy as `bending_pairs`, triangle by triangle; clamps are left out.
-std::vector<CurvatureRows> curvature_rows(const std::vector<std::array<std::uint32_t, 3>>& triangles,
-                                          const std::vector<FlatTriangle>& flat,
+std::vector<CurvatureRows> curvature_rows(const Triangles& triangles, const std::vector<FlatTriangle>& flat,
                                           const std::vector<char>& held, const PlateStiffness& stiffness);
 
 /// The pairs that have the energy of the rows, each once, in rising order; none of two `held` vertices.

@@ -16,10 +16,10 @@ namespace clothlab::model {
 
 namespace {
 
-/// What a vertex feels as it depends on the strain e, from springs of the directions n and w = stiffness *
-/// length^2: the force is the sum of w/length (n.e.n) n, and the tensions times the area are the sum of w/2
-/// (n.e.n) n n. Both are symmetric in all indices: ten and fifteen numbers, weighted so that the product of
-/// two is their sum over all indices.
+/// Force and tension at a vertex, as they depend on the strain e, from springs of the directions n and w =
+/// stiffness * length^2: the force is the sum of w/length (n.e.n) n, and the tensions times the area are the
+/// sum of w/2 (n.e.n) n n. Both are symmetric in all indices: ten and fifteen numbers, weighted so that the
+/// product of two is their sum over all indices.
 struct Felt {
   std::array<double, 10> force{};
   std::array<double, 15> tension{};
@@ -122,8 +122,8 @@ class Fit {
     double most_w() const { return most_stiffness * length * length; }
   };
 
-  /// What all springs together would carry under a stretch in all directions, over what they do: 1 in regular
-  /// meshes, up to 1.1 in irregular ones, where bounds keep springs from what they should do.
+  /// Tension that all springs should carry in a stretch in all directions, over what they do carry: 1 in
+  /// regular meshes, up to 1.1 in irregular ones, where bounds keep springs from what they should do.
   double shortfall() const {
     double sheet = 0.0, carried = 0.0;
     for (const Spring& spring : springs_) carried += spring.w;

@@ -23,21 +23,21 @@ struct Rise {
 };
 
 /// A triangle's three forms, which at rest are `along_normal` times its normal, and their energy: half the
-/// sum of squares of what they differ from that.
+/// sum of the squares of their differences from that.
 struct CurvedTriangle {
   CurvatureRows rows;
   std::array<double, 3> along_normal{};  ///< [sqrt(N m)]
 };
 
 /// The triangles of the plate (see curvature_rows) with the curvatures that `rest` [vertex_count] [m] gives
-/// them. What a form has at rest along the triangle's plane is taken off it as a form of the triangle's own
-/// corners, which turns and stretches with them.
+/// them. The part of a form that at rest lies in the triangle's plane is subtracted, as a form of the
+/// triangle's own corners, which turns and stretches with them.
 std::vector<CurvedTriangle> curved_triangles(std::vector<CurvatureRows> plate,
                                              const std::vector<dvec3>& rest);
 
-/// The part of the triangles' energy that the pairs of their rows have not: the sum over all rises of
+/// What the triangles' energy has beside that of the pairs made from their rows: the sum over all rises of
 ///   pull (rest height / 2 - height).
-/// None of held vertices alone.
+/// A rise of held vertices alone is left out.
 std::vector<Rise> rises(const std::vector<CurvedTriangle>& triangles, const std::vector<dvec3>& rest,
                         const std::vector<char>& held);
 

@@ -20,15 +20,15 @@ namespace clothlab::scene {
 ///
 /// Lost are the difference of warp and weft, the grain, Poisson's ratio (it follows from shear: a soft knit's
 /// comes out too large), and bending itself: a spring to the second neighbour resists small curvatures not at
-/// all and large ones more than in proportion, resists no twist, and bent along the diagonal does an eighth.
+/// all, large ones more than in proportion, no twist, and bending along the diagonal with an eighth.
 /// No stiffness is ever negative. Bend never stiffens the sheet by more than half of what is structural: on a
 /// fine grid (where it would) the springs are softer than the sheet when bent.
 Springs springs_like(const Fem& sheet, double spacing, double area_density);
 
-/// Area of the mesh at rest [m^2], of its flat pattern if it has one, were its transform's scale 1.
+/// Area of the mesh at rest [m^2], of its flat pattern if it has one, at a transform's scale of 1.
 double area(const Mesh& mesh);
 
-/// Spacing of the square grid that has as many vertices on the same area [m], were its transform's scale 1.
+/// Spacing [m] of the square grid with as many vertices on the same area, at a transform's scale of 1.
 double grid_spacing(const Mesh& mesh);
 
 }  // namespace clothlab::scene

@@ -41,7 +41,7 @@ Springs read_springs(const Reader& material, const Fabric* fabric, double spacin
                  read_optional(material, "strain_limit", ranges::strain_limit)};
 }
 
-/// Of a sheet that bends alike in all directions, or one number for each.
+/// Bending stiffness: one number for all directions, or one for each of them.
 Fem::Bending read_bending(const Reader& bending) {
   if (!bending.is_object()) {
     const double alike = bending.number(ranges::bending);

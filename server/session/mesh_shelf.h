@@ -1,5 +1,5 @@
 // The meshes that operators have uploaded to a session (mesh.upload), beside the files of the server. Their
-// number and size are bounded: to make place, the oldest that the scene does not name is removed. With a
+// number and size are bounded: to make room, the oldest that the scene does not name is removed. With a
 // folder each is kept in a file of its own. It outlives the session's thread.
 #pragma once
 

@@ -10,7 +10,7 @@ namespace clothlab::sim {
 class ThreadLimit {
  public:
   ThreadLimit() = default;
-  /// Of the cloths of finite elements that have a strain limit.
+  /// Takes the cloths of finite elements that have a strain limit.
   ThreadLimit(const model::Model& model, const scene::Scene& scene);
 
   /// Takes over rest shapes, masses and pins, which may change without new kernels.

@@ -88,6 +88,9 @@ inline constexpr std::size_t law_count = std::tuple_size_v<Laws>;
 using SweptLaws = std::tuple<Spring, Membrane, Curvature>;
 inline constexpr std::size_t swept_count = std::tuple_size_v<SweptLaws>;
 
+/// All of them, each once.
+using AllLaws = std::tuple<Spring, Membrane, Bending, Shell, Curvature>;
+
 template <class Law>
 inline constexpr std::size_t corners = Facts<Law>::corners;
 template <class Law>

@@ -22,9 +22,11 @@ const out = join(here, `results/equal_error-${machine}.json`);
 writeFileSync(out, measured.replace(' "methods": [', `${JSON.stringify(about, null, 1).slice(2, -2)},\n "methods": [`));
 
 const { methods } = JSON.parse(readFileSync(out, "utf8"));
-const cell = (t) =>
-  t.reached
-    ? `${Number(t.ms_a_simulated_s.median.toPrecision(3))} (${Number((1000 * t.dt_s).toPrecision(2))} ms${t.iterations > 1 ? `, ${t.iterations}` : ""})`
-    : "not reached";
+const digits = (value, count) => Number(value.toPrecision(count));
+const cell = (t) => {
+  if (!t.reached) return "not reached";
+  const iterations = t.iterations > 1 ? `, ${t.iterations}` : "";
+  return `${digits(t.ms_a_simulated_s.median, 3)} (${digits(1000 * t.dt_s, 2)} ms${iterations})`;
+};
 for (const { method, targets } of methods) console.log(`| \`${method}\` | ${targets.map(cell).join(" | ")} |`);
 console.log(`written: ${out}`);

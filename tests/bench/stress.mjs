@@ -127,8 +127,9 @@ Written after the first run.
   \`explicit_euler\` has no damping across them, so 4 µs were predicted, and 80 µs found.
 - \`verlet\` gains energy from 0.3 of its limit on while the table-cloth slides: lasting contact, not the springs.
 - \`pbd\` overstretches a table-cloth that is pulled fast; no number was predicted for it.
-- \`vbd\`: 1e4 N/m were predicted for where the sweeps no longer settle the level sheet at 1/30 s. A sheet falls across its springs, which the sweeps do not
-  hold back, so it is some 300 times better. Beyond, and with a single sweep, it does not explode but keeps moving.
+- \`vbd\`: 1e4 N/m were predicted for where the sweeps no longer settle the level sheet at 1/30 s. A sheet falls across
+  its springs, which the sweeps do not hold back, so it is some 300 times better. Beyond, and with a single sweep, it
+  does not explode but keeps moving.
 - Crumpled cloth under \`vbd\` may keep moving, too: sweeps that end early do not balance its moments.
 - Far from the origin all hold some six times farther than if every last bit flickered at every step, and the three that carry on what
   rounding takes from the positions farther still.

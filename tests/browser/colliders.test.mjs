@@ -4,6 +4,18 @@ import { browserTest, eventually, withServer } from "./browser.mjs";
 
 const { both } = withServer();
 
+/// Starts anew, pauses half a second of the scene's time later, and waits until the page shows the last frame.
+async function stopAfterHalfASecond(viewer, client) {
+  await client.request("sim.reset", {});
+  await eventually(
+    "half a second",
+    () => viewer.read("simTime"),
+    (time) => time > 0.5 && time < 5,
+  );
+  await client.request("sim.pause", {});
+  await viewer.page.waitForTimeout(500);
+}
+
 browserTest(
   "a capsule and a box that spin are on the screen where the session says, and turned as it says",
   async () => {
@@ -19,14 +31,7 @@ browserTest(
       },
     });
     await viewer.until(() => window.clothlab.document?.colliders.length === 3);
-    await client.request("sim.reset", {});
-    await eventually(
-      "half a second",
-      () => viewer.read("simTime"),
-      (time) => time > 0.5 && time < 5,
-    );
-    await client.request("sim.pause", {});
-    await viewer.page.waitForTimeout(500);
+    await stopAfterHalfASecond(viewer, client);
     const seen = await viewer.page.evaluate(() => {
       const { stage, simTime } = window.clothlab;
       const at = (mesh, ...point) => mesh.localToWorld(mesh.position.clone().set(...point)).toArray();
@@ -87,14 +92,7 @@ browserTest(
       },
     });
     await viewer.until(() => window.clothlab.document?.colliders.length === 2);
-    await client.request("sim.reset", {});
-    await eventually(
-      "half a second",
-      () => viewer.read("simTime"),
-      (time) => time > 0.5 && time < 5,
-    );
-    await client.request("sim.pause", {});
-    await viewer.page.waitForTimeout(500);
+    await stopAfterHalfASecond(viewer, client);
     const { time, normal, table, ball } = await viewer.page.evaluate(() => {
       const { stage, simTime } = window.clothlab;
       const [table, ball] = stage.colliders.shown.map(({ mesh }) => mesh);

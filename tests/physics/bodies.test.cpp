@@ -84,7 +84,7 @@ namespace {
 const scene::Shape bar = scene::Capsule{{-0.3, -0.21, 0.0}, {0.3, -0.2, 0.0}, 0.01};
 const scene::Shape board = scene::Box{{0.0, -0.2, 0.0}, {0.3, 0.01, 0.06}, turned_by({0.0, 0.0, 0.05})};
 
-/// Of the vertices in the bar's or the board's way, how many are not ahead of it.
+/// The number of vertices in the bar's or the board's way that are not ahead of it.
 int passed(const scene::Shape& now, const std::vector<dvec3>& home, const std::vector<dvec3>& positions) {
   const scene::Solid solid = scene::solid(now);
   int count = 0;

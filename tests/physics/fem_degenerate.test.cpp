@@ -18,14 +18,6 @@ using scene::Method;
 
 namespace {
 
-constexpr std::array methods{Method::explicit_euler,
-                             Method::symplectic_euler,
-                             Method::verlet,
-                             Method::rk4,
-                             Method::implicit_euler,
-                             Method::xpbd,
-                             Method::vbd};
-
 bool finite(const sim::State& state) {
   for (const auto* values : {&state.position, &state.velocity})
     for (const glm::vec3& value : *values)
@@ -89,14 +81,14 @@ TEST_CASE(
                                    {"line of a curved one", &curved, scene::Stretch{{1.0, 0.0, 0.0}}},
                                    {"plane of a curved one", &curved, scene::Stretch{{1.0, 0.0, 1.0}}},
                                    {"heap of a curved one", &curved, scene::Scatter{0.2, 3}}}};
-  for (const Method method : methods)
+  for (const Method method : sheet_methods())
     for (const auto& [what, mesh, start] : cases) {
       const bool any_step = scene::any_step_is_stable(method);
       if (!any_step && std::string_view(what).starts_with("line"))
         continue;  // many short steps: the rest will do
       scene::Scene scene = sheet(method, *mesh);
       scene.cloths[0].start = start;
-      const Outcome found = outcome(scene, 1.2);
+      const Outcome found = outcome(scene, 0.8);
       INFO(scene::name(method) << ", " << what << ": strain " << found.strain);
       CHECK(found.finite);
       // Hanging still it is strained by 4 to 7 %; the rest is what still swings.
@@ -115,7 +107,7 @@ TEST_CASE("a vertex that starts pushed through the far side of its triangles com
     fan.vertices.push_back({0.1 * std::cos(angle), 0.0, -0.1 * std::sin(angle)});
     fan.triangles.push_back({0, k + 1, (k + 1) % 6 + 1});
   }
-  for (const Method method : methods) {
+  for (const Method method : sheet_methods()) {
     scene::Scene scene = sheet(method, fan);
     scene.gravity = {0.0, -0.1, 0.0};
     scene.cloths[0].pins.clear();
@@ -124,7 +116,7 @@ TEST_CASE("a vertex that starts pushed through the far side of its triangles com
     scene.cloths[0].start = scene::Stretch{{-4.5, 1.0, 1.0}};
     const auto start = test::simulation(scene)->read_state().position[0];
     CHECK(start.x < -0.09f);
-    const Outcome found = outcome(scene, 1.2);
+    const Outcome found = outcome(scene, 0.8);
     INFO(scene::name(method) << ": strain " << found.strain);
     CHECK(found.finite);
     CHECK((found.blown_up || found.strain < 0.01));

@@ -146,7 +146,7 @@ TEST_CASE("a light sheet falls flat on the GPU under PBD, XPBD and VBD, in air a
 }
 
 TEST_CASE("PBD, XPBD and VBD end in the same bits twice, however the steps are grouped, with contacts") {
-  const auto context = test::context();
+  const auto context = test::threaded_context();
   for (const Method method : methods) {
     scene::Scene scene = test::seed();
     scene.solver = {.method = method, .dt = 2e-3, .iterations = 3};

@@ -1,31 +1,16 @@
 // HTTPS and WSS: the certificate, the lowest version of TLS, and no HTTP/2.
 import assert from "node:assert/strict";
-import { spawnSync } from "node:child_process";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import tls from "node:tls";
+import { makeCertificate } from "../certificate.mjs";
 import { Client, runProgram, Server, withTimeout } from "./harness.mjs";
 
 const folder = mkdtempSync(join(tmpdir(), "clothlab-tls-"));
-const [key, certificate] = [join(folder, "key.pem"), join(folder, "certificate.pem")];
-const made = spawnSync("openssl", [
-  "req",
-  "-x509",
-  "-newkey",
-  "rsa:2048",
-  "-nodes",
-  "-keyout",
-  key,
-  "-out",
-  certificate,
-  "-days",
-  "2",
-  "-subj",
-  "/CN=localhost",
-]);
-const skip = made.error ? "there is no openssl to make a certificate with" : false;
+const { key, certificate, made } = makeCertificate(folder);
+const skip = made ? false : "there is no openssl to make a certificate with";
 
 let server;
 before(async () => {

@@ -27,7 +27,7 @@ struct Sample {
     model = *model::build(scene);
   }
 
-  /// Of the springs that start at a vertex of the middle, which are those of one cell: no borders count.
+  /// Energy [J/m^2] of the springs of one cell in the middle, whose ends go where `move` says.
   template <class Move>
   double energy(Move move) const {
     std::vector<glm::dvec3> place;

@@ -1,41 +1,20 @@
 // The scene document, rule by rule: values that just pass and values that just fail.
-#include <algorithm>
 #include <limits>
 
 #include "server/scene/document.h"
-#include "server/scene/method.h"
 #include "server/scene/ranges.h"
-#include "server/scene/suited.h"
 #include "tests/catch.h"
+#include "tests/unit/base_document.h"
 
 using namespace clothlab;
 using scene::json;
+using test::base_document;
 
 namespace {
 
-/// The seed, a floor, wind, an explicit triangle and every motion: a value to change at each place of the
-/// document.
-json base() {
-  json value = scene::load_preset("seed")->value;
-  json triangle = json::parse(
-      R"({"name": "triangle", "mesh": {"vertices": [[0,0,0],[0,0,1],[1,0,0]], "triangles": [[0,1,2]]},
-    "mass": {"area_density": 0.2},
-    "pins": [{"at": "vertex:2", "motion": {"linear": {"velocity": [1,0,0]}}},
-             {"at": {"box": [[-1,-1,-1],[0.1,1,0.1]]},
-              "motion": {"spin": {"axis": [1,0,0], "center": [0,0,0], "degrees_per_second": 72}}}],
-    "weights": [{"at": "vertex:1", "mass": 0.5}], "start": {"scatter": {"size": 0.5}}})");
-  value["cloths"].push_back(triangle);
-  value["colliders"].push_back(
-      json::parse(R"({"name": "floor", "plane": {"point": [0,0,0], "normal": [0,2,0]}})"));
-  value["wind"] = {{"velocity", {2, 0, 0}}};
-  value["colliders"].push_back(json::parse(R"({"capsule": {"a": [0,0,0], "b": [0,1,0], "radius": 0.1}})"));
-  value["colliders"].push_back(json::parse(R"({"box": {"center": [0,0,0], "half": [1,1,1]}})"));
-  return scene::validate(value)->value;
-}
-
 /// The pointer of the error when `pointer` is set to `text`; "valid" when there is none.
 std::string verdict(const std::string& pointer, const std::string& text) {
-  json value = base();
+  json value = base_document();
   value[json::json_pointer(pointer)] = json::parse(text);
   const Result<scene::Document> document = scene::validate(value);
   return document ? "valid" : document.error().where;
@@ -142,7 +121,7 @@ TEST_CASE("features that are not simulated yet are refused by name, never ignore
   };
   for (const auto& [pointer, text] : not_yet) {
     INFO(pointer << " = " << text);
-    json value = base();
+    json value = base_document();
     value[json::json_pointer(pointer)] = json::parse(text);
     const Result<scene::Document> document = scene::validate(value);
     REQUIRE_FALSE(document);
@@ -151,29 +130,9 @@ TEST_CASE("features that are not simulated yet are refused by name, never ignore
   }
 }
 
-TEST_CASE(
-    "finite elements have the material's numbers, one bending stiffness or three, and defaults for the "
-    "rest") {
-  json value = base();
-  value["cloths"][0]["material"] =
-      json::parse(R"({"model": "fem", "warp": 300, "weft": 200, "poisson": 0.2, "shear": 40, "bending": 2e-5,
-                      "damping": 0.002, "grain": 30, "strain_limit": 0.2})");
-  const auto all = std::get<scene::Fem>(scene::validate(value)->scene.cloths[0].material);
-  CHECK(all == scene::Fem{300, 200, 0.2, 40, {2e-5, 2e-5, std::nullopt}, 0.002, 30, 0.2});
-  value["cloths"][0]["material"]["bending"] = {{"warp", 1e-5}, {"weft", 3e-5}, {"twist", 2e-6}};
-  const auto three = std::get<scene::Fem>(scene::validate(value)->scene.cloths[0].material);
-  CHECK(three.bending == scene::Fem::Bending{1e-5, 3e-5, 2e-6});
-  value["cloths"][0]["material"]["strain_limit"] = {{"warp", 0.1}, {"weft", 0.3}};
-  CHECK(scene::validate(value)->scene.cloths[0].strain_limit() == scene::StrainLimit(0.1, 0.3));
-  value["cloths"][0]["material"] = {{"model", "fem"}};
-  const Result<scene::Document> plain = scene::validate(value);
-  CHECK(std::get<scene::Fem>(plain->scene.cloths[0].material) == scene::Fem{});
-  CHECK(plain->value["cloths"][0]["material"]["weft"] == 3801.0);
-}
-
 TEST_CASE("what makes no sheet is refused with its place: Poisson's ratio, negative moduli, PBD") {
   const auto refused = [](const char* material, const char* method) {
-    json value = base();
+    json value = base_document();
     value["cloths"][0]["material"] = json::parse(material);
     value["cloths"][0]["material"]["model"] = "fem";
     value["solver"]["method"] = method;
@@ -198,37 +157,13 @@ TEST_CASE("what makes no sheet is refused with its place: Poisson's ratio, negat
   CHECK_THAT(refused("{}", "pbd"), ContainsSubstring("/solver/method") && ContainsSubstring("xpbd"));
 }
 
-TEST_CASE("the lab leaves out what has no meaning for a scene, and refuses it if it is asked for by name") {
-  json value = base();
-  CHECK(scene::suited_methods(scene::validate(value)->scene, {})->size() == scene::methods.size());
-  value["cloths"][0]["material"] = {{"model", "fem"}};
-  const scene::Scene sheet = scene::validate(value)->scene;
-  const std::vector<scene::Method> suited = *scene::suited_methods(sheet, {});
-  CHECK(suited.size() == scene::methods.size() - 1);
-  CHECK(std::count(suited.begin(), suited.end(), scene::Method::pbd) == 0);
-  CHECK(scene::suited_methods(sheet, {scene::Method::vbd})->size() == 1);
-  const auto refused = scene::suited_methods(sheet, {scene::Method::vbd, scene::Method::pbd});
-  REQUIRE_FALSE(refused);
-  CHECK(refused.error().what == "pbd");
-}
-
-TEST_CASE("every method can be named, and is the one the scene gets") {
-  for (const scene::Method method : scene::methods) {
-    INFO(scene::name(method));
-    const auto named =
-        scene::set_value(*scene::validate(base()), std::string("/solver/method=") + scene::name(method));
-    REQUIRE(named);
-    CHECK(named->scene.solver.method == method);
-  }
-}
-
 TEST_CASE("an unknown key is named with an escaped pointer, the allowed keys and the nearest of them") {
-  json value = base();
+  json value = base_document();
   value["solver"]["d/t~"] = 1;
   Error error = scene::validate(value).error();
   CHECK(error.where == "/solver/d~1t~0");
   CHECK(error.remedy.find("\"dt\", \"iterations\"") != std::string::npos);
-  value = base();
+  value = base_document();
   value["cloths"][0]["material"]["sheer"] = 1;
   error = scene::validate(value).error();
   CHECK(error.where == "/cloths/0/material/sheer");
@@ -236,7 +171,7 @@ TEST_CASE("an unknown key is named with an escaped pointer, the allowed keys and
 }
 
 TEST_CASE("an error shows the value found as JSON, shortened if long and never inside a character") {
-  json value = base();
+  json value = base_document();
   value["solver"]["dt"] = {{"a", 1}};
   CHECK(scene::validate(value).error().what == R"({"a":1})");
   std::string text = "a";
@@ -279,7 +214,7 @@ TEST_CASE("a triangle has three different vertices of its mesh") {
 }
 
 TEST_CASE("all cloths together have at most 2^20 vertices") {
-  json value = base();
+  json value = base_document();
   value["cloths"][0]["mesh"]["grid"]["columns"] = 1024;
   value["cloths"][0]["mesh"]["grid"]["rows"] = 1023;
   CHECK(scene::validate(value));
@@ -289,7 +224,7 @@ TEST_CASE("all cloths together have at most 2^20 vertices") {
 
 TEST_CASE("a number that is not finite never becomes part of a scene") {
   for (const double x : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    json value = base();
+    json value = base_document();
     value["gravity"][1] = x;
     CHECK(scene::validate(value).error().where == "/gravity/1");
   }
@@ -319,7 +254,7 @@ TEST_CASE(
       {"/cloths/1/mesh={\"vertices\":[[0,0,0],[1,0,0]],\"triangles\":[[0,1,0]]}", "/cloths/1/mesh/vertices",
        "2 elements", three},
   };
-  const scene::Document document = *scene::validate(base());
+  const scene::Document document = *scene::validate(base_document());
   for (const Refusal& refusal : refusals) {
     INFO(refusal.assignment);
     const Result<scene::Document> refused = scene::set_value(document, refusal.assignment);
@@ -329,60 +264,4 @@ TEST_CASE(
     CHECK(refused.error().remedy == refusal.allowed);
   }
   CHECK(scene::set_value(document, "/cloths/0/material/structural=1e-30"));
-}
-
-TEST_CASE("the smallest document is a whole scene, with every default in its JSON") {
-  const auto document = scene::validate(json::parse(R"({"version": 1, "cloths": [{"mesh": {"grid": {}}}]})"));
-  REQUIRE(document);
-  json expected = scene::load_preset("seed")->value;
-  expected["name"] = "scene";
-  expected["cloths"][0]["pins"] = json::array();
-  expected["colliders"] = json::array();
-  expected["self_collision"] = nullptr;
-  expected["cloths"][0]["transform"]["translate"] = {0, 0, 0};
-  CHECK(document->value == expected);
-  CHECK(scene::validate(document->value)->value == document->value);
-}
-
-TEST_CASE("a strain limit is a number or null, and null takes it away") {
-  const auto limited = scene::set_value(*scene::load_preset("seed"), "/cloths/0/material/strain_limit=0.1");
-  REQUIRE(limited);
-  CHECK(limited->scene.cloths[0].springs().strain_limit == std::optional(0.1));
-  const auto free = scene::set_value(*limited, "/cloths/0/material/strain_limit=null");
-  REQUIRE(free);
-  CHECK_FALSE(free->scene.cloths[0].springs().strain_limit);
-}
-
-TEST_CASE("a start and weights are read, a seed is filled in, and null or an empty list takes them away") {
-  const scene::Document document = *scene::validate(base());
-  CHECK(document.value["cloths"][1]["start"] == json::parse(R"({"scatter": {"size": 0.5, "seed": 1}})"));
-  CHECK(document.scene.cloths[1].start == scene::Start(scene::Scatter{0.5, 1}));
-  CHECK(document.scene.cloths[1].weights == std::vector{scene::Weight{scene::AtVertex{1}, 0.5}});
-  CHECK(scene::validate(document.value)->scene == document.scene);
-  CHECK(document.scene.cloths[0].start == scene::Start());
-  CHECK(document.scene.cloths[0].weights.empty());
-  const auto flat = scene::set_value(document, "/cloths/1/start={\"scale\": [1, 0, -2]}");
-  REQUIRE(flat);
-  CHECK(flat->scene.cloths[1].start == scene::Start(scene::Stretch{{1, 0, -2}}));
-  const auto plain =
-      scene::apply_patch(*flat, json::parse(R"([{"op": "replace", "path": "/cloths/1/start", "value": null},
-                             {"op": "replace", "path": "/cloths/1/weights", "value": []}])"));
-  REQUIRE(plain);
-  CHECK(plain->scene.cloths[1].start == scene::Start());
-  CHECK(plain->scene.cloths[1].weights.empty());
-}
-
-TEST_CASE("the typed scene holds what the document says, directions normalised") {
-  const scene::Scene scene = scene::validate(base())->scene;
-  CHECK(std::get<scene::Grid>(scene.cloths[0].mesh).columns == 25);
-  CHECK(scene.cloths[0].springs().structural == 20000);
-  CHECK(std::get<scene::AtCorner>(scene.cloths[0].pins[1].at) == scene::AtCorner{24, 0});
-  CHECK(std::get<scene::Oscillate>(scene.cloths[0].pins[1].motion).amplitude == 0.2);
-  CHECK(std::get<scene::TriangleMesh>(scene.cloths[1].mesh).triangles[0] ==
-        std::array<std::uint32_t, 3>{0, 1, 2});
-  CHECK(scene.cloths[1].mass.kind == scene::Mass::Kind::area_density);
-  CHECK(std::get<scene::Spin>(scene.cloths[1].pins[1].motion).degrees_per_second == 72);
-  CHECK(std::get<scene::Plane>(scene.colliders[1].shape).normal == scene::dvec3(0, 1, 0));
-  CHECK(scene.self_collision->thickness == 0.01);
-  CHECK(scene.gravity == scene::dvec3(0, -9.8, 0));
 }

@@ -15,10 +15,11 @@ constexpr double line_height = 1.35;  // a multiple of the font size
 }  // namespace
 
 const char* colour(scene::Method method) {
-  // In the order of scene::Method.
-  constexpr std::array<const char*, 8> colours{"#8c8c8c", "#e69f00", "#0072b2", "#56b4e9",
-                                               "#d55e00", "#cc79a7", "#009e73", "#7a5fb5"};
-  static_assert(colours.size() >= scene::methods.size(), "each method needs a colour, and a mark (plot.cpp)");
+  // In the order of scene::Method; the last four wait for methods to come. Marks differ too (mark_path).
+  constexpr std::array<const char*, 12> colours{"#8c8c8c", "#e69f00", "#0072b2", "#56b4e9",
+                                                "#d55e00", "#cc79a7", "#009e73", "#7a5fb5",
+                                                "#332288", "#999933", "#882255", "#44aa99"};
+  static_assert(colours.size() >= scene::methods.size(), "each method needs a colour");
   return colours[static_cast<std::size_t>(method)];
 }
 

@@ -220,16 +220,19 @@ function thinNote(values: Record<string, unknown>, { thickness_that_holds: holds
   };
 }
 
+/// Puts a part of the scene in, as `start`, or takes it out.
+const onOff = (key: "self_collision" | "wind", start: unknown): Field => ({
+  key: `/${key}`,
+  label: "on",
+  paths: [`/${key}`],
+  kind: "toggle",
+  read: (current) => current[key] !== null,
+  write: (value) => (value ? start : null),
+});
+
 function selfCollisionSection(document: SceneDocument): Section {
   const base = "/self_collision";
-  const toggle: Field = {
-    key: base,
-    label: "on",
-    paths: [base],
-    kind: "toggle",
-    read: (current) => current.self_collision !== null,
-    write: (value) => (value ? { thickness: 0.01, friction: 0.2 } : null),
-  };
+  const toggle = onOff("self_collision", { thickness: 0.01, friction: 0.2 });
   const more: Field[] = document.self_collision
     ? [
         number("thickness", [`${base}/thickness`], { min: 0.001, max: 0.1, log: true, ...meter }, { note: thinNote }),
@@ -241,14 +244,7 @@ function selfCollisionSection(document: SceneDocument): Section {
 
 function windSection(document: SceneDocument): Section {
   const base = "/wind";
-  const toggle: Field = {
-    key: base,
-    label: "on",
-    paths: [base],
-    kind: "toggle",
-    read: (current) => current.wind !== null,
-    write: (value) => (value ? { velocity: [3, 0, 0], gust: 0.3, gust_frequency: 0.7, drag: 1, lift: 0.2 } : null),
-  };
+  const toggle = onOff("wind", { velocity: [3, 0, 0], gust: 0.3, gust_frequency: 0.7, drag: 1, lift: 0.2 });
   const coefficient = { min: 0, max: 3, step: 0.01 };
   const more: Field[] = document.wind
     ? [
