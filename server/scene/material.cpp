@@ -1,4 +1,5 @@
 // Reads the material of a cloth: springs or a sheet, with numbers of its own or those of a fabric.
+#include <algorithm>
 #include <cmath>
 
 #include "server/base/text.h"

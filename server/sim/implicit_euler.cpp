@@ -158,7 +158,8 @@ class ImplicitEuler : public Integrator {
     contact_friction_.bind_storage(slot_grip);
   }
 
-  /// Sets up the linear system at the present estimate, in the first Newton step the state at the step's start.
+  /// Sets up the linear system at the present estimate, in the first Newton step the state at the step's
+  /// start.
   void set_up(bool first) {
     (first ? start_position_ : position_).bind(unit_position);
     system_.set("first", first ? 1 : 0);

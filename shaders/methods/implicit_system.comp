@@ -13,10 +13,10 @@ uniform float tolerance;  // relative, of the residual
 uniform bool first;       // the first Newton step of the time step
 
 /// Allowed residual of the vertex, squared and over its mass [J]: relative to its own energy and to what forces add in
-/// one step. From the second Newton step on it is not less than a tenth of the error that rounding the estimate makes in
-/// forces: a float of size x is off by 2.4e-8 x, the root of the mean square over all floats. A tenth, because rounding
-/// errors of neighbours cancel, and what is left of the residual may push them all the same way. The state at the step's
-/// start counts as exact.
+/// one step. From the second Newton step on it is not less than a tenth of the error that rounding the estimate makes
+/// in forces: a float of size x is off by 2.4e-8 x, the root of the mean square over all floats. A tenth, because
+/// rounding errors of neighbours cancel, and what is left of the residual may push them all the same way. The state at
+/// the step's start counts as exact.
 float good_enough(float inverse_mass, vec3 v, vec3 force, float stiffness, float damping, vec3 x, vec3 u) {
   float own = (dot(v, v) + dt * dt * dot(gravity.xyz, gravity.xyz)) / inverse_mass +
               dt * dt * inverse_mass * dot(force, force);
