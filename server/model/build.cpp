@@ -211,7 +211,7 @@ Result<Model> build(const scene::Scene& scene) {
       scene::sweeps(scene.solver.method) && !scene::sweeps_vertices(scene.solver.method);
   for (const scene::Cloth& cloth : scene.cloths)
     if (Status added = add_cloth(model, cloth, sweeps_elements); !added) return added.error();
-  list_neighbours(model, scene.self_collision.has_value());
+  list_neighbours(model, scene.collides(scene::ContactKind::points));
   return model;
 }
 
