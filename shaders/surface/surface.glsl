@@ -6,6 +6,7 @@
 layout(local_size_x = GROUP_SIZE) in;
 #include "../access.glsl"
 #include "../rarely.glsl"
+#include "../elements/types.glsl"
 #include "../elements/contact.glsl"
 #include "../elements/surface.glsl"
 
