@@ -91,8 +91,12 @@ Report make_report(const Prepared& prepared, const Progress& progress, double wa
                         {"unconverged", work.unconverged}};
   if (const sim::StrainLimitWork work = simulation.strain_limit_work(); work.sweeps > 0)
     report["strain_limit"] = {{"sweeps", work.sweeps}, {"unconverged", work.unconverged}};
-  if (simulation.scene().self_collision)
+  if (simulation.scene().collides(scene::ContactKind::points))
     report["self_collision"] = {{"neighbours_dropped", progress.state.neighbours_dropped}};
+  if (simulation.scene().collides(scene::ContactKind::surface))
+    report["self_collision"] = {{"pairs", progress.state.surface_pairs},
+                                {"cuts", progress.state.surface_cuts},
+                                {"searches", progress.state.surface_searches}};
   report["max_strain"] = progress.state.max_strain;
   report["energy"] = {{"kinetic", progress.state.kinetic},
                       {"elastic", progress.state.elastic},

@@ -213,7 +213,7 @@ Result<Model> build(const scene::Scene& scene) {
   for (const scene::Cloth& cloth : scene.cloths)
     if (Status added = add_cloth(model, cloth, sweeps_elements); !added) return added.error();
   if (Status clean = check_start(model, scene); !clean) return clean.error();
-  list_neighbours(model, scene.self_collision.has_value());
+  list_neighbours(model, scene.collides(scene::ContactKind::points));
   return model;
 }
 

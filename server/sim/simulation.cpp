@@ -106,11 +106,19 @@ struct Simulation::Implementation {
       co_await kernels.update_lists(scene);
       passed("neighbour_search");
     }
+    if (kernels.surface_contact) {
+      co_await kernels.surface_contact->update_pairs(state);
+      passed("pair_search");
+    }
     co_await kernels.integrator->step(state, row);
     passed(scene::name(kernels.plan.method));
-    if (!kernels.strain_limit) co_return;
-    co_await kernels.strain_limit->apply(state);
-    passed("strain_limit");
+    if (kernels.strain_limit) {
+      co_await kernels.strain_limit->apply(state);
+      passed("strain_limit");
+    }
+    if (!kernels.surface_contact) co_return;
+    kernels.surface_contact->keep_apart(state);
+    passed("surface_contact");
   }
 
   /// Does up to `count` steps; ends earlier if no steps are left to do.
@@ -158,6 +166,7 @@ struct Simulation::Implementation {
     if (kernels.self_collision) kernels.self_collision->invalidate();
     kernels.integrator->restart();
     if (kernels.strain_limit) kernels.strain_limit->restart();
+    if (kernels.surface_contact) kernels.surface_contact->invalidate();
   }
 
   /// To be called when the state was set from outside and not made by a step: passes forget what they carry
@@ -317,7 +326,8 @@ void Simulation::request_diagnostics() {
   Implementation& self = *implementation_;
   self.bind_constants();
   const SelfCollision* self_collision = self.kernels.self_collision ? &*self.kernels.self_collision : nullptr;
-  if (self.diagnostics.request(self.state, self_collision, self.scene.gravity, time(), self.step_index))
+  const SurfaceContact* surfaces = self.kernels.surface_contact ? &*self.kernels.surface_contact : nullptr;
+  if (self.diagnostics.request(self.state, self_collision, surfaces, self.scene.gravity, time(), self.step_index))
     self.last_good.put_aside(self.state, time(), self.step_index);
 }
 

@@ -97,7 +97,7 @@ const whole = {
     { capsule: { a: [0, 0.5, 0], b: [0, 1, 0], radius: 0.1 }, motion: spin },
     { box: { center: [0, 0, 0], half: [0.1, 0.2, 0.3], rotate: [0, 30, 0] } },
   ],
-  self_collision: { thickness: 0.01, friction: 0.2 },
+  self_collision: { thickness: 0.01, friction: 0.2, kind: "surface" },
   wind: { velocity: [2, 0, 0], gust: 0.3, gust_frequency: 0.7, drag: 1, lift: 0.2 },
   air_drag: 0,
   solver: { method: "symplectic_euler", dt: 0.001, iterations: 10, tolerance: 1e-4 },
