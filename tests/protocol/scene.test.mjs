@@ -41,6 +41,11 @@ test("scene.presets lists the presets of the contract, the seed first", async ()
     "fabrics",
     "skirt",
     "poncho",
+    "mannequin",
+    "knot",
+    "funnel",
+    "stack",
+    "tablecloth-pull",
     "blowup",
   ])
     assert.ok(presets.includes(name), name);

@@ -76,3 +76,14 @@ TEST_CASE(
   INFO(text);
   CHECK(text.find("triangle 1-3-5 of /cloths/1") != std::string::npos);
 }
+
+TEST_CASE(
+    "every preset with self-collision starts without crossings, so that its surfaces can be kept apart") {
+  for (const std::string& name : scene::preset_names()) {
+    INFO(name);
+    scene::Scene scene = scene::load_preset(name)->scene;
+    if (!scene.self_collision) continue;
+    scene.self_collision->kind = Kind::surface;
+    CHECK(refusal(scene) == "");
+  }
+}
