@@ -1,4 +1,4 @@
-// Pair search, 3 of 5: pairs of triangles whose boxes are near each other. A triangle looks for others among those of
+// Pair search, 3 of 6: pairs of triangles whose boxes are near each other. A triangle looks for others among those of
 // its own level and of the larger ones; in its own level half of the cells about it are enough.
 #include "surface.glsl"
 #include "cells.glsl"
