@@ -38,7 +38,8 @@ struct StepCounts {
 struct SurfaceControl {
   std::array<StepCounts, 2> step_counts;
   Groups rebuild{0, 1, 1}, split{0, 1, 1}, pair_groups{0, 1, 1};
-  std::uint32_t triangle_pairs = 0, pairs = 0;
+  Groups candidate_groups{0, 1, 1};
+  std::uint32_t triangle_pairs = 0, candidates = 0, pairs = 0;
   std::uint32_t largest_triangle = 0, fastest = 0, fastest_vertex = 0, levels = 0, query = 0, overflow = 0;
   std::uint32_t rebuilds = 0, cuts = 0, most_triangle_pairs = 0, most_pairs = 0;
 };
@@ -79,6 +80,7 @@ Result<SurfaceContact> SurfaceContact::create(const model::Model& model, const P
   for (auto [program, name] : {std::pair{&made.boxes_, "boxes"},
                                {&made.cells_program_, "cells"},
                                {&made.triangle_pairs_program_, "triangle_pairs"},
+                               {&made.candidates_, "candidates"},
                                {&made.pairs_program_, "pairs"},
                                {&made.finish_, "finish"},
                                {&made.contacts_, "contacts"},
@@ -119,7 +121,7 @@ void SurfaceContact::make_lists(std::uint32_t triangle_pairs, std::uint32_t pair
   triangle_pairs_ = {gl::Buffer(std::size_t{triangle_pair_capacity_} * 2 * sizeof(std::uint32_t)), GL_RG32UI};
   pairs_ = {gl::Buffer(std::size_t{pair_capacity_} * 4 * sizeof(std::uint32_t)), GL_RGBA32UI};
   near_pairs_ = {gl::Buffer(std::size_t{pair_capacity_} * 12 * sizeof(std::uint32_t)), GL_RGBA32UI};
-  for (const gl::Program* program : {&triangle_pairs_program_, &pairs_program_, &finish_, &contacts_}) {
+  for (const gl::Program* program : {&triangle_pairs_program_, &candidates_, &pairs_program_, &finish_, &contacts_}) {
     glProgramUniform1ui(program->id(), program->location("triangle_pair_capacity"), triangle_pair_capacity_);
     glProgramUniform1ui(program->id(), program->location("pair_capacity"), pair_capacity_);
   }
@@ -133,7 +135,8 @@ void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Mode
   // Parts of a flat grid that share no vertex are 0.7 of a cell's side apart, which is 0.6 of the mean edge. A
   // search that reaches less far lists nothing then.
   const double skin = std::max({0.55 * edge - 1.2 * thickness, 0.3 * edge, 0.3 * thickness});
-  for (const gl::Program* program : {&boxes_, &cells_program_, &triangle_pairs_program_, &pairs_program_, &finish_,
+  for (const gl::Program* program : {&boxes_, &cells_program_, &triangle_pairs_program_, &candidates_, &pairs_program_,
+                                     &finish_,
                                      &contacts_, &forces_, &apply_, &begin_, &limit_, &move_}) {
     program->set("dt", static_cast<float>(dt));
     program->set("thickness", static_cast<float>(thickness));
@@ -147,7 +150,8 @@ void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Mode
 
 void SurfaceContact::limit_query(float most) {
   most_query_ = most;
-  for (const gl::Program* program : {&boxes_, &cells_program_, &triangle_pairs_program_, &pairs_program_, &finish_,
+  for (const gl::Program* program : {&boxes_, &cells_program_, &triangle_pairs_program_, &candidates_, &pairs_program_,
+                                     &finish_,
                                      &contacts_, &begin_})
     program->set("most_query", most);
 }
@@ -191,8 +195,11 @@ void SurfaceContact::search(const StateBuffers& state) {
   dispatch(cells_program_, offsetof(SurfaceControl, rebuild));
   triangle_pairs_.buffer.bind_storage(slot_triangle_pairs);
   dispatch(triangle_pairs_program_, offsetof(SurfaceControl, rebuild));
+  near_pairs_.buffer.bind_storage(slot_near_pairs);
+  near_pairs_.bind(unit_near_pairs);
+  dispatch(candidates_, offsetof(SurfaceControl, split));
   pairs_.buffer.bind_storage(slot_surface_pairs);
-  dispatch(pairs_program_, offsetof(SurfaceControl, split));
+  dispatch(pairs_program_, offsetof(SurfaceControl, candidate_groups));
   cells_.buffer.bind_storage(slot_triangle_cells);
   dispatch(finish_, offsetof(SurfaceControl, rebuild));
 }

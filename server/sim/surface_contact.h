@@ -66,7 +66,7 @@ class SurfaceContact {
   std::uint64_t updates_ = 0;  ///< calls of update_pairs since `invalidate`
   int turn_ = 0;
   bool keeps_start_ = false;  ///< the strain limit writes over the positions at the step's start
-  gl::Program boxes_, cells_program_, triangle_pairs_program_, pairs_program_, finish_;
+  gl::Program boxes_, cells_program_, triangle_pairs_program_, candidates_, pairs_program_, finish_;
   gl::Program contacts_, forces_, apply_, begin_, limit_, move_;
   gl::Buffer control_;
   gl::ReadbackRing sizes_ring_;

@@ -16,6 +16,16 @@ void prepare_next_step() {
   step_counts[next].near = step_counts[next].cuts = 0u;
 }
 
+/// Motion since the search that all vertices share, more or less [m]: only what they move apart from it matters.
+vec3 common_motion() {
+  vec3 sum = vec3(0.0);
+  for (int k = 0; k < 4; ++k) {
+    int vertex = (2 * k + 1) * vertex_count / 8;
+    sum += FETCH(step_start, vertex).xyz - FETCH(position_when_built, vertex).xyz;
+  }
+  return 0.25 * sum;
+}
+
 void main() {
   int i = int(gl_GlobalInvocationID.x);
   if (i == 0) prepare_next_step();
@@ -28,7 +38,7 @@ void main() {
   }
   vec3 moved = end.xyz - start.xyz;
   float went = length(moved), query_radius = uintBitsToFloat(query), most = step_share * query_radius;
-  RARELY(went > 0.8 * most && query_radius < most_query) {
+  RARELY(went > 0.85 * most && query_radius < most_query) {
     if (went < 1e30) atomicMax(fastest, floatBitsToUint(went));
     rebuild_groups = uint((max(vertex_count, triangle_count) + GROUP_SIZE - 1) / GROUP_SIZE);
   }
@@ -39,7 +49,7 @@ void main() {
     atomicAdd(cuts, 1u);
   }
   RARELY(free && overflow != 0u) position[i] = end = start;
-  vec3 since = end.xyz - FETCH(position_when_built, i).xyz;
+  vec3 since = end.xyz - FETCH(position_when_built, i).xyz - common_motion();
   if (dot(since, since) > 0.25 * skin * skin)
     rebuild_groups = uint((max(vertex_count, triangle_count) + GROUP_SIZE - 1) / GROUP_SIZE);
   RARELY(filtered) {

@@ -1,4 +1,4 @@
-// Pair search, 1 of 5: boxes of triangles, the largest of them and the fastest vertex; notes where each vertex is.
+// Pair search, 1 of 6: boxes of triangles, the largest of them and the fastest vertex; notes where each vertex is.
 #include "surface.glsl"
 READ_VEC4(position, unit_position);
 READ_VEC4(velocity, unit_velocity);
@@ -9,7 +9,7 @@ layout(std430, binding = slot_surface_built) writeonly buffer Built { vec4 posit
 
 void main() {
   int i = int(gl_GlobalInvocationID.x);
-  if (i == 0) triangle_pairs = pairs = split_groups = pair_groups = 0u;
+  if (i == 0) triangle_pairs = candidates = pairs = split_groups = candidate_groups = pair_groups = 0u;
   if (i < vertex_count) {
     position_when_built[i] = FETCH(position, i);
     float speed = length(FETCH(velocity, i).xyz);

@@ -1,4 +1,4 @@
-// Pair search, 2 of 5: adds each triangle to the chain of its cell.
+// Pair search, 2 of 6: adds each triangle to the chain of its cell.
 #include "surface.glsl"
 #include "cells.glsl"
 READ_VEC4(boxes, unit_triangle_boxes);

@@ -24,9 +24,11 @@ struct StepCounts {  // of a step; steps take turns with two of them
 layout(std430, binding = slot_surface_control) coherent buffer SurfaceControl {
   StepCounts step_counts[2];
   uint rebuild_groups, rebuild_groups_y, rebuild_groups_z;  // over triangles and vertices
-  uint split_groups, split_groups_y, split_groups_z;        // over pairs of triangles
+  uint split_groups, split_groups_y, split_groups_z;        // over the 16 numbers of pairs of triangles
   uint pair_groups, pair_groups_y, pair_groups_z;           // over pairs
+  uint candidate_groups, candidate_groups_y, candidate_groups_z;  // over pairs whose boxes are near
   uint triangle_pairs;       // found by the search
+  uint candidates;           // the same
   uint pairs;                // the same
   uint largest_triangle;     // half the longest side of its box [m], as bits
   uint fastest;              // longest step since the last search that was long for it [m], as bits
@@ -55,9 +57,8 @@ const uint corner_mask = 0x7fffffffu;
 /// How far a vertex may go in a step, as a share of the query radius: two that are farther apart cannot meet.
 const float step_share = 0.425;
 
-/// Query radius [m] for a longest step [m]. A pair that comes within the thickness in a step is in it, and the longest
-/// step is no more than 0.7 of what a vertex may go.
-float query_for(float longest) { return min(max(1.2 * thickness, thickness + 3.6 * longest), most_query); }
+/// Query radius [m] for a longest step [m], which is 0.8 of what a vertex may go then.
+float query_for(float longest) { return min(max(1.2 * thickness, 3.0 * longest), most_query); }
 
 /// Query radius of the search under way [m].
 float next_query() { return query_for(max(dt * uintBitsToFloat(fastest_vertex), uintBitsToFloat(fastest))); }

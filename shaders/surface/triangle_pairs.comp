@@ -1,4 +1,4 @@
-// Pair search, 3 of 5: pairs of triangles whose boxes are near each other. A triangle looks for others among those of
+// Pair search, 3 of 6: pairs of triangles whose boxes are near each other. A triangle looks for others among those of
 // its own level and of the larger ones; in its own level half of the cells about it are enough.
 #include "surface.glsl"
 #include "cells.glsl"
@@ -40,7 +40,7 @@ void main() {
       uint slot = atomicAdd(triangle_pairs, 1u);
       if (slot < triangle_pair_capacity) {
         found[slot] = uvec2(i, j);
-        atomicMax(split_groups, slot / uint(GROUP_SIZE) + 1u);
+        atomicMax(split_groups, 16u * slot / uint(GROUP_SIZE) + 1u);
       }
     }
     j = FETCH_UINT(next, j);
