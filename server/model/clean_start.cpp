@@ -37,6 +37,19 @@ std::string number(double x) {
   return with_significant_digits(x == 0.0 ? 0.0 : x, 4);  // no "-0"
 }
 
+Status check(const Model& model, const scene::Scene& scene, const std::string& which,
+             const std::vector<glm::vec3>& position, const std::string& remedy) {
+  const std::vector<dvec3> x(position.begin(), position.end());
+  const Crossings found = find_crossings(surfaces_of(model), x, at_start);
+  if (found.count == 0) return ok();
+  std::string what = "\"surface\", but " + which + " has " + std::to_string(found.count) +
+                     (found.complete ? "" : " or more") + (found.count == 1 ? " crossing: " : " crossings: ");
+  for (std::size_t i = 0; i < found.first.size(); ++i)
+    what += (i == 0 ? "" : ", ") + in_words(found.first[i], model, scene);
+  if (found.count > found.first.size()) what += ", ...";
+  return Error{"/self_collision/kind", what, "\"points\", which may have crossings, or " + remedy};
+}
+
 }  // namespace
 
 std::string in_words(const Crossing& crossing, const Model& model, const scene::Scene& scene) {
@@ -48,20 +61,13 @@ std::string in_words(const Crossing& crossing, const Model& model, const scene::
 
 Status check_start(const Model& model, const scene::Scene& scene) {
   if (!scene.collides(scene::ContactKind::surface)) return ok();
-  std::vector<dvec3> start;
-  start.reserve(model.start_position.size());
-  for (const dvec3& place : model.start_position) start.push_back(dvec3(glm::vec3(place)));
-  const Crossings found = find_crossings(surfaces_of(model), start, at_start);
-  if (found.count == 0) return ok();
-  std::string what = "\"surface\", but the start has " + std::to_string(found.count) +
-                     (found.complete ? "" : " or more") + (found.count == 1 ? " crossing: " : " crossings: ");
-  for (std::size_t i = 0; i < found.first.size(); ++i)
-    what += (i == 0 ? "" : ", ") + in_words(found.first[i], model, scene);
-  if (found.count > found.first.size()) what += ", ...";
-  return Error{
-      "/self_collision/kind", what,
-      "\"points\", which such a start may have, or cloths moved apart (transform, mesh, start) until "
-      "none touches another one or itself"};
+  return check(model, scene, "the start", {model.start_position.begin(), model.start_position.end()},
+               "cloths moved apart (transform, mesh, start) until none touches another one or itself");
+}
+
+Status check_present(const Model& model, const scene::Scene& scene, const std::vector<glm::vec3>& position) {
+  if (!scene.collides(scene::ContactKind::surface)) return ok();
+  return check(model, scene, "the cloth at present", position, "a reset first, if the start has none");
 }
 
 }  // namespace clothlab::model

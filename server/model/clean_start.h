@@ -2,7 +2,9 @@
 // kind of self-collision only keeps apart what is apart.
 #pragma once
 
+#include <glm/vec3.hpp>
 #include <string>
+#include <vector>
 
 #include "server/base/result.h"
 #include "server/model/crossings.h"
@@ -17,5 +19,8 @@ std::string in_words(const Crossing& crossing, const Model& model, const scene::
 /// positions as the GPU gets them: float32. It points at the kind, names the first pairs and their number,
 /// and says what helps.
 Status check_start(const Model& model, const scene::Scene& scene);
+
+/// The same of a running scene that is to get this kind, with its vertices at `position` [vertex_count] [m].
+Status check_present(const Model& model, const scene::Scene& scene, const std::vector<glm::vec3>& position);
 
 }  // namespace clothlab::model

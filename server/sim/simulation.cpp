@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "server/gl/bindings.h"
+#include "server/model/clean_start.h"
 #include "server/model/size.h"
 #include "server/scene/method.h"
 #include "server/sim/colliders.h"
@@ -235,6 +236,9 @@ Result<ChangeDepth> Simulation::change(const scene::Scene& scene) {
   if (depth == ChangeDepth::kernel) {
     Result<Kernels> kernels = Kernels::create(scene);
     if (!kernels) return kernels.error();
+    if (!self.scene.collides(scene::ContactKind::surface))
+      if (Status apart = model::check_present(model(), scene, read_state().position); !apart)
+        return apart.error();
     self.give_up_work();
     self.kernels = std::move(*kernels);
   } else if (depth == ChangeDepth::uniform) {
@@ -327,7 +331,8 @@ void Simulation::request_diagnostics() {
   self.bind_constants();
   const SelfCollision* self_collision = self.kernels.self_collision ? &*self.kernels.self_collision : nullptr;
   const SurfaceContact* surfaces = self.kernels.surface_contact ? &*self.kernels.surface_contact : nullptr;
-  if (self.diagnostics.request(self.state, self_collision, surfaces, self.scene.gravity, time(), self.step_index))
+  if (self.diagnostics.request(self.state, self_collision, surfaces, self.scene.gravity, time(),
+                               self.step_index))
     self.last_good.put_aside(self.state, time(), self.step_index);
 }
 
