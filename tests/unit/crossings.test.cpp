@@ -133,14 +133,27 @@ TEST_CASE("triangles without area and edges without length cross where they have
   CHECK(meets_in_any_order({0, 0, 0}, {0, 0, 0}, point));
 }
 
-TEST_CASE("the side of a plane is exact where floating point has its sign wrong") {
-  // A point of the plane x + y + z = 1 and its neighbours in one coordinate, from far away: the determinant
-  // is a difference of numbers 2^50 times as large as it.
-  const dvec3 u(1, 0, 0), v(0, 1, 0), w(0, 0, 1);
-  CHECK(model::side(u, v, w, {0.25, 0.25, 0.5}) == 0);
-  CHECK(model::side(u, v, w, {0.25, 0.25, std::nextafter(0.5, 1.0)}) == 1);
-  CHECK(model::side(u, v, w, {0.25, 0.25, std::nextafter(0.5, 0.0)}) == -1);
-  // Collinear in exact arithmetic, whose coordinates differ in size so much that differences are rounded.
+TEST_CASE("the side of a plane, and of a line, is exact where floating point has its sign wrong") {
+  // Whole numbers of up to 2^31: a point of the plane is exact, and products of 2^90 are rounded by 2^37,
+  // more than a step off the plane makes of them.
+  std::mt19937 random(5);
+  const auto vector = [&] {
+    const auto number = [&] { return static_cast<double>(random() >> 2) - 0x1p29; };
+    const double x = number(), y = number();
+    return dvec3(x, y, number());
+  };
+  for (int i = 0; i < 200; ++i) {
+    const dvec3 p = vector(), u = vector(), v = vector();
+    const double along = static_cast<double>(random() % 5) - 2.0, across = static_cast<double>(random() % 5);
+    const dvec3 on = p + along * u + across * v, q = p + u, r = p + v;
+    const double normal = u.x * v.y - u.y * v.x;
+    CHECK(model::side(p, q, r, on) == 0);
+    CHECK(model::side(p, q, r, on + dvec3(0, 0, 1)) == (normal > 0.0 ? 1 : -1));
+    CHECK(model::side(p, q, r, on - dvec3(0, 0, 1)) == (normal > 0.0 ? -1 : 1));
+    CHECK(model::turn(p, q, p + along * u, {0, 1}) == 0);
+    CHECK(model::turn(p, q, p + along * u + dvec3(0, 1, 0), {0, 1}) == (u.x > 0.0 ? 1 : -1));
+  }
+  // Coordinates that differ in size so much that differences are rounded, too.
   const double far = 0x1p60;
   CHECK(model::side({1, 0, 0}, {far, 0, 0}, {1, 1, 0}, {0.3, 0.3, 0x1p-60}) == 1);
   CHECK(model::side({1, 0, 0}, {far, 0, 0}, {1, 1, 0}, {0.3, 0.3, 0}) == 0);
