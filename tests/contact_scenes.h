@@ -2,6 +2,7 @@
 // for the test to choose. Each starts without crossings and can be stepped for 10 s and more.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>

@@ -1,6 +1,7 @@
 // A ribbon with an overhand knot in it, still loose, as a triangle mesh.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>

@@ -264,7 +264,8 @@ void add_run(CLI::App& app, int& exit_code) {
 With --every, samples of cloth.obj go to cloth-0000.obj (the start), cloth-0001.obj, ...; a trace alone has a row
 every 0.01 s, and so often states are verified. A crossing is an edge and a triangle without a common vertex that
 have a point in common, exactly; touching is one. The report's crossings is the largest number at any sample, and
-crossing_check says when and which. The report's step_s is the time of stepping alone: not of setting up, diagnostics or files.
+crossing_check says when and which. The report's step_s is the time of stepping alone: not of setting up,
+diagnostics or files.
 The result is the same, bit for bit, each time the same build runs the same scene on the same device.)");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
