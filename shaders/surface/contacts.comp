@@ -19,7 +19,7 @@ void main() {
   Separation apart = separation(edges, c);
   RARELY(apart.gap < uintBitsToFloat(query)) {
     uint slot = atomicAdd(step_counts[turn].near, 1u);
-    atomicMax(step_counts[turn].near_groups, slot / uint(GROUP_SIZE) + 1u);
+    if (slot % uint(GROUP_SIZE) == 0u) atomicMax(step_counts[turn].near_groups, slot / uint(GROUP_SIZE) + 1u);
     step_counts[turn].vertex_groups = uint((vertex_count + GROUP_SIZE - 1) / GROUP_SIZE);
     near_list[3u * slot] = pair;
     near_list[3u * slot + 1u] = floatBitsToUint(vec4(apart.n, apart.gap));

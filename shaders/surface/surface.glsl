@@ -24,7 +24,7 @@ struct StepCounts {  // of a step; steps take turns with two of them
 layout(std430, binding = slot_surface_control) coherent buffer SurfaceControl {
   StepCounts step_counts[2];
   uint rebuild_groups, rebuild_groups_y, rebuild_groups_z;  // over triangles and vertices
-  uint split_groups, split_groups_y, split_groups_z;        // over the 16 numbers of pairs of triangles
+  uint split_groups, split_groups_y, split_groups_z;        // over pairs of triangles
   uint pair_groups, pair_groups_y, pair_groups_z;           // over pairs
   uint candidate_groups, candidate_groups_y, candidate_groups_z;  // over pairs whose boxes are near
   uint triangle_pairs;       // found by the search
