@@ -21,14 +21,16 @@ void main() {
     uint slot = atomicAdd(step_counts[turn].near, 1u);
     if (slot % uint(GROUP_SIZE) == 0u) atomicMax(step_counts[turn].near_groups, slot / uint(GROUP_SIZE) + 1u);
     step_counts[turn].vertex_groups = uint((vertex_count + GROUP_SIZE - 1) / GROUP_SIZE);
-    near_list[3u * slot] = pair;
     near_list[3u * slot + 1u] = floatBitsToUint(vec4(apart.n, apart.gap));
     near_list[3u * slot + 2u] =
         floatBitsToUint(vec4(apart.weight[0], apart.weight[1], apart.weight[2], apart.weight[3]));
     vec3 moved = vec3(0.0);
     for (int k = 0; k < 4; ++k) moved += apart.weight[k] * (FETCH(position, corner[k]).xyz - start[k]);
-    if ((pair.y & no_force_bit) == 0u && apart.gap + dot(moved, apart.n) < thickness)
+    if ((pair.y & no_force_bit) == 0u && apart.gap + dot(moved, apart.n) < thickness) {
+      pair.z |= touching_bit;
       for (int k = 0; k < 4; ++k)
         if (apart.weight[k] != 0.0) atomicAdd(sums[8 * int(corner[k]) + 3], 1);
+    }
+    near_list[3u * slot] = pair;
   }
 }

@@ -12,7 +12,7 @@ void main() {
   uint item = gl_GlobalInvocationID.x;
   if (item >= step_counts[turn].near) return;
   uvec4 pair = FETCH(near_pairs, 3u * item);
-  if ((pair.y & no_force_bit) != 0u) return;
+  if ((pair.z & touching_bit) == 0u) return;
   vec4 apart = uintBitsToFloat(FETCH(near_pairs, 3u * item + 1u));
   vec4 weight = uintBitsToFloat(FETCH(near_pairs, 3u * item + 2u));
   uvec4 corner = corners_of(pair);

@@ -52,6 +52,7 @@ uniform int turn;           // whose step_counts this step has
 
 const uint edges_bit = 0x80000000u;     // of a pair's first corner: two edges
 const uint no_force_bit = 0x80000000u;  // of its second: too near at rest to be kept apart
+const uint touching_bit = 0x80000000u;  // of a near pair's third: comes within the thickness in this step
 const uint corner_mask = 0x7fffffffu;
 
 /// How far a vertex may go in a step, as a share of the query radius: two that are farther apart cannot meet.

@@ -99,6 +99,7 @@ Outcome run(const Stress& stress, int frames_a_second = 200) {
       std::max<std::uint32_t>(1, static_cast<std::uint32_t>(1.0 / frames_a_second / stress.scene.solver.dt + 0.5));
   while (simulation->time() < stress.time) {
     simulation->step(steps);
+    if (std::getenv("VERBOSE")) { const auto d = simulation->diagnose(); std::fprintf(stderr, "  t %.4f speed %g pairs %u cuts %u searches %u\n", d.time, d.max_speed, d.surface_pairs, d.surface_cuts, d.surface_searches); }
     outcome.crossings += test::crossings(simulation->model(), simulation->read_state().position).size();
   }
   outcome.last = simulation->diagnose();
@@ -166,5 +167,50 @@ TEST_CASE("two free sheets that collide keep their common momentum to 1e-4") {
     INFO(scene::name(method));
     CHECK(left < 0.7 * size);  // they have met
     CHECK(glm::length(after - before) < 1e-4 * size);
+  }
+}
+
+namespace {
+
+/// How far a light sheet slides down on a large one, which is held and slopes by this angle, in half a second [m].
+double slid(scene::Method method, double degrees, double friction) {
+  scene::Scene scene = empty_scene();
+  scene.air_drag = 0.0;
+  scene.self_collision->friction = friction;
+  scene.cloths.push_back(square(9, 0.3, {{0.0, 0.0, -0.15}, {0.0, 0.0, 0.0}, 1.0}));
+  for (int row = 0; row < 9; ++row) scene.cloths[0].pins.push_back({scene::AtEdge{scene::AtEdge::Line::row, row}, {}});
+  scene.cloths.push_back(square(4, 0.05, {{0.011, 1.001 * thickness, -0.013}, {0.0, 20.0, 0.0}, 1.0}));
+  const double angle = degrees * 3.14159265358979 / 180.0;
+  scene.gravity = {9.81 * std::sin(angle), -9.81 * std::cos(angle), 0.0};
+  set_method(scene, method);
+  const auto simulation = test::simulation(scene);
+  const auto middle = [&] {
+    const sim::State state = simulation->read_state();
+    double sum = 0.0;
+    for (std::size_t i = 81; i < 97; ++i) sum += state.position[i].x / 16.0;
+    return sum;
+  };
+  const double before = middle();
+  simulation->step(static_cast<std::uint32_t>(0.15 / scene.solver.dt));
+  return middle() - before;
+}
+
+}  // namespace
+
+TEST_CASE("a sheet on a sloping one stays while the slope's tangent is below the friction, and slides above it") {
+  const auto context = test::context();
+  const double free = 0.5 * 9.81 * 0.15 * 0.15;
+  for (const scene::Method method : {scene::Method::symplectic_euler, scene::Method::verlet,
+                                     scene::Method::implicit_euler, scene::Method::xpbd, scene::Method::vbd}) {
+    INFO(scene::name(method));
+    const double angle = std::atan(0.4) * 180.0 / 3.14159265358979;
+    const double below = slid(method, angle - 3.0, 0.4), above = slid(method, angle + 8.0, 0.4),
+                 none = slid(method, 20.0, 0.0);
+    std::fprintf(stderr, "%s: below %g, above %g (expected %g), none %g (expected %g)\n", scene::name(method), below,
+                 above, free * (std::sin((angle + 8.0) / 57.29578) - 0.4 * std::cos((angle + 8.0) / 57.29578)), none,
+                 free * std::sin(20.0 / 57.29578));
+    CHECK(below < 0.02 * free);
+    CHECK(above > 0.05 * free);
+    CHECK(none == Approx(free * std::sin(20.0 / 57.29578)).epsilon(0.1));
   }
 }

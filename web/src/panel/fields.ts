@@ -228,7 +228,7 @@ function selfCollisionSection(document: SceneDocument): Section {
     paths: [base],
     kind: "toggle",
     read: (current) => current.self_collision !== null,
-    write: (value) => (value ? { thickness: 0.01, friction: 0.2 } : null),
+    write: (value) => (value ? { thickness: 0.01, friction: 0.2, kind: "points" } : null),
   };
   const more: Field[] = document.self_collision
     ? [
