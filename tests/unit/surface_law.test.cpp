@@ -88,11 +88,10 @@ TEST_CASE("with the shares of their steps that the law allows, the corners of a 
       CHECK(room + share * side * along.d[k] >= 0.5 * rounding);
       cut += share < 1.0;
     }
-    if (!elements::could_meet(edges, along, rounding))
-      for (int k = 0; k < 4; ++k) {
-        const double side = k == 0 || (edges && k == 1) ? 1.0 : -1.0;
-        CHECK(elements::share_of_step(side * (along.y[k] - plane), side * along.d[k], rounding) == 1.0);
-      }
+    if (elements::could_meet(edges, along, rounding)) continue;
+    Corners after = c;
+    for (int k = 0; k < 4; ++k) after.x[k] += step[k];
+    CHECK(elements::gap_along(edges, after, apart.n) > 0.0);
   }
   CHECK(cut > 500);
 }
