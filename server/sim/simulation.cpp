@@ -327,7 +327,8 @@ void Simulation::request_diagnostics() {
   self.bind_constants();
   const SelfCollision* self_collision = self.kernels.self_collision ? &*self.kernels.self_collision : nullptr;
   const SurfaceContact* surfaces = self.kernels.surface_contact ? &*self.kernels.surface_contact : nullptr;
-  if (self.diagnostics.request(self.state, self_collision, surfaces, self.scene.gravity, time(), self.step_index))
+  if (self.diagnostics.request(self.state, self_collision, surfaces, self.scene.gravity, time(),
+                               self.step_index))
     self.last_good.put_aside(self.state, time(), self.step_index);
 }
 

@@ -27,7 +27,7 @@ void main() {
   float give = dot(mobility, weight);
   vec3 push, impulse;
   RARELY(give > 0.0 && surface_contact(apart.xyz, apart.w, moved, v, thickness, friction, mend, push, impulse)) {
-    float share = 1.0 / (give * crowd(corner, 3));
+    float share = 1.0 / (give * crowd(corner, mobility, 3));
     push *= share * units_of_length();
     impulse *= share * units_of_speed();
     for (int k = 0; k < 4; ++k)

@@ -1,5 +1,5 @@
-// The law of contact between surfaces in double precision: pairs against a search over points, shares of steps against
-// where the corners end.
+// The law of contact between surfaces in double precision: pairs against a search over points, shares of
+// steps against where the corners end.
 #include <cmath>
 #include <random>
 
@@ -63,7 +63,9 @@ TEST_CASE("parallel edges and triangles without area have a distance, and a norm
   CHECK(elements::separation(false, touching).gap == 0.0);
 }
 
-TEST_CASE("with the shares of their steps that the law allows, the corners of a pair stay on their sides of its plane") {
+TEST_CASE(
+    "with the shares of their steps that the law allows, the corners of a pair stay on their sides of its "
+    "plane") {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> either(-1.0, 1.0);
   constexpr double rounding = 1e-6;
@@ -96,7 +98,8 @@ TEST_CASE("with the shares of their steps that the law allows, the corners of a 
   CHECK(cut > 500);
 }
 
-TEST_CASE("a push takes the approach, holds what is slower than friction allows, and mends a share of an overlap") {
+TEST_CASE(
+    "a push takes the approach, holds what is slower than friction allows, and mends a share of an overlap") {
   dvec3 push, impulse;
   const dvec3 n(0, 1, 0);
   REQUIRE(elements::surface_contact(n, 0.01, {0.001, -0.004, 0}, {1, -4, 0}, 0.01, 0.5, 0.1, push, impulse));
