@@ -123,6 +123,7 @@ TEST_CASE("surfaces that start apart never cross: every method, sheets thrown, f
                                << " pairs, kinetic " << outcome.last.kinetic);
       CHECK(outcome.crossings == 0);
       CHECK(outcome.last.finite);
+      std::fprintf(stderr, "%s %s %g: %zu crossings, %u cuts, %u pairs, ke %g el %g\n", scene::name(method), stress.name, stress.speed, outcome.crossings, outcome.last.surface_cuts, outcome.last.surface_pairs, outcome.last.kinetic, outcome.last.elastic);
     }
 }
 
