@@ -234,6 +234,13 @@ function selfCollisionSection(document: SceneDocument): Section {
     ? [
         number("thickness", [`${base}/thickness`], { min: 0.001, max: 0.1, log: true, ...meter }, { note: thinNote }),
         number("friction", [`${base}/friction`], { min: 0, max: 2, step: 0.01 }),
+        {
+          key: `${base}/kind`,
+          label: "between",
+          paths: [`${base}/kind`],
+          kind: "choice",
+          choices: ["points", "surface"],
+        },
       ]
     : [];
   return { key: base, title: "Self-collision", open: true, fields: [toggle, ...more], sections: [] };
