@@ -50,7 +50,8 @@ dvec3 stopped_move(SweepState& step, std::uint32_t i, const dmat3& inverse, dvec
   dvec3 stopped = trial;
   Surface met;
   step.colliders_met[i] = stop_at_colliders_position(step.world, step.t, step.x[i], stopped, met);
-  if (!step.world.scene.collides(scene::ContactKind::points)) step.contacts[i] = step.colliders_met[i];  // else contact_pass counts
+  if (!step.world.scene.collides(scene::ContactKind::points))
+    step.contacts[i] = step.colliders_met[i];  // else contact_pass counts
   if (step.colliders_met[i] == 0) return move;
   const dvec3& n = met.normal;
   const dvec3 response = inverse * n;

@@ -237,7 +237,8 @@ struct Collider {
   bool operator==(const Collider&) const = default;
 };
 
-/// What self-collision keeps apart: vertices, or triangles and edges, which then never pass through each other.
+/// What self-collision keeps apart: vertices, or triangles and edges, which then never pass through each
+/// other.
 enum class ContactKind { points, surface };
 
 struct SelfCollision {

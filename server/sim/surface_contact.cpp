@@ -7,14 +7,16 @@
 #include <set>
 #include <span>
 
+#include "server/scene/method.h"
 #include "server/sim/integrator.h"
 
 namespace clothlab::sim {
 
 namespace {
 
-/// Passes of pushes after a step. Each leaves about a fifth of what it finds.
-constexpr int push_passes = 2;
+/// Passes of pushes after a step: each leaves about a fifth of what it finds, of which a long step finds
+/// more.
+constexpr int pushes_of_short_step = 2, pushes_of_long_step = 4;
 /// Passes of the filter: in each, a layer that moves ahead makes room for the one behind it.
 constexpr int filter_passes = 3;
 /// Share of an overlap that a step mends, and the most that it does a second [1/s]: what is mended is no
@@ -76,7 +78,8 @@ Result<SurfaceContact> SurfaceContact::create(const model::Model& model, const P
   made.triangle_count_ = model.triangle_count();
   made.keeps_start_ = plan.strain_limit();
   const std::uint32_t cells = std::bit_ceil(2 * std::max(made.triangle_count_, 1u));
-  const gl::Defines defines{{"GROUP_SIZE", std::to_string(group_size)}, {"CELL_COUNT", std::to_string(cells)}};
+  const gl::Defines defines{{"GROUP_SIZE", std::to_string(group_size)},
+                            {"CELL_COUNT", std::to_string(cells)}};
   for (auto [program, name] : {std::pair{&made.boxes_, "boxes"},
                                {&made.cells_program_, "cells"},
                                {&made.triangle_pairs_program_, "triangle_pairs"},
@@ -121,7 +124,8 @@ void SurfaceContact::make_lists(std::uint32_t triangle_pairs, std::uint32_t pair
   triangle_pairs_ = {gl::Buffer(std::size_t{triangle_pair_capacity_} * 2 * sizeof(std::uint32_t)), GL_RG32UI};
   pairs_ = {gl::Buffer(std::size_t{pair_capacity_} * 4 * sizeof(std::uint32_t)), GL_RGBA32UI};
   near_pairs_ = {gl::Buffer(std::size_t{pair_capacity_} * 12 * sizeof(std::uint32_t)), GL_RGBA32UI};
-  for (const gl::Program* program : {&triangle_pairs_program_, &candidates_, &pairs_program_, &finish_, &contacts_}) {
+  for (const gl::Program* program :
+       {&triangle_pairs_program_, &candidates_, &pairs_program_, &finish_, &contacts_}) {
     glProgramUniform1ui(program->id(), program->location("triangle_pair_capacity"), triangle_pair_capacity_);
     glProgramUniform1ui(program->id(), program->location("pair_capacity"), pair_capacity_);
   }
@@ -132,17 +136,18 @@ void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Mode
   double edge = 0.0;
   for (const model::ClothRange& cloth : model.cloths)
     edge = edge > 0.0 ? std::min(edge, cloth.mean_edge_length) : cloth.mean_edge_length;
-  // Parts of a flat grid that share no vertex are 0.7 of a cell's side apart, which is 0.6 of the mean edge. A
-  // search that reaches less far lists nothing then.
+  // Parts of a flat grid that share no vertex are 0.7 of a cell's side apart, which is 0.6 of the mean edge.
+  // A search that reaches less far lists nothing then.
   const double skin = std::max({0.55 * edge - 1.2 * thickness, 0.3 * edge, 0.3 * thickness});
-  for (const gl::Program* program : {&boxes_, &cells_program_, &triangle_pairs_program_, &candidates_, &pairs_program_,
-                                     &finish_,
-                                     &contacts_, &forces_, &apply_, &begin_, &limit_, &move_}) {
+  for (const gl::Program* program :
+       {&boxes_, &cells_program_, &triangle_pairs_program_, &candidates_, &pairs_program_, &finish_,
+        &contacts_, &forces_, &apply_, &begin_, &limit_, &move_}) {
     program->set("dt", static_cast<float>(dt));
     program->set("thickness", static_cast<float>(thickness));
     program->set("skin", static_cast<float>(skin));
   }
   limit_query(static_cast<float>(24.0 * edge + 4.0 * thickness));
+  push_passes_ = scene::iterates(scene.solver.method) ? pushes_of_long_step : pushes_of_short_step;
   forces_.set("friction", static_cast<float>(scene.self_collision->friction));
   forces_.set("mend", static_cast<float>(std::min(mended_in_step, mended_in_second * dt)));
   invalidate();
@@ -150,9 +155,8 @@ void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Mode
 
 void SurfaceContact::limit_query(float most) {
   most_query_ = most;
-  for (const gl::Program* program : {&boxes_, &cells_program_, &triangle_pairs_program_, &candidates_, &pairs_program_,
-                                     &finish_,
-                                     &contacts_, &begin_})
+  for (const gl::Program* program : {&boxes_, &cells_program_, &triangle_pairs_program_, &candidates_,
+                                     &pairs_program_, &finish_, &contacts_, &begin_})
     program->set("most_query", most);
 }
 
@@ -207,16 +211,17 @@ void SurfaceContact::search(const StateBuffers& state) {
 Work SurfaceContact::update_pairs(const StateBuffers& state) {
   wait_for_writes();
   search(state);
-  for (int attempt = 0; updates_++ % updates_between_size_looks == 0 && read_sizes() && attempt < 4; ++attempt) {
+  for (int attempt = 0; updates_++ % updates_between_size_looks == 0 && read_sizes() && attempt < 4;
+       ++attempt) {
     co_await may_stop;
     search(state);
   }
   if (keeps_start_) start_.buffer.copy_from(state.position().buffer);
 }
 
-/// Makes lists longer that have too little room (or the search shorter, if they may not be longer), by the sizes that the look before had copied, and queues a
-/// copy for the next look. The first look after `invalidate` reads its own copy at once. Returns true if
-/// the pairs must be searched anew.
+/// Makes lists longer that have too little room (or the search shorter, if they may not be longer), by the
+/// sizes that the look before had copied, and queues a copy for the next look. The first look after
+/// `invalidate` reads its own copy at once. Returns true if the pairs must be searched anew.
 bool SurfaceContact::read_sizes() {
   SurfaceControl control;
   const auto take = [&] {
@@ -229,7 +234,8 @@ bool SurfaceContact::read_sizes() {
   sizes_ring_.push(control_, sizeof control);
   if (updates_ == 1) take();
   const auto wanted = [](std::uint32_t capacity, std::uint32_t found) {
-    return 4 * std::uint64_t{found} > 3 * std::uint64_t{capacity} ? std::min(2 * found, most_listed) : capacity;
+    return 4 * std::uint64_t{found} > 3 * std::uint64_t{capacity} ? std::min(2 * found, most_listed)
+                                                                  : capacity;
   };
   const std::uint32_t triangle_pairs = wanted(triangle_pair_capacity_, control.most_triangle_pairs),
                       pairs = wanted(pair_capacity_, control.most_pairs);
@@ -244,7 +250,8 @@ bool SurfaceContact::read_sizes() {
 }
 
 void SurfaceContact::keep_apart(StateBuffers& state) {
-  const std::size_t counts = offsetof(SurfaceControl, step_counts) + static_cast<std::size_t>(turn_) * sizeof(StepCounts);
+  const std::size_t counts =
+      offsetof(SurfaceControl, step_counts) + static_cast<std::size_t>(turn_) * sizeof(StepCounts);
   const auto run = [&](const gl::Program& program, std::size_t groups) {
     program.use();
     program.set("turn", turn_);
@@ -272,7 +279,7 @@ void SurfaceContact::keep_apart(StateBuffers& state) {
   target_.buffer.bind_storage(slot_step_target);
 
   run(contacts_, offsetof(SurfaceControl, pair_groups));
-  for (int pass = 0; pass < push_passes; ++pass) {
+  for (int pass = 0; pass < push_passes_; ++pass) {
     run(forces_, near);
     run(apply_, vertices);
   }
@@ -296,7 +303,8 @@ void SurfaceContact::keep_apart(StateBuffers& state) {
 }
 
 void SurfaceContact::copy_counts(const gl::Buffer& target, std::size_t offset) const {
-  glCopyNamedBufferSubData(control_.id(), target.id(), 0, static_cast<GLintptr>(offset), sizeof(SurfaceControl));
+  glCopyNamedBufferSubData(control_.id(), target.id(), 0, static_cast<GLintptr>(offset),
+                           sizeof(SurfaceControl));
 }
 
 SurfaceContact::Counters SurfaceContact::read_counts(const std::byte* counts) {

@@ -1,7 +1,8 @@
 // Contact between surfaces, after a step of any method (shaders/surface/): pushes that keep triangles and
 // edges apart, and a filter that shortens steps so that nothing passes through anything. The pairs that can
-// meet come from a search, which the GPU itself asks for when a vertex has moved far enough. All is dispatched
-// indirectly: nothing is done for pairs that are not there, and the host does not wait to find that out.
+// meet come from a search, which the GPU itself asks for when a vertex has moved far enough. All is
+// dispatched indirectly: nothing is done for pairs that are not there, and the host does not wait to find
+// that out.
 #pragma once
 
 #include <array>
@@ -40,8 +41,8 @@ class SurfaceContact {
     std::uint32_t cuts = 0;      ///< vertices whose steps were shortened, over all steps
     std::uint32_t rebuilds = 0;  ///< searches
   };
-  /// Queues a copy of the counts to `bytes_of_counts` of `target`, from `offset`. `read_counts` makes Counters
-  /// of them.
+  /// Queues a copy of the counts to `bytes_of_counts` of `target`, from `offset`. `read_counts` makes
+  /// Counters of them.
   void copy_counts(const gl::Buffer& target, std::size_t offset) const;
   static Counters read_counts(const std::byte* counts);
   static const std::size_t bytes_of_counts;
@@ -65,6 +66,7 @@ class SurfaceContact {
   float most_query_ = 0;       ///< [m]
   std::uint64_t updates_ = 0;  ///< calls of update_pairs since `invalidate`
   int turn_ = 0;
+  int push_passes_ = 0;
   bool keeps_start_ = false;  ///< the strain limit writes over the positions at the step's start
   gl::Program boxes_, cells_program_, triangle_pairs_program_, candidates_, pairs_program_, finish_;
   gl::Program contacts_, forces_, apply_, begin_, limit_, move_;

@@ -13,6 +13,6 @@ void main() {
   most_triangle_pairs = max(most_triangle_pairs, triangle_pairs);
   most_pairs = max(most_pairs, needed);
   largest_triangle = fastest = fastest_vertex = levels = 0u;
-  rebuild_groups = 0u;
+  rebuild_groups = split_groups = candidate_groups = 0u;
   ++rebuilds;
 }

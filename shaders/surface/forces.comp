@@ -12,7 +12,7 @@ void main() {
   uint item = gl_GlobalInvocationID.x;
   if (item >= step_counts[turn].near) return;
   uvec4 pair = FETCH(near_pairs, 3u * item);
-  if ((pair.y & no_force_bit) != 0u) return;
+  if ((pair.z & touching_bit) == 0u) return;
   vec4 apart = uintBitsToFloat(FETCH(near_pairs, 3u * item + 1u));
   vec4 weight = uintBitsToFloat(FETCH(near_pairs, 3u * item + 2u));
   uvec4 corner = corners_of(pair);
@@ -27,7 +27,7 @@ void main() {
   float give = dot(mobility, weight);
   vec3 push, impulse;
   RARELY(give > 0.0 && surface_contact(apart.xyz, apart.w, moved, v, thickness, friction, mend, push, impulse)) {
-    float share = 1.0 / (give * crowd(corner, 3));
+    float share = 1.0 / (give * crowd(corner, mobility, 3));
     push *= share * units_of_length();
     impulse *= share * units_of_speed();
     for (int k = 0; k < 4; ++k)

@@ -7,6 +7,10 @@ layout(std430, binding = slot_contact_sums) buffer Sums { int sums[]; };
 layout(std430, binding = slot_step_limits) buffer Limits { uint limits[]; };
 uniform int last;
 
+/// A vertex that takes less than this of its step is jammed between others: what its springs give it would add up, step
+/// after step, until it comes free. It loses half of its speed in a step.
+const float jammed_share = 0.1;
+
 void main() {
   int i = int(gl_GlobalInvocationID.x);
   if (i >= vertex_count) return;
@@ -19,6 +23,7 @@ void main() {
     if (last != 0) {
       atomicAdd(step_counts[turn].cuts, 1u);
       atomicAdd(cuts, 1u);
+      if (share < jammed_share && position[i].w > 0.0) velocity[i].xyz *= 0.5;
     }
   }
   RARELY(sums[8 * i + 7] != 0) {

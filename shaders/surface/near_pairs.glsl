@@ -4,10 +4,11 @@ READ_UVEC4(near_pairs, unit_near_pairs);
 // speed], pairs that shorten steps at it.
 layout(std430, binding = slot_contact_sums) buffer Sums { int sums[]; };
 
-/// Most pairs that push, or shorten steps at, one of the corners: each takes that share, lest they do too much at once.
-float crowd(uvec4 corner, int which) {
+/// Most pairs that push, or shorten steps at, a corner that gives way: each takes that share, lest they do too much.
+float crowd(uvec4 corner, vec4 mobility, int which) {
   int most = 1;
-  for (int k = 0; k < 4; ++k) most = max(most, sums[8 * int(corner[k]) + which]);
+  for (int k = 0; k < 4; ++k)
+    if (mobility[k] != 0.0) most = max(most, sums[8 * int(corner[k]) + which]);
   return float(most);
 }
 

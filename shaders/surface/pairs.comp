@@ -29,7 +29,7 @@ void main() {
   RARELY(separation(edges, c).gap < reach_of(next_query())) {
     uint slot = atomicAdd(pairs, 1u);
     if (slot < pair_capacity) {
-      atomicMax(pair_groups, slot / uint(GROUP_SIZE) + 1u);
+      if (slot % uint(GROUP_SIZE) == 0u) atomicMax(pair_groups, slot / uint(GROUP_SIZE) + 1u);
       if (near_at_rest(edges, corner)) pair.y |= no_force_bit;
       list[slot] = pair;
     }

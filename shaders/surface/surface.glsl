@@ -24,7 +24,7 @@ struct StepCounts {  // of a step; steps take turns with two of them
 layout(std430, binding = slot_surface_control) coherent buffer SurfaceControl {
   StepCounts step_counts[2];
   uint rebuild_groups, rebuild_groups_y, rebuild_groups_z;  // over triangles and vertices
-  uint split_groups, split_groups_y, split_groups_z;        // over the 16 numbers of pairs of triangles
+  uint split_groups, split_groups_y, split_groups_z;        // over pairs of triangles
   uint pair_groups, pair_groups_y, pair_groups_z;           // over pairs
   uint candidate_groups, candidate_groups_y, candidate_groups_z;  // over pairs whose boxes are near
   uint triangle_pairs;       // found by the search
@@ -52,6 +52,7 @@ uniform int turn;           // whose step_counts this step has
 
 const uint edges_bit = 0x80000000u;     // of a pair's first corner: two edges
 const uint no_force_bit = 0x80000000u;  // of its second: too near at rest to be kept apart
+const uint touching_bit = 0x80000000u;  // of a near pair's third: comes within the thickness in this step
 const uint corner_mask = 0x7fffffffu;
 
 /// How far a vertex may go in a step, as a share of the query radius: two that are farther apart cannot meet.

@@ -40,7 +40,7 @@ void main() {
       uint slot = atomicAdd(triangle_pairs, 1u);
       if (slot < triangle_pair_capacity) {
         found[slot] = uvec2(i, j);
-        atomicMax(split_groups, 16u * slot / uint(GROUP_SIZE) + 1u);
+        if (slot % uint(GROUP_SIZE) == 0u) atomicMax(split_groups, slot / uint(GROUP_SIZE) + 1u);
       }
     }
     j = FETCH_UINT(next, j);

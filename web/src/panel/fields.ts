@@ -228,12 +228,19 @@ function selfCollisionSection(document: SceneDocument): Section {
     paths: [base],
     kind: "toggle",
     read: (current) => current.self_collision !== null,
-    write: (value) => (value ? { thickness: 0.01, friction: 0.2 } : null),
+    write: (value) => (value ? { thickness: 0.01, friction: 0.2, kind: "points" } : null),
   };
   const more: Field[] = document.self_collision
     ? [
         number("thickness", [`${base}/thickness`], { min: 0.001, max: 0.1, log: true, ...meter }, { note: thinNote }),
         number("friction", [`${base}/friction`], { min: 0, max: 2, step: 0.01 }),
+        {
+          key: `${base}/kind`,
+          label: "between",
+          paths: [`${base}/kind`],
+          kind: "choice",
+          choices: ["points", "surface"],
+        },
       ]
     : [];
   return { key: base, title: "Self-collision", open: true, fields: [toggle, ...more], sections: [] };
