@@ -90,6 +90,28 @@ const int slot_direction_product = 5;   // update
 const int slot_change = 6;              // update
 const int slot_wind = 0;                // wind
 
+// Contact between surfaces: surface/NAME.comp. The slots are read as the units of the same name, too.
+const int unit_surface_triangles = 9;   // server/sim/surface_contact.cpp; boxes, triangle_pairs, pairs
+const int unit_triangle_boxes = 10;     // boxes; cells, triangle_pairs
+const int unit_triangle_cells = 11;     // cells, finish; triangle_pairs
+const int unit_triangle_chains = 12;    // cells; triangle_pairs
+const int unit_triangle_pairs = 13;     // triangle_pairs; pairs
+const int unit_surface_pairs = 14;      // pairs; contacts
+const int unit_near_pairs = 15;         // candidates; pairs, and: contacts; forces, limit
+const int unit_step_start = 16;         // the step before; contacts, forces, begin
+const int unit_step_target = 17;        // begin; limit, move
+const int slot_surface_control = 2;     // surface/*.comp; the same, indirect dispatches
+const int slot_triangle_boxes = 3;      // boxes
+const int slot_surface_built = 4;       // boxes; begin, as unit_position_when_built
+const int slot_triangle_cells = 3;      // cells, finish
+const int slot_triangle_chains = 4;     // cells
+const int slot_triangle_pairs = 3;      // triangle_pairs
+const int slot_surface_pairs = 3;       // pairs
+const int slot_near_pairs = 3;          // candidates, contacts
+const int slot_contact_sums = 4;        // contacts, forces, limit; forces, apply, begin, limit, move
+const int slot_step_limits = 5;         // limit, move; the same
+const int slot_step_target = 6;         // begin
+
 // The strain limit's: strain_limit/NAME.comp.
 const int unit_group_excess = 10;        // sweep; the next sweep
 const int unit_corrected_position = 11;  // sweep; end

@@ -10,6 +10,7 @@
 #include "server/cli/commands.h"
 #include "server/cli/state_files.h"
 #include "server/cli/stepping.h"
+#include "server/cli/verify.h"
 #include "server/scene/method.h"
 
 namespace clothlab::cli {
@@ -23,10 +24,11 @@ struct RunOptions {
   double time = 0;  // [s]
   std::string out, trace, report;
   std::optional<double> every;  // [s]
+  bool verify = false;
   std::optional<int> gpu;
 };
 
-constexpr double default_every = 0.01;  // [s], between two rows of a trace
+constexpr double default_every = 0.01;  // [s], between two rows of a trace, or two states to verify
 
 /// The `--trace` file. Each row is written at once, so that a run that ends early leaves the rows so far.
 class Trace {
@@ -89,8 +91,12 @@ Report make_report(const Prepared& prepared, const Progress& progress, double wa
                         {"unconverged", work.unconverged}};
   if (const sim::StrainLimitWork work = simulation.strain_limit_work(); work.sweeps > 0)
     report["strain_limit"] = {{"sweeps", work.sweeps}, {"unconverged", work.unconverged}};
-  if (simulation.scene().self_collision)
+  if (simulation.scene().collides(scene::ContactKind::points))
     report["self_collision"] = {{"neighbours_dropped", progress.state.neighbours_dropped}};
+  if (simulation.scene().collides(scene::ContactKind::surface))
+    report["self_collision"] = {{"pairs", progress.state.surface_pairs},
+                                {"cuts", progress.state.surface_cuts},
+                                {"searches", progress.state.surface_searches}};
   report["max_strain"] = progress.state.max_strain;
   report["energy"] = {{"kinetic", progress.state.kinetic},
                       {"elastic", progress.state.elastic},
@@ -143,8 +149,8 @@ struct Outputs {
 
 /// Checks every option that names a file, before anything is simulated. `run` opens the trace later.
 Result<Outputs> open_outputs(const RunOptions& options) {
-  if (options.every && options.out.empty() && options.trace.empty())
-    return Error{"--every", with_significant_digits(*options.every, 9), "needs --out or --trace"};
+  if (options.every && options.out.empty() && options.trace.empty() && !options.verify)
+    return Error{"--every", with_significant_digits(*options.every, 9), "needs --out, --trace or --verify"};
   Outputs outputs;
   if (!options.out.empty()) {
     Result<StateFiles> states = StateFiles::create(options.out, options.every.has_value());
@@ -163,9 +169,10 @@ std::string comment(const sim::Diagnostics& state, const std::string& scene, boo
          " s, in metres" + (diverged ? "; the simulation diverged after this" : "");
 }
 
-/// The steps between two stops: those of --every; else default_every if there is a trace; else all `steps`.
+/// The steps between two stops: those of --every; else default_every if there is a trace or states are
+/// verified; else all `steps`.
 Result<std::uint64_t> stop_interval(const RunOptions& options, std::uint64_t steps, double dt) {
-  if (!options.every && options.trace.empty()) return std::max<std::uint64_t>(steps, 1);
+  if (!options.every && options.trace.empty() && !options.verify) return std::max<std::uint64_t>(steps, 1);
   if (!options.every)
     return std::max<std::uint64_t>(static_cast<std::uint64_t>(std::llround(default_every / dt)), 1);
   if (*options.every < dt / 2)
@@ -190,7 +197,10 @@ int run(const RunOptions& options) {
   if (!every) return fail(every.error(), exit_usage);
 
   if (!options.trace.empty()) outputs->trace.emplace(options.trace);
+  std::optional<CrossingCheck> check;
+  if (options.verify) check.emplace(simulation);
   const auto at_stop = [&](const sim::Diagnostics& state) -> Status {
+    if (check) check->add(simulation.read_state(), state.time);
     if (outputs->trace)
       if (Status added = outputs->trace->add(state); !added) return added;
     if (!outputs->states || !options.every) return ok();
@@ -208,11 +218,13 @@ int run(const RunOptions& options) {
   }
   if (outputs->trace && progress->diverged) outputs->trace->mark_diverged(progress->diverged_by);
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const Report report = make_report(*prepared, *progress, wall, state);
+  Report report = make_report(*prepared, *progress, wall, state);
+  if (check) check->report(report);
   if (!options.report.empty())
     if (Status written = write_file(options.report, report.dump(2) + "\n"); !written)
       return fail(written.error(), exit_internal);
   print_summary(report, static_cast<double>(progress->steps) * dt);
+  if (check) std::printf("%s\n", check->in_words().c_str());
   print_shortcomings(simulation, progress->state);
   if (progress->diverged) note_diverged(*progress);
   return progress->diverged ? exit_diverged : exit_done;
@@ -232,21 +244,28 @@ void add_run(CLI::App& app, int& exit_code) {
       ->add_option("--out", options->out,
                    "the final mesh (.obj, .ply); with --every the series (.obj, .ply, .pc2)")
       ->type_name("F");
-  command->add_option("--every", options->every, "time between two samples of --out and --trace [s]")
+  command
+      ->add_option("--every", options->every, "time between two samples of --out, --trace and --verify [s]")
       ->type_name("T");
   command
       ->add_option("--trace", options->trace, "a table of energies, strain, speed, contacts over time (.csv)")
       ->type_name("F");
   command->add_option("--report", options->report, "what ran, how fast, and how it ended (.json)")
       ->type_name("F");
+  command->add_flag("--verify", options->verify,
+                    "count where cloth passes through cloth, in double precision; into the report");
   add_gpu(*command, options->gpu);
   command->footer(R"(Examples:
   clothlab run seed --time 5
   clothlab run seed --time 5 --report report.json --trace trace.csv --every 0.1
   clothlab run seed --time 2 --out cloth.ply --set /cloths/0/material/bend=0
+  clothlab run twist --time 10 --report report.json --verify --every 0.05
 
 With --every, samples of cloth.obj go to cloth-0000.obj (the start), cloth-0001.obj, ...; a trace alone has a row
-every 0.01 s. The report's step_s is the time of stepping alone: not of setting up, diagnostics or files.
+every 0.01 s, and so often states are verified. A crossing is an edge and a triangle without a common vertex that
+have a point in common, exactly; touching is one. The report's crossings is the largest number at any sample, and
+crossing_check says when and which. The report's step_s is the time of stepping alone: not of setting up,
+diagnostics or files.
 The result is the same, bit for bit, each time the same build runs the same scene on the same device.)");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -9,6 +9,7 @@
 
 #include "server/base/text.h"
 #include "server/model/adjacency.h"
+#include "server/model/clean_start.h"
 #include "server/model/mesh_arrays.h"
 #include "server/model/sheet.h"
 #include "server/model/start.h"
@@ -211,7 +212,8 @@ Result<Model> build(const scene::Scene& scene) {
       scene::sweeps(scene.solver.method) && !scene::sweeps_vertices(scene.solver.method);
   for (const scene::Cloth& cloth : scene.cloths)
     if (Status added = add_cloth(model, cloth, sweeps_elements); !added) return added.error();
-  list_neighbours(model, scene.self_collision.has_value());
+  if (Status clean = check_start(model, scene); !clean) return clean.error();
+  list_neighbours(model, scene.collides(scene::ContactKind::points));
   return model;
 }
 

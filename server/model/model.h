@@ -51,8 +51,8 @@ struct Model {
   std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(triangles.size()); }
 };
 
-/// Builds the arrays. An error names the JSON Pointer of a mass that leaves a vertex too light, or of a pin
-/// or weight that selects no vertex.
+/// Builds the arrays. An error names the JSON Pointer of a mass that leaves a vertex too light, of a pin or
+/// weight that selects no vertex, or of a kind of self-collision that the start's crossings rule out.
 Result<Model> build(const scene::Scene& scene);
 
 /// For each vertex the two other corners of each of its triangles, counter-clockwise, in the order of

@@ -36,7 +36,7 @@ double least_safe_thickness(const Model& model) {
 }
 
 std::string thickness_warning(const Model& model, const scene::Scene& scene) {
-  if (!scene.self_collision) return {};
+  if (!scene.collides(scene::ContactKind::points)) return {};
   const double holds = least_safe_thickness(model), thickness = scene.self_collision->thickness;
   if (!(thickness < holds)) return {};
   return formatted(

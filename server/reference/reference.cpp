@@ -94,8 +94,9 @@ void advance(StepMethod method, const World& world, State& state, double t, doub
   StepStart start{
       world, state, Vectors(count, dvec3(0.0)), Vectors(count, dvec3(0.0)), t, world.scene.solver.dt};
   std::vector<int> touched(count, 0);
-  const model::Adjacency reach = world.scene.self_collision ? within_reach(world, state) : model::Adjacency{};
-  for (std::uint32_t i = 0; world.scene.self_collision && i < count; ++i) {
+  const model::Adjacency reach =
+      world.scene.collides(scene::ContactKind::points) ? within_reach(world, state) : model::Adjacency{};
+  for (std::uint32_t i = 0; world.scene.collides(scene::ContactKind::points) && i < count; ++i) {
     if (world.pinned(i)) continue;
     const SelfContact contact = self_contact(world, state, reach, i);
     start.push[i] = contact.push;

@@ -50,7 +50,8 @@ dvec3 stopped_move(SweepState& step, std::uint32_t i, const dmat3& inverse, dvec
   dvec3 stopped = trial;
   Surface met;
   step.colliders_met[i] = stop_at_colliders_position(step.world, step.t, step.x[i], stopped, met);
-  if (!step.world.scene.self_collision) step.contacts[i] = step.colliders_met[i];  // else contact_pass counts
+  if (!step.world.scene.collides(scene::ContactKind::points))
+    step.contacts[i] = step.colliders_met[i];  // else contact_pass counts
   if (step.colliders_met[i] == 0) return move;
   const dvec3& n = met.normal;
   const dvec3 response = inverse * n;
@@ -139,7 +140,7 @@ void contact_pass(SweepState& step) {
   const bool remembers = scene::sweeps_vertices(world.scene.solver.method);
   std::vector<dvec3> push(step.x.size(), dvec3(0.0));
   std::vector<int> contacts(step.x.size(), 0);
-  for (std::uint32_t i = 0; world.scene.self_collision && i < push.size(); ++i)
+  for (std::uint32_t i = 0; world.scene.collides(scene::ContactKind::points) && i < push.size(); ++i)
     if (step.mobility[i] > 0.0) push[i] = pair_push(step, i, contacts[i]);
   for (std::uint32_t i = 0; i < push.size(); ++i) {
     if (step.mobility[i] == 0.0) continue;

@@ -22,6 +22,11 @@ const std::vector<Preset>& presets() {
       {"fabrics", "cotton, silk, denim and a knit over equal balls"},
       {"skirt", "two panels sewn together, on a waistband that turns"},
       {"poncho", "a square with a hole for the neck hangs from a collar on shoulders that sway"},
+      {"mannequin", "a poncho and a skirt settle on a figure that stands still"},
+      {"knot", "a ribbon with an overhand knot is pulled tight and let loose"},
+      {"funnel", "three layers fall through a funnel of rods"},
+      {"stack", "five sheets dropped on a box, one on the other"},
+      {"tablecloth-pull", "a cloth is pulled off its table, and back"},
       {"blowup", "a time step beyond the stability limit, on purpose"},
   };
   return list;

@@ -237,9 +237,14 @@ struct Collider {
   bool operator==(const Collider&) const = default;
 };
 
+/// What self-collision keeps apart: vertices, or triangles and edges, which then never pass through each
+/// other.
+enum class ContactKind { points, surface };
+
 struct SelfCollision {
-  double thickness = 0.01;  ///< [m]: vertices are kept this far apart
+  double thickness = 0.01;  ///< [m]: vertices, or surfaces, are kept this far apart
   double friction = 0.0;    ///< Coulomb coefficient, 0 or more
+  ContactKind kind = ContactKind::points;
   bool operator==(const SelfCollision&) const = default;
 };
 
@@ -275,6 +280,8 @@ struct Scene {
   std::optional<Wind> wind;
   double air_drag = 0.0;  ///< [1/s]
   Solver solver;
+  /// True if self-collision is of this kind.
+  bool collides(ContactKind kind) const { return self_collision && self_collision->kind == kind; }
   bool operator==(const Scene&) const = default;
 };
 

@@ -45,9 +45,11 @@ std::vector<Collider> read_colliders(const Reader& colliders) {
 
 std::optional<SelfCollision> read_self_collision(const Reader& self_collision) {
   if (self_collision.is_null()) return std::nullopt;
-  self_collision.object({"thickness", "friction"}, {"kind"});
+  self_collision.object({"thickness", "friction", "kind"});
+  const bool surface = self_collision.member("kind", "points").choice({"points", "surface"}) == "surface";
   return SelfCollision{self_collision.member("thickness", 0.01).number(ranges::thickness),
-                       self_collision.member("friction", 0.2).number(ranges::friction)};
+                       self_collision.member("friction", 0.2).number(ranges::friction),
+                       surface ? ContactKind::surface : ContactKind::points};
 }
 
 std::optional<Wind> read_wind(const Reader& wind) {

@@ -32,13 +32,15 @@ Result<DiagnosticsPass> DiagnosticsPass::create(std::uint32_t vertex_count) {
   pass.program_ = std::move(*program);
   pass.program_.set("vertex_count", static_cast<GLint>(vertex_count));
   pass.groups_ = vertex_groups(vertex_count);
-  pass.results_ = gl::Buffer(pass.groups_ * sizeof(Partial) + sizeof(SelfCollision::Counters));
+  pass.results_ = gl::Buffer(pass.groups_ * sizeof(Partial) + sizeof(SelfCollision::Counters) +
+                             SurfaceContact::bytes_of_counts);
   pass.ring_ = gl::ReadbackRing(pass.results_.bytes(), ring_slots);
   return pass;
 }
 
 bool DiagnosticsPass::request(const StateBuffers& state, const SelfCollision* self_collision,
-                              const glm::dvec3& gravity, double time, std::uint64_t step) {
+                              const SurfaceContact* surfaces, const glm::dvec3& gravity, double time,
+                              std::uint64_t step) {
   if (ring_.full()) return false;
   program_.use();
   glUniform4f(program_.location("gravity"), static_cast<float>(gravity.x), static_cast<float>(gravity.y),
@@ -52,6 +54,10 @@ bool DiagnosticsPass::request(const StateBuffers& state, const SelfCollision* se
     glCopyNamedBufferSubData(self_collision->control().id(), results_.id(), SelfCollision::counters_offset,
                              static_cast<GLintptr>(groups_ * sizeof(Partial)),
                              sizeof(SelfCollision::Counters));
+  }
+  if (surfaces) {
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    surfaces->copy_counts(results_, groups_ * sizeof(Partial) + sizeof(SelfCollision::Counters));
   }
   ring_.push(results_, results_.bytes());
   pending_times_[requested_++ % ring_slots] = {time, step};
@@ -82,6 +88,11 @@ bool DiagnosticsPass::poll(Diagnostics& out, bool wait) {
   std::memcpy(&counters, bytes.data() + groups_ * sizeof(Partial), sizeof(counters));
   out.neighbour_rebuilds = counters.rebuilds;
   out.neighbours_dropped = counters.dropped;
+  const SurfaceContact::Counters surfaces =
+      SurfaceContact::read_counts(bytes.data() + groups_ * sizeof(Partial) + sizeof(counters));
+  out.surface_pairs = surfaces.pairs;
+  out.surface_cuts = surfaces.cuts;
+  out.surface_searches = surfaces.rebuilds;
   out.contacts = static_cast<std::uint32_t>(contacts);
   out.max_speed = std::sqrt(speed_squared);
   ring_.pop();

@@ -9,6 +9,7 @@
 #include "server/sim/self_collision.h"
 #include "server/sim/simulation.h"
 #include "server/sim/state.h"
+#include "server/sim/surface_contact.h"
 
 namespace clothlab::sim {
 
@@ -17,16 +18,16 @@ class DiagnosticsPass {
   static Result<DiagnosticsPass> create(std::uint32_t vertex_count);
 
   /// Queues the reduction. Returns false, without queueing it, if too many results are still on their way.
-  /// The element lists and their slices must be bound. `self_collision` may be null.
-  bool request(const StateBuffers& state, const SelfCollision* self_collision, const glm::dvec3& gravity,
-               double time, std::uint64_t step);
+  /// The element lists and their slices must be bound. `self_collision` and `surfaces` may be null.
+  bool request(const StateBuffers& state, const SelfCollision* self_collision, const SurfaceContact* surfaces,
+               const glm::dvec3& gravity, double time, std::uint64_t step);
   /// Stores the oldest result in `out` and returns true if it has arrived; with `wait`, waits for it. Returns
   /// false if no result is there.
   bool poll(Diagnostics& out, bool wait);
 
  private:
   gl::Program program_;
-  gl::Buffer results_;  ///< the partial results, then self-collision's counters
+  gl::Buffer results_;  ///< the partial results, then the counters of self-collision and of surfaces
   gl::ReadbackRing ring_;
   static constexpr std::size_t ring_slots = 3;
   std::array<std::pair<double, std::uint64_t>, ring_slots>

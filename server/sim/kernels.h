@@ -8,6 +8,7 @@
 
 #include "server/sim/integrator.h"
 #include "server/sim/strain_limit.h"
+#include "server/sim/surface_contact.h"
 
 namespace clothlab::sim {
 
@@ -22,6 +23,7 @@ struct Kernels {
   gl::TextureBuffer fan_offsets, fans;  ///< the triangles at each vertex, for the wind; else empty
   std::unique_ptr<Integrator> integrator;
   std::optional<StrainLimit> strain_limit;
+  std::optional<SurfaceContact> surface_contact;
 
   /// Makes the kernels of `scene`; nothing is carried over from an earlier step.
   static Result<Kernels> create(const scene::Scene& scene);

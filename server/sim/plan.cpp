@@ -82,7 +82,8 @@ Plan plan(const scene::Scene& scene) {
   }
   plan.solids = solid_runs(scene);
   plan.moving = static_cast<int>(moving_motions(scene).size());
-  plan.self_collision = scene.self_collision.has_value();
+  plan.self_collision = scene.collides(scene::ContactKind::points);
+  plan.surface_contact = scene.collides(scene::ContactKind::surface);
   plan.wind = scene.wind.has_value();
   if (scene::sweeps(plan.method))
     for (plan.most_sweeps = 16; plan.most_sweeps < scene.solver.iterations;) plan.most_sweeps *= 4;
@@ -110,9 +111,15 @@ std::vector<Simulation::Part> parts(const Plan& plan) {
   const auto add = [&](Kind kind, const std::string& name, bool runs, const std::string& reason) {
     list.push_back({kind, name, runs ? "" : reason});
   };
-  add(Kind::pass, "neighbour_search", plan.self_collision, "self_collision is null");
+  const char* const no_points =
+      plan.surface_contact ? "self_collision is of the kind surface" : "self_collision is null";
+  const char* const no_surfaces =
+      plan.self_collision ? "self_collision is of the kind points" : "self_collision is null";
+  add(Kind::pass, "neighbour_search", plan.self_collision, no_points);
+  add(Kind::pass, "pair_search", plan.surface_contact, no_surfaces);
   add(Kind::pass, scene::name(plan.method), true, "");
   add(Kind::pass, "strain_limit", plan.strain_limit(), "no cloth has a strain_limit");
+  add(Kind::pass, "surface_contact", plan.surface_contact, no_surfaces);
   const char* const no_springs = "no cloth has the model springs and this stiffness above 0";
   add(Kind::term, "structural_springs", plan.structural, no_springs);
   add(Kind::term, "shear_springs", plan.shear, no_springs);
@@ -123,7 +130,7 @@ std::vector<Simulation::Part> parts(const Plan& plan) {
       "no cloth has the model fem and a bending stiffness above 0");
   add(Kind::term, "rest_curvature", plan.laws[elements::law_number<elements::Shell>],
       "no cloth that bends under the model fem is curved at rest");
-  add(Kind::term, "self_contacts", plan.self_collision, "self_collision is null");
+  add(Kind::term, "self_contacts", plan.self_collision, no_points);
   add(Kind::term, "wind", plan.wind, "wind is null");
   add(Kind::term, "moving_poses", plan.moving > 0, "no pin and no collider moves");
   for (std::size_t kind = 0; kind < scene::shape_kinds; ++kind) {

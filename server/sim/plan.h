@@ -41,7 +41,8 @@ struct Plan {
   bool pins = false;
   int moving = 0;                ///< distinct motions of pins and colliders, null left out
   std::vector<SolidRun> solids;  ///< in runs as long as possible
-  bool self_collision = false;
+  bool self_collision = false;   ///< between vertices
+  bool surface_contact = false;
   bool wind = false;
   std::uint32_t neighbour_slots = 64;  ///< of each neighbour list; more are made if a list needs them
   bool limits_springs = false;         ///< true if any cloth with springs has a strain limit

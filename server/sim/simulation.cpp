@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "server/gl/bindings.h"
+#include "server/model/clean_start.h"
 #include "server/model/size.h"
 #include "server/scene/method.h"
 #include "server/sim/colliders.h"
@@ -106,11 +107,19 @@ struct Simulation::Implementation {
       co_await kernels.update_lists(scene);
       passed("neighbour_search");
     }
+    if (kernels.surface_contact) {
+      co_await kernels.surface_contact->update_pairs(state);
+      passed("pair_search");
+    }
     co_await kernels.integrator->step(state, row);
     passed(scene::name(kernels.plan.method));
-    if (!kernels.strain_limit) co_return;
-    co_await kernels.strain_limit->apply(state);
-    passed("strain_limit");
+    if (kernels.strain_limit) {
+      co_await kernels.strain_limit->apply(state);
+      passed("strain_limit");
+    }
+    if (!kernels.surface_contact) co_return;
+    kernels.surface_contact->keep_apart(state);
+    passed("surface_contact");
   }
 
   /// Does up to `count` steps; ends earlier if no steps are left to do.
@@ -158,6 +167,7 @@ struct Simulation::Implementation {
     if (kernels.self_collision) kernels.self_collision->invalidate();
     kernels.integrator->restart();
     if (kernels.strain_limit) kernels.strain_limit->restart();
+    if (kernels.surface_contact) kernels.surface_contact->invalidate();
   }
 
   /// To be called when the state was set from outside and not made by a step: passes forget what they carry
@@ -226,6 +236,9 @@ Result<ChangeDepth> Simulation::change(const scene::Scene& scene) {
   if (depth == ChangeDepth::kernel) {
     Result<Kernels> kernels = Kernels::create(scene);
     if (!kernels) return kernels.error();
+    if (!self.scene.collides(scene::ContactKind::surface))
+      if (Status apart = model::check_present(model(), scene, read_state().position); !apart)
+        return apart.error();
     self.give_up_work();
     self.kernels = std::move(*kernels);
   } else if (depth == ChangeDepth::uniform) {
@@ -317,7 +330,9 @@ void Simulation::request_diagnostics() {
   Implementation& self = *implementation_;
   self.bind_constants();
   const SelfCollision* self_collision = self.kernels.self_collision ? &*self.kernels.self_collision : nullptr;
-  if (self.diagnostics.request(self.state, self_collision, self.scene.gravity, time(), self.step_index))
+  const SurfaceContact* surfaces = self.kernels.surface_contact ? &*self.kernels.surface_contact : nullptr;
+  if (self.diagnostics.request(self.state, self_collision, surfaces, self.scene.gravity, time(),
+                               self.step_index))
     self.last_good.put_aside(self.state, time(), self.step_index);
 }
 

@@ -41,6 +41,10 @@ struct Diagnostics {
   std::uint32_t neighbour_rebuilds = 0;  ///< rebuilds of the neighbour lists since the kernels were made
   std::uint32_t neighbours_dropped =
       0;  ///< neighbours that found no room in a list: self_collision is too thick for the mesh
+  std::uint32_t surface_pairs = 0;  ///< that can meet until the next search, under the kind surface
+  std::uint32_t surface_cuts =
+      0;  ///< steps of vertices that the filter shortened, since the kernels were made
+  std::uint32_t surface_searches = 0;  ///< searches for pairs, the same
 };
 
 /// The state as floats, read back from the GPU.

@@ -17,6 +17,7 @@ namespace clothlab::elements {
 
 using real = double;
 using vec3 = glm::dvec3;
+using glm::clamp;
 using glm::cross;
 using glm::dot;
 using glm::max;
@@ -36,6 +37,7 @@ using std::sqrt;
 #include "shaders/elements/shell.glsl"
 #include "shaders/elements/solid.glsl"
 #include "shaders/elements/spring.glsl"
+#include "shaders/elements/surface.glsl"
 #include "shaders/elements/wind.glsl"
 #undef FUNCTION
 #undef PRECISE

@@ -123,6 +123,8 @@ const presets = [
   "cantilever",
   "trampoline",
   "fabrics",
+  "stack",
+  "tablecloth-pull",
   "blowup",
 ];
 const patches = [

@@ -130,6 +130,13 @@ const presets = [
   "hanging-strip",
   "cantilever",
   "fabrics",
+  "skirt",
+  "poncho",
+  "mannequin",
+  "knot",
+  "funnel",
+  "stack",
+  "tablecloth-pull",
 ];
 for (const preset of presets) {
   browserTest(

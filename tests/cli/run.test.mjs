@@ -1,6 +1,6 @@
 // `clothlab run`: report, trace, meshes, the same result every time, and a run that diverges.
 import assert from "node:assert/strict";
-import { readFileSync, readdirSync } from "node:fs";
+import { readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { clothlab, folder } from "./program.mjs";
@@ -195,4 +195,55 @@ test("a run that diverges exits 4, keeps what was good, and marks it", () => {
   assert.match(obj, /^#.*diverged/);
   assert.doesNotMatch(obj, /nan|inf/i);
   assert.match(file("blowup.csv").toString(), /\n# diverged by [\d.]+ s\n$/);
+});
+
+test("--verify counts crossings at every sample: of sheets that pass through each other, and of one that does not", () => {
+  const sheet = (y, turn) => ({
+    mesh: { grid: { columns: 5, rows: 5, width: 1, height: 1 } },
+    transform: { translate: [0.013, y, -0.5], rotate: [0, turn, 0] },
+    pins: [{ at: "edge:row:0", motion: { linear: { velocity: [0, y < 1 ? 0 : -1, 0] } } }],
+  });
+  const scene = { version: 1, gravity: [0, 0, 0], solver: { method: "vbd", dt: 0.01 } };
+  const write = (cloths) => writeFileSync(join(folder, "layers.json"), JSON.stringify({ ...scene, cloths }));
+  const verified = (...args) => {
+    const { stdout } = run("layers.json", "--time", "0.5", "--report", "verified.json", "--verify", ...args);
+    return { ...report("verified.json"), stdout };
+  };
+  write([sheet(0.9, 0), sheet(1.1, 7)]); // the upper row moves 0.5 m down, through the lower cloth at 0.2 s
+  const through = verified("--every", "0.05");
+  const check = through.crossing_check;
+  assert.equal(check.samples, 11);
+  assert.ok(through.crossings > 0 && check.samples_with_crossings > 0, JSON.stringify(check));
+  assert.ok(check.first_at > 0.19 && check.first_at <= check.worst_at && check.worst_at <= 0.51);
+  assert.match(
+    check.first_pairs[0],
+    /^edge \d+-\d+ of \/cloths\/[01] .* meets triangle \d+-\d+-\d+ of \/cloths\/[01] /,
+  );
+  assert.match(through.stdout, new RegExp(`crossings: at most ${through.crossings}, .* first at`));
+  write([sheet(0.9, 0)]);
+  const alone = verified();
+  assert.equal(alone.crossings, 0);
+  assert.deepEqual(alone.crossing_check, {
+    samples: 51, // every 0.01 s if nothing else is said
+    samples_with_crossings: 0,
+    first_at: null,
+    first_pairs: [],
+    worst_at: null,
+    at_end: 0,
+  });
+  assert.equal(report("verified.json").crossings, 0);
+  run("layers.json", "--time", "0.05", "--report", "verified.json");
+  assert.ok(!("crossings" in report("verified.json")));
+});
+
+test("a scene of surfaces that starts with crossings is refused, with the pairs and a way out, and runs as points", () => {
+  const asked = ["--set", '/self_collision={"kind":"surface"}'];
+  const refused = clothlab(["run", "fabrics", "--time", "0.1", ...asked]);
+  assert.equal(refused.status, 2);
+  assert.match(
+    refused.stderr,
+    /\/self_collision\/kind: "surface", but the start has \d+ crossings: edge 19-20 of \/cloths\/0/,
+  );
+  assert.match(refused.stderr, /"points"/);
+  run("fabrics", "--time", "0.01", "--set", '/self_collision={"kind":"points"}');
 });

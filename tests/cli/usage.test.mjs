@@ -51,7 +51,7 @@ const wrong = {
   "an assignment without a value": [["run", "seed", "--time", "1", "--set", "/solver/dt"], /--set|\/solver\/dt/],
   "an unknown kind of mesh file": [["run", "seed", "--time", "1", "--out", "a.stl"], /\.obj, \.ply, \.pc2/],
   "a point cache of one state": [["run", "seed", "--time", "1", "--out", "a.pc2"], /--every/],
-  "--every for nothing": [["run", "seed", "--time", "1", "--every", "0.1"], /--out or --trace/],
+  "--every for nothing": [["run", "seed", "--time", "1", "--every", "0.1"], /--out, --trace or --verify/],
   "--every below a step": [["run", "flag", "--time", "1", "--every", "1e-5", "--trace", "t.csv"], /one step/],
   "a size without a height": [["render", "seed", "--time", "0", "--out", "a.png", "--size", "100"], /WIDTHxHEIGHT/],
   "a size with more after it": [

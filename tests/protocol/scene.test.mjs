@@ -41,6 +41,11 @@ test("scene.presets lists the presets of the contract, the seed first", async ()
     "fabrics",
     "skirt",
     "poncho",
+    "mannequin",
+    "knot",
+    "funnel",
+    "stack",
+    "tablecloth-pull",
     "blowup",
   ])
     assert.ok(presets.includes(name), name);
@@ -230,4 +235,19 @@ test("a strain limit that the pins leave no room for is told by a notice", async
   await client.request("scene.load", { scene: { version: 1, cloths } });
   await client.request("sim.play");
   assert.equal((await notice).level, "warning");
+});
+
+test("a scene of surfaces that starts with crossings is refused, with the pairs; the running one stays as it is", async () => {
+  await client.request("scene.load", { preset: "fabrics" }); // cotton's border lies on silk's
+  const before = (await client.request("scene.get")).revision;
+  const error = await client.refusal("scene.patch", { patch: { self_collision: { kind: "surface" } } });
+  assert.equal(error.code, -32602);
+  assert.equal(error.data.path, "/self_collision/kind");
+  assert.match(
+    error.data.found,
+    /^"surface", but the start has \d+ crossings: edge 19-20 of \/cloths\/0 \("cotton"\) meets/,
+  );
+  assert.match(error.data.allowed, /^"points"/);
+  assert.equal((await client.request("scene.get")).revision, before);
+  await client.request("scene.patch", { patch: { self_collision: { kind: "points" } } });
 });

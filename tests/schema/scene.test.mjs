@@ -24,6 +24,7 @@ const crossFieldRules = {
   "names are unique": /a name that no earlier one has/,
   "all cloths together are not too large": /vertices so far/,
   "a mesh's file is there and is one": /\/mesh\/obj: /,
+  "surfaces that keep apart start apart": /^\/self_collision\/kind: "surface", but the start has /,
 };
 
 const grid = { grid: { columns: 5, rows: 4, width: 1, height: 0.8 } };
@@ -97,7 +98,7 @@ const whole = {
     { capsule: { a: [0, 0.5, 0], b: [0, 1, 0], radius: 0.1 }, motion: spin },
     { box: { center: [0, 0, 0], half: [0.1, 0.2, 0.3], rotate: [0, 30, 0] } },
   ],
-  self_collision: { thickness: 0.01, friction: 0.2 },
+  self_collision: { thickness: 0.01, friction: 0.2, kind: "points" },
   wind: { velocity: [2, 0, 0], gust: 0.3, gust_frequency: 0.7, drag: 1, lift: 0.2 },
   air_drag: 0,
   solver: { method: "symplectic_euler", dt: 0.001, iterations: 10, tolerance: 1e-4 },
@@ -242,6 +243,7 @@ function* mutations() {
     yield { ...least, cloths: [{ ...small, weights: many(1024 + extra, () => ({ at: "vertex:0", mass: 1 })) }] };
     yield { ...least, name: "x".repeat(64 + extra) };
   }
+  for (const cloths of [[small], [small, small]]) yield { ...least, cloths, self_collision: { kind: "surface" } };
   yield { ...least, cloths: [{ mesh: { grid: { columns: 1024, rows: 1024 } } }, small] };
 }
 

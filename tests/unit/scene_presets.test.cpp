@@ -22,9 +22,10 @@ TEST_CASE("every preset is valid, has its file's name and builds a model") {
 }
 
 TEST_CASE("the presets of the contract are there, and every preset file is one of them") {
-  const std::vector<std::string> wanted = {"seed",  "flag",          "curtain",    "tablecloth", "drape",
-                                           "twist", "hanging-strip", "cantilever", "trampoline", "fabrics",
-                                           "skirt", "poncho",        "blowup"};
+  const std::vector<std::string> wanted = {
+      "seed",          "flag",       "curtain",    "tablecloth", "drape",           "twist",
+      "hanging-strip", "cantilever", "trampoline", "fabrics",    "skirt",           "poncho",
+      "mannequin",     "knot",       "funnel",     "stack",      "tablecloth-pull", "blowup"};
   CHECK(scene::preset_names() == wanted);
   std::size_t files = 0;
   for (const auto& file : std::filesystem::directory_iterator(CLOTHLAB_SOURCE_DIR "/server/scene/presets")) {

@@ -1,5 +1,5 @@
-// Writes skirt.obj and poncho.obj beside it: rings of vertices around an axis, about `spacing` [m] apart, joined by
-// triangles. `node server/scene/presets/garments.mjs`
+// Writes skirt.obj and poncho.obj beside it, rings of vertices around an axis, about `spacing` [m] apart, joined by
+// triangles; and knot.obj. `node server/scene/presets/garments.mjs`
 import { writeFileSync } from "node:fs";
 
 const spacing = 0.03;
@@ -98,4 +98,43 @@ const even = (x) => 2 * Math.round(x / 2);
     return [at[0], 0, at[1]];
   };
   write("poncho.obj", ["A poncho: a square of 1 m with a round hole for the neck."], counts, place, null);
+}
+
+// A ribbon on edge, with a loose overhand knot. Its middle line from above, x = t^3 - 3 t, y = t^4 - 4 t^2, crosses
+// itself three times (a long trefoil, after Shastri 1992); there it lies over and under itself in turns.
+{
+  const [unit, width, across, end, tail] = [0.07, 0.05, 5, 2.05, 0.3];
+  const apart = width / (across - 1);
+  const heights = [[0, 0], [0.518, 1], [1.732, -1], [1.932, 1], [end, 0.6]];
+  const middle = (t) => {
+    const u = Math.min(Math.abs(t), end);
+    const i = Math.max(heights.findLastIndex(([at]) => at < u), 0);
+    const [[from, low], [to, high]] = [heights[i], heights[i + 1]];
+    const height = low + (high - low) * (0.5 - 0.5 * Math.cos((Math.PI * (u - from)) / (to - from)));
+    const straight = Math.abs(t) - u;
+    const x = u ** 3 - 3 * u + straight * (3 * u ** 2 - 3);
+    const y = u ** 4 - 4 * u ** 2 + straight * (4 * u ** 3 - 8 * u);
+    return [Math.sign(t) * x * unit, y * unit, Math.sign(t) * height * 0.8 * width];
+  };
+  const line = [middle(-end - tail)];
+  let before = line[0];
+  let walked = 0;
+  for (let t = -end - tail; t <= end + tail; t += 1e-4) {
+    const place = middle(t);
+    walked += Math.hypot(...place.map((x, axis) => x - before[axis]));
+    before = place;
+    if (walked < apart) continue;
+    walked -= apart;
+    line.push(place);
+  }
+  const lines = ["# A ribbon with an overhand knot, in rows of 5 vertices, on edge along z.", "# Made by garments.mjs."];
+  for (const [x, y, z] of line)
+    for (let i = 0; i < across; i++) lines.push(`v ${[x, y, z + i * apart - width / 2].map(number).join(" ")}`);
+  for (let row = 0; row + 1 < line.length; row++)
+    for (let i = 1; i < across; i++) {
+      const a = row * across + i;
+      lines.push(`f ${a} ${a + across} ${a + across + 1}`, `f ${a} ${a + across + 1} ${a + 1}`);
+    }
+  writeFileSync(new URL("knot.obj", import.meta.url), `${lines.join("\n")}\n`);
+  console.log("knot.obj", line.length, "rows,", across * line.length, "vertices");
 }

@@ -147,7 +147,7 @@ export interface SceneDocument {
   gravity: Vec3;
   cloths: Cloth[];
   colliders: Collider[];
-  self_collision: null | { thickness: number; friction: number };
+  self_collision: null | { thickness: number; friction: number; kind: "points" | "surface" };
   wind: null | Wind;
   air_drag: number;
   solver: { method: string; dt: number; iterations: number; tolerance: number };

@@ -232,11 +232,18 @@ const onOff = (key: "self_collision" | "wind", start: unknown): Field => ({
 
 function selfCollisionSection(document: SceneDocument): Section {
   const base = "/self_collision";
-  const toggle = onOff("self_collision", { thickness: 0.01, friction: 0.2 });
+  const toggle = onOff("self_collision", { thickness: 0.01, friction: 0.2, kind: "points" });
   const more: Field[] = document.self_collision
     ? [
         number("thickness", [`${base}/thickness`], { min: 0.001, max: 0.1, log: true, ...meter }, { note: thinNote }),
         number("friction", [`${base}/friction`], { min: 0, max: 2, step: 0.01 }),
+        {
+          key: `${base}/kind`,
+          label: "between",
+          paths: [`${base}/kind`],
+          kind: "choice",
+          choices: ["points", "surface"],
+        },
       ]
     : [];
   return { key: base, title: "Self-collision", open: true, fields: [toggle, ...more], sections: [] };

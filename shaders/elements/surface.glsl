@@ -1,0 +1,173 @@
+// Contact of triangles and edges: how far apart a pair is, the push that keeps it at a distance, and how much of a step
+// keeps it disjoint. Pairs are a vertex and a triangle (corners: the vertex, then the triangle's), or two edges
+// (corners: the first edge's ends, then the second's). Planes that divide a pair and shorten steps: "Divide and
+// Truncate" (arXiv 2604.15513). In the common subset of GLSL and C++ (see types.glsl, elements.h).
+
+/// Places of a pair's corners [m], relative to a point near them.
+struct Corners {
+  vec3 x[4];
+};
+
+/// How a pair is separated: no point of its first part is less than `gap` [m] beyond any of its second along the unit
+/// vector n. The nearest points differ by the sum of weight[k] x[k]. gap 0, n 0: the two touch.
+struct Separation {
+  vec3 n;
+  real gap;
+  real weight[4];
+};
+
+/// What divides a pair along n [m].
+FUNCTION real gap_along(bool edges, Corners c, vec3 n) {
+  real y1 = dot(n, c.x[1]);
+  real low = dot(n, c.x[0]), high = max(dot(n, c.x[2]), dot(n, c.x[3]));
+  return edges ? min(low, y1) - high : low - max(high, y1);
+}
+
+/// Takes n and its weights over if they divide the pair better than `best`: rounding cannot make a gap too large then.
+FUNCTION void compare(bool edges, Corners c, vec3 n, real w0, real w1, real w2, real w3, INOUT(Separation) best) {
+  real gap = gap_along(edges, c, n);
+  if (!(gap > best.gap)) return;
+  best.n = n;
+  best.gap = gap;
+  best.weight[0] = w0;
+  best.weight[1] = w1;
+  best.weight[2] = w2;
+  best.weight[3] = w3;
+}
+
+/// The same for the direction between the points that the weights give.
+FUNCTION void compare_points(bool edges, Corners c, real w0, real w1, real w2, real w3, INOUT(Separation) best) {
+  vec3 d = c.x[0] * w0 + c.x[1] * w1 + c.x[2] * w2 + c.x[3] * w3;
+  real squared = dot(d, d);
+  if (squared > real(0.0)) compare(edges, c, d * (real(1.0) / sqrt(squared)), w0, w1, w2, w3, best);
+}
+
+/// Where on the segment a b the point nearest to p is: 0 at a, 1 at b.
+FUNCTION real nearest_on(vec3 p, vec3 a, vec3 b) {
+  vec3 along = b - a;
+  real squared = dot(along, along);
+  return squared > real(0.0) ? clamp(dot(p - a, along) / squared, real(0.0), real(1.0)) : real(0.0);
+}
+
+FUNCTION Separation no_separation() {
+  Separation best;
+  best.n = vec3(real(0.0));
+  best.gap = real(0.0);
+  for (int k = 0; k < 4; ++k) best.weight[k] = real(0.0);
+  return best;
+}
+
+FUNCTION Separation vertex_and_triangle(Corners c) {
+  Separation best = no_separation();
+  real u = nearest_on(c.x[0], c.x[1], c.x[2]);
+  compare_points(false, c, real(1.0), u - real(1.0), -u, real(0.0), best);
+  u = nearest_on(c.x[0], c.x[2], c.x[3]);
+  compare_points(false, c, real(1.0), real(0.0), u - real(1.0), -u, best);
+  u = nearest_on(c.x[0], c.x[3], c.x[1]);
+  compare_points(false, c, real(1.0), -u, real(0.0), u - real(1.0), best);
+  vec3 a = c.x[1] - c.x[0], b = c.x[2] - c.x[0], d = c.x[3] - c.x[0];
+  vec3 normal = cross(b - a, d - a);
+  real w1 = dot(normal, cross(b, d)), w2 = dot(normal, cross(d, a)), w3 = dot(normal, cross(a, b));
+  real sum = w1 + w2 + w3, size = sqrt(dot(normal, normal));
+  if (w1 >= real(0.0) && w2 >= real(0.0) && w3 >= real(0.0) && sum > real(0.0)) {
+    real side = dot(normal, a) > real(0.0) ? real(-1.0) : real(1.0);
+    compare(false, c, normal * (side / size), real(1.0), -w1 / sum, -w2 / sum, -w3 / sum, best);
+  }
+  return best;
+}
+
+/// Near-parallel edges have no normal: then an end of one of them is nearest, or as near as rounding tells.
+FUNCTION Separation two_edges(Corners c) {
+  Separation best = no_separation();
+  real u = nearest_on(c.x[0], c.x[2], c.x[3]);
+  compare_points(true, c, real(1.0), real(0.0), u - real(1.0), -u, best);
+  u = nearest_on(c.x[1], c.x[2], c.x[3]);
+  compare_points(true, c, real(0.0), real(1.0), u - real(1.0), -u, best);
+  u = nearest_on(c.x[2], c.x[0], c.x[1]);
+  compare_points(true, c, real(1.0) - u, u, real(-1.0), real(0.0), best);
+  u = nearest_on(c.x[3], c.x[0], c.x[1]);
+  compare_points(true, c, real(1.0) - u, u, real(0.0), real(-1.0), best);
+  vec3 along = c.x[1] - c.x[0], other = c.x[3] - c.x[2], between = c.x[0] - c.x[2];
+  vec3 normal = cross(along, other);
+  real squared = dot(normal, normal);
+  if (squared > real(1e-10) * dot(along, along) * dot(other, other)) {
+    real s = dot(cross(other, between), normal) / squared, t = dot(cross(along, between), normal) / squared;
+    if (s >= real(0.0) && s <= real(1.0) && t >= real(0.0) && t <= real(1.0)) {
+      real side = dot(normal, between) < real(0.0) ? real(-1.0) : real(1.0);
+      compare(true, c, normal * (side / sqrt(squared)), real(1.0) - s, s, t - real(1.0), -t, best);
+    }
+  }
+  return best;
+}
+
+FUNCTION Separation separation(bool edges, Corners c) {
+  if (edges) return two_edges(c);
+  return vertex_and_triangle(c);
+}
+
+/// A pair that was `gap` [m] apart along n at the step's start, and whose nearest points have moved by `moved` [m]
+/// relative to each other since, with relative velocity v [m/s]. True if it is nearer than `keep` [m]. Then `push` [m]
+/// and `impulse` [m/s] are the changes of both that keep it apart, with Coulomb friction, to be shared by its corners.
+/// Of an overlap at the step's start the share `mend` is removed, and becomes no velocity.
+FUNCTION bool surface_contact(vec3 n, real gap, vec3 moved, vec3 v, real keep, real friction, real mend, OUT(vec3) push,
+                              OUT(vec3) impulse) {
+  push = vec3(real(0.0));
+  impulse = vec3(real(0.0));
+  real wanted = gap < keep ? gap + mend * (keep - gap) : keep;
+  real approach = -dot(moved, n);
+  real lacks = wanted - (gap - approach);
+  if (!(lacks > real(0.0))) return false;
+  real load = min(lacks, max(approach, real(0.0)));
+  push = n * lacks - friction_displacement(moved, n, friction, load);
+  impulse = contact_velocity(v, n, friction, real(0.0)) - v;
+  return true;
+}
+
+/// Largest part of its step that a corner takes. `room` [m]: its distance from the plane that divides the pair, `away`
+/// [m]: by how much its step goes away from it. `rounding` [m]: what rounding may add to a place.
+FUNCTION real share_of_step(real room, real away, real rounding) {
+  if (room + away >= rounding || away >= rounding) return real(1.0);
+  if (!(room > rounding)) return real(0.0);
+  real meets = (room - rounding) / -away;
+  return max(min(real(0.85) * meets, meets - real(1e-3)), real(0.0));
+}
+
+/// The steps of a pair's corners along n [m]; a corner that nothing may stop: `held`.
+struct StepsAlong {
+  real y[4];  // the corner's place
+  real d[4];  // its step
+  bool held[4];
+};
+
+/// Where the plane is that divides a pair, along n [m]: each part may take the share of the gap that it wants to take,
+/// but at least a twentieth, and all that its held corners take.
+FUNCTION real dividing_plane(bool edges, StepsAlong s, real rounding) {
+  real low = edges ? min(s.y[0], s.y[1]) : s.y[0];
+  real high = edges ? max(s.y[2], s.y[3]) : max(max(s.y[1], s.y[2]), s.y[3]);
+  real first = real(0.0), second = real(0.0), first_held = real(-1.0), second_held = real(-1.0);
+  for (int k = 0; k < 4; ++k) {
+    bool of_first = k == 0 || (edges && k == 1);
+    if (of_first) first = max(first, -s.d[k]);
+    else second = max(second, s.d[k]);
+    if (of_first && s.held[k]) first_held = max(first_held, low - s.y[k] - s.d[k]);
+    if (!of_first && s.held[k]) second_held = max(second_held, s.y[k] + s.d[k] - high);
+  }
+  real sum = first + second;
+  real share = sum > real(0.0) ? clamp(second / sum, real(0.05), real(0.95)) : real(0.5);
+  real plane = high + share * (low - high);
+  if (first_held > real(0.0)) plane = min(plane, low - first_held - real(2.0) * rounding);
+  if (second_held > real(0.0)) plane = max(plane, high + second_held + real(2.0) * rounding);
+  return plane;
+}
+
+/// True if the steps of a pair's corners could make it meet, or come within rounding of that.
+FUNCTION bool could_meet(bool edges, StepsAlong s, real rounding) {
+  real low_start = edges ? min(s.y[0], s.y[1]) : s.y[0];
+  real high_start = edges ? max(s.y[2], s.y[3]) : max(max(s.y[1], s.y[2]), s.y[3]);
+  real first = real(0.0), second = real(0.0);
+  for (int k = 0; k < 4; ++k) {
+    if (k == 0 || (edges && k == 1)) first = max(first, -s.d[k]);
+    else second = max(second, s.d[k]);
+  }
+  return !(first + second + real(4.0) * rounding < low_start - high_start);
+}

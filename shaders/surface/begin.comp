@@ -1,0 +1,59 @@
+// The filter, 1 of 3, in every step: how far each vertex wants to go, and whether a new search is needed. Without near
+// pairs that is the step's end; else `position` starts over at the step's start. Also gets the counts ready for the
+// next step.
+#include "surface.glsl"
+READ_VEC4(step_start, unit_step_start);
+READ_VEC4(position_when_built, unit_position_when_built);
+layout(std430, binding = slot_next_position) buffer Position { vec4 position[]; };
+layout(std430, binding = slot_next_velocity) buffer Velocity { vec4 velocity[]; };
+layout(std430, binding = slot_contact_sums) buffer Sums { int sums[]; };
+layout(std430, binding = slot_step_target) writeonly buffer Target { vec4 target[]; };
+
+void prepare_next_step() {
+  int next = 1 - turn;
+  step_counts[next].near_groups = step_counts[next].vertex_groups = 0u;
+  step_counts[next].cut_groups = step_counts[next].cut_vertices = 0u;
+  step_counts[next].near = step_counts[next].cuts = 0u;
+}
+
+/// Motion since the search that all vertices share, more or less [m]: only what they move apart from it matters.
+vec3 common_motion() {
+  vec3 sum = vec3(0.0);
+  for (int k = 0; k < 4; ++k) {
+    int vertex = (2 * k + 1) * vertex_count / 8;
+    sum += FETCH(step_start, vertex).xyz - FETCH(position_when_built, vertex).xyz;
+  }
+  return 0.25 * sum;
+}
+
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  if (i == 0) prepare_next_step();
+  if (i >= vertex_count) return;
+  vec4 start = FETCH(step_start, i), end = position[i];
+  bool free = end.w > 0.0, filtered = step_counts[turn].near > 0u;
+  RARELY(filtered && sums[8 * i + 3] != 0) {
+    if (free) velocity[i].w += 1.0;
+    sums[8 * i + 3] = 0;
+  }
+  vec3 moved = end.xyz - start.xyz;
+  float went = length(moved), query_radius = uintBitsToFloat(query), most = step_share * query_radius;
+  RARELY(went > 0.85 * most && query_radius < most_query) {
+    if (went < 1e30) atomicMax(fastest, floatBitsToUint(went));
+    rebuild_groups = uint((max(vertex_count, triangle_count) + GROUP_SIZE - 1) / GROUP_SIZE);
+  }
+  RARELY(free && went > most) {
+    end.xyz = start.xyz + moved * (most / went);
+    position[i] = end;
+    atomicAdd(step_counts[turn].cuts, 1u);
+    atomicAdd(cuts, 1u);
+  }
+  RARELY(free && overflow != 0u) position[i] = end = start;
+  vec3 since = end.xyz - FETCH(position_when_built, i).xyz - common_motion();
+  if (dot(since, since) > 0.25 * skin * skin)
+    rebuild_groups = uint((max(vertex_count, triangle_count) + GROUP_SIZE - 1) / GROUP_SIZE);
+  RARELY(filtered) {
+    target[i] = end;
+    position[i] = vec4(start.xyz, end.w);
+  }
+}

@@ -1,0 +1,43 @@
+// Contact, 1 of 3: the pairs that are near at the step's start, how they are apart then, and how many of them touch at
+// each vertex.
+#include "surface.glsl"
+READ_VEC4(position, unit_position);  // after the step
+READ_VEC4(step_start, unit_step_start);
+READ_UVEC4(pair_list, unit_surface_pairs);
+layout(std430, binding = slot_near_pairs) writeonly buffer NearPairs { uvec4 near_list[]; };
+layout(std430, binding = slot_contact_sums) buffer Sums { int sums[]; };
+
+/// True if the nearest points are within the triangle, or within both edges. At a rim another pair is nearer, or will be:
+/// slanting pushes between flat layers would brake their sliding.
+bool within_both(Separation apart) {
+  bool within = true;
+  for (int k = 0; k < 4; ++k) within = within && apart.weight[k] != 0.0;
+  return within;
+}
+
+void main() {
+  uint item = gl_GlobalInvocationID.x;
+  if (item >= min(pairs, pair_capacity)) return;
+  uvec4 pair = FETCH(pair_list, item), corner = corners_of(pair);
+  bool edges = is_edges(pair);
+  vec3 start[4];
+  for (int k = 0; k < 4; ++k) start[k] = FETCH(step_start, corner[k]).xyz;
+  Corners c;
+  for (int k = 0; k < 4; ++k) c.x[k] = start[k] - start[0];
+  Separation apart = separation(edges, c);
+  RARELY(apart.gap < uintBitsToFloat(query)) {
+    uint slot = atomicAdd(step_counts[turn].near, 1u);
+    if (slot % uint(GROUP_SIZE) == 0u) atomicMax(step_counts[turn].near_groups, slot / uint(GROUP_SIZE) + 1u);
+    step_counts[turn].vertex_groups = uint((vertex_count + GROUP_SIZE - 1) / GROUP_SIZE);
+    near_list[3u * slot + 1u] = floatBitsToUint(vec4(apart.n, apart.gap));
+    near_list[3u * slot + 2u] =
+        floatBitsToUint(vec4(apart.weight[0], apart.weight[1], apart.weight[2], apart.weight[3]));
+    vec3 moved = vec3(0.0);
+    for (int k = 0; k < 4; ++k) moved += apart.weight[k] * (FETCH(position, corner[k]).xyz - start[k]);
+    if ((pair.y & no_force_bit) == 0u && within_both(apart) && apart.gap + dot(moved, apart.n) < thickness) {
+      pair.z |= touching_bit;
+      for (int k = 0; k < 4; ++k) atomicAdd(sums[8 * int(corner[k]) + 3], 1);
+    }
+    near_list[3u * slot] = pair;
+  }
+}

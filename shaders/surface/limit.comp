@@ -1,0 +1,81 @@
+// The filter, 2 of 3: each near pair shortens the steps of its corners to what they can take without crossing a plane
+// that divides the pair. With `impulses`, afterwards: takes the approaching velocity, along their normals, from the
+// pairs whose planes limit a step the most.
+#include "surface.glsl"
+#include "near_pairs.glsl"
+READ_VEC4(position, unit_position);  // so far; w: inverse mass [1/kg]
+READ_VEC4(velocity, unit_velocity);
+READ_VEC4(step_target, unit_step_target);
+layout(std430, binding = slot_step_limits) coherent buffer Limits { uint limits[]; };  // float bits, 1 or less
+uniform int again;  // 0: the first pass, from the step's start
+uniform int impulses;
+
+/// What rounding may add to a corner's place, and to what is computed of it [m].
+float rounding_at(vec3 x, float size) { return 2.5e-7 * max(abs(x.x), max(abs(x.y), abs(x.z))) + 1e-6 * size; }
+
+void shorten(bool edges, uvec4 corner, vec4 shares) {
+  step_counts[turn].cut_groups = step_counts[turn].near_groups;
+  step_counts[turn].cut_vertices = step_counts[turn].vertex_groups;
+  for (int k = 0; k < 4; ++k) {
+    atomicAdd(sums[8 * int(corner[k]) + 7], 1);
+    if (shares[k] < 1.0) atomicMin(limits[corner[k]], floatBitsToUint(shares[k]));
+  }
+}
+
+void stop(uvec4 corner, vec4 shares, vec3 n, vec4 weight, vec4 inverse_mass) {
+  bool limiting = false;
+  float approach = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    limiting = limiting || (shares[k] < 1.0 && floatBitsToUint(shares[k]) == limits[corner[k]]);
+    approach -= weight[k] * dot(n, FETCH(velocity, corner[k]).xyz);
+  }
+  vec4 mobility = weight * inverse_mass;
+  float give = dot(mobility, weight);
+  if (!limiting || !(approach > 0.0) || !(give > 0.0)) return;
+  vec3 impulse = n * (approach * units_of_speed() / (give * crowd(corner, mobility, 7)));
+  for (int k = 0; k < 4; ++k)
+    if (mobility[k] != 0.0) add(corner[k], 4, mobility[k] * impulse);
+}
+
+void main() {
+  uint item = gl_GlobalInvocationID.x;
+  if (item >= step_counts[turn].near) return;
+  uvec4 pair = FETCH(near_pairs, 3u * item), corner = corners_of(pair);
+  bool edges = is_edges(pair);
+  vec4 apart = uintBitsToFloat(FETCH(near_pairs, 3u * item + 1u));
+  vec4 weight = uintBitsToFloat(FETCH(near_pairs, 3u * item + 2u)), inverse_mass;
+  vec3 origin = FETCH(position, corner.x).xyz, steps[4];
+  Corners c;
+  float size = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    vec4 x = FETCH(position, corner[k]);
+    c.x[k] = x.xyz - origin;
+    steps[k] = FETCH(step_target, corner[k]).xyz - x.xyz;
+    inverse_mass[k] = x.w;
+    size = max(size, length(c.x[k]) + length(steps[k]));
+  }
+  RARELY(again != 0) {
+    Separation now = separation(edges, c);
+    apart = vec4(now.n, now.gap);
+    weight = vec4(now.weight[0], now.weight[1], now.weight[2], now.weight[3]);
+  }
+  StepsAlong along;
+  for (int k = 0; k < 4; ++k) {
+    along.y[k] = dot(apart.xyz, c.x[k]);
+    along.d[k] = dot(apart.xyz, steps[k]);
+    along.held[k] = inverse_mass[k] == 0.0;
+  }
+  float rounding = rounding_at(origin, size);
+  RARELY(could_meet(edges, along, rounding)) {
+    float plane = dividing_plane(edges, along, rounding);
+    vec4 shares;
+    for (int k = 0; k < 4; ++k) {
+      float side = k == 0 || (edges && k == 1) ? 1.0 : -1.0;
+      shares[k] = along.held[k] ? 1.0 : share_of_step(side * (along.y[k] - plane), side * along.d[k], rounding);
+    }
+    RARELY(min(min(shares.x, shares.y), min(shares.z, shares.w)) < 1.0) {
+      if (impulses == 0) shorten(edges, corner, shares);
+      else stop(corner, shares, apart.xyz, weight, inverse_mass);
+    }
+  }
+}

@@ -1,0 +1,36 @@
+// The filter, 3 of 3: takes the shortened steps, in place; with `last`, also the impulses.
+#include "surface.glsl"
+READ_VEC4(step_target, unit_step_target);
+layout(std430, binding = slot_next_position) buffer Position { vec4 position[]; };
+layout(std430, binding = slot_next_velocity) buffer Velocity { vec4 velocity[]; };
+layout(std430, binding = slot_contact_sums) buffer Sums { int sums[]; };
+layout(std430, binding = slot_step_limits) buffer Limits { uint limits[]; };
+uniform int last;
+
+/// A vertex that takes less than this of its step is jammed between others: what its springs give it would add up, step
+/// after step, until it comes free. It loses half of its speed in a step.
+const float jammed_share = 0.1;
+
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  if (i >= vertex_count) return;
+  vec4 goal = FETCH(step_target, i);
+  float share = uintBitsToFloat(limits[i]);
+  vec3 x = position[i].xyz;
+  position[i].xyz = share < 1.0 ? x + share * (goal.xyz - x) : goal.xyz;
+  RARELY(share < 1.0) {
+    limits[i] = floatBitsToUint(1.0);
+    if (last != 0) {
+      atomicAdd(step_counts[turn].cuts, 1u);
+      atomicAdd(cuts, 1u);
+      if (share < jammed_share && position[i].w > 0.0) velocity[i].xyz *= 0.5;
+    }
+  }
+  RARELY(sums[8 * i + 7] != 0) {
+    if (last != 0) {
+      velocity[i].xyz += vec3(sums[8 * i + 4], sums[8 * i + 5], sums[8 * i + 6]) / units_of_speed();
+      for (int k = 4; k < 7; ++k) sums[8 * i + k] = 0;
+    }
+    sums[8 * i + 7] = 0;
+  }
+}

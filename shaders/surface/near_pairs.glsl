@@ -1,0 +1,19 @@
+// The near pairs of a step: three texels each: the pair; n and gap; weights (elements/surface.glsl).
+READ_UVEC4(near_pairs, unit_near_pairs);
+// For each vertex: sums of pushes x, y, z [units of length], pairs that push it; sums of impulses x, y, z [units of
+// speed], pairs that shorten steps at it.
+layout(std430, binding = slot_contact_sums) buffer Sums { int sums[]; };
+
+/// Most pairs that push, or shorten steps at, a corner that gives way: each takes that share, lest they do too much.
+float crowd(uvec4 corner, vec4 mobility, int which) {
+  int most = 1;
+  for (int k = 0; k < 4; ++k)
+    if (mobility[k] != 0.0) most = max(most, sums[8 * int(corner[k]) + which]);
+  return float(most);
+}
+
+void add(uint corner, int first, vec3 units) {
+  ivec3 whole = in_units(units);
+  for (int axis = 0; axis < 3; ++axis)
+    if (whole[axis] != 0) atomicAdd(sums[8 * int(corner) + first + axis], whole[axis]);
+}

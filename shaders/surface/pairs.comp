@@ -1,0 +1,37 @@
+// Pair search, 5 of 6: the pairs that are near each other, not their boxes alone.
+#include "surface.glsl"
+READ_VEC4(position, unit_position);
+READ_VEC4(rest_position, unit_rest_position);  // w: the cloth
+READ_UVEC4(candidate_list, unit_near_pairs);
+layout(std430, binding = slot_surface_pairs) writeonly buffer Pairs { uvec4 list[]; };
+
+/// True if two parts of one cloth are nearer to each other at rest than the thickness.
+bool near_at_rest(bool edges, uvec4 corner) {
+  vec4 origin = FETCH(rest_position, corner.x);
+  Corners c;
+  bool one_cloth = true;
+  for (int k = 0; k < 4; ++k) {
+    vec4 x = FETCH(rest_position, corner[k]);
+    one_cloth = one_cloth && x.w == origin.w;
+    c.x[k] = x.xyz - origin.xyz;
+  }
+  return one_cloth && separation(edges, c).gap < thickness;
+}
+
+void main() {
+  uint item = gl_GlobalInvocationID.x;
+  if (item >= min(candidates, 3u * pair_capacity)) return;
+  uvec4 pair = FETCH(candidate_list, item), corner = corners_of(pair);
+  bool edges = is_edges(pair);
+  vec3 origin = FETCH(position, corner.x).xyz;
+  Corners c;
+  for (int k = 0; k < 4; ++k) c.x[k] = FETCH(position, corner[k]).xyz - origin;
+  RARELY(separation(edges, c).gap < reach_of(next_query())) {
+    uint slot = atomicAdd(pairs, 1u);
+    if (slot < pair_capacity) {
+      if (slot % uint(GROUP_SIZE) == 0u) atomicMax(pair_groups, slot / uint(GROUP_SIZE) + 1u);
+      if (near_at_rest(edges, corner)) pair.y |= no_force_bit;
+      list[slot] = pair;
+    }
+  }
+}

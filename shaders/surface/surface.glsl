@@ -1,0 +1,75 @@
+// Contact between surfaces (kind "surface"): pairs of a vertex and a triangle, and of two edges, of all triangles of a
+// scene. A search lists the pairs that can meet until a vertex has moved half the skin. After a step of any method the
+// near ones among them push each other apart (elements/surface.glsl); then a filter shortens the steps of vertices so
+// that no pair meets, which keeps a state without intersections so. All sums are of integers, so that no outcome
+// depends on the order of threads.
+layout(local_size_x = GROUP_SIZE) in;
+#include "../access.glsl"
+#include "../rarely.glsl"
+#include "../elements/types.glsl"
+#include "../elements/contact.glsl"
+#include "../elements/surface.glsl"
+
+struct StepCounts {  // of a step; steps take turns with two of them
+  uint near_groups, near_groups_y, near_groups_z;            // over the near pairs
+  uint vertex_groups, vertex_groups_y, vertex_groups_z;      // over the vertices, if a pair is near
+  uint cut_groups, cut_groups_y, cut_groups_z;               // over the near pairs, if one of them shortens a step
+  uint cut_vertices, cut_vertices_y, cut_vertices_z;         // over the vertices, if a step is shortened
+  uint near;                                                 // near pairs
+  uint cuts;                                                 // vertices whose steps were shortened
+  uint unused_1, unused_2;
+};
+
+// Set by the GPU: arguments of indirect dispatches, and what a search found (server/sim/surface_contact.cpp).
+layout(std430, binding = slot_surface_control) coherent buffer SurfaceControl {
+  StepCounts step_counts[2];
+  uint rebuild_groups, rebuild_groups_y, rebuild_groups_z;  // over triangles and vertices
+  uint split_groups, split_groups_y, split_groups_z;        // over pairs of triangles
+  uint pair_groups, pair_groups_y, pair_groups_z;           // over pairs
+  uint candidate_groups, candidate_groups_y, candidate_groups_z;  // over pairs whose boxes are near
+  uint triangle_pairs;       // found by the search
+  uint candidates;           // the same
+  uint pairs;                // the same
+  uint largest_triangle;     // half the longest side of its box [m], as bits
+  uint fastest;              // longest step since the last search that was long for it [m], as bits
+  uint fastest_vertex;       // its speed at the search [m/s], as bits
+  uint levels;               // bit k: triangles of level k
+  uint query;                // pairs nearer than this can be near within a step [m], as bits
+  uint overflow;             // 1: a list had no room for all pairs, and nothing may move
+  uint rebuilds;
+  uint cuts;                 // vertices whose steps were shortened, over all steps
+  uint most_triangle_pairs;  // found by any search
+  uint most_pairs;           // the same
+};
+
+uniform int vertex_count, triangle_count;
+uniform float dt;           // [s]
+uniform float thickness;    // [m]
+uniform float skin;         // [m]
+uniform float most_query;   // [m]
+uniform uint pair_capacity, triangle_pair_capacity;
+uniform int turn;           // whose step_counts this step has
+
+const uint edges_bit = 0x80000000u;     // of a pair's first corner: two edges
+const uint no_force_bit = 0x80000000u;  // of its second: too near at rest to be kept apart
+const uint touching_bit = 0x80000000u;  // of a near pair's third: comes within the thickness in this step
+const uint corner_mask = 0x7fffffffu;
+
+/// How far a vertex may go in a step, as a share of the query radius: two that are farther apart cannot meet.
+const float step_share = 0.425;
+
+/// Query radius [m] for a longest step [m], which is 0.8 of what a vertex may go then.
+float query_for(float longest) { return min(max(1.2 * thickness, 3.0 * longest), most_query); }
+
+/// Query radius of the search under way [m].
+float next_query() { return query_for(max(dt * uintBitsToFloat(fastest_vertex), uintBitsToFloat(fastest))); }
+/// How near pairs are that the search lists [m].
+float reach_of(float query_radius) { return query_radius + skin; }
+
+/// Integers in which the sums of pushes [m] and impulses [m/s] are counted.
+float units_of_length() { return 67108864.0 / uintBitsToFloat(query); }
+float units_of_speed() { return units_of_length() * dt; }
+ivec3 in_units(vec3 v) { return ivec3(round(clamp(v, vec3(-1e9), vec3(1e9)))); }
+
+bool is_edges(uvec4 pair) { return (pair.x & edges_bit) != 0u; }
+uvec4 corners_of(uvec4 pair) { return pair & corner_mask; }

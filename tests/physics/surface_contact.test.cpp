@@ -1,0 +1,215 @@
+// Contact between surfaces: from a state without crossings, none arises, whatever the method, scene or speed.
+#include "server/scene/suited.h"
+#include "tests/crossings.h"
+#include "tests/scenes.h"
+
+using namespace clothlab;
+
+namespace {
+
+constexpr double thickness = 0.005;
+
+scene::Cloth square(int side, double size, const scene::Transform& transform) {
+  scene::Cloth cloth;
+  cloth.mesh = scene::Grid{side, side, size, size};
+  cloth.transform = transform;
+  cloth.mass = {scene::Mass::Kind::per_vertex, 0.0007};
+  cloth.material = scene::Springs{300.0, 150.0, 5.0, 0.02};
+  return cloth;
+}
+
+scene::Scene empty_scene() {
+  scene::Scene scene;
+  scene.gravity = {0.0, -9.81, 0.0};
+  scene.self_collision = scene::SelfCollision{thickness, 0.3, scene::ContactKind::surface};
+  scene.air_drag = 0.2;
+  return scene;
+}
+
+struct Stress {
+  const char* name;
+  scene::Scene scene;
+  double speed = 0.0;  ///< of the two cloths towards each other [m/s]
+  double time = 0.5;   ///< [s]
+};
+
+/// Two free sheets, one turned in its plane, thrown at each other.
+Stress thrown(double speed) {
+  scene::Scene scene = empty_scene();
+  scene.cloths.push_back(square(9, 0.2, {{0.0, 0.0, -0.1}, {0.0, 0.0, 0.0}, 1.0}));
+  scene.cloths.push_back(square(9, 0.2, {{0.013, 0.04, -0.117}, {5.0, 31.0, 0.0}, 1.0}));
+  scene.gravity = {};
+  return {"thrown", scene, speed, speed > 5.0 ? 0.03 : 0.1};
+}
+
+/// A sheet that stands upright falls on the floor and folds.
+Stress folded() {
+  scene::Scene scene = empty_scene();
+  scene.cloths.push_back(square(11, 0.2, {{0.0, 0.21, 0.0}, {86.0, 0.0, 3.0}, 1.0}));
+  scene.colliders = {{"floor", scene::Plane{{0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}}, 0.5, 0.0, {}}};
+  return {"folded", scene, 0.0, 0.3};
+}
+
+/// Four sheets dropped on a ball.
+Stress stack() {
+  scene::Scene scene = empty_scene();
+  for (int layer = 0; layer < 4; ++layer)
+    scene.cloths.push_back(
+        square(7, 0.14, {{0.003 * layer, 0.06 + 0.02 * layer, -0.07}, {0.0, 17.0 * layer, 0.0}, 1.0}));
+  scene.colliders = {{"ball", scene::Sphere{{0.0, 0.0, 0.0}, 0.05}, 0.3, 0.0, {}}};
+  return {"stack", scene, 0.0, 0.2};
+}
+
+/// A strip whose ends turn against each other.
+Stress twist() {
+  scene::Scene scene = empty_scene();
+  scene.cloths.push_back(square(9, 0.2, {{0.0, 0.0, -0.1}, {0.0, 0.0, 0.0}, 1.0}));
+  scene.cloths[0].pins = {
+      {scene::AtEdge{scene::AtEdge::Line::column, 0}, scene::Spin{{1.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, 360.0}},
+      {scene::AtEdge{scene::AtEdge::Line::column, 8}, scene::Spin{{1.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, -360.0}}};
+  return {"twist", scene, 0.0, 0.3};
+}
+
+void set_method(scene::Scene& scene, scene::Method method) {
+  scene.solver.method = method;
+  scene.solver.dt = scene::iterates(method) ? 2e-3 : method == scene::Method::explicit_euler ? 5e-5 : 4e-4;
+}
+
+/// Gives the first cloth half of the speed upwards, and the others half of it downwards.
+void throw_together(sim::Simulation& simulation, double speed) {
+  sim::State state = simulation.read_state();
+  for (std::size_t i = 0; i < state.velocity.size(); ++i)
+    state.velocity[i].y = static_cast<float>((simulation.model().vertex_cloth[i] == 0 ? 0.5 : -0.5) * speed);
+  simulation.restore(state, 0.0, 0);
+}
+
+struct Outcome {
+  std::size_t crossings = 0;
+  sim::Diagnostics last;
+  std::uint64_t hash = 0;
+};
+
+Outcome run(const Stress& stress, int frames_a_second = 200) {
+  const auto simulation = test::simulation(stress.scene);
+  if (stress.speed > 0.0) throw_together(*simulation, stress.speed);
+  Outcome outcome;
+  const auto steps = std::max<std::uint32_t>(
+      1, static_cast<std::uint32_t>(1.0 / frames_a_second / stress.scene.solver.dt + 0.5));
+  while (simulation->time() < stress.time) {
+    simulation->step(steps);
+    outcome.crossings += test::crossings(simulation->model(), simulation->read_state().position).size();
+  }
+  outcome.last = simulation->diagnose();
+  outcome.hash = sim::state_hash(simulation->read_state());
+  return outcome;
+}
+
+std::vector<Stress> all_stress() {
+  return {thrown(1.0), thrown(10.0), folded(), stack(), twist()};
+}
+
+}  // namespace
+
+TEST_CASE("surfaces that start apart never cross: every method, sheets thrown, folded, stacked and twisted") {
+  const auto context = test::context();
+  for (const scene::Method method : scene::methods)
+    for (Stress& stress : all_stress()) {
+      set_method(stress.scene, method);
+      if (scene::unsuited(method, stress.scene)) continue;
+      const Outcome outcome = run(stress);
+      INFO(scene::name(method) << ", " << stress.name << " at " << stress.speed
+                               << " m/s: " << outcome.last.surface_cuts << " cuts, "
+                               << outcome.last.surface_searches << " searches, " << outcome.last.surface_pairs
+                               << " pairs, kinetic " << outcome.last.kinetic);
+      CHECK(outcome.crossings == 0);
+      CHECK(outcome.last.finite);
+    }
+}
+
+TEST_CASE("two runs with contact between surfaces end in the same bits") {
+  const auto context = test::context();
+  for (const scene::Method method : {scene::Method::symplectic_euler, scene::Method::implicit_euler}) {
+    Stress stress = thrown(4.0);
+    set_method(stress.scene, method);
+    const Outcome outcome = run(stress);
+    CHECK(outcome.last.surface_pairs + outcome.last.surface_searches > 0);
+    CHECK(run(stress).hash == outcome.hash);
+  }
+}
+
+TEST_CASE("two free sheets that collide keep their common momentum to 1e-4") {
+  const auto context = test::context();
+  for (const scene::Method method : scene::methods) {
+    Stress stress = thrown(4.0);
+    set_method(stress.scene, method);
+    if (scene::unsuited(method, stress.scene)) continue;
+    stress.scene.air_drag = 0.0;
+    const auto simulation = test::simulation(stress.scene);
+    throw_together(*simulation, stress.speed);
+    const auto momentum = [&] {
+      glm::dvec3 sum(0.0);
+      double size = 0.0;
+      const sim::State state = simulation->read_state();
+      for (std::size_t i = 0; i < state.velocity.size(); ++i) {
+        sum += simulation->model().mass[i] * glm::dvec3(state.velocity[i]);
+        size += simulation->model().mass[i] * glm::length(glm::dvec3(state.velocity[i]));
+      }
+      return std::pair{sum, size};
+    };
+    const auto [before, size] = momentum();
+    simulation->step(static_cast<std::uint32_t>(0.06 / stress.scene.solver.dt));
+    const auto [after, left] = momentum();
+    INFO(scene::name(method));
+    CHECK(left < 0.7 * size);  // they have met
+    CHECK(glm::length(after - before) < 1e-4 * size);
+  }
+}
+
+namespace {
+
+/// How far a light sheet slides down on a large one, which is held and slopes by this angle, in 0.15 s [m].
+double slid(scene::Method method, double degrees, double friction) {
+  scene::Scene scene = empty_scene();
+  scene.air_drag = 0.0;
+  scene.self_collision->friction = friction;
+  scene.cloths.push_back(square(9, 0.3, {{0.0, 0.0, -0.15}, {0.0, 0.0, 0.0}, 1.0}));
+  for (int row = 0; row < 9; ++row)
+    scene.cloths[0].pins.push_back({scene::AtEdge{scene::AtEdge::Line::row, row}, {}});
+  scene.cloths.push_back(square(4, 0.05, {{0.011, 1.001 * thickness, -0.013}, {0.0, 20.0, 0.0}, 1.0}));
+  const double angle = degrees * 3.14159265358979 / 180.0;
+  scene.gravity = {9.81 * std::sin(angle), -9.81 * std::cos(angle), 0.0};
+  set_method(scene, method);
+  const auto simulation = test::simulation(scene);
+  const auto middle = [&] {
+    const sim::State state = simulation->read_state();
+    double sum = 0.0;
+    for (std::size_t i = 81; i < 97; ++i) sum += state.position[i].x / 16.0;
+    return sum;
+  };
+  const double before = middle();
+  simulation->step(static_cast<std::uint32_t>(0.15 / scene.solver.dt));
+  return middle() - before;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a sheet on a sloping one stays while the slope's tangent is below the friction, and slides by what is "
+    "left above it") {
+  const auto context = test::context();
+  constexpr double time = 0.15;
+  for (const scene::Method method :
+       {scene::Method::symplectic_euler, scene::Method::verlet, scene::Method::implicit_euler,
+        scene::Method::xpbd, scene::Method::vbd}) {
+    INFO(scene::name(method));
+    const double angle = std::atan(0.4) * 180.0 / 3.14159265358979;
+    const auto expected = [&](double degrees, double friction) {
+      const double radians = degrees * 3.14159265358979 / 180.0;
+      return 0.5 * 9.81 * time * time * (std::sin(radians) - friction * std::cos(radians));
+    };
+    // What friction holds creeps by what its passes leave; what slides begins within a step of the start.
+    CHECK(std::abs(slid(method, angle - 1.0, 0.4)) < 0.02 * expected(angle, 0.0));
+    CHECK(slid(method, angle + 8.0, 0.4) == Approx(expected(angle + 8.0, 0.4)).epsilon(0.03));
+    CHECK(slid(method, 20.0, 0.0) == Approx(expected(20.0, 0.0)).epsilon(0.03));
+  }
+}

@@ -1,0 +1,114 @@
+// The law of contact between surfaces in double precision: pairs against a search over points, shares of
+// steps against where the corners end.
+#include <cmath>
+#include <random>
+
+#include "shaders/elements/elements.h"
+#include "tests/catch.h"
+
+using namespace clothlab;
+using elements::Corners;
+using elements::Separation;
+using glm::dvec3;
+
+namespace {
+
+Corners random_pair(std::mt19937& random, double flatness) {
+  std::uniform_real_distribution<double> either(-1.0, 1.0);
+  Corners c;
+  for (dvec3& x : c.x) x = {either(random), flatness * either(random), either(random)};
+  return c;
+}
+
+/// The least distance of points of the two parts, over a grid of both.
+double distance_by_search(bool edges, const Corners& c) {
+  constexpr int steps = 60;
+  double least = 1e30;
+  for (int i = 0; i <= steps; ++i)
+    for (int j = 0; j <= (edges ? steps : steps - i); ++j) {
+      const double s = double(i) / steps, t = double(j) / steps;
+      const dvec3 d = edges ? c.x[0] + s * (c.x[1] - c.x[0]) - c.x[2] - t * (c.x[3] - c.x[2])
+                            : c.x[0] - c.x[1] - s * (c.x[2] - c.x[1]) - t * (c.x[3] - c.x[1]);
+      least = std::min(least, glm::length(d));
+    }
+  return least;
+}
+
+}  // namespace
+
+TEST_CASE("a pair of surfaces is as far apart as its nearest points, which its weights give") {
+  std::mt19937 random(7);
+  for (int trial = 0; trial < 400; ++trial) {
+    const bool edges = trial % 2 == 0;
+    const Corners c = random_pair(random, trial % 4 < 2 ? 1.0 : 1e-3);
+    const Separation apart = elements::separation(edges, c);
+    const double searched = distance_by_search(edges, c);
+    // The grid's points are at most a sixtieth of a side, 3.5 at most, from the nearest ones, on each part.
+    CHECK(apart.gap <= searched + 1e-12);
+    CHECK(apart.gap >= searched - 2.0 * 3.5 / 60.0);
+    if (apart.gap == 0.0) continue;
+    dvec3 between(0.0);
+    for (int k = 0; k < 4; ++k) between += apart.weight[k] * c.x[k];
+    CHECK(glm::length(between - apart.gap * apart.n) < 1e-9);
+    CHECK(std::abs(glm::length(apart.n) - 1.0) < 1e-12);
+  }
+}
+
+TEST_CASE("parallel edges and triangles without area have a distance, and a normal that divides them") {
+  const Corners parallel{{{0, 0, 0}, {1, 0, 0}, {0.5, 0.1, 0}, {2, 0.1, 0}}};
+  CHECK(elements::separation(true, parallel).gap == Approx(0.1));
+  const Corners line{{{0.5, 0.2, 0}, {0, 0, 0}, {1, 0, 0}, {0.3, 0, 0}}};
+  CHECK(elements::separation(false, line).gap == Approx(0.2));
+  const Corners touching{{{0.5, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0.3, 0, 0}}};
+  CHECK(elements::separation(false, touching).gap == 0.0);
+}
+
+TEST_CASE(
+    "with the shares of their steps that the law allows, the corners of a pair stay on their sides of its "
+    "plane") {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> either(-1.0, 1.0);
+  constexpr double rounding = 1e-6;
+  int cut = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const bool edges = trial % 2 == 0;
+    const Corners c = random_pair(random, 0.2);
+    const Separation apart = elements::separation(edges, c);
+    if (apart.gap < 1e-3) continue;
+    dvec3 step[4];
+    elements::StepsAlong along{};
+    for (int k = 0; k < 4; ++k) {
+      step[k] = dvec3(either(random), either(random), either(random));
+      along.y[k] = glm::dot(apart.n, c.x[k]);
+      along.d[k] = glm::dot(apart.n, step[k]);
+    }
+    const double plane = elements::dividing_plane(edges, along, rounding);
+    for (int k = 0; k < 4; ++k) {
+      const double side = k == 0 || (edges && k == 1) ? 1.0 : -1.0, room = side * (along.y[k] - plane);
+      const double share = elements::share_of_step(room, side * along.d[k], rounding);
+      CHECK((share >= 0.0 && share <= 1.0));
+      CHECK(room + share * side * along.d[k] >= 0.5 * rounding);
+      cut += share < 1.0;
+    }
+    if (elements::could_meet(edges, along, rounding)) continue;
+    Corners after = c;
+    for (int k = 0; k < 4; ++k) after.x[k] += step[k];
+    CHECK(elements::gap_along(edges, after, apart.n) > 0.0);
+  }
+  CHECK(cut > 500);
+}
+
+TEST_CASE(
+    "a push takes the approach, holds what is slower than friction allows, and mends a share of an overlap") {
+  dvec3 push, impulse;
+  const dvec3 n(0, 1, 0);
+  REQUIRE(elements::surface_contact(n, 0.01, {0.001, -0.004, 0}, {1, -4, 0}, 0.01, 0.5, 0.1, push, impulse));
+  CHECK(glm::length(push - dvec3(-0.001, 0.004, 0)) < 1e-15);
+  CHECK(glm::length(impulse - dvec3(-1, 4, 0)) < 1e-12);
+  REQUIRE(elements::surface_contact(n, 0.01, {0.004, -0.004, 0}, {4, -4, 0}, 0.01, 0.5, 0.1, push, impulse));
+  CHECK(glm::length(push - dvec3(-0.002, 0.004, 0)) < 1e-15);
+  REQUIRE(elements::surface_contact(n, 0.005, {}, {}, 0.01, 0.5, 0.1, push, impulse));
+  CHECK(glm::length(push - dvec3(0, 0.0005, 0)) < 1e-15);
+  CHECK(impulse == dvec3(0.0));
+  CHECK_FALSE(elements::surface_contact(n, 0.02, {0, -0.009, 0}, {0, -9, 0}, 0.01, 0.5, 0.1, push, impulse));
+}
