@@ -279,7 +279,8 @@ void Stepper::announce_solver() {
     }
   }
   json thickness = nullptr;
-  if (scene().collides(scene::ContactKind::points)) thickness = model::least_safe_thickness(simulation().model());
+  if (scene().collides(scene::ContactKind::points))
+    thickness = model::least_safe_thickness(simulation().model());
   exchange_.emit(SolverChanged{{{"pbd_stiffness", shares},
                                 {"auto", automatic_.facts()},
                                 {"thickness_that_holds", thickness},

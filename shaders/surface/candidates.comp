@@ -8,8 +8,8 @@ READ_UVEC4(surface_triangles, unit_surface_triangles);  // w: bits 0 to 2: owns 
 READ_UVEC2(triangle_pair_list, unit_triangle_pairs);
 layout(std430, binding = slot_near_pairs) writeonly buffer Candidates { uvec4 list[]; };  // a pair each
 
-/// The pairs that two triangles own, as bits: 0 to 2 a vertex of the first and the second, 3 to 5 a vertex of the second
-/// and the first, 6 to 14 an edge of each.
+/// The pairs that two triangles own, as bits: 0 to 2 a vertex of the first and the second, 3 to 5 a vertex of the
+/// second and the first, 6 to 14 an edge of each.
 uint owned_pairs(uint one, uint other) {
   uint edges = other >> 3u & 7u;
   uint both = (one >> 3u & 1u) * edges | (one >> 4u & 1u) * (edges << 3u) | (one >> 5u & 1u) * (edges << 6u);

@@ -7,8 +7,8 @@ READ_UVEC4(pair_list, unit_surface_pairs);
 layout(std430, binding = slot_near_pairs) writeonly buffer NearPairs { uvec4 near_list[]; };
 layout(std430, binding = slot_contact_sums) buffer Sums { int sums[]; };
 
-/// True if the nearest points are within the triangle, or within both edges. At a rim another pair is nearer, or will be:
-/// slanting pushes between flat layers would brake their sliding.
+/// True if the nearest points are within the triangle, or within both edges. At a rim another pair is nearer, or will
+/// be: slanting pushes between flat layers would brake their sliding.
 bool within_both(Separation apart) {
   bool within = true;
   for (int k = 0; k < 4; ++k) within = within && apart.weight[k] != 0.0;

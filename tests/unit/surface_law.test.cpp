@@ -1,5 +1,6 @@
 // The law of contact between surfaces in double precision: pairs against a search over points, shares of
 // steps against where the corners end.
+#include <algorithm>
 #include <cmath>
 #include <random>
 
