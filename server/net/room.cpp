@@ -266,6 +266,16 @@ void Room::broadcast_viewers() {
   broadcast("viewers", {{"count", clients_.size()}});
 }
 
+namespace {
+
+/// What contact between surfaces has done; null where there is none: it begins with a search.
+json surface_counts(const sim::Diagnostics& d) {
+  if (d.surface_searches == 0) return nullptr;
+  return {{"pairs", d.surface_pairs}, {"cuts", d.surface_cuts}, {"searches", d.surface_searches}};
+}
+
+}  // namespace
+
 json Room::status_params(const session::Status& status) const {
   const sim::Diagnostics& d = status.diagnostics;
   return {{"playing", status.run.plays()},
@@ -277,6 +287,7 @@ json Room::status_params(const session::Status& status) const {
           {"max_strain", d.max_strain},
           {"max_speed", d.max_speed},
           {"contacts", d.contacts},
+          {"surface", surface_counts(d)},
           {"passes", passes_},
           {"terms", terms_},
           {"skipped", skipped_},

@@ -27,8 +27,16 @@ test("sim.status has every field of the contract, with the passes that run and t
   assert.deepEqual(solver, { pbd_stiffness: null, auto: null, from_fabrics: [null] });
   // a vertex in the middle of a cell, and a fifth more
   assert.ok(Math.abs(holds - 1.2 / 24 / Math.SQRT2) < 1e-9, `${holds}`);
+  assert.equal(status.surface, null);
   assert.equal(status.asleep, false);
   assert.equal(status.diverged, false);
+});
+
+test("sim.status counts what contact between surfaces does", async () => {
+  await client.request("scene.patch", { patch: { self_collision: { kind: "surface" } } });
+  await client.request("sim.play");
+  const { surface } = await client.nextNotification("sim.status", (s) => s.step > 20 && s.surface?.searches > 0);
+  for (const count of ["pairs", "cuts"]) assert.ok(Number.isInteger(surface[count]), count);
 });
 
 test("sim.status comes about 10 times a second, playing or not", async () => {
