@@ -245,7 +245,7 @@ test("a scene of surfaces that starts with crossings is refused, with the pairs;
   assert.equal(error.data.path, "/self_collision/kind");
   assert.match(
     error.data.found,
-    /^"surface", but the start has \d+ crossings: edge 19-20 of \/cloths\/0 \("cotton"\) meets/,
+    /^"surface", but the start has \d+ crossings: edge \d+-\d+ of \/cloths\/0 \("cotton"\) meets/,
   );
   assert.match(error.data.allowed, /^"points"/);
   assert.equal((await client.request("scene.get")).revision, before);
