@@ -101,7 +101,7 @@ async function check(viewer, moment, found = []) {
           `up to ${seen.worst} px into ${seen.where}; cloth ${seen.box}`,
       );
     else if (seen.cut) found.push(`at ${width}x${height} ${seen.cut} is cut off`);
-    else if (seen.fill < 0.15)
+    else if (seen.fill < 0.1)
       found.push(`${seen.scene} ${moment} at ${width}x${height}: it fills ${seen.fill.toFixed(2)} of the window only`);
   }
   return found;

@@ -43,6 +43,13 @@ export class CameraKeeper {
     return place(this.camera, this.stand);
   }
 
+  /// Takes the first points that show where a scene reaches, where its document does not tell that.
+  foresee(points: Vector3[]): void {
+    this.foreseen.add(points);
+    this.seen.add(points);
+    if (this.fitted) this.goal = this.wanted();
+  }
+
   /// Takes points that are on screen now: the camera must show them too.
   see(points: Vector3[]): void {
     if (!this.fitted || this.seen.empty) return;

@@ -130,7 +130,8 @@ export class Stage {
     if (!this.cloth.show(frame)) return false;
     const first = this.latest === null;
     this.latest = frame;
-    this.keeper.see(framePoints(frame));
+    if (first && this.hasFiles()) this.keeper.foresee(framePoints(frame));
+    else this.keeper.see(framePoints(frame));
     if (first && this.keeper.fitted) this.orbit(this.keeper.jump());
     this.colliders.update(frame.moved, this.cloth.box.min.y);
     this.invalidate();
@@ -159,7 +160,15 @@ export class Stage {
     this.controls.enableDamping = false; // an update without damping ends the swing of the last drag
     this.controls.update();
     this.controls.enableDamping = damped;
-    this.orbit(this.keeper.fit(scenePoints(this.document), seen && this.latest ? framePoints(this.latest) : []));
+    const points = scenePoints(this.document),
+      now = this.latest ? framePoints(this.latest) : [];
+    if (this.hasFiles()) points.push(...now);
+    this.orbit(this.keeper.fit(points, seen ? now : []));
+  }
+
+  /// True if a cloth's mesh is in a file: then only a frame tells how far it reaches.
+  private hasFiles(): boolean {
+    return this.document?.cloths.some(({ mesh }) => "obj" in mesh) ?? false;
   }
 
   private orbit(target: Vector3 | null): void {
