@@ -91,7 +91,7 @@ const int slot_change = 6;              // update
 const int slot_wind = 0;                // wind
 
 // Contact between surfaces: surface/NAME.comp. The slots are read as the units of the same name, too.
-const int unit_surface_triangles = 9;   // server/sim/surface_contact.cpp; boxes, triangle_pairs, pairs
+const int unit_surface_triangles = 9;   // server/sim/surface_pairs.cpp; boxes, triangle_pairs, pairs
 const int unit_triangle_boxes = 10;     // boxes; cells, triangle_pairs
 const int unit_triangle_cells = 11;     // cells, finish; triangle_pairs
 const int unit_triangle_chains = 12;    // cells; triangle_pairs

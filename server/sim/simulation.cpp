@@ -236,7 +236,7 @@ Result<ChangeDepth> Simulation::change(const scene::Scene& scene) {
   if (depth == ChangeDepth::kernel) {
     Result<Kernels> kernels = Kernels::create(scene);
     if (!kernels) return kernels.error();
-    if (!self.scene.collides(scene::ContactKind::surface))
+    if (scene.collides(scene::ContactKind::surface) && !self.scene.collides(scene::ContactKind::surface))
       if (Status apart = model::check_present(model(), scene, read_state().position); !apart)
         return apart.error();
     self.give_up_work();

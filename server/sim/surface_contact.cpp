@@ -4,11 +4,11 @@
 #include <bit>
 #include <cstddef>
 #include <cstring>
-#include <set>
-#include <span>
+#include <string>
 
 #include "server/scene/method.h"
 #include "server/sim/integrator.h"
+#include "server/sim/surface_control.h"
 
 namespace clothlab::sim {
 
@@ -23,47 +23,6 @@ constexpr int filter_passes = 3;
 /// velocity, but it moves what lies on it.
 constexpr double mended_in_step = 0.2, mended_in_second = 20.0;
 
-constexpr std::uint64_t updates_between_size_looks = 8;
-constexpr std::uint32_t most_listed = 1u << 21;
-constexpr std::uint32_t end_of_chain = 0xffffffffu;  // as in cells.glsl
-
-using Groups = std::array<std::uint32_t, 3>;
-
-/// StepCounts in surface.glsl.
-struct StepCounts {
-  Groups near_groups{0, 1, 1}, vertex_groups{0, 1, 1}, cut_groups{0, 1, 1}, cut_vertices{0, 1, 1};
-  std::uint32_t near = 0, cuts = 0;
-  std::array<std::uint32_t, 2> unused{};
-};
-
-/// SurfaceControl in surface.glsl.
-struct SurfaceControl {
-  std::array<StepCounts, 2> step_counts;
-  Groups rebuild{0, 1, 1}, split{0, 1, 1}, pair_groups{0, 1, 1};
-  Groups candidate_groups{0, 1, 1};
-  std::uint32_t triangle_pairs = 0, candidates = 0, pairs = 0;
-  std::uint32_t largest_triangle = 0, fastest = 0, fastest_vertex = 0, levels = 0, query = 0, overflow = 0;
-  std::uint32_t rebuilds = 0, cuts = 0, most_triangle_pairs = 0, most_pairs = 0;
-};
-
-/// The triangles, each with bits for the vertices (0 to 2) and edges (3 to 5) that it owns.
-std::vector<std::array<std::uint32_t, 4>> owning_triangles(const model::Model& model) {
-  std::vector<std::array<std::uint32_t, 4>> list;
-  std::vector<bool> vertex_owned(model.vertex_count(), false);
-  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
-  for (const std::array<std::uint32_t, 3>& corners : model.triangles) {
-    std::uint32_t owned = 0;
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = corners[k], b = corners[(k + 1) % 3];
-      if (!vertex_owned[a]) owned |= 1u << k;
-      vertex_owned[a] = true;
-      if (edges.emplace(std::min(a, b), std::max(a, b)).second) owned |= 8u << k;
-    }
-    list.push_back({corners[0], corners[1], corners[2], owned});
-  }
-  return list;
-}
-
 gl::TextureBuffer vector_per_vertex(std::uint32_t vertex_count) {
   return {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
 }
@@ -75,18 +34,12 @@ const std::size_t SurfaceContact::bytes_of_counts = sizeof(SurfaceControl);
 Result<SurfaceContact> SurfaceContact::create(const model::Model& model, const Plan& plan) {
   SurfaceContact made;
   made.vertex_count_ = model.vertex_count();
-  made.triangle_count_ = model.triangle_count();
   made.keeps_start_ = plan.strain_limit();
-  const std::uint32_t cells = std::bit_ceil(2 * std::max(made.triangle_count_, 1u));
-  const gl::Defines defines{{"GROUP_SIZE", std::to_string(group_size)},
-                            {"CELL_COUNT", std::to_string(cells)}};
-  for (auto [program, name] : {std::pair{&made.boxes_, "boxes"},
-                               {&made.cells_program_, "cells"},
-                               {&made.triangle_pairs_program_, "triangle_pairs"},
-                               {&made.candidates_, "candidates"},
-                               {&made.pairs_program_, "pairs"},
-                               {&made.finish_, "finish"},
-                               {&made.contacts_, "contacts"},
+  Result<SurfacePairs> pairs = SurfacePairs::create(model);
+  if (!pairs) return pairs.error();
+  made.pairs_ = std::move(*pairs);
+  const gl::Defines defines{{"GROUP_SIZE", std::to_string(group_size)}};
+  for (auto [program, name] : {std::pair{&made.contacts_, "contacts"},
                                {&made.forces_, "forces"},
                                {&made.apply_, "apply"},
                                {&made.begin_, "begin"},
@@ -96,157 +49,38 @@ Result<SurfaceContact> SurfaceContact::create(const model::Model& model, const P
     if (!loaded) return loaded.error();
     *program = std::move(*loaded);
     program->set("vertex_count", static_cast<GLint>(made.vertex_count_));
-    program->set("triangle_count", static_cast<GLint>(made.triangle_count_));
+    program->set("triangle_count", static_cast<GLint>(model.triangle_count()));
   }
-  made.control_ = gl::Buffer(sizeof(SurfaceControl));
-  made.sizes_ring_ = gl::ReadbackRing(sizeof(SurfaceControl), 1);
-  made.triangles_ = {gl::Buffer(owning_triangles(model)), GL_RGBA32UI};
-  made.triangle_boxes_ = {gl::Buffer(std::max(made.triangle_count_, 1u) * 8 * sizeof(float)), GL_RGBA32F};
-  made.cells_ = {gl::Buffer(cells * sizeof(std::uint32_t)), GL_R32UI};
-  made.chains_ = {gl::Buffer(std::max(made.triangle_count_, 1u) * sizeof(std::uint32_t)), GL_R32UI};
-  made.built_position_ = vector_per_vertex(made.vertex_count_);
   made.target_ = vector_per_vertex(made.vertex_count_);
   if (made.keeps_start_) made.start_ = vector_per_vertex(made.vertex_count_);
   made.sums_ = gl::Buffer(made.vertex_count_ * 8 * sizeof(std::int32_t));
   made.limits_ = gl::Buffer(made.vertex_count_ * sizeof(std::uint32_t));
-  made.make_lists(4 * made.triangle_count_ + 256, 8 * made.vertex_count_ + 256);
-  const SurfaceControl nothing;
-  made.control_.upload(&nothing, sizeof nothing);
   return made;
 }
 
-void SurfaceContact::make_lists(std::uint32_t triangle_pairs, std::uint32_t pairs) {
-  GLint texels = 0;
-  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
-  const std::uint32_t most = std::min(most_listed, static_cast<std::uint32_t>(texels) / 3);
-  triangle_pair_capacity_ = std::min(triangle_pairs, most);
-  pair_capacity_ = std::min(pairs, most);
-  triangle_pairs_ = {gl::Buffer(std::size_t{triangle_pair_capacity_} * 2 * sizeof(std::uint32_t)), GL_RG32UI};
-  pairs_ = {gl::Buffer(std::size_t{pair_capacity_} * 4 * sizeof(std::uint32_t)), GL_RGBA32UI};
-  near_pairs_ = {gl::Buffer(std::size_t{pair_capacity_} * 12 * sizeof(std::uint32_t)), GL_RGBA32UI};
-  for (const gl::Program* program :
-       {&triangle_pairs_program_, &candidates_, &pairs_program_, &finish_, &contacts_}) {
-    glProgramUniform1ui(program->id(), program->location("triangle_pair_capacity"), triangle_pair_capacity_);
-    glProgramUniform1ui(program->id(), program->location("pair_capacity"), pair_capacity_);
-  }
-}
-
 void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Model& model) {
-  const double thickness = scene.self_collision->thickness, dt = scene.solver.dt;
-  double edge = 0.0;
-  for (const model::ClothRange& cloth : model.cloths)
-    edge = edge > 0.0 ? std::min(edge, cloth.mean_edge_length) : cloth.mean_edge_length;
-  // Parts of a flat grid that share no vertex are 0.7 of a cell's side apart, which is 0.6 of the mean edge.
-  // A search that reaches less far lists nothing then.
-  const double skin = std::max({0.55 * edge - 1.2 * thickness, 0.3 * edge, 0.3 * thickness});
-  for (const gl::Program* program :
-       {&boxes_, &cells_program_, &triangle_pairs_program_, &candidates_, &pairs_program_, &finish_,
-        &contacts_, &forces_, &apply_, &begin_, &limit_, &move_}) {
+  const double dt = scene.solver.dt;
+  pairs_.set_parameters(scene, model);
+  for (const gl::Program* program : {&contacts_, &forces_, &apply_, &begin_, &limit_, &move_}) {
     program->set("dt", static_cast<float>(dt));
-    program->set("thickness", static_cast<float>(thickness));
-    program->set("skin", static_cast<float>(skin));
+    program->set("thickness", static_cast<float>(scene.self_collision->thickness));
   }
-  limit_query(static_cast<float>(24.0 * edge + 4.0 * thickness));
   push_passes_ = scene::iterates(scene.solver.method) ? pushes_of_long_step : pushes_of_short_step;
   forces_.set("friction", static_cast<float>(scene.self_collision->friction));
   forces_.set("mend", static_cast<float>(std::min(mended_in_step, mended_in_second * dt)));
   invalidate();
 }
 
-void SurfaceContact::limit_query(float most) {
-  most_query_ = most;
-  for (const gl::Program* program : {&boxes_, &cells_program_, &triangle_pairs_program_, &candidates_,
-                                     &pairs_program_, &finish_, &contacts_, &begin_})
-    program->set("most_query", most);
-}
-
 void SurfaceContact::invalidate() {
-  SurfaceControl control;
-  control_.download(&control, sizeof control);
-  const std::uint32_t rebuilds = control.rebuilds, cuts = control.cuts;
-  control = SurfaceControl{};
-  control.rebuilds = rebuilds;
-  control.cuts = cuts;
-  control.rebuild[0] = vertex_groups(std::max(vertex_count_, triangle_count_));
-  control_.upload(&control, sizeof control);
-  cells_.buffer.fill(end_of_chain);
+  pairs_.invalidate();
   sums_.fill(0);
   limits_.fill(std::bit_cast<std::uint32_t>(1.0f));
-  updates_ = 0;
   turn_ = 0;
 }
 
-void SurfaceContact::search(const StateBuffers& state) {
-  const auto dispatch = [](const gl::Program& program, std::size_t groups) {
-    program.use();
-    glDispatchComputeIndirect(static_cast<GLintptr>(groups));
-    wait_for_writes();
-  };
-  state.position().bind(unit_position);
-  state.velocity().bind(unit_velocity);
-  triangles_.bind(unit_surface_triangles);
-  triangle_boxes_.bind(unit_triangle_boxes);
-  cells_.bind(unit_triangle_cells);
-  chains_.bind(unit_triangle_chains);
-  triangle_pairs_.bind(unit_triangle_pairs);
-  control_.bind_storage(slot_surface_control);
-  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, control_.id());
-  triangle_boxes_.buffer.bind_storage(slot_triangle_boxes);
-  built_position_.buffer.bind_storage(slot_surface_built);
-  dispatch(boxes_, offsetof(SurfaceControl, rebuild));
-  cells_.buffer.bind_storage(slot_triangle_cells);
-  chains_.buffer.bind_storage(slot_triangle_chains);
-  dispatch(cells_program_, offsetof(SurfaceControl, rebuild));
-  triangle_pairs_.buffer.bind_storage(slot_triangle_pairs);
-  dispatch(triangle_pairs_program_, offsetof(SurfaceControl, rebuild));
-  near_pairs_.buffer.bind_storage(slot_near_pairs);
-  near_pairs_.bind(unit_near_pairs);
-  dispatch(candidates_, offsetof(SurfaceControl, split));
-  pairs_.buffer.bind_storage(slot_surface_pairs);
-  dispatch(pairs_program_, offsetof(SurfaceControl, candidate_groups));
-  cells_.buffer.bind_storage(slot_triangle_cells);
-  dispatch(finish_, offsetof(SurfaceControl, rebuild));
-}
-
 Work SurfaceContact::update_pairs(const StateBuffers& state) {
-  wait_for_writes();
-  search(state);
-  for (int attempt = 0; updates_++ % updates_between_size_looks == 0 && read_sizes() && attempt < 4;
-       ++attempt) {
-    co_await may_stop;
-    search(state);
-  }
+  co_await pairs_.update(state);
   if (keeps_start_) start_.buffer.copy_from(state.position().buffer);
-}
-
-/// Makes lists longer that have too little room (or the search shorter, if they may not be longer), by the
-/// sizes that the look before had copied, and queues a copy for the next look. The first look after
-/// `invalidate` reads its own copy at once. Returns true if the pairs must be searched anew.
-bool SurfaceContact::read_sizes() {
-  SurfaceControl control;
-  const auto take = [&] {
-    const std::span<const std::byte> seen = sizes_ring_.front(true);
-    if (seen.size() >= sizeof control) std::memcpy(&control, seen.data(), sizeof control);
-    sizes_ring_.pop();
-  };
-  if (!sizes_ring_.empty()) take();
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  sizes_ring_.push(control_, sizeof control);
-  if (updates_ == 1) take();
-  const auto wanted = [](std::uint32_t capacity, std::uint32_t found) {
-    return 4 * std::uint64_t{found} > 3 * std::uint64_t{capacity} ? std::min(2 * found, most_listed)
-                                                                  : capacity;
-  };
-  const std::uint32_t triangle_pairs = wanted(triangle_pair_capacity_, control.most_triangle_pairs),
-                      pairs = wanted(pair_capacity_, control.most_pairs);
-  if (triangle_pairs > triangle_pair_capacity_ || pairs > pair_capacity_)
-    make_lists(std::max(triangle_pairs, triangle_pair_capacity_), std::max(pairs, pair_capacity_));
-  else if (control.overflow != 0)
-    limit_query(0.5f * most_query_);  // no list may be longer: rather a limit on speed than no steps at all
-  else
-    return false;
-  invalidate();
-  return true;
 }
 
 void SurfaceContact::keep_apart(StateBuffers& state) {
@@ -262,18 +96,15 @@ void SurfaceContact::keep_apart(StateBuffers& state) {
                     vertices = counts + offsetof(StepCounts, vertex_groups),
                     cut = counts + offsetof(StepCounts, cut_groups),
                     cut_vertices = counts + offsetof(StepCounts, cut_vertices);
-  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, control_.id());
-  control_.bind_storage(slot_surface_control);
+  pairs_.bind();
+  pairs_.set_limits(contacts_);
+  pairs_.set_limits(begin_);
   state.position().bind(unit_position);
   state.velocity().bind(unit_velocity);
   (keeps_start_ ? start_ : state.previous_position()).bind(unit_step_start);
-  pairs_.bind(unit_surface_pairs);
-  near_pairs_.bind(unit_near_pairs);
   target_.bind(unit_step_target);
-  built_position_.bind(unit_position_when_built);
   state.position().buffer.bind_storage(slot_next_position);
   state.velocity().buffer.bind_storage(slot_next_velocity);
-  near_pairs_.buffer.bind_storage(slot_near_pairs);
   sums_.bind_storage(slot_contact_sums);
   limits_.bind_storage(slot_step_limits);
   target_.buffer.bind_storage(slot_step_target);
@@ -303,7 +134,7 @@ void SurfaceContact::keep_apart(StateBuffers& state) {
 }
 
 void SurfaceContact::copy_counts(const gl::Buffer& target, std::size_t offset) const {
-  glCopyNamedBufferSubData(control_.id(), target.id(), 0, static_cast<GLintptr>(offset),
+  glCopyNamedBufferSubData(pairs_.control().id(), target.id(), 0, static_cast<GLintptr>(offset),
                            sizeof(SurfaceControl));
 }
 
@@ -312,18 +143,6 @@ SurfaceContact::Counters SurfaceContact::read_counts(const std::byte* counts) {
   std::memcpy(&control, counts, sizeof control);
   return {control.pairs, std::max(control.step_counts[0].near, control.step_counts[1].near), control.cuts,
           control.rebuilds};
-}
-
-std::vector<SurfaceContact::Pair> SurfaceContact::read_pairs() const {
-  SurfaceControl control;
-  control_.download(&control, sizeof control);
-  std::vector<std::array<std::uint32_t, 4>> words(std::min(control.pairs, pair_capacity_));
-  if (!words.empty()) pairs_.buffer.download(words.data(), words.size() * sizeof words[0]);
-  std::vector<Pair> pairs;
-  constexpr std::uint32_t bit = 0x80000000u;
-  for (const auto& [a, b, c, d] : words)
-    pairs.push_back({{a & ~bit, b & ~bit, c, d}, (a & bit) != 0, (b & bit) == 0});
-  return pairs;
 }
 
 }  // namespace clothlab::sim

@@ -1,8 +1,6 @@
 // Contact between surfaces, after a step of any method (shaders/surface/): pushes that keep triangles and
-// edges apart, and a filter that shortens steps so that nothing passes through anything. The pairs that can
-// meet come from a search, which the GPU itself asks for when a vertex has moved far enough. All is
-// dispatched indirectly: nothing is done for pairs that are not there, and the host does not wait to find
-// that out.
+// edges apart, and a filter that shortens steps so that nothing passes through anything. Dispatched
+// indirectly: nothing is done for pairs that are not near, and the host does not wait to find that out.
 #pragma once
 
 #include <array>
@@ -14,6 +12,7 @@
 #include "server/scene/scene.h"
 #include "server/sim/plan.h"
 #include "server/sim/state.h"
+#include "server/sim/surface_pairs.h"
 #include "server/sim/work.h"
 
 namespace clothlab::sim {
@@ -25,9 +24,7 @@ class SurfaceContact {
   /// Takes over the numbers of a scene; the pairs are searched anew before the next step.
   void set_parameters(const scene::Scene& scene, const model::Model& model);
 
-  /// To be called before a step: brings the pairs up to date. Rest positions must be bound. Every few calls,
-  /// at a fixed count and not by time, reads back how long the lists need to be, and makes them longer. Until
-  /// then nothing moves.
+  /// To be called before a step: brings the pairs up to date (SurfacePairs::update).
   Work update_pairs(const StateBuffers& state);
   /// To be called after a step: changes the new state so that it keeps apart and nothing has passed through.
   void keep_apart(StateBuffers& state);
@@ -47,33 +44,16 @@ class SurfaceContact {
   static Counters read_counts(const std::byte* counts);
   static const std::size_t bytes_of_counts;
 
-  struct Pair {
-    std::array<std::uint32_t, 4> corners{};  ///< a vertex and a triangle, or the ends of two edges
-    bool edges = false;
-    bool forces = true;  ///< false: too near at rest to be kept apart
-  };
-  /// The pairs of the last search. Waits for the GPU.
-  std::vector<Pair> read_pairs() const;
+  std::vector<SurfacePairs::Pair> read_pairs() const { return pairs_.read_pairs(); }
 
  private:
-  void search(const StateBuffers& state);
-  bool read_sizes();
-  void limit_query(float most);
-  void make_lists(std::uint32_t triangle_pairs, std::uint32_t pairs);
-
-  std::uint32_t vertex_count_ = 0, triangle_count_ = 0;
-  std::uint32_t triangle_pair_capacity_ = 0, pair_capacity_ = 0;
-  float most_query_ = 0;       ///< [m]
-  std::uint64_t updates_ = 0;  ///< calls of update_pairs since `invalidate`
-  int turn_ = 0;
+  std::uint32_t vertex_count_ = 0;
+  int turn_ = 0;  ///< whose step_counts the next step has
   int push_passes_ = 0;
   bool keeps_start_ = false;  ///< the strain limit writes over the positions at the step's start
-  gl::Program boxes_, cells_program_, triangle_pairs_program_, candidates_, pairs_program_, finish_;
+  SurfacePairs pairs_;
   gl::Program contacts_, forces_, apply_, begin_, limit_, move_;
-  gl::Buffer control_;
-  gl::ReadbackRing sizes_ring_;
-  gl::TextureBuffer triangles_, triangle_boxes_, cells_, chains_, triangle_pairs_, pairs_, near_pairs_;
-  gl::TextureBuffer built_position_, start_, target_;
+  gl::TextureBuffer start_, target_;
   gl::Buffer sums_, limits_;
 };
 

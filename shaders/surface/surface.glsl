@@ -20,7 +20,7 @@ struct StepCounts {  // of a step; steps take turns with two of them
   uint unused_1, unused_2;
 };
 
-// Set by the GPU: arguments of indirect dispatches, and what a search found (server/sim/surface_contact.cpp).
+// Set by the GPU: arguments of indirect dispatches, and what a search found (server/sim/surface_control.h).
 layout(std430, binding = slot_surface_control) coherent buffer SurfaceControl {
   StepCounts step_counts[2];
   uint rebuild_groups, rebuild_groups_y, rebuild_groups_z;  // over triangles and vertices

@@ -1,0 +1,29 @@
+// What the passes of contact between surfaces share on the GPU, as shaders/surface/surface.glsl lays it out:
+// arguments of indirect dispatches, and what they found.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace clothlab::sim {
+
+/// Work groups of an indirect dispatch.
+using DispatchGroups = std::array<std::uint32_t, 3>;
+
+/// Of a step; steps take turns with two of them.
+struct StepCounts {
+  DispatchGroups near_groups{0, 1, 1}, vertex_groups{0, 1, 1}, cut_groups{0, 1, 1}, cut_vertices{0, 1, 1};
+  std::uint32_t near = 0, cuts = 0;
+  std::array<std::uint32_t, 2> unused{};
+};
+
+struct SurfaceControl {
+  std::array<StepCounts, 2> step_counts;
+  DispatchGroups rebuild{0, 1, 1}, split{0, 1, 1}, pair_groups{0, 1, 1};
+  DispatchGroups candidate_groups{0, 1, 1};
+  std::uint32_t triangle_pairs = 0, candidates = 0, pairs = 0;
+  std::uint32_t largest_triangle = 0, fastest = 0, fastest_vertex = 0, levels = 0, query = 0, overflow = 0;
+  std::uint32_t rebuilds = 0, cuts = 0, most_triangle_pairs = 0, most_pairs = 0;
+};
+
+}  // namespace clothlab::sim

@@ -1,0 +1,66 @@
+// The search for pairs that can meet under contact between surfaces (shaders/surface/): a vertex and a
+// triangle, or two edges. The GPU itself asks for a search when a vertex has moved far enough. All is
+// dispatched indirectly: nothing is done while no search is due, and the host does not wait to find that out.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "server/base/result.h"
+#include "server/gl/buffer.h"
+#include "server/gl/program.h"
+#include "server/model/model.h"
+#include "server/scene/scene.h"
+#include "server/sim/state.h"
+#include "server/sim/work.h"
+
+namespace clothlab::sim {
+
+class SurfacePairs {
+ public:
+  static Result<SurfacePairs> create(const model::Model& model);
+
+  /// Takes over the numbers of a scene. `invalidate` must follow.
+  void set_parameters(const scene::Scene& scene, const model::Model& model);
+
+  /// To be called before a step: brings the pairs up to date. Rest positions must be bound. Every few calls,
+  /// at a fixed count and not by time, reads back how long the lists need to be, and makes them longer. Until
+  /// then nothing moves.
+  Work update(const StateBuffers& state);
+
+  /// Forgets the pairs; only the counts over all steps stay.
+  void invalidate();
+
+  /// Binds the pairs, the near pairs and the control block, whose arguments indirect dispatches then take.
+  void bind() const;
+  /// Sets what a pass after the step needs to know of the search. It may change with every `update`.
+  void set_limits(const gl::Program& program) const;
+  const gl::Buffer& control() const { return control_; }
+
+  struct Pair {
+    std::array<std::uint32_t, 4> corners{};  ///< a vertex and a triangle, or the ends of two edges
+    bool edges = false;
+    bool forces = true;  ///< false: too near at rest to be kept apart
+  };
+  /// The pairs of the last search. Waits for the GPU.
+  std::vector<Pair> read_pairs() const;
+
+ private:
+  void search(const StateBuffers& state);
+  bool read_sizes();
+  void limit_query(float most);
+  void make_lists(std::uint32_t triangle_pairs, std::uint32_t pairs);
+
+  std::uint32_t vertex_count_ = 0, triangle_count_ = 0;
+  std::uint32_t triangle_pair_capacity_ = 0, pair_capacity_ = 0;
+  float most_query_ = 0, skin_ = 0;  ///< [m]
+  std::uint64_t updates_ = 0;        ///< calls of `update` since `invalidate`
+  gl::Program boxes_, cells_program_, triangle_pairs_program_, candidates_, pairs_program_, finish_;
+  gl::Buffer control_;
+  gl::ReadbackRing sizes_ring_;
+  gl::TextureBuffer triangles_, triangle_boxes_, cells_, chains_, triangle_pairs_, pairs_, near_pairs_;
+  gl::TextureBuffer built_position_;
+};
+
+}  // namespace clothlab::sim
