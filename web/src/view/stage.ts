@@ -106,16 +106,34 @@ export class Stage {
   }
 
   setDocument(document: SceneDocument, newScene: boolean): void {
-    const box = new Box3().setFromPoints(scenePoints(document));
     const fresh = newScene || !this.document;
     this.document = document;
-    const radius = (this.radius = box.getSize(new Vector3()).length() / 2);
     this.cloth.setDocument(document);
-    this.colliders.setDocument(document, radius);
+    this.measure(this.reach());
     this.colliders.update([], this.cloth.box.isEmpty() ? 0 : this.cloth.box.min.y);
-    this.aimLight(box.getCenter(new Vector3()), radius);
     if (fresh) this.fit(false);
     this.invalidate();
+  }
+
+  /// Points that the scene reaches. Of a cloth whose mesh is in a file only a frame tells them.
+  private reach(frame = this.latest): Vector3[] {
+    if (!this.document) return [];
+    const points = scenePoints(this.document);
+    if (frame && this.hasFiles()) points.push(...framePoints(frame));
+    return points;
+  }
+
+  private hasFiles(): boolean {
+    return this.document?.cloths.some(({ mesh }) => "obj" in mesh) ?? false;
+  }
+
+  /// Takes the scene's size from the points that it reaches.
+  private measure(points: Vector3[]): void {
+    if (!this.document) return;
+    const box = new Box3().setFromPoints(points);
+    this.radius = box.getSize(new Vector3()).length() / 2;
+    this.colliders.setDocument(this.document, this.radius);
+    this.aimLight(box.getCenter(new Vector3()), this.radius);
   }
 
   setTopology(topology: Topology): void {
@@ -125,10 +143,11 @@ export class Stage {
   }
 
   show(frame: ShownFrame): boolean {
+    const first = this.latest === null;
+    if (first && this.hasFiles()) this.measure(this.reach(frame));
     // A cloth that has blown up would fill the window many times over: its last sane shape stays on screen.
     if (Math.max(...frame.header.boxExtent) > explodedAt * this.radius) return true;
     if (!this.cloth.show(frame)) return false;
-    const first = this.latest === null;
     this.latest = frame;
     if (first && this.hasFiles()) this.keeper.foresee(framePoints(frame));
     else this.keeper.see(framePoints(frame));
@@ -160,15 +179,7 @@ export class Stage {
     this.controls.enableDamping = false; // an update without damping ends the swing of the last drag
     this.controls.update();
     this.controls.enableDamping = damped;
-    const points = scenePoints(this.document),
-      now = this.latest ? framePoints(this.latest) : [];
-    if (this.hasFiles()) points.push(...now);
-    this.orbit(this.keeper.fit(points, seen ? now : []));
-  }
-
-  /// True if a cloth's mesh is in a file: then only a frame tells how far it reaches.
-  private hasFiles(): boolean {
-    return this.document?.cloths.some(({ mesh }) => "obj" in mesh) ?? false;
+    this.orbit(this.keeper.fit(this.reach(), seen && this.latest ? framePoints(this.latest) : []));
   }
 
   private orbit(target: Vector3 | null): void {
