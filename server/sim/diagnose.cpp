@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <tuple>
 
 #include "server/sim/element_lists.h"
 #include "server/sim/plan.h"
@@ -60,7 +59,7 @@ bool DiagnosticsPass::request(const StateBuffers& state, const SelfCollision* se
     surfaces->copy_counts(results_, groups_ * sizeof(Partial) + sizeof(SelfCollision::Counters));
   }
   ring_.push(results_, results_.bytes());
-  pending_times_[requested_++ % ring_slots] = {time, step};
+  pending_[requested_++ % ring_slots] = {time, step, self_collision != nullptr, surfaces != nullptr};
   return true;
 }
 
@@ -68,7 +67,9 @@ bool DiagnosticsPass::poll(Diagnostics& out, bool wait) {
   const std::span<const std::byte> bytes = ring_.front(wait);
   if (bytes.empty()) return false;
   out = Diagnostics{};
-  std::tie(out.time, out.step) = pending_times_[delivered_++ % ring_slots];
+  const Pending& pending = pending_[delivered_++ % ring_slots];
+  out.time = pending.time;
+  out.step = pending.step;
   double contacts = 0.0, speed_squared = 0.0;
   for (std::size_t group = 0; group < groups_; ++group) {
     Partial partial;
@@ -84,15 +85,20 @@ bool DiagnosticsPass::poll(Diagnostics& out, bool wait) {
     speed_squared = std::max(speed_squared, static_cast<double>(partial.speed_squared));
     out.finite = out.finite && partial.not_finite == 0.0f;
   }
-  SelfCollision::Counters counters;
-  std::memcpy(&counters, bytes.data() + groups_ * sizeof(Partial), sizeof(counters));
-  out.neighbour_rebuilds = counters.rebuilds;
-  out.neighbours_dropped = counters.dropped;
-  const SurfaceContact::Counters surfaces =
-      SurfaceContact::read_counts(bytes.data() + groups_ * sizeof(Partial) + sizeof(counters));
-  out.surface_pairs = surfaces.pairs;
-  out.surface_cuts = surfaces.cuts;
-  out.surface_searches = surfaces.rebuilds;
+  const std::byte* counts = bytes.data() + groups_ * sizeof(Partial);
+  if (pending.self_collision) {
+    SelfCollision::Counters counters;
+    std::memcpy(&counters, counts, sizeof(counters));
+    out.neighbour_rebuilds = counters.rebuilds;
+    out.neighbours_dropped = counters.dropped;
+  }
+  if (pending.surfaces) {
+    const SurfaceContact::Counters surfaces =
+        SurfaceContact::read_counts(counts + sizeof(SelfCollision::Counters));
+    out.surface_pairs = surfaces.pairs;
+    out.surface_cuts = surfaces.cuts;
+    out.surface_searches = surfaces.rebuilds;
+  }
   out.contacts = static_cast<std::uint32_t>(contacts);
   out.max_speed = std::sqrt(speed_squared);
   ring_.pop();

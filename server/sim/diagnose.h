@@ -29,9 +29,14 @@ class DiagnosticsPass {
   gl::Program program_;
   gl::Buffer results_;  ///< the partial results, then the counters of self-collision and of surfaces
   gl::ReadbackRing ring_;
+  /// What is known of a result on its way; without a kind of self-collision its counters mean nothing.
+  struct Pending {
+    double time = 0;
+    std::uint64_t step = 0;
+    bool self_collision = false, surfaces = false;
+  };
   static constexpr std::size_t ring_slots = 3;
-  std::array<std::pair<double, std::uint64_t>, ring_slots>
-      pending_times_{};  ///< time and step of each result on its way
+  std::array<Pending, ring_slots> pending_{};
   std::size_t requested_ = 0, delivered_ = 0;
   std::uint32_t groups_ = 0;
 };

@@ -37,6 +37,10 @@ test("sim.status counts what contact between surfaces does", async () => {
   await client.request("sim.play");
   const { surface } = await client.nextNotification("sim.status", (s) => s.step > 20 && s.surface?.searches > 0);
   for (const count of ["pairs", "cuts"]) assert.ok(Number.isInteger(surface[count]), count);
+  await client.request("scene.patch", { patch: { self_collision: { kind: "points" } } });
+  const { step } = await client.nextNotification("sim.status");
+  const after = await client.nextNotification("sim.status", (s) => s.step > step + 20);
+  assert.equal(after.surface, null);
 });
 
 test("sim.status comes about 10 times a second, playing or not", async () => {
