@@ -44,8 +44,6 @@ class SurfaceContact {
   static Counters read_counts(const std::byte* counts);
   static const std::size_t bytes_of_counts;
 
-  std::vector<SurfacePairs::Pair> read_pairs() const { return pairs_.read_pairs(); }
-
  private:
   std::uint32_t vertex_count_ = 0;
   int turn_ = 0;  ///< whose step_counts the next step has

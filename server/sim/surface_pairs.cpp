@@ -4,6 +4,8 @@
 #include <bit>
 #include <cstddef>
 #include <cstring>
+#include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
 #include <set>
 #include <span>
 #include <string>
@@ -37,6 +39,21 @@ std::vector<std::array<std::uint32_t, 4>> owning_triangles(const model::Model& m
   return list;
 }
 
+/// For each triangle the middle of its box at rest and its cloth, half of the box's sides, and its normal.
+std::vector<glm::vec4> boxes_at_rest(const model::Model& model) {
+  std::vector<glm::vec4> list;
+  for (const auto& [a, b, c] : model.triangles) {
+    const glm::vec3 x(model.rest_position[a]), y(model.rest_position[b]), z(model.rest_position[c]);
+    const glm::vec3 low = glm::min(x, glm::min(y, z)), high = glm::max(x, glm::max(y, z));
+    const glm::vec3 normal = glm::cross(y - x, z - x);
+    const float size = glm::length(normal);
+    list.emplace_back(0.5f * (low + high), static_cast<float>(model.vertex_cloth[a]));
+    list.emplace_back(0.5f * (high - low), 0.0f);
+    list.emplace_back(size > 0.0f ? normal / size : normal, 0.0f);
+  }
+  return list;
+}
+
 }  // namespace
 
 Result<SurfacePairs> SurfacePairs::create(const model::Model& model) {
@@ -58,9 +75,13 @@ Result<SurfacePairs> SurfacePairs::create(const model::Model& model) {
     program->set("vertex_count", static_cast<GLint>(made.vertex_count_));
     program->set("triangle_count", static_cast<GLint>(made.triangle_count_));
   }
+  Result<SurfaceBlocks> blocks = SurfaceBlocks::create(model);
+  if (!blocks) return blocks.error();
+  made.blocks_ = std::move(*blocks);
   made.control_ = gl::Buffer(sizeof(SurfaceControl));
   made.sizes_ring_ = gl::ReadbackRing(sizeof(SurfaceControl), 1);
   made.triangles_ = {gl::Buffer(owning_triangles(model)), GL_RGBA32UI};
+  made.rest_boxes_ = {gl::Buffer(boxes_at_rest(model)), GL_RGBA32F};
   made.triangle_boxes_ = {gl::Buffer(triangles * 8 * sizeof(float)), GL_RGBA32F};
   made.cells_ = {gl::Buffer(cells * sizeof(std::uint32_t)), GL_R32UI};
   made.chains_ = {gl::Buffer(triangles * sizeof(std::uint32_t)), GL_R32UI};
@@ -92,13 +113,16 @@ void SurfacePairs::set_parameters(const scene::Scene& scene, const model::Model&
   for (const model::ClothRange& cloth : model.cloths)
     edge = edge > 0.0 ? std::min(edge, cloth.mean_edge_length) : cloth.mean_edge_length;
   // Parts of a flat grid that share no vertex are 0.7 of a cell's side apart, which is 0.6 of the mean edge.
-  // A search that reaches less far lists nothing then.
-  skin_ = static_cast<float>(std::max({0.55 * edge - 1.2 * thickness, 0.3 * edge, 0.3 * thickness}));
+  // A search that reaches less far for what is side by side lists nothing then.
+  skin_ = static_cast<float>(std::max(0.55 * edge - 1.2 * thickness, 0.3 * edge));
+  const auto least_query = static_cast<float>(std::min(1.2 * thickness, 0.25 * edge));
+  blocks_.set_skin(skin_);
   for (const gl::Program* program :
        {&boxes_, &cells_program_, &triangle_pairs_program_, &candidates_, &pairs_program_, &finish_}) {
     program->set("dt", static_cast<float>(scene.solver.dt));
     program->set("thickness", static_cast<float>(thickness));
     program->set("skin", skin_);
+    program->set("least_query", least_query);
   }
   limit_query(static_cast<float>(24.0 * edge + 4.0 * thickness));
 }
@@ -132,6 +156,7 @@ void SurfacePairs::search(const StateBuffers& state) {
   state.position().bind(unit_position);
   state.velocity().bind(unit_velocity);
   triangles_.bind(unit_surface_triangles);
+  rest_boxes_.bind(unit_rest_boxes);
   triangle_boxes_.bind(unit_triangle_boxes);
   cells_.bind(unit_triangle_cells);
   chains_.bind(unit_triangle_chains);
@@ -157,6 +182,8 @@ void SurfacePairs::search(const StateBuffers& state) {
 
 Work SurfacePairs::update(const StateBuffers& state) {
   wait_for_writes();
+  bind();
+  blocks_.check(state, built_position_);
   search(state);
   for (int attempt = 0; updates_++ % updates_between_size_looks == 0 && read_sizes() && attempt < 4;
        ++attempt) {
@@ -201,11 +228,9 @@ void SurfacePairs::bind() const {
   pairs_.bind(unit_surface_pairs);
   near_pairs_.bind(unit_near_pairs);
   near_pairs_.buffer.bind_storage(slot_near_pairs);
-  built_position_.bind(unit_position_when_built);
 }
 
 void SurfacePairs::set_limits(const gl::Program& program) const {
-  program.set("skin", skin_);
   program.set("most_query", most_query_);
   glProgramUniform1ui(program.id(), program.location("pair_capacity"), pair_capacity_);
 }

@@ -1,5 +1,5 @@
 // The search for pairs that can meet under contact between surfaces (shaders/surface/): a vertex and a
-// triangle, or two edges. The GPU itself asks for a search when a vertex has moved far enough. All is
+// triangle, or two edges. The GPU itself asks for a search when one is due (surface_blocks.h). All is
 // dispatched indirectly: nothing is done while no search is due, and the host does not wait to find that out.
 #pragma once
 
@@ -13,6 +13,7 @@
 #include "server/model/model.h"
 #include "server/scene/scene.h"
 #include "server/sim/state.h"
+#include "server/sim/surface_blocks.h"
 #include "server/sim/work.h"
 
 namespace clothlab::sim {
@@ -41,7 +42,7 @@ class SurfacePairs {
   struct Pair {
     std::array<std::uint32_t, 4> corners{};  ///< a vertex and a triangle, or the ends of two edges
     bool edges = false;
-    bool forces = true;  ///< false: too near at rest to be kept apart
+    bool forces = true;  ///< false: side by side, or too near, at rest: not kept apart
   };
   /// The pairs of the last search. Waits for the GPU.
   std::vector<Pair> read_pairs() const;
@@ -57,9 +58,11 @@ class SurfacePairs {
   float most_query_ = 0, skin_ = 0;  ///< [m]
   std::uint64_t updates_ = 0;        ///< calls of `update` since `invalidate`
   gl::Program boxes_, cells_program_, triangle_pairs_program_, candidates_, pairs_program_, finish_;
+  SurfaceBlocks blocks_;
   gl::Buffer control_;
   gl::ReadbackRing sizes_ring_;
-  gl::TextureBuffer triangles_, triangle_boxes_, cells_, chains_, triangle_pairs_, pairs_, near_pairs_;
+  gl::TextureBuffer triangles_, rest_boxes_, triangle_boxes_, cells_, chains_, triangle_pairs_, pairs_,
+      near_pairs_;
   gl::TextureBuffer built_position_;
 };
 

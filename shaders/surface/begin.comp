@@ -1,9 +1,8 @@
-// The filter, 1 of 3, in every step: how far each vertex wants to go, and whether a new search is needed. Without near
-// pairs that is the step's end; else `position` starts over at the step's start. Also gets the counts ready for the
-// next step.
+// The filter, 1 of 3, in every step: how far each vertex wants to go, and whether a search must reach farther for it.
+// Without near pairs that is the step's end; else `position` starts over at the step's start. Also gets the counts
+// ready for the next step.
 #include "surface.glsl"
 READ_VEC4(step_start, unit_step_start);
-READ_VEC4(position_when_built, unit_position_when_built);
 layout(std430, binding = slot_next_position) buffer Position { vec4 position[]; };
 layout(std430, binding = slot_next_velocity) buffer Velocity { vec4 velocity[]; };
 layout(std430, binding = slot_contact_sums) buffer Sums { int sums[]; };
@@ -14,16 +13,6 @@ void prepare_next_step() {
   step_counts[next].near_groups = step_counts[next].vertex_groups = 0u;
   step_counts[next].cut_groups = step_counts[next].cut_vertices = 0u;
   step_counts[next].near = step_counts[next].cuts = 0u;
-}
-
-/// Motion since the search that all vertices share, more or less [m]: only what they move apart from it matters.
-vec3 common_motion() {
-  vec3 sum = vec3(0.0);
-  for (int k = 0; k < 4; ++k) {
-    int vertex = (2 * k + 1) * vertex_count / 8;
-    sum += FETCH(step_start, vertex).xyz - FETCH(position_when_built, vertex).xyz;
-  }
-  return 0.25 * sum;
 }
 
 void main() {
@@ -37,7 +26,7 @@ void main() {
     sums[8 * i + 3] = 0;
   }
   vec3 moved = end.xyz - start.xyz;
-  float went = length(moved), query_radius = uintBitsToFloat(query), most = step_share * query_radius;
+  float went = length(moved), query_radius = uintBitsToFloat(flat_query), most = step_share * query_radius;
   RARELY(went > 0.85 * most && query_radius < most_query) {
     if (went < 1e30) atomicMax(fastest, floatBitsToUint(went));
     rebuild_groups = uint((max(vertex_count, triangle_count) + GROUP_SIZE - 1) / GROUP_SIZE);
@@ -49,9 +38,6 @@ void main() {
     atomicAdd(cuts, 1u);
   }
   RARELY(free && overflow != 0u) position[i] = end = start;
-  vec3 since = end.xyz - FETCH(position_when_built, i).xyz - common_motion();
-  if (dot(since, since) > 0.25 * skin * skin)
-    rebuild_groups = uint((max(vertex_count, triangle_count) + GROUP_SIZE - 1) / GROUP_SIZE);
   RARELY(filtered) {
     target[i] = end;
     position[i] = vec4(start.xyz, end.w);

@@ -20,8 +20,10 @@ void main() {
   uint item = gl_GlobalInvocationID.x;
   if (item >= min(triangle_pairs, triangle_pair_capacity)) return;
   uvec2 both = FETCH_UVEC2(triangle_pair_list, item);
+  bool flat_at_rest = (both.y & flat_bit) != 0u;
+  both.y &= ~flat_bit;
   uvec4 one = FETCH(surface_triangles, both.x), other = FETCH(surface_triangles, both.y);
-  float reach = reach_of(next_query());
+  float reach = reach_of(flat_at_rest ? next_flat_query() : next_query());
   vec3 place[6];
   for (int k = 0; k < 3; ++k) {
     place[k] = FETCH(position, one[k]).xyz;
@@ -43,7 +45,7 @@ void main() {
            all(lessThanEqual(other_low, high + reach))) {
       uint slot = atomicAdd(candidates, 1u);
       if (slot < 3u * pair_capacity) {
-        list[slot] = uvec4(edges ? c.x | edges_bit : c.x, c.yzw);
+        list[slot] = uvec4(edges ? c.x | edges_bit : c.x, flat_at_rest ? c.y | no_force_bit : c.y, c.zw);
         if (slot % uint(GROUP_SIZE) == 0u) atomicMax(candidate_groups, slot / uint(GROUP_SIZE) + 1u);
       }
     }

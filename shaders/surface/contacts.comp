@@ -25,7 +25,7 @@ void main() {
   Corners c;
   for (int k = 0; k < 4; ++k) c.x[k] = start[k] - start[0];
   Separation apart = separation(edges, c);
-  RARELY(apart.gap < uintBitsToFloat(query)) {
+  RARELY(apart.gap < uintBitsToFloat((pair.y & no_force_bit) != 0u ? flat_query : query)) {
     uint slot = atomicAdd(step_counts[turn].near, 1u);
     if (slot % uint(GROUP_SIZE) == 0u) atomicMax(step_counts[turn].near_groups, slot / uint(GROUP_SIZE) + 1u);
     step_counts[turn].vertex_groups = uint((vertex_count + GROUP_SIZE - 1) / GROUP_SIZE);

@@ -7,6 +7,7 @@ void main() {
     heads[cell] = 0xffffffffu;
   if (gl_GlobalInvocationID.x > 0u) return;
   query = floatBitsToUint(next_query());
+  flat_query = floatBitsToUint(next_flat_query());
   // Candidates are where near pairs will be, with three times the room. What was found beyond a list's room was not
   // searched further, and what was depends on the order of threads: then only what is complete counts.
   uint room_for_candidates = (candidates + 2u) / 3u;

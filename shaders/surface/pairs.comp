@@ -22,15 +22,15 @@ void main() {
   uint item = gl_GlobalInvocationID.x;
   if (item >= min(candidates, 3u * pair_capacity)) return;
   uvec4 pair = FETCH(candidate_list, item), corner = corners_of(pair);
-  bool edges = is_edges(pair);
+  bool edges = is_edges(pair), flat_at_rest = (pair.y & no_force_bit) != 0u;
   vec3 origin = FETCH(position, corner.x).xyz;
   Corners c;
   for (int k = 0; k < 4; ++k) c.x[k] = FETCH(position, corner[k]).xyz - origin;
-  RARELY(separation(edges, c).gap < reach_of(next_query())) {
+  RARELY(separation(edges, c).gap < reach_of(flat_at_rest ? next_flat_query() : next_query())) {
     uint slot = atomicAdd(pairs, 1u);
     if (slot < pair_capacity) {
       if (slot % uint(GROUP_SIZE) == 0u) atomicMax(pair_groups, slot / uint(GROUP_SIZE) + 1u);
-      if (near_at_rest(edges, corner)) pair.y |= no_force_bit;
+      if (!flat_at_rest && near_at_rest(edges, corner)) pair.y |= no_force_bit;
       list[slot] = pair;
     }
   }

@@ -1,8 +1,8 @@
 // Contact between surfaces (kind "surface"): pairs of a vertex and a triangle, and of two edges, of all triangles of a
-// scene. A search lists the pairs that can meet until a vertex has moved half the skin. After a step of any method the
-// near ones among them push each other apart (elements/surface.glsl); then a filter shortens the steps of vertices so
-// that no pair meets, which keeps a state without intersections so. All sums are of integers, so that no outcome
-// depends on the order of threads.
+// scene. A search lists the pairs that can meet until parts of the surfaces have moved too far relative to each other
+// (block_pairs.comp). After a step of any method the near ones among them push each other apart
+// (elements/surface.glsl); then a filter shortens the steps of vertices so that no pair meets, which keeps a state
+// without intersections so. All sums are of integers, so that no outcome depends on the order of threads.
 layout(local_size_x = GROUP_SIZE) in;
 #include "../access.glsl"
 #include "../rarely.glsl"
@@ -35,6 +35,7 @@ layout(std430, binding = slot_surface_control) coherent buffer SurfaceControl {
   uint fastest_vertex;       // its speed at the search [m/s], as bits
   uint levels;               // bit k: triangles of level k
   uint query;                // pairs nearer than this can be near within a step [m], as bits
+  uint flat_query;           // the same of pairs that no force keeps apart
   uint overflow;             // 1: a list had no room for all pairs, and nothing may move
   uint rebuilds;
   uint cuts;                 // vertices whose steps were shortened, over all steps
@@ -47,22 +48,26 @@ uniform float dt;           // [s]
 uniform float thickness;    // [m]
 uniform float skin;         // [m]
 uniform float most_query;   // [m]
+uniform float least_query;  // [m]
 uniform uint pair_capacity, triangle_pair_capacity;
 uniform int turn;           // whose step_counts this step has
 
 const uint edges_bit = 0x80000000u;     // of a pair's first corner: two edges
-const uint no_force_bit = 0x80000000u;  // of its second: too near at rest to be kept apart
+const uint no_force_bit = 0x80000000u;  // of its second: side by side, or too near, at rest: not kept apart
+const uint flat_bit = 0x80000000u;      // of a triangle pair's second: side by side at rest, and near
 const uint touching_bit = 0x80000000u;  // of a near pair's third: comes within the thickness in this step
 const uint corner_mask = 0x7fffffffu;
 
 /// How far a vertex may go in a step, as a share of the query radius: two that are farther apart cannot meet.
 const float step_share = 0.425;
 
-/// Query radius [m] for a longest step [m], which is 0.8 of what a vertex may go then.
-float query_for(float longest) { return min(max(1.2 * thickness, 3.0 * longest), most_query); }
-
-/// Query radius of the search under way [m].
-float next_query() { return query_for(max(dt * uintBitsToFloat(fastest_vertex), uintBitsToFloat(fastest))); }
+/// Query radius of the search under way [m], of pairs that no force keeps apart: for the filter alone. The longest step
+/// is at most 0.74 of what a vertex may go then.
+float next_flat_query() {
+  return min(max(least_query, 3.2 * max(dt * uintBitsToFloat(fastest_vertex), uintBitsToFloat(fastest))), most_query);
+}
+/// The same of pairs that forces keep apart.
+float next_query() { return max(next_flat_query(), min(1.2 * thickness, most_query)); }
 /// How near pairs are that the search lists [m].
 float reach_of(float query_radius) { return query_radius + skin; }
 

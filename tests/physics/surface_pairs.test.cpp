@@ -1,0 +1,134 @@
+// The search of contact between surfaces: as long as it asks for no new search, its list has all pairs that
+// are near.
+#include "server/sim/surface_pairs.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <set>
+
+#include "server/sim/motion_table.h"
+#include "server/sim/state.h"
+#include "server/sim/surface_control.h"
+#include "shaders/elements/elements.h"
+#include "shaders/slots.h"
+#include "tests/crossings.h"
+#include "tests/scenes.h"
+
+using namespace clothlab;
+
+namespace {
+
+constexpr int side = 9;
+constexpr double size = 0.2;
+
+/// Two sheets, one above the other and turned.
+scene::Scene two_sheets(double thickness) {
+  scene::Scene scene;
+  scene.self_collision = scene::SelfCollision{thickness, 0.3, scene::ContactKind::surface};
+  for (const double height : {0.0, 0.03}) {
+    scene::Cloth& cloth = scene.cloths.emplace_back();
+    cloth.mesh = scene::Grid{side, side, size, size};
+    cloth.transform = {{0.0, height, -0.5 * size}, {0.0, 1000.0 * height, 0.0}, 1.0};
+    cloth.mass = {scene::Mass::Kind::per_vertex, 0.001};
+  }
+  return scene;
+}
+
+/// The place of a vertex of two sheets that swing by turns about an axis, as one, while each is waved and
+/// stretched by itself, so that places of both come near each other here and there.
+glm::vec3 moved(const glm::dvec3& x, bool upper, double time) {
+  const double phase = upper ? 1.3 : 0.0, wave = 0.02 * std::sin(40.0 * x.x + 6.0 * time + phase);
+  const glm::dvec3 bent(x.x * (1.0 + 0.7 * std::sin(5.0 * time + phase)),
+                        x.y + wave - (upper ? 0.02 * std::min(time, 1.0) : 0.0), x.z);
+  const double angle = 2.0 * std::sin(2.0 * time), c = std::cos(angle), s = std::sin(angle);
+  return {c * bent.x - s * (bent.y + 0.5), s * bent.x + c * (bent.y + 0.5), bent.z + 0.3 * time};
+}
+
+using Corners = std::array<std::uint32_t, 4>;
+
+/// A pair in one form, whichever of its parts comes first and in whatever order its corners are.
+Corners in_order(bool edges, Corners c) {
+  std::sort(c.begin() + (edges ? 2 : 1), c.end());
+  if (!edges) return c;
+  if (c[0] > c[1]) std::swap(c[0], c[1]);
+  return std::pair(c[0], c[1]) < std::pair(c[2], c[3]) ? c : Corners{c[2], c[3], c[0], c[1]};
+}
+
+struct Pairs {
+  std::set<Corners> vertex_triangle, edge_edge;
+};
+
+/// Calls take(edges, corners, gap [m]) for all pairs that share no vertex.
+template <class Take>
+void for_all_pairs(const model::Model& model, const std::vector<glm::vec3>& x, const Take& take) {
+  const auto visit = [&](bool edges, const Corners& corners) {
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < i; ++j)
+        if (corners[i] == corners[j]) return;
+    elements::Corners places;
+    for (int k = 0; k < 4; ++k) places.x[k] = glm::dvec3(x[corners[k]]) - glm::dvec3(x[corners[0]]);
+    take(edges, corners, elements::separation(edges, places).gap);
+  };
+  for (std::uint32_t v = 0; v < model.vertex_count(); ++v)
+    for (const auto& [a, b, c] : model.triangles) visit(false, {v, a, b, c});
+  const auto edges = test::edges_of(model);
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      visit(true, {edges[i].first, edges[i].second, edges[j].first, edges[j].second});
+}
+
+}  // namespace
+
+TEST_CASE(
+    "while no search is due, the pairs that the last one listed are all that are near, however surfaces "
+    "move") {
+  const auto context = test::context();
+  for (const double thickness : {0.002, 0.02}) {
+    const scene::Scene scene = two_sheets(thickness);
+    const auto simulation = test::simulation(scene);
+    const model::Model& model = simulation->model();
+    Result<sim::SurfacePairs> made = sim::SurfacePairs::create(model);
+    REQUIRE(made);
+    made->set_parameters(scene, model);
+    made->invalidate();
+    const sim::MotionTable motions;
+    sim::StateBuffers buffers(model, motions);
+    std::vector<glm::vec4> rest;
+    for (std::uint32_t i = 0; i < model.vertex_count(); ++i)
+      rest.emplace_back(glm::vec3(model.rest_position[i]), static_cast<float>(model.vertex_cloth[i]));
+    const gl::TextureBuffer rest_position(gl::Buffer(rest), GL_RGBA32F);
+    constexpr std::uint32_t updates = 150;
+    std::uint32_t near = 0;
+    sim::SurfaceControl control;
+    for (std::uint32_t update = 0; update < updates; ++update) {
+      sim::State state = buffers.read();
+      for (std::uint32_t i = 0; i < model.vertex_count(); ++i)
+        state.position[i] = moved(model.rest_position[i], model.vertex_cloth[i] == 1, 0.004 * update);
+      buffers.write(state, model, motions);
+      rest_position.bind(unit_rest_position);
+      sim::Pace pace;
+      sim::Work work = made->update(buffers);
+      while (!work.done()) work.resume(pace);
+      made->control().download(&control, sizeof control);
+      REQUIRE(control.overflow == 0);
+      Pairs listed;
+      for (const sim::SurfacePairs::Pair& pair : made->read_pairs())
+        (pair.edges ? listed.edge_edge : listed.vertex_triangle).insert(in_order(pair.edges, pair.corners));
+      const double query = std::bit_cast<float>(control.query);
+      const double flat_query = std::bit_cast<float>(control.flat_query);
+      std::uint32_t missing = 0;
+      for_all_pairs(model, state.position, [&](bool edges, const Corners& corners, double gap) {
+        const bool one_cloth = model.vertex_cloth[corners[0]] == model.vertex_cloth[corners[3]];
+        if (!(gap < (one_cloth ? flat_query : query))) return;
+        ++near;
+        missing += !(edges ? listed.edge_edge : listed.vertex_triangle).contains(in_order(edges, corners));
+      });
+      CHECK(missing == 0);
+    }
+    INFO("thickness " << thickness << ": " << control.rebuilds << " searches, " << near << " near");
+    CHECK(control.rebuilds < updates / 2);
+    CHECK(near > 1000);
+  }
+}
