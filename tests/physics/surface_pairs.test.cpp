@@ -40,7 +40,7 @@ scene::Scene two_sheets(double thickness) {
 /// stretched by itself, so that places of both come near each other here and there.
 glm::vec3 moved(const glm::dvec3& x, bool upper, double time) {
   const double phase = upper ? 1.3 : 0.0, wave = 0.02 * std::sin(40.0 * x.x + 6.0 * time + phase);
-  const glm::dvec3 bent(x.x * (1.0 + 0.7 * std::sin(5.0 * time + phase)),
+  const glm::dvec3 bent(x.x * (1.0 + 0.8 * std::sin(5.0 * time + phase)),
                         x.y + wave - (upper ? 0.02 * std::min(time, 1.0) : 0.0), x.z);
   const double angle = 2.0 * std::sin(2.0 * time), c = std::cos(angle), s = std::sin(angle);
   return {c * bent.x - s * (bent.y + 0.5), s * bent.x + c * (bent.y + 0.5), bent.z + 0.3 * time};
@@ -100,19 +100,20 @@ TEST_CASE(
       rest.emplace_back(glm::vec3(model.rest_position[i]), static_cast<float>(model.vertex_cloth[i]));
     const gl::TextureBuffer rest_position(gl::Buffer(rest), GL_RGBA32F);
     constexpr std::uint32_t updates = 150;
-    std::uint32_t near = 0;
+    std::uint32_t near = 0, whole = 0;
     sim::SurfaceControl control;
     for (std::uint32_t update = 0; update < updates; ++update) {
       sim::State state = buffers.read();
       for (std::uint32_t i = 0; i < model.vertex_count(); ++i)
-        state.position[i] = moved(model.rest_position[i], model.vertex_cloth[i] == 1, 0.004 * update);
+        state.position[i] = moved(model.rest_position[i], model.vertex_cloth[i] == 1, 0.006 * update);
       buffers.write(state, model, motions);
       rest_position.bind(unit_rest_position);
       sim::Pace pace;
       sim::Work work = made->update(buffers);
       while (!work.done()) work.resume(pace);
       made->control().download(&control, sizeof control);
-      REQUIRE(control.overflow == 0);
+      if (control.overflow != 0) continue;  // until the lists are longer, nothing may move
+      ++whole;
       Pairs listed;
       for (const sim::SurfacePairs::Pair& pair : made->read_pairs())
         (pair.edges ? listed.edge_edge : listed.vertex_triangle).insert(in_order(pair.edges, pair.corners));
@@ -128,7 +129,8 @@ TEST_CASE(
       CHECK(missing == 0);
     }
     INFO("thickness " << thickness << ": " << control.rebuilds << " searches, " << near << " near");
-    CHECK(control.rebuilds < updates / 2);
+    CHECK(control.rebuilds < updates);  // else nothing is tested
     CHECK(near > 1000);
+    CHECK(whole > updates - 30);
   }
 }
