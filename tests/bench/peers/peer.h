@@ -1,0 +1,60 @@
+// One cloth of a scene of ours as another program needs it: masses and springs, with all that acts on them.
+#pragma once
+
+#include <array>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace clothlab::peers {
+
+using glm::dvec3;
+
+struct Spring {
+  int a = 0, b = 0;
+  bool bends = false;  ///< to a second neighbour
+};
+
+/// A sphere, or a plane if it has no radius.
+struct Collider {
+  double radius = 0.0, friction = 0.0;
+  dvec3 place{0.0};             ///< the sphere's center, or a point of the plane [m]
+  dvec3 normal{0.0, 1.0, 0.0};  ///< of the plane, of length 1
+};
+
+struct Scene {
+  std::vector<dvec3> vertices;  ///< at rest and at the start [m]
+  std::vector<std::array<int, 3>> triangles;
+  std::vector<Spring> springs;
+  std::vector<int> held, turned;                      ///< vertices that do not move, and those that turn
+  dvec3 axis{0.0}, center{0.0};                       ///< of the turn; the axis is of length 1
+  double turn = 0.0;                                  ///< [radians/s]
+  double mass = 0.0;                                  ///< of each vertex [kg]
+  double stiffness = 0.0, bend = 0.0, damping = 0.0;  ///< of the springs [N/m], [N/m], [N s/m]
+  double thickness = 0.0, friction = 0.0;             ///< of the cloth against itself [m]
+  std::vector<Collider> colliders;
+  dvec3 gravity{0.0};
+  double air_drag = 0.0, dt = 0.0;  ///< [1/s], [s]
+  int steps = 0, steps_a_sample = 1;
+};
+
+/// The scene of a file that tests/bench/peers.mjs wrote; throws what nlohmann::json throws.
+Scene load(const std::string& path);
+
+/// Where vertex `i` of `turned` is at `time` [m].
+dvec3 turned_at(const Scene& scene, int i, double time);
+
+/// A world of another program with the scene's cloth in it.
+class World {
+ public:
+  virtual ~World() = default;
+  /// Goes on by dt, until `time` is over; vertices that turn end where they are then.
+  virtual void step(double time) = 0;
+  virtual std::vector<dvec3> positions() const = 0;
+};
+
+std::unique_ptr<World> classic(const Scene& scene);
+std::unique_ptr<World> deformable(const Scene& scene);
+
+}  // namespace clothlab::peers
