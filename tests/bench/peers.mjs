@@ -14,7 +14,7 @@ import { cpus, loadavg, tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { parseArgs } from "node:util";
-import { document, peer, scenes } from "./peers/scenes.mjs";
+import { document, every, peer, scenes } from "./peers/scenes.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const program = process.env.CLOTHLAB ?? join(here, "../../build/release/clothlab");
@@ -23,15 +23,14 @@ const { values, positionals } = parseArgs({
     sides: { type: "string", default: "25" },
     scenes: { type: "string", default: Object.keys(scenes).join(",") },
     rounds: { type: "string", default: "3" },
-    method: { type: "string", default: "implicit_euler" },
-    iterations: { type: "string", default: "1" },
+    method: { type: "string", default: "symplectic_euler" },
+    iterations: { type: "string", default: "10" },
     out: { type: "string" },
   },
   allowPositionals: true,
 });
 const machine = positionals[0] ?? `${cpus().length}-cores`;
 const threads = process.env.LP_NUM_THREADS ?? "0";
-const every = 0.1; // [s]
 
 if (spawnSync("pkg-config", ["--exists", "bullet"]).status !== 0) {
   console.error("Bullet is not installed: apt-get install libbullet-dev");
@@ -84,8 +83,7 @@ function describe(name, side, place) {
   writeFileSync(written, JSON.stringify({ ...scene, name: "start" }));
   run(program, ["run", written, "--time", String(scene.solver.dt), "--every", "1", "--out", start]);
   const mesh = readMesh(start.replace(".obj", "-0000.obj"));
-  const { seconds } = scenes[name];
-  writeFileSync(written, JSON.stringify(peer(scene, mesh, seconds, Math.round(seconds / every))));
+  writeFileSync(written, JSON.stringify(peer(scene, mesh)));
   return written;
 }
 

@@ -4,10 +4,8 @@ namespace clothlab::peers {
 
 std::unique_ptr<btSoftBody> make_cloth(btSoftBodyWorldInfo& info, const Scene& scene) {
   std::vector<btVector3> places;
-  std::vector<btScalar> masses(scene.vertices.size(), static_cast<btScalar>(scene.mass));
+  const std::vector<btScalar> masses(scene.vertices.size(), 1);
   for (const dvec3& vertex : scene.vertices) places.push_back(to_bullet(vertex));
-  for (const auto* fixed : {&scene.held, &scene.turned})
-    for (const int i : *fixed) masses[static_cast<std::size_t>(i)] = 0;
   auto cloth =
       std::make_unique<btSoftBody>(&info, static_cast<int>(places.size()), places.data(), masses.data());
   cloth->getCollisionShape()->setMargin(static_cast<btScalar>(scene.thickness / 2));
@@ -19,12 +17,25 @@ std::unique_ptr<btSoftBody> make_cloth(btSoftBodyWorldInfo& info, const Scene& s
   return cloth;
 }
 
+void set_pinned_mass(btSoftBody& cloth, const Scene& scene, double of) {
+  for (const auto* pinned : {&scene.held, &scene.turned})
+    for (const int i : *pinned) cloth.setMass(i, static_cast<btScalar>(of));
+}
+
 void aim(btSoftBody& cloth, const Scene& scene, double time) {
+  for (const int i : scene.held) cloth.m_nodes[i].m_v = cloth.m_nodes[i].m_vn = btVector3(0, 0, 0);
   for (const int i : scene.turned) {
     btSoftBody::Node& node = cloth.m_nodes[i];
     node.m_v = node.m_vn =
         (to_bullet(turned_at(scene, i, time)) - node.m_x) / static_cast<btScalar>(scene.dt);
   }
+}
+
+void place(btSoftBody& cloth, const Scene& scene, double time) {
+  for (const int i : scene.held)
+    cloth.m_nodes[i].m_x = cloth.m_nodes[i].m_q = to_bullet(scene.vertices[static_cast<std::size_t>(i)]);
+  for (const int i : scene.turned)
+    cloth.m_nodes[i].m_x = cloth.m_nodes[i].m_q = to_bullet(turned_at(scene, i, time));
 }
 
 std::vector<dvec3> positions_of(const btSoftBody& cloth) {

@@ -16,12 +16,16 @@ inline btVector3 to_bullet(const dvec3& v) {
 /// wrong by a fifth of a millimetre at most.
 inline constexpr btScalar distance_spacing = 0.015f;
 
-/// Margins of half the thickness: two layers are kept the thickness apart. Held and turned vertices have mass
-/// 0.
+/// Margins of half the thickness: two layers are kept the thickness apart. All vertices are free.
 std::unique_ptr<btSoftBody> make_cloth(btSoftBodyWorldInfo& info, const Scene& scene);
 
-/// Sends the vertices that turn to where they are at `time`, which is a step ahead.
+/// Gives what is held, and what turns, the mass `of`; 0: no force moves it.
+void set_pinned_mass(btSoftBody& cloth, const Scene& scene, double of);
+
+/// Sends what is held, and what turns, to where it is at `time`, which is a step ahead.
 void aim(btSoftBody& cloth, const Scene& scene, double time);
+/// Puts it there, whatever contact did to it.
+void place(btSoftBody& cloth, const Scene& scene, double time);
 
 std::vector<dvec3> positions_of(const btSoftBody& cloth);
 

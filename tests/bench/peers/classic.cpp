@@ -26,7 +26,7 @@ namespace {
 
 constexpr int sweeps = 10;
 
-/// The share of its error that a sweep takes from a link of stiffness `k` [N/m].
+/// The share of its error that a sweep takes from a link of stiffness `k`, over a vertex's mass [1/s^2].
 double share(double k, double inverse_masses, double dt) {
   const double whole = inverse_masses / (inverse_masses + 1.0 / (k * dt * dt));
   return 1.0 - std::pow(1.0 - whole, 1.0 / sweeps);
@@ -59,14 +59,20 @@ class Classic : public World {
     info.m_gravity = to_bullet(scene.gravity);
     info.air_density = 0;  // drag is kDP here
     info.m_sparsesdf.setDefaultVoxelsz(distance_spacing);
+    info.m_sparsesdf.Reset();  // takes it over
     cloth_ = make_cloth(info, scene);
-    set_stiffness(*cloth_, scene);
     btSoftBody::Config& settings = cloth_->m_cfg;
     settings.piterations = sweeps;
     settings.collisions = btSoftBody::fCollision::SDF_RS | btSoftBody::fCollision::CL_SS;
+    settings.kKHR = 1;  // contact with what does not move is hard, as for the deformable cloth
     settings.kDP = static_cast<btScalar>(scene.air_drag * scene.dt);
     settings.kDF = static_cast<btScalar>(scene.friction);
+    // Bullet takes a mass of 1e18 for a pinned vertex of a cluster, and the cluster's inertia overflows a
+    // float.
+    set_pinned_mass(*cloth_, scene, 1000);
     cloth_->generateClusters(0);
+    set_pinned_mass(*cloth_, scene, 0);
+    set_stiffness(*cloth_, scene);
     world_.addSoftBody(cloth_.get());
     bodies_ = add_colliders(world_, scene, scene.friction);
   }
@@ -76,6 +82,7 @@ class Classic : public World {
     world_.stepSimulation(static_cast<btScalar>(scene_.dt), 0);
     btSoftColliders::CollideCL_SS self;
     self.ProcessSoftSoft(cloth_.get(), cloth_.get());
+    place(*cloth_, scene_, time);
   }
 
   std::vector<dvec3> positions() const override { return positions_of(*cloth_); }

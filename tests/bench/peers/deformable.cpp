@@ -1,10 +1,11 @@
-// Bullet's newer soft body, "deformable": masses and springs by implicit Euler with one Newton step, as its
-// Newton's method is set by default, and contacts between faces at the margin and by continuous detection.
+// Bullet's newer soft body, "deformable": masses and springs, contacts at the margin by forces, and
+// continuous detection of vertices against faces.
 //
-// Its spring law is ours: stiffness, damping along the spring and the bending springs' own stiffness go over
-// unchanged. The explicit scheme, its default, is unstable at these steps. The stiffness of repulsion is that
-// of the springs; any above 2 N/m acts the same here, as Bullet limits the impulse. It may not fall asleep:
-// the others do not.
+// The elastic forces are explicit and damping is implicit, Bullet's default and what its own demonstration of
+// self-collision does; so is the projection of contacts. (Its implicit scheme for springs diverges as soon as
+// some are compressed, and with pinned vertices adds forces to the wrong ones.) The springs' law is ours:
+// stiffness, damping along the spring and the bending springs' own stiffness are the same. The stiffness
+// of repulsion is that of the springs. It may not fall asleep: the others do not.
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 #include <BulletSoftBody/btDeformableBodySolver.h>
 #include <BulletSoftBody/btDeformableMultiBodyConstraintSolver.h>
@@ -29,11 +30,14 @@ class Deformable : public World {
         world_(&dispatcher_, &broadphase_, &solver_, &configuration_, &soft_solver_) {
     solver_.setDeformableSolver(&soft_solver_);
     world_.setGravity(to_bullet(scene.gravity));
-    world_.setImplicit(true);
+    world_.setImplicit(false);
+    world_.setUseProjection(true);
     btSoftBodyWorldInfo& info = world_.getWorldInfo();
     info.m_gravity = to_bullet(scene.gravity);
     info.m_sparsesdf.setDefaultVoxelsz(distance_spacing);
+    info.m_sparsesdf.Reset();  // takes it over
     cloth_ = make_cloth(info, scene);
+    set_pinned_mass(*cloth_, scene, 0);
     using Collide = btSoftBody::fCollision;
     btSoftBody::Config& settings = cloth_->m_cfg;
     settings.collisions = Collide::SDF_RD | Collide::SDF_RDN | Collide::SDF_RDF | Collide::VF_DD;
@@ -53,6 +57,7 @@ class Deformable : public World {
   void step(double time) override {
     aim(*cloth_, scene_, time);
     world_.stepSimulation(static_cast<btScalar>(scene_.dt), 0);
+    place(*cloth_, scene_, time);
   }
 
   std::vector<dvec3> positions() const override { return positions_of(*cloth_); }

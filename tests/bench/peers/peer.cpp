@@ -47,10 +47,10 @@ Scene load(const std::string& path) {
     made.center = vector_of(spin.at("center"));
     made.turn = spin.at("degrees_per_second").get<double>() * std::numbers::pi / 180.0;
   }
-  made.mass = document.at("cloths").at(0).at("mass").at("per_vertex").get<double>();
-  made.stiffness = material.at("structural").get<double>();
-  made.bend = material.at("bend").get<double>();
-  made.damping = material.at("damping").get<double>();
+  const double mass = document.at("cloths").at(0).at("mass").at("per_vertex").get<double>();
+  made.stiffness = material.at("structural").get<double>() / mass;
+  made.bend = material.at("bend").get<double>() / mass;
+  made.damping = material.at("damping").get<double>() / mass;
   made.thickness = document.at("self_collision").at("thickness").get<double>();
   made.friction = document.at("self_collision").at("friction").get<double>();
   for (const json& collider : document.at("colliders")) made.colliders.push_back(collider_of(collider));

@@ -1,4 +1,4 @@
-// One cloth of a scene of ours as another program needs it: masses and springs, with all that acts on them.
+// One cloth of a scene of ours as another program needs it: springs, pins and all that acts on it.
 #pragma once
 
 #include <array>
@@ -27,12 +27,13 @@ struct Scene {
   std::vector<dvec3> vertices;  ///< at rest and at the start [m]
   std::vector<std::array<int, 3>> triangles;
   std::vector<Spring> springs;
-  std::vector<int> held, turned;                      ///< vertices that do not move, and those that turn
-  dvec3 axis{0.0}, center{0.0};                       ///< of the turn; the axis is of length 1
-  double turn = 0.0;                                  ///< [radians/s]
-  double mass = 0.0;                                  ///< of each vertex [kg]
-  double stiffness = 0.0, bend = 0.0, damping = 0.0;  ///< of the springs [N/m], [N/m], [N s/m]
-  double thickness = 0.0, friction = 0.0;             ///< of the cloth against itself [m]
+  std::vector<int> held, turned;  ///< vertices that do not move, and those that turn
+  dvec3 axis{0.0}, center{0.0};   ///< of the turn; the axis is of length 1
+  double turn = 0.0;              ///< [radians/s]
+  /// Of the springs, over the mass of a vertex [1/s^2], [1/s^2], [1/s]: a vertex weighs 1 for Bullet, whose
+  /// solver stops at a residual that does not know the unit. The motion is the same.
+  double stiffness = 0.0, bend = 0.0, damping = 0.0;
+  double thickness = 0.0, friction = 0.0;  ///< of the cloth against itself [m]
   std::vector<Collider> colliders;
   dvec3 gravity{0.0};
   double air_drag = 0.0, dt = 0.0;  ///< [1/s], [s]

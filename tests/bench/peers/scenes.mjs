@@ -6,14 +6,16 @@
 export const thickness = { surface: 0.005, points: (side) => (0.86 * width) / (side - 1) };
 const width = 0.5;
 const friction = 0.3;
-/** [s], of all programs. */
-const dt = 1 / 240;
+/** Time between two looks at the state [s]. */
+export const every = 0.1;
+/** [s], of all programs: an explicit method's, Bullet's too, is below 2 / sqrt(12 k / m). */
+const dt = (side) => every / Math.ceil((every * (side - 1)) / 0.024 - 1e-9);
 
 const cloth = (side, translate, rotate, pins = []) => ({
   mesh: { grid: { columns: side, rows: side, width, height: width } },
   transform: { translate, rotate },
-  mass: { per_vertex: (0.15 * width ** 2) / side ** 2 },
-  material: { model: "springs", structural: 100, shear: 100, bend: 2, damping: 0.005 },
+  mass: { per_vertex: (0.3 * width ** 2) / side ** 2 },
+  material: { model: "springs", structural: 25, shear: 25, bend: 0.5, damping: 0.005 * (24 / (side - 1)) ** 2 },
   pins,
 });
 const floor = { plane: { point: [0, 0, 0], normal: [0, 1, 0] }, friction };
@@ -61,11 +63,11 @@ export const document = (name, side, kind, method, iterations) => ({
   colliders: scenes[name].colliders,
   self_collision: { kind, thickness: kind === "points" ? thickness.points(side) : thickness.surface, friction },
   air_drag: 0.3,
-  solver: { method, dt, iterations, tolerance: 1e-4 },
+  solver: { method, dt: dt(side), iterations, tolerance: 1e-4 },
 });
 
 /** What Bullet is told beside the document: `mesh` as clothlab wrote it, the grid's springs, the pins' vertices. */
-export function peer(document, mesh, seconds, samples) {
+export function peer(document, mesh) {
   const { columns: side } = document.cloths[0].mesh.grid;
   const springs = [];
   const join = (column, row, right, down, bends) => {
@@ -92,6 +94,7 @@ export function peer(document, mesh, seconds, samples) {
     return pin ? Array.from({ length: side }, (_, column) => at * side + column) : [];
   };
   const [held, turned] = document.cloths[0].pins.map(row);
-  const steps = Math.round(seconds / document.solver.dt);
-  return { document, ...mesh, springs, held: held ?? [], turned: turned ?? [], steps, steps_a_sample: steps / samples };
+  const steps_a_sample = Math.round(every / document.solver.dt);
+  const steps = Math.round(scenes[document.name].seconds / every) * steps_a_sample;
+  return { document, ...mesh, springs, held: held ?? [], turned: turned ?? [], steps, steps_a_sample };
 }
