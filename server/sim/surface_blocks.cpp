@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 #include <numeric>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "server/sim/integrator.h"
 
@@ -37,24 +38,8 @@ void halve(std::span<std::uint32_t> triangles, const std::vector<model::dvec3>& 
   halve(triangles.subspan(half), middle, most, take);
 }
 
-/// Moves to the front three vertices that are far from each other, and from one line.
-void span_wide(std::vector<std::uint32_t>& vertices, const std::vector<model::dvec3>& x) {
-  const auto bring = [&](std::size_t place, const auto& measure) {
-    std::iter_swap(
-        vertices.begin() + static_cast<std::ptrdiff_t>(place),
-        std::max_element(vertices.begin() + static_cast<std::ptrdiff_t>(place), vertices.end(),
-                         [&](std::uint32_t a, std::uint32_t b) { return measure(a) < measure(b); }));
-  };
-  const auto from = [&](std::size_t place, std::uint32_t vertex) { return x[vertex] - x[vertices[place]]; };
-  bring(0, [&, first = x[vertices[0]]](std::uint32_t v) { return glm::distance(x[v], first); });
-  bring(1, [&](std::uint32_t v) { return glm::length(from(0, v)); });
-  bring(2, [&, along = from(0, vertices[1])](std::uint32_t v) {
-    return glm::length(glm::cross(along, from(0, v)));
-  });
-}
-
-}  // namespace
-
+/// The vertices of each block, each once. Blocks are compact at the start, and hold as many triangles as each
+/// other, more or less.
 std::vector<std::vector<std::uint32_t>> blocks_of_triangles(const model::Model& model) {
   std::vector<model::dvec3> middle;
   for (const auto& [a, b, c] : model.triangles)
@@ -71,10 +56,11 @@ std::vector<std::vector<std::uint32_t>> blocks_of_triangles(const model::Model& 
       vertices.insert(vertices.end(), model.triangles[triangle].begin(), model.triangles[triangle].end());
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    span_wide(vertices, model.start_position);
   });
   return blocks;
 }
+
+}  // namespace
 
 Result<SurfaceBlocks> SurfaceBlocks::create(const model::Model& model) {
   SurfaceBlocks made;

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "server/base/result.h"
 #include "server/gl/buffer.h"
@@ -30,9 +29,5 @@ class SurfaceBlocks {
   gl::Program motion_, pairs_;
   gl::TextureBuffer vertices_, boxes_;
 };
-
-/// The vertices of each block, each once, first three that span it well. Blocks are compact at the start, and
-/// hold as many triangles as each other, more or less.
-std::vector<std::vector<std::uint32_t>> blocks_of_triangles(const model::Model& model);
 
 }  // namespace clothlab::sim
