@@ -26,14 +26,14 @@ export function tellCrossings(title: string, error: RpcError, patch: Patch, host
   if (!crossings) return null;
   const { when, count, complete, pairs } = crossings;
   const many = `${count}${complete ? "" : " or more"} ${count === 1 ? "place" : "places"}`;
-  const subject = when === "start" ? "The cloth would start" : "The cloth is at present";
+  const subject = when === "start" ? "The scene would start with cloth" : "At present there is cloth";
   const list = pairs
     .slice(0, mostNamed)
     .map(({ edge, triangle }) => `edge ${named(edge)} × triangle ${named(triangle)}`);
   return notice("error", {
     title,
     lines: [
-      `${subject} through itself or another cloth, in ${many}. “Surface” keeps apart only what is apart.`,
+      `${subject} passing through cloth, in ${many}. “Surface” keeps apart only what is apart.`,
       ...list.map((pair, i) => (i === mostNamed - 1 && count > mostNamed ? `${pair}, …` : pair)),
     ],
     stays: true,

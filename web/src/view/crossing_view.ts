@@ -3,7 +3,7 @@ import { BufferGeometry, DoubleSide, Group, Mesh, MeshBasicMaterial, Vector3 } f
 import type { Crossings } from "../link/rpc";
 import type { Vec3 } from "../link/scene_types";
 
-const slender = 0.035; // half the width of a drawn edge over its length
+const slender = 0.018; // half the width of a drawn edge over its length
 const context = 0.12; // share of the scene's radius that the camera shows around the crossings
 
 const inFront = (color: number, opacity: number): MeshBasicMaterial =>
