@@ -12,9 +12,10 @@ namespace clothlab {
 /// In an error in a scene, `where` is a JSON Pointer, `what` the value found there (compact JSON), and
 /// `remedy` what is allowed there.
 struct Error {
-  std::string where;   ///< file, line, JSON Pointer, or subsystem
-  std::string what;    ///< what was found
-  std::string remedy;  ///< what is allowed, or what to do
+  std::string where;    ///< file, line, JSON Pointer, or subsystem
+  std::string what;     ///< what was found
+  std::string remedy;   ///< what is allowed, or what to do
+  std::string facts{};  ///< more of `what`, for programs: the members of a JSON object as text; empty: none
 
   /// "where: what; remedy" on one line, empty parts left out.
   std::string text() const;

@@ -17,7 +17,7 @@ std::string in_words(const Crossing& crossing, const Model& model, const scene::
 
 /// An error if the scene's kind of self-collision needs a start without crossings and it has some, in the
 /// positions as the GPU gets them: float32. It points at the kind, names the first pairs and their number,
-/// and says what helps.
+/// and says what helps. Its facts have more of the pairs, with their places.
 Status check_start(const Model& model, const scene::Scene& scene);
 
 /// The same of a running scene that is to get this kind, with its vertices at `position` [vertex_count] [m].

@@ -47,7 +47,9 @@ RpcError invalid_params(const std::string& path, const std::string& found, const
 }
 
 RpcError invalid_params(const Error& error) {
-  return invalid_params(error.where, error.what, error.remedy);
+  RpcError refused = invalid_params(error.where, error.what, error.remedy);
+  if (!error.facts.empty()) refused.data.update(json::parse(error.facts));
+  return refused;
 }
 
 RpcError rpc_error(const session::Refusal& refusal) {

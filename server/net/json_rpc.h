@@ -36,7 +36,8 @@ struct RpcError {
 
 /// Error -32602 with data {path, found, allowed}.
 RpcError invalid_params(const std::string& path, const std::string& found, const std::string& allowed);
-/// Error -32602 from a scene error, whose `where` is a JSON Pointer and becomes `path`.
+/// Error -32602 from a scene error, whose `where` is a JSON Pointer and becomes `path`; its facts join the
+/// data.
 RpcError invalid_params(const Error& error);
 /// The error for a session's refusal, with the code for the refusal's reason.
 RpcError rpc_error(const session::Refusal& refusal);

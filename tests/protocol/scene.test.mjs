@@ -248,6 +248,20 @@ test("a scene of surfaces that starts with crossings is refused, with the pairs;
     /^"surface", but the start has \d+ crossings: edge \d+-\d+ of \/cloths\/0 \("cotton"\) meets/,
   );
   assert.match(error.data.allowed, /^"points"/);
+  const { when, count, complete, pairs } = error.data.crossings;
+  assert.deepEqual([when, complete, pairs.length], ["start", true, Math.min(count, 64)]);
+  const { document } = await client.request("scene.get");
+  for (const { edge, triangle, place } of pairs) {
+    assert.deepEqual([edge.vertices.length, triangle.vertices.length], [edge.at.length, triangle.at.length]);
+    for (const { cloth, name } of [edge, triangle]) assert.equal(name, document.cloths[cloth].name);
+    // The place is on the edge: as far from its ends, together, as these are from each other.
+    const far = (a, b) => Math.hypot(...a.map((x, axis) => x - b[axis]));
+    const [p, q] = edge.at;
+    assert.ok(Math.abs(far(p, place) + far(place, q) - far(p, q)) < 1e-6, "within the rounding of floats near 1 m");
+  }
+  const [{ edge }] = pairs;
+  const words = `edge ${edge.vertices.join("-")} of /cloths/${edge.cloth} ("${edge.name}") meets triangle`;
+  assert.ok(error.data.found.includes(words), "the first pair is the one that the text names first");
   assert.equal((await client.request("scene.get")).revision, before);
   await client.request("scene.patch", { patch: { self_collision: { kind: "points" } } });
 });

@@ -4,6 +4,7 @@ import { button, element } from "./panel/dom";
 import type { SolverFacts } from "./panel/field";
 import { saferStep, type Stability } from "./panel/gauge";
 import { Hud, type Status } from "./panel/hud";
+import { tellCrossings } from "./panel/crossings";
 import { bindKeys } from "./panel/keys";
 import { Lab } from "./lab/drawer";
 import { Layout } from "./panel/layout";
@@ -53,6 +54,7 @@ export class Page {
   private toldOfDivergence = false;
   private diverged = false; // in the last status
   private fitNext = false; // the next frame is the first of another cloth
+  private closeCrossings = (): void => undefined; // takes a refusal for crossings away
   private mayEdit = true; // false for a viewer, who may only watch
 
   constructor() {
@@ -98,6 +100,7 @@ export class Page {
     takeDroppedMeshes({
       request: (method, params) => this.connection.request(method, params),
       mayEdit: () => this.mayEdit,
+      refused: (title, error, patch) => this.refused(title, error, patch),
       hung: () => {
         this.fitNext = true;
       },
@@ -160,8 +163,8 @@ export class Page {
       changed: (document, whole) => this.sceneChanged(document, whole),
       applied: showApplied,
       wayBack: (operations) => this.slow.changed(operations),
-      rejected: (error) => {
-        if (error instanceof RpcError) noticeError("Not applied", error);
+      rejected: (error, operations) => {
+        if (error instanceof RpcError) this.refused("Not applied", error, operations);
         this.panel.snapBack();
       },
     });
@@ -235,6 +238,7 @@ export class Page {
     hook.document = document;
     this.slow.dt = document.solver.dt;
     this.moved = [];
+    if (whole) this.closeCrossings();
     const newScene = whole && document.name !== this.sceneName;
     this.sceneName = document.name;
     element("scene-name", HTMLElement).textContent = document.name;
@@ -271,6 +275,17 @@ export class Page {
       reason: "it stopped at its last good state before this page was opened",
       ...(dt > 0 ? { remedy: { text: `set dt to ${dt} s, below its limit`, patch: { solver: { dt } } } } : {}),
     });
+  }
+
+  /// Tells why the server refused a patch. For surfaces that cross there are a picture and a way out.
+  private refused(title: string, error: RpcError, patch: Patch): void {
+    const close = tellCrossings(title, error, patch, {
+      show: (crossings) => this.stage.showCrossings(crossings),
+      hide: () => this.stage.hideCrossings(),
+      send: (instead) => this.request("scene.patch", { patch: instead }),
+    });
+    if (close) this.closeCrossings = close;
+    else noticeError(title, error);
   }
 
   // A request that is lost with its connection needs no notice: the banner reports the loss.

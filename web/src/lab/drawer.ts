@@ -159,7 +159,7 @@ export class Lab {
     notice("info", {
       title: `Applied: ${what}`,
       lines: was === "" ? [] : [`Before: ${was}.`],
-      action: { label: "Undo", run: () => void this.send(undo) },
+      actions: [{ label: "Undo", run: () => void this.send(undo) }],
     });
   }
 

@@ -1,11 +1,27 @@
 // JSON-RPC 2.0 over a WebSocket: a request returns a promise, a notification goes to a handler.
 import { BadMessage } from "./protocol";
+import type { Vec3 } from "./scene_types";
+
+/// An edge or a triangle of a cloth.
+export interface CrossingPart {
+  name: string; ///< the cloth's
+  vertices: number[]; ///< as the document numbers them
+  at: Vec3[]; ///< [m]
+}
+/// Edges that meet triangles, which contact between surfaces cannot part.
+export interface Crossings {
+  when: "start" | "present";
+  count: number;
+  complete: boolean;
+  pairs: { edge: CrossingPart; triangle: CrossingPart; place: Vec3 }[]; ///< the first of them
+}
 
 export interface RpcErrorData {
   path?: string;
   found?: string;
   allowed?: string;
   revision?: number;
+  crossings?: Crossings;
 }
 
 export const errorNotAllowed = -32001;

@@ -13,7 +13,7 @@ export interface StoreEvents {
   changed(document: SceneDocument, whole: boolean): void;
   applied(depth: string): void;
   wayBack(operations: Operation[]): void; ///< operations that undo the last change that this page made
-  rejected(error: Error): void;
+  rejected(error: Error, operations: Operation[]): void;
 }
 
 export class SceneStore {
@@ -118,7 +118,7 @@ export class SceneStore {
       this.events.wayBack([...this.before.values()].reverse());
     } catch (error) {
       this.inFlight = null;
-      this.events.rejected(error as Error);
+      this.events.rejected(error as Error, operations);
     }
     this.schedule();
   }

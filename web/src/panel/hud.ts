@@ -13,6 +13,7 @@ export interface Status {
   max_strain?: number;
   max_speed?: number;
   contacts?: number;
+  surface?: { pairs: number; cuts: number; searches: number } | null;
   asleep?: boolean;
   diverged?: boolean;
   stability?: Stability | null;
@@ -30,6 +31,8 @@ const rows = [
   ["latency", "Latency", "round trip of a message to the server"],
   ["rate", "Data", "everything received, a second"],
   ["strain", "Strain", "largest stretch of any spring"],
+  ["contacts", "Contacts", "vertices that touch something"],
+  ["surface", "Surface", "pairs of edges and triangles that can meet, and steps of vertices that were cut short"],
   ["vertices", "Vertices", "vertices of all cloths"],
   ["viewers", "Viewers", "pages and scripts that watch this session"],
   ["renderer", "Server", "what the server computes on"],
@@ -65,6 +68,7 @@ export class Hud {
       list.append(row);
       this.cells.set(key, value);
     }
+    this.showSurface(null);
   }
 
   set(row: Row, text: string): void {
@@ -108,8 +112,17 @@ export class Hud {
       element("headline-rtf", HTMLElement).textContent = status.asleep ? "at rest" : text;
     }
     if (status.max_strain !== undefined) this.set("strain", `${(100 * status.max_strain).toFixed(1)} %`);
+    if (status.contacts !== undefined) this.set("contacts", String(status.contacts));
+    if (status.surface !== undefined) this.showSurface(status.surface);
     if (status.passes) this.showPasses(status.passes, status.terms ?? [], status.skipped ?? []);
     if (status.pass_seconds) this.passSeconds = status.pass_seconds;
+  }
+
+  // Only contact between surfaces has these counts.
+  private showSurface(counts: Status["surface"]): void {
+    const row = this.cells.get("surface")?.parentElement;
+    if (row) row.hidden = !counts;
+    if (counts) this.set("surface", `${counts.pairs} pairs, ${counts.cuts} cut`);
   }
 
   /// Turns the counts since the last call into rates. Call it about once a second.

@@ -2,10 +2,12 @@
 import { content, hung, type Uploaded } from "../link/mesh_upload";
 import { RpcError } from "../link/rpc";
 import { notice, noticeError } from "./notices";
+import type { Patch } from "../link/scene_types";
 
 interface Host {
   request<T>(method: string, params: Record<string, unknown>): Promise<T>;
   mayEdit(): boolean;
+  refused(title: string, error: RpcError, patch: Patch): void;
   hung(): void; ///< the scene has another cloth
 }
 
@@ -26,14 +28,19 @@ async function take(file: File, host: Host): Promise<void> {
       `${file.name} is too large`,
       "An upload may have 8 MiB. Larger files: start the server with --asset-root, and name the file in the scene.",
     );
+  let patch: Patch | null = null;
   try {
     const mesh = await host.request<Uploaded>("mesh.upload", parameters);
-    await host.request("scene.patch", { patch: hung(mesh) });
+    patch = hung(mesh);
+    await host.request("scene.patch", { patch });
     host.hung();
     const triangles = `${mesh.vertices} vertices, ${mesh.triangles} triangles`;
     notice("info", { title: `${mesh.name} hangs`, lines: [`${triangles}. Its highest part is held.`] });
   } catch (error) {
-    if (error instanceof RpcError) noticeError(`${file.name} was refused`, error);
+    if (!(error instanceof RpcError)) return;
+    const title = `${file.name} was refused`;
+    if (patch) host.refused(title, error, patch);
+    else noticeError(title, error);
   }
 }
 

@@ -6,6 +6,7 @@ import type { Patch } from "../link/scene_types";
 export type Level = "info" | "warning" | "error";
 export interface Action {
   label: string;
+  keeps?: boolean; ///< the notice stays when this is done
   run(): void;
 }
 
@@ -16,11 +17,13 @@ const lifetime: Record<Level, number> = { info: 5000, warning: 9000, error: 1400
 interface Content {
   title: string;
   lines?: string[];
-  action?: Action | undefined;
+  actions?: Action[];
   stays?: boolean;
+  closed?(): void; ///< the notice has gone, in whatever way
 }
 
-export function notice(level: Level, content: Content): void {
+/// Returns a function that removes the notice.
+export function notice(level: Level, content: Content): () => void {
   const holder = element("notices", HTMLElement);
   const box = document.createElement("div");
   box.className = `notice ${level}`;
@@ -37,17 +40,27 @@ export function notice(level: Level, content: Content): void {
   close.className = "close";
   close.setAttribute("aria-label", "Dismiss");
   close.textContent = "×";
-  close.onclick = () => box.remove();
-  if (content.action) box.append(actionButton(content.action, box));
+  close.onclick = () => remove(box);
+  for (const action of content.actions ?? []) box.append(actionButton(action, box));
   box.append(close);
+  if (content.closed) closers.set(box, content.closed);
   // The same notice again replaces the old one.
   for (const old of [...holder.children])
-    if (old.querySelector("strong")?.textContent === title.textContent) old.remove();
+    if (old.querySelector("strong")?.textContent === title.textContent) remove(old);
   holder.append(box);
   box.dataset.stays = String(content.stays === true);
   while (holder.children.length > shownAtOnce())
-    (holder.querySelector('[data-stays="false"]') ?? holder.firstElementChild)?.remove();
-  if (!content.stays) setTimeout(() => box.remove(), lifetime[level]);
+    remove((holder.querySelector('[data-stays="false"]') ?? holder.firstElementChild) as Element);
+  if (!content.stays) setTimeout(() => remove(box), lifetime[level]);
+  return () => remove(box);
+}
+
+const closers = new WeakMap<Element, () => void>();
+
+function remove(box: Element): void {
+  box.remove();
+  closers.get(box)?.();
+  closers.delete(box);
 }
 
 // leaves dt as it is
@@ -59,7 +72,7 @@ function actionButton(action: Action, box: HTMLElement): HTMLButtonElement {
   run.className = "action";
   run.textContent = action.label;
   run.onclick = () => {
-    box.remove();
+    if (!action.keeps) remove(box);
     action.run();
   };
   return run;
@@ -91,7 +104,7 @@ const blewUp = "The simulation blew up";
 /// Removes the notice of a blow-up: the simulation runs again.
 export function clearDiverged(): void {
   for (const box of element("notices", HTMLElement).querySelectorAll(".notice")) {
-    if (box.querySelector("strong")?.textContent === blewUp) box.remove();
+    if (box.querySelector("strong")?.textContent === blewUp) remove(box);
   }
 }
 
@@ -104,7 +117,7 @@ export function showDiverged({ reason, remedy }: Diverged, apply: (patch: Patch)
     title: blewUp,
     lines: [sentence(reason), ...(remedy ? [sentence(`Remedy: ${remedy.text}`)] : [])],
     stays: true,
-    action: patch ? { label: "Apply the remedy", run: () => run(patch) } : undefined,
+    actions: patch ? [{ label: "Apply the remedy", run: () => run(patch) }] : [],
   });
 }
 

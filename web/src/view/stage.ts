@@ -16,9 +16,11 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { ClothView } from "./cloth_view";
 import { ColliderView } from "./collider_view";
 import { CameraKeeper } from "./camera_keeper";
+import { CrossingView } from "./crossing_view";
 import type { FreeArea } from "./framing";
 import { GroundShadow } from "./ground_shadow";
 import type { ShownFrame, Topology } from "../link/protocol";
+import type { Crossings } from "../link/rpc";
 import { Quality } from "./quality";
 import { framePoints, scenePoints } from "./reach";
 import type { SceneDocument } from "../link/scene_types";
@@ -49,6 +51,8 @@ export class Stage {
   private readonly light = new DirectionalLight(0xfff4e6, 2.25);
   private readonly sky = new HemisphereLight(0xf2f6ff, 0x8c8378, 1.25);
   private readonly colliders: ColliderView;
+  private readonly crossings = new CrossingView();
+  private fitAfter = false; // the camera looks at crossings, and was fitted to the scene before
   private readonly groundShadow: GroundShadow;
   private readonly quality: Quality;
   private readonly pixelRatio = { value: 1 };
@@ -87,13 +91,14 @@ export class Stage {
     this.light.castShadow = true;
     this.light.shadow.radius = 3;
     this.scene.add(this.light, this.light.target, this.sky, this.colliders.object, this.cloth.object);
+    this.scene.add(this.crossings.object);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = !matchMedia("(prefers-reduced-motion: reduce)").matches;
     this.controls.dampingFactor = 0.12;
     this.controls.maxPolarAngle = Math.PI * 0.56;
     this.controls.addEventListener("change", () => this.invalidate());
     this.controls.addEventListener("start", () => {
-      this.keeper.fitted = false;
+      this.keeper.fitted = this.fitAfter = false;
     });
     canvas.addEventListener("webglcontextlost", () => this.onLost());
     canvas.addEventListener("webglcontextrestored", () => this.invalidate());
@@ -188,6 +193,25 @@ export class Stage {
     this.controls.minDistance = this.camera.near * 4;
     this.controls.maxDistance = this.camera.far / 6;
     this.controls.update();
+    this.invalidate();
+  }
+
+  /// Draws crossings in front of the cloth, and looks at them until the user moves the camera.
+  showCrossings(crossings: Crossings): void {
+    this.fitAfter ||= this.keeper.fitted;
+    this.orbit(this.keeper.fit(this.crossings.show(crossings, this.radius)));
+    this.keeper.fitted = false;
+    this.invalidate();
+  }
+
+  get showsCrossings(): boolean {
+    return this.crossings.object.visible;
+  }
+
+  hideCrossings(): void {
+    if (!this.crossings.hide()) return;
+    if (this.fitAfter) this.fit();
+    this.fitAfter = false;
     this.invalidate();
   }
 

@@ -1,0 +1,124 @@
+import assert from "node:assert/strict";
+import { browserTest, eventually, screenshots, withServer } from "./browser.mjs";
+
+const { both } = withServer();
+
+const grid = (columns) => ({ grid: { columns, rows: columns, width: 0.5, height: 0.5 } });
+const material = { fabric: "cotton" };
+/// A sheet, and one that stands through its middle.
+const crossing = {
+  version: 1,
+  name: "crossing",
+  cloths: [
+    { name: "lying", mesh: grid(9), material, transform: { translate: [0, 0.4, 0] }, pins: [{ at: "edge:row:0" }] },
+    {
+      name: "standing",
+      mesh: grid(8),
+      material,
+      color: "#3b6ea5",
+      transform: { translate: [0.02, 0.6, 0.24], rotate: [90, 0, 0] },
+      pins: [{ at: "edge:row:0" }],
+    },
+  ],
+  self_collision: { thickness: 0.01, friction: 0.2, kind: "points" },
+  solver: { method: "implicit_euler", dt: 0.005 },
+};
+
+const refusal = (page) => page.locator("#notices .notice", { hasText: "Not applied" });
+const shown = (page) => page.evaluate(() => window.clothlab.stage.showsCrossings);
+const eye = (page) => page.evaluate(() => window.clothlab.stage.controls.object.position.toArray());
+
+/// A page whose user has chosen contact between surfaces for a cloth that passes through another one.
+async function refusedPage(session, options) {
+  const here = await both(session, options);
+  await here.client.request("sim.pause");
+  await here.client.request("scene.load", { scene: crossing });
+  const { page } = here.viewer;
+  await here.viewer.until(() => window.clothlab.document?.name === "crossing" && window.clothlab.simTime === 0);
+  if (options?.width < 700) await page.getByRole("button", { name: "Parameters" }).click();
+  await page.getByRole("combobox", { name: "between" }).selectOption("surface");
+  await refusal(page).waitFor();
+  if (options?.width < 700) await page.getByRole("button", { name: "Parameters" }).click();
+  return here;
+}
+
+for (const [width, height] of [
+  [1280, 800],
+  [360, 740],
+]) {
+  browserTest(
+    `at ${width}x${height} a start with crossings is told, shown on request, and fits the window`,
+    async () => {
+      const { viewer, client } = await refusedPage(`crossings-${width}`, { width, height, sharp: true });
+      const { page } = viewer;
+      assert.match(await refusal(page).textContent(), /edge \d+-\d+ of (lying|standing) × triangle \d+-\d+-\d+ of/);
+      assert.equal(await shown(page), false);
+      const before = await eye(page);
+      await page.waitForTimeout(600);
+      await page.screenshot({ path: `${screenshots}crossings-${width}-told.png` });
+      await refusal(page).getByRole("button", { name: "Show me" }).focus();
+      await page.keyboard.press("Enter");
+      await eventually("the crossings", () => shown(page), Boolean);
+      assert.notDeepEqual(await eye(page), before, "the camera went there");
+      await page.waitForTimeout(900);
+      await page.screenshot({ path: `${screenshots}crossings-${width}-shown.png` });
+      const box = await refusal(page).boundingBox();
+      assert.ok(box.x >= 0 && box.x + box.width <= width && box.y >= 0 && box.y + box.height <= height);
+      await refusal(page).getByRole("button", { name: "Dismiss" }).press("Enter");
+      await eventually(
+        "nothing shown",
+        () => shown(page),
+        (is) => !is,
+      );
+      await client.close();
+    },
+  );
+}
+
+browserTest("a loaded scene takes crossings and their notice away", async () => {
+  const { viewer, client } = await refusedPage("crossings-load");
+  const { page } = viewer;
+  await refusal(page).getByRole("button", { name: "Show me" }).click();
+  await eventually("the crossings", () => shown(page), Boolean);
+  await client.request("scene.load", { preset: "seed" });
+  await eventually(
+    "nothing shown",
+    () => shown(page),
+    (is) => !is,
+  );
+  assert.equal(await refusal(page).count(), 0);
+  await client.close();
+});
+
+browserTest("a patch refused for crossings is applied with points instead, by one button", async () => {
+  const { viewer, client, scene } = await both("crossings-points");
+  const { page } = viewer;
+  // Surfaces without crossings; a mesh that passes through itself is then dropped.
+  await client.request("scene.patch", { patch: { self_collision: { kind: "surface" } } });
+  await eventually(
+    "the kind on the page",
+    () => viewer.read("document"),
+    (now) => now.self_collision.kind === "surface",
+  );
+  await page.evaluate(() => {
+    const text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.2 0.2 -0.5\nv 0.3 0.2 0.5\nv 0.2 0.3 0.5\nf 1 2 3\nf 4 5 6\n";
+    const dataTransfer = new DataTransfer();
+    dataTransfer.items.add(new File([text], "crossed.obj"));
+    document.body.dispatchEvent(new DragEvent("drop", { dataTransfer, bubbles: true, cancelable: true }));
+  });
+  const refused = page.locator("#notices .notice", { hasText: "crossed.obj was refused" });
+  await refused.getByRole("button", { name: "Use points instead" }).press("Enter");
+  const applied = await eventually("the patch", scene, (now) => now.cloths[0].mesh.obj === "crossed.obj");
+  assert.equal(applied.self_collision.kind, "points");
+  assert.equal(await refused.count(), 0);
+  await client.close();
+});
+
+browserTest("the figures have the counts of contact between surfaces while there are any", async () => {
+  const { viewer, client } = await both("crossings-figures");
+  const figure = viewer.page.locator("#stats > div", { hasText: "Surface" });
+  assert.equal(await figure.isVisible(), false);
+  await client.request("scene.patch", { patch: { self_collision: { kind: "surface" } } });
+  await figure.filter({ hasText: /\d+ pairs, \d+ cut/ }).waitFor();
+  await client.close();
+});
