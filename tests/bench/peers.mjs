@@ -5,7 +5,8 @@
 // All four get the same mesh, masses, springs, pins, bodies and time step (peers/scenes.mjs); what Bullet's settings
 // are, and why, is at the top of peers/classic.cpp and peers/deformable.cpp. The four run one after the other in every
 // round, so that a noisy machine disturbs all alike; ratios are those of a round. Bullet uses one core, and so may
-// clothlab: LP_NUM_THREADS=0, unless the environment sets it. Time is that of stepping alone.
+// clothlab: LP_NUM_THREADS=0, unless the environment sets it. Time is that of stepping alone. With 64x64 vertices a
+// round of a scene takes a quarter of an hour and more, most of it Bullet's.
 // Crossings are counted in the state at every tenth of a second, exactly, in double precision, by the search that
 // `clothlab run --verify` uses; of clothlab's own runs twice, by `--verify` and from the meshes it wrote.
 import { execFileSync, spawnSync } from "node:child_process";
@@ -124,13 +125,15 @@ function measure(name, side) {
       mkdirSync(frames);
       const { ns, renderer: drawn, ...found } = programs[result.program](name, side, scene, frames);
       renderer = drawn ?? renderer;
+      result.found ??= JSON.stringify(found);
+      if (result.found !== JSON.stringify(found)) throw new Error(`${result.program}: another result in each round`);
       Object.assign(result, found);
       result.ns.push(ns);
       rmSync(frames, { recursive: true });
       console.error(`${name} ${side}x${side}, round ${round}, ${result.program}: ${Math.round(ns)} ns`);
     }
   const surface = results.find(({ program: of }) => of === "clothlab surface");
-  return results.map(({ ns, ...rest }) => ({
+  return results.map(({ ns, found: _found, ...rest }) => ({
     ...rest,
     median_ns: median(ns),
     min_ns: Math.min(...ns),

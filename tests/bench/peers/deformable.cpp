@@ -5,13 +5,16 @@
 // self-collision does; so is the projection of contacts. (Its implicit scheme for springs diverges as soon as
 // some are compressed, and with pinned vertices adds forces to the wrong ones.) The springs' law is ours:
 // stiffness, damping along the spring and the bending springs' own stiffness are the same. The stiffness
-// of repulsion is that of the springs. It may not fall asleep: the others do not.
+// of repulsion is that of the springs. Faces meet bodies where there is a ball, beside vertices: without that
+// the drape is stretched by 28 % at its end, not 7 %. With it, where a floor needs vertices alone, the fold
+// is pressed 12 cm into the floor. It may not fall asleep: the others do not.
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 #include <BulletSoftBody/btDeformableBodySolver.h>
 #include <BulletSoftBody/btDeformableMultiBodyConstraintSolver.h>
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/bench/peers/bodies.h"
@@ -40,7 +43,10 @@ class Deformable : public World {
     set_pinned_mass(*cloth_, scene, 0);
     using Collide = btSoftBody::fCollision;
     btSoftBody::Config& settings = cloth_->m_cfg;
-    settings.collisions = Collide::SDF_RD | Collide::SDF_RDN | Collide::SDF_RDF | Collide::VF_DD;
+    settings.collisions = Collide::SDF_RD | Collide::SDF_RDN | Collide::VF_DD;
+    const bool on_ball = std::any_of(scene.colliders.begin(), scene.colliders.end(),
+                                     [](const Collider& collider) { return collider.radius > 0.0; });
+    if (on_ball) settings.collisions |= Collide::SDF_RDF;
     settings.kKHR = settings.kCHR = 1;
     settings.drag = static_cast<btScalar>(scene.air_drag * scene.dt);
     const double friction = std::sqrt(scene.friction);  // Bullet multiplies it by itself
