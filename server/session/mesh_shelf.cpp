@@ -114,7 +114,7 @@ std::vector<Error> MeshShelf::restore() {
         at->is_regular_file(failure) && at->file_size(failure) <= max_upload_bytes + 1024)
       files.emplace_back(at->last_write_time(failure), at->path());
   std::sort(files.begin(), files.end());  // the oldest first, as they were uploaded
-  if (files.size() > max_meshes) files.resize(max_meshes);
+  std::size_t restored = 0;               // others' files, whose number is not ours, must push out no mesh
   for (const auto& [time, file] : files) {
     const Result<std::string> bytes = read_file(file);
     const std::size_t end =
@@ -123,8 +123,10 @@ std::vector<Error> MeshShelf::restore() {
       errors.push_back({file.string(), "is no uploaded mesh", "move it away"});
       continue;
     }
+    if (restored == max_meshes) continue;
     const std::string name = bytes->substr(mesh_title.size(), end - mesh_title.size());
     Result<SharedItem> item = read(name, bytes->substr(end + 1));
+    restored += item ? 1 : 0;
     if (item)
       exchange(name, *item);
     else
