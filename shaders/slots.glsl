@@ -115,6 +115,7 @@ const int slot_near_pairs = 3;          // candidates, contacts
 const int slot_contact_sums = 4;        // contacts, forces, limit; forces, apply, begin, limit, move
 const int slot_step_limits = 5;         // limit, move; the same
 const int slot_step_target = 6;         // begin
+const int slot_chosen_pairs = 7;        // contacts, limit; forces, limit
 
 // The strain limit's: strain_limit/NAME.comp.
 const int unit_group_excess = 10;        // sweep; the next sweep

@@ -94,11 +94,11 @@ void SurfaceContact::keep_apart(StateBuffers& state) {
   };
   const std::size_t near = counts + offsetof(StepCounts, near_groups),
                     vertices = counts + offsetof(StepCounts, vertex_groups),
-                    cut = counts + offsetof(StepCounts, cut_groups),
+                    touching = counts + offsetof(StepCounts, touching_groups),
+                    meeting = counts + offsetof(StepCounts, meeting_groups),
                     cut_vertices = counts + offsetof(StepCounts, cut_vertices);
   pairs_.bind();
-  pairs_.set_limits(contacts_);
-  pairs_.set_limits(begin_);
+  for (const gl::Program* program : {&contacts_, &begin_, &limit_}) pairs_.set_limits(*program);
   state.position().bind(unit_position);
   state.velocity().bind(unit_velocity);
   (keeps_start_ ? start_ : state.previous_position()).bind(unit_step_start);
@@ -111,7 +111,7 @@ void SurfaceContact::keep_apart(StateBuffers& state) {
 
   run(contacts_, offsetof(SurfaceControl, pair_groups));
   for (int pass = 0; pass < push_passes_; ++pass) {
-    run(forces_, near);
+    run(forces_, touching);
     run(apply_, vertices);
   }
   begin_.use();
@@ -121,11 +121,11 @@ void SurfaceContact::keep_apart(StateBuffers& state) {
   for (int pass = 0; pass < filter_passes; ++pass) {
     limit_.set("again", pass);
     limit_.set("impulses", 0);
-    run(limit_, pass == 0 ? near : cut);
+    run(limit_, pass == 0 ? near : meeting);
     const bool last = pass == filter_passes - 1;
     if (last) {
       limit_.set("impulses", 1);
-      run(limit_, cut);
+      run(limit_, meeting);
     }
     move_.set("last", last ? 1 : 0);
     run(move_, pass == 0 ? vertices : cut_vertices);

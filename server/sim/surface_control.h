@@ -12,9 +12,9 @@ using DispatchGroups = std::array<std::uint32_t, 3>;
 
 /// Of a step; steps take turns with two of them.
 struct StepCounts {
-  DispatchGroups near_groups{0, 1, 1}, vertex_groups{0, 1, 1}, cut_groups{0, 1, 1}, cut_vertices{0, 1, 1};
-  std::uint32_t near = 0, cuts = 0;
-  std::array<std::uint32_t, 2> unused{};
+  DispatchGroups near_groups{0, 1, 1}, vertex_groups{0, 1, 1}, touching_groups{0, 1, 1},
+      meeting_groups{0, 1, 1}, cut_vertices{0, 1, 1};
+  std::uint32_t near = 0, touching = 0, meeting = 0, cuts = 0, unused = 0;
 };
 
 struct SurfaceControl {

@@ -101,6 +101,7 @@ void SurfacePairs::make_lists(std::uint32_t triangle_pairs, std::uint32_t pairs)
   triangle_pairs_ = {gl::Buffer(std::size_t{triangle_pair_capacity_} * 2 * sizeof(std::uint32_t)), GL_RG32UI};
   pairs_ = {gl::Buffer(std::size_t{pair_capacity_} * 4 * sizeof(std::uint32_t)), GL_RGBA32UI};
   near_pairs_ = {gl::Buffer(std::size_t{pair_capacity_} * 12 * sizeof(std::uint32_t)), GL_RGBA32UI};
+  chosen_pairs_ = gl::Buffer(std::size_t{pair_capacity_} * 2 * sizeof(std::uint32_t));
   for (const gl::Program* program : {&triangle_pairs_program_, &candidates_, &pairs_program_, &finish_}) {
     glProgramUniform1ui(program->id(), program->location("triangle_pair_capacity"), triangle_pair_capacity_);
     glProgramUniform1ui(program->id(), program->location("pair_capacity"), pair_capacity_);
@@ -228,6 +229,7 @@ void SurfacePairs::bind() const {
   pairs_.bind(unit_surface_pairs);
   near_pairs_.bind(unit_near_pairs);
   near_pairs_.buffer.bind_storage(slot_near_pairs);
+  chosen_pairs_.bind_storage(slot_chosen_pairs);
 }
 
 void SurfacePairs::set_limits(const gl::Program& program) const {

@@ -59,7 +59,7 @@ class SurfacePairs {
   std::uint64_t updates_ = 0;        ///< calls of `update` since `invalidate`
   gl::Program boxes_, cells_program_, triangle_pairs_program_, candidates_, pairs_program_, finish_;
   SurfaceBlocks blocks_;
-  gl::Buffer control_;
+  gl::Buffer control_, chosen_pairs_;
   gl::ReadbackRing sizes_ring_;
   gl::TextureBuffer triangles_, rest_boxes_, triangle_boxes_, cells_, chains_, triangle_pairs_, pairs_,
       near_pairs_;

@@ -11,8 +11,8 @@ layout(std430, binding = slot_step_target) writeonly buffer Target { vec4 target
 void prepare_next_step() {
   int next = 1 - turn;
   step_counts[next].near_groups = step_counts[next].vertex_groups = 0u;
-  step_counts[next].cut_groups = step_counts[next].cut_vertices = 0u;
-  step_counts[next].near = step_counts[next].cuts = 0u;
+  step_counts[next].touching_groups = step_counts[next].meeting_groups = step_counts[next].cut_vertices = 0u;
+  step_counts[next].near = step_counts[next].touching = step_counts[next].meeting = step_counts[next].cuts = 0u;
 }
 
 void main() {

@@ -6,6 +6,7 @@ READ_VEC4(step_start, unit_step_start);
 READ_UVEC4(pair_list, unit_surface_pairs);
 layout(std430, binding = slot_near_pairs) writeonly buffer NearPairs { uvec4 near_list[]; };
 layout(std430, binding = slot_contact_sums) buffer Sums { int sums[]; };
+layout(std430, binding = slot_chosen_pairs) writeonly buffer Chosen { uint touching_pairs[]; };
 
 /// True if the nearest points are within the triangle, or within both edges. At a rim another pair is nearer, or will
 /// be: slanting pushes between flat layers would brake their sliding.
@@ -29,15 +30,18 @@ void main() {
     uint slot = atomicAdd(step_counts[turn].near, 1u);
     if (slot % uint(GROUP_SIZE) == 0u) atomicMax(step_counts[turn].near_groups, slot / uint(GROUP_SIZE) + 1u);
     step_counts[turn].vertex_groups = uint((vertex_count + GROUP_SIZE - 1) / GROUP_SIZE);
+    near_list[3u * slot] = pair;
     near_list[3u * slot + 1u] = floatBitsToUint(vec4(apart.n, apart.gap));
     near_list[3u * slot + 2u] =
         floatBitsToUint(vec4(apart.weight[0], apart.weight[1], apart.weight[2], apart.weight[3]));
     vec3 moved = vec3(0.0);
     for (int k = 0; k < 4; ++k) moved += apart.weight[k] * (FETCH(position, corner[k]).xyz - start[k]);
     if ((pair.y & no_force_bit) == 0u && within_both(apart) && apart.gap + dot(moved, apart.n) < thickness) {
-      pair.z |= touching_bit;
+      uint place = atomicAdd(step_counts[turn].touching, 1u);
+      if (place % uint(GROUP_SIZE) == 0u)
+        atomicMax(step_counts[turn].touching_groups, place / uint(GROUP_SIZE) + 1u);
+      touching_pairs[place] = slot;
       for (int k = 0; k < 4; ++k) atomicAdd(sums[8 * int(corner[k]) + 3], 1);
     }
-    near_list[3u * slot] = pair;
   }
 }

@@ -1,4 +1,4 @@
-// Contact, 2 of 3: pushes of the near pairs, on the places and velocities that the step, or the pass before, has made.
+// Contact, 2 of 3: pushes of the near pairs that touch, on the places and velocities that the step, or the pass before, has made.
 // Each corner takes its share by inverse mass and weight, which keeps momentum.
 #include "surface.glsl"
 #include "near_pairs.glsl"
@@ -9,10 +9,9 @@ uniform float friction;
 uniform float mend;  // share of an overlap that a pass removes
 
 void main() {
-  uint item = gl_GlobalInvocationID.x;
-  if (item >= step_counts[turn].near) return;
+  if (gl_GlobalInvocationID.x >= step_counts[turn].touching) return;
+  uint item = chosen_pairs[gl_GlobalInvocationID.x];
   uvec4 pair = FETCH(near_pairs, 3u * item);
-  if ((pair.z & touching_bit) == 0u) return;
   vec4 apart = uintBitsToFloat(FETCH(near_pairs, 3u * item + 1u));
   vec4 weight = uintBitsToFloat(FETCH(near_pairs, 3u * item + 2u));
   uvec4 corner = corners_of(pair);

@@ -7,14 +7,13 @@ READ_VEC4(position, unit_position);  // so far; w: inverse mass [1/kg]
 READ_VEC4(velocity, unit_velocity);
 READ_VEC4(step_target, unit_step_target);
 layout(std430, binding = slot_step_limits) coherent buffer Limits { uint limits[]; };  // float bits, 1 or less
-uniform int again;  // 0: the first pass, from the step's start
+uniform int again;  // 0: the first pass, from the step's start, over all near pairs; the others over those that could meet
 uniform int impulses;
 
 /// What rounding may add to a corner's place, and to what is computed of it [m].
 float rounding_at(vec3 x, float size) { return 2.5e-7 * max(abs(x.x), max(abs(x.y), abs(x.z))) + 1e-6 * size; }
 
 void shorten(bool edges, uvec4 corner, vec4 shares) {
-  step_counts[turn].cut_groups = step_counts[turn].near_groups;
   step_counts[turn].cut_vertices = step_counts[turn].vertex_groups;
   for (int k = 0; k < 4; ++k) {
     atomicAdd(sums[8 * int(corner[k]) + 7], 1);
@@ -39,7 +38,8 @@ void stop(uvec4 corner, vec4 shares, vec3 n, vec4 weight, vec4 inverse_mass) {
 
 void main() {
   uint item = gl_GlobalInvocationID.x;
-  if (item >= step_counts[turn].near) return;
+  if (item >= (again == 0 ? step_counts[turn].near : step_counts[turn].meeting)) return;
+  RARELY(again != 0) item = chosen_pairs[pair_capacity + item];
   uvec4 pair = FETCH(near_pairs, 3u * item), corner = corners_of(pair);
   bool edges = is_edges(pair);
   vec4 apart = uintBitsToFloat(FETCH(near_pairs, 3u * item + 1u));
@@ -66,6 +66,13 @@ void main() {
     along.held[k] = inverse_mass[k] == 0.0;
   }
   float rounding = rounding_at(origin, size);
+  // What this direction divides for the whole step stays divided, whatever parts of it the corners take.
+  RARELY(again == 0 && could_meet(edges, along, 2.0 * rounding)) {
+    uint place = atomicAdd(step_counts[turn].meeting, 1u);
+    if (place % uint(GROUP_SIZE) == 0u)
+      atomicMax(step_counts[turn].meeting_groups, place / uint(GROUP_SIZE) + 1u);
+    chosen_pairs[pair_capacity + place] = item;
+  }
   RARELY(could_meet(edges, along, rounding)) {
     float plane = dividing_plane(edges, along, rounding);
     vec4 shares;

@@ -1,5 +1,7 @@
 // The near pairs of a step: three texels each: the pair; n and gap; weights (elements/surface.glsl).
 READ_UVEC4(near_pairs, unit_near_pairs);
+// Which of them push in this step, and from pair_capacity on which could meet.
+layout(std430, binding = slot_chosen_pairs) buffer Chosen { uint chosen_pairs[]; };
 // For each vertex: sums of pushes x, y, z [units of length], pairs that push it; sums of impulses x, y, z [units of
 // speed], pairs that shorten steps at it.
 layout(std430, binding = slot_contact_sums) buffer Sums { int sums[]; };

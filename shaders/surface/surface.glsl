@@ -11,13 +11,16 @@ layout(local_size_x = GROUP_SIZE) in;
 #include "../elements/surface.glsl"
 
 struct StepCounts {  // of a step; steps take turns with two of them
-  uint near_groups, near_groups_y, near_groups_z;            // over the near pairs
-  uint vertex_groups, vertex_groups_y, vertex_groups_z;      // over the vertices, if a pair is near
-  uint cut_groups, cut_groups_y, cut_groups_z;               // over the near pairs, if one of them shortens a step
-  uint cut_vertices, cut_vertices_y, cut_vertices_z;         // over the vertices, if a step is shortened
-  uint near;                                                 // near pairs
-  uint cuts;                                                 // vertices whose steps were shortened
-  uint unused_1, unused_2;
+  uint near_groups, near_groups_y, near_groups_z;              // over the near pairs
+  uint vertex_groups, vertex_groups_y, vertex_groups_z;        // over the vertices, if a pair is near
+  uint touching_groups, touching_groups_y, touching_groups_z;  // over the near pairs that push
+  uint meeting_groups, meeting_groups_y, meeting_groups_z;     // over the near pairs that could meet
+  uint cut_vertices, cut_vertices_y, cut_vertices_z;           // over the vertices, if a step is shortened
+  uint near;                                                   // near pairs
+  uint touching;                                               // of these, those that push
+  uint meeting;                                                // of these, those that could meet
+  uint cuts;                                                   // vertices whose steps were shortened
+  uint unused;
 };
 
 // Set by the GPU: arguments of indirect dispatches, and what a search found (server/sim/surface_control.h).
@@ -55,7 +58,6 @@ uniform int turn;           // whose step_counts this step has
 const uint edges_bit = 0x80000000u;     // of a pair's first corner: two edges
 const uint no_force_bit = 0x80000000u;  // of its second: side by side, or too near, at rest: not kept apart
 const uint flat_bit = 0x80000000u;      // of a triangle pair's second: side by side at rest, and near
-const uint touching_bit = 0x80000000u;  // of a near pair's third: comes within the thickness in this step
 const uint corner_mask = 0x7fffffffu;
 
 /// How far a vertex may go in a step, as a share of the query radius: two that are farther apart cannot meet.
