@@ -35,6 +35,7 @@ class Buffer {
   /// Queues a copy of all of `other`, which must have the same size.
   void copy_from(const Buffer& other);
   void bind_storage(GLuint binding) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id_); }
+  void bind_uniform(GLuint binding) const { glBindBufferBase(GL_UNIFORM_BUFFER, binding, id_); }
 
  private:
   GLuint id_ = 0;

@@ -68,7 +68,7 @@ Result<std::unique_ptr<Integrator>> make_gauss_seidel(const Surroundings& around
 /// and to copies.
 inline void wait_for_writes() {
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
-                  GL_BUFFER_UPDATE_BARRIER_BIT);
+                  GL_BUFFER_UPDATE_BARRIER_BIT | GL_UNIFORM_BARRIER_BIT);
 }
 
 /// Sets those of the uniforms shared by the kernels of all methods that `program` has.

@@ -1,5 +1,5 @@
 // Tells when the pairs that a search for contact between surfaces has listed are no longer all that can meet
-// (shaders/surface/block_motion.comp, block_pairs.comp). It follows the motion of blocks of triangles, so
+// (shaders/surface/blocks.comp). It follows the motion of blocks of triangles, so
 // that a cloth which moves as a whole, or swings, needs few searches.
 #pragma once
 
@@ -8,14 +8,19 @@
 #include "server/base/result.h"
 #include "server/gl/buffer.h"
 #include "server/gl/program.h"
-#include "server/model/model.h"
+#include "server/sim/plan.h"
 #include "server/sim/state.h"
+#include "server/sim/surface_triangles.h"
 
 namespace clothlab::sim {
 
 class SurfaceBlocks {
  public:
-  static Result<SurfaceBlocks> create(const model::Model& model);
+  /// More than so many blocks do not fit the one work group that compares all of them in every step. Smaller
+  /// blocks bend less, and so need fewer searches.
+  static constexpr std::uint32_t most_blocks = group_size;
+
+  static Result<SurfaceBlocks> create(const SurfaceTriangles& surface, std::uint32_t vertex_count);
 
   /// `skin` [m]: by how much a search reaches farther than it must.
   void set_skin(float skin);
@@ -26,8 +31,8 @@ class SurfaceBlocks {
 
  private:
   std::uint32_t block_count_ = 0;
-  gl::Program motion_, pairs_;
-  gl::TextureBuffer vertices_, boxes_;
+  gl::Program program_;
+  gl::TextureBuffer vertices_;
 };
 
 }  // namespace clothlab::sim

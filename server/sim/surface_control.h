@@ -19,12 +19,12 @@ struct StepCounts {
 
 struct SurfaceControl {
   std::array<StepCounts, 2> step_counts;
-  DispatchGroups rebuild{0, 1, 1}, split{0, 1, 1}, pair_groups{0, 1, 1};
+  DispatchGroups rebuild{0, 1, 1}, leaf_groups{0, 1, 1}, split{0, 1, 1}, pair_groups{0, 1, 1};
   DispatchGroups candidate_groups{0, 1, 1};
-  std::uint32_t triangle_pairs = 0, candidates = 0, pairs = 0;
-  std::uint32_t largest_triangle = 0, fastest = 0, fastest_vertex = 0, levels = 0;
+  std::uint32_t leaf_pairs = 0, triangle_pairs = 0, candidates = 0, pairs = 0;
+  std::uint32_t fastest = 0, fastest_vertex = 0;
   std::uint32_t query = 0, flat_query = 0, overflow = 0;
-  std::uint32_t rebuilds = 0, cuts = 0, most_triangle_pairs = 0, most_pairs = 0;
+  std::uint32_t rebuilds = 0, cuts = 0, most_leaf_pairs = 0, most_triangle_pairs = 0, most_pairs = 0;
 };
 
 }  // namespace clothlab::sim

@@ -51,18 +51,24 @@ class SurfacePairs {
   void search(const StateBuffers& state);
   bool read_sizes();
   void limit_query(float most);
-  void make_lists(std::uint32_t triangle_pairs, std::uint32_t pairs);
+  /// How many entries the lists of a search have room for.
+  struct Capacities {
+    std::uint32_t leaf_pairs = 0, triangle_pairs = 0, pairs = 0;
+  };
+  void make_lists(const Capacities& wanted);
+  std::array<const gl::Program*, 7> programs() const;
 
   std::uint32_t vertex_count_ = 0, triangle_count_ = 0;
-  std::uint32_t triangle_pair_capacity_ = 0, pair_capacity_ = 0;
+  Capacities capacity_;
   float most_query_ = 0, skin_ = 0;  ///< [m]
   std::uint64_t updates_ = 0;        ///< calls of `update` since `invalidate`
-  gl::Program boxes_, cells_program_, triangle_pairs_program_, candidates_, pairs_program_, finish_;
+  gl::Program corners_, leaf_boxes_program_, leaf_pairs_program_, triangle_pairs_program_, candidates_,
+      pairs_program_, finish_;
   SurfaceBlocks blocks_;
   gl::Buffer control_, chosen_pairs_;
   gl::ReadbackRing sizes_ring_;
-  gl::TextureBuffer triangles_, rest_boxes_, triangle_boxes_, cells_, chains_, triangle_pairs_, pairs_,
-      near_pairs_;
+  gl::TextureBuffer triangles_, rest_places_, neighbour_pairs_, triangle_corners_, leaf_boxes_, leaf_pairs_,
+      triangle_pairs_, pairs_, near_pairs_;
   gl::TextureBuffer built_position_;
 };
 

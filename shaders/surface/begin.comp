@@ -10,9 +10,11 @@ layout(std430, binding = slot_step_target) writeonly buffer Target { vec4 target
 
 void prepare_next_step() {
   int next = 1 - turn;
-  step_counts[next].near_groups = step_counts[next].vertex_groups = 0u;
-  step_counts[next].touching_groups = step_counts[next].meeting_groups = step_counts[next].cut_vertices = 0u;
-  step_counts[next].near = step_counts[next].touching = step_counts[next].meeting = step_counts[next].cuts = 0u;
+  control.step_counts[next].near_groups = control.step_counts[next].vertex_groups = 0u;
+  control.step_counts[next].touching_groups = control.step_counts[next].meeting_groups = 0u;
+  control.step_counts[next].cut_vertices = 0u;
+  control.step_counts[next].near = control.step_counts[next].touching = 0u;
+  control.step_counts[next].meeting = control.step_counts[next].cuts = 0u;
 }
 
 void main() {
@@ -20,24 +22,24 @@ void main() {
   if (i == 0) prepare_next_step();
   if (i >= vertex_count) return;
   vec4 start = FETCH(step_start, i), end = position[i];
-  bool free = end.w > 0.0, filtered = step_counts[turn].near > 0u;
+  bool free = end.w > 0.0, filtered = known.step_counts[turn].near > 0u;
   RARELY(filtered && sums[8 * i + 3] != 0) {
     if (free) velocity[i].w += 1.0;
     sums[8 * i + 3] = 0;
   }
   vec3 moved = end.xyz - start.xyz;
-  float went = length(moved), query_radius = uintBitsToFloat(flat_query), most = step_share * query_radius;
-  RARELY(went > 0.85 * most && query_radius < most_query) {
-    if (went < 1e30) atomicMax(fastest, floatBitsToUint(went));
-    rebuild_groups = uint((max(vertex_count, triangle_count) + GROUP_SIZE - 1) / GROUP_SIZE);
+  float went = length(moved), query_radius = uintBitsToFloat(known.flat_query), most = step_share * query_radius;
+  RARELY(went > 0.9 * most && query_radius < most_query) {
+    if (went < 1e30) atomicMax(control.fastest, floatBitsToUint(went));
+    control.rebuild_groups = uint((max(vertex_count, triangle_count) + GROUP_SIZE - 1) / GROUP_SIZE);
   }
   RARELY(free && went > most) {
     end.xyz = start.xyz + moved * (most / went);
     position[i] = end;
-    atomicAdd(step_counts[turn].cuts, 1u);
-    atomicAdd(cuts, 1u);
+    atomicAdd(control.step_counts[turn].cuts, 1u);
+    atomicAdd(control.cuts, 1u);
   }
-  RARELY(free && overflow != 0u) position[i] = end = start;
+  RARELY(free && known.overflow != 0u) position[i] = end = start;
   RARELY(filtered) {
     target[i] = end;
     position[i] = vec4(start.xyz, end.w);

@@ -1,52 +1,81 @@
-// Pair search, 4 of 6: the vertices and triangles, and the edges, of two triangles that are near each other, if their
+// Pair search, 5 of 7: the vertices and triangles, and the edges, of two triangles that are near each other, if their
 // boxes are near. Each vertex and edge is owned by one of its triangles, so that no pair is found twice (Curtis et al.
-// 2008, "Fast Collision Detection for Deformable Models using Representative-Triangles"). Pairs that share a vertex are
-// left out.
+// 2008, "Fast Collision Detection for Deformable Models using Representative-Triangles").
 #include "surface.glsl"
-READ_VEC4(position, unit_position);
-READ_UVEC4(surface_triangles, unit_surface_triangles);  // w: bits 0 to 2: owns the vertex; 3 to 5: the edge from it
+#include "reach.glsl"
+#include "triangles.glsl"
 READ_UVEC2(triangle_pair_list, unit_triangle_pairs);
 layout(std430, binding = slot_near_pairs) writeonly buffer Candidates { uvec4 list[]; };  // a pair each
 
 /// The pairs that two triangles own, as bits: 0 to 2 a vertex of the first and the second, 3 to 5 a vertex of the
 /// second and the first, 6 to 14 an edge of each.
-uint owned_pairs(uint one, uint other) {
-  uint edges = other >> 3u & 7u;
-  uint both = (one >> 3u & 1u) * edges | (one >> 4u & 1u) * (edges << 3u) | (one >> 5u & 1u) * (edges << 6u);
-  return (one & 7u) | (other & 7u) << 3u | both << 6u;
+uint owned_pairs(uvec3 one, uvec3 other) {
+  uvec3 vertex = one >> 31u, other_vertex = other >> 31u, edge = one >> 30u & 1u, other_edge = other >> 30u & 1u;
+  uint edges = other_edge.x | other_edge.y << 1u | other_edge.z << 2u;
+  return vertex.x | vertex.y << 1u | vertex.z << 2u | other_vertex.x << 3u | other_vertex.y << 4u |
+         other_vertex.z << 5u | edges * (edge.x << 6u | edge.y << 9u | edge.z << 12u);
+}
+
+/// True if the two boxes are within `reach` [m] of each other.
+bool boxes_near(vec3 low, vec3 high, vec3 other_low, vec3 other_high, float reach) {
+  vec3 apart = max(other_low - high, low - other_high);
+  return max(apart.x, max(apart.y, apart.z)) <= reach;
+}
+
+/// The pairs whose boxes are near, as the same bits. Loops of constant length over constant numbers: the places stay in
+/// registers.
+uint near_pairs(vec3 one[3], vec3 other[3], float reach) {
+  uint found = 0u;
+  vec3 low = min(one[0], min(one[1], one[2])), high = max(one[0], max(one[1], one[2]));
+  vec3 other_low = min(other[0], min(other[1], other[2])), other_high = max(other[0], max(other[1], other[2]));
+  for (int k = 0; k < 3; ++k) {
+    if (boxes_near(one[k], one[k], other_low, other_high, reach)) found |= 1u << k;
+    if (boxes_near(other[k], other[k], low, high, reach)) found |= 8u << k;
+    vec3 end = one[(k + 1) % 3], edge_low = min(one[k], end), edge_high = max(one[k], end);
+    for (int m = 0; m < 3; ++m) {
+      vec3 other_end = other[(m + 1) % 3];
+      if (boxes_near(edge_low, edge_high, min(other[m], other_end), max(other[m], other_end), reach))
+        found |= 64u << (3 * k + m);
+    }
+  }
+  return found;
 }
 
 void main() {
   uint item = gl_GlobalInvocationID.x;
-  if (item >= min(triangle_pairs, triangle_pair_capacity)) return;
+  if (item >= min(known.triangle_pairs, triangle_pair_capacity)) return;
   uvec2 both = FETCH_UVEC2(triangle_pair_list, item);
   bool flat_at_rest = (both.y & flat_bit) != 0u;
   both.y &= ~flat_bit;
-  uvec4 one = FETCH(surface_triangles, both.x), other = FETCH(surface_triangles, both.y);
+  Triangle one = triangle_at(int(both.x)), other = triangle_at(int(both.y));
   float reach = reach_of(flat_at_rest ? next_flat_query() : next_query());
-  vec3 place[6];
+  vec3 origin = one.x[0];
   for (int k = 0; k < 3; ++k) {
-    place[k] = FETCH(position, one[k]).xyz;
-    place[3 + k] = FETCH(position, other[k]).xyz;
+    one.x[k] -= origin;
+    other.x[k] -= origin;
   }
-  uint vertex[6] = uint[](one.x, one.y, one.z, other.x, other.y, other.z);
-  for (uint left = owned_pairs(one.w, other.w); left != 0u; left &= left - 1u) {
-    int number = findLSB(left);
-    bool edges = number >= 6;
-    int m = edges ? number / 3 - 2 : number, n = edges ? 3 + number % 3 : number < 3 ? 3 : 0;
-    int m_end = edges ? (m + 1) % 3 : n, n_end = edges ? 3 + (n - 2) % 3 : n + 2, n_first = edges ? n : n + 1;
-    // A vertex, and a triangle n, n + 1, n + 2; or edges m to m_end and n to n_end.
-    uvec4 c = uvec4(vertex[m], vertex[m_end], vertex[n_first], vertex[n_end]);
-    bool one_vertex = c.x == c.z || c.x == c.w || (edges ? c.y == c.z || c.y == c.w : c.x == c.y);
-    vec3 x = place[m], y = place[m_end], z = place[n_first], w = place[n_end];
-    vec3 low = edges ? min(x, y) : x, high = edges ? max(x, y) : x;
-    vec3 other_low = min(edges ? z : y, min(z, w)), other_high = max(edges ? z : y, max(z, w));
-    RARELY(!one_vertex && all(lessThanEqual(low, other_high + reach)) &&
-           all(lessThanEqual(other_low, high + reach))) {
-      uint slot = atomicAdd(candidates, 1u);
-      if (slot < 3u * pair_capacity) {
-        list[slot] = uvec4(edges ? c.x | edges_bit : c.x, flat_at_rest ? c.y | no_force_bit : c.y, c.zw);
-        if (slot % uint(GROUP_SIZE) == 0u) atomicMax(candidate_groups, slot / uint(GROUP_SIZE) + 1u);
+  uint left = owned_pairs(one.tags, other.tags) & near_pairs(one.x, other.x, reach);
+  RARELY(left != 0u) {
+    vec3 place[6] = vec3[](one.x[0], one.x[1], one.x[2], other.x[0], other.x[1], other.x[2]);
+    uvec3 first = one.tags & number_mask, second = other.tags & number_mask;
+    uint vertex[6] = uint[](first.x, first.y, first.z, second.x, second.y, second.z);
+    for (; left != 0u; left &= left - 1u) {
+      int number = findLSB(left);
+      bool edges = number >= 6;
+      int m = edges ? number / 3 - 2 : number, n = edges ? 3 + number % 3 : number < 3 ? 3 : 0;
+      int m_end = edges ? (m + 1) % 3 : n, n_end = edges ? 3 + (n - 2) % 3 : n + 2, n_first = edges ? n : n + 1;
+      // A vertex, and a triangle n, n + 1, n + 2; or edges m to m_end and n to n_end.
+      Corners c;
+      c.x = vec3[](place[m], place[m_end], place[n_first], place[n_end]);
+      RARELY(within_reach(edges, c, reach)) {
+        uvec4 pair = uvec4(vertex[m], vertex[m_end], vertex[n_first], vertex[n_end]);
+        if (edges) pair.x |= edges_bit;
+        if (flat_at_rest) pair.y |= no_force_bit;
+        uint slot = atomicAdd(control.candidates, 1u), thread = uint(neighbour_pair_count) + slot;
+        if (slot < 3u * pair_capacity) {
+          list[slot] = pair;
+          atomicMax(control.candidate_groups, thread / uint(GROUP_SIZE) + 1u);
+        }
       }
     }
   }

@@ -18,7 +18,7 @@ bool within_both(Separation apart) {
 
 void main() {
   uint item = gl_GlobalInvocationID.x;
-  if (item >= min(pairs, pair_capacity)) return;
+  if (item >= min(known.pairs, pair_capacity)) return;
   uvec4 pair = FETCH(pair_list, item), corner = corners_of(pair);
   bool edges = is_edges(pair);
   vec3 start[4];
@@ -26,10 +26,10 @@ void main() {
   Corners c;
   for (int k = 0; k < 4; ++k) c.x[k] = start[k] - start[0];
   Separation apart = separation(edges, c);
-  RARELY(apart.gap < uintBitsToFloat((pair.y & no_force_bit) != 0u ? flat_query : query)) {
-    uint slot = atomicAdd(step_counts[turn].near, 1u);
-    if (slot % uint(GROUP_SIZE) == 0u) atomicMax(step_counts[turn].near_groups, slot / uint(GROUP_SIZE) + 1u);
-    step_counts[turn].vertex_groups = uint((vertex_count + GROUP_SIZE - 1) / GROUP_SIZE);
+  RARELY(apart.gap < uintBitsToFloat((pair.y & no_force_bit) != 0u ? known.flat_query : known.query)) {
+    uint slot = atomicAdd(control.step_counts[turn].near, 1u);
+    if (slot % uint(GROUP_SIZE) == 0u) atomicMax(control.step_counts[turn].near_groups, slot / uint(GROUP_SIZE) + 1u);
+    control.step_counts[turn].vertex_groups = uint((vertex_count + GROUP_SIZE - 1) / GROUP_SIZE);
     near_list[3u * slot] = pair;
     near_list[3u * slot + 1u] = floatBitsToUint(vec4(apart.n, apart.gap));
     near_list[3u * slot + 2u] =
@@ -37,9 +37,9 @@ void main() {
     vec3 moved = vec3(0.0);
     for (int k = 0; k < 4; ++k) moved += apart.weight[k] * (FETCH(position, corner[k]).xyz - start[k]);
     if ((pair.y & no_force_bit) == 0u && within_both(apart) && apart.gap + dot(moved, apart.n) < thickness) {
-      uint place = atomicAdd(step_counts[turn].touching, 1u);
+      uint place = atomicAdd(control.step_counts[turn].touching, 1u);
       if (place % uint(GROUP_SIZE) == 0u)
-        atomicMax(step_counts[turn].touching_groups, place / uint(GROUP_SIZE) + 1u);
+        atomicMax(control.step_counts[turn].touching_groups, place / uint(GROUP_SIZE) + 1u);
       touching_pairs[place] = slot;
       for (int k = 0; k < 4; ++k) atomicAdd(sums[8 * int(corner[k]) + 3], 1);
     }

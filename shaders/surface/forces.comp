@@ -9,7 +9,7 @@ uniform float friction;
 uniform float mend;  // share of an overlap that a pass removes
 
 void main() {
-  if (gl_GlobalInvocationID.x >= step_counts[turn].touching) return;
+  if (gl_GlobalInvocationID.x >= known.step_counts[turn].touching) return;
   uint item = chosen_pairs[gl_GlobalInvocationID.x];
   uvec4 pair = FETCH(near_pairs, 3u * item);
   vec4 apart = uintBitsToFloat(FETCH(near_pairs, 3u * item + 1u));

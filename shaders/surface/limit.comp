@@ -14,7 +14,7 @@ uniform int impulses;
 float rounding_at(vec3 x, float size) { return 2.5e-7 * max(abs(x.x), max(abs(x.y), abs(x.z))) + 1e-6 * size; }
 
 void shorten(bool edges, uvec4 corner, vec4 shares) {
-  step_counts[turn].cut_vertices = step_counts[turn].vertex_groups;
+  control.step_counts[turn].cut_vertices = known.step_counts[turn].vertex_groups;
   for (int k = 0; k < 4; ++k) {
     atomicAdd(sums[8 * int(corner[k]) + 7], 1);
     if (shares[k] < 1.0) atomicMin(limits[corner[k]], floatBitsToUint(shares[k]));
@@ -38,7 +38,7 @@ void stop(uvec4 corner, vec4 shares, vec3 n, vec4 weight, vec4 inverse_mass) {
 
 void main() {
   uint item = gl_GlobalInvocationID.x;
-  if (item >= (again == 0 ? step_counts[turn].near : step_counts[turn].meeting)) return;
+  if (item >= (again == 0 ? known.step_counts[turn].near : known.step_counts[turn].meeting)) return;
   RARELY(again != 0) item = chosen_pairs[pair_capacity + item];
   uvec4 pair = FETCH(near_pairs, 3u * item), corner = corners_of(pair);
   bool edges = is_edges(pair);
@@ -68,9 +68,9 @@ void main() {
   float rounding = rounding_at(origin, size);
   // What this direction divides for the whole step stays divided, whatever parts of it the corners take.
   RARELY(again == 0 && could_meet(edges, along, 2.0 * rounding)) {
-    uint place = atomicAdd(step_counts[turn].meeting, 1u);
+    uint place = atomicAdd(control.step_counts[turn].meeting, 1u);
     if (place % uint(GROUP_SIZE) == 0u)
-      atomicMax(step_counts[turn].meeting_groups, place / uint(GROUP_SIZE) + 1u);
+      atomicMax(control.step_counts[turn].meeting_groups, place / uint(GROUP_SIZE) + 1u);
     chosen_pairs[pair_capacity + place] = item;
   }
   RARELY(could_meet(edges, along, rounding)) {

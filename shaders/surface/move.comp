@@ -21,8 +21,8 @@ void main() {
   RARELY(share < 1.0) {
     limits[i] = floatBitsToUint(1.0);
     if (last != 0) {
-      atomicAdd(step_counts[turn].cuts, 1u);
-      atomicAdd(cuts, 1u);
+      atomicAdd(control.step_counts[turn].cuts, 1u);
+      atomicAdd(control.cuts, 1u);
       if (share < jammed_share && position[i].w > 0.0) velocity[i].xyz *= 0.5;
     }
   }

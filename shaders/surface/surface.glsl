@@ -23,28 +23,34 @@ struct StepCounts {  // of a step; steps take turns with two of them
   uint unused;
 };
 
-// Set by the GPU: arguments of indirect dispatches, and what a search found (server/sim/surface_control.h).
-layout(std430, binding = slot_surface_control) coherent buffer SurfaceControl {
+// Set by the GPU: arguments of indirect dispatches, and what a search found (server/sim/surface_control.h). Laid out
+// alike for std430 and std140.
+struct Control {
   StepCounts step_counts[2];
   uint rebuild_groups, rebuild_groups_y, rebuild_groups_z;  // over triangles and vertices
+  uint leaf_groups, leaf_groups_y, leaf_groups_z;           // over triangles of pairs of leaves
   uint split_groups, split_groups_y, split_groups_z;        // over pairs of triangles
   uint pair_groups, pair_groups_y, pair_groups_z;           // over pairs
   uint candidate_groups, candidate_groups_y, candidate_groups_z;  // over pairs whose boxes are near
-  uint triangle_pairs;       // found by the search
+  uint leaf_pairs;           // found by the search
+  uint triangle_pairs;       // the same
   uint candidates;           // the same
   uint pairs;                // the same
-  uint largest_triangle;     // half the longest side of its box [m], as bits
   uint fastest;              // longest step since the last search that was long for it [m], as bits
   uint fastest_vertex;       // its speed at the search [m/s], as bits
-  uint levels;               // bit k: triangles of level k
   uint query;                // pairs nearer than this can be near within a step [m], as bits
   uint flat_query;           // the same of pairs that no force keeps apart
   uint overflow;             // 1: a list had no room for all pairs, and nothing may move
   uint rebuilds;
   uint cuts;                 // vertices whose steps were shortened, over all steps
-  uint most_triangle_pairs;  // found by any search
+  uint most_leaf_pairs;      // found by any search
+  uint most_triangle_pairs;  // the same
   uint most_pairs;           // the same
 };
+layout(std430, binding = slot_surface_control) coherent buffer SurfaceControl { Control control; };
+// The same memory, for what the kernel that reads it does not change: on software OpenGL reading a storage buffer takes
+// many times as long.
+layout(std140, binding = slot_known_control) uniform KnownControl { Control known; };
 
 uniform int vertex_count, triangle_count;
 uniform float dt;           // [s]
@@ -52,7 +58,8 @@ uniform float thickness;    // [m]
 uniform float skin;         // [m]
 uniform float most_query;   // [m]
 uniform float least_query;  // [m]
-uniform uint pair_capacity, triangle_pair_capacity;
+uniform uint pair_capacity, triangle_pair_capacity, leaf_pair_capacity;
+uniform int neighbour_pair_count;
 uniform int turn;           // whose step_counts this step has
 
 const uint edges_bit = 0x80000000u;     // of a pair's first corner: two edges
@@ -61,12 +68,13 @@ const uint flat_bit = 0x80000000u;      // of a triangle pair's second: side by 
 const uint corner_mask = 0x7fffffffu;
 
 /// How far a vertex may go in a step, as a share of the query radius: two that are farther apart cannot meet.
-const float step_share = 0.425;
+const float step_share = 0.49;
 
 /// Query radius of the search under way [m], of pairs that no force keeps apart: for the filter alone. The longest step
 /// is at most 0.74 of what a vertex may go then.
 float next_flat_query() {
-  return min(max(least_query, 3.2 * max(dt * uintBitsToFloat(fastest_vertex), uintBitsToFloat(fastest))), most_query);
+  float longest = max(dt * uintBitsToFloat(known.fastest_vertex), uintBitsToFloat(known.fastest));
+  return min(max(least_query, 2.6 * longest), most_query);
 }
 /// The same of pairs that forces keep apart.
 float next_query() { return max(next_flat_query(), min(1.2 * thickness, most_query)); }
@@ -74,7 +82,7 @@ float next_query() { return max(next_flat_query(), min(1.2 * thickness, most_que
 float reach_of(float query_radius) { return query_radius + skin; }
 
 /// Integers in which the sums of pushes [m] and impulses [m/s] are counted.
-float units_of_length() { return 67108864.0 / uintBitsToFloat(query); }
+float units_of_length() { return 67108864.0 / uintBitsToFloat(known.query); }
 float units_of_speed() { return units_of_length() * dt; }
 ivec3 in_units(vec3 v) { return ivec3(round(clamp(v, vec3(-1e9), vec3(1e9)))); }
 

@@ -1,68 +1,87 @@
-// Pair search, 3 of 6: pairs of triangles whose boxes are near each other. A triangle looks for others among those of
-// its own level and of the larger ones; in its own level half of the cells about it are enough. Those that lie side by
-// side at rest would all be near each other in a fine mesh: the search does not reach as far for them.
+// Pair search, 4 of 7: pairs of triangles of two near leaves whose boxes are near each other, but for triangles that
+// share a vertex (pairs.comp). Those that lie side by side at rest would all be near each other in a fine mesh: the
+// search does not reach as far for them.
 #include "surface.glsl"
-#include "cells.glsl"
-READ_VEC4(boxes, unit_triangle_boxes);
-READ_UINT(heads, unit_triangle_cells);
-READ_UINT(next, unit_triangle_chains);
-READ_VEC4(rest_boxes, unit_rest_boxes);  // middle, cloth; half of each side; normal
+#include "triangles.glsl"
+READ_VEC4(leaf_boxes, unit_leaf_boxes);
+READ_UVEC2(leaf_pair_list, unit_leaf_pairs);
+READ_VEC4(rest_places, unit_rest_places);  // of each triangle: middle of its box, cloth; normal, radius about the middle
 layout(std430, binding = slot_triangle_pairs) writeonly buffer TrianglePairs { uvec2 found[]; };
 
-/// Near triangles of a cloth are side by side if their middles are this far out of each other's plane, or less, as a
-/// share of their distance.
-const float out_of_plane = 0.35;
+/// Triangles of the first leaf that a thread looks at together: they share what it reads of the second's.
+const int together = TOGETHER;
 
-bool side_by_side_at_rest(int i, int j) {
-  vec4 middle = FETCH(rest_boxes, 3 * i), other = FETCH(rest_boxes, 3 * j);
-  vec3 between = other.xyz - middle.xyz;
-  vec3 apart = abs(between) - FETCH(rest_boxes, 3 * i + 1).xyz - FETCH(rest_boxes, 3 * j + 1).xyz;
-  float flat_enough = out_of_plane * length(between);
-  return middle.w == other.w && all(lessThan(apart, vec3(reach_of(1.2 * thickness)))) &&
-         abs(dot(FETCH(rest_boxes, 3 * i + 2).xyz, between)) <= flat_enough &&
-         abs(dot(FETCH(rest_boxes, 3 * j + 2).xyz, between)) <= flat_enough;
+struct RestPlace {
+  vec4 middle, normal;
+};
+
+RestPlace rest_place(int i) { return RestPlace(FETCH(rest_places, 2 * i), FETCH(rest_places, 2 * i + 1)); }
+
+bool side_by_side_at_rest(RestPlace one, RestPlace other) {
+  vec3 between = other.middle.xyz - one.middle.xyz;
+  float distance = length(between), flat_enough = OUT_OF_PLANE * distance;
+  return one.middle.w == other.middle.w &&
+         distance - one.normal.w - other.normal.w < reach_of(1.2 * thickness) &&
+         abs(dot(one.normal.xyz, between)) <= flat_enough && abs(dot(other.normal.xyz, between)) <= flat_enough;
+}
+
+bool share_vertex(uvec3 one, uvec3 other) {
+  return any(equal(one, other)) || any(equal(one, other.yzx)) || any(equal(one, other.zxy));
+}
+
+float apart(vec3 low, vec3 high, vec3 other_low, vec3 other_high) {
+  vec3 gaps = max(other_low - high, low - other_high);
+  return max(gaps.x, max(gaps.y, gaps.z));
+}
+
+void keep(int i, int j, bool flat_at_rest) {
+  uint slot = atomicAdd(control.triangle_pairs, 1u);
+  if (slot >= triangle_pair_capacity) return;
+  found[slot] = uvec2(i, flat_at_rest ? uint(j) | flat_bit : uint(j));
+  if (slot % uint(GROUP_SIZE) == 0u) atomicMax(control.split_groups, slot / uint(GROUP_SIZE) + 1u);
 }
 
 void main() {
-  int i = int(gl_GlobalInvocationID.x);
-  if (i >= triangle_count) return;
-  vec4 box = FETCH(boxes, 2 * i);
+  int item = int(gl_GlobalInvocationID.x) * together / LEAF_SIZE;
+  if (item >= int(min(known.leaf_pairs, leaf_pair_capacity))) return;
+  uvec2 leaves = FETCH_UVEC2(leaf_pair_list, item);
   float reach = reach_of(next_query()), flat_reach = reach_of(next_flat_query());
-  vec3 half_sides = FETCH(boxes, 2 * i + 1).xyz;
-  int own = level_of(box.w), level = own, at = 13;
-  float width = cell_width(level);
-  ivec3 home = cell_of(box.xyz, width), cell = home;
-  uint j = FETCH_UINT(heads, bucket_of(cell, level));
-  // One loop walks all chains: the threads of a group, whose chains differ in length, do not wait at each cell.
-  for (;;) {
-    if (j == chain_end) {
-      if (++at == 27) {
-        do --level;
-        while (level >= 0 && (levels >> level & 1u) == 0u);
-        if (level < 0) break;
-        width = cell_width(level);
-        home = cell_of(box.xyz, width);
-        at = 0;
-      }
-      cell = home + ivec3(at % 3, at / 3 % 3, at / 9) - 1;
-      j = FETCH_UINT(heads, bucket_of(cell, level));
-      continue;
+  vec3 low[together], high[together], group_low = vec3(1e30), group_high = vec3(-1e30);
+  uvec3 numbers[together];
+  RestPlace rest[together];
+  int begin = LEAF_SIZE * int(leaves.x) + int(gl_GlobalInvocationID.x) * together % LEAF_SIZE;
+  for (int k = 0; k < together; ++k) {
+    Triangle t = triangle_at(min(begin + k, triangle_count - 1));
+    low[k] = low_of(t);
+    high[k] = high_of(t);
+    numbers[k] = t.tags & number_mask;
+    rest[k] = rest_place(min(begin + k, triangle_count - 1));
+    group_low = min(group_low, low[k]);
+    group_high = max(group_high, high[k]);
+  }
+  int first = LEAF_SIZE * int(leaves.y), end = min(first + LEAF_SIZE, triangle_count);
+  if (leaves.x == leaves.y) first = begin + 1;
+  bool near_leaf = apart(group_low, group_high, FETCH(leaf_boxes, 2 * int(leaves.y)).xyz,
+                         FETCH(leaf_boxes, 2 * int(leaves.y) + 1).xyz) <= reach;
+  for (int j = near_leaf ? first : end; j < end; ++j) {
+    Triangle t = triangle_at(j);
+    vec3 other_low = low_of(t), other_high = high_of(t);
+    float far[together];
+    bool near[together], any_near = false;
+    for (int k = 0; k < together; ++k) {
+      far[k] = apart(low[k], high[k], other_low, other_high);
+      near[k] = far[k] <= reach && begin + k < triangle_count && (leaves.x != leaves.y || begin + k < j) &&
+                !share_vertex(numbers[k], t.tags & number_mask);
+      any_near = any_near || near[k];
     }
-    vec4 other = FETCH(boxes, 2 * int(j));
-    vec3 apart = abs(other.xyz - box.xyz) - FETCH(boxes, 2 * int(j) + 1).xyz - half_sides;
-    float farthest = max(apart.x, max(apart.y, apart.z));
-    // A bucket may hold several cells, and levels. Of two triangles in one cell the first finds the second.
-    if (farthest <= reach && level_of(other.w) == level && cell_of(other.xyz, width) == cell &&
-        (level < own || at > 13 || uint(i) < j)) {
-      bool flat_at_rest = side_by_side_at_rest(i, int(j));
-      if (!flat_at_rest || farthest <= flat_reach) {
-        uint slot = atomicAdd(triangle_pairs, 1u);
-        if (slot < triangle_pair_capacity) {
-          found[slot] = uvec2(i, flat_at_rest ? j | flat_bit : j);
-          if (slot % uint(GROUP_SIZE) == 0u) atomicMax(split_groups, slot / uint(GROUP_SIZE) + 1u);
+    RARELY(any_near) {
+      RestPlace other_rest = rest_place(j);
+      for (int k = 0; k < together; ++k) {
+        RARELY(near[k]) {
+          bool flat_at_rest = side_by_side_at_rest(rest[k], other_rest);
+          if (!flat_at_rest || far[k] <= flat_reach) keep(begin + k, j, flat_at_rest);
         }
       }
     }
-    j = FETCH_UINT(next, j);
   }
 }

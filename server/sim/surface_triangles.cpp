@@ -1,0 +1,156 @@
+#include "server/sim/surface_triangles.h"
+
+#include <algorithm>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <numeric>
+#include <set>
+#include <span>
+#include <utility>
+
+namespace clothlab::sim {
+
+namespace {
+
+constexpr std::uint32_t edges_bit = 0x80000000u, no_force_bit = 0x80000000u;         // as in surface.glsl
+constexpr std::uint32_t owns_vertex_bit = 0x80000000u, owns_edge_bit = 0x40000000u;  // as in triangles.glsl
+
+using Corners = std::array<std::uint32_t, 3>;
+
+/// Halves `triangles` along their longest extent, at multiples of `block`, until each part has at most that
+/// many, and from then on at multiples of `leaf_size`.
+void order_by_place(std::span<std::uint32_t> triangles, const std::vector<model::dvec3>& middle,
+                    std::uint32_t block) {
+  if (triangles.size() <= leaf_size) return;
+  const std::size_t unit = triangles.size() > block ? block : leaf_size;
+  model::dvec3 low = middle[triangles[0]], high = low;
+  for (const std::uint32_t triangle : triangles) {
+    low = glm::min(low, middle[triangle]);
+    high = glm::max(high, middle[triangle]);
+  }
+  const model::dvec3 size = high - low;
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const std::size_t half = (triangles.size() + unit - 1) / unit / 2 * unit;
+  std::nth_element(triangles.begin(), triangles.begin() + static_cast<std::ptrdiff_t>(half), triangles.end(),
+                   [&](std::uint32_t a, std::uint32_t b) {
+                     return std::pair(middle[a][axis], a) < std::pair(middle[b][axis], b);
+                   });
+  order_by_place(triangles.first(half), middle, block);
+  order_by_place(triangles.subspan(half), middle, block);
+}
+
+std::vector<Corners> triangles_by_place(const model::Model& model, std::uint32_t block) {
+  std::vector<model::dvec3> middle;
+  for (const auto& [a, b, c] : model.triangles)
+    middle.push_back((model.start_position[a] + model.start_position[b] + model.start_position[c]) / 3.0);
+  std::vector<std::uint32_t> order(model.triangles.size());
+  std::iota(order.begin(), order.end(), 0u);
+  order_by_place(order, middle, block);
+  std::vector<Corners> triangles;
+  for (const std::uint32_t triangle : order) triangles.push_back(model.triangles[triangle]);
+  return triangles;
+}
+
+std::vector<std::array<std::uint32_t, 4>> with_owned_parts(const std::vector<Corners>& triangles,
+                                                           std::uint32_t vertex_count) {
+  std::vector<std::array<std::uint32_t, 4>> list;
+  std::vector<bool> vertex_owned(vertex_count, false);
+  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+  for (const Corners& corners : triangles) {
+    std::array<std::uint32_t, 4>& tags = list.emplace_back();
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = corners[k], b = corners[(k + 1) % 3];
+      tags[k] = a | (vertex_owned[a] ? 0 : owns_vertex_bit);
+      vertex_owned[a] = true;
+      if (edges.emplace(std::min(a, b), std::max(a, b)).second) tags[k] |= owns_edge_bit;
+    }
+  }
+  return list;
+}
+
+std::vector<glm::vec4> places_at_rest(const std::vector<Corners>& triangles, const model::Model& model) {
+  std::vector<glm::vec4> list;
+  for (const auto& [a, b, c] : triangles) {
+    const glm::vec3 x(model.rest_position[a]), y(model.rest_position[b]), z(model.rest_position[c]);
+    const glm::vec3 middle = 0.5f * (glm::min(x, glm::min(y, z)) + glm::max(x, glm::max(y, z)));
+    const float radius =
+        std::max({glm::distance(x, middle), glm::distance(y, middle), glm::distance(z, middle)});
+    const glm::vec3 normal = glm::cross(y - x, z - x);
+    const float size = glm::length(normal);
+    list.emplace_back(middle, static_cast<float>(model.vertex_cloth[a]));
+    list.emplace_back(size > 0.0f ? normal / size : normal, radius);
+  }
+  return list;
+}
+
+/// Lists the neighbours' pairs of `made`, whose other members must be set.
+class NeighbourPairs {
+ public:
+  explicit NeighbourPairs(SurfaceTriangles& made) : made_(made) {}
+
+  void add_all(std::uint32_t vertex_count) {
+    std::vector<std::vector<std::uint32_t>> around(vertex_count);
+    for (std::uint32_t i = 0; i < made_.triangles.size(); ++i)
+      for (int k = 0; k < 3; ++k) around[number(i, k)].push_back(i);
+    for (std::uint32_t i = 0; i < made_.triangles.size(); ++i) {
+      std::set<std::uint32_t> neighbours;
+      for (int k = 0; k < 3; ++k)
+        for (const std::uint32_t j : around[number(i, k)])
+          if (i < j) neighbours.insert(j);
+      for (const std::uint32_t j : neighbours) add(i, j);
+    }
+  }
+
+ private:
+  void add(std::uint32_t i, std::uint32_t j) {
+    const auto &one = made_.triangles[i], &other = made_.triangles[j];
+    const bool flat = side_by_side(i, j);
+    for (int k = 0; k < 3; ++k) {
+      const int next = (k + 1) % 3;
+      if (one[k] & owns_vertex_bit)
+        keep({number(i, k), number(j, 0), number(j, 1), number(j, 2)}, false, flat);
+      if (other[k] & owns_vertex_bit)
+        keep({number(j, k), number(i, 0), number(i, 1), number(i, 2)}, false, flat);
+      for (int m = 0; m < 3; ++m)
+        if ((one[k] & owns_edge_bit) && (other[m] & owns_edge_bit))
+          keep({number(i, k), number(i, next), number(j, m), number(j, (m + 1) % 3)}, true, flat);
+    }
+  }
+
+  std::uint32_t number(std::uint32_t triangle, int corner) const {
+    return SurfaceTriangles::number_of(made_.triangles[triangle][corner]);
+  }
+
+  void keep(std::array<std::uint32_t, 4> pair, bool edges, bool flat) {
+    for (int k = edges ? 2 : 1; k < 4; ++k)
+      if (pair[k] == pair[0] || (edges && pair[k] == pair[1])) return;
+    if (edges) pair[0] |= edges_bit;
+    if (flat) pair[1] |= no_force_bit;
+    made_.neighbour_pairs.push_back(pair);
+  }
+
+  /// As shaders/surface/triangle_pairs.comp decides it, for triangles whose boxes touch.
+  bool side_by_side(std::uint32_t i, std::uint32_t j) const {
+    const glm::vec3 between(made_.rest_places[2 * j] - made_.rest_places[2 * i]);
+    const float flat_enough = static_cast<float>(out_of_plane) * glm::length(between);
+    return std::abs(glm::dot(glm::vec3(made_.rest_places[2 * i + 1]), between)) <= flat_enough &&
+           std::abs(glm::dot(glm::vec3(made_.rest_places[2 * j + 1]), between)) <= flat_enough;
+  }
+
+  SurfaceTriangles& made_;
+};
+
+}  // namespace
+
+SurfaceTriangles surface_triangles(const model::Model& model, std::uint32_t most_blocks) {
+  SurfaceTriangles made;
+  const std::uint32_t leaves = (model.triangle_count() + leaf_size - 1) / leaf_size;
+  made.block_size = leaf_size * std::max((leaves + most_blocks - 1) / most_blocks, 1u);
+  const std::vector<Corners> triangles = triangles_by_place(model, made.block_size);
+  made.triangles = with_owned_parts(triangles, model.vertex_count());
+  made.rest_places = places_at_rest(triangles, model);
+  NeighbourPairs(made).add_all(model.vertex_count());
+  return made;
+}
+
+}  // namespace clothlab::sim

@@ -1,0 +1,41 @@
+// What the search for contact between surfaces knows of a scene's triangles before any step
+// (surface_pairs.h): their order by place, who owns which vertex and edge, and what can meet among
+// neighbours.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec4.hpp>
+#include <vector>
+
+#include "server/model/model.h"
+
+namespace clothlab::sim {
+
+/// Triangles of a leaf: those that lie together at the start, whose box stands for all of them in a search.
+inline constexpr std::uint32_t leaf_size = 16;
+
+/// Near triangles of a cloth are side by side at rest if their middles are this far out of each other's
+/// plane, or less, as a share of their distance.
+inline constexpr double out_of_plane = 0.35;
+
+/// In the order of SurfaceTriangles.
+struct SurfaceTriangles {
+  /// The corners of each triangle: a vertex, with owns_vertex_bit and owns_edge_bit of
+  /// shaders/surface/triangles.glsl where the triangle owns it, or the edge from it to the next corner; and
+  /// 0. Each `leaf_size` in turn are a leaf, and each `block_size` a block (surface_blocks.h).
+  std::vector<std::array<std::uint32_t, 4>> triangles;
+  std::uint32_t block_size = leaf_size;
+  static std::uint32_t number_of(std::uint32_t corner) { return corner & 0x3fffffffu; }
+  /// For each triangle at rest the middle of its box, and its cloth; its normal, and its radius about the
+  /// middle [m].
+  std::vector<glm::vec4> rest_places;
+  /// Pairs of a vertex and a triangle, and of two edges, that two triangles with a common vertex own and that
+  /// themselves have none, as in shaders/surface/surface.glsl: edges_bit, no_force_bit.
+  std::vector<std::array<std::uint32_t, 4>> neighbour_pairs;
+};
+
+/// `most_blocks`: largest number of blocks, above 0.
+SurfaceTriangles surface_triangles(const model::Model& model, std::uint32_t most_blocks);
+
+}  // namespace clothlab::sim
