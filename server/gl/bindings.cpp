@@ -26,6 +26,7 @@ Bindings Bindings::current() {
   const GLuint slots = limit(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, storage_slots);
   for (GLuint slot = 0; slot < slots; ++slot)
     glGetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, slot, &bound.storage_[slot]);
+  glGetIntegeri_v(GL_UNIFORM_BUFFER_BINDING, slot_known_control, &bound.uniform_);
   return bound;
 }
 
@@ -40,6 +41,7 @@ void Bindings::restore() const {
       glBindTextureUnit(unit, static_cast<GLuint>(textures_[unit]));
   for (GLuint slot = 0; slot < storage_slots; ++slot)
     if (storage_[slot] != 0) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, slot, buffer(storage_[slot]));
+  if (uniform_ != 0) glBindBufferBase(GL_UNIFORM_BUFFER, slot_known_control, buffer(uniform_));
 }
 
 }  // namespace clothlab::gl

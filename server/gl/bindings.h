@@ -19,7 +19,7 @@ class Bindings {
 
  private:
   static constexpr GLuint texture_units = number_of_units, storage_slots = number_of_slots + number_of_units;
-  GLint program_ = 0, indirect_ = 0;
+  GLint program_ = 0, indirect_ = 0, uniform_ = 0;  // one uniform block: contact between surfaces
   std::array<GLint, texture_units> textures_{};
   std::array<GLint, storage_slots> storage_{};
 };

@@ -124,13 +124,18 @@ FUNCTION bool surface_contact(vec3 n, real gap, vec3 moved, vec3 v, real keep, r
 }
 
 /// Largest part of its step that a corner takes. `room` [m]: its distance from the plane that divides the pair, `away`
-/// [m]: by how much its step goes away from it. `rounding` [m]: what rounding may add to a place.
-FUNCTION real share_of_step(real room, real away, real rounding) {
-  if (room + away >= rounding || away >= rounding) return real(1.0);
-  if (!(room > rounding)) return real(0.0);
+/// [m]: by how much its step goes away from it, `size` [m]: the step's length. `rounding` [m]: more than rounding adds to
+/// a place. Any smaller part of the step is safe, too: nearer to the plane than `rounding`, a part of a step that leads
+/// away only a little may be turned about by rounding, so that only steps are taken that clearly lead away.
+FUNCTION real share_of_step(real room, real away, real size, real rounding) {
+  if (!(room >= rounding)) return away >= rounding && away >= real(0.1) * size ? real(1.0) : real(0.0);
+  if (room + away >= rounding) return real(1.0);
   real meets = (room - rounding) / -away;
   return max(min(real(0.85) * meets, meets - real(1e-3)), real(0.0));
 }
+/// The shortest part of a step [m], in units of `rounding`, that a corner may take, but for the whole step: along a tenth
+/// of it (share_of_step) rounding is too small to turn it about.
+const real shortest_part = real(16.0);
 
 /// The steps of a pair's corners along n [m]; a corner that nothing may stop: `held`.
 struct StepsAlong {
@@ -140,7 +145,7 @@ struct StepsAlong {
 };
 
 /// Where the plane is that divides a pair, along n [m]: each part may take the share of the gap that it wants to take,
-/// but at least a twentieth, and all that its held corners take.
+/// but at least a twentieth, not nearer to either than rounding if there is room, and all that its held corners take.
 FUNCTION real dividing_plane(bool edges, StepsAlong s, real rounding) {
   real low = edges ? min(s.y[0], s.y[1]) : s.y[0];
   real high = edges ? max(s.y[2], s.y[3]) : max(max(s.y[1], s.y[2]), s.y[3]);
@@ -154,7 +159,8 @@ FUNCTION real dividing_plane(bool edges, StepsAlong s, real rounding) {
   }
   real sum = first + second;
   real share = sum > real(0.0) ? clamp(second / sum, real(0.05), real(0.95)) : real(0.5);
-  real plane = high + share * (low - high);
+  real least = min(real(1.01) * rounding, real(0.5) * (low - high));
+  real plane = clamp(high + share * (low - high), high + least, low - least);
   if (first_held > real(0.0)) plane = min(plane, low - first_held - real(2.0) * rounding);
   if (second_held > real(0.0)) plane = max(plane, high + second_held + real(2.0) * rounding);
   return plane;

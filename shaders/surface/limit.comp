@@ -10,9 +10,6 @@ layout(std430, binding = slot_step_limits) coherent buffer Limits { uint limits[
 uniform int again;  // 0: the first pass, from the step's start, over all near pairs; the others over those that could meet
 uniform int impulses;
 
-/// What rounding may add to a corner's place, and to what is computed of it [m].
-float rounding_at(vec3 x, float size) { return 2.5e-7 * max(abs(x.x), max(abs(x.y), abs(x.z))) + 1e-6 * size; }
-
 void shorten(bool edges, uvec4 corner, vec4 shares) {
   control.step_counts[turn].cut_vertices = known.step_counts[turn].vertex_groups;
   for (int k = 0; k < 4; ++k) {
@@ -78,7 +75,7 @@ void main() {
     vec4 shares;
     for (int k = 0; k < 4; ++k) {
       float side = k == 0 || (edges && k == 1) ? 1.0 : -1.0;
-      shares[k] = along.held[k] ? 1.0 : share_of_step(side * (along.y[k] - plane), side * along.d[k], rounding);
+      shares[k] = along.held[k] ? 1.0 : share_of_step(side * (along.y[k] - plane), side * along.d[k], length(steps[k]), rounding);
     }
     RARELY(min(min(shares.x, shares.y), min(shares.z, shares.w)) < 1.0) {
       if (impulses == 0) shorten(edges, corner, shares);

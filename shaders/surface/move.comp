@@ -17,6 +17,10 @@ void main() {
   vec4 goal = FETCH(step_target, i);
   float share = uintBitsToFloat(limits[i]);
   vec3 x = position[i].xyz;
+  RARELY(share < 1.0) {
+    float size = length(goal.xyz - x);
+    if (share * size < shortest_part * rounding_at(x, size)) share = 0.0;
+  }
   position[i].xyz = share < 1.0 ? x + share * (goal.xyz - x) : goal.xyz;
   RARELY(share < 1.0) {
     limits[i] = floatBitsToUint(1.0);

@@ -71,7 +71,7 @@ const uint corner_mask = 0x7fffffffu;
 const float step_share = 0.49;
 
 /// Query radius of the search under way [m], of pairs that no force keeps apart: for the filter alone. The longest step
-/// is at most 0.74 of what a vertex may go then.
+/// is at most 0.79 of what a vertex may go then.
 float next_flat_query() {
   float longest = max(dt * uintBitsToFloat(known.fastest_vertex), uintBitsToFloat(known.fastest));
   return min(max(least_query, 2.6 * longest), most_query);
@@ -85,6 +85,9 @@ float reach_of(float query_radius) { return query_radius + skin; }
 float units_of_length() { return 67108864.0 / uintBitsToFloat(known.query); }
 float units_of_speed() { return units_of_length() * dt; }
 ivec3 in_units(vec3 v) { return ivec3(round(clamp(v, vec3(-1e9), vec3(1e9)))); }
+
+/// What rounding may add to a corner's place, and to what is computed of it [m].
+float rounding_at(vec3 x, float size) { return 2.5e-7 * max(abs(x.x), max(abs(x.y), abs(x.z))) + 1e-6 * size; }
 
 bool is_edges(uvec4 pair) { return (pair.x & edges_bit) != 0u; }
 uvec4 corners_of(uvec4 pair) { return pair & corner_mask; }
