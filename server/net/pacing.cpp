@@ -5,11 +5,11 @@
 
 namespace clothlab::net {
 
-void FramePacing::subscribe(stream::Encoding encoding, double rate, int in_flight, std::int64_t now) {
-  if (!subscribed_ || encoding != encoding_) sent_any_ = false;  // all frames are new to the viewer
+void FramePacing::subscribe(stream::Form form, double rate, int in_flight, std::int64_t now) {
+  if (!subscribed_ || form != form_) sent_any_ = false;  // all frames are new to the viewer
   if (!subscribed_) count_ = 0;
   subscribed_ = true;
-  encoding_ = encoding;
+  form_ = form;
   rate_ = rate;
   period_ = static_cast<std::int64_t>(1e6 / rate);
   in_flight_ = in_flight;
