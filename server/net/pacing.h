@@ -44,7 +44,7 @@ class FramePacing {
   std::int64_t period_ = 0;  ///< [us]
   int in_flight_ = 2, count_ = 0;
   std::array<std::uint32_t, max_in_flight> unacknowledged_{};  ///< `count_` numbers, oldest first
-  std::uint32_t last_sent_ = 0;
+  std::uint32_t last_sent_ = 0, newest_ = 0;  ///< of another form frames may be older than those before
   std::int64_t due_ = 0, unblocked_since_ = 0;
 };
 

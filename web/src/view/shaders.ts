@@ -23,6 +23,8 @@ vec3 decodeNormal() {
 export const fabricVertexParameters = /* glsl */ `
 ${decodeParameters}
 attribute vec2 textureCoordinate;
+attribute float field;
+varying float vField;
 uniform vec2 threads;
 uniform vec3 lightDirection;
 varying vec2 vCloth;
@@ -56,6 +58,9 @@ ${occlusionParameters}
 uniform vec2 threads;
 uniform float pattern;
 uniform float hemmed;
+uniform float coloured;
+uniform vec3 fieldColors[9];
+varying float vField;
 varying vec2 vCloth;
 varying vec3 vWorld;
 
@@ -95,6 +100,13 @@ vec3 fabricColor(vec3 base, bool front) {
   float border = min(inset.x, inset.y);
   color *= 1.0 - hemmed * 0.16 * (1.0 - smoothstep(0.016, 0.019, border));
   return front ? color : mix(color, vec3(dot(color, vec3(0.3, 0.6, 0.1))), 0.25) * 0.94;
+}
+
+// Mixed in sRGB, as the legend's gradient is.
+vec3 fieldColor() {
+  float at = clamp(vField, 0.0, 1.0) * 8.0;
+  int below = min(int(at), 7);
+  return pow(mix(fieldColors[below], fieldColors[below + 1], at - float(below)), vec3(2.2));
 }
 `;
 

@@ -1,0 +1,48 @@
+// What the cloth's colours show: the choice beside the speed, and the legend above it. The choice is this browser's own.
+import { element } from "./dom";
+import { fields, isField, scale } from "../view/fields";
+import type { FieldName } from "../link/protocol";
+
+const key = "clothlab-colour-by";
+
+export class ColourBy {
+  private readonly choice = element("colour-by", HTMLSelectElement);
+  private readonly legend = element("legend", HTMLElement);
+  private readonly most = element("legend-most", HTMLElement);
+  private shown: FieldName | null = null;
+
+  /// `chosen` gets the choice at once, then every other one; `resized` is called when the legend comes or goes.
+  constructor(
+    chosen: (field: FieldName | null) => void,
+    private readonly resized: () => void,
+  ) {
+    const colours = scale.map((colour) => `#${colour}`).join(",");
+    element("legend-scale", HTMLElement).style.background = `linear-gradient(to right,${colours})`;
+    const stored = localStorage.getItem(key);
+    this.choice.value = isField(stored) ? stored : "";
+    this.choice.onchange = () => {
+      localStorage.setItem(key, this.choice.value);
+      chosen(this.chosen);
+    };
+    if (this.chosen) chosen(this.chosen);
+  }
+
+  private get chosen(): FieldName | null {
+    return isField(this.choice.value) ? this.choice.value : null;
+  }
+
+  /// Says what the colours of the frame on screen mean.
+  show(field: FieldName | null, range: number): void {
+    const text = field ? fields[field].most(range) : "";
+    if (this.most.textContent !== text) this.most.textContent = text;
+    if (field === this.shown) return;
+    this.shown = field;
+    if (field) {
+      element("legend-name", HTMLElement).textContent = fields[field].title;
+      element("legend-least", HTMLElement).textContent = fields[field].least;
+    }
+    this.legend.hidden = !field;
+    document.body.classList.toggle("coloured", field !== null);
+    this.resized();
+  }
+}

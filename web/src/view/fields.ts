@@ -1,0 +1,22 @@
+// The fields that the cloth can be coloured by, and the colours of their values.
+import type { FieldName } from "../link/protocol";
+
+interface FieldFacts {
+  title: string;
+  least: string; ///< what the first colour means
+  most(range: number): string; ///< what the last one means
+}
+
+const short = (value: number): string => String(Number(value.toPrecision(3)));
+
+export const fields: Record<FieldName, FieldFacts> = {
+  strain: { title: "Strain", least: "0", most: (range) => `${short(100 * range)} %` },
+  speed: { title: "Speed", least: "0", most: (range) => `${short(range)} m/s` },
+  contact: { title: "Contact", least: "free", most: () => "touching" },
+};
+
+export const isField = (name: string | null): name is FieldName => name !== null && Object.hasOwn(fields, name);
+
+/// Nine colours of viridis (van der Walt and Smith 2015), equally far apart, as shares of sRGB: lightness rises evenly,
+/// and also without red or green.
+export const scale = ["440154", "472d7b", "3b528b", "2c728e", "21918c", "28ae80", "5ec962", "addc30", "fde725"];
