@@ -44,6 +44,12 @@ test("the legend has three figures and a unit", () => {
   assert.deepEqual([fields.contact.least, fields.contact.most(1)], ["free", "touching"]);
 });
 
+test("the legend's colours lie where the shader gives them: evenly, of strain in its square root", () => {
+  const places = (field) => [...page.gradient(field).matchAll(/#(\w+) ([\d.]+)%/g)].map(([, , at]) => Number(at));
+  assert.deepEqual(places("speed"), [0, 12.5, 25, 37.5, 50, 62.5, 75, 87.5, 100]);
+  assert.deepEqual(places("strain"), [0, 1.6, 6.3, 14.1, 25, 39.1, 56.3, 76.6, 100]);
+});
+
 test("what is stored or not a field is no field", () => {
   for (const name of ["", null, "none", "toString", "cloth"]) assert.equal(page.isField(name), false);
   for (const name of ["strain", "speed", "contact"]) assert.equal(page.isField(name), true);

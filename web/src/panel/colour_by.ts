@@ -1,6 +1,6 @@
 // What the cloth's colours show: the choice beside the speed, and the legend above it. The choice is this browser's own.
 import { element } from "./dom";
-import { fields, isField, scale } from "../view/fields";
+import { fields, gradient, isField } from "../view/fields";
 import type { FieldName } from "../link/protocol";
 
 const key = "clothlab-colour-by";
@@ -16,8 +16,6 @@ export class ColourBy {
     chosen: (field: FieldName | null) => void,
     private readonly resized: () => void,
   ) {
-    const colours = scale.map((colour) => `#${colour}`).join(",");
-    element("legend-scale", HTMLElement).style.background = `linear-gradient(to right,${colours})`;
     const stored = localStorage.getItem(key);
     this.choice.value = isField(stored) ? stored : "";
     this.choice.onchange = () => {
@@ -40,6 +38,7 @@ export class ColourBy {
     if (field) {
       element("legend-name", HTMLElement).textContent = fields[field].title;
       element("legend-least", HTMLElement).textContent = fields[field].least;
+      element("legend-scale", HTMLElement).style.background = gradient(field);
     }
     this.legend.hidden = !field;
     document.body.classList.toggle("coloured", field !== null);

@@ -17,8 +17,9 @@ import {
   type DecodeUniforms,
   type StageUniforms,
 } from "./fabric_material";
+import { fields } from "./fields";
 import { heldVertices } from "./pins";
-import { fieldBytes, q16Words, type Frame, type Topology } from "../link/protocol";
+import { fieldBytes, q16Words, type ShownFrame, type Topology } from "../link/protocol";
 import type { SceneDocument } from "../link/scene_types";
 
 const mostMarkers = 160; // more would hide the cloth
@@ -38,6 +39,7 @@ export class ClothView {
     boxMinimum: { value: new Vector3() },
     boxExtent: { value: new Vector3() },
     coloured: { value: 0 },
+    fieldPower: { value: 1 },
   };
   private readonly materials: FabricMaterial[] = [];
   private readonly depthMaterial = clothCasterMaterial(this.decode);
@@ -65,7 +67,7 @@ export class ClothView {
   }
 
   /// Takes the frame's bytes as they are. False if they belong to a topology that is not here.
-  show(frame: Frame): boolean {
+  show(frame: ShownFrame): boolean {
     const { header } = frame;
     if (
       !this.topology ||
@@ -74,7 +76,7 @@ export class ClothView {
     ) {
       return false;
     }
-    this.takeField(fieldBytes(frame));
+    this.takeField(frame);
     const words = q16Words(frame);
     if (this.words) {
       this.words.reverse();
@@ -95,9 +97,11 @@ export class ClothView {
   }
 
   // A frame without a field leaves the last one where it is, unseen.
-  private takeField(bytes: Uint8Array | null): void {
+  private takeField(frame: ShownFrame): void {
+    const bytes = fieldBytes(frame);
     this.decode.coloured.value = bytes ? 1 : 0;
-    if (!bytes) return;
+    if (!bytes || !frame.field) return;
+    this.decode.fieldPower.value = fields[frame.field].power;
     this.fields ??= [new BufferAttribute(bytes, 1, true), new BufferAttribute(bytes, 1, true)];
     this.fields.reverse();
     this.fields[0].array = bytes;

@@ -29,6 +29,7 @@ export interface DecodeUniforms {
   boxMinimum: IUniform<Vector3>;
   boxExtent: IUniform<Vector3>;
   coloured: IUniform<number>; ///< 1: the field colours the cloth
+  fieldPower: IUniform<number>; ///< colours are even in this power of the field
 }
 
 // sRGB as the style sheet has it: the shader mixes them, then makes them linear.

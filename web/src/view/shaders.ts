@@ -59,6 +59,7 @@ uniform vec2 threads;
 uniform float pattern;
 uniform float hemmed;
 uniform float coloured;
+uniform float fieldPower;
 uniform vec3 fieldColors[9];
 varying float vField;
 varying vec2 vCloth;
@@ -104,7 +105,7 @@ vec3 fabricColor(vec3 base, bool front) {
 
 // Mixed in sRGB, as the legend's gradient is.
 vec3 fieldColor() {
-  float at = clamp(vField, 0.0, 1.0) * 8.0;
+  float at = pow(clamp(vField, 0.0, 1.0), fieldPower) * 8.0;
   int below = min(int(at), 7);
   return pow(mix(fieldColors[below], fieldColors[below + 1], at - float(below)), vec3(2.2));
 }
@@ -112,6 +113,9 @@ vec3 fieldColor() {
 
 /// Grazing light that loose fibres catch, and a little light through the cloth from behind.
 export const fabricSheen = /* glsl */ `
+if (coloured > 0.5) {
+  outgoingLight = mix(outgoingLight, diffuseColor.rgb, 0.5);  // light and shade must not hide what a colour means
+} else {
 vec3 viewDirection = normalize(vViewPosition);
 float grazing = 1.0 - saturate(dot(viewDirection, normal));
 grazing *= grazing * grazing;
@@ -121,6 +125,7 @@ outgoingLight += 0.016 + 0.05 * diffuseColor.rgb;  // fibres scatter some of the
   outgoingLight += diffuseColor.rgb * directionalLights[0].color * 0.05 * max(-towardsLight, 0.0);
   outgoingLight += (0.25 + 0.75 * diffuseColor.rgb) * grazing * (0.16 + 0.22 * saturate(0.5 + 0.5 * towardsLight));
 #endif
+}
 `;
 
 /// A glazed sphere: a soft highlight of the key light and a brighter rim.
