@@ -162,8 +162,8 @@ test("every truncated length is refused, and so is every longer one", () => {
 });
 
 // The fields of a header, and the changes of each that leave the message valid: any revision, sequence number and step;
-// any finite time >= 0; any valid box; on frames both flags, and with a field any finite range > 0. The other fields have few known values or follow from the
-// payload.
+// any finite time >= 0; any valid box; on frames both flags, with a field any finite range > 0. The others
+// have few known values or follow from the payload.
 const headerFields = [
   { at: 0, end: 2, name: "kind, encoding", legal: () => false },
   { at: 2, end: 4, name: "flags", legal: (view) => view.getUint8(0) === 2 && view.getUint16(2, true) <= 3 },

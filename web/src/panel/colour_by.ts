@@ -1,4 +1,4 @@
-// What the cloth's colours show: the choice beside the speed, and the legend above it. The choice is this browser's own.
+// What the cloth's colours show: the choice beside the speed, kept in this browser, and the legend above it.
 import { element } from "./dom";
 import { fields, gradient, isField } from "../view/fields";
 import type { FieldName } from "../link/protocol";

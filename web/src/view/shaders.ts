@@ -114,17 +114,17 @@ vec3 fieldColor() {
 /// Grazing light that loose fibres catch, and a little light through the cloth from behind.
 export const fabricSheen = /* glsl */ `
 if (coloured > 0.5) {
-  outgoingLight = mix(outgoingLight, diffuseColor.rgb, 0.5);  // light and shade must not hide what a colour means
+  outgoingLight = mix(outgoingLight, diffuseColor.rgb, 0.35);  // light and shade must not hide what a colour means
 } else {
-vec3 viewDirection = normalize(vViewPosition);
-float grazing = 1.0 - saturate(dot(viewDirection, normal));
-grazing *= grazing * grazing;
-outgoingLight += 0.016 + 0.05 * diffuseColor.rgb;  // fibres scatter some of the room's white light
-#if NUM_DIR_LIGHTS > 0
-  float towardsLight = dot(normal, directionalLights[0].direction);
-  outgoingLight += diffuseColor.rgb * directionalLights[0].color * 0.05 * max(-towardsLight, 0.0);
-  outgoingLight += (0.25 + 0.75 * diffuseColor.rgb) * grazing * (0.16 + 0.22 * saturate(0.5 + 0.5 * towardsLight));
-#endif
+  vec3 viewDirection = normalize(vViewPosition);
+  float grazing = 1.0 - saturate(dot(viewDirection, normal));
+  grazing *= grazing * grazing;
+  outgoingLight += 0.016 + 0.05 * diffuseColor.rgb;  // fibres scatter some of the room's white light
+  #if NUM_DIR_LIGHTS > 0
+    float towardsLight = dot(normal, directionalLights[0].direction);
+    outgoingLight += diffuseColor.rgb * directionalLights[0].color * 0.05 * max(-towardsLight, 0.0);
+    outgoingLight += (0.25 + 0.75 * diffuseColor.rgb) * grazing * (0.16 + 0.22 * saturate(0.5 + 0.5 * towardsLight));
+  #endif
 }
 `;
 
