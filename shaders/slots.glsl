@@ -137,6 +137,7 @@ const int unit_places = 11;         // server/sim/scene_order.cpp; stream/scene_
 const int slot_in_scene_order = 3;  // stream/scene_order.comp; as unit_position of stream/
 const int slot_packed = 0;          // stream/pack.comp; server/stream/packer.cpp
 const int slot_bounds = 2;          // stream/bounds.comp; stream/pack.comp
+const int slot_field = 1;           // stream/field.comp; stream/pack.comp
 const int slot_normals = 0;         // render/normals.comp; render/cloth.vert, as attribute_normal
 const int unit_shadow_map = 0;      // render/depth.vert; render/light.glsl
 const int block_frame = 0;          // a uniform block: server/render/renderer.cpp; render/frame.glsl

@@ -180,10 +180,10 @@ void Client::close(int code, std::string reason) {
   lws_set_timeout(wsi_, PENDING_TIMEOUT_CLOSE_SEND, 2);
 }
 
-void Client::subscribe(stream::Encoding encoding, double rate, int in_flight) {
+void Client::subscribe(stream::Form form, double rate, int in_flight) {
   if (!pacing_.subscribed()) topology_sent_ = false;
-  pacing_.subscribe(encoding, rate, in_flight, session::now_us());
-  room_->demand_changed(encoding);
+  pacing_.subscribe(form, rate, in_flight, session::now_us());
+  room_->demand_changed(form);
   wake();
 }
 
@@ -202,8 +202,8 @@ void Client::session_replaced() {
   topology_sent_ = false;
 }
 
-void Client::frame_arrived(stream::Encoding encoding, std::int64_t now) {
-  if (!pacing_.subscribed() || pacing_.encoding() != encoding) return;
+void Client::frame_arrived(stream::Form form, std::int64_t now) {
+  if (!pacing_.subscribed() || pacing_.form() != form) return;
   if (frame_waits_) ++hub_.metrics().frames_skipped;
   frame_waits_ = true;
   schedule_frame(now);
@@ -260,7 +260,7 @@ int Client::send_next() {
     wake();
     return write(const_cast<unsigned char*>(topology->data()), topology->size(), false);
   }
-  const stream::SharedMessage frame = room_->frame(pacing_.encoding());
+  const stream::SharedMessage frame = room_->frame(pacing_.form());
   if (!frame || !pacing_.is_news(frame->header.sequence)) return 0;
   const std::optional<std::int64_t> wait = pacing_.wait(session::now_us());
   if (wait && *wait == 0) return send_frame(frame);

@@ -43,7 +43,7 @@ class Client {
 
   /// Gives the client this role and lets it enter its session. False: there are too many sessions.
   bool admit(Role role);
-  void subscribe(stream::Encoding encoding, double rate, int in_flight);
+  void subscribe(stream::Form form, double rate, int in_flight);
   void unsubscribe();
   void acknowledge(std::uint32_t sequence);
   void leave_room();
@@ -59,7 +59,7 @@ class Client {
   void send_status(SharedText text);
   /// The session was brought back after it failed: the topology is sent again before the next frame.
   void session_replaced();
-  void frame_arrived(stream::Encoding encoding, std::int64_t now);
+  void frame_arrived(stream::Form form, std::int64_t now);
 
   /// Closes the connection with a close code of RFC 6455, as soon as the close frame can be sent.
   void close(int code, std::string reason);

@@ -7,7 +7,7 @@
 #include "server/net/limits.h"
 #include "server/net/methods.h"
 #include "server/scene/method.h"
-#include "server/stream/encoding.h"
+#include "server/stream/form.h"
 
 namespace clothlab::net {
 
@@ -17,6 +17,12 @@ nlohmann::json method_list() {
   auto list = nlohmann::json::array();
   for (const scene::Method method : scene::methods) list.push_back(scene::name(method));
   list.push_back(scene::automatic_method);
+  return list;
+}
+
+nlohmann::json field_list() {
+  auto list = nlohmann::json::array();
+  for (const stream::FieldFacts& field : stream::fields) list.push_back(field.name);
   return list;
 }
 
@@ -39,6 +45,7 @@ nlohmann::json hello_params(const Hub& hub, const Room& room, const Client& clie
           {"methods", method_list()},
           {"requests", method_names()},
           {"encodings", encoding_list()},
+          {"fields", field_list()},
           {"limits",
            {{"message_bytes", limits.message_bytes},
             {"json_depth", limits.json_depth},

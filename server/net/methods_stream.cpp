@@ -5,6 +5,7 @@
 
 #include "server/net/client.h"
 #include "server/net/methods.h"
+#include "server/scene/reader.h"
 
 namespace clothlab::net {
 
@@ -16,6 +17,12 @@ std::string allowed() {
     list += (list.empty() ? "" : " or ") + std::string(encoding.name);
   return list;
 }
+
+std::string allowed_fields(const std::string& found) {
+  scene::Words names{stream::no_field};
+  for (const stream::FieldFacts& field : stream::fields) names.emplace_back(field.name);
+  return "one of " + scene::quoted(names) + scene::suggestion(found, names);
+}
 }  // namespace
 
 Outcome stream_subscribe(Client& client, const Request& request) {
@@ -23,11 +30,16 @@ Outcome stream_subscribe(Client& client, const Request& request) {
   const std::string name = params.text("encoding", "q16");
   const std::optional<stream::Encoding> encoding = stream::encoding_of(name);
   if (!encoding) params.refuse("encoding", allowed() + (name == "c16" ? "; c16 is not supported yet" : ""));
+  const std::string field_name = params.text("field", stream::no_field);
+  const std::optional<stream::Field> field = stream::field_of(field_name);
+  if (!field) params.refuse("field", allowed_fields(field_name));
   const double rate = params.number("rate", min_rate, max_rate, 60);
   const std::int64_t in_flight = params.integer("in_flight", 1, max_in_flight, 2);
   if (auto error = params.check()) return *error;
-  client.subscribe(*encoding, rate, static_cast<int>(in_flight));
-  return json{{"encoding", name}, {"rate", rate}, {"in_flight", in_flight}};
+  client.subscribe({*encoding, *field}, rate, static_cast<int>(in_flight));
+  json agreed{{"encoding", name}, {"rate", rate}, {"in_flight", in_flight}};
+  if (*field != stream::Field::none) agreed["field"] = field_name;
+  return agreed;
 }
 
 Outcome stream_unsubscribe(Client& client, const Request& request) {

@@ -5,11 +5,11 @@
 
 namespace clothlab::net {
 
-void FramePacing::subscribe(stream::Encoding encoding, double rate, int in_flight, std::int64_t now) {
-  if (!subscribed_ || encoding != encoding_) sent_any_ = false;  // all frames are new to the viewer
+void FramePacing::subscribe(stream::Form form, double rate, int in_flight, std::int64_t now) {
+  if (!subscribed_ || form != form_) sent_any_ = false;  // all frames of this form are new to the viewer
   if (!subscribed_) count_ = 0;
   subscribed_ = true;
-  encoding_ = encoding;
+  form_ = form;
   rate_ = rate;
   period_ = static_cast<std::int64_t>(1e6 / rate);
   in_flight_ = in_flight;
@@ -27,6 +27,7 @@ std::int64_t FramePacing::ready_since(std::int64_t now) const {
 }
 
 void FramePacing::sent(std::uint32_t sequence, std::int64_t now) {
+  newest_ = count_ == 0 || newer(sequence, newest_) ? sequence : newest_;
   sent_any_ = true;
   last_sent_ = sequence;
   unacknowledged_[static_cast<std::size_t>(count_++)] = sequence;
@@ -34,7 +35,7 @@ void FramePacing::sent(std::uint32_t sequence, std::int64_t now) {
 }
 
 void FramePacing::acknowledge(std::uint32_t sequence, std::int64_t now) {
-  if (!sent_any_ || newer(sequence, last_sent_)) return;
+  if (count_ == 0 || newer(sequence, newest_)) return;
   const bool blocked = count_ >= in_flight_;
   int kept = 0;
   for (int i = 0; i < count_; ++i) {

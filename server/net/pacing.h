@@ -15,10 +15,10 @@ namespace clothlab::net {
 /// `in_flight` frames are unacknowledged. The caller then sends the latest frame.
 class FramePacing {
  public:
-  void subscribe(stream::Encoding encoding, double rate, int in_flight, std::int64_t now);
+  void subscribe(stream::Form form, double rate, int in_flight, std::int64_t now);
   void unsubscribe() { subscribed_ = false; }
   bool subscribed() const { return subscribed_; }
-  stream::Encoding encoding() const { return encoding_; }
+  stream::Form form() const { return form_; }
   double rate() const { return rate_; }
 
   /// True if this frame is newer than the last one sent, or if none was sent.
@@ -39,12 +39,12 @@ class FramePacing {
   static bool newer(std::uint32_t a, std::uint32_t b) { return static_cast<std::int32_t>(a - b) > 0; }
 
   bool subscribed_ = false, sent_any_ = false;
-  stream::Encoding encoding_ = stream::Encoding::q16;
+  stream::Form form_ = stream::Encoding::q16;
   double rate_ = 60;         ///< [1/s]
   std::int64_t period_ = 0;  ///< [us]
   int in_flight_ = 2, count_ = 0;
   std::array<std::uint32_t, max_in_flight> unacknowledged_{};  ///< `count_` numbers, oldest first
-  std::uint32_t last_sent_ = 0;
+  std::uint32_t last_sent_ = 0, newest_ = 0;  ///< of another form frames may be older than those before
   std::int64_t due_ = 0, unblocked_since_ = 0;
 };
 

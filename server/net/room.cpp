@@ -42,8 +42,8 @@ void Room::begin_session(std::shared_ptr<const session::Saved> saved) {
       std::make_unique<session::Session>(std::move(beginning), options.limits.scene, options.gpu, wake_);
 }
 
-stream::SharedMessage Room::frame(stream::Encoding encoding) const {
-  stream::SharedMessage frame = session_ ? session_->exchange().frame(encoding) : nullptr;
+stream::SharedMessage Room::frame(stream::Form form) const {
+  stream::SharedMessage frame = session_ ? session_->exchange().frame(form) : nullptr;
   if (frame && topology_ && frame->header.topology_revision != topology_->header.topology_revision)
     return nullptr;
   return frame;
@@ -88,20 +88,20 @@ void Room::leave(Client& client) {
   broadcast_viewers();
 }
 
-void Room::demand_changed(std::optional<stream::Encoding> fresh) {
+void Room::demand_changed(std::optional<stream::Form> fresh) {
   session::Demand demand;
   for (const Client* client : clients_) {
     if (!client->pacing().subscribed()) continue;
-    double& rate = demand.rate[static_cast<std::size_t>(client->pacing().encoding())];
+    double& rate = demand.rate[client->pacing().form().index()];
     rate = std::max(rate, client->pacing().rate());
   }
   for (std::size_t i = 0; i < demand.rate.size(); ++i) {
-    // Nobody has asked for this encoding for a while: the frame in the mailbox may be old.
+    // Nobody has asked for this form for a while: the frame in the mailbox may be old.
     if (demanded_[i] <= 0 && demand.rate[i] > 0 && session_)
-      session_->exchange().forget_frame(static_cast<stream::Encoding>(i));
+      session_->exchange().forget_frame(stream::Form::at(i));
     demanded_[i] = demand.rate[i];
   }
-  if (fresh) demand.fresh[static_cast<std::size_t>(*fresh)] = true;
+  if (fresh) demand.fresh[fresh->index()] = true;
   post({{}, demand});
 }
 
@@ -111,11 +111,11 @@ void Room::pump() {
   for (session::Event& event : events_) std::visit([&](auto& what) { handle(what); }, event);
   const std::int64_t now = session::now_us();
   for (std::size_t i = 0; i < seen_.size(); ++i) {
-    const auto encoding = static_cast<stream::Encoding>(i);
-    const stream::SharedMessage latest = demanded_[i] > 0 ? frame(encoding) : nullptr;
+    const stream::Form form = stream::Form::at(i);
+    const stream::SharedMessage latest = demanded_[i] > 0 ? frame(form) : nullptr;
     if (!latest || latest->header.sequence == seen_[i]) continue;
     seen_[i] = last_frame_ = latest->header.sequence;
-    for (Client* client : clients_) client->frame_arrived(encoding, now);
+    for (Client* client : clients_) client->frame_arrived(form, now);
   }
 }
 
@@ -144,7 +144,7 @@ bool Room::bring_back(const session::Failed& failed) {
   given_up_events_.clear();
   for (Client* client : clients_) client->session_replaced();
   post({{}, session::Watchers{static_cast<int>(clients_.size())}});
-  for (std::size_t i = 0; i < stream::encoding_count; ++i) demand_changed(static_cast<stream::Encoding>(i));
+  for (std::size_t i = 0; i < stream::form_count; ++i) demand_changed(stream::Form::at(i));
   hub_.lab().session_replaced(name_);
   broadcast("notice", {{"level", "warning"},
                        {"text", "the session failed and goes on from where it was a second ago: " +

@@ -33,15 +33,15 @@ class Room {
   const json& document() const { return document_->value; }
   const stream::SharedMessage& topology() const { return topology_; }
   /// The latest frame; null if there is none yet, or if it does not fit the present topology.
-  stream::SharedMessage frame(stream::Encoding encoding) const;
+  stream::SharedMessage frame(stream::Form form) const;
 
   void enter(Client& client);
   void leave(Client& client);
   bool empty() const { return clients_.empty(); }
   std::int64_t unwatched_since() const { return unwatched_since_; }  ///< when the last client left [us]
   /// Tells the session which frames its viewers want, after a subscription has changed. `fresh`: a client
-  /// needs a frame of this encoding at once, even if nothing moves.
-  void demand_changed(std::optional<stream::Encoding> fresh);
+  /// needs a frame of this form at once, even if nothing moves.
+  void demand_changed(std::optional<stream::Form> fresh);
 
   /// Passes a command of the server itself to the session.
   void post(session::Command command);
@@ -99,10 +99,10 @@ class Room {
   stream::SharedMessage topology_;
   json passes_ = json::array(), terms_ = json::array(), skipped_ = json::array(),
        pass_seconds_ = json::object(), solver_ = json::object();
-  std::array<double, stream::encoding_count> demanded_{};
-  std::array<std::uint32_t, stream::encoding_count>
-      seen_{};                           ///< number of the last frame offered to viewers, by encoding
-  std::uint32_t last_frame_ = 0;         ///< number of the newest frame of all encodings
+  std::array<double, stream::form_count> demanded_{};
+  std::array<std::uint32_t, stream::form_count>
+      seen_{};                           ///< number of the last frame offered to viewers, by form
+  std::uint32_t last_frame_ = 0;         ///< number of the newest frame of all forms
   std::vector<std::int64_t> failed_at_;  ///< times at which the session was brought back [us]
   std::optional<session::Failed> failure_;
   std::size_t capturing_ = 0;

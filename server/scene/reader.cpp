@@ -31,7 +31,17 @@ std::size_t edits(const std::string& a, const std::string& b) {
   return row[b.size()];
 }
 
-/// `; did you mean "x"?` for the nearest of `words`, if it is near enough for `word` to be a typing error.
+std::string range_text(const char* kind, const Range& range) {
+  const std::string text = formatted("%s from %g to %g", kind, range.minimum, range.maximum);
+  return *range.unit ? text + " [" + range.unit + "]" : text;
+}
+
+bool inside(double x, const Range& range) {
+  return x >= range.minimum && x <= range.maximum;
+}  // false for NaN
+
+}  // namespace
+
 std::string suggestion(const std::string& word, const Words& words) {
   if (word.size() > max_name_length) return "";
   const std::string* nearest = nullptr;
@@ -44,17 +54,6 @@ std::string suggestion(const std::string& word, const Words& words) {
   }
   return nearest ? "; did you mean \"" + *nearest + "\"?" : "";
 }
-
-std::string range_text(const char* kind, const Range& range) {
-  const std::string text = formatted("%s from %g to %g", kind, range.minimum, range.maximum);
-  return *range.unit ? text + " [" + range.unit + "]" : text;
-}
-
-bool inside(double x, const Range& range) {
-  return x >= range.minimum && x <= range.maximum;
-}  // false for NaN
-
-}  // namespace
 
 std::string quoted(const Words& words) {
   std::string text;

@@ -60,5 +60,7 @@ class Reader {
 
 /// `"a", "b", "c"`.
 std::string quoted(const Words& words);
+/// `; did you mean "x"?` for the nearest of `words`, if it is near enough for `word` to be a typing error.
+std::string suggestion(const std::string& word, const Words& words);
 
 }  // namespace clothlab::scene

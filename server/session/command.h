@@ -15,7 +15,7 @@
 namespace clothlab::session {
 
 using nlohmann::json;
-using stream::encoding_count;
+using stream::form_count;
 
 /// Says who sent a command and which answer it needs.
 struct Ticket {
@@ -49,10 +49,10 @@ struct Reset {};
 struct Speed {
   double factor = 1;
 };
-/// The frames that viewers want, for each encoding.
+/// The frames that viewers want, for each form, at its index.
 struct Demand {
-  std::array<double, encoding_count> rate{};  ///< the highest rate wanted [1/s]; 0: no viewer wants frames
-  std::array<bool, encoding_count> fresh{};   ///< true: a frame is wanted at once, even if nothing moves
+  std::array<double, form_count> rate{};  ///< the highest rate wanted [1/s]; 0: no viewer wants frames
+  std::array<bool, form_count> fresh{};   ///< true: a frame is wanted at once, even if nothing moves
 };
 struct Watchers {
   int count = 0;

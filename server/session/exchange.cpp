@@ -88,9 +88,9 @@ void Exchange::take_events(std::vector<Event>& out) {
   out.swap(events_);
 }
 
-stream::SharedMessage Exchange::frame(stream::Encoding encoding) const {
+stream::SharedMessage Exchange::frame(stream::Form form) const {
   const std::lock_guard lock(mutex_);
-  return frames_[static_cast<std::size_t>(encoding)];
+  return frames_[form.index()];
 }
 
 bool Exchange::take_commands(std::vector<Command>& out, Clock::time_point until) {
@@ -120,7 +120,7 @@ void Exchange::publish(const Status& status) {
 }
 
 void Exchange::publish(stream::SharedMessage frame) {
-  const auto slot = static_cast<std::size_t>(frame->header.encoding);
+  const std::size_t slot = frame->header.form().index();
   {
     const std::lock_guard lock(mutex_);
     frames_[slot].swap(frame);  // the older frame is freed after the lock is released
@@ -133,9 +133,9 @@ void Exchange::forget_frames() {
   for (stream::SharedMessage& frame : frames_) frame.reset();
 }
 
-void Exchange::forget_frame(stream::Encoding encoding) {
+void Exchange::forget_frame(stream::Form form) {
   const std::lock_guard lock(mutex_);
-  frames_[static_cast<std::size_t>(encoding)].reset();
+  frames_[form.index()].reset();
 }
 
 void Exchange::beat() {

@@ -124,7 +124,7 @@ class Exchange {
   void post(Command command);
   void stop();
   void take_events(std::vector<Event>& out);  ///< `out` is emptied first
-  stream::SharedMessage frame(stream::Encoding encoding) const;
+  stream::SharedMessage frame(stream::Form form) const;
   /// The newest saved state of the session, null before the first.
   std::shared_ptr<const Saved> saved() const;
   /// After the session has failed: answers each of its open commands with `error`, as events added to `out`.
@@ -142,8 +142,8 @@ class Exchange {
   void publish(const Status& status);
   void publish(stream::SharedMessage frame);
   void forget_frames();  ///< removes the latest frames, as they no longer show the present state
-  void forget_frame(stream::Encoding encoding);  ///< called by the service thread
-  void beat();                                   ///< sets the heartbeat to now
+  void forget_frame(stream::Form form);  ///< called by the service thread
+  void beat();                           ///< sets the heartbeat to now
   /// Stores the state from which the session can be restored.
   void store_saved(std::shared_ptr<const Saved> saved);
   void count_steps(std::uint64_t steps) { steps_.fetch_add(steps, std::memory_order_relaxed); }
@@ -162,7 +162,7 @@ class Exchange {
   std::condition_variable commands_changed_;
   CommandQueue commands_;
   std::vector<Event> events_;
-  std::array<stream::SharedMessage, encoding_count> frames_;
+  std::array<stream::SharedMessage, form_count> frames_;
   std::list<Awaited> awaited_;  ///< in the order of asking, so the next to be answered is near the front
   std::shared_ptr<const Saved> saved_;
   bool stopping_ = false;

@@ -60,8 +60,8 @@ void FrameMaker::restart() {
 bool FrameMaker::request(std::size_t index, const sim::Simulation& simulation) {
   const auto flags = (diverged_ ? stream::flag_diverged : 0) | (asleep_ ? stream::flag_asleep : 0);
   timer_.begin();
-  const bool queued = packer_->request(simulation, static_cast<stream::Encoding>(index),
-                                       static_cast<std::uint16_t>(flags), stream::collider_text(simulation));
+  const bool queued = packer_->request(simulation, stream::Form::at(index), static_cast<std::uint16_t>(flags),
+                                       stream::collider_text(simulation));
   if (queued) timer_.stage("pack_frame");
   timer_.end();
   if (!queued) return false;

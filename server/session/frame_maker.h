@@ -1,4 +1,4 @@
-// Decides when a session packs a frame and in which encodings, and publishes finished frames. Only encodings
+// Decides when a session packs a frame and in which forms, and publishes finished frames. Only forms
 // that viewers want are packed, and an unchanged state is packed again only if a frame is wanted at once.
 #pragma once
 
@@ -24,7 +24,7 @@ class FrameMaker {
   void demand(const Demand& demand, Clock::time_point now);
   /// The state has changed: a frame is made when the next is due.
   void state_changed() { ++version_; }
-  /// The state has changed, and a frame of each wanted encoding is made at once (an edit while paused, a step
+  /// The state has changed, and a frame of each wanted form is made at once (an edit while paused, a step
   /// by hand).
   void state_changed_now();
   /// The state was replaced (reset, another scene): discards the frames of the old state.
@@ -54,7 +54,7 @@ class FrameMaker {
   Clock::time_point next_due() const;
 
  private:
-  struct Lane {       // the state of one encoding
+  struct Lane {       // the state of one form
     double rate = 0;  ///< [1/s]
     bool urgent = false;
     std::uint64_t packed_version = 0;
@@ -67,7 +67,7 @@ class FrameMaker {
   Exchange& exchange_;
   std::unique_ptr<stream::Packer> packer_;
   gl::StageTimer timer_;
-  std::array<Lane, encoding_count> lanes_{};
+  std::array<Lane, form_count> lanes_{};
   std::uint32_t requested_ = 0;      ///< sequence number of the newest requested frame, as in the packer
   std::uint32_t arrived_ = 0;        ///< sequence number of the newest frame that arrived or was discarded
   std::uint32_t discard_until_ = 0;  ///< frames up to this number are discarded: their state was replaced

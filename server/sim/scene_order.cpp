@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "server/sim/plan.h"
-#include "shaders/slots.h"
 
 namespace clothlab::sim {
 

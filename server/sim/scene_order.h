@@ -8,6 +8,7 @@
 #include "server/gl/buffer.h"
 #include "server/gl/program.h"
 #include "server/sim/simulation.h"
+#include "shaders/slots.h"
 
 namespace clothlab::sim {
 
@@ -21,6 +22,11 @@ class SceneOrder {
   State to_memory(State in_scene) const;
   /// Positions in the scene's order. Copies them on the GPU, into the same buffer each time.
   const gl::TextureBuffer& to_scene(const gl::TextureBuffer& in_memory) const;
+  /// Binds the places in memory of the scene's vertices; false if both orders are the same.
+  bool bind_places() const {
+    if (!places_.empty()) place_texels_.bind(unit_places);
+    return !places_.empty();
+  }
 
  private:
   std::vector<std::uint32_t> places_;

@@ -77,7 +77,7 @@ struct Simulation::Implementation {
     return start_time + (static_cast<double>(step - start_step) + share) * scene.solver.dt;
   }
 
-  void bind_constants() {
+  void bind_constants() const {
     kernels.elements.bind(unit_elements);
     kernels.slices.bind(unit_element_slices);
     rest.bind(unit_rest_position);
@@ -368,6 +368,13 @@ void Simulation::finish() {
 }
 void Simulation::bind_positions(unsigned unit) const {
   implementation_->scene_order.to_scene(implementation_->state.shown_position()).bind(unit);
+}
+
+bool Simulation::bind_vertices() const {
+  implementation_->bind_constants();
+  implementation_->state.shown_position().bind(unit_position);
+  implementation_->state.shown_velocity().bind(unit_velocity);
+  return implementation_->scene_order.bind_places();
 }
 
 std::vector<scene::Collider> Simulation::colliders_now() const {

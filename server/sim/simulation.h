@@ -152,6 +152,9 @@ class Simulation {
 
   /// Binds the positions for reading as READ_VEC4(name, unit).
   void bind_positions(unsigned unit) const;
+  /// Binds what a pass over vertices in memory reads: positions, velocities, the elements at each vertex, and
+  /// the places in memory of the scene's vertices. False: those places are in the same order, and not bound.
+  bool bind_vertices() const;
   /// The colliders with their shapes moved to where they are at the present time, for drawing.
   std::vector<scene::Collider> colliders_now() const;
 

@@ -30,7 +30,7 @@ void write_header(const Header& header, std::uint8_t* out) {
   for (const glm::vec3* corner : {&header.box_minimum, &header.box_extent})
     for (int axis = 0; axis < 3; ++axis) out = put(out, (*corner)[axis]);
   out = put(out, header.payload_bytes);
-  put(out, std::uint32_t{0});
+  put(out, header.range);
 }
 
 SharedMessage encode_topology(const model::Model& model, std::uint32_t revision) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "server/model/model.h"
-#include "server/stream/encoding.h"
+#include "server/stream/form.h"
 
 namespace clothlab::stream {
 
@@ -20,6 +20,7 @@ inline constexpr std::uint16_t flag_asleep = 1, flag_diverged = 2;
 struct Header {
   MessageKind kind = MessageKind::frame;
   Encoding encoding = Encoding::q16;
+  Field field = Field::none;  ///< not on the wire: who subscribed knows it
   std::uint16_t flags = 0;
   std::uint32_t topology_revision = 0;
   std::uint32_t sequence = 0;
@@ -29,6 +30,8 @@ struct Header {
   glm::vec3 box_minimum{0.0f};  ///< [m]
   glm::vec3 box_extent{0.0f};   ///< [m]
   std::uint32_t payload_bytes = 0;
+  float range = 0;  ///< the field's value of a byte of 255; 0 without a field
+  Form form() const { return {encoding, field}; }
 };
 
 /// Spare bytes in front of a message, as libwebsockets requires (LWS_PRE; server/net/outbox.cpp checks that).

@@ -8,6 +8,7 @@
 
 #include "server/gl/buffer.h"
 #include "server/gl/program.h"
+#include "server/stream/field_pass.h"
 #include "shaders/slots.h"
 
 namespace clothlab::stream {
@@ -28,7 +29,8 @@ std::int64_t now_us() {
 
 struct Packer::Implementation {
   gl::Program bounds;
-  std::array<gl::Program, encoding_count> pack;
+  std::array<gl::Program, encoding_count> pack, pack_with_field;
+  FieldPass field;
   gl::TextureBuffer fan_offsets, fans;
   std::array<gl::Buffer, encoding_count> packed;
   gl::Buffer box;
@@ -47,11 +49,14 @@ struct Packer::Implementation {
     fans = {gl::Buffer(model::vertex_fans(model)), GL_RG32UI};
     std::size_t most = 0;
     for (std::size_t i = 0; i < encoding_count; ++i) {
-      const std::size_t bytes = box_bytes + vertex_count * encodings[i].bytes_per_vertex;
+      // With room for a field, which is written four bytes at a time.
+      const std::size_t bytes =
+          box_bytes + vertex_count * encodings[i].bytes_per_vertex + (vertex_count + 3) / 4 * 4;
       packed[i] = gl::Buffer(bytes);
       most = std::max(most, bytes);
     }
     ring = gl::ReadbackRing(most, ring_slots);
+    field.set_mesh(vertex_count);
     delivered = requested;
   }
 
@@ -72,6 +77,7 @@ struct Packer::Implementation {
     Header& header = message->header;
     std::memcpy(&header.box_minimum, bytes.data(), sizeof(glm::vec3));
     std::memcpy(&header.box_extent, bytes.data() + 16, sizeof(glm::vec3));
+    if (header.field != Field::none) std::memcpy(&header.range, bytes.data() + 12, sizeof header.range);
     message->bytes.resize(front_room + header_bytes + header.payload_bytes);
     write_header(header, message->bytes.data() + front_room);
     std::memcpy(message->bytes.data() + front_room + header_bytes, bytes.data() + box_bytes,
@@ -98,14 +104,22 @@ Result<std::unique_ptr<Packer>> Packer::create(std::uint32_t last) {
     return ok();
   };
   if (Status status = load(self.bounds, "stream/bounds.comp", {}); !status) return status.error();
-  for (std::size_t i = 0; i < encoding_count; ++i)
-    if (Status status = load(self.pack[i], "stream/pack.comp", {{encodings[i].define, "1"}}); !status)
+  for (std::size_t i = 0; i < encoding_count; ++i) {
+    gl::Defines defines{{encodings[i].define, "1"},
+                        {"WORDS", std::to_string(encodings[i].bytes_per_vertex / 4)}};
+    if (Status status = load(self.pack[i], "stream/pack.comp", defines); !status) return status.error();
+    defines.emplace_back("WITH_FIELD", "1");
+    if (Status status = load(self.pack_with_field[i], "stream/pack.comp", defines); !status)
       return status.error();
+  }
+  Result<FieldPass> field = FieldPass::create();
+  if (!field) return field.error();
+  self.field = std::move(*field);
   self.box = gl::Buffer(8 * sizeof(std::uint32_t));
   return packer;
 }
 
-bool Packer::request(const sim::Simulation& simulation, Encoding encoding, std::uint16_t flags,
+bool Packer::request(const sim::Simulation& simulation, Form form, std::uint16_t flags,
                      std::string_view colliders) {
   const std::int64_t begun_us = now_us();
   Implementation& self = *implementation_;
@@ -113,16 +127,19 @@ bool Packer::request(const sim::Simulation& simulation, Encoding encoding, std::
     self.set_mesh(simulation.model(), simulation.topology_revision());
   if (self.ring.full()) return false;
 
-  const auto index = static_cast<std::size_t>(encoding);
+  const auto index = static_cast<std::size_t>(form.encoding);
+  const bool with_field = form.field != Field::none;
+  const gl::Program& pack = (with_field ? self.pack_with_field : self.pack)[index];
   const std::array<std::uint32_t, 8> empty_box{~0u, ~0u, ~0u, ~0u, 0u, 0u, 0u, 0u};
   self.box.upload(empty_box.data(), sizeof(empty_box));
+  if (with_field) self.field.compute(simulation, form.field, pack);
   simulation.bind_positions(unit_position);
   self.fan_offsets.bind(unit_fan_offsets);
   self.fans.bind(unit_fans);
   self.box.bind_storage(slot_bounds);
   self.packed[index].bind_storage(slot_packed);
   self.dispatch(self.bounds);
-  self.dispatch(self.pack[index]);
+  self.dispatch(pack);
 
   self.requested_at_us[self.requested % ring_slots] = begun_us;
   std::vector<std::uint8_t>& text = self.colliders[self.requested % ring_slots];
@@ -132,14 +149,16 @@ bool Packer::request(const sim::Simulation& simulation, Encoding encoding, std::
     text.insert(text.end(), colliders.begin(), colliders.end());
   }
   Header& header = self.headers[self.requested % ring_slots];
-  header.encoding = encoding;
+  header.encoding = form.encoding;
+  header.field = form.field;
+  header.range = 0;
   header.flags = flags;
   header.topology_revision = self.topology_revision;
   header.sequence = ++self.requested;
   header.vertex_count = self.vertex_count;
   header.time = simulation.time();
   header.step = simulation.step_index();
-  header.payload_bytes = static_cast<std::uint32_t>(self.vertex_count * facts(encoding).bytes_per_vertex);
+  header.payload_bytes = static_cast<std::uint32_t>(self.vertex_count * form.bytes_per_vertex());
   self.ring.push(self.packed[index], box_bytes + header.payload_bytes);
   return true;
 }

@@ -1,5 +1,5 @@
-// Packs a simulation's present state into frames on the GPU: bounds, normals, quantisation, readback, without
-// stalling the steps.
+// Packs a simulation's present state into frames on the GPU: bounds, normals, a field, quantisation,
+// readback, without stalling the steps.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ class Packer {
 
   /// Queues the packing of the present state after the steps queued so far; `colliders` becomes the frame's
   /// Message::colliders. False if the readback ring is full: try again after the next poll.
-  bool request(const sim::Simulation& simulation, Encoding encoding, std::uint16_t flags,
+  bool request(const sim::Simulation& simulation, Form form, std::uint16_t flags,
                std::string_view colliders = {});
 
   /// The oldest finished frame, or null if none has finished. Never waits. Sequence numbers rise by one with

@@ -6,8 +6,12 @@ layout(local_size_x = GROUP_SIZE) in;
 READ_VEC4(position, unit_position);
 #include "normal.glsl"
 uniform int vertex_count;
+#ifdef WITH_FIELD
+#include "field.glsl"
+uniform float least_range;
+#endif
 layout(std430, binding = slot_packed) writeonly buffer Packed {
-  float packed_box[8];  // minimum, unused, extent, unused
+  float packed_box[8];  // minimum, the field's range, extent, unused
   uint packed_vertices[];
 };
 
@@ -16,6 +20,18 @@ vec2 octahedral(vec3 n) {
   vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
   return n.z >= 0.0 ? p : (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
 }
+
+#ifdef WITH_FIELD
+/// Four vertices from number `first` on as bytes over [0, range], after the `words` of all vertices.
+void pack_field(int words, int first) {
+  float range = field_range(least_range);
+  if (first == 0) packed_box[3] = range;
+  uint bytes = 0u;
+  for (int k = 0; k < 4 && first + k < vertex_count; ++k)
+    bytes |= uint(min(values[first + k] / range, 1.0) * 255.0 + 0.5) << 8 * k;
+  packed_vertices[words + first / 4] = bytes;
+}
+#endif
 
 void main() {
   int i = int(gl_GlobalInvocationID.x);
@@ -44,5 +60,8 @@ void main() {
   packed_vertices[2 * i + 1] = u.z | uint(o.x & 255) << 16 | uint(o.y & 255) << 24;
 #else
 #error this encoding has no branch in pack.comp
+#endif
+#ifdef WITH_FIELD
+  if (i % 4 == 0) pack_field(WORDS * vertex_count, i);
 #endif
 }

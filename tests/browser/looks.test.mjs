@@ -86,6 +86,7 @@ browserTest("every control is reachable by Tab, and has a name", async () => {
     "Step",
     "Reset",
     "Speed",
+    "Colour by",
     "Fit the scene",
     "Dark or light",
     "Help",

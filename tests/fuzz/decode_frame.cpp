@@ -62,7 +62,11 @@ Result<FrameHeader> read_header(std::span<const std::uint8_t> bytes) {
   if (payload != bytes.size() - header_bytes)
     return refused(56, std::to_string(payload) + " payload bytes",
                    std::to_string(bytes.size() - header_bytes) + ", as many as there are");
-  if (number_at<std::uint32_t>(bytes, 60) != 0) return refused(60, "a number", "0");
+  header.range = number_at<float>(bytes, 60);
+  const bool none = number_at<std::uint32_t>(bytes, 60) == 0;
+  if (!none && header.kind == 1) return refused(60, "a number", "0");
+  if (!none && !(header.range > 0.0f && std::isfinite(header.range)))
+    return refused(60, "a range that is none", "0 bits, or above 0");
   return header;
 }
 
@@ -103,10 +107,17 @@ Result<Topology> read_topology(std::span<const std::uint8_t> bytes, const FrameH
 template <class Vertex>
 Result<std::vector<Vertex>> read_vertices(std::span<const std::uint8_t> bytes, const FrameHeader& header) {
   std::size_t offset = header_bytes;
-  if (std::uint64_t{header.vertex_count} * sizeof(Vertex) != bytes.size() - offset)
+  const std::size_t each = sizeof(Vertex) + (header.range > 0.0f ? 1 : 0);
+  if (std::uint64_t{header.vertex_count} * each != bytes.size() - offset)
     return refused(12, std::to_string(header.vertex_count) + " vertices",
-                   std::to_string(sizeof(Vertex)) + " bytes of payload for each");
+                   std::to_string(each) + " bytes of payload for each");
   return items_at<Vertex>(bytes, offset, header.vertex_count);
+}
+
+/// What follows all vertices.
+std::vector<std::uint8_t> read_field(std::span<const std::uint8_t> bytes, const FrameHeader& header) {
+  const auto field = bytes.last(header.range > 0.0f ? header.vertex_count : 0);
+  return {field.begin(), field.end()};
 }
 
 template <class T>
@@ -136,20 +147,20 @@ Result<Decoded> decode_frame(std::span<const std::uint8_t> bytes) {
   if (header->kind == 1) {
     Result<Topology> topology = read_topology(bytes, *header);
     if (!topology) return topology.error();
-    return Decoded{*header, std::move(*topology)};
+    return Decoded{*header, std::move(*topology), {}};
   }
   if (header->encoding == 1) {
     static_assert(sizeof(Quantised::Vertex) == 8);
     auto vertices = read_vertices<Quantised::Vertex>(bytes, *header);
     if (!vertices) return vertices.error();
-    return Decoded{*header, Quantised{std::move(*vertices)}};
+    return Decoded{*header, Quantised{std::move(*vertices)}, read_field(bytes, *header)};
   }
   auto vertices = read_vertices<std::array<float, 6>>(bytes, *header);
   if (!vertices) return vertices.error();
   for (std::size_t i = 0; i < vertices->size(); ++i)
     for (const float number : (*vertices)[i])
       if (!std::isfinite(number)) return refused(header_bytes + 24 * i, "no number", "positions and normals");
-  return Decoded{*header, Float32{std::move(*vertices)}};
+  return Decoded{*header, Float32{std::move(*vertices)}, read_field(bytes, *header)};
 }
 
 std::vector<std::uint8_t> encode_frame(const Decoded& message) {
@@ -165,6 +176,7 @@ std::vector<std::uint8_t> encode_frame(const Decoded& message) {
   } else {
     put_all(payload, std::get<Float32>(message.payload).vertices);
   }
+  put_all(payload, message.field);
   const FrameHeader& header = message.header;
   std::vector<std::uint8_t> out{header.kind, header.encoding};
   put(out, header.flags);
@@ -176,7 +188,7 @@ std::vector<std::uint8_t> encode_frame(const Decoded& message) {
   put(out, header.box_minimum);
   put(out, header.box_extent);
   put(out, static_cast<std::uint32_t>(payload.size()));
-  put(out, std::uint32_t{0});
+  put(out, header.range);
   out.insert(out.end(), payload.begin(), payload.end());
   return out;
 }

@@ -22,6 +22,7 @@ struct FrameHeader {
   double time = 0;  ///< [s]
   std::uint64_t step = 0;
   std::array<float, 3> box_minimum{}, box_extent{};  ///< [m]
+  float range = 0;                                   ///< of the field; 0 without one
 };
 
 struct Topology {
@@ -46,6 +47,7 @@ struct Quantised {
 struct Decoded {
   FrameHeader header;
   std::variant<Topology, Float32, Quantised> payload;
+  std::vector<std::uint8_t> field;  ///< [vertex_count] of range / 255; empty without a field
 };
 
 /// Reads a message. The error's `where` is "byte OFFSET".

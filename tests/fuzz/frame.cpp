@@ -25,6 +25,7 @@ stream::Header server_header(const fuzz::FrameHeader& header, std::size_t payloa
     same.box_minimum[axis] = header.box_minimum[static_cast<std::size_t>(axis)];
     same.box_extent[axis] = header.box_extent[static_cast<std::size_t>(axis)];
   }
+  same.range = header.range;
   same.payload_bytes = static_cast<std::uint32_t>(payload);
   return same;
 }

@@ -103,6 +103,15 @@ TEST_CASE("what a renumbered simulation hands out and takes back is in the scene
   }
   CHECK(different == 0);
 
+  REQUIRE((*packer)->request(*shuffled, {stream::Encoding::f32, stream::Field::speed}, 0));
+  const stream::SharedMessage speeds = (*packer)->wait();
+  REQUIRE(speeds);
+  const std::uint8_t* bytes = speeds->data() + speeds->size() - state.position.size();
+  for (std::size_t i = 0; i < state.position.size(); ++i)
+    // The byte next to it, where rounding of the quotient decides.
+    different += std::abs(255.0f * glm::length(state.velocity[i]) / speeds->header.range - bytes[i]) > 0.501f;
+  CHECK(different == 0);
+
   shuffled->restore(state, 0.1, 1000);
   CHECK(sim::state_hash(shuffled->read_state()) == sim::state_hash(state));
 

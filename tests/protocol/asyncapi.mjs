@@ -79,6 +79,7 @@ export function readBinary(bytes) {
   };
   const header = record(layout.header, {});
   const payload = record(header.kind === 1 ? layout.topology : layout[["f32", "q16"][header.encoding]], header);
+  if (header.range > 0) Object.assign(payload, record(layout.field, header));
   if (at !== bytes.byteLength) throw new Error(`${bytes.byteLength - at} bytes too many`);
   return { header, ...payload };
 }

@@ -21,7 +21,8 @@ export function decode(bytes) {
   const header = readHeader(view);
   checkHeader(header, view.byteLength);
   if (header.kind === topology) return { ...header, ...readTopology(view, header) };
-  return { ...header, ...(header.encoding === f32 ? readFloat32(view, header) : readQuantised(view, header)) };
+  const vertices = header.encoding === f32 ? readFloat32(view, header) : readQuantised(view, header);
+  return { ...header, ...vertices, ...readField(view, header) };
 }
 
 function readHeader(view) {
@@ -38,7 +39,7 @@ function readHeader(view) {
     boxMinimum: floats(32, 3),
     boxExtent: floats(44, 3),
     payloadBytes: view.getUint32(56, true),
-    zero: view.getUint32(60, true),
+    range: view.getFloat32(60, true), // of the field; 0 without one
   };
 }
 
@@ -53,7 +54,10 @@ function checkHeader(header, byteLength) {
     header.boxExtent.every((extent) => extent >= 0 && extent < Infinity),
     `the box has the extent ${header.boxExtent}`,
   );
-  demand(header.zero === 0, `the reserved word is ${header.zero}`);
+  demand(
+    Object.is(header.range, 0) || (kind === frame && header.range > 0 && header.range < Infinity),
+    `the range of kind ${kind} is ${header.range}`,
+  );
   demand(
     header.payloadBytes === byteLength - headerBytes,
     `the header says ${header.payloadBytes} payload bytes, ${byteLength - headerBytes} came`,
@@ -83,8 +87,15 @@ function readTopology(view, { payloadBytes, vertexCount }) {
   return { cloths, triangles, texture };
 }
 
-function readFloat32(view, { payloadBytes, vertexCount }) {
-  demand(payloadBytes === 24 * vertexCount, "an f32 frame has 24 bytes a vertex");
+/// One byte for each vertex after all vertices, of the range.
+function readField(view, { vertexCount, range }) {
+  if (range === 0) return {};
+  const first = view.byteLength - vertexCount;
+  return { field: Array.from({ length: vertexCount }, (_, i) => (range * view.getUint8(first + i)) / 255) };
+}
+
+function readFloat32(view, { payloadBytes, vertexCount, range }) {
+  demand(payloadBytes === (range > 0 ? 25 : 24) * vertexCount, "an f32 frame has 24 bytes a vertex, 25 with a field");
   const triple = (at) => [0, 4, 8].map((offset) => view.getFloat32(at + offset, true));
   const positions = [],
     normals = [];
@@ -95,8 +106,8 @@ function readFloat32(view, { payloadBytes, vertexCount }) {
   return { positions, normals };
 }
 
-function readQuantised(view, { payloadBytes, vertexCount, boxMinimum, boxExtent }) {
-  demand(payloadBytes === 8 * vertexCount, "a q16 frame has 8 bytes a vertex");
+function readQuantised(view, { payloadBytes, vertexCount, range, boxMinimum, boxExtent }) {
+  demand(payloadBytes === (range > 0 ? 9 : 8) * vertexCount, "a q16 frame has 8 bytes a vertex, 9 with a field");
   const positions = [],
     normals = [];
   for (let i = 0; i < vertexCount; ++i) {

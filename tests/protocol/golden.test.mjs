@@ -7,7 +7,8 @@ import { BadMessage, decode } from "./decode.mjs";
 import { load } from "../page/module.mjs";
 
 const folder = new URL("../golden/", import.meta.url);
-const names = ["topology", "frame-q16", "frame-q16-asleep", "frame-f32", "frame-f32-diverged"];
+const withField = ["frame-q16-speed", "frame-f32-speed"];
+const names = ["topology", "frame-q16", "frame-q16-asleep", "frame-f32", "frame-f32-diverged", ...withField];
 const golden = names.map((name) => ({
   name,
   bytes: new Uint8Array(readFileSync(new URL(`${name}.bin`, folder))),
@@ -23,7 +24,7 @@ before(async () => {
     name: "the page's decoder",
     decode(bytes) {
       const { topology, frame } = page.decode(bytes.slice().buffer);
-      return topology ?? { ...frame.header, words: page.q16Words(frame) };
+      return topology ?? { ...frame.header, words: page.q16Words(frame), field: page.fieldBytes(frame) };
     },
     BadMessage: page.BadMessage,
     reads: ({ content: { header } }) => header.kind === 1 || header.encoding === 1,
@@ -77,6 +78,7 @@ test("the tests' decoder reads each golden message to what stands beside it", ()
         box_minimum: read.boxMinimum,
         box_extent: read.boxExtent,
         payload_bytes: read.payloadBytes,
+        ...(read.range > 0 ? { range: read.range } : {}),
       },
       header,
       name,
@@ -93,6 +95,7 @@ test("the tests' decoder reads each golden message to what stands beside it", ()
         read.positions,
         content.vertices.map(({ position }) => position),
       );
+      assert.deepEqual(read.field, content.field);
       content.vertices.forEach(({ normal }, i) =>
         assert.ok(Math.hypot(...normal.map((n, axis) => n - read.normals[i][axis])) < 1e-11),
       );
@@ -116,7 +119,7 @@ test("the page's decoder reads the golden topology and q16 frames to what stands
       assert.deepEqual([...read.textureCoordinates], content.texture_coordinates.flat());
       continue;
     }
-    const { words, ...rest } = read;
+    const { words, field, ...rest } = read;
     assert.deepEqual(rest, {
       kind: 2,
       encoding: 1,
@@ -130,7 +133,9 @@ test("the page's decoder reads the golden topology and q16 frames to what stands
       boxMinimum: header.box_minimum,
       boxExtent: header.box_extent,
       payloadBytes: header.payload_bytes,
+      range: header.range ?? 0,
     });
+    assert.deepEqual(field && [...field], content.field_bytes ?? null);
     const expected = content.vertices.flatMap(({ quantised, octahedral: [a, b] }) => [
       ...quantised,
       (a & 255) | ((b & 255) << 8),
@@ -140,7 +145,8 @@ test("the page's decoder reads the golden topology and q16 frames to what stands
 });
 
 test("a frame in an encoding that the page did not ask for is refused by it", () => {
-  for (const name of ["frame-f32", "frame-f32-diverged"]) refuses(decoders[1], called(name).bytes, name);
+  for (const name of ["frame-f32", "frame-f32-diverged", "frame-f32-speed"])
+    refuses(decoders[1], called(name).bytes, name);
 });
 
 test("every truncated length is refused, and so is every longer one", () => {
@@ -156,9 +162,9 @@ test("every truncated length is refused, and so is every longer one", () => {
 });
 
 // The fields of a header, and the changes of each that leave the message valid: any revision, sequence number and step;
-// any finite time >= 0; any valid box; on frames both flags. The other fields have few known values or follow from the
-// payload.
-const fields = [
+// any finite time >= 0; any valid box; on frames both flags, with a field any finite range > 0. The others
+// have few known values or follow from the payload.
+const headerFields = [
   { at: 0, end: 2, name: "kind, encoding", legal: () => false },
   { at: 2, end: 4, name: "flags", legal: (view) => view.getUint8(0) === 2 && view.getUint16(2, true) <= 3 },
   { at: 4, end: 8, name: "topologyRevision", legal: () => true },
@@ -183,7 +189,16 @@ const fields = [
     name: "boxExtent",
     legal: (view) => Number.isFinite(view.getFloat32(at, true)) && view.getFloat32(at, true) >= 0,
   })),
-  { at: 56, end: 64, name: "payloadBytes, zero", legal: () => false },
+  { at: 56, end: 60, name: "payloadBytes", legal: () => false },
+  {
+    at: 60,
+    end: 64,
+    name: "range",
+    legal: (view, original) => {
+      const range = view.getFloat32(60, true);
+      return original.range > 0 && range > 0 && range < Infinity;
+    },
+  },
 ];
 
 test("every flipped bit of a header is refused, or where it makes another legal value, taken as that and nothing else", (t) => {
@@ -191,11 +206,11 @@ test("every flipped bit of a header is refused, or where it makes another legal 
     refused = 0;
   forEach((decoder, { name, bytes }) => {
     const original = decoder.decode(bytes);
-    for (const field of fields)
+    for (const field of headerFields)
       for (let bit = 8 * field.at; bit < 8 * field.end; ++bit) {
         const flipped = changed(bytes, (_, copy) => (copy[bit >> 3] ^= 1 << (bit & 7)));
         const what = `${name} with bit ${bit & 7} of byte ${bit >> 3} (${field.name}) flipped`;
-        if (!field.legal(new DataView(flipped.buffer))) {
+        if (!field.legal(new DataView(flipped.buffer), original)) {
           refuses(decoder, flipped, what);
           ++refused;
           continue;
@@ -217,6 +232,7 @@ function mayDiffer(field, key) {
     topologyRevision: ["revision"],
     boxMinimum: ["positions"],
     boxExtent: ["positions"],
+    range: ["field"],
   };
   return key === field || (derived[field] ?? []).includes(key);
 }

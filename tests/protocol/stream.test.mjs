@@ -45,7 +45,7 @@ test("the topology comes before the first frame and fits it and the scene", asyn
     [0, 26, 1],
   ]);
   assert.ok(topology.texture.flat().every((t) => t >= 0 && t <= 1));
-  assert.equal(frame.zero, 0);
+  assert.equal(frame.range, 0);
 });
 
 test("the rest shape arrives as the scene describes it, in both encodings", async () => {

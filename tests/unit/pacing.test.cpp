@@ -105,6 +105,29 @@ TEST_CASE("a change of encoding makes the present frame news") {
   CHECK(pacing.is_news(9));
 }
 
+TEST_CASE("a change of field makes the present frame news, older though it may be") {
+  FramePacing pacing = subscribed(60, 2);
+  pacing.sent(9, 0);
+  pacing.subscribe({stream::Encoding::q16, stream::Field::speed}, 60, 2, second);
+  CHECK(pacing.is_news(8));
+  pacing.sent(8, second);
+  CHECK_FALSE(pacing.is_news(8));
+}
+
+TEST_CASE("frames under way when the form changes still count, and can still be acknowledged") {
+  FramePacing pacing = subscribed(60, 2);
+  pacing.sent(9, 0);
+  pacing.sent(10, 0);
+  pacing.subscribe({stream::Encoding::q16, stream::Field::speed}, 60, 2, second);
+  CHECK_FALSE(pacing.wait(second).has_value());
+  pacing.acknowledge(9, second);
+  REQUIRE(pacing.wait(second) == 0);
+  pacing.sent(8, second);  // the newest of the other form
+  CHECK(pacing.unacknowledged() == 2);
+  pacing.acknowledge(10, second);  // of the form before
+  CHECK(pacing.unacknowledged() == 0);
+}
+
 TEST_CASE("time that the viewer held frames back does not count as the server's") {
   FramePacing pacing = subscribed(100, 1);
   pacing.sent(1, 0);

@@ -1,5 +1,6 @@
 // Connects the parts of the page: the link, the scene's document, the stage and the controls.
 import { Connection, type LinkEvents } from "./link/connection";
+import { ColourBy } from "./panel/colour_by";
 import { button, element } from "./panel/dom";
 import type { SolverFacts } from "./panel/field";
 import { saferStep, type Stability } from "./panel/gauge";
@@ -47,6 +48,10 @@ export class Page {
   private readonly panel = this.makePanel();
   private readonly lab = this.makeLab();
   private readonly notifications = this.makeNotifications();
+  private readonly colourBy = new ColourBy(
+    (field) => this.connection.setField(field),
+    () => this.layout?.legendToggled(),
+  );
   private layout: Layout | null = null;
   private latest: ShownFrame | null = null;
   private moved: MovedCollider[] = []; // colliders' places for the next frame
@@ -120,6 +125,7 @@ export class Page {
     if (!shown) return;
     this.hud.countDrawn();
     this.hud.setTime(frame.header.time);
+    this.colourBy.show(frame.field, frame.header.range);
     this.hud.set("vertices", String(frame.header.vertexCount));
     this.link.drawing();
     hook.framesDrawn++;
@@ -143,13 +149,13 @@ export class Page {
       },
       notification: (method, params) => this.notifications[method]?.(params),
       topology: (topology) => this.stage.setTopology(topology),
-      frame: (frame) => {
+      frame: (frame, field) => {
         hook.framesReceived++;
         this.hud.countReceived();
         this.slow.picture();
         const replaced = this.latest; // a newer frame came before this one was drawn
         if (replaced && !document.hidden) this.connection.acknowledge(replaced.header.sequence);
-        this.latest = { ...frame, moved: this.moved };
+        this.latest = { ...frame, field, moved: this.moved };
       },
       latency: (milliseconds) => this.hud.set("latency", `${milliseconds.toFixed(milliseconds < 10 ? 1 : 0)} ms`),
       problem: (error) => noticeError("The server sent something unexpected", error),

@@ -1,5 +1,5 @@
 // The link to the server: connects, authenticates, subscribes, measures the round trip, and reconnects after a loss.
-import { BadMessage, decode, type Frame, type Topology } from "./protocol";
+import { BadMessage, decode, type FieldName, type Frame, type Topology } from "./protocol";
 import { errorNotAllowed, Rpc, RpcError } from "./rpc";
 
 export type LinkState = "connecting" | "open" | "waiting" | "unauthorised";
@@ -8,7 +8,7 @@ export interface LinkEvents {
   state(state: LinkState, retryInSeconds: number, why: string): void;
   notification(method: string, params: Record<string, unknown>): void;
   topology(topology: Topology): void;
-  frame(frame: Frame): void;
+  frame(frame: Frame, field: FieldName | null): void;
   latency(milliseconds: number): void;
   problem(error: Error): void;
 }
@@ -28,6 +28,8 @@ export class Connection {
   private retryTimer = 0;
   private lastHeard = 0;
   private refused = false;
+  private field: FieldName | null = null;
+  private agreed: FieldName | null = null; // what the frames that come now have
 
   constructor(
     private readonly session: string,
@@ -62,6 +64,20 @@ export class Connection {
     return this.rpc ? this.rpc.request<T>(method, params) : Promise.reject(new Error("not connected to the server"));
   }
 
+  /// Asks for frames with this field, or without one, now and on every later link.
+  setField(field: FieldName | null): void {
+    this.field = field;
+    // a refusal, of this or of the link, is told where the link is made
+    if (this.rpc && this.open) this.subscribe(this.rpc).catch(() => undefined);
+  }
+
+  // Every frame after the answer has the field.
+  private async subscribe(rpc: Rpc): Promise<void> {
+    const { field } = this;
+    await rpc.request("stream.subscribe", { encoding: "q16", rate: 60, in_flight: 2, ...(field ? { field } : {}) });
+    this.agreed = field;
+  }
+
   acknowledge(sequence: number): void {
     this.rpc?.notify("stream.ack", { frame: sequence });
   }
@@ -78,8 +94,7 @@ export class Connection {
     const token = sessionStorage.getItem("clothlab-token");
     try {
       const authenticated = token ? rpc.request("auth", { token }) : Promise.resolve();
-      const subscribed = rpc.request("stream.subscribe", { encoding: "q16", rate: 60, in_flight: 2 });
-      await Promise.all([authenticated, subscribed]);
+      await Promise.all([authenticated, this.subscribe(rpc)]);
       this.delay = firstDelay;
       this.events.state("open", 0, "");
     } catch (error) {
@@ -115,7 +130,7 @@ export class Connection {
       this.bytesReceived += data.byteLength;
       const message = decode(data);
       if ("topology" in message) this.events.topology(message.topology);
-      else this.events.frame(message.frame);
+      else this.events.frame(message.frame, this.agreed);
     } catch (error) {
       if (error instanceof BadMessage) this.distrust(error);
       else this.events.problem(error as Error);

@@ -10,6 +10,9 @@ const q16Bytes = 8; ///< per vertex
 const flagAsleep = 1;
 const flagDiverged = 2;
 
+/// What stream.subscribe may ask for beside the vertices: a number at each of them.
+export type FieldName = "strain" | "speed" | "contact";
+
 export interface Header {
   kind: number;
   encoding: number;
@@ -23,14 +26,16 @@ export interface Header {
   boxMinimum: [number, number, number]; ///< [m]
   boxExtent: [number, number, number]; ///< [m]
   payloadBytes: number;
+  range: number; ///< of the field: the value of a byte of 255; 0 without a field
 }
 
 export interface Frame {
   header: Header;
   buffer: ArrayBuffer;
 }
-/// A frame with the colliders' places, which the server sends just before it.
+/// A frame with the field that it has, and the colliders' places, which the server sends just before it.
 export interface ShownFrame extends Frame {
+  field: FieldName | null;
   moved: MovedCollider[];
 }
 
@@ -60,7 +65,7 @@ export function decode(buffer: ArrayBuffer): { topology: Topology } | { frame: F
   const header = decodeHeader(buffer);
   if (header.kind === kindTopology) return { topology: decodeTopology(header, buffer) };
   demand(
-    header.payloadBytes === q16Bytes * header.vertexCount,
+    header.payloadBytes === (header.range > 0 ? q16Bytes + 1 : q16Bytes) * header.vertexCount,
     `a frame of ${header.vertexCount} vertices has ${header.payloadBytes} bytes`,
   );
   return { frame: { header, buffer } };
@@ -71,8 +76,7 @@ function decodeHeader(buffer: ArrayBuffer): Header {
   const view = new DataView(buffer);
   const kind = view.getUint8(0),
     encoding = view.getUint8(1),
-    flags = view.getUint16(2, true),
-    reserved = view.getUint32(60, true);
+    flags = view.getUint16(2, true);
   const triple = (at: number): [number, number, number] => [
     view.getFloat32(at, true),
     view.getFloat32(at + 4, true),
@@ -91,6 +95,7 @@ function decodeHeader(buffer: ArrayBuffer): Header {
     boxMinimum: triple(32),
     boxExtent: triple(44),
     payloadBytes: view.getUint32(56, true),
+    range: view.getFloat32(60, true),
   };
   const isFrame = kind === kindFrame;
   demand(isFrame || kind === kindTopology, `a binary message is of the unknown kind ${kind}`);
@@ -107,7 +112,10 @@ function decodeHeader(buffer: ArrayBuffer): Header {
     header.boxMinimum.every(Number.isFinite) && header.boxExtent.every((extent) => extent >= 0 && extent < Infinity),
     `the box of a frame is ${header.boxMinimum} + ${header.boxExtent}`,
   );
-  demand(reserved === 0, `the reserved word of a binary message is ${reserved}`);
+  demand(
+    Object.is(header.range, 0) || (isFrame && header.range > 0 && header.range < Infinity),
+    `the range of a binary message of kind ${kind} is ${header.range}`,
+  );
   demand(
     headerBytes + header.payloadBytes === buffer.byteLength,
     `the header announces ${header.payloadBytes} bytes, ${buffer.byteLength - headerBytes} came`,
@@ -148,6 +156,11 @@ function decodeTopology(header: Header, buffer: ArrayBuffer): Topology {
     triangles,
     textureCoordinates: new Float32Array(buffer, textureAt, 2 * vertexCount),
   };
+}
+
+/// The field's bytes, one for each vertex, without a copy; null without a field.
+export function fieldBytes({ header, buffer }: Frame): Uint8Array | null {
+  return header.range > 0 ? new Uint8Array(buffer, headerBytes + q16Bytes * header.vertexCount) : null;
 }
 
 /// The payload of a q16 frame as four 16-bit words per vertex (x, y, z, both bytes of the normal), without a copy.

@@ -69,6 +69,11 @@ export class Layout {
     this.changed();
   }
 
+  /// The legend of the cloth's colours came or went.
+  legendToggled(): void {
+    this.changed();
+  }
+
   freeArea(): FreeArea {
     if (document.body.classList.contains("bare")) return { left: 0, top: 0, width: innerWidth, height: innerHeight };
     return largestFree(this.covered(), innerWidth, innerHeight);

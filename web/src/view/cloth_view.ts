@@ -17,8 +17,9 @@ import {
   type DecodeUniforms,
   type StageUniforms,
 } from "./fabric_material";
+import { fields } from "./fields";
 import { heldVertices } from "./pins";
-import { q16Words, type Frame, type Topology } from "../link/protocol";
+import { fieldBytes, q16Words, type ShownFrame, type Topology } from "../link/protocol";
 import type { SceneDocument } from "../link/scene_types";
 
 const mostMarkers = 160; // more would hide the cloth
@@ -33,9 +34,12 @@ export class ClothView {
   // Two buffers in turn. With one, Chromium's software WebGL drew the mesh, but not the pins, with the vertices of an
   // earlier frame, and kept doing so when no further frame came.
   private words: [BufferAttribute, BufferAttribute] | null = null;
+  private fields: [BufferAttribute, BufferAttribute] | null = null; // from the first frame with a field on
   private readonly decode: DecodeUniforms = {
     boxMinimum: { value: new Vector3() },
     boxExtent: { value: new Vector3() },
+    coloured: { value: 0 },
+    fieldPower: { value: 1 },
   };
   private readonly materials: FabricMaterial[] = [];
   private readonly depthMaterial = clothCasterMaterial(this.decode);
@@ -63,7 +67,7 @@ export class ClothView {
   }
 
   /// Takes the frame's bytes as they are. False if they belong to a topology that is not here.
-  show(frame: Frame): boolean {
+  show(frame: ShownFrame): boolean {
     const { header } = frame;
     if (
       !this.topology ||
@@ -72,6 +76,7 @@ export class ClothView {
     ) {
       return false;
     }
+    this.takeField(frame);
     const words = q16Words(frame);
     if (this.words) {
       this.words.reverse();
@@ -89,6 +94,18 @@ export class ClothView {
     this.box.min.set(...header.boxMinimum);
     this.box.max.copy(this.box.min).add(this.decode.boxExtent.value);
     return true;
+  }
+
+  // A frame without a field leaves the last one where it is, unseen.
+  private takeField(frame: ShownFrame): void {
+    const bytes = fieldBytes(frame);
+    this.decode.coloured.value = bytes ? 1 : 0;
+    if (!bytes || !frame.field) return;
+    this.decode.fieldPower.value = fields[frame.field].power;
+    this.fields ??= [new BufferAttribute(bytes, 1, true), new BufferAttribute(bytes, 1, true)];
+    this.fields.reverse();
+    this.fields[0].array = bytes;
+    this.fields[0].needsUpdate = true;
   }
 
   /// Empty objects with the materials of a cloth, its pins and its shadow. They let WebGL compile the programs before
@@ -110,6 +127,9 @@ export class ClothView {
     if (!geometry || !this.words) return;
     geometry.setAttribute("q16", this.words[0]);
     geometry.setAttribute("resting", this.words[1]);
+    if (!this.fields) return;
+    geometry.setAttribute("field", this.fields[0]);
+    geometry.setAttribute("restingField", this.fields[1]);
   }
 
   private build(topology: Topology): void {
@@ -181,7 +201,7 @@ export class ClothView {
     this.caster.clear();
     this.mesh?.geometry.dispose();
     this.mesh = null;
-    this.words = null;
+    this.words = this.fields = null;
     this.rebuildMarkers();
   }
 }

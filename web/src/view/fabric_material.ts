@@ -17,6 +17,7 @@ import {
   fabricSheen,
   fabricVertexParameters,
 } from "./shaders";
+import { scale } from "./fields";
 import type { Cloth } from "../link/scene_types";
 
 const patterns = ["plain", "weave", "checker", "stripes"];
@@ -27,7 +28,12 @@ export interface DecodeUniforms {
   [name: string]: IUniform;
   boxMinimum: IUniform<Vector3>;
   boxExtent: IUniform<Vector3>;
+  coloured: IUniform<number>; ///< 1: the field colours the cloth
+  fieldPower: IUniform<number>; ///< colours are even in this power of the field
 }
+
+// sRGB as the style sheet has it: the shader mixes them, then makes them linear.
+const fieldColors = { value: scale.map((colour) => new Color(`#${colour}`).convertLinearToSRGB()) };
 
 /// Uniforms shared by every surface of the stage.
 export interface StageUniforms {
@@ -47,16 +53,23 @@ export class FabricMaterial extends MeshLambertMaterial {
         threads: this.threads,
         pattern: this.pattern,
         hemmed: this.hemmed,
+        fieldColors,
       });
       shader.vertexShader = shader.vertexShader
         .replace("#include <common>", `#include <common>\n${fabricVertexParameters}`)
         .replace("#include <uv_vertex>", "vCloth = textureCoordinate * threads;")
         .replace("#include <beginnormal_vertex>", "vec3 objectNormal = decodeNormal();")
-        .replace("#include <begin_vertex>", "vec3 transformed = decodePosition();\nvWorld = transformed;")
+        .replace(
+          "#include <begin_vertex>",
+          "vec3 transformed = decodePosition();\nvWorld = transformed;\nvField = field;",
+        )
         .replace("#include <shadowmap_vertex>", `${fabricShadowNormal}\n#include <shadowmap_vertex>`);
       shader.fragmentShader = shader.fragmentShader
         .replace("#include <common>", `#include <common>\n${fabricFragmentParameters}`)
-        .replace("#include <color_fragment>", "diffuseColor.rgb = fabricColor(diffuseColor.rgb, gl_FrontFacing);")
+        .replace(
+          "#include <color_fragment>",
+          "diffuseColor.rgb = coloured > 0.5 ? fieldColor() : fabricColor(diffuseColor.rgb, gl_FrontFacing);",
+        )
         .replace(
           "#include <aomap_fragment>",
           "reflectedLight.indirectDiffuse *= skyLeft(vWorld, inverseTransformDirection(normal, viewMatrix));",

@@ -23,6 +23,8 @@ vec3 decodeNormal() {
 export const fabricVertexParameters = /* glsl */ `
 ${decodeParameters}
 attribute vec2 textureCoordinate;
+attribute float field;
+varying float vField;
 uniform vec2 threads;
 uniform vec3 lightDirection;
 varying vec2 vCloth;
@@ -56,6 +58,10 @@ ${occlusionParameters}
 uniform vec2 threads;
 uniform float pattern;
 uniform float hemmed;
+uniform float coloured;
+uniform float fieldPower;
+uniform vec3 fieldColors[9];
+varying float vField;
 varying vec2 vCloth;
 varying vec3 vWorld;
 
@@ -96,19 +102,30 @@ vec3 fabricColor(vec3 base, bool front) {
   color *= 1.0 - hemmed * 0.16 * (1.0 - smoothstep(0.016, 0.019, border));
   return front ? color : mix(color, vec3(dot(color, vec3(0.3, 0.6, 0.1))), 0.25) * 0.94;
 }
+
+// Mixed in sRGB, as the legend's gradient is.
+vec3 fieldColor() {
+  float at = pow(clamp(vField, 0.0, 1.0), fieldPower) * 8.0;
+  int below = min(int(at), 7);
+  return pow(mix(fieldColors[below], fieldColors[below + 1], at - float(below)), vec3(2.2));
+}
 `;
 
 /// Grazing light that loose fibres catch, and a little light through the cloth from behind.
 export const fabricSheen = /* glsl */ `
-vec3 viewDirection = normalize(vViewPosition);
-float grazing = 1.0 - saturate(dot(viewDirection, normal));
-grazing *= grazing * grazing;
-outgoingLight += 0.016 + 0.05 * diffuseColor.rgb;  // fibres scatter some of the room's white light
-#if NUM_DIR_LIGHTS > 0
-  float towardsLight = dot(normal, directionalLights[0].direction);
-  outgoingLight += diffuseColor.rgb * directionalLights[0].color * 0.05 * max(-towardsLight, 0.0);
-  outgoingLight += (0.25 + 0.75 * diffuseColor.rgb) * grazing * (0.16 + 0.22 * saturate(0.5 + 0.5 * towardsLight));
-#endif
+if (coloured > 0.5) {
+  outgoingLight = mix(outgoingLight, diffuseColor.rgb, 0.35);  // light and shade must not hide what a colour means
+} else {
+  vec3 viewDirection = normalize(vViewPosition);
+  float grazing = 1.0 - saturate(dot(viewDirection, normal));
+  grazing *= grazing * grazing;
+  outgoingLight += 0.016 + 0.05 * diffuseColor.rgb;  // fibres scatter some of the room's white light
+  #if NUM_DIR_LIGHTS > 0
+    float towardsLight = dot(normal, directionalLights[0].direction);
+    outgoingLight += diffuseColor.rgb * directionalLights[0].color * 0.05 * max(-towardsLight, 0.0);
+    outgoingLight += (0.25 + 0.75 * diffuseColor.rgb) * grazing * (0.16 + 0.22 * saturate(0.5 + 0.5 * towardsLight));
+  #endif
+}
 `;
 
 /// A glazed sphere: a soft highlight of the key light and a brighter rim.
