@@ -62,6 +62,16 @@ export class Connection {
     return this.rpc ? this.rpc.request<T>(method, params) : Promise.reject(new Error("not connected to the server"));
   }
 
+  /// The answer of the HTTP API, e.g. at `/api/scene`, for this session.
+  async get(path: string, query: Record<string, string> = {}): Promise<ArrayBuffer> {
+    const token = sessionStorage.getItem("clothlab-token");
+    const answer = await fetch(`${path}?${new URLSearchParams({ session: this.session, ...query }).toString()}`, {
+      headers: token === null ? {} : { authorization: `Bearer ${token}` },
+    });
+    if (!answer.ok) throw new Error(`${path}: ${answer.status}`);
+    return answer.arrayBuffer();
+  }
+
   acknowledge(sequence: number): void {
     this.rpc?.notify("stream.ack", { frame: sequence });
   }
