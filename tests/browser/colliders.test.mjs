@@ -201,9 +201,25 @@ browserTest(
     }
     assert.notDeepEqual(pictures[0], pictures[1]);
     assert.deepEqual(viewer.complaints, []);
-    // A slider places it anew; a mesh that was uploaded again is drawn as it is now.
+    // Where cloth would start through it, the page says so.
+    await viewer.slider("Collider: dummy", "place y");
+    const height = viewer.number("Collider: dummy", "place y");
+    await height.fill("0.2");
+    await height.press("Enter");
+    const refusal = viewer.page.locator("#notices .notice", { hasText: "Not applied" });
+    await refusal.waitFor();
+    assert.match(await refusal.textContent(), /passing through a body, in \d+ places/);
+    assert.match(await refusal.textContent(), /of dummy/);
+    assert.equal(await refusal.getByRole("button", { name: "Use points instead" }).count(), 0);
+    await refusal.getByRole("button", { name: "Show me" }).click();
+    await viewer.page.waitForTimeout(600);
+    await viewer.page.screenshot({ path: `${screenshots}mesh-crossed.png` });
+    // A field places it anew; a mesh that was uploaded again is drawn as it is now.
     await client.request("scene.patch", { patch: [{ op: "replace", path: "/colliders/0/motion", value: null }] });
-    await viewer.slider("Collider: dummy", "place x");
+    const across = viewer.number("Collider: dummy", "place x");
+    await across.fill("-0.4");
+    await across.press("Enter");
+    await viewer.until(() => Math.abs(window.clothlab.stage.colliders.shown[0].mesh.position.x + 0.4) < 1e-9);
     await client.request("mesh.upload", { name: "hut", obj: "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n" });
     await client.request("scene.patch", {
       patch: [{ op: "replace", path: "/colliders/0/mesh", value: { obj: "hut" } }],
