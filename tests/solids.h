@@ -1,10 +1,11 @@
-// A shape of each kind, and properties of it that do not use its law: for tests of solids.
+// A solid of each kind, and properties of it that do not use its law: for tests of solids.
 #pragma once
 
 #include <algorithm>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <limits>
 #include <vector>
 
 #include "server/scene/solid.h"
@@ -32,6 +33,10 @@ inline double depth(const scene::Box& box, const glm::dvec3& x) {
   const glm::dvec3 beyond = glm::abs(glm::transpose(box.axes) * (x - box.center)) - box.half;
   const double farthest = std::max({beyond.x, beyond.y, beyond.z});
   return farthest < 0.0 ? -farthest : -glm::length(glm::max(beyond, glm::dvec3(0.0)));
+}
+/// A body of triangles is no solid: nothing here is deep in one.
+inline double depth(const scene::Body&, const glm::dvec3&) {
+  return -std::numeric_limits<double>::infinity();
 }
 inline double depth(const scene::Shape& shape, const glm::dvec3& x) {
   return std::visit([&](const auto& of) { return depth(of, x); }, shape);

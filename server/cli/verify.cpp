@@ -1,6 +1,7 @@
 #include "server/cli/verify.h"
 
 #include "server/base/text.h"
+#include "server/model/bodies.h"
 #include "server/model/clean_start.h"
 
 namespace clothlab::cli {
@@ -10,7 +11,9 @@ CrossingCheck::CrossingCheck(const sim::Simulation& simulation)
 
 void CrossingCheck::add(const sim::State& state, double time) {
   if (samples_ > 0 && time == last_.time) return;
-  const std::vector<glm::dvec3> x(state.position.begin(), state.position.end());
+  std::vector<glm::dvec3> x(state.position.begin(), state.position.end());
+  for (const glm::dvec3& of_body : model::body_positions(simulation_.model(), time))
+    x.emplace_back(glm::vec3(of_body));
   const model::Crossings found = model::find_crossings(surfaces_, x);
   last_ = {time, found.count};
   ++samples_;

@@ -1,4 +1,5 @@
-// `run --verify`: counts in double precision where cloth passes through cloth, at each of a run's samples.
+// `run --verify`: counts in double precision where cloth passes through cloth or a body of triangles, at each
+// of a run's samples.
 #pragma once
 
 #include <cstdint>

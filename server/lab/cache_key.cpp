@@ -80,6 +80,12 @@ void add_named_meshes(Hash& hash, const scene::Scene& scene) {
     add(mesh->triangles);
     add(mesh->pattern);
   }
+  for (const scene::Collider& collider : scene.colliders) {
+    const auto* body = std::get_if<scene::Body>(&collider.shape);
+    if (!body) continue;
+    add(body->mesh->vertices);
+    add(body->mesh->triangles);
+  }
 }
 
 /// The names of `methods` (empty: of all), sorted, as their order does not change a result.

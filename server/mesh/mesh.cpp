@@ -23,7 +23,8 @@ std::string Mesh::place_of(std::size_t triangle) const {
 }
 
 Error Raw::error(std::size_t line, std::string what, std::string remedy) const {
-  return Error{name + ", " + line_word + " " + std::to_string(line), std::move(what), std::move(remedy)};
+  const std::string in = name.empty() ? "" : name + ", ";
+  return Error{in + line_word + " " + std::to_string(line), std::move(what), std::move(remedy)};
 }
 
 Status Raw::add_vertex(const glm::dvec3& place, std::size_t line, const Limits& limits) {
@@ -48,6 +49,19 @@ Status Raw::add_face(const std::vector<Corner>& of, std::size_t line, const Limi
                    static_cast<std::uint32_t>(line)});
   corners.insert(corners.end(), of.begin(), of.end());
   return ok();
+}
+
+Result<Mesh> assemble_triangles(const std::vector<glm::dvec3>& vertices,
+                                const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  Raw raw;
+  raw.line_word = "triangle";
+  raw.vertices = vertices;
+  raw.triangles = triangles.size();
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    raw.faces.push_back({3 * i, 3, i});
+    for (const std::uint32_t corner : triangles[i]) raw.corners.push_back({corner, no_texture});
+  }
+  return assemble(std::move(raw));
 }
 
 Result<Mesh> read(std::string_view bytes, const std::string& name, const Limits& limits) {

@@ -54,4 +54,9 @@ inline constexpr std::size_t max_corners = 1024;
 /// else an OBJ file. Error: `where` is `name` and the line, `what` was found there and `remedy` is allowed.
 Result<Mesh> read(std::string_view bytes, const std::string& name, const Limits& limits);
 
+/// The same of triangles that are given as such, each of three different vertices that exist. Errors count
+/// them from 0: "triangle 3".
+Result<Mesh> assemble_triangles(const std::vector<glm::dvec3>& vertices,
+                                const std::vector<std::array<std::uint32_t, 3>>& triangles);
+
 }  // namespace clothlab::mesh

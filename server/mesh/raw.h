@@ -19,7 +19,7 @@ struct Face {
 };
 
 struct Raw {
-  std::string name;
+  std::string name;  ///< of the file; empty: of none
   std::vector<glm::dvec3> vertices;
   std::vector<glm::dvec2> texture;
   std::vector<Corner> corners;

@@ -4,15 +4,16 @@
 #include <glm/geometric.hpp>
 #include <glm/mat2x2.hpp>
 #include <glm/matrix.hpp>
-#include <glm/trigonometric.hpp>
 #include <utility>
 
 #include "server/base/text.h"
 #include "server/model/adjacency.h"
+#include "server/model/bodies.h"
 #include "server/model/clean_start.h"
 #include "server/model/mesh_arrays.h"
 #include "server/model/sheet.h"
 #include "server/model/start.h"
+#include "server/scene/placement.h"
 
 namespace clothlab::model {
 
@@ -23,33 +24,6 @@ using Index = std::uint32_t;
 /// The smallest mass of a vertex [kg]: the shaders multiply its inverse by stiffnesses up to 1e12 N/m, in
 /// float32.
 constexpr double least_mass = 1e-15;
-
-/// Rotates points about a coordinate axis (0: x, 1: y, 2: z).
-struct Turn {
-  int axis = 0;
-  double cosine = 1, sine = 0;
-  Turn(int about, double degrees)
-      : axis(about), cosine(std::cos(glm::radians(degrees))), sine(std::sin(glm::radians(degrees))) {}
-
-  dvec3 operator()(const dvec3& point) const {
-    const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-    dvec3 turned = point;
-    turned[a] = cosine * point[a] - sine * point[b];
-    turned[b] = sine * point[a] + cosine * point[b];
-    return turned;
-  }
-};
-
-std::vector<dvec3> placed(const scene::Transform& transform, std::vector<dvec3> points) {
-  const std::array turns{Turn(0, transform.rotate[0]), Turn(1, transform.rotate[1]),
-                         Turn(2, transform.rotate[2])};
-  for (dvec3& point : points) {
-    point *= transform.scale;
-    for (const Turn& turn : turns) point = turn(point);
-    point += transform.translate;
-  }
-  return points;
-}
 
 /// The vertices that the `at` of a pin or a weight selects, as indices within the cloth.
 std::vector<Index> held_by(const scene::Cloth& cloth, const scene::At& at,
@@ -144,7 +118,7 @@ Status add_cloth(Model& model, const scene::Cloth& cloth, bool sweeps_elements) 
   const MeshArrays arrays =
       grid ? grid_arrays(*grid, cloth.material)
            : triangle_mesh_arrays(std::get<scene::TriangleMesh>(cloth.mesh), cloth.material);
-  const std::vector<dvec3> position = placed(cloth.transform, arrays.position);
+  const std::vector<dvec3> position = scene::placed(cloth.transform, arrays.position);
   std::vector<double> mass = masses(cloth, arrays, position);
   const auto massless = std::find_if(mass.begin(), mass.end(), [](double m) { return !(m >= least_mass); });
   if (massless != mass.end())
@@ -187,7 +161,7 @@ Status add_cloth(Model& model, const scene::Cloth& cloth, bool sweeps_elements) 
     return ok();
   }
   const std::vector<dvec3> axes =
-      placed(cloth.transform, {dvec3(0.0), arrays.first_axis, arrays.second_axis});
+      scene::placed(cloth.transform, {dvec3(0.0), arrays.first_axis, arrays.second_axis});
   return add_sheet(model, cloth, {glm::normalize(axes[1] - axes[0]), glm::normalize(axes[2] - axes[0])},
                    sweeps_elements);
 }
@@ -212,6 +186,7 @@ Result<Model> build(const scene::Scene& scene) {
       scene::sweeps(scene.solver.method) && !scene::sweeps_vertices(scene.solver.method);
   for (const scene::Cloth& cloth : scene.cloths)
     if (Status added = add_cloth(model, cloth, sweeps_elements); !added) return added.error();
+  add_bodies(model, scene);
   if (Status clean = check_start(model, scene); !clean) return clean.error();
   list_neighbours(model, scene.collides(scene::ContactKind::points));
   return model;

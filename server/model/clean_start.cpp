@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <charconv>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "server/base/text.h"
+#include "server/model/bodies.h"
 
 namespace clothlab::model {
 
@@ -16,26 +18,61 @@ using nlohmann::json;
 constexpr CrossingLimits at_start{64, 10000};
 constexpr std::size_t most_in_words = 3;
 
-/// The number that the document gives a vertex of the cloth: of those of a file that became one, the first.
+/// The number that the document gives a vertex of the mesh: of those of a file that became one, the first.
+std::size_t number_in_document(const scene::TriangleMesh& mesh, std::uint32_t vertex) {
+  const std::vector<std::uint32_t>& of = mesh.vertex_of;
+  if (of.empty()) return vertex;
+  return static_cast<std::size_t>(std::find(of.begin(), of.end(), vertex) - of.begin());
+}
 std::size_t number_in_document(const scene::Mesh& mesh, std::uint32_t vertex) {
   const auto* triangles = std::get_if<scene::TriangleMesh>(&mesh);
-  if (!triangles || triangles->vertex_of.empty()) return vertex;
-  const std::vector<std::uint32_t>& of = triangles->vertex_of;
-  return static_cast<std::size_t>(std::find(of.begin(), of.end(), vertex) - of.begin());
+  return triangles ? number_in_document(*triangles, vertex) : vertex;
+}
+
+/// A cloth or a body, and the number that the document gives one of its vertices.
+struct Place {
+  bool body;
+  std::uint32_t index;      ///< in the list of cloths, or of colliders
+  const std::string& name;  ///< the document's
+  std::size_t number;
+};
+
+Place place_of(std::uint32_t vertex, const Model& model, const scene::Scene& scene) {
+  if (vertex < model.vertex_count()) {
+    const std::uint32_t index = model.vertex_cloth[vertex];
+    const scene::Cloth& cloth = scene.cloths[index];
+    return {false, index, cloth.name,
+            number_in_document(cloth.mesh, vertex - model.cloths[index].first_vertex)};
+  }
+  const std::uint32_t of_body = vertex - model.vertex_count();
+  const BodyRange& body = model.bodies[model.vertex_body[of_body]];
+  const scene::Collider& collider = scene.colliders[body.collider];
+  const scene::TriangleMesh& mesh = *std::get<scene::Body>(collider.shape).mesh;
+  return {true, body.collider, collider.name, number_in_document(mesh, of_body - body.first_vertex)};
+}
+
+/// E.g. `/cloths/0 ("left")`.
+std::string in_words(const Place& place) {
+  return (place.body ? "/colliders/" : "/cloths/") + std::to_string(place.index) + " (\"" + place.name +
+         "\")";
 }
 
 /// E.g. `edge 3-4 of /cloths/0 ("left")`.
 template <std::size_t count>
 std::string corners(const std::string& what, const std::array<std::uint32_t, count>& vertices,
                     const Model& model, const scene::Scene& scene) {
-  if (vertices[0] >= model.vertex_count()) return what + " of a body";
-  const std::uint32_t index = model.vertex_cloth[vertices[0]];
-  const scene::Cloth& cloth = scene.cloths[index];
   std::string text = what;
   for (std::size_t i = 0; i < count; ++i)
-    text += (i == 0 ? " " : "-") +
-            std::to_string(number_in_document(cloth.mesh, vertices[i] - model.cloths[index].first_vertex));
-  return text + " of /cloths/" + std::to_string(index) + " (\"" + cloth.name + "\")";
+    text += (i == 0 ? " " : "-") + std::to_string(place_of(vertices[i], model, scene).number);
+  return text + " of " + in_words(place_of(vertices[0], model, scene));
+}
+
+/// The positions as the GPU gets them.
+std::vector<dvec3> as_floats(const std::vector<dvec3>& x) {
+  std::vector<dvec3> rounded;
+  rounded.reserve(x.size());
+  for (const dvec3& each : x) rounded.emplace_back(glm::vec3(each));
+  return rounded;
 }
 
 std::string number(double x) {
@@ -55,23 +92,25 @@ json point(const glm::vec3& x) {
   return {short_number(x.x), short_number(x.y), short_number(x.z)};
 }
 
-/// An edge or a triangle of a cloth: its vertices as the document numbers them, and where they are.
+/// An edge or a triangle of a cloth or a body: its vertices as the document numbers them, and where they are.
 template <std::size_t count>
 json part(const std::array<std::uint32_t, count>& vertices, const Model& model, const scene::Scene& scene,
-          const std::vector<glm::vec3>& position) {
-  const std::uint32_t index = model.vertex_cloth[vertices[0]];
-  const scene::Cloth& cloth = scene.cloths[index];
+          const std::vector<dvec3>& position) {
+  const Place first = place_of(vertices[0], model, scene);
   json numbers = json::array(), places = json::array();
   for (const std::uint32_t vertex : vertices) {
-    numbers.push_back(number_in_document(cloth.mesh, vertex - model.cloths[index].first_vertex));
+    numbers.push_back(place_of(vertex, model, scene).number);
     places.push_back(point(position[vertex]));
   }
-  return {{"cloth", index}, {"name", cloth.name}, {"vertices", numbers}, {"at", places}};
+  return {{first.body ? "collider" : "cloth", first.index},
+          {"name", first.name},
+          {"vertices", numbers},
+          {"at", places}};
 }
 
-/// Crossings of cloths as data for programs; see the schema `crossings` of server/net/asyncapi.yaml.
+/// Crossings as data for programs; see the schema `crossings` of server/net/asyncapi.yaml.
 std::string facts_of(const Crossings& found, const Model& model, const scene::Scene& scene, bool at_present,
-                     const std::vector<glm::vec3>& position) {
+                     const std::vector<dvec3>& position) {
   json pairs = json::array();
   for (const Crossing& each : found.first)
     pairs.push_back({{"edge", part(each.edge, model, scene, position)},
@@ -84,20 +123,80 @@ std::string facts_of(const Crossings& found, const Model& model, const scene::Sc
   return json{{"crossings", facts}}.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-Status check(const Model& model, const scene::Scene& scene, bool at_present,
-             const std::vector<glm::vec3>& position, const std::string& remedy) {
-  const std::vector<dvec3> x(position.begin(), position.end());
-  const Crossings found = find_crossings(surfaces_of(model), x, at_start);
-  if (found.count == 0) return ok();
-  std::string what = std::string("\"surface\", but ") + (at_present ? "the cloth at present" : "the start") +
-                     " has " + std::to_string(found.count) + (found.complete ? "" : " or more") +
+/// E.g. `2 crossings: edge ... meets triangle ..., edge ... meets triangle ...`.
+std::string list_of(const Crossings& found, const Model& model, const scene::Scene& scene) {
+  std::string text = std::to_string(found.count) + (found.complete ? "" : " or more") +
                      (found.count == 1 ? " crossing: " : " crossings: ");
   const std::size_t told = std::min(found.first.size(), most_in_words);
   for (std::size_t i = 0; i < told; ++i)
-    what += (i == 0 ? "" : ", ") + in_words(found.first[i], model, scene);
-  if (found.count > told) what += ", ...";
-  return Error{"/self_collision/kind", what, "\"points\", which may have crossings, or " + remedy,
-               facts_of(found, model, scene, at_present, position)};
+    text += (i == 0 ? "" : ", ") + in_words(found.first[i], model, scene);
+  return found.count > told ? text + ", ..." : text;
+}
+
+Status check_cloths(const Model& model, const scene::Scene& scene, bool at_present,
+                    const std::vector<dvec3>& x, const std::string& remedy) {
+  const Crossings found = find_crossings(surfaces_of(model, false), x, at_start);
+  if (found.count == 0) return ok();
+  return Error{"/self_collision/kind",
+               std::string("\"surface\", but ") + (at_present ? "the cloth at present" : "the start") +
+                   " has " + list_of(found, model, scene),
+               "\"points\", which may have crossings, or " + remedy,
+               facts_of(found, model, scene, at_present, x)};
+}
+
+/// Error: cloth at the start goes through a body. `x`: of all cloths and bodies.
+Status check_bodies(const Model& model, const scene::Scene& scene, const std::vector<dvec3>& x) {
+  Surfaces surfaces = surfaces_of(model);
+  surfaces.among_cloths = false;
+  const Crossings found = find_crossings(surfaces, x, at_start);
+  if (found.count == 0) return ok();
+  const Crossing& first = found.first[0];
+  const Place body = place_of(std::max(first.edge[0], first.triangle[0]), model, scene);
+  return Error{"/colliders/" + std::to_string(body.index),
+               "\"" + body.name + "\", and cloth that goes through triangles at the start, with " +
+                   list_of(found, model, scene),
+               "body and cloth moved apart (transform, start) until none touches the other",
+               facts_of(found, model, scene, false, x)};
+}
+
+/// One vertex of each piece of cloth that hangs together.
+std::vector<std::uint32_t> one_of_each_piece(const Model& model) {
+  std::vector<std::uint32_t> root(model.vertex_count());
+  std::iota(root.begin(), root.end(), 0u);
+  const auto find = [&](std::uint32_t i) {
+    while (root[i] != i) i = root[i] = root[root[i]];
+    return i;
+  };
+  for (const auto& [a, b, c] : model.triangles)
+    for (const std::uint32_t other : {b, c}) {
+      const std::uint32_t one = find(a), two = find(other);
+      root[std::max(one, two)] = std::min(one, two);
+    }
+  std::vector<std::uint32_t> first;
+  for (std::uint32_t i = 0; i < root.size(); ++i)
+    if (find(i) == i) first.push_back(i);
+  return first;
+}
+
+/// Error: cloth starts inside a body. It crosses none of its triangles: a piece is inside as a whole, or not.
+Status check_inside(const Model& model, const scene::Scene& scene, const std::vector<dvec3>& x) {
+  const std::vector<std::uint32_t> pieces = one_of_each_piece(model);
+  const std::vector<dvec3> of_bodies(x.begin() + model.vertex_count(), x.end());
+  for (std::uint32_t body = 0; body < model.bodies.size(); ++body) {
+    const BodyInside inside(model, body, of_bodies);
+    for (const std::uint32_t vertex : pieces) {
+      if (!inside.contains(x[vertex])) continue;
+      const Place of = place_of(vertex, model, scene);
+      const std::string pointer = "/colliders/" + std::to_string(model.bodies[body].collider);
+      return Error{pointer,
+                   "\"" + scene.colliders[model.bodies[body].collider].name + "\", and inside it vertex " +
+                       std::to_string(of.number) + " of " + in_words(of) +
+                       ", with all cloth that hangs on it, at the start",
+                   "cloth that starts outside (transform, start), or a mesh that is open: it has no inside, "
+                   "and cloth stays on its side of each triangle"};
+    }
+  }
+  return ok();
 }
 
 }  // namespace
@@ -110,14 +209,26 @@ std::string in_words(const Crossing& crossing, const Model& model, const scene::
 }
 
 Status check_start(const Model& model, const scene::Scene& scene) {
-  if (!scene.collides(scene::ContactKind::surface)) return ok();
-  return check(model, scene, false, {model.start_position.begin(), model.start_position.end()},
-               "cloths moved apart (transform, mesh, start) until none touches another one or itself");
+  const bool surfaces = scene.collides(scene::ContactKind::surface);
+  if (!surfaces && model.bodies.empty()) return ok();
+  std::vector<dvec3> x = as_floats(model.start_position);
+  if (surfaces)
+    if (Status apart = check_cloths(
+            model, scene, false, x,
+            "cloths moved apart (transform, mesh, start) until none touches another one or itself");
+        !apart)
+      return apart;
+  if (model.bodies.empty()) return ok();
+  const std::vector<dvec3> bodies = as_floats(body_positions(model, 0.0));
+  x.insert(x.end(), bodies.begin(), bodies.end());
+  if (Status apart = check_bodies(model, scene, x); !apart) return apart;
+  return check_inside(model, scene, x);
 }
 
 Status check_present(const Model& model, const scene::Scene& scene, const std::vector<glm::vec3>& position) {
   if (!scene.collides(scene::ContactKind::surface)) return ok();
-  return check(model, scene, true, position, "a reset first, if the start has none");
+  return check_cloths(model, scene, true, {position.begin(), position.end()},
+                      "a reset first, if the start has none");
 }
 
 }  // namespace clothlab::model

@@ -1,5 +1,5 @@
-// Crossings in words that a user understands, and the refusal of scenes that start with some though their
-// kind of self-collision only keeps apart what is apart.
+// Crossings in words that a user understands, and the refusal of scenes that start with some where contact
+// only keeps apart what is apart: between surfaces of cloth, and between cloth and bodies of triangles.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -17,7 +17,8 @@ std::string in_words(const Crossing& crossing, const Model& model, const scene::
 
 /// An error if the scene's kind of self-collision needs a start without crossings and it has some, in the
 /// positions as the GPU gets them: float32. It points at the kind, names the first pairs and their number,
-/// and says what helps. Its facts have more of the pairs, with their places.
+/// and says what helps. Its facts have more of the pairs, with their places. Whatever the kind, an error that
+/// points at a body if cloth starts through it (with such facts) or inside it.
 Status check_start(const Model& model, const scene::Scene& scene);
 
 /// The same of a running scene that is to get this kind, with its vertices at `position` [vertex_count] [m].

@@ -78,9 +78,11 @@ bool meets(const dvec3& p, const dvec3& q, const dvec3& a, const dvec3& b, const
   return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
 }
 
-Surfaces surfaces_of(const Model& model, const std::vector<std::array<std::uint32_t, 3>>& bodies) {
+Surfaces surfaces_of(const Model& model, bool bodies) {
   Surfaces surfaces{model.triangles, {}, model.vertex_count()};
-  surfaces.triangles.insert(surfaces.triangles.end(), bodies.begin(), bodies.end());
+  if (bodies)
+    surfaces.triangles.insert(surfaces.triangles.end(), model.body_triangles.begin(),
+                              model.body_triangles.end());
   for (const auto& [a, b, c] : surfaces.triangles)
     for (const auto& [p, q] : {std::array{a, b}, {b, c}, {c, a}})
       surfaces.edges.push_back({std::min(p, q), std::max(p, q)});
@@ -104,7 +106,10 @@ Crossings find_crossings(const Surfaces& surfaces, const std::vector<dvec3>& x, 
     for (const std::uint32_t index : near) {
       const auto& [a, b, c] = surfaces.triangles[index];
       if (i == a || i == b || i == c || j == a || j == b || j == c) continue;
-      if (std::min(i, a) >= surfaces.first_body_vertex || !meets(x[i], x[j], x[a], x[b], x[c])) continue;
+      const bool body_edge = i >= surfaces.first_body_vertex, body = a >= surfaces.first_body_vertex;
+      if (body_edge && body) continue;
+      if (!surfaces.among_cloths && !body_edge && !body) continue;
+      if (!meets(x[i], x[j], x[a], x[b], x[c])) continue;
       if (found.first.size() < limits.named)
         found.first.push_back({{i, j}, {a, b, c}, meeting_place(x[i], x[j], x[a], x[b], x[c])});
       if (++found.count < limits.counted) continue;

@@ -24,10 +24,11 @@ struct Surfaces {
   std::vector<std::array<std::uint32_t, 2>> edges;  ///< of the triangles, each once, in rising order
   /// Vertices from this one on belong to bodies. Bodies are not compared with each other.
   std::uint32_t first_body_vertex = 0;
+  bool among_cloths = true;  ///< false: cloths are compared with bodies alone
 };
 
-/// The surfaces of all cloths, and of `bodies`, whose vertices count from the model's last one on.
-Surfaces surfaces_of(const Model& model, const std::vector<std::array<std::uint32_t, 3>>& bodies = {});
+/// The surfaces of all cloths and, unless `bodies` is false, of all bodies.
+Surfaces surfaces_of(const Model& model, bool bodies = true);
 
 /// An edge that meets a triangle with which it shares no vertex.
 struct Crossing {
@@ -49,7 +50,8 @@ struct CrossingLimits {
   std::uint64_t counted = std::numeric_limits<std::uint64_t>::max();
 };
 
-/// All crossings of `surfaces` with vertices at `x`, which are finite [vertex_count] [m].
+/// All crossings of `surfaces` with vertices at `x`, which are finite: those of the cloths, then those of the
+/// bodies [m].
 Crossings find_crossings(const Surfaces& surfaces, const std::vector<dvec3>& x, CrossingLimits limits = {});
 
 }  // namespace clothlab::model

@@ -52,21 +52,43 @@ std::string obj_text(const Model& model, const std::vector<glm::vec3>& positions
   return out;
 }
 
+namespace {
+
+/// The header of a PLY file whose vertices have these `properties` after their three coordinates.
+std::string ply_header(std::size_t vertices, std::size_t triangles, const std::string& properties,
+                       const std::string& comment) {
+  return "ply\nformat binary_little_endian 1.0\ncomment " + comment + "\nelement vertex " +
+         std::to_string(vertices) + "\nproperty float x\nproperty float y\nproperty float z\n" + properties +
+         "element face " + std::to_string(triangles) +
+         "\nproperty list uchar uint vertex_indices\nend_header\n";
+}
+
+void append_triangles(std::string& out, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  for (const auto& triangle : triangles) {
+    out += '\3';
+    append_bytes(out, triangle);
+  }
+}
+
+}  // namespace
+
 std::string ply_bytes(const Model& model, const std::vector<glm::vec3>& positions,
                       const std::string& comment) {
-  std::string out = "ply\nformat binary_little_endian 1.0\ncomment " + comment + "\n";
-  out += "element vertex " + std::to_string(positions.size()) + "\n";
-  out += "property float x\nproperty float y\nproperty float z\nproperty float s\nproperty float t\n";
-  out += "element face " + std::to_string(model.triangles.size()) + "\n";
-  out += "property list uchar uint vertex_indices\nend_header\n";
+  std::string out =
+      ply_header(positions.size(), model.triangles.size(), "property float s\nproperty float t\n", comment);
   for (std::size_t vertex = 0; vertex < positions.size(); ++vertex) {
     append_bytes(out, positions[vertex]);
     append_bytes(out, model.texture_coordinates[vertex]);
   }
-  for (const auto& triangle : model.triangles) {
-    out += '\3';
-    append_bytes(out, triangle);
-  }
+  append_triangles(out, model.triangles);
+  return out;
+}
+
+std::string ply_bytes(const scene::TriangleMesh& mesh, const std::string& comment) {
+  std::string out = ply_header(mesh.vertices.size(), mesh.triangles.size(), "", comment);
+  out.reserve(out.size() + 12 * mesh.vertices.size() + 13 * mesh.triangles.size());
+  for (const dvec3& vertex : mesh.vertices) append_bytes(out, glm::vec3(vertex));
+  append_triangles(out, mesh.triangles);
   return out;
 }
 

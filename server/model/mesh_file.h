@@ -18,4 +18,7 @@ std::string obj_text(const Model& model, const std::vector<glm::vec3>& positions
 std::string ply_bytes(const Model& model, const std::vector<glm::vec3>& positions,
                       const std::string& comment);
 
+/// A binary little-endian PLY file of a body's mesh, in the mesh's own frame, as server/net/README.md has it.
+std::string ply_bytes(const scene::TriangleMesh& mesh, const std::string& comment);
+
 }  // namespace clothlab::model

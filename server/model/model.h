@@ -27,6 +27,14 @@ struct ClothRange {
   double mean_edge_length = 0;  ///< at rest, over the edges of all triangles [m]
 };
 
+/// A collider that is a body of triangles, and its part of the arrays of all bodies.
+struct BodyRange {
+  std::uint32_t collider = 0;                            ///< its place in the scene's list
+  std::uint32_t first_vertex = 0, vertex_count = 0;      ///< of body_position
+  std::uint32_t first_triangle = 0, triangle_count = 0;  ///< of body_triangles
+  scene::Motion motion;
+};
+
 inline constexpr std::int32_t not_pinned = -1;
 
 /// Everything the simulation needs that does not change while it runs.
@@ -46,13 +54,22 @@ struct Model {
   Adjacency contact_exclusions;
   std::vector<ClothRange> cloths;
 
+  // Bodies of triangles, which the scene moves. Where a list holds vertices of both, those of bodies come
+  // after those of cloths, as body_triangles counts them.
+  std::vector<dvec3> body_position;                          ///< [body_vertex_count] at time 0 [m]
+  std::vector<std::array<std::uint32_t, 3>> body_triangles;  ///< vertices count from vertex_count() on
+  std::vector<std::uint32_t> vertex_body;                    ///< [body_vertex_count] index into `bodies`
+  std::vector<BodyRange> bodies;
+
   const Batch<elements::Spring>& springs() const { return elements.of<elements::Spring>(); }
   std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(rest_position.size()); }
   std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(triangles.size()); }
+  std::uint32_t body_vertex_count() const { return static_cast<std::uint32_t>(body_position.size()); }
 };
 
 /// Builds the arrays. An error names the JSON Pointer of a mass that leaves a vertex too light, of a pin or
-/// weight that selects no vertex, or of a kind of self-collision that the start's crossings rule out.
+/// weight that selects no vertex, of a kind of self-collision that the start's crossings rule out, or of a
+/// body that cloth starts through or in.
 Result<Model> build(const scene::Scene& scene);
 
 /// For each vertex the two other corners of each of its triangles, counter-clockwise, in the order of

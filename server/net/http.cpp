@@ -5,6 +5,7 @@
 
 #include <charconv>
 
+#include "server/model/mesh_file.h"
 #include "server/net/hub.h"
 #include "server/net/limits.h"
 #include "server/net/request_checks.h"
@@ -32,6 +33,18 @@ constexpr std::pair<const char*, const char*> security_headers[] = {
 
 HttpAnswer plain(unsigned status, const std::string& text) {
   return {status, "text/plain; charset=utf-8", text + "\n", {}};
+}
+
+/// The mesh of the collider of this name: the page asks for it, as the document may have only the name of a
+/// file.
+HttpAnswer collider_mesh(const scene::Scene& scene, const std::string& name) {
+  for (const scene::Collider& collider : scene.colliders)
+    if (const auto* body = std::get_if<scene::Body>(&collider.shape); body && collider.name == name)
+      return {200,
+              "application/octet-stream",
+              model::ply_bytes(*body->mesh, "a collider of Clothlab"),
+              {{"cache-control:", "no-store"}}};
+  return plain(404, "the scene has no mesh collider of this name; name=NAME is that of /api/scene's list");
 }
 
 /// The width or height that `text` gives, a whole number in [1, most] [pixels]; 0 for any other text.
@@ -125,13 +138,15 @@ std::optional<HttpAnswer> HttpRequest::find_protected(const std::string& path) {
         200, "text/plain; version=0.0.4; charset=utf-8", metrics_text(hub_.metrics(), hub_.gauges()), {}};
   const std::string session = query(wsi_, "session", main_session);
   const bool mesh = path == "/api/mesh.obj", picture = path == "/api/snapshot.png";
-  if (!mesh && !picture && path != "/api/scene")
-    return plain(404, "the API has /api/scene, /api/mesh.obj and /api/snapshot.png");
+  const bool collider = path == "/api/collider.ply";
+  if (!mesh && !picture && !collider && path != "/api/scene")
+    return plain(404, "the API has /api/scene, /api/mesh.obj, /api/collider.ply and /api/snapshot.png");
   Room* room = hub_.find_room(session);
   if (!room || !room->started())
     return plain(404,
                  "no such session is open; one opens when a page or script connects to /ws?session=NAME");
   if (path == "/api/scene") return HttpAnswer{200, "application/json", room->document().dump(2) + "\n", {}};
+  if (collider) return collider_mesh(room->scene(), query(wsi_, "name", ""));
   if (mesh) return ask_session(session, {});
   const session::Export what{side(query(wsi_, "width", "1280"), max_snapshot_side),
                              side(query(wsi_, "height", "720"), max_snapshot_side)};

@@ -31,6 +31,7 @@ class Room {
   bool started() const { return !renderer_.empty(); }
   const std::string& renderer() const { return renderer_; }
   const json& document() const { return document_->value; }
+  const scene::Scene& scene() const { return document_->scene; }
   const stream::SharedMessage& topology() const { return topology_; }
   /// The latest frame; null if there is none yet, or if it does not fit the present topology.
   stream::SharedMessage frame(stream::Form form) const;

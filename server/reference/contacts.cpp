@@ -40,7 +40,7 @@ template <class Touch>
 int meet_each(const World& world, double t, const dvec3& from, dvec3& x, Touch touch) {
   int count = 0;
   Surface met;
-  for (std::size_t kind = 0; kind < scene::shape_kinds; ++kind)
+  for (std::size_t kind = 0; kind < scene::solid_kinds; ++kind)
     for (const scene::Collider& collider : world.scene.colliders) {
       if (collider.shape.index() != kind) continue;
       if (!meet_solid(world, collider, t, from, x, met)) continue;

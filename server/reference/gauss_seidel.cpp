@@ -149,8 +149,7 @@ dvec3 bounced(const SweepState& step, std::uint32_t i, const dvec3& v) {
 void gauss_seidel_step(const World& world, State& state, double t, double t_next) {
   const scene::Scene& scene = world.scene;
   const bool by_vertices = scene::sweeps_vertices(scene.solver.method);
-  const bool passes =
-      scene.collides(scene::ContactKind::points) || (!by_vertices && !scene.colliders.empty());
+  const bool passes = scene.collides(scene::ContactKind::points) || (!by_vertices && scene.has_solids());
   SweepState step = begin(world, state, t, t_next);
   for (int n = 0; n < scene.solver.iterations; ++n) {
     by_vertices ? sweep_vertices(step) : sweep_elements(step);

@@ -125,7 +125,7 @@ void sweep_elements(SweepState& step) {
 }
 
 void sweep_vertices(SweepState& step) {
-  const bool colliders = !step.world.scene.colliders.empty();
+  const bool colliders = step.world.scene.has_solids();
   for (const std::uint32_t i : step.world.vertex_colours.order) {
     if (step.mobility[i] == 0.0) continue;
     const Balance at = balance(step, i);
@@ -163,7 +163,7 @@ void contact_pass(SweepState& step) {
 
 void balance_momentum(SweepState& step) {
   const World& world = step.world;
-  if (!world.scene.colliders.empty()) return;
+  if (world.scene.has_solids()) return;
   for (const model::ClothRange& cloth : world.model.cloths) {
     dvec3 lacking(0.0);
     double mass = 0.0;

@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/vec4.hpp>
+#include <map>
 #include <numbers>
 #include <tuple>
 #include <utility>
@@ -11,6 +12,8 @@
 
 #include "server/gl/buffer.h"
 #include "server/gl/program.h"
+#include "server/render/body_surface.h"
+#include "server/scene/placement.h"
 #include "server/scene/solid.h"
 #include "shaders/slots.h"
 
@@ -116,6 +119,7 @@ Solids::Place place_of(const scene::Shape& body) {
 struct Solids::Implementation {
   gl::Program body, plane;
   Strips round{round_strips()}, cuboid{face_strips()};
+  mutable std::map<std::shared_ptr<const scene::TriangleMesh>, BodySurface> surfaces;  ///< drawn before
   GLuint empty_array = 0;
 
   Implementation() { glCreateVertexArrays(1, &empty_array); }
@@ -126,6 +130,18 @@ struct Solids::Implementation {
   void draw(Layer layer, const scene::Sphere& shape) const { draw_body(layer, shape, round); }
   void draw(Layer layer, const scene::Capsule& shape) const { draw_body(layer, shape, round); }
   void draw(Layer layer, const scene::Box& shape) const { draw_body(layer, shape, cuboid); }
+
+  /// A mesh may be turned inside out or be a sheet: both of its sides are drawn.
+  void draw(Layer layer, const scene::Body& shape) const {
+    if (layer == Layer::ground) return;
+    if (layer == Layer::body) body.use();
+    const auto& [translate, rotate, scale] = shape.transform;
+    place({translate, 0.0f, scene::turn(rotate), glm::vec3(static_cast<float>(scale))});
+    const GLboolean culls = glIsEnabled(GL_CULL_FACE);
+    glDisable(GL_CULL_FACE);
+    surfaces.try_emplace(shape.mesh, *shape.mesh).first->second.draw();
+    if (culls) glEnable(GL_CULL_FACE);
+  }
 
   /// A plane receives shadows, but casts none.
   void draw(Layer layer, const scene::Plane& shape) const {

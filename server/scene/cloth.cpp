@@ -6,18 +6,6 @@
 
 namespace clothlab::scene {
 
-std::size_t vertex_count(const Mesh& mesh) {
-  if (const Grid* grid = std::get_if<Grid>(&mesh))
-    return static_cast<std::size_t>(grid->columns) * static_cast<std::size_t>(grid->rows);
-  return std::get<TriangleMesh>(mesh).vertices.size();
-}
-
-std::size_t triangle_count(const Mesh& mesh) {
-  if (const Grid* grid = std::get_if<Grid>(&mesh))
-    return 2 * static_cast<std::size_t>(grid->columns - 1) * static_cast<std::size_t>(grid->rows - 1);
-  return std::get<TriangleMesh>(mesh).triangles.size();
-}
-
 std::string default_name(const char* kind, std::size_t index) {
   std::string name = kind;
   if (index > 0) name.append("-").append(std::to_string(index + 1));
@@ -25,97 +13,6 @@ std::string default_name(const char* kind, std::size_t index) {
 }
 
 namespace {
-
-Grid read_grid(const Reader& grid) {
-  grid.object({"columns", "rows", "width", "height"});
-  return Grid{grid.member("columns", 25).integer(ranges::grid_count),
-              grid.member("rows", 25).integer(ranges::grid_count),
-              grid.member("width", 1.0).number(ranges::length),
-              grid.member("height", 1.0).number(ranges::length)};
-}
-
-std::array<std::uint32_t, 3> read_triangle(const Reader& triangle, std::size_t vertex_count) {
-  std::array<std::uint32_t, 3> corners{};
-  if (triangle.array(3, 3) != 3) return corners;
-  const Range index{0, static_cast<double>(vertex_count) - 1, "vertex"};
-  for (std::size_t i = 0; i < 3; ++i)
-    corners[i] = static_cast<std::uint32_t>(triangle.element(i).integer(index));
-  if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
-    triangle.fail("three different vertices");
-  return corners;
-}
-
-TriangleMesh read_triangle_mesh(const Reader& mesh) {
-  TriangleMesh result;
-  const Reader vertices = mesh.member("vertices"), triangles = mesh.member("triangles");
-  result.vertices.resize(vertices.array(3, max_vertices));
-  for (std::size_t i = 0; i < result.vertices.size(); ++i)
-    result.vertices[i] = vertices.element(i).vector(ranges::position);
-  result.triangles.resize(triangles.array(1, max_triangles));
-  for (std::size_t i = 0; i < result.triangles.size(); ++i)
-    result.triangles[i] = read_triangle(triangles.element(i), result.vertices.size());
-  return result;
-}
-
-/// The texture coordinates of a file as a pattern. An error if a triangle has no place in it.
-void read_pattern(const Reader& pattern, const std::string& name, const mesh::Mesh& file,
-                  TriangleMesh& result) {
-  pattern.choice({"uv"});
-  if (file.texture.empty())
-    return pattern.fail("\"uv\", and " + name + " has faces without texture coordinates",
-                        "null, or a mesh with texture coordinates at every corner of every face");
-  for (std::size_t i = 0; i < file.texture.size(); ++i) {
-    const auto& [a, b, c] = file.texture[i];
-    if (mesh::has_no_area({a, 0.0}, {b, 0.0}, {c, 0.0}))
-      return pattern.fail(
-          "\"uv\", and the texture coordinates of " + name + ", " + file.place_of(i) + ", have no area",
-          "null, or a flat pattern in which every triangle has an area");
-  }
-  result.pattern = file.texture;
-}
-
-/// A mesh that `assets` has: a file, or one that was uploaded.
-TriangleMesh read_named_mesh(const Reader& mesh, const Assets* assets) {
-  TriangleMesh result;
-  const Reader obj = mesh.member("obj"), pattern = mesh.member("pattern", json(nullptr));
-  const std::string name = obj.string("the name of a mesh: an .obj or .ply file, or one of mesh.upload");
-  if (!obj.is_string()) return result;
-  Result<SharedMesh> found = preset_mesh(name);
-  if (!found)
-    found = assets ? assets->mesh(name)
-                   : Error{name, "there are no meshes to name here", "a grid, or vertices and triangles"};
-  if (!found) {
-    obj.fail(found.error().where + ": " + found.error().what, found.error().remedy);
-    return result;
-  }
-  result.vertices = (*found)->vertices;
-  result.triangles = (*found)->triangles;
-  result.vertex_of = (*found)->vertex_of;
-  if (!pattern.is_null()) read_pattern(pattern, name, **found, result);
-  return result;
-}
-
-Mesh read_mesh(const Reader& mesh, const Assets* assets) {
-  mesh.object({"grid", "vertices", "triangles", "obj", "pattern"});
-  if (mesh.has("pattern") && !mesh.has("obj")) mesh.fail("\"pattern\" only beside \"obj\"");
-  if (mesh.has("triangles")) {
-    if (mesh.has("grid") || mesh.has("obj"))
-      mesh.fail("either \"grid\", or \"obj\", or \"vertices\" and \"triangles\"");
-    return read_triangle_mesh(mesh);
-  }
-  const std::string kind = mesh.exactly_one({"grid", "vertices", "obj"});
-  if (kind == "vertices") return read_triangle_mesh(mesh);
-  if (kind == "obj") return read_named_mesh(mesh, assets);
-  return read_grid(mesh.member("grid"));
-}
-
-Transform read_transform(const Reader& transform) {
-  transform.object({"translate", "rotate", "scale"});
-  const json zero = {0, 0, 0};
-  return Transform{transform.member("translate", zero).vector(ranges::position),
-                   transform.member("rotate", zero).vector(ranges::angle),
-                   transform.member("scale", 1.0).number(ranges::scale)};
-}
 
 Mass read_mass(const Reader& mass) {
   mass.object({"per_vertex", "area_density"});

@@ -62,5 +62,7 @@ inline constexpr std::size_t max_pins = 1024;          ///< of one cloth
 inline constexpr std::size_t max_weights = 1024;       ///< of one cloth
 inline constexpr std::size_t max_vertices = 1u << 20;  ///< of the whole scene
 inline constexpr std::size_t max_triangles = 1u << 21;
+inline constexpr std::size_t max_body_vertices = 200'000;  ///< of all bodies of triangles together
+inline constexpr std::size_t max_body_triangles = 200'000;
 
 }  // namespace clothlab::scene

@@ -69,14 +69,12 @@ void Reader::fail(const std::string& found, const std::string& allowed) const {
   if (!*error_) *error_ = Error{pointer_, found, allowed};
 }
 
-void Reader::object(const Words& keys, const Words& later) const {
+void Reader::object(const Words& keys) const {
   if (!value_ || !value_->is_object()) return fail("an object with the keys " + quoted(keys));
   for (auto item = value_->begin(); item != value_->end(); ++item) {
     const std::string& key = item.key();
     if (contains(keys, key)) continue;
     const Reader culprit(&*item, pointer_ + "/" + escape_token(key), *error_);
-    if (contains(later, key))
-      return culprit.fail("\"" + key + "\" is not supported yet; supported here: " + quoted(keys));
     return culprit.fail("unknown key " + compact(key), "one of " + quoted(keys) + suggestion(key, keys));
   }
 }

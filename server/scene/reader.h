@@ -24,8 +24,8 @@ class Reader {
   Reader(json* value, std::string pointer, std::optional<Error>& error)
       : value_(value), pointer_(std::move(pointer)), error_(&error) {}
 
-  /// Checks that this is an object with only `keys`; a key of `later` is refused as "not supported yet".
-  void object(const Words& keys, const Words& later = {}) const;
+  /// Checks that this is an object with only `keys`.
+  void object(const Words& keys) const;
   /// The key of `alternatives` that the object has; an error unless it has exactly one of them.
   std::string exactly_one(const Words& alternatives) const;
   bool has(const std::string& key) const;
@@ -37,6 +37,8 @@ class Reader {
   std::size_t array(std::size_t minimum, std::size_t maximum) const;
   Reader element(std::size_t index) const;
 
+  /// True if an error is recorded, of this value or any other.
+  bool failed() const { return error_->has_value(); }
   bool is_null() const { return value_ && value_->is_null(); }
   bool is_object() const { return value_ && value_->is_object(); }
   bool is_string() const { return value_ && value_->is_string(); }

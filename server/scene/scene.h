@@ -2,11 +2,13 @@
 // `validate` (scene/document.h) makes a Scene from a document, so every Scene is valid. All values are SI.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -225,8 +227,18 @@ struct Box {
   glm::dmat3 axes{1.0};  ///< turns it out of its home
   bool operator==(const Box&) const = default;
 };
-/// The shape of a collider. solid.h has the functions for code that need not know which kind it is.
-using Shape = std::variant<Sphere, Plane, Capsule, Box>;
+/// A rigid body of triangles, from the document or a file. Cloth keeps to the side of its triangles on which
+/// it starts.
+struct Body {
+  std::shared_ptr<const TriangleMesh> mesh = std::make_shared<const TriangleMesh>();  ///< never null
+  Transform transform;  ///< from the mesh to the world
+  bool operator==(const Body& other) const {
+    return transform == other.transform && (mesh == other.mesh || *mesh == *other.mesh);
+  }
+};
+/// The shape of a collider. solid.h has the functions for code that need not know which kind it is. All but
+/// the last kind are solids: one law for a vertex has them all (shaders/elements/solid.glsl).
+using Shape = std::variant<Sphere, Plane, Capsule, Box, Body>;
 
 struct Collider {
   std::string name;
@@ -234,6 +246,7 @@ struct Collider {
   double friction = 0.0;     ///< Coulomb coefficient, 0 or more
   double restitution = 0.0;  ///< [0, 1]
   Motion motion;
+  bool is_body() const { return std::holds_alternative<Body>(shape); }
   bool operator==(const Collider&) const = default;
 };
 
@@ -280,6 +293,10 @@ struct Scene {
   std::optional<Wind> wind;
   double air_drag = 0.0;  ///< [1/s]
   Solver solver;
+  /// True if a collider is no body of triangles.
+  bool has_solids() const {
+    return std::any_of(colliders.begin(), colliders.end(), [](const Collider& of) { return !of.is_body(); });
+  }
   /// True if self-collision is of this kind.
   bool collides(ContactKind kind) const { return self_collision && self_collision->kind == kind; }
   bool operator==(const Scene&) const = default;

@@ -23,10 +23,16 @@ FabricMaterial read_material(const Reader& material, const Mesh& mesh, double sc
 /// standard ones.
 Fem read_sheet(const Reader& material, const Fabric* fabric);
 
-Collider read_collider(const Reader& collider, std::size_t index);
+Collider read_collider(const Reader& collider, std::size_t index, const Assets* assets);
 /// Reads the shape of a collider, which is the member with the name of its kind, e.g. "sphere".
-Shape read_shape(const Reader& collider);
+Shape read_shape(const Reader& collider, const Assets* assets);
+/// Reads the members `mesh` and `transform` of a collider.
+Body read_body(const Reader& collider, const Assets* assets);
 Motion read_motion(const Reader& motion);
+
+/// The mesh of a cloth.
+Mesh read_mesh(const Reader& mesh, const Assets* assets);
+Transform read_transform(const Reader& transform);
 
 /// Reads the `at` of a pin or a weight and checks it against the mesh of its cloth.
 At read_at(const Reader& at, const Mesh& mesh);

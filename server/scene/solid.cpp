@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
+#include "server/scene/placement.h"
 #include "server/scene/sections.h"
 #include "shaders/elements/elements.h"
 
@@ -100,24 +102,6 @@ static_assert(kind_matches<elements::solid_box, Box>);
 const char* name(const Box&) {
   return "box";
 }
-/// About x, then y, then z [degrees].
-glm::dmat3 turn(const dvec3& degrees) {
-  glm::dmat4 all(1.0);
-  for (int axis = 2; axis >= 0; --axis) {
-    dvec3 about(0.0);
-    about[axis] = 1.0;
-    all = glm::rotate(all, glm::radians(degrees[axis]), about);
-  }
-  return glm::dmat3(all);
-}
-/// The angles whose turn() is `axes`. Where y is a right angle, x and z turn alike: z is 0 then.
-dvec3 angles(const glm::dmat3& axes) {
-  const double level = std::hypot(axes[0][0], axes[0][1]);
-  const bool upright = level < 1e-12;
-  return glm::degrees(
-      dvec3(upright ? std::atan2(-axes[2][1], axes[1][1]) : std::atan2(axes[1][2], axes[2][2]),
-            std::atan2(-axes[0][2], level), upright ? 0.0 : std::atan2(axes[0][1], axes[0][0])));
-}
 void read(const Reader& box, Box& into) {
   box.object({"center", "half", "rotate"});
   into = {box.member("center").vector(ranges::position), box.member("half").vector(ranges::length),
@@ -136,7 +120,34 @@ Box moved(const Box& home, const glm::dmat3& rotation, const dvec3& translation)
   return {rotation * home.center + translation, home.half, rotation * home.axes};
 }
 
-static_assert(elements::solid_kinds == shape_kinds, "each kind of shape has its law");
+static_assert(std::is_same_v<std::variant_alternative_t<solid_kinds, Shape>, Body>);
+const char* name(const Body&) {
+  return "mesh";
+}
+json numbers(const Body& body) {
+  const Transform& transform = body.transform;
+  return {{"translate", list(transform.translate)},
+          {"rotate", list(transform.rotate)},
+          {"scale", transform.scale}};
+}
+Ball ball(const Body& body) {
+  const std::vector<dvec3> points = placed(body.transform, body.mesh->vertices);
+  if (points.empty()) return {body.transform.translate, 0.0};
+  dvec3 low = points[0], high = points[0];
+  for (const dvec3& point : points) {
+    low = glm::min(low, point);
+    high = glm::max(high, point);
+  }
+  Ball around{0.5 * (low + high), 0.0};
+  for (const dvec3& point : points)
+    around.radius = std::max(around.radius, glm::distance(point, around.center));
+  return around;
+}
+Body moved(const Body& home, const glm::dmat3& rotation, const dvec3& translation) {
+  return {home.mesh, moved(home.transform, rotation, translation)};
+}
+
+static_assert(elements::solid_kinds == solid_kinds, "each kind of solid has its law");
 
 template <std::size_t... kind>
 std::array<Shape, shape_kinds> default_shapes(std::index_sequence<kind...>) {
@@ -162,18 +173,31 @@ const std::array<const char*, shape_kinds>& shape_names() {
   return names;
 }
 
-Shape read_shape(const Reader& collider) {
+Shape read_shape(const Reader& collider, const Assets* assets) {
   const std::string given = collider.exactly_one({shape_names().begin(), shape_names().end()});
+  if (given == name(Body())) return read_body(collider, assets);
+  if (collider.has("transform")) collider.fail("\"transform\" only beside \"mesh\"");
   for (Shape& shape : default_shapes()) {
     if (given != name_of(shape)) continue;
-    std::visit([&](auto& of) { read(collider.member(given), of); }, shape);
+    std::visit(
+        [&](auto& of) {
+          if constexpr (!std::is_same_v<decltype(of), Body&>) read(collider.member(given), of);
+        },
+        shape);
     return shape;
   }
   return {};
 }
 
 Solid solid(const Shape& shape) {
-  return std::visit([](const auto& of) { return contact_numbers(of); }, shape);
+  return std::visit(
+      [](const auto& of) {
+        if constexpr (std::is_same_v<decltype(of), const Body&>)
+          return Solid{};
+        else
+          return contact_numbers(of);
+      },
+      shape);
 }
 
 Ball bounds(const Shape& shape) {
@@ -186,7 +210,8 @@ Shape moved_shape(const Shape& home, const glm::dmat3& rotation, const dvec3& tr
 
 json shape_to_json(const Shape& shape) {
   json document = json::object();
-  document[name_of(shape)] = std::visit([](const auto& of) { return numbers(of); }, shape);
+  document[std::holds_alternative<Body>(shape) ? "transform" : name_of(shape)] =
+      std::visit([](const auto& of) { return numbers(of); }, shape);
   return document;
 }
 

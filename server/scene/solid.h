@@ -13,6 +13,8 @@
 namespace clothlab::scene {
 
 inline constexpr std::size_t shape_kinds = std::variant_size_v<Shape>;
+/// The kinds that are solids: the first ones of Shape.
+inline constexpr std::size_t solid_kinds = shape_kinds - 1;
 
 /// The names of the kinds in a document, in the order of Shape.
 const std::array<const char*, shape_kinds>& shape_names();
@@ -27,6 +29,7 @@ struct Solid {
   dvec3 second{0.0};     ///< a body's second axis, unit length; the third is their cross product
   dvec3 extent{0.0};     ///< half of the edges of a body's core, along its axes [m]
 };
+/// To be called of solids only.
 Solid solid(const Shape& shape);
 
 /// A ball that contains the whole shape.
@@ -39,7 +42,8 @@ Ball bounds(const Shape& shape);
 /// The shape turned by `rotation`, then moved by `translation` [m].
 Shape moved_shape(const Shape& home, const glm::dmat3& rotation, const dvec3& translation);
 
-/// The shape as a document has it: {"sphere": {"center": [x, y, z], "radius": r}}.
+/// The shape as a document has it: {"sphere": {"center": [x, y, z], "radius": r}}. Of a body only its
+/// transform, which is all that a motion changes: {"transform": {...}}.
 nlohmann::json shape_to_json(const Shape& shape);
 
 }  // namespace clothlab::scene

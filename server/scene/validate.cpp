@@ -33,12 +33,23 @@ std::vector<Cloth> read_cloths(const Reader& cloths, const Assets* assets) {
   return result;
 }
 
-std::vector<Collider> read_colliders(const Reader& colliders) {
+std::vector<Collider> read_colliders(const Reader& colliders, const Assets* assets) {
   std::vector<Collider> result(colliders.array(0, max_colliders));
   std::set<std::string> names;
+  std::size_t vertices = 0, triangles = 0;
   for (std::size_t i = 0; i < result.size(); ++i) {
-    result[i] = read_collider(colliders.element(i), i);
-    require_unique_name(colliders.element(i), result[i].name, names);
+    const Reader collider = colliders.element(i);
+    result[i] = read_collider(collider, i, assets);
+    require_unique_name(collider, result[i].name, names);
+    const auto* body = std::get_if<Body>(&result[i].shape);
+    if (!body) continue;
+    vertices += body->mesh->vertices.size();
+    triangles += body->mesh->triangles.size();
+    if (vertices > max_body_vertices || triangles > max_body_triangles)
+      collider.member("mesh").fail(
+          std::to_string(vertices) + " vertices and " + std::to_string(triangles) + " triangles so far",
+          "at most " + std::to_string(max_body_triangles) +
+              " of each in all colliders together: a coarser mesh");
   }
   return result;
 }
@@ -81,7 +92,7 @@ Scene read_scene(const Reader& top, const Assets* assets) {
   scene.name = top.member("name", "scene").name();
   scene.gravity = top.member("gravity", json{0, -9.8, 0}).vector(ranges::gravity);
   scene.cloths = read_cloths(top.member("cloths"), assets);
-  scene.colliders = read_colliders(top.member("colliders", json::array()));
+  scene.colliders = read_colliders(top.member("colliders", json::array()), assets);
   scene.self_collision = read_self_collision(top.member("self_collision", json(nullptr)));
   scene.wind = read_wind(top.member("wind", json(nullptr)));
   scene.air_drag = top.member("air_drag", 0.0).number(ranges::air_drag);

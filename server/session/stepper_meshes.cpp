@@ -8,11 +8,13 @@ namespace clothlab::session {
 
 namespace {
 
-/// The names of the meshes that the cloths of a document have.
+/// The names of the meshes that the cloths and colliders of a document have.
 std::set<std::string> mesh_names(const json& document) {
   std::set<std::string> names;
-  for (const json& cloth : document["cloths"])
-    if (cloth["mesh"].contains("obj")) names.insert(cloth["mesh"]["obj"].get<std::string>());
+  for (const char* list : {"cloths", "colliders"})
+    for (const json& item : document[list])
+      if (item.contains("mesh") && item["mesh"].contains("obj"))
+        names.insert(item["mesh"]["obj"].get<std::string>());
   return names;
 }
 

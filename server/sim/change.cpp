@@ -23,6 +23,17 @@ bool new_cloth(const scene::Cloth& from, const scene::Cloth& to) {
          pins_were_added(from, to);
 }
 
+/// True if `to` has a body that `from` lacks, or has elsewhere. Cloth may be where it comes, and contact only
+/// keeps apart what is apart: so it starts the cloth anew. One that is removed only lets the cloth fall.
+bool bodies_came(const scene::Scene& from, const scene::Scene& to) {
+  return std::any_of(to.colliders.begin(), to.colliders.end(), [&](const scene::Collider& body) {
+    return body.is_body() &&
+           std::none_of(from.colliders.begin(), from.colliders.end(), [&](const scene::Collider& old) {
+             return old.motion == body.motion && old.shape == body.shape;
+           });
+  });
+}
+
 /// The kinds of elements that a material has: springs of three kinds, or a sheet that bends or does not.
 std::array<bool, 5> kinds(const scene::Material& material) {
   if (const auto* springs = std::get_if<scene::Springs>(&material))
@@ -68,7 +79,7 @@ const char* name(ChangeDepth depth) {
 
 ChangeDepth change_depth(const scene::Scene& from, const scene::Scene& to) {
   if (without_looks(from) == without_looks(to)) return ChangeDepth::none;
-  if (from.cloths.size() != to.cloths.size()) return ChangeDepth::cloth;
+  if (from.cloths.size() != to.cloths.size() || bodies_came(from, to)) return ChangeDepth::cloth;
   bool same = plan(from) == plan(to);
   for (std::size_t i = 0; i < from.cloths.size(); ++i) {
     if (new_cloth(from.cloths[i], to.cloths[i])) return ChangeDepth::cloth;

@@ -20,7 +20,7 @@ double contact_margin(const scene::Scene& scene, const model::Model& model) {
 void set_colliders(const gl::Program& program, const scene::Scene& scene, const MotionTable& motions,
                    double margin) {
   std::vector<glm::vec4> rows;  // those of each collider as shaders/collide/colliders.glsl has them
-  for (std::size_t kind = 0; kind < scene::shape_kinds; ++kind)
+  for (std::size_t kind = 0; kind < scene::solid_kinds; ++kind)
     for (const scene::Collider& collider : scene.colliders) {
       if (collider.shape.index() != kind) continue;
       const scene::Solid solid = scene::solid(collider.shape);

@@ -17,7 +17,7 @@ bool moves(const scene::Motion& motion) {
 
 std::vector<SolidRun> solid_runs(const scene::Scene& scene) {
   std::vector<SolidRun> runs;
-  for (std::size_t kind = 0; kind < scene::shape_kinds; ++kind)
+  for (std::size_t kind = 0; kind < scene::solid_kinds; ++kind)
     for (const scene::Collider& collider : scene.colliders) {
       if (collider.shape.index() != kind) continue;
       const SolidRun next{kind, moves(collider.motion)};
@@ -81,6 +81,8 @@ Plan plan(const scene::Scene& scene) {
     plan.pins |= !cloth.pins.empty();
   }
   plan.solids = solid_runs(scene);
+  plan.bodies = static_cast<int>(std::count_if(scene.colliders.begin(), scene.colliders.end(),
+                                               [](const auto& collider) { return collider.is_body(); }));
   plan.moving = static_cast<int>(moving_motions(scene).size());
   plan.self_collision = scene.collides(scene::ContactKind::points);
   plan.surface_contact = scene.collides(scene::ContactKind::surface);
@@ -133,7 +135,7 @@ std::vector<Simulation::Part> parts(const Plan& plan) {
   add(Kind::term, "self_contacts", plan.self_collision, no_points);
   add(Kind::term, "wind", plan.wind, "wind is null");
   add(Kind::term, "moving_poses", plan.moving > 0, "no pin and no collider moves");
-  for (std::size_t kind = 0; kind < scene::shape_kinds; ++kind) {
+  for (std::size_t kind = 0; kind < scene::solid_kinds; ++kind) {
     const std::string name = scene::shape_names()[kind], names = name + (name.back() == 'x' ? "es" : "s");
     const bool any = std::any_of(plan.solids.begin(), plan.solids.end(),
                                  [&](const auto& run) { return run.kind == kind; });

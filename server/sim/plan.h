@@ -41,6 +41,7 @@ struct Plan {
   bool pins = false;
   int moving = 0;                ///< distinct motions of pins and colliders, null left out
   std::vector<SolidRun> solids;  ///< in runs as long as possible
+  int bodies = 0;                ///< colliders that are bodies of triangles
   bool self_collision = false;   ///< between vertices
   bool surface_contact = false;
   bool wind = false;

@@ -87,7 +87,7 @@ test("both sides of the cloth are drawn: turned over, it covers the same pixels"
   assert.ok(Math.abs(front.count - back.count) < 0.05 * front.count, `${front.count} and ${back.count} pixels`);
 });
 
-test("a capsule and a box are drawn where they are, and are shaded by their sides", () => {
+test("a capsule, a box and a mesh are drawn where they are, and are shaded by their sides", () => {
   const scene = (...colliders) => [
     ...["seed", "--time", "0", "--size", "240x180", "--set", `/colliders=${JSON.stringify(colliders)}`],
     ...["--set", "/cloths/0/pins=[]", "--set", "/cloths/0/transform/translate=[0,1,-0.5]"],
@@ -96,12 +96,15 @@ test("a capsule and a box are drawn where they are, and are shaded by their side
   const bodies = [
     { capsule: { a: [-0.4, 0, -0.4], b: [0.3, 0.3, -0.4], radius: 0.12 } },
     { box: { center: [0, 0, 0.4], half: [0.35, 0.12, 0.2], rotate: [0, 30, 10] } },
+    { mesh: { obj: "presets/torso.obj" }, transform: { translate: [0, -1.2, 0.4], rotate: [0, 40, 0] } },
   ];
   for (const [n, body] of bodies.entries()) {
     const other =
       "capsule" in body
         ? { capsule: { ...body.capsule, radius: 1e-6 } }
-        : { box: { ...body.box, half: [1e-6, 1e-6, 1e-6] } };
+        : "box" in body
+          ? { box: { ...body.box, half: [1e-6, 1e-6, 1e-6] } }
+          : { ...body, transform: { ...body.transform, translate: [0, 0, 0.4], scale: 1e-6 } };
     // A ball as large as the body's surroundings frames both pictures alike.
     const frame = { sphere: { center: [0, -0.6, 0], radius: 0.3 } };
     const with_ = render(`body-${n}.png`, ...scene(far, frame, body)),

@@ -236,6 +236,36 @@ test("--verify counts crossings at every sample: of sheets that pass through eac
   assert.ok(!("crossings" in report("verified.json")));
 });
 
+test("--verify counts cloth that goes through a collider's mesh, at the mesh's place at that time", () => {
+  const all = {
+    box: [
+      [-9, -9, -9],
+      [9, 9, 9],
+    ],
+  };
+  const sheet = { name: "sheet", mesh: { grid: { columns: 5, rows: 5 } }, pins: [{ at: all }] }; // nothing stops it
+  const mesh = {
+    vertices: [
+      [0.1, -0.3, 0.4],
+      [0.2, -0.3, 0.5],
+      [0.1, -0.2, 0.5],
+    ],
+    triangles: [[0, 1, 2]],
+  };
+  const arrow = { name: "arrow", mesh, motion: { linear: { velocity: [0, 1, 0] } } };
+  const scene = { version: 1, solver: { dt: 0.01 }, cloths: [sheet], colliders: [arrow] };
+  writeFileSync(join(folder, "arrow.json"), JSON.stringify(scene));
+  run("arrow.json", "--time", "0.4", "--every", "0.02", "--report", "arrow-report.json", "--verify");
+  const { crossings, crossing_check: check } = report("arrow-report.json");
+  assert.ok(crossings > 0);
+  // Its tip is at the sheet at 0.2 s, its base at 0.3 s.
+  assert.ok(Math.abs(check.first_at - 0.21) < 0.011, JSON.stringify(check));
+  assert.ok(check.samples_with_crossings >= 4 && check.samples_with_crossings <= 6, JSON.stringify(check));
+  assert.equal(check.at_end, 0);
+  assert.match(check.first_pairs.join(), /of \/cloths\/0 \("sheet"\)/);
+  assert.match(check.first_pairs.join(), /of \/colliders\/0 \("arrow"\)/);
+});
+
 test("a scene of surfaces that starts with crossings is refused, with the pairs and a way out, and runs as points", () => {
   const asked = ["--set", '/self_collision={"kind":"surface"}'];
   const refused = clothlab(["run", "fabrics", "--time", "0.1", ...asked]);

@@ -168,7 +168,7 @@ json RandomPatch::collider(const std::string& name) {
                {"motion", motion()}};
   const auto place = [this] { return vector(0.1, 2.0, ranges::position); };
   const auto length = [this] { return usual(0.05, 1.0, ranges::length); };
-  switch (whole(0, 3)) {
+  switch (whole(0, 4)) {
     case 0:
       made["plane"] = {{"point", place()}, {"normal", direction()}};
       break;
@@ -177,6 +177,11 @@ json RandomPatch::collider(const std::string& name) {
       break;
     case 2:
       made["capsule"] = {{"a", place()}, {"b", place()}, {"radius", length()}};
+      break;
+    case 3:
+      made["mesh"] = {{"vertices", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+                      {"triangles", {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}}};
+      made["transform"] = transform();
       break;
     default:
       made["box"] = {{"center", place()},

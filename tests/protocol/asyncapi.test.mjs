@@ -140,6 +140,19 @@ test("where what moves is, is told as it says, before a frame", async () => {
   await client.request("stream.subscribe", {});
   await client.nextNotification("colliders");
   await client.frame();
+  const { document } = await client.request("scene.get", {});
+  const mesh = { obj: "presets/torso.obj" };
+  const spin = { axis: [0, 1, 0], center: [0, 0, 0], degrees_per_second: 10 };
+  const body = { mesh, transform: { translate: [9, 9, 9] }, motion: { spin } };
+  await client.request("scene.patch", { patch: { colliders: [...document.colliders, body] } });
+  await client.nextNotification("colliders", ({ moving }) => moving.some(({ transform }) => transform));
+  const vertices = [
+    [-9, 1, -9],
+    [9, 1.1, -9],
+    [0, 1.2, 9],
+  ];
+  const there = { mesh: { vertices, triangles: [[0, 1, 2]] } };
+  assert.ok((await client.refusal("scene.patch", { patch: { colliders: [there] } })).data.crossings);
   await leave(client);
 });
 

@@ -21,6 +21,19 @@ const colliders = [
   },
   { name: "cart", sphere: { center: [2, 0, 0], radius: 0.1 }, motion: { linear: { velocity: [0.5, 0, -0.25] } } },
   { name: "arm", capsule: { a: [0, 1, 0], b: [0.5, 1, 0.2], radius: 0.1 }, motion: { spin } },
+  {
+    name: "kite",
+    mesh: {
+      vertices: [
+        [9, 0, 0],
+        [10, 0, 0],
+        [9, 0, 1],
+      ],
+      triangles: [[0, 1, 2]],
+    },
+    transform: { translate: [0, 5, 0], rotate: [0, 0, 10], scale: 2 },
+    motion: { spin },
+  },
   { name: "plank", box: { center: [1, 1, 0], half: [0.3, 0.1, 0.2], rotate: [30, 0, 10] }, motion: { spin } },
 ];
 const near = (found, wanted, what) =>
@@ -39,7 +52,7 @@ for (const encoding of ["f32", "q16"])
     assert.equal(time, frame.time);
     assert.deepEqual(
       moving.map(({ index }) => index),
-      [1, 2, 3, 4, 5],
+      [1, 2, 3, 4, 5, 6],
     ); // a still collider stays where the scene places it
     const angle = (Math.PI / 2) * time;
     near(
@@ -54,10 +67,16 @@ for (const encoding of ["f32", "q16"])
     near(moving[3].capsule.a, [0, 1, 0], "the arm's end on the axis");
     near(moving[3].capsule.b, [0.5 * cos, 1 + 0.5 * sin, 0.2], "the arm's other end");
     near([moving[3].capsule.radius], [0.1], "the arm's radius");
-    near(moving[4].box.center, [cos, 1 + sin, 0], "the plank's center");
-    near(moving[4].box.half, [0.3, 0.1, 0.2], "the plank's edges");
+    const kite = moving[4];
+    assert.deepEqual(Object.keys(kite).sort(), ["index", "transform"]); // its triangles are not told again
+    near(kite.transform.translate, [-4 * sin, 1 + 4 * cos, 0], "the kite's place");
+    const away = kite.transform.rotate.map((value, axis) => (value - [0, 0, 10 + 90 * time][axis]) * (Math.PI / 180));
+    near(away.map(Math.cos), [1, 1, 1], "the kite's turn");
+    near([kite.transform.scale], [2], "the kite's scale");
+    near(moving[5].box.center, [cos, 1 + sin, 0], "the plank's center");
+    near(moving[5].box.half, [0.3, 0.1, 0.2], "the plank's edges");
     // It spins about the axis that it is turned about last.
-    const turned = moving[4].box.rotate;
+    const turned = moving[5].box.rotate;
     near([turned[0], turned[1], Math.cos(((turned[2] - 10) * Math.PI) / 180)], [30, 0, cos], "the plank's turn");
     await client.close();
   });

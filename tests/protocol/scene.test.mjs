@@ -157,14 +157,6 @@ test("an invalid patch answers -32602 with the scene's pointer and changes nothi
   assert.deepEqual(await client.request("scene.get"), before);
 });
 
-test("keys that are not supported yet are refused with that reason", async () => {
-  const error = await client.refusal("scene.patch", {
-    patch: { colliders: [{ mesh: { obj: "body.obj" } }] },
-  });
-  assert.equal(error.code, -32602);
-  assert.match(error.message, /not supported yet/);
-});
-
 test("a patch for a revision that is past answers -32003 with the current one", async () => {
   const { revision } = await client.request("scene.get");
   const patch = { gravity: [0, -3, 0] };

@@ -24,6 +24,9 @@ const crossFieldRules = {
   "names are unique": /a name that no earlier one has/,
   "all cloths together are not too large": /vertices so far/,
   "a mesh's file is there and is one": /\/mesh\/obj: /,
+  "a collider's triangles can be simulated": /^\/colliders\/\d+\/mesh: found triangle \d+: /,
+  "all colliders together are not too large": /triangles so far/,
+  "no cloth starts through or inside a collider": /^\/colliders\/\d+: .*, and (cloth that goes through|inside it) /,
   "surfaces that keep apart start apart": /^\/self_collision\/kind: "surface", but the start has /,
 };
 
@@ -97,6 +100,23 @@ const whole = {
     { plane: { point: [0, 0, 0], normal: [0, 1, 0] }, friction: 0.5 },
     { capsule: { a: [0, 0.5, 0], b: [0, 1, 0], radius: 0.1 }, motion: spin },
     { box: { center: [0, 0, 0], half: [0.1, 0.2, 0.3], rotate: [0, 30, 0] } },
+    {
+      mesh: {
+        vertices: [
+          [20, 0, 0],
+          [21, 0, 0],
+          [20, 1, 0],
+          [20, 0, 1],
+        ],
+        triangles: [
+          [0, 2, 1],
+          [0, 1, 3],
+        ],
+      },
+      transform: { translate: [0, 5, 0], rotate: [0, 10, 0], scale: 1 },
+      motion: oscillate,
+    },
+    { mesh: { obj: "leaf.obj" }, transform: { translate: [0, 50, 0] } },
   ],
   self_collision: { thickness: 0.01, friction: 0.2, kind: "points" },
   wind: { velocity: [2, 0, 0], gust: 0.3, gust_frequency: 0.7, drag: 1, lift: 0.2 },
@@ -245,6 +265,24 @@ function* mutations() {
   }
   for (const cloths of [[small], [small, small]]) yield { ...least, cloths, self_collision: { kind: "surface" } };
   yield { ...least, cloths: [{ mesh: { grid: { columns: 1024, rows: 1024 } } }, small] };
+  const cube = (scale) => ({
+    mesh: {
+      vertices: many(8, (i) => [i & 1, (i >> 1) & 1, i >> 2].map((bit) => scale * (bit - 0.5))),
+      triangles: [0, 1, 2].flatMap((axis) => {
+        const [a, b] = [1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3)];
+        return [0, 1 << axis].flatMap((side) => [
+          [side, side | a, side | a | b],
+          [side, side | a | b, side | b],
+        ]);
+      }),
+    },
+  });
+  for (const scale of [0.5, 4]) yield { ...least, cloths: [small], colliders: [cube(scale)] };
+  const strip = (n) => ({
+    vertices: many(n, (i) => [i, 50 + (i % 2), 0]),
+    triangles: many(n - 2, (i) => [i, i + 1, i + 2]),
+  });
+  yield { ...least, cloths: [small], colliders: [{ mesh: strip(150000) }, { mesh: strip(60000) }] };
 }
 
 /** The program's verdict on each text: "" for valid, else what it says. One call, since starting takes longer than checking. */

@@ -238,9 +238,22 @@ TEST_CASE("bodies cross cloths, not each other") {
                              {0.35, 1, 0.2},
                              {0.31, 0.5, -0.4}})
     x.push_back(place);
-  const Surfaces surfaces =
-      model::surfaces_of(model, {{first, first + 1, first + 2}, {first + 3, first + 4, first + 5}});
+  model.body_triangles = {{first, first + 1, first + 2}, {first + 3, first + 4, first + 5}};
+  Surfaces surfaces = model::surfaces_of(model);
   const model::Crossings found = model::find_crossings(surfaces, x, {1000});
   CHECK(found.count > 4);
   for (const model::Crossing& each : found.first) CHECK((each.edge[0] < first) != (each.triangle[0] < first));
+  CHECK(model::find_crossings(model::surfaces_of(model, false), x).count == 0);
+
+  // Of two sheets that cross, one is a body: cloths can be left out among themselves.
+  model::Model both;
+  std::vector<dvec3> y;
+  add_sheet(both, y, 8, 0.0, 0.0);
+  add_sheet(both, y, 8, 1e-4, 0.5);
+  Surfaces of_cloths = model::surfaces_of(both);
+  CHECK(model::find_crossings(of_cloths, y).count > 0);
+  of_cloths.among_cloths = false;
+  CHECK(model::find_crossings(of_cloths, y).count == 0);
+  of_cloths.first_body_vertex = 64;
+  CHECK(model::find_crossings(of_cloths, y).count > 0);
 }

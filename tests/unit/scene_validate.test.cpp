@@ -115,21 +115,6 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("features that are not simulated yet are refused by name, never ignored") {
-  const std::vector<std::pair<std::string, std::string>> not_yet = {
-      {"/colliders/0", R"({"mesh": {"obj": "body.obj"}})"},
-  };
-  for (const auto& [pointer, text] : not_yet) {
-    INFO(pointer << " = " << text);
-    json value = base_document();
-    value[json::json_pointer(pointer)] = json::parse(text);
-    const Result<scene::Document> document = scene::validate(value);
-    REQUIRE_FALSE(document);
-    CHECK(document.error().where.rfind(pointer, 0) == 0);
-    CHECK(document.error().remedy.find("not supported yet") != std::string::npos);
-  }
-}
-
 TEST_CASE("what makes no sheet is refused with its place: Poisson's ratio, negative moduli, PBD") {
   const auto refused = [](const char* material, const char* method) {
     json value = base_document();

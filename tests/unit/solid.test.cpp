@@ -43,9 +43,9 @@ Outcome path(const Shape& before, const Shape& after, const dvec3& from, const d
 
 }  // namespace
 
-TEST_CASE("there is a shape of each kind to try") {
-  REQUIRE(a_shape_of_each_kind.size() == scene::shape_kinds);
-  for (std::size_t kind = 0; kind < scene::shape_kinds; ++kind) {
+TEST_CASE("there is a solid of each kind to try") {
+  REQUIRE(a_shape_of_each_kind.size() == scene::solid_kinds);
+  for (std::size_t kind = 0; kind < scene::solid_kinds; ++kind) {
     CHECK(a_shape_of_each_kind[kind].index() == kind);
     CHECK(scene::solid(a_shape_of_each_kind[kind]).kind == static_cast<int>(kind));
   }

@@ -21,6 +21,7 @@ import {
 } from "./panel/notices";
 import { takeDroppedMeshes } from "./panel/mesh_drop";
 import { Panel } from "./panel/panel";
+import { Bodies } from "./link/bodies";
 import type { Fabric } from "./link/fabrics";
 import type { ShownFrame } from "./link/protocol";
 import { RpcError } from "./link/rpc";
@@ -44,6 +45,10 @@ export class Page {
   private readonly link = new LinkView(this.connection);
   private readonly transport = new Transport({ request: (method, params) => this.request(method, params) });
   private readonly slow = new SlowWatch((operations) => this.store.edit(operations));
+  private readonly bodies = new Bodies(
+    (name) => this.connection.get("/api/collider.ply", { name }),
+    () => this.drawDocument(this.stage.fitted),
+  );
   private readonly store: SceneStore = this.makeStore();
   private readonly panel = this.makePanel();
   private readonly lab = this.makeLab();
@@ -248,9 +253,13 @@ export class Page {
     const newScene = whole && document.name !== this.sceneName;
     this.sceneName = document.name;
     element("scene-name", HTMLElement).textContent = document.name;
-    this.stage.setDocument(document, newScene);
+    this.drawDocument(newScene, whole);
     this.panel.show(document);
     this.lab.sceneChanged();
+  }
+
+  private drawDocument(fit: boolean, whole = false): void {
+    if (this.store.document) this.stage.setDocument(this.bodies.filled(this.store.document, whole), fit);
   }
 
   private async fetchScene(): Promise<void> {

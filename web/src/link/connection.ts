@@ -78,6 +78,16 @@ export class Connection {
     this.agreed = field;
   }
 
+  /// The answer of the HTTP API, e.g. at `/api/scene`, for this session.
+  async get(path: string, query: Record<string, string> = {}): Promise<ArrayBuffer> {
+    const token = sessionStorage.getItem("clothlab-token");
+    const answer = await fetch(`${path}?${new URLSearchParams({ session: this.session, ...query }).toString()}`, {
+      headers: token === null ? {} : { authorization: `Bearer ${token}` },
+    });
+    if (!answer.ok) throw new Error(`${path}: ${answer.status}`);
+    return answer.arrayBuffer();
+  }
+
   acknowledge(sequence: number): void {
     this.rpc?.notify("stream.ack", { frame: sequence });
   }

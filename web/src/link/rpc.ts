@@ -2,9 +2,9 @@
 import { BadMessage } from "./protocol";
 import type { Vec3 } from "./scene_types";
 
-/// An edge or a triangle of a cloth.
+/// An edge or a triangle of a cloth or a body.
 export interface CrossingPart {
-  name: string; ///< the cloth's
+  name: string; ///< the cloth's, or the collider's
   vertices: number[]; ///< as the document numbers them
   at: Vec3[]; ///< [m]
 }

@@ -70,10 +70,17 @@ export interface Fem {
 
 export type Material = Springs | Fem;
 
+/// Scales, rotates about x, then y, then z, then translates.
+export interface Transform {
+  translate: Vec3; ///< [m]
+  rotate: Vec3; ///< [degrees]
+  scale: number;
+}
+
 export interface Cloth {
   name: string;
   mesh: Mesh;
-  transform: { translate: Vec3; rotate: Vec3; scale: number };
+  transform: Transform;
   mass: { per_vertex: number } | { area_density: number };
   material: Material;
   pins: Pin[];
@@ -101,23 +108,33 @@ export interface Box {
   half: Vec3;
   rotate: Vec3; ///< [degrees]
 }
-/// The kinds of shape, under their names in the document.
-export interface Shapes {
+/// A rigid body of triangles. Where the document names a file, bodies.ts puts its triangles in.
+export interface Body {
+  mesh: InlineMesh | { obj: string };
+  transform: Transform;
+}
+/// The kinds of solid, under their names in the document.
+export interface Solids {
   sphere: Sphere;
   plane: Plane;
   capsule: Capsule;
   box: Box;
 }
-type Kind = keyof Shapes;
-/// One shape, under the name of its kind.
-export type Shape = { [K in Kind]: { [Name in K]: Shapes[K] } }[Kind];
+type Kind = keyof Solids;
+/// One shape: a solid under the name of its kind, or a body.
+export type Shape = { [K in Kind]: { [Name in K]: Solids[K] } }[Kind] | Body;
+
+type SolidCases<T> = { [K in Kind]: (of: Solids[K]) => T };
+type Cases<T> = SolidCases<T> & { mesh: (of: Body) => T };
 
 /// Calls the function of `cases` for the shape's kind; null for a kind that this page does not know. A missing kind
 /// does not compile.
-export function byKind<T>(shape: Shape, cases: { [K in Kind]: (of: Shapes[K]) => T }): T | null {
+export function byKind<T>(shape: Shape, cases: Cases<T>): T | null {
+  if ("mesh" in shape) return cases.mesh(shape);
+  const solids: SolidCases<T> = cases;
   const made = <K extends Kind>(kind: K): T | null => {
-    const of = (shape as Partial<Shapes>)[kind];
-    return of === undefined ? null : cases[kind](of);
+    const of = (shape as Partial<Solids>)[kind];
+    return of === undefined ? null : solids[kind](of);
   };
   const kind = (Object.keys(cases) as Kind[]).find((each) => each in shape);
   return kind === undefined ? null : made(kind);
@@ -130,8 +147,9 @@ export type Collider = Shape & {
   motion: Motion;
 };
 
-/// Where a moving collider is at the time of a frame. `index`: its place in the document's list.
-export type MovedCollider = Shape & { index: number };
+/// Where a moving collider is at the time of a frame: of a solid its shape, of a body its transform. `index`: its place
+/// in the document's list.
+export type MovedCollider = (Exclude<Shape, Body> | Pick<Body, "transform">) & { index: number };
 
 export interface Wind {
   velocity: Vec3;

@@ -22,8 +22,9 @@ const named = ({ vertices, name }: CrossingPart): string => `${vertices.join("-"
 /// Tells the refusal of `patch`. Returns a function that takes the notice away; null, and nothing is told, if the
 /// refusal has another reason.
 export function tellCrossings(title: string, error: RpcError, patch: Patch, host: Host): (() => void) | null {
-  const { crossings } = error.data;
+  const { crossings, path } = error.data;
   if (!crossings) return null;
+  const ofCloth = path === "/self_collision/kind"; // else cloth meets a body
   const { when, count, complete, pairs } = crossings;
   const many = `${count}${complete ? "" : " or more"} ${count === 1 ? "place" : "places"}`;
   const subject = when === "start" ? "The scene would start with cloth" : "At present there is cloth";
@@ -33,14 +34,16 @@ export function tellCrossings(title: string, error: RpcError, patch: Patch, host
   return notice("error", {
     title,
     lines: [
-      `${subject} passing through cloth, in ${many}. “Surface” keeps apart only what is apart.`,
+      ofCloth
+        ? `${subject} passing through cloth, in ${many}. “Surface” keeps apart only what is apart.`
+        : `${subject} passing through a body, in ${many}. Contact keeps apart only what is apart.`,
       ...list.map((pair, i) => (i === mostNamed - 1 && count > mostNamed ? `${pair}, …` : pair)),
     ],
     stays: true,
     closed: () => host.hide(),
     actions: [
       { label: "Show me", keeps: true, run: () => host.show(crossings) },
-      { label: "Use points instead", run: () => host.send(underPoints(patch)) },
+      ...(ofCloth ? [{ label: "Use points instead", run: () => host.send(underPoints(patch)) }] : []),
     ],
   });
 }

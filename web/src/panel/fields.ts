@@ -172,6 +172,14 @@ function shapeFields(shape: Shape, base: string): { fields: Field[]; center: Vec
       ],
       center,
     }),
+    mesh: ({ transform }) => ({
+      fields: [
+        ...vector("place", [`${base}/transform/translate`], place),
+        ...vector("turned about", [`${base}/transform/rotate`], { min: -180, max: 180, step: 1, unit: "°" }),
+        number("scale", [`${base}/transform/scale`], { min: 0.01, max: 10, log: true }),
+      ],
+      center: transform.translate,
+    }),
   });
   return made ?? { fields: [], center: [0, 0, 0] };
 }

@@ -2,7 +2,7 @@
 // now; solids.ts shows each kind of shape.
 import { type Color, Group, type IUniform, Mesh, type Object3D, Vector3 } from "three";
 import type { StageUniforms } from "./fabric_material";
-import type { Collider, MovedCollider, SceneDocument } from "../link/scene_types";
+import type { Collider, MovedCollider, SceneDocument, Shape } from "../link/scene_types";
 import { bottomOf, floorOf, forward, groundMaterial, occlude, place, type Shown, SolidMaker } from "./solids";
 
 const up = new Vector3(0, 1, 0);
@@ -38,12 +38,13 @@ export class ColliderView {
   setDocument(document: SceneDocument, sceneRadius: number): void {
     this.object.clear();
     this.caster.clear();
-    for (const { dispose } of this.shown) dispose?.();
+    const before = this.shown;
     this.radius.value = sceneRadius * 2.8;
     this.shown = document.colliders.flatMap((collider, index) => {
       const made = this.maker.make(collider, this.radius.value);
       return made ? [{ ...made, collider, index }] : [];
     });
+    for (const { dispose } of before) dispose?.(); // not before: what is in the scene still is kept
     for (const { mesh, caster } of this.shown) {
       this.object.add(mesh);
       if (caster) this.caster.add(caster);
@@ -61,7 +62,8 @@ export class ColliderView {
     const occluders = this.stage.occluders.value;
     let used = 0;
     for (const shown of this.shown) {
-      const now = moved.find(({ index }) => index === shown.index) ?? shown.collider;
+      // A body that moves keeps its mesh.
+      const now: Shape = { ...shown.collider, ...moved.find(({ index }) => index === shown.index) };
       place(shown, now);
       if (occlude(now, occluders[used])) ++used;
     }

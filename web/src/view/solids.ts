@@ -2,11 +2,13 @@
 import {
   Box3,
   BoxGeometry,
-  type BufferGeometry,
+  BufferAttribute,
+  BufferGeometry,
   CapsuleGeometry,
   CircleGeometry,
   DoubleSide,
   Euler,
+  FrontSide,
   type IUniform,
   MathUtils,
   Mesh,
@@ -19,7 +21,17 @@ import {
   type Vector4,
 } from "three";
 import { casterMaterial, type StageUniforms } from "./fabric_material";
-import { type Box, byKind, type Capsule, type Motion, type Plane, type Shape } from "../link/scene_types";
+import {
+  type Body,
+  type Box,
+  byKind,
+  type Capsule,
+  type InlineMesh,
+  type Motion,
+  type Plane,
+  type Shape,
+  type Vec3,
+} from "../link/scene_types";
 import { sweep } from "./motion";
 import { groundFragment, groundVertex, porcelain } from "./shaders";
 
@@ -43,10 +55,11 @@ export const floorOf = (shape: Shape): number | null =>
     plane: (plane) => (rises(plane) ? plane.point[1] : null),
     capsule: () => null,
     box: () => null,
+    mesh: () => null,
   });
 
 const middleOf = ({ a, b }: Capsule): Vector3 => new Vector3(...a).add(new Vector3(...b)).multiplyScalar(0.5);
-const turnOf = ({ rotate: [x, y, z] }: Box): Euler =>
+const turnOf = ({ rotate: [x, y, z] }: { rotate: Vec3 }): Euler =>
   new Euler(MathUtils.degToRad(x), MathUtils.degToRad(y), MathUtils.degToRad(z), "ZYX"); // about x first
 
 const cornersOf = (box: Box): Vector3[] => {
@@ -55,6 +68,24 @@ const cornersOf = (box: Box): Vector3[] => {
     corner.applyEuler(turnOf(box)).add(new Vector3(...box.center)),
   );
 };
+const meshOf = ({ mesh }: Body): InlineMesh => ("obj" in mesh ? { vertices: [], triangles: [] } : mesh);
+
+/// The box around a body [m]; an empty one while its triangles are on their way.
+function boundsOf(body: Body): Box3 {
+  const { translate, scale } = body.transform;
+  const [turn, move, point] = [turnOf(body.transform), new Vector3(...translate), new Vector3()];
+  const box = new Box3();
+  for (const vertex of meshOf(body).vertices)
+    box.expandByPoint(
+      point
+        .set(...vertex)
+        .multiplyScalar(scale)
+        .applyEuler(turn)
+        .add(move),
+    );
+  return box;
+}
+
 const axisOf = ({ a, b }: Capsule): Vector3 => new Vector3(...b).sub(new Vector3(...a));
 
 /// Lowest point of a shape [m]; null if it has none.
@@ -64,6 +95,7 @@ export const bottomOf = (shape: Shape): number | null =>
     plane: () => null,
     capsule: ({ a, b, radius }) => Math.min(a[1], b[1]) - radius,
     box: (box) => Math.min(...cornersOf(box).map(({ y }) => y)),
+    mesh: (body) => (meshOf(body).vertices.length > 0 ? boundsOf(body).min.y : null),
   });
 
 const corners = (box: Box3): Vector3[] =>
@@ -86,6 +118,10 @@ export const outlineOf = (shape: Shape, motion: Motion): Vector3[] =>
     capsule: ({ a, b, radius }) =>
       [...sweep(a, motion), ...sweep(b, motion)].flatMap((point) => ballPoints(point, radius)),
     box: (box) => cornersOf(box).flatMap((corner) => sweep(corner.toArray(), motion)),
+    mesh: (body) => {
+      const box = boundsOf(body);
+      return box.isEmpty() ? [] : corners(box).flatMap((corner) => sweep(corner.toArray(), motion));
+    },
   }) ?? [];
 
 /// Sets `occluder` to the ball (centre, radius) with which a shape hides the sky: a large one inside it; false if it
@@ -105,6 +141,7 @@ export const occlude = (shape: Shape, occluder: Vector4 | undefined): boolean =>
       occluder?.set(...center, Math.min(...half));
       return true;
     },
+    mesh: () => false, // no ball is sure to be inside it
   }) ?? false;
 
 /// Moves a shape's meshes to the shape.
@@ -130,12 +167,19 @@ export const place = ({ mesh, caster }: Shown, shape: Shape): void => {
         each?.quaternion.setFromEuler(turnOf(box));
       }
     },
+    mesh: ({ transform }) => {
+      for (const each of [mesh, caster]) {
+        each?.position.set(...transform.translate);
+        each?.quaternion.setFromEuler(turnOf(transform));
+        each?.scale.setScalar(transform.scale);
+      }
+    },
   });
 };
 
-/// Of bodies. A round one's mesh is scaled by its radius.
-function bodyMaterial(stage: StageUniforms, round: boolean): MeshLambertMaterial {
-  const material = new MeshLambertMaterial({ color: 0xd9d4c8 });
+/// Of solids and bodies. A round one's mesh is scaled by its radius.
+function bodyMaterial(stage: StageUniforms, round: boolean, bothSides = false): MeshLambertMaterial {
+  const material = new MeshLambertMaterial({ color: 0xd9d4c8, side: bothSides ? DoubleSide : FrontSide });
   material.onBeforeCompile = (shader) => {
     // A round one is drawn a little deeper than it is: the middles of the triangles of cloth on it are inside it.
     if (round)
@@ -167,6 +211,14 @@ export function groundMaterial(uniforms: Record<string, IUniform>, solid: boolea
   });
 }
 
+function triangleGeometry({ vertices, triangles }: InlineMesh): BufferGeometry {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(new Float32Array(vertices.flat()), 3));
+  geometry.setIndex(new BufferAttribute(new Uint32Array(triangles.flat()), 1));
+  geometry.computeVertexNormals();
+  return geometry;
+}
+
 /// Makes the meshes of shapes; these share their materials, and the geometries that a scale fits to a shape.
 export class SolidMaker {
   readonly disc = new CircleGeometry(1, 64);
@@ -174,13 +226,16 @@ export class SolidMaker {
   private readonly coarseSphere = new SphereGeometry(1, 16, 10); // enough for a blurred shadow
   private readonly roundMaterial;
   private readonly flatMaterial;
+  private readonly meshMaterial; // a mesh may be turned inside out, or be a sheet
   private readonly planeMaterial;
+  private readonly geometries = new Map<InlineMesh, { geometry: BufferGeometry; shown: number }>();
   private readonly casterMaterial = casterMaterial();
   private readonly depthMaterial = casterMaterial();
 
   constructor(stage: StageUniforms, ground: Record<string, IUniform>) {
     this.roundMaterial = bodyMaterial(stage, true);
     this.flatMaterial = bodyMaterial(stage, false);
+    this.meshMaterial = bodyMaterial(stage, false, true);
     this.planeMaterial = groundMaterial(ground, true);
   }
 
@@ -204,6 +259,7 @@ export class SolidMaker {
         return this.own(new CapsuleGeometry(1, lengths, 12, 40), this.roundMaterial, capsule.radius);
       },
       box: ({ half: [x, y, z] }) => this.own(new BoxGeometry(2 * x, 2 * y, 2 * z), this.flatMaterial, 1),
+      mesh: (body) => this.triangles(meshOf(body)),
     });
   }
 
@@ -222,10 +278,28 @@ export class SolidMaker {
     return { mesh, caster, dispose: () => geometry.dispose() };
   }
 
+  /// A body of triangles, whose geometry lives as long as it is shown: a slider makes the shapes anew at every move.
+  private triangles(mesh: InlineMesh): Shown {
+    const kept = this.geometries.get(mesh) ?? { geometry: triangleGeometry(mesh), shown: 0 };
+    this.geometries.set(mesh, kept);
+    kept.shown++;
+    const made = this.own(kept.geometry, this.meshMaterial, 1);
+    return {
+      ...made,
+      dispose: () => {
+        if (--kept.shown > 0) return;
+        this.geometries.delete(mesh);
+        kept.geometry.dispose();
+      },
+    };
+  }
+
   /// Objects with the materials of every body and of its shadow: see ClothView.samples.
   samples(): { shown: Object3D[]; cast: Object3D[] } {
     return {
-      shown: [this.roundMaterial, this.flatMaterial].map((material) => new Mesh(this.sphere, material)),
+      shown: [this.roundMaterial, this.flatMaterial, this.meshMaterial].map(
+        (material) => new Mesh(this.sphere, material),
+      ),
       cast: [new Mesh(this.coarseSphere, this.casterMaterial)],
     };
   }

@@ -110,8 +110,14 @@ export class Stage {
     this.dirty = true;
   }
 
-  setDocument(document: SceneDocument, newScene: boolean): void {
-    const fresh = newScene || !this.document;
+  /// True while the view is the one that fits the scene: the user has not moved the camera.
+  get fitted(): boolean {
+    return this.keeper.fitted;
+  }
+
+  /// Shows a document, of which bodies.ts has named the triangles; `fit` it into the view.
+  setDocument(document: SceneDocument, fit: boolean): void {
+    const fresh = fit || !this.document;
     this.document = document;
     this.cloth.setDocument(document);
     this.measure(this.reach());

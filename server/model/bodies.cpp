@@ -1,0 +1,147 @@
+#include "server/model/bodies.h"
+
+#include <algorithm>
+#include <glm/common.hpp>
+#include <limits>
+#include <numeric>
+#include <tuple>
+
+#include "server/model/motion.h"
+#include "server/model/orientation.h"
+#include "server/scene/placement.h"
+
+namespace clothlab::model {
+
+namespace {
+
+using Index = std::uint32_t;
+using Corners = std::array<Index, 3>;
+
+/// A side of a triangle.
+struct Side {
+  Index low, high;
+  int direction;  ///< 1: the triangle goes from `low` to `high`; else -1
+  bool operator<(const Side& other) const { return std::tie(low, high) < std::tie(other.low, other.high); }
+};
+
+/// The triangles of the parts that are closed: parts share no vertex.
+std::vector<Corners> closed_parts(const Corners* first, Index triangle_count, Index first_vertex,
+                                  Index vertex_count) {
+  std::vector<Index> root(vertex_count);
+  std::iota(root.begin(), root.end(), 0u);
+  const auto part = [&](Index vertex) {
+    Index i = vertex - first_vertex;
+    while (root[i] != i) i = root[i] = root[root[i]];
+    return i;
+  };
+  std::vector<Side> sides;
+  sides.reserve(3 * std::size_t{triangle_count});
+  for (Index t = 0; t < triangle_count; ++t)
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const Index a = first[t][corner], b = first[t][(corner + 1) % 3];
+      sides.push_back({std::min(a, b), std::max(a, b), a < b ? 1 : -1});
+      root[part(a)] = part(b);
+    }
+  std::sort(sides.begin(), sides.end());
+  std::vector<bool> open(vertex_count, false);  // by the part's root
+  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    int balance = 0;
+    for (end = begin; end < sides.size() && !(sides[begin] < sides[end]); ++end)
+      balance += sides[end].direction;
+    if (balance != 0) open[part(sides[begin].low)] = true;
+  }
+  std::vector<Corners> closed;
+  for (Index t = 0; t < triangle_count; ++t)
+    if (!open[part(first[t][0])]) closed.push_back(first[t]);
+  return closed;
+}
+
+/// How often the border of a triangle winds around the point, seen along x: 1, 0 or -1. A point on a side
+/// counts to one of the two triangles there: that to which the side, gone upwards, lies to the left of it.
+int winding_seen_along_x(const std::array<dvec3, 3>& corner, const dvec3& point) {
+  constexpr Projection on{1, 2};
+  int winding = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const dvec3 &a = corner[i], &b = corner[(i + 1) % 3];
+    const bool upwards = a.z <= point.z && point.z < b.z, downwards = b.z <= point.z && point.z < a.z;
+    if (upwards && turn(a, b, point, on) > 0) ++winding;
+    if (downwards && turn(b, a, point, on) > 0) --winding;
+  }
+  return winding;
+}
+
+std::vector<std::array<dvec3, 3>> placed_corners(const Model& model, const BodyRange& body,
+                                                 const std::vector<dvec3>& position) {
+  std::vector<std::array<dvec3, 3>> placed;
+  const Index first = model.vertex_count();
+  for (const auto& [a, b, c] :
+       closed_parts(model.body_triangles.data() + body.first_triangle, body.triangle_count,
+                    first + body.first_vertex, body.vertex_count))
+    placed.push_back({position[a - first], position[b - first], position[c - first]});
+  return placed;
+}
+
+std::vector<Bounds> boxes_of(const std::vector<std::array<dvec3, 3>>& triangles) {
+  std::vector<Bounds> boxes;
+  boxes.reserve(triangles.size());
+  for (const auto& [a, b, c] : triangles)
+    boxes.push_back({glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))});
+  return boxes;
+}
+
+}  // namespace
+
+void add_bodies(Model& model, const scene::Scene& scene) {
+  for (Index i = 0; i < scene.colliders.size(); ++i) {
+    const scene::Collider& collider = scene.colliders[i];
+    const auto* body = std::get_if<scene::Body>(&collider.shape);
+    if (!body) continue;
+    const scene::TriangleMesh& mesh = *body->mesh;
+    const Index first = model.body_vertex_count();
+    model.bodies.push_back({i, first, static_cast<Index>(mesh.vertices.size()),
+                            static_cast<Index>(model.body_triangles.size()),
+                            static_cast<Index>(mesh.triangles.size()), collider.motion});
+    const Index from = model.vertex_count() + first;
+    for (const auto& [a, b, c] : mesh.triangles)
+      model.body_triangles.push_back({a + from, b + from, c + from});
+    const std::vector<dvec3> position = scene::placed(body->transform, mesh.vertices);
+    model.body_position.insert(model.body_position.end(), position.begin(), position.end());
+    model.vertex_body.resize(model.body_position.size(), static_cast<Index>(model.bodies.size() - 1));
+  }
+}
+
+std::vector<dvec3> body_positions(const Model& model, double time) {
+  std::vector<dvec3> position = model.body_position;
+  for (const BodyRange& body : model.bodies) {
+    const Pose now = pose(body.motion, time);
+    const auto first = position.begin() + body.first_vertex;
+    std::transform(first, first + body.vertex_count, first,
+                   [&](const dvec3& home) { return now.place(home); });
+  }
+  return position;
+}
+
+BodyInside::BodyInside(const Model& model, std::uint32_t body, const std::vector<dvec3>& position)
+    : triangles_(placed_corners(model, model.bodies[body], position)),
+      boxes_(boxes_of(triangles_)),
+      tree_(boxes_),
+      farthest_(std::numeric_limits<double>::lowest()) {
+  for (const Bounds& box : boxes_) farthest_ = std::max(farthest_, box.high.x);
+}
+
+bool BodyInside::contains(const dvec3& point) const {
+  if (!(point.x <= farthest_)) return false;
+  std::vector<std::uint32_t> met;
+  tree_.overlapping({point, {farthest_, point.y, point.z}}, met);
+  int winding = 0;
+  for (const std::uint32_t index : met) {
+    const std::array<dvec3, 3>& corner = triangles_[index];
+    const int seen = winding_seen_along_x(corner, point);
+    // The triangle's front looks along x where its border turns to the left: the point is before it if it is
+    // behind it.
+    if (seen != 0 && seen * side(corner[0], corner[1], corner[2], point) < 0) winding += seen;
+  }
+  return winding != 0;
+}
+
+}  // namespace clothlab::model
