@@ -102,6 +102,7 @@ const int unit_near_pairs = 15;         // candidates; pairs, and: contacts; for
 const int unit_rest_places = 16;        // server/sim/surface_pairs.cpp; triangle_pairs
 const int unit_step_start = 16;         // the step before; contacts, forces, begin
 const int unit_step_target = 17;        // begin; limit, move
+const int unit_body_places = 18;        // server/sim/surface_bodies.cpp; bodies, forces
 const int unit_block_vertices = 10;     // server/sim/surface_blocks.cpp; blocks
 const int slot_surface_control = 2;     // surface/*.comp; the same, indirect dispatches
 const int slot_known_control = 0;       // the same buffer as a uniform block

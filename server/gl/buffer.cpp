@@ -1,5 +1,6 @@
 #include "server/gl/buffer.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <new>
 #include <string_view>
@@ -45,7 +46,7 @@ void Buffer::fill(std::uint32_t value) {
 
 void Buffer::copy_from(const Buffer& other) {
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  glCopyNamedBufferSubData(other.id_, id_, 0, 0, static_cast<GLsizeiptr>(bytes_));
+  glCopyNamedBufferSubData(other.id_, id_, 0, 0, static_cast<GLsizeiptr>(std::min(bytes_, other.bytes_)));
 }
 
 BufferTexture::BufferTexture(const Buffer& buffer, GLenum format) {

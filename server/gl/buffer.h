@@ -32,7 +32,7 @@ class Buffer {
   /// Copies bytes from the buffer to `data`; waits for the GPU.
   void download(void* data, std::size_t bytes, std::size_t offset = 0) const;
   void fill(std::uint32_t value);
-  /// Queues a copy of all of `other`, which must have the same size.
+  /// Queues a copy of `other`, or of as much of it as there is room for.
   void copy_from(const Buffer& other);
   void bind_storage(GLuint binding) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id_); }
   void bind_uniform(GLuint binding) const { glBindBufferBase(GL_UNIFORM_BUFFER, binding, id_); }

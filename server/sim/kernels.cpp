@@ -70,11 +70,11 @@ Result<Kernels> Kernels::create(const scene::Scene& scene) {
     if (!limit) return limit.error();
     kernels.strain_limit = std::move(*limit);
   }
-  if (kernels.plan.surface_contact) {
+  if (kernels.plan.surface_contact()) {
     Result<SurfaceContact> contact = SurfaceContact::create(kernels.model, kernels.plan);
     if (!contact) return contact.error();
     kernels.surface_contact = std::move(*contact);
-    kernels.surface_contact->set_parameters(scene, kernels.model);
+    kernels.surface_contact->set_parameters(scene, kernels.model, kernels.motions);
   }
   return kernels;
 }
@@ -111,7 +111,7 @@ Status Kernels::update(const scene::Scene& scene) {
   if (new_elements) upload_elements(*this);
   integrator->set_parameters(surroundings(scene));
   if (strain_limit) strain_limit->set_parameters(surroundings(scene));
-  if (surface_contact) surface_contact->set_parameters(scene, model);
+  if (surface_contact) surface_contact->set_parameters(scene, model, motions);
   return ok();
 }
 

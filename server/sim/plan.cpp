@@ -85,7 +85,7 @@ Plan plan(const scene::Scene& scene) {
                                                [](const auto& collider) { return collider.is_body(); }));
   plan.moving = static_cast<int>(moving_motions(scene).size());
   plan.self_collision = scene.collides(scene::ContactKind::points);
-  plan.surface_contact = scene.collides(scene::ContactKind::surface);
+  plan.surfaces = scene.collides(scene::ContactKind::surface);
   plan.wind = scene.wind.has_value();
   if (scene::sweeps(plan.method))
     for (plan.most_sweeps = 16; plan.most_sweeps < scene.solver.iterations;) plan.most_sweeps *= 4;
@@ -114,14 +114,15 @@ std::vector<Simulation::Part> parts(const Plan& plan) {
     list.push_back({kind, name, runs ? "" : reason});
   };
   const char* const no_points =
-      plan.surface_contact ? "self_collision is of the kind surface" : "self_collision is null";
-  const char* const no_surfaces =
-      plan.self_collision ? "self_collision is of the kind points" : "self_collision is null";
+      plan.surfaces ? "self_collision is of the kind surface" : "self_collision is null";
+  const char* const no_surfaces = plan.self_collision
+                                      ? "self_collision is of the kind points, and no collider is a mesh"
+                                      : "self_collision is null, and no collider is a mesh";
   add(Kind::pass, "neighbour_search", plan.self_collision, no_points);
-  add(Kind::pass, "pair_search", plan.surface_contact, no_surfaces);
+  add(Kind::pass, "pair_search", plan.surface_contact(), no_surfaces);
   add(Kind::pass, scene::name(plan.method), true, "");
   add(Kind::pass, "strain_limit", plan.strain_limit(), "no cloth has a strain_limit");
-  add(Kind::pass, "surface_contact", plan.surface_contact, no_surfaces);
+  add(Kind::pass, "surface_contact", plan.surface_contact(), no_surfaces);
   const char* const no_springs = "no cloth has the model springs and this stiffness above 0";
   add(Kind::term, "structural_springs", plan.structural, no_springs);
   add(Kind::term, "shear_springs", plan.shear, no_springs);
@@ -135,6 +136,7 @@ std::vector<Simulation::Part> parts(const Plan& plan) {
   add(Kind::term, "self_contacts", plan.self_collision, no_points);
   add(Kind::term, "wind", plan.wind, "wind is null");
   add(Kind::term, "moving_poses", plan.moving > 0, "no pin and no collider moves");
+  add(Kind::term, "meshes", plan.bodies > 0, "the scene has no mesh among its colliders");
   for (std::size_t kind = 0; kind < scene::solid_kinds; ++kind) {
     const std::string name = scene::shape_names()[kind], names = name + (name.back() == 'x' ? "es" : "s");
     const bool any = std::any_of(plan.solids.begin(), plan.solids.end(),

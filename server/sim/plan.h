@@ -43,7 +43,7 @@ struct Plan {
   std::vector<SolidRun> solids;  ///< in runs as long as possible
   int bodies = 0;                ///< colliders that are bodies of triangles
   bool self_collision = false;   ///< between vertices
-  bool surface_contact = false;
+  bool surfaces = false;         ///< between surfaces of cloths
   bool wind = false;
   std::uint32_t neighbour_slots = 64;  ///< of each neighbour list; more are made if a list needs them
   bool limits_springs = false;         ///< true if any cloth with springs has a strain limit
@@ -52,6 +52,7 @@ struct Plan {
   /// Number of a step's rows in the pose table after the row of its start: the step's end and, before it, its
   /// middle if the method uses poses there.
   int pose_rows() const { return scene::facts(method).needs_midpoint_poses ? 2 : 1; }
+  bool surface_contact() const { return surfaces || bodies > 0; }
   bool strain_limit() const { return limits_springs || limits_sheets; }
   int solid_count() const {
     return std::accumulate(solids.begin(), solids.end(), 0,

@@ -108,7 +108,7 @@ struct Simulation::Implementation {
       passed("neighbour_search");
     }
     if (kernels.surface_contact) {
-      co_await kernels.surface_contact->update_pairs(state);
+      co_await kernels.surface_contact->update_pairs(state, row);
       passed("pair_search");
     }
     co_await kernels.integrator->step(state, row);
@@ -118,7 +118,7 @@ struct Simulation::Implementation {
       passed("strain_limit");
     }
     if (!kernels.surface_contact) co_return;
-    kernels.surface_contact->keep_apart(state);
+    kernels.surface_contact->keep_apart(state, row);
     passed("surface_contact");
   }
 
@@ -218,7 +218,8 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const scene::Scene& scene
   self.scene = scene;
   self.topology_revision = topology_revision;
   self.rest = rest_positions(self.kernels.model);
-  self.state = StateBuffers(self.kernels.model, self.kernels.motions);
+  self.state = StateBuffers(self.kernels.model, self.kernels.motions,
+                            self.kernels.surface_contact ? self.kernels.surface_contact->extra_places() : 0);
   self.last_good = LastGood(self.kernels.model.vertex_count());
   self.keep_start();
   return made;

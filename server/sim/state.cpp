@@ -39,9 +39,10 @@ Arrays at_rest(const model::Model& model, const MotionTable& motions) {
 
 }  // namespace
 
-StateBuffers::StateBuffers(const model::Model& model, const MotionTable& motions) {
+StateBuffers::StateBuffers(const model::Model& model, const MotionTable& motions, std::uint32_t extra)
+    : vertex_count_(model.vertex_count()) {
   for (gl::TextureBuffer* buffer : {&position_[0], &position_[1], &velocity_[0], &velocity_[1]})
-    *buffer = {gl::Buffer(bytes(model)), GL_RGBA32F};
+    *buffer = {gl::Buffer(bytes(model) + extra * sizeof(glm::vec4)), GL_RGBA32F};
   reset(model, motions);
 }
 
@@ -91,7 +92,7 @@ void StateBuffers::bind_outputs() const {
 }
 
 State StateBuffers::read() const {
-  const std::size_t count = shown_position().buffer.bytes() / sizeof(glm::vec4);
+  const std::size_t count = vertex_count_;
   std::vector<glm::vec4> words(count);
   State state;
   shown_position().buffer.download(words.data(), count * sizeof(glm::vec4));

@@ -13,8 +13,9 @@ class MotionTable;
 class StateBuffers {
  public:
   StateBuffers() = default;
-  /// The state at the start: the model's start positions, no velocity.
-  StateBuffers(const model::Model& model, const MotionTable& motions);
+  /// The state at the start: the model's start positions, no velocity. The buffers have room for `extra`
+  /// places behind its vertices, which are no part of the state (surface_bodies.h).
+  StateBuffers(const model::Model& model, const MotionTable& motions, std::uint32_t extra = 0);
 
   /// The present copy, which a pass reads. `swap` makes the other copy the present one.
   const gl::TextureBuffer& position() const { return position_[current_]; }
@@ -49,6 +50,7 @@ class StateBuffers {
  private:
   gl::TextureBuffer position_[2];  ///< xyz [m], w inverse mass [1/kg], 0 if pinned
   gl::TextureBuffer velocity_[2];  ///< xyz [m/s], w number of contacts; if pinned: index of its motion, or -1
+  std::uint32_t vertex_count_ = 0;
   int current_ = 0, shown_ = 0;
 };
 

@@ -9,27 +9,9 @@
 
 namespace clothlab::sim {
 
-namespace {
-
-/// The vertices of each block, each once.
-std::vector<std::vector<std::uint32_t>> vertices_of_blocks(const SurfaceTriangles& surface) {
-  std::vector<std::vector<std::uint32_t>> blocks;
-  for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
-    if (i % surface.block_size == 0) blocks.emplace_back();
-    for (int k = 0; k < 3; ++k) blocks.back().push_back(SurfaceTriangles::number_of(surface.triangles[i][k]));
-  }
-  for (std::vector<std::uint32_t>& vertices : blocks) {
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  }
-  return blocks;
-}
-
-}  // namespace
-
 Result<SurfaceBlocks> SurfaceBlocks::create(const SurfaceTriangles& surface, std::uint32_t vertex_count) {
   SurfaceBlocks made;
-  const std::vector<std::vector<std::uint32_t>> blocks = vertices_of_blocks(surface);
+  const std::vector<std::vector<std::uint32_t>>& blocks = surface.blocks;
   made.block_count_ = static_cast<std::uint32_t>(blocks.size());
   std::vector<std::uint32_t> words;
   std::size_t end = blocks.size();
@@ -43,6 +25,7 @@ Result<SurfaceBlocks> SurfaceBlocks::create(const SurfaceTriangles& surface, std
   if (!loaded) return loaded.error();
   made.program_ = std::move(*loaded);
   made.program_.set("block_count", static_cast<GLint>(made.block_count_));
+  made.program_.set("cloth_block_count", static_cast<GLint>(surface.cloth_block_count));
   made.program_.set("vertex_count", static_cast<GLint>(vertex_count));
   made.program_.set("triangle_count", static_cast<GLint>(surface.triangles.size()));
   return made;

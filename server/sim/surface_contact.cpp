@@ -17,6 +17,9 @@ namespace {
 /// Passes of pushes after a step: each leaves about a fifth of what it finds, of which a long step finds
 /// more.
 constexpr int pushes_of_short_step = 2, pushes_of_long_step = 4;
+/// The filter cannot stop a body, so that pushes alone must get cloth out of its way.
+constexpr int pushes_of_moving_bodies = 8;
+constexpr std::size_t sums_of_vertex = 16;  // as in surface.glsl
 /// Passes of the filter: in each, a layer that moves ahead makes room for the one behind it.
 constexpr int filter_passes = 3;
 /// Share of an overlap that a step mends, and the most that it does a second [1/s]: what is mended is no
@@ -33,11 +36,17 @@ const std::size_t SurfaceContact::bytes_of_counts = sizeof(SurfaceControl);
 
 Result<SurfaceContact> SurfaceContact::create(const model::Model& model, const Plan& plan) {
   SurfaceContact made;
-  made.vertex_count_ = model.vertex_count();
+  const SurfaceTriangles surface = surface_triangles(model, SurfaceBlocks::most_blocks);
   made.keeps_start_ = plan.strain_limit();
-  Result<SurfacePairs> pairs = SurfacePairs::create(model);
+  Result<SurfaceBodies> bodies = SurfaceBodies::create(model, plan, surface);
+  if (!bodies) return bodies.error();
+  made.bodies_ = std::move(*bodies);
+  made.cloth_vertex_count_ = model.vertex_count();
+  made.vertex_count_ = model.vertex_count() + made.bodies_.count();
+  Result<SurfacePairs> pairs = SurfacePairs::create(model, surface);
   if (!pairs) return pairs.error();
   made.pairs_ = std::move(*pairs);
+  made.pairs_.set_driven(plan.moving > 0);
   const gl::Defines defines{{"GROUP_SIZE", std::to_string(group_size)}};
   for (auto [program, name] : {std::pair{&made.contacts_, "contacts"},
                                {&made.forces_, "forces"},
@@ -49,41 +58,51 @@ Result<SurfaceContact> SurfaceContact::create(const model::Model& model, const P
     if (!loaded) return loaded.error();
     *program = std::move(*loaded);
     program->set("vertex_count", static_cast<GLint>(made.vertex_count_));
-    program->set("triangle_count", static_cast<GLint>(model.triangle_count()));
+    program->set("triangle_count", static_cast<GLint>(surface.triangles.size()));
+    program->set("cloth_vertex_count", static_cast<GLint>(made.cloth_vertex_count_));
   }
   made.target_ = vector_per_vertex(made.vertex_count_);
   if (made.keeps_start_) made.start_ = vector_per_vertex(made.vertex_count_);
-  made.sums_ = gl::Buffer(made.vertex_count_ * 8 * sizeof(std::int32_t));
+  made.sums_ = gl::Buffer(made.vertex_count_ * sums_of_vertex * sizeof(std::int32_t));
   made.limits_ = gl::Buffer(made.vertex_count_ * sizeof(std::uint32_t));
   return made;
 }
 
-void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Model& model) {
+void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Model& model,
+                                    const MotionTable& motions) {
   const double dt = scene.solver.dt;
+  bodies_.set_parameters(scene, model, motions);
   pairs_.set_parameters(scene, model);
   for (const gl::Program* program : {&contacts_, &forces_, &apply_, &begin_, &limit_, &move_}) {
     program->set("dt", static_cast<float>(dt));
-    program->set("thickness", static_cast<float>(scene.self_collision->thickness));
+    program->set("thickness", static_cast<float>(SurfacePairs::thickness(scene, model)));
   }
   push_passes_ = scene::iterates(scene.solver.method) ? pushes_of_long_step : pushes_of_short_step;
-  forces_.set("friction", static_cast<float>(scene.self_collision->friction));
+  forces_.set("friction", static_cast<float>(scene.self_collision ? scene.self_collision->friction : 0.0));
+  if (bodies_.moves()) push_passes_ = pushes_of_moving_bodies;
   forces_.set("mend", static_cast<float>(std::min(mended_in_step, mended_in_second * dt)));
   invalidate();
 }
 
 void SurfaceContact::invalidate() {
+  bodies_.invalidate();
   pairs_.invalidate();
   sums_.fill(0);
   limits_.fill(std::bit_cast<std::uint32_t>(1.0f));
   turn_ = 0;
 }
 
-Work SurfaceContact::update_pairs(const StateBuffers& state) {
+Work SurfaceContact::update_pairs(const StateBuffers& state, int row) {
+  bodies_.place_at_start(state, row);
   co_await pairs_.update(state);
   if (keeps_start_) start_.buffer.copy_from(state.position().buffer);
 }
 
-void SurfaceContact::keep_apart(StateBuffers& state) {
+void SurfaceContact::keep_apart(StateBuffers& state, int row) {
+  const std::uint32_t changing = bodies_.changes() ? vertex_count_ : cloth_vertex_count_;
+  bodies_.place_at_end(state, row);
+  for (const gl::Program* program : {&contacts_, &apply_, &begin_, &move_})
+    program->set("changing_vertex_count", static_cast<GLint>(changing));
   const std::size_t counts =
       offsetof(SurfaceControl, step_counts) + static_cast<std::size_t>(turn_) * sizeof(StepCounts);
   const auto run = [&](const gl::Program& program, std::size_t groups) {
@@ -98,6 +117,7 @@ void SurfaceContact::keep_apart(StateBuffers& state) {
                     meeting = counts + offsetof(StepCounts, meeting_groups),
                     cut_vertices = counts + offsetof(StepCounts, cut_vertices);
   pairs_.bind();
+  bodies_.bind();
   for (const gl::Program* program : {&contacts_, &begin_, &limit_}) pairs_.set_limits(*program);
   state.position().bind(unit_position);
   state.velocity().bind(unit_velocity);
@@ -116,7 +136,7 @@ void SurfaceContact::keep_apart(StateBuffers& state) {
   }
   begin_.use();
   begin_.set("turn", turn_);
-  glDispatchCompute(vertex_groups(vertex_count_), 1, 1);
+  glDispatchCompute(vertex_groups(changing), 1, 1);
   wait_for_writes();
   for (int pass = 0; pass < filter_passes; ++pass) {
     limit_.set("again", pass);

@@ -12,6 +12,7 @@
 #include "server/scene/scene.h"
 #include "server/sim/plan.h"
 #include "server/sim/state.h"
+#include "server/sim/surface_bodies.h"
 #include "server/sim/surface_pairs.h"
 #include "server/sim/work.h"
 
@@ -22,12 +23,16 @@ class SurfaceContact {
   static Result<SurfaceContact> create(const model::Model& model, const Plan& plan);
 
   /// Takes over the numbers of a scene; the pairs are searched anew before the next step.
-  void set_parameters(const scene::Scene& scene, const model::Model& model);
+  void set_parameters(const scene::Scene& scene, const model::Model& model, const MotionTable& motions);
 
-  /// To be called before a step: brings the pairs up to date (SurfacePairs::update).
-  Work update_pairs(const StateBuffers& state);
+  /// Places for which the state's buffers need room behind the cloths' vertices.
+  std::uint32_t extra_places() const { return bodies_.count(); }
+
+  /// To be called before a step: places bodies, and brings the pairs up to date (SurfacePairs::update).
+  /// `row`: of the motion table, at the step's start.
+  Work update_pairs(const StateBuffers& state, int row);
   /// To be called after a step: changes the new state so that it keeps apart and nothing has passed through.
-  void keep_apart(StateBuffers& state);
+  void keep_apart(StateBuffers& state, int row);
 
   /// Forgets the pairs and what is carried over from step to step.
   void invalidate();
@@ -45,10 +50,11 @@ class SurfaceContact {
   static const std::size_t bytes_of_counts;
 
  private:
-  std::uint32_t vertex_count_ = 0;
-  int turn_ = 0;  ///< whose step_counts the next step has
+  std::uint32_t cloth_vertex_count_ = 0, vertex_count_ = 0;  ///< with the places of bodies
+  int turn_ = 0;                                             ///< whose step_counts the next step has
   int push_passes_ = 0;
   bool keeps_start_ = false;  ///< the strain limit writes over the positions at the step's start
+  SurfaceBodies bodies_;
   SurfacePairs pairs_;
   gl::Program contacts_, forces_, apply_, begin_, limit_, move_;
   gl::TextureBuffer start_, target_;

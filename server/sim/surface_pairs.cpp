@@ -9,7 +9,6 @@
 
 #include "server/sim/integrator.h"
 #include "server/sim/surface_control.h"
-#include "server/sim/surface_triangles.h"
 
 namespace clothlab::sim {
 
@@ -20,13 +19,20 @@ constexpr std::uint32_t triangles_of_thread = 4;
 constexpr std::uint64_t updates_between_size_looks = 8;
 constexpr std::uint32_t most_listed = 1u << 21;
 
+/// The least mean edge of a cloth [m].
+double finest_edge(const model::Model& model) {
+  double edge = 0.0;
+  for (const model::ClothRange& cloth : model.cloths)
+    edge = edge > 0.0 ? std::min(edge, cloth.mean_edge_length) : cloth.mean_edge_length;
+  return edge;
+}
+
 }  // namespace
 
-Result<SurfacePairs> SurfacePairs::create(const model::Model& model) {
+Result<SurfacePairs> SurfacePairs::create(const model::Model& model, const SurfaceTriangles& surface) {
   SurfacePairs made;
-  made.vertex_count_ = model.vertex_count();
-  made.triangle_count_ = model.triangle_count();
-  const SurfaceTriangles surface = surface_triangles(model, SurfaceBlocks::most_blocks);
+  made.vertex_count_ = model.vertex_count() + static_cast<std::uint32_t>(surface.body_places.size());
+  made.triangle_count_ = static_cast<std::uint32_t>(surface.triangles.size());
   const gl::Defines defines{{"GROUP_SIZE", std::to_string(group_size)},
                             {"LEAF_SIZE", std::to_string(leaf_size)},
                             {"TOGETHER", std::to_string(triangles_of_thread)},
@@ -43,6 +49,8 @@ Result<SurfacePairs> SurfacePairs::create(const model::Model& model) {
     *program = std::move(*loaded);
     program->set("vertex_count", static_cast<GLint>(made.vertex_count_));
     program->set("triangle_count", static_cast<GLint>(made.triangle_count_));
+    program->set("cloth_vertex_count", static_cast<GLint>(model.vertex_count()));
+    program->set("cloth_triangle_count", static_cast<GLint>(surface.cloth_triangle_count));
     program->set("neighbour_pair_count", static_cast<GLint>(surface.neighbour_pairs.size()));
   }
   Result<SurfaceBlocks> blocks = SurfaceBlocks::create(surface, made.vertex_count_);
@@ -57,7 +65,9 @@ Result<SurfacePairs> SurfacePairs::create(const model::Model& model) {
   made.triangle_corners_ = {gl::Buffer(made.triangle_count_ * 12 * sizeof(std::uint32_t)), GL_RGBA32UI};
   made.leaf_boxes_ = {gl::Buffer(leaves * 8 * sizeof(float)), GL_RGBA32F};
   made.built_position_ = {gl::Buffer(made.vertex_count_ * 4 * sizeof(float)), GL_RGBA32F};
-  made.make_lists({8 * leaves + 64, 2 * made.triangle_count_ + 256, 8 * made.vertex_count_ + 256});
+  constexpr std::uint32_t generous = 1u << 17;  // entries: little memory, and lists seldom have to grow
+  made.make_lists({8 * leaves + 256, std::min(8 * made.triangle_count_, 2 * made.triangle_count_ + generous),
+                   std::min(32 * made.vertex_count_, 8 * made.vertex_count_ + generous)});
   const SurfaceControl nothing;
   made.control_.upload(&nothing, sizeof nothing);
   return made;
@@ -94,11 +104,13 @@ std::array<const gl::Program*, 7> SurfacePairs::programs() const {
           &finish_};
 }
 
+double SurfacePairs::thickness(const scene::Scene& scene, const model::Model& model) {
+  if (scene.collides(scene::ContactKind::surface)) return scene.self_collision->thickness;
+  return std::min(0.1 * finest_edge(model), 0.005);
+}
+
 void SurfacePairs::set_parameters(const scene::Scene& scene, const model::Model& model) {
-  const double thickness = scene.self_collision->thickness;
-  double edge = 0.0;
-  for (const model::ClothRange& cloth : model.cloths)
-    edge = edge > 0.0 ? std::min(edge, cloth.mean_edge_length) : cloth.mean_edge_length;
+  const double thickness = SurfacePairs::thickness(scene, model), edge = finest_edge(model);
   // Parts of a flat grid that share no vertex are 0.7 of a cell's side apart, which is 0.6 of the mean edge.
   // A search that reaches less far for what is side by side lists nothing then.
   skin_ = static_cast<float>(std::max(0.55 * edge - 1.2 * thickness, 0.3 * edge));
@@ -109,6 +121,7 @@ void SurfacePairs::set_parameters(const scene::Scene& scene, const model::Model&
     program->set("thickness", static_cast<float>(thickness));
     program->set("skin", skin_);
     program->set("least_query", least_query);
+    program->set("cloth_pairs", scene.collides(scene::ContactKind::surface) ? 1 : 0);
   }
   limit_query(static_cast<float>(24.0 * edge + 4.0 * thickness));
 }
@@ -170,8 +183,8 @@ Work SurfacePairs::update(const StateBuffers& state) {
   bind();
   blocks_.check(state, built_position_);
   search(state);
-  for (int attempt = 0; updates_++ % updates_between_size_looks == 0 && read_sizes() && attempt < 4;
-       ++attempt) {
+  const bool look = updates_++ % updates_between_size_looks == 0 || driven_;
+  for (int attempt = 0; look && read_sizes() && attempt < 4; ++attempt) {
     co_await may_stop;
     search(state);
   }
@@ -190,7 +203,7 @@ bool SurfacePairs::read_sizes() {
   if (!sizes_ring_.empty()) take();
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   sizes_ring_.push(control_, sizeof control);
-  if (updates_ == 1) take();
+  if (updates_ <= 1 || driven_) take();
   bool longer = false;
   const auto wanted = [&](std::uint32_t capacity, std::uint32_t found) {
     const bool full = 4 * std::uint64_t{found} > 3 * std::uint64_t{capacity} && capacity < most_listed;

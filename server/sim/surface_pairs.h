@@ -14,21 +14,29 @@
 #include "server/scene/scene.h"
 #include "server/sim/state.h"
 #include "server/sim/surface_blocks.h"
+#include "server/sim/surface_triangles.h"
 #include "server/sim/work.h"
 
 namespace clothlab::sim {
 
 class SurfacePairs {
  public:
-  static Result<SurfacePairs> create(const model::Model& model);
+  static Result<SurfacePairs> create(const model::Model& model, const SurfaceTriangles& surface);
 
   /// Takes over the numbers of a scene. `invalidate` must follow.
   void set_parameters(const scene::Scene& scene, const model::Model& model);
 
+  /// The distance that surfaces are kept apart [m]: that of the scene's self-collision, if surfaces keep
+  /// apart there; else cloths keep from bodies a tenth of their mean edge, 5 mm at most.
+  static double thickness(const scene::Scene& scene, const model::Model& model);
+
   /// To be called before a step: brings the pairs up to date. Rest positions must be bound. Every few calls,
   /// at a fixed count and not by time, reads back how long the lists need to be, and makes them longer. Until
-  /// then nothing moves.
+  /// then no free vertex moves; where other things do (`set_driven`), it reads back in every call, and waits.
   Work update(const StateBuffers& state);
+
+  /// `driven`: pins, bodies or colliders move, also while a list is too short.
+  void set_driven(bool driven) { driven_ = driven; }
 
   /// Forgets the pairs; only the counts over all steps stay.
   void invalidate();
@@ -61,7 +69,8 @@ class SurfacePairs {
   std::uint32_t vertex_count_ = 0, triangle_count_ = 0;
   Capacities capacity_;
   float most_query_ = 0, skin_ = 0;  ///< [m]
-  std::uint64_t updates_ = 0;        ///< calls of `update` since `invalidate`
+  bool driven_ = false;
+  std::uint64_t updates_ = 0;  ///< calls of `update` since `invalidate`
   gl::Program corners_, leaf_boxes_program_, leaf_pairs_program_, triangle_pairs_program_, candidates_,
       pairs_program_, finish_;
   SurfaceBlocks blocks_;

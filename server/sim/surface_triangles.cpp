@@ -39,16 +39,73 @@ void order_by_place(std::span<std::uint32_t> triangles, const std::vector<model:
   order_by_place(triangles.subspan(half), middle, block);
 }
 
-std::vector<Corners> triangles_by_place(const model::Model& model, std::uint32_t block) {
-  std::vector<model::dvec3> middle;
-  for (const auto& [a, b, c] : model.triangles)
-    middle.push_back((model.start_position[a] + model.start_position[b] + model.start_position[c]) / 3.0);
-  std::vector<std::uint32_t> order(model.triangles.size());
+using Places = std::vector<model::dvec3>;
+
+/// The triangles in an order by place. `place`: of each vertex.
+std::vector<Corners> by_place(std::span<const Corners> triangles, const Places& place, std::uint32_t block) {
+  Places middle;
+  for (const auto& [a, b, c] : triangles) middle.push_back((place[a] + place[b] + place[c]) / 3.0);
+  std::vector<std::uint32_t> order(triangles.size());
   std::iota(order.begin(), order.end(), 0u);
   order_by_place(order, middle, block);
-  std::vector<Corners> triangles;
-  for (const std::uint32_t triangle : order) triangles.push_back(model.triangles[triangle]);
-  return triangles;
+  std::vector<Corners> ordered;
+  for (const std::uint32_t triangle : order) ordered.push_back(triangles[triangle]);
+  return ordered;
+}
+
+/// Triangles of a block, if at most `most_blocks` shall be enough: a multiple of leaf_size.
+std::uint32_t block_size(std::size_t triangles, std::uint32_t most_blocks) {
+  const auto leaves = static_cast<std::uint32_t>((triangles + leaf_size - 1) / leaf_size);
+  return leaf_size * std::max((leaves + most_blocks - 1) / most_blocks, 1u);
+}
+
+/// Calls take(first, end) for the triangles of each block.
+template <class Take>
+void each_block(std::size_t triangles, std::uint32_t size, const Take& take) {
+  for (std::size_t first = 0; first < triangles; first += size)
+    take(first, std::min(first + size, triangles));
+}
+
+/// Each vertex once.
+std::vector<std::uint32_t> vertices_of(std::span<const Corners> triangles) {
+  std::vector<std::uint32_t> vertices;
+  for (const Corners& corners : triangles) vertices.insert(vertices.end(), corners.begin(), corners.end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
+void add_cloths(SurfaceTriangles& made, std::vector<Corners>& triangles, const model::Model& model,
+                std::uint32_t most_blocks) {
+  const std::uint32_t block = block_size(model.triangles.size(), most_blocks);
+  triangles = by_place(model.triangles, model.start_position, block);
+  made.cloth_triangle_count = model.triangle_count();
+  each_block(triangles.size(), block, [&](std::size_t first, std::size_t end) {
+    made.blocks.push_back(vertices_of(std::span(triangles).subspan(first, end - first)));
+  });
+  made.cloth_block_count = static_cast<std::uint32_t>(made.blocks.size());
+}
+
+void add_body(SurfaceTriangles& made, std::vector<Corners>& triangles, const model::Model& model,
+              const Places& place, std::uint32_t body, std::uint32_t most_blocks) {
+  const model::BodyRange& range = model.bodies[body];
+  const std::uint32_t block = block_size(range.triangle_count, most_blocks);
+  const std::vector<Corners> ordered = by_place(
+      std::span(model.body_triangles).subspan(range.first_triangle, range.triangle_count), place, block);
+  triangles.insert(triangles.end(), ordered.begin(), ordered.end());
+  each_block(ordered.size(), block, [&](std::size_t first, std::size_t end) {
+    model::dvec3 low = place[ordered[first][0]], high = low;
+    for (const std::uint32_t vertex : vertices_of(std::span(ordered).subspan(first, end - first))) {
+      low = glm::min(low, place[vertex]);
+      high = glm::max(high, place[vertex]);
+    }
+    std::vector<std::uint32_t>& corners = made.blocks.emplace_back();
+    for (int corner = 0; corner < 8; ++corner) {
+      corners.push_back(model.vertex_count() + static_cast<std::uint32_t>(made.body_places.size()));
+      made.body_places.push_back(
+          {{corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z}, body});
+    }
+  });
 }
 
 std::vector<std::array<std::uint32_t, 4>> with_owned_parts(const std::vector<Corners>& triangles,
@@ -71,6 +128,10 @@ std::vector<std::array<std::uint32_t, 4>> with_owned_parts(const std::vector<Cor
 std::vector<glm::vec4> places_at_rest(const std::vector<Corners>& triangles, const model::Model& model) {
   std::vector<glm::vec4> list;
   for (const auto& [a, b, c] : triangles) {
+    if (a >= model.vertex_count()) {
+      list.insert(list.end(), {glm::vec4(0, 0, 0, -1), glm::vec4(0)});
+      continue;
+    }
     const glm::vec3 x(model.rest_position[a]), y(model.rest_position[b]), z(model.rest_position[c]);
     const glm::vec3 middle = 0.5f * (glm::min(x, glm::min(y, z)) + glm::max(x, glm::max(y, z)));
     const float radius =
@@ -90,9 +151,9 @@ class NeighbourPairs {
 
   void add_all(std::uint32_t vertex_count) {
     std::vector<std::vector<std::uint32_t>> around(vertex_count);
-    for (std::uint32_t i = 0; i < made_.triangles.size(); ++i)
+    for (std::uint32_t i = 0; i < made_.cloth_triangle_count; ++i)
       for (int k = 0; k < 3; ++k) around[number(i, k)].push_back(i);
-    for (std::uint32_t i = 0; i < made_.triangles.size(); ++i) {
+    for (std::uint32_t i = 0; i < made_.cloth_triangle_count; ++i) {
       std::set<std::uint32_t> neighbours;
       for (int k = 0; k < 3; ++k)
         for (const std::uint32_t j : around[number(i, k)])
@@ -144,10 +205,18 @@ class NeighbourPairs {
 
 SurfaceTriangles surface_triangles(const model::Model& model, std::uint32_t most_blocks) {
   SurfaceTriangles made;
-  const std::uint32_t leaves = (model.triangle_count() + leaf_size - 1) / leaf_size;
-  made.block_size = leaf_size * std::max((leaves + most_blocks - 1) / most_blocks, 1u);
-  const std::vector<Corners> triangles = triangles_by_place(model, made.block_size);
-  made.triangles = with_owned_parts(triangles, model.vertex_count());
+  const auto bodies = static_cast<std::uint32_t>(model.bodies.size());
+  const std::uint32_t blocks_of_body = bodies > 0 ? std::max(most_blocks / 4 / bodies, 1u) : 0;
+  std::vector<Corners> triangles;
+  add_cloths(made, triangles, model, most_blocks - bodies * blocks_of_body);
+  Places place = model.start_position;
+  for (std::uint32_t i = 0; i < model.body_vertex_count(); ++i) {
+    place.push_back(model.body_position[i]);
+    made.body_places.push_back({model.body_position[i], model.vertex_body[i]});
+  }
+  for (std::uint32_t body = 0; body < bodies; ++body)
+    add_body(made, triangles, model, place, body, blocks_of_body);
+  made.triangles = with_owned_parts(triangles, model.vertex_count() + model.body_vertex_count());
   made.rest_places = places_at_rest(triangles, model);
   NeighbourPairs(made).add_all(model.vertex_count());
   return made;

@@ -19,20 +19,33 @@ inline constexpr std::uint32_t leaf_size = 16;
 /// plane, or less, as a share of their distance.
 inline constexpr double out_of_plane = 0.35;
 
-/// In the order of SurfaceTriangles.
+/// A vertex of a body, or a corner of the box about a block of its triangles. The state's buffers hold them
+/// after the cloths' vertices, in this order; shaders/surface/bodies.comp places them.
+struct BodyPlace {
+  model::dvec3 home;       ///< at time 0 [m]
+  std::uint32_t body = 0;  ///< index into Model::bodies
+};
+
+/// Triangles of cloths, and after them those of bodies. Each `leaf_size` in turn are a leaf.
 struct SurfaceTriangles {
   /// The corners of each triangle: a vertex, with owns_vertex_bit and owns_edge_bit of
   /// shaders/surface/triangles.glsl where the triangle owns it, or the edge from it to the next corner; and
-  /// 0. Each `leaf_size` in turn are a leaf, and each `block_size` a block (surface_blocks.h).
+  /// 0.
   std::vector<std::array<std::uint32_t, 4>> triangles;
-  std::uint32_t block_size = leaf_size;
-  static std::uint32_t number_of(std::uint32_t corner) { return corner & 0x3fffffffu; }
-  /// For each triangle at rest the middle of its box, and its cloth; its normal, and its radius about the
-  /// middle [m].
+  std::uint32_t cloth_triangle_count = 0;
+  std::vector<BodyPlace> body_places;
+  /// The vertices of each block (surface_blocks.h): of triangles of cloths, and then, for those of bodies,
+  /// which are rigid, the corners of their boxes.
+  std::vector<std::vector<std::uint32_t>> blocks;
+  std::uint32_t cloth_block_count = 0;
+  /// For each triangle at rest the middle of its box, and its cloth, or -1 for a body's; its normal, and its
+  /// radius about the middle [m].
   std::vector<glm::vec4> rest_places;
-  /// Pairs of a vertex and a triangle, and of two edges, that two triangles with a common vertex own and that
-  /// themselves have none, as in shaders/surface/surface.glsl: edges_bit, no_force_bit.
+  /// Pairs of a vertex and a triangle, and of two edges, that two triangles of a cloth with a common vertex
+  /// own and that themselves have none, as in shaders/surface/surface.glsl: edges_bit, no_force_bit.
   std::vector<std::array<std::uint32_t, 4>> neighbour_pairs;
+
+  static std::uint32_t number_of(std::uint32_t corner) { return corner & 0x3fffffffu; }
 };
 
 /// `most_blocks`: largest number of blocks, above 0.

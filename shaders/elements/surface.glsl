@@ -109,8 +109,8 @@ FUNCTION Separation separation(bool edges, Corners c) {
 /// relative to each other since, with relative velocity v [m/s]. True if it is nearer than `keep` [m]. Then `push` [m]
 /// and `impulse` [m/s] are the changes of both that keep it apart, with Coulomb friction, to be shared by its corners.
 /// Of an overlap at the step's start the share `mend` is removed, and becomes no velocity.
-FUNCTION bool surface_contact(vec3 n, real gap, vec3 moved, vec3 v, real keep, real friction, real mend, OUT(vec3) push,
-                              OUT(vec3) impulse) {
+FUNCTION bool surface_contact(vec3 n, real gap, vec3 moved, vec3 v, real keep, real friction, real restitution,
+                              real mend, OUT(vec3) push, OUT(vec3) impulse) {
   push = vec3(real(0.0));
   impulse = vec3(real(0.0));
   real wanted = gap < keep ? gap + mend * (keep - gap) : keep;
@@ -119,7 +119,7 @@ FUNCTION bool surface_contact(vec3 n, real gap, vec3 moved, vec3 v, real keep, r
   if (!(lacks > real(0.0))) return false;
   real load = min(lacks, max(approach, real(0.0)));
   push = n * lacks - friction_displacement(moved, n, friction, load);
-  impulse = contact_velocity(v, n, friction, real(0.0)) - v;
+  impulse = contact_velocity(v, n, friction, restitution) - v;
   return true;
 }
 

@@ -20,12 +20,12 @@ void prepare_next_step() {
 void main() {
   int i = int(gl_GlobalInvocationID.x);
   if (i == 0) prepare_next_step();
-  if (i >= vertex_count) return;
+  if (i >= changing_vertex_count) return;
   vec4 start = FETCH(step_start, i), end = position[i];
   bool free = end.w > 0.0, filtered = known.step_counts[turn].near > 0u;
-  RARELY(filtered && sums[8 * i + 3] != 0) {
+  RARELY(filtered && sums[SUMS * i + 3] != 0) {
     if (free) velocity[i].w += 1.0;
-    sums[8 * i + 3] = 0;
+    sums[SUMS * i + 3] = 0;
   }
   vec3 moved = end.xyz - start.xyz;
   float went = length(moved), query_radius = uintBitsToFloat(known.flat_query), most = step_share * query_radius;

@@ -7,6 +7,7 @@ READ_VEC4(position, unit_position);
 READ_VEC4(position_when_built, unit_position_when_built);
 READ_UINT(block_vertices, unit_block_vertices);  // where each block's list ends, then the lists
 uniform int block_count;                         // at most GROUP_SIZE
+uniform int cloth_block_count;                   // those of bodies come after them, and do not meet each other
 
 const float rounding = 1.001;
 
@@ -41,7 +42,8 @@ bool valid(int one) {
     vec3 relative = max(abs(most_motion - motion_low[other]), abs(least_motion - motion_high[other]));
     vec3 between = max(max(at - high[other], low[other] - to), vec3(0.0));
     float room = max(length(between) - uintBitsToFloat(known.query), skin);
-    all_valid = all_valid && rounding * length(relative) <= room;
+    bool may_meet = one < cloth_block_count || other < cloth_block_count;
+    all_valid = all_valid && (!may_meet || rounding * length(relative) <= room);
   }
   return all_valid;
 }

@@ -8,14 +8,6 @@ layout(std430, binding = slot_near_pairs) writeonly buffer NearPairs { uvec4 nea
 layout(std430, binding = slot_contact_sums) buffer Sums { int sums[]; };
 layout(std430, binding = slot_chosen_pairs) writeonly buffer Chosen { uint touching_pairs[]; };
 
-/// True if the nearest points are within the triangle, or within both edges. At a rim another pair is nearer, or will
-/// be: slanting pushes between flat layers would brake their sliding.
-bool within_both(Separation apart) {
-  bool within = true;
-  for (int k = 0; k < 4; ++k) within = within && apart.weight[k] != 0.0;
-  return within;
-}
-
 void main() {
   uint item = gl_GlobalInvocationID.x;
   if (item >= min(known.pairs, pair_capacity)) return;
@@ -29,19 +21,20 @@ void main() {
   RARELY(apart.gap < uintBitsToFloat((pair.y & no_force_bit) != 0u ? known.flat_query : known.query)) {
     uint slot = atomicAdd(control.step_counts[turn].near, 1u);
     if (slot % uint(GROUP_SIZE) == 0u) atomicMax(control.step_counts[turn].near_groups, slot / uint(GROUP_SIZE) + 1u);
-    control.step_counts[turn].vertex_groups = uint((vertex_count + GROUP_SIZE - 1) / GROUP_SIZE);
+    control.step_counts[turn].vertex_groups = uint((changing_vertex_count + GROUP_SIZE - 1) / GROUP_SIZE);
+    vec4 weight = vec4(apart.weight[0], apart.weight[1], apart.weight[2], apart.weight[3]);
     near_list[3u * slot] = pair;
     near_list[3u * slot + 1u] = floatBitsToUint(vec4(apart.n, apart.gap));
-    near_list[3u * slot + 2u] =
-        floatBitsToUint(vec4(apart.weight[0], apart.weight[1], apart.weight[2], apart.weight[3]));
+    near_list[3u * slot + 2u] = floatBitsToUint(weight);
     vec3 moved = vec3(0.0);
     for (int k = 0; k < 4; ++k) moved += apart.weight[k] * (FETCH(position, corner[k]).xyz - start[k]);
-    if ((pair.y & no_force_bit) == 0u && within_both(apart) && apart.gap + dot(moved, apart.n) < thickness) {
+    if ((pair.y & no_force_bit) == 0u && apart.gap + dot(moved, apart.n) < kept_apart(corner, weight)) {
       uint place = atomicAdd(control.step_counts[turn].touching, 1u);
       if (place % uint(GROUP_SIZE) == 0u)
         atomicMax(control.step_counts[turn].touching_groups, place / uint(GROUP_SIZE) + 1u);
       touching_pairs[place] = slot;
-      for (int k = 0; k < 4; ++k) atomicAdd(sums[8 * int(corner[k]) + 3], 1);
+      for (int k = 0; k < 4; ++k)
+        if (corner[k] < uint(cloth_vertex_count)) atomicAdd(sums[SUMS * int(corner[k]) + 3], 1);
     }
   }
 }

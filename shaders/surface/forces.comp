@@ -5,8 +5,28 @@
 READ_VEC4(position, unit_position);  // w: inverse mass [1/kg]
 READ_VEC4(velocity, unit_velocity);
 READ_VEC4(step_start, unit_step_start);
-uniform float friction;
+READ_VEC4(body_places, unit_body_places);  // home, motion; friction, restitution
+uniform float friction;                    // of cloths
 uniform float mend;  // share of an overlap that a pass removes
+
+/// Friction and restitution of a pair: a body's, if it has a corner of one.
+vec2 surface_of(uvec4 corner) {
+  vec2 found = vec2(friction, 0.0);
+  int body = int(max(corner.x, corner.w)) - cloth_vertex_count;
+  RARELY(body >= 0) found = FETCH(body_places, 2 * body + 1).xy;
+  return found;
+}
+
+/// What a part must do that meets one which gives no way: all of it. A vertex that several such pairs push takes their
+/// mean, weighted by how near their contact is to it.
+void give_way(uvec4 corner, vec4 weight, vec4 mobility, vec3 push, vec3 impulse) {
+  for (int k = 0; k < 4; ++k)
+    if (mobility[k] != 0.0) {
+      add(corner[k], 8, weight[k] * push * units_of_length());
+      add(corner[k], 12, weight[k] * impulse * units_of_speed());
+      atomicAdd(sums[SUMS * int(corner[k]) + 11], int(ceil(abs(weight[k]) * weight_units)));
+    }
+}
 
 void main() {
   if (gl_GlobalInvocationID.x >= known.step_counts[turn].touching) return;
@@ -25,14 +45,22 @@ void main() {
   }
   float give = dot(mobility, weight);
   vec3 push, impulse;
-  RARELY(give > 0.0 && surface_contact(apart.xyz, apart.w, moved, v, thickness, friction, mend, push, impulse)) {
-    float share = 1.0 / (give * crowd(corner, mobility, 3));
-    push *= share * units_of_length();
-    impulse *= share * units_of_speed();
-    for (int k = 0; k < 4; ++k)
-      if (mobility[k] != 0.0) {
-        add(corner[k], 0, mobility[k] * push);
-        add(corner[k], 4, mobility[k] * impulse);
-      }
+  vec2 surface = surface_of(corner);
+  RARELY(give > 0.0 && surface_contact(apart.xyz, apart.w, moved, v, kept_apart(corner, weight), surface.x, surface.y,
+                                       mend, push, impulse)) {
+    bvec4 gives = notEqual(mobility, vec4(0.0)), first = bvec4(true, is_edges(pair), false, false);
+    bool both_give = (gives.x || (first.y && gives.y)) && ((!first.y && gives.y) || gives.z || gives.w);
+    if (!both_give) {
+      give_way(corner, weight, mobility, push, impulse);
+    } else {
+      float share = 1.0 / (give * crowd(corner, mobility, 3));
+      push *= share * units_of_length();
+      impulse *= share * units_of_speed();
+      for (int k = 0; k < 4; ++k)
+        if (mobility[k] != 0.0) {
+          add(corner[k], 0, mobility[k] * push);
+          add(corner[k], 4, mobility[k] * impulse);
+        }
+    }
   }
 }

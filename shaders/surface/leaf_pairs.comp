@@ -3,16 +3,24 @@
 READ_VEC4(leaf_boxes, unit_leaf_boxes);
 layout(std430, binding = slot_leaf_pairs) writeonly buffer LeafPairs { uvec2 found[]; };
 
+uniform int cloth_pairs;  // 0: cloths meet bodies alone
+
 void main() {
   int one = int(gl_GlobalInvocationID.x), leaf_count = (triangle_count + LEAF_SIZE - 1) / LEAF_SIZE;
-  if (one >= leaf_count) return;
+  int cloth_leaves = (cloth_triangle_count + LEAF_SIZE - 1) / LEAF_SIZE;
+  if (one >= cloth_leaves) return;
   float reach = reach_of(next_query());
   vec3 low = FETCH(leaf_boxes, 2 * one).xyz - reach, high = FETCH(leaf_boxes, 2 * one + 1).xyz + reach;
-  // Each two leaves once: every leaf looks at the half of the ring that begins with itself.
-  for (int k = 0; k <= leaf_count / 2; ++k) {
-    int other = one + k < leaf_count ? one + k : one + k - leaf_count;
+  // Each two leaves of cloths once: every leaf looks at the half of the ring that begins with itself; and at all leaves
+  // of bodies. A leaf may hold both, at the border.
+  int of_cloths = cloth_leaves / 2 + 1;
+  for (int k = 0; k < of_cloths + leaf_count - cloth_leaves; ++k) {
+    bool body = k >= of_cloths;
+    int other = body ? cloth_leaves + k - of_cloths : one + k < cloth_leaves ? one + k : one + k - cloth_leaves;
     RARELY(all(lessThanEqual(low, FETCH(leaf_boxes, 2 * other + 1).xyz)) &&
-           all(lessThanEqual(FETCH(leaf_boxes, 2 * other).xyz, high)) && (2 * k != leaf_count || one < other)) {
+           all(lessThanEqual(FETCH(leaf_boxes, 2 * other).xyz, high)) &&
+           (body || 2 * k != cloth_leaves || one < other) &&
+           (cloth_pairs != 0 || LEAF_SIZE * (max(one, other) + 1) > cloth_triangle_count)) {
       uint slot = atomicAdd(control.leaf_pairs, 1u);
       if (slot < leaf_pair_capacity) {
         found[slot] = uvec2(one, other);

@@ -13,7 +13,7 @@ uniform int impulses;
 void shorten(bool edges, uvec4 corner, vec4 shares) {
   control.step_counts[turn].cut_vertices = known.step_counts[turn].vertex_groups;
   for (int k = 0; k < 4; ++k) {
-    atomicAdd(sums[8 * int(corner[k]) + 7], 1);
+    if (corner[k] < uint(cloth_vertex_count)) atomicAdd(sums[SUMS * int(corner[k]) + 7], 1);
     if (shares[k] < 1.0) atomicMin(limits[corner[k]], floatBitsToUint(shares[k]));
   }
 }

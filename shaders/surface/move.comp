@@ -13,7 +13,7 @@ const float jammed_share = 0.1;
 
 void main() {
   int i = int(gl_GlobalInvocationID.x);
-  if (i >= vertex_count) return;
+  if (i >= changing_vertex_count) return;
   vec4 goal = FETCH(step_target, i);
   float share = uintBitsToFloat(limits[i]);
   vec3 x = position[i].xyz;
@@ -30,11 +30,11 @@ void main() {
       if (share < jammed_share && position[i].w > 0.0) velocity[i].xyz *= 0.5;
     }
   }
-  RARELY(sums[8 * i + 7] != 0) {
+  RARELY(sums[SUMS * i + 7] != 0) {
     if (last != 0) {
-      velocity[i].xyz += vec3(sums[8 * i + 4], sums[8 * i + 5], sums[8 * i + 6]) / units_of_speed();
-      for (int k = 4; k < 7; ++k) sums[8 * i + k] = 0;
+      velocity[i].xyz += vec3(sums[SUMS * i + 4], sums[SUMS * i + 5], sums[SUMS * i + 6]) / units_of_speed();
+      for (int k = 4; k < 7; ++k) sums[SUMS * i + k] = 0;
     }
-    sums[8 * i + 7] = 0;
+    sums[SUMS * i + 7] = 0;
   }
 }

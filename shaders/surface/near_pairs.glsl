@@ -3,19 +3,20 @@ READ_UVEC4(near_pairs, unit_near_pairs);
 // Which of them push in this step, and from pair_capacity on which could meet.
 layout(std430, binding = slot_chosen_pairs) buffer Chosen { uint chosen_pairs[]; };
 // For each vertex: sums of pushes x, y, z [units of length], pairs that push it; sums of impulses x, y, z [units of
-// speed], pairs that shorten steps at it.
+// speed], pairs that shorten steps at it. Of pairs whose other part gives no way: weighted sums of how far, and by how
+// much faster, it must go, 8 to 10 and 12 to 14, in the same units, and of weights, 11 [1 / weight_units].
 layout(std430, binding = slot_contact_sums) buffer Sums { int sums[]; };
 
 /// Most pairs that push, or shorten steps at, a corner that gives way: each takes that share, lest they do too much.
 float crowd(uvec4 corner, vec4 mobility, int which) {
   int most = 1;
   for (int k = 0; k < 4; ++k)
-    if (mobility[k] != 0.0) most = max(most, sums[8 * int(corner[k]) + which]);
+    if (mobility[k] != 0.0) most = max(most, sums[SUMS * int(corner[k]) + which]);
   return float(most);
 }
 
 void add(uint corner, int first, vec3 units) {
   ivec3 whole = in_units(units);
   for (int axis = 0; axis < 3; ++axis)
-    if (whole[axis] != 0) atomicAdd(sums[8 * int(corner) + first + axis], whole[axis]);
+    if (whole[axis] != 0) atomicAdd(sums[SUMS * int(corner) + first + axis], whole[axis]);
 }

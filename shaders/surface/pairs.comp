@@ -12,7 +12,7 @@ layout(std430, binding = slot_surface_pairs) writeonly buffer Pairs { uvec4 list
 bool near_at_rest(bool edges, uvec4 corner) {
   vec4 origin = FETCH(rest_position, corner.x);
   Corners c;
-  bool one_cloth = true;
+  bool one_cloth = all(lessThan(corner, uvec4(cloth_vertex_count)));
   for (int k = 0; k < 4; ++k) {
     vec4 x = FETCH(rest_position, corner[k]);
     one_cloth = one_cloth && x.w == origin.w;

@@ -52,7 +52,9 @@ layout(std430, binding = slot_surface_control) coherent buffer SurfaceControl { 
 // many times as long.
 layout(std140, binding = slot_known_control) uniform KnownControl { Control known; };
 
-uniform int vertex_count, triangle_count;
+// Of cloths, and after them of bodies, whose vertices nothing stops. What a step changes: all vertices if a body moves,
+// else those of cloths.
+uniform int vertex_count, triangle_count, cloth_vertex_count, cloth_triangle_count, changing_vertex_count;
 uniform float dt;           // [s]
 uniform float thickness;    // [m]
 uniform float skin;         // [m]
@@ -81,9 +83,19 @@ float next_query() { return max(next_flat_query(), min(1.2 * thickness, most_que
 /// How near pairs are that the search lists [m].
 float reach_of(float query_radius) { return query_radius + skin; }
 
+/// How far a pair is kept apart [m], by the weights of its nearest points: within the triangle, or within both edges,
+/// the thickness. At a rim another pair is nearer, or will be: slanting pushes between flat layers would brake their
+/// sliding. But at the corners of bodies no other is, and their rims keep half of the thickness.
+float kept_apart(uvec4 corner, vec4 weight) {
+  if (all(notEqual(weight, vec4(0.0)))) return thickness;
+  return int(max(corner.x, corner.w)) >= cloth_vertex_count ? 0.5 * thickness : 0.0;
+}
+
 /// Integers in which the sums of pushes [m] and impulses [m/s] are counted.
 float units_of_length() { return 67108864.0 / uintBitsToFloat(known.query); }
 float units_of_speed() { return units_of_length() * dt; }
+const float weight_units = 65536.0;
+#define SUMS 16  // of a vertex: near_pairs.glsl
 ivec3 in_units(vec3 v) { return ivec3(round(clamp(v, vec3(-1e9), vec3(1e9)))); }
 
 /// What rounding may add to a corner's place, and to what is computed of it [m].

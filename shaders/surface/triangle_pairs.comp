@@ -8,6 +8,8 @@ READ_UVEC2(leaf_pair_list, unit_leaf_pairs);
 READ_VEC4(rest_places, unit_rest_places);  // of each triangle: middle of its box, cloth; normal, radius about the middle
 layout(std430, binding = slot_triangle_pairs) writeonly buffer TrianglePairs { uvec2 found[]; };
 
+uniform int cloth_pairs;  // 0: cloths meet bodies alone
+
 /// Triangles of the first leaf that a thread looks at together: they share what it reads of the second's.
 const int together = TOGETHER;
 
@@ -70,7 +72,8 @@ void main() {
     bool near[together], any_near = false;
     for (int k = 0; k < together; ++k) {
       far[k] = apart(low[k], high[k], other_low, other_high);
-      near[k] = far[k] <= reach && begin + k < triangle_count && (leaves.x != leaves.y || begin + k < j) &&
+      int bodies = int(begin + k >= cloth_triangle_count) + int(j >= cloth_triangle_count);
+      near[k] = far[k] <= reach && begin + k < triangle_count && (bodies == 1 || (bodies == 0 && cloth_pairs != 0)) && (leaves.x != leaves.y || begin + k < j) &&
                 !share_vertex(numbers[k], t.tags & number_mask);
       any_near = any_near || near[k];
     }

@@ -89,7 +89,8 @@ TEST_CASE(
     const scene::Scene scene = two_sheets(thickness);
     const auto simulation = test::simulation(scene);
     const model::Model& model = simulation->model();
-    Result<sim::SurfacePairs> made = sim::SurfacePairs::create(model);
+    Result<sim::SurfacePairs> made =
+        sim::SurfacePairs::create(model, sim::surface_triangles(model, sim::SurfaceBlocks::most_blocks));
     REQUIRE(made);
     made->set_parameters(scene, model);
     made->invalidate();
