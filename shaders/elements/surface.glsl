@@ -123,18 +123,19 @@ FUNCTION bool surface_contact(vec3 n, real gap, vec3 moved, vec3 v, real keep, r
   return true;
 }
 
-/// Largest part of its step that a corner takes. `room` [m]: its distance from the plane that divides the pair, `away`
-/// [m]: by how much its step goes away from it, `size` [m]: the step's length. `rounding` [m]: more than rounding adds to
-/// a place. Any smaller part of the step is safe, too: nearer to the plane than `rounding`, a part of a step that leads
-/// away only a little may be turned about by rounding, so that only steps are taken that clearly lead away.
+/// Largest part of its step that a corner takes. `room` [m]: its distance from the plane that divides the pair,
+/// `away` [m]: by how much its step goes away from it, `size` [m]: the step's length. `rounding` [m]: more than
+/// rounding adds to a place. Any smaller part of the step is safe, too: nearer to the plane than `rounding`, a part
+/// of a step that leads away only a little may be turned about by rounding, so that only steps are taken that clearly
+/// lead away.
 FUNCTION real share_of_step(real room, real away, real size, real rounding) {
   if (!(room >= rounding)) return away >= rounding && away >= real(0.1) * size ? real(1.0) : real(0.0);
   if (room + away >= rounding) return real(1.0);
   real meets = (room - rounding) / -away;
   return max(min(real(0.85) * meets, meets - real(1e-3)), real(0.0));
 }
-/// The shortest part of a step [m], in units of `rounding`, that a corner may take, but for the whole step: along a tenth
-/// of it (share_of_step) rounding is too small to turn it about.
+/// The shortest part of a step [m], in units of `rounding`, that a corner may take, but for the whole step: along a
+/// tenth of it (share_of_step) rounding is too small to turn it about.
 const real shortest_part = real(16.0);
 
 /// The steps of a pair's corners along n [m]; a corner that nothing may stop: `held`.

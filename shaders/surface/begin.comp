@@ -40,8 +40,7 @@ void main() {
     atomicAdd(control.cuts, 1u);
   }
   RARELY(free && known.overflow != 0u) position[i] = end = start;
-  RARELY(filtered) {
-    target[i] = end;
-    position[i] = vec4(start.xyz, end.w);
-  }
+  // Bodies that do not move come here in the first steps alone.
+  RARELY(filtered || i >= cloth_vertex_count) target[i] = end;
+  RARELY(filtered) position[i] = vec4(start.xyz, end.w);
 }

@@ -1,7 +1,8 @@
 // Validity of the listed pairs, in one work group: asks for a search if two blocks of triangles have moved so far,
-// relative to each other, that a pair which the last search left out may be near now. Motion that both share, such as a
-// falling or a swinging cloth's, does not count. A pair that was left out was farther apart than the search reached, and
-// no nearer than the boxes of its blocks; how much nearer it came is at most the largest relative motion of its corners.
+// relative to each other, that a pair which the last search left out may be near now. Motion that both share, such as
+// a falling or a swinging cloth's, does not count. A pair that was left out was farther apart than the search
+// reached, and no nearer than the boxes of its blocks; how much nearer it came is at most the largest relative motion
+// of its corners.
 #include "surface.glsl"
 READ_VEC4(position, unit_position);
 READ_VEC4(position_when_built, unit_position_when_built);

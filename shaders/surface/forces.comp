@@ -1,5 +1,5 @@
-// Contact, 2 of 3: pushes of the near pairs that touch, on the places and velocities that the step, or the pass before, has made.
-// Each corner takes its share by inverse mass and weight, which keeps momentum.
+// Contact, 2 of 3: pushes of the near pairs that touch, on the places and velocities that the step, or the pass
+// before, has made. Each corner takes its share by inverse mass and weight, which keeps momentum.
 #include "surface.glsl"
 #include "near_pairs.glsl"
 READ_VEC4(position, unit_position);  // w: inverse mass [1/kg]

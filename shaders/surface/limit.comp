@@ -7,7 +7,7 @@ READ_VEC4(position, unit_position);  // so far; w: inverse mass [1/kg]
 READ_VEC4(velocity, unit_velocity);
 READ_VEC4(step_target, unit_step_target);
 layout(std430, binding = slot_step_limits) coherent buffer Limits { uint limits[]; };  // float bits, 1 or less
-uniform int again;  // 0: the first pass, from the step's start, over all near pairs; the others over those that could meet
+uniform int again;  // 0: the first pass, over all near pairs, from the step's start; else over those that could meet
 uniform int impulses;
 
 void shorten(bool edges, uvec4 corner, vec4 shares) {
@@ -75,7 +75,8 @@ void main() {
     vec4 shares;
     for (int k = 0; k < 4; ++k) {
       float side = k == 0 || (edges && k == 1) ? 1.0 : -1.0;
-      shares[k] = along.held[k] ? 1.0 : share_of_step(side * (along.y[k] - plane), side * along.d[k], length(steps[k]), rounding);
+      float room = side * (along.y[k] - plane), away = side * along.d[k];
+      shares[k] = along.held[k] ? 1.0 : share_of_step(room, away, length(steps[k]), rounding);
     }
     RARELY(min(min(shares.x, shares.y), min(shares.z, shares.w)) < 1.0) {
       if (impulses == 0) shorten(edges, corner, shares);

@@ -1,5 +1,5 @@
-// Pair search, 6 of 7: the pairs that are near each other, not their boxes alone. They come from the candidates, and from
-// triangles that share a vertex: what can meet there is known beforehand, and most of it is never near.
+// Pair search, 6 of 7: the pairs that are near each other, not their boxes alone. They come from the candidates, and
+// from triangles that share a vertex: what can meet there is known beforehand, and most of it is never near.
 #include "surface.glsl"
 #include "reach.glsl"
 READ_VEC4(position, unit_position);

@@ -5,7 +5,7 @@
 #include "triangles.glsl"
 READ_VEC4(leaf_boxes, unit_leaf_boxes);
 READ_UVEC2(leaf_pair_list, unit_leaf_pairs);
-READ_VEC4(rest_places, unit_rest_places);  // of each triangle: middle of its box, cloth; normal, radius about the middle
+READ_VEC4(rest_places, unit_rest_places);  // middle of a triangle's box, cloth; normal, radius about the middle
 layout(std430, binding = slot_triangle_pairs) writeonly buffer TrianglePairs { uvec2 found[]; };
 
 uniform int cloth_pairs;  // 0: cloths meet bodies alone
@@ -73,7 +73,8 @@ void main() {
     for (int k = 0; k < together; ++k) {
       far[k] = apart(low[k], high[k], other_low, other_high);
       int bodies = int(begin + k >= cloth_triangle_count) + int(j >= cloth_triangle_count);
-      near[k] = far[k] <= reach && begin + k < triangle_count && (bodies == 1 || (bodies == 0 && cloth_pairs != 0)) && (leaves.x != leaves.y || begin + k < j) &&
+      bool meet = bodies == 1 || (bodies == 0 && cloth_pairs != 0), once = leaves.x != leaves.y || begin + k < j;
+      near[k] = far[k] <= reach && begin + k < triangle_count && meet && once &&
                 !share_vertex(numbers[k], t.tags & number_mask);
       any_near = any_near || near[k];
     }

@@ -11,7 +11,8 @@ struct Triangle {
 };
 
 Triangle triangle_at(int i) {
-  uvec4 a = FETCH(triangle_corners, 3 * i), b = FETCH(triangle_corners, 3 * i + 1), c = FETCH(triangle_corners, 3 * i + 2);
+  uvec4 a = FETCH(triangle_corners, 3 * i), b = FETCH(triangle_corners, 3 * i + 1);
+  uvec4 c = FETCH(triangle_corners, 3 * i + 2);
   Triangle t;
   t.x = vec3[](uintBitsToFloat(a.xyz), uintBitsToFloat(b.xyz), uintBitsToFloat(c.xyz));
   t.tags = uvec3(a.w, b.w, c.w);

@@ -130,13 +130,16 @@ TEST_CASE(
     "a push takes the approach, holds what is slower than friction allows, and mends a share of an overlap") {
   dvec3 push, impulse;
   const dvec3 n(0, 1, 0);
-  REQUIRE(elements::surface_contact(n, 0.01, {0.001, -0.004, 0}, {1, -4, 0}, 0.01, 0.5, 0.0, 0.1, push, impulse));
+  REQUIRE(
+      elements::surface_contact(n, 0.01, {0.001, -0.004, 0}, {1, -4, 0}, 0.01, 0.5, 0.0, 0.1, push, impulse));
   CHECK(glm::length(push - dvec3(-0.001, 0.004, 0)) < 1e-15);
   CHECK(glm::length(impulse - dvec3(-1, 4, 0)) < 1e-12);
-  REQUIRE(elements::surface_contact(n, 0.01, {0.004, -0.004, 0}, {4, -4, 0}, 0.01, 0.5, 0.0, 0.1, push, impulse));
+  REQUIRE(
+      elements::surface_contact(n, 0.01, {0.004, -0.004, 0}, {4, -4, 0}, 0.01, 0.5, 0.0, 0.1, push, impulse));
   CHECK(glm::length(push - dvec3(-0.002, 0.004, 0)) < 1e-15);
   REQUIRE(elements::surface_contact(n, 0.005, {}, {}, 0.01, 0.5, 0.0, 0.1, push, impulse));
   CHECK(glm::length(push - dvec3(0, 0.0005, 0)) < 1e-15);
   CHECK(impulse == dvec3(0.0));
-  CHECK_FALSE(elements::surface_contact(n, 0.02, {0, -0.009, 0}, {0, -9, 0}, 0.01, 0.5, 0.0, 0.1, push, impulse));
+  CHECK_FALSE(
+      elements::surface_contact(n, 0.02, {0, -0.009, 0}, {0, -9, 0}, 0.01, 0.5, 0.0, 0.1, push, impulse));
 }
