@@ -96,6 +96,7 @@ Report make_report(const Prepared& prepared, const Progress& progress, double wa
   if (simulation.scene().collides(scene::ContactKind::surface))
     report["self_collision"] = {{"pairs", progress.state.surface_pairs},
                                 {"cuts", progress.state.surface_cuts},
+                                {"forced", progress.state.surface_forced},
                                 {"searches", progress.state.surface_searches}};
   report["max_strain"] = progress.state.max_strain;
   report["energy"] = {{"kinetic", progress.state.kinetic},

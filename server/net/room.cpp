@@ -271,7 +271,10 @@ namespace {
 /// What contact between surfaces has done; null where there is none: it begins with a search.
 json surface_counts(const sim::Diagnostics& d) {
   if (d.surface_searches == 0) return nullptr;
-  return {{"pairs", d.surface_pairs}, {"cuts", d.surface_cuts}, {"searches", d.surface_searches}};
+  return {{"pairs", d.surface_pairs},
+          {"cuts", d.surface_cuts},
+          {"forced", d.surface_forced},
+          {"searches", d.surface_searches}};
 }
 
 }  // namespace

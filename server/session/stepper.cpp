@@ -177,6 +177,7 @@ void Stepper::request_diagnosis(Clock::time_point now) {
 void Stepper::accept(sim::GuardedRun::Verdict verdict) {
   if (verdict == sim::GuardedRun::Verdict::blown_up) return diverge();
   warn_if_crowded();
+  warn_if_forced();
   warn_if_unconverged();
 }
 
@@ -266,6 +267,15 @@ void Stepper::warn_if_crowded() {
                         "self-collision: some vertices have more neighbours than there is room for, and the "
                         "farthest are left out; "
                         "a smaller thickness or a coarser mesh helps"});
+}
+
+void Stepper::warn_if_forced() {
+  if (forced_announced_ || guard_->state().surface_forced == 0) return;
+  forced_announced_ = true;
+  exchange_.emit(
+      Notice{"warning",
+             "pins or bodies that move force cloth where it cannot go: nothing stops them, and what "
+             "is in their way may be passed through; slower or smaller motions help"});
 }
 
 // A few steps that do not converge need no warning: they occur when a cloth falls into its strain limit.

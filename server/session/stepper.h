@@ -120,6 +120,7 @@ class Stepper {
   void follow_step_limit();
   void warn_if_slow(Clock::time_point now);
   void warn_if_crowded();
+  void warn_if_forced();
   void warn_if_unconverged();
   void warn_if_thin();
   bool suspended(Clock::time_point now) const;
@@ -151,7 +152,8 @@ class Stepper {
                 diagnosed_version_ = 0;  ///< the state version that was diagnosed last
   Clock::time_point next_status_{}, next_diagnosis_{};
   Clock::time_point slow_since_{};
-  bool slow_announced_ = false, crowded_announced_ = false, unconverged_announced_ = false;
+  bool slow_announced_ = false, crowded_announced_ = false, forced_announced_ = false,
+       unconverged_announced_ = false;
   bool layers_may_pass_ = false;  ///< layers of cloth can pass through each other
 };
 

@@ -97,6 +97,7 @@ bool DiagnosticsPass::poll(Diagnostics& out, bool wait) {
         SurfaceContact::read_counts(counts + sizeof(SelfCollision::Counters));
     out.surface_pairs = surfaces.pairs;
     out.surface_cuts = surfaces.cuts;
+    out.surface_forced = surfaces.forced;
     out.surface_searches = surfaces.rebuilds;
   }
   out.contacts = static_cast<std::uint32_t>(contacts);

@@ -44,6 +44,8 @@ struct Diagnostics {
   std::uint32_t surface_pairs = 0;  ///< that can meet until the next search, under the kind surface
   std::uint32_t surface_cuts =
       0;  ///< steps of vertices that the filter shortened, since the kernels were made
+  std::uint32_t surface_forced =
+      0;  ///< pairs that pins or bodies may have taken through each other, the same
   std::uint32_t surface_searches = 0;  ///< searches for pairs, the same
 };
 

@@ -162,7 +162,7 @@ SurfaceContact::Counters SurfaceContact::read_counts(const std::byte* counts) {
   SurfaceControl control;
   std::memcpy(&control, counts, sizeof control);
   return {control.pairs, std::max(control.step_counts[0].near, control.step_counts[1].near), control.cuts,
-          control.rebuilds};
+          control.forced, control.rebuilds};
 }
 
 }  // namespace clothlab::sim

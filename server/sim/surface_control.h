@@ -24,7 +24,8 @@ struct SurfaceControl {
   std::uint32_t leaf_pairs = 0, triangle_pairs = 0, candidates = 0, pairs = 0;
   std::uint32_t fastest = 0, fastest_vertex = 0;
   std::uint32_t query = 0, flat_query = 0, overflow = 0;
-  std::uint32_t rebuilds = 0, cuts = 0, most_leaf_pairs = 0, most_triangle_pairs = 0, most_pairs = 0;
+  std::uint32_t rebuilds = 0, cuts = 0, forced = 0, most_leaf_pairs = 0, most_triangle_pairs = 0,
+                most_pairs = 0;
 };
 
 }  // namespace clothlab::sim

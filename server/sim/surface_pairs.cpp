@@ -134,10 +134,11 @@ void SurfacePairs::limit_query(float most) {
 void SurfacePairs::invalidate() {
   SurfaceControl control;
   control_.download(&control, sizeof control);
-  const std::uint32_t rebuilds = control.rebuilds, cuts = control.cuts;
+  const std::uint32_t rebuilds = control.rebuilds, cuts = control.cuts, forced = control.forced;
   control = SurfaceControl{};
   control.rebuilds = rebuilds;
   control.cuts = cuts;
+  control.forced = forced;
   control.rebuild[0] = vertex_groups(std::max(vertex_count_, triangle_count_));
   control_.upload(&control, sizeof control);
   updates_ = 0;

@@ -33,6 +33,13 @@ void stop(uvec4 corner, vec4 shares, vec3 n, vec4 weight, vec4 inverse_mass) {
     if (mobility[k] != 0.0) add(corner[k], 4, mobility[k] * impulse);
 }
 
+/// After the first pass every pair is on its sides of the plane that divides it at the step's start, but for one whose
+/// corners nothing may stop. It may meet, then.
+void count_if_forced(bool edges, Corners now, vec3 n, vec4 inverse_mass) {
+  bool held = any(equal(inverse_mass, vec4(0.0)));
+  RARELY(held && gap_along(edges, now, n) <= 0.0) atomicAdd(control.forced, 1u);
+}
+
 void main() {
   uint item = gl_GlobalInvocationID.x;
   if (item >= (again == 0 ? known.step_counts[turn].near : known.step_counts[turn].meeting)) return;
@@ -51,6 +58,7 @@ void main() {
     inverse_mass[k] = x.w;
     size = max(size, length(c.x[k]) + length(steps[k]));
   }
+  RARELY(again == 1) count_if_forced(edges, c, apart.xyz, inverse_mass);
   RARELY(again != 0) {
     Separation now = separation(edges, c);
     apart = vec4(now.n, now.gap);

@@ -82,6 +82,7 @@ TEST_CASE("a sheet that falls on a ball of triangles drapes over it, under every
       // It rests on the ball, at about the thickness; without contact it would have fallen 0.78 m.
       CHECK(middle_height(*simulation) > -0.03);
       CHECK(middle_height(*simulation) < 0.01);
+      CHECK(simulation->diagnose().surface_forced == 0);
     }
 }
 
@@ -124,4 +125,15 @@ TEST_CASE("friction with a body of triangles is that of the body, and runs end i
   // cm.
   CHECK(slid.position[middle].x == Approx(0.13).margin(0.02));
   CHECK(std::abs(held.position[middle].x) < 0.012);
+}
+
+TEST_CASE("what a body forces where it cannot go is counted") {
+  const auto context = test::context();
+  scene::Scene scene = sheet_over(ball(scene::Linear{{0.0, 0.5, 0.0}}));
+  scene.colliders.push_back({"ceiling", scene::Plane{{0.0, 0.06, 0.0}, {0.0, -1.0, 0.0}}, 0.0, 0.0, {}});
+  const auto simulation = test::simulation(scene);
+  simulation->step(50);  // on its way, with room
+  CHECK(simulation->diagnose().surface_forced == 0);
+  simulation->step(100);  // 7 cm into the ceiling
+  CHECK(simulation->diagnose().surface_forced > 0);
 }
