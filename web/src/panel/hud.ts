@@ -43,6 +43,9 @@ type Row = (typeof rows)[number][0];
 const factorText = (factor: number): string =>
   `×${factor >= 0.1 || factor === 0 ? factor.toFixed(2) : factor.toPrecision(1)}`;
 
+const compact = new Intl.NumberFormat("en", { notation: "compact" });
+const short = (count: number): string => compact.format(count);
+
 export class Hud {
   private readonly cells = new Map<Row, HTMLElement>();
   private drawn = 0;
@@ -122,7 +125,7 @@ export class Hud {
   private showSurface(counts: Status["surface"]): void {
     const row = this.cells.get("surface")?.parentElement;
     if (row) row.hidden = !counts;
-    if (counts) this.set("surface", `${counts.pairs} pairs, ${counts.cuts} cut`);
+    if (counts) this.set("surface", `${short(counts.pairs)} pairs, ${short(counts.cuts)} cut`);
   }
 
   /// Turns the counts since the last call into rates. Call it about once a second.
