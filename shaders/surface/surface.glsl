@@ -1,6 +1,6 @@
 // Contact between surfaces (kind "surface"): pairs of a vertex and a triangle, and of two edges, of all triangles of a
 // scene. A search lists the pairs that can meet until parts of the surfaces have moved too far relative to each other
-// (block_pairs.comp). After a step of any method the near ones among them push each other apart
+// (blocks.comp). After a step of any method the near ones among them push each other apart
 // (elements/surface.glsl); then a filter shortens the steps of vertices so that no pair meets, which keeps a state
 // without intersections so. All sums are of integers, so that no outcome depends on the order of threads.
 layout(local_size_x = GROUP_SIZE) in;
