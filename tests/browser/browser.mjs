@@ -137,7 +137,10 @@ export class Viewer {
   /// The range input of a parameter; its folder is opened if it is closed.
   async slider(section, label) {
     const range = this.input("range", section, label);
-    if (!(await range.isVisible())) await this.page.locator(`.lil-title:text-is("${section}")`).first().click();
+    // A parameter that the server has yet to tell of is not there in an open folder either: wait for it first.
+    await range.waitFor({ state: "attached" });
+    const closed = this.page.locator(`.lil-gui.lil-closed > .lil-title:text-is("${section}")`).first();
+    if ((await closed.count()) > 0) await closed.click();
     await range.waitFor({ state: "visible" });
     return range;
   }
