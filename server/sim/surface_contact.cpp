@@ -14,14 +14,16 @@ namespace clothlab::sim {
 
 namespace {
 
-/// Passes of pushes after a step: each leaves about a fifth of what it finds, of which a long step finds
-/// more.
-constexpr int pushes_of_short_step = 2, pushes_of_long_step = 4;
-/// The filter cannot stop a body, so that pushes alone must get cloth out of its way.
-constexpr int pushes_of_moving_bodies = 8;
+/// Passes of pushes after a step, and of the filter: in each of the filter's, a layer that moves ahead makes
+/// room for the one behind it.
+struct Passes {
+  int pushes, filter;
+};
+constexpr Passes of_short_step{2, 3}, of_long_step{4, 3};
+/// The filter can stop neither bodies nor pins: pushes alone must get the cloth out of their way, layer
+/// behind layer. In a short step pins go a small part of the thickness.
+constexpr Passes of_moving_bodies{8, 8}, of_long_driven_step{32, 8};
 constexpr std::size_t sums_of_vertex = 16;  // as in surface.glsl
-/// Passes of the filter: in each, a layer that moves ahead makes room for the one behind it.
-constexpr int filter_passes = 3;
 /// Share of an overlap that a step mends, and the most that it does a second [1/s]: what is mended is no
 /// velocity, but it moves what lies on it.
 constexpr double mended_in_step = 0.2, mended_in_second = 20.0;
@@ -46,7 +48,8 @@ Result<SurfaceContact> SurfaceContact::create(const model::Model& model, const P
   Result<SurfacePairs> pairs = SurfacePairs::create(model, surface);
   if (!pairs) return pairs.error();
   made.pairs_ = std::move(*pairs);
-  made.pairs_.set_driven(plan.moving > 0);
+  made.driven_ = plan.moving > 0;
+  made.pairs_.set_driven(made.driven_);
   const gl::Defines defines{{"GROUP_SIZE", std::to_string(group_size)}};
   for (auto [program, name] : {std::pair{&made.contacts_, "contacts"},
                                {&made.forces_, "forces"},
@@ -77,9 +80,15 @@ void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Mode
     program->set("dt", static_cast<float>(dt));
     program->set("thickness", static_cast<float>(SurfacePairs::thickness(scene, model)));
   }
-  push_passes_ = scene::iterates(scene.solver.method) ? pushes_of_long_step : pushes_of_short_step;
+  const bool long_steps = scene::iterates(scene.solver.method);
+  Passes passes = long_steps ? of_long_step : of_short_step;
+  if (long_steps && driven_)
+    passes = of_long_driven_step;
+  else if (bodies_.moves())
+    passes = of_moving_bodies;
+  push_passes_ = passes.pushes;
+  filter_passes_ = passes.filter;
   forces_.set("friction", static_cast<float>(scene.self_collision ? scene.self_collision->friction : 0.0));
-  if (bodies_.moves()) push_passes_ = pushes_of_moving_bodies;
   forces_.set("mend", static_cast<float>(std::min(mended_in_step, mended_in_second * dt)));
   invalidate();
 }
@@ -138,17 +147,22 @@ void SurfaceContact::keep_apart(StateBuffers& state, int row) {
   begin_.set("turn", turn_);
   glDispatchCompute(vertex_groups(changing), 1, 1);
   wait_for_writes();
-  for (int pass = 0; pass < filter_passes; ++pass) {
+  for (int pass = 0; pass < filter_passes_; ++pass) {
+    const bool last = pass == filter_passes_ - 1;
+    // What nothing may stop spreads its step over all passes but the last one, lest it comes upon layers that
+    // are yet to make room.
+    const float held_part = last ? 1.0f : 1.0f / static_cast<float>(filter_passes_ - 1 - pass);
+    limit_.set("held_part", held_part);
+    move_.set("held_part", held_part);
     limit_.set("again", pass);
     limit_.set("impulses", 0);
     run(limit_, pass == 0 ? near : meeting);
-    const bool last = pass == filter_passes - 1;
     if (last) {
       limit_.set("impulses", 1);
       run(limit_, meeting);
     }
     move_.set("last", last ? 1 : 0);
-    run(move_, pass == 0 ? vertices : cut_vertices);
+    run(move_, pass == 0 || driven_ ? vertices : cut_vertices);
   }
   turn_ = 1 - turn_;
 }

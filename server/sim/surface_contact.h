@@ -53,7 +53,8 @@ class SurfaceContact {
  private:
   std::uint32_t cloth_vertex_count_ = 0, vertex_count_ = 0;  ///< with the places of bodies
   int turn_ = 0;                                             ///< whose step_counts the next step has
-  int push_passes_ = 0;
+  bool driven_ = false;                                      ///< pins, bodies or colliders move
+  int push_passes_ = 0, filter_passes_ = 0;                  ///< in a step
   bool keeps_start_ = false;  ///< the strain limit writes over the positions at the step's start
   SurfaceBodies bodies_;
   SurfacePairs pairs_;

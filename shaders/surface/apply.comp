@@ -10,6 +10,8 @@ void main() {
   position[i].xyz += vec3(sums[first], sums[first + 1], sums[first + 2]) / units_of_length();
   velocity[i].xyz += vec3(sums[first + 4], sums[first + 5], sums[first + 6]) / units_of_speed();
   for (int k = 0; k < 3; ++k) sums[first + k] = sums[first + 4 + k] = 0;
+  sums[first + 3] = max(1, sums[first + 15]);  // 0 would say that no pair touches it
+  sums[first + 15] = 0;
   float weight = float(sums[first + 11]) / weight_units;
   RARELY(weight > 0.0) {
     position[i].xyz += vec3(sums[first + 8], sums[first + 9], sums[first + 10]) / (units_of_length() * weight);

@@ -50,6 +50,8 @@ void main() {
                                        mend, push, impulse)) {
     bvec4 gives = notEqual(mobility, vec4(0.0)), first = bvec4(true, is_edges(pair), false, false);
     bool both_give = (gives.x || (first.y && gives.y)) && ((!first.y && gives.y) || gives.z || gives.w);
+    for (int k = 0; k < 4; ++k)
+      if (corner[k] < uint(cloth_vertex_count)) atomicAdd(sums[SUMS * int(corner[k]) + 15], 1);
     if (!both_give) {
       give_way(corner, weight, mobility, push, impulse);
     } else {

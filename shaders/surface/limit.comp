@@ -7,8 +7,10 @@ READ_VEC4(position, unit_position);  // so far; w: inverse mass [1/kg]
 READ_VEC4(velocity, unit_velocity);
 READ_VEC4(step_target, unit_step_target);
 layout(std430, binding = slot_step_limits) coherent buffer Limits { uint limits[]; };  // float bits, 1 or less
+layout(std430, binding = slot_near_pairs) writeonly buffer NearPairs { uvec4 near_list[]; };
 uniform int again;  // 0: the first pass, over all near pairs, from the step's start; else over those that could meet
 uniform int impulses;
+uniform float held_part;  // of what is left of their steps, that corners which nothing may stop take in this pass
 
 void shorten(bool edges, uvec4 corner, vec4 shares) {
   control.step_counts[turn].cut_vertices = known.step_counts[turn].vertex_groups;
@@ -33,8 +35,8 @@ void stop(uvec4 corner, vec4 shares, vec3 n, vec4 weight, vec4 inverse_mass) {
     if (mobility[k] != 0.0) add(corner[k], 4, mobility[k] * impulse);
 }
 
-/// After the first pass every pair is on its sides of the plane that divides it at the step's start, but for one whose
-/// corners nothing may stop. It may meet, then.
+/// After a pass every pair is on its sides of the plane that divided it before, but for one whose corners nothing may
+/// stop. It may meet, then.
 void count_if_forced(bool edges, Corners now, vec3 n, vec4 inverse_mass) {
   bool held = any(equal(inverse_mass, vec4(0.0)));
   RARELY(held && gap_along(edges, now, n) <= 0.0) atomicAdd(control.forced, 1u);
@@ -58,11 +60,12 @@ void main() {
     inverse_mass[k] = x.w;
     size = max(size, length(c.x[k]) + length(steps[k]));
   }
-  RARELY(again == 1) count_if_forced(edges, c, apart.xyz, inverse_mass);
   RARELY(again != 0) {
+    if (impulses == 0) count_if_forced(edges, c, apart.xyz, inverse_mass);
     Separation now = separation(edges, c);
     apart = vec4(now.n, now.gap);
     weight = vec4(now.weight[0], now.weight[1], now.weight[2], now.weight[3]);
+    near_list[3u * item + 1u] = floatBitsToUint(apart);
   }
   StepsAlong along;
   for (int k = 0; k < 4; ++k) {
@@ -78,6 +81,8 @@ void main() {
       atomicMax(control.step_counts[turn].meeting_groups, place / uint(GROUP_SIZE) + 1u);
     chosen_pairs[pair_capacity + place] = item;
   }
+  for (int k = 0; k < 4; ++k)
+    if (along.held[k]) along.d[k] *= held_part;
   RARELY(could_meet(edges, along, rounding)) {
     float plane = dividing_plane(edges, along, rounding);
     vec4 shares;

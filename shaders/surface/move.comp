@@ -6,6 +6,7 @@ layout(std430, binding = slot_next_velocity) buffer Velocity { vec4 velocity[]; 
 layout(std430, binding = slot_contact_sums) buffer Sums { int sums[]; };
 layout(std430, binding = slot_step_limits) buffer Limits { uint limits[]; };
 uniform int last;
+uniform float held_part;  // as in limit.comp
 
 /// A vertex that takes less than this of its step is jammed between others: what its springs give it would add up, step
 /// after step, until it comes free. It loses half of its speed in a step.
@@ -15,14 +16,14 @@ void main() {
   int i = int(gl_GlobalInvocationID.x);
   if (i >= changing_vertex_count) return;
   vec4 goal = FETCH(step_target, i);
-  float share = uintBitsToFloat(limits[i]);
+  float share = position[i].w > 0.0 ? uintBitsToFloat(limits[i]) : held_part;
   vec3 x = position[i].xyz;
-  RARELY(share < 1.0) {
+  RARELY(share < 1.0 && position[i].w > 0.0) {
     float size = length(goal.xyz - x);
     if (share * size < shortest_part * rounding_at(x, size)) share = 0.0;
   }
   position[i].xyz = share < 1.0 ? x + share * (goal.xyz - x) : goal.xyz;
-  RARELY(share < 1.0) {
+  RARELY(share < 1.0 && position[i].w > 0.0) {
     limits[i] = floatBitsToUint(1.0);
     if (last != 0) {
       atomicAdd(control.step_counts[turn].cuts, 1u);
