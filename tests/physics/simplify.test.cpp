@@ -69,6 +69,38 @@ TEST_CASE("a flat pulled sheet needs neither bend springs nor self-collision nor
   CHECK(std::get<scene::Grid>(patched->scene.cloths[0].mesh).columns == 9);
 }
 
+TEST_CASE("where surfaces keep apart, the lab says if points, or nothing, would do") {
+  const auto context = test::context();
+  const auto costs = [](const scene::Scene& scene) {
+    if (!scene.self_collision) return 1.0;
+    return scene.collides(scene::ContactKind::surface) ? 8.0 : 2.0;
+  };
+  const char* const points = "with points that keep apart instead of surfaces";
+  const scene::Document flat =
+      pulled(R"({"structural": 200, "shear": 100, "bend": 50, "damping": 0.01})",
+             R"(, "self_collision": {"thickness": 0.01, "kind": "surface"}, "solver": {"dt": 0.0005})");
+  const Simplification apart = simplified(flat, {1e-2, 0.1, costs});
+  CHECK(apart.why.find("Points suffice here: ") != std::string::npos);
+  CHECK(apart.why.find("Doing without self-collision suffices here: ") != std::string::npos);
+  CHECK(variant(apart, points).cost_ratio.median == 0.25);
+  // Only one of the two can be taken: that which saves more.
+  CHECK(apart.recommended.patch["self_collision"].is_null());
+  CHECK_FALSE(variant(apart, points).recommended_to_drop);
+
+  // Two sheets, one falling on the middle of the other's large cells: points pass between points.
+  const scene::Document falling = document_of(R"({"version": 1, "name": "falling",
+    "cloths": [{"mesh": {"grid": {"columns": 5, "rows": 5, "width": 0.4, "height": 0.4}}, "mass": {"per_vertex": 0.001},
+                "material": {"structural": 200, "shear": 100, "bend": 50, "damping": 0.01},
+                "pins": [{"at": "edge:row:0"}, {"at": "edge:row:4"}]},
+               {"mesh": {"grid": {"columns": 3, "rows": 3, "width": 0.04, "height": 0.04}},
+                "transform": {"translate": [0.05, 0.01, 0.17]}, "mass": {"per_vertex": 0.001},
+                "material": {"structural": 200, "shear": 100, "bend": 50, "damping": 0.01}}],
+    "self_collision": {"thickness": 0.005, "kind": "surface"}, "solver": {"dt": 0.0005}})");
+  const Simplification met = simplified(falling, {1e-2, 0.3, costs});
+  CHECK(met.why.find("Points do not suffice here: ") != std::string::npos);
+  CHECK(met.why.find("Doing without self-collision does not suffice here: ") != std::string::npos);
+}
+
 namespace {
 
 /// Parts that change nothing here, with timings made up from what each is said to save.

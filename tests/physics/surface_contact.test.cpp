@@ -1,5 +1,6 @@
 // Contact between surfaces: from a state without crossings, none arises, whatever the method, scene or speed.
 #include "server/scene/suited.h"
+#include "tests/contact_scenes.h"
 #include "tests/crossings.h"
 #include "tests/scenes.h"
 
@@ -126,6 +127,20 @@ TEST_CASE("surfaces that start apart never cross: every method, sheets thrown, f
       CHECK(outcome.crossings == 0);
       CHECK(outcome.last.finite);
     }
+}
+
+TEST_CASE("a pin that goes nearly the thickness in a step lifts the sheets that lie on its own") {
+  const auto context = test::context();
+  const scene::json document = test::contact::dragged_pin({16, thickness, 1.0, "implicit_euler", "surface"});
+  for (const scene::Method method :
+       {scene::Method::implicit_euler, scene::Method::xpbd, scene::Method::vbd}) {
+    scene::Scene scene = scene::validate(document)->scene;
+    REQUIRE(scene.solver.dt == 0.004);  // [s]: 4 mm at first
+    scene.solver.method = method;
+    const Outcome outcome = run({"dragged", scene, 0.0, 0.15}, 250);
+    INFO(scene::name(method) << ": " << outcome.last.surface_cuts << " cuts");
+    CHECK(outcome.crossings == 0);
+  }
 }
 
 TEST_CASE("runs with contact between surfaces end in the same bits, also where lists had to grow") {

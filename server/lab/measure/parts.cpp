@@ -68,6 +68,14 @@ Result<Document> without_self_collision(const Document& document) {
   return scene::validate(std::move(value), document.assets);
 }
 
+/// Vertices that keep apart instead of triangles and edges, at the same distance.
+Result<Document> points_instead(const Document& document) {
+  if (!document.scene.collides(scene::ContactKind::surface)) return not_there("contact between surfaces");
+  json value = document.value;
+  value["self_collision"]["kind"] = "points";
+  return scene::validate(std::move(value), document.assets);
+}
+
 Result<Document> without_wind(const Document& document) {
   if (!document.scene.wind) return not_there("wind");
   json value = document.value;
@@ -153,23 +161,29 @@ Result<Document> quarter_resolution(const Document& document) {
 
 std::vector<Part> parts(const Document& document) {
   const auto left_out = [](const char* name, auto* without, bool own_step = false) {
-    return Part{name, 1, "", "", own_step, without};
+    return Part{name, PartOf::nothing, 1, "", "", own_step, without};
   };
   const bool sheets = any_sheet(document.scene);
   std::vector<Part> all{left_out(sheets ? "without bending" : "without bend springs", without_bend)};
   if (!all_sheets(document.scene)) all.push_back(left_out("without shear springs", without_shear));
   if (sheets) {
-    all.push_back({"with warp and weft alike", 1, "Isotropic suffices", "Isotropic does not suffice", true,
-                   alike_along_both});
-    all.push_back({"with springs instead of finite elements", 1, "Springs suffice", "Springs do not suffice",
-                   true, springs_instead});
+    all.push_back({"with warp and weft alike", PartOf::model, 1, "Isotropic suffices",
+                   "Isotropic does not suffice", true, alike_along_both});
+    all.push_back({"with springs instead of finite elements", PartOf::model, 1, "Springs suffice",
+                   "Springs do not suffice", true, springs_instead});
   }
-  all.push_back(left_out("without self-collision", without_self_collision));
+  const bool surfaces = document.scene.collides(scene::ContactKind::surface);
+  if (surfaces)
+    all.push_back({"with points that keep apart instead of surfaces", PartOf::contact, 1, "Points suffice",
+                   "Points do not suffice", false, points_instead});
+  all.push_back(
+      {"without self-collision", PartOf::contact, 1, surfaces ? "Doing without self-collision suffices" : "",
+       surfaces ? "Doing without self-collision does not suffice" : "", false, without_self_collision});
   all.push_back(left_out("without wind", without_wind));
   // A sheet's damping grows with its stiffness, and shortens the steps of explicit methods several times.
   all.push_back(left_out(without_damping, undamped, sheets));
-  all.push_back({"half the mesh resolution", 2, "", "", true, half_resolution});
-  all.push_back({"a quarter of the mesh resolution", 4, "", "", true, quarter_resolution});
+  all.push_back({"half the mesh resolution", PartOf::mesh, 2, "", "", true, half_resolution});
+  all.push_back({"a quarter of the mesh resolution", PartOf::mesh, 4, "", "", true, quarter_resolution});
   return all;
 }
 

@@ -119,8 +119,7 @@ class SimplificationMeasurement {
         going.push_back(next);
         continue;
       }
-      if (next->coarser() && best.coarser()) continue;    // not twice
-      if (next->replaced() && best.replaced()) continue;  // one model of a cloth
+      if (best.excludes(*next->parts.front())) continue;
       if (Status tried = try_besides(best, going, next); !tried) return tried;
     }
     if (!going.empty()) recommended(going, best);
@@ -208,13 +207,14 @@ class SimplificationMeasurement {
     return truth_progress + (1.0 - truth_progress) * share;
   }
 
-  /// A line on each simpler model that was compared: whether it suffices here.
+  /// A line on each simpler model, of the cloth or of its contact, that was compared: whether it suffices
+  /// here.
   std::string verdicts(const std::string& allowed) const {
     std::string lines;
     for (const Substitute& candidate : candidates_) {
       const Variant& variant = candidate.variant;
-      if (!candidate.replaced() || !variant.change) continue;
       const Part& part = *candidate.parts.front();
+      if (part.suffices.empty() || !variant.change) continue;
       lines += (keeps_tolerance(variant) ? part.suffices : part.falls_short) +
                " here: " + percent(*variant.change) + " of the size" + allowed + ", " +
                text(variant.cost_ratio) + " times the time.\n";

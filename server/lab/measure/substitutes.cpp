@@ -33,8 +33,9 @@ bool Substitute::coarser() const {
 bool Substitute::own_step() const {
   return std::any_of(parts.begin(), parts.end(), [](const Part* part) { return part->own_step; });
 }
-bool Substitute::replaced() const {
-  return std::any_of(parts.begin(), parts.end(), [](const Part* part) { return !part->suffices.empty(); });
+bool Substitute::excludes(const Part& part) const {
+  return part.of != PartOf::nothing &&
+         std::any_of(parts.begin(), parts.end(), [&](const Part* mine) { return mine->of == part.of; });
 }
 
 Status Substitutes::start(double time, const std::function<void(double share)>& progress,

@@ -21,8 +21,8 @@ struct Substitute {
   std::vector<glm::dvec3> at_horizon;  ///< vertices of the whole scene at compared_at() [m]; empty: unknown
   bool coarser() const;
   bool own_step() const;
-  /// True if a part of it is a simpler model of the cloth.
-  bool replaced() const;
+  /// True if a part of it belongs to the same thing as `part`: only one of the two can be taken.
+  bool excludes(const Part& part) const;
 };
 
 /// Measures a whole scene and the candidates that may stand in for it. Needs a current GL context.
