@@ -141,6 +141,7 @@ void SurfaceContact::keep_apart(StateBuffers& state, int row) {
   run(contacts_, offsetof(SurfaceControl, pair_groups));
   for (int pass = 0; pass < push_passes_; ++pass) {
     run(forces_, touching);
+    apply_.set("recount", pass > 0 ? 1 : 0);
     run(apply_, vertices);
   }
   begin_.use();

@@ -2,10 +2,10 @@
 READ_UVEC4(near_pairs, unit_near_pairs);
 // Which of them push in this step, and from pair_capacity on which could meet.
 layout(std430, binding = slot_chosen_pairs) buffer Chosen { uint chosen_pairs[]; };
-// For each vertex: sums of pushes x, y, z [units of length], pairs that pushed it in the last pass; sums of impulses x, y, z [units of
+// For each vertex: sums of pushes x, y, z [units of length], pairs that share it; sums of impulses x, y, z [units of
 // speed], pairs that shorten steps at it. Of pairs whose other part gives no way: weighted sums of how far, and by how
-// much faster, it must go, 8 to 10 and 12 to 14, in the same units, and of weights, 11 [1 / weight_units]. Pairs that push
-// it in this pass, 15.
+// much faster, it must go, 8 to 10 and 12 to 14, in the same units, and of weights, 11 [1 / weight_units]. Pairs that
+// push it in this pass, 15.
 layout(std430, binding = slot_contact_sums) buffer Sums { int sums[]; };
 
 /// Most pairs that push, or shorten steps at, a corner that gives way: each takes that share, lest they do too much.

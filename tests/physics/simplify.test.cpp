@@ -89,8 +89,8 @@ TEST_CASE("where surfaces keep apart, the lab says if points, or nothing, would 
 
   // Two sheets, one falling on the middle of the other's large cells: points pass between points.
   const scene::Document falling = document_of(R"({"version": 1, "name": "falling",
-    "cloths": [{"mesh": {"grid": {"columns": 5, "rows": 5, "width": 0.4, "height": 0.4}}, "mass": {"per_vertex": 0.001},
-                "material": {"structural": 200, "shear": 100, "bend": 50, "damping": 0.01},
+    "cloths": [{"mesh": {"grid": {"columns": 5, "rows": 5, "width": 0.4, "height": 0.4}},
+                "mass": {"per_vertex": 0.001}, "material": {"structural": 200, "shear": 100, "bend": 50, "damping": 0.01},
                 "pins": [{"at": "edge:row:0"}, {"at": "edge:row:4"}]},
                {"mesh": {"grid": {"columns": 3, "rows": 3, "width": 0.04, "height": 0.04}},
                 "transform": {"translate": [0.05, 0.01, 0.17]}, "mass": {"per_vertex": 0.001},
