@@ -93,11 +93,13 @@ Report make_report(const Prepared& prepared, const Progress& progress, double wa
     report["strain_limit"] = {{"sweeps", work.sweeps}, {"unconverged", work.unconverged}};
   if (simulation.scene().collides(scene::ContactKind::points))
     report["self_collision"] = {{"neighbours_dropped", progress.state.neighbours_dropped}};
-  if (simulation.scene().collides(scene::ContactKind::surface))
-    report["self_collision"] = {{"pairs", progress.state.surface_pairs},
-                                {"cuts", progress.state.surface_cuts},
-                                {"forced", progress.state.surface_forced},
-                                {"searches", progress.state.surface_searches}};
+  const Report surface{{"pairs", progress.state.surface_pairs},
+                       {"cuts", progress.state.surface_cuts},
+                       {"forced", progress.state.surface_forced},
+                       {"searches", progress.state.surface_searches}};
+  if (simulation.scene().collides(scene::ContactKind::surface)) report["self_collision"] = surface;
+  if (progress.state.surface_searches > 0)
+    report["surface"] = surface;  // also with bodies of triangles alone
   report["max_strain"] = progress.state.max_strain;
   report["energy"] = {{"kinetic", progress.state.kinetic},
                       {"elastic", progress.state.elastic},

@@ -21,8 +21,8 @@ struct Passes {
 };
 constexpr Passes of_short_step{2, 3}, of_long_step{4, 3};
 /// The filter can stop neither bodies nor pins: pushes alone must get the cloth out of their way, layer
-/// behind layer. In a short step pins go a small part of the thickness.
-constexpr Passes of_moving_bodies{8, 8}, of_long_driven_step{32, 8};
+/// behind layer.
+constexpr Passes of_short_driven_step{8, 3}, of_long_driven_step{32, 8};
 constexpr std::size_t sums_of_vertex = 16;  // as in surface.glsl
 /// Share of an overlap that a step mends, and the most that it does a second [1/s]: what is mended is no
 /// velocity, but it moves what lies on it.
@@ -80,12 +80,10 @@ void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Mode
     program->set("dt", static_cast<float>(dt));
     program->set("thickness", static_cast<float>(SurfacePairs::thickness(scene, model)));
   }
-  const bool long_steps = scene::iterates(scene.solver.method);
-  Passes passes = long_steps ? of_long_step : of_short_step;
-  if (long_steps && driven_)
-    passes = of_long_driven_step;
-  else if (bodies_.moves())
-    passes = of_moving_bodies;
+  long_steps_ = scene::iterates(scene.solver.method);
+  const Passes passes = driven_       ? long_steps_ ? of_long_driven_step : of_short_driven_step
+                        : long_steps_ ? of_long_step
+                                      : of_short_step;
   push_passes_ = passes.pushes;
   filter_passes_ = passes.filter;
   forces_.set("friction", static_cast<float>(scene.self_collision ? scene.self_collision->friction : 0.0));
@@ -141,7 +139,7 @@ void SurfaceContact::keep_apart(StateBuffers& state, int row) {
   run(contacts_, offsetof(SurfaceControl, pair_groups));
   for (int pass = 0; pass < push_passes_; ++pass) {
     run(forces_, touching);
-    apply_.set("recount", pass > 0 ? 1 : 0);
+    apply_.set("recount", long_steps_ && pass > 0 ? 1 : 0);
     run(apply_, vertices);
   }
   begin_.use();

@@ -54,6 +54,7 @@ class SurfaceContact {
   std::uint32_t cloth_vertex_count_ = 0, vertex_count_ = 0;  ///< with the places of bodies
   int turn_ = 0;                                             ///< whose step_counts the next step has
   bool driven_ = false;                                      ///< pins, bodies or colliders move
+  bool long_steps_ = false;                                  ///< the method's
   int push_passes_ = 0, filter_passes_ = 0;                  ///< in a step
   bool keeps_start_ = false;  ///< the strain limit writes over the positions at the step's start
   SurfaceBodies bodies_;

@@ -256,8 +256,9 @@ test("--verify counts cloth that goes through a collider's mesh, at the mesh's p
   const scene = { version: 1, solver: { dt: 0.01 }, cloths: [sheet], colliders: [arrow] };
   writeFileSync(join(folder, "arrow.json"), JSON.stringify(scene));
   run("arrow.json", "--time", "0.4", "--every", "0.02", "--report", "arrow-report.json", "--verify");
-  const { crossings, crossing_check: check } = report("arrow-report.json");
+  const { crossings, crossing_check: check, surface } = report("arrow-report.json");
   assert.ok(crossings > 0);
+  assert.ok(surface.searches > 0 && surface.forced > 0, JSON.stringify(surface));
   // Its tip is at the sheet at 0.2 s, its base at 0.3 s.
   assert.ok(Math.abs(check.first_at - 0.21) < 0.011, JSON.stringify(check));
   assert.ok(check.samples_with_crossings >= 4 && check.samples_with_crossings <= 6, JSON.stringify(check));
