@@ -16,19 +16,20 @@ void main() {
   int i = int(gl_GlobalInvocationID.x);
   if (i >= changing_vertex_count) return;
   vec4 goal = FETCH(step_target, i);
-  float share = position[i].w > 0.0 ? uintBitsToFloat(limits[i]) : held_part;
+  bool free = position[i].w > 0.0;
+  float share = free ? uintBitsToFloat(limits[i]) : held_part;
   vec3 x = position[i].xyz;
-  RARELY(share < 1.0 && position[i].w > 0.0) {
+  RARELY(share < 1.0 && free) {
     float size = length(goal.xyz - x);
     if (share * size < shortest_part * rounding_at(x, size)) share = 0.0;
   }
   position[i].xyz = share < 1.0 ? x + share * (goal.xyz - x) : goal.xyz;
-  RARELY(share < 1.0 && position[i].w > 0.0) {
+  RARELY(share < 1.0 && free) {
     limits[i] = floatBitsToUint(1.0);
     if (last != 0) {
       atomicAdd(control.step_counts[turn].cuts, 1u);
       atomicAdd(control.cuts, 1u);
-      if (share < jammed_share && position[i].w > 0.0) velocity[i].xyz *= 0.5;
+      if (share < jammed_share) velocity[i].xyz *= 0.5;
     }
   }
   RARELY(sums[SUMS * i + 7] != 0) {
