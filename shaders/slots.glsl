@@ -118,6 +118,11 @@ const int slot_step_limits = 5;         // limit, move; the same
 const int slot_step_target = 6;         // begin
 const int slot_chosen_pairs = 7;        // contacts, limit; forces, limit
 
+// The hands': hands/NAME.comp, on the present copy of the state, before a step and after it.
+const int slot_held_position = 0;  // hold, release; all as unit_position
+const int slot_held_velocity = 1;  // hold; all as unit_velocity
+const int slot_held = 2;           // server/sim/hands.cpp; both
+
 // The strain limit's: strain_limit/NAME.comp.
 const int unit_group_excess = 10;        // sweep; the next sweep
 const int unit_corrected_position = 11;  // sweep; end

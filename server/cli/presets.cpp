@@ -10,7 +10,7 @@ void add_presets(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("presets", "list the scenes that come with the program");
   command->callback([&exit_code] {
     for (const scene::Preset& preset : scene::presets())
-      std::cout << std::left << std::setw(15) << preset.name << preset.description << "\n";
+      std::cout << std::left << std::setw(17) << preset.name << preset.description << "\n";
     exit_code = exit_done;
   });
 }

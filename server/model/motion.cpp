@@ -1,8 +1,10 @@
 #include "server/model/motion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <type_traits>
 
 namespace clothlab::model {
 
@@ -52,14 +54,31 @@ Pose pose_of(const scene::Spin& motion, double time) {
   return pose;
 }
 
+Pose pose_of(const scene::Placed& pin, double time, bool settled) {
+  Pose pose = std::visit([time](const auto& kind) { return pose_of(kind, time); }, pin.then);
+  const double share = settled ? 1.0 : std::clamp(time / scene::Placed::glide, 0.0, 1.0);
+  const double there = share * share * (3.0 - 2.0 * share);  // begins and ends at rest
+  pose.translation += there * (pose.rotation * pin.place);
+  pose.rotation *= 1.0 - there;
+  return pose;
+}
+
 }  // namespace
 
 dvec3 Pose::velocity_at(const dvec3& position) const {
   return linear_velocity + glm::cross(angular_velocity, position);
 }
 
-Pose pose(const scene::Motion& motion, double time) {
-  return std::visit([time](const auto& kind) { return pose_of(kind, time); }, motion);
+Pose pose(const scene::Motion& motion, double time, bool settled) {
+  if (const auto* placed = std::get_if<scene::Placed>(&motion)) return pose_of(*placed, time, settled);
+  return std::visit(
+      [time](const auto& kind) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(kind)>, scene::Placed>)
+          return Pose{};
+        else
+          return pose_of(kind, time);
+      },
+      motion);
 }
 
 dvec3 wind_velocity(const scene::Wind& wind, double time) {

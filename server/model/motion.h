@@ -10,8 +10,10 @@
 namespace clothlab::model {
 
 /// A rigid motion at one time: maps a home position to its present position, and gives the velocity there.
+/// (For a pin with a place of its own: from the rest position, and without the velocity of its glide to that
+/// place.)
 struct Pose {
-  glm::dmat3 rotation{1.0};
+  glm::dmat3 rotation{1.0};          ///< of a pin with a place: times a share that falls to 0
   glm::dvec3 translation{0.0};       ///< [m]
   glm::dvec3 linear_velocity{0.0};   ///< velocity of the point now at the origin [m/s]
   glm::dvec3 angular_velocity{0.0};  ///< [rad/s]
@@ -20,8 +22,9 @@ struct Pose {
   glm::dvec3 velocity_at(const glm::dvec3& position) const;
 };
 
-/// The pose of `motion` at `time` [s] since the start.
-Pose pose(const scene::Motion& motion, double time);
+/// The pose of `motion` at `time` [s] since the start. `settled`: a pin with a place is there already, and
+/// does not glide there from its rest place.
+Pose pose(const scene::Motion& motion, double time, bool settled = false);
 
 /// Velocity of the air [m/s] at `time` [s] since the start.
 glm::dvec3 wind_velocity(const scene::Wind& wind, double time);

@@ -20,7 +20,8 @@ Client::Client(Hub& hub, lws* wsi, std::string session)
       session_(std::move(session)),
       address_(peer_address(wsi)),
       role_(hub.role_of("")),
-      messages_(hub.limits().message_rate, burst_of(hub.limits()), session::now_us()) {
+      messages_(hub.limits().message_rate, burst_of(hub.limits()), session::now_us()),
+      grab_notices_(1, 3, session::now_us()) {
   hub_.add(*this);
   log(LogLevel::info, "client_connected",
       {{"client", std::to_string(id_)}, {"address", address_}, {"session", session_}, {"role", name(role_)}});
@@ -58,7 +59,10 @@ bool Client::admit(Role role) {
   if (role_ == Role::none) lws_set_timer_usecs(wsi_, LWS_SET_TIMER_USEC_CANCEL);
   role_ = role;
   log(LogLevel::info, "client_admitted", {{"client", std::to_string(id_)}, {"role", name(role)}});
-  if (role != Role::operator_) hub_.lab().client_left(id_);
+  if (role != Role::operator_) {
+    hub_.lab().client_left(id_);
+    if (room_) room_->let_go(*this);
+  }
   return room_ || enter_room();
 }
 
@@ -141,14 +145,22 @@ void Client::handle(const std::string& text) {
 }
 
 void Client::answer(const session::Ticket& ticket, const std::variant<json, RpcError>& answer) {
-  if (!ticket.id) return;
   const auto* result = std::get_if<json>(&answer);
   const auto* error = std::get_if<RpcError>(&answer);
+  if (!ticket.id) {
+    if (error && ticket.method.starts_with("grab.")) tell_refused_grab(ticket.method, *error);
+    return;
+  }
   // Unknown methods are not counted: a client could choose the metrics' labels with them.
   if (is_method(ticket.method))
     hub_.metrics().requests[ticket.method].add(1e-6 *
                                                static_cast<double>(session::now_us() - ticket.asked_us));
   send(result ? result_text(*ticket.id, *result) : error_text(*ticket.id, *error));
+}
+
+void Client::tell_refused_grab(const std::string& method, const RpcError& error) {
+  if (!grab_notices_.take(session::now_us())) return;
+  send(notification_text("notice", {{"level", "warning"}, {"text", method + ": " + error.message}}));
 }
 
 void Client::greet(const std::string& hello) {

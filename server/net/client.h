@@ -54,7 +54,8 @@ class Client {
   void greet(const std::string& hello);  ///< sends `hello` before all text that waits
   void send(const std::string& text) { send(make_text(text)); }
   void send(SharedText text);
-  /// Sends the answer to a request; a notification (a ticket without id) gets none.
+  /// Sends the answer to a request; a notification (a ticket without id) gets none, but for a notice of an
+  /// error in one that pulls at the cloth.
   void answer(const session::Ticket& ticket, const std::variant<json, RpcError>& answer);
   void send_status(SharedText text);
   /// The session was brought back after it failed: the topology is sent again before the next frame.
@@ -70,6 +71,7 @@ class Client {
   std::size_t most_bytes(std::string_view data);
   int refuse_too_long(std::size_t most);
   double price_of_message() const;
+  void tell_refused_grab(const std::string& method, const RpcError& error);
   void handle(const std::string& text);
   void schedule_frame(std::int64_t now);
   bool may_send() const;
@@ -95,6 +97,7 @@ class Client {
   Outbox outbox_;
   FramePacing pacing_;
   TokenBucket messages_;
+  TokenBucket grab_notices_;  ///< a hand that moves may be wrong often: a notice a second is enough
   bool topology_sent_ = false;
   std::uint32_t topology_revision_ = 0;
   std::uint32_t colliders_sent_for_ = 0;  ///< sequence number of the frame whose colliders were sent last

@@ -40,6 +40,7 @@ inline constexpr std::size_t max_unsent_text_bytes =
 inline constexpr double min_rate = 0.1, max_rate = 120;  ///< frames a second a viewer may ask for
 inline constexpr int max_in_flight = 8;                  ///< unacknowledged frames a viewer may ask for
 inline constexpr std::int64_t max_steps = 1'000'000;     ///< steps of one sim.step
+inline constexpr int max_hand = 9;                       ///< a client's hands are numbers from 0 to this
 inline constexpr int max_lab_jobs = 8, max_lab_jobs_a_client = 2;   ///< waiting jobs; beyond: -32002
 inline constexpr int max_lab_outcomes_a_client = 8;                 ///< newest results kept for lab.export
 inline constexpr double min_lab_time = 0.01, max_lab_time = 60;     ///< time that a job simulates [s]

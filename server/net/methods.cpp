@@ -43,6 +43,9 @@ struct Method {
 
 constexpr std::array methods{
     Method{"auth", false, auth},
+    Method{"grab.end", true, grab_end},
+    Method{"grab.move", true, grab_move},
+    Method{"grab.start", true, grab_start},
     Method{"lab.cancel", true, lab_cancel},
     Method{"lab.chart", true, lab_chart},
     Method{"lab.choose", true, lab_choose},
@@ -66,15 +69,8 @@ constexpr std::array methods{
     Method{"stream.unsubscribe", false, stream_unsubscribe},
 };
 
-// Methods of the protocol that this version of the server does not support yet.
-constexpr std::array unsupported_methods{"grab.start", "grab.move", "grab.end"};
-
 RpcError unknown(const std::string& method) {
-  const bool known =
-      std::find(unsupported_methods.begin(), unsupported_methods.end(), method) != unsupported_methods.end();
-  return {error_unknown_method,
-          method + (known ? " is not supported yet" : ": there is no such method"),
-          {{"allowed", method_names()}}};
+  return {error_unknown_method, method + ": there is no such method", {{"allowed", method_names()}}};
 }
 
 }  // namespace

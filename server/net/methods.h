@@ -30,6 +30,9 @@ session::Ticket ticket(const Client& client, const Request& request);
 Outcome ask_session(Client& client, const Request& request, decltype(session::Command::what) what);
 
 // The groups of methods, each in its own file methods_GROUP.cpp.
+Outcome grab_end(Client& client, const Request& request);
+Outcome grab_move(Client& client, const Request& request);
+Outcome grab_start(Client& client, const Request& request);
 Outcome mesh_upload(Client& client, const Request& request);
 Outcome scene_get(Client& client, const Request& request);
 Outcome scene_load(Client& client, const Request& request);

@@ -82,10 +82,15 @@ void Room::enter(Client& client) {
 void Room::leave(Client& client) {
   clients_.erase(std::remove(clients_.begin(), clients_.end(), &client), clients_.end());
   hub_.lab().client_left(client.id());
+  let_go(client);
   if (clients_.empty()) unwatched_since_ = session::now_us();
   post({{}, session::Watchers{static_cast<int>(clients_.size())}});
   demand_changed(std::nullopt);
   broadcast_viewers();
+}
+
+void Room::let_go(const Client& client) {
+  post({{client.id()}, session::GrabEnd{}});
 }
 
 void Room::demand_changed(std::optional<stream::Form> fresh) {
@@ -277,6 +282,17 @@ json surface_counts(const sim::Diagnostics& d) {
           {"searches", d.surface_searches}};
 }
 
+json hands_text(const std::vector<session::HandAt>& hands) {
+  json list = json::array();
+  for (const session::HandAt& at : hands)
+    list.push_back({{"by", at.by},
+                    {"hand", at.hand},
+                    {"cloth", at.cloth},
+                    {"vertex", at.vertex},
+                    {"target", {at.target.x, at.target.y, at.target.z}}});
+  return list;
+}
+
 }  // namespace
 
 json Room::status_params(const session::Status& status) const {
@@ -291,6 +307,7 @@ json Room::status_params(const session::Status& status) const {
           {"max_speed", d.max_speed},
           {"contacts", d.contacts},
           {"surface", surface_counts(d)},
+          {"hands", hands_text(status.hands)},
           {"passes", passes_},
           {"terms", terms_},
           {"skipped", skipped_},

@@ -38,6 +38,7 @@ class Room {
 
   void enter(Client& client);
   void leave(Client& client);
+  void let_go(const Client& client);  ///< ends the client's hold on the cloth
   bool empty() const { return clients_.empty(); }
   std::int64_t unwatched_since() const { return unwatched_since_; }  ///< when the last client left [us]
   /// Tells the session which frames its viewers want, after a subscription has changed. `fresh`: a client

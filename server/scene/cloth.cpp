@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "server/scene/fabrics.h"
 #include "server/scene/sections.h"
@@ -22,12 +23,29 @@ Mass read_mass(const Reader& mass) {
   return Mass{Mass::Kind::per_vertex, mass.member("per_vertex").number(ranges::mass_per_vertex)};
 }
 
+Motion placed_at(const dvec3& place, const Motion& motion) {
+  Placed placed{place, {}};
+  std::visit(
+      [&](const auto& kind) {
+        if constexpr (!std::is_same_v<std::decay_t<decltype(kind)>, Placed>) placed.then = kind;
+      },
+      motion);
+  return placed;
+}
+
 std::vector<Pin> read_pins(const Reader& pins, const Mesh& mesh) {
   std::vector<Pin> result(pins.array(0, max_pins));
   for (std::size_t i = 0; i < result.size(); ++i) {
     const Reader pin = pins.element(i);
-    pin.object({"at", "motion"});
+    pin.object({"at", "place", "motion"});
     result[i] = Pin{read_at(pin.member("at"), mesh), read_motion(pin.member("motion", json(nullptr)))};
+    if (!pin.has("place")) continue;
+    const Reader place = pin.member("place");
+    if (std::holds_alternative<AtCorner>(result[i].at) || std::holds_alternative<AtVertex>(result[i].at))
+      result[i].motion = placed_at(place.vector(ranges::position), result[i].motion);
+    else
+      place.fail(
+          "\"at\" of one vertex, \"corner:COLUMN,ROW\" or \"vertex:N\": several cannot be at one place");
   }
   return result;
 }

@@ -121,8 +121,17 @@ struct Spin {
   double degrees_per_second = 0.0;
   bool operator==(const Spin&) const = default;
 };
-/// How a pin or a collider moves; monostate: it does not (`null` in the document).
-using Motion = std::variant<std::monostate, Oscillate, Linear, Spin>;
+/// A pin that holds its vertex at `place` instead of its rest place; home is there. If the scene has it at
+/// time 0 it is then at the rest place, as a start that is torn out of shape would blow up, and `glide` later
+/// at `place`.
+struct Placed {
+  static constexpr double glide = 0.5;  ///< [s]
+  dvec3 place{0.0};                     ///< [m]
+  std::variant<std::monostate, Oscillate, Linear, Spin> then;
+  bool operator==(const Placed&) const = default;
+};
+/// How a pin or a collider moves; monostate: it does not (`null` in the document). Only pins are `Placed`.
+using Motion = std::variant<std::monostate, Oscillate, Linear, Spin, Placed>;
 
 /// A vertex of a grid by its column and row, counted from 0. Despite the name it can be any vertex.
 struct AtCorner {

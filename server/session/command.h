@@ -77,10 +77,23 @@ struct Chosen {
   std::shared_ptr<const scene::Document> measured;
   Result<lab::Choice> choice;
 };
+/// Puts one of the client's hands on a vertex of a cloth.
+struct GrabStart {
+  int hand = 0;
+  std::uint32_t cloth = 0, vertex = 0;
+  scene::dvec3 target{0.0};  ///< where the hand would have the vertex [m]
+};
+struct GrabMove {
+  int hand = 0;
+  scene::dvec3 target{0.0};  ///< [m]
+};
+struct GrabEnd {
+  std::optional<int> hand;  ///< none: all of the client's
+};
 struct Command {
   Ticket ticket;
   std::variant<GetScene, LoadScene, UploadMesh, PatchScene, Play, Pause, Step, Reset, Speed, Demand, Watchers,
-               Export, ReachScene, Hold, Release, Chosen>
+               Export, ReachScene, Hold, Release, Chosen, GrabStart, GrabMove, GrabEnd>
       what;
 };
 

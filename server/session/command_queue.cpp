@@ -14,6 +14,7 @@ std::deque<Command>& CommandQueue::of(std::uint64_t asker) {
 }
 
 bool CommandQueue::offer(Command command) {
+  if (replace_move(command)) return true;
   const auto found = waiting_.find(command.ticket.asker);
   if (found != waiting_.end() && found->second.size() >= max_waiting_commands) return false;
   of(command.ticket.asker).push_back(std::move(command));
@@ -22,6 +23,21 @@ bool CommandQueue::offer(Command command) {
 
 void CommandQueue::post(Command command) {
   if (!replace(command)) of(command.ticket.asker).push_back(std::move(command));
+}
+
+/// Only the newest place of a hand counts. Moves of the client's other hands may stand between.
+bool CommandQueue::replace_move(const Command& newer) {
+  const auto* move = std::get_if<GrabMove>(&newer.what);
+  const auto queue = waiting_.find(newer.ticket.asker);
+  if (!move || newer.ticket.id || queue == waiting_.end()) return false;
+  for (auto older = queue->second.rbegin(); older != queue->second.rend(); ++older) {
+    auto* waits = std::get_if<GrabMove>(&older->what);
+    if (!waits || older->ticket.id) return false;
+    if (waits->hand != move->hand) continue;
+    waits->target = move->target;
+    return true;
+  }
+  return false;
 }
 
 bool CommandQueue::replace(const Command& newer) {

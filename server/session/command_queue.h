@@ -12,7 +12,8 @@ namespace clothlab::session {
 
 class CommandQueue {
  public:
-  /// Adds a client's command. False: max_waiting_commands of this client wait already.
+  /// Adds a client's command. A GrabMove without an id replaces one of the same hand that waits last. False:
+  /// max_waiting_commands of this client wait already.
   [[nodiscard]] bool offer(Command command);
   /// Adds a command of the server itself; never refused. A new Demand or Watchers replaces the one that
   /// waits, but what that Demand wanted at once (`fresh`) is still wanted.
@@ -24,6 +25,7 @@ class CommandQueue {
  private:
   std::deque<Command>& of(std::uint64_t asker);
   bool replace(const Command& newer);
+  bool replace_move(const Command& newer);
 
   std::map<std::uint64_t, std::deque<Command>> waiting_;  ///< by asker; no queue is empty
   std::deque<std::uint64_t> turns_;                       ///< askers with waiting commands, the next first

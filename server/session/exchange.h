@@ -21,6 +21,7 @@
 #include "server/lab/measure/choice.h"
 #include "server/scene/document.h"
 #include "server/session/command_queue.h"
+#include "server/session/hands.h"
 #include "server/session/refusal.h"
 #include "server/session/run_state.h"
 #include "server/session/saved.h"
@@ -105,6 +106,7 @@ struct Status {
   double dt_limit = 0;           ///< [s]; infinite: any step is stable, 0: no step is
   std::optional<double> margin;  ///< dt over dt_limit; none: any step is stable, or no step is
   sim::Diagnostics diagnostics;
+  std::vector<HandAt> hands;  ///< empty, and so without memory, while nobody holds the cloth
   gl::StageTimes pass_times;  ///< the GPU times that have arrived since the last status
 };
 using Event = std::variant<Started, Failed, Reply, SceneChanged, TopologyChanged, PartsChanged, SolverChanged,

@@ -28,6 +28,8 @@ bool moves(const scene::Motion& motion) {
     return oscillate->amplitude != 0 && oscillate->frequency != 0;
   if (const auto* linear = std::get_if<scene::Linear>(&motion)) return linear->velocity != scene::dvec3(0.0);
   if (const auto* spin = std::get_if<scene::Spin>(&motion)) return spin->degrees_per_second != 0;
+  if (const auto* placed = std::get_if<scene::Placed>(&motion))
+    return std::visit([](const auto& then) { return moves(then); }, placed->then);
   return false;
 }
 

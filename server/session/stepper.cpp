@@ -149,7 +149,7 @@ void Stepper::follow_diagnostics(Clock::time_point now) {
   if (const std::optional<sim::GuardedRun::Verdict> verdict = guard_->poll_verdict()) {
     accept(*verdict);
     const sim::Diagnostics& arrived = guard_->state();
-    if (running(now) &&
+    if (running(now) && hands_.empty() &&
         rest_.look(arrived.time, arrived.max_speed, [&] { return simulation().read_state().position; }))
       fall_asleep();
   }
@@ -201,6 +201,7 @@ void Stepper::diverge() {
   if (remedy.method || solver.automatic)
     change["method"] = scene::name(remedy.method.value_or(solver.method));
   ++state_version_;
+  end_hands();
   guard_->start(step_limit_.dt_limit());
   wake_up();
   run_.diverge();
@@ -228,6 +229,7 @@ void Stepper::publish_status(Clock::time_point now) {
   status.dt_limit = step_limit_.dt_limit();
   status.margin = step_limit_.margin();
   status.diagnostics = guard_->state();
+  status.hands = hands_.told();
   // The timers measure again only after their times are taken, which gives a few samples a second.
   engine_->step_timer.poll(status.pass_times);
   engine_->diagnosis_timer.poll(status.pass_times);

@@ -12,6 +12,7 @@
 #include "server/session/automatic.h"
 #include "server/session/engine.h"
 #include "server/session/exchange.h"
+#include "server/session/hands.h"
 #include "server/session/limits.h"
 #include "server/session/mesh_shelf.h"
 #include "server/session/piece_size.h"
@@ -89,6 +90,14 @@ class Stepper {
   void perform(Hold& hold, const Ticket& ticket);
   void perform(Release&, const Ticket& ticket);
   void perform(Chosen& chosen, const Ticket& ticket);
+  // In stepper_hands.cpp.
+  void perform(GrabStart& start, const Ticket& ticket);
+  void perform(GrabMove& move, const Ticket& ticket);
+  void perform(GrabEnd& end, const Ticket& ticket);
+  void refuse_grab(const Ticket& ticket, Refusal refusal);
+  clothlab::Status hands_changed();
+  void end_hands();
+  // In stepper_commands.cpp.
   void reply(const Ticket& ticket, Answer answer);
   json where_we_are() const;
   static Refusal diverged_refusal();
@@ -138,6 +147,7 @@ class Stepper {
   StepLimit step_limit_;
   Rest rest_;
   Automatic automatic_;
+  Hands hands_;
 
   std::uint64_t revision_ = 1;
   std::uint32_t topology_revision_ = 0;

@@ -115,6 +115,7 @@ Result<sim::ChangeDepth> Stepper::move_to(const scene::Scene& scene, gl::HelperT
   engine_.swap(*made);
   made->reset();
   guard_->move_to(simulation());
+  if (!anew && !hands_.empty()) (void)simulation().set_hands(hands_.for_simulation());
   return depth;
 }
 
@@ -152,6 +153,7 @@ void Stepper::restart() {
 }
 
 void Stepper::state_replaced() {
+  end_hands();
   finish_waiting(true);
   wake_up();
   run_.begin_again();

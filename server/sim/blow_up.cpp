@@ -37,6 +37,11 @@ double largest_speed(const scene::Motion& motion, const glm::dvec3& where, doubl
   if (const auto* line = std::get_if<scene::Linear>(&motion)) return glm::length(line->velocity);
   if (const auto* spin = std::get_if<scene::Spin>(&motion))
     return std::abs(glm::radians(spin->degrees_per_second)) * (glm::distance(where, spin->center) + reach);
+  if (const auto* placed = std::get_if<scene::Placed>(&motion)) {
+    const double gliding = 1.5 / scene::Placed::glide * glm::distance(where, placed->place);
+    return gliding + std::visit([&](const auto& then) { return largest_speed(then, placed->place, reach); },
+                                placed->then);
+  }
   return 0.0;
 }
 
@@ -126,13 +131,16 @@ void BlowUp::rebase(const Diagnostics& state) {
 
 /// The work [J] that pins, colliders and wind may have done since the last state. Of pins and colliders:
 /// their largest speed at any time, times the larger of the forces in the two states, times the time between.
-/// A collider also throws the vertices that it hits, at up to twice its speed.
+/// A collider also throws the vertices that it hits, at up to twice its speed. Of hands: their pull, over the
+/// way of the fastest vertex and the way within which it may have come and gone.
 double BlowUp::work_since_last(const Diagnostics& state) const {
   const double seconds = state.time - last_.time;
   const double pins = allowance_.pin_speed * std::max(state.pin_force, last_.pin_force);
   const double colliders = allowance_.collider_speed * std::max(state.contact_force, last_.contact_force);
+  const double pulled =
+      allowance_.hand_force * (seconds * std::max(state.max_speed, last_.max_speed) + allowance_.hand_reach);
   const double thrown = 2.0 * allowance_.collider_speed * allowance_.collider_speed * state.contact_mass;
-  return seconds * (pins + colliders + allowance_.wind_power) + thrown;
+  return seconds * (pins + colliders + allowance_.wind_power) + pulled + thrown;
 }
 
 BlowUp::Verdict BlowUp::judge(const Diagnostics& state) {

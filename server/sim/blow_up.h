@@ -16,6 +16,8 @@ struct Allowance {
   double pin_speed = 0;        ///< speed of the fastest pin [m/s]
   double collider_speed = 0;   ///< speed of the fastest point of a collider near the cloth [m/s]
   double wind_power = 0;       ///< the most that the wind does [W]
+  double hand_force = 0;       ///< the most that hands pull with [N]
+  double hand_reach = 0;       ///< the way over which such a pull sets a vertex going [m]
   bool counts_elastic = true;  ///< true if growth of elastic energy counts, false if only kinetic energy does
 };
 

@@ -10,10 +10,12 @@ namespace clothlab::sim {
 namespace {
 
 /// True if `to` has a pin that `from` lacks. A new pin would tear its vertices back to their rest positions
-/// at once, so it starts the cloth anew; a pin that is removed only lets its vertices fall.
+/// at once, so it starts the cloth anew; a pin that is removed only lets its vertices fall. A pin with a
+/// place takes its vertex there, which a hand has usually done before (hands.h), and the cloth goes on.
 bool pins_were_added(const scene::Cloth& from, const scene::Cloth& to) {
   return std::any_of(to.pins.begin(), to.pins.end(), [&](const scene::Pin& pin) {
-    return std::none_of(from.pins.begin(), from.pins.end(),
+    return !std::holds_alternative<scene::Placed>(pin.motion) &&
+           std::none_of(from.pins.begin(), from.pins.end(),
                         [&](const scene::Pin& old) { return old.at == pin.at; });
   });
 }

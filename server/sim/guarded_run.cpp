@@ -1,5 +1,6 @@
 #include "server/sim/guarded_run.h"
 
+#include <algorithm>
 #include <chrono>
 
 namespace clothlab::sim {
@@ -19,6 +20,8 @@ void GuardedRun::move_to(Simulation& simulation) {
 Allowance GuardedRun::allowance() const {
   Allowance allowed = sim::allowance(simulation_->scene(), simulation_->model(), dt_limit_);
   if (swing_) allowed.energy_ratio = *swing_;
+  allowed.hand_force = std::max(pull_.force, pull_before_.force);
+  allowed.hand_reach = std::max(pull_.reach, pull_before_.reach);
   return allowed;
 }
 
@@ -35,6 +38,12 @@ void GuardedRun::set_dt_limit(double dt_limit) {
   blow_up_.set_allowance(allowance());
 }
 
+void GuardedRun::set_hands(double force, double reach) {
+  pull_before_ = {std::max(pull_.force, pull_before_.force), std::max(pull_.reach, pull_before_.reach)};
+  pull_ = {force, reach};
+  blow_up_.set_allowance(allowance());
+}
+
 void GuardedRun::rebase() {
   blow_up_.rebase(simulation_->diagnose());
   verdict_requested_ = false;
@@ -44,6 +53,10 @@ GuardedRun::Verdict GuardedRun::judge(const Diagnostics& state) {
   verdict_requested_ = false;
   state_ = state;
   const Verdict verdict = blow_up_.judge(state);
+  if (pull_before_.force > pull_.force || pull_before_.reach > pull_.reach) {
+    pull_before_ = pull_;
+    blow_up_.set_allowance(allowance());
+  }
   if (verdict == Verdict::good) simulation_->keep_diagnosed();
   return verdict;
 }

@@ -30,6 +30,9 @@ class GuardedRun {
   void start(double dt_limit, std::optional<double> swing = std::nullopt);
   /// To be called when the scene has changed or its longest stable step `dt_limit` [s] is known better.
   void set_dt_limit(double dt_limit);
+  /// To be called when other hands hold the cloth: the most that they pull with [N], and over which way that
+  /// sets a vertex going [m] (model::Hold). What held since the last judgement counts in the next one.
+  void set_hands(double force, double reach);
   /// To be called after a judgement and a change of scene, with no step between: the energy that the change
   /// added does not count as growth.
   void rebase();
@@ -69,6 +72,9 @@ class GuardedRun {
   Diagnostics state_;
   double dt_limit_ = 0;  ///< [s]
   std::optional<double> swing_;
+  struct Pull {
+    double force = 0, reach = 0;
+  } pull_, pull_before_;  ///< of the hands now, and at most since the last judgement
   bool verdict_requested_ = false;
 };
 

@@ -11,7 +11,7 @@ constexpr std::size_t floats_a_pose = 20, floats_a_wind = 4;
 }
 
 MotionTable::MotionTable(std::vector<scene::Motion> motions, std::optional<scene::Wind> wind, int rows_a_step)
-    : motions_(std::move(motions)), wind_(wind) {
+    : motions_(std::move(motions)), settled_(motions_.size(), false), wind_(wind) {
   if (empty()) return;
   const std::size_t rows = batch_steps * static_cast<std::size_t>(rows_a_step) + 1;
   rows_.resize(rows * (motions_.size() * floats_a_pose + (wind_ ? floats_a_wind : 0)));
@@ -23,6 +23,11 @@ int MotionTable::index(const scene::Motion& motion) const {
   return found == motions_.end() ? -1 : static_cast<int>(found - motions_.begin());
 }
 
+void MotionTable::settle(const std::vector<scene::Motion>& settled) {
+  for (std::size_t i = 0; i < motions_.size(); ++i)
+    settled_[i] = std::find(settled.begin(), settled.end(), motions_[i]) != settled.end();
+}
+
 void MotionTable::upload(const std::vector<double>& times) {
   float* out = rows_.data();
   const auto write = [&out](const glm::dvec3& xyz, double w) {
@@ -30,8 +35,8 @@ void MotionTable::upload(const std::vector<double>& times) {
     *out++ = static_cast<float>(w);
   };
   for (const double time : times) {
-    for (const scene::Motion& motion : motions_) {
-      const model::Pose pose = model::pose(motion, time);
+    for (std::size_t i = 0; i < motions_.size(); ++i) {
+      const model::Pose pose = model::pose(motions_[i], time, settled_[i]);
       for (int row = 0; row < 3; ++row)
         write({pose.rotation[0][row], pose.rotation[1][row], pose.rotation[2][row]}, pose.translation[row]);
       write(pose.linear_velocity, 0.0);

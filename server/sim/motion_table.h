@@ -24,6 +24,9 @@ class MotionTable {
   /// The index under which kernels find `motion` in the table; -1 for a null motion.
   int index(const scene::Motion& motion) const;
 
+  /// Pins that were added to the running cloth are at their places, and do not glide there (scene::Placed).
+  void settle(const std::vector<scene::Motion>& settled);
+
   /// Uploads the poses and the wind at `times` [s], one row each: the start of the batch, then rows_a_step
   /// rows for each step.
   void upload(const std::vector<double>& times);
@@ -31,6 +34,7 @@ class MotionTable {
 
  private:
   std::vector<scene::Motion> motions_;
+  std::vector<bool> settled_;  ///< for each of them
   std::optional<scene::Wind> wind_;
   std::vector<float> rows_;
   gl::TextureBuffer table_;

@@ -10,6 +10,7 @@
 #include "server/scene/method.h"
 #include "server/sim/colliders.h"
 #include "server/sim/diagnose.h"
+#include "server/sim/hands.h"
 #include "server/sim/kernels.h"
 #include "server/sim/last_good.h"
 #include "server/sim/scene_order.h"
@@ -56,6 +57,8 @@ struct Simulation::Implementation {
   SceneOrder scene_order;
   gl::TextureBuffer rest;
   StateBuffers state;
+  Hands hands;
+  std::vector<scene::Motion> settled;  ///< of pins with a place that came when the cloth was on its way
   DiagnosticsPass diagnostics;
   std::uint64_t diagnosed_step = 0;  ///< step_index of the diagnosis that arrived last
   LastGood last_good;
@@ -102,6 +105,7 @@ struct Simulation::Implementation {
     const auto passed = [timer](const char* pass) {
       if (timer) timer->stage(pass);
     };
+    hands.hold(state, scene);
     state.position().bind(unit_position);
     if (kernels.self_collision) {
       co_await kernels.update_lists(scene);
@@ -117,9 +121,11 @@ struct Simulation::Implementation {
       co_await kernels.strain_limit->apply(state);
       passed("strain_limit");
     }
-    if (!kernels.surface_contact) co_return;
-    kernels.surface_contact->keep_apart(state, row);
-    passed("surface_contact");
+    if (kernels.surface_contact) {
+      kernels.surface_contact->keep_apart(state, row);
+      passed("surface_contact");
+    }
+    hands.release(state);
   }
 
   /// Does up to `count` steps; ends earlier if no steps are left to do.
@@ -184,6 +190,16 @@ struct Simulation::Implementation {
     last_good.keep(step_index);
   }
 
+  void settle_new_pins(const scene::Scene& next) {
+    const std::vector<scene::Motion> known = moving_motions(scene);
+    for (const scene::Motion& motion : moving_motions(next))
+      if (step_index > 0 && std::find(known.begin(), known.end(), motion) == known.end())
+        settled.push_back(motion);
+    std::erase_if(settled,
+                  [](const scene::Motion& motion) { return !std::holds_alternative<scene::Placed>(motion); });
+    kernels.motions.settle(settled);
+  }
+
   /// Takes over a changed scene; positions, velocities and time stay as they are.
   void adopt(const scene::Scene& next) {
     if (next.solver.dt != scene.solver.dt) {
@@ -193,8 +209,15 @@ struct Simulation::Implementation {
     const bool constants =
         differs(scene, next, &scene::Cloth::mass) || differs(scene, next, &scene::Cloth::weights) ||
         differs(scene, next, &scene::Cloth::pins) || moving_motions(scene) != moving_motions(next);
+    settle_new_pins(next);
     scene = next;
     if (constants) state.rewrite_constants(kernels.model, kernels.motions);
+    if (!hands.empty())
+      (void)set_hands(hands.all());  // masses and pins may have changed; the kernels are there
+  }
+
+  Status set_hands(std::vector<Hand> next) {
+    return hands.set(std::move(next), kernels.model, kernels.places);
   }
 };
 
@@ -250,6 +273,12 @@ Result<ChangeDepth> Simulation::change(const scene::Scene& scene) {
   return depth;
 }
 
+Status Simulation::set_hands(std::vector<Hand> hands) {
+  Implementation& self = *implementation_;
+  if (!self.hands.same_holds(hands) && self.in_step) self.give_up_work();
+  return self.set_hands(std::move(hands));
+}
+
 void Simulation::step(std::uint32_t count, gl::StageTimer* timer) {
   set_steps_to_do(count, timer);
   Pace unlimited;
@@ -275,6 +304,8 @@ void Simulation::reset() {
   // Kernels whose neighbour lists have grown are made anew: then the same steps follow as at the start.
   if (self.kernels.plan != sim::plan(self.scene))
     if (Result<Kernels> kernels = Kernels::create(self.scene)) self.kernels = std::move(*kernels);
+  self.settled.clear();
+  self.kernels.motions.settle({});
   self.state.reset(self.kernels.model, self.kernels.motions);
   self.state_replaced(0.0, 0);
   self.keep_start();

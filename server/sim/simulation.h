@@ -16,6 +16,8 @@
 
 namespace clothlab::sim {
 
+struct Hand;
+
 /// How much of a simulation a change of scene replaces: nothing, only numbers, also the kernels, or all.
 /// Only `cloth` resets time and positions.
 enum class ChangeDepth { none, uniform, kernel, cloth };
@@ -79,6 +81,11 @@ class Simulation {
 
   /// Applies a changed scene to the running simulation. On error the simulation continues with the old scene.
   Result<ChangeDepth> change(const scene::Scene& scene);
+
+  /// The hands that hold the cloth from the next step on, instead of those before (hands.h). Their holds
+  /// belong to this model: a change of the depth `cloth` ends them. Other holds give up the step under way,
+  /// other targets do not. Error: the kernels cannot be made.
+  Status set_hands(std::vector<Hand> hands);
 
   /// Queues `count` steps of length dt on the GPU; returns without waiting for them. `timer` times the passes
   /// of the first step: neighbour_search, the method with all that its dispatches do (forces, contacts,

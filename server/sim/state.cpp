@@ -1,6 +1,7 @@
 #include "server/sim/state.h"
 
 #include <glm/vec4.hpp>
+#include <utility>
 
 #include "server/sim/motion_table.h"
 
@@ -44,6 +45,24 @@ StateBuffers::StateBuffers(const model::Model& model, const MotionTable& motions
   for (gl::TextureBuffer* buffer : {&position_[0], &position_[1], &velocity_[0], &velocity_[1]})
     *buffer = {gl::Buffer(bytes(model) + extra * sizeof(glm::vec4)), GL_RGBA32F};
   reset(model, motions);
+}
+
+void StateBuffers::show() {
+  shown_ = current_;
+  is_aside_ = false;
+}
+
+void StateBuffers::put_aside() {
+  if (aside_position_.buffer.bytes() == 0)
+    for (gl::TextureBuffer* buffer : {&aside_position_, &aside_velocity_})
+      *buffer = {gl::Buffer(vertex_count_ * sizeof(glm::vec4)), GL_RGBA32F};
+  save(aside_position_.buffer, aside_velocity_.buffer);
+  is_aside_ = true;
+}
+
+void StateBuffers::give_up_step() {
+  current_ = shown_;
+  if (std::exchange(is_aside_, false)) load(aside_position_.buffer, aside_velocity_.buffer);
 }
 
 void StateBuffers::reset(const model::Model& model, const MotionTable& motions) {

@@ -27,12 +27,15 @@ class StateBuffers {
   void swap() { current_ = 1 - current_; }
 
   /// To be called when a step has ended: everything outside of the step's passes now sees the present copy.
-  void show() { shown_ = current_; }
+  void show();
   /// The state that is seen outside of a step's passes. While a step is under way: the state at its start.
-  const gl::TextureBuffer& shown_position() const { return position_[shown_]; }
-  const gl::TextureBuffer& shown_velocity() const { return velocity_[shown_]; }
-  /// Gives up the step under way: goes back to the state at its start, which it has not written over yet.
-  void give_up_step() { current_ = shown_; }
+  const gl::TextureBuffer& shown_position() const { return is_aside_ ? aside_position_ : position_[shown_]; }
+  const gl::TextureBuffer& shown_velocity() const { return is_aside_ ? aside_velocity_ : velocity_[shown_]; }
+  /// To be called before a pass at the start of a step writes over the present copy: until `show`, that copy
+  /// as it was is what is seen outside, and what `give_up_step` goes back to.
+  void put_aside();
+  /// Gives up the step under way: goes back to the state at its start.
+  void give_up_step();
 
   // The functions below may be called only while no step is under way, except `save` and `read`, which use
   // the shown state.
@@ -50,6 +53,8 @@ class StateBuffers {
  private:
   gl::TextureBuffer position_[2];  ///< xyz [m], w inverse mass [1/kg], 0 if pinned
   gl::TextureBuffer velocity_[2];  ///< xyz [m/s], w number of contacts; if pinned: index of its motion, or -1
+  gl::TextureBuffer aside_position_, aside_velocity_;  ///< made by the first `put_aside`
+  bool is_aside_ = false;
   std::uint32_t vertex_count_ = 0;
   int current_ = 0, shown_ = 0;
 };

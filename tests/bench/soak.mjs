@@ -172,7 +172,7 @@ async function operator() {
       () => ask(client, "sim.reset", {}),
       () => ask(client, "sim.speed", { factor: pick([0.25, 1, 2]) }),
       async () => {
-        client.notify("grab.start", { cloth: "cloth", vertex: 12, target: [0, 1, 0] });
+        client.notify("grab.start", { cloth: 0, vertex: 12, target: [0, 1, 0] });
         await dwell(0.3);
         client.notify("grab.move", { target: [0.2, 1.2, 0] });
         await dwell(0.3);

@@ -108,7 +108,12 @@ json RandomPatch::motion() {
 
 json RandomPatch::pins(const json& mesh) {
   json list = json::array();
-  for (int i = whole(0, 3); i > 0; --i) list.push_back({{"at", at(mesh)}, {"motion", motion()}});
+  for (int i = whole(0, 3); i > 0; --i) {
+    list.push_back({{"at", at(mesh)}, {"motion", motion()}});
+    const json& held = list.back()["at"];
+    const bool one = held.is_string() && held.get<std::string>().rfind("edge", 0) != 0;
+    if (one && chance(0.3)) list.back()["place"] = {real(-1.0, 1.0), real(-1.0, 1.0), real(-1.0, 1.0)};
+  }
   return list;
 }
 

@@ -33,6 +33,12 @@ export function candidates(given) {
     case "array": {
       const item = candidates(schema.items);
       const full = (length) => Array.from({ length }, (_, i) => item.good[i % item.good.length]);
+      const { minItems: least = 0, maxItems: most } = schema;
+      if (least > 0)
+        return {
+          good: [full(least), full(most)],
+          bad: ["x", {}, [], full(least - 1), full(most + 1), ...item.bad.map((value) => [...full(least - 1), value])],
+        };
       return {
         good: [[], item.good, ...(schema.maxItems ? [full(schema.maxItems)] : [])],
         bad: ["x", {}, ...item.bad.map((value) => [value]), ...(schema.maxItems ? [full(schema.maxItems + 1)] : [])],

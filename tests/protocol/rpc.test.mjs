@@ -79,14 +79,6 @@ test("an unknown method answers -32601 with the methods there are", async () => 
   assert.ok(error.data.allowed.includes("scene.patch"));
 });
 
-test("a method of the protocol that is not there yet says so", async () => {
-  for (const method of ["grab.start", "grab.move"]) {
-    const error = await client.refusal(method, {});
-    assert.equal(error.code, -32601);
-    assert.match(error.message, /not supported yet/);
-  }
-});
-
 test("bad parameters answer -32602 with where, what was found and what is allowed", async () => {
   const cases = [
     ["stream.subscribe", { rate: 0 }, "/rate"],

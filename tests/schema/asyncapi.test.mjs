@@ -61,13 +61,11 @@ test("a request's operation is named after its method, and is answered by someth
     action,
     messages: [message],
     replies,
-    "x-not-yet": notYet,
   } of operations.filter((o) => o.action === "receive")) {
     assert.equal(message, name);
     assert.equal(messages[name].payload.properties.method.const, name);
-    assert.equal(
+    assert.ok(
       replies.some((reply) => reply.startsWith("result.")),
-      !notYet,
       `${action} ${name}`,
     );
   }

@@ -49,6 +49,7 @@ const whole = {
       pins: [
         { at: "corner:0,0", motion: oscillate },
         { at: "edge:row:3", motion: spin },
+        { at: "vertex:5", place: [0.1, 1.2, 0], motion: null },
         {
           at: {
             box: [

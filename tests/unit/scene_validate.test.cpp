@@ -70,6 +70,7 @@ const std::vector<Rule> rules = {
     {"/cloths/1/start/scatter/size", {"1e-6", "1e6"}, {"0", "-1", "1.1e6", "null"}},
     {"/cloths/1/start/scatter/seed", {"0", "1e9", "7.0"}, {"-1", "1.5", "1.1e9", "null"}},
     {"/cloths/1/start/scatter/sead", {}, {"1"}},
+    {"/cloths/0/pins/0/place", {"[0,0,0]", "[-1e6,0,1e6]"}, {"[0,0]", "[1.1e6,0,0]", "null", "\"there\""}},
     {"/cloths/0/pins/0/motion/oscillate/frequency", {"0", "1e4"}, {"-1", "1.1e4"}},
     {"/cloths/0/pins/0/motion/oscillate/axis", {"[0,0,1e-6]"}, {"[0,0,0]", "[0,-0.0,0]", "[1,0]"}},
     {"/colliders/0/sphere/radius", {"1e-6", "1e6"}, {"0", "-1", "1.1e6"}},

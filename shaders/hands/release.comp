@@ -1,0 +1,9 @@
+// After a step: held vertices get their own mass back.
+#include "hands.glsl"
+
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  if (i >= held_count) return;
+  uint vertex = floatBitsToUint(held[i].numbers.w);
+  position[vertex].w = held[i].numbers.z;
+}
