@@ -28,6 +28,8 @@ import { RpcError } from "./link/rpc";
 import { SlowWatch } from "./panel/slow_watch";
 import { SceneStore } from "./link/scene_store";
 import type { MovedCollider, Patch, SceneDocument } from "./link/scene_types";
+import { Grab, type HandAt } from "./view/grab";
+import { bindGrabKeys } from "./view/grab_keys";
 import type { Stage } from "./view/stage";
 import { hook } from "./test_hook";
 import { ThemeSwitch } from "./view/theme";
@@ -57,6 +59,7 @@ export class Page {
     (field) => this.connection.setField(field),
     () => this.layout?.legendToggled(),
   );
+  private grab: Grab | null = null; // with the stage
   private layout: Layout | null = null;
   private latest: ShownFrame | null = null;
   private moved: MovedCollider[] = []; // colliders' places for the next frame
@@ -76,6 +79,8 @@ export class Page {
     this.stage = hook.stage = stage;
     const layout: Layout = (this.layout = new Layout(() => stage.resize(layout.freeArea())));
     const theme = new ThemeSwitch(() => stage.setTheme());
+    this.grab = this.makeGrab(stage);
+    bindGrabKeys(this.grab);
     this.bind(layout, theme);
     stage.onLost = () =>
       notice("warning", {
@@ -125,6 +130,7 @@ export class Page {
     this.latest = null;
     const shown = frame !== null && this.stage.show(frame);
     this.stage.draw();
+    this.grab?.tick();
     if (!frame) return;
     this.connection.acknowledge(frame.header.sequence);
     if (!shown) return;
@@ -149,11 +155,15 @@ export class Page {
         this.transport.enable(state === "open" && this.mayEdit);
         this.lab.link(state === "open");
         this.slow.link(state === "open");
+        if (state !== "open") this.grab?.lost();
         if (state !== "open") this.store.forget();
         else if (!this.store.document) void this.fetchScene();
       },
       notification: (method, params) => this.notifications[method]?.(params),
-      topology: (topology) => this.stage.setTopology(topology),
+      topology: (topology) => {
+        this.stage.setTopology(topology);
+        this.grab?.lost();
+      },
       frame: (frame, field) => {
         hook.framesReceived++;
         this.hud.countReceived();
@@ -192,6 +202,19 @@ export class Page {
     });
   }
 
+  private makeGrab(stage: Stage): Grab {
+    return new Grab(stage, {
+      notify: (method, params) => this.connection.notify(method, params),
+      patch: (operations) =>
+        this.connection.request("scene.patch", { patch: operations }).catch((error: Error) => {
+          noticeError("Not pinned", error);
+        }),
+      document: () => this.store.document,
+      mayGrab: () => this.mayEdit && this.connection.open && !this.diverged,
+      busy: () => false,
+    });
+  }
+
   private makeLab(): Lab {
     return new Lab({
       request: (method, params) => this.connection.request(method, params),
@@ -221,6 +244,7 @@ export class Page {
         if (params.stability) this.panel.showStability(params.stability as Stability);
         if (params.solver) this.store.fabricsGive((params.solver as SolverFacts).from_fabrics ?? []);
         if (params.solver) this.panel.showSolver(params.solver as SolverFacts);
+        this.grab?.told((params.hands as HandAt[] | undefined) ?? []);
         this.followDivergence(params as Status);
       },
       "sim.diverged": (params) => this.tellDivergence(params as unknown as Diverged),
@@ -234,6 +258,7 @@ export class Page {
   private greeted(params: Params): void {
     this.hud.setRenderer(String(params.renderer));
     this.mayEdit = params.role !== "viewer";
+    this.grab?.greeted(Number(params.client));
     this.panel.setMethods((params.methods as string[] | undefined) ?? []);
     this.lab.setMethods((params.methods as string[] | undefined) ?? []);
     this.lab.roleChanged();

@@ -88,6 +88,10 @@ export class Connection {
     return answer.arrayBuffer();
   }
 
+  notify(method: string, params: Record<string, unknown>): void {
+    this.rpc?.notify(method, params);
+  }
+
   acknowledge(sequence: number): void {
     this.rpc?.notify("stream.ack", { frame: sequence });
   }

@@ -38,6 +38,7 @@ export type Mesh = { grid: Grid } | InlineMesh | NamedMesh;
 export type At = string | { box: [Vec3, Vec3] };
 export interface Pin {
   at: At;
+  place?: Vec3; ///< instead of the rest place [m]
   motion: Motion;
 }
 export interface Weight {

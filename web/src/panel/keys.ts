@@ -13,7 +13,7 @@ const bindings: Record<string, keyof Commands> = {
 };
 
 /// True if the focused element needs this key itself.
-function takes(target: EventTarget | null, key: string): boolean {
+export function takes(target: EventTarget | null, key: string): boolean {
   if (!(target instanceof HTMLElement)) return false;
   if (target instanceof HTMLInputElement) return target.type === "checkbox" ? key === " " : target.type !== "range";
   if (target instanceof HTMLSelectElement || target.isContentEditable) return true;

@@ -29,7 +29,7 @@ export class ClothView {
   readonly caster = new Group(); ///< casts the ground's shadow
   readonly box = new Box3(); ///< of the frame on screen [m]
   vertices = 0;
-  private topology: Topology | null = null;
+  topology: Topology | null = null;
   private document: SceneDocument | null = null;
   // Two buffers in turn. With one, Chromium's software WebGL drew the mesh, but not the pins, with the vertices of an
   // earlier frame, and kept doing so when no further frame came.

@@ -35,6 +35,11 @@ export class ColliderView {
     this.studio.frustumCulled = false;
   }
 
+  /// The meshes on the stage, without planes, with their numbers in the document.
+  get bodies(): { mesh: Mesh; index: number }[] {
+    return this.shown.filter(({ collider }) => !("plane" in collider));
+  }
+
   setDocument(document: SceneDocument, sceneRadius: number): void {
     this.object.clear();
     this.caster.clear();

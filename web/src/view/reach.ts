@@ -20,7 +20,8 @@ function clothPoints(cloth: Cloth, falls: boolean): Vector3[] {
   const rest = restPositions(cloth);
   const held = [...heldVertices(cloth)].filter(([vertex]) => rest[vertex]);
   const swept = held.flatMap(([vertex, motion]) => sweep((rest[vertex] as Vector3).toArray(), motion));
-  const points = [...rest, ...swept];
+  const placed = cloth.pins.flatMap(({ place, motion }) => (place ? sweep(place, motion) : []));
+  const points = [...rest, ...swept, ...placed];
   if (!falls || held.length === 0) return points;
   const pins = every(held, 64).map(([vertex]) => rest[vertex] as Vector3);
   for (const point of every(rest, mostLooked)) {

@@ -44,14 +44,15 @@ export class Stage {
   readonly controls: OrbitControls;
   readonly cloth: ClothView;
   onLost = (): void => undefined; ///< the WebGL context is lost; three.js restores what it can when the context returns
-  private readonly canvas: HTMLCanvasElement;
+  readonly canvas: HTMLCanvasElement;
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
-  private readonly camera = new PerspectiveCamera(32, 1, 0.05, 100);
+  readonly camera = new PerspectiveCamera(32, 1, 0.05, 100);
   private readonly light = new DirectionalLight(0xfff4e6, 2.25);
   private readonly sky = new HemisphereLight(0xf2f6ff, 0x8c8378, 1.25);
-  private readonly colliders: ColliderView;
+  readonly colliders: ColliderView;
   private readonly crossings = new CrossingView();
+  private keptStill = false;
   private fitAfter = false; // the camera looks at crossings, and was fitted to the scene before
   private readonly groundShadow: GroundShadow;
   private readonly quality: Quality;
@@ -61,7 +62,7 @@ export class Stage {
     shadowColor: { value: new Color() },
     lineColor: { value: new Color() },
   };
-  private area: FreeArea = { left: 0, top: 0, width: 1, height: 1 };
+  area: FreeArea = { left: 0, top: 0, width: 1, height: 1 };
   private dirty = true;
   private readonly keeper = new CameraKeeper(this.camera);
   private document: SceneDocument | null = null;
@@ -70,7 +71,7 @@ export class Stage {
   private lastLook = 0;
   private scale = 1; // resolution of the picture; a still picture is drawn sharp at any quality level
   private readonly stillScale: number;
-  private radius = 1; // radius of the scene [m]
+  radius = 1; ///< of the scene [m]
 
   constructor({ canvas, context, software }: Graphics) {
     this.canvas = canvas;
@@ -108,6 +109,16 @@ export class Stage {
 
   invalidate(): void {
     this.dirty = true;
+  }
+
+  /// The frame on screen; null before the first of a topology.
+  get frame(): ShownFrame | null {
+    return this.latest;
+  }
+
+  /// True while the camera must not follow the cloth by itself: somebody pulls at it.
+  keepStill(still: boolean): void {
+    this.keptStill = still;
   }
 
   /// True while the view is the one that fits the scene: the user has not moved the camera.
@@ -237,7 +248,7 @@ export class Stage {
   draw(): boolean {
     if (this.cloth.vertices === 0) return false; // saves the time to draw an empty stage before the first frame
     const now = performance.now();
-    this.orbit(this.keeper.follow(Math.min(now - this.lastLook, 100) / 1000));
+    if (!this.keptStill) this.orbit(this.keeper.follow(Math.min(now - this.lastLook, 100) / 1000));
     this.lastLook = now;
     this.controls.update();
     const sinceLast = now - this.lastDrawn;

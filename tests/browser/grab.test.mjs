@@ -1,0 +1,355 @@
+// Pulling at the cloth by real mouse, finger and keys, at a desktop's and a phone's size.
+import assert from "node:assert/strict";
+import { browserTest, eventually, screenshots, withServer } from "./browser.mjs";
+
+const { both } = withServer();
+
+// A sheet that hangs from its upper edge, before a floor that shows where the cloth is not.
+const columns = 13;
+const hanging = {
+  version: 1,
+  name: "hanging",
+  cloths: [
+    {
+      mesh: { grid: { columns, rows: 13, width: 0.8, height: 0.8 } },
+      transform: { translate: [0, 1, 0], rotate: [90, 0, 0] },
+      mass: { per_vertex: 0.002 },
+      material: { structural: 200, shear: 50, bend: 5, damping: 0.05 },
+      pins: [{ at: "corner:0,0" }, { at: "corner:6,0" }, { at: "corner:12,0" }],
+    },
+  ],
+  air_drag: 2,
+  solver: { method: "symplectic_euler", dt: 0.001 },
+};
+const vertex = 8 * columns + 6;
+const sizes = [
+  [1440, 900],
+  [390, 844],
+];
+
+async function hang(session, width, height) {
+  const opened = await both(session, { width, height });
+  await opened.client.request("scene.load", { scene: hanging });
+  await opened.viewer.until(() => window.clothlab.document?.name === "hanging" && window.clothlab.simTime > 0.5);
+  await opened.client.request("stream.subscribe", { encoding: "f32", rate: 30 });
+  // A press is aimed at what is seen: wait until neither the cloth nor the camera moves much.
+  let before = { x: -1e3, y: 0 };
+  await eventually(
+    "a still picture",
+    async () => {
+      const now = await seen(opened.viewer, vertex);
+      const moved = pixels(before, now);
+      before = now;
+      return moved;
+    },
+    (moved) => moved < 1,
+  );
+  return { ...opened, width, height };
+}
+
+/// Where a vertex is on the page [CSS pixels].
+const seen = (viewer, index) =>
+  viewer.page.evaluate((i) => {
+    const { stage, lastFrame } = window.clothlab;
+    const { header, buffer } = lastFrame;
+    const words = new Uint16Array(buffer, 64, header.vertexCount * 4);
+    const [x, y, z] = [0, 1, 2].map((k) => header.boxMinimum[k] + (header.boxExtent[k] * words[4 * i + k]) / 65535);
+    const at = stage.controls.target.clone().set(x, y, z).project(stage.camera);
+    return { x: ((at.x + 1) / 2) * innerWidth, y: ((1 - at.y) / 2) * innerHeight };
+  }, index);
+const cameraPlace = (viewer) => viewer.page.evaluate(() => window.clothlab.stage.camera.position.toArray());
+const handsOf = (client, fits) => client.nextNotification("sim.status", ({ hands }) => fits(hands));
+const placeOf = async (client, index) => (await client.nextFrame()).positions[index];
+const distance = (a, b) => Math.hypot(...a.map((value, axis) => value - b[axis]));
+/// What the browser says to the page's code: not that a screenshot makes the GPU wait.
+const complaints = (viewer) => viewer.complaints.filter((text) => !text.includes("ReadPixels"));
+const pixels = (a, b) => Math.hypot(a.x - b.x, a.y - b.y);
+const hint = (viewer) => viewer.page.locator(".hand-hint");
+
+async function near(viewer, index, goal, what) {
+  await eventually(
+    what,
+    () => seen(viewer, index),
+    (at) => pixels(at, goal) < 25,
+  );
+}
+
+browserTest(
+  "the mouse pulls the cloth on a desktop's and a phone's window: the camera stays, the cloth comes",
+  async () => {
+    for (const [width, height] of sizes) {
+      const { viewer, client } = await hang(`mouse-${width}`, width, height);
+      const { mouse } = viewer.page;
+      const from = await seen(viewer, vertex);
+      const camera = await cameraPlace(viewer);
+      await mouse.move(from.x, from.y);
+      await mouse.down();
+      const { hands } = await handsOf(client, (all) => all.length === 1);
+      assert.ok(Math.abs(hands[0].vertex - vertex) <= columns + 1, `it holds ${hands[0].vertex}, not ${vertex}`);
+      const held = hands[0].vertex;
+      const goal = { x: from.x + 0.12 * width, y: from.y - 60 };
+      await mouse.move(goal.x, goal.y, { steps: 8 });
+      await near(viewer, held, goal, "the vertex follows the mouse");
+      assert.equal(await viewer.page.locator(".hands .mine line").count(), 1);
+      assert.match(await hint(viewer).innerText(), /P pins it here/);
+      await viewer.page.screenshot({ path: `${screenshots}grab-${width}.png` });
+      await mouse.up();
+      await handsOf(client, (all) => all.length === 0);
+      await near(viewer, held, from, "it falls back");
+      assert.equal(await hint(viewer).isVisible(), false);
+      assert.ok(distance(camera, await cameraPlace(viewer)) < 0.02, "the camera stayed");
+      assert.deepEqual(complaints(viewer), []);
+      await client.close();
+      await viewer.page.close();
+    }
+  },
+);
+
+browserTest("a press beside the cloth orbits, and with Alt one on the cloth does, too", async () => {
+  const { viewer, client } = await hang("beside", 1440, 900);
+  const { mouse, keyboard } = viewer.page;
+  const drag = async (x, y) => {
+    const before = await cameraPlace(viewer);
+    await mouse.move(x, y);
+    await mouse.down();
+    await mouse.move(x + 80, y, { steps: 4 });
+    await mouse.up();
+    await eventually(
+      "the camera",
+      () => cameraPlace(viewer),
+      (now) => distance(before, now) > 0.1,
+    );
+  };
+  const at = await seen(viewer, vertex);
+  await drag(at.x, at.y + 330);
+  await keyboard.down("Alt");
+  const now = await seen(viewer, vertex);
+  await drag(now.x, now.y);
+  await keyboard.up("Alt");
+  assert.ok(
+    client.messages.every(({ params }) => !params?.hands?.length),
+    "nobody pulled",
+  );
+  await client.close();
+});
+
+browserTest("the wheel takes what is held away along the view, and brings it back", async () => {
+  const { viewer, client } = await hang("wheel", 1440, 900);
+  const { mouse } = viewer.page;
+  const from = await seen(viewer, vertex);
+  await mouse.move(from.x, from.y);
+  await mouse.down();
+  const held = (await handsOf(client, (all) => all.length === 1)).hands[0];
+  const camera = await cameraPlace(viewer);
+  const start = distance(held.target, camera);
+  await mouse.wheel(0, -240);
+  const far = (await handsOf(client, ([one]) => one && distance(one.target, camera) > start * 1.1)).hands[0];
+  await eventually(
+    "the cloth",
+    () => placeOf(client, held.vertex),
+    (at) => distance(at, camera) > start * 1.03 && distance(at, far.target) < distance(held.target, far.target),
+  );
+  await mouse.wheel(0, 480);
+  await handsOf(client, ([one]) => one && distance(one.target, camera) < start * 0.95);
+  assert.deepEqual(await cameraPlace(viewer), camera, "the camera did not zoom");
+  await mouse.up();
+  await client.close();
+});
+
+browserTest("P pins what the mouse holds where it is, a click chooses the pin, Delete takes it off", async () => {
+  const { viewer, client, scene } = await hang("pin", 1440, 900);
+  const { mouse, keyboard } = viewer.page;
+  const from = await seen(viewer, vertex);
+  await mouse.move(from.x, from.y);
+  await mouse.down();
+  const held = (await handsOf(client, (all) => all.length === 1)).hands[0].vertex;
+  const goal = { x: from.x + 120, y: from.y - 80 };
+  await mouse.move(goal.x, goal.y, { steps: 6 });
+  await near(viewer, held, goal, "the vertex follows");
+  await keyboard.press("p");
+  await eventually(
+    "the pins",
+    async () => (await scene()).cloths[0].pins.length,
+    (count) => count === 4,
+  );
+  await mouse.up();
+  await handsOf(client, (all) => all.length === 0);
+  const pin = (await scene()).cloths[0].pins[3];
+  assert.equal(pin.at, `vertex:${held}`);
+  const { time } = await client.nextFrame();
+  for (let i = 0; i < 10; ++i) assert.ok(distance(await placeOf(client, held), pin.place) < 1e-4);
+  assert.ok((await client.nextFrame()).time > time, "time goes on");
+  const marker = await seen(viewer, held);
+  await mouse.click(marker.x, marker.y);
+  assert.match(await hint(viewer).innerText(), /Delete or P takes it off/);
+  assert.equal(await viewer.page.locator(".hands .pin").count(), 1);
+  await viewer.page.screenshot({ path: `${screenshots}grab-pin.png` });
+  await keyboard.press("Delete");
+  await eventually(
+    "the pins",
+    async () => (await scene()).cloths[0].pins.length,
+    (count) => count === 3,
+  );
+  assert.equal(await hint(viewer).isVisible(), false);
+  assert.deepEqual(complaints(viewer), []);
+  await client.close();
+});
+
+browserTest(
+  "without pointing: G grabs the middle, arrows pull, P pins, N and P take it off, Enter lets go",
+  async () => {
+    const { viewer, client, scene } = await hang("keys", 1440, 900);
+    const { keyboard } = viewer.page;
+    await viewer.page.locator("#view").focus();
+    await keyboard.press("g");
+    const { vertex: held, target: start } = (await handsOf(client, (all) => all.length === 1)).hands[0];
+    for (let i = 0; i < 6; ++i) await keyboard.press("ArrowRight");
+    for (let i = 0; i < 4; ++i) await keyboard.press("ArrowUp");
+    for (let i = 0; i < 3; ++i) await keyboard.press("PageUp");
+    const right = await viewer.page.evaluate(() => {
+      const { camera, controls } = window.clothlab.stage;
+      return controls.target.clone().setFromMatrixColumn(camera.matrixWorld, 0).toArray();
+    });
+    const along = (target) => target.reduce((sum, value, axis) => sum + (value - start[axis]) * right[axis], 0);
+    const { hands } = await handsOf(client, ([one]) => one && along(one.target) > 0.05);
+    await eventually(
+      "the cloth",
+      () => placeOf(client, held),
+      (at) => distance(at, hands[0].target) < distance(start, hands[0].target),
+    );
+    await keyboard.press("p");
+    await eventually(
+      "the pins",
+      async () => (await scene()).cloths[0].pins.length,
+      (count) => count === 4,
+    );
+    await handsOf(client, (all) => all.length === 0);
+    for (let i = 0; i < 4; ++i) await keyboard.press("n"); // the fourth pin
+    await keyboard.press("p");
+    await eventually(
+      "the pins",
+      async () => (await scene()).cloths[0].pins.length,
+      (count) => count === 3,
+    );
+    assert.ok((await scene()).cloths[0].pins.every(({ at }) => at.startsWith("corner")));
+    await keyboard.press("g");
+    await handsOf(client, (all) => all.length === 1);
+    await keyboard.press("Enter");
+    await handsOf(client, (all) => all.length === 0);
+    await client.close();
+  },
+);
+
+/// Fingers on the page, by the browser's own input.
+async function fingers(viewer) {
+  const devtools = await viewer.page.context().newCDPSession(viewer.page);
+  const send = (type, ...touchPoints) => devtools.send("Input.dispatchTouchEvent", { type, touchPoints });
+  return {
+    down: (...points) => send("touchStart", ...points),
+    move: (...points) => send("touchMove", ...points),
+    up: () => send("touchEnd"),
+    async drag(from, to, steps = 8) {
+      for (let i = 1; i <= steps; ++i) {
+        const share = i / steps;
+        await send("touchMove", { x: from.x + (to.x - from.x) * share, y: from.y + (to.y - from.y) * share, id: 0 });
+      }
+    },
+  };
+}
+
+browserTest("a finger pulls, a second one takes it farther, and one that keeps still pins", async () => {
+  const { viewer, client, scene } = await hang("finger", 390, 844);
+  const touch = await fingers(viewer);
+  const from = await seen(viewer, vertex);
+  const at = { ...from, id: 0 };
+  await touch.down(at);
+  const held = (await handsOf(client, (all) => all.length === 1)).hands[0].vertex;
+  const goal = { x: from.x + 50, y: from.y - 50 };
+  await touch.drag(from, goal);
+  await near(viewer, held, goal, "the vertex follows the finger");
+  const camera = await cameraPlace(viewer);
+  const { target } = (await handsOf(client, (all) => all.length === 1)).hands[0];
+  const first = { ...goal, id: 0 };
+  await touch.down(first, { x: 60, y: 600, id: 1 });
+  await touch.move(first, { x: 60, y: 560, id: 1 });
+  await handsOf(client, ([one]) => one && distance(one.target, camera) > distance(target, camera) * 1.1);
+  await touch.move(first, { x: 60, y: 600, id: 1 });
+  await touch.move(first); // the second one has left
+  assert.match(await hint(viewer).innerText(), /Keep still/);
+  await eventually(
+    "the hint",
+    () => hint(viewer).innerText(),
+    (words) => /Lift the finger/.test(words),
+  );
+  await viewer.page.screenshot({ path: `${screenshots}grab-finger.png` });
+  await touch.up();
+  await eventually(
+    "the pins",
+    async () => (await scene()).cloths[0].pins.length,
+    (count) => count === 4,
+  );
+  await handsOf(client, (all) => all.length === 0);
+  // A tap on the pin chooses it, and a button takes it off.
+  const marker = { ...(await seen(viewer, held)), id: 0 };
+  await touch.down(marker);
+  await touch.up();
+  await viewer.page.getByRole("button", { name: "Take off" }).click();
+  await eventually(
+    "the pins",
+    async () => (await scene()).cloths[0].pins.length,
+    (count) => count === 3,
+  );
+  // A finger that pulls and leaves at once drops.
+  await touch.down(at);
+  await handsOf(client, (all) => all.length === 1);
+  await touch.drag(from, goal, 4);
+  await touch.up();
+  await handsOf(client, (all) => all.length === 0);
+  assert.equal((await scene()).cloths[0].pins.length, 3);
+  assert.deepEqual(complaints(viewer), []);
+  await client.close();
+});
+
+browserTest("two fingers at once on the cloth zoom, as beside it", async () => {
+  const { viewer, client } = await hang("pinch", 390, 844);
+  const touch = await fingers(viewer);
+  const { x, y } = await seen(viewer, vertex);
+  const before = await cameraPlace(viewer);
+  const pair = (apart) => [
+    { x: x - apart, y, id: 0 },
+    { x: x + apart, y, id: 1 },
+  ];
+  await touch.down(pair(20)[0]);
+  await touch.down(...pair(20));
+  for (let apart = 25; apart <= 90; apart += 5) await touch.move(...pair(apart));
+  await touch.up();
+  await eventually(
+    "the camera",
+    () => cameraPlace(viewer),
+    (now) => distance(before, now) > 0.2,
+  );
+  await handsOf(client, (all) => all.length === 0);
+  await client.close();
+});
+
+browserTest("another viewer's hand is marked, a reset ends mine, and a viewer's press orbits", async () => {
+  const { viewer, client } = await hang("others", 1440, 900);
+  client.notify("grab.start", { cloth: 0, vertex, target: [0.1, 0.6, 0.3] });
+  await eventually(
+    "the mark",
+    () => viewer.page.locator(".hands .other").count(),
+    (count) => count === 1,
+  );
+  const from = await seen(viewer, 10 * columns + 3);
+  await viewer.page.mouse.move(from.x, from.y);
+  await viewer.page.mouse.down();
+  await handsOf(client, (all) => all.length === 2);
+  await client.request("sim.reset", {});
+  await eventually(
+    "the mark",
+    () => viewer.page.locator(".hands .mine").count(),
+    (count) => count === 0,
+  );
+  await viewer.page.mouse.up();
+  await client.close();
+});

@@ -1,0 +1,350 @@
+// Pulls the cloth: by mouse, by a finger, by keys. A press on the cloth holds the vertex under it; a press beside the
+// cloth, or with a modifier key, is the camera's. What is held moves in the plane parallel to the screen, and along the
+// view by the wheel, a second finger or keys.
+import { Vector3 } from "three";
+import { HandHint } from "./hand_hint";
+import { HandMarks, type Mark } from "./hand_marks";
+import { PinChoice, type PinnedVertex } from "./pin_choice";
+import { Picker, Places } from "./picking";
+import type { Stage } from "./stage";
+import type { Operation, SceneDocument, Vec3 } from "../link/scene_types";
+
+/// A hand as sim.status tells of it.
+export interface HandAt {
+  by: number;
+  hand: number;
+  cloth: number;
+  vertex: number; ///< of the cloth
+  target: Vec3; ///< [m]
+}
+
+export interface GrabEvents {
+  notify(method: string, params: Record<string, unknown>): void;
+  patch(operations: Operation[]): Promise<unknown>;
+  document(): SceneDocument | null;
+  mayGrab(): boolean;
+  busy(event: PointerEvent): boolean; ///< something over the cloth takes this press
+}
+
+interface Held {
+  by: "mouse" | "touch" | "key";
+  pointer: number; // -1: keys
+  vertex: number; // in the frame
+  cloth: number;
+  target: Vector3; // [m]
+  away: number; // of the target's plane from the camera, along the view [m]
+  offset: Vector3; // of the vertex from where the pointer met that plane
+  x: number; // of the pointer [CSS pixels]
+  y: number;
+  since: number; // [ms]
+  travelled: boolean; // it has left the place of the press
+  stillSince: number; // [ms]
+  told: boolean; // the server's status has had it
+}
+
+const slop = 6; // [CSS pixels] within which a press is a click, or a finger is still
+const pinsReach = { mouse: 12, touch: 24 }; // [CSS pixels]
+const sendEvery = 8; // [ms]: a mouse may tell of itself 1000 times a second
+const pinAfter = 800; // [ms] that a finger is still: then it pins when it leaves
+const secondFinger = 200; // [ms] after the first, both still: they are the camera's
+const farthest = 4; // times the distance at which the cloth was grabbed
+
+export class Grab {
+  private held: Held | null = null;
+  private pressed: { pin: PinnedVertex | null; x: number; y: number } | null = null;
+  private depthFinger: { pointer: number; y: number } | null = null;
+  private others: HandAt[] = [];
+  private client = 0;
+  private sentAt = 0;
+  private unsent = false;
+  private readonly picker: Picker;
+  private readonly pins: PinChoice;
+  private readonly marks: HandMarks;
+  private readonly hint = new HandHint();
+
+  constructor(
+    private readonly stage: Stage,
+    private readonly events: GrabEvents,
+  ) {
+    const { canvas } = stage;
+    this.picker = new Picker(stage);
+    this.pins = new PinChoice(this.picker, () => events.document());
+    this.marks = new HandMarks(canvas);
+    const early = { capture: true }; // before the camera's controls
+    canvas.addEventListener("pointerdown", (event) => this.down(event), early);
+    canvas.addEventListener("pointermove", (event) => this.move(event), early);
+    for (const end of ["pointerup", "pointercancel"] as const)
+      canvas.addEventListener(end, (event) => this.up(event), early);
+    canvas.addEventListener("wheel", (event) => this.wheel(event), { capture: true, passive: false });
+  }
+
+  get holding(): boolean {
+    return this.held !== null;
+  }
+  get holdsByKeys(): boolean {
+    return this.held?.by === "key";
+  }
+  get hasChosen(): boolean {
+    return this.pins.chosen !== null;
+  }
+
+  private down(event: PointerEvent): void {
+    const touch = event.pointerType === "touch";
+    if (this.held) {
+      if (touch && this.held.by === "touch") this.second(event);
+      else stop(event);
+      return;
+    }
+    this.pressed = null;
+    if (event.button !== 0 || event.ctrlKey || event.shiftKey || event.altKey || event.metaKey) return;
+    if (!this.events.mayGrab() || this.events.busy(event)) return;
+    const [x, y] = [event.offsetX, event.offsetY];
+    this.pressed = { pin: this.pins.at(x, y, pinsReach[touch ? "touch" : "mouse"]), x, y };
+    const hit = this.pressed.pin ? null : this.picker.cloth(x, y, this.pins.vertices);
+    if (!hit) return;
+    stop(event);
+    this.picker.canvas.setPointerCapture(event.pointerId);
+    this.picker.canvas.focus({ preventScroll: true });
+    this.hold(hit.vertex, hit.place, touch ? "touch" : "mouse", event.pointerId, x, y);
+  }
+
+  /// A second finger at once, before the first has pulled: they are the camera's, which hears of the first one now.
+  /// Later, it moves what is held along the view.
+  private second(event: PointerEvent): void {
+    const held = this.held as Held;
+    if (!held.travelled && performance.now() - held.since < secondFinger) {
+      this.drop();
+      const { left, top } = this.picker.canvas.getBoundingClientRect();
+      const [clientX, clientY] = [held.x + left, held.y + top];
+      const first = { pointerId: held.pointer, pointerType: "touch", clientX, clientY, bubbles: true, isPrimary: true };
+      this.stage.controls.domElement?.dispatchEvent(new PointerEvent("pointerdown", { ...first, shiftKey: true }));
+      return;
+    }
+    stop(event);
+    this.depthFinger = { pointer: event.pointerId, y: event.offsetY };
+  }
+
+  private move(event: PointerEvent): void {
+    const { held } = this;
+    if (!held || held.by === "key") return;
+    stop(event);
+    const now = performance.now();
+    if (event.pointerId === this.depthFinger?.pointer) {
+      this.deepen((this.depthFinger.y - event.offsetY) * 0.005);
+      this.depthFinger.y = event.offsetY;
+      held.stillSince = now;
+      return;
+    }
+    if (event.pointerId !== held.pointer) return;
+    const moved = Math.hypot(event.offsetX - held.x, event.offsetY - held.y);
+    held.travelled ||= moved > slop;
+    if (moved > slop || !held.travelled) held.stillSince = held.travelled ? now : held.stillSince;
+    [held.x, held.y] = [event.offsetX, event.offsetY];
+    this.aim();
+  }
+
+  private up(event: PointerEvent): void {
+    if (event.pointerId === this.depthFinger?.pointer) {
+      stop(event);
+      this.depthFinger = null;
+      return;
+    }
+    const { held, pressed } = this;
+    if (held && event.pointerId === held.pointer) {
+      stop(event);
+      if (event.type === "pointerup" && this.still(held)) this.pin();
+      else this.drop();
+      return;
+    }
+    if (held || !pressed || event.type !== "pointerup") return;
+    const click = Math.hypot(event.offsetX - pressed.x, event.offsetY - pressed.y) <= slop;
+    if (click) this.choose(pressed.pin);
+    this.pressed = null;
+  }
+
+  private wheel(event: WheelEvent): void {
+    if (!this.held) return;
+    stop(event);
+    event.preventDefault();
+    const lines = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 16 : 1;
+    this.deepen(-event.deltaY * lines * 0.0008);
+  }
+
+  private hold(vertex: number, place: Vector3, by: Held["by"], pointer: number, x: number, y: number): void {
+    const topology = this.picker.topology;
+    const cloth = topology?.cloths.findIndex((of) => vertex < of.firstVertex + of.vertexCount) ?? -1;
+    if (cloth < 0) return;
+    this.choose(null);
+    const now = performance.now();
+    const away = this.picker.away(place);
+    const offset = place.clone().sub(this.picker.through(x, y, away));
+    const common = { travelled: false, told: false, since: now, stillSince: now };
+    this.held = { by, pointer, vertex, cloth, target: place.clone(), away, offset, x, y, ...common };
+    this.stage.keepStill(true);
+    this.events.notify("grab.start", {
+      cloth,
+      vertex: vertex - (topology?.cloths[cloth]?.firstVertex ?? 0),
+      target: place.toArray(),
+    });
+    this.sentAt = now;
+    this.tellHint();
+  }
+
+  /// Lets go of what is held.
+  drop(): void {
+    if (!this.held) return;
+    this.events.notify("grab.end", {});
+    this.forget();
+  }
+
+  private forget(): void {
+    this.held = this.depthFinger = null;
+    this.unsent = false;
+    this.stage.keepStill(false);
+    this.tellHint();
+  }
+
+  /// Pins the held vertex where it is, and lets go once that is done: meanwhile it does not fall.
+  pin(): void {
+    const { held } = this;
+    const document = this.events.document();
+    const frame = this.picker.frame;
+    if (!held || !document || !frame) return;
+    const first = this.picker.topology?.cloths[held.cloth]?.firstVertex ?? 0;
+    const place = new Places(frame).of(held.vertex).toArray();
+    const path = `/cloths/${held.cloth}/pins/${document.cloths[held.cloth]?.pins.length ?? 0}`;
+    const value = { at: `vertex:${held.vertex - first}`, place };
+    const ended = () => this.events.notify("grab.end", {});
+    this.events.patch([{ op: "add", path, value }]).then(ended, ended);
+    this.forget();
+  }
+
+  /// Takes off the pin that is chosen.
+  unpin(): void {
+    const removal = this.pins.removal();
+    if (removal.length > 0) void this.events.patch(removal);
+    this.choose(null);
+  }
+
+  /// Chooses the next pin, for keys.
+  chooseNext(): void {
+    this.choose(this.pins.next());
+  }
+
+  choose(pin: PinnedVertex | null): void {
+    this.pins.chosen = pin;
+    this.tellHint();
+  }
+
+  /// Holds the vertex in the middle of the view, for keys.
+  grabMiddle(): void {
+    if (this.held || !this.events.mayGrab()) return;
+    const { x, y } = this.picker.middle;
+    const hit = this.picker.cloth(x, y, this.pins.vertices) ?? this.picker.nearestVertex(x, y, this.pins.vertices);
+    if (!hit) return;
+    const at = this.picker.onScreen(hit.place);
+    if (at) this.hold(hit.vertex, hit.place, "key", -1, at.x, at.y);
+  }
+
+  /// Moves what keys hold, by CSS pixels.
+  nudge(x: number, y: number): void {
+    if (!this.held) return;
+    this.held.x += x;
+    this.held.y += y;
+    this.aim();
+  }
+
+  /// Moves what is held away along the view, by this share of the distance.
+  deepen(share: number): void {
+    const { held } = this;
+    const frame = this.picker.frame;
+    if (!held || !frame) return;
+    const start = this.picker.away(new Places(frame).of(held.vertex));
+    held.away = Math.min(Math.max(held.away * Math.exp(share), start / farthest), start * farthest);
+    held.travelled = true;
+    this.aim();
+  }
+
+  private aim(): void {
+    const held = this.held as Held;
+    held.target = this.picker.through(held.x, held.y, held.away).add(held.offset);
+    this.unsent = true;
+    this.send(performance.now());
+  }
+
+  private send(now: number): void {
+    if (!this.unsent || !this.held || now - this.sentAt < sendEvery) return;
+    this.unsent = false;
+    this.sentAt = now;
+    this.events.notify("grab.move", { target: this.held.target.toArray() });
+  }
+
+  /// Called for every animation frame: sends what waits, draws the marks.
+  tick(): void {
+    this.send(performance.now());
+    const { held } = this;
+    if (held?.by === "touch") this.tellHint();
+    this.marks.show(this.marksNow());
+  }
+
+  private still(held: Held): boolean {
+    return held.by === "touch" && held.travelled && performance.now() - held.stillSince >= pinAfter;
+  }
+
+  private marksNow(): Mark[] {
+    const frame = this.picker.frame;
+    const topology = this.picker.topology;
+    if (!frame || !topology) return [];
+    const places = new Places(frame);
+    const mark = (kind: Mark["kind"], vertex: number, target: Vector3 | null, still = false): Mark[] => {
+      if (vertex >= places.count) return [];
+      const at = this.picker.onScreen(places.of(vertex));
+      return at ? [{ kind, at, target: target && this.picker.onScreen(target), still }] : [];
+    };
+    const { held } = this;
+    return [
+      ...this.others.flatMap(({ cloth, vertex, target }) =>
+        mark("other", (topology.cloths[cloth]?.firstVertex ?? 0) + vertex, new Vector3(...target)),
+      ),
+      ...(held ? mark("mine", held.vertex, held.target, this.still(held)) : []),
+      ...(this.pins.chosen ? mark("pin", this.pins.chosen.vertex, null) : []),
+    ];
+  }
+
+  greeted(client: number): void {
+    this.client = client;
+  }
+
+  /// The link is down, or there is another cloth: nothing is held any more.
+  lost(): void {
+    if (this.held) this.forget();
+    this.others = [];
+    this.choose(null);
+  }
+
+  /// Takes the hands of a status. One of this page that was there and is gone was ended by the server.
+  told(hands: HandAt[]): void {
+    const mine = hands.some(({ by }) => by === this.client);
+    this.others = hands.filter(({ by }) => by !== this.client);
+    if (!this.held) return;
+    if (mine) this.held.told = true;
+    else if (this.held.told) this.forget();
+  }
+
+  private tellHint(): void {
+    const { held } = this;
+    const words = {
+      mouse: "P pins it here. Wheel: farther, nearer.",
+      touch: "Second finger up or down: farther, nearer. Keep still to pin.",
+      key: "Arrows pull, Page Up and Page Down: farther, nearer. P pins, Enter lets go.",
+    };
+    if (held) this.hint.say(this.still(held) ? "Lift the finger: it is pinned here." : words[held.by]);
+    else if (this.pins.chosen && this.events.mayGrab())
+      this.hint.say("A pin holds this. Delete or P takes it off.", { label: "Take off", run: () => this.unpin() });
+    else this.hint.say(null);
+  }
+}
+
+function stop(event: Event): void {
+  event.stopImmediatePropagation();
+}
