@@ -64,7 +64,7 @@ const distance = (a, b) => Math.hypot(...a.map((value, axis) => value - b[axis])
 /// What the browser says to the page's code: not that a screenshot makes the GPU wait.
 const complaints = (viewer) => viewer.complaints.filter((text) => !text.includes("ReadPixels"));
 const pixels = (a, b) => Math.hypot(a.x - b.x, a.y - b.y);
-const hint = (viewer) => viewer.page.locator(".hand-hint");
+const hint = (viewer, of = "hand") => viewer.page.locator(`.hand-hint[data-of=${of}]`);
 
 async function near(viewer, index, goal, what) {
   await eventually(
@@ -353,3 +353,90 @@ browserTest("another viewer's hand is marked, a reset ends mine, and a viewer's 
   await viewer.page.mouse.up();
   await client.close();
 });
+
+// Bodies beside the cloth.
+const furnished = {
+  ...hanging,
+  name: "furnished",
+  colliders: [
+    { name: "ball", sphere: { center: [0.75, 0.6, 0.2], radius: 0.15 } },
+    { name: "table", box: { center: [-0.75, 0.5, 0.2], half: [0.15, 0.1, 0.1] } },
+    { name: "arm", capsule: { a: [0.6, 0.2, 0.3], b: [0.9, 0.2, 0.3], radius: 0.06 } },
+  ],
+};
+
+/// Where a place of the scene is on the page [CSS pixels], and how large handles are there [m].
+const project = (viewer, place) =>
+  viewer.page.evaluate((at) => {
+    const { camera, controls } = window.clothlab.stage;
+    const point = controls.target.clone().set(...at);
+    const far = point.distanceTo(camera.position);
+    const size = (far * Math.min((1.9 * Math.tan((Math.PI * camera.fov) / 360)) / camera.zoom, 7) * 0.8) / 4;
+    point.project(camera);
+    return { x: ((point.x + 1) / 2) * innerWidth, y: ((1 - point.y) / 2) * innerHeight, size };
+  }, place);
+
+browserTest(
+  "handles move a ball live and turn a box; a drag beside them orbits; arrows and Escape do without",
+  async () => {
+    const { viewer, client, scene } = await both("handles", { width: 1440, height: 900 });
+    await client.request("scene.load", { scene: furnished });
+    await viewer.until(() => window.clothlab.document?.name === "furnished" && window.clothlab.simTime > 1);
+    await viewer.page.waitForTimeout(1000); // the camera follows the cloth
+    const { mouse, keyboard } = viewer.page;
+    const center = [0.75, 0.6, 0.2];
+    const ball = await project(viewer, center);
+    await mouse.click(ball.x, ball.y);
+    assert.match(await hint(viewer, "body").innerText(), /ball: move it by its handles/);
+    await viewer.page.screenshot({ path: `${screenshots}grab-ball.png` });
+    const handle = await project(viewer, [center[0] + 0.35 * ball.size, center[1], center[2]]);
+    const goal = await project(viewer, [center[0] + 0.35 * ball.size + 0.2, center[1], center[2]]);
+    const camera = await cameraPlace(viewer);
+    await mouse.move(handle.x, handle.y);
+    await mouse.down();
+    await mouse.move((handle.x + goal.x) / 2, (handle.y + goal.y) / 2, { steps: 5 });
+    const place = async () => (await scene()).colliders[0].sphere.center[0];
+    await eventually("the ball, before the drag ends", place, (x) => x > 0.77);
+    await mouse.move(goal.x, goal.y, { steps: 5 });
+    await mouse.up();
+    const moved = await eventually(
+      "the ball",
+      async () => (await scene()).colliders[0].sphere.center,
+      (at) => Math.abs(at[0] - 0.95) < 0.03,
+    );
+    assert.ok(Math.abs(moved[1] - 0.6) < 1e-4 && Math.abs(moved[2] - 0.2) < 1e-4, "along the handle's axis only");
+    assert.ok(distance(camera, await cameraPlace(viewer)) < 0.02, "the camera stayed");
+
+    const table = await project(viewer, [-0.75, 0.5, 0.2]);
+    await mouse.click(table.x, table.y);
+    await viewer.page.getByRole("button", { name: "Turn" }).click();
+    await mouse.move(5, 450);
+    await keyboard.press("ArrowRight"); // the button has the focus: it is not the body's
+    await viewer.page.locator("#view").focus();
+    for (let i = 0; i < 3; ++i) await keyboard.press("ArrowRight");
+    const turned = await eventually(
+      "the box",
+      async () => (await scene()).colliders[1].box,
+      ({ rotate }) => Math.abs(Math.hypot(...rotate) - 15) < 2,
+    );
+    assert.deepEqual(turned.center, [-0.75, 0.5, 0.2]);
+    await keyboard.press("t");
+    await keyboard.press("ArrowUp");
+    await eventually(
+      "the box",
+      async () => (await scene()).colliders[1].box.center[1],
+      (y) => y > 0.51,
+    );
+    await keyboard.press("b"); // the capsule
+    await keyboard.press("ArrowUp");
+    await eventually(
+      "the capsule",
+      async () => (await scene()).colliders[2].capsule,
+      ({ a, b }) => a[1] > 0.21 && b[1] > 0.21,
+    );
+    await keyboard.press("Escape");
+    assert.equal(await hint(viewer, "body").isVisible(), false);
+    assert.deepEqual(complaints(viewer), []);
+    await client.close();
+  },
+);

@@ -112,7 +112,8 @@ json RandomPatch::pins(const json& mesh) {
     list.push_back({{"at", at(mesh)}, {"motion", motion()}});
     const json& held = list.back()["at"];
     const bool one = held.is_string() && held.get<std::string>().rfind("edge", 0) != 0;
-    if (one && chance(0.3)) list.back()["place"] = {real(-1.0, 1.0), real(-1.0, 1.0), real(-1.0, 1.0)};
+    if (one && chance(0.3))
+      list.back()["place"] = json::array({uniform(-1.0, 1.0), uniform(-1.0, 1.0), uniform(-1.0, 1.0)});
   }
   return list;
 }

@@ -28,6 +28,7 @@ import { RpcError } from "./link/rpc";
 import { SlowWatch } from "./panel/slow_watch";
 import { SceneStore } from "./link/scene_store";
 import type { MovedCollider, Patch, SceneDocument } from "./link/scene_types";
+import { BodyHandles } from "./view/body_handles";
 import { Grab, type HandAt } from "./view/grab";
 import { bindGrabKeys } from "./view/grab_keys";
 import type { Stage } from "./view/stage";
@@ -59,7 +60,8 @@ export class Page {
     (field) => this.connection.setField(field),
     () => this.layout?.legendToggled(),
   );
-  private grab: Grab | null = null; // with the stage
+  private grab: Grab | null = null; // with the stage, as the next
+  private bodyHandles: BodyHandles | null = null;
   private layout: Layout | null = null;
   private latest: ShownFrame | null = null;
   private moved: MovedCollider[] = []; // colliders' places for the next frame
@@ -80,7 +82,12 @@ export class Page {
     const layout: Layout = (this.layout = new Layout(() => stage.resize(layout.freeArea())));
     const theme = new ThemeSwitch(() => stage.setTheme());
     this.grab = this.makeGrab(stage);
-    bindGrabKeys(this.grab);
+    this.bodyHandles = new BodyHandles(stage, {
+      edit: (operations) => this.store.edit(operations),
+      document: () => this.store.document,
+      mayEdit: () => this.mayEdit,
+    });
+    bindGrabKeys(this.grab, this.bodyHandles);
     this.bind(layout, theme);
     stage.onLost = () =>
       notice("warning", {
@@ -211,7 +218,9 @@ export class Page {
         }),
       document: () => this.store.document,
       mayGrab: () => this.mayEdit && this.connection.open && !this.diverged,
-      busy: () => false,
+      busy: (event) => this.bodyHandles?.takes(event) ?? false,
+      took: () => this.bodyHandles?.choose(null),
+      clicked: (x, y) => this.bodyHandles?.click(x, y),
     });
   }
 
@@ -279,6 +288,7 @@ export class Page {
     this.sceneName = document.name;
     element("scene-name", HTMLElement).textContent = document.name;
     this.drawDocument(newScene, whole);
+    this.bodyHandles?.follow();
     this.panel.show(document);
     this.lab.sceneChanged();
   }

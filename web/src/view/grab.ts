@@ -24,6 +24,8 @@ export interface GrabEvents {
   document(): SceneDocument | null;
   mayGrab(): boolean;
   busy(event: PointerEvent): boolean; ///< something over the cloth takes this press
+  took(): void; ///< the hand has something, or a pin is chosen
+  clicked(x: number, y: number): void; ///< a click on neither cloth nor pin, at this point of the canvas
 }
 
 interface Held {
@@ -60,7 +62,7 @@ export class Grab {
   private readonly picker: Picker;
   private readonly pins: PinChoice;
   private readonly marks: HandMarks;
-  private readonly hint = new HandHint();
+  private readonly hint = new HandHint("hand");
 
   constructor(
     private readonly stage: Stage,
@@ -104,7 +106,7 @@ export class Grab {
     if (!hit) return;
     stop(event);
     this.picker.canvas.setPointerCapture(event.pointerId);
-    this.picker.canvas.focus({ preventScroll: true });
+    (document.activeElement as HTMLElement | null)?.blur(); // keys are the hand's now, not a field's
     this.hold(hit.vertex, hit.place, touch ? "touch" : "mouse", event.pointerId, x, y);
   }
 
@@ -159,6 +161,7 @@ export class Grab {
     if (held || !pressed || event.type !== "pointerup") return;
     const click = Math.hypot(event.offsetX - pressed.x, event.offsetY - pressed.y) <= slop;
     if (click) this.choose(pressed.pin);
+    if (click && !pressed.pin) this.events.clicked(pressed.x, pressed.y);
     this.pressed = null;
   }
 
@@ -180,6 +183,7 @@ export class Grab {
     const offset = place.clone().sub(this.picker.through(x, y, away));
     const common = { travelled: false, told: false, since: now, stillSince: now };
     this.held = { by, pointer, vertex, cloth, target: place.clone(), away, offset, x, y, ...common };
+    this.events.took();
     this.stage.keepStill(true);
     this.events.notify("grab.start", {
       cloth,
@@ -233,6 +237,7 @@ export class Grab {
 
   choose(pin: PinnedVertex | null): void {
     this.pins.chosen = pin;
+    if (pin) this.events.took();
     this.tellHint();
   }
 

@@ -1,11 +1,19 @@
-// The hand of somebody who does not point: G grabs the vertex in the middle of the view, arrows pull it.
+// The hand of somebody who does not point: G grabs the vertex in the middle of the view, arrows pull it; B chooses a body,
+// arrows move it.
 import { takes } from "../panel/keys";
+import type { BodyHandles } from "./body_handles";
 import type { Grab } from "./grab";
 
 const stride = 16; // [CSS pixels] a press of an arrow; with Shift a quarter
 const deeper = 0.04; // share of the distance
 
-export function bindGrabKeys(grab: Grab): void {
+/// True for a control that has a use for arrows, Enter or Delete of its own.
+const ownsKeys = (target: EventTarget | null): boolean =>
+  target instanceof HTMLElement &&
+  target.id !== "view" &&
+  target.closest("input, select, button, summary, [tabindex]") !== null;
+
+export function bindGrabKeys(grab: Grab, bodies: BodyHandles): void {
   const whileHeldByKeys: Record<string, (fine: number) => void> = {
     ArrowLeft: (fine) => grab.nudge(-stride * fine, 0),
     ArrowRight: (fine) => grab.nudge(stride * fine, 0),
@@ -23,16 +31,32 @@ export function bindGrabKeys(grab: Grab): void {
     Backspace: () => grab.unpin(),
     Escape: () => grab.choose(null),
   };
-  const free: Record<string, () => void> = { g: () => grab.grabMiddle(), n: () => grab.chooseNext() };
+  const whileBodyChosen: Record<string, (fine: number) => void> = {
+    ArrowLeft: (fine) => bodies.nudge(-fine, 0, 0),
+    ArrowRight: (fine) => bodies.nudge(fine, 0, 0),
+    ArrowUp: (fine) => bodies.nudge(0, fine, 0),
+    ArrowDown: (fine) => bodies.nudge(0, -fine, 0),
+    PageUp: (fine) => bodies.nudge(0, 0, fine),
+    PageDown: (fine) => bodies.nudge(0, 0, -fine),
+    t: () => bodies.toggleMode(),
+    Escape: () => bodies.choose(null),
+  };
+  const free: Record<string, () => void> = {
+    g: () => grab.grabMiddle(),
+    n: () => grab.chooseNext(),
+    b: () => bodies.chooseNext(),
+  };
   const commandFor = (key: string): ((fine: number) => void) | undefined => {
     if (grab.holding) return whileHeld[key] ?? (grab.holdsByKeys ? whileHeldByKeys[key] : undefined);
-    return (grab.hasChosen ? whileChosen[key] : undefined) ?? free[key];
+    const chosen = grab.hasChosen ? whileChosen[key] : bodies.hasChosen ? whileBodyChosen[key] : undefined;
+    return chosen ?? free[key];
   };
   addEventListener(
     "keydown",
     (event) => {
       if (event.ctrlKey || event.metaKey || event.altKey) return;
       if (document.querySelector("dialog[open]") || takes(event.target, event.key)) return;
+      if (event.key.length > 1 && ownsKeys(event.target)) return;
       const run = commandFor(event.key.length === 1 ? event.key.toLowerCase() : event.key);
       if (!run) return;
       event.preventDefault();

@@ -5,8 +5,9 @@ export class HandHint {
   private readonly words = document.createElement("span");
   private readonly button = document.createElement("button");
 
-  constructor() {
+  constructor(of: "hand" | "body") {
     this.box.className = "card hand-hint";
+    this.box.dataset.of = of;
     this.box.hidden = true;
     this.words.setAttribute("role", "status");
     this.button.type = "button";

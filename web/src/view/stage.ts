@@ -46,7 +46,7 @@ export class Stage {
   onLost = (): void => undefined; ///< the WebGL context is lost; three.js restores what it can when the context returns
   readonly canvas: HTMLCanvasElement;
   private readonly renderer: WebGLRenderer;
-  private readonly scene = new Scene();
+  readonly scene = new Scene();
   readonly camera = new PerspectiveCamera(32, 1, 0.05, 100);
   private readonly light = new DirectionalLight(0xfff4e6, 2.25);
   private readonly sky = new HemisphereLight(0xf2f6ff, 0x8c8378, 1.25);
