@@ -5,7 +5,10 @@
 #include "tests/catch.h"
 
 using namespace clothlab;
+using session::Command;
 using session::CommandQueue;
+using session::GrabEnd;
+using session::GrabMove;
 
 namespace {
 
@@ -71,5 +74,23 @@ TEST_CASE("of viewers' wishes and their number only the newest waits, and a wish
   CHECK_FALSE(std::get<session::Demand>(first.what).fresh[1]);
   CHECK(std::get<session::Watchers>(queue.pop().what).count == 2);
   CHECK(std::get<session::Hold>(queue.pop().what).job == 5);
+  CHECK(queue.empty());
+}
+
+TEST_CASE("of a hand's moves that wait only the newest counts, and none is moved before another command") {
+  CommandQueue queue;
+  const auto move = [&](int hand, double x) {
+    return queue.offer({{1, std::nullopt}, GrabMove{hand, {x, 0.0, 0.0}}});
+  };
+  for (int i = 0; i < 5000; ++i) REQUIRE(move(i % 2, i));  // more than may wait
+  REQUIRE(queue.offer({{1, std::nullopt}, GrabEnd{0}}));
+  REQUIRE(move(0, -1.0));
+  for (const auto& [hand, x] : {std::pair{0, 4998.0}, {1, 4999.0}}) {
+    const Command command = queue.pop();
+    CHECK(std::get<GrabMove>(command.what).hand == hand);
+    CHECK(std::get<GrabMove>(command.what).target.x == x);
+  }
+  CHECK(std::holds_alternative<GrabEnd>(queue.pop().what));
+  CHECK(std::get<GrabMove>(queue.pop().what).target.x == -1.0);
   CHECK(queue.empty());
 }

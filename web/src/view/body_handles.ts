@@ -130,8 +130,10 @@ export class BodyHandles {
 
   private tell(): void {
     const body = this.body();
-    if (!body) return this.hint.say(null);
-    if (body.motion) return this.hint.say(`${body.name} moves by itself; the panel has its motion.`);
+    if (!body || body.motion) {
+      this.hint.say(body && `${body.name} moves by itself; the panel has its motion.`);
+      return;
+    }
     const turning = this.controls.mode === "rotate";
     const round = "sphere" in body;
     this.hint.say(
