@@ -1,5 +1,5 @@
-// The hand of somebody who does not point: G grabs the vertex in the middle of the view, arrows pull it; B chooses a body,
-// arrows move it.
+// The hand of somebody who does not point: G grabs the vertex in the middle of the view, arrows pull it; B chooses a
+// body, arrows move it.
 import { takes } from "../panel/keys";
 import type { BodyHandles } from "./body_handles";
 import type { Grab } from "./grab";

@@ -1,5 +1,5 @@
-// Marks over the picture: each hand's held point with a line to where it pulls, and a ring around a chosen pin. They are
-// lines of SVG, sharp at any resolution of the picture, and drawing them costs no frame of WebGL.
+// Marks over the picture: each hand's held point with a line to where it pulls, and a ring around a chosen pin. They
+// are lines of SVG, sharp at any resolution of the picture, and drawing them costs no frame of WebGL.
 import type { Vector2 } from "three";
 
 const svg = "http://www.w3.org/2000/svg";
