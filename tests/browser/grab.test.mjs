@@ -151,7 +151,7 @@ browserTest("the wheel takes what is held away along the view, and brings it bac
   );
   await mouse.wheel(0, 480);
   await handsOf(client, ([one]) => one && distance(one.target, camera) < start * 0.95);
-  assert.deepEqual(await cameraPlace(viewer), camera, "the camera did not zoom");
+  assert.ok(distance(camera, await cameraPlace(viewer)) < 0.02, "the camera did not zoom");
   await mouse.up();
   await client.close();
 });
@@ -332,7 +332,7 @@ browserTest("two fingers at once on the cloth zoom, as beside it", async () => {
   await client.close();
 });
 
-browserTest("another viewer's hand is marked, a reset ends mine, and a viewer's press orbits", async () => {
+browserTest("another viewer's hand is marked, and a reset ends mine", async () => {
   const { viewer, client } = await hang("others", 1440, 900);
   client.notify("grab.start", { cloth: 0, vertex, target: [0.1, 0.6, 0.3] });
   await eventually(
@@ -340,7 +340,7 @@ browserTest("another viewer's hand is marked, a reset ends mine, and a viewer's 
     () => viewer.page.locator(".hands .other").count(),
     (count) => count === 1,
   );
-  const from = await seen(viewer, 10 * columns + 3);
+  const from = await seen(viewer, 2 * columns + 2); // near a pin it hardly moves meanwhile
   await viewer.page.mouse.move(from.x, from.y);
   await viewer.page.mouse.down();
   await handsOf(client, (all) => all.length === 2);
