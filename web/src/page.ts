@@ -6,10 +6,12 @@ import type { SolverFacts } from "./panel/field";
 import { saferStep, type Stability } from "./panel/gauge";
 import { Hud, type Status } from "./panel/hud";
 import { tellCrossings } from "./panel/crossings";
+import { isNewcomer } from "./panel/newcomer";
 import { bindKeys } from "./panel/keys";
 import { Lab } from "./lab/drawer";
 import { Layout } from "./panel/layout";
 import { LinkView } from "./panel/link_view";
+import { Guide } from "./explain/guide";
 import {
   clearDiverged,
   notice,
@@ -30,6 +32,7 @@ import { SceneStore } from "./link/scene_store";
 import type { MovedCollider, Patch, SceneDocument } from "./link/scene_types";
 import type { Stage } from "./view/stage";
 import { hook } from "./test_hook";
+import { bindCameraInput } from "./view/camera_input";
 import { ThemeSwitch } from "./view/theme";
 import { Transport } from "./panel/transport";
 
@@ -50,12 +53,13 @@ export class Page {
     () => this.drawDocument(this.stage.fitted),
   );
   private readonly store: SceneStore = this.makeStore();
+  private readonly guide = new Guide();
   private readonly panel = this.makePanel();
   private readonly lab = this.makeLab();
   private readonly notifications = this.makeNotifications();
   private readonly colourBy = new ColourBy(
     (field) => this.connection.setField(field),
-    () => this.layout?.legendToggled(),
+    () => this.layout?.cardToggled(),
   );
   private layout: Layout | null = null;
   private latest: ShownFrame | null = null;
@@ -63,6 +67,7 @@ export class Page {
   private sceneName = "";
   private toldOfDivergence = false;
   private diverged = false; // in the last status
+  private stability: Stability | null = null; // in the last status
   private fitNext = false; // the next frame is the first of another cloth
   private closeCrossings = (): void => undefined; // takes a refusal for crossings away
   private mayEdit = true; // false for a viewer, who may only watch
@@ -107,6 +112,12 @@ export class Page {
       help: () => help.showModal(),
       lab: () => this.lab.toggle(),
     });
+    bindCameraInput(this.stage.controls);
+    if (isNewcomer()) void this.firstSteps();
+    button("first-steps-again").onclick = () => {
+      help.close();
+      void this.firstSteps();
+    };
     takeDroppedMeshes({
       request: (method, params) => this.connection.request(method, params),
       mayEdit: () => this.mayEdit,
@@ -118,6 +129,32 @@ export class Page {
     button("fit").onclick = fit;
     button("help").onclick = () => help.showModal();
     button("theme").onclick = () => theme.toggle();
+  }
+
+  // What the first picture need not wait for.
+  private firstPicture(): void {
+    void this.guide.load().then(
+      () => this.panel.mark(),
+      () => undefined,
+    );
+  }
+
+  private async firstSteps(): Promise<void> {
+    const { showFirstSteps } = await import("./panel/first_steps");
+    showFirstSteps({
+      mayEdit: () => this.mayEdit,
+      blowUp: () => this.blowUp(),
+      lab: () => this.lab.toggle(),
+      changed: () => this.layout?.cardToggled(),
+    });
+  }
+
+  // Steps beyond the limit, if the method has one; else the preset that does so.
+  private blowUp(): void {
+    const limit = this.stability?.dt_limit;
+    if (limit) this.store.edit([{ op: "replace", path: "/solver/dt", value: Number((1.5 * limit).toPrecision(2)) }]);
+    else this.request("scene.load", { preset: "blowup" });
+    if (!this.transport.playing) this.transport.toggle();
   }
 
   private animate(): void {
@@ -137,6 +174,7 @@ export class Page {
     hook.lastFrame = frame;
     hook.simTime = frame.header.time;
     hook.step = frame.header.step;
+    if (hook.firstFrameAt === 0) this.firstPicture();
     hook.firstFrameAt ||= performance.now();
     if (this.fitNext) this.stage.fit();
     this.fitNext = false;
@@ -149,8 +187,11 @@ export class Page {
         this.transport.enable(state === "open" && this.mayEdit);
         this.lab.link(state === "open");
         this.slow.link(state === "open");
-        if (state !== "open") this.store.forget();
-        else if (!this.store.document) void this.fetchScene();
+        if (state !== "open") {
+          this.store.forget();
+          this.guide.baseline.lost();
+        }
+        if (state === "open" && !this.store.document) void this.fetchScene();
       },
       notification: (method, params) => this.notifications[method]?.(params),
       topology: (topology) => this.stage.setTopology(topology),
@@ -182,14 +223,18 @@ export class Page {
   }
 
   private makePanel(): Panel {
-    return new Panel(element("panel-body", HTMLElement), {
-      edit: (operations) => this.store.edit(operations),
-      busy: (path) => this.store.busy(path),
-      loadPreset: (name) => {
-        this.sceneName = "";
-        this.request("scene.load", { preset: name });
+    return new Panel(
+      element("panel-body", HTMLElement),
+      {
+        edit: (operations) => this.store.edit(operations),
+        busy: (path) => this.store.busy(path),
+        loadPreset: (name) => {
+          this.sceneName = "";
+          this.request("scene.load", { preset: name });
+        },
       },
-    });
+      this.guide,
+    );
   }
 
   private makeLab(): Lab {
@@ -209,7 +254,10 @@ export class Page {
   private makeNotifications(): Record<string, (params: Params) => void> {
     return {
       hello: (params) => this.greeted(params),
-      scene: (params) => this.store.replace(params.document as SceneDocument, Number(params.revision)),
+      scene: (params) => {
+        this.guide.baseline.take(params.document as SceneDocument);
+        this.store.replace(params.document as SceneDocument, Number(params.revision));
+      },
       "scene.changed": (params) => this.store.patched(Number(params.revision), params.patch as Patch),
       colliders: (params) => {
         this.moved = params.moving as MovedCollider[];
@@ -218,6 +266,7 @@ export class Page {
         this.hud.showStatus(params as Status);
         this.transport.status(params as Status);
         this.slow.told(params as Status);
+        this.stability = (params.stability as Stability | undefined) ?? this.stability;
         if (params.stability) this.panel.showStability(params.stability as Stability);
         if (params.solver) this.store.fabricsGive((params.solver as SolverFacts).from_fabrics ?? []);
         if (params.solver) this.panel.showSolver(params.solver as SolverFacts);
@@ -254,7 +303,7 @@ export class Page {
     this.sceneName = document.name;
     element("scene-name", HTMLElement).textContent = document.name;
     this.drawDocument(newScene, whole);
-    this.panel.show(document);
+    this.panel.show(document, this.store.stored ?? document);
     this.lab.sceneChanged();
   }
 
