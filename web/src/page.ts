@@ -3,10 +3,10 @@ import { Connection, type LinkEvents } from "./link/connection";
 import { ColourBy } from "./panel/colour_by";
 import { button, element } from "./panel/dom";
 import type { SolverFacts } from "./panel/field";
-import { saferStep, type Stability } from "./panel/gauge";
+import { beyond, saferStep, type Stability } from "./panel/gauge";
 import { Hud, type Status } from "./panel/hud";
 import { tellCrossings } from "./panel/crossings";
-import { isNewcomer } from "./panel/newcomer";
+import { bindFirstSteps } from "./panel/newcomer";
 import { bindKeys } from "./panel/keys";
 import { Lab } from "./lab/drawer";
 import { Layout } from "./panel/layout";
@@ -35,6 +35,7 @@ import { hook } from "./test_hook";
 import { bindCameraInput } from "./view/camera_input";
 import { ThemeSwitch } from "./view/theme";
 import { Transport } from "./panel/transport";
+import { timeStep } from "./panel/solver_section";
 
 type Params = Record<string, unknown>;
 
@@ -113,11 +114,12 @@ export class Page {
       lab: () => this.lab.toggle(),
     });
     bindCameraInput(this.stage.controls);
-    if (isNewcomer()) void this.firstSteps();
-    button("first-steps-again").onclick = () => {
-      help.close();
-      void this.firstSteps();
-    };
+    bindFirstSteps({
+      mayEdit: () => this.mayEdit,
+      blowUp: () => this.blowUp(),
+      lab: () => this.lab.toggle(),
+      changed: () => layout.cardToggled(),
+    });
     takeDroppedMeshes({
       request: (method, params) => this.connection.request(method, params),
       mayEdit: () => this.mayEdit,
@@ -131,28 +133,10 @@ export class Page {
     button("theme").onclick = () => theme.toggle();
   }
 
-  // What the first picture need not wait for.
-  private firstPicture(): void {
-    void this.guide.load().then(
-      () => this.panel.mark(),
-      () => undefined,
-    );
-  }
-
-  private async firstSteps(): Promise<void> {
-    const { showFirstSteps } = await import("./panel/first_steps");
-    showFirstSteps({
-      mayEdit: () => this.mayEdit,
-      blowUp: () => this.blowUp(),
-      lab: () => this.lab.toggle(),
-      changed: () => this.layout?.cardToggled(),
-    });
-  }
-
   // Steps beyond the limit, if the method has one; else the preset that does so.
   private blowUp(): void {
-    const limit = this.stability?.dt_limit;
-    if (limit) this.store.edit([{ op: "replace", path: "/solver/dt", value: Number((1.5 * limit).toPrecision(2)) }]);
+    const dt = beyond(this.stability);
+    if (dt) this.store.edit([{ op: "replace", path: timeStep, value: dt }]);
     else this.request("scene.load", { preset: "blowup" });
     if (!this.transport.playing) this.transport.toggle();
   }
@@ -174,7 +158,7 @@ export class Page {
     hook.lastFrame = frame;
     hook.simTime = frame.header.time;
     hook.step = frame.header.step;
-    if (hook.firstFrameAt === 0) this.firstPicture();
+    if (hook.firstFrameAt === 0) void this.guide.load().then(() => this.panel.mark());
     hook.firstFrameAt ||= performance.now();
     if (this.fitNext) this.stage.fit();
     this.fitNext = false;

@@ -78,7 +78,7 @@ export class Explanation {
   private key(event: KeyboardEvent): void {
     this.byKey = true;
     if (event.key !== "Escape" || !this.row) return;
-    event.stopPropagation(); // it closes this alone
+    event.stopImmediatePropagation(); // it closes this alone
     this.close();
   }
 

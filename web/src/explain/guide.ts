@@ -18,10 +18,11 @@ export class Guide {
   readonly baseline = new Baseline();
   private scenes: Scenes | null = null;
 
-  /// Loads the schema and the presets. Without them nothing is explained or marked.
+  /// Loads the schema and the presets, which the first picture need not wait for. Without them nothing is explained or
+  /// marked.
   async load(): Promise<void> {
-    const answer = await fetch("scenes.json");
-    if (!answer.ok) return;
+    const answer = await fetch("scenes.json").catch(() => null);
+    if (!answer?.ok) return;
     this.scenes = (await answer.json()) as Scenes;
     this.baseline.know(this.scenes);
   }

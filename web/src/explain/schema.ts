@@ -85,11 +85,13 @@ export function wordsFor(root: Schema, document: unknown, path: string): Words |
   part = branchOf(root, part, value);
   const description = whole.description ?? part.description ?? around?.description ?? "";
   const list = around?.default;
+  const ranged =
+    part.minimum === undefined ? (whole.oneOf?.find(({ minimum }) => minimum !== undefined) ?? part) : part;
   return {
     says: description.replace(/^\[[^\]]*\]$/, ""),
     unit: /\[([^\]]+)\]/.exec(description)?.[1] ?? "",
-    least: part.minimum,
-    most: part.maximum,
+    least: ranged.minimum,
+    most: ranged.maximum,
     choices: part.enum,
     initial: Array.isArray(list) ? list[index] : (whole.default ?? part.default),
   };

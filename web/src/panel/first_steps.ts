@@ -2,7 +2,7 @@
 // Escape.
 import { remember } from "./newcomer";
 
-interface Host {
+export interface FirstStepsHost {
   mayEdit(): boolean;
   blowUp(): void;
   lab(): void;
@@ -28,7 +28,7 @@ function action(text: string, run: () => void): HTMLButtonElement {
 }
 
 /// Shows the card, unless it is there.
-export function showFirstSteps(host: Host): void {
+export function showFirstSteps(host: FirstStepsHost): void {
   if (document.getElementById("first-steps")) return;
   const close = made("button", "first-close", "×");
   close.type = "button";
@@ -59,7 +59,7 @@ export function showFirstSteps(host: Host): void {
   size.observe(card);
   const go = (): void => {
     size.disconnect();
-    removeEventListener("keydown", onKey);
+    removeEventListener("keydown", onKey, { capture: true });
     const focused = card.contains(document.activeElement);
     card.remove();
     document.body.style.removeProperty("--first-steps");
@@ -68,9 +68,15 @@ export function showFirstSteps(host: Host): void {
   };
   const onKey = (event: KeyboardEvent): void => {
     const busy = event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement;
-    if (event.key !== "Escape" || busy || document.querySelector("dialog[open]") || !card.checkVisibility()) return;
+    if (
+      event.key !== "Escape" ||
+      busy ||
+      document.querySelector("dialog[open]") ||
+      !card.checkVisibility({ visibilityProperty: true })
+    )
+      return;
     go();
   };
-  addEventListener("keydown", onKey);
+  addEventListener("keydown", onKey, { capture: true }); // before the lab closes by it
   close.onclick = go;
 }
