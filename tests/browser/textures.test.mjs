@@ -1,4 +1,5 @@
-// Patterns far away: a picture with one sample a pixel is near the mean of many, so nothing flickers as the cloth moves.
+// Patterns far away: a picture with one sample a pixel is near the mean of many, so nothing flickers as the cloth
+// moves.
 import assert from "node:assert/strict";
 import { browserTest, withServer } from "./browser.mjs";
 
@@ -27,8 +28,8 @@ const flat = (texture) => ({
   ],
 });
 
-/// The cloth's picture from above, once with one sample a pixel and once with `finer`^2, averaged as light: the root of the
-/// mean square of their differences, over what is cloth in both, of 255.
+/// The cloth's picture from above, once with one sample a pixel and once with `finer`^2, averaged as light: the root of
+/// the mean square of their differences, over what is cloth in both, of 255.
 const differs = ({ distance, finer }) => {
   const { stage } = window.clothlab;
   const { camera, renderer, scene } = stage;
@@ -88,8 +89,8 @@ browserTest("a pattern shows in each pixel the mean over it, near and far", asyn
   for (const [what, text] of Object.entries(found)) {
     const [error, , count] = text.split(" ").map(Number);
     assert.ok(count > 50, `${what}: ${count} pixels`);
-    // What is left comes from fwidth(), which takes a pixel for wider than it is across a slanted pattern. Edges blurred
-    // by smoothstep over two pixels had 19 and 28.
+    // What is left comes from fwidth(), which takes a pixel for wider than it is across a slanted pattern. Edges that
+    // were blurred by smoothstep over two pixels had 19 and 28.
     assert.ok(error < 17, `${what}: ${error}`);
   }
   await client.close();

@@ -158,8 +158,10 @@ export class Page {
     hook.lastFrame = frame;
     hook.simTime = frame.header.time;
     hook.step = frame.header.step;
-    if (hook.firstFrameAt === 0) void this.guide.load().then(() => this.panel.mark());
-    hook.firstFrameAt ||= performance.now();
+    if (hook.firstFrameAt === 0) {
+      hook.firstFrameAt = performance.now();
+      void this.guide.load().then(() => this.panel.mark());
+    }
     if (this.fitNext) this.stage.fit();
     this.fitNext = false;
   }

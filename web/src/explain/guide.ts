@@ -27,10 +27,20 @@ export class Guide {
     this.baseline.know(this.scenes);
   }
 
-  /// The way back of each field, in the order of `fields`.
+  /// The way back of each field, in the order of `fields`. What goes back with a whole that differs, such as the
+  /// numbers of another model or motion, has none of its own.
   waysBack(fields: Field[], stored: SceneDocument): Operation[][] {
     const loaded = this.baseline.alignedTo(stored);
-    return fields.map((field) => (loaded ? wayBack(field, stored, loaded) : []));
+    if (!loaded) return fields.map(() => []);
+    const wholes = new Set<string>();
+    const ways = fields.map((field) => {
+      const way = wayBack(field, stored, loaded);
+      if (way.some(({ path }) => wholes.has(path))) return [];
+      for (const { path } of way) wholes.add(path);
+      return way;
+    });
+    const within = (path: string): boolean => [...wholes].some((whole) => path.startsWith(`${whole}/`));
+    return ways.map((way) => (way.some(({ path }) => within(path)) ? [] : way));
   }
 
   /// How the field was when the scene was loaded, as text; "" if that is not known.

@@ -212,9 +212,7 @@ export class Panel {
     reset.type = "button";
     reset.className = "offer";
     reset.textContent = "Reset all";
-    // A part that goes back as a whole takes along what is in it.
-    const within = (path: string): boolean => all.some((other) => path.startsWith(`${other.path}/`));
-    reset.onclick = () => this.events.edit(all.filter(({ path }) => !within(path)));
+    reset.onclick = () => this.events.edit(all);
     this.differences.replaceChildren(says, " ", reset);
   }
 
