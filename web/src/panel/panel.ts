@@ -174,7 +174,7 @@ export class Panel {
     const control: Control = { field, controller, held: false, reset: this.resetButton(), back: [] };
     this.controls.push(control);
     control.reset.onclick = () => this.events.edit(control.back);
-    controller.domElement.prepend(control.reset);
+    controller.domElement.append(control.reset); // last: the row of a checkbox is a label, of the first control in it
     this.explanation.attach(controller.domElement, controller.$name, () =>
       this.document && this.stored ? this.guide.explain(field, this.document, this.stored) : null,
     );
