@@ -22,7 +22,7 @@ export class Explanation {
     this.box.className = "explanation";
     this.box.setAttribute("role", "tooltip");
     this.box.hidden = true;
-    document.body.append(this.box);
+    (document.querySelector("main") ?? document.body).append(this.box); // inside a landmark
     this.box.addEventListener("pointerenter", () => clearTimeout(this.timer));
     this.box.addEventListener("pointerleave", () => this.left());
     addEventListener("keydown", (event) => this.key(event), { capture: true });
