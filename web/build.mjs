@@ -1,6 +1,6 @@
 // Bundles the page into dist/: one HTML file, one script and one style sheet. Nothing is inline: the CSP forbids it.
 import { build } from "esbuild";
-import { cpSync, mkdirSync, readFileSync, rmSync } from "node:fs";
+import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
@@ -9,6 +9,16 @@ const dist = join(here, "dist");
 rmSync(dist, { recursive: true, force: true });
 mkdirSync(dist);
 cpSync(join(here, "static"), dist, { recursive: true });
+
+// What explains the panel, and what it compares with: the page loads it after its first picture.
+const scenes = join(here, "../server/scene");
+const read = (file) => JSON.parse(readFileSync(join(scenes, file), "utf8"));
+const presets = readdirSync(join(scenes, "presets")).filter((file) => file.endsWith(".json"));
+const known = {
+  schema: read("scene.schema.json"),
+  presets: Object.fromEntries(presets.map((file) => [file.slice(0, -".json".length), read(`presets/${file}`)])),
+};
+writeFileSync(join(dist, "scenes.json"), JSON.stringify(known));
 
 // lil-gui's style sheet holds an icon font in a data: URL, which the CSP also refuses: panel.css draws the icons.
 const withoutFonts = {
@@ -26,6 +36,8 @@ await build({
   entryPoints: { app: "src/main.ts", style: "src/style.css" },
   outdir: "dist",
   bundle: true,
+  splitting: true, // what an import() names is loaded when it is used
+  chunkNames: "[name]-[hash]",
   minify: true,
   format: "esm",
   target: ["es2022", "chrome100", "firefox100", "safari15.4"],

@@ -101,15 +101,27 @@ export function withServer(...args) {
 
 export class Viewer {
   /// Opens the page on a session of its own, and waits until it has drawn. Pixels in software take most of the time
-  /// of these tests: unless the picture must be `sharp`, there is one for every 4x4 of the layout's.
+  /// of these tests: unless the picture must be `sharp`, there is one for every 4x4 of the layout's. A `newcomer` has
+  /// never been here; `more` are options of Playwright's contexts, such as hasTouch.
   static async open(
     browser,
     server,
-    { session = "main", width = 900, height = 600, colorScheme = "light", drawn = 3, sharp = false } = {},
+    {
+      session = "main",
+      width = 900,
+      height = 600,
+      colorScheme = "light",
+      drawn = 3,
+      sharp = false,
+      newcomer = false,
+      ...more
+    } = {},
   ) {
     const viewer = new Viewer();
     const deviceScaleFactor = sharp ? 1 : 0.25;
-    viewer.page = await browser.newPage({ viewport: { width, height }, deviceScaleFactor, colorScheme });
+    viewer.page = await browser.newPage({ viewport: { width, height }, deviceScaleFactor, colorScheme, ...more });
+    // The card of the first minute is for the tests that ask for it.
+    if (!newcomer) await viewer.page.addInitScript(() => localStorage.setItem("clothlab-first-steps", "seen"));
     viewer.page.setDefaultTimeout(patience);
     viewer.complaints = [];
     viewer.page.on("console", (message) => {

@@ -203,9 +203,11 @@ browserTest(
     await viewer.page.locator("#view").focus();
     await keyboard.press("g");
     const { vertex: held, target: start } = (await handsOf(client, (all) => all.length === 1)).hands[0];
+    const camera = await cameraPlace(viewer);
     for (let i = 0; i < 6; ++i) await keyboard.press("ArrowRight");
     for (let i = 0; i < 4; ++i) await keyboard.press("ArrowUp");
     for (let i = 0; i < 3; ++i) await keyboard.press("PageUp");
+    await keyboard.press("+");
     const right = await viewer.page.evaluate(() => {
       const { camera, controls } = window.clothlab.stage;
       return controls.target.clone().setFromMatrixColumn(camera.matrixWorld, 0).toArray();
@@ -217,6 +219,7 @@ browserTest(
       () => placeOf(client, held),
       (at) => distance(at, hands[0].target) < distance(start, hands[0].target),
     );
+    assert.ok(distance(camera, await cameraPlace(viewer)) < 0.02, "the keys are the hand's, not the camera's");
     await keyboard.press("p");
     await eventually(
       "the pins",
@@ -236,6 +239,13 @@ browserTest(
     await handsOf(client, (all) => all.length === 1);
     await keyboard.press("Enter");
     await handsOf(client, (all) => all.length === 0);
+    const before = await cameraPlace(viewer);
+    await keyboard.press("ArrowRight");
+    await eventually(
+      "the camera",
+      () => cameraPlace(viewer),
+      (now) => distance(before, now) > 0.05,
+    );
     await client.close();
   },
 );

@@ -1,40 +1,35 @@
 // Connects the parts of the page: the link, the scene's document, the stage and the controls.
 import { Connection, type LinkEvents } from "./link/connection";
 import { ColourBy } from "./panel/colour_by";
-import { button, element } from "./panel/dom";
+import { bindCommands } from "./panel/commands";
+import { element } from "./panel/dom";
 import type { SolverFacts } from "./panel/field";
-import { saferStep, type Stability } from "./panel/gauge";
+import { Divergence } from "./panel/divergence";
+import { beyond, type Stability } from "./panel/gauge";
 import { Hud, type Status } from "./panel/hud";
-import { tellCrossings } from "./panel/crossings";
-import { bindKeys } from "./panel/keys";
+import { Refusals } from "./panel/refusals";
+import { bindFirstSteps } from "./panel/newcomer";
 import { Lab } from "./lab/drawer";
 import { Layout } from "./panel/layout";
 import { LinkView } from "./panel/link_view";
-import {
-  clearDiverged,
-  notice,
-  noticeError,
-  showApplied,
-  showDiverged,
-  type Diverged,
-  type Level,
-} from "./panel/notices";
+import { Guide } from "./explain/guide";
+import { notice, noticeError, showApplied, type Diverged, type Level } from "./panel/notices";
 import { takeDroppedMeshes } from "./panel/mesh_drop";
 import { Panel } from "./panel/panel";
 import { Bodies } from "./link/bodies";
 import type { Fabric } from "./link/fabrics";
-import type { ShownFrame } from "./link/protocol";
-import { RpcError } from "./link/rpc";
 import { SlowWatch } from "./panel/slow_watch";
 import { SceneStore } from "./link/scene_store";
+import { Picture } from "./picture";
 import type { MovedCollider, Patch, SceneDocument } from "./link/scene_types";
-import { BodyHandles } from "./view/body_handles";
-import { Grab, type HandAt } from "./view/grab";
-import { bindGrabKeys } from "./view/grab_keys";
+import type { HandAt } from "./view/grab";
+import { Hand } from "./view/hand";
 import type { Stage } from "./view/stage";
 import { hook } from "./test_hook";
+import { bindCameraInput } from "./view/camera_input";
 import { ThemeSwitch } from "./view/theme";
 import { Transport } from "./panel/transport";
+import { timeStep } from "./panel/solver_section";
 
 type Params = Record<string, unknown>;
 
@@ -53,23 +48,25 @@ export class Page {
     () => this.drawDocument(this.stage.fitted),
   );
   private readonly store: SceneStore = this.makeStore();
+  private readonly guide = new Guide();
   private readonly panel = this.makePanel();
   private readonly lab = this.makeLab();
   private readonly notifications = this.makeNotifications();
   private readonly colourBy = new ColourBy(
     (field) => this.connection.setField(field),
-    () => this.layout?.legendToggled(),
+    () => this.layout?.cardToggled(),
   );
-  private grab: Grab | null = null; // with the stage, as the next
-  private bodyHandles: BodyHandles | null = null;
+  private readonly picture = this.makePicture();
+  private readonly divergence = new Divergence((patch) => this.connection.request("scene.patch", { patch }));
+  private readonly refusals = new Refusals({
+    show: (crossings) => this.stage.showCrossings(crossings),
+    hide: () => this.stage.hideCrossings(),
+    send: (instead) => this.request("scene.patch", { patch: instead }),
+  });
+  private hand: Hand | null = null; // with the stage, as the next
   private layout: Layout | null = null;
-  private latest: ShownFrame | null = null;
-  private moved: MovedCollider[] = []; // colliders' places for the next frame
   private sceneName = "";
-  private toldOfDivergence = false;
-  private diverged = false; // in the last status
-  private fitNext = false; // the next frame is the first of another cloth
-  private closeCrossings = (): void => undefined; // takes a refusal for crossings away
+  private stability: Stability | null = null; // in the last status
   private mayEdit = true; // false for a viewer, who may only watch
 
   constructor() {
@@ -81,13 +78,7 @@ export class Page {
     this.stage = hook.stage = stage;
     const layout: Layout = (this.layout = new Layout(() => stage.resize(layout.freeArea())));
     const theme = new ThemeSwitch(() => stage.setTheme());
-    this.grab = this.makeGrab(stage);
-    this.bodyHandles = new BodyHandles(stage, {
-      edit: (operations) => this.store.edit(operations),
-      document: () => this.store.document,
-      mayEdit: () => this.mayEdit,
-    });
-    bindGrabKeys(this.grab, this.bodyHandles);
+    this.hand = this.makeHand(stage);
     this.bind(layout, theme);
     stage.onLost = () =>
       notice("warning", {
@@ -96,11 +87,7 @@ export class Page {
       });
     stage.resize(layout.freeArea());
     setInterval(() => this.hud.tick(this.connection.bytesReceived), 1000);
-    const animate = (): void => {
-      requestAnimationFrame(animate);
-      this.animate();
-    };
-    requestAnimationFrame(animate);
+    this.picture.start(stage);
   }
 
   close(): void {
@@ -108,51 +95,44 @@ export class Page {
   }
 
   private bind(layout: Layout, theme: ThemeSwitch): void {
-    const fit = (): void => this.stage.fit();
-    const help = element("help-dialog", HTMLDialogElement);
-    bindKeys({
-      toggle: () => this.transport.toggle(),
-      step: () => this.transport.step(),
-      reset: () => this.transport.reset(),
-      fit,
-      hide: () => layout.toggleInterface(),
-      help: () => help.showModal(),
-      lab: () => this.lab.toggle(),
+    const lab = (): void => this.lab.toggle();
+    bindCommands({ transport: this.transport, layout, theme, fit: () => this.stage.fit(), lab });
+    bindCameraInput(this.stage.controls, () => this.hand?.holding === true);
+    bindFirstSteps({
+      mayEdit: () => this.mayEdit,
+      blowUp: () => this.blowUp(),
+      lab,
+      changed: () => layout.cardToggled(),
     });
     takeDroppedMeshes({
       request: (method, params) => this.connection.request(method, params),
       mayEdit: () => this.mayEdit,
-      refused: (title, error, patch) => this.refused(title, error, patch),
-      hung: () => {
-        this.fitNext = true;
-      },
+      refused: (title, error, patch) => this.refusals.tell(title, error, patch),
+      hung: () => this.picture.fitAtNext(),
     });
-    button("fit").onclick = fit;
-    button("help").onclick = () => help.showModal();
-    button("theme").onclick = () => theme.toggle();
   }
 
-  private animate(): void {
-    const frame = this.latest;
-    this.latest = null;
-    const shown = frame !== null && this.stage.show(frame);
-    this.stage.draw();
-    this.grab?.tick();
-    if (!frame) return;
-    this.connection.acknowledge(frame.header.sequence);
-    if (!shown) return;
-    this.hud.countDrawn();
-    this.hud.setTime(frame.header.time);
-    this.colourBy.show(frame.field, frame.header.range);
-    this.hud.set("vertices", String(frame.header.vertexCount));
-    this.link.drawing();
-    hook.framesDrawn++;
-    hook.lastFrame = frame;
-    hook.simTime = frame.header.time;
-    hook.step = frame.header.step;
-    hook.firstFrameAt ||= performance.now();
-    if (this.fitNext) this.stage.fit();
-    this.fitNext = false;
+  // Steps beyond the limit, if the method has one; else the preset that does so.
+  private blowUp(): void {
+    const dt = beyond(this.stability);
+    if (dt) this.store.edit([{ op: "replace", path: timeStep, value: dt }]);
+    else this.request("scene.load", { preset: "blowup" });
+    if (!this.transport.playing) this.transport.toggle();
+  }
+
+  private makePicture(): Picture {
+    return new Picture({
+      acknowledge: (sequence) => this.connection.acknowledge(sequence),
+      ticked: () => this.hand?.tick(),
+      drawn: ({ header, field }) => {
+        this.hud.countDrawn();
+        this.hud.setTime(header.time);
+        this.colourBy.show(field, header.range);
+        this.hud.set("vertices", String(header.vertexCount));
+        this.link.drawing();
+      },
+      first: () => void this.guide.load().then(() => this.panel.mark()),
+    });
   }
 
   private linkEvents(): LinkEvents {
@@ -162,22 +142,22 @@ export class Page {
         this.transport.enable(state === "open" && this.mayEdit);
         this.lab.link(state === "open");
         this.slow.link(state === "open");
-        if (state !== "open") this.grab?.lost();
-        if (state !== "open") this.store.forget();
-        else if (!this.store.document) void this.fetchScene();
+        if (state !== "open") {
+          this.hand?.lost();
+          this.store.forget();
+          this.guide.baseline.lost();
+        }
+        if (state === "open" && !this.store.document) void this.fetchScene();
       },
       notification: (method, params) => this.notifications[method]?.(params),
       topology: (topology) => {
         this.stage.setTopology(topology);
-        this.grab?.lost();
+        this.hand?.lost();
       },
       frame: (frame, field) => {
-        hook.framesReceived++;
         this.hud.countReceived();
         this.slow.picture();
-        const replaced = this.latest; // a newer frame came before this one was drawn
-        if (replaced && !document.hidden) this.connection.acknowledge(replaced.header.sequence);
-        this.latest = { ...frame, field, moved: this.moved };
+        this.picture.take(frame, field);
       },
       latency: (milliseconds) => this.hud.set("latency", `${milliseconds.toFixed(milliseconds < 10 ? 1 : 0)} ms`),
       problem: (error) => noticeError("The server sent something unexpected", error),
@@ -192,35 +172,38 @@ export class Page {
       applied: showApplied,
       wayBack: (operations) => this.slow.changed(operations),
       rejected: (error, operations) => {
-        if (error instanceof RpcError) this.refused("Not applied", error, operations);
+        this.refusals.tell("Not applied", error, operations);
         this.panel.snapBack();
       },
     });
   }
 
   private makePanel(): Panel {
-    return new Panel(element("panel-body", HTMLElement), {
-      edit: (operations) => this.store.edit(operations),
-      busy: (path) => this.store.busy(path),
-      loadPreset: (name) => {
-        this.sceneName = "";
-        this.request("scene.load", { preset: name });
+    return new Panel(
+      element("panel-body", HTMLElement),
+      {
+        edit: (operations) => this.store.edit(operations),
+        busy: (path) => this.store.busy(path),
+        loadPreset: (name) => {
+          this.sceneName = "";
+          this.request("scene.load", { preset: name });
+        },
       },
-    });
+      this.guide,
+    );
   }
 
-  private makeGrab(stage: Stage): Grab {
-    return new Grab(stage, {
+  private makeHand(stage: Stage): Hand {
+    return new Hand(stage, {
       notify: (method, params) => this.connection.notify(method, params),
       patch: (operations) =>
         this.connection.request("scene.patch", { patch: operations }).catch((error: Error) => {
           noticeError("Not pinned", error);
         }),
+      edit: (operations) => this.store.edit(operations),
       document: () => this.store.document,
-      mayGrab: () => this.mayEdit && this.connection.open && !this.diverged,
-      busy: (event) => this.bodyHandles?.takes(event) ?? false,
-      took: () => this.bodyHandles?.choose(null),
-      clicked: (x, y) => this.bodyHandles?.click(x, y),
+      mayEdit: () => this.mayEdit,
+      mayGrab: () => this.mayEdit && this.connection.open && !this.divergence.now,
     });
   }
 
@@ -241,22 +224,26 @@ export class Page {
   private makeNotifications(): Record<string, (params: Params) => void> {
     return {
       hello: (params) => this.greeted(params),
-      scene: (params) => this.store.replace(params.document as SceneDocument, Number(params.revision)),
+      scene: (params) => {
+        this.guide.baseline.take(params.document as SceneDocument);
+        this.store.replace(params.document as SceneDocument, Number(params.revision));
+      },
       "scene.changed": (params) => this.store.patched(Number(params.revision), params.patch as Patch),
       colliders: (params) => {
-        this.moved = params.moving as MovedCollider[];
+        this.picture.moved = params.moving as MovedCollider[];
       },
       "sim.status": (params) => {
         this.hud.showStatus(params as Status);
         this.transport.status(params as Status);
         this.slow.told(params as Status);
+        this.stability = (params.stability as Stability | undefined) ?? this.stability;
         if (params.stability) this.panel.showStability(params.stability as Stability);
         if (params.solver) this.store.fabricsGive((params.solver as SolverFacts).from_fabrics ?? []);
         if (params.solver) this.panel.showSolver(params.solver as SolverFacts);
-        this.grab?.told((params.hands as HandAt[] | undefined) ?? []);
-        this.followDivergence(params as Status);
+        this.hand?.told((params.hands as HandAt[] | undefined) ?? []);
+        this.divergence.follow(params as Status);
       },
-      "sim.diverged": (params) => this.tellDivergence(params as unknown as Diverged),
+      "sim.diverged": (params) => this.divergence.tell(params as unknown as Diverged),
       "lab.progress": (params) => this.lab.progress(params),
       "lab.result": (params) => this.lab.arrived(params),
       viewers: (params) => this.hud.set("viewers", String(params.count)),
@@ -267,7 +254,7 @@ export class Page {
   private greeted(params: Params): void {
     this.hud.setRenderer(String(params.renderer));
     this.mayEdit = params.role !== "viewer";
-    this.grab?.greeted(Number(params.client));
+    this.hand?.greeted(Number(params.client));
     this.panel.setMethods((params.methods as string[] | undefined) ?? []);
     this.lab.setMethods((params.methods as string[] | undefined) ?? []);
     this.lab.roleChanged();
@@ -282,14 +269,14 @@ export class Page {
   private sceneChanged(document: SceneDocument, whole: boolean): void {
     hook.document = document;
     this.slow.dt = document.solver.dt;
-    this.moved = [];
-    if (whole) this.closeCrossings();
+    this.picture.moved = [];
+    if (whole) this.refusals.forget();
     const newScene = whole && document.name !== this.sceneName;
     this.sceneName = document.name;
     element("scene-name", HTMLElement).textContent = document.name;
     this.drawDocument(newScene, whole);
-    this.bodyHandles?.follow();
-    this.panel.show(document);
+    this.hand?.sceneChanged();
+    this.panel.show(document, this.store.stored ?? document);
     this.lab.sceneChanged();
   }
 
@@ -304,44 +291,9 @@ export class Page {
     if (answer) this.store.replace(answer.document, answer.revision);
   }
 
-  private tellDivergence(diverged: Diverged): void {
-    this.toldOfDivergence = true;
-    // Once the patch is applied, the server continues from the last good state by itself.
-    showDiverged(diverged, async (patch) => void (await this.connection.request("scene.patch", { patch })));
-  }
-
-  // Shows and clears the notice by the status: another viewer may have applied the remedy, or the scene blew up before
-  // this page was opened.
-  private followDivergence({ diverged, stability }: Status): void {
-    if (this.diverged && !diverged) {
-      clearDiverged();
-      this.toldOfDivergence = false;
-    }
-    this.diverged = diverged === true;
-    if (!this.diverged || this.toldOfDivergence) return;
-    const limit = stability?.dt_limit;
-    const dt = limit ? saferStep(limit) : 0;
-    this.tellDivergence({
-      reason: "it stopped at its last good state before this page was opened",
-      ...(dt > 0 ? { remedy: { text: `set dt to ${dt} s, below its limit`, patch: { solver: { dt } } } } : {}),
-    });
-  }
-
-  /// Tells why the server refused a patch. For surfaces that cross there are a picture and a way out.
-  private refused(title: string, error: RpcError, patch: Patch): void {
-    const close = tellCrossings(title, error, patch, {
-      show: (crossings) => this.stage.showCrossings(crossings),
-      hide: () => this.stage.hideCrossings(),
-      send: (instead) => this.request("scene.patch", { patch: instead }),
-    });
-    if (close) this.closeCrossings = close;
-    else noticeError(title, error);
-  }
-
-  // A request that is lost with its connection needs no notice: the banner reports the loss.
   private request(method: string, params: Params = {}): void {
-    this.connection.request(method, params).catch((error: Error) => {
-      if (error instanceof RpcError) noticeError("The server refused this", error);
-    });
+    this.connection
+      .request(method, params)
+      .catch((error: Error) => this.refusals.tell("The server refused this", error));
   }
 }

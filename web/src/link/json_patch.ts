@@ -6,7 +6,8 @@ type Node = Record<string, unknown> | unknown[];
 const isObject = (value: unknown): value is Record<string, unknown> =>
   typeof value === "object" && value !== null && !Array.isArray(value);
 
-function keysOf(pointer: string): string[] {
+/// The keys of a JSON Pointer.
+export function keysOf(pointer: string): string[] {
   if (pointer === "") return [];
   if (!pointer.startsWith("/")) throw new Error(`not a JSON Pointer: ${pointer}`);
   return pointer

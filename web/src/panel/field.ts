@@ -40,7 +40,9 @@ export interface FieldBase {
   label: string;
   paths: string[]; ///< the places it writes; it reads the first
   onRelease?: boolean; ///< sent when the slider is released: each value rebuilds the cloth
-  hint?: string; ///< a tooltip
+  hint?: string; ///< a sentence before the schema's in its explanation
+  about?: string; ///< the place that its explanation is of, if that is not the first of `paths`
+  along?: string[]; ///< places that go back with it
   note?(values: Values, facts: SolverFacts): Note;
   read?(document: SceneDocument): unknown;
   write?(value: unknown): unknown;

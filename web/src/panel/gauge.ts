@@ -14,6 +14,10 @@ const safer = 0.8; // share of the limit that the button sets
 /// A time step [s] well below the limit, rounded to be easy to read.
 export const saferStep = (limit: number): number => Math.max(1e-9, Number((safer * limit).toPrecision(3)));
 
+/// A time step [s] with which the cloth blows up soon; null if there is no limit.
+export const beyond = (stability: Stability | null): number | null =>
+  stability?.dt_limit ? Number((1.5 * stability.dt_limit).toPrecision(2)) : null;
+
 export type Verdict = "good" | "near" | "beyond";
 export interface Reading {
   verdict: Verdict;

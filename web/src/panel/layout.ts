@@ -44,7 +44,8 @@ export class Layout {
 
   constructor(private readonly changed: () => void) {
     this.foldFigures();
-    this.handle.onclick = () => this.showSheet(!document.body.classList.contains("sheet-open"));
+    this.handle.onclick = () => this.turnHandle();
+    this.tellHandle();
     narrow.addEventListener("change", () => {
       this.foldFigures();
       this.showSheet(false);
@@ -69,8 +70,8 @@ export class Layout {
     this.changed();
   }
 
-  /// The legend of the cloth's colours came or went.
-  legendToggled(): void {
+  /// A card came or went: the legend of the cloth's colours, the first steps.
+  cardToggled(): void {
     this.changed();
   }
 
@@ -86,7 +87,8 @@ export class Layout {
       if (card === this.lab) return [new DOMRect(card.offsetLeft, card.offsetTop, card.offsetWidth, card.offsetHeight)];
       const box = card.getBoundingClientRect();
       // The panel fills after the picture, and its sections fold: it has all of its column, or the picture would move.
-      return [card === this.panel && !narrow.matches ? new DOMRect(box.x, 0, box.width, innerHeight) : box];
+      const column = card === this.panel && !narrow.matches && !this.folded;
+      return [column ? new DOMRect(box.x, 0, box.width, innerHeight) : box];
     });
   }
 
@@ -94,9 +96,30 @@ export class Layout {
     this.hud.open = !narrow.matches && !low.matches;
   }
 
+  /// On a wide window the panel stands open until it is folded; on a narrow one it is a sheet that opens.
+  private get folded(): boolean {
+    return document.body.classList.contains("panel-folded");
+  }
+
+  private turnHandle(): void {
+    if (narrow.matches) this.showSheet(!document.body.classList.contains("sheet-open"));
+    else this.fold(!this.folded);
+  }
+
   private showSheet(open: boolean): void {
     document.body.classList.toggle("sheet-open", open);
-    this.handle.setAttribute("aria-expanded", String(open));
+    this.tellHandle();
     this.changed();
+  }
+
+  private fold(folded: boolean): void {
+    document.body.classList.toggle("panel-folded", folded);
+    this.tellHandle();
+    this.changed();
+  }
+
+  private tellHandle(): void {
+    const open = narrow.matches ? document.body.classList.contains("sheet-open") : !this.folded;
+    this.handle.setAttribute("aria-expanded", String(open));
   }
 }

@@ -1,5 +1,7 @@
 // The panel: made from the scene document, kept equal to it, and turning moved controls into patches.
 import GUI, { type Controller } from "lil-gui";
+import { Explanation } from "../explain/explanation";
+import type { Guide } from "../explain/guide";
 import { type Field, type Note, operationsFor, readField, type Section, type SolverFacts } from "./field";
 import { sectionsOf } from "./fields";
 import { Gauge, type Stability } from "./gauge";
@@ -18,7 +20,11 @@ interface Control {
   field: Field;
   controller: Controller;
   held: boolean;
+  reset: HTMLButtonElement;
+  back: Operation[]; ///< brings the value back to how it was loaded; empty: it is so
 }
+
+const focusable = (row: HTMLElement): HTMLElement | null => row.querySelector("input, select");
 
 export class Panel {
   private gui: GUI | null = null;
@@ -33,13 +39,42 @@ export class Panel {
   private notes: (() => void)[] = [];
   private readonly gauge = new Gauge((dt) => this.events.edit([{ op: "replace", path: timeStep, value: dt }]));
   private document: SceneDocument | null = null;
+  private stored: SceneDocument | null = null; // the same as the server keeps it
+  private readonly explanation: Explanation;
+  private readonly differences = document.createElement("p");
   private readonly folded = new Map<string, boolean>();
   private preset: Controller | null = null;
 
   constructor(
     private readonly container: HTMLElement,
     private readonly events: PanelEvents,
-  ) {}
+    private readonly guide: Guide,
+  ) {
+    this.explanation = new Explanation(container);
+    this.differences.className = "differences";
+  }
+
+  /// Marks what differs from the scene as loaded: called when that is known.
+  mark(): void {
+    if (!this.stored) return;
+    const ways = this.guide.waysBack(
+      this.controls.map(({ field }) => field),
+      this.stored,
+    );
+    for (const [i, control] of this.controls.entries()) {
+      control.back = ways[i] ?? [];
+      const differs = control.back.length > 0;
+      control.controller.domElement.classList.toggle("differs", differs);
+      if (control.reset.hidden === !differs) continue;
+      const was = differs ? this.guide.formerly(control.field, this.stored) : "";
+      const says = `Reset ${control.field.label}${was && ` to ${was}`}`;
+      control.reset.setAttribute("aria-label", says);
+      control.reset.title = says;
+      if (!differs && document.activeElement === control.reset) focusable(control.controller.domElement)?.focus();
+      control.reset.hidden = !differs;
+    }
+    this.tellDifferences();
+  }
 
   /// Takes the scenes and the fabrics that come with the server.
   setOffers(presets: string[], fabrics: Fabric[]): void {
@@ -66,8 +101,9 @@ export class Panel {
   }
 
   /// Sets the controls to the document, except those that the user is moving or whose edits are unanswered.
-  show(document: SceneDocument): void {
+  show(document: SceneDocument, stored: SceneDocument): void {
     this.document = document;
+    this.stored = stored;
     this.rebuildIfNeeded();
     for (const { field, controller, held } of this.controls) {
       if (held || field.paths.some((path) => this.events.busy(path))) continue;
@@ -79,12 +115,13 @@ export class Panel {
     this.values.preset = this.presets.includes(document.name) ? document.name : "";
     this.preset?.updateDisplay();
     this.accompany();
+    this.mark();
   }
 
   /// Resets the controls to the server's document after a rejected edit.
   snapBack(): void {
     for (const control of this.controls) control.held = false;
-    if (this.document) this.show(this.document);
+    if (this.document && this.stored) this.show(this.document, this.stored);
   }
 
   private rebuildIfNeeded(): void {
@@ -97,6 +134,7 @@ export class Panel {
     this.shape = shape;
     const scroll = this.container.scrollTop;
     const focused = (document.activeElement as HTMLElement | null)?.getAttribute("aria-label");
+    this.explanation.close();
     this.gui?.destroy();
     this.controls = [];
     this.notes = [];
@@ -105,6 +143,7 @@ export class Panel {
     this.addPresets(this.gui);
     for (const section of sections) this.addSection(this.gui, section);
     this.accompany();
+    this.mark();
     this.container.scrollTop = scroll;
     if (focused) this.container.querySelector<HTMLElement>(`[aria-label="${CSS.escape(focused)}"]`)?.focus();
   }
@@ -115,6 +154,8 @@ export class Panel {
     const choices = this.values.preset === "" ? ["", ...this.presets] : this.presets;
     this.preset = gui.add(this.values, "preset", choices).name("preset");
     this.preset.onChange((name: string) => name && this.events.loadPreset(name));
+    this.preset.domElement.querySelector("select")?.setAttribute("aria-label", "preset");
+    gui.$children.append(this.differences);
   }
 
   private addSection(parent: GUI, section: Section): void {
@@ -130,9 +171,13 @@ export class Panel {
   private addField(folder: GUI, field: Field): void {
     this.values[field.key] = readField(field, this.document as SceneDocument);
     const controller = this.controllerFor(folder, field);
-    const control: Control = { field, controller, held: false };
+    const control: Control = { field, controller, held: false, reset: this.resetButton(), back: [] };
     this.controls.push(control);
-    if (field.hint) controller.domElement.title = field.hint;
+    control.reset.onclick = () => this.events.edit(control.back);
+    controller.domElement.append(control.reset); // last: the row of a checkbox is a label, of the first control in it
+    this.explanation.attach(controller.domElement, controller.$name, () =>
+      this.document && this.stored ? this.guide.explain(field, this.document, this.stored) : null,
+    );
     if (field.note) this.addNote(folder, field.note);
     if (field.key === timeStep) folder.$children.append(this.gauge.element);
     controller.onChange((value: unknown) => {
@@ -144,6 +189,31 @@ export class Panel {
       if (field.onRelease && control.held) this.edit(field, value);
       control.held = false;
     });
+  }
+
+  private resetButton(): HTMLButtonElement {
+    const reset = document.createElement("button");
+    reset.type = "button";
+    reset.className = "reset";
+    reset.hidden = true;
+    reset.textContent = "↺";
+    return reset;
+  }
+
+  // How many values differ from the scene as loaded, and a button that brings all of them back.
+  private tellDifferences(): void {
+    const all = this.controls.flatMap(({ back }) => back);
+    const count = this.controls.filter(({ back }) => back.length > 0).length;
+    this.differences.hidden = count === 0;
+    if (count === 0) return;
+    const name = this.guide.baseline.name;
+    const says = `${count} ${count === 1 ? "value differs" : "values differ"} from ${name}.`;
+    const reset = document.createElement("button");
+    reset.type = "button";
+    reset.className = "offer";
+    reset.textContent = "Reset all";
+    reset.onclick = () => this.events.edit(all);
+    this.differences.replaceChildren(says, " ", reset);
   }
 
   private edit(field: Field, value: unknown): void {

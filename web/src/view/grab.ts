@@ -1,6 +1,5 @@
-// Pulls the cloth: by mouse, by a finger, by keys. A press on the cloth holds the vertex under it; a press beside the
-// cloth, or with a modifier key, is the camera's. What is held moves in the plane parallel to the screen, and along the
-// view by the wheel, a second finger or keys.
+// The vertex that this page holds and pulls, whoever moves it: pointers (grab_pointers.ts) or keys (grab_keys.ts). It
+// moves in the plane parallel to the screen, and along the view.
 import { Vector3 } from "three";
 import { HandHint } from "./hand_hint";
 import { HandMarks, type Mark } from "./hand_marks";
@@ -23,12 +22,11 @@ export interface GrabEvents {
   patch(operations: Operation[]): Promise<unknown>;
   document(): SceneDocument | null;
   mayGrab(): boolean;
-  busy(event: PointerEvent): boolean; ///< something over the cloth takes this press
   took(): void; ///< the hand has something, or a pin is chosen
-  clicked(x: number, y: number): void; ///< a click on neither cloth nor pin, at this point of the canvas
 }
 
-interface Held {
+/// What is held.
+export interface Held {
   by: "mouse" | "touch" | "key";
   pointer: number; // -1: keys
   vertex: number; // in the frame
@@ -44,23 +42,18 @@ interface Held {
   told: boolean; // the server's status has had it
 }
 
-const slop = 6; // [CSS pixels] within which a press is a click, or a finger is still
-const pinsReach = { mouse: 12, touch: 24 }; // [CSS pixels]
 const sendEvery = 8; // [ms]: a mouse may tell of itself 1000 times a second
 const pinAfter = 800; // [ms] that a finger is still: then it pins when it leaves
-const secondFinger = 200; // [ms] after the first, both still: they are the camera's
 const farthest = 4; // times the distance at which the cloth was grabbed
 
 export class Grab {
-  private held: Held | null = null;
-  private pressed: { pin: PinnedVertex | null; x: number; y: number } | null = null;
-  private depthFinger: { pointer: number; y: number } | null = null;
+  held: Held | null = null;
   private others: HandAt[] = [];
   private client = 0;
   private sentAt = 0;
   private unsent = false;
-  private readonly picker: Picker;
-  private readonly pins: PinChoice;
+  readonly picker: Picker;
+  readonly pins: PinChoice;
   private readonly marks: HandMarks;
   private readonly hint = new HandHint("hand");
 
@@ -68,16 +61,9 @@ export class Grab {
     private readonly stage: Stage,
     private readonly events: GrabEvents,
   ) {
-    const { canvas } = stage;
     this.picker = new Picker(stage);
     this.pins = new PinChoice(this.picker, () => events.document());
-    this.marks = new HandMarks(canvas);
-    const early = { capture: true }; // before the camera's controls
-    canvas.addEventListener("pointerdown", (event) => this.down(event), early);
-    canvas.addEventListener("pointermove", (event) => this.move(event), early);
-    for (const end of ["pointerup", "pointercancel"] as const)
-      canvas.addEventListener(end, (event) => this.up(event), early);
-    canvas.addEventListener("wheel", (event) => this.wheel(event), { capture: true, passive: false });
+    this.marks = new HandMarks(stage.canvas);
   }
 
   get holding(): boolean {
@@ -89,91 +75,11 @@ export class Grab {
   get hasChosen(): boolean {
     return this.pins.chosen !== null;
   }
-
-  private down(event: PointerEvent): void {
-    const touch = event.pointerType === "touch";
-    if (this.held) {
-      if (touch && this.held.by === "touch") this.second(event);
-      else stop(event);
-      return;
-    }
-    this.pressed = null;
-    if (event.button !== 0 || event.ctrlKey || event.shiftKey || event.altKey || event.metaKey) return;
-    if (!this.events.mayGrab() || this.events.busy(event)) return;
-    const [x, y] = [event.offsetX, event.offsetY];
-    this.pressed = { pin: this.pins.at(x, y, pinsReach[touch ? "touch" : "mouse"]), x, y };
-    const hit = this.pressed.pin ? null : this.picker.cloth(x, y, this.pins.vertices);
-    if (!hit) return;
-    stop(event);
-    this.picker.canvas.setPointerCapture(event.pointerId);
-    (document.activeElement as HTMLElement | null)?.blur(); // keys are the hand's now, not a field's
-    this.hold(hit.vertex, hit.place, touch ? "touch" : "mouse", event.pointerId, x, y);
+  get mayGrab(): boolean {
+    return this.events.mayGrab();
   }
 
-  /// A second finger at once, before the first has pulled: they are the camera's, which hears of the first one now.
-  /// Later, it moves what is held along the view.
-  private second(event: PointerEvent): void {
-    const held = this.held as Held;
-    if (!held.travelled && performance.now() - held.since < secondFinger) {
-      this.drop();
-      const { left, top } = this.picker.canvas.getBoundingClientRect();
-      const [clientX, clientY] = [held.x + left, held.y + top];
-      const first = { pointerId: held.pointer, pointerType: "touch", clientX, clientY, bubbles: true, isPrimary: true };
-      this.stage.controls.domElement?.dispatchEvent(new PointerEvent("pointerdown", { ...first, shiftKey: true }));
-      return;
-    }
-    stop(event);
-    this.depthFinger = { pointer: event.pointerId, y: event.offsetY };
-  }
-
-  private move(event: PointerEvent): void {
-    const { held } = this;
-    if (!held || held.by === "key") return;
-    stop(event);
-    const now = performance.now();
-    if (event.pointerId === this.depthFinger?.pointer) {
-      this.deepen((this.depthFinger.y - event.offsetY) * 0.005);
-      this.depthFinger.y = event.offsetY;
-      held.stillSince = now;
-      return;
-    }
-    if (event.pointerId !== held.pointer) return;
-    const moved = Math.hypot(event.offsetX - held.x, event.offsetY - held.y);
-    held.travelled ||= moved > slop;
-    if (moved > slop || !held.travelled) held.stillSince = held.travelled ? now : held.stillSince;
-    [held.x, held.y] = [event.offsetX, event.offsetY];
-    this.aim();
-  }
-
-  private up(event: PointerEvent): void {
-    if (event.pointerId === this.depthFinger?.pointer) {
-      stop(event);
-      this.depthFinger = null;
-      return;
-    }
-    const { held, pressed } = this;
-    if (held && event.pointerId === held.pointer) {
-      stop(event);
-      if (event.type === "pointerup" && this.still(held)) this.pin();
-      else this.drop();
-      return;
-    }
-    if (held || !pressed || event.type !== "pointerup") return;
-    const click = Math.hypot(event.offsetX - pressed.x, event.offsetY - pressed.y) <= slop;
-    if (click) this.choose(pressed.pin);
-    if (click && !pressed.pin) this.events.clicked(pressed.x, pressed.y);
-    this.pressed = null;
-  }
-
-  private wheel(event: WheelEvent): void {
-    if (!this.held) return;
-    stop(event);
-    event.preventDefault();
-    const lines = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 16 : 1;
-    this.deepen(-event.deltaY * lines * 0.0008);
-  }
-
-  private hold(vertex: number, place: Vector3, by: Held["by"], pointer: number, x: number, y: number): void {
+  hold(vertex: number, place: Vector3, by: Held["by"], pointer: number, x: number, y: number): void {
     const topology = this.picker.topology;
     const cloth = topology?.cloths.findIndex((of) => vertex < of.firstVertex + of.vertexCount) ?? -1;
     if (cloth < 0) return;
@@ -202,7 +108,7 @@ export class Grab {
   }
 
   private forget(): void {
-    this.held = this.depthFinger = null;
+    this.held = null;
     this.unsent = false;
     this.stage.keepStill(false);
     this.tellHint();
@@ -243,7 +149,7 @@ export class Grab {
 
   /// Holds the vertex in the middle of the view, for keys.
   grabMiddle(): void {
-    if (this.held || !this.events.mayGrab()) return;
+    if (this.held || !this.mayGrab) return;
     const { x, y } = this.picker.middle;
     const hit = this.picker.cloth(x, y, this.pins.vertices) ?? this.picker.nearestVertex(x, y, this.pins.vertices);
     if (!hit) return;
@@ -270,7 +176,7 @@ export class Grab {
     this.aim();
   }
 
-  private aim(): void {
+  aim(): void {
     const held = this.held as Held;
     held.target = this.picker.through(held.x, held.y, held.away).add(held.offset);
     this.unsent = true;
@@ -292,7 +198,8 @@ export class Grab {
     this.marks.show(this.marksNow());
   }
 
-  private still(held: Held): boolean {
+  /// True for a finger that has kept still after its pull: it pins when it leaves.
+  still(held: Held): boolean {
     return held.by === "touch" && held.travelled && performance.now() - held.stillSince >= pinAfter;
   }
 
@@ -348,8 +255,4 @@ export class Grab {
       this.hint.say("A pin holds this. Delete or P takes it off.", { label: "Take off", run: () => this.unpin() });
     else this.hint.say(null);
   }
-}
-
-function stop(event: Event): void {
-  event.stopImmediatePropagation();
 }

@@ -12,7 +12,7 @@ export class HandHint {
     this.words.setAttribute("role", "status");
     this.button.type = "button";
     this.box.append(this.words, this.button);
-    document.body.append(this.box);
+    document.querySelector("main")?.append(this.box);
   }
 
   /// Shows these words, with a button beside them if there is an action; null: nothing.

@@ -78,9 +78,14 @@ float weave(vec2 at) {
   return mix(shade, 0.95, smoothstep(0.3, 0.85, max(width.x, width.y)));
 }
 
-// 1 in half of each period and 0 in the other, blurred over a pixel.
+// 1 in half of each period and 0 in the other, averaged over a pixel: exactly, by the integral of it.
+vec2 halvesUpTo(vec2 periods) {
+  vec2 within = fract(periods);
+  return 0.5 * floor(periods) + min(within, 0.25) + max(within - 0.75, 0.0);
+}
 vec2 halves(vec2 periods) {
-  return smoothstep(-fwidth(periods), fwidth(periods), abs(fract(periods) - 0.5) - 0.25);
+  vec2 pixel = max(fwidth(periods), 1e-5);
+  return (halvesUpTo(periods + 0.5 * pixel) - halvesUpTo(periods - 0.5 * pixel)) / pixel;
 }
 
 // How much of the dyed colour is here: 1 all of it, 0 the pale second shade.
@@ -99,7 +104,8 @@ vec3 fabricColor(vec3 base, bool front) {
   vec2 uv = vCloth / threads;
   vec2 inset = min(uv, 1.0 - uv) * threads / longer;
   float border = min(inset.x, inset.y);
-  color *= 1.0 - hemmed * 0.16 * (1.0 - smoothstep(0.016, 0.019, border));
+  float edge = max(0.0015, 0.75 * fwidth(border));  // no narrower than a pixel
+  color *= 1.0 - hemmed * 0.16 * (1.0 - smoothstep(0.0175 - edge, 0.0175 + edge, border));
   return front ? color : mix(color, vec3(dot(color, vec3(0.3, 0.6, 0.1))), 0.25) * 0.94;
 }
 

@@ -1,0 +1,39 @@
+// The notice of a simulation that has blown up: comes and goes with the server's status.
+import { saferStep } from "./gauge";
+import type { Status } from "./hud";
+import { clearDiverged, showDiverged, type Diverged } from "./notices";
+import type { Patch } from "../link/scene_types";
+
+export class Divergence {
+  private toldOf = false;
+  private diverged = false; // in the last status
+
+  constructor(private readonly send: (patch: Patch) => Promise<unknown>) {}
+
+  get now(): boolean {
+    return this.diverged;
+  }
+
+  tell(diverged: Diverged): void {
+    this.toldOf = true;
+    // Once the patch is applied, the server continues from the last good state by itself.
+    showDiverged(diverged, async (patch) => void (await this.send(patch)));
+  }
+
+  // Shows and clears the notice by the status: another viewer may have applied the remedy, or the scene blew up before
+  // this page was opened.
+  follow({ diverged, stability }: Status): void {
+    if (this.diverged && !diverged) {
+      clearDiverged();
+      this.toldOf = false;
+    }
+    this.diverged = diverged === true;
+    if (!this.diverged || this.toldOf) return;
+    const limit = stability?.dt_limit;
+    const dt = limit ? saferStep(limit) : 0;
+    this.tell({
+      reason: "it stopped at its last good state before this page was opened",
+      ...(dt > 0 ? { remedy: { text: `set dt to ${dt} s, below its limit`, patch: { solver: { dt } } } } : {}),
+    });
+  }
+}

@@ -1,0 +1,31 @@
+// Shows the first steps to a browser that has not seen them, or when the help's button asks for them.
+import { button, element } from "./dom";
+import type { FirstStepsHost } from "./first_steps";
+
+const key = "clothlab-first-steps";
+
+/// True if nobody has seen them here. A browser that keeps nothing shows them each time.
+const isNewcomer = (): boolean => {
+  try {
+    return localStorage.getItem(key) === null;
+  } catch {
+    return true;
+  }
+};
+
+export function remember(): void {
+  try {
+    localStorage.setItem(key, "seen");
+  } catch {
+    // it keeps nothing: they come again
+  }
+}
+
+export function bindFirstSteps(host: FirstStepsHost): void {
+  const show = async (): Promise<void> => (await import("./first_steps")).showFirstSteps(host);
+  if (isNewcomer()) void show();
+  button("first-steps-again").onclick = () => {
+    element("help-dialog", HTMLDialogElement).close();
+    void show();
+  };
+}

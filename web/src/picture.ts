@@ -1,0 +1,65 @@
+// The frames on their way to the screen: the newest that came is drawn, acknowledged and counted at the next animation
+// frame. The server sends no more than what is acknowledged.
+import type { FieldName, Frame, ShownFrame } from "./link/protocol";
+import type { MovedCollider } from "./link/scene_types";
+import { hook } from "./test_hook";
+import type { Stage } from "./view/stage";
+
+interface PictureEvents {
+  acknowledge(sequence: number): void;
+  ticked(): void; ///< an animation frame, whether or not it shows a new one of the cloth
+  drawn(frame: ShownFrame): void;
+  first(): void; ///< the first frame is on screen
+}
+
+export class Picture {
+  moved: MovedCollider[] = []; ///< colliders' places for the next frame
+  private latest: ShownFrame | null = null;
+  private fitNext = false;
+
+  constructor(private readonly events: PictureEvents) {}
+
+  /// Takes a frame from the link.
+  take(frame: Frame, field: FieldName | null): void {
+    hook.framesReceived++;
+    const replaced = this.latest; // a newer frame came before this one was drawn
+    if (replaced && !document.hidden) this.events.acknowledge(replaced.header.sequence);
+    this.latest = { ...frame, field, moved: this.moved };
+  }
+
+  /// The next frame is the first of another cloth: it is fitted into the view.
+  fitAtNext(): void {
+    this.fitNext = true;
+  }
+
+  /// Draws on this stage from now on.
+  start(stage: Stage): void {
+    const animate = (): void => {
+      requestAnimationFrame(animate);
+      this.animate(stage);
+    };
+    requestAnimationFrame(animate);
+  }
+
+  private animate(stage: Stage): void {
+    const frame = this.latest;
+    this.latest = null;
+    const shown = frame !== null && stage.show(frame);
+    stage.draw();
+    this.events.ticked();
+    if (!frame) return;
+    this.events.acknowledge(frame.header.sequence);
+    if (!shown) return;
+    this.events.drawn(frame);
+    hook.framesDrawn++;
+    hook.lastFrame = frame;
+    hook.simTime = frame.header.time;
+    hook.step = frame.header.step;
+    if (hook.firstFrameAt === 0) {
+      hook.firstFrameAt = performance.now();
+      this.events.first();
+    }
+    if (this.fitNext) stage.fit();
+    this.fitNext = false;
+  }
+}
