@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { browserTest, eventually, screenshots, withServer } from "./browser.mjs";
 import { hiddenPoints } from "./hidden_points.mjs";
+import { Server } from "../protocol/harness.mjs";
 
 const here = withServer();
 const card = (page) => page.getByRole("region", { name: "Cloth, computed live" });
@@ -93,4 +94,18 @@ browserTest("the third step opens the lab, and the card stands back while it is 
   await page.keyboard.press("Escape");
   await page.locator("#lab").waitFor({ state: "hidden" });
   assert.ok(await card(page).isVisible(), "Escape closed the lab alone");
+});
+
+browserTest("who may only watch is told that an operator may pull, and gets no button to blow up", async () => {
+  const server = await Server.start("--token", "spun gold", "--view-token", "look");
+  try {
+    const { page } = await newcomer("main", 390, 844, { server, drawn: 0 });
+    await page.getByLabel("Token", { exact: true }).fill("look");
+    await page.getByRole("button", { name: "Connect" }).click();
+    await card(page).waitFor();
+    assert.match(await card(page).innerText(), /Pull it by dragging the cloth; an operator may/);
+    assert.equal(await card(page).getByRole("button", { name: "Make it blow up" }).count(), 0);
+  } finally {
+    await server.stop();
+  }
 });

@@ -65,6 +65,7 @@ export class Page {
   });
   private hand: Hand | null = null; // with the stage, as the next
   private layout: Layout | null = null;
+  private welcome = (): void => undefined; // a newcomer
   private sceneName = "";
   private stability: Stability | null = null; // in the last status
   private mayEdit = true; // false for a viewer, who may only watch
@@ -77,9 +78,8 @@ export class Page {
   show(stage: Stage): void {
     this.stage = hook.stage = stage;
     const layout: Layout = (this.layout = new Layout(() => stage.resize(layout.freeArea())));
-    const theme = new ThemeSwitch(() => stage.setTheme());
     this.hand = this.makeHand(stage);
-    this.bind(layout, theme);
+    this.bind(layout, new ThemeSwitch(() => stage.setTheme()));
     stage.onLost = () =>
       notice("warning", {
         title: "The browser took the graphics away",
@@ -98,7 +98,7 @@ export class Page {
     const lab = (): void => this.lab.toggle();
     bindCommands({ transport: this.transport, layout, theme, fit: () => this.stage.fit(), lab });
     bindCameraInput(this.stage.controls, () => this.hand?.holding === true);
-    bindFirstSteps({
+    this.welcome = bindFirstSteps({
       mayEdit: () => this.mayEdit,
       blowUp: () => this.blowUp(),
       lab,
@@ -255,6 +255,7 @@ export class Page {
     this.hud.setRenderer(String(params.renderer));
     this.mayEdit = params.role !== "viewer";
     this.hand?.greeted(Number(params.client));
+    this.welcome();
     this.panel.setMethods((params.methods as string[] | undefined) ?? []);
     this.lab.setMethods((params.methods as string[] | undefined) ?? []);
     this.lab.roleChanged();

@@ -21,11 +21,16 @@ export function remember(): void {
   }
 }
 
-export function bindFirstSteps(host: FirstStepsHost): void {
+/// Returns what shows them to a newcomer, to be called once the server has told this page's role.
+export function bindFirstSteps(host: FirstStepsHost): () => void {
   const show = async (): Promise<void> => (await import("./first_steps")).showFirstSteps(host);
-  if (isNewcomer()) void show();
   button("first-steps-again").onclick = () => {
     element("help-dialog", HTMLDialogElement).close();
     void show();
+  };
+  let due = isNewcomer();
+  return () => {
+    if (due) void show();
+    due = false;
   };
 }
