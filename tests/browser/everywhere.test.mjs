@@ -143,6 +143,10 @@ for (const [width, height] of [
     await page.keyboard.press("n");
     await page.getByRole("button", { name: "Take off" }).waitFor();
     await look("a pin is chosen");
+    const edge = (selector, side) =>
+      page.locator(selector).evaluate((node, of) => node.getBoundingClientRect()[of], side);
+    const above = await edge(".hand-hint[data-of=hand]", "bottom");
+    assert.ok(above <= (await edge("#first-steps", "top")) + 0.5, "the hint lies on the first steps");
     await page.keyboard.press("Escape");
     await page.keyboard.press("Escape");
     await page.locator("#first-steps").waitFor({ state: "detached" });

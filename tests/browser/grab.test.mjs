@@ -227,6 +227,7 @@ browserTest(
       (count) => count === 4,
     );
     await handsOf(client, (all) => all.length === 0);
+    await viewer.until(() => window.clothlab.document.cloths[0].pins.length === 4);
     for (let i = 0; i < 4; ++i) await keyboard.press("n"); // the fourth pin
     await keyboard.press("p");
     await eventually(
