@@ -1,13 +1,13 @@
 #include "server/net/room.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 
 #include "server/base/log.h"
 #include "server/net/client.h"
 #include "server/net/greeting.h"
 #include "server/net/hub.h"
+#include "server/net/status.h"
 #include "server/session/keeper.h"
 
 namespace clothlab::net {
@@ -90,7 +90,7 @@ void Room::leave(Client& client) {
 }
 
 void Room::let_go(const Client& client) {
-  post({{client.id()}, session::GrabEnd{}});
+  post({{client.id(), std::nullopt}, session::GrabEnd{}});
 }
 
 void Room::demand_changed(std::optional<stream::Form> fresh) {
@@ -271,53 +271,15 @@ void Room::broadcast_viewers() {
   broadcast("viewers", {{"count", clients_.size()}});
 }
 
-namespace {
-
-/// What contact between surfaces has done; null where there is none: it begins with a search.
-json surface_counts(const sim::Diagnostics& d) {
-  if (d.surface_searches == 0) return nullptr;
-  return {{"pairs", d.surface_pairs},
-          {"cuts", d.surface_cuts},
-          {"forced", d.surface_forced},
-          {"searches", d.surface_searches}};
-}
-
-json hands_text(const std::vector<session::HandAt>& hands) {
-  json list = json::array();
-  for (const session::HandAt& at : hands)
-    list.push_back({{"by", at.by},
-                    {"hand", at.hand},
-                    {"cloth", at.cloth},
-                    {"vertex", at.vertex},
-                    {"target", {at.target.x, at.target.y, at.target.z}}});
-  return list;
-}
-
-}  // namespace
-
 json Room::status_params(const session::Status& status) const {
-  const sim::Diagnostics& d = status.diagnostics;
-  return {{"playing", status.run.plays()},
-          {"time", d.time},
-          {"step", d.step},
-          {"speed", status.speed},
-          {"real_time_factor", status.real_time_factor},
-          {"energy", {{"kinetic", d.kinetic}, {"elastic", d.elastic}, {"gravitational", d.gravitational}}},
-          {"max_strain", d.max_strain},
-          {"max_speed", d.max_speed},
-          {"contacts", d.contacts},
-          {"surface", surface_counts(d)},
-          {"hands", hands_text(status.hands)},
-          {"passes", passes_},
-          {"terms", terms_},
-          {"skipped", skipped_},
-          {"pass_seconds", pass_seconds_},
-          {"stability",
-           {{"dt_limit", std::isfinite(status.dt_limit) ? json(status.dt_limit) : json(nullptr)},
-            {"margin", status.margin ? json(*status.margin) : json(nullptr)}}},
-          {"solver", solver_},
-          {"asleep", asleep_},
-          {"diverged", status.run.diverged()}};
+  json params = status_of_session(status);
+  params.update({{"passes", passes_},
+                 {"terms", terms_},
+                 {"skipped", skipped_},
+                 {"pass_seconds", pass_seconds_},
+                 {"solver", solver_},
+                 {"asleep", asleep_}});
+  return params;
 }
 
 }  // namespace clothlab::net

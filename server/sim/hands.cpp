@@ -1,7 +1,6 @@
 #include "server/sim/hands.h"
 
 #include <algorithm>
-#include <bit>
 #include <glm/vec4.hpp>
 #include <map>
 
@@ -15,7 +14,9 @@ constexpr GLuint lanes = 64;
 
 /// `Held` of shaders/hands/hands.glsl.
 struct Entry {
-  glm::vec4 pull, numbers;
+  glm::vec4 pull;
+  glm::vec3 numbers;
+  std::uint32_t vertex;
 };
 
 /// The springs of all hands on one vertex.
@@ -59,8 +60,7 @@ Status Hands::set(std::vector<Hand> hands, const model::Model& model,
     const double mass = model.mass[vertex];
     entries.push_back(
         {glm::vec4(glm::vec3(springs.pull / springs.stiffness), static_cast<float>(springs.stiffness / mass)),
-         glm::vec4(static_cast<float>(springs.damping / mass), static_cast<float>(springs.reach),
-                   static_cast<float>(1.0 / mass), std::bit_cast<float>(vertex))});
+         glm::vec3(springs.damping / mass, springs.reach, 1.0 / mass), vertex});
   }
   hands_ = std::move(hands);
   count_ = static_cast<std::uint32_t>(entries.size());

@@ -13,7 +13,7 @@ void main() {
   int i = int(gl_GlobalInvocationID.x);
   if (i >= held_count) return;
   Held entry = held[i];
-  uint vertex = floatBitsToUint(entry.numbers.w);
+  uint vertex = entry.vertex;
   vec3 way = entry.pull.xyz - position[vertex].xyz;
   way *= min(1.0, entry.numbers.y / max(length(way), 1e-30));
   float heavier = dt * (dt * entry.pull.w + entry.numbers.x);

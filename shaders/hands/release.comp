@@ -4,6 +4,5 @@
 void main() {
   int i = int(gl_GlobalInvocationID.x);
   if (i >= held_count) return;
-  uint vertex = floatBitsToUint(held[i].numbers.w);
-  position[vertex].w = held[i].numbers.z;
+  position[held[i].vertex].w = held[i].numbers.z;
 }
