@@ -1,26 +1,13 @@
 // Pulling at the cloth by real mouse, finger and keys, at a desktop's and a phone's size.
 import assert from "node:assert/strict";
+import { hanging } from "../protocol/hanging.mjs";
 import { browserTest, eventually, screenshots, withServer } from "./browser.mjs";
 
 const { both } = withServer();
 
-// A sheet that hangs from its upper edge, before a floor that shows where the cloth is not.
+// A sheet that hangs by three vertices of its upper edge.
 const columns = 13;
-const hanging = {
-  version: 1,
-  name: "hanging",
-  cloths: [
-    {
-      mesh: { grid: { columns, rows: 13, width: 0.8, height: 0.8 } },
-      transform: { translate: [0, 1, 0], rotate: [90, 0, 0] },
-      mass: { per_vertex: 0.002 },
-      material: { structural: 200, shear: 50, bend: 5, damping: 0.05 },
-      pins: [{ at: "corner:0,0" }, { at: "corner:6,0" }, { at: "corner:12,0" }],
-    },
-  ],
-  air_drag: 2,
-  solver: { method: "symplectic_euler", dt: 0.001 },
-};
+const sheet = hanging(columns, 0.8, ["corner:0,0", "corner:6,0", "corner:12,0"]);
 const vertex = 8 * columns + 6;
 const sizes = [
   [1440, 900],
@@ -29,7 +16,7 @@ const sizes = [
 
 async function hang(session, width, height) {
   const opened = await both(session, { width, height });
-  await opened.client.request("scene.load", { scene: hanging });
+  await opened.client.request("scene.load", { scene: sheet });
   await opened.viewer.until(() => window.clothlab.document?.name === "hanging" && window.clothlab.simTime > 0.5);
   await opened.client.request("stream.subscribe", { encoding: "f32", rate: 30 });
   // A press is aimed at what is seen: wait until neither the cloth nor the camera moves much.
@@ -367,7 +354,7 @@ browserTest("another viewer's hand is marked, and a reset ends mine", async () =
 
 // Bodies beside the cloth.
 const furnished = {
-  ...hanging,
+  ...sheet,
   name: "furnished",
   colliders: [
     { name: "ball", sphere: { center: [0.75, 0.6, 0.2], radius: 0.15 } },

@@ -1,6 +1,7 @@
 // Hands on the cloth, and pins where a hand has put it.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
+import { hanging } from "./hanging.mjs";
 import { Client, Server, sleep, withTimeout } from "./harness.mjs";
 
 let server;
@@ -9,21 +10,7 @@ after(() => server.stop());
 
 // A small sheet that hangs from its upper edge at rest.
 const columns = 9;
-const hanging = {
-  version: 1,
-  name: "hanging",
-  cloths: [
-    {
-      mesh: { grid: { columns, rows: 9, width: 0.4, height: 0.4 } },
-      transform: { translate: [0, 1, 0], rotate: [90, 0, 0] },
-      mass: { per_vertex: 0.002 },
-      material: { structural: 200, shear: 50, bend: 5, damping: 0.05 },
-      pins: [{ at: "edge:row:0" }],
-    },
-  ],
-  air_drag: 2,
-  solver: { method: "symplectic_euler", dt: 0.001 },
-};
+const sheet = hanging(columns, 0.4, ["edge:row:0"]);
 const vertex = 8 * columns + 4; // the middle of the lower edge, at (0, 0.6, 0)
 const target = [0.1, 0.75, 0.2];
 
@@ -34,7 +21,7 @@ async function enter(session = `grab-${++sessions}`) {
   await client.notification("scene");
   return client;
 }
-async function hang(scene = hanging) {
+async function hang(scene = sheet) {
   const client = await enter();
   await client.request("scene.load", { scene });
   await client.request("stream.subscribe", { encoding: "f32", rate: 60 });
@@ -133,7 +120,7 @@ test("a reset, another scene and another mesh end hands; other changes do not", 
   };
   for (const [method, params] of [
     ["sim.reset", {}],
-    ["scene.load", { scene: hanging }],
+    ["scene.load", { scene: sheet }],
     ["scene.patch", { patch: [{ op: "replace", path: "/cloths/0/mesh/grid/width", value: 0.41 }] }],
   ]) {
     await hold();
