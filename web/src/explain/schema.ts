@@ -1,6 +1,6 @@
 // Looks a place of the scene up in its schema (server/scene/scene.schema.json): what it means, its unit, its range, its
 // default; and completes a preset's file by the defaults, as the server does.
-import { keysOf } from "../link/json_patch";
+import { isObject, keysOf } from "../link/json_patch";
 import type { SceneDocument } from "../link/scene_types";
 
 /// The part of JSON Schema that the scene's uses.
@@ -30,8 +30,6 @@ export interface Words {
   initial?: unknown; ///< the default; undefined if the place has none
 }
 
-const isObject = (value: unknown): value is Record<string, unknown> =>
-  typeof value === "object" && value !== null && !Array.isArray(value);
 const copy = <T>(value: T): T => structuredClone(value);
 
 /// A schema without `$ref`: the definition, completed by the place that refers to it.

@@ -3,7 +3,7 @@ import type { Operation, Patch } from "./scene_types";
 
 type Node = Record<string, unknown> | unknown[];
 
-const isObject = (value: unknown): value is Record<string, unknown> =>
+export const isObject = (value: unknown): value is Record<string, unknown> =>
   typeof value === "object" && value !== null && !Array.isArray(value);
 
 /// The keys of a JSON Pointer.

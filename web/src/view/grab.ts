@@ -4,7 +4,8 @@ import { Vector3 } from "three";
 import { HandHint } from "./hand_hint";
 import { HandMarks, type Mark } from "./hand_marks";
 import { PinChoice, type PinnedVertex } from "./pin_choice";
-import { Picker, Places } from "./picking";
+import { Picker } from "./picking";
+import { Places } from "./places";
 import type { Stage } from "./stage";
 import type { Operation, SceneDocument, Vec3 } from "../link/scene_types";
 
@@ -33,6 +34,7 @@ export interface Held {
   cloth: number;
   target: Vector3; // [m]
   away: number; // of the target's plane from the camera, along the view [m]
+  grabbedAway: number; // the same when it was grabbed [m]
   offset: Vector3; // of the vertex from where the pointer met that plane
   x: number; // of the pointer [CSS pixels]
   y: number;
@@ -88,7 +90,7 @@ export class Grab {
     const away = this.picker.away(place);
     const offset = place.clone().sub(this.picker.through(x, y, away));
     const common = { travelled: false, told: false, since: now, stillSince: now };
-    this.held = { by, pointer, vertex, cloth, target: place.clone(), away, offset, x, y, ...common };
+    this.held = { by, pointer, vertex, cloth, target: place.clone(), away, grabbedAway: away, offset, x, y, ...common };
     this.events.took();
     this.stage.keepStill(true);
     this.events.notify("grab.start", {
@@ -124,7 +126,9 @@ export class Grab {
     const place = new Places(frame).of(held.vertex).toArray();
     const path = `/cloths/${held.cloth}/pins/${document.cloths[held.cloth]?.pins.length ?? 0}`;
     const value = { at: `vertex:${held.vertex - first}`, place };
-    const ended = () => this.events.notify("grab.end", {});
+    const ended = () => {
+      if (!this.held) this.events.notify("grab.end", {}); // else the hand has let go by taking something else
+    };
     this.events.patch([{ op: "add", path, value }]).then(ended, ended);
     this.forget();
   }
@@ -168,10 +172,9 @@ export class Grab {
   /// Moves what is held away along the view, by this share of the distance.
   deepen(share: number): void {
     const { held } = this;
-    const frame = this.picker.frame;
-    if (!held || !frame) return;
-    const start = this.picker.away(new Places(frame).of(held.vertex));
-    held.away = Math.min(Math.max(held.away * Math.exp(share), start / farthest), start * farthest);
+    if (!held) return;
+    const [least, most] = [held.grabbedAway / farthest, held.grabbedAway * farthest];
+    held.away = Math.min(Math.max(held.away * Math.exp(share), least), most);
     held.travelled = true;
     this.aim();
   }

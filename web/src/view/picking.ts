@@ -1,31 +1,13 @@
 // Finds what the pointer is on: the cloth's nearest vertex, by a ray through the triangles of the frame on screen.
 import { type Box3, type PerspectiveCamera, Ray, Raycaster, Vector2, Vector3 } from "three";
+import { Places } from "./places";
 import type { Stage } from "./stage";
-import { q16Words, type Frame, type Topology } from "../link/protocol";
+import type { Frame, Topology } from "../link/protocol";
 
 export interface Hit {
   vertex: number; ///< of all cloths, as in the frame
   place: Vector3; ///< of the vertex [m]
   distance: number; ///< from the camera to the triangle [m]
-}
-
-/// Reads places of vertices from a q16 frame.
-export class Places {
-  private readonly words: Uint16Array;
-
-  constructor(private readonly frame: Frame) {
-    this.words = q16Words(frame);
-  }
-
-  get count(): number {
-    return this.frame.header.vertexCount;
-  }
-
-  of(vertex: number, into = new Vector3()): Vector3 {
-    const { boxMinimum: low, boxExtent: extent } = this.frame.header;
-    const at = (axis: 0 | 1 | 2): number => low[axis] + (extent[axis] * (this.words[4 * vertex + axis] ?? 0)) / 65535;
-    return into.set(at(0), at(1), at(2));
-  }
 }
 
 /// The ray of a pointer at `x`, `y` [CSS pixels in the canvas].

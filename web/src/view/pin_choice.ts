@@ -1,6 +1,7 @@
 // The pins of the scene as one points at them: which vertices they hold, and the one that is chosen, to be taken off.
 import { heldVertices } from "./pins";
-import { type Picker, Places } from "./picking";
+import type { Picker } from "./picking";
+import { Places } from "./places";
 import type { Operation, SceneDocument } from "../link/scene_types";
 
 export interface PinnedVertex {

@@ -2,8 +2,9 @@
 import { Vector3 } from "three";
 import { sweep } from "./motion";
 import { heldVertices, restPositions } from "./pins";
+import { Places } from "./places";
 import { floorOf, outlineOf } from "./solids";
-import { q16Words, type Frame } from "../link/protocol";
+import type { Frame } from "../link/protocol";
 import type { Cloth, SceneDocument } from "../link/scene_types";
 
 const mostLooked = 400; // vertices of a cloth: more tell nothing new of its outline
@@ -52,13 +53,10 @@ export function scenePoints(document: SceneDocument): Vector3[] {
 }
 
 /// Some of a frame's vertices [m].
-export function framePoints({ header, buffer }: Frame): Vector3[] {
-  const words = q16Words({ header, buffer });
-  const stride = Math.ceil(header.vertexCount / mostLooked);
-  const [minimum, extent] = [header.boxMinimum, header.boxExtent];
+export function framePoints(frame: Frame): Vector3[] {
+  const places = new Places(frame);
+  const stride = Math.ceil(places.count / mostLooked);
   const points: Vector3[] = [];
-  const at = (vertex: number, axis: 0 | 1 | 2): number =>
-    minimum[axis] + (extent[axis] * (words[4 * vertex + axis] ?? 0)) / 65535;
-  for (let i = 0; i < header.vertexCount; i += stride) points.push(new Vector3(at(i, 0), at(i, 1), at(i, 2)));
+  for (let i = 0; i < places.count; i += stride) points.push(places.of(i));
   return points;
 }
