@@ -3,7 +3,8 @@ import assert from "node:assert/strict";
 import { hanging } from "../protocol/hanging.mjs";
 import { browserTest, eventually, screenshots, withServer } from "./browser.mjs";
 
-const { both } = withServer();
+const here = withServer();
+const { both } = here;
 
 // A sheet that hangs by three vertices of its upper edge.
 const columns = 13;
@@ -138,6 +139,19 @@ browserTest("the wheel takes what is held away along the view, and brings it bac
   );
   await mouse.wheel(0, 480);
   await handsOf(client, ([one]) => one && distance(one.target, camera) < start * 0.95);
+  // As far as the wheel turns: to four times the distance at the press, also after the cloth has come along.
+  const farthest = 4.05 * start;
+  await mouse.wheel(0, -20_000);
+  await handsOf(client, ([one]) => one && distance(one.target, camera) > 3 * start);
+  await eventually(
+    "the cloth comes along",
+    () => placeOf(client, held.vertex),
+    (at) => distance(at, camera) > start * 1.05,
+  );
+  await mouse.wheel(0, -20_000);
+  await viewer.page.waitForTimeout(300);
+  const [end] = (await handsOf(client, (all) => all.length === 1)).hands;
+  assert.ok(distance(end.target, camera) < farthest, `${distance(end.target, camera)} m, at most ${farthest}`);
   assert.ok(distance(camera, await cameraPlace(viewer)) < 0.02, "the camera did not zoom");
   await mouse.up();
   await client.close();
@@ -179,6 +193,36 @@ browserTest("P pins what the mouse holds where it is, a click chooses the pin, D
   );
   assert.equal(await hint(viewer).isVisible(), false);
   assert.deepEqual(complaints(viewer), []);
+  await client.close();
+});
+
+browserTest("what the hand takes before the server has set a pin is not let go when it has", async () => {
+  const { viewer, client, scene } = await hang("late", 1440, 900);
+  const { mouse, keyboard } = viewer.page;
+  const [first, second] = [await seen(viewer, vertex), await seen(viewer, vertex - 4)];
+  await mouse.move(first.x, first.y);
+  await mouse.down();
+  const held = (await handsOf(client, (all) => all.length === 1)).hands[0].vertex;
+  here.server.child.kill("SIGSTOP");
+  try {
+    await keyboard.press("p");
+    await mouse.up();
+    await mouse.move(second.x, second.y);
+    await mouse.down();
+  } finally {
+    here.server.child.kill("SIGCONT");
+  }
+  await eventually(
+    "the pins",
+    async () => (await scene()).cloths[0].pins.length,
+    (count) => count === 4,
+  );
+  await viewer.page.waitForTimeout(500);
+  const { hands } = await handsOf(client, () => true);
+  assert.equal(hands.length, 1);
+  assert.notEqual(hands[0].vertex, held);
+  await mouse.up();
+  await handsOf(client, (all) => all.length === 0);
   await client.close();
 });
 
