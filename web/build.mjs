@@ -33,7 +33,12 @@ const withoutFonts = {
 
 const { metafile } = await build({
   absWorkingDir: here,
-  entryPoints: { app: "src/main.ts", style: "src/style.css", text: "src/text/text.css" },
+  entryPoints: {
+    app: "src/main.ts",
+    style: "src/style.css",
+    text: "src/text/text.css",
+    gallery: "src/gallery/gallery.css",
+  },
   outdir: "dist",
   bundle: true,
   splitting: true, // what an import() names is loaded when it is used

@@ -80,18 +80,19 @@ void WebFiles::add(const std::string& path, std::string body) {
   files_[path] = {type, std::move(body), std::move(gzipped), std::move(etag)};
 }
 
-void WebFiles::add_all(const fs::path& root) {
+void WebFiles::add_all(const fs::path& root, const fs::path& below) {
   std::error_code failure;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root, failure)) {
     if (entry.is_symlink(failure) || !entry.is_regular_file(failure)) continue;
     if (Result<std::string> body = read_file(entry.path()))
-      add((fs::path("/") / entry.path().lexically_relative(root)).generic_string(), std::move(*body));
+      add((below / entry.path().lexically_relative(root)).generic_string(), std::move(*body));
   }
 }
 
 WebFiles WebFiles::load() {
   WebFiles files;
-  if (const Result<fs::path> root = data_path("web/dist")) files.add_all(*root);
+  if (const Result<fs::path> root = data_path("web/dist")) files.add_all(*root, "/");
+  if (const Result<fs::path> root = data_path("web/pictures")) files.add_all(*root, "/presets");
   for (const char* client : {"clothlab.py", "clothlab.mjs"})
     if (const Result<fs::path> path = data_path(std::string("web/clients/") + client))
       if (Result<std::string> body = read_file(*path)) files.add(std::string("/") + client, std::move(*body));

@@ -86,6 +86,13 @@ for (const [width, height] of [
       await page.getByRole("dialog", { name: "A scene by link" }).waitFor();
       found.push(...(await violations(viewer, "a scene by link")));
       await page.keyboard.press("Escape");
+      await page
+        .locator(".scene-actions button")
+        .first()
+        .evaluate((gallery) => gallery.click());
+      await page.getByRole("dialog", { name: "Presets" }).waitFor();
+      found.push(...(await violations(viewer, "the gallery")));
+      await page.keyboard.press("Escape");
       await page.getByRole("button", { name: "Help" }).click();
       found.push(...(await violations(viewer, "help")));
       assert.deepEqual(found, []);

@@ -15,6 +15,7 @@ import { LinkView } from "./panel/link_view";
 import { Guide } from "./explain/guide";
 import { notice, noticeError, showApplied, type Diverged, type Level } from "./panel/notices";
 import { takeDroppedMeshes } from "./panel/mesh_drop";
+import { lateStyle } from "./panel/late_style";
 import { Panel } from "./panel/panel";
 import { Bodies } from "./link/bodies";
 import type { Fabric } from "./link/fabrics";
@@ -33,6 +34,13 @@ import { Transport } from "./panel/transport";
 import { timeStep } from "./panel/solver_section";
 
 type Params = Record<string, unknown>;
+
+/// The answer to `scene.presets`.
+interface Offers {
+  presets: string[];
+  about?: Record<string, string>; ///< a sentence of each
+  fabrics?: Fabric[];
+}
 
 export class Page {
   private stage!: Stage; // set by show(), before the first event of the connection
@@ -68,6 +76,7 @@ export class Page {
   private welcome = (): void => undefined; // a newcomer
   private sceneName = "";
   private stability: Stability | null = null; // in the last status
+  private offers: Offers = { presets: [] };
   private messageBytes = 65536; // the most that a message may have
   private mayEdit = true; // false for a viewer, who may only watch
 
@@ -187,11 +196,9 @@ export class Page {
       {
         edit: (operations) => this.store.edit(operations),
         busy: (path) => this.store.busy(path),
-        loadPreset: (name) => {
-          this.sceneName = "";
-          this.request("scene.load", { preset: name });
-        },
+        loadPreset: (name) => this.loadPreset(name),
         openText: () => this.text.toggle(),
+        openGallery: () => void this.openGallery(),
       },
       this.guide,
     );
@@ -283,10 +290,33 @@ export class Page {
     this.lab.roleChanged();
     document.body.classList.toggle("viewer", !this.mayEdit);
     this.transport.enable(this.connection.open && this.mayEdit);
-    this.connection.request<{ presets: string[]; fabrics?: Fabric[] }>("scene.presets").then(
-      ({ presets, fabrics }) => this.panel.setOffers(presets, fabrics ?? []),
+    this.connection.request<Offers>("scene.presets").then(
+      (offers) => {
+        this.offers = offers;
+        this.panel.setOffers(offers.presets, offers.fabrics ?? []);
+      },
       () => undefined,
     );
+  }
+
+  private async openGallery(): Promise<void> {
+    const { presets, about = {} } = this.offers;
+    const loaded = Promise.all([import("./gallery"), lateStyle("gallery.css")]);
+    const [gallery] = await loaded.catch((error: Error) => {
+      noticeError("The presets' pictures could not be opened", error);
+      return [null];
+    });
+    gallery?.openGallery({
+      presets: presets.map((name) => ({ name, about: about[name] ?? "" })),
+      current: this.sceneName,
+      mayEdit: this.mayEdit,
+      load: (name) => this.loadPreset(name),
+    });
+  }
+
+  private loadPreset(name: string): void {
+    this.sceneName = "";
+    this.request("scene.load", { preset: name });
   }
 
   private sceneChanged(document: SceneDocument, whole: boolean): void {

@@ -15,6 +15,7 @@ export interface PanelEvents {
   busy(path: string): boolean;
   loadPreset(name: string): void;
   openText(): void;
+  openGallery(): void;
 }
 
 interface Control {
@@ -55,13 +56,15 @@ export class Panel {
     this.explanation = new Explanation(container);
     this.differences.className = "differences";
     this.actions.className = "scene-actions";
-    const text = document.createElement("button");
-    text.type = "button";
-    text.className = "offer";
-    text.textContent = "Edit as text, save, share";
-    text.title = "The scene as JSON (J)";
-    text.onclick = () => this.events.openText();
-    this.actions.append(text);
+    const offer = (text: string, title: string, run: () => void): HTMLButtonElement => {
+      const made = document.createElement("button");
+      Object.assign(made, { type: "button", className: "offer", textContent: text, title, onclick: run });
+      return made;
+    };
+    this.actions.append(
+      offer("Gallery", "The presets with pictures", () => this.events.openGallery()),
+      offer("Edit as text, save, share", "The scene as JSON (J)", () => this.events.openText()),
+    );
   }
 
   /// Marks what differs from the scene as loaded: called when that is known.

@@ -1,6 +1,7 @@
 // The way to the scene's text, which is loaded when somebody opens it, drops a scene, or comes by a link with one.
 import type { TextDrawer } from "./drawer";
 import type { TextHost } from "./host";
+import { lateStyle } from "../panel/late_style";
 import { noticeError } from "../panel/notices";
 
 type Text = typeof import("./index");
@@ -45,15 +46,7 @@ export class TextDoor {
   }
 
   private async load(): Promise<Text> {
-    const style = document.createElement("link");
-    style.rel = "stylesheet";
-    style.href = "text.css";
-    const styled = new Promise((resolve, reject) => {
-      style.onload = resolve;
-      style.onerror = () => reject(new Error("text.css did not come"));
-    });
-    document.head.append(style);
-    const [text] = await Promise.all([import("./index"), styled]);
+    const [text] = await Promise.all([import("./index"), lateStyle("text.css")]);
     return text;
   }
 }
