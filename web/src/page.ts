@@ -1,5 +1,7 @@
 // Connects the parts of the page: the link, the scene's document, the stage and the controls.
 import { Connection, type LinkEvents } from "./link/connection";
+import { openGallery } from "./gallery/door";
+import { act } from "./panel/act";
 import { ColourBy } from "./panel/colour_by";
 import { bindCommands } from "./panel/commands";
 import { element } from "./panel/dom";
@@ -15,7 +17,6 @@ import { LinkView } from "./panel/link_view";
 import { Guide } from "./explain/guide";
 import { notice, noticeError, showApplied, type Diverged, type Level } from "./panel/notices";
 import { takeDroppedMeshes } from "./panel/mesh_drop";
-import { lateStyle } from "./panel/late_style";
 import { Panel } from "./panel/panel";
 import { Bodies } from "./link/bodies";
 import type { Fabric } from "./link/fabrics";
@@ -198,7 +199,13 @@ export class Page {
         busy: (path) => this.store.busy(path),
         loadPreset: (name) => this.loadPreset(name),
         openText: () => this.text.toggle(),
-        openGallery: () => void this.openGallery(),
+        openGallery: () => this.openGallery(),
+        act: (deed) =>
+          act(deed, {
+            stored: () => this.store.stored,
+            send: (patch) => this.connection.request("scene.patch", { patch }),
+            refused: (title, error, patch) => this.refusals.tell(title, error, patch),
+          }),
       },
       this.guide,
     );
@@ -299,14 +306,9 @@ export class Page {
     );
   }
 
-  private async openGallery(): Promise<void> {
+  private openGallery(): void {
     const { presets, about = {} } = this.offers;
-    const loaded = Promise.all([import("./gallery"), lateStyle("gallery.css")]);
-    const [gallery] = await loaded.catch((error: Error) => {
-      noticeError("The presets' pictures could not be opened", error);
-      return [null];
-    });
-    gallery?.openGallery({
+    openGallery({
       presets: presets.map((name) => ({ name, about: about[name] ?? "" })),
       current: this.sceneName,
       mayEdit: this.mayEdit,

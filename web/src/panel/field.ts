@@ -1,4 +1,5 @@
 // A field of the panel: the value it shows, the places of the document it writes (JSON Pointers), and its note.
+import type { Deed } from "./parts";
 import type { Scale } from "./slider";
 import type { LeftToFabric } from "../link/fabrics";
 import { valueAt } from "../link/json_patch";
@@ -59,6 +60,7 @@ export interface Section {
   open: boolean;
   fields: Field[];
   sections: Section[];
+  deeds?: Deed[]; ///< buttons below the fields
 }
 
 export const meter = { unit: "m" };

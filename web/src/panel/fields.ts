@@ -2,6 +2,7 @@
 import { fabricFields, isKnown } from "./fabric_fields";
 import { type Field, kinds, meter, type Note, number, type Section, type SolverFacts, vector } from "./field";
 import { motionFields } from "./motion_fields";
+import { additions, bodyDeeds, clothDeeds, pinDeeds } from "./parts";
 import { readable } from "./slider";
 import { solverSection } from "./solver_section";
 import type { Fabric } from "../link/fabrics";
@@ -25,17 +26,21 @@ function pinSections(document: SceneDocument, cloth: number): Section[] {
     const same = JSON.stringify(pin.motion);
     groups.set(same, [...(groups.get(same) ?? []), i]);
   });
-  return [...groups.entries()].map(([motion, pins]) => ({
-    key: `/cloths/${cloth}/pins/${pins.join("+")}`,
-    title: pins.length === 1 ? pinTitle(document.cloths[cloth]?.pins[pins[0] as number]?.at) : `${pins.length} pins`,
-    open: false,
-    sections: [],
-    fields: motionFields(
-      pins.map((pin) => `/cloths/${cloth}/pins/${pin}/motion`),
-      JSON.parse(motion) as Motion,
-      [0, 0, 0],
-    ),
-  }));
+  return [...groups.entries()].map(([motion, pins]) => {
+    const one = pinTitle(document.cloths[cloth]?.pins[pins[0] as number]?.at);
+    return {
+      key: `/cloths/${cloth}/pins/${pins.join("+")}`,
+      title: pins.length === 1 ? one : `${pins.length} pins`,
+      open: false,
+      sections: [],
+      fields: motionFields(
+        pins.map((pin) => `/cloths/${cloth}/pins/${pin}/motion`),
+        JSON.parse(motion) as Motion,
+        [0, 0, 0],
+      ),
+      deeds: pinDeeds(cloth, pins, one),
+    };
+  });
 }
 
 /// The strain limit in percent. The slider's left end is null: no limit.
@@ -140,6 +145,7 @@ function clothSection(document: SceneDocument, index: number, fabrics: Fabric[])
       },
     ],
     sections: pinSections(document, index),
+    deeds: clothDeeds(document, index),
   };
 }
 
@@ -199,6 +205,7 @@ function colliderSection(document: SceneDocument, index: number): Section {
       number("restitution", [`${base}/restitution`], { min: 0, max: 1, step: 0.01 }),
       ...motionFields([`${base}/motion`], collider.motion, shape.center),
     ],
+    deeds: bodyDeeds(document, index),
   };
 }
 
@@ -281,5 +288,6 @@ export function sectionsOf(document: SceneDocument, methods: string[], fabrics: 
     windSection(document),
     selfCollisionSection(document),
     ...document.colliders.map((_, i) => colliderSection(document, i)),
+    additions,
   ];
 }

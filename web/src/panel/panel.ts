@@ -7,6 +7,8 @@ import { sectionsOf } from "./fields";
 import { Gauge, type Stability } from "./gauge";
 import type { Fabric } from "../link/fabrics";
 import type { Operation, SceneDocument } from "../link/scene_types";
+import { deedOffers, offers } from "./offers";
+import type { Deed } from "./parts";
 import { SliderController } from "./slider";
 import { timeStep } from "./solver_section";
 
@@ -16,6 +18,7 @@ export interface PanelEvents {
   loadPreset(name: string): void;
   openText(): void;
   openGallery(): void;
+  act(deed: Deed): void;
 }
 
 interface Control {
@@ -44,7 +47,10 @@ export class Panel {
   private stored: SceneDocument | null = null; // the same as the server keeps it
   private readonly explanation: Explanation;
   private readonly differences = document.createElement("p");
-  private readonly actions = document.createElement("p");
+  private readonly actions = offers([
+    { text: "Gallery", title: "The presets with pictures", run: () => this.events.openGallery() },
+    { text: "Edit as text, save, share", title: "The scene as JSON (J)", run: () => this.events.openText() },
+  ]);
   private readonly folded = new Map<string, boolean>();
   private preset: Controller | null = null;
 
@@ -55,16 +61,6 @@ export class Panel {
   ) {
     this.explanation = new Explanation(container);
     this.differences.className = "differences";
-    this.actions.className = "scene-actions";
-    const offer = (text: string, title: string, run: () => void): HTMLButtonElement => {
-      const made = document.createElement("button");
-      Object.assign(made, { type: "button", className: "offer", textContent: text, title, onclick: run });
-      return made;
-    };
-    this.actions.append(
-      offer("Gallery", "The presets with pictures", () => this.events.openGallery()),
-      offer("Edit as text, save, share", "The scene as JSON (J)", () => this.events.openText()),
-    );
   }
 
   /// Marks what differs from the scene as loaded: called when that is known.
@@ -146,7 +142,9 @@ export class Panel {
     if (shape === this.shape) return;
     this.shape = shape;
     const scroll = this.container.scrollTop;
-    const focused = (document.activeElement as HTMLElement | null)?.getAttribute("aria-label");
+    const { activeElement } = document;
+    const inside = this.container.contains(activeElement);
+    const focused = activeElement?.getAttribute("aria-label");
     this.explanation.close();
     this.gui?.destroy();
     this.controls = [];
@@ -158,7 +156,9 @@ export class Panel {
     this.accompany();
     this.mark();
     this.container.scrollTop = scroll;
-    if (focused) this.container.querySelector<HTMLElement>(`[aria-label="${CSS.escape(focused)}"]`)?.focus();
+    const again = focused && this.container.querySelector<HTMLElement>(`[aria-label="${CSS.escape(focused)}"]`);
+    if (again) again.focus();
+    else if (inside) focusable(this.container)?.focus({ preventScroll: true }); // what had it is gone
   }
 
   private addPresets(gui: GUI): void {
@@ -179,6 +179,7 @@ export class Panel {
       if (changed === folder) this.folded.set(section.key, !folder._closed);
     });
     for (const field of section.fields) this.addField(folder, field);
+    if (section.deeds?.length) folder.$children.append(deedOffers(section.deeds, (deed) => this.events.act(deed)));
     for (const inner of section.sections) this.addSection(folder, inner);
   }
 
