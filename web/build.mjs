@@ -31,9 +31,14 @@ const withoutFonts = {
   },
 };
 
-await build({
+const { metafile } = await build({
   absWorkingDir: here,
-  entryPoints: { app: "src/main.ts", style: "src/style.css" },
+  entryPoints: {
+    app: "src/main.ts",
+    style: "src/style.css",
+    text: "src/text/text.css",
+    gallery: "src/gallery/gallery.css",
+  },
   outdir: "dist",
   bundle: true,
   splitting: true, // what an import() names is loaded when it is used
@@ -44,4 +49,11 @@ await build({
   plugins: [withoutFonts],
   legalComments: "none",
   logLevel: "warning",
+  metafile: true,
 });
+
+// What the first script shares with those that come later is asked for beside it, not after it.
+const shared = metafile.outputs["dist/app.js"].imports.filter(({ kind }) => kind === "import-statement");
+const links = shared.map(({ path }) => `<link rel="modulepreload" href="${path.slice("dist/".length)}">`);
+const page = join(dist, "index.html");
+writeFileSync(page, readFileSync(page, "utf8").replace(/(?= *<script)/, `  ${links.join("\n  ")}\n`));

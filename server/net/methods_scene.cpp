@@ -42,7 +42,10 @@ Outcome scene_presets(Client&, const Request& request) {
   if (const auto& all = scene::fabrics())
     for (const scene::Fabric& fabric : *all)
       fabrics.push_back({{"name", fabric.name}, {"feel", fabric.feel}, {"source", fabric.source}});
-  return json{{"presets", scene::preset_names()}, {"fabrics", std::move(fabrics)}};
+  json about = json::object();
+  for (const scene::Preset& preset : scene::presets()) about[preset.name] = preset.description;
+  return json{
+      {"presets", scene::preset_names()}, {"about", std::move(about)}, {"fabrics", std::move(fabrics)}};
 }
 
 }  // namespace clothlab::net

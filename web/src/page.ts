@@ -15,6 +15,7 @@ import { LinkView } from "./panel/link_view";
 import { Guide } from "./explain/guide";
 import { notice, noticeError, showApplied, type Diverged, type Level } from "./panel/notices";
 import { takeDroppedMeshes } from "./panel/mesh_drop";
+import { lateStyle } from "./panel/late_style";
 import { Panel } from "./panel/panel";
 import { Bodies } from "./link/bodies";
 import type { Fabric } from "./link/fabrics";
@@ -28,18 +29,24 @@ import type { Stage } from "./view/stage";
 import { hook } from "./test_hook";
 import { bindCameraInput } from "./view/camera_input";
 import { ThemeSwitch } from "./view/theme";
+import { TextDoor } from "./text/door";
 import { Transport } from "./panel/transport";
 import { timeStep } from "./panel/solver_section";
 
 type Params = Record<string, unknown>;
 
+/// The answer to `scene.presets`.
+interface Offers {
+  presets: string[];
+  about?: Record<string, string>; ///< a sentence of each
+  fabrics?: Fabric[];
+}
+
 export class Page {
   private stage!: Stage; // set by show(), before the first event of the connection
   private readonly hud = new Hud();
-  private readonly connection = new Connection(
-    new URLSearchParams(location.search).get("session") ?? "main",
-    this.linkEvents(),
-  );
+  private readonly session = new URLSearchParams(location.search).get("session") ?? "main";
+  private readonly connection = new Connection(this.session, this.linkEvents());
   private readonly link = new LinkView(this.connection);
   private readonly transport = new Transport({ request: (method, params) => this.request(method, params) });
   private readonly slow = new SlowWatch((operations) => this.store.edit(operations));
@@ -51,6 +58,7 @@ export class Page {
   private readonly guide = new Guide();
   private readonly panel = this.makePanel();
   private readonly lab = this.makeLab();
+  private readonly text = this.makeText();
   private readonly notifications = this.makeNotifications();
   private readonly colourBy = new ColourBy(
     (field) => this.connection.setField(field),
@@ -68,6 +76,8 @@ export class Page {
   private welcome = (): void => undefined; // a newcomer
   private sceneName = "";
   private stability: Stability | null = null; // in the last status
+  private offers: Offers = { presets: [] };
+  private messageBytes = 65536; // the most that a message may have
   private mayEdit = true; // false for a viewer, who may only watch
 
   constructor() {
@@ -96,7 +106,8 @@ export class Page {
 
   private bind(layout: Layout, theme: ThemeSwitch): void {
     const lab = (): void => this.lab.toggle();
-    bindCommands({ transport: this.transport, layout, theme, fit: () => this.stage.fit(), lab });
+    const text = (): void => this.text.toggle();
+    bindCommands({ transport: this.transport, layout, theme, fit: () => this.stage.fit(), lab, text });
     bindCameraInput(this.stage.controls, () => this.hand?.holding === true);
     this.welcome = bindFirstSteps({
       mayEdit: () => this.mayEdit,
@@ -109,6 +120,7 @@ export class Page {
       mayEdit: () => this.mayEdit,
       refused: (title, error, patch) => this.refusals.tell(title, error, patch),
       hung: () => this.picture.fitAtNext(),
+      scene: (files) => this.text.take(files),
     });
   }
 
@@ -184,10 +196,9 @@ export class Page {
       {
         edit: (operations) => this.store.edit(operations),
         busy: (path) => this.store.busy(path),
-        loadPreset: (name) => {
-          this.sceneName = "";
-          this.request("scene.load", { preset: name });
-        },
+        loadPreset: (name) => this.loadPreset(name),
+        openText: () => this.text.toggle(),
+        openGallery: () => void this.openGallery(),
       },
       this.guide,
     );
@@ -221,12 +232,29 @@ export class Page {
     });
   }
 
+  private makeText(): TextDoor {
+    return new TextDoor({
+      session: this.session,
+      request: (method, params) => this.connection.request(method, params),
+      stored: () => this.store.stored && { document: this.store.stored, revision: this.store.revision },
+      preset: (name) => this.guide.baseline.preset(name),
+      mayEdit: () => this.mayEdit,
+      mostBytes: () => this.messageBytes,
+      applied: showApplied,
+      toggled: (open) => {
+        if (open && this.lab.open) this.lab.toggle();
+        this.layout?.labToggled(open);
+      },
+    });
+  }
+
   private makeNotifications(): Record<string, (params: Params) => void> {
     return {
       hello: (params) => this.greeted(params),
       scene: (params) => {
         this.guide.baseline.take(params.document as SceneDocument);
         this.store.replace(params.document as SceneDocument, Number(params.revision));
+        this.text.arrived();
       },
       "scene.changed": (params) => this.store.patched(Number(params.revision), params.patch as Patch),
       colliders: (params) => {
@@ -254,6 +282,7 @@ export class Page {
   private greeted(params: Params): void {
     this.hud.setRenderer(String(params.renderer));
     this.mayEdit = params.role !== "viewer";
+    this.messageBytes = (params.limits as { message_bytes?: number } | undefined)?.message_bytes ?? this.messageBytes;
     this.hand?.greeted(Number(params.client));
     this.welcome();
     this.panel.setMethods((params.methods as string[] | undefined) ?? []);
@@ -261,10 +290,33 @@ export class Page {
     this.lab.roleChanged();
     document.body.classList.toggle("viewer", !this.mayEdit);
     this.transport.enable(this.connection.open && this.mayEdit);
-    this.connection.request<{ presets: string[]; fabrics?: Fabric[] }>("scene.presets").then(
-      ({ presets, fabrics }) => this.panel.setOffers(presets, fabrics ?? []),
+    this.connection.request<Offers>("scene.presets").then(
+      (offers) => {
+        this.offers = offers;
+        this.panel.setOffers(offers.presets, offers.fabrics ?? []);
+      },
       () => undefined,
     );
+  }
+
+  private async openGallery(): Promise<void> {
+    const { presets, about = {} } = this.offers;
+    const loaded = Promise.all([import("./gallery"), lateStyle("gallery.css")]);
+    const [gallery] = await loaded.catch((error: Error) => {
+      noticeError("The presets' pictures could not be opened", error);
+      return [null];
+    });
+    gallery?.openGallery({
+      presets: presets.map((name) => ({ name, about: about[name] ?? "" })),
+      current: this.sceneName,
+      mayEdit: this.mayEdit,
+      load: (name) => this.loadPreset(name),
+    });
+  }
+
+  private loadPreset(name: string): void {
+    this.sceneName = "";
+    this.request("scene.load", { preset: name });
   }
 
   private sceneChanged(document: SceneDocument, whole: boolean): void {
@@ -279,6 +331,7 @@ export class Page {
     this.hand?.sceneChanged();
     this.panel.show(document, this.store.stored ?? document);
     this.lab.sceneChanged();
+    this.text.sceneChanged();
   }
 
   private drawDocument(fit: boolean, whole = false): void {
