@@ -65,6 +65,7 @@ nlohmann::json hello_params(const Hub& hub, const Room& room, const Client& clie
              {{"message_bytes", session::max_upload_bytes},
               {"count", session::max_meshes},
               {"bytes", session::max_mesh_bytes}}},
+            {"history", {{"changes", session::max_changes}, {"bytes", session::max_change_bytes}}},
             {"lab",
              {{"jobs", max_lab_jobs},
               {"seconds", limits.lab_seconds},

@@ -59,6 +59,8 @@ constexpr std::array methods{
     Method{"scene.load", true, scene_load},
     Method{"scene.patch", true, scene_patch},
     Method{"scene.presets", false, scene_presets},
+    Method{"scene.redo", true, scene_redo},
+    Method{"scene.undo", true, scene_undo},
     Method{"sim.pause", true, sim_pause},
     Method{"sim.play", true, sim_play},
     Method{"sim.reset", true, sim_reset},

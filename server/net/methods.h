@@ -38,6 +38,8 @@ Outcome scene_get(Client& client, const Request& request);
 Outcome scene_load(Client& client, const Request& request);
 Outcome scene_patch(Client& client, const Request& request);
 Outcome scene_presets(Client& client, const Request& request);
+Outcome scene_redo(Client& client, const Request& request);
+Outcome scene_undo(Client& client, const Request& request);
 Outcome sim_play(Client& client, const Request& request);
 Outcome sim_pause(Client& client, const Request& request);
 Outcome sim_step(Client& client, const Request& request);

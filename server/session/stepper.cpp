@@ -34,6 +34,7 @@ Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Excha
   stepper->guard_.emplace(stepper->simulation());
   stepper->last_watched_ = stepper->next_status_ = Clock::now();
   stepper->announce_scene(std::nullopt, 0);
+  stepper->announce_history();
   stepper->announce_parts();
   stepper->announce_solver();
   stepper->layers_may_pass_ = !model::thickness_warning(stepper->simulation().model(), *scene).empty();
