@@ -69,6 +69,8 @@ constexpr std::array methods{
     Method{"stream.ack", false, stream_ack},
     Method{"stream.subscribe", false, stream_subscribe},
     Method{"stream.unsubscribe", false, stream_unsubscribe},
+    Method{"timeline.get", false, timeline_get},
+    Method{"timeline.resume", true, timeline_resume},
 };
 
 RpcError unknown(const std::string& method) {

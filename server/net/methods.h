@@ -45,6 +45,8 @@ Outcome sim_pause(Client& client, const Request& request);
 Outcome sim_step(Client& client, const Request& request);
 Outcome sim_reset(Client& client, const Request& request);
 Outcome sim_speed(Client& client, const Request& request);
+Outcome timeline_get(Client& client, const Request& request);
+Outcome timeline_resume(Client& client, const Request& request);
 Outcome stream_subscribe(Client& client, const Request& request);
 Outcome stream_unsubscribe(Client& client, const Request& request);
 Outcome stream_ack(Client& client, const Request& request);

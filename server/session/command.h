@@ -69,6 +69,12 @@ struct Watchers {
 struct Export {
   int width = 0, height = 0;  ///< [pixels]
 };
+/// Asks which steps the session can go on from.
+struct GetTimeline {};
+/// Goes back to this step, and pauses there.
+struct ResumeAt {
+  std::uint64_t step = 0;
+};
 /// Tells a job of the lab when the commands before this one are done. Answered by SceneReached.
 struct ReachScene {
   std::uint64_t job = 0;
@@ -100,7 +106,8 @@ struct GrabEnd {
 struct Command {
   Ticket ticket;
   std::variant<GetScene, LoadScene, UploadMesh, PatchScene, TravelHistory, Play, Pause, Step, Reset, Speed,
-               Demand, Watchers, Export, ReachScene, Hold, Release, Chosen, GrabStart, GrabMove, GrabEnd>
+               Demand, Watchers, Export, ReachScene, Hold, Release, Chosen, GrabStart, GrabMove, GrabEnd,
+               GetTimeline, ResumeAt>
       what;
 };
 

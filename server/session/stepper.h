@@ -4,6 +4,7 @@
 // frames are packed, and whether the session goes on stepping.
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <optional>
 #include <set>
@@ -22,6 +23,7 @@
 #include "server/session/rest.h"
 #include "server/session/run_state.h"
 #include "server/session/step_limit.h"
+#include "server/session/timeline.h"
 #include "server/sim/guarded_run.h"
 
 namespace clothlab::session {
@@ -54,6 +56,11 @@ class Stepper {
   struct Waiting {  // a sim.step that is not finished
     Ticket ticket;
     std::uint64_t until_step = 0;
+  };
+  struct Replay {  // on the way from a kept state to a step
+    std::uint64_t step = 0;
+    std::deque<Timeline::Event> events;
+    Ticket ticket;
   };
   using Answer = std::variant<json, Refusal>;
 
@@ -119,6 +126,18 @@ class Stepper {
   void restart();
   void state_replaced();
   void announce_scene(std::optional<json> patch, std::uint64_t by);
+  // In stepper_timeline.cpp.
+  void perform(GetTimeline&, const Ticket& ticket);
+  void perform(ResumeAt& resume, const Ticket& ticket);
+  void begin_timeline();
+  std::uint64_t next_step_to_begin() const;
+  void scene_on_timeline(sim::ChangeDepth depth);
+  void hands_on_timeline(bool other_holds);
+  void bound_timeline();
+  void timeline_went_back();
+  json timeline_told();
+  std::uint64_t replay_changes();
+  void end_replay();
   // In stepper_commands.cpp.
   void reply(const Ticket& ticket, Answer answer);
   json where_we_are() const;
@@ -163,6 +182,10 @@ class Stepper {
   Hands hands_;
   History history_;
   json history_told_;  ///< what clients know of it
+
+  Timeline timeline_;
+  std::optional<Replay> replay_;
+  std::deque<Command> waiting_commands_;  ///< until a replay has ended
 
   std::uint64_t revision_ = 1;
   std::uint32_t topology_revision_ = 0;

@@ -148,8 +148,10 @@ Result<sim::ChangeDepth> Stepper::change(const scene::Scene& scene) {
 /// the step that is under way is then given up.
 Result<sim::ChangeDepth> Stepper::change_engine(const scene::Scene& scene) {
   const gl::HelperThreads threads = Engine::threads_for(scene, engine_->threads);
-  return engine_->software() && threads != engine_->threads ? move_to(scene, threads)
-                                                            : simulation().change(scene);
+  if (!engine_->software() || threads == engine_->threads) return simulation().change(scene);
+  const Result<sim::ChangeDepth> depth = move_to(scene, threads);
+  if (depth && *depth != sim::ChangeDepth::cloth) begin_timeline();  // its states were on the other engine
+  return depth;
 }
 
 Result<sim::ChangeDepth> Stepper::move_to(const scene::Scene& scene, gl::HelperThreads threads) {
@@ -187,6 +189,7 @@ void Stepper::take_over(scene::Document document, sim::ChangeDepth depth) {
     run_.go_on();  // like any other change: playing or paused as before a blow-up
     state_replaced();
   } else {
+    scene_on_timeline(depth);
     frames().state_changed_now();
   }
   ++state_version_;
@@ -216,6 +219,7 @@ void Stepper::state_replaced() {
   ++state_version_;
   real_time_.restart(Clock::now());
   frames().restart();
+  begin_timeline();
 }
 
 void Stepper::announce_scene(std::optional<json> patch, std::uint64_t by) {

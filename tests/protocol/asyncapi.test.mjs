@@ -178,6 +178,8 @@ test("requests and their answers are as it says, with and without parameters, fo
     ["grab.move", { target: [0.1, 1, 0], hand: 9 }],
     ["grab.end"],
     ["grab.end", { hand: 9 }],
+    ["timeline.get"],
+    ["timeline.resume", { step: 0 }],
     ["lab.jobs"],
     ["mesh.upload", { name: "leaf", obj: "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n" }],
   ];
