@@ -81,8 +81,8 @@ const uint corner_mask = 0x7fffffffu;
 /// How far a vertex may go in a step, as a share of the query radius: two that are farther apart cannot meet.
 const float step_share = 0.49;
 
-/// Query radius of the search under way [m], of pairs that no force keeps apart: for the filter alone. The longest step,
-/// or piece of a step, is at most 0.79 of what a vertex may go then.
+/// Query radius of the search under way [m], of pairs that no force keeps apart: for the filter alone. The longest step
+/// or piece of one is at most 0.79 of what a vertex may go then.
 float next_flat_query() {
   float expected = dt / float(piece_count) * uintBitsToFloat(known.fastest_vertex);
   float longest = max(expected, uintBitsToFloat(known.fastest));

@@ -31,6 +31,7 @@ import { bindCameraInput } from "./view/camera_input";
 import { ThemeSwitch } from "./view/theme";
 import { TextDoor } from "./text/door";
 import { Transport } from "./panel/transport";
+import { type History, Undo } from "./panel/undo";
 import { timeStep } from "./panel/solver_section";
 
 type Params = Record<string, unknown>;
@@ -49,7 +50,12 @@ export class Page {
   private readonly connection = new Connection(this.session, this.linkEvents());
   private readonly link = new LinkView(this.connection);
   private readonly transport = new Transport({ request: (method, params) => this.request(method, params) });
-  private readonly slow = new SlowWatch((operations) => this.store.edit(operations));
+  private readonly undo: Undo = new Undo({
+    request: (method, params) => this.connection.request(method, params),
+    settled: () => this.store.settled(),
+    told: ({ undo }) => this.slow.changed(undo),
+  });
+  private readonly slow = new SlowWatch(() => void this.undo.go("undo"));
   private readonly bodies = new Bodies(
     (name) => this.connection.get("/api/collider.ply", { name }),
     () => this.drawDocument(this.stage.fitted),
@@ -65,7 +71,9 @@ export class Page {
     () => this.layout?.cardToggled(),
   );
   private readonly picture = this.makePicture();
-  private readonly divergence = new Divergence((patch) => this.connection.request("scene.patch", { patch }));
+  private readonly divergence = new Divergence((patch) =>
+    this.connection.request("scene.patch", { patch, name: "Remedy" }),
+  );
   private readonly refusals = new Refusals({
     show: (crossings) => this.stage.showCrossings(crossings),
     hide: () => this.stage.hideCrossings(),
@@ -151,7 +159,7 @@ export class Page {
     return {
       state: (state, retryIn, why) => {
         this.link.show(state, retryIn, why);
-        this.transport.enable(state === "open" && this.mayEdit);
+        this.enableEdits();
         this.lab.link(state === "open");
         this.slow.link(state === "open");
         if (state !== "open") {
@@ -182,7 +190,6 @@ export class Page {
       fetch: () => this.fetchScene(),
       changed: (document, whole) => this.sceneChanged(document, whole),
       applied: showApplied,
-      wayBack: (operations) => this.slow.changed(operations),
       rejected: (error, operations) => {
         this.refusals.tell("Not applied", error, operations);
         this.panel.snapBack();
@@ -222,10 +229,8 @@ export class Page {
     return new Lab({
       request: (method, params) => this.connection.request(method, params),
       document: () => this.store.document,
-      addressed: (patch) => ({
-        stored: this.store.stored,
-        patch: Array.isArray(patch) ? this.store.addressed(patch) : patch,
-      }),
+      addressed: (patch) => (Array.isArray(patch) ? this.store.addressed(patch) : patch),
+      undo: (revision) => void this.undo.go("undo", revision),
       mayEdit: () => this.mayEdit,
       applied: showApplied,
       toggled: (open) => this.layout?.labToggled(open),
@@ -257,6 +262,7 @@ export class Page {
         this.text.arrived();
       },
       "scene.changed": (params) => this.store.patched(Number(params.revision), params.patch as Patch),
+      "scene.history": (params) => this.undo.told(params as unknown as History),
       colliders: (params) => {
         this.picture.moved = params.moving as MovedCollider[];
       },
@@ -284,12 +290,13 @@ export class Page {
     this.mayEdit = params.role !== "viewer";
     this.messageBytes = (params.limits as { message_bytes?: number } | undefined)?.message_bytes ?? this.messageBytes;
     this.hand?.greeted(Number(params.client));
+    this.undo.greeted(Number(params.client));
     this.welcome();
     this.panel.setMethods((params.methods as string[] | undefined) ?? []);
     this.lab.setMethods((params.methods as string[] | undefined) ?? []);
     this.lab.roleChanged();
     document.body.classList.toggle("viewer", !this.mayEdit);
-    this.transport.enable(this.connection.open && this.mayEdit);
+    this.enableEdits();
     this.connection.request<Offers>("scene.presets").then(
       (offers) => {
         this.offers = offers;
@@ -317,6 +324,10 @@ export class Page {
   private loadPreset(name: string): void {
     this.sceneName = "";
     this.request("scene.load", { preset: name });
+  }
+
+  private enableEdits(): void {
+    for (const each of [this.transport, this.undo]) each.enable(this.connection.open && this.mayEdit);
   }
 
   private sceneChanged(document: SceneDocument, whole: boolean): void {
