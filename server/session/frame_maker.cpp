@@ -59,8 +59,13 @@ void FrameMaker::restart() {
 
 bool FrameMaker::request(std::size_t index, const sim::Simulation& simulation) {
   const auto flags = (diverged_ ? stream::flag_diverged : 0) | (asleep_ ? stream::flag_asleep : 0);
+  const stream::Form form = stream::Form::at(index);
+  if (form.encoding == stream::Encoding::c16) {
+    if (compressor_.full()) return false;
+    compressor_.set_mesh(simulation.model(), simulation.topology_revision());
+  }
   timer_.begin();
-  const bool queued = packer_->request(simulation, stream::Form::at(index), static_cast<std::uint16_t>(flags),
+  const bool queued = packer_->request(simulation, form, static_cast<std::uint16_t>(flags),
                                        stream::collider_text(simulation));
   if (queued) timer_.stage("pack_frame");
   timer_.end();
@@ -74,7 +79,7 @@ void FrameMaker::make_urgent(const sim::Simulation& simulation, Clock::time_poin
   for (std::size_t i = 0; i < lanes_.size(); ++i) {
     Lane& lane = lanes_[i];
     if (!lane.urgent) continue;
-    if (lane.rate > 0 && !request(i, simulation)) continue;  // the readback ring is full: try again later
+    if (lane.rate > 0 && !request(i, simulation)) continue;  // no room for it on its way: try again later
     lane.urgent = false;
     if (lane.rate > 0) lane.due = now + period(lane.rate);
   }
@@ -94,8 +99,13 @@ void FrameMaker::poll() {
   while (stream::SharedMessage frame = packer_->poll()) {
     if (frame->header.sequence <= discard_until_) continue;
     arrived_ = frame->header.sequence;
-    publish(std::move(frame));
+    if (frame->header.encoding == stream::Encoding::c16)
+      compressor_.offer(std::move(frame));
+    else
+      publish(std::move(frame));
   }
+  while (stream::SharedMessage frame = compressor_.poll())
+    if (frame->header.sequence > discard_until_) publish(std::move(frame));
 }
 
 void FrameMaker::publish(stream::SharedMessage frame) {

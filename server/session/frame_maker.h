@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "server/session/exchange.h"
+#include "server/stream/compressor.h"
 #include "server/stream/packer.h"
 
 namespace clothlab::session {
@@ -34,7 +35,7 @@ class FrameMaker {
   void make_urgent(const sim::Simulation& simulation, Clock::time_point now);
   /// Queues the frames that are due by the clock.
   void make_due(const sim::Simulation& simulation, Clock::time_point now);
-  /// Publishes the frames that have arrived from the GPU.
+  /// Publishes the frames that have arrived from the GPU, those of c16 once they are compressed.
   void poll();
   /// Appends the GPU time that the packing of a recent frame took, if it has arrived.
   void poll_times(gl::StageTimes& out) { timer_.poll(out); }
@@ -48,7 +49,7 @@ class FrameMaker {
   void asleep(bool asleep);
 
   /// True while requested frames have not arrived.
-  bool in_flight() const { return requested_ != arrived_; }
+  bool in_flight() const { return requested_ != arrived_ || compressor_.busy(); }
   bool urgent() const;
   /// When the next frame is due if the state moves; far in the future if nobody wants one.
   Clock::time_point next_due() const;
@@ -66,6 +67,7 @@ class FrameMaker {
 
   Exchange& exchange_;
   std::unique_ptr<stream::Packer> packer_;
+  stream::Compressor compressor_;
   gl::StageTimer timer_;
   std::array<Lane, form_count> lanes_{};
   std::uint32_t requested_ = 0;      ///< sequence number of the newest requested frame, as in the packer

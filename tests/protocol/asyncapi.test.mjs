@@ -167,6 +167,7 @@ test("requests and their answers are as it says, with and without parameters, fo
     ["stream.subscribe"],
     ["stream.ack", { frame: 0 }],
     ["stream.unsubscribe"],
+    ["stream.subscribe", { encoding: "c16", field: "speed" }],
     ["stream.subscribe", { encoding: "f32", rate: 120, in_flight: 8 }],
     ["grab.start", { cloth: 0, vertex: 4, target: [0, 1, 0] }],
     ["grab.start", { cloth: 0, vertex: 5, target: [0, 1, 0], hand: 9 }],
