@@ -3,6 +3,7 @@ import { build } from "esbuild";
 import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { deflateRawSync } from "node:zlib";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const dist = join(here, "dist");
@@ -31,17 +32,41 @@ const withoutFonts = {
   },
 };
 
-await build({
+const common = {
   absWorkingDir: here,
-  entryPoints: { app: "src/main.ts", style: "src/style.css" },
-  outdir: "dist",
   bundle: true,
-  splitting: true, // what an import() names is loaded when it is used
-  chunkNames: "[name]-[hash]",
   minify: true,
-  format: "esm",
   target: ["es2022", "chrome100", "firefox100", "safari15.4"],
-  plugins: [withoutFonts],
   legalComments: "none",
   logLevel: "warning",
+};
+
+await build({
+  ...common,
+  entryPoints: { app: "src/main.ts", style: "src/style.css" },
+  outdir: "dist",
+  splitting: true, // what an import() names is loaded when it is used
+  chunkNames: "[name]-[hash]",
+  format: "esm",
+  plugins: [withoutFonts],
 });
+
+// The page that plays a recording is a single file: it is opened from a disk, where nothing can be loaded. The server's
+// program puts in @title@ and @recording@ (server/stream/player_page.cpp).
+const { outputFiles } = await build({
+  ...common,
+  entryPoints: { player: "src/player/main.ts", style: "src/player/player.css" },
+  outdir: "dist",
+  format: "iife",
+  write: false,
+});
+const made = (ending) => Buffer.from(outputFiles.find(({ path }) => path.endsWith(ending)).contents);
+const filled = {
+  style: made(".css").toString().trim(),
+  player: deflateRawSync(made(".js"), { level: 9 }).toString("base64"),
+};
+const player = readFileSync(join(here, "src/player/player.html"), "utf8");
+writeFileSync(
+  join(dist, "player.html"),
+  player.replace(/@(style|player)@/g, (_, name) => filled[name]),
+);

@@ -13,7 +13,6 @@ namespace clothlab::stream {
 namespace {
 
 constexpr std::size_t most_waiting = 2;
-constexpr std::size_t axes = 3;
 
 struct Packed {  // as pack.comp writes q16; the normal is not sent
   std::uint16_t position[axes];

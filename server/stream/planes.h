@@ -1,9 +1,12 @@
 // Numbers of 16 bits as planes of bytes: what compresses well lies together (server/net/README.md).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace clothlab::stream {
+
+inline constexpr std::size_t axes = 3;
 
 /// The difference of two numbers modulo 65536, small ones of either sign as small numbers: 0, -1, 1, -2, ...
 constexpr std::uint16_t folded(std::int32_t value, std::int32_t prediction) {
