@@ -46,6 +46,11 @@ struct Step {
   std::uint64_t steps = 1;
 };
 struct Reset {};
+/// Records the session from now on.
+struct RecordStart {
+  double rate = 30;  ///< frames a second at most [1/s]
+};
+struct RecordStop {};
 struct Speed {
   double factor = 1;
 };
@@ -93,7 +98,8 @@ struct GrabEnd {
 struct Command {
   Ticket ticket;
   std::variant<GetScene, LoadScene, UploadMesh, PatchScene, Play, Pause, Step, Reset, Speed, Demand, Watchers,
-               Export, ReachScene, Hold, Release, Chosen, GrabStart, GrabMove, GrabEnd>
+               Export, ReachScene, Hold, Release, Chosen, GrabStart, GrabMove, GrabEnd, RecordStart,
+               RecordStop>
       what;
 };
 
