@@ -36,6 +36,11 @@ class Room {
   /// The latest frame; null if there is none yet, or if it does not fit the present topology.
   stream::SharedMessage frame(stream::Form form) const;
 
+  /// What the session has recorded, or is recording.
+  session::RecordingFacts recording() const {
+    return session_ ? session_->exchange().recording() : session::RecordingFacts{};
+  }
+
   void enter(Client& client);
   void leave(Client& client);
   void let_go(const Client& client);  ///< ends the client's hold on the cloth

@@ -53,6 +53,11 @@ struct Step {
   std::uint64_t steps = 1;
 };
 struct Reset {};
+/// Records the session from now on.
+struct RecordStart {
+  double rate = 30;  ///< frames a second at most [1/s]
+};
+struct RecordStop {};
 struct Speed {
   double factor = 1;
 };
@@ -107,7 +112,7 @@ struct Command {
   Ticket ticket;
   std::variant<GetScene, LoadScene, UploadMesh, PatchScene, TravelHistory, Play, Pause, Step, Reset, Speed,
                Demand, Watchers, Export, ReachScene, Hold, Release, Chosen, GrabStart, GrabMove, GrabEnd,
-               GetTimeline, ResumeAt>
+               GetTimeline, ResumeAt, RecordStart, RecordStop>
       what;
 };
 

@@ -22,6 +22,7 @@
 #include "server/scene/document.h"
 #include "server/session/command_queue.h"
 #include "server/session/hands.h"
+#include "server/session/recording_facts.h"
 #include "server/session/refusal.h"
 #include "server/session/run_state.h"
 #include "server/session/saved.h"
@@ -85,6 +86,9 @@ struct Moment {
   double time = 0;                           ///< [s]
   std::vector<glm::vec3> positions{};        ///< [vertex] [m]
   std::vector<scene::Collider> colliders{};  ///< as placed at `time`
+  /// Not null: instead of all that, a recording to make a page of, with the name in `title`.
+  std::shared_ptr<const std::string> recording{};
+  std::string title{};
 };
 struct Captured {
   std::uint64_t asker = 0;
@@ -134,6 +138,8 @@ class Exchange {
   stream::SharedMessage frame(stream::Form form) const;
   /// The newest saved state of the session, null before the first.
   std::shared_ptr<const Saved> saved() const;
+  /// What has been recorded, or is.
+  RecordingFacts recording() const;
   /// After the session has failed: answers each of its open commands with `error`, as events added to `out`.
   void give_up(const Error& error, std::vector<Event>& out);
   std::int64_t heartbeat_us() const { return heartbeat_us_.load(std::memory_order_relaxed); }
@@ -153,6 +159,7 @@ class Exchange {
   void beat();                           ///< sets the heartbeat to now
   /// Stores the state from which the session can be restored.
   void store_saved(std::shared_ptr<const Saved> saved);
+  void store_recording(RecordingFacts facts);  ///< any thread may call it
   void count_steps(std::uint64_t steps) { steps_.fetch_add(steps, std::memory_order_relaxed); }
 
  private:
@@ -172,6 +179,7 @@ class Exchange {
   std::array<stream::SharedMessage, form_count> frames_;
   std::list<Awaited> awaited_;  ///< in the order of asking, so the next to be answered is near the front
   std::shared_ptr<const Saved> saved_;
+  RecordingFacts recording_;
   bool stopping_ = false;
   std::atomic<std::int64_t> heartbeat_us_{0};
   std::atomic<std::uint64_t> steps_{0};

@@ -93,6 +93,7 @@ Clock::time_point Stepper::turn(std::vector<Command>& commands) {
   frames().make_urgent(simulation(), now);
   frames().make_due(simulation(), Clock::now());
   frames().poll();
+  follow_recording();
   follow_diagnostics(Clock::now());
   return next_turn(Clock::now());
 }
@@ -312,7 +313,8 @@ bool Stepper::suspended(Clock::time_point now) const {
 
 Clock::time_point Stepper::next_turn(Clock::time_point now) const {
   if ((simulation().steps_to_do() > 0 || !waiting_.empty()) && !engine_->backlog.full()) return now;
-  if (frames().urgent() || frames().in_flight() || guard_->verdict_requested() || !engine_->backlog.empty())
+  if (frames().urgent() || frames().in_flight() || !ending_recording_.empty() ||
+      guard_->verdict_requested() || !engine_->backlog.empty())
     return now + microseconds(500);
   if (!running(now)) return suspended(now) ? now + milliseconds(250) : std::max(next_status_, now);
   if (real_time_.behind(scene().solver.dt)) return now;

@@ -20,6 +20,7 @@
 #include "server/session/mesh_shelf.h"
 #include "server/session/piece_size.h"
 #include "server/session/real_time.h"
+#include "server/session/recorder.h"
 #include "server/session/rest.h"
 #include "server/session/run_state.h"
 #include "server/session/step_limit.h"
@@ -102,6 +103,12 @@ class Stepper {
   void refuse_grab(const Ticket& ticket, Refusal refusal);
   clothlab::Status hands_changed();
   void end_hands();
+  // In stepper_recording.cpp.
+  void perform(RecordStart& start, const Ticket& ticket);
+  void perform(RecordStop&, const Ticket& ticket);
+  void record_mesh();
+  void record_change(json change);
+  void follow_recording();
   // In stepper_meshes.cpp.
   void perform(UploadMesh& upload, const Ticket& ticket);
   clothlab::Status use_again(const std::string& mesh, const Ticket& ticket);
@@ -186,6 +193,9 @@ class Stepper {
   Timeline timeline_;
   std::optional<Replay> replay_;
   std::deque<Command> waiting_commands_;  ///< until a replay has ended
+  Recorder recorder_{exchange_, static_cast<std::size_t>(limits_.recording_bytes)};
+  std::uint32_t recorded_revision_ = 0;   ///< of the mesh that the recording has
+  std::vector<Ticket> ending_recording_;  ///< requests record.stop that wait for the end of the recording
 
   std::uint64_t revision_ = 1;
   std::uint32_t topology_revision_ = 0;

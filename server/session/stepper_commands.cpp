@@ -61,6 +61,7 @@ void Stepper::perform(Step& step, const Ticket& ticket) {
 
 void Stepper::perform(Reset&, const Ticket& ticket) {
   restart();
+  record_change({{"reset", true}, {"by", ticket.asker}});
   reply(ticket, where_we_are());
 }
 

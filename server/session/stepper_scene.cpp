@@ -228,6 +228,7 @@ void Stepper::announce_scene(std::optional<json> patch, std::uint64_t by) {
     topology_revision_ = revision;
     exchange_.emit(TopologyChanged{stream::encode_topology(simulation().model(), revision)});
   }
+  record_change({{patch ? "patch" : "document", patch ? *patch : document_.value}, {"by", by}});
   exchange_.emit(
       SceneChanged{std::make_shared<const scene::Document>(document_), revision_, std::move(patch), by});
 }

@@ -70,6 +70,7 @@ test("the limits that hello tells are the document's", async () => {
   assert.equal(range("stream.subscribe", "in_flight")[1], limits.in_flight);
   assert.equal(range("sim.step", "steps")[1], limits.steps);
   assert.deepEqual(range("sim.speed", "factor"), limits.speed);
+  assert.deepEqual(range("record.start", "rate"), limits.recording.rate);
   assert.deepEqual(range("lab.chart", "time"), limits.lab.time);
   assert.deepEqual(range("lab.chart", "budget"), limits.lab.budget);
   assert.deepEqual(paramsOf("stream.subscribe").properties.encoding.enum, encodings);
@@ -171,6 +172,7 @@ test("requests and their answers are as it says, with and without parameters, fo
     ["stream.subscribe"],
     ["stream.ack", { frame: 0 }],
     ["stream.unsubscribe"],
+    ["stream.subscribe", { encoding: "c16", field: "speed" }],
     ["stream.subscribe", { encoding: "f32", rate: 120, in_flight: 8 }],
     ["grab.start", { cloth: 0, vertex: 4, target: [0, 1, 0] }],
     ["grab.start", { cloth: 0, vertex: 5, target: [0, 1, 0], hand: 9 }],
@@ -181,6 +183,10 @@ test("requests and their answers are as it says, with and without parameters, fo
     ["timeline.get"],
     ["timeline.resume", { step: 0 }],
     ["lab.jobs"],
+    ["record.get"],
+    ["record.start", { rate: 60 }],
+    ["record.stop"],
+    ["record.get"],
     ["mesh.upload", { name: "leaf", obj: "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n" }],
   ];
   for (const [method, params] of asked) await client.request(method, params);

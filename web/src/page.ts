@@ -17,6 +17,7 @@ import { notice, noticeError, showApplied, type Diverged, type Level } from "./p
 import { takeDroppedMeshes } from "./panel/mesh_drop";
 import { lateStyle } from "./panel/late_style";
 import { Panel } from "./panel/panel";
+import { RecordButton } from "./panel/record_button";
 import { Bodies } from "./link/bodies";
 import type { Fabric } from "./link/fabrics";
 import { SlowWatch } from "./panel/slow_watch";
@@ -71,6 +72,10 @@ export class Page {
     () => this.layout?.cardToggled(),
   );
   private readonly picture = this.makePicture();
+  private readonly recording = new RecordButton({
+    request: (method, params) => this.connection.request(method, params),
+    get: (path) => this.connection.get(path),
+  });
   private readonly divergence = new Divergence((patch) =>
     this.connection.request("scene.patch", { patch, name: "Remedy" }),
   );
@@ -275,6 +280,7 @@ export class Page {
         if (params.solver) this.store.fabricsGive((params.solver as SolverFacts).from_fabrics ?? []);
         if (params.solver) this.panel.showSolver(params.solver as SolverFacts);
         this.hand?.told((params.hands as HandAt[] | undefined) ?? []);
+        this.recording.told((params as Status).recording);
         this.divergence.follow(params as Status);
       },
       "sim.diverged": (params) => this.divergence.tell(params as unknown as Diverged),
