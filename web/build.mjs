@@ -3,6 +3,7 @@ import { build } from "esbuild";
 import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { deflateRawSync } from "node:zlib";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const dist = join(here, "dist");
@@ -31,8 +32,17 @@ const withoutFonts = {
   },
 };
 
-const { metafile } = await build({
+const common = {
   absWorkingDir: here,
+  bundle: true,
+  minify: true,
+  target: ["es2022", "chrome100", "firefox100", "safari15.4"],
+  legalComments: "none",
+  logLevel: "warning",
+};
+
+const { metafile } = await build({
+  ...common,
   entryPoints: {
     app: "src/main.ts",
     style: "src/style.css",
@@ -40,15 +50,10 @@ const { metafile } = await build({
     gallery: "src/gallery/gallery.css",
   },
   outdir: "dist",
-  bundle: true,
   splitting: true, // what an import() names is loaded when it is used
   chunkNames: "[name]-[hash]",
-  minify: true,
   format: "esm",
-  target: ["es2022", "chrome100", "firefox100", "safari15.4"],
   plugins: [withoutFonts],
-  legalComments: "none",
-  logLevel: "warning",
   metafile: true,
 });
 
@@ -57,3 +62,23 @@ const shared = metafile.outputs["dist/app.js"].imports.filter(({ kind }) => kind
 const links = shared.map(({ path }) => `<link rel="modulepreload" href="${path.slice("dist/".length)}">`);
 const page = join(dist, "index.html");
 writeFileSync(page, readFileSync(page, "utf8").replace(/(?= *<script)/, `  ${links.join("\n  ")}\n`));
+
+// The page that plays a recording is a single file: it is opened from a disk, where nothing can be loaded. The server's
+// program puts in @title@ and @recording@ (server/stream/player_page.cpp).
+const { outputFiles } = await build({
+  ...common,
+  entryPoints: { player: "src/player/main.ts", style: "src/player/player.css" },
+  outdir: "dist",
+  format: "iife",
+  write: false,
+});
+const made = (ending) => Buffer.from(outputFiles.find(({ path }) => path.endsWith(ending)).contents);
+const filled = {
+  style: made(".css").toString().trim(),
+  player: deflateRawSync(made(".js"), { level: 9 }).toString("base64"),
+};
+const player = readFileSync(join(here, "src/player/player.html"), "utf8");
+writeFileSync(
+  join(dist, "player.html"),
+  player.replace(/@(style|player)@/g, (_, name) => filled[name]),
+);

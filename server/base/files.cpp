@@ -7,6 +7,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "server/base/text.h"
+
 namespace clothlab {
 
 namespace fs = std::filesystem;
@@ -19,7 +21,7 @@ Result<std::string> read_file(const fs::path& path) {
 
 Status replace_file(const fs::path& path, const std::string& bytes) {
   fs::path unfinished = path;
-  unfinished += "." + std::to_string(getpid()) + unfinished_suffix;
+  unfinished += formatted(".%d%s", getpid(), unfinished_suffix);
   std::error_code failure;
   errno = 0;
   {

@@ -27,6 +27,7 @@ enum ExitCode : int {
 void add_serve(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
 void add_render(CLI::App& app, int& exit_code);
+void add_record(CLI::App& app, int& exit_code);
 void add_chart(CLI::App& app, int& exit_code);
 void add_stability(CLI::App& app, int& exit_code);
 void add_choose(CLI::App& app, int& exit_code);

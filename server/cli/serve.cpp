@@ -176,6 +176,8 @@ void add_limits(CLI::App& command, net::Limits& limits) {
   add("--max-json-depth", limits.json_depth, 8, usual.json_depth, "levels of nesting in a message");
   add("--max-vertices", limits.scene.vertices, 4, usual.scene.vertices, "vertices in a scene");
   add("--max-springs", limits.scene.springs, 4, usual.scene.springs, "springs in a scene");
+  add("--max-recording-bytes", limits.scene.recording_bytes, 10000, 1 << 30,
+      "bytes of a recording, of which each session keeps one in memory");
   add("--max-lab-seconds", limits.lab_seconds, 1, 86400, "seconds that one measurement of the lab may take");
   add("--header-timeout", limits.header_seconds, 1, 3600,
       "seconds from connecting to the last of a request's headers, TLS included");

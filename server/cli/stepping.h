@@ -1,4 +1,4 @@
-// Stepping a scene as fast as possible, with stops to read its state; shared by `run` and `render`.
+// Stepping a scene as fast as possible, with stops to read its state; shared by `run`, `render` and `record`.
 #pragma once
 
 #include <cstdint>

@@ -57,6 +57,14 @@ HttpAnswer collider_mesh(const scene::Scene& scene, const std::string& name) {
   return plain(404, "the scene has no mesh collider of this name; name=NAME is that of /api/scene's list");
 }
 
+constexpr int patience = 30;  ///< with what is made for a request [s]
+
+HttpAnswer busy() {
+  HttpAnswer refusal = plain(503, "the server has as many pictures and meshes to make as it may; ask again");
+  refusal.headers = {{"retry-after:", "1"}};
+  return refusal;
+}
+
 /// The width or height that `text` gives, a whole number in [1, most] [pixels]; 0 for any other text.
 int side(const std::string& text, int most) {
   int value = 0;
@@ -152,13 +160,17 @@ std::optional<HttpAnswer> HttpRequest::find_protected(const std::string& path) {
   const std::string session = query(wsi_, "session", main_session);
   const bool mesh = path == "/api/mesh.obj", picture = path == "/api/snapshot.png";
   const bool collider = path == "/api/collider.ply";
-  if (!mesh && !picture && !collider && path != "/api/scene")
-    return plain(404, "the API has /api/scene, /api/mesh.obj, /api/collider.ply and /api/snapshot.png");
+  const bool page = path == "/api/recording.html", recorded = page || path == "/api/recording.clothlab";
+  if (!mesh && !picture && !collider && !recorded && path != "/api/scene")
+    return plain(404,
+                 "the API has /api/scene, /api/mesh.obj, /api/collider.ply, /api/snapshot.png, "
+                 "/api/recording.clothlab and /api/recording.html");
   Room* room = hub_.find_room(session);
   if (!room || !room->started())
     return plain(404,
                  "no such session is open; one opens when a page or script connects to /ws?session=NAME");
   if (path == "/api/scene") return HttpAnswer{200, "application/json", room->document().dump(2) + "\n", {}};
+  if (recorded) return recording(*room, page);
   if (collider) return collider_mesh(room->scene(), query(wsi_, "name", ""));
   if (mesh) return ask_session(session, {});
   const session::Export what{side(query(wsi_, "width", "1280"), max_snapshot_side),
@@ -168,14 +180,24 @@ std::optional<HttpAnswer> HttpRequest::find_protected(const std::string& path) {
   return ask_session(session, what);
 }
 
+std::optional<HttpAnswer> HttpRequest::recording(const Room& room, bool page) {
+  const session::RecordingFacts facts = room.recording();
+  if (!facts.file)
+    return plain(
+        404, facts.state == session::RecordingFacts::State::recording
+                 ? "this session is being recorded; record.stop over the WebSocket ends that"
+                 : "nothing has been recorded in this session; record.start over the WebSocket does that");
+  file_name_ = "clothlab-" + room.name() + (page ? ".html" : ".clothlab");
+  if (!page)
+    return HttpAnswer{200, "application/octet-stream", *facts.file, {{"cache-control:", "no-store"}}};
+  if (hub_.exports_full()) return busy();
+  lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, patience);
+  hub_.make_page(id_, facts);
+  return std::nullopt;
+}
+
 std::optional<HttpAnswer> HttpRequest::ask_session(const std::string& session, session::Export what) {
-  if (hub_.exports_full() || !hub_.find_room(session)->capture(id_, what)) {
-    HttpAnswer refusal =
-        plain(503, "the server has as many pictures and meshes to make as it may; ask again");
-    refusal.headers = {{"retry-after:", "1"}};
-    return refusal;
-  }
-  constexpr int patience = 30;  // [s]
+  if (hub_.exports_full() || !hub_.find_room(session)->capture(id_, what)) return busy();
   lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, patience);
   return std::nullopt;
 }
@@ -219,6 +241,8 @@ HttpRequest::Progress HttpRequest::send(const HttpAnswer& answer) {
   failed |= add("content-type:", answer.type);
   failed |= lws_add_http_header_content_length(wsi_, answer.body.size(), &at, end);
   if (last_) failed |= add("connection:", "close");
+  if (!file_name_.empty() && answer.status == 200)
+    failed |= add("content-disposition:", "attachment; filename=\"" + file_name_ + "\"");
   for (const auto& [name, value] : security_headers) failed |= add(name, value);
   for (const auto& [name, value] : headers) failed |= add(name.c_str(), value);
   if (failed || lws_finalize_http_header(wsi_, &at, end)) return Progress::close;

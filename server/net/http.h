@@ -57,6 +57,8 @@ class HttpRequest {
   std::optional<HttpAnswer> find_protected(const std::string& path);
   /// Asks the session for a picture or mesh. Returns the refusal if too many wait already.
   std::optional<HttpAnswer> ask_session(const std::string& session, session::Export what);
+  /// The room's recording, alone or (after a while) in its page; a refusal if there is none.
+  std::optional<HttpAnswer> recording(const Room& room, bool page);
   Progress send(const HttpAnswer& answer);
   /// Answers a request that may have a body, which is not read: the connection must be closed.
   Progress refuse(const HttpAnswer& refusal);
@@ -68,9 +70,10 @@ class HttpRequest {
   lws* wsi_;
   Finish finish_;
   std::uint64_t id_;
-  std::string reader_;  ///< the allowed origin of another page that asks, and may read the answer
-  bool head_ = false;   ///< the request is HEAD: its answer has no body
-  bool last_ = false;   ///< the answer says that the connection will be closed
+  std::string file_name_{};  ///< under which a browser keeps the answer; empty: it shows it
+  std::string reader_;       ///< the allowed origin of another page that asks, and may read the answer
+  bool head_ = false;        ///< the request is HEAD: its answer has no body
+  bool last_ = false;        ///< the answer says that the connection will be closed
 };
 
 }  // namespace clothlab::net

@@ -188,6 +188,11 @@ void Hub::captured(session::Captured captured) {
   captured_.push_back(std::move(captured));
 }
 
+void Hub::make_page(std::uint64_t asker, const session::RecordingFacts& recording) {
+  captured_.push_back({asker, {}, session::Moment{nullptr, 0, {}, {}, recording.file, recording.scene}});
+  pump_exports();
+}
+
 void Hub::pump_exports() {
   if (std::optional<session::Exported> exported = exporter_.take()) {
     ++metrics_.exports;

@@ -84,6 +84,9 @@ class Hub {
   /// Takes the moment that a session has handed over for a picture or mesh, or the reason why it did not.
   void captured(session::Captured captured);
 
+  /// Has the page of a recording made for the HTTP request `asker`.
+  void make_page(std::uint64_t asker, const session::RecordingFacts& recording);
+
   /// Passes on what the sessions, the exporter and the lab have put out.
   void pump();
   /// Stops every session's thread and the lab's, and waits for them.

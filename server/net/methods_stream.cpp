@@ -10,7 +10,7 @@
 namespace clothlab::net {
 
 namespace {
-/// The names of all encodings, for an error: "f32 or q16".
+/// The names of all encodings, for an error: "f32 or q16 or c16".
 std::string allowed() {
   std::string list;
   for (const stream::EncodingFacts& encoding : stream::encodings)
@@ -29,7 +29,7 @@ Outcome stream_subscribe(Client& client, const Request& request) {
   Params params(request.params);
   const std::string name = params.text("encoding", "q16");
   const std::optional<stream::Encoding> encoding = stream::encoding_of(name);
-  if (!encoding) params.refuse("encoding", allowed() + (name == "c16" ? "; c16 is not supported yet" : ""));
+  if (!encoding) params.refuse("encoding", allowed());
   const std::string field_name = params.text("field", stream::no_field);
   const std::optional<stream::Field> field = stream::field_of(field_name);
   if (!field) params.refuse("field", allowed_fields(field_name));

@@ -36,6 +36,11 @@ class Room {
   /// The latest frame; null if there is none yet, or if it does not fit the present topology.
   stream::SharedMessage frame(stream::Form form) const;
 
+  /// What the session has recorded, or is recording.
+  session::RecordingFacts recording() const {
+    return session_ ? session_->exchange().recording() : session::RecordingFacts{};
+  }
+
   void enter(Client& client);
   void leave(Client& client);
   void let_go(const Client& client);  ///< ends the client's hold on the cloth
@@ -69,6 +74,7 @@ class Room {
   void handle(session::Failed& failed);
   void handle(session::Reply& reply);
   void handle(session::SceneChanged& changed);
+  void handle(session::HistoryChanged& changed);
   void handle(session::TopologyChanged& changed);
   void handle(session::PartsChanged& changed);
   void handle(session::SolverChanged& changed);
@@ -98,6 +104,7 @@ class Room {
   std::string renderer_;
   std::shared_ptr<const scene::Document> document_;
   std::uint64_t revision_ = 0;
+  json history_;  ///< as scene.history tells it
   stream::SharedMessage topology_;
   json passes_ = json::array(), terms_ = json::array(), skipped_ = json::array(),
        pass_seconds_ = json::object(), solver_ = json::object();

@@ -1,6 +1,7 @@
 #include "server/session/exchange.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace clothlab::session {
 
@@ -53,6 +54,16 @@ void Exchange::store_saved(std::shared_ptr<const Saved> saved) {
 std::shared_ptr<const Saved> Exchange::saved() const {
   const std::lock_guard lock(mutex_);
   return saved_;
+}
+
+void Exchange::store_recording(RecordingFacts facts) {
+  const std::lock_guard lock(mutex_);
+  std::swap(recording_, facts);  // an older file is freed after the lock is released
+}
+
+RecordingFacts Exchange::recording() const {
+  const std::lock_guard lock(mutex_);
+  return recording_;
 }
 
 bool Exchange::offer(Command command) {

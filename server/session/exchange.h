@@ -22,6 +22,7 @@
 #include "server/scene/document.h"
 #include "server/session/command_queue.h"
 #include "server/session/hands.h"
+#include "server/session/recording_facts.h"
 #include "server/session/refusal.h"
 #include "server/session/run_state.h"
 #include "server/session/saved.h"
@@ -56,6 +57,10 @@ struct SceneChanged {
   std::optional<json> patch;
   std::uint64_t by = 0;
 };
+/// What can be undone and redone now; see server/net/asyncapi.yaml.
+struct HistoryChanged {
+  json told;
+};
 struct TopologyChanged {
   stream::SharedMessage message;
 };
@@ -81,6 +86,9 @@ struct Moment {
   double time = 0;                           ///< [s]
   std::vector<glm::vec3> positions{};        ///< [vertex] [m]
   std::vector<scene::Collider> colliders{};  ///< as placed at `time`
+  /// Not null: instead of all that, a recording to make a page of, with the name in `title`.
+  std::shared_ptr<const std::string> recording{};
+  std::string title{};
 };
 struct Captured {
   std::uint64_t asker = 0;
@@ -109,8 +117,9 @@ struct Status {
   std::vector<HandAt> hands;  ///< empty, and so without memory, while nobody holds the cloth
   gl::StageTimes pass_times;  ///< the GPU times that have arrived since the last status
 };
-using Event = std::variant<Started, Failed, Reply, SceneChanged, TopologyChanged, PartsChanged, SolverChanged,
-                           Diverged, Notice, Captured, SceneReached, SceneLost, Held, ChoiceWanted, Status>;
+using Event = std::variant<Started, Failed, Reply, SceneChanged, HistoryChanged, TopologyChanged,
+                           PartsChanged, SolverChanged, Diverged, Notice, Captured, SceneReached, SceneLost,
+                           Held, ChoiceWanted, Status>;
 
 class Exchange {
  public:
@@ -129,6 +138,8 @@ class Exchange {
   stream::SharedMessage frame(stream::Form form) const;
   /// The newest saved state of the session, null before the first.
   std::shared_ptr<const Saved> saved() const;
+  /// What has been recorded, or is.
+  RecordingFacts recording() const;
   /// After the session has failed: answers each of its open commands with `error`, as events added to `out`.
   void give_up(const Error& error, std::vector<Event>& out);
   std::int64_t heartbeat_us() const { return heartbeat_us_.load(std::memory_order_relaxed); }
@@ -148,6 +159,7 @@ class Exchange {
   void beat();                           ///< sets the heartbeat to now
   /// Stores the state from which the session can be restored.
   void store_saved(std::shared_ptr<const Saved> saved);
+  void store_recording(RecordingFacts facts);  ///< any thread may call it
   void count_steps(std::uint64_t steps) { steps_.fetch_add(steps, std::memory_order_relaxed); }
 
  private:
@@ -167,6 +179,7 @@ class Exchange {
   std::array<stream::SharedMessage, form_count> frames_;
   std::list<Awaited> awaited_;  ///< in the order of asking, so the next to be answered is near the front
   std::shared_ptr<const Saved> saved_;
+  RecordingFacts recording_;
   bool stopping_ = false;
   std::atomic<std::int64_t> heartbeat_us_{0};
   std::atomic<std::uint64_t> steps_{0};

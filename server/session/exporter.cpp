@@ -10,6 +10,7 @@
 #include "server/model/mesh_file.h"
 #include "server/render/renderer.h"
 #include "server/session/fault.h"
+#include "server/stream/recording.h"
 
 namespace clothlab::session {
 
@@ -80,8 +81,10 @@ void Exporter::run() {
       if (ending_) return;
       task = *std::exchange(task_, std::nullopt);
     }
-    Exported made{task.asker, is_picture(task.what) ? "image/png" : "text/plain; charset=utf-8",
-                  carry_out(task)};
+    const char* type = task.moment.recording   ? "text/html; charset=utf-8"
+                       : is_picture(task.what) ? "image/png"
+                                               : "text/plain; charset=utf-8";
+    Exported made{task.asker, type, carry_out(task)};
     {
       const std::lock_guard lock(mutex_);
       made_ = std::move(made);
@@ -102,6 +105,7 @@ Result<std::string> Exporter::carry_out(const Task& task) const {
 }
 
 Result<std::string> make_export(std::optional<int> gpu, const Moment& moment, const Export& what) {
+  if (moment.recording) return stream::player_page(*moment.recording, moment.title);
   const Result<model::Model> model = model::build(moment.document->scene);
   if (!model) return model.error();
   if (is_picture(what)) return picture(gpu, moment, *model, what);

@@ -37,12 +37,28 @@ void FrameMaker::take_over(const FrameMaker& other) {
 }
 
 void FrameMaker::demand(const Demand& demand, Clock::time_point now) {
-  for (std::size_t i = 0; i < lanes_.size(); ++i) {
+  for (std::size_t i = 0; i < form_count; ++i) {
     Lane& lane = lanes_[i];
     if (lane.rate <= 0 && demand.rate[i] > 0) lane.due = now;
     lane.rate = demand.rate[i];
     if (demand.fresh[i]) lane.urgent = true;
   }
+}
+
+void FrameMaker::record(double rate, Clock::time_point now) {
+  Lane& lane = lanes_[recording_lane];
+  lane.rate = rate;
+  lane.due = now;
+  lane.urgent = rate > 0;
+}
+
+/// True if this frame was made for the recording. Frames arrive in the order of their numbers, but some never
+/// do.
+bool FrameMaker::for_recording(std::uint32_t sequence) {
+  while (!to_record_.empty() && to_record_.front() < sequence) to_record_.pop_front();
+  if (to_record_.empty() || to_record_.front() != sequence) return false;
+  to_record_.pop_front();
+  return true;
 }
 
 void FrameMaker::state_changed_now() {
@@ -59,13 +75,19 @@ void FrameMaker::restart() {
 
 bool FrameMaker::request(std::size_t index, const sim::Simulation& simulation) {
   const auto flags = (diverged_ ? stream::flag_diverged : 0) | (asleep_ ? stream::flag_asleep : 0);
+  const stream::Form form = form_at(index);
+  if (form.encoding == stream::Encoding::c16) {
+    if (compressor_.full()) return false;
+    compressor_.set_mesh(simulation.model(), simulation.topology_revision());
+  }
   timer_.begin();
-  const bool queued = packer_->request(simulation, stream::Form::at(index), static_cast<std::uint16_t>(flags),
+  const bool queued = packer_->request(simulation, form, static_cast<std::uint16_t>(flags),
                                        stream::collider_text(simulation));
   if (queued) timer_.stage("pack_frame");
   timer_.end();
   if (!queued) return false;
   ++requested_;
+  if (index == recording_lane) to_record_.push_back(requested_);
   lanes_[index].packed_version = version_;
   return true;
 }
@@ -74,7 +96,7 @@ void FrameMaker::make_urgent(const sim::Simulation& simulation, Clock::time_poin
   for (std::size_t i = 0; i < lanes_.size(); ++i) {
     Lane& lane = lanes_[i];
     if (!lane.urgent) continue;
-    if (lane.rate > 0 && !request(i, simulation)) continue;  // the readback ring is full: try again later
+    if (lane.rate > 0 && !request(i, simulation)) continue;  // no room for it on its way: try again later
     lane.urgent = false;
     if (lane.rate > 0) lane.due = now + period(lane.rate);
   }
@@ -92,10 +114,18 @@ void FrameMaker::make_due(const sim::Simulation& simulation, Clock::time_point n
 
 void FrameMaker::poll() {
   while (stream::SharedMessage frame = packer_->poll()) {
+    const bool recorded = for_recording(frame->header.sequence);
     if (frame->header.sequence <= discard_until_) continue;
     arrived_ = frame->header.sequence;
-    publish(std::move(frame));
+    if (recorded)
+      recorded_.push_back(std::move(frame));
+    else if (frame->header.encoding == stream::Encoding::c16)
+      compressor_.offer(std::move(frame));
+    else
+      publish(std::move(frame));
   }
+  while (stream::SharedMessage frame = compressor_.poll())
+    if (frame->header.sequence > discard_until_) publish(std::move(frame));
 }
 
 void FrameMaker::publish(stream::SharedMessage frame) {

@@ -11,12 +11,14 @@ namespace clothlab::session {
 struct Limits {
   int vertices = static_cast<int>(scene::max_vertices);      ///< at most, per scene
   int springs = 16 * static_cast<int>(scene::max_vertices);  ///< at most, per scene
+  int recording_bytes = 64 << 20;  ///< at most, per recording, of which a session keeps one
   int unwatched_seconds = 30;  ///< without viewers for so long, a session stops stepping until one comes [s]
 };
 
-inline constexpr std::size_t max_waiting_commands = 1024;   ///< per client
-inline constexpr double min_speed = 0.01, max_speed = 100;  ///< simulated seconds per second
-inline constexpr double status_rate = 10;                   ///< statuses per second
-inline constexpr double diagnosis_rate = 60;                ///< checks for a blow-up per second
+inline constexpr std::size_t max_waiting_commands = 1024;                 ///< per client
+inline constexpr double min_speed = 0.01, max_speed = 100;                ///< simulated seconds per second
+inline constexpr double min_recording_rate = 1, max_recording_rate = 60;  ///< frames per second
+inline constexpr double status_rate = 10;                                 ///< statuses per second
+inline constexpr double diagnosis_rate = 60;                              ///< checks for a blow-up per second
 
 }  // namespace clothlab::session

@@ -36,133 +36,6 @@ Refusal Stepper::diverged_refusal() {
            "send the remedy's patch or another, or use sim.reset or scene.load"}};
 }
 
-void Stepper::perform(GetScene&, const Ticket& ticket) {
-  reply(ticket, json{{"document", document_.value}, {"revision", revision_}});
-}
-
-void Stepper::perform(LoadScene& load, const Ticket& ticket) {
-  Result<scene::Document> document = load.preset.empty() ? scene::validate(std::move(load.document), meshes_)
-                                                         : scene::load_preset(load.preset, meshes_);
-  if (!document && !load.preset.empty())
-    return reply(ticket, invalid_value({"/preset", json(load.preset).dump(), document.error().remedy}));
-  if (!document) return reply(ticket, invalid_value(document.error()));
-  const Result<scene::Scene> scene = prepare(*document);
-  if (!scene) return reply(ticket, invalid_value(scene.error()));
-  const Result<sim::ChangeDepth> depth = change_engine(*scene);
-  if (!depth) return reply(ticket, invalid_value(depth.error()));
-  run_.go_on();  // after a blow-up the new scene plays or is paused as the old one was before
-  adopt(std::move(*document), *depth);
-  // A loaded scene always starts at its beginning, however little it differs from the old one.
-  if (*depth != sim::ChangeDepth::cloth) restart();
-  reply(ticket, json{{"revision", revision_}, {"applies", sim::name(sim::ChangeDepth::cloth)}});
-  announce_scene(std::nullopt, ticket.asker);
-}
-
-void Stepper::perform(PatchScene& patch, const Ticket& ticket) {
-  if (patch.revision && *patch.revision != revision_)
-    return reply(ticket, Refusal{Refusal::Reason::other_revision,
-                                 {"",
-                                  "the scene is at revision " + std::to_string(revision_) + ", not " +
-                                      std::to_string(*patch.revision),
-                                  "get the scene and patch that"},
-                                 revision_});
-  Result<scene::Document> document = scene::apply_patch(document_, patch.patch);
-  if (!document) return reply(ticket, invalid_value(document.error()));
-  const Result<scene::Scene> scene = prepare(*document);
-  if (!scene) return reply(ticket, invalid_value(scene.error()));
-  const Result<sim::ChangeDepth> depth = change(*scene);
-  if (!depth) return reply(ticket, invalid_value(depth.error()));
-  adopt(std::move(*document), *depth);
-  reply(ticket, json{{"revision", revision_}, {"applies", sim::name(*depth)}});
-  announce_scene(std::move(patch.patch), ticket.asker);
-  if (*depth == sim::ChangeDepth::cloth)
-    exchange_.emit(Notice{"info", "the cloth was rebuilt for this change: time starts again at 0"});
-}
-
-// If a change alters energies, the same state is diagnosed before and after: energy that the change adds does
-// not count as growth, and growth does not go unnoticed between changes.
-Result<sim::ChangeDepth> Stepper::change(const scene::Scene& scene) {
-  if (!sim::changes_energy(this->scene(), scene)) return change_engine(scene);
-  accept(guard_->judge_now());
-  const Result<sim::ChangeDepth> depth = change_engine(scene);
-  if (depth && *depth != sim::ChangeDepth::cloth) guard_->rebase();
-  return depth;
-}
-
-/// Applies a changed scene. A scene that becomes heavy or light on software OpenGL moves to another engine;
-/// the step that is under way is then given up.
-Result<sim::ChangeDepth> Stepper::change_engine(const scene::Scene& scene) {
-  const gl::HelperThreads threads = Engine::threads_for(scene, engine_->threads);
-  return engine_->software() && threads != engine_->threads ? move_to(scene, threads)
-                                                            : simulation().change(scene);
-}
-
-Result<sim::ChangeDepth> Stepper::move_to(const scene::Scene& scene, gl::HelperThreads threads) {
-  struct Current {  // makes the context of `engine_` current, however this function ends
-    std::unique_ptr<Engine>& engine;
-    ~Current() { (void)engine->context->make_current(); }
-  } current{engine_};
-  const sim::ChangeDepth depth = sim::change_depth(simulation().scene(), scene);
-  const bool anew = depth == sim::ChangeDepth::cloth;
-  sim::State state;
-  if (!anew) state = simulation().read_state();
-  Result<std::unique_ptr<Engine>> made =
-      Engine::create(scene, exchange_,
-                     {gpu_, threads, frames().last(), simulation().topology_revision() + (anew ? 1u : 0u)});
-  if (!made) return made.error();
-  if (!anew) (*made)->simulation->restore(state, simulation().time(), simulation().step_index());
-  (*made)->frames->take_over(frames());
-  engine_.swap(*made);
-  made->reset();
-  guard_->move_to(simulation());
-  if (!anew && !hands_.empty()) (void)simulation().set_hands(hands_.for_simulation());
-  return depth;
-}
-
-void Stepper::adopt(scene::Document document, sim::ChangeDepth depth) {
-  ++revision_;
-  take_over(std::move(document), depth);
-}
-
-void Stepper::take_over(scene::Document document, sim::ChangeDepth depth) {
-  document_ = std::move(document);
-  wake_up();
-  rest_.follow(scene(), simulation().model());
-  if (depth == sim::ChangeDepth::cloth) {
-    run_.go_on();  // like any other change: playing or paused as before a blow-up
-    state_replaced();
-  } else {
-    frames().state_changed_now();
-  }
-  ++state_version_;
-  announce_parts();
-  announce_solver();
-  if (depth == sim::ChangeDepth::none) return;
-  warn_if_thin();
-  step_limit_.set_scene(simulation().model(), scene());
-  follow_step_limit();  // now, as another change may come before the next status
-  if (depth == sim::ChangeDepth::cloth) return guard_->start(step_limit_.dt_limit());
-  guard_->set_dt_limit(step_limit_.dt_limit());
-  go_on();
-}
-
-void Stepper::restart() {
-  simulation().reset();
-  state_replaced();
-  guard_->start(step_limit_.dt_limit());
-}
-
-void Stepper::state_replaced() {
-  end_hands();
-  finish_waiting(true);
-  wake_up();
-  run_.begin_again();
-  slow_announced_ = crowded_announced_ = forced_announced_ = unconverged_announced_ = false;
-  ++state_version_;
-  real_time_.restart(Clock::now());
-  frames().restart();
-}
-
 void Stepper::perform(Play&, const Ticket& ticket) {
   finish_waiting(true);
   wake_up();
@@ -188,6 +61,7 @@ void Stepper::perform(Step& step, const Ticket& ticket) {
 
 void Stepper::perform(Reset&, const Ticket& ticket) {
   restart();
+  record_change({{"reset", true}, {"by", ticket.asker}});
   reply(ticket, where_we_are());
 }
 
@@ -245,16 +119,6 @@ void Stepper::perform(Chosen& chosen, const Ticket&) {
                                          chosen.choice.error().text()});
   else
     exchange_.emit(Notice{"info", "method auto: " + chosen.choice->why});
-}
-
-void Stepper::announce_scene(std::optional<json> patch, std::uint64_t by) {
-  // Clients need a topology before its frames, so it is sent together with the scene that changed it.
-  if (const std::uint32_t revision = simulation().topology_revision(); revision != topology_revision_) {
-    topology_revision_ = revision;
-    exchange_.emit(TopologyChanged{stream::encode_topology(simulation().model(), revision)});
-  }
-  exchange_.emit(
-      SceneChanged{std::make_shared<const scene::Document>(document_), revision_, std::move(patch), by});
 }
 
 void Stepper::announce_parts() {

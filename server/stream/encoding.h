@@ -10,19 +10,21 @@
 
 namespace clothlab::stream {
 
-enum class Encoding : std::uint8_t { f32 = 0, q16 = 1 };
+enum class Encoding : std::uint8_t { f32 = 0, q16 = 1, c16 = 2 };
 
 struct EncodingFacts {
   Encoding encoding;
-  const char* name;  ///< as stream.subscribe spells it
-  std::size_t bytes_per_vertex;
-  const char* define;  ///< the define that pack.comp is compiled with
+  const char* name;              ///< as stream.subscribe spells it
+  std::size_t bytes_per_vertex;  ///< as the GPU packs it
+  const char* define;            ///< the define that pack.comp is compiled with
+  Encoding packed_as;            ///< an encoding whose bytes the GPU packs for this one
 };
 
 /// In the order of `Encoding`, whose numbers are sent in each header.
 inline constexpr std::array encodings{
-    EncodingFacts{Encoding::f32, "f32", 24, "ENCODING_F32"},
-    EncodingFacts{Encoding::q16, "q16", 8, "ENCODING_Q16"},
+    EncodingFacts{Encoding::f32, "f32", 24, "ENCODING_F32", Encoding::f32},
+    EncodingFacts{Encoding::q16, "q16", 8, "ENCODING_Q16", Encoding::q16},
+    EncodingFacts{Encoding::c16, "c16", 8, "ENCODING_Q16", Encoding::q16},  // then compressed: compressor.h
 };
 inline constexpr std::size_t encoding_count = encodings.size();
 static_assert(

@@ -65,6 +65,7 @@ struct Form {
   static constexpr Form at(std::size_t index) {
     return {static_cast<Encoding>(index % encoding_count), static_cast<Field>(index / encoding_count)};
   }
+  /// As the GPU packs it.
   constexpr std::size_t bytes_per_vertex() const {
     return facts(encoding).bytes_per_vertex + (field == Field::none ? 0 : 1);
   }

@@ -105,6 +105,7 @@ Result<std::unique_ptr<Packer>> Packer::create(std::uint32_t last) {
   };
   if (Status status = load(self.bounds, "stream/bounds.comp", {}); !status) return status.error();
   for (std::size_t i = 0; i < encoding_count; ++i) {
+    if (encodings[i].packed_as != encodings[i].encoding) continue;
     gl::Defines defines{{encodings[i].define, "1"},
                         {"WORDS", std::to_string(encodings[i].bytes_per_vertex / 4)}};
     if (Status status = load(self.pack[i], "stream/pack.comp", defines); !status) return status.error();
@@ -127,7 +128,7 @@ bool Packer::request(const sim::Simulation& simulation, Form form, std::uint16_t
     self.set_mesh(simulation.model(), simulation.topology_revision());
   if (self.ring.full()) return false;
 
-  const auto index = static_cast<std::size_t>(form.encoding);
+  const auto index = static_cast<std::size_t>(facts(form.encoding).packed_as);
   const bool with_field = form.field != Field::none;
   const gl::Program& pack = (with_field ? self.pack_with_field : self.pack)[index];
   const std::array<std::uint32_t, 8> empty_box{~0u, ~0u, ~0u, ~0u, 0u, 0u, 0u, 0u};

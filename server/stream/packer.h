@@ -19,7 +19,8 @@ class Packer {
   ~Packer();
 
   /// Queues the packing of the present state after the steps queued so far; `colliders` becomes the frame's
-  /// Message::colliders. False if the readback ring is full: try again after the next poll.
+  /// Message::colliders. A frame of the encoding c16 is packed only: Compressor makes it. False if the
+  /// readback ring is full: try again after the next poll.
   bool request(const sim::Simulation& simulation, Form form, std::uint16_t flags,
                std::string_view colliders = {});
 

@@ -8,6 +8,7 @@ import { clothlab, folder } from "./program.mjs";
 const commands = [
   "run",
   "render",
+  "record",
   "chart",
   "stability",
   "choose",

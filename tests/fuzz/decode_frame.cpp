@@ -1,8 +1,13 @@
 #include "tests/fuzz/decode_frame.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <map>
+#include <utility>
+
+#include "server/base/deflate.h"
 
 namespace clothlab::fuzz {
 
@@ -48,8 +53,8 @@ Result<FrameHeader> read_header(std::span<const std::uint8_t> bytes) {
   header.box_extent = number_at<std::array<float, 3>>(bytes, 44);
   if (header.kind != 1 && header.kind != 2)
     return refused(0, "kind " + std::to_string(header.kind), "1 or 2");
-  if (header.encoding > 1)
-    return refused(1, "encoding " + std::to_string(header.encoding), "0 (f32) or 1 (q16)");
+  if (header.encoding > (header.kind == 1 ? 1 : 2))
+    return refused(1, "encoding " + std::to_string(header.encoding), "0 (f32), 1 (q16) or 2 (c16)");
   if (header.flags > 3) return refused(2, "flags " + std::to_string(header.flags), "bits 0 and 1");
   if (!(header.time >= 0.0 && std::isfinite(header.time)))
     return refused(16, "a time that is none", "0 s or later");
@@ -131,6 +136,74 @@ void put_all(std::vector<std::uint8_t>& out, const Items& items) {
   for (const auto& item : items) put(out, item);
 }
 
+/// For each vertex the triples a, b, c whose a + b - c are averaged.
+using Parallelograms = std::vector<std::vector<std::array<std::uint32_t, 3>>>;
+
+Parallelograms parallelograms(std::uint32_t vertex_count, Triangles triangles) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> thirds;  // of each edge
+  for (const auto& [a, b, c] : triangles)
+    for (const auto& [from, to, third] : {std::array{a, b, c}, std::array{b, c, a}, std::array{c, a, b}})
+      if (from != to) thirds[std::minmax(from, to)].push_back(third);
+  std::array<Parallelograms, 3> rules;
+  for (Parallelograms& rule : rules) rule.resize(vertex_count);
+  for (const auto& [edge, corners] : thirds) {
+    const auto [low, high] = edge;
+    if (corners.size() == 2) {
+      const auto [near, far] = std::minmax(corners[0], corners[1]);
+      if (far < high) rules[0][high].push_back({near, far, low});
+      if (high < far && near < far) rules[1][far].push_back({low, high, near});
+    }
+    rules[2][high].push_back({low, low, low});
+  }
+  Parallelograms chosen(vertex_count);
+  for (std::uint32_t i = 0; i < vertex_count; ++i) {
+    for (std::size_t rule = 0; chosen[i].empty() && rule < rules.size(); ++rule) chosen[i] = rules[rule][i];
+    if (chosen[i].empty() && i > 0) chosen[i].push_back({i - 1, i - 1, i - 1});
+  }
+  return chosen;
+}
+
+int prediction(const Compressed& frame, const Parallelograms::value_type& triples, std::size_t axis) {
+  double sum = 0;
+  for (const auto& [a, b, c] : triples)
+    sum += frame.vertices[a][axis] + frame.vertices[b][axis] - frame.vertices[c][axis];
+  return triples.empty() ? 0 : static_cast<int>(std::floor(sum / static_cast<double>(triples.size())));
+}
+
+Result<Decoded> read_compressed(std::span<const std::uint8_t> bytes, const FrameHeader& header,
+                                Triangles triangles) {
+  const std::size_t count = header.vertex_count, with_field = header.range > 0.0f ? 1 : 0;
+  const auto planes = inflate_raw(bytes.subspan(header_bytes), (6 + with_field) * count);
+  if (!planes) return refused(header_bytes, planes.error().what, planes.error().remedy);
+  const Parallelograms triples = parallelograms(header.vertex_count, triangles);
+  Compressed frame;
+  frame.vertices.resize(count);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const int fold = (*planes)[axis * count + i] + 256 * (*planes)[(3 + axis) * count + i];
+      const int difference = fold % 2 == 0 ? fold / 2 : -(fold + 1) / 2;
+      frame.vertices[i][axis] =
+          static_cast<std::uint16_t>((prediction(frame, triples[i], axis) + difference) & 0xffff);
+    }
+  std::vector<std::uint8_t> field(planes->end() - static_cast<long>(with_field * count), planes->end());
+  return Decoded{header, std::move(frame), std::move(field)};
+}
+
+std::vector<std::uint8_t> compressed_planes(const Compressed& frame, Triangles triangles) {
+  const std::size_t count = frame.vertices.size();
+  const Parallelograms triples = parallelograms(static_cast<std::uint32_t>(count), triangles);
+  std::vector<std::uint8_t> planes(6 * count);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      int difference = (frame.vertices[i][axis] - prediction(frame, triples[i], axis)) & 0xffff;
+      if (difference > 0x7fff) difference -= 0x10000;
+      const int fold = difference < 0 ? -2 * difference - 1 : 2 * difference;
+      planes[axis * count + i] = static_cast<std::uint8_t>(fold % 256);
+      planes[(3 + axis) * count + i] = static_cast<std::uint8_t>(fold / 256);
+    }
+  return planes;
+}
+
 }  // namespace
 
 std::array<double, 3> Quantised::position(const FrameHeader& header, const Vertex& vertex) {
@@ -141,7 +214,7 @@ std::array<double, 3> Quantised::position(const FrameHeader& header, const Verte
   return place;
 }
 
-Result<Decoded> decode_frame(std::span<const std::uint8_t> bytes) {
+Result<Decoded> decode_frame(std::span<const std::uint8_t> bytes, Triangles triangles) {
   const Result<FrameHeader> header = read_header(bytes);
   if (!header) return header.error();
   if (header->kind == 1) {
@@ -149,6 +222,7 @@ Result<Decoded> decode_frame(std::span<const std::uint8_t> bytes) {
     if (!topology) return topology.error();
     return Decoded{*header, std::move(*topology), {}};
   }
+  if (header->encoding == 2) return read_compressed(bytes, *header, triangles);
   if (header->encoding == 1) {
     static_assert(sizeof(Quantised::Vertex) == 8);
     auto vertices = read_vertices<Quantised::Vertex>(bytes, *header);
@@ -163,7 +237,7 @@ Result<Decoded> decode_frame(std::span<const std::uint8_t> bytes) {
   return Decoded{*header, Float32{std::move(*vertices)}, read_field(bytes, *header)};
 }
 
-std::vector<std::uint8_t> encode_frame(const Decoded& message) {
+std::vector<std::uint8_t> encode_frame(const Decoded& message, Triangles triangles) {
   std::vector<std::uint8_t> payload;
   if (const auto* topology = std::get_if<Topology>(&message.payload)) {
     put(payload, static_cast<std::uint32_t>(topology->triangles.size()));
@@ -173,10 +247,14 @@ std::vector<std::uint8_t> encode_frame(const Decoded& message) {
     put_all(payload, topology->texture_coordinates);
   } else if (const auto* quantised = std::get_if<Quantised>(&message.payload)) {
     put_all(payload, quantised->vertices);
+  } else if (const auto* compressed = std::get_if<Compressed>(&message.payload)) {
+    std::vector<std::uint8_t> planes = compressed_planes(*compressed, triangles);
+    planes.insert(planes.end(), message.field.begin(), message.field.end());
+    payload = deflate_raw(planes);
   } else {
     put_all(payload, std::get<Float32>(message.payload).vertices);
   }
-  put_all(payload, message.field);
+  if (!std::holds_alternative<Compressed>(message.payload)) put_all(payload, message.field);
   const FrameHeader& header = message.header;
   std::vector<std::uint8_t> out{header.kind, header.encoding};
   put(out, header.flags);

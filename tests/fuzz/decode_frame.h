@@ -16,7 +16,7 @@ namespace clothlab::fuzz {
 
 struct FrameHeader {
   std::uint8_t kind = 2;      ///< 1 topology, 2 frame
-  std::uint8_t encoding = 0;  ///< 0 f32, 1 q16
+  std::uint8_t encoding = 0;  ///< 0 f32, 1 q16, 2 c16
   std::uint16_t flags = 0;    ///< bit 0 asleep, bit 1 diverged
   std::uint32_t topology_revision = 0, sequence = 0, vertex_count = 0;
   double time = 0;  ///< [s]
@@ -44,15 +44,22 @@ struct Quantised {
   static std::array<double, 3> position(const FrameHeader& header, const Vertex& vertex);
 };
 
+struct Compressed {
+  std::vector<std::array<std::uint16_t, 3>> vertices;  ///< positions, as Quantised has them
+};
+
 struct Decoded {
   FrameHeader header;
-  std::variant<Topology, Float32, Quantised> payload;
+  std::variant<Topology, Float32, Quantised, Compressed> payload;
   std::vector<std::uint8_t> field;  ///< [vertex_count] of range / 255; empty without a field
 };
 
-/// Reads a message. The error's `where` is "byte OFFSET".
-Result<Decoded> decode_frame(std::span<const std::uint8_t> bytes);
+using Triangles = std::span<const std::array<std::uint32_t, 3>>;
 
-std::vector<std::uint8_t> encode_frame(const Decoded& message);
+/// Reads a message, a c16 frame with the triangles of its topology. The error's `where` is "byte OFFSET".
+Result<Decoded> decode_frame(std::span<const std::uint8_t> bytes, Triangles triangles = {});
+
+/// The same bytes; of a c16 frame others may be read to the same, as there are many ways to compress.
+std::vector<std::uint8_t> encode_frame(const Decoded& message, Triangles triangles = {});
 
 }  // namespace clothlab::fuzz

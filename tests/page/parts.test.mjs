@@ -1,4 +1,4 @@
-// What the panel's buttons add and remove leaves a scene that the server takes, and one that its way back restores.
+// What the panel's buttons add and remove leaves a scene that the server takes.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -10,7 +10,7 @@ import { load } from "./module.mjs";
 
 const { sectionsOf } = await load("panel/fields");
 const { completed } = await load("explain/schema");
-const { applyPatch, inverse } = await load("link/json_patch");
+const { applyPatch } = await load("link/json_patch");
 const server = new URL("../../server/scene/", import.meta.url);
 const schema = JSON.parse(readFileSync(new URL("scene.schema.json", server), "utf8"));
 const program = process.env.CLOTHLAB ?? fileURLToPath(new URL("../../build/release/clothlab", import.meta.url));
@@ -30,8 +30,6 @@ test("every button of every preset", () => {
       const patch = change(stored);
       assert.ok(patch.length > 0, `${file}: ${label}`);
       const after = applyPatch(stored, patch);
-      const back = patch.map((operation) => inverse(stored, operation)).reverse();
-      assert.deepEqual(applyPatch(after, back), stored, `${file}: ${label}, and back`);
       files.push(join(folder, `${file}-${i}.json`));
       writeFileSync(files.at(-1), JSON.stringify(after));
     }

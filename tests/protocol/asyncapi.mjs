@@ -78,8 +78,9 @@ export function readBinary(bytes) {
     return read;
   };
   const header = record(layout.header, {});
-  const payload = record(header.kind === 1 ? layout.topology : layout[["f32", "q16"][header.encoding]], header);
-  if (header.range > 0) Object.assign(payload, record(layout.field, header));
+  const encoding = ["f32", "q16", "c16"][header.encoding];
+  const payload = record(header.kind === 1 ? layout.topology : layout[encoding], header);
+  if (header.range > 0 && encoding !== "c16") Object.assign(payload, record(layout.field, header));
   if (at !== bytes.byteLength) throw new Error(`${bytes.byteLength - at} bytes too many`);
   return { header, ...payload };
 }

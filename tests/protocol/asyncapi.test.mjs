@@ -70,6 +70,7 @@ test("the limits that hello tells are the document's", async () => {
   assert.equal(range("stream.subscribe", "in_flight")[1], limits.in_flight);
   assert.equal(range("sim.step", "steps")[1], limits.steps);
   assert.deepEqual(range("sim.speed", "factor"), limits.speed);
+  assert.deepEqual(range("record.start", "rate"), limits.recording.rate);
   assert.deepEqual(range("lab.chart", "time"), limits.lab.time);
   assert.deepEqual(range("lab.chart", "budget"), limits.lab.budget);
   assert.deepEqual(paramsOf("stream.subscribe").properties.encoding.enum, encodings);
@@ -162,11 +163,16 @@ test("requests and their answers are as it says, with and without parameters, fo
     ["scene.patch", { patch: { self_collision: {} } }],
     ["scene.patch", { patch: [{ op: "replace", path: "/cloths/0/mesh/grid/rows", value: 6 }] }],
     ["scene.patch", { patch: { solver: { method: "pbd" } } }],
+    ["scene.patch", { patch: { gravity: [0, -2, 0] }, name: "lighter" }],
+    ["scene.undo"],
+    ["scene.redo", {}],
     ["scene.load", { preset: "curtain" }],
+    ["scene.undo", { revision: revision + 9 }],
     ["scene.load", { scene: strip }],
     ["stream.subscribe"],
     ["stream.ack", { frame: 0 }],
     ["stream.unsubscribe"],
+    ["stream.subscribe", { encoding: "c16", field: "speed" }],
     ["stream.subscribe", { encoding: "f32", rate: 120, in_flight: 8 }],
     ["grab.start", { cloth: 0, vertex: 4, target: [0, 1, 0] }],
     ["grab.start", { cloth: 0, vertex: 5, target: [0, 1, 0], hand: 9 }],
@@ -174,7 +180,13 @@ test("requests and their answers are as it says, with and without parameters, fo
     ["grab.move", { target: [0.1, 1, 0], hand: 9 }],
     ["grab.end"],
     ["grab.end", { hand: 9 }],
+    ["timeline.get"],
+    ["timeline.resume", { step: 0 }],
     ["lab.jobs"],
+    ["record.get"],
+    ["record.start", { rate: 60 }],
+    ["record.stop"],
+    ["record.get"],
     ["mesh.upload", { name: "leaf", obj: "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n" }],
   ];
   for (const [method, params] of asked) await client.request(method, params);
@@ -187,6 +199,8 @@ test("requests and their answers are as it says, with and without parameters, fo
     assert.deepEqual((await answerTo(client, id)).result, { t: id });
   }
   assert.equal((await client.refusal("scene.patch", { patch: {}, revision })).code, -32003);
+  assert.equal((await client.refusal("scene.undo", { revision })).code, -32003);
+  assert.equal((await client.refusal("scene.redo")).code, -32005);
   assert.equal((await client.refusal("grab.start", { cloth: 1, vertex: 0, target: [0, 0, 0] })).data.path, "/cloth");
   assert.equal((await client.refusal("grab.move", { target: [0, 0, 0] })).data.path, "/hand");
   assert.equal((await client.refusal("scene.load", { preset: "no-such" })).code, -32602);

@@ -82,10 +82,13 @@ test("a viewer reads and watches; whatever changes something answers -32001", as
     ["lab.cancel", { job: 1 }],
     ["lab.jobs", {}],
     ["lab.export", { job: 1, format: "json" }],
+    ["record.start", {}],
+    ["record.stop", {}],
   ])
     assert.equal((await client.refusal(method, params)).code, -32001, method);
   assert.equal((await client.request("scene.get")).document.name, "seed");
   assert.ok((await client.request("scene.presets")).presets.length > 0);
+  assert.equal((await client.request("record.get")).state, "none");
   await client.request("stream.subscribe");
   await client.frame();
   await client.close();

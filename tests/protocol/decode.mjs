@@ -1,11 +1,12 @@
 // Reads the binary messages of the protocol. Written from the contract, not from the server's code. Anything but an
 // exact message throws a BadMessage; nothing outside the message is ever read.
+import { readCompressed } from "./decode_c16.mjs";
 
 const headerBytes = 64;
 const topology = 1,
   frame = 2;
 const f32 = 0,
-  q16 = 1;
+  c16 = 2; // between them q16
 const knownFlags = 3; // asleep, diverged
 
 export class BadMessage extends Error {}
@@ -14,13 +15,14 @@ function demand(condition, what) {
   if (!condition) throw new BadMessage(what);
 }
 
-/// Reads the bytes of one message; throws a BadMessage.
-export function decode(bytes) {
+/// Reads the bytes of one message; throws a BadMessage. A c16 frame is read with the topology that came before it.
+export function decode(bytes, topologyBefore = null) {
   demand(bytes.byteLength >= headerBytes, `${bytes.byteLength} bytes are no header`);
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const header = readHeader(view);
   checkHeader(header, view.byteLength);
   if (header.kind === topology) return { ...header, ...readTopology(view, header) };
+  if (header.encoding === c16) return { ...header, ...readC16(bytes.subarray(headerBytes), header, topologyBefore) };
   const vertices = header.encoding === f32 ? readFloat32(view, header) : readQuantised(view, header);
   return { ...header, ...vertices, ...readField(view, header) };
 }
@@ -46,7 +48,7 @@ function readHeader(view) {
 function checkHeader(header, byteLength) {
   const { kind, encoding, flags } = header;
   demand(kind === topology || kind === frame, `there is no kind ${kind}`);
-  demand(encoding === f32 || (encoding === q16 && kind === frame), `kind ${kind} has no encoding ${encoding}`);
+  demand(encoding === f32 || (encoding <= c16 && kind === frame), `kind ${kind} has no encoding ${encoding}`);
   demand((flags & ~(kind === frame ? knownFlags : 0)) === 0, `kind ${kind} has no flags ${flags}`);
   demand(header.time >= 0 && header.time < Infinity, `the time is ${header.time}`);
   demand(header.boxMinimum.every(Number.isFinite), `the box begins at ${header.boxMinimum}`);
@@ -106,18 +108,29 @@ function readFloat32(view, { payloadBytes, vertexCount, range }) {
   return { positions, normals };
 }
 
-function readQuantised(view, { payloadBytes, vertexCount, range, boxMinimum, boxExtent }) {
+const place = ({ boxMinimum, boxExtent }, quantised) =>
+  quantised.map((u, axis) => boxMinimum[axis] + (boxExtent[axis] * u) / 65535);
+
+function readC16(payload, header, topologyBefore) {
+  const { vertexCount, range } = header;
+  demand(topologyBefore?.vertexCount === vertexCount, `no topology of ${vertexCount} vertices came before a c16 frame`);
+  const read = readCompressed(payload, vertexCount, topologyBefore.triangles, range > 0);
+  demand(read, `the payload is no deflate stream of ${range > 0 ? 7 : 6} bytes for each of ${vertexCount} vertices`);
+  const field = range > 0 ? { field: Array.from(read.fieldBytes, (byte) => (range * byte) / 255) } : {};
+  return { quantised: read.quantised, positions: read.quantised.map((q) => place(header, q)), ...field };
+}
+
+function readQuantised(view, header) {
+  const { payloadBytes, vertexCount, range } = header;
   demand(payloadBytes === (range > 0 ? 9 : 8) * vertexCount, "a q16 frame has 8 bytes a vertex, 9 with a field");
-  const positions = [],
+  const quantised = [],
     normals = [];
   for (let i = 0; i < vertexCount; ++i) {
     const at = headerBytes + 8 * i;
-    positions.push(
-      [0, 1, 2].map((axis) => boxMinimum[axis] + (boxExtent[axis] * view.getUint16(at + 2 * axis, true)) / 65535),
-    );
+    quantised.push([0, 2, 4].map((offset) => view.getUint16(at + offset, true)));
     normals.push(octahedral(view.getInt8(at + 6), view.getInt8(at + 7)));
   }
-  return { positions, normals };
+  return { quantised, positions: quantised.map((q) => place(header, q)), normals };
 }
 
 // The octahedron |x| + |y| + |z| = 1 unfolded to the square, its lower half turned outwards.

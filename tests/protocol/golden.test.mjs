@@ -3,12 +3,15 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { before, test } from "node:test";
+import { deflateRawSync } from "node:zlib";
 import { BadMessage, decode } from "./decode.mjs";
 import { load } from "../page/module.mjs";
 
 const folder = new URL("../golden/", import.meta.url);
 const withField = ["frame-q16-speed", "frame-f32-speed"];
-const names = ["topology", "frame-q16", "frame-q16-asleep", "frame-f32", "frame-f32-diverged", ...withField];
+const compressed = ["frame-c16", "frame-c16-speed"];
+const plain = ["topology", "frame-q16", "frame-q16-asleep", "frame-f32", "frame-f32-diverged", ...withField];
+const names = [...plain, ...compressed];
 const golden = names.map((name) => ({
   name,
   bytes: new Uint8Array(readFileSync(new URL(`${name}.bin`, folder))),
@@ -17,7 +20,21 @@ const golden = names.map((name) => ({
 const called = (name) => golden.find((message) => message.name === name);
 
 /// `decode` takes the bytes of one message; `name` appears in the test's messages.
-const decoders = [{ name: "the tests' decoder", decode, BadMessage, reads: () => true }];
+const decoders = [
+  { name: "the tests' decoder", decode, BadMessage, reads: ({ content: { header } }) => header.encoding !== 2 },
+  ...compressed.map((name) => {
+    const { header, triangles } = called(name).content;
+    return {
+      name: "the tests' decoder of c16",
+      decode: (bytes) => decode(bytes, { vertexCount: header.vertex_count, triangles }),
+      BadMessage,
+      reads: (message) => message.name === name,
+    };
+  }),
+];
+const pageAt = decoders.length;
+/// Those that read more than one c16 message.
+const plainDecoders = () => [decoders[0], decoders[pageAt]];
 before(async () => {
   const page = await load("link/protocol");
   decoders.push({
@@ -64,7 +81,8 @@ test("the tests' decoder reads each golden message to what stands beside it", ()
     bytes,
     content: { header, ...content },
   } of golden) {
-    const read = decode(embedded(bytes));
+    const topologyBefore = { vertexCount: header.vertex_count, triangles: content.triangles };
+    const read = decode(embedded(bytes), topologyBefore);
     assert.deepEqual(
       {
         kind: read.kind,
@@ -96,6 +114,12 @@ test("the tests' decoder reads each golden message to what stands beside it", ()
         content.vertices.map(({ position }) => position),
       );
       assert.deepEqual(read.field, content.field);
+      if (header.encoding > 0)
+        assert.deepEqual(
+          read.quantised,
+          content.vertices.map(({ quantised }) => quantised),
+        );
+      if (header.encoding === 2) continue;
       content.vertices.forEach(({ normal }, i) =>
         assert.ok(Math.hypot(...normal.map((n, axis) => n - read.normals[i][axis])) < 1e-11),
       );
@@ -104,7 +128,7 @@ test("the tests' decoder reads each golden message to what stands beside it", ()
 });
 
 test("the page's decoder reads the golden topology and q16 frames to what stands beside them", () => {
-  const [, page] = decoders;
+  const page = decoders[pageAt];
   for (const message of golden.filter(page.reads)) {
     const { header, ...content } = message.content;
     const read = page.decode(message.bytes);
@@ -145,8 +169,8 @@ test("the page's decoder reads the golden topology and q16 frames to what stands
 });
 
 test("a frame in an encoding that the page did not ask for is refused by it", () => {
-  for (const name of ["frame-f32", "frame-f32-diverged", "frame-f32-speed"])
-    refuses(decoders[1], called(name).bytes, name);
+  for (const name of ["frame-f32", "frame-f32-diverged", "frame-f32-speed", ...compressed])
+    refuses(decoders[pageAt], called(name).bytes, name);
 });
 
 test("every truncated length is refused, and so is every longer one", () => {
@@ -282,7 +306,7 @@ test("counts that do not match the payload are refused, however large", () => {
 test("a topology without counts, or with less than one, is refused", () => {
   const { bytes } = called("topology");
   for (const length of [0, 4])
-    for (const decoder of decoders)
+    for (const decoder of plainDecoders())
       refuses(
         decoder,
         changed(bytes, (view) => view.setUint32(56, length, true)).subarray(0, 64 + length),
@@ -293,7 +317,7 @@ test("a topology without counts, or with less than one, is refused", () => {
 test("counts that fit the payload's length but not each other are refused", () => {
   // Three cloths take as many bytes as two triangles: 24 bytes move from one to the other.
   const { bytes } = called("topology");
-  for (const decoder of decoders)
+  for (const decoder of plainDecoders())
     refuses(
       decoder,
       changed(bytes, (view) => {
@@ -308,7 +332,7 @@ test("a triangle with a vertex that is not there is refused, and so are cloths t
   const { bytes, content } = called("topology");
   const firstTriangle = 64 + 8 + 8 * content.cloths.length,
     corners = 3 * content.triangles.length;
-  for (const decoder of decoders) {
+  for (const decoder of plainDecoders()) {
     for (let corner = 0; corner < corners; ++corner)
       for (const vertex of [content.header.vertex_count, 0xffffffff])
         refuses(
@@ -326,7 +350,7 @@ test("a triangle with a vertex that is not there is refused, and so are cloths t
   }
 });
 
-test("a kind or an encoding that there is not, c16 among them, is refused, whatever the rest is like", () => {
+test("a kind or an encoding that there is not, or not of such a message, is refused, whatever the rest is like", () => {
   forEach((decoder, { name, bytes }) => {
     for (let kind = 0; kind < 256; ++kind)
       for (const encoding of [0, 1, 2, 3, 255]) {
@@ -339,4 +363,19 @@ test("a kind or an encoding that there is not, c16 among them, is refused, whate
         );
       }
   });
+});
+
+test("a c16 frame is refused without the topology of its vertices, and if its deflate stream holds more or less", () => {
+  const speed = called("frame-c16-speed");
+  const { triangles } = speed.content;
+  for (const topologyBefore of [null, { vertexCount: 8, triangles }])
+    assert.throws(() => decode(speed.bytes, topologyBefore), BadMessage);
+  for (const size of [0, 54, 62, 64, 100]) {
+    const payload = deflateRawSync(Buffer.alloc(size));
+    const bytes = new Uint8Array(64 + payload.length);
+    bytes.set(speed.bytes.subarray(0, 64));
+    bytes.set(payload, 64);
+    new DataView(bytes.buffer).setUint32(56, payload.length, true);
+    refuses(decoders[2], bytes, `${size} bytes instead of 63`);
+  }
 });

@@ -57,7 +57,7 @@ test("hello comes first, then the whole scene", async () => {
   assert.equal(hello.role, "operator");
   assert.ok(hello.renderer.length > 0);
   assert.deepEqual(hello.methods, schema.properties.solver.properties.method.enum);
-  assert.deepEqual(hello.encodings, ["f32", "q16"]);
+  assert.deepEqual(hello.encodings, ["f32", "q16", "c16"]);
   assert.equal(hello.limits.message_bytes, 65536);
   assert.equal(hello.limits.json_depth, 32);
   assert.equal(hello.limits.clients, 3);

@@ -151,7 +151,7 @@ export class Client {
 
   receive(data, isBinary) {
     if (isBinary) {
-      const message = { ...decode(data), receivedAt: performance.now() };
+      const message = { ...decode(data, this.topologies.at(-1)), receivedAt: performance.now() };
       this.binary.push(message);
       if (message.kind === 2 && this.acknowledge) this.notify("stream.ack", { frame: message.sequence });
     } else {

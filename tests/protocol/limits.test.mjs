@@ -38,6 +38,7 @@ const limits = {
   "--max-json-depth": 8,
   "--max-vertices": 4,
   "--max-springs": 4,
+  "--max-recording-bytes": 10000,
   "--max-lab-seconds": 1,
   "--header-timeout": 1,
   "--auth-timeout": 1,

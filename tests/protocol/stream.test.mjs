@@ -90,6 +90,57 @@ test("both encodings show the same state", async () => {
   }
 });
 
+test("c16 has the positions of q16 in the same step, bit for bit, and the same field; it is compressed", async () => {
+  // A grid, and the triangles of a file; at rest, and after steps that have bent it.
+  for (const preset of ["seed", "poncho"])
+    for (const steps of [0, 40]) {
+      await client.request("stream.unsubscribe");
+      client.binary = [];
+      await client.request("scene.load", { preset });
+      await client.request("sim.pause");
+      await client.request("sim.reset");
+      if (steps > 0) await client.request("sim.step", { steps });
+      for (const field of ["none", "strain"]) {
+        const frames = {};
+        for (const encoding of ["q16", "c16"]) {
+          await client.request("stream.subscribe", { encoding, field });
+          frames[encoding] = await client.frame(
+            (frame) => frame.encoding === (encoding === "q16" ? 1 : 2) && frame.range > 0 === (field !== "none"),
+          );
+        }
+        const { q16, c16 } = frames;
+        assert.deepEqual(c16.quantised, q16.quantised);
+        for (const key of [
+          "step",
+          "time",
+          "boxMinimum",
+          "boxExtent",
+          "topologyRevision",
+          "vertexCount",
+          "flags",
+          "range",
+        ])
+          assert.deepEqual(c16[key], q16[key], key);
+        assert.deepEqual(c16.field, q16.field);
+        assert.ok(c16.payloadBytes < 0.8 * q16.payloadBytes, `${c16.payloadBytes} of ${q16.payloadBytes} bytes`);
+      }
+    }
+});
+
+test("c16 frames come at the rate that was asked for, beside other encodings, and their time goes on", async () => {
+  const other = await Client.connect(server);
+  await other.request("stream.subscribe", { encoding: "q16", rate: 30 });
+  await client.request("stream.subscribe", { encoding: "c16", rate: 30 });
+  await client.frame();
+  const from = client.frames.length;
+  await sleep(2000);
+  const frames = client.frames.slice(from);
+  assert.ok(rate(frames) > 15 && rate(frames) < 33, `${rate(frames)} frames/s`);
+  for (let i = 1; i < frames.length; ++i) assert.ok(frames[i].step > frames[i - 1].step);
+  assert.ok(rate(other.frames) > 15, `${rate(other.frames)} frames/s of q16`);
+  await other.close();
+});
+
 test("sequence numbers, steps and time rise from frame to frame", async () => {
   await client.request("stream.subscribe");
   await client.until(

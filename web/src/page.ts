@@ -18,6 +18,7 @@ import { Guide } from "./explain/guide";
 import { notice, noticeError, showApplied, type Diverged, type Level } from "./panel/notices";
 import { takeDroppedMeshes } from "./panel/mesh_drop";
 import { Panel } from "./panel/panel";
+import { RecordButton } from "./panel/record_button";
 import { Bodies } from "./link/bodies";
 import type { Fabric } from "./link/fabrics";
 import { SlowWatch } from "./panel/slow_watch";
@@ -32,6 +33,7 @@ import { bindCameraInput } from "./view/camera_input";
 import { ThemeSwitch } from "./view/theme";
 import { TextDoor } from "./text/door";
 import { Transport } from "./panel/transport";
+import { type History, Undo } from "./panel/undo";
 import { timeStep } from "./panel/solver_section";
 
 type Params = Record<string, unknown>;
@@ -50,7 +52,12 @@ export class Page {
   private readonly connection = new Connection(this.session, this.linkEvents());
   private readonly link = new LinkView(this.connection);
   private readonly transport = new Transport({ request: (method, params) => this.request(method, params) });
-  private readonly slow = new SlowWatch((operations) => this.store.edit(operations));
+  private readonly undo: Undo = new Undo({
+    request: (method, params) => this.connection.request(method, params),
+    settled: () => this.store.settled(),
+    told: ({ undo }) => this.slow.changed(undo),
+  });
+  private readonly slow = new SlowWatch(() => void this.undo.go("undo"));
   private readonly bodies = new Bodies(
     (name) => this.connection.get("/api/collider.ply", { name }),
     () => this.drawDocument(this.stage.fitted),
@@ -66,7 +73,13 @@ export class Page {
     () => this.layout?.cardToggled(),
   );
   private readonly picture = this.makePicture();
-  private readonly divergence = new Divergence((patch) => this.connection.request("scene.patch", { patch }));
+  private readonly recording = new RecordButton({
+    request: (method, params) => this.connection.request(method, params),
+    get: (path) => this.connection.get(path),
+  });
+  private readonly divergence = new Divergence((patch) =>
+    this.connection.request("scene.patch", { patch, name: "Remedy" }),
+  );
   private readonly refusals = new Refusals({
     show: (crossings) => this.stage.showCrossings(crossings),
     hide: () => this.stage.hideCrossings(),
@@ -152,7 +165,7 @@ export class Page {
     return {
       state: (state, retryIn, why) => {
         this.link.show(state, retryIn, why);
-        this.transport.enable(state === "open" && this.mayEdit);
+        this.enableEdits();
         this.lab.link(state === "open");
         this.slow.link(state === "open");
         if (state !== "open") {
@@ -183,7 +196,6 @@ export class Page {
       fetch: () => this.fetchScene(),
       changed: (document, whole) => this.sceneChanged(document, whole),
       applied: showApplied,
-      wayBack: (operations) => this.slow.changed(operations),
       rejected: (error, operations) => {
         this.refusals.tell("Not applied", error, operations);
         this.panel.snapBack();
@@ -203,7 +215,7 @@ export class Page {
         act: (deed) =>
           act(deed, {
             stored: () => this.store.stored,
-            send: (patch) => this.connection.request("scene.patch", { patch }),
+            request: (method, params) => this.connection.request(method, params),
             refused: (title, error, patch) => this.refusals.tell(title, error, patch),
           }),
       },
@@ -229,10 +241,8 @@ export class Page {
     return new Lab({
       request: (method, params) => this.connection.request(method, params),
       document: () => this.store.document,
-      addressed: (patch) => ({
-        stored: this.store.stored,
-        patch: Array.isArray(patch) ? this.store.addressed(patch) : patch,
-      }),
+      addressed: (patch) => (Array.isArray(patch) ? this.store.addressed(patch) : patch),
+      undo: (revision) => void this.undo.go("undo", revision),
       mayEdit: () => this.mayEdit,
       applied: showApplied,
       toggled: (open) => this.layout?.labToggled(open),
@@ -264,6 +274,7 @@ export class Page {
         this.text.arrived();
       },
       "scene.changed": (params) => this.store.patched(Number(params.revision), params.patch as Patch),
+      "scene.history": (params) => this.undo.told(params as unknown as History),
       colliders: (params) => {
         this.picture.moved = params.moving as MovedCollider[];
       },
@@ -276,6 +287,7 @@ export class Page {
         if (params.solver) this.store.fabricsGive((params.solver as SolverFacts).from_fabrics ?? []);
         if (params.solver) this.panel.showSolver(params.solver as SolverFacts);
         this.hand?.told((params.hands as HandAt[] | undefined) ?? []);
+        this.recording.told((params as Status).recording);
         this.divergence.follow(params as Status);
       },
       "sim.diverged": (params) => this.divergence.tell(params as unknown as Diverged),
@@ -291,12 +303,13 @@ export class Page {
     this.mayEdit = params.role !== "viewer";
     this.messageBytes = (params.limits as { message_bytes?: number } | undefined)?.message_bytes ?? this.messageBytes;
     this.hand?.greeted(Number(params.client));
+    this.undo.greeted(Number(params.client));
     this.welcome();
     this.panel.setMethods((params.methods as string[] | undefined) ?? []);
     this.lab.setMethods((params.methods as string[] | undefined) ?? []);
     this.lab.roleChanged();
     document.body.classList.toggle("viewer", !this.mayEdit);
-    this.transport.enable(this.connection.open && this.mayEdit);
+    this.enableEdits();
     this.connection.request<Offers>("scene.presets").then(
       (offers) => {
         this.offers = offers;
@@ -319,6 +332,10 @@ export class Page {
   private loadPreset(name: string): void {
     this.sceneName = "";
     this.request("scene.load", { preset: name });
+  }
+
+  private enableEdits(): void {
+    for (const each of [this.transport, this.undo]) each.enable(this.connection.open && this.mayEdit);
   }
 
   private sceneChanged(document: SceneDocument, whole: boolean): void {

@@ -1,6 +1,7 @@
 // The card with figures: what is drawn, what arrives, how the simulation keeps up, and which passes run.
 import { element } from "./dom";
 import type { Stability } from "./gauge";
+import type { RecordingFacts } from "./record_button";
 
 /// Notification `sim.status`; every part may be missing.
 export interface Status {
@@ -15,6 +16,7 @@ export interface Status {
   contacts?: number;
   surface?: { pairs: number; cuts: number; searches: number } | null;
   asleep?: boolean;
+  recording?: RecordingFacts;
   diverged?: boolean;
   stability?: Stability | null;
   passes?: string[];

@@ -1,0 +1,55 @@
+// Starts and ends a recording of the session, and saves the last one: as a page that plays it, or alone.
+import { button, element } from "./dom";
+import { noticeError } from "./notices";
+import type { RecordingFacts, RecordPort } from "./record_button";
+
+const megabytes = (bytes: number): string => `${(bytes / 1e6).toFixed(bytes < 1e7 ? 1 : 0)} MB`;
+
+const kinds = [
+  ["html", "Save as page", "One file that plays in any browser, without a server"],
+  ["clothlab", "Save as .clothlab", "The recording alone"],
+] as const;
+
+export class RecordControl {
+  private readonly start = button("record");
+  private readonly files = element("record-files", HTMLElement);
+  private recording = false;
+
+  constructor(private readonly port: RecordPort) {
+    for (const [ending, text, title] of kinds) {
+      const save = document.createElement("button");
+      Object.assign(save, { type: "button", textContent: text, title });
+      save.onclick = () => void this.save(ending);
+      this.files.append(save);
+    }
+    this.files.hidden = true;
+  }
+
+  toggle(): void {
+    this.port
+      .request(this.recording ? "record.stop" : "record.start", {})
+      .then((facts) => this.show(facts as unknown as RecordingFacts))
+      .catch((error: Error) => noticeError("Not recorded", error));
+  }
+
+  show({ state, frames, bytes }: RecordingFacts): void {
+    this.recording = state === "recording";
+    const text = this.recording ? `Stop recording (${megabytes(bytes)})` : "Record";
+    if (this.start.textContent !== text) this.start.textContent = text;
+    this.start.classList.toggle("live", this.recording);
+    this.files.hidden = state !== "ready" || frames === 0;
+  }
+
+  private async save(ending: string): Promise<void> {
+    try {
+      const bytes = await this.port.get(`/api/recording.${ending}`);
+      const link = document.createElement("a");
+      link.href = URL.createObjectURL(new Blob([bytes]));
+      link.download = `clothlab.${ending}`;
+      link.click();
+      setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+    } catch (error) {
+      noticeError("The recording could not be saved", error as Error);
+    }
+  }
+}
