@@ -104,7 +104,7 @@ npm_install() {
 build_page() {
   local stamp=build/page.stamp sources
   npm_install web
-  sources=$(find web -path web/node_modules -prune -o -path web/dist -prune -o -type f -print0 |
+  sources=$(find web -path web/node_modules -prune -o -path web/dist -prune -o -path web/pictures -prune -o -type f -print0 |
     LC_ALL=C sort -z | xargs -0 sha256sum)
   [ -f web/dist/index.html ] && [ "$sources" = "$(cat "$stamp" 2>/dev/null)" ] && return
   say "building the page"

@@ -100,7 +100,8 @@ const int unit_triangle_pairs = 13;     // triangle_pairs; candidates
 const int unit_surface_pairs = 14;      // pairs; contacts
 const int unit_near_pairs = 15;         // candidates; pairs, and: contacts; forces, limit
 const int unit_rest_places = 16;        // server/sim/surface_pairs.cpp; triangle_pairs
-const int unit_step_start = 16;         // the step before; contacts, forces, begin
+const int unit_step_start = 16;         // the step before, advance; path, contacts, forces, begin
+const int unit_path = 17;               // path; advance
 const int unit_step_target = 17;        // begin; limit, move
 const int unit_body_places = 18;        // server/sim/surface_bodies.cpp; bodies, forces
 const int unit_block_vertices = 10;     // server/sim/surface_blocks.cpp; blocks
@@ -116,6 +117,8 @@ const int slot_near_pairs = 3;          // candidates, contacts
 const int slot_contact_sums = 4;        // contacts, forces, limit; forces, apply, begin, limit, move
 const int slot_step_limits = 5;         // limit, move; the same
 const int slot_step_target = 6;         // begin
+const int slot_path = 6;                // path
+const int slot_step_start = 5;          // advance
 const int slot_chosen_pairs = 7;        // contacts, limit; forces, limit
 
 // The hands': hands/NAME.comp, on the present copy of the state, before a step and after it.

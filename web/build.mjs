@@ -41,15 +41,27 @@ const common = {
   logLevel: "warning",
 };
 
-await build({
+const { metafile } = await build({
   ...common,
-  entryPoints: { app: "src/main.ts", style: "src/style.css" },
+  entryPoints: {
+    app: "src/main.ts",
+    style: "src/style.css",
+    text: "src/text/text.css",
+    gallery: "src/gallery/gallery.css",
+  },
   outdir: "dist",
   splitting: true, // what an import() names is loaded when it is used
   chunkNames: "[name]-[hash]",
   format: "esm",
   plugins: [withoutFonts],
+  metafile: true,
 });
+
+// What the first script shares with those that come later is asked for beside it, not after it.
+const shared = metafile.outputs["dist/app.js"].imports.filter(({ kind }) => kind === "import-statement");
+const links = shared.map(({ path }) => `<link rel="modulepreload" href="${path.slice("dist/".length)}">`);
+const page = join(dist, "index.html");
+writeFileSync(page, readFileSync(page, "utf8").replace(/(?= *<script)/, `  ${links.join("\n  ")}\n`));
 
 // The page that plays a recording is a single file: it is opened from a disk, where nothing can be loaded. The server's
 // program puts in @title@ and @recording@ (server/stream/player_page.cpp).

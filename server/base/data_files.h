@@ -1,5 +1,6 @@
 // Finds the files that are installed with the program: shaders/, server/scene/presets/,
-// server/scene/fabrics.json, web/dist/.
+// server/scene/fabrics.json, web/dist/, web/pictures/,
+// web/clients/.
 #pragma once
 
 #include <filesystem>

@@ -216,7 +216,8 @@ void add_serve(CLI::App& app, int& exit_code) {
   command
       ->add_option(
           "--allow-origin", options.allow_origin,
-          "an origin whose pages may connect besides this server's own, and whose host it answers as")
+          "an origin whose pages may connect, and show the page in a frame, besides this server's own; "
+          "its host is one that this server answers as")
       ->type_name("ORIGIN")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

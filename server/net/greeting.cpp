@@ -7,6 +7,8 @@
 #include "server/net/limits.h"
 #include "server/net/methods.h"
 #include "server/scene/method.h"
+#include "server/session/timeline.h"
+#include "server/sim/kept_states.h"
 #include "server/stream/form.h"
 
 namespace clothlab::net {
@@ -65,6 +67,10 @@ nlohmann::json hello_params(const Hub& hub, const Room& room, const Client& clie
              {{"message_bytes", session::max_upload_bytes},
               {"count", session::max_meshes},
               {"bytes", session::max_mesh_bytes}}},
+            {"timeline",
+             {{"states", sim::KeptStates::most_states},
+              {"bytes", sim::KeptStates::most_bytes + session::Timeline::most_bytes}}},
+            {"history", {{"changes", session::max_changes}, {"bytes", session::max_change_bytes}}},
             {"recording",
              {{"bytes", limits.scene.recording_bytes},
               {"rate", {session::min_recording_rate, session::max_recording_rate}}}},

@@ -24,12 +24,22 @@ constexpr const char* content_security_policy =
 
 constexpr std::pair<const char*, const char*> security_headers[] = {
     {"x-content-type-options:", "nosniff"},
-    {"x-frame-options:", "SAMEORIGIN"},
     {"referrer-policy:", "no-referrer"},
     {"cross-origin-opener-policy:", "same-origin"},
     {"cross-origin-resource-policy:", "same-origin"},
     {"permissions-policy:", "camera=(), display-capture=(), geolocation=(), microphone=(), usb=()"},
 };
+
+/// Adds to `headers` what lets pages of the allowed origins, a notebook's for example, show this server's
+/// page in a frame; nobody else may. (X-Frame-Options can name no origin.)
+void add_framing(std::vector<std::pair<std::string, std::string>>& headers,
+                 const std::vector<std::string>& allowed) {
+  std::string policy = content_security_policy;
+  for (const std::string& origin : allowed)
+    if (is_origin(origin)) policy += " " + origin;
+  headers.emplace_back("content-security-policy:", policy);
+  if (allowed.empty()) headers.emplace_back("x-frame-options:", "SAMEORIGIN");
+}
 
 HttpAnswer plain(unsigned status, const std::string& text) {
   return {status, "text/plain; charset=utf-8", text + "\n", {}};
@@ -77,6 +87,9 @@ HttpRequest::~HttpRequest() {
 HttpRequest::Progress HttpRequest::begin(const std::string& path) {
   if (const std::optional<RequestFault> fault = request_fault(wsi_))
     return refuse(plain(fault->status, fault->why));
+  if (const std::string origin = header(wsi_, WSI_TOKEN_ORIGIN);
+      is_origin(origin) && origin_allowed(origin, {}, hub_.options().allow_origin))
+    reader_ = origin;
   head_ = lws_hdr_total_length(wsi_, WSI_TOKEN_HEAD_URI) > 0;
   if (!head_ && lws_hdr_total_length(wsi_, WSI_TOKEN_GET_URI) <= 0) {
     HttpAnswer refusal =
@@ -211,7 +224,12 @@ HttpRequest::Progress HttpRequest::refuse(const HttpAnswer& refusal) {
 
 // Headers and body in one write: libwebsockets keeps what the socket does not take yet.
 HttpRequest::Progress HttpRequest::send(const HttpAnswer& answer) {
-  constexpr std::size_t longest_headers = 4096;
+  std::vector<std::pair<std::string, std::string>> headers = answer.headers;
+  add_framing(headers, hub_.options().allow_origin);
+  if (!reader_.empty())
+    headers.insert(headers.end(), {{"access-control-allow-origin:", reader_}, {"vary:", "origin"}});
+  std::size_t longest_headers = 4096;
+  for (const auto& [name, value] : headers) longest_headers += name.size() + value.size() + 4;
   std::vector<unsigned char> bytes(LWS_PRE + longest_headers);
   unsigned char *const start = bytes.data() + LWS_PRE, *at = start, *const end = start + longest_headers - 1;
   const auto add = [&](const char* name, const std::string& value) {
@@ -222,12 +240,11 @@ HttpRequest::Progress HttpRequest::send(const HttpAnswer& answer) {
   int failed = lws_add_http_header_status(wsi_, answer.status, &at, end);
   failed |= add("content-type:", answer.type);
   failed |= lws_add_http_header_content_length(wsi_, answer.body.size(), &at, end);
-  failed |= add("content-security-policy:", content_security_policy);
   if (last_) failed |= add("connection:", "close");
   if (!file_name_.empty() && answer.status == 200)
     failed |= add("content-disposition:", "attachment; filename=\"" + file_name_ + "\"");
   for (const auto& [name, value] : security_headers) failed |= add(name, value);
-  for (const auto& [name, value] : answer.headers) failed |= add(name.c_str(), value);
+  for (const auto& [name, value] : headers) failed |= add(name.c_str(), value);
   if (failed || lws_finalize_http_header(wsi_, &at, end)) return Progress::close;
   bytes.resize(static_cast<std::size_t>(at - bytes.data()));
   if (!head_) bytes.insert(bytes.end(), answer.body.begin(), answer.body.end());

@@ -70,9 +70,10 @@ class HttpRequest {
   lws* wsi_;
   Finish finish_;
   std::uint64_t id_;
-  bool head_ = false;        ///< the request is HEAD: its answer has no body
   std::string file_name_{};  ///< under which a browser keeps the answer; empty: it shows it
-  bool last_ = false;        ///< the answer says that the connection will be closed
+  std::string reader_;  ///< the allowed origin of another page that asks, and may read the answer
+  bool head_ = false;   ///< the request is HEAD: its answer has no body
+  bool last_ = false;   ///< the answer says that the connection will be closed
 };
 
 }  // namespace clothlab::net

@@ -61,6 +61,8 @@ RpcError rpc_error(const session::Refusal& refusal) {
       return {error_revision_conflict, refusal.error.text(), {{"revision", refusal.revision}}};
     case Reason::diverged:
       return {error_diverged, refusal.error.text(), nullptr};
+    case Reason::nothing_there:
+      return {error_nothing_there, refusal.error.text(), nullptr};
     case Reason::over_limit:
       return {error_over_limit, refusal.error.text(), nullptr};
     case Reason::failed:
@@ -161,6 +163,16 @@ std::string Params::text(const char* name, std::optional<std::string> fallback) 
   if (value && value->is_string()) return value->get<std::string>();
   refuse(name, "a string");
   return {};
+}
+
+std::string Params::label(const char* name, std::size_t most, std::optional<std::string> fallback) {
+  const bool given = has(name);
+  std::string label = text(name, std::move(fallback));
+  const bool control =
+      std::any_of(label.begin(), label.end(), [](char c) { return (c >= 0 && c < ' ') || c == 0x7f; });
+  if (given && (label.empty() || label.size() > most || control))
+    refuse(name, "a text of 1 to " + std::to_string(most) + " bytes, without control characters");
+  return label;
 }
 
 const json& Params::value(const char* name) {

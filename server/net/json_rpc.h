@@ -26,6 +26,7 @@ enum ErrorCode : int {
   error_over_limit = -32002,
   error_revision_conflict = -32003,
   error_diverged = -32004,
+  error_nothing_there = -32005,  ///< nothing to undo or redo
 };
 
 struct RpcError {
@@ -77,6 +78,8 @@ class Params {
   std::int64_t integer(const char* name, std::int64_t least, std::int64_t most,
                        std::optional<std::int64_t> fallback);
   std::string text(const char* name, std::optional<std::string> fallback);
+  /// A text of 1 to `most` bytes without control characters.
+  std::string label(const char* name, std::size_t most, std::optional<std::string> fallback);
   /// The parameter's value of any type; null if it is left out.
   const json& value(const char* name);
   bool has(const char* name) const { return params_.contains(name); }

@@ -62,6 +62,8 @@ constexpr std::array methods{
     Method{"scene.load", true, scene_load},
     Method{"scene.patch", true, scene_patch},
     Method{"scene.presets", false, scene_presets},
+    Method{"scene.redo", true, scene_redo},
+    Method{"scene.undo", true, scene_undo},
     Method{"sim.pause", true, sim_pause},
     Method{"sim.play", true, sim_play},
     Method{"sim.reset", true, sim_reset},
@@ -70,6 +72,8 @@ constexpr std::array methods{
     Method{"stream.ack", false, stream_ack},
     Method{"stream.subscribe", false, stream_subscribe},
     Method{"stream.unsubscribe", false, stream_unsubscribe},
+    Method{"timeline.get", false, timeline_get},
+    Method{"timeline.resume", true, timeline_resume},
 };
 
 RpcError unknown(const std::string& method) {

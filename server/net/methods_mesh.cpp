@@ -1,6 +1,4 @@
 // mesh.upload: gives the session a mesh that its scene can name. The session's thread reads it and answers.
-#include <algorithm>
-
 #include "server/net/client.h"
 #include "server/net/methods.h"
 
@@ -34,20 +32,12 @@ std::optional<std::string> from_base64(const std::string& text) {
   return bytes;
 }
 
-bool is_mesh_name(const std::string& name) {
-  return !name.empty() && name.size() <= session::max_mesh_name_bytes &&
-         std::none_of(name.begin(), name.end(), [](char c) { return (c >= 0 && c < ' ') || c == 0x7f; });
-}
-
 }  // namespace
 
 Outcome mesh_upload(Client& client, const Request& request) {
   Params params(request.params);
   session::UploadMesh upload;
-  upload.name = params.text("name", std::nullopt);
-  if (!is_mesh_name(upload.name))
-    params.refuse("name", "a text of 1 to " + std::to_string(session::max_mesh_name_bytes) +
-                              " bytes, without control characters");
+  upload.name = params.label("name", session::max_mesh_name_bytes, std::nullopt);
   upload.bytes = params.text("obj", std::nullopt);
   const std::string encoding = params.text("encoding", "text");
   if (encoding != "text" && encoding != "base64") params.refuse("encoding", "text or base64");

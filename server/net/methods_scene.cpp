@@ -1,10 +1,28 @@
-// scene.*: read, replace and patch the document: the session's thread validates the request and answers.
-// scene.presets lists the presets and the fabrics without the session.
+// scene.*: read, replace and patch the document, undo and redo: the session's thread validates the request
+// and answers. scene.presets lists the presets and the fabrics without the session.
 #include "server/net/client.h"
 #include "server/net/methods.h"
 #include "server/scene/fabrics.h"
+#include "server/session/change_name.h"
 
 namespace clothlab::net {
+
+namespace {
+
+std::optional<std::uint64_t> read_revision(Params& params) {
+  constexpr std::int64_t most = (std::int64_t{1} << 53) - 1;  // JSON numbers are exact up to here
+  const std::int64_t revision = params.integer("revision", 0, most, -1);
+  return revision < 0 ? std::nullopt : std::optional(static_cast<std::uint64_t>(revision));
+}
+
+Outcome travel(Client& client, const Request& request, session::Direction direction) {
+  Params params(request.params);
+  const session::TravelHistory travel{direction, read_revision(params)};
+  if (auto error = params.check()) return *error;
+  return ask_session(client, request, travel);
+}
+
+}  // namespace
 
 Outcome scene_get(Client& client, const Request& request) {
   Params params(request.params);
@@ -28,11 +46,17 @@ Outcome scene_patch(Client& client, const Request& request) {
   session::PatchScene patch{params.value("patch"), std::nullopt};
   if (!patch.patch.is_object() && !patch.patch.is_array())
     params.refuse("patch", "an object (RFC 7396 merge patch) or an array (RFC 6902 patch)");
-  constexpr std::int64_t most = (std::int64_t{1} << 53) - 1;  // JSON numbers are exact up to here
-  const std::int64_t revision = params.integer("revision", 0, most, -1);
+  patch.revision = read_revision(params);
+  patch.name = params.label("name", session::max_change_name_bytes, "");
   if (auto error = params.check()) return *error;
-  if (revision >= 0) patch.revision = static_cast<std::uint64_t>(revision);
   return ask_session(client, request, std::move(patch));
+}
+
+Outcome scene_undo(Client& client, const Request& request) {
+  return travel(client, request, session::Direction::undo);
+}
+Outcome scene_redo(Client& client, const Request& request) {
+  return travel(client, request, session::Direction::redo);
 }
 
 Outcome scene_presets(Client&, const Request& request) {
@@ -42,7 +66,10 @@ Outcome scene_presets(Client&, const Request& request) {
   if (const auto& all = scene::fabrics())
     for (const scene::Fabric& fabric : *all)
       fabrics.push_back({{"name", fabric.name}, {"feel", fabric.feel}, {"source", fabric.source}});
-  return json{{"presets", scene::preset_names()}, {"fabrics", std::move(fabrics)}};
+  json about = json::object();
+  for (const scene::Preset& preset : scene::presets()) about[preset.name] = preset.description;
+  return json{
+      {"presets", scene::preset_names()}, {"about", std::move(about)}, {"fabrics", std::move(fabrics)}};
 }
 
 }  // namespace clothlab::net

@@ -1,4 +1,5 @@
-// sim.*: play, pause, step, reset, speed. The session's thread carries the requests out in order and answers.
+// sim.*: play, pause, step, reset, speed; timeline.*: go on from an earlier step. The session's thread
+// carries the requests out in order and answers.
 #include "server/net/client.h"
 #include "server/net/methods.h"
 
@@ -30,6 +31,18 @@ Outcome sim_step(Client& client, const Request& request) {
   const std::int64_t steps = params.integer("steps", 1, max_steps, 1);
   if (auto error = params.check()) return *error;
   return ask_session(client, request, session::Step{static_cast<std::uint64_t>(steps)});
+}
+
+Outcome timeline_get(Client& client, const Request& request) {
+  return without_parameters<session::GetTimeline>(client, request);
+}
+
+Outcome timeline_resume(Client& client, const Request& request) {
+  Params params(request.params);
+  constexpr std::int64_t most = (std::int64_t{1} << 53) - 1;  // JSON numbers are exact up to here
+  const std::int64_t step = params.integer("step", 0, most, std::nullopt);
+  if (auto error = params.check()) return *error;
+  return ask_session(client, request, session::ResumeAt{static_cast<std::uint64_t>(step)});
 }
 
 Outcome sim_speed(Client& client, const Request& request) {

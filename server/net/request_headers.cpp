@@ -101,6 +101,15 @@ bool origin_allowed(const std::string& origin, const std::string& host,
   return !host.empty() && (same("http://" + host) || same("https://" + host));
 }
 
+bool is_origin(const std::string& text) {
+  const std::size_t scheme = text.find("://");
+  if (scheme == std::string::npos) return false;
+  const auto letter = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '+' || c == '.'; };
+  return scheme > 0 && scheme + 3 < text.size() &&
+         std::all_of(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(scheme), letter) &&
+         std::all_of(text.begin() + static_cast<std::ptrdiff_t>(scheme) + 3, text.end(), is_of_host);
+}
+
 bool host_trusted(const std::string& host, const std::vector<std::string>& allowed) {
   if (host.empty()) return true;
   const std::string asked = lower(host);

@@ -25,6 +25,9 @@ std::string query(lws* wsi, const std::string& name, const std::string& fallback
 bool origin_allowed(const std::string& origin, const std::string& host,
                     const std::vector<std::string>& allowed);
 
+/// True if `text` has the form of an origin, such as https://host:8080, so that a header may name it.
+bool is_origin(const std::string& text);
+
 /// True if this Host header cannot name a hostile site: it is an IP address, localhost, a name below
 /// localhost, or the host of an `allowed` origin. A site can make any other name point at this machine (DNS
 /// rebinding), and its pages would then count as this server's own. An empty `host` is trusted: browsers

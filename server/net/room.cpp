@@ -192,6 +192,11 @@ void Room::handle(session::SceneChanged& changed) {
     broadcast("scene", {{"document", document()}, {"revision", revision_}});
 }
 
+void Room::handle(session::HistoryChanged& changed) {
+  history_ = std::move(changed.told);
+  if (started()) broadcast("scene.history", history_);
+}
+
 void Room::handle(session::TopologyChanged& changed) {
   topology_ = changed.message;
   for (Client* client : clients_) client->wake();
@@ -259,6 +264,7 @@ void Room::handle(session::ChoiceWanted&) {
 void Room::greet(Client& client) {
   client.greet(notification_text("hello", hello_params(hub_, *this, client)));
   client.send(notification_text("scene", {{"document", document()}, {"revision", revision_}}));
+  if (history_.is_object()) client.send(notification_text("scene.history", history_));
 }
 
 void Room::broadcast(const char* method, const json& params) {

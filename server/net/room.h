@@ -74,6 +74,7 @@ class Room {
   void handle(session::Failed& failed);
   void handle(session::Reply& reply);
   void handle(session::SceneChanged& changed);
+  void handle(session::HistoryChanged& changed);
   void handle(session::TopologyChanged& changed);
   void handle(session::PartsChanged& changed);
   void handle(session::SolverChanged& changed);
@@ -103,6 +104,7 @@ class Room {
   std::string renderer_;
   std::shared_ptr<const scene::Document> document_;
   std::uint64_t revision_ = 0;
+  json history_;  ///< as scene.history tells it
   stream::SharedMessage topology_;
   json passes_ = json::array(), terms_ = json::array(), skipped_ = json::array(),
        pass_seconds_ = json::object(), solver_ = json::object();

@@ -26,7 +26,7 @@ folder, then start the server again:</p>
 )";
 
 std::string type_of(const std::string& path) {
-  static constexpr std::array<std::array<const char*, 2>, 14> types{{
+  static constexpr std::array<std::array<const char*, 2>, 15> types{{
       {".html", "text/html; charset=utf-8"},
       {".js", "text/javascript; charset=utf-8"},
       {".mjs", "text/javascript; charset=utf-8"},
@@ -41,6 +41,7 @@ std::string type_of(const std::string& path) {
       {".wasm", "application/wasm"},
       {".woff2", "font/woff2"},
       {".txt", "text/plain; charset=utf-8"},
+      {".py", "text/x-python; charset=utf-8"},
   }};
   const std::string extension = fs::path(path).extension().string();
   for (const auto& [ending, type] : types)
@@ -79,18 +80,22 @@ void WebFiles::add(const std::string& path, std::string body) {
   files_[path] = {type, std::move(body), std::move(gzipped), std::move(etag)};
 }
 
+void WebFiles::add_all(const fs::path& root, const fs::path& below) {
+  std::error_code failure;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root, failure)) {
+    if (entry.is_symlink(failure) || !entry.is_regular_file(failure)) continue;
+    if (Result<std::string> body = read_file(entry.path()))
+      add((below / entry.path().lexically_relative(root)).generic_string(), std::move(*body));
+  }
+}
+
 WebFiles WebFiles::load() {
   WebFiles files;
-  const Result<fs::path> root = data_path("web/dist");
-  std::error_code failure;
-  if (root) {
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(*root, failure)) {
-      if (entry.is_symlink(failure) || !entry.is_regular_file(failure)) continue;
-      if (Result<std::string> body = read_file(entry.path()))
-        files.add((fs::path("/") / entry.path().lexically_relative(*root)).generic_string(),
-                  std::move(*body));
-    }
-  }
+  if (const Result<fs::path> root = data_path("web/dist")) files.add_all(*root, "/");
+  if (const Result<fs::path> root = data_path("web/pictures")) files.add_all(*root, "/presets");
+  for (const char* client : {"clothlab.py", "clothlab.mjs"})
+    if (const Result<fs::path> path = data_path(std::string("web/clients/") + client))
+      if (Result<std::string> body = read_file(*path)) files.add(std::string("/") + client, std::move(*body));
   files.built_ = files.files_.count("/index.html") > 0;
   if (!files.built_) files.add("/index.html", not_built);
   return files;

@@ -1,5 +1,5 @@
-// The page's files, all read and compressed once at the start, so that requests reach no file outside
-// web/dist.
+// The page's files and the clients for scripts, all read and compressed once at the start, so that requests
+// reach no file outside web/dist, web/pictures and web/clients.
 #pragma once
 
 #include <filesystem>
@@ -17,7 +17,8 @@ struct WebFile {
 
 class WebFiles {
  public:
-  /// Loads every file below web/dist. If the page was not built, "/" is a page that says how to build it.
+  /// Loads every file below web/dist, the presets' pictures as /presets/NAME.png, and the clients. If the
+  /// page was not built, "/" is a page that says how to build it.
   static WebFiles load();
 
   /// The file at `path`; "/" is the page, /index.html. Null if there is no such file.
@@ -25,6 +26,7 @@ class WebFiles {
   bool built() const { return built_; }
 
  private:
+  void add_all(const std::filesystem::path& root, const std::filesystem::path& below);
   void add(const std::string& path, std::string body);
 
   std::map<std::string, WebFile> files_;

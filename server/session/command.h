@@ -10,6 +10,7 @@
 
 #include "server/lab/measure/choice.h"
 #include "server/scene/document.h"
+#include "server/session/history.h"
 #include "server/stream/frame.h"
 
 namespace clothlab::session {
@@ -39,6 +40,12 @@ struct UploadMesh {
 struct PatchScene {
   json patch;
   std::optional<std::uint64_t> revision;  ///< the scene revision that the patch was made for; none: any
+  std::string name{};                     ///< what the history calls it; empty: by what it changes
+};
+/// Undoes or redoes a change of the scene.
+struct TravelHistory {
+  Direction direction = Direction::undo;
+  std::optional<std::uint64_t> revision;  ///< as of PatchScene
 };
 struct Play {};
 struct Pause {};
@@ -66,6 +73,12 @@ struct Watchers {
 /// by Captured. `Ticket::asker` is the HTTP request.
 struct Export {
   int width = 0, height = 0;  ///< [pixels]
+};
+/// Asks which steps the session can go on from.
+struct GetTimeline {};
+/// Goes back to this step, and pauses there.
+struct ResumeAt {
+  std::uint64_t step = 0;
 };
 /// Tells a job of the lab when the commands before this one are done. Answered by SceneReached.
 struct ReachScene {
@@ -97,9 +110,9 @@ struct GrabEnd {
 };
 struct Command {
   Ticket ticket;
-  std::variant<GetScene, LoadScene, UploadMesh, PatchScene, Play, Pause, Step, Reset, Speed, Demand, Watchers,
-               Export, ReachScene, Hold, Release, Chosen, GrabStart, GrabMove, GrabEnd, RecordStart,
-               RecordStop>
+  std::variant<GetScene, LoadScene, UploadMesh, PatchScene, TravelHistory, Play, Pause, Step, Reset, Speed,
+               Demand, Watchers, Export, ReachScene, Hold, Release, Chosen, GrabStart, GrabMove, GrabEnd,
+               GetTimeline, ResumeAt, RecordStart, RecordStop>
       what;
 };
 

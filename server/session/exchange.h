@@ -57,6 +57,10 @@ struct SceneChanged {
   std::optional<json> patch;
   std::uint64_t by = 0;
 };
+/// What can be undone and redone now; see server/net/asyncapi.yaml.
+struct HistoryChanged {
+  json told;
+};
 struct TopologyChanged {
   stream::SharedMessage message;
 };
@@ -113,8 +117,9 @@ struct Status {
   std::vector<HandAt> hands;  ///< empty, and so without memory, while nobody holds the cloth
   gl::StageTimes pass_times;  ///< the GPU times that have arrived since the last status
 };
-using Event = std::variant<Started, Failed, Reply, SceneChanged, TopologyChanged, PartsChanged, SolverChanged,
-                           Diverged, Notice, Captured, SceneReached, SceneLost, Held, ChoiceWanted, Status>;
+using Event = std::variant<Started, Failed, Reply, SceneChanged, HistoryChanged, TopologyChanged,
+                           PartsChanged, SolverChanged, Diverged, Notice, Captured, SceneReached, SceneLost,
+                           Held, ChoiceWanted, Status>;
 
 class Exchange {
  public:

@@ -92,12 +92,13 @@ void MeshShelf::remove(const std::string& name) {
   if (stem_) fs::remove(file_of(name), ignored);
 }
 
-clothlab::Status MeshShelf::keep(const std::string& name) const {
+clothlab::Status MeshShelf::keep(const std::string& name) {
   SharedItem item;
   {
     const std::lock_guard lock(mutex_);
     if (const auto found = items_.find(name); found != items_.end()) item = found->second;
   }
+  if (!item) remove(name);
   if (!stem_ || !item) return ok();
   return replace_file(file_of(name), mesh_title + name + "\n" + item->bytes);
 }

@@ -49,8 +49,8 @@ class MeshShelf : public scene::Assets {
   /// Puts a mesh in the place of the one of this name (null: none), and returns that one.
   SharedItem exchange(const std::string& name, SharedItem item);
 
-  /// Writes the mesh of this name into its file, if there is a folder.
-  clothlab::Status keep(const std::string& name) const;
+  /// Writes the mesh of this name into its file, if there is a folder; without such a mesh there is no file.
+  clothlab::Status keep(const std::string& name);
   /// Reads the files of an earlier server. Returns what was wrong with those that were not mesh files.
   std::vector<Error> restore();
 

@@ -14,6 +14,7 @@ struct Refusal {
     invalid_value,   ///< `error`: where (a JSON Pointer), what was found there, and what is allowed
     other_revision,  ///< the request was made for another revision of the scene than `revision`
     over_limit,      ///< `error` says of what there is too much
+    nothing_there,   ///< there is nothing to undo or redo
     diverged,        ///< the simulation has blown up, and waits for a change
     failed           ///< the session could not do it; `error` says why
   };

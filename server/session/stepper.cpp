@@ -34,12 +34,14 @@ Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Excha
   stepper->guard_.emplace(stepper->simulation());
   stepper->last_watched_ = stepper->next_status_ = Clock::now();
   stepper->announce_scene(std::nullopt, 0);
+  stepper->announce_history();
   stepper->announce_parts();
   stepper->announce_solver();
   stepper->layers_may_pass_ = !model::thickness_warning(stepper->simulation().model(), *scene).empty();
   stepper->step_limit_.set_scene(stepper->simulation().model(), *scene);
   stepper->rest_.follow(*scene, stepper->simulation().model());
   stepper->guard_->start(stepper->step_limit_.dt_limit());
+  stepper->begin_timeline();
   return stepper;
 }
 
@@ -77,9 +79,15 @@ Result<scene::Scene> Stepper::prepare(const scene::Document& document) {
 
 Clock::time_point Stepper::turn(std::vector<Command>& commands) {
   exchange_.beat();
-  for (Command& command : commands) handle(command);
+  for (Command& command : commands) waiting_commands_.push_back(std::move(command));
+  for (; !replay_ && !waiting_commands_.empty(); waiting_commands_.pop_front())
+    handle(waiting_commands_.front());
   const Clock::time_point now = Clock::now();
   if (watchers_ > 0) last_watched_ = now;
+  if (replay_) {
+    advance(now);
+    return replay_ || !waiting_commands_.empty() ? Clock::now() : next_turn(Clock::now());
+  }
   frames().make_urgent(simulation(), now);
   advance(now);
   frames().make_urgent(simulation(), now);
@@ -97,6 +105,7 @@ void Stepper::advance(Clock::time_point now) {
   was_running_ = run;
   if (engine_->backlog.full()) return;
   want_steps(now, run);
+  if (replay_ && simulation().step_index() == replay_->step) return end_replay();
   if (simulation().steps_to_do() == 0) return;
   const std::uint64_t before = simulation().step_index();
   const Clock::time_point begun = Clock::now();
@@ -115,7 +124,9 @@ void Stepper::advance(Clock::time_point now) {
 }
 
 void Stepper::want_steps(Clock::time_point now, bool run) {
-  if (!waiting_.empty())
+  if (replay_)
+    simulation().set_steps_to_do(static_cast<std::uint32_t>(replay_changes()));
+  else if (!waiting_.empty())
     // No further than the step at which the next sim.step ends, as its answer reports that step.
     simulation().set_steps_to_do(
         static_cast<std::uint32_t>(std::min<std::uint64_t>(
@@ -198,6 +209,7 @@ void Stepper::wake_up() {
 void Stepper::diverge() {
   const scene::Solver& solver = scene().solver;
   auto [reason, remedy] = guard_->go_back();
+  timeline_went_back();
   json change{{"dt", remedy.dt}};
   if (remedy.method || solver.automatic)
     change["method"] = scene::name(remedy.method.value_or(solver.method));

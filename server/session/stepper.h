@@ -4,8 +4,10 @@
 // frames are packed, and whether the session goes on stepping.
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "server/scene/document.h"
@@ -13,6 +15,7 @@
 #include "server/session/engine.h"
 #include "server/session/exchange.h"
 #include "server/session/hands.h"
+#include "server/session/history.h"
 #include "server/session/limits.h"
 #include "server/session/mesh_shelf.h"
 #include "server/session/piece_size.h"
@@ -21,6 +24,7 @@
 #include "server/session/rest.h"
 #include "server/session/run_state.h"
 #include "server/session/step_limit.h"
+#include "server/session/timeline.h"
 #include "server/sim/guarded_run.h"
 
 namespace clothlab::session {
@@ -54,6 +58,11 @@ class Stepper {
     Ticket ticket;
     std::uint64_t until_step = 0;
   };
+  struct Replay {  // on the way from a kept state to a step
+    std::uint64_t step = 0;
+    std::deque<Timeline::Event> events;
+    Ticket ticket;
+  };
   using Answer = std::variant<json, Refusal>;
 
   Stepper(scene::Document document, Exchange& exchange, const Limits& limits, std::optional<int> gpu,
@@ -75,10 +84,6 @@ class Stepper {
 
   // In stepper_commands.cpp. Each `perform` answers its ticket if that has an id.
   void handle(Command& command);
-  void perform(GetScene&, const Ticket& ticket);
-  void perform(LoadScene& load, const Ticket& ticket);
-  void perform(UploadMesh& upload, const Ticket& ticket);
-  void perform(PatchScene& patch, const Ticket& ticket);
   void perform(Play&, const Ticket& ticket);
   void perform(Pause&, const Ticket& ticket);
   void perform(Step& step, const Ticket& ticket);
@@ -104,11 +109,22 @@ class Stepper {
   void record_mesh();
   void record_change(json change);
   void follow_recording();
-  // In stepper_commands.cpp.
-  void reply(const Ticket& ticket, Answer answer);
-  json where_we_are() const;
-  static Refusal diverged_refusal();
+  // In stepper_meshes.cpp.
+  void perform(UploadMesh& upload, const Ticket& ticket);
   clothlab::Status use_again(const std::string& mesh, const Ticket& ticket);
+  void keep_mesh(const std::string& name);
+  std::set<std::string> meshes_named() const;
+  // In stepper_scene.cpp.
+  void perform(GetScene&, const Ticket& ticket);
+  void perform(LoadScene& load, const Ticket& ticket);
+  void perform(PatchScene& patch, const Ticket& ticket);
+  void perform(TravelHistory& travel, const Ticket& ticket);
+  bool outdated(std::optional<std::uint64_t> revision, const Ticket& ticket);
+  Result<sim::ChangeDepth> travelled(const History::Change& change, Direction direction);
+  Result<sim::ChangeDepth> bring(scene::Document document, bool anew);
+  void remember(History::Change change);
+  void announce_history();
+  void tell_if_rebuilt(sim::ChangeDepth depth);
   Result<sim::ChangeDepth> change(const scene::Scene& scene);
   Result<sim::ChangeDepth> change_engine(const scene::Scene& scene);
   Result<sim::ChangeDepth> move_to(const scene::Scene& scene, gl::HelperThreads threads);
@@ -117,6 +133,22 @@ class Stepper {
   void restart();
   void state_replaced();
   void announce_scene(std::optional<json> patch, std::uint64_t by);
+  // In stepper_timeline.cpp.
+  void perform(GetTimeline&, const Ticket& ticket);
+  void perform(ResumeAt& resume, const Ticket& ticket);
+  void begin_timeline();
+  std::uint64_t next_step_to_begin() const;
+  void scene_on_timeline(sim::ChangeDepth depth);
+  void hands_on_timeline(bool other_holds);
+  void bound_timeline();
+  void timeline_went_back();
+  json timeline_told();
+  std::uint64_t replay_changes();
+  void end_replay();
+  // In stepper_commands.cpp.
+  void reply(const Ticket& ticket, Answer answer);
+  json where_we_are() const;
+  static Refusal diverged_refusal();
   void announce_parts();
   void announce_solver();
 
@@ -155,6 +187,12 @@ class Stepper {
   Rest rest_;
   Automatic automatic_;
   Hands hands_;
+  History history_;
+  json history_told_;  ///< what clients know of it
+
+  Timeline timeline_;
+  std::optional<Replay> replay_;
+  std::deque<Command> waiting_commands_;  ///< until a replay has ended
   Recorder recorder_{exchange_, static_cast<std::size_t>(limits_.recording_bytes)};
   std::uint32_t recorded_revision_ = 0;   ///< of the mesh that the recording has
   std::vector<Ticket> ending_recording_;  ///< requests record.stop that wait for the end of the recording

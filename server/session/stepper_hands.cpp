@@ -33,6 +33,7 @@ void Stepper::perform(GrabStart& start, const Ticket& ticket) {
 void Stepper::perform(GrabMove& move, const Ticket& ticket) {
   if (!hands_.move(ticket.asker, move)) return reply(ticket, no_hold(move.hand));
   (void)simulation().set_hands(hands_.for_simulation());  // with the same holds it cannot fail
+  hands_on_timeline(false);
   reply(ticket, json::object());
 }
 
@@ -46,6 +47,7 @@ void Stepper::perform(GrabEnd& end, const Ticket& ticket) {
 /// Takes the hands over into the simulation, which then no longer rests.
 clothlab::Status Stepper::hands_changed() {
   if (clothlab::Status set = simulation().set_hands(hands_.for_simulation()); !set) return set;
+  hands_on_timeline(true);
   guard_->set_hands(hands_.force(), hands_.reach());
   wake_up();
   return ok();

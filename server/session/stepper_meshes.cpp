@@ -2,6 +2,7 @@
 #include <glm/common.hpp>
 #include <set>
 
+#include "server/session/change_name.h"
 #include "server/session/stepper.h"
 
 namespace clothlab::session {
@@ -16,6 +17,16 @@ std::set<std::string> mesh_names(const json& document) {
       if (item.contains("mesh") && item["mesh"].contains("obj"))
         names.insert(item["mesh"]["obj"].get<std::string>());
   return names;
+}
+
+/// An upload that replaces a mesh of the scene changes no word of the document.
+History::Change replacement(History::MeshChange mesh, std::uint64_t by) {
+  History::Change change;
+  change.name = change.places = shortened("Replace mesh " + mesh.name, max_change_name_bytes);
+  change.by = by;
+  change.back = change.forth = "[]";
+  change.mesh = std::move(mesh);
+  return change;
 }
 
 json point_list(const glm::dvec3& point) {
@@ -41,6 +52,16 @@ json facts(const std::string& name, const mesh::Mesh& mesh) {
 
 }  // namespace
 
+std::set<std::string> Stepper::meshes_named() const {
+  return mesh_names(document_.value);
+}
+
+void Stepper::keep_mesh(const std::string& name) {
+  if (const clothlab::Status kept = meshes_->keep(name); !kept)
+    exchange_.emit(Notice{"error", "the mesh " + name + " cannot be saved: " + kept.error().what +
+                                       "; it would be lost with the server"});
+}
+
 void Stepper::perform(UploadMesh& upload, const Ticket& ticket) {
   const std::size_t bytes = upload.bytes.size();
   const Result<MeshShelf::SharedItem> item = meshes_->read(upload.name, std::move(upload.bytes));
@@ -48,7 +69,7 @@ void Stepper::perform(UploadMesh& upload, const Ticket& ticket) {
   if (!item)
     return reply(ticket,
                  invalid_value({"/obj", item.error().where + ": " + item.error().what, item.error().remedy}));
-  const std::set<std::string> named = mesh_names(document_.value);
+  const std::set<std::string> named = meshes_named();
   const Result<std::vector<std::string>> removed = meshes_->make_place(upload.name, bytes, named);
   if (!removed) return reply(ticket, Refusal{Refusal::Reason::over_limit, removed.error()});
   MeshShelf::SharedItem before = meshes_->exchange(upload.name, *item);
@@ -57,10 +78,9 @@ void Stepper::perform(UploadMesh& upload, const Ticket& ticket) {
       meshes_->exchange(upload.name, std::move(before));
       return reply(ticket, invalid_value(used.error()));
     }
+    remember(replacement({upload.name, std::move(before), *item}, ticket.asker));
   }
-  if (const clothlab::Status kept = meshes_->keep(upload.name); !kept)
-    exchange_.emit(Notice{"error", "the mesh " + upload.name + " cannot be saved: " + kept.error().what +
-                                       "; it would be lost with the server"});
+  keep_mesh(upload.name);
   json answer = facts(upload.name, *(*item)->mesh);
   answer["removed"] = *removed;
   reply(ticket, std::move(answer));

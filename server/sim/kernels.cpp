@@ -83,19 +83,26 @@ Work Kernels::update_lists(const scene::Scene& scene) {
   co_await self_collision->update_lists();
   const std::uint32_t slots = self_collision->slots_needed();
   if (slots == self_collision->slots()) co_return;
+  // If the longer lists cannot be made, the present ones stay in use.
+  if (!grow(scene, slots)) co_return;
+  co_await self_collision->update_lists();
+}
+
+Status Kernels::grow(const scene::Scene& scene, std::uint32_t slots) {
   Plan larger = plan;
   larger.neighbour_slots = slots;
   Result<SelfCollision> grown = SelfCollision::create(model, slots);
+  if (!grown) return grown.error();
   Result<std::unique_ptr<Integrator>> adapted = make_integrator(surroundings(scene), larger);
-  // If the longer lists cannot be made, the present ones stay in use.
-  if (!grown || !adapted || !grown->set_parameters(*scene.self_collision, model)) co_return;
+  if (!adapted) return adapted.error();
+  if (Status set = grown->set_parameters(*scene.self_collision, model); !set) return set.error();
   grown->take_counters(*self_collision);
   *self_collision = std::move(*grown);
   plan = larger;
   integrator = std::move(*adapted);
   integrator->set_parameters(surroundings(scene));
   integrator->restart();
-  co_await self_collision->update_lists();
+  return ok();
 }
 
 Status Kernels::update(const scene::Scene& scene) {

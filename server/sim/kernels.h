@@ -37,6 +37,9 @@ struct Kernels {
   /// far as the limits on their size allow. The scene must have self-collision. The work may stop on its way.
   Work update_lists(const scene::Scene& scene);
 
+  /// Gives each neighbour list `slots` slots. Error: such lists cannot be made, and the present ones stay.
+  Status grow(const scene::Scene& scene, std::uint32_t slots);
+
   Surroundings surroundings(const scene::Scene& scene) const {
     return {scene, model, motions, self_collision ? &*self_collision : nullptr};
   }

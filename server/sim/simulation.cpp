@@ -141,6 +141,42 @@ void Simulation::go_back() {
   self.state_replaced(when.time, when.step);
 }
 
+KeptStates& Simulation::kept() {
+  return implementation_->kept;
+}
+void Simulation::keep_state() {
+  implementation_->give_up_work();
+  implementation_->keep_state();
+}
+void Simulation::forget_carried() {
+  implementation_->forget();
+}
+bool Simulation::in_step() const {
+  return implementation_->in_step;
+}
+
+Status Simulation::go_to_kept(std::uint64_t step, const scene::Scene& scene) {
+  Implementation& self = *implementation_;
+  const KeptState& then = *self.kept.at_or_before(step);
+  Result<Kernels> kernels = Kernels::create(scene);
+  if (!kernels) return kernels.error();
+  if (kernels->self_collision && kernels->plan.neighbour_slots != then.neighbour_slots)
+    if (Status grown = kernels->grow(scene, then.neighbour_slots); !grown) return grown.error();
+  self.give_up_work();
+  self.kernels = std::move(*kernels);
+  self.scene = scene;
+  self.settled = then.settled;
+  self.kernels.motions.settle(self.settled);
+  (void)self.set_hands({});
+  self.state.load(then.position, then.velocity);
+  self.state_replaced(then.time, then.step);
+  self.start_time = then.start_time;
+  self.start_step = then.start_step;
+  self.kept.drop_after(then.step);
+  self.keep_start();
+  return ok();
+}
+
 double Simulation::time() const {
   return implementation_->time_of(implementation_->step_index);
 }

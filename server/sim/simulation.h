@@ -17,6 +17,7 @@
 namespace clothlab::sim {
 
 struct Hand;
+class KeptStates;
 
 /// How much of a simulation a change of scene replaces: nothing, only numbers, also the kernels, or all.
 /// Only `cloth` resets time and positions.
@@ -155,6 +156,20 @@ class Simulation {
   /// have the model's vertex count. It does not hold what a method remembers between steps: that starts anew,
   /// so the next step is not bit for bit the one that would have followed.
   void restore(const State& state, double time, std::uint64_t step);
+
+  /// The states that are kept to go back to, none unless its `every` is set or `keep_state` is called.
+  KeptStates& kept();
+  /// Keeps the present state. Gives up the step under way.
+  void keep_state();
+  /// Goes back to the newest kept state at or before `step`, of a simulation that had this scene then. The
+  /// states after it are dropped; hands no longer hold. Error: the kernels cannot be made, and nothing has
+  /// changed.
+  Status go_to_kept(std::uint64_t step, const scene::Scene& scene);
+  /// Makes all passes forget what they carry from step to step, as `restore` does. Not to be called within a
+  /// step.
+  void forget_carried();
+  /// True while a step has begun and not ended.
+  bool in_step() const;
 
   /// Waits until the GPU has finished every queued step.
   void finish();

@@ -10,6 +10,7 @@
 #include "server/scene/method.h"
 #include "server/sim/diagnose.h"
 #include "server/sim/hands.h"
+#include "server/sim/kept_states.h"
 #include "server/sim/kernels.h"
 #include "server/sim/last_good.h"
 #include "server/sim/scene_order.h"
@@ -29,6 +30,7 @@ struct Simulation::Implementation {
   DiagnosticsPass diagnostics;
   std::uint64_t diagnosed_step = 0;  ///< step_index of the diagnosis that arrived last
   LastGood last_good;
+  KeptStates kept;
   std::uint32_t topology_revision = 0;
   std::uint64_t step_index = 0;
   // Time is start_time + (step_index - start_step) dt. A sum over the steps would drift by rounding. A change
@@ -109,6 +111,7 @@ struct Simulation::Implementation {
       state.show();
       ++step_index;
       --steps_to_do;
+      if (kept.due(step_index)) keep_state();
       co_await may_stop;
     }
   }
@@ -149,6 +152,20 @@ struct Simulation::Implementation {
     forget();
     start_time = time;
     step_index = start_step = step;
+  }
+
+  /// Keeps the state at the end of a step. The run goes on from it as one that goes back to it does.
+  void keep_state() {
+    forget();
+    kept.keep(state, kernels.model.vertex_count(),
+              {{},
+               {},
+               step_index,
+               time_of(step_index),
+               start_time,
+               start_step,
+               settled,
+               kernels.plan.neighbour_slots});
   }
 
   /// Makes the present state the good state.

@@ -36,12 +36,23 @@ void SurfaceBlocks::set_skin(float skin) {
 }
 
 void SurfaceBlocks::check(const StateBuffers& state, const gl::TextureBuffer& built) const {
+  bind(state, built);
+  glDispatchCompute(1, 1, 1);
+  wait_for_writes();
+}
+
+void SurfaceBlocks::check_again(const StateBuffers& state, const gl::TextureBuffer& built,
+                                std::size_t groups) const {
+  bind(state, built);
+  glDispatchComputeIndirect(static_cast<GLintptr>(groups));
+  wait_for_writes();
+}
+
+void SurfaceBlocks::bind(const StateBuffers& state, const gl::TextureBuffer& built) const {
   state.position().bind(unit_position);
   built.bind(unit_position_when_built);
   vertices_.bind(unit_block_vertices);
   program_.use();
-  glDispatchCompute(1, 1, 1);
-  wait_for_writes();
 }
 
 }  // namespace clothlab::sim

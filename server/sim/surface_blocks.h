@@ -3,6 +3,7 @@
 // that a cloth which moves as a whole, or swings, needs few searches.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "server/base/result.h"
@@ -28,8 +29,13 @@ class SurfaceBlocks {
   /// Asks for a search, in the control block that must be bound, if one is needed. `built`: the positions at
   /// the last search.
   void check(const StateBuffers& state, const gl::TextureBuffer& built) const;
+  /// The same, dispatched indirectly: `groups` is the offset in the control block of 1, or of 0 to do
+  /// nothing.
+  void check_again(const StateBuffers& state, const gl::TextureBuffer& built, std::size_t groups) const;
 
  private:
+  void bind(const StateBuffers& state, const gl::TextureBuffer& built) const;
+
   std::uint32_t block_count_ = 0;
   gl::Program program_;
   gl::TextureBuffer vertices_;

@@ -14,15 +14,23 @@ namespace clothlab::sim {
 
 namespace {
 
-/// Passes of pushes after a step, and of the filter: in each of the filter's, a layer that moves ahead makes
-/// room for the one behind it.
+/// Passes of pushes after a step, or each piece of one, and of the filter: in each of the filter's, a layer
+/// that moves ahead makes room for the one behind it.
 struct Passes {
   int pushes, filter;
 };
 constexpr Passes of_short_step{2, 3}, of_long_step{4, 3};
 /// The filter can stop neither bodies nor pins: pushes alone must get the cloth out of their way, layer
 /// behind layer.
-constexpr Passes of_short_driven_step{8, 3}, of_long_driven_step{32, 8};
+constexpr Passes of_short_driven_step{8, 3}, of_long_driven_step{16, 8};
+/// A step longer than this [s] is gone in pieces where vertices are fast, in so many at most. The shorter a
+/// piece, the fewer pairs are near enough to meet in it; but even one that is not needed costs its
+/// dispatches, a tenth of a short step.
+constexpr double longest_whole_step = 0.001;
+constexpr int most_pieces = 8;
+/// How far a vertex goes in a piece where pins, bodies or colliders move, in thicknesses: pushes make room
+/// for so much, layer behind layer.
+constexpr double driven_advance = 0.25;
 constexpr std::size_t sums_of_vertex = 16;  // as in surface.glsl
 /// Share of an overlap that a step mends, and the most that it does a second [1/s]: what is mended is no
 /// velocity, but it moves what lies on it.
@@ -55,6 +63,8 @@ Result<SurfaceContact> SurfaceContact::create(const model::Model& model, const P
                                {&made.forces_, "forces"},
                                {&made.apply_, "apply"},
                                {&made.begin_, "begin"},
+                               {&made.path_program_, "path"},
+                               {&made.advance_, "advance"},
                                {&made.limit_, "limit"},
                                {&made.move_, "move"}}) {
     Result<gl::Program> loaded = gl::Program::load({std::string("surface/") + name + ".comp"}, defines);
@@ -65,19 +75,28 @@ Result<SurfaceContact> SurfaceContact::create(const model::Model& model, const P
     program->set("cloth_vertex_count", static_cast<GLint>(made.cloth_vertex_count_));
   }
   made.target_ = vector_per_vertex(made.vertex_count_);
-  if (made.keeps_start_) made.start_ = vector_per_vertex(made.vertex_count_);
+  made.start_ = vector_per_vertex(made.vertex_count_);
+  made.path_ = vector_per_vertex(made.vertex_count_);
   made.sums_ = gl::Buffer(made.vertex_count_ * sums_of_vertex * sizeof(std::int32_t));
   made.limits_ = gl::Buffer(made.vertex_count_ * sizeof(std::uint32_t));
   return made;
+}
+
+std::array<const gl::Program*, 8> SurfaceContact::programs() const {
+  return {&contacts_, &forces_, &apply_, &begin_, &limit_, &move_, &path_program_, &advance_};
 }
 
 void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Model& model,
                                     const MotionTable& motions) {
   const double dt = scene.solver.dt;
   bodies_.set_parameters(scene, model, motions);
-  pairs_.set_parameters(scene, model);
-  for (const gl::Program* program : {&contacts_, &forces_, &apply_, &begin_, &limit_, &move_}) {
+  pieces_ = dt > longest_whole_step ? most_pieces : 1;
+  pairs_.set_parameters(scene, model, pieces_);
+  const double advance = driven_ ? driven_advance * SurfacePairs::thickness(scene, model) : 1e30;
+  advance_.set("most_advance", static_cast<float>(advance));
+  for (const gl::Program* program : programs()) {
     program->set("dt", static_cast<float>(dt));
+    program->set("piece_count", pieces_);
     program->set("thickness", static_cast<float>(SurfacePairs::thickness(scene, model)));
   }
   long_steps_ = scene::iterates(scene.solver.method);
@@ -102,12 +121,44 @@ void SurfaceContact::invalidate() {
 Work SurfaceContact::update_pairs(const StateBuffers& state, int row) {
   bodies_.place_at_start(state, row);
   co_await pairs_.update(state);
-  if (keeps_start_) start_.buffer.copy_from(state.position().buffer);
+  if (keeps_start_ || pieces_ > 1) start_.buffer.copy_from(state.position().buffer);
+}
+
+void SurfaceContact::advance(const StateBuffers& state, int piece, std::uint32_t changing) {
+  const auto run = [&](const gl::Program& program) {
+    program.use();
+    program.set("changing_vertex_count", static_cast<GLint>(changing));
+    glDispatchCompute(vertex_groups(changing), 1, 1);
+    wait_for_writes();
+  };
+  state.position().bind(unit_position);
+  state.velocity().bind(unit_velocity);
+  state.position().buffer.bind_storage(slot_next_position);
+  pairs_.bind();
+  if (piece == 0) {
+    start_.bind(unit_step_start);
+    path_.buffer.bind_storage(slot_path);
+    run(path_program_);
+  } else {
+    pairs_.update_within_step(state);
+    pairs_.bind();
+  }
+  path_.bind(unit_path);
+  start_.buffer.bind_storage(slot_step_start);
+  advance_.set("piece", piece);
+  run(advance_);
 }
 
 void SurfaceContact::keep_apart(StateBuffers& state, int row) {
   const std::uint32_t changing = bodies_.changes() ? vertex_count_ : cloth_vertex_count_;
   bodies_.place_at_end(state, row);
+  for (int piece = 0; piece < pieces_; ++piece) {
+    if (pieces_ > 1) advance(state, piece, changing);
+    push_and_filter(state, changing, piece == pieces_ - 1);
+  }
+}
+
+void SurfaceContact::push_and_filter(StateBuffers& state, std::uint32_t changing, bool last_piece) {
   for (const gl::Program* program : {&contacts_, &apply_, &begin_, &move_})
     program->set("changing_vertex_count", static_cast<GLint>(changing));
   const std::size_t counts =
@@ -121,6 +172,7 @@ void SurfaceContact::keep_apart(StateBuffers& state, int row) {
   const std::size_t near = counts + offsetof(StepCounts, near_groups),
                     vertices = counts + offsetof(StepCounts, vertex_groups),
                     touching = counts + offsetof(StepCounts, touching_groups),
+                    pushed = counts + offsetof(StepCounts, pushed_groups),
                     meeting = counts + offsetof(StepCounts, meeting_groups),
                     cut_vertices = counts + offsetof(StepCounts, cut_vertices);
   pairs_.bind();
@@ -128,7 +180,7 @@ void SurfaceContact::keep_apart(StateBuffers& state, int row) {
   for (const gl::Program* program : {&contacts_, &begin_, &limit_}) pairs_.set_limits(*program);
   state.position().bind(unit_position);
   state.velocity().bind(unit_velocity);
-  (keeps_start_ ? start_ : state.previous_position()).bind(unit_step_start);
+  (keeps_start_ || pieces_ > 1 ? start_ : state.previous_position()).bind(unit_step_start);
   target_.bind(unit_step_target);
   state.position().buffer.bind_storage(slot_next_position);
   state.velocity().buffer.bind_storage(slot_next_velocity);
@@ -136,14 +188,16 @@ void SurfaceContact::keep_apart(StateBuffers& state, int row) {
   limits_.bind_storage(slot_step_limits);
   target_.buffer.bind_storage(slot_step_target);
 
-  run(contacts_, offsetof(SurfaceControl, pair_groups));
+  run(contacts_,
+      pieces_ > 1 ? offsetof(SurfaceControl, contact_groups) : offsetof(SurfaceControl, pair_groups));
   for (int pass = 0; pass < push_passes_; ++pass) {
     run(forces_, touching);
     apply_.set("recount", long_steps_ && pass > 0 ? 1 : 0);
-    run(apply_, vertices);
+    run(apply_, pushed);
   }
   begin_.use();
   begin_.set("turn", turn_);
+  begin_.set("last_piece", last_piece ? 1 : 0);
   glDispatchCompute(vertex_groups(changing), 1, 1);
   wait_for_writes();
   for (int pass = 0; pass < filter_passes_; ++pass) {

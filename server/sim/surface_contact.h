@@ -51,16 +51,25 @@ class SurfaceContact {
   static const std::size_t bytes_of_counts;
 
  private:
+  std::array<const gl::Program*, 8> programs() const;
+  /// Takes vertices along the next piece of the step (shaders/surface/advance.comp), from where they are;
+  /// `piece` 0: from the step's start, with the pairs that `update_pairs` has brought up to date.
+  void advance(const StateBuffers& state, int piece, std::uint32_t changing);
+  /// Of a step, or of a piece of it; `changing`: vertices that it moves.
+  void push_and_filter(StateBuffers& state, std::uint32_t changing, bool last_piece);
+
   std::uint32_t cloth_vertex_count_ = 0, vertex_count_ = 0;  ///< with the places of bodies
   int turn_ = 0;                                             ///< whose step_counts the next step has
   bool driven_ = false;                                      ///< pins, bodies or colliders move
   bool long_steps_ = false;                                  ///< the method's
-  int push_passes_ = 0, filter_passes_ = 0;                  ///< in a step
+  int pieces_ = 1;                                           ///< the most in a step
+  int push_passes_ = 0, filter_passes_ = 0;                  ///< in a piece
   bool keeps_start_ = false;  ///< the strain limit writes over the positions at the step's start
   SurfaceBodies bodies_;
   SurfacePairs pairs_;
-  gl::Program contacts_, forces_, apply_, begin_, limit_, move_;
-  gl::TextureBuffer start_, target_;
+  gl::Program contacts_, forces_, apply_, begin_, limit_, move_, path_program_, advance_;
+  gl::TextureBuffer start_;  ///< of the step, or of the piece under way
+  gl::TextureBuffer target_, path_;
   gl::Buffer sums_, limits_;
 };
 

@@ -109,8 +109,9 @@ double SurfacePairs::thickness(const scene::Scene& scene, const model::Model& mo
   return std::min(0.1 * finest_edge(model), 0.005);
 }
 
-void SurfacePairs::set_parameters(const scene::Scene& scene, const model::Model& model) {
+void SurfacePairs::set_parameters(const scene::Scene& scene, const model::Model& model, int pieces) {
   const double thickness = SurfacePairs::thickness(scene, model), edge = finest_edge(model);
+  in_pieces_ = pieces > 1;
   // Parts of a flat grid that share no vertex are 0.7 of a cell's side apart, which is 0.6 of the mean edge.
   // A search that reaches less far for what is side by side lists nothing then.
   skin_ = static_cast<float>(std::max(0.55 * edge - 1.2 * thickness, 0.3 * edge));
@@ -118,6 +119,7 @@ void SurfacePairs::set_parameters(const scene::Scene& scene, const model::Model&
   blocks_.set_skin(skin_);
   for (const gl::Program* program : programs()) {
     program->set("dt", static_cast<float>(scene.solver.dt));
+    program->set("piece_count", pieces);
     program->set("thickness", static_cast<float>(thickness));
     program->set("skin", skin_);
     program->set("least_query", least_query);
@@ -132,16 +134,23 @@ void SurfacePairs::limit_query(float most) {
 }
 
 void SurfacePairs::invalidate() {
-  SurfaceControl control;
-  control_.download(&control, sizeof control);
-  const std::uint32_t rebuilds = control.rebuilds, cuts = control.cuts, forced = control.forced;
-  control = SurfaceControl{};
-  control.rebuilds = rebuilds;
-  control.cuts = cuts;
-  control.forced = forced;
+  forget_pairs();
+  updates_ = 0;
+}
+
+void SurfacePairs::forget_pairs(bool within_step) {
+  SurfaceControl before, control;
+  control_.download(&before, sizeof before);
+  control.rebuilds = before.rebuilds;
+  control.cuts = before.cuts;
+  control.forced = before.forced;
+  if (within_step) {
+    control.longest = before.longest;
+    control.gone = before.gone;
+    control.part = before.part;
+  }
   control.rebuild[0] = vertex_groups(std::max(vertex_count_, triangle_count_));
   control_.upload(&control, sizeof control);
-  updates_ = 0;
 }
 
 void SurfacePairs::search(const StateBuffers& state) {
@@ -184,17 +193,23 @@ Work SurfacePairs::update(const StateBuffers& state) {
   bind();
   blocks_.check(state, built_position_);
   search(state);
-  const bool look = updates_++ % updates_between_size_looks == 0 || driven_;
-  for (int attempt = 0; look && read_sizes() && attempt < 4; ++attempt) {
+  const bool look = updates_++ % updates_between_size_looks == 0 || waits();
+  for (int attempt = 0; look && read_sizes(false) && attempt < 4; ++attempt) {
     co_await may_stop;
     search(state);
   }
 }
 
+void SurfacePairs::update_within_step(const StateBuffers& state) {
+  blocks_.check_again(state, built_position_, offsetof(SurfaceControl, check));
+  search(state);
+  for (int attempt = 0; driven_ && read_sizes(true) && attempt < 4; ++attempt) search(state);
+}
+
 /// Makes lists longer that have too little room (or the search shorter, if they may not be longer), by the
 /// sizes that the look before had copied, and queues a copy for the next look. The first look after
 /// `invalidate` reads its own copy at once. Returns true if the pairs must be searched anew.
-bool SurfacePairs::read_sizes() {
+bool SurfacePairs::read_sizes(bool within_step) {
   SurfaceControl control;
   const auto take = [&] {
     const std::span<const std::byte> seen = sizes_ring_.front(true);
@@ -204,7 +219,7 @@ bool SurfacePairs::read_sizes() {
   if (!sizes_ring_.empty()) take();
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   sizes_ring_.push(control_, sizeof control);
-  if (updates_ <= 1 || driven_) take();
+  if (updates_ <= 1 || waits()) take();
   bool longer = false;
   const auto wanted = [&](std::uint32_t capacity, std::uint32_t found) {
     const bool full = 4 * std::uint64_t{found} > 3 * std::uint64_t{capacity} && capacity < most_listed;
@@ -220,7 +235,8 @@ bool SurfacePairs::read_sizes() {
     limit_query(0.5f * most_query_);  // no list may be longer: rather a limit on speed than no steps at all
   else
     return false;
-  invalidate();
+  forget_pairs(within_step);
+  updates_ = 0;
   return true;
 }
 

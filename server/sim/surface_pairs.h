@@ -24,7 +24,8 @@ class SurfacePairs {
   static Result<SurfacePairs> create(const model::Model& model, const SurfaceTriangles& surface);
 
   /// Takes over the numbers of a scene. `invalidate` must follow.
-  void set_parameters(const scene::Scene& scene, const model::Model& model);
+  /// `pieces`: the most in which a step is gone.
+  void set_parameters(const scene::Scene& scene, const model::Model& model, int pieces);
 
   /// The distance that surfaces are kept apart [m]: that of the scene's self-collision, if surfaces keep
   /// apart there; else cloths keep from bodies a tenth of their mean edge, 5 mm at most.
@@ -32,8 +33,11 @@ class SurfacePairs {
 
   /// To be called before a step: brings the pairs up to date. Rest positions must be bound. Every few calls,
   /// at a fixed count and not by time, reads back how long the lists need to be, and makes them longer. Until
-  /// then no free vertex moves; where other things do (`set_driven`), it reads back in every call, and waits.
+  /// then no free vertex moves; where other things do (`set_driven`), or steps are long enough to go in
+  /// pieces, it reads back in every call, and waits.
   Work update(const StateBuffers& state);
+  /// The same between two pieces of a step, without a stop; it reads back only where other things move.
+  void update_within_step(const StateBuffers& state);
 
   /// `driven`: pins, bodies or colliders move, also while a list is too short.
   void set_driven(bool driven) { driven_ = driven; }
@@ -57,7 +61,8 @@ class SurfacePairs {
 
  private:
   void search(const StateBuffers& state);
-  bool read_sizes();
+  bool read_sizes(bool within_step);
+  void forget_pairs(bool within_step = false);  ///< within a step: not how far it has got
   void limit_query(float most);
   /// How many entries the lists of a search have room for.
   struct Capacities {
@@ -65,11 +70,12 @@ class SurfacePairs {
   };
   void make_lists(const Capacities& wanted);
   std::array<const gl::Program*, 7> programs() const;
+  bool waits() const { return driven_ || in_pieces_; }
 
   std::uint32_t vertex_count_ = 0, triangle_count_ = 0;
   Capacities capacity_;
   float most_query_ = 0, skin_ = 0;  ///< [m]
-  bool driven_ = false;
+  bool driven_ = false, in_pieces_ = false;
   std::uint64_t updates_ = 0;  ///< calls of `update` since `invalidate`
   gl::Program corners_, leaf_boxes_program_, leaf_pairs_program_, triangle_pairs_program_, candidates_,
       pairs_program_, finish_;

@@ -8,6 +8,8 @@
 #include <span>
 #include <utility>
 
+#include "shaders/elements/elements.h"
+
 namespace clothlab::sim {
 
 namespace {
@@ -162,6 +164,22 @@ class NeighbourPairs {
     }
   }
 
+  /// Puts pairs together that pass, or fail, the search's cheap tests alike (shaders/surface/reach.glsl), so
+  /// that threads that run together have the same to do.
+  void sort(const model::Model& model) {
+    const auto kind_and_gap = [&](const std::array<std::uint32_t, 4>& pair) {
+      const bool edges = (pair[0] & edges_bit) != 0;
+      elements::Corners c;
+      for (int k = 0; k < 4; ++k) c.x[k] = model.rest_position[pair[k] & ~edges_bit];
+      const model::dvec3 between =
+          edges ? 0.5 * (c.x[0] + c.x[1] - c.x[2] - c.x[3]) : c.x[0] - (c.x[1] + c.x[2] + c.x[3]) / 3.0;
+      const double length = glm::length(between);
+      return std::pair(edges, length > 0.0 ? elements::gap_along(edges, c, between) / length : 0.0);
+    };
+    std::stable_sort(made_.neighbour_pairs.begin(), made_.neighbour_pairs.end(),
+                     [&](const auto& a, const auto& b) { return kind_and_gap(a) < kind_and_gap(b); });
+  }
+
  private:
   void add(std::uint32_t i, std::uint32_t j) {
     const auto &one = made_.triangles[i], &other = made_.triangles[j];
@@ -218,7 +236,9 @@ SurfaceTriangles surface_triangles(const model::Model& model, std::uint32_t most
     add_body(made, triangles, model, place, body, blocks_of_body);
   made.triangles = with_owned_parts(triangles, model.vertex_count() + model.body_vertex_count());
   made.rest_places = places_at_rest(triangles, model);
-  NeighbourPairs(made).add_all(model.vertex_count());
+  NeighbourPairs neighbours(made);
+  neighbours.add_all(model.vertex_count());
+  neighbours.sort(model);
   return made;
 }
 

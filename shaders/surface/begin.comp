@@ -1,6 +1,6 @@
-// The filter, 1 of 3, in every step: how far each vertex wants to go, and whether a search must reach farther for it.
-// Without near pairs that is the step's end; else `position` starts over at the step's start. Also gets the counts
-// ready for the next step.
+// The filter, 1 of 3, in every step, or piece of one: how far each vertex wants to go, and whether a search must reach
+// farther for it. Without near pairs that is the end; else `position` starts over at the start. Also gets the counts
+// ready for the next one.
 #include "surface.glsl"
 READ_VEC4(step_start, unit_step_start);
 layout(std430, binding = slot_next_position) buffer Position { vec4 position[]; };
@@ -8,19 +8,27 @@ layout(std430, binding = slot_next_velocity) buffer Velocity { vec4 velocity[]; 
 layout(std430, binding = slot_contact_sums) buffer Sums { int sums[]; };
 layout(std430, binding = slot_step_target) writeonly buffer Target { vec4 target[]; };
 
-void prepare_next_step() {
+uniform int last_piece;  // 1: of the step
+
+void prepare_next_piece() {
   int next = 1 - turn;
   control.step_counts[next].near_groups = control.step_counts[next].vertex_groups = 0u;
   control.step_counts[next].touching_groups = control.step_counts[next].meeting_groups = 0u;
-  control.step_counts[next].cut_vertices = 0u;
+  control.step_counts[next].pushed_groups = control.step_counts[next].cut_vertices = 0u;
   control.step_counts[next].near = control.step_counts[next].touching = 0u;
   control.step_counts[next].meeting = control.step_counts[next].cuts = 0u;
+  if (piece_count == 1) return;
+  float gone = uintBitsToFloat(known.gone), part = uintBitsToFloat(known.part);
+  gone = part >= 1.0 - gone ? 1.0 : gone + part;
+  control.gone = floatBitsToUint(gone);
+  control.check_groups = gone < 1.0 ? 1u : 0u;
+  if (last_piece != 0) control.longest = 0u;
 }
 
 void main() {
   int i = int(gl_GlobalInvocationID.x);
-  if (i == 0) prepare_next_step();
-  if (i >= changing_vertex_count) return;
+  if (i == 0) prepare_next_piece();
+  if (i >= changing_vertex_count || !(uintBitsToFloat(known.part) > 0.0)) return;
   vec4 start = FETCH(step_start, i), end = position[i];
   bool free = end.w > 0.0, filtered = known.step_counts[turn].near > 0u;
   RARELY(filtered && sums[SUMS * i + 3] != 0) {

@@ -1,11 +1,11 @@
-// Pair search, 5 of 7: the vertices and triangles, and the edges, of two triangles that are near each other, if their
-// boxes are near. Each vertex and edge is owned by one of its triangles, so that no pair is found twice (Curtis et al.
-// 2008, "Fast Collision Detection for Deformable Models using Representative-Triangles").
+// Pair search, 5 of 7: which vertices and triangles, and which edges, of two triangles that are near each other have
+// boxes that are near. Each vertex and edge is owned by one of its triangles, so that no pair is found twice (Curtis et
+// al. 2008, "Fast Collision Detection for Deformable Models using Representative-Triangles").
 #include "surface.glsl"
-#include "reach.glsl"
 #include "triangles.glsl"
 READ_UVEC2(triangle_pair_list, unit_triangle_pairs);
-layout(std430, binding = slot_near_pairs) writeonly buffer Candidates { uvec4 list[]; };  // a pair each
+// Two triangles, the number of a pair of theirs, and no_force_bit or 0.
+layout(std430, binding = slot_near_pairs) writeonly buffer Candidates { uvec4 list[]; };
 
 /// The pairs that two triangles own, as bits: 0 to 2 a vertex of the first and the second, 3 to 5 a vertex of the
 /// second and the first, 6 to 14 an edge of each.
@@ -56,27 +56,11 @@ void main() {
   }
   uint left = owned_pairs(one.tags, other.tags) & near_pairs(one.x, other.x, reach);
   RARELY(left != 0u) {
-    vec3 place[6] = vec3[](one.x[0], one.x[1], one.x[2], other.x[0], other.x[1], other.x[2]);
-    uvec3 first = one.tags & number_mask, second = other.tags & number_mask;
-    uint vertex[6] = uint[](first.x, first.y, first.z, second.x, second.y, second.z);
-    for (; left != 0u; left &= left - 1u) {
-      int number = findLSB(left);
-      bool edges = number >= 6;
-      int m = edges ? number / 3 - 2 : number, n = edges ? 3 + number % 3 : number < 3 ? 3 : 0;
-      int m_end = edges ? (m + 1) % 3 : n, n_end = edges ? 3 + (n - 2) % 3 : n + 2, n_first = edges ? n : n + 1;
-      // A vertex, and a triangle n, n + 1, n + 2; or edges m to m_end and n to n_end.
-      Corners c;
-      c.x = vec3[](place[m], place[m_end], place[n_first], place[n_end]);
-      RARELY(within_reach(edges, c, reach)) {
-        uvec4 pair = uvec4(vertex[m], vertex[m_end], vertex[n_first], vertex[n_end]);
-        if (edges) pair.x |= edges_bit;
-        if (flat_at_rest) pair.y |= no_force_bit;
-        uint slot = atomicAdd(control.candidates, 1u), thread = uint(neighbour_pair_count) + slot;
-        if (slot < 3u * pair_capacity) {
-          list[slot] = pair;
-          atomicMax(control.candidate_groups, thread / uint(GROUP_SIZE) + 1u);
-        }
-      }
-    }
+    uint slot = atomicAdd(control.candidates, uint(bitCount(left)));
+    uint end = min(slot + uint(bitCount(left)), 3u * pair_capacity);
+    if (slot < end)
+      atomicMax(control.candidate_groups, (uint(neighbour_pair_count) + end - 1u) / uint(GROUP_SIZE) + 1u);
+    for (; slot < end; left &= left - 1u, ++slot)
+      list[slot] = uvec4(both, findLSB(left), flat_at_rest ? no_force_bit : 0u);
   }
 }

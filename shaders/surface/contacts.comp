@@ -32,6 +32,7 @@ void main() {
       uint place = atomicAdd(control.step_counts[turn].touching, 1u);
       if (place % uint(GROUP_SIZE) == 0u)
         atomicMax(control.step_counts[turn].touching_groups, place / uint(GROUP_SIZE) + 1u);
+      control.step_counts[turn].pushed_groups = uint((changing_vertex_count + GROUP_SIZE - 1) / GROUP_SIZE);
       touching_pairs[place] = slot;
       for (int k = 0; k < 4; ++k)
         if (corner[k] < uint(cloth_vertex_count)) atomicAdd(sums[SUMS * int(corner[k]) + 3], 1);

@@ -7,7 +7,7 @@ READ_VEC4(velocity, unit_velocity);
 READ_VEC4(step_start, unit_step_start);
 READ_VEC4(body_places, unit_body_places);  // home, motion; friction, restitution
 uniform float friction;                    // of cloths
-uniform float mend;  // share of an overlap that a pass removes
+uniform float mend;  // share of an overlap that the passes of a step remove
 
 /// Friction and restitution of a pair: a body's, if it has a corner of one.
 vec2 surface_of(uvec4 corner) {
@@ -47,7 +47,7 @@ void main() {
   vec3 push, impulse;
   vec2 surface = surface_of(corner);
   RARELY(give > 0.0 && surface_contact(apart.xyz, apart.w, moved, v, kept_apart(corner, weight), surface.x, surface.y,
-                                       mend, push, impulse)) {
+                                       mend * uintBitsToFloat(known.part), push, impulse)) {
     bvec4 gives = notEqual(mobility, vec4(0.0)), first = bvec4(true, is_edges(pair), false, false);
     bool both_give = (gives.x || (first.y && gives.y)) && ((!first.y && gives.y) || gives.z || gives.w);
     for (int k = 0; k < 4; ++k)

@@ -14,13 +14,14 @@ struct StepCounts {  // of a step; steps take turns with two of them
   uint near_groups, near_groups_y, near_groups_z;              // over the near pairs
   uint vertex_groups, vertex_groups_y, vertex_groups_z;        // over the vertices, if a pair is near
   uint touching_groups, touching_groups_y, touching_groups_z;  // over the near pairs that push
+  uint pushed_groups, pushed_groups_y, pushed_groups_z;        // over the vertices, if a pair pushes
   uint meeting_groups, meeting_groups_y, meeting_groups_z;     // over the near pairs that could meet
   uint cut_vertices, cut_vertices_y, cut_vertices_z;           // over the vertices, if a step is shortened
   uint near;                                                   // near pairs
   uint touching;                                               // of these, those that push
   uint meeting;                                                // of these, those that could meet
   uint cuts;                                                   // vertices whose steps were shortened
-  uint unused;
+  uint unused, unused_2;
 };
 
 // Set by the GPU: arguments of indirect dispatches, and what a search found (server/sim/surface_control.h). Laid out
@@ -32,11 +33,13 @@ struct Control {
   uint split_groups, split_groups_y, split_groups_z;        // over pairs of triangles
   uint pair_groups, pair_groups_y, pair_groups_z;           // over pairs
   uint candidate_groups, candidate_groups_y, candidate_groups_z;  // over pairs whose boxes are near
+  uint check_groups, check_groups_y, check_groups_z;              // 1 while a part of the step is left (advance.comp)
+  uint contact_groups, contact_groups_y, contact_groups_z;        // over pairs, the same
   uint leaf_pairs;           // found by the search
   uint triangle_pairs;       // the same
   uint candidates;           // the same
   uint pairs;                // the same
-  uint fastest;              // longest step since the last search that was long for it [m], as bits
+  uint fastest;              // longest piece of a step since the last search that was long for it [m], as bits
   uint fastest_vertex;       // its speed at the search [m/s], as bits
   uint query;                // pairs nearer than this can be near within a step [m], as bits
   uint flat_query;           // the same of pairs that no force keeps apart
@@ -47,6 +50,10 @@ struct Control {
   uint most_leaf_pairs;      // found by any search
   uint most_triangle_pairs;  // the same
   uint most_pairs;           // the same
+  uint longest;              // longest way of a vertex in this step [m], as bits
+  uint gone;                 // share of the step that it has gone before this piece, as bits of a float
+  uint part;                 // share of the step that this piece goes, the same
+  uint unused;
 };
 layout(std430, binding = slot_surface_control) coherent buffer SurfaceControl { Control control; };
 // The same memory, for what the kernel that reads it does not change: on software OpenGL reading a storage buffer takes
@@ -63,6 +70,7 @@ uniform float most_query;   // [m]
 uniform float least_query;  // [m]
 uniform uint pair_capacity, triangle_pair_capacity, leaf_pair_capacity;
 uniform int neighbour_pair_count;
+uniform int piece_count;    // most pieces in which a step is gone (advance.comp)
 uniform int turn;           // whose step_counts this step has
 
 const uint edges_bit = 0x80000000u;     // of a pair's first corner: two edges
@@ -74,9 +82,10 @@ const uint corner_mask = 0x7fffffffu;
 const float step_share = 0.49;
 
 /// Query radius of the search under way [m], of pairs that no force keeps apart: for the filter alone. The longest step
-/// is at most 0.79 of what a vertex may go then.
+/// or piece of one is at most 0.79 of what a vertex may go then.
 float next_flat_query() {
-  float longest = max(dt * uintBitsToFloat(known.fastest_vertex), uintBitsToFloat(known.fastest));
+  float expected = dt / float(piece_count) * uintBitsToFloat(known.fastest_vertex);
+  float longest = max(expected, uintBitsToFloat(known.fastest));
   return min(max(least_query, 2.6 * longest), most_query);
 }
 /// The same of pairs that forces keep apart.

@@ -43,6 +43,13 @@ void keep(int i, int j, bool flat_at_rest) {
   if (slot % uint(GROUP_SIZE) == 0u) atomicMax(control.split_groups, slot / uint(GROUP_SIZE) + 1u);
 }
 
+void keep_if_near(int i, int j, float flat_reach) {
+  bool flat_at_rest = side_by_side_at_rest(rest_place(i), rest_place(j));
+  Triangle one = triangle_at(i), other = triangle_at(j);
+  if (!flat_at_rest || apart(low_of(one), high_of(one), low_of(other), high_of(other)) <= flat_reach)
+    keep(i, j, flat_at_rest);
+}
+
 void main() {
   int item = int(gl_GlobalInvocationID.x) * together / LEAF_SIZE;
   if (item >= int(min(known.leaf_pairs, leaf_pair_capacity))) return;
@@ -50,14 +57,12 @@ void main() {
   float reach = reach_of(next_query()), flat_reach = reach_of(next_flat_query());
   vec3 low[together], high[together], group_low = vec3(1e30), group_high = vec3(-1e30);
   uvec3 numbers[together];
-  RestPlace rest[together];
   int begin = LEAF_SIZE * int(leaves.x) + int(gl_GlobalInvocationID.x) * together % LEAF_SIZE;
   for (int k = 0; k < together; ++k) {
     Triangle t = triangle_at(min(begin + k, triangle_count - 1));
     low[k] = low_of(t);
     high[k] = high_of(t);
     numbers[k] = t.tags & number_mask;
-    rest[k] = rest_place(min(begin + k, triangle_count - 1));
     group_low = min(group_low, low[k]);
     group_high = max(group_high, high[k]);
   }
@@ -65,27 +70,24 @@ void main() {
   if (leaves.x == leaves.y) first = begin + 1;
   bool near_leaf = apart(group_low, group_high, FETCH(leaf_boxes, 2 * int(leaves.y)).xyz,
                          FETCH(leaf_boxes, 2 * int(leaves.y) + 1).xyz) <= reach;
-  for (int j = near_leaf ? first : end; j < end; ++j) {
-    Triangle t = triangle_at(j);
-    vec3 other_low = low_of(t), other_high = high_of(t);
-    float far[together];
-    bool near[together], any_near = false;
-    for (int k = 0; k < together; ++k) {
-      far[k] = apart(low[k], high[k], other_low, other_high);
-      int bodies = int(begin + k >= cloth_triangle_count) + int(j >= cloth_triangle_count);
-      bool meet = bodies == 1 || (bodies == 0 && cloth_pairs != 0), once = leaves.x != leaves.y || begin + k < j;
-      near[k] = far[k] <= reach && begin + k < triangle_count && meet && once &&
-                !share_vertex(numbers[k], t.tags & number_mask);
-      any_near = any_near || near[k];
-    }
-    RARELY(any_near) {
-      RestPlace other_rest = rest_place(j);
+  // First comparisons of boxes, then what few of them leave: threads that run together seldom leave the same.
+  const int at_once = 32 / together;
+  for (int some = near_leaf ? LEAF_SIZE * int(leaves.y) : end; some < end; some += at_once) {
+    uint near = 0u;
+    for (int j = max(some, first); j < min(some + at_once, end); ++j) {
+      Triangle t = triangle_at(j);
+      vec3 other_low = low_of(t), other_high = high_of(t);
       for (int k = 0; k < together; ++k) {
-        RARELY(near[k]) {
-          bool flat_at_rest = side_by_side_at_rest(rest[k], other_rest);
-          if (!flat_at_rest || far[k] <= flat_reach) keep(begin + k, j, flat_at_rest);
-        }
+        int bodies = int(begin + k >= cloth_triangle_count) + int(j >= cloth_triangle_count);
+        bool meet = bodies == 1 || (bodies == 0 && cloth_pairs != 0), once = leaves.x != leaves.y || begin + k < j;
+        if (apart(low[k], high[k], other_low, other_high) <= reach && begin + k < triangle_count && meet && once &&
+            !share_vertex(numbers[k], t.tags & number_mask))
+          near |= 1u << (together * (j - some) + k);
       }
+    }
+    for (; near != 0u; near &= near - 1u) {
+      int number = findLSB(near);
+      keep_if_near(begin + number % together, some + number / together, flat_reach);
     }
   }
 }

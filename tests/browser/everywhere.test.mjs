@@ -70,6 +70,29 @@ for (const [width, height] of [
         found.push(...(await violations(viewer, `lab, ${tab}`)));
       }
       await page.keyboard.press("Escape");
+      await page.keyboard.press("j");
+      const text = page.getByLabel("The scene as JSON");
+      await text.waitFor();
+      await page.getByRole("button", { name: "command line" }).click();
+      await text.fill("{");
+      await page.keyboard.press("Control+Enter");
+      await page.locator(".text-band").waitFor();
+      found.push(...(await violations(viewer, "the scene as text, with a mistake")));
+      await page.keyboard.press("Escape");
+      await page.evaluate(() => {
+        // raw deflate of a scene with one cloth
+        location.hash = "#scene=BcExDoAgDEDRu_yZxbVXMQ5GGiFCScC4NL277zmfzlWHIVvCzq4IrdqjmcTVxlsWsjtdV0Gce9aMeEQc8QM";
+      });
+      await page.getByRole("dialog", { name: "A scene by link" }).waitFor();
+      found.push(...(await violations(viewer, "a scene by link")));
+      await page.keyboard.press("Escape");
+      await page
+        .locator(".scene-actions button")
+        .first()
+        .evaluate((gallery) => gallery.click());
+      await page.getByRole("dialog", { name: "Presets" }).waitFor();
+      found.push(...(await violations(viewer, "the gallery")));
+      await page.keyboard.press("Escape");
       await page.getByRole("button", { name: "Help" }).click();
       found.push(...(await violations(viewer, "help")));
       assert.deepEqual(found, []);

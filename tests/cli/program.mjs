@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after } from "node:test";
 
-const program = process.env.CLOTHLAB ?? "build/release/clothlab";
+export const program = process.env.CLOTHLAB ?? "build/release/clothlab";
 
 /** Everything a test file writes goes here, and goes away with it. */
 export const folder = mkdtempSync(join(tmpdir(), "clothlab-cli-"));

@@ -1,10 +1,12 @@
 // `clothlab render`: the picture is a PNG of the size asked for, and shows the scene.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
-import { join } from "node:path";
+import { spawnSync } from "node:child_process";
+import { readdirSync, readFileSync } from "node:fs";
+import { join, resolve } from "node:path";
 import { test } from "node:test";
+import { fileURLToPath } from "node:url";
 import { inflateSync } from "node:zlib";
-import { clothlab, folder } from "./program.mjs";
+import { clothlab, folder, program } from "./program.mjs";
 
 /** Width, height and RGB pixels of an 8-bit RGB PNG; every filter of the format. */
 function decode(path) {
@@ -56,6 +58,28 @@ function region(image, predicate) {
     }
   return found;
 }
+
+test("a preset's picture for the page is drawn, and where that is impossible the build says so and goes on", () => {
+  const script = fileURLToPath(new URL("../../web/pictures.cmake", import.meta.url));
+  const made = (program, preset, out) =>
+    spawnSync(
+      "cmake",
+      [`-DPROGRAM=${program}`, `-DPRESET=${preset}`, "-DTIME=0.1", `-DOUT=${join(folder, out)}`, "-P", script],
+      { encoding: "utf8" },
+    );
+  for (const preset of ["seed", "blowup"]) {
+    assert.equal(made(resolve(program), preset, `${preset}.png`).status, 0);
+    const { width, height } = decode(join(folder, `${preset}.png`));
+    assert.deepEqual([width, height], [320, 200]);
+  }
+  const none = made("/bin/false", "seed", "none.png");
+  assert.equal(none.status, 0);
+  assert.match(none.stdout, /no picture of the preset seed/);
+  // Each moment is that of a preset.
+  const names = readdirSync(fileURLToPath(new URL("../../server/scene/presets", import.meta.url)));
+  for (const [, name] of readFileSync(script, "utf8").matchAll(/^set\(moment_(\S+)/gm))
+    assert.ok(names.includes(`${name}.json`), name);
+});
 
 test("the seed scene's red cloth fills a good part of the picture and touches no edge", () => {
   const image = render("seed.png", "seed", "--time", "0.5", "--size", "320x180");

@@ -1,5 +1,4 @@
-// Edits on their way to the server: few messages, always the last value, and an Undo for what a person made as one
-// change.
+// Edits on their way to the server: few messages, always the last value.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import { load } from "./module.mjs";
@@ -11,12 +10,12 @@ const path = "/solver/dt";
 const replace = (value, at = path) => [{ op: "replace", path: at, value }];
 const wait = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
 
-let store, sent, answer, fetched, changes, wayBack, rejected;
+let store, sent, answer, fetched, changes, rejected;
 beforeEach(() => {
   sent = [];
   changes = [];
   fetched = 0;
-  wayBack = rejected = null;
+  rejected = null;
   answer = (patch) => Promise.resolve({ revision: store.revision + 1, applies: "uniform", patch });
   store = new SceneStore({
     send: (patch) => {
@@ -26,7 +25,6 @@ beforeEach(() => {
     fetch: async () => void ++fetched,
     changed: (document, whole) => changes.push({ document, whole }),
     applied: () => undefined,
-    wayBack: (operations) => (wayBack = operations),
     rejected: (error) => (rejected = error),
   });
   store.replace({ solver: { dt: 0.001, method: "verlet" }, cloths: [] }, 1);
@@ -55,14 +53,6 @@ test("an edit of a whole drops those below it that wait, and a control there is 
   done({});
   await wait(5);
   assert.equal(store.busy("/solver/method"), false);
-});
-
-test("the way back of a slider that was dragged is where it began", async () => {
-  for (const value of [0.002, 0.003, 0.004]) {
-    store.edit(replace(value));
-    await wait(70);
-  }
-  assert.deepEqual(wayBack, replace(0.001));
 });
 
 test("a patch of plain values is applied here; one that may bring defaults, or comes late, is fetched whole", () => {

@@ -130,10 +130,13 @@ TEST_CASE("friction with a body of triangles is that of the body, and runs end i
 TEST_CASE("what a body forces where it cannot go is counted") {
   const auto context = test::context();
   scene::Scene scene = sheet_over(ball(scene::Linear{{0.0, 0.5, 0.0}}));
-  scene.colliders.push_back({"ceiling", scene::Plane{{0.0, 0.06, 0.0}, {0.0, -1.0, 0.0}}, 0.0, 0.0, {}});
+  scene::Transform place;
+  place.translate = {0.0, 0.56, 0.0};
+  place.scale = 0.5;
+  scene.colliders.push_back(test::body_of(test::cube_mesh(), place));
   const auto simulation = test::simulation(scene);
   simulation->step(50);  // on its way, with room
   CHECK(simulation->diagnose().surface_forced == 0);
-  simulation->step(100);  // 7 cm into the ceiling
+  simulation->step(100);  // 7 cm into the cube above
   CHECK(simulation->diagnose().surface_forced > 0);
 }

@@ -92,7 +92,7 @@ TEST_CASE(
     Result<sim::SurfacePairs> made =
         sim::SurfacePairs::create(model, sim::surface_triangles(model, sim::SurfaceBlocks::most_blocks));
     REQUIRE(made);
-    made->set_parameters(scene, model);
+    made->set_parameters(scene, model, 1);
     made->invalidate();
     const sim::MotionTable motions;
     sim::StateBuffers buffers(model, motions);

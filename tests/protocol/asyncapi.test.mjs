@@ -163,7 +163,11 @@ test("requests and their answers are as it says, with and without parameters, fo
     ["scene.patch", { patch: { self_collision: {} } }],
     ["scene.patch", { patch: [{ op: "replace", path: "/cloths/0/mesh/grid/rows", value: 6 }] }],
     ["scene.patch", { patch: { solver: { method: "pbd" } } }],
+    ["scene.patch", { patch: { gravity: [0, -2, 0] }, name: "lighter" }],
+    ["scene.undo"],
+    ["scene.redo", {}],
     ["scene.load", { preset: "curtain" }],
+    ["scene.undo", { revision: revision + 9 }],
     ["scene.load", { scene: strip }],
     ["stream.subscribe"],
     ["stream.ack", { frame: 0 }],
@@ -176,6 +180,8 @@ test("requests and their answers are as it says, with and without parameters, fo
     ["grab.move", { target: [0.1, 1, 0], hand: 9 }],
     ["grab.end"],
     ["grab.end", { hand: 9 }],
+    ["timeline.get"],
+    ["timeline.resume", { step: 0 }],
     ["lab.jobs"],
     ["record.get"],
     ["record.start", { rate: 60 }],
@@ -193,6 +199,8 @@ test("requests and their answers are as it says, with and without parameters, fo
     assert.deepEqual((await answerTo(client, id)).result, { t: id });
   }
   assert.equal((await client.refusal("scene.patch", { patch: {}, revision })).code, -32003);
+  assert.equal((await client.refusal("scene.undo", { revision })).code, -32003);
+  assert.equal((await client.refusal("scene.redo")).code, -32005);
   assert.equal((await client.refusal("grab.start", { cloth: 1, vertex: 0, target: [0, 0, 0] })).data.path, "/cloth");
   assert.equal((await client.refusal("grab.move", { target: [0, 0, 0] })).data.path, "/hand");
   assert.equal((await client.refusal("scene.load", { preset: "no-such" })).code, -32602);

@@ -14,6 +14,9 @@ const told = new Set(
 const knownByTheServerOnly = {
   "scene.load": /^\/preset$/, // a name that is not of a preset
   "scene.patch": /^/, // a patch whose result is no valid scene
+  "scene.undo": /^/, // a scene that can no longer be, as its mesh is gone
+  "scene.redo": /^/,
+  "timeline.resume": /^\/step$/, // one that is not kept
   "grab.start": /^\/(cloth|vertex)$/, // none of the scene
   "grab.move": /^\/hand$/, // one that holds nothing
   "grab.end": /^\/hand$/,

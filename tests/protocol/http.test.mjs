@@ -1,5 +1,5 @@
 import assert from "node:assert/strict";
-import { cpSync, mkdtempSync, rmSync, symlinkSync } from "node:fs";
+import { cpSync, mkdtempSync, readFileSync, rmSync, symlinkSync } from "node:fs";
 import http from "node:http";
 import net from "node:net";
 import { tmpdir } from "node:os";
@@ -112,6 +112,45 @@ test("a symbolic link in the page's folder is not followed", async () => {
   } finally {
     rmSync(data, { recursive: true });
   }
+});
+
+test("the clients for scripts are served as they are in the source, whether the page is built or not", async () => {
+  for (const [path, type] of [
+    ["/clothlab.py", "text/x-python; charset=utf-8"],
+    ["/clothlab.mjs", "text/javascript; charset=utf-8"],
+  ]) {
+    const { status, headers, body } = await server.get(path);
+    assert.equal(status, 200, path);
+    assert.equal(headers["content-type"], type);
+    assert.deepEqual(body, readFileSync(new URL(`../../web/clients${path}`, import.meta.url)));
+    assert.equal(headers["cache-control"], "no-cache", "another version of the server has another client");
+    assert.equal((await server.get(path, { "if-none-match": headers.etag })).status, 304);
+    assert.equal((await server.get(path, { "accept-encoding": "gzip" })).headers["content-encoding"], "gzip");
+  }
+  assert.equal((await server.get("/README.md")).status, 404);
+});
+
+test("pages of an --allow-origin may frame the page and read the answers; no others", async (t) => {
+  const allowed = ["http://localhost:8888", "https://notebook.example"];
+  const friendly = await Server.start(...allowed.flatMap((of) => ["--allow-origin", of]), "--allow-origin", "a;b *");
+  t.after(() => friendly.stop());
+  const { headers } = await friendly.get("/");
+  assert.match(
+    headers["content-security-policy"],
+    /frame-ancestors 'self' http:\/\/localhost:8888 https:\/\/notebook\.example$/,
+    "what is no origin gets into no header",
+  );
+  assert.equal(headers["x-frame-options"], undefined, "it can name no origin");
+  const reader = async (from, origin, path = "/clothlab.mjs") =>
+    (await from.get(path, { origin })).headers["access-control-allow-origin"];
+  for (const origin of allowed) {
+    assert.equal(await reader(friendly, origin), origin);
+    assert.equal(await reader(friendly, origin, "/api/scene"), origin);
+    assert.equal(await reader(server, origin), undefined);
+  }
+  for (const origin of ["http://localhost:8889", "https://localhost:8888", "null", "a;b *"])
+    assert.equal(await reader(friendly, origin), undefined, origin);
+  assert.equal(headers["access-control-allow-origin"], undefined);
 });
 
 const everywhere = ["/", "/ws", "/nothing", "/metrics", "/api/scene", "/api/mesh.obj", "/api/snapshot.png"];

@@ -27,8 +27,9 @@ test("scene.get answers the document and its revision", async () => {
 });
 
 test("scene.presets lists the presets of the contract, the seed first", async () => {
-  const { presets } = await client.request("scene.presets");
+  const { presets, about } = await client.request("scene.presets");
   assert.equal(presets[0], "seed");
+  assert.deepEqual(Object.keys(about).sort(), [...presets].sort(), "each has its sentence");
   for (const name of [
     "flag",
     "curtain",

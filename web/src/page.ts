@@ -15,6 +15,7 @@ import { LinkView } from "./panel/link_view";
 import { Guide } from "./explain/guide";
 import { notice, noticeError, showApplied, type Diverged, type Level } from "./panel/notices";
 import { takeDroppedMeshes } from "./panel/mesh_drop";
+import { lateStyle } from "./panel/late_style";
 import { Panel } from "./panel/panel";
 import { RecordButton } from "./panel/record_button";
 import { Bodies } from "./link/bodies";
@@ -29,21 +30,33 @@ import type { Stage } from "./view/stage";
 import { hook } from "./test_hook";
 import { bindCameraInput } from "./view/camera_input";
 import { ThemeSwitch } from "./view/theme";
+import { TextDoor } from "./text/door";
 import { Transport } from "./panel/transport";
+import { type History, Undo } from "./panel/undo";
 import { timeStep } from "./panel/solver_section";
 
 type Params = Record<string, unknown>;
 
+/// The answer to `scene.presets`.
+interface Offers {
+  presets: string[];
+  about?: Record<string, string>; ///< a sentence of each
+  fabrics?: Fabric[];
+}
+
 export class Page {
   private stage!: Stage; // set by show(), before the first event of the connection
   private readonly hud = new Hud();
-  private readonly connection = new Connection(
-    new URLSearchParams(location.search).get("session") ?? "main",
-    this.linkEvents(),
-  );
+  private readonly session = new URLSearchParams(location.search).get("session") ?? "main";
+  private readonly connection = new Connection(this.session, this.linkEvents());
   private readonly link = new LinkView(this.connection);
   private readonly transport = new Transport({ request: (method, params) => this.request(method, params) });
-  private readonly slow = new SlowWatch((operations) => this.store.edit(operations));
+  private readonly undo: Undo = new Undo({
+    request: (method, params) => this.connection.request(method, params),
+    settled: () => this.store.settled(),
+    told: ({ undo }) => this.slow.changed(undo),
+  });
+  private readonly slow = new SlowWatch(() => void this.undo.go("undo"));
   private readonly bodies = new Bodies(
     (name) => this.connection.get("/api/collider.ply", { name }),
     () => this.drawDocument(this.stage.fitted),
@@ -52,6 +65,7 @@ export class Page {
   private readonly guide = new Guide();
   private readonly panel = this.makePanel();
   private readonly lab = this.makeLab();
+  private readonly text = this.makeText();
   private readonly notifications = this.makeNotifications();
   private readonly colourBy = new ColourBy(
     (field) => this.connection.setField(field),
@@ -62,7 +76,9 @@ export class Page {
     request: (method, params) => this.connection.request(method, params),
     get: (path) => this.connection.get(path),
   });
-  private readonly divergence = new Divergence((patch) => this.connection.request("scene.patch", { patch }));
+  private readonly divergence = new Divergence((patch) =>
+    this.connection.request("scene.patch", { patch, name: "Remedy" }),
+  );
   private readonly refusals = new Refusals({
     show: (crossings) => this.stage.showCrossings(crossings),
     hide: () => this.stage.hideCrossings(),
@@ -73,6 +89,8 @@ export class Page {
   private welcome = (): void => undefined; // a newcomer
   private sceneName = "";
   private stability: Stability | null = null; // in the last status
+  private offers: Offers = { presets: [] };
+  private messageBytes = 65536; // the most that a message may have
   private mayEdit = true; // false for a viewer, who may only watch
 
   constructor() {
@@ -101,7 +119,8 @@ export class Page {
 
   private bind(layout: Layout, theme: ThemeSwitch): void {
     const lab = (): void => this.lab.toggle();
-    bindCommands({ transport: this.transport, layout, theme, fit: () => this.stage.fit(), lab });
+    const text = (): void => this.text.toggle();
+    bindCommands({ transport: this.transport, layout, theme, fit: () => this.stage.fit(), lab, text });
     bindCameraInput(this.stage.controls, () => this.hand?.holding === true);
     this.welcome = bindFirstSteps({
       mayEdit: () => this.mayEdit,
@@ -114,6 +133,7 @@ export class Page {
       mayEdit: () => this.mayEdit,
       refused: (title, error, patch) => this.refusals.tell(title, error, patch),
       hung: () => this.picture.fitAtNext(),
+      scene: (files) => this.text.take(files),
     });
   }
 
@@ -144,7 +164,7 @@ export class Page {
     return {
       state: (state, retryIn, why) => {
         this.link.show(state, retryIn, why);
-        this.transport.enable(state === "open" && this.mayEdit);
+        this.enableEdits();
         this.lab.link(state === "open");
         this.slow.link(state === "open");
         if (state !== "open") {
@@ -175,7 +195,6 @@ export class Page {
       fetch: () => this.fetchScene(),
       changed: (document, whole) => this.sceneChanged(document, whole),
       applied: showApplied,
-      wayBack: (operations) => this.slow.changed(operations),
       rejected: (error, operations) => {
         this.refusals.tell("Not applied", error, operations);
         this.panel.snapBack();
@@ -189,10 +208,9 @@ export class Page {
       {
         edit: (operations) => this.store.edit(operations),
         busy: (path) => this.store.busy(path),
-        loadPreset: (name) => {
-          this.sceneName = "";
-          this.request("scene.load", { preset: name });
-        },
+        loadPreset: (name) => this.loadPreset(name),
+        openText: () => this.text.toggle(),
+        openGallery: () => void this.openGallery(),
       },
       this.guide,
     );
@@ -216,13 +234,27 @@ export class Page {
     return new Lab({
       request: (method, params) => this.connection.request(method, params),
       document: () => this.store.document,
-      addressed: (patch) => ({
-        stored: this.store.stored,
-        patch: Array.isArray(patch) ? this.store.addressed(patch) : patch,
-      }),
+      addressed: (patch) => (Array.isArray(patch) ? this.store.addressed(patch) : patch),
+      undo: (revision) => void this.undo.go("undo", revision),
       mayEdit: () => this.mayEdit,
       applied: showApplied,
       toggled: (open) => this.layout?.labToggled(open),
+    });
+  }
+
+  private makeText(): TextDoor {
+    return new TextDoor({
+      session: this.session,
+      request: (method, params) => this.connection.request(method, params),
+      stored: () => this.store.stored && { document: this.store.stored, revision: this.store.revision },
+      preset: (name) => this.guide.baseline.preset(name),
+      mayEdit: () => this.mayEdit,
+      mostBytes: () => this.messageBytes,
+      applied: showApplied,
+      toggled: (open) => {
+        if (open && this.lab.open) this.lab.toggle();
+        this.layout?.labToggled(open);
+      },
     });
   }
 
@@ -232,8 +264,10 @@ export class Page {
       scene: (params) => {
         this.guide.baseline.take(params.document as SceneDocument);
         this.store.replace(params.document as SceneDocument, Number(params.revision));
+        this.text.arrived();
       },
       "scene.changed": (params) => this.store.patched(Number(params.revision), params.patch as Patch),
+      "scene.history": (params) => this.undo.told(params as unknown as History),
       colliders: (params) => {
         this.picture.moved = params.moving as MovedCollider[];
       },
@@ -260,17 +294,46 @@ export class Page {
   private greeted(params: Params): void {
     this.hud.setRenderer(String(params.renderer));
     this.mayEdit = params.role !== "viewer";
+    this.messageBytes = (params.limits as { message_bytes?: number } | undefined)?.message_bytes ?? this.messageBytes;
     this.hand?.greeted(Number(params.client));
+    this.undo.greeted(Number(params.client));
     this.welcome();
     this.panel.setMethods((params.methods as string[] | undefined) ?? []);
     this.lab.setMethods((params.methods as string[] | undefined) ?? []);
     this.lab.roleChanged();
     document.body.classList.toggle("viewer", !this.mayEdit);
-    this.transport.enable(this.connection.open && this.mayEdit);
-    this.connection.request<{ presets: string[]; fabrics?: Fabric[] }>("scene.presets").then(
-      ({ presets, fabrics }) => this.panel.setOffers(presets, fabrics ?? []),
+    this.enableEdits();
+    this.connection.request<Offers>("scene.presets").then(
+      (offers) => {
+        this.offers = offers;
+        this.panel.setOffers(offers.presets, offers.fabrics ?? []);
+      },
       () => undefined,
     );
+  }
+
+  private async openGallery(): Promise<void> {
+    const { presets, about = {} } = this.offers;
+    const loaded = Promise.all([import("./gallery"), lateStyle("gallery.css")]);
+    const [gallery] = await loaded.catch((error: Error) => {
+      noticeError("The presets' pictures could not be opened", error);
+      return [null];
+    });
+    gallery?.openGallery({
+      presets: presets.map((name) => ({ name, about: about[name] ?? "" })),
+      current: this.sceneName,
+      mayEdit: this.mayEdit,
+      load: (name) => this.loadPreset(name),
+    });
+  }
+
+  private loadPreset(name: string): void {
+    this.sceneName = "";
+    this.request("scene.load", { preset: name });
+  }
+
+  private enableEdits(): void {
+    for (const each of [this.transport, this.undo]) each.enable(this.connection.open && this.mayEdit);
   }
 
   private sceneChanged(document: SceneDocument, whole: boolean): void {
@@ -285,6 +348,7 @@ export class Page {
     this.hand?.sceneChanged();
     this.panel.show(document, this.store.stored ?? document);
     this.lab.sceneChanged();
+    this.text.sceneChanged();
   }
 
   private drawDocument(fit: boolean, whole = false): void {

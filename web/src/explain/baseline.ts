@@ -44,12 +44,17 @@ export class Baseline {
     return this.loaded?.name ?? "";
   }
 
+  /// The preset of this name, completed by the defaults; null if there is none, or before that is known.
+  preset(name: string): SceneDocument | null {
+    const preset = this.scenes && Object.hasOwn(this.scenes.presets, name) ? this.scenes.presets[name] : undefined;
+    return preset && this.scenes ? completed(this.scenes.schema, preset) : null;
+  }
+
   // A page that opens late sees a document that others have changed: a preset's own file is better. Before that is
   // here, nothing is compared.
   private choose(): void {
     if (!this.came || !this.scenes) return;
-    const preset = this.scenes.presets[this.came.name];
-    this.loaded = preset ? completed(this.scenes.schema, preset) : this.came;
+    this.loaded = this.preset(this.came.name) ?? this.came;
   }
 
   /// The scene as loaded, its cloths and colliders at the places that those of the same names have in `document`.

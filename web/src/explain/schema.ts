@@ -16,6 +16,7 @@ export interface Schema {
   maximum?: number;
   properties?: Record<string, Schema>;
   required?: string[];
+  dependentRequired?: Record<string, string[]>; ///< keys that a key stands beside only
   items?: Schema;
   oneOf?: Schema[];
 }
@@ -105,7 +106,9 @@ function filled(root: Schema, part: Schema, value: unknown): unknown {
     const initial = resolved(root, inner).default;
     // numbers that are absent beside a fabric are the fabric's own
     const left = fabric && key !== "strain_limit" && key !== "grain";
-    if (made[key] === undefined && initial !== undefined && !left) made[key] = copy(initial);
+    const beside = whole.dependentRequired?.[key] ?? [];
+    const apart = !beside.every((other) => other in value); // a sphere has no transform
+    if (made[key] === undefined && initial !== undefined && !left && !apart) made[key] = copy(initial);
     if (made[key] !== undefined) made[key] = filled(root, inner, made[key]);
   }
   return made;

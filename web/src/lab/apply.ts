@@ -1,28 +1,10 @@
-// Applies what the lab found to the scene: the patch that undoes a change, and the replaced values in words.
-import { inverse, valueAt } from "../link/json_patch";
+// What the lab's settings replace in the scene, in words.
+import { valueAt } from "../link/json_patch";
 import type { Patch } from "../link/scene_types";
 
 type Tree = Record<string, unknown>;
 
 const isTree = (value: unknown): value is Tree => typeof value === "object" && value !== null && !Array.isArray(value);
-
-/// The patch that undoes `patch` and restores `document`. Arrays are restored whole.
-export function reverseOf(document: unknown, patch: Patch): Patch {
-  if (Array.isArray(patch)) {
-    const back = patch.map((operation) => inverse(document, operation)).filter((each) => each !== null);
-    return back.reverse();
-  }
-  return mergeBack(document as Tree, patch);
-}
-
-function mergeBack(document: Tree, patch: Tree): Tree {
-  return Object.fromEntries(
-    Object.entries(patch).map(([key, value]) => {
-      const before = document[key];
-      return [key, isTree(value) && isTree(before) ? mergeBack(before, value) : (before ?? null)];
-    }),
-  );
-}
 
 const written = (value: unknown): string =>
   typeof value === "number" ? String(Number(value.toPrecision(4))) : String(value).replaceAll("_", " ");

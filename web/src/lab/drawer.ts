@@ -1,6 +1,6 @@
 // The lab: a drawer beside the cloth with four tabs. Nothing of it is stored in the browser.
 import { button, element } from "../panel/dom";
-import { formerly, reverseOf } from "./apply";
+import { formerly } from "./apply";
 import { ChartTab } from "./chart";
 import { ChooseTab } from "./choose";
 import { make } from "./dom";
@@ -15,8 +15,9 @@ import type { Patch, SceneDocument } from "../link/scene_types";
 export interface LabEvents {
   request<T>(method: string, params: Record<string, unknown>): Promise<T>;
   document(): SceneDocument | null;
-  /// The document as the server keeps it, and a patch of it that does what `patch` does to the one that is shown.
-  addressed(patch: Patch): { stored: SceneDocument | null; patch: Patch };
+  /// A patch of the document as the server keeps it that does what `patch` does to the one that is shown.
+  addressed(patch: Patch): Patch;
+  undo(revision: number): void; ///< undoes the change that made this revision, if it was the last
   mayEdit(): boolean;
   applied(depth: string): void;
   toggled(open: boolean): void; ///< changes the free part of the window
@@ -152,25 +153,29 @@ export class Lab {
   private async apply(patch: Patch, what: string): Promise<void> {
     const before = this.events.document();
     if (!before || !this.events.mayEdit()) return;
-    const { stored, patch: sent } = this.events.addressed(patch);
-    const undo = reverseOf(stored, sent);
     const was = formerly(before, patch);
-    if (!(await this.send(sent))) return;
+    const revision = await this.send(this.events.addressed(patch), `Lab: ${what}`);
+    if (revision === null) return;
     notice("info", {
       title: `Applied: ${what}`,
       lines: was === "" ? [] : [`Before: ${was}.`],
-      actions: [{ label: "Undo", run: () => void this.send(undo) }],
+      actions: [{ label: "Undo", run: () => this.events.undo(revision) }],
     });
   }
 
-  private async send(patch: Patch): Promise<boolean> {
+  // Returns the scene's new revision, or null if the server refused.
+  private async send(patch: Patch, what: string): Promise<number | null> {
     try {
-      const { applies } = await this.events.request<{ applies?: string }>("scene.patch", { patch });
-      if (applies) this.events.applied(applies);
-      return true;
+      const name = what.replace(/[^ -~]/g, "").slice(0, 80); // the server counts bytes
+      const { applies, revision } = await this.events.request<{ applies: string; revision: number }>("scene.patch", {
+        patch,
+        name,
+      });
+      this.events.applied(applies);
+      return revision;
     } catch (error) {
       noticeError("Not applied", error as Error);
-      return false;
+      return null;
     }
   }
 }

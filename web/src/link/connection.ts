@@ -1,4 +1,5 @@
 // The link to the server: connects, authenticates, subscribes, measures the round trip, and reconnects after a loss.
+import { inTab } from "./kept";
 import { BadMessage, decode, type FieldName, type Frame, type Topology } from "./protocol";
 import { errorNotAllowed, Rpc, RpcError } from "./rpc";
 
@@ -80,7 +81,7 @@ export class Connection {
 
   /// The answer of the HTTP API, e.g. at `/api/scene`, for this session.
   async get(path: string, query: Record<string, string> = {}): Promise<ArrayBuffer> {
-    const token = sessionStorage.getItem("clothlab-token");
+    const token = inTab.get("clothlab-token");
     const answer = await fetch(`${path}?${new URLSearchParams({ session: this.session, ...query }).toString()}`, {
       headers: token === null ? {} : { authorization: `Bearer ${token}` },
     });
@@ -98,14 +99,14 @@ export class Connection {
 
   /// Stores the token for this tab and connects with it.
   authenticate(token: string): void {
-    sessionStorage.setItem("clothlab-token", token);
+    inTab.set("clothlab-token", token);
     this.abandon();
     this.connect();
   }
 
   // Sends everything at once: the first frame needs no second round trip.
   private async greet(rpc: Rpc): Promise<void> {
-    const token = sessionStorage.getItem("clothlab-token");
+    const token = inTab.get("clothlab-token");
     try {
       const authenticated = token ? rpc.request("auth", { token }) : Promise.resolve();
       await Promise.all([authenticated, this.subscribe(rpc)]);
@@ -127,7 +128,7 @@ export class Connection {
   }
 
   private refuse(why: string): void {
-    sessionStorage.removeItem("clothlab-token");
+    inTab.remove("clothlab-token");
     this.refused = true;
     this.abandon();
     this.events.state("unauthorised", 0, why);

@@ -81,14 +81,6 @@ function operate(root: { document: unknown }, operation: Operation): void {
   }
 }
 
-/// The operation that undoes another; null if it is none of replace, add, remove.
-export function inverse(document: unknown, { op, path }: Operation): Operation | null {
-  if (op !== "replace" && op !== "add" && op !== "remove") return null;
-  const value = valueAt(document, path);
-  if (value === undefined) return op === "remove" ? null : { op: "remove", path };
-  return { op: op === "remove" ? "add" : "replace", path, value };
-}
-
 /// Returns a patched copy; `document` is not changed.
 export function applyPatch<T>(document: T, patch: Patch): T {
   if (!Array.isArray(patch)) return mergePatch(document, patch) as T;

@@ -25,6 +25,7 @@ export interface RpcErrorData {
 }
 
 export const errorNotAllowed = -32001;
+export const errorNothingThere = -32005;
 
 export class RpcError extends Error {
   constructor(

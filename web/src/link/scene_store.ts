@@ -1,18 +1,16 @@
 // The page's copy of the scene: the server's last document, and the edits on their way to the server.
 // Edits to the same place are merged into one message per `sendEvery`; the last value is always sent.
 import { addressed, type LeftToFabric, withFabrics } from "./fabrics";
-import { applyPatch, inverse } from "./json_patch";
+import { applyPatch } from "./json_patch";
 import type { Operation, Patch, SceneDocument } from "./scene_types";
 
 const sendEvery = 50; // [ms]
-const oneChange = 2000; // [ms]: edits closer together count as one change for Undo, such as a dragged slider
 
 export interface StoreEvents {
   send(patch: Patch): Promise<{ revision?: number; applies?: string }>;
   fetch(): Promise<void>;
   changed(document: SceneDocument, whole: boolean): void;
   applied(depth: string): void;
-  wayBack(operations: Operation[]): void; ///< operations that undo the last change that this page made
   rejected(error: Error, operations: Operation[]): void;
 }
 
@@ -25,7 +23,6 @@ export class SceneStore {
   private inFlight: Operation[] | null = null;
   private timer = 0;
   private lastSent = -Infinity;
-  private readonly before = new Map<string, Operation>(); // the operations that undo the last change, by path
 
   constructor(private readonly events: StoreEvents) {}
 
@@ -76,6 +73,11 @@ export class SceneStore {
     return [...this.queue.values()].some(touches) || (this.inFlight?.some(touches) ?? false);
   }
 
+  /// Waits until all edits are answered, so that what undoes the last change meets it.
+  async settled(): Promise<void> {
+    while (this.queue.size > 0 || this.inFlight) await new Promise((resolve) => setTimeout(resolve, sendEvery / 2));
+  }
+
   /// The connection was lost: drops unsent edits, as the next `scene` brings the server's document.
   forget(): void {
     this.queue.clear();
@@ -94,28 +96,17 @@ export class SceneStore {
     return this.stored && this.document ? addressed(this.stored, this.document, operations) : operations;
   }
 
-  private remember(operations: Operation[]): void {
-    for (const operation of operations) {
-      if (!this.stored || this.before.has(operation.path)) continue;
-      const back = inverse(this.stored, operation);
-      if (back) this.before.set(operation.path, back);
-    }
-  }
-
   private async flush(): Promise<void> {
     this.timer = 0;
-    if (performance.now() - this.lastSent > oneChange) this.before.clear();
     this.lastSent = performance.now();
     const operations = this.addressed([...this.queue.values()]);
     this.queue.clear();
     this.inFlight = operations;
-    this.remember(operations);
     try {
       const answer = await this.events.send(operations);
       this.inFlight = null;
       if (answer.revision !== undefined) this.patched(answer.revision, operations);
       if (answer.applies) this.events.applied(answer.applies);
-      this.events.wayBack([...this.before.values()].reverse());
     } catch (error) {
       this.inFlight = null;
       this.events.rejected(error as Error, operations);

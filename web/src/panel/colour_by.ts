@@ -1,6 +1,7 @@
 // What the cloth's colours show: the choice beside the speed, kept in this browser, and the legend above it.
 import { element } from "./dom";
 import { fields, gradient, isField } from "../view/fields";
+import { inBrowser } from "../link/kept";
 import type { FieldName } from "../link/protocol";
 
 const key = "clothlab-colour-by";
@@ -16,10 +17,10 @@ export class ColourBy {
     chosen: (field: FieldName | null) => void,
     private readonly resized: () => void,
   ) {
-    const stored = localStorage.getItem(key);
+    const stored = inBrowser.get(key);
     this.choice.value = isField(stored) ? stored : "";
     this.choice.onchange = () => {
-      localStorage.setItem(key, this.choice.value);
+      inBrowser.set(key, this.choice.value);
       chosen(this.chosen);
     };
     if (this.chosen) chosen(this.chosen);

@@ -11,9 +11,10 @@ interface Commanded {
   theme: ThemeSwitch;
   fit(): void;
   lab(): void;
+  text(): void;
 }
 
-export function bindCommands({ transport, layout, theme, fit, lab }: Commanded): void {
+export function bindCommands({ transport, layout, theme, fit, lab, text }: Commanded): void {
   const dialog = element("help-dialog", HTMLDialogElement);
   const help = (): void => dialog.showModal();
   bindKeys({
@@ -24,6 +25,7 @@ export function bindCommands({ transport, layout, theme, fit, lab }: Commanded):
     hide: () => layout.toggleInterface(),
     help,
     lab,
+    text,
   });
   button("fit").onclick = fit;
   button("help").onclick = help;

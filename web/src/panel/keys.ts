@@ -1,6 +1,6 @@
 // The keyboard: one key, one command. Keys do nothing while the user types or a dialog is open.
 
-export type Commands = Record<"toggle" | "step" | "reset" | "fit" | "hide" | "help" | "lab", () => void>;
+export type Commands = Record<"toggle" | "step" | "reset" | "fit" | "hide" | "help" | "lab" | "text", () => void>;
 
 const bindings: Record<string, keyof Commands> = {
   " ": "toggle",
@@ -9,6 +9,7 @@ const bindings: Record<string, keyof Commands> = {
   f: "fit",
   h: "hide",
   l: "lab",
+  j: "text",
   "?": "help",
 };
 
@@ -16,7 +17,8 @@ const bindings: Record<string, keyof Commands> = {
 export function takes(target: EventTarget | null, key: string): boolean {
   if (!(target instanceof HTMLElement)) return false;
   if (target instanceof HTMLInputElement) return target.type === "checkbox" ? key === " " : target.type !== "range";
-  if (target instanceof HTMLSelectElement || target.isContentEditable) return true;
+  if (target instanceof HTMLSelectElement || target instanceof HTMLTextAreaElement || target.isContentEditable)
+    return true;
   return key === " " && target.closest("button, summary") !== null;
 }
 

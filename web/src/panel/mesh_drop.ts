@@ -1,4 +1,5 @@
-// An .obj or .ply file dropped on the page: uploaded, and hung up in place of the scene's first cloth.
+// An .obj or .ply file dropped on the page: uploaded, and hung up in place of the scene's first cloth. A scene's file
+// goes to the scene's text.
 import { content, hung, type Uploaded } from "../link/mesh_upload";
 import { RpcError } from "../link/rpc";
 import { notice, noticeError } from "./notices";
@@ -9,6 +10,7 @@ interface Host {
   mayEdit(): boolean;
   refused(title: string, error: RpcError, patch: Patch): void;
   hung(): void; ///< the scene has another cloth
+  scene(files: File[]): void; ///< one of these is a scene
 }
 
 const largestMessage = 8 * 1024 * 1024; // bytes: hello.limits.meshes.message_bytes
@@ -21,7 +23,10 @@ function refused(title: string, line: string): void {
 async function take(file: File, host: Host): Promise<void> {
   if (!host.mayEdit()) return refused("Only operators may drop a mesh", "You are a viewer of this session.");
   if (!/\.(obj|ply)$/i.test(file.name))
-    return refused(`${file.name} is no mesh`, "The page takes .obj and .ply files; other formats can be converted.");
+    return refused(
+      `${file.name} is no mesh`,
+      "The page takes .obj and .ply files, and scenes as .json; other formats can be converted.",
+    );
   const parameters = { name: file.name.slice(-longestName), ...content(new Uint8Array(await file.arrayBuffer())) };
   if (JSON.stringify(parameters).length + 200 > largestMessage)
     return refused(
@@ -53,7 +58,8 @@ export function takeDroppedMeshes(host: Host): void {
   window.addEventListener("drop", (event) => {
     if (!carriesFile(event)) return;
     event.preventDefault();
-    const file = event.dataTransfer?.files[0];
-    if (file) void take(file, host);
+    const files = [...(event.dataTransfer?.files ?? [])];
+    if (files.some(({ name }) => /\.json$/i.test(name))) host.scene(files);
+    else if (files[0]) void take(files[0], host);
   });
 }

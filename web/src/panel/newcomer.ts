@@ -1,24 +1,15 @@
 // Shows the first steps to a browser that has not seen them, or when the help's button asks for them.
 import { button, element } from "./dom";
+import { inBrowser } from "../link/kept";
 import type { FirstStepsHost } from "./first_steps";
 
 const key = "clothlab-first-steps";
 
 /// True if nobody has seen them here. A browser that keeps nothing shows them each time.
-const isNewcomer = (): boolean => {
-  try {
-    return localStorage.getItem(key) === null;
-  } catch {
-    return true;
-  }
-};
+const isNewcomer = (): boolean => inBrowser.get(key) === null;
 
 export function remember(): void {
-  try {
-    localStorage.setItem(key, "seen");
-  } catch {
-    // it keeps nothing: they come again
-  }
+  inBrowser.set(key, "seen");
 }
 
 /// Returns what shows them to a newcomer, to be called once the server has told this page's role.

@@ -14,6 +14,8 @@ export interface PanelEvents {
   edit(operations: Operation[]): void;
   busy(path: string): boolean;
   loadPreset(name: string): void;
+  openText(): void;
+  openGallery(): void;
 }
 
 interface Control {
@@ -42,6 +44,7 @@ export class Panel {
   private stored: SceneDocument | null = null; // the same as the server keeps it
   private readonly explanation: Explanation;
   private readonly differences = document.createElement("p");
+  private readonly actions = document.createElement("p");
   private readonly folded = new Map<string, boolean>();
   private preset: Controller | null = null;
 
@@ -52,6 +55,16 @@ export class Panel {
   ) {
     this.explanation = new Explanation(container);
     this.differences.className = "differences";
+    this.actions.className = "scene-actions";
+    const offer = (text: string, title: string, run: () => void): HTMLButtonElement => {
+      const made = document.createElement("button");
+      Object.assign(made, { type: "button", className: "offer", textContent: text, title, onclick: run });
+      return made;
+    };
+    this.actions.append(
+      offer("Gallery", "The presets with pictures", () => this.events.openGallery()),
+      offer("Edit as text, save, share", "The scene as JSON (J)", () => this.events.openText()),
+    );
   }
 
   /// Marks what differs from the scene as loaded: called when that is known.
@@ -150,12 +163,13 @@ export class Panel {
 
   private addPresets(gui: GUI): void {
     this.preset = null;
+    gui.$children.append(this.actions);
     if (this.presets.length === 0) return;
     const choices = this.values.preset === "" ? ["", ...this.presets] : this.presets;
     this.preset = gui.add(this.values, "preset", choices).name("preset");
     this.preset.onChange((name: string) => name && this.events.loadPreset(name));
     this.preset.domElement.querySelector("select")?.setAttribute("aria-label", "preset");
-    gui.$children.append(this.differences);
+    gui.$children.append(this.actions, this.differences);
   }
 
   private addSection(parent: GUI, section: Section): void {

@@ -1,8 +1,7 @@
 // Shows a bar while the scene is too much for the server: the simulation is slow, or no picture comes. A button in it
-// undoes this page's last change.
+// undoes the scene's last change.
 import { button, element } from "./dom";
 import type { Status } from "./hud";
-import type { Operation } from "../link/scene_types";
 
 const creeping = 0.1; // share of the speed asked for: nobody sees a slower motion
 const creepingFor = 3000; // [ms] before the bar appears: compiling a kernel takes a while too
@@ -15,18 +14,13 @@ export class SlowWatch {
   private pictureAt = performance.now();
   private fastAt = performance.now();
   private open = false;
-  private wayBack: Operation[] = [];
+  private undoes: string | null = null; // the name of the change that Undo undoes
   private readonly box = element("slow", HTMLElement);
   private readonly text = element("slow-text", HTMLElement);
   private readonly undo = button("slow-undo");
 
-  constructor(private readonly edit: (operations: Operation[]) => void) {
-    this.undo.onclick = () => {
-      const back = this.wayBack;
-      this.wayBack = [];
-      this.edit(back);
-      this.look();
-    };
+  constructor(undo: () => void) {
+    this.undo.onclick = undo;
     document.addEventListener("visibilitychange", () => this.startAgain()); // a hidden page gets no pictures
     setInterval(() => this.look(), lookEvery);
   }
@@ -40,9 +34,9 @@ export class SlowWatch {
     this.pictureAt = performance.now();
   }
 
-  /// Takes the operations that undo this page's last change.
-  changed(wayBack: Operation[]): void {
-    this.wayBack = wayBack;
+  /// Takes the name of the last change of the scene; null: there is none to undo.
+  changed(undoes: string | null): void {
+    this.undoes = undoes;
   }
 
   told(status: Status): void {
@@ -60,7 +54,8 @@ export class SlowWatch {
     document.body.classList.toggle("slow", said !== "");
     this.box.hidden = said === "";
     if (this.text.textContent !== said) this.text.textContent = said;
-    this.undo.hidden = this.wayBack.length === 0;
+    this.undo.hidden = this.undoes === null;
+    this.undo.title = `Undo: ${this.undoes}`;
   }
 
   private say(): string {

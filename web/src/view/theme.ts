@@ -1,11 +1,12 @@
 // The theme, dark or light: the system's, until the user chooses one.
+import { inBrowser } from "../link/kept";
 
 type Theme = "dark" | "light";
 const key = "clothlab-theme";
 const systemDark = matchMedia("(prefers-color-scheme: dark)");
 
 const chosen = (): Theme | null => {
-  const stored = localStorage.getItem(key);
+  const stored = inBrowser.get(key);
   return stored === "dark" || stored === "light" ? stored : null;
 };
 
@@ -17,7 +18,7 @@ export class ThemeSwitch {
 
   toggle(): void {
     const next: Theme = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
-    localStorage.setItem(key, next);
+    inBrowser.set(key, next);
     this.apply();
   }
 

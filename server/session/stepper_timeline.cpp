@@ -1,0 +1,137 @@
+// The session's timeline: the states and changes that it keeps, and how it goes on from an earlier step.
+#include <utility>
+
+#include "server/base/text.h"
+#include "server/session/stepper.h"
+#include "server/sim/kept_states.h"
+
+namespace clothlab::session {
+
+/// The run begins, or begins anew: nothing before the present state can be reached again.
+void Stepper::begin_timeline() {
+  simulation().kept().clear();
+  simulation().kept().every = Timeline::interval(scene());
+  simulation().keep_state();
+  timeline_.begin(document_, scene(), simulation().step_index());
+}
+
+/// What changes nothing of the simulation comes between two steps, even if it is told of within one.
+std::uint64_t Stepper::next_step_to_begin() const {
+  return simulation().step_index() + (simulation().in_step() ? 1u : 0u);
+}
+
+void Stepper::scene_on_timeline(sim::ChangeDepth depth) {
+  const bool forgets = depth != sim::ChangeDepth::none;
+  if (forgets) simulation().forget_carried();
+  simulation().kept().every = Timeline::interval(scene());
+  timeline_.add_scene(next_step_to_begin(), document_, scene(), forgets);
+  bound_timeline();
+}
+
+void Stepper::hands_on_timeline(bool other_holds) {
+  if (other_holds) simulation().forget_carried();
+  timeline_.add_hands(next_step_to_begin(), hands_.for_simulation(), other_holds);
+  bound_timeline();
+}
+
+void Stepper::bound_timeline() {
+  sim::KeptStates& kept = simulation().kept();
+  while (timeline_.bytes() > Timeline::most_bytes && simulation().step_index() > kept.oldest()->step) {
+    if (kept.count() < 2) simulation().keep_state();
+    kept.drop_oldest();
+    timeline_.forget_before(kept.oldest()->step);
+  }
+  timeline_.forget_before(kept.oldest()->step);
+}
+
+/// After a blow-up the run goes on from the last good state, with the scene as it is now.
+void Stepper::timeline_went_back() {
+  const std::uint64_t step = simulation().step_index();
+  simulation().kept().drop_after(step);
+  if (simulation().kept().count() == 0) return begin_timeline();
+  timeline_.cut_after(step);
+  simulation().keep_state();
+  timeline_.add_scene(step, document_, scene(), true);
+}
+
+json Stepper::timeline_told() {
+  const sim::KeptStates& kept = simulation().kept();
+  return {{"oldest", {{"step", kept.oldest()->step}, {"time", kept.oldest()->time}}},
+          {"newest", {{"step", simulation().step_index()}, {"time", simulation().time()}}},
+          {"states", kept.count()},
+          {"bytes", kept.bytes() + timeline_.bytes()}};
+}
+
+void Stepper::perform(GetTimeline&, const Ticket& ticket) {
+  bound_timeline();
+  reply(ticket, timeline_told());
+}
+
+void Stepper::perform(ResumeAt& resume, const Ticket& ticket) {
+  bound_timeline();
+  const std::uint64_t oldest = simulation().kept().oldest()->step, newest = simulation().step_index();
+  if (resume.step < oldest || resume.step > newest)
+    return reply(ticket, invalid_value({"/step", std::to_string(resume.step),
+                                        "a step of the timeline, " + std::to_string(oldest) + " to " +
+                                            std::to_string(newest) + "; see timeline.get"}));
+  const std::uint64_t from = simulation().kept().at_or_before(resume.step)->step;
+  const Timeline::Event then = timeline_.in_force(from);
+  if (const clothlab::Status back = simulation().go_to_kept(resume.step, *then.scene); !back)
+    return reply(ticket, Refusal{Refusal::Reason::failed, back.error()});
+  (void)simulation().set_hands(*then.hands);  // the kernels are there
+  finish_waiting(true);
+  wake_up();
+  hands_.clear();
+  run_.begin_again();
+  run_.pause();
+  timeline_.cut_after(resume.step);
+  replay_.emplace(Replay{resume.step, timeline_.from(from), ticket});
+}
+
+/// Makes what changed the run before the next step. Returns the steps that follow until something else does.
+std::uint64_t Stepper::replay_changes() {
+  std::deque<Timeline::Event>& events = replay_->events;
+  for (; !events.empty() && events.front().step <= simulation().step_index(); events.pop_front()) {
+    const Timeline::Event& event = events.front();
+    if (event.scene) {
+      if (const Result<sim::ChangeDepth> done = simulation().change(*event.scene); !done)
+        exchange_.emit(Notice{"error", "the timeline cannot be replayed exactly: " + done.error().text()});
+      simulation().kept().every = Timeline::interval(scene());
+    }
+    if (event.hands) (void)simulation().set_hands(*event.hands);
+    if (event.forgets) simulation().forget_carried();
+  }
+  const std::uint64_t until = events.empty() ? replay_->step : std::min(replay_->step, events.front().step);
+  return until - simulation().step_index();
+}
+
+void Stepper::end_replay() {
+  const Replay done = std::move(*replay_);
+  replay_.reset();
+  const Timeline::Event then = timeline_.in_force(done.step + 1);
+  const json before = std::exchange(document_, *then.document).value;
+  if (!then.hands->empty()) {  // who held the cloth then does so no longer
+    (void)simulation().set_hands({});
+    hands_on_timeline(true);
+  }
+  guard_->set_hands(0, 0);
+  (void)automatic_.settle(document_, Clock::now());
+  ++revision_;
+  ++state_version_;
+  real_time_.restart(Clock::now());
+  frames().restart();
+  rest_.follow(scene(), simulation().model());
+  step_limit_.set_scene(simulation().model(), scene());
+  follow_step_limit();
+  guard_->start(step_limit_.dt_limit());
+  announce_parts();
+  announce_solver();
+  json answer = where_we_are();
+  answer["revision"] = revision_;
+  reply(done.ticket, std::move(answer));
+  announce_scene(std::nullopt, done.ticket.asker);
+  remember(history_.prepare(before, document_.value, formatted("Go on from %.2f s", simulation().time()),
+                            done.ticket.asker, Clock::now()));
+}
+
+}  // namespace clothlab::session

@@ -1,0 +1,89 @@
+#include "server/session/timeline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "server/sim/cost.h"
+
+namespace clothlab::session {
+
+namespace {
+
+/// A document as JSON in memory takes several times its text.
+constexpr std::size_t memory_of_text = 8;
+
+}  // namespace
+
+std::uint32_t Timeline::interval(const scene::Scene& scene) {
+  const double steps = std::min(
+      {most_steps, most_seconds / scene.solver.dt, replay_seconds / sim::expected_step_seconds(scene)});
+  return static_cast<std::uint32_t>(std::max(1.0, std::round(steps)));
+}
+
+void Timeline::begin(const scene::Document& document, const scene::Scene& scene, std::uint64_t step) {
+  events_.clear();
+  bytes_ = 0;
+  base_ = {step, std::make_shared<const scene::Document>(document),
+           std::make_shared<const scene::Scene>(scene), std::vector<sim::Hand>()};
+}
+
+void Timeline::add_scene(std::uint64_t step, const scene::Document& document, const scene::Scene& scene,
+                         bool forgets) {
+  add({step,
+       std::make_shared<const scene::Document>(document),
+       std::make_shared<const scene::Scene>(scene),
+       {},
+       forgets,
+       memory_of_text * document.value.dump().size() + sizeof(Event)});
+}
+
+void Timeline::add_hands(std::uint64_t step, std::vector<sim::Hand> hands, bool forgets) {
+  const std::size_t bytes = sizeof(Event) + hands.size() * sizeof(sim::Hand);
+  add({step, nullptr, nullptr, std::move(hands), forgets, bytes});
+}
+
+/// What came within a step that has been given up now comes before it.
+void Timeline::add(Event event) {
+  for (auto last = events_.rbegin(); last != events_.rend() && last->step > event.step; ++last)
+    last->step = event.step;
+  bytes_ += event.bytes;
+  events_.push_back(std::move(event));
+}
+
+void Timeline::apply(Event& to, const Event& later) {
+  to.step = later.step;
+  if (later.scene) to.document = later.document, to.scene = later.scene;
+  if (later.hands) to.hands = later.hands;
+}
+
+void Timeline::forget_before(std::uint64_t step) {
+  while (!events_.empty() && events_.front().step < step) {
+    apply(base_, events_.front());
+    bytes_ -= events_.front().bytes;
+    events_.pop_front();
+  }
+}
+
+void Timeline::cut_after(std::uint64_t step) {
+  while (!events_.empty() && events_.back().step > step) {
+    bytes_ -= events_.back().bytes;
+    events_.pop_back();
+  }
+}
+
+Timeline::Event Timeline::in_force(std::uint64_t step) const {
+  Event force = base_;
+  for (const Event& event : events_)
+    if (event.step < step) apply(force, event);
+  return force;
+}
+
+std::deque<Timeline::Event> Timeline::from(std::uint64_t step) const {
+  std::deque<Event> later;
+  for (const Event& event : events_)
+    if (event.step >= step) later.push_back(event);
+  return later;
+}
+
+}  // namespace clothlab::session
