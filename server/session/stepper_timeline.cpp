@@ -36,6 +36,7 @@ void Stepper::hands_on_timeline(bool other_holds) {
 
 void Stepper::bound_timeline() {
   sim::KeptStates& kept = simulation().kept();
+  if (kept.count() == 0) return;  // the cloth is new, and the timeline is about to begin
   while (timeline_.bytes() > Timeline::most_bytes && simulation().step_index() > kept.oldest()->step) {
     if (kept.count() < 2) simulation().keep_state();
     kept.drop_oldest();
