@@ -143,6 +143,7 @@ class Stepper {
   void bound_timeline();
   void timeline_went_back();
   json timeline_told();
+  static Refusal no_timeline();
   std::uint64_t replay_changes();
   void end_replay();
   // In stepper_commands.cpp.

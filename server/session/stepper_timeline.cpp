@@ -1,4 +1,5 @@
 // The session's timeline: the states and changes that it keeps, and how it goes on from an earlier step.
+#include <new>
 #include <utility>
 
 #include "server/base/text.h"
@@ -10,9 +11,18 @@ namespace clothlab::session {
 /// The run begins, or begins anew: nothing before the present state can be reached again.
 void Stepper::begin_timeline() {
   simulation().kept().clear();
-  simulation().kept().every = Timeline::interval(scene());
-  simulation().keep_state();
   timeline_.begin(document_, scene(), simulation().step_index());
+  try {
+    simulation().keep_state();
+    simulation().kept().every = Timeline::interval(scene());
+  } catch (const std::bad_alloc&) {  // without memory for one state the session runs without a timeline
+    simulation().kept().every = 0;
+  }
+}
+
+Refusal Stepper::no_timeline() {
+  return {Refusal::Reason::failed,
+          {"", "there is no memory to keep earlier states of this scene", "a smaller scene"}};
 }
 
 /// What changes nothing of the simulation comes between two steps, even if it is told of within one.
@@ -23,6 +33,7 @@ std::uint64_t Stepper::next_step_to_begin() const {
 void Stepper::scene_on_timeline(sim::ChangeDepth depth) {
   const bool forgets = depth != sim::ChangeDepth::none;
   if (forgets) simulation().forget_carried();
+  if (simulation().kept().count() == 0) return;
   simulation().kept().every = Timeline::interval(scene());
   timeline_.add_scene(next_step_to_begin(), document_, scene(), forgets);
   bound_timeline();
@@ -36,6 +47,7 @@ void Stepper::hands_on_timeline(bool other_holds) {
 
 void Stepper::bound_timeline() {
   sim::KeptStates& kept = simulation().kept();
+  if (kept.count() == 0) return;  // the cloth is new, and the timeline is about to begin
   while (timeline_.bytes() > Timeline::most_bytes && simulation().step_index() > kept.oldest()->step) {
     if (kept.count() < 2) simulation().keep_state();
     kept.drop_oldest();
@@ -64,11 +76,13 @@ json Stepper::timeline_told() {
 
 void Stepper::perform(GetTimeline&, const Ticket& ticket) {
   bound_timeline();
+  if (simulation().kept().count() == 0) return reply(ticket, no_timeline());
   reply(ticket, timeline_told());
 }
 
 void Stepper::perform(ResumeAt& resume, const Ticket& ticket) {
   bound_timeline();
+  if (simulation().kept().count() == 0) return reply(ticket, no_timeline());
   const std::uint64_t oldest = simulation().kept().oldest()->step, newest = simulation().step_index();
   if (resume.step < oldest || resume.step > newest)
     return reply(ticket, invalid_value({"/step", std::to_string(resume.step),

@@ -1,19 +1,29 @@
 #include "server/sim/kept_states.h"
 
 #include <glm/vec4.hpp>
+#include <new>
 #include <utility>
 
 namespace clothlab::sim {
 
 void KeptStates::keep(const StateBuffers& state, std::uint32_t vertex_count, KeptState when) {
   const std::size_t size = vertex_count * sizeof(glm::vec4);
-  if (!states_.empty() && (states_.size() >= most_states || bytes() + 2 * size > most_bytes)) {
+  const auto take_the_oldest = [&] {
     when.position = std::move(states_.front().position);
     when.velocity = std::move(states_.front().velocity);
     drop_oldest();
+  };
+  if (!states_.empty() && (states_.size() >= most_states || bytes() + 2 * size > most_bytes)) {
+    take_the_oldest();
+  } else {
+    try {
+      when.position = gl::Buffer(size);
+      when.velocity = gl::Buffer(size);
+    } catch (const std::bad_alloc&) {  // a shorter timeline is no reason to fail
+      if (states_.empty()) throw;
+      take_the_oldest();
+    }
   }
-  if (when.position.bytes() == 0) when.position = gl::Buffer(size);
-  if (when.velocity.bytes() == 0) when.velocity = gl::Buffer(size);
   state.save(when.position, when.velocity);
   states_.push_back(std::move(when));
 }

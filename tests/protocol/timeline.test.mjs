@@ -193,3 +193,19 @@ test("others are told that the scene is as it was, and what they ask meanwhile i
   assert.deepEqual([document.gravity[1], document.air_drag], [-1, 1]);
   await Promise.all([client.close(), other.close()]);
 });
+
+test("a session that has blown up goes on from before it", async () => {
+  const client = await enter(strip(9));
+  const early = await stepTo(client, 300);
+  await client.request("sim.step", { steps: 1 });
+  await patch(client, { solver: { dt: 0.02 } });
+  const diverged = client.nextNotification("sim.diverged");
+  await client.request("sim.play");
+  await diverged;
+  assert.equal(await resume(client, 300), early);
+  await client.nextNotification("sim.status", (status) => !status.diverged && !status.playing && status.step === 300);
+  assert.equal((await client.request("scene.get")).document.solver.dt, 0.0002);
+  await client.request("sim.play");
+  await client.frame(({ step, flags }) => step > 400 && flags === 0);
+  await client.close();
+});

@@ -30,6 +30,7 @@ import { Hand } from "./view/hand";
 import type { Stage } from "./view/stage";
 import { hook } from "./test_hook";
 import { bindCameraInput } from "./view/camera_input";
+import { bindTimeline } from "./panel/timeline_opener";
 import { ThemeSwitch } from "./view/theme";
 import { TextDoor } from "./text/door";
 import { Transport } from "./panel/transport";
@@ -123,6 +124,12 @@ export class Page {
     const text = (): void => this.text.toggle();
     bindCommands({ transport: this.transport, layout, theme, fit: () => this.stage.fit(), lab, text });
     bindCameraInput(this.stage.controls, () => this.hand?.holding === true);
+    bindTimeline({
+      picture: this.picture,
+      mayEdit: () => this.mayEdit && this.connection.open,
+      resume: (step) => this.connection.request("timeline.resume", { step }),
+      changed: () => layout.cardToggled(),
+    });
     this.welcome = bindFirstSteps({
       mayEdit: () => this.mayEdit,
       blowUp: () => this.blowUp(),

@@ -2,6 +2,7 @@
 // frame. The server sends no more than what is acknowledged.
 import type { FieldName, Frame, ShownFrame } from "./link/protocol";
 import type { MovedCollider } from "./link/scene_types";
+import { KeptFrames } from "./link/kept_frames";
 import { hook } from "./test_hook";
 import type { Stage } from "./view/stage";
 
@@ -14,7 +15,10 @@ interface PictureEvents {
 
 export class Picture {
   moved: MovedCollider[] = []; ///< colliders' places for the next frame
+  readonly kept = new KeptFrames();
   private latest: ShownFrame | null = null;
+  private lookedAt: ShownFrame | null = null; // an earlier frame, which is shown instead of what comes
+  private unseen = false; // it is not on screen yet
   private fitNext = false;
 
   constructor(private readonly events: PictureEvents) {}
@@ -25,6 +29,14 @@ export class Picture {
     const replaced = this.latest; // a newer frame came before this one was drawn
     if (replaced && !document.hidden) this.events.acknowledge(replaced.header.sequence);
     this.latest = { ...frame, field, moved: this.moved };
+    this.kept.take(this.latest, performance.now());
+  }
+
+  /// Shows a frame that was recorded, and goes on showing it; null: what comes is shown again.
+  lookAt(frame: ShownFrame | null): void {
+    if (!frame && this.lookedAt) this.latest ??= this.kept.all.at(-1)?.frame ?? null;
+    this.lookedAt = frame;
+    this.unseen = frame !== null;
   }
 
   /// The next frame is the first of another cloth: it is fitted into the view.
@@ -42,13 +54,16 @@ export class Picture {
   }
 
   private animate(stage: Stage): void {
-    const frame = this.latest;
+    const arrived = this.latest;
     this.latest = null;
+    if (this.lookedAt && arrived) this.events.acknowledge(arrived.header.sequence);
+    const frame = this.lookedAt ? (this.unseen ? this.lookedAt : null) : arrived;
+    this.unseen = false;
     const shown = frame !== null && stage.show(frame);
     stage.draw();
     this.events.ticked();
     if (!frame) return;
-    this.events.acknowledge(frame.header.sequence);
+    if (frame !== this.lookedAt) this.events.acknowledge(frame.header.sequence);
     if (!shown) return;
     this.events.drawn(frame);
     hook.framesDrawn++;

@@ -1,0 +1,135 @@
+// The timeline: looks at the frames of the last minute again, while the session goes on, and has it go on from one of
+// them. Loaded when it is opened first.
+import { button, element } from "./dom";
+import { takes } from "./keys";
+import { notice, noticeError } from "./notices";
+import { longest, mostBytes, type KeptFrame } from "../link/kept_frames";
+import type { Picture } from "../picture";
+
+export interface TimelineHost {
+  picture: Picture;
+  mayEdit(): boolean;
+  resume(step: number): Promise<unknown>;
+  changed(): void; ///< the card came or went
+}
+
+const megabytes = (bytes: number): string => `${(bytes / 1e6).toFixed(1)} MB`;
+
+export class Timeline {
+  private readonly card = document.createElement("section");
+  private readonly range = document.createElement("input");
+  private readonly where = document.createElement("span");
+  private readonly size = document.createElement("span");
+  private readonly live = document.createElement("button");
+  private readonly from = document.createElement("button");
+  private frames: KeptFrame[] = []; // while one looks back: those that were there when it began
+  private timer = 0;
+
+  constructor(private readonly host: TimelineHost) {
+    this.card.id = "timeline";
+    this.card.className = "card timeline";
+    this.card.setAttribute("aria-label", "Timeline");
+    this.range.type = "range";
+    this.range.min = "0";
+    this.range.step = "1";
+    this.range.setAttribute("aria-label", "Moment of the last minute");
+    this.range.oninput = () => this.show(Number(this.range.value));
+    this.live.textContent = "Live";
+    this.live.onclick = () => this.goLive();
+    this.from.textContent = "Go on from here";
+    this.from.onclick = () => void this.resume();
+    for (const each of [this.live, this.from]) each.type = "button";
+    this.where.className = "timeline-where";
+    this.size.className = "timeline-size";
+    this.card.append(this.range, this.where, this.size, this.live, this.from);
+    element("transport", HTMLElement).before(this.card);
+    addEventListener("keydown", (event) => this.key(event), { capture: true });
+    this.open(true);
+  }
+
+  toggle(): void {
+    this.open(this.card.hidden);
+  }
+
+  private open(open: boolean): void {
+    this.card.hidden = !open;
+    document.body.classList.toggle("timeline-open", open);
+    button("timeline-open").setAttribute("aria-expanded", String(open));
+    clearInterval(this.timer);
+    if (open) this.timer = window.setInterval(() => this.follow(), 250);
+    this.goLive();
+    this.host.changed();
+  }
+
+  private get looksBack(): boolean {
+    return this.frames.length > 0;
+  }
+
+  private goLive(): void {
+    this.frames = [];
+    this.host.picture.lookAt(null);
+    this.follow();
+  }
+
+  /// While the picture is live the bar grows with what comes.
+  private follow(): void {
+    const { kept } = this.host.picture;
+    const all = this.looksBack ? this.frames : kept.all;
+    if (!this.looksBack) {
+      this.range.max = String(Math.max(0, all.length - 1));
+      this.range.value = this.range.max;
+    }
+    this.live.disabled = !this.looksBack;
+    this.from.disabled = !this.looksBack || !this.host.mayEdit();
+    const seconds = all.length > 0 ? ((all.at(-1) as KeptFrame).at - (all[0] as KeptFrame).at) / 1000 : 0;
+    this.size.textContent = `${seconds.toFixed(0)} s, ${megabytes(kept.bytes)}`;
+    this.size.title = `Kept in this page: the last ${longest / 1000} s, at most ${megabytes(mostBytes)}`;
+    if (!this.looksBack) this.tell(all.at(-1), "live");
+  }
+
+  private show(index: number): void {
+    if (!this.looksBack) this.frames = this.host.picture.kept.all;
+    const at = Math.min(Math.max(0, index), this.frames.length - 1);
+    const shown = this.frames[at];
+    if (!shown) return;
+    this.range.max = String(this.frames.length - 1);
+    this.range.value = String(at);
+    this.host.picture.lookAt(shown.frame);
+    const ago = (performance.now() - shown.at) / 1000;
+    this.tell(shown, `${ago.toFixed(1)} s ago`);
+    this.follow();
+  }
+
+  private tell(shown: KeptFrame | undefined, when: string): void {
+    const header = shown?.frame.header;
+    const text = header ? `${header.time.toFixed(3)} s, ${when}` : when;
+    if (this.where.textContent !== text) this.where.textContent = text;
+    this.range.setAttribute("aria-valuetext", header ? `${text}, step ${header.step}` : text);
+  }
+
+  private key(event: KeyboardEvent): void {
+    if (this.card.hidden || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (document.querySelector("dialog[open]") || takes(event.target, event.key)) return;
+    const by = { ",": -1, ".": 1 }[event.key];
+    if (by === undefined ? event.key !== "Escape" || !this.looksBack : by > 0 && !this.looksBack) return;
+    event.preventDefault();
+    event.stopImmediatePropagation();
+    if (by === undefined) this.goLive();
+    else this.show(Number(this.range.value) + by);
+  }
+
+  private async resume(): Promise<void> {
+    const shown = this.frames[Number(this.range.value)];
+    if (!shown) return;
+    const { step, time } = shown.frame.header;
+    this.from.disabled = true;
+    try {
+      await this.host.resume(step);
+      this.goLive();
+      notice("info", { title: `Back at ${time.toFixed(3)} s`, lines: ["Paused there. Play goes on from it."] });
+    } catch (error) {
+      this.follow();
+      noticeError("Not gone back", error as Error);
+    }
+  }
+}
