@@ -41,6 +41,7 @@ void Stepper::scene_on_timeline(sim::ChangeDepth depth) {
 
 void Stepper::hands_on_timeline(bool other_holds) {
   if (other_holds) simulation().forget_carried();
+  if (simulation().kept().count() == 0) return;
   timeline_.add_hands(next_step_to_begin(), hands_.for_simulation(), other_holds);
   bound_timeline();
 }
