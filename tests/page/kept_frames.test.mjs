@@ -13,10 +13,10 @@ const steps = (kept) => kept.all.map(({ frame: { header } }) => header.step);
 test("frames are kept for a minute, in the order in which they came", () => {
   const kept = new KeptFrames();
   for (let i = 0; i < 5000; ++i) kept.take(frame(i), 20 * i);
-  const kept = steps(kept);
-  assert.equal(kept.at(-1), 4999);
-  assert.equal(kept.length, longest / 20 + 1);
-  assert.equal(kept.bytes, 1000 * kept.length);
+  const listed = steps(kept);
+  assert.equal(listed.at(-1), 4999);
+  assert.equal(listed.length, longest / 20 + 1);
+  assert.equal(kept.bytes, 1000 * listed.length);
 });
 
 test("of large frames so many are kept as there is room for, and one at least", () => {
