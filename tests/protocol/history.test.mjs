@@ -70,6 +70,7 @@ test("what one client changes, another undoes and redoes, and a script that list
 test("who joins is told of the history after the scene", async () => {
   const [a] = await enter();
   await a.request("scene.patch", { patch: gravity(-3) });
+  await a.notification("scene.history", ({ undo }) => undo === "Gravity"); // it comes after the answer
   const late = await Client.connect(server, { session: `history-${sessions}` });
   assert.equal((await late.notification("scene.history")).undo, "Gravity");
   const order = late.messages.map(({ method }) => method).filter((method) => /^(hello|scene)/.test(method));
