@@ -88,10 +88,8 @@ int record_scene(const RecordOptions& options) {
   recording.set_mesh(simulation.model(), simulation.scene());
   const auto add = [&](const sim::Diagnostics&) {
     const std::vector<glm::vec3> positions = simulation.read_state().position;
-    const std::string moving = stream::collider_text(simulation);
     recording.add(
-        {simulation.time(), simulation.step_index(), 0, positions,
-         moving.empty() ? nlohmann::json(nullptr) : nlohmann::json::parse(moving)["params"]["moving"]});
+        {simulation.time(), simulation.step_index(), 0, positions, stream::moving_colliders(simulation)});
     return ok();
   };
   const Result<Progress> progress = advance(simulation, *steps, every, add);
@@ -101,8 +99,7 @@ int record_scene(const RecordOptions& options) {
     return fail(written.error(), exit_internal);
   std::cout << options.out << ": " << recording.frames() << " frames of " << simulation.scene().name << ", "
             << progress->state.time << " s, " << std::filesystem::file_size(options.out) << " bytes\n";
-  if (progress->diverged) note_diverged(*progress);
-  return progress->diverged ? exit_diverged : exit_done;
+  return exit_after(*progress);
 }
 
 }  // namespace

@@ -77,8 +77,7 @@ int render_scene(const RenderOptions& options) {
   if (Status drawn = draw(simulation, *size, options.out); !drawn) return fail(drawn.error(), exit_internal);
   std::cout << options.out << ": " << options.size << ", " << simulation.scene().name << " at "
             << progress->state.time << " s\n";
-  if (progress->diverged) note_diverged(*progress);
-  return progress->diverged ? exit_diverged : exit_done;
+  return exit_after(*progress);
 }
 
 }  // namespace

@@ -229,8 +229,7 @@ int run(const RunOptions& options) {
   print_summary(report, static_cast<double>(progress->steps) * dt);
   if (check) std::printf("%s\n", check->in_words().c_str());
   print_shortcomings(simulation, progress->state);
-  if (progress->diverged) note_diverged(*progress);
-  return progress->diverged ? exit_diverged : exit_done;
+  return exit_after(*progress);
 }
 
 }  // namespace

@@ -123,12 +123,14 @@ Result<Progress> advance(sim::Simulation& simulation, std::uint64_t steps, std::
   return progress;
 }
 
-void note_diverged(const Progress& progress) {
+int exit_after(const Progress& progress) {
+  if (!progress.diverged) return exit_done;
   const model::Remedy& remedy = progress.setback.remedy;
   note("the simulation diverged: " + progress.setback.reason + "; what was good, up to t = " +
        with_significant_digits(progress.state.time, 9) + " s, is kept. " + remedy.text + ": " +
        (remedy.method ? std::string("--set /solver/method=") + scene::name(*remedy.method) + " " : "") +
        "--set /solver/dt=" + with_significant_digits(remedy.dt, 9));
+  return exit_diverged;
 }
 
 }  // namespace clothlab::cli

@@ -49,7 +49,8 @@ using AtStop = std::function<Status(const sim::Diagnostics&)>;
 Result<Progress> advance(sim::Simulation& simulation, std::uint64_t steps, std::uint64_t every,
                          const AtStop& at_stop);
 
-/// Prints a note on stderr about a run that diverged: the reason, what is kept, and a remedy.
-void note_diverged(const Progress& progress);
+/// The exit code of a command whose steps are done. If they diverged, also prints a note on stderr: the
+/// reason, what is kept, and a remedy.
+int exit_after(const Progress& progress);
 
 }  // namespace clothlab::cli

@@ -4,7 +4,6 @@
 #include <new>
 #include <utility>
 
-#include "server/base/text.h"
 #include "server/model/size.h"
 #include "server/model/thickness.h"
 #include "server/scene/method.h"
@@ -16,7 +15,6 @@ using std::chrono::duration;
 using std::chrono::duration_cast;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 
 Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Exchange& exchange,
                                                  const Limits& limits, std::optional<int> gpu,
@@ -255,56 +253,6 @@ void Stepper::follow_step_limit() {
   if (step_limit_.poll()) guard_->set_dt_limit(step_limit_.dt_limit());
   if (std::optional<std::string> warning = step_limit_.take_warning())
     exchange_.emit(Notice{"warning", std::move(*warning)});
-}
-
-void Stepper::warn_if_slow(Clock::time_point now) {
-  if (!was_running_ || !real_time_.sampled() || real_time_.factor() > 0.9 * real_time_.speed()) {
-    slow_since_ = now;
-    return;
-  }
-  if (slow_announced_ || now - slow_since_ < seconds(3)) return;
-  slow_announced_ = true;
-  std::string text = "this machine cannot keep up: ";
-  text += real_time_.step_cost() >= 0.1 ? formatted("a step takes %.2g s", real_time_.step_cost())
-                                        : std::string("time runs slower than asked for");
-  text += "; a smaller cloth, ";
-  if (scene::iterates(scene().solver.method)) text += "fewer iterations, ";
-  if (const double others = simulation().search_candidates(); others >= 500)
-    text += formatted("a smaller self_collision thickness (each vertex is compared with about %.0f others), ",
-                      others);
-  exchange_.emit(Notice{"warning", text + "a longer time step or a lower speed helps"});
-}
-
-void Stepper::warn_if_crowded() {
-  if (crowded_announced_ || guard_->state().neighbours_dropped == 0) return;
-  crowded_announced_ = true;
-  exchange_.emit(Notice{"warning",
-                        "self-collision: some vertices have more neighbours than there is room for, and the "
-                        "farthest are left out; "
-                        "a smaller thickness or a coarser mesh helps"});
-}
-
-void Stepper::warn_if_forced() {
-  if (forced_announced_ || guard_->state().surface_forced == 0) return;
-  forced_announced_ = true;
-  exchange_.emit(
-      Notice{"warning",
-             "pins or bodies that move force cloth where it cannot go: nothing stops them, and what "
-             "is in their way may be passed through; slower or smaller motions help"});
-}
-
-// A few steps that do not converge need no warning: they occur when a cloth falls into its strain limit.
-void Stepper::warn_if_unconverged() {
-  constexpr std::uint64_t many = 50;
-  const bool limit = simulation().strain_limit_work().unconverged > many;
-  const bool solver = simulation().solver_work().unconverged > many;
-  if (unconverged_announced_ || !(limit || solver)) return;
-  unconverged_announced_ = true;
-  exchange_.emit(Notice{
-      "warning", limit ? "strain_limit: some springs or threads stay longer than it allows; a larger limit, "
-                         "a shorter time step or pins that leave room helps"
-                       : "the linear solver often ends before it meets solver.tolerance; a "
-                         "shorter time step or a larger tolerance helps"});
 }
 
 bool Stepper::suspended(Clock::time_point now) const {

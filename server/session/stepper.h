@@ -153,6 +153,12 @@ class Stepper {
   void announce_parts();
   void announce_solver();
 
+  // In stepper_warnings.cpp.
+  void warn_if_slow(Clock::time_point now);
+  void warn_if_crowded();
+  void warn_if_forced();
+  void warn_if_unconverged();
+  void warn_if_thin();
   // In stepper.cpp.
   void advance(Clock::time_point now);
   void want_steps(Clock::time_point now, bool run);
@@ -167,11 +173,6 @@ class Stepper {
   void go_on();
   void publish_status(Clock::time_point now);
   void follow_step_limit();
-  void warn_if_slow(Clock::time_point now);
-  void warn_if_crowded();
-  void warn_if_forced();
-  void warn_if_unconverged();
-  void warn_if_thin();
   bool suspended(Clock::time_point now) const;
   bool running(Clock::time_point now) const { return run_.steps() && !suspended(now); }
   Clock::time_point next_turn(Clock::time_point now) const;

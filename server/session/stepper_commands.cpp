@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "server/model/constraint_gains.h"
-#include "server/model/thickness.h"
 #include "server/scene/named_fabric.h"
 #include "server/session/stepper.h"
 
@@ -151,13 +150,6 @@ void Stepper::announce_solver() {
                                 {"auto", automatic_.facts()},
                                 {"thickness_that_holds", thickness},
                                 {"from_fabrics", scene::left_to_fabrics(document_)}}});
-}
-
-// Warns once, after a change of scene that lets layers of cloth pass through each other.
-void Stepper::warn_if_thin() {
-  const std::string warning = model::thickness_warning(simulation().model(), scene());
-  if (!std::exchange(layers_may_pass_, !warning.empty()) && layers_may_pass_)
-    exchange_.emit(Notice{"warning", warning});
 }
 
 }  // namespace clothlab::session

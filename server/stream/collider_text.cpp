@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -20,11 +21,11 @@ bool moves(const scene::Motion& motion) {
 
 }  // namespace
 
-std::string collider_text(const sim::Simulation& simulation) {
+json moving_colliders(const sim::Simulation& simulation) {
   const std::vector<scene::Collider>& home = simulation.scene().colliders;
   // In most scenes no collider moves: this function then allocates nothing.
   if (std::none_of(home.begin(), home.end(), [](const scene::Collider& each) { return moves(each.motion); }))
-    return {};
+    return nullptr;
   json moving = json::array();
   const std::vector<scene::Collider> now = simulation.colliders_now();
   for (std::size_t i = 0; i < now.size(); ++i) {
@@ -33,10 +34,17 @@ std::string collider_text(const sim::Simulation& simulation) {
     of["index"] = i;
     moving.push_back(std::move(of));
   }
+  return moving;
+}
+
+std::string collider_text(const sim::Simulation& simulation) {
+  json moving = moving_colliders(simulation);
+  if (moving.is_null()) return {};
   return json{
       {"jsonrpc", "2.0"},
       {"method", "colliders"},
-      {"params", {{"step", simulation.step_index()}, {"time", simulation.time()}, {"moving", moving}}}}
+      {"params",
+       {{"step", simulation.step_index()}, {"time", simulation.time()}, {"moving", std::move(moving)}}}}
       .dump();
 }
 

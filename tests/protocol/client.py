@@ -62,11 +62,15 @@ def tearDownModule():
     server.stop()
 
 
-class Scene(unittest.TestCase):
+class Connected(unittest.TestCase):
+    """Each test has a client in a session of its own."""
+
     def setUp(self):
         self.cloth = clothlab.connect(server.address, session=self.id().rpartition(".")[2])
         self.addCleanup(self.cloth.close)
 
+
+class Scene(Connected):
     def test_keys_are_read_set_together_and_removed(self):
         cloth = self.cloth
         self.assertEqual(cloth["/gravity"], [0, -9.8, 0])
@@ -157,11 +161,7 @@ class Scene(unittest.TestCase):
         self.assertTrue(self.cloth.connected)
 
 
-class Simulation(unittest.TestCase):
-    def setUp(self):
-        self.cloth = clothlab.connect(server.address, session=self.id().rpartition(".")[2])
-        self.addCleanup(self.cloth.close)
-
+class Simulation(Connected):
     def test_a_frame_is_that_of_now_in_both_encodings(self):
         cloth = self.cloth
         cloth.pause()

@@ -1,6 +1,5 @@
 // Connects the parts of the page: the link, the scene's document, the stage and the controls.
 import { Connection, type LinkEvents } from "./link/connection";
-import { openGallery } from "./gallery/door";
 import { act } from "./panel/act";
 import { ColourBy } from "./panel/colour_by";
 import { bindCommands } from "./panel/commands";
@@ -18,9 +17,9 @@ import { Guide } from "./explain/guide";
 import { notice, noticeError, showApplied, type Diverged, type Level } from "./panel/notices";
 import { takeDroppedMeshes } from "./panel/mesh_drop";
 import { Panel } from "./panel/panel";
+import { Presets } from "./panel/presets";
 import { RecordButton } from "./panel/record_button";
 import { Bodies } from "./link/bodies";
-import type { Fabric } from "./link/fabrics";
 import { SlowWatch } from "./panel/slow_watch";
 import { SceneStore } from "./link/scene_store";
 import { Picture } from "./picture";
@@ -38,13 +37,6 @@ import { type History, Undo } from "./panel/undo";
 import { timeStep } from "./panel/solver_section";
 
 type Params = Record<string, unknown>;
-
-/// The answer to `scene.presets`.
-interface Offers {
-  presets: string[];
-  about?: Record<string, string>; ///< a sentence of each
-  fabrics?: Fabric[];
-}
 
 export class Page {
   private stage!: Stage; // set by show(), before the first event of the connection
@@ -65,7 +57,14 @@ export class Page {
   );
   private readonly store: SceneStore = this.makeStore();
   private readonly guide = new Guide();
-  private readonly panel = this.makePanel();
+  private readonly presets = new Presets({
+    ask: () => this.connection.request("scene.presets"),
+    arrived: (presets, fabrics) => this.panel.setOffers(presets, fabrics),
+    current: () => this.sceneName,
+    mayEdit: () => this.mayEdit,
+    load: (name) => this.loadPreset(name),
+  });
+  private readonly panel: Panel = this.makePanel();
   private readonly lab = this.makeLab();
   private readonly text = this.makeText();
   private readonly notifications = this.makeNotifications();
@@ -91,7 +90,6 @@ export class Page {
   private welcome = (): void => undefined; // a newcomer
   private sceneName = "";
   private stability: Stability | null = null; // in the last status
-  private offers: Offers = { presets: [] };
   private messageBytes = 65536; // the most that a message may have
   private mayEdit = true; // false for a viewer, who may only watch
 
@@ -218,7 +216,7 @@ export class Page {
         busy: (path) => this.store.busy(path),
         loadPreset: (name) => this.loadPreset(name),
         openText: () => this.text.toggle(),
-        openGallery: () => this.openGallery(),
+        openGallery: () => this.presets.openGallery(),
         act: (deed) =>
           act(deed, {
             stored: () => this.store.stored,
@@ -317,23 +315,7 @@ export class Page {
     this.lab.roleChanged();
     document.body.classList.toggle("viewer", !this.mayEdit);
     this.enableEdits();
-    this.connection.request<Offers>("scene.presets").then(
-      (offers) => {
-        this.offers = offers;
-        this.panel.setOffers(offers.presets, offers.fabrics ?? []);
-      },
-      () => undefined,
-    );
-  }
-
-  private openGallery(): void {
-    const { presets, about = {} } = this.offers;
-    openGallery({
-      presets: presets.map((name) => ({ name, about: about[name] ?? "" })),
-      current: this.sceneName,
-      mayEdit: this.mayEdit,
-      load: (name) => this.loadPreset(name),
-    });
+    this.presets.fetch();
   }
 
   private loadPreset(name: string): void {
