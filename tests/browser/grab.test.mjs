@@ -20,11 +20,14 @@ async function hang(session, width, height) {
   await opened.client.request("scene.load", { scene: sheet });
   await opened.viewer.until(() => window.clothlab.document?.name === "hanging" && window.clothlab.simTime > 0.5);
   await opened.client.request("stream.subscribe", { encoding: "f32", rate: 30 });
-  // A press is aimed at what is seen: wait until neither the cloth nor the camera moves much.
+  // A press is aimed at what is seen: wait until neither the cloth nor the camera moves much from one picture to
+  // another that is a while later, however slowly the machine draws.
   let before = { x: -1e3, y: 0 };
   await eventually(
     "a still picture",
     async () => {
+      await drawn(opened.viewer, 3);
+      await opened.viewer.page.waitForTimeout(200);
       const now = await seen(opened.viewer, vertex);
       const moved = pixels(before, now);
       before = now;
@@ -34,6 +37,12 @@ async function hang(session, width, height) {
   );
   return { ...opened, width, height };
 }
+
+/// Waits until the page has drawn this many pictures.
+const drawn = (viewer, pictures) =>
+  viewer.page.evaluate(async (count) => {
+    for (let i = 0; i < count; ++i) await new Promise(requestAnimationFrame);
+  }, pictures);
 
 /// Where a vertex is on the page [CSS pixels].
 const seen = (viewer, index) =>
@@ -152,7 +161,8 @@ browserTest("the wheel takes what is held away along the view, and brings it bac
   await viewer.page.waitForTimeout(300);
   const [end] = (await handsOf(client, (all) => all.length === 1)).hands;
   assert.ok(distance(end.target, camera) < farthest, `${distance(end.target, camera)} m, at most ${farthest}`);
-  assert.ok(distance(camera, await cameraPlace(viewer)) < 0.02, "the camera did not zoom");
+  const afterwards = await cameraPlace(viewer);
+  assert.ok(distance(camera, afterwards) < 0.02, `the camera did not zoom: ${camera} to ${afterwards}`);
   await mouse.up();
   await client.close();
 });

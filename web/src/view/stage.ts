@@ -103,7 +103,7 @@ export class Stage {
     });
     canvas.addEventListener("webglcontextlost", () => this.onLost());
     canvas.addEventListener("webglcontextrestored", () => this.invalidate());
-    this.quality = new Quality(() => this.resize(this.area), software ? 1 : 0);
+    this.quality = new Quality(() => this.takeQuality(), software ? 1 : 0);
     this.compileAhead();
   }
 
@@ -235,12 +235,17 @@ export class Stage {
   resize(area: FreeArea): void {
     this.area = area;
     const { clientWidth: width, clientHeight: height } = this.canvas;
-    const { scale, shadow } = this.quality.level;
     this.renderer.setSize(width, height, false);
-    this.setScale(scale);
-    if (this.light.shadow.mapSize.x !== shadow) this.light.shadow.mapSize.setScalar(shadow);
+    this.takeQuality();
     this.keeper.resize(area, width, height);
     if (this.keeper.fitted) this.orbit(this.keeper.jump());
+  }
+
+  /// The picture's and the shadow's resolution. The camera stays where it is.
+  private takeQuality(): void {
+    const { scale, shadow } = this.quality.level;
+    this.setScale(scale);
+    if (this.light.shadow.mapSize.x !== shadow) this.light.shadow.mapSize.setScalar(shadow);
     this.invalidate();
   }
 
