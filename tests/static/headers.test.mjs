@@ -1,5 +1,6 @@
 // Each of our headers compiles alone, whatever is included before it elsewhere. NAME.cpp includes NAME.h first, so that
-// the build checks it; headers without such a source are compiled here.
+// a build of each source by itself checks it (the preset odr; the others compile several together); headers without
+// such a source are compiled here.
 import assert from "node:assert/strict";
 import { execFile } from "node:child_process";
 import { existsSync, readdirSync, readFileSync } from "node:fs";
