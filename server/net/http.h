@@ -15,6 +15,7 @@ struct lws;
 namespace clothlab::net {
 
 class Hub;
+class Room;
 
 struct HttpAnswer {
   unsigned status = 200;

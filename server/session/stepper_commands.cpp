@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "server/model/constraint_gains.h"
+#include "server/model/thickness.h"
 #include "server/scene/named_fabric.h"
 #include "server/session/stepper.h"
 
