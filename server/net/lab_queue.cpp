@@ -138,7 +138,9 @@ void LabQueue::speed_reported(const std::string& session, double share, std::int
   const auto running = entries_.find(current_);
   if (running == entries_.end()) return;
   LabEntry& entry = running->second;
-  const bool concerns = entry.state == State::running && entry.session == session && !entry.slow_notice_sent;
+  const bool times = !std::holds_alternative<lab::CompareRequest>(entry.job);  // a comparison measures none
+  const bool concerns =
+      times && entry.state == State::running && entry.session == session && !entry.slow_notice_sent;
   if (!concerns || share >= least_share) {
     entry.slow_since = 0;
     return;

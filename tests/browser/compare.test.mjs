@@ -53,7 +53,7 @@ async function open(session, options = {}, scene = small) {
   };
 }
 /// Starts, waits for the end, and stands still at the last moment.
-async function compared({ drawer, press, button, page }) {
+async function compared({ drawer, press, page }) {
   await press(drawer.getByRole("button", { name: /^Start/ }));
   await ended(drawer);
   await drawer.getByRole("slider", { name: "Moment" }).focus();
@@ -107,7 +107,7 @@ for (const [size, window] of sizes)
     `${size}: from the panel; equal settings are exactly 0 apart and look the same, side by side`,
     async () => {
       const all = await open(`same-${size}`, { ...window, sharp: true });
-      const { viewer, page, drawer, press, at, button, client } = all;
+      const { viewer, page, drawer, press, at, client } = all;
       if (size === "phone") await press(page.getByRole("button", { name: "Parameters" }));
       await press(page.getByRole("button", { name: "Compare", exact: true }));
       await drawer.waitFor();
@@ -301,7 +301,7 @@ browserTest("from a point of the lab's chart, by key and by its button in the ta
 
 browserTest("the truth in A's place, and where there is none the lab's reason", async () => {
   const all = await open("truth", { width: 1280, height: 800 });
-  const { page, drawer, at, client, viewer, press, button } = all;
+  const { page, drawer, at, client, viewer, press } = all;
   await page.keyboard.press("c");
   await at("A is").selectOption("truth");
   await at("simulate [s]").fill("0.4");

@@ -256,11 +256,8 @@ export class Page {
       undo: (revision) => void this.undo.go("undo", revision),
       mayEdit: () => this.mayEdit,
       applied: showApplied,
-      compare: (patch) => {
-        if (this.lab.open) this.lab.toggle();
-        this.compare.begin({ patch });
-      },
-      toggled: (open) => this.layout?.labToggled(open),
+      compare: (patch) => this.compare.begin({ patch }),
+      toggled: (open) => this.drawerToggled(this.lab, open),
     });
   }
 
@@ -275,10 +272,7 @@ export class Page {
       mayEdit: () => this.mayEdit,
       mostBytes: () => this.messageBytes,
       use: (patch, what) => void this.lab.apply(patch, what),
-      toggled: (open) => {
-        if (open && this.lab.open) this.lab.toggle();
-        this.layout?.labToggled(open);
-      },
+      toggled: (open) => this.drawerToggled(this.compare, open),
       returned: () => this.picture.again(),
     });
   }
@@ -292,11 +286,17 @@ export class Page {
       mayEdit: () => this.mayEdit,
       mostBytes: () => this.messageBytes,
       applied: showApplied,
-      toggled: (open) => {
-        if (open && this.lab.open) this.lab.toggle();
-        this.layout?.labToggled(open);
-      },
+      toggled: (open) => this.drawerToggled(this.text, open),
     });
+  }
+
+  // One of the drawers that share the room beside the cloth opened, which closes the others, or closed.
+  private drawerToggled(drawer: { shut(): void }, open: boolean): void {
+    if (open) {
+      for (const other of [this.lab, this.compare, this.text]) if (other !== drawer) other.shut();
+      document.body.classList.add("lab-open");
+    }
+    this.layout?.labToggled(open);
   }
 
   private makeNotifications(): Record<string, (params: Params) => void> {

@@ -15,9 +15,17 @@ import type { Topology } from "../link/protocol";
 
 export { wishIn } from "./link";
 
+const narrow = matchMedia("(max-width: 760px)");
+
 export class Comparison {
   private readonly drawer = make("aside", "card lab compare");
   private readonly form = new Form(() => this.host.document());
+  private readonly lead = make(
+    "p",
+    "lab-lead",
+    "Two settings of this scene, stepped together from its start: how far do they come apart?",
+  );
+  private readonly settings = make("details", "lab-more", make("summary", "", "A and B"), this.form.element);
   private readonly start = makeButton("Start together", "lab-primary", () => this.begun());
   private readonly cancel = makeButton("Cancel", "lab-small", () => this.job.cancel());
   private readonly doing = make("span", "lab-doing");
@@ -51,9 +59,10 @@ export class Comparison {
     this.drawer.hidden = true;
     this.drawer.setAttribute("aria-labelledby", title.id);
     this.wrong.setAttribute("role", "alert");
+    this.settings.open = true;
     this.output.readOnly = this.output.hidden = true;
     this.output.setAttribute("aria-label", "Copied link");
-    for (const each of [this.done, this.doing]) each.setAttribute("role", "status");
+    this.done.setAttribute("role", "status");
     const close = makeButton("×", "lab-close", () => this.toggle());
     close.setAttribute("aria-label", "Close the comparison");
     close.title = "Close (C)";
@@ -96,8 +105,8 @@ export class Comparison {
     return make(
       "div",
       "lab-body compare-body",
-      make("p", "lab-lead", "Two settings of this scene, stepped together from its start: how far do they come apart?"),
-      this.form.element,
+      this.lead,
+      this.settings,
       make("div", "text-row", this.start, this.cancel, this.doing, make("span", "text-space"), this.useB, copy),
       this.wrong,
       this.done,
@@ -213,6 +222,7 @@ export class Comparison {
     const { result, moments } = job;
     const there = result !== null && moments !== null && moments.count > 0;
     this.shown.hidden = !there;
+    this.lead.hidden = there || job.working;
     if (there) this.showResult();
   }
 
@@ -237,7 +247,10 @@ export class Comparison {
       say(this.wrong, "The session has another cloth by now: start again.");
       return;
     }
+    // its keys are the comparison's now
+    if (document.body.classList.contains("timeline-open")) document.getElementById("timeline-open")?.click();
     document.body.classList.add("comparing");
+    if (narrow.matches) this.settings.open = false; // the picture and the curve need the room
     this.view = new Views(this.host.stage(), topology);
     this.view.setScene(scene);
     this.arrange();

@@ -23,6 +23,11 @@ export class CompareDoor {
     this.with((comparison) => comparison.toggle());
   }
 
+  /// Closes it: something else takes its room.
+  shut(): void {
+    if (this.comparison?.open) this.comparison.toggle();
+  }
+
   /// Opens, with B as the wish says, and starts.
   begin(wish: Partial<Wish>): void {
     this.with((comparison) => comparison.begin(wish));

@@ -55,21 +55,21 @@ export class Form {
     this.more.spellcheck = false;
     this.more.setAttribute("aria-label", "More changes of B, as a JSON patch");
     this.more.placeholder = '{"wind": {"velocity": [3, 0, 0]}}';
-    const sides = [
+    const b = this.side(
+      "B",
+      labelled("method", this.method),
+      labelled("dt [ms]", this.dt, "the time step"),
+      this.iterationsField,
+      labelled("stiffness ×", this.stiffness, "all stiffnesses of all cloths, times this"),
+      this.contactField,
+      this.moreBox,
+    );
+    this.element.append(
       this.side("A", labelled("A is", this.truth, "what B is compared with"), this.present),
-      this.side(
-        "B",
-        labelled("method", this.method),
-        labelled("dt [ms]", this.dt, "the time step"),
-        this.iterationsField,
-        labelled("stiffness ×", this.stiffness, "all stiffnesses of all cloths, times this"),
-        this.contactField,
-        this.moreBox,
-      ),
+      b,
       make("div", "compare-side", labelled("simulate [s]", this.time, "from the start of the scene")),
-    ];
-    this.element.append(...sides);
-    this.element.addEventListener("input", () => (this.touched = true));
+    );
+    b.addEventListener("input", () => (this.touched = true));
     this.method.addEventListener("change", () => this.methodChosen());
   }
 
@@ -89,6 +89,9 @@ export class Form {
 
   sceneChanged(): void {
     if (!this.touched) this.take({ patch: [], truth: this.isTruth, time: numberIn(this.time) ?? standard.time });
+    const kind = this.document()?.self_collision?.kind;
+    if (kind && this.contactField.hidden) this.contact.value = kind;
+    this.contactField.hidden = !kind;
   }
 
   get isTruth(): boolean {
@@ -109,8 +112,8 @@ export class Form {
     this.dt.value = String(Number((1000 * solver.dt).toPrecision(9)));
     this.iterations.value = String(solver.iterations);
     this.stiffness.value = "1";
-    this.contact.value = target.self_collision?.kind ?? "";
     this.contactField.hidden = !scene.self_collision;
+    this.contact.value = target.self_collision?.kind ?? "";
     const left = difference(this.changed(scene), target);
     this.more.value = left.length > 0 ? JSON.stringify(left, null, 1) : "";
     this.moreBox.open = left.length > 0;

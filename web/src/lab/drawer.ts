@@ -86,6 +86,11 @@ export class Lab {
     (open ? this.heads.get(this.active) : this.opener)?.focus({ preventScroll: true });
   }
 
+  /// Closes it: something else takes its room.
+  shut(): void {
+    if (this.open) this.toggle();
+  }
+
   setMethods(methods: string[]): void {
     for (const tab of Object.values(this.tabs)) tab.setMethods(methods);
   }
