@@ -1,13 +1,12 @@
 // Compare: a drawer beside the cloth that has two settings of the scene stepped together from the start, draws both,
 // and shows how far apart they are. The lab steps them (lab.compare), so that no session is changed or made.
-import { Curve } from "./curve";
+import { Findings } from "./findings";
 import { Form } from "./form";
 import { type CompareHost, standard, type Wish } from "./host";
 import { Job } from "./job";
 import { linkOf } from "./link";
-import { Player } from "./player";
 import { Views } from "./views";
-import { presentText, runText, sideText, tableOf } from "./words";
+import { sideText } from "./words";
 import { make, makeButton, say } from "../lab/dom";
 import { takes } from "../panel/keys";
 import type { Operation, SceneDocument } from "../link/scene_types";
@@ -32,23 +31,14 @@ export class Comparison {
   private readonly wrong = make("p", "text-wrong");
   private readonly done = make("p", "lab-fine");
   private readonly output = make("textarea", "compare-more");
-  private readonly shown = make("div", "compare-shown");
-  private readonly present = make("p", "compare-present");
-  private readonly whole = make("p", "lab-fine");
   private readonly stale = make("p", "lab-badge warn");
-  private readonly notes = make("ul", "lab-list");
-  private readonly table = make("details", "lab-more", make("summary", "", "The difference as a table"));
   private readonly useB = makeButton("Use B", "lab-small", () => this.use());
-  private readonly curve = new Curve((time) => this.player.go(time));
-  private readonly views = { side: this.viewChoice("side", "Side by side"), ghost: this.viewChoice("ghost", "Ghost") };
-  private readonly player = new Player({ drawn: (time) => this.draw(time) });
+  private readonly found = new Findings({ arranged: () => this.arrange(), drawn: (time) => this.draw(time) });
   private readonly job = new Job({
     request: (method, params) => this.host.request(method, params),
     changed: () => this.jobChanged(),
   });
   private view: Views | null = null;
-  private mode: Wish["view"] = "side";
-  private swapped = false;
   private asked: { patch: Operation[]; scene: SceneDocument; topology: Topology } | null = null; // when it was started
   private opener: HTMLElement | null = null;
 
@@ -76,30 +66,6 @@ export class Comparison {
   }
 
   private body(): HTMLElement {
-    const choice = make("div", "lab-axes", this.views.side, this.views.ghost);
-    choice.setAttribute("role", "radiogroup");
-    choice.setAttribute("aria-label", "View");
-    const swap = makeButton("Swap", "lab-small", () => {
-      this.swapped = !this.swapped;
-      this.arrange();
-    });
-    swap.title = "A in the place of B, and B in that of A";
-    const legend = make(
-      "p",
-      "compare-legend",
-      make("span", "rms", "RMS over the vertices"),
-      make("span", "most", "the largest"),
-    );
-    this.shown.append(
-      make("div", "text-row", choice, swap),
-      this.player.element,
-      this.present,
-      this.curve.element,
-      legend,
-      this.whole,
-      this.table,
-      this.notes,
-    );
     const copy = makeButton("Copy link", "lab-small", () => void this.copyLink());
     copy.title = "The scene, A and B in a link";
     return make(
@@ -112,20 +78,8 @@ export class Comparison {
       this.done,
       this.output,
       this.stale,
-      this.shown,
+      this.found.element,
     );
-  }
-
-  private viewChoice(mode: Wish["view"], text: string): HTMLLabelElement {
-    const input = make("input");
-    input.type = "radio";
-    input.name = "compare-view";
-    input.checked = mode === "side";
-    input.onchange = () => {
-      this.mode = mode;
-      this.arrange();
-    };
-    return make("label", "", input, make("span", "", text));
   }
 
   get open(): boolean {
@@ -147,7 +101,9 @@ export class Comparison {
     document.body.classList.remove("lab-open");
     this.host.toggled(false);
     const back = this.opener?.isConnected && this.opener !== document.body ? this.opener : null;
-    (back ?? document.getElementById("view"))?.focus({ preventScroll: true });
+    back?.focus({ preventScroll: true });
+    if (back === null || document.activeElement !== back)
+      document.getElementById("view")?.focus({ preventScroll: true });
   }
 
   private reveal(): void {
@@ -163,10 +119,9 @@ export class Comparison {
 
   /// Opens, fills the form in, and starts.
   begin(wish: Partial<Wish>): void {
-    const whole = { ...standard, view: this.mode, ...wish };
+    const whole = { ...standard, view: this.found.mode, ...wish };
     this.reveal();
-    this.mode = whole.view;
-    (this.views[whole.view].firstElementChild as HTMLInputElement).checked = true;
+    this.found.choose(whole.view);
     try {
       this.form.take(whole);
     } catch (error) {
@@ -221,7 +176,7 @@ export class Comparison {
     say(this.wrong, mayEdit ? job.wrong : "You are a viewer of this session: only operators may have the lab compare.");
     const { result, moments } = job;
     const there = result !== null && moments !== null && moments.count > 0;
-    this.shown.hidden = !there;
+    this.found.element.hidden = !there;
     this.lead.hidden = there || job.working;
     if (there) this.showResult();
   }
@@ -232,14 +187,7 @@ export class Comparison {
     if (!this.view) this.enter(this.asked);
     if (!this.view) return;
     this.view.setLabels(sideText("A", result), sideText("B", result));
-    this.player.reach(moments.end, moments.rate, !this.job.working);
-    const says = runText(result);
-    this.curve.show(result, says);
-    say(this.whole, this.job.working ? "" : says);
-    this.notes.replaceChildren(...result.notes.map((note) => make("li", "", note)));
-    this.notes.hidden = result.notes.length === 0;
-    this.table.querySelector("table")?.remove();
-    this.table.append(tableOf(result));
+    this.found.show(result, moments.end, this.job.working);
   }
 
   private enter({ scene, topology }: { scene: SceneDocument; topology: Topology }): void {
@@ -254,13 +202,13 @@ export class Comparison {
     this.view = new Views(this.host.stage(), topology);
     this.view.setScene(scene);
     this.arrange();
-    this.player.restart();
+    this.found.player.restart();
     this.host.toggled(true); // what the session's bar had of the window is free
   }
 
   // The session's cloth is drawn again.
   private leave(): void {
-    this.player.stop();
+    this.found.player.stop();
     if (!this.view) return;
     this.view.close();
     this.view = null;
@@ -270,7 +218,7 @@ export class Comparison {
   }
 
   private arrange(): void {
-    this.view?.arrange(this.mode, this.swapped);
+    this.view?.arrange(this.found.mode, this.found.swapped);
   }
 
   private draw(time: number): void {
@@ -279,18 +227,16 @@ export class Comparison {
     const place = moments.place(time);
     const moving = moments.moving[place.index] ?? [];
     this.view.show(moments.positions("a", place), moments.positions("b", place), time, moving);
-    this.curve.mark(time);
-    const text = presentText(result, place.index);
-    if (this.present.textContent !== text) this.present.textContent = text;
+    this.found.mark(time, result, place.index);
   }
 
   private key(event: KeyboardEvent): void {
     if (!this.open || event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
     if (event.key === "Escape") this.toggle();
     else if (!this.drawn || takes(event.target, event.key)) return;
-    else if (event.key === " ") this.player.toggle();
-    else if (event.key === "," || event.key === ".") this.player.move(event.key === "." ? 1 : -1);
-    else if (event.key.toLowerCase() === "r") this.player.restart();
+    else if (event.key === " ") this.found.player.toggle();
+    else if (event.key === "," || event.key === ".") this.found.player.move(event.key === "." ? 1 : -1);
+    else if (event.key.toLowerCase() === "r") this.found.player.restart();
     else return;
     event.preventDefault();
     event.stopImmediatePropagation();
@@ -311,7 +257,8 @@ export class Comparison {
     try {
       if (!scene) throw new Error("The scene has not come yet.");
       const { patch, truth, time } = this.form.asked();
-      const link = location.origin + location.pathname + (await linkOf(scene, { patch, truth, time, view: this.mode }));
+      const link =
+        location.origin + location.pathname + (await linkOf(scene, { patch, truth, time, view: this.found.mode }));
       this.output.hidden = false;
       this.output.value = link;
       this.output.rows = 3;
