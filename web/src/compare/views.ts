@@ -1,10 +1,10 @@
 // Draws both sides of a comparison on the stage, with its camera: side by side, or B as a ghost over A.
-import { type Material, Mesh, type Object3D, type WebGLRenderer } from "three";
+import type { Material, Mesh, Object3D, WebGLRenderer } from "three";
 import { frameOf } from "./pack";
 import { make } from "../lab/dom";
 import type { ShownFrame, Topology } from "../link/protocol";
 import type { MovedCollider, SceneDocument } from "../link/scene_types";
-import { centerIn, type FreeArea } from "../view/framing";
+import type { FreeArea } from "../view/framing";
 import type { ClothView } from "../view/cloth_view";
 import type { Replacement, Stage } from "../view/stage";
 
@@ -27,10 +27,15 @@ export function halves(area: FreeArea): [FreeArea, FreeArea] {
       ];
 }
 
-function eachMaterial(object: Object3D, change: (material: Material) => void): void {
+// Only types of three.js are imported here: else its code could not stay in the page's own script.
+function eachMesh(object: Object3D, change: (mesh: Mesh) => void): void {
   object.traverse((each) => {
-    if (each instanceof Mesh) [each.material as Material | Material[]].flat().forEach(change);
+    if ("isMesh" in each) change(each as Mesh);
   });
+}
+
+function eachMaterial(object: Object3D, change: (material: Material) => void): void {
+  eachMesh(object, ({ material }) => [material].flat().forEach(change));
 }
 
 export class Views implements Replacement {
@@ -104,10 +109,9 @@ export class Views implements Replacement {
   }
 
   private haunt(side: Side, ghostly: boolean): void {
-    this.cloths[side].object.traverse((each) => {
-      if (!(each instanceof Mesh)) return;
-      each.castShadow = each.receiveShadow = !ghostly;
-      each.renderOrder = ghostly ? 1 : 0;
+    eachMesh(this.cloths[side].object, (mesh) => {
+      mesh.castShadow = mesh.receiveShadow = !ghostly;
+      mesh.renderOrder = ghostly ? 1 : 0;
     });
     eachMaterial(this.cloths[side].object, (material) => {
       if (material.transparent === ghostly) return;
@@ -156,12 +160,12 @@ export class Views implements Replacement {
       const [from, to] = i === 0 ? [0, cut] : [cut, across ? width : height];
       if (across) renderer.setScissor(from, 0, to - from, height);
       else renderer.setScissor(0, height - to, width, to - from);
-      centerIn(this.stage.camera, parts[i] as FreeArea, width, height);
+      this.stage.center(parts[i] as FreeArea);
       this.visible(side === "a", side === "b");
       render();
     }
     renderer.setScissorTest(false);
-    centerIn(this.stage.camera, parts[0], width, height);
+    this.stage.center(parts[0]);
   }
 
   private visible(a: boolean, b: boolean): void {

@@ -18,7 +18,7 @@ import { ColliderView } from "./collider_view";
 import { CameraKeeper } from "./camera_keeper";
 import { CrossingView } from "./crossing_view";
 import type { StageUniforms } from "./fabric_material";
-import type { FreeArea } from "./framing";
+import { centerIn, type FreeArea } from "./framing";
 import { GroundShadow } from "./ground_shadow";
 import type { ShownFrame, Topology } from "../link/protocol";
 import type { Crossings } from "../link/rpc";
@@ -140,6 +140,11 @@ export class Stage {
     this.replacement = replacement;
     this.cloth.object.visible = this.cloth.caster.visible = !replacement;
     this.resize(this.area);
+  }
+
+  /// Shifts the picture so that its middle is the middle of this area.
+  center(area: FreeArea): void {
+    centerIn(this.camera, area, this.canvas.clientWidth, this.canvas.clientHeight);
   }
 
   /// What a replacement shows now: colliders go where it says, and the camera shows all of it.
