@@ -173,7 +173,7 @@ test("a comparison shows the figures of the moments that are here, and ends with
   const job = new Job(here);
   job.start({ patch: [], truth: false, time: 1 });
   job.told("result", told(4, "running", 2)); // before the answer that names the job
-  job.told("result", told(3, "finished", 3)); // another one's
+  job.told("result", told(3, "finished", 1)); // another one's
   assert.equal(job.result, null);
   asked[0].resolve({ job: 4, ahead: 0 });
   await settle();
