@@ -121,6 +121,9 @@ json of(const ChooseRequest& request) {
 json of(const SimplifyRequest& request) {
   return {{"tolerance", request.tolerance}, {"time", maybe(request.time)}};
 }
+json of(const CompareRequest& request) {
+  return {{"patch", request.patch}, {"truth", request.truth}, {"time", request.time}, {"rate", request.rate}};
+}
 
 }  // namespace
 

@@ -20,14 +20,16 @@ Result<Outcome> from_json(const json& value);
 /// budget is spent".
 std::vector<std::string> left_out(const Chart& chart);
 
-/// A header, then one row for each point (chart), cell (stability), trial (choose) or variant (simplify).
+/// A header, then one row for each point (chart), cell (stability), trial (choose), variant (simplify) or
+/// moment (compare).
 std::string csv(const Outcome& outcome);
 
-/// A complete SVG file, without scripts and without inline styles. `axis` is the horizontal axis of a chart
-/// or a choice; the other results have no axis to choose. In a chart or a choice every mark of a setting has
-/// the attribute data-index, its place in the JSON's list of points, and the root has the scales (data-x0,
-/// data-x1, data-y0, data-y1: the ranges of values; data-left, data-right, data-top, data-bottom: where these
-/// are in the view box). In a stability map the panel of each method has the scales.
+/// A complete SVG file (of a comparison none: empty), without scripts and without inline styles. `axis` is
+/// the horizontal axis of a chart or a choice; the other results have no axis to choose. In a chart or a
+/// choice every mark of a setting has the attribute data-index, its place in the JSON's list of points, and
+/// the root has the scales (data-x0, data-x1, data-y0, data-y1: the ranges of values; data-left, data-right,
+/// data-top, data-bottom: where these are in the view box). In a stability map the panel of each method has
+/// the scales.
 std::string svg(const Outcome& outcome, Axis axis = Axis::position);
 
 }  // namespace clothlab::lab

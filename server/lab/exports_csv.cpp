@@ -118,6 +118,13 @@ std::string table_of(const Simplification& simplification) {
   return table.finish();
 }
 
+std::string table_of(const Comparison& comparison) {
+  Table table("time_s,rms_m,most_m");
+  for (const auto& moment : comparison.moments)
+    table.row().add(moment->time).add(moment->rms).add(moment->most);
+  return table.finish();
+}
+
 }  // namespace
 
 std::string csv(const Outcome& outcome) {

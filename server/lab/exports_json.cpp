@@ -176,6 +176,34 @@ json of(const Simplification& simplification) {
   return result;
 }
 
+json of(const ComparedSide& side) {
+  json object = to_json(side.setting);
+  object["blew_up_at_s"] = number(side.blew_up_at);
+  object["reason"] = side.reason;
+  return object;
+}
+
+json of(const Comparison& comparison) {
+  json result = heading("compare", comparison);
+  json times = json::array(), rms = json::array(), most = json::array();
+  for (const auto& moment : comparison.moments) {
+    times.push_back(moment->time);
+    rms.push_back(number(moment->rms));
+    most.push_back(number(moment->most));
+  }
+  result.update({{"rate", comparison.rate},
+                 {"vertices", comparison.vertices},
+                 {"truth", comparison.truth},
+                 {"horizon_s", number(comparison.horizon)},
+                 {"reference_error_m", comparison.truth ? number(comparison.reference_error) : json()},
+                 {"a", of(comparison.a)},
+                 {"b", of(comparison.b)},
+                 {"times_s", std::move(times)},
+                 {"rms_m", std::move(rms)},
+                 {"most_m", std::move(most)}});
+  return result;
+}
+
 }  // namespace
 
 json to_json(const Outcome& outcome) {

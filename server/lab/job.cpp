@@ -25,7 +25,9 @@ Result<Outcome> run(const scene::Document& document, const Job& job, const Contr
     return outcome(stability_map(document, *request, control_of<StabilityMap>(control)));
   if (const auto* request = std::get_if<ChooseRequest>(&job))
     return outcome(choose(document.scene, *request, control_of<Choice>(control)));
-  return outcome(simplify(document, std::get<SimplifyRequest>(job), control_of<Simplification>(control)));
+  if (const auto* request = std::get_if<SimplifyRequest>(&job))
+    return outcome(simplify(document, *request, control_of<Simplification>(control)));
+  return outcome(compare(document, std::get<CompareRequest>(job), control_of<Comparison>(control)));
 }
 
 }  // namespace clothlab::lab

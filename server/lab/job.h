@@ -6,15 +6,16 @@
 
 #include "server/lab/measure/chart.h"
 #include "server/lab/measure/choice.h"
+#include "server/lab/measure/comparison.h"
 #include "server/lab/measure/simplification.h"
 #include "server/lab/measure/stability_map.h"
 
 namespace clothlab::lab {
 
-using Job = std::variant<ChartRequest, MapRequest, ChooseRequest, SimplifyRequest>;
-using Outcome = std::variant<Chart, StabilityMap, Choice, Simplification>;
+using Job = std::variant<ChartRequest, MapRequest, ChooseRequest, SimplifyRequest, CompareRequest>;
+using Outcome = std::variant<Chart, StabilityMap, Choice, Simplification, Comparison>;
 
-/// "chart", "stability", "choose" or "simplify".
+/// "chart", "stability", "choose", "simplify" or "compare".
 const char* name(const Job& job);
 const char* name(const Outcome& outcome);
 

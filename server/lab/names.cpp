@@ -6,7 +6,8 @@
 namespace clothlab::lab {
 
 namespace {
-constexpr std::array kinds{"chart", "stability", "choose", "simplify"};  // in the order of Job and Outcome
+constexpr std::array kinds{"chart", "stability", "choose", "simplify",
+                           "compare"};  // in the order of Job and Outcome
 constexpr std::array axis_names{"position", "energy", "strain", "rest"};
 }  // namespace
 

@@ -79,7 +79,11 @@ nlohmann::json hello_params(const Hub& hub, const Room& room, const Client& clie
               {"seconds", limits.lab_seconds},
               {"jobs_a_client", max_lab_jobs_a_client},
               {"time", {min_lab_time, max_lab_time}},
-              {"budget", {min_lab_budget, max_lab_budget}}}}}}};
+              {"budget", {min_lab_budget, max_lab_budget}},
+              {"comparison",
+               {{"bytes", lab::max_comparison_bytes},
+                {"vertices", lab::max_compared_vertices},
+                {"rate", {min_comparison_rate, max_comparison_rate}}}}}}}}};
 }
 
 }  // namespace clothlab::net

@@ -12,7 +12,8 @@ namespace {
 /// The scene with the usual value of each setting that the job ignores: charts and choices try their own
 /// methods, time steps and iterations, a map its own methods and time steps.
 scene::Scene as_seen_by(const lab::Job& job, scene::Scene scene) {
-  if (std::holds_alternative<lab::SimplifyRequest>(job)) return scene;
+  if (std::holds_alternative<lab::SimplifyRequest>(job) || std::holds_alternative<lab::CompareRequest>(job))
+    return scene;
   const scene::Solver usual;
   scene.solver.method = usual.method;
   scene.solver.dt = usual.dt;

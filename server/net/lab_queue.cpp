@@ -41,6 +41,7 @@ std::variant<std::uint64_t, RpcError> LabQueue::admit(const session::Ticket& tic
     return refusal("the lab has", max_lab_jobs);
   if (waiting([&](const LabEntry& e) { return e.ticket.asker == ticket.asker; }) >= max_lab_jobs_a_client)
     return refusal("you have", max_lab_jobs_a_client);
+  if (std::holds_alternative<lab::CompareRequest>(job)) forget_comparisons(ticket.asker);
   LabEntry entry;
   entry.id = ++last_id_;
   entry.ticket = ticket;
@@ -49,6 +50,16 @@ std::variant<std::uint64_t, RpcError> LabQueue::admit(const session::Ticket& tic
   entry.wishes = wishes;
   entries_.emplace(entry.id, std::move(entry));
   return last_id_;
+}
+
+void LabQueue::forget_comparisons(std::uint64_t client) {
+  const auto kept = [](const auto& item) {
+    return item.second.ended() && std::holds_alternative<lab::CompareRequest>(item.second.job);
+  };
+  std::erase_if(entries_, [&](const auto& item) { return item.second.ticket.asker == client && kept(item); });
+  // the one that was asked for now makes one more
+  while (std::count_if(entries_.begin(), entries_.end(), kept) >= max_comparisons)
+    entries_.erase(std::find_if(entries_.begin(), entries_.end(), kept));
 }
 
 void LabQueue::choose_for(const std::string& session, SharedDocument document) {
@@ -127,7 +138,9 @@ void LabQueue::speed_reported(const std::string& session, double share, std::int
   const auto running = entries_.find(current_);
   if (running == entries_.end()) return;
   LabEntry& entry = running->second;
-  const bool concerns = entry.state == State::running && entry.session == session && !entry.slow_notice_sent;
+  const bool times = !std::holds_alternative<lab::CompareRequest>(entry.job);  // a comparison measures none
+  const bool concerns =
+      times && entry.state == State::running && entry.session == session && !entry.slow_notice_sent;
   if (!concerns || share >= least_share) {
     entry.slow_since = 0;
     return;
@@ -218,8 +231,9 @@ void LabQueue::finish(LabEntry& entry, Result<lab::Outcome> outcome, std::int64_
   if (outcome) entry.outcome = std::make_shared<const lab::Outcome>(std::move(*outcome));
   if (entry.cancelling) return close(entry, State::cancelled, now);
   if (outcome && !entry.overdue) {
-    // Times measured while a session stepped may be too long, so they are not cached.
-    if (!entry.disturbed) port_.keep(*entry.document, entry.job, *entry.outcome);
+    // Times measured while a session stepped may be too long, so they are not cached; nor are positions.
+    if (!entry.disturbed && !std::holds_alternative<lab::Comparison>(*entry.outcome))
+      port_.keep(*entry.document, entry.job, *entry.outcome);
     return close(entry, State::finished, now);
   }
   entry.error = entry.overdue ? Error{"lab", "it took more than " + formatted("%d s", most_seconds_),

@@ -101,6 +101,8 @@ class LabQueue {
   void send_due_messages(LabEntry& entry, std::int64_t now);
   void send_result(LabEntry& entry, std::int64_t now);
   void forget_oldest(std::uint64_t client);
+  /// Makes room for the positions of another comparison: the client's earlier ones go, and the oldest of all.
+  void forget_comparisons(std::uint64_t client);
 
   Port port_;
   int most_seconds_;

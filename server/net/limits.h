@@ -45,8 +45,12 @@ inline constexpr int max_lab_jobs = 8, max_lab_jobs_a_client = 2;   ///< waiting
 inline constexpr int max_lab_outcomes_a_client = 8;                 ///< newest results kept for lab.export
 inline constexpr double min_lab_time = 0.01, max_lab_time = 60;     ///< time that a job simulates [s]
 inline constexpr double min_lab_budget = 1, max_lab_budget = 1200;  ///< wall time for a chart [s]
-inline constexpr int max_snapshot_side = 4096;                      ///< [pixels]
-inline constexpr std::size_t max_exports = 8;  ///< pictures and meshes that wait or are made; beyond: 503
+inline constexpr int min_comparison_rate = 1, max_comparison_rate = 60;  ///< moments a simulated second
+inline constexpr std::int64_t max_moment = 60 * 60;                      ///< number of the last one
+inline constexpr std::size_t max_moments_bytes = 256 << 10;  ///< of positions in an answer of lab.moments
+inline constexpr int max_comparisons = 4;  ///< of all clients whose positions are kept; one of each client
+inline constexpr int max_snapshot_side = 4096;  ///< [pixels]
+inline constexpr std::size_t max_exports = 8;   ///< pictures and meshes that wait or are made; beyond: 503
 /// Unsent bytes that the kernel may hold for a client; few, because a newer frame can no longer replace a
 /// frame among them.
 inline constexpr int unsent_kernel_bytes = 64 * 1024;

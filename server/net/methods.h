@@ -56,8 +56,10 @@ Outcome stream_ack(Client& client, const Request& request);
 Outcome lab_cancel(Client& client, const Request& request);
 Outcome lab_chart(Client& client, const Request& request);
 Outcome lab_choose(Client& client, const Request& request);
+Outcome lab_compare(Client& client, const Request& request);
 Outcome lab_export(Client& client, const Request& request);
 Outcome lab_jobs(Client& client, const Request& request);
+Outcome lab_moments(Client& client, const Request& request);
 Outcome lab_simplify(Client& client, const Request& request);
 Outcome lab_stability(Client& client, const Request& request);
 

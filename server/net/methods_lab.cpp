@@ -7,6 +7,7 @@
 #include "server/net/methods.h"
 #include "server/scene/method.h"
 #include "server/scene/ranges.h"
+#include "server/stream/collider_text.h"
 
 namespace clothlab::net {
 
@@ -90,6 +91,30 @@ Outcome ask_lab(Client& client, const Request& request, Params& params, lab::Job
   return asked;
 }
 
+/// What the client's job has found so far, or why it has found nothing.
+std::variant<SharedOutcome, RpcError> outcome_of(Client& client, std::uint64_t job) {
+  auto found = client.hub().lab().outcome(client.id(), job);
+  const auto* outcome = std::get_if<SharedOutcome>(&found);
+  if (outcome && !*outcome)
+    return invalid_params("/job", std::to_string(job) + " has no results yet", "wait for a lab.result of it");
+  return found;
+}
+
+/// The bytes of the numbers, little-endian, as text (RFC 4648, padded).
+std::string base64_of(const std::vector<float>& numbers) {
+  static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(numbers.data());
+  const std::size_t count = numbers.size() * sizeof(float);
+  std::string text;
+  text.reserve(count / 3 * 4 + 4);
+  for (std::size_t i = 0; i < count; i += 3) {
+    std::uint32_t bits = 0;
+    for (std::size_t k = i; k < i + 3; ++k) bits = bits << 8 | (k < count ? bytes[k] : 0u);
+    for (std::size_t k = 0; k < 4; ++k) text += i + k > count ? '=' : digits[bits >> (18 - 6 * k) & 63u];
+  }
+  return text;
+}
+
 }  // namespace
 
 Outcome lab_chart(Client& client, const Request& request) {
@@ -132,6 +157,18 @@ Outcome lab_simplify(Client& client, const Request& request) {
   return ask_lab(client, request, params, std::move(job));
 }
 
+Outcome lab_compare(Client& client, const Request& request) {
+  Params params(request.params);
+  lab::CompareRequest job;
+  if (params.has("patch")) job.patch = params.value("patch");
+  if (!job.patch.is_object() && !job.patch.is_array())
+    params.refuse("patch", "an object (RFC 7396 merge patch) or an array (RFC 6902 patch)");
+  job.truth = flag(params, "truth");
+  job.time = params.number("time", min_lab_time, max_lab_time, job.time);
+  job.rate = static_cast<int>(params.integer("rate", min_comparison_rate, max_comparison_rate, job.rate));
+  return ask_lab(client, request, params, std::move(job));
+}
+
 Outcome lab_cancel(Client& client, const Request& request) {
   Params params(request.params);
   const std::uint64_t job = job_in(params);
@@ -155,15 +192,42 @@ Outcome lab_export(Client& client, const Request& request) {
   const std::optional<lab::Axis> axis = lab::axis_of(params.text("axis", lab::name(lab::Axis::position)));
   if (!axis) params.refuse("axis", names_of(lab::all_axes, [](lab::Axis item) { return lab::name(item); }));
   if (auto error = params.check()) return *error;
-  const auto found = client.hub().lab().outcome(client.id(), job);
+  const auto found = outcome_of(client, job);
   if (const auto* error = std::get_if<RpcError>(&found)) return *error;
   const SharedOutcome& outcome = std::get<SharedOutcome>(found);
-  if (!outcome)
-    return invalid_params("/job", std::to_string(job) + " has no results yet", "wait for a lab.result of it");
+  if (format == "svg" && std::holds_alternative<lab::Comparison>(*outcome))
+    return invalid_params("/format", "svg", "json or csv: there is no picture of a comparison");
   std::string text = format == "svg"   ? lab::svg(*outcome, *axis)
                      : format == "csv" ? lab::csv(*outcome)
                                        : lab::to_json(*outcome).dump(2) + "\n";
   return json{{"job", job}, {"format", format}, {"text", std::move(text)}};
+}
+
+Outcome lab_moments(Client& client, const Request& request) {
+  Params params(request.params);
+  const std::uint64_t job = job_in(params);
+  const std::int64_t from = params.integer("from", 0, max_moment, std::nullopt);
+  if (auto error = params.check()) return *error;
+  const auto found = outcome_of(client, job);
+  if (const auto* error = std::get_if<RpcError>(&found)) return *error;
+  const auto* comparison = std::get_if<lab::Comparison>(std::get<SharedOutcome>(found).get());
+  if (!comparison) return invalid_params("/job", std::to_string(job), "a job of lab.compare");
+  const auto first = static_cast<std::size_t>(from);
+  if (first > comparison->moments.size())
+    return invalid_params("/from", std::to_string(from),
+                          "0 to " + std::to_string(comparison->moments.size()) + ", the moments so far");
+  std::vector<float> a, b;
+  json colliders = json::array();
+  std::size_t next = first;
+  for (; next < comparison->moments.size(); ++next) {
+    const lab::Moment& moment = *comparison->moments[next];
+    if (next > first && (a.size() + moment.a.size()) * 2 * sizeof(float) > max_moments_bytes) break;
+    a.insert(a.end(), moment.a.begin(), moment.a.end());
+    b.insert(b.end(), moment.b.begin(), moment.b.end());
+    colliders.push_back(stream::moving_colliders(moment.colliders));
+  }
+  return json{{"job", job},        {"from", first},     {"count", next - first},
+              {"a", base64_of(a)}, {"b", base64_of(b)}, {"moving", std::move(colliders)}};
 }
 
 }  // namespace clothlab::net

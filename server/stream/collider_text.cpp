@@ -26,14 +26,18 @@ json moving_colliders(const sim::Simulation& simulation) {
   // In most scenes no collider moves: this function then allocates nothing.
   if (std::none_of(home.begin(), home.end(), [](const scene::Collider& each) { return moves(each.motion); }))
     return nullptr;
+  return moving_colliders(simulation.colliders_now());
+}
+
+json moving_colliders(const std::vector<scene::Collider>& now) {
   json moving = json::array();
-  const std::vector<scene::Collider> now = simulation.colliders_now();
   for (std::size_t i = 0; i < now.size(); ++i) {
     if (!moves(now[i].motion)) continue;
     json of = scene::shape_to_json(now[i].shape);
     of["index"] = i;
     moving.push_back(std::move(of));
   }
+  if (moving.empty()) return nullptr;
   return moving;
 }
 

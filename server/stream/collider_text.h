@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "server/sim/simulation.h"
 
@@ -12,6 +13,8 @@ namespace clothlab::stream {
 /// Of each collider that moves: its shape with the places of now, and `index`, its number in the scene. Null
 /// if none does.
 nlohmann::json moving_colliders(const sim::Simulation& simulation);
+/// The same of colliders whose shapes are moved to where they are already.
+nlohmann::json moving_colliders(const std::vector<scene::Collider>& now);
 
 /// The notification as JSON text; empty if no collider moves.
 std::string collider_text(const sim::Simulation& simulation);

@@ -79,6 +79,17 @@ for (const [width, height] of [
       await page.locator(".text-band").waitFor();
       found.push(...(await violations(viewer, "the scene as text, with a mistake")));
       await page.keyboard.press("Escape");
+      await page.keyboard.press("c");
+      const compare = page.locator("#compare");
+      await compare.getByLabel("simulate [s]").fill("0.2");
+      await compare.getByRole("button", { name: "Start together" }).click();
+      await compare.getByText(/^Up to /).waitFor();
+      for (const fold of ["A and B", "The difference as a table"]) {
+        const details = compare.locator("details", { has: page.getByText(fold, { exact: true }) }).first();
+        if ((await details.getAttribute("open")) === null) await details.locator("summary").first().click();
+      }
+      found.push(...(await violations(viewer, "a comparison")));
+      await page.keyboard.press("Escape");
       await page.evaluate(() => {
         // raw deflate of a scene with one cloth
         location.hash = "#scene=BcExDoAgDEDRu_yZxbVXMQ5GGiFCScC4NL277zmfzlWHIVvCzq4IrdqjmcTVxlsWsjtdV0Gce9aMeEQc8QM";

@@ -73,6 +73,8 @@ test("the limits that hello tells are the document's", async () => {
   assert.deepEqual(range("record.start", "rate"), limits.recording.rate);
   assert.deepEqual(range("lab.chart", "time"), limits.lab.time);
   assert.deepEqual(range("lab.chart", "budget"), limits.lab.budget);
+  assert.deepEqual(range("lab.compare", "time"), limits.lab.time);
+  assert.deepEqual(range("lab.compare", "rate"), limits.lab.comparison.rate);
   assert.deepEqual(paramsOf("stream.subscribe").properties.encoding.enum, encodings);
   assert.deepEqual([...resolved(resolved(paramsOf("lab.chart").properties.methods).items).enum, "auto"], methods);
   await leave(client);
@@ -285,7 +287,7 @@ test("a blow-up, its remedy and a cloth at rest are told as it says", async () =
   await leave(client);
 });
 
-test("the four jobs of the lab, cancelled, failed, waiting and exported, tell of themselves as it says", async () => {
+test("the five jobs of the lab, cancelled, failed, waiting and exported, tell of themselves as it says", async () => {
   const client = await enter(strip);
   const ended = (job) => inTime(client, "lab.result", (result) => result.job === job && result.state !== "running");
   const quick = { time: 0.05, pause: true };
@@ -297,6 +299,7 @@ test("the four jobs of the lab, cancelled, failed, waiting and exported, tell of
     ["lab.stability", { methods: ["verlet", "vbd"], columns: 2, from: 1, to: 4 }],
     ["lab.choose", { ...quick, tolerance: 0.1, methods: ["verlet", "xpbd"] }],
     ["lab.simplify", { ...quick, tolerance: 0.1 }],
+    ["lab.compare", { ...quick, patch: { solver: { dt: 0.0004 } }, rate: 60, truth: false, fresh: false }],
   ];
   for (const [method, params] of jobs) {
     const { job } = await client.request(method, params);
@@ -304,11 +307,13 @@ test("the four jobs of the lab, cancelled, failed, waiting and exported, tell of
     assert.equal(state, "finished", `${method}: ${JSON.stringify(error)}`);
     assert.equal(`lab.${kind}`, method);
     assert.equal(result.kind, kind);
-    for (const format of ["json", "csv", "svg"]) {
+    for (const format of method === "lab.compare" ? ["json", "csv"] : ["json", "csv", "svg"]) {
       const { text } = await client.request("lab.export", { job, format, axis: "energy" });
       if (format === "json") assert.deepEqual(JSON.parse(text), result);
     }
   }
+  const { jobs: own } = await client.request("lab.jobs");
+  assert.equal((await client.request("lab.moments", { job: own.at(-1).job, from: 1 })).from, 1);
   const { cached, job: known } = await client.request(...jobs[2]);
   assert.equal(cached, true);
   await ended(known);

@@ -79,6 +79,8 @@ test("a viewer reads and watches; whatever changes something answers -32001", as
     ["lab.stability", {}],
     ["lab.choose", { tolerance: 0.01 }],
     ["lab.simplify", {}],
+    ["lab.compare", {}],
+    ["lab.moments", { job: 1, from: 0 }],
     ["lab.cancel", { job: 1 }],
     ["lab.jobs", {}],
     ["lab.export", { job: 1, format: "json" }],

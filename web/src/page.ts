@@ -1,4 +1,5 @@
 // Connects the parts of the page: the link, the scene's document, the stage and the controls.
+import { CompareDoor } from "./compare/door";
 import { Connection, type LinkEvents } from "./link/connection";
 import { act } from "./panel/act";
 import { ColourBy } from "./panel/colour_by";
@@ -67,6 +68,7 @@ export class Page {
   private readonly panel: Panel = this.makePanel();
   private readonly lab = this.makeLab();
   private readonly text = this.makeText();
+  private readonly compare = this.makeCompare();
   private readonly notifications = this.makeNotifications();
   private readonly colourBy = new ColourBy(
     (field) => this.connection.setField(field),
@@ -91,6 +93,7 @@ export class Page {
   private sceneName = "";
   private stability: Stability | null = null; // in the last status
   private messageBytes = 65536; // the most that a message may have
+  private methods: string[] = [];
   private mayEdit = true; // false for a viewer, who may only watch
 
   constructor() {
@@ -120,7 +123,8 @@ export class Page {
   private bind(layout: Layout, theme: ThemeSwitch): void {
     const lab = (): void => this.lab.toggle();
     const text = (): void => this.text.toggle();
-    bindCommands({ transport: this.transport, layout, theme, fit: () => this.stage.fit(), lab, text });
+    const compare = (): void => this.compare.toggle();
+    bindCommands({ transport: this.transport, layout, theme, fit: () => this.stage.fit(), lab, text, compare });
     bindCameraInput(this.stage.controls, () => this.hand?.holding === true);
     bindTimeline({
       picture: this.picture,
@@ -173,6 +177,7 @@ export class Page {
         this.enableEdits();
         this.lab.link(state === "open");
         this.slow.link(state === "open");
+        if (state !== "open") this.compare.lost();
         if (state !== "open") {
           this.hand?.lost();
           this.store.forget();
@@ -216,6 +221,7 @@ export class Page {
         busy: (path) => this.store.busy(path),
         loadPreset: (name) => this.loadPreset(name),
         openText: () => this.text.toggle(),
+        openCompare: () => this.compare.toggle(),
         openGallery: () => this.presets.openGallery(),
         act: (deed) =>
           act(deed, {
@@ -237,8 +243,8 @@ export class Page {
         }),
       edit: (operations) => this.store.edit(operations),
       document: () => this.store.document,
-      mayEdit: () => this.mayEdit,
-      mayGrab: () => this.mayEdit && this.connection.open && !this.divergence.now,
+      mayEdit: () => this.mayEdit && !this.compare.drawn,
+      mayGrab: () => this.mayEdit && this.connection.open && !this.divergence.now && !this.compare.drawn,
     });
   }
 
@@ -250,7 +256,24 @@ export class Page {
       undo: (revision) => void this.undo.go("undo", revision),
       mayEdit: () => this.mayEdit,
       applied: showApplied,
-      toggled: (open) => this.layout?.labToggled(open),
+      compare: (patch) => this.compare.begin({ patch }),
+      toggled: (open) => this.drawerToggled(this.lab, open),
+    });
+  }
+
+  private makeCompare(): CompareDoor {
+    return new CompareDoor({
+      request: (method, params) => this.connection.request(method, params),
+      document: () => this.store.document,
+      stored: () => this.store.stored,
+      addressed: (operations) => this.store.addressed(operations),
+      stage: () => this.stage,
+      methods: () => this.methods,
+      mayEdit: () => this.mayEdit,
+      mostBytes: () => this.messageBytes,
+      use: (patch, what) => void this.lab.apply(patch, what),
+      toggled: (open) => this.drawerToggled(this.compare, open),
+      returned: () => this.picture.again(),
     });
   }
 
@@ -263,11 +286,17 @@ export class Page {
       mayEdit: () => this.mayEdit,
       mostBytes: () => this.messageBytes,
       applied: showApplied,
-      toggled: (open) => {
-        if (open && this.lab.open) this.lab.toggle();
-        this.layout?.labToggled(open);
-      },
+      toggled: (open) => this.drawerToggled(this.text, open),
     });
+  }
+
+  // One of the drawers that share the room beside the cloth opened, which closes the others, or closed.
+  private drawerToggled(drawer: { shut(): void }, open: boolean): void {
+    if (open) {
+      for (const other of [this.lab, this.compare, this.text]) if (other !== drawer) other.shut();
+      document.body.classList.add("lab-open");
+    }
+    this.layout?.labToggled(open);
   }
 
   private makeNotifications(): Record<string, (params: Params) => void> {
@@ -277,6 +306,7 @@ export class Page {
         this.guide.baseline.take(params.document as SceneDocument);
         this.store.replace(params.document as SceneDocument, Number(params.revision));
         this.text.arrived();
+        this.compare.arrived();
       },
       "scene.changed": (params) => this.store.patched(Number(params.revision), params.patch as Patch),
       "scene.history": (params) => this.undo.told(params as unknown as History),
@@ -296,8 +326,14 @@ export class Page {
         this.divergence.follow(params as Status);
       },
       "sim.diverged": (params) => this.divergence.tell(params as unknown as Diverged),
-      "lab.progress": (params) => this.lab.progress(params),
-      "lab.result": (params) => this.lab.arrived(params),
+      "lab.progress": (params) => {
+        this.lab.progress(params);
+        this.compare.told("progress", params);
+      },
+      "lab.result": (params) => {
+        this.lab.arrived(params);
+        this.compare.told("result", params);
+      },
       viewers: (params) => this.hud.set("viewers", String(params.count)),
       notice: (params) => notice(params.level as Level, { title: String(params.text) }),
     };
@@ -310,8 +346,9 @@ export class Page {
     this.hand?.greeted(Number(params.client));
     this.undo.greeted(Number(params.client));
     this.welcome();
-    this.panel.setMethods((params.methods as string[] | undefined) ?? []);
-    this.lab.setMethods((params.methods as string[] | undefined) ?? []);
+    this.methods = (params.methods as string[] | undefined) ?? [];
+    this.panel.setMethods(this.methods);
+    this.lab.setMethods(this.methods);
     this.lab.roleChanged();
     document.body.classList.toggle("viewer", !this.mayEdit);
     this.enableEdits();
@@ -340,6 +377,7 @@ export class Page {
     this.panel.show(document, this.store.stored ?? document);
     this.lab.sceneChanged();
     this.text.sceneChanged();
+    this.compare.sceneChanged();
   }
 
   private drawDocument(fit: boolean, whole = false): void {

@@ -39,6 +39,12 @@ export class Picture {
     this.unseen = frame !== null;
   }
 
+  /// Draws the newest frame once more: something else was drawn in its place.
+  again(): void {
+    if (this.lookedAt) this.unseen = true;
+    else this.latest ??= this.kept.all.at(-1)?.frame ?? null;
+  }
+
   /// The next frame is the first of another cloth: it is fitted into the view.
   fitAtNext(): void {
     this.fitNext = true;

@@ -17,6 +17,9 @@ std::string picture(const StabilityMap& map, Axis) {
 std::string picture(const Simplification& simplification, Axis) {
   return draw(simplification);
 }
+std::string picture(const Comparison&, Axis) {
+  return {};
+}
 }  // namespace
 
 std::string svg(const Outcome& outcome, Axis axis) {

@@ -7,10 +7,10 @@
 
 #include "server/base/text.h"
 #include "server/lab/measure/spread.h"
+#include "server/lab/measure/stepping.h"
 #include "server/model/stability.h"
 #include "server/reference/trajectory.h"
 #include "server/sim/guarded_run.h"
-#include "server/sim/motion_table.h"
 #include "server/sim/plan.h"
 
 namespace clothlab::lab {
@@ -20,16 +20,15 @@ namespace {
 constexpr int fewest_samples = 4;       // samples of the truth that a run meets at least
 constexpr double most_rounding = 0.04;  // largest share of steps added in order to meet more samples
 constexpr double same_step = 1e-5;      // relative error of a step that was rounded to six digits
-constexpr double patience = 0.1;        // wall time between two looks at the stop token [s]
 
 double total(const sim::Diagnostics& state) {
   return state.kinetic + state.elastic + state.gravitational;
 }
 
 /// Accumulates a run's errors, sample by sample.
-class Comparison {
+class ErrorsSoFar {
  public:
-  explicit Comparison(const Truth& truth) : truth_(truth) {}
+  explicit ErrorsSoFar(const Truth& truth) : truth_(truth) {}
 
   /// Compares the run's present state with the truth's sample `k`, counted from 1, and updates `trial`'s
   /// errors.
@@ -58,28 +57,6 @@ class Comparison {
   const Truth& truth_;
   double squares_ = 0, strain_ = 0, true_strain_ = 0;
   int count_ = 0;
-};
-
-/// Steps a simulation in batches that take about `patience` each, and adds up their wall time.
-class Stepping {
- public:
-  explicit Stepping(sim::Simulation& simulation) : simulation_(simulation) {}
-  double wall() const { return wall_; }
-
-  /// Takes one batch of at most `most` steps; returns the number of steps taken.
-  std::uint32_t step(std::uint64_t most) {
-    const auto count =
-        static_cast<std::uint32_t>(std::min<std::uint64_t>(most, std::max<std::uint64_t>(1, affordable_)));
-    const double spent = sim::timed_steps(simulation_, count);
-    wall_ += spent;
-    affordable_ = static_cast<std::uint64_t>(std::clamp(patience / spent * count, 1.0, 1e6));
-    return count;
-  }
-
- private:
-  sim::Simulation& simulation_;
-  double wall_ = 0;
-  std::uint64_t affordable_ = sim::batch_steps;
 };
 
 }  // namespace
@@ -132,7 +109,7 @@ Result<Trial> TrialRunner::run(scene::Scene scene, const Truth& truth, double un
   const int samples_apart = samples_to_horizon / common;
   const auto last = static_cast<std::uint64_t>(std::ceil(until / scene.solver.dt - 1e-6));
   Trial trial;
-  Comparison comparison(truth);
+  ErrorsSoFar errors(truth);
   Stepping stepping(simulation);
   for (std::uint64_t step = 0; step < last;) {
     if (stop.stop_requested()) return cancelled;
@@ -147,8 +124,7 @@ Result<Trial> TrialRunner::run(scene::Scene scene, const Truth& truth, double un
       return trial;
     }
     if (step % steps_a_sample == 0)
-      comparison.add(static_cast<int>(step / steps_a_sample) * samples_apart, simulation, guard.state(),
-                     trial);
+      errors.add(static_cast<int>(step / steps_a_sample) * samples_apart, simulation, guard.state(), trial);
   }
   return trial;
 }

@@ -35,6 +35,7 @@ export class ChartTab extends Tab<"chart"> {
         return point ? pointTip(point, this.shown, this.host.mayEdit()) : null;
       },
       choose: (key) => this.applyPoint(this.point(key)),
+      compare: (key) => this.comparePoint(this.point(key)),
       order: (key) => {
         const point = this.point(key) as Point;
         return { curve: curveOf(point), along: point.dt_s };
@@ -49,7 +50,11 @@ export class ChartTab extends Tab<"chart"> {
     "Speed against accuracy: arrow keys go from point to point, Enter applies one",
     (error) => this.host.problem("The chart could not be drawn", error),
   );
-  private readonly table = new PointTable((point) => this.applyPoint(point), "All points as a table");
+  private readonly table = new PointTable(
+    (point) => this.applyPoint(point),
+    (point) => this.comparePoint(point),
+    "All points as a table",
+  );
   private onAxis: Axis = "position";
   private result: Chart | null = null;
 
@@ -178,5 +183,9 @@ export class ChartTab extends Tab<"chart"> {
 
   private applyPoint(point: Point | undefined): void {
     if (point) this.host.apply(point.patch, settingText(point));
+  }
+
+  private comparePoint(point: Point | undefined): void {
+    if (point) this.host.compare(point.patch);
   }
 }

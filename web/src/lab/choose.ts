@@ -53,6 +53,7 @@ export class ChooseTab extends Tab<"choose"> {
       return point ? pointTip(point, largestOnTheWay, this.host.mayEdit()) : null;
     },
     choose: (key) => this.applyPoint(this.point(key)),
+    compare: (key) => this.comparePoint(this.point(key)),
     order: (key) => {
       const point = this.point(key) as Point;
       return { curve: curveOf(point), along: point.dt_s };
@@ -65,7 +66,11 @@ export class ChooseTab extends Tab<"choose"> {
     "What was tried: arrow keys go from point to point, Enter applies one",
     (error) => this.host.problem("The picture could not be drawn", error),
   );
-  private readonly table = new PointTable((point) => this.applyPoint(point), "All that was tried");
+  private readonly table = new PointTable(
+    (point) => this.applyPoint(point),
+    (point) => this.comparePoint(point),
+    "All that was tried",
+  );
   private result: Choice | null = null;
 
   constructor(host: TabHost) {
@@ -144,5 +149,9 @@ export class ChooseTab extends Tab<"choose"> {
 
   private applyPoint(point: Point | undefined): void {
     if (point) this.host.apply(point.patch, settingText(point));
+  }
+
+  private comparePoint(point: Point | undefined): void {
+    if (point) this.host.compare(point.patch);
   }
 }

@@ -20,6 +20,7 @@ export interface LabEvents {
   undo(revision: number): void; ///< undoes the change that made this revision, if it was the last
   mayEdit(): boolean;
   applied(depth: string): void;
+  compare(patch: Patch): void;
   toggled(open: boolean): void; ///< changes the free part of the window
 }
 
@@ -36,6 +37,7 @@ export class Lab {
   private readonly host: TabHost = {
     jobs: this.jobs,
     apply: (patch, what) => void this.apply(patch, what),
+    compare: (patch) => this.events.compare(patch),
     problem: (title, error) => noticeError(title, error),
     mayEdit: () => this.events.mayEdit(),
     document: () => this.events.document(),
@@ -82,6 +84,11 @@ export class Lab {
     this.events.toggled(open);
     if (open) this.tabs[this.active].sceneChanged();
     (open ? this.heads.get(this.active) : this.opener)?.focus({ preventScroll: true });
+  }
+
+  /// Closes it: something else takes its room.
+  shut(): void {
+    if (this.open) this.toggle();
   }
 
   setMethods(methods: string[]): void {
@@ -149,8 +156,8 @@ export class Lab {
     this.tabs[kind].update();
   }
 
-  // Applies `patch` and shows a notice that says what was changed and offers to undo it.
-  private async apply(patch: Patch, what: string): Promise<void> {
+  /// Applies `patch` and shows a notice that says what was changed and offers to undo it.
+  async apply(patch: Patch, what: string): Promise<void> {
     const before = this.events.document();
     if (!before || !this.events.mayEdit()) return;
     const was = formerly(before, patch);

@@ -1,11 +1,12 @@
 // The server's drawing in the page. Its marks can be pointed at, walked with the arrow keys and chosen.
 import { make, makeButton } from "./dom";
 
-/// A tooltip. `action` says what a click on the mark does.
+/// A tooltip. `action` says what a click on the mark does, `compare` what the key C does.
 export interface Tip {
   title: string;
   lines: string[];
   action: string | null;
+  compare?: string | null;
 }
 
 /// Events of the marks. A mark's key is its data-index, its place in the result's list; for a cell of a map it is
@@ -14,6 +15,7 @@ export interface PictureEvents {
   /// The tooltip of a mark; null if it has none.
   tip(key: string): Tip | null;
   choose(key: string): void;
+  compare?(key: string): void;
   /// The curve of a mark and its place along the curve, above 0: the arrow keys go in this order.
   order(key: string): { curve: string; along: number };
 }
@@ -170,6 +172,7 @@ export class Picture {
     if (!mark || event.ctrlKey || event.metaKey || event.altKey) return;
     const key = keyOf(mark);
     if (event.key === "Enter" || event.key === " ") this.events.choose(key);
+    else if (event.key.toLowerCase() === "c" && this.events.tip(key)?.compare) this.events.compare?.(key);
     else if (event.key === "ArrowLeft" || event.key === "ArrowRight")
       this.walk(key, event.key === "ArrowRight" ? 1 : -1);
     else if (event.key === "ArrowUp" || event.key === "ArrowDown") this.change(key, event.key === "ArrowDown" ? 1 : -1);
@@ -214,17 +217,23 @@ export class Picture {
     this.tooltip.hidden = !tip;
     if (!mark || !tip) return;
     const lines: HTMLElement[] = tip.lines.map((line) => make("span", "", line));
-    if (tip.action && pinned) lines.push(this.tipButton(tip.action, key));
-    else if (tip.action) lines.push(make("span", "lab-tip-hint", `Click: ${tip.action.toLowerCase()}`));
+    const doing = [
+      { text: tip.action, by: "Click", run: () => this.events.choose(key) },
+      { text: tip.compare, by: "C", run: () => this.events.compare?.(key) },
+    ];
+    for (const { text, by, run } of doing) {
+      if (!text) continue;
+      lines.push(pinned ? this.tipButton(text, run) : make("span", "lab-tip-hint", `${by}: ${text.toLowerCase()}`));
+    }
     this.tooltip.replaceChildren(make("b", "", tip.title), ...lines);
     this.tooltip.classList.toggle("pinned", pinned);
     this.putBeside(mark);
   }
 
-  private tipButton(text: string, key: string): HTMLButtonElement {
+  private tipButton(text: string, run: () => void): HTMLButtonElement {
     return makeButton(text, "lab-small", () => {
       this.point("", false);
-      this.events.choose(key);
+      run();
     });
   }
 

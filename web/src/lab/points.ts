@@ -37,7 +37,12 @@ export function pointTip(point: Point, { name, size, of }: Shown, mayApply: bool
     if (point.ms_a_simulated_s) lines.push(`${costText(point.ms_a_simulated_s)} a simulated second`);
   }
   if (point.dt_over_limit !== null) lines.push(`${limitText(point.dt_over_limit)} of the stability limit`);
-  return { title: settingText(point), lines, action: mayApply ? "Apply" : null };
+  return {
+    title: settingText(point),
+    lines,
+    action: mayApply ? "Apply" : null,
+    compare: mayApply ? "Compare with present" : null,
+  };
 }
 
 export const curveOf = ({ method, iterations }: Point): string => `${method} ${iterations ?? ""}`;
@@ -50,6 +55,7 @@ export class PointTable {
 
   constructor(
     apply: (point: Point) => void,
+    compare: (point: Point) => void,
     private readonly what: string,
   ) {
     this.table = new Table<Point>(
@@ -90,7 +96,13 @@ export class PointTable {
         },
         {
           title: "",
-          text: (point) => applyButton(`Apply ${settingText(point)}`, () => apply(point)),
+          text: (point) =>
+            make(
+              "span",
+              "lab-deeds",
+              applyButton(`Apply ${settingText(point)}`, () => apply(point)),
+              compareButton(settingText(point), () => compare(point)),
+            ),
           className: "action",
         },
       ],
@@ -110,6 +122,13 @@ export class PointTable {
 export function applyButton(name: string, apply: () => void): HTMLButtonElement {
   const button = makeButton("Apply", "lab-small lab-apply", apply);
   button.setAttribute("aria-label", name);
+  return button;
+}
+
+export function compareButton(setting: string, compare: () => void): HTMLButtonElement {
+  const button = makeButton("Compare", "lab-small lab-apply", compare);
+  button.title = "Compare with the present settings";
+  button.setAttribute("aria-label", `Compare ${setting} with present`);
   return button;
 }
 

@@ -10,6 +10,7 @@ import type { Patch, SceneDocument } from "../link/scene_types";
 export interface TabHost {
   jobs: Jobs;
   apply(patch: Patch, what: string): void;
+  compare(patch: Patch): void; ///< the present settings with these
   problem(title: string, error: Error): void;
   mayEdit(): boolean;
   document(): SceneDocument | null;

@@ -1,6 +1,9 @@
 // The keyboard: one key, one command. Keys do nothing while the user types or a dialog is open.
 
-export type Commands = Record<"toggle" | "step" | "reset" | "fit" | "hide" | "help" | "lab" | "text", () => void>;
+export type Commands = Record<
+  "toggle" | "step" | "reset" | "fit" | "hide" | "help" | "lab" | "text" | "compare",
+  () => void
+>;
 
 const bindings: Record<string, keyof Commands> = {
   " ": "toggle",
@@ -10,6 +13,7 @@ const bindings: Record<string, keyof Commands> = {
   h: "hide",
   l: "lab",
   j: "text",
+  c: "compare",
   "?": "help",
 };
 

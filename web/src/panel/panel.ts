@@ -17,6 +17,7 @@ export interface PanelEvents {
   busy(path: string): boolean;
   loadPreset(name: string): void;
   openText(): void;
+  openCompare(): void;
   openGallery(): void;
   act(deed: Deed): void;
 }
@@ -50,6 +51,7 @@ export class Panel {
   private readonly actions = offers([
     { text: "Gallery", title: "The presets with pictures", run: () => this.events.openGallery() },
     { text: "Edit as text, save, share", title: "The scene as JSON (J)", run: () => this.events.openText() },
+    { text: "Compare", title: "Two settings of the scene side by side (C)", run: () => this.events.openCompare() },
   ]);
   private readonly folded = new Map<string, boolean>();
   private preset: Controller | null = null;

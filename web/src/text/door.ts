@@ -18,6 +18,11 @@ export class TextDoor {
     this.with((_, drawer) => drawer.toggle());
   }
 
+  /// Closes it: something else takes its room.
+  shut(): void {
+    if (this.drawer?.open) this.drawer.toggle();
+  }
+
   sceneChanged(): void {
     this.drawer?.sceneChanged();
   }

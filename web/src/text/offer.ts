@@ -1,7 +1,7 @@
 // A link with a scene was opened: says what it carries, and asks where to load it. Nothing is loaded unasked.
 import type { TextHost } from "./host";
 import { load } from "./load";
-import { sceneIn } from "./share";
+import { besideScene, sceneIn } from "./share";
 import { make, makeButton } from "../lab/dom";
 import { notice, noticeError } from "../panel/notices";
 import type { SceneDocument } from "../link/scene_types";
@@ -19,13 +19,13 @@ function described({ cloths, colliders = [], name }: SceneDocument): string {
 const isKept = (state: unknown): state is { scene: SceneDocument } =>
   typeof state === "object" && state !== null && "scene" in state;
 
-const forget = (): void => history.replaceState(null, "", location.pathname + location.search);
+const forget = (rest = ""): void => history.replaceState(null, "", location.pathname + location.search + rest);
 
 /// Loads the scene that this page itself has put by for a session of its own; true if there was one.
 export async function loadKept(host: TextHost): Promise<boolean> {
   const state: unknown = history.state; // a link from elsewhere cannot set it
   if (!isKept(state)) return false;
-  forget();
+  forget(location.hash);
   await load(state.scene, host).catch((error: Error) => noticeError("The scene of the link was refused", error));
   return true;
 }
@@ -44,14 +44,17 @@ export async function offer(host: TextHost): Promise<void> {
   const title = make("h2", "", "A scene by link");
   title.id = "offer-title";
   dialog.setAttribute("aria-labelledby", title.id);
+  const rest = besideScene(location.hash);
+  let loaded = false;
   const close = (): void => dialog.close();
   const here = (): void => {
+    loaded = true;
     close();
     void load(scene, host).catch((error: Error) => noticeError("The scene of the link was refused", error));
   };
   const apart = (): void => {
     const name = `scene-${crypto.getRandomValues(new Uint32Array(1))[0]?.toString(36)}`;
-    history.replaceState({ scene }, "", `${location.pathname}?session=${name}`);
+    history.replaceState({ scene }, "", `${location.pathname}?session=${name}${rest}`);
     location.reload();
   };
   const own = makeButton("Open it in a session of its own", "", apart);
@@ -61,7 +64,7 @@ export async function offer(host: TextHost): Promise<void> {
   dialog.append(title, make("p", "", described(scene)), choices);
   dialog.addEventListener("close", () => {
     dialog.remove();
-    if (!isKept(history.state)) forget();
+    if (!isKept(history.state)) forget(loaded ? rest : "");
   });
   document.body.append(dialog);
   dialog.showModal();

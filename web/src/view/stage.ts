@@ -17,7 +17,8 @@ import { ClothView } from "./cloth_view";
 import { ColliderView } from "./collider_view";
 import { CameraKeeper } from "./camera_keeper";
 import { CrossingView } from "./crossing_view";
-import type { FreeArea } from "./framing";
+import type { StageUniforms } from "./fabric_material";
+import { centerIn, type FreeArea } from "./framing";
 import { GroundShadow } from "./ground_shadow";
 import type { ShownFrame, Topology } from "../link/protocol";
 import type { Crossings } from "../link/rpc";
@@ -38,6 +39,12 @@ function readShadowsOnce(): void {
     fiveReads,
     "shadow = texture( shadowMap, shadowCoord.xyz );",
   );
+}
+
+/// What is drawn in the place of the session's cloth.
+export interface Replacement {
+  area(free: FreeArea): FreeArea; ///< the part of the free area that the scene is fitted into
+  draw(renderer: WebGLRenderer, render: () => void): void; ///< calls `render` for each picture that it is made of
 }
 
 export class Stage {
@@ -62,6 +69,8 @@ export class Stage {
     shadowColor: { value: new Color() },
     lineColor: { value: new Color() },
   };
+  private readonly shared: StageUniforms;
+  private replacement: Replacement | null = null;
   area: FreeArea = { left: 0, top: 0, width: 1, height: 1 };
   private dirty = true;
   private readonly keeper = new CameraKeeper(this.camera);
@@ -81,10 +90,10 @@ export class Stage {
     this.renderer.setClearColor(0, 0);
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
-    const stage = {
+    const stage = (this.shared = {
       lightDirection: { value: lightFrom },
       occluders: { value: Array.from({ length: 4 }, () => new Vector4()) },
-    };
+    });
     this.cloth = new ClothView(stage, this.pixelRatio);
     this.groundShadow = new GroundShadow(this.renderer, this.cloth.caster);
     this.colliders = new ColliderView(stage, this.ground, this.groundShadow.uniforms);
@@ -114,6 +123,36 @@ export class Stage {
   /// The frame on screen; null before the first of a topology.
   get frame(): ShownFrame | null {
     return this.latest;
+  }
+
+  /// Another cloth in the same light, for a replacement.
+  makeCloth(): ClothView {
+    return new ClothView(this.shared, this.pixelRatio);
+  }
+
+  /// What casts the ground's shadow.
+  get casters(): Scene {
+    return this.groundShadow.casters;
+  }
+
+  /// Draws this in the place of the session's cloth, with the same camera; null: the session's cloth again.
+  replace(replacement: Replacement | null): void {
+    this.replacement = replacement;
+    this.cloth.object.visible = this.cloth.caster.visible = !replacement;
+    this.resize(this.area);
+  }
+
+  /// Shifts the picture so that its middle is the middle of this area.
+  center(area: FreeArea): void {
+    centerIn(this.camera, area, this.canvas.clientWidth, this.canvas.clientHeight);
+  }
+
+  /// What a replacement shows now: colliders go where it says, and the camera shows all of it.
+  see(frames: ShownFrame[]): void {
+    const lowest = Math.min(...frames.map(({ header }) => header.boxMinimum[1]));
+    for (const frame of frames) this.keeper.see(framePoints(frame));
+    this.colliders.update(frames[0]?.moved ?? [], lowest);
+    this.invalidate();
   }
 
   /// True while the camera must not follow the cloth by itself: somebody pulls at it.
@@ -165,6 +204,7 @@ export class Stage {
   }
 
   show(frame: ShownFrame): boolean {
+    if (this.replacement) return true;
     const first = this.latest === null;
     if (first && this.hasFiles()) this.measure(this.reach(frame));
     // A cloth that has blown up would fill the window many times over: its last sane shape stays on screen.
@@ -237,7 +277,7 @@ export class Stage {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     this.renderer.setSize(width, height, false);
     this.takeQuality();
-    this.keeper.resize(area, width, height);
+    this.keeper.resize(this.replacement?.area(area) ?? area, width, height);
     if (this.keeper.fitted) this.orbit(this.keeper.jump());
   }
 
@@ -263,8 +303,12 @@ export class Stage {
     if (this.dirty) this.quality.sample(sinceLast);
     this.dirty = false;
     this.lastDrawn = now;
-    this.groundShadow.draw();
-    this.renderer.render(this.scene, this.camera);
+    const render = (): void => {
+      this.groundShadow.draw();
+      this.renderer.render(this.scene, this.camera);
+    };
+    if (this.replacement) this.replacement.draw(this.renderer, render);
+    else render();
     return true;
   }
 
