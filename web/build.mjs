@@ -48,6 +48,7 @@ const { metafile } = await build({
     style: "src/style.css",
     text: "src/text/text.css",
     gallery: "src/gallery/gallery.css",
+    inside: "src/inside/inside.css",
   },
   outdir: "dist",
   splitting: true, // what an import() names is loaded when it is used

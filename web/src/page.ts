@@ -11,6 +11,8 @@ import { Hud, type Status } from "./panel/hud";
 import { Refusals } from "./panel/refusals";
 import { bindFirstSteps } from "./panel/newcomer";
 import { Lab } from "./lab/drawer";
+import { InsideDoor } from "./inside/door";
+import { StatusLog } from "./panel/status_log";
 import { Layout } from "./panel/layout";
 import { LinkView } from "./panel/link_view";
 import { Guide } from "./explain/guide";
@@ -19,6 +21,7 @@ import { takeDroppedMeshes } from "./panel/mesh_drop";
 import { Panel } from "./panel/panel";
 import { Presets } from "./panel/presets";
 import { RecordButton } from "./panel/record_button";
+import { bindSaveButtons } from "./panel/save_buttons";
 import { Bodies } from "./link/bodies";
 import { SlowWatch } from "./panel/slow_watch";
 import { SceneStore } from "./link/scene_store";
@@ -41,6 +44,8 @@ type Params = Record<string, unknown>;
 export class Page {
   private stage!: Stage; // set by show(), before the first event of the connection
   private readonly hud = new Hud();
+  private readonly statusLog = new StatusLog();
+  private inside: InsideDoor | null = null; // with the stage
   private readonly session = new URLSearchParams(location.search).get("session") ?? "main";
   private readonly connection = new Connection(this.session, this.linkEvents());
   private readonly link = new LinkView(this.connection);
@@ -69,7 +74,10 @@ export class Page {
   private readonly text = this.makeText();
   private readonly notifications = this.makeNotifications();
   private readonly colourBy = new ColourBy(
-    (field) => this.connection.setField(field),
+    (field) => {
+      this.connection.setField(field);
+      this.inside?.coloured();
+    },
     () => this.layout?.cardToggled(),
   );
   private readonly picture = this.makePicture();
@@ -102,6 +110,8 @@ export class Page {
     this.stage = hook.stage = stage;
     const layout: Layout = (this.layout = new Layout(() => stage.resize(layout.freeArea())));
     this.hand = this.makeHand(stage);
+    this.inside = this.makeInside(stage);
+    bindSaveButtons({ stage, sceneName: () => this.sceneName });
     this.bind(layout, new ThemeSwitch(() => stage.setTheme()));
     stage.onLost = () =>
       notice("warning", {
@@ -120,7 +130,8 @@ export class Page {
   private bind(layout: Layout, theme: ThemeSwitch): void {
     const lab = (): void => this.lab.toggle();
     const text = (): void => this.text.toggle();
-    bindCommands({ transport: this.transport, layout, theme, fit: () => this.stage.fit(), lab, text });
+    const inside = (): void => this.inside?.toggle();
+    bindCommands({ transport: this.transport, layout, theme, fit: () => this.stage.fit(), lab, text, inside });
     bindCameraInput(this.stage.controls, () => this.hand?.holding === true);
     bindTimeline({
       picture: this.picture,
@@ -242,6 +253,24 @@ export class Page {
     });
   }
 
+  private makeInside(stage: Stage): InsideDoor {
+    return new InsideDoor({
+      stage,
+      log: this.statusLog,
+      ask: (method, params) => this.connection.request(method, params),
+      document: () => this.store.document,
+      field: () => this.colourBy.chosen,
+      live: () => this.picture.live,
+      recolour: () => {
+        const { frame } = stage;
+        if (!frame) return;
+        stage.show(frame);
+        this.colourBy.show(frame.field, frame.header.range);
+      },
+      changed: () => this.layout?.cardToggled(),
+    });
+  }
+
   private makeLab(): Lab {
     return new Lab({
       request: (method, params) => this.connection.request(method, params),
@@ -285,6 +314,7 @@ export class Page {
       },
       "sim.status": (params) => {
         this.hud.showStatus(params as Status);
+        this.statusLog.take(params as Status);
         this.transport.status(params as Status);
         this.slow.told(params as Status);
         this.stability = (params.stability as Stability | undefined) ?? this.stability;
@@ -337,6 +367,7 @@ export class Page {
     element("scene-name", HTMLElement).textContent = document.name;
     this.drawDocument(newScene, whole);
     this.hand?.sceneChanged();
+    this.inside?.sceneChanged();
     this.panel.show(document, this.store.stored ?? document);
     this.lab.sceneChanged();
     this.text.sceneChanged();

@@ -12,9 +12,10 @@ interface Commanded {
   fit(): void;
   lab(): void;
   text(): void;
+  inside(): void;
 }
 
-export function bindCommands({ transport, layout, theme, fit, lab, text }: Commanded): void {
+export function bindCommands({ transport, layout, theme, fit, lab, text, inside }: Commanded): void {
   const dialog = element("help-dialog", HTMLDialogElement);
   const help = (): void => dialog.showModal();
   bindKeys({
@@ -26,6 +27,7 @@ export function bindCommands({ transport, layout, theme, fit, lab, text }: Comma
     help,
     lab,
     text,
+    inside,
   });
   button("fit").onclick = fit;
   button("help").onclick = help;

@@ -1,6 +1,9 @@
 // The keyboard: one key, one command. Keys do nothing while the user types or a dialog is open.
 
-export type Commands = Record<"toggle" | "step" | "reset" | "fit" | "hide" | "help" | "lab" | "text", () => void>;
+export type Commands = Record<
+  "toggle" | "step" | "reset" | "fit" | "hide" | "help" | "lab" | "text" | "inside",
+  () => void
+>;
 
 const bindings: Record<string, keyof Commands> = {
   " ": "toggle",
@@ -9,6 +12,7 @@ const bindings: Record<string, keyof Commands> = {
   f: "fit",
   h: "hide",
   l: "lab",
+  i: "inside",
   j: "text",
   "?": "help",
 };

@@ -43,6 +43,9 @@ function readShadowsOnce(): void {
 export class Stage {
   readonly controls: OrbitControls;
   readonly cloth: ClothView;
+  onShow = (): void => undefined; ///< another frame is to be drawn
+  onDraw = (): void => undefined; ///< before each picture
+  onDrawn = (): void => undefined; ///< after it, while it can be copied from the canvas
   onLost = (): void => undefined; ///< the WebGL context is lost; three.js restores what it can when the context returns
   readonly canvas: HTMLCanvasElement;
   private readonly renderer: WebGLRenderer;
@@ -175,6 +178,7 @@ export class Stage {
     else this.keeper.see(framePoints(frame));
     if (first && this.keeper.fitted) this.orbit(this.keeper.jump());
     this.colliders.update(frame.moved, this.cloth.box.min.y);
+    this.onShow();
     this.invalidate();
     return true;
   }
@@ -256,11 +260,23 @@ export class Stage {
     const scale = this.dirty ? this.quality.level.scale : this.stillScale;
     if (scale !== this.scale) this.setScale(scale);
     if (this.dirty) this.quality.sample(sinceLast);
-    this.dirty = false;
     this.lastDrawn = now;
-    this.groundShadow.draw();
-    this.renderer.render(this.scene, this.camera);
+    this.render();
     return true;
+  }
+
+  /// Draws at full resolution at once; until the caller returns, the picture can be copied from the canvas.
+  drawSharp(): void {
+    if (this.scale !== this.stillScale) this.setScale(this.stillScale);
+    this.render();
+  }
+
+  private render(): void {
+    this.dirty = false;
+    this.groundShadow.draw();
+    this.onDraw();
+    this.renderer.render(this.scene, this.camera);
+    this.onDrawn();
   }
 
   // Lets the driver compile while the page connects, so that the first frame need not wait.
