@@ -215,10 +215,13 @@ test("the log keeps a minute", () => {
 test("values have three figures, a prefix and a unit", () => {
   const { valueText, summary } = curves;
   assert.deepEqual(
-    [1234, -0.01234, 0.9996, 2.5e-6, 0, 1e-12].map((value) => valueText(value, "J")),
-    ["1.23 kJ", "−12.3 mJ", "1 J", "2.5 µJ", "0 J", "0 J"],
+    [1234, -0.01234, 0.9996, 2.5e-6, 4e-9, 0, 1e-12].map((value) => valueText(value, "J")),
+    ["1.23 kJ", "−12.3 mJ", "1 J", "2.5 µJ", "4 nJ", "0 J", "0 J"],
   );
-  assert.deepEqual([valueText(12.345, "%"), valueText(0.004, "×"), valueText(null, "J")], ["12.3 %", "×0.004", "–"]);
+  assert.deepEqual(
+    [valueText(12.345, "%"), valueText(0.0001, "%"), valueText(0.004, "×"), valueText(null, "J")],
+    ["12.3 %", "0 %", "×0.004", "–"],
+  );
   assert.deepEqual(summary([null, 3, 1, null]), { last: null, least: 1, most: 3 });
   assert.equal(summary([null, NaN]), null);
 });

@@ -108,7 +108,7 @@ function fromSolid(collider, x, time) {
 }
 
 /// Pairs of a scene's two cloths, and of their vertices and solids: `near`, that can be told, with the distances that
-/// they have and are kept; `close`, that must be told, as they are nearer than that by more than rounding.
+/// they have and are kept; `close`, that must be told, whatever the last search listed.
 export function nearByBruteForce({ self_collision, colliders, cloths }, x, { triangles, cloths: ranges }, time) {
   const near = [],
     rounding = 1e-6;
@@ -158,7 +158,8 @@ export function nearByBruteForce({ self_collision, colliders, cloths }, x, { tri
   for (const [v] of all)
     for (const [number, collider] of (colliders ?? []).entries())
       if (!held.has(v)) add(vertexSolid, [[v], [number]], fromSolid(collider, x[v], time), margin);
-  const close = near.filter(({ gap, keep, within }) => gap < keep - rounding && within > 1e-4);
+  const complete = (kind) => (kind === vertexSolid ? 1.5 : 1); // of solids all that are near
+  const close = near.filter(({ kind, gap, keep, within }) => gap < complete(kind) * keep - rounding && within > 1e-4);
   return { near, close };
 }
 

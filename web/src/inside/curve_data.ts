@@ -63,6 +63,7 @@ const prefixes = [
   [1, ""],
   [1e-3, "m"],
   [1e-6, "µ"],
+  [1e-9, "n"],
 ] as const;
 
 /// Three figures and a unit: `12.3 mJ`, `4.5 %`, `×0.98`.
@@ -74,8 +75,8 @@ export function valueText(value: number | null, unit: "J" | "%" | "×"): string 
     return `${number < 0 && Number(text) !== 0 ? "−" : ""}${text}`;
   };
   if (unit === "×") return `×${figures(value)}`;
-  if (unit === "%") return `${figures(value)} %`;
+  if (unit === "%") return `${size < 0.0005 ? 0 : figures(value)} %`;
   if (size < 1e-9) return "0 J";
-  const [factor, prefix] = prefixes.find(([least]) => size >= 0.9995 * least) ?? ([1e-6, "µ"] as const);
+  const [factor, prefix] = prefixes.find(([least]) => size >= 0.9995 * least) ?? ([1e-9, "n"] as const);
   return `${figures(value / factor)} ${prefix}J`;
 }

@@ -105,15 +105,15 @@ export class ThickLines {
           vec4 a = projectionMatrix * modelViewMatrix * vec4(from, 1.0);
           vec4 b = projectionMatrix * modelViewMatrix * vec4(to, 1.0);
           vec2 way = (b.xy / b.w - a.xy / a.w) * 0.5 * viewport;
-          float long = length(way);
-          vec2 along = long > 1e-3 ? way / long : vec2(1.0, 0.0);
+          float span = length(way);
+          vec2 along = span > 1e-3 ? way / span : vec2(1.0, 0.0);
           vec2 across = vec2(-along.y, along.x);
           bool second = position.x > 0.5;
           vec4 end = second ? b : a;
           vec2 shift = (along * (second ? 1.0 : -1.0) + across * position.y) * 0.5 * width;
           end.xy += shift / (0.5 * viewport) * end.w;
           gl_Position = a.w > 0.0 && b.w > 0.0 ? end : vec4(2.0, 2.0, 2.0, 1.0);
-          vLength = 2.0 * long / width;
+          vLength = 2.0 * span / width;
           vAt = vec2(second ? vLength + 1.0 : -1.0, position.y);
           vTone = tone;
         }`,
