@@ -33,6 +33,7 @@ export class Inside {
   private cloths = ""; // of the document
   private askTimer = 0;
   private saidAt = 0;
+  private sayTimer = 0;
   private foldedFigures = false;
 
   constructor(private readonly host: InsideHost) {
@@ -85,6 +86,7 @@ export class Inside {
     document.body.classList.toggle("inside-open", open);
     button("inside-open").setAttribute("aria-expanded", String(open));
     this.curves.run(this.card.showsCurves);
+    this.say();
     this.host.changed();
     if (open && byKey) this.card.focus();
     if (!open && focused) button("inside-open").focus();
@@ -144,8 +146,15 @@ export class Inside {
     this.source(0);
   }
 
+  // Not at each frame, but of the last one at any rate.
   private say(): void {
-    if (!this.open || performance.now() - this.saidAt < words) return;
+    clearTimeout(this.sayTimer);
+    const early = words - (performance.now() - this.saidAt);
+    if (!this.open) return;
+    if (early > 0) {
+      this.sayTimer = window.setTimeout(() => this.say(), early);
+      return;
+    }
     this.saidAt = performance.now();
     const past = this.choices.contacts && !this.host.live();
     this.card.tell(this.strained.largest, past ? "Of the present alone: go back to live." : this.contacts.text);
