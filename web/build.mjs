@@ -49,6 +49,7 @@ const { metafile } = await build({
     text: "src/text/text.css",
     gallery: "src/gallery/gallery.css",
     compare: "src/compare/compare.css",
+    inside: "src/inside/inside.css",
   },
   outdir: "dist",
   splitting: true, // what an import() names is loaded when it is used

@@ -33,6 +33,9 @@ Outcome ask_session(Client& client, const Request& request, decltype(session::Co
 Outcome grab_end(Client& client, const Request& request);
 Outcome grab_move(Client& client, const Request& request);
 Outcome grab_start(Client& client, const Request& request);
+Outcome inspect_contacts(Client& client, const Request& request);
+Outcome inspect_elements(Client& client, const Request& request);
+Outcome inspect_springs(Client& client, const Request& request);
 Outcome mesh_upload(Client& client, const Request& request);
 Outcome record_get(Client& client, const Request& request);
 Outcome record_start(Client& client, const Request& request);

@@ -58,6 +58,17 @@ struct RecordStart {
   double rate = 30;  ///< frames a second at most [1/s]
 };
 struct RecordStop {};
+/// Asks for the springs of the scene, or its finite elements, from this one on.
+struct InspectSprings {
+  std::size_t first = 0;
+};
+struct InspectElements {
+  std::size_t first = 0;
+};
+/// Asks for so many of the pairs that contact keeps apart, the nearest ones.
+struct InspectContacts {
+  std::size_t most = 0;
+};
 struct Speed {
   double factor = 1;
 };
@@ -112,7 +123,8 @@ struct Command {
   Ticket ticket;
   std::variant<GetScene, LoadScene, UploadMesh, PatchScene, TravelHistory, Play, Pause, Step, Reset, Speed,
                Demand, Watchers, Export, ReachScene, Hold, Release, Chosen, GrabStart, GrabMove, GrabEnd,
-               GetTimeline, ResumeAt, RecordStart, RecordStop>
+               GetTimeline, ResumeAt, RecordStart, RecordStop, InspectSprings, InspectElements,
+               InspectContacts>
       what;
 };
 

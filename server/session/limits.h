@@ -18,7 +18,10 @@ struct Limits {
 inline constexpr std::size_t max_waiting_commands = 1024;                 ///< per client
 inline constexpr double min_speed = 0.01, max_speed = 100;                ///< simulated seconds per second
 inline constexpr double min_recording_rate = 1, max_recording_rate = 60;  ///< frames per second
-inline constexpr double status_rate = 10;                                 ///< statuses per second
-inline constexpr double diagnosis_rate = 60;                              ///< checks for a blow-up per second
+inline constexpr std::size_t max_inspected_elements = 65536;              ///< in an answer
+inline constexpr std::size_t max_inspected_contacts = 4096;               ///< in an answer
+inline constexpr double inspection_rate = 20;  ///< looks at the contacts of a session that plays, per second
+inline constexpr double status_rate = 10;      ///< statuses per second
+inline constexpr double diagnosis_rate = 60;   ///< checks for a blow-up per second
 
 }  // namespace clothlab::session

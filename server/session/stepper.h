@@ -109,6 +109,11 @@ class Stepper {
   void record_mesh();
   void record_change(json change);
   void follow_recording();
+  // In stepper_inspect.cpp.
+  void perform(InspectSprings& springs, const Ticket& ticket);
+  void perform(InspectElements& elements, const Ticket& ticket);
+  void perform(InspectContacts& contacts, const Ticket& ticket);
+  json contacts_told(std::size_t most);
   // In stepper_meshes.cpp.
   void perform(UploadMesh& upload, const Ticket& ticket);
   clothlab::Status use_again(const std::string& mesh, const Ticket& ticket);
@@ -198,6 +203,10 @@ class Stepper {
   Recorder recorder_{exchange_, static_cast<std::size_t>(limits_.recording_bytes)};
   std::uint32_t recorded_revision_ = 0;   ///< of the mesh that the recording has
   std::vector<Ticket> ending_recording_;  ///< requests record.stop that wait for the end of the recording
+
+  json contacts_;  ///< the last answer to InspectContacts
+  std::size_t contacts_most_ = 0;
+  Clock::time_point contacts_at_{};
 
   std::uint64_t revision_ = 1;
   std::uint32_t topology_revision_ = 0;

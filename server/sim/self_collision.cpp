@@ -113,6 +113,7 @@ void SelfCollision::invalidate() {
                   offsetof(NeighbourControl, search));
   heads_.buffer.fill(chain_end);  // a search that was given up has left vertices in the cells
   updates_ = 0;
+  searched_ = false;
 }
 
 Work SelfCollision::update_lists() {
@@ -148,6 +149,7 @@ Work SelfCollision::update_lists() {
   }
   finish_.use();
   dispatch(offsetof(NeighbourControl, finish));
+  searched_ = true;
   // With software OpenGL a dispatch has ended when the call returns. One that takes long shows that the cloth
   // has crumpled since its start, and each range must become smaller.
   if (longest > long_dispatch && range_groups_ > 1) {
@@ -191,6 +193,7 @@ void SelfCollision::take_counters(const SelfCollision& other) {
 }
 
 std::vector<std::vector<SelfCollision::Neighbour>> SelfCollision::read_lists() const {
+  if (!searched_) return {};
   std::vector<std::uint32_t> counts(vertex_count_);
   std::vector<Neighbour> slots(std::size_t{vertex_count_} * slots_);
   counts_.buffer.download(counts.data(), counts.size() * sizeof(std::uint32_t));
@@ -198,7 +201,7 @@ std::vector<std::vector<SelfCollision::Neighbour>> SelfCollision::read_lists() c
   std::vector<std::vector<Neighbour>> lists;
   for (std::size_t i = 0; i < vertex_count_; ++i) {
     const auto first = slots.begin() + static_cast<std::ptrdiff_t>(i * slots_);
-    lists.emplace_back(first, first + counts[i]);
+    lists.emplace_back(first, first + std::min(counts[i], slots_));
   }
   return lists;
 }

@@ -49,7 +49,8 @@ class SelfCollision {
     float distance = 0;  ///< the distance that self-collision keeps from that vertex [m]
     bool operator==(const Neighbour&) const = default;
   };
-  /// The present list of each vertex, nearest neighbour first. Waits for the GPU.
+  /// The present list of each vertex, nearest neighbour first; none before the first search since
+  /// `invalidate`. Waits for the GPU.
   std::vector<std::vector<Neighbour>> read_lists() const;
   float reach() const { return reach_; }
 
@@ -70,6 +71,7 @@ class SelfCollision {
   std::uint32_t range_groups_ = 1;  ///< work groups of one dispatch of the search
   double candidates_ = 0;
   std::uint64_t updates_ = 0;  ///< calls of update_lists since `invalidate`
+  bool searched_ = false;      ///< since `invalidate`
   std::uint32_t longest_ = 0;  ///< Counters::longest as last read back
   float skin_ = 0;             ///< [m]
   float reach_ = 0;            ///< contact distance + skin: how far the lists look [m]

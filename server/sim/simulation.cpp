@@ -7,6 +7,7 @@
 #include "server/model/clean_start.h"
 #include "server/model/size.h"
 #include "server/sim/colliders.h"
+#include "server/sim/near_pairs.h"
 #include "server/sim/simulation_steps.h"
 #include "server/sim/state.h"
 
@@ -248,6 +249,9 @@ void Simulation::restore(const State& state, double time, std::uint64_t step) {
 
 State Simulation::read_state() {
   return implementation_->scene_order.to_scene(implementation_->state.read());
+}
+NearPairs Simulation::near_pairs() {
+  return sim::near_pairs(implementation_->kernels, scene(), read_state(), time());
 }
 void Simulation::finish() {
   glFinish();

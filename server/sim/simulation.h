@@ -18,6 +18,7 @@ namespace clothlab::sim {
 
 struct Hand;
 class KeptStates;
+struct NearPairs;
 
 /// How much of a simulation a change of scene replaces: nothing, only numbers, also the kernels, or all.
 /// Only `cloth` resets time and positions.
@@ -152,6 +153,8 @@ class Simulation {
 
   /// Reads positions and velocities back, waiting for the GPU.
   State read_state();
+  /// The pairs near each other that contact keeps apart (near_pairs.h), waiting for the GPU. Changes nothing.
+  NearPairs near_pairs();
   /// The inverse of `read_state`: continues from `state`, at `time` [s] and step number `step`. `state` must
   /// have the model's vertex count. It does not hold what a method remembers between steps: that starts anew,
   /// so the next step is not bit for bit the one that would have followed.

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "server/base/result.h"
 #include "server/gl/buffer.h"
@@ -36,6 +37,10 @@ class SurfaceContact {
 
   /// Forgets the pairs and what is carried over from step to step.
   void invalidate();
+
+  /// As of SurfacePairs.
+  std::vector<SurfacePairs::Pair> read_pairs() const { return pairs_.read_pairs(); }
+  bool searched() const { return pairs_.searched(); }
 
   struct Counters {
     std::uint32_t pairs = 0;     ///< that the last search listed

@@ -151,6 +151,7 @@ void SurfacePairs::forget_pairs(bool within_step) {
   }
   control.rebuild[0] = vertex_groups(std::max(vertex_count_, triangle_count_));
   control_.upload(&control, sizeof control);
+  searched_ = false;
 }
 
 void SurfacePairs::search(const StateBuffers& state) {
@@ -186,6 +187,7 @@ void SurfacePairs::search(const StateBuffers& state) {
   pairs_.buffer.bind_storage(slot_surface_pairs);
   dispatch(pairs_program_, offsetof(SurfaceControl, candidate_groups));
   dispatch(finish_, offsetof(SurfaceControl, rebuild));
+  searched_ = true;
 }
 
 Work SurfacePairs::update(const StateBuffers& state) {

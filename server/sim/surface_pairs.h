@@ -56,8 +56,10 @@ class SurfacePairs {
     bool edges = false;
     bool forces = true;  ///< false: side by side, or too near, at rest: not kept apart
   };
-  /// The pairs of the last search. Waits for the GPU.
+  /// The pairs of the last search since `invalidate`. Waits for the GPU.
   std::vector<Pair> read_pairs() const;
+  /// False: no search has been made since `invalidate`.
+  bool searched() const { return searched_; }
 
  private:
   void search(const StateBuffers& state);
@@ -75,7 +77,7 @@ class SurfacePairs {
   std::uint32_t vertex_count_ = 0, triangle_count_ = 0;
   Capacities capacity_;
   float most_query_ = 0, skin_ = 0;  ///< [m]
-  bool driven_ = false, in_pieces_ = false;
+  bool driven_ = false, in_pieces_ = false, searched_ = false;
   std::uint64_t updates_ = 0;  ///< calls of `update` since `invalidate`
   gl::Program corners_, leaf_boxes_program_, leaf_pairs_program_, triangle_pairs_program_, candidates_,
       pairs_program_, finish_;

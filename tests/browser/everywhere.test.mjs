@@ -63,6 +63,12 @@ for (const [width, height] of [
       await page.getByRole("combobox", { name: "Colour by" }).selectOption("strain");
       await page.locator("#legend").waitFor();
       found.push(...(await violations(viewer, "legend")));
+      await page.keyboard.press("i");
+      for (const overlay of ["structural", "Contact pairs"])
+        await page.getByRole("checkbox", { name: overlay, exact: true }).check();
+      await page.locator(".inside-label").waitFor();
+      found.push(...(await violations(viewer, "see inside")));
+      await page.keyboard.press("Escape");
       await page.getByRole("button", { name: "Lab", exact: true }).click();
       await page.getByRole("button", { name: "Options" }).first().click();
       for (const tab of ["Chart", "Stability", "Choose", "Simplify"]) {
@@ -143,7 +149,7 @@ const unreachable = () => {
   for (const node of document.querySelectorAll(".card, .card button, .card select, .card summary")) {
     if (!shown(node)) continue;
     const { left, top, right, bottom } = node.getBoundingClientRect();
-    const scrolls = node.closest(".panel-body, .lab-body");
+    const scrolls = node.closest(".panel-body, .lab-body, .inside-body");
     const name = node.id || node.getAttribute("aria-label") || node.textContent.trim().slice(0, 20);
     if (left < -0.5 || right > innerWidth + 0.5) problems.push(`${name} sticks out to a side`);
     if (!scrolls && (top < -0.5 || bottom > innerHeight + 1)) problems.push(`${name} sticks out above or below`);
@@ -188,6 +194,19 @@ for (const [width, height] of [
     await page.getByRole("button", { name: "Parameters" }).click();
     await look(width <= 760 ? "panel open" : "panel folded");
     await page.getByRole("button", { name: "Parameters" }).click();
+    await page.getByRole("combobox", { name: "Colour by" }).selectOption("strain");
+    await page.keyboard.press("Escape");
+    await page.evaluate(() => document.activeElement.blur());
+    await page.keyboard.press("i");
+    await page.locator("#inside").waitFor();
+    await page.getByRole("checkbox", { name: "structural", exact: true }).check();
+    await look("see inside");
+    await page.getByRole("button", { name: "Timeline" }).click();
+    await page.locator("#timeline").waitFor();
+    await look("see inside, with the timeline");
+    await page.screenshot({ path: `${screenshots}everywhere-inside-${width}x${height}.png` });
+    await page.getByRole("button", { name: "Timeline" }).click();
+    await page.getByRole("button", { name: "Close See inside" }).click();
     await page.keyboard.press("l");
     await look("lab");
     await page.screenshot({ path: `${screenshots}everywhere-${width}x${height}.png` });

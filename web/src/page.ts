@@ -12,6 +12,8 @@ import { Hud, type Status } from "./panel/hud";
 import { Refusals } from "./panel/refusals";
 import { bindFirstSteps } from "./panel/newcomer";
 import { Lab } from "./lab/drawer";
+import { InsideDoor } from "./inside/door";
+import { StatusLog } from "./panel/status_log";
 import { Layout } from "./panel/layout";
 import { LinkView } from "./panel/link_view";
 import { Guide } from "./explain/guide";
@@ -20,6 +22,7 @@ import { takeDroppedMeshes } from "./panel/mesh_drop";
 import { Panel } from "./panel/panel";
 import { Presets } from "./panel/presets";
 import { RecordButton } from "./panel/record_button";
+import { bindSaveButtons } from "./panel/save_buttons";
 import { Bodies } from "./link/bodies";
 import { SlowWatch } from "./panel/slow_watch";
 import { SceneStore } from "./link/scene_store";
@@ -42,6 +45,8 @@ type Params = Record<string, unknown>;
 export class Page {
   private stage!: Stage; // set by show(), before the first event of the connection
   private readonly hud = new Hud();
+  private readonly statusLog = new StatusLog();
+  private inside: InsideDoor | null = null; // with the stage
   private readonly session = new URLSearchParams(location.search).get("session") ?? "main";
   private readonly connection = new Connection(this.session, this.linkEvents());
   private readonly link = new LinkView(this.connection);
@@ -71,7 +76,10 @@ export class Page {
   private readonly compare = this.makeCompare();
   private readonly notifications = this.makeNotifications();
   private readonly colourBy = new ColourBy(
-    (field) => this.connection.setField(field),
+    (field) => {
+      this.connection.setField(field);
+      this.inside?.coloured();
+    },
     () => this.layout?.cardToggled(),
   );
   private readonly picture = this.makePicture();
@@ -105,6 +113,8 @@ export class Page {
     this.stage = hook.stage = stage;
     const layout: Layout = (this.layout = new Layout(() => stage.resize(layout.freeArea())));
     this.hand = this.makeHand(stage);
+    this.inside = this.makeInside(stage);
+    bindSaveButtons({ stage, sceneName: () => this.sceneName });
     this.bind(layout, new ThemeSwitch(() => stage.setTheme()));
     stage.onLost = () =>
       notice("warning", {
@@ -124,7 +134,8 @@ export class Page {
     const lab = (): void => this.lab.toggle();
     const text = (): void => this.text.toggle();
     const compare = (): void => this.compare.toggle();
-    bindCommands({ transport: this.transport, layout, theme, fit: () => this.stage.fit(), lab, text, compare });
+    const inside = (): void => this.inside?.toggle();
+    bindCommands({ transport: this.transport, layout, theme, fit: () => this.stage.fit(), lab, text, compare, inside });
     bindCameraInput(this.stage.controls, () => this.hand?.holding === true);
     bindTimeline({
       picture: this.picture,
@@ -248,6 +259,24 @@ export class Page {
     });
   }
 
+  private makeInside(stage: Stage): InsideDoor {
+    return new InsideDoor({
+      stage,
+      log: this.statusLog,
+      ask: (method, params) => this.connection.request(method, params),
+      document: () => this.store.document,
+      field: () => this.colourBy.chosen,
+      live: () => this.picture.live,
+      recolour: () => {
+        const { frame } = stage;
+        if (!frame) return;
+        stage.show(frame);
+        this.colourBy.show(frame.field, frame.header.range);
+      },
+      changed: () => this.layout?.cardToggled(),
+    });
+  }
+
   private makeLab(): Lab {
     return new Lab({
       request: (method, params) => this.connection.request(method, params),
@@ -315,6 +344,7 @@ export class Page {
       },
       "sim.status": (params) => {
         this.hud.showStatus(params as Status);
+        this.statusLog.take(params as Status);
         this.transport.status(params as Status);
         this.slow.told(params as Status);
         this.stability = (params.stability as Stability | undefined) ?? this.stability;
@@ -374,6 +404,7 @@ export class Page {
     element("scene-name", HTMLElement).textContent = document.name;
     this.drawDocument(newScene, whole);
     this.hand?.sceneChanged();
+    this.inside?.sceneChanged();
     this.panel.show(document, this.store.stored ?? document);
     this.lab.sceneChanged();
     this.text.sceneChanged();

@@ -45,6 +45,11 @@ export class Picture {
     else this.latest ??= this.kept.all.at(-1)?.frame ?? null;
   }
 
+  /// What is on screen is of the present, not looked at again.
+  get live(): boolean {
+    return this.lookedAt === null;
+  }
+
   /// The next frame is the first of another cloth: it is fitted into the view.
   fitAtNext(): void {
     this.fitNext = true;

@@ -1,6 +1,7 @@
 // What the cloth's colours show: the choice beside the speed, kept in this browser, and the legend above it.
 import { element } from "./dom";
 import { fields, gradient, isField } from "../view/fields";
+import { fixedRange } from "../view/field_ranges";
 import { inBrowser } from "../link/kept";
 import type { FieldName } from "../link/protocol";
 
@@ -26,13 +27,14 @@ export class ColourBy {
     if (this.chosen) chosen(this.chosen);
   }
 
-  private get chosen(): FieldName | null {
+  get chosen(): FieldName | null {
     return isField(this.choice.value) ? this.choice.value : null;
   }
 
   /// Says what the colours of the frame on screen mean.
   show(field: FieldName | null, range: number): void {
-    const text = field ? fields[field].most(range) : "";
+    const fixed = field ? fixedRange(field) : undefined;
+    const text = field ? `${fixed ? "≥ " : ""}${fields[field].most(fixed ?? range)}` : "";
     if (this.most.textContent !== text) this.most.textContent = text;
     if (field === this.shown) return;
     this.shown = field;

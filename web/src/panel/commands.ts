@@ -13,9 +13,10 @@ interface Commanded {
   lab(): void;
   text(): void;
   compare(): void;
+  inside(): void;
 }
 
-export function bindCommands({ transport, layout, theme, fit, lab, text, compare }: Commanded): void {
+export function bindCommands({ transport, layout, theme, fit, lab, text, compare, inside }: Commanded): void {
   const dialog = element("help-dialog", HTMLDialogElement);
   const help = (): void => dialog.showModal();
   bindKeys({
@@ -28,6 +29,7 @@ export function bindCommands({ transport, layout, theme, fit, lab, text, compare
     lab,
     text,
     compare,
+    inside,
   });
   button("fit").onclick = fit;
   button("help").onclick = help;

@@ -1,7 +1,7 @@
 // The keyboard: one key, one command. Keys do nothing while the user types or a dialog is open.
 
 export type Commands = Record<
-  "toggle" | "step" | "reset" | "fit" | "hide" | "help" | "lab" | "text" | "compare",
+  "toggle" | "step" | "reset" | "fit" | "hide" | "help" | "lab" | "text" | "compare" | "inside",
   () => void
 >;
 
@@ -12,6 +12,7 @@ const bindings: Record<string, keyof Commands> = {
   f: "fit",
   h: "hide",
   l: "lab",
+  i: "inside",
   j: "text",
   c: "compare",
   "?": "help",

@@ -18,6 +18,7 @@ import {
   type StageUniforms,
 } from "./fabric_material";
 import { fields } from "./fields";
+import { fixedRange } from "./field_ranges";
 import { heldVertices } from "./pins";
 import { fieldBytes, q16Words, type ShownFrame, type Topology } from "../link/protocol";
 import type { SceneDocument } from "../link/scene_types";
@@ -40,6 +41,7 @@ export class ClothView {
     boxExtent: { value: new Vector3() },
     coloured: { value: 0 },
     fieldPower: { value: 1 },
+    fieldScale: { value: 1 },
   };
   private readonly materials: FabricMaterial[] = [];
   private readonly depthMaterial = clothCasterMaterial(this.decode);
@@ -102,6 +104,7 @@ export class ClothView {
     this.decode.coloured.value = bytes ? 1 : 0;
     if (!bytes || !frame.field) return;
     this.decode.fieldPower.value = fields[frame.field].power;
+    this.decode.fieldScale.value = frame.header.range / (fixedRange(frame.field) ?? frame.header.range);
     this.fields ??= [new BufferAttribute(bytes, 1, true), new BufferAttribute(bytes, 1, true)];
     this.fields.reverse();
     this.fields[0].array = bytes;

@@ -30,6 +30,7 @@ export interface DecodeUniforms {
   boxExtent: IUniform<Vector3>;
   coloured: IUniform<number>; ///< 1: the field colours the cloth
   fieldPower: IUniform<number>; ///< colours are even in this power of the field
+  fieldScale: IUniform<number>; ///< range of the frame over that of the colours
 }
 
 // sRGB as the style sheet has it: the shader mixes them, then makes them linear.

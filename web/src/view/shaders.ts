@@ -60,6 +60,7 @@ uniform float pattern;
 uniform float hemmed;
 uniform float coloured;
 uniform float fieldPower;
+uniform float fieldScale;
 uniform vec3 fieldColors[9];
 varying float vField;
 varying vec2 vCloth;
@@ -111,7 +112,7 @@ vec3 fabricColor(vec3 base, bool front) {
 
 // Mixed in sRGB, as the legend's gradient is.
 vec3 fieldColor() {
-  float at = pow(clamp(vField, 0.0, 1.0), fieldPower) * 8.0;
+  float at = pow(clamp(vField * fieldScale, 0.0, 1.0), fieldPower) * 8.0;
   int below = min(int(at), 7);
   return pow(mix(fieldColors[below], fieldColors[below + 1], at - float(below)), vec3(2.2));
 }

@@ -3,6 +3,7 @@ import {
   Box3,
   Color,
   DirectionalLight,
+  Group,
   HemisphereLight,
   PCFShadowMap,
   PerspectiveCamera,
@@ -50,6 +51,9 @@ export interface Replacement {
 export class Stage {
   readonly controls: OrbitControls;
   readonly cloth: ClothView;
+  onShow = (): void => undefined; ///< another frame is to be drawn
+  onDraw = (): void => undefined; ///< before each picture
+  onDrawn = (): void => undefined; ///< after it, while it can be copied from the canvas
   onLost = (): void => undefined; ///< the WebGL context is lost; three.js restores what it can when the context returns
   readonly canvas: HTMLCanvasElement;
   private readonly renderer: WebGLRenderer;
@@ -70,6 +74,7 @@ export class Stage {
     lineColor: { value: new Color() },
   };
   private readonly shared: StageUniforms;
+  readonly overlays = new Group(); ///< what is drawn over the session's cloth
   private replacement: Replacement | null = null;
   area: FreeArea = { left: 0, top: 0, width: 1, height: 1 };
   private dirty = true;
@@ -101,7 +106,7 @@ export class Stage {
     this.light.castShadow = true;
     this.light.shadow.radius = 3;
     this.scene.add(this.light, this.light.target, this.sky, this.colliders.object, this.cloth.object);
-    this.scene.add(this.crossings.object);
+    this.scene.add(this.crossings.object, this.overlays);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = !matchMedia("(prefers-reduced-motion: reduce)").matches;
     this.controls.dampingFactor = 0.12;
@@ -138,7 +143,7 @@ export class Stage {
   /// Draws this in the place of the session's cloth, with the same camera; null: the session's cloth again.
   replace(replacement: Replacement | null): void {
     this.replacement = replacement;
-    this.cloth.object.visible = this.cloth.caster.visible = !replacement;
+    this.cloth.object.visible = this.cloth.caster.visible = this.overlays.visible = !replacement;
     this.resize(this.area);
   }
 
@@ -215,6 +220,7 @@ export class Stage {
     else this.keeper.see(framePoints(frame));
     if (first && this.keeper.fitted) this.orbit(this.keeper.jump());
     this.colliders.update(frame.moved, this.cloth.box.min.y);
+    this.onShow();
     this.invalidate();
     return true;
   }
@@ -301,15 +307,27 @@ export class Stage {
     const scale = this.dirty ? this.quality.level.scale : this.stillScale;
     if (scale !== this.scale) this.setScale(scale);
     if (this.dirty) this.quality.sample(sinceLast);
-    this.dirty = false;
     this.lastDrawn = now;
+    this.render();
+    return true;
+  }
+
+  /// Draws at full resolution at once; until the caller returns, the picture can be copied from the canvas.
+  drawSharp(): void {
+    if (this.scale !== this.stillScale) this.setScale(this.stillScale);
+    this.render();
+  }
+
+  private render(): void {
+    this.dirty = false;
+    this.onDraw();
     const render = (): void => {
       this.groundShadow.draw();
       this.renderer.render(this.scene, this.camera);
     };
     if (this.replacement) this.replacement.draw(this.renderer, render);
     else render();
-    return true;
+    this.onDrawn();
   }
 
   // Lets the driver compile while the page connects, so that the first frame need not wait.

@@ -1,0 +1,36 @@
+// inspect.*: what the simulation is made of and what touches what, for who looks. They change nothing.
+#include "server/net/client.h"
+#include "server/net/methods.h"
+#include "server/scene/ranges.h"
+#include "server/session/limits.h"
+
+namespace clothlab::net {
+
+namespace {
+
+template <class What>
+Outcome from_first(Client& client, const Request& request) {
+  Params params(request.params);
+  const std::int64_t first = params.integer("first", 0, 64 * scene::max_vertices, 0);
+  if (auto error = params.check()) return *error;
+  return ask_session(client, request, What{static_cast<std::size_t>(first)});
+}
+
+}  // namespace
+
+Outcome inspect_springs(Client& client, const Request& request) {
+  return from_first<session::InspectSprings>(client, request);
+}
+
+Outcome inspect_elements(Client& client, const Request& request) {
+  return from_first<session::InspectElements>(client, request);
+}
+
+Outcome inspect_contacts(Client& client, const Request& request) {
+  Params params(request.params);
+  const std::int64_t most = params.integer("most", 0, session::max_inspected_contacts, 1000);
+  if (auto error = params.check()) return *error;
+  return ask_session(client, request, session::InspectContacts{static_cast<std::size_t>(most)});
+}
+
+}  // namespace clothlab::net

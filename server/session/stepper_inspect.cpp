@@ -1,0 +1,117 @@
+// inspect.*, as a session's thread answers them: numbers as little-endian arrays in base64.
+#include <algorithm>
+#include <utility>
+
+#include "server/base/base64.h"
+#include "server/model/spring_kinds.h"
+#include "server/session/stepper.h"
+#include "server/sim/near_pairs.h"
+
+namespace clothlab::session {
+
+namespace {
+
+/// The elements [first, end) of a list, of which an answer has a part.
+struct Part {
+  std::size_t first, end;
+
+  Part(std::size_t from, std::size_t total)
+      : first(std::min(from, total)), end(std::min(first + max_inspected_elements, total)) {}
+  std::size_t count() const { return end - first; }
+};
+
+template <class Number>
+void append(std::vector<Number>& to, const auto& from) {
+  for (const auto value : from) to.push_back(static_cast<Number>(value));
+}
+
+}  // namespace
+
+void Stepper::perform(InspectSprings& asked, const Ticket& ticket) {
+  const model::Model& model = simulation().model();
+  const Part part(asked.first, model.springs().size());
+  const std::vector<model::SpringKind> all = model::spring_kinds(model, scene());
+  std::vector<std::uint32_t> vertices;
+  std::vector<float> rest_length;
+  std::vector<std::uint8_t> kind;
+  for (std::size_t i = part.first; i < part.end; ++i) {
+    const model::Spring& spring = model.springs()[i];
+    append(vertices, spring.vertices);
+    rest_length.push_back(static_cast<float>(spring.law.rest_length));
+    kind.push_back(static_cast<std::uint8_t>(all[i]));
+  }
+  reply(ticket, json{{"topology_revision", simulation().topology_revision()},
+                     {"total", model.springs().size()},
+                     {"first", part.first},
+                     {"count", part.count()},
+                     {"vertices", to_base64(vertices)},
+                     {"rest_length", to_base64(rest_length)},
+                     {"kind", to_base64(kind)}});
+}
+
+void Stepper::perform(InspectElements& asked, const Ticket& ticket) {
+  const model::Model& model = simulation().model();
+  const auto& elements = model.elements.of<elements::Membrane>();
+  const Part part(asked.first, elements.size());
+  std::vector<std::uint32_t> vertices;
+  std::vector<float> shares;
+  for (std::size_t i = part.first; i < part.end; ++i) {
+    const elements::Membrane& law = elements[i].law;
+    append(vertices, elements[i].vertices);
+    append(shares, std::array{law.first_warp, law.first_weft, law.second_warp, law.second_weft});
+  }
+  reply(ticket, json{{"topology_revision", simulation().topology_revision()},
+                     {"total", elements.size()},
+                     {"first", part.first},
+                     {"count", part.count()},
+                     {"vertices", to_base64(vertices)},
+                     {"shares", to_base64(shares)}});
+}
+
+json Stepper::contacts_told(std::size_t most) {
+  const sim::NearPairs near = simulation().near_pairs();
+  const std::size_t count = std::min(most, near.pairs.size());
+  std::vector<std::uint8_t> kind;
+  std::vector<std::uint32_t> vertices;
+  std::vector<float> shares, gap, keep, nearest;
+  for (std::size_t i = 0; i < count; ++i) {
+    const sim::NearPair& pair = near.pairs[i];
+    kind.push_back(static_cast<std::uint8_t>(pair.kind));
+    append(vertices, pair.vertices);
+    append(shares, pair.shares);
+    gap.push_back(static_cast<float>(pair.gap));
+    keep.push_back(static_cast<float>(pair.keep));
+    for (const glm::dvec3& point : pair.nearest) append(nearest, std::array{point.x, point.y, point.z});
+  }
+  return {{"topology_revision", simulation().topology_revision()},
+          {"revision", revision_},
+          {"time", simulation().time()},
+          {"step", simulation().step_index()},
+          {"searched", near.searched},
+          {"total", near.pairs.size()},
+          {"count", count},
+          {"kind", to_base64(kind)},
+          {"vertices", to_base64(vertices)},
+          {"shares", to_base64(shares)},
+          {"gap", to_base64(gap)},
+          {"keep", to_base64(keep)},
+          {"nearest", to_base64(nearest)}};
+}
+
+// The pairs are read from the GPU, which takes time from the steps: who asks often gets the same answer
+// again.
+void Stepper::perform(InspectContacts& asked, const Ticket& ticket) {
+  const Clock::time_point now = Clock::now();
+  const bool same_scene = contacts_.is_object() && contacts_most_ == asked.most &&
+                          contacts_["topology_revision"] == simulation().topology_revision() &&
+                          contacts_["revision"] == revision_;
+  const bool fresh = run_.plays() && now - contacts_at_ < period(inspection_rate);
+  if (!same_scene || !fresh) {
+    contacts_ = contacts_told(asked.most);
+    contacts_most_ = asked.most;
+    contacts_at_ = now;
+  }
+  reply(ticket, contacts_);
+}
+
+}  // namespace clothlab::session
