@@ -63,6 +63,7 @@ for (const [width, height] of [
       await page.getByRole("combobox", { name: "Colour by" }).selectOption("strain");
       await page.locator("#legend").waitFor();
       found.push(...(await violations(viewer, "legend")));
+      await page.evaluate(() => document.activeElement.blur());
       await page.keyboard.press("i");
       for (const overlay of ["structural", "Contact pairs"])
         await page.getByRole("checkbox", { name: overlay, exact: true }).check();
