@@ -7,6 +7,7 @@
 #include <string>
 
 #include "server/scene/method.h"
+#include "server/sim/colliders.h"
 #include "server/sim/integrator.h"
 #include "server/sim/surface_control.h"
 
@@ -58,7 +59,7 @@ Result<SurfaceContact> SurfaceContact::create(const model::Model& model, const P
   made.pairs_ = std::move(*pairs);
   made.driven_ = plan.moving > 0;
   made.pairs_.set_driven(made.driven_);
-  const gl::Defines defines{{"GROUP_SIZE", std::to_string(group_size)}};
+  const gl::Defines defines = step_defines(plan);
   for (auto [program, name] : {std::pair{&made.contacts_, "contacts"},
                                {&made.forces_, "forces"},
                                {&made.apply_, "apply"},
@@ -105,6 +106,7 @@ void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Mode
                                       : of_short_step;
   push_passes_ = passes.pushes;
   filter_passes_ = passes.filter;
+  set_colliders(apply_, scene, motions, contact_margin(scene, model));
   forces_.set("friction", static_cast<float>(scene.self_collision ? scene.self_collision->friction : 0.0));
   forces_.set("mend", static_cast<float>(std::min(mended_in_step, mended_in_second * dt)));
   invalidate();
@@ -154,11 +156,11 @@ void SurfaceContact::keep_apart(StateBuffers& state, int row) {
   bodies_.place_at_end(state, row);
   for (int piece = 0; piece < pieces_; ++piece) {
     if (pieces_ > 1) advance(state, piece, changing);
-    push_and_filter(state, changing, piece == pieces_ - 1);
+    push_and_filter(state, row, changing, piece == pieces_ - 1);
   }
 }
 
-void SurfaceContact::push_and_filter(StateBuffers& state, std::uint32_t changing, bool last_piece) {
+void SurfaceContact::push_and_filter(StateBuffers& state, int row, std::uint32_t changing, bool last_piece) {
   for (const gl::Program* program : {&contacts_, &apply_, &begin_, &move_})
     program->set("changing_vertex_count", static_cast<GLint>(changing));
   const std::size_t counts =
@@ -190,6 +192,7 @@ void SurfaceContact::push_and_filter(StateBuffers& state, std::uint32_t changing
 
   run(contacts_,
       pieces_ > 1 ? offsetof(SurfaceControl, contact_groups) : offsetof(SurfaceControl, pair_groups));
+  if (driven_) apply_.set("start_row", row);
   for (int pass = 0; pass < push_passes_; ++pass) {
     run(forces_, touching);
     apply_.set("recount", long_steps_ && pass > 0 ? 1 : 0);

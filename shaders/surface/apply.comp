@@ -1,11 +1,33 @@
-// Contact, 3 of 3: the pushes on each vertex, in place.
+// Contact, 3 of 3: the pushes on each vertex, in place. A solid that it is pushed into stops it, with friction: so what
+// lies on a solid carries what lies on it.
 #include "surface.glsl"
+#include "../methods/motions.glsl"
+#include "../collide/colliders.glsl"
+READ_VEC4(step_start, unit_step_start);
 layout(std430, binding = slot_next_position) buffer Position { vec4 position[]; };
 layout(std430, binding = slot_next_velocity) buffer Velocity { vec4 velocity[]; };
 layout(std430, binding = slot_contact_sums) buffer Sums { int sums[]; };
 // 1: from now on only those pairs share a vertex that pushed it in this pass. In the first passes too many others may
 // begin to.
 uniform int recount;
+
+void stop_at_solids(int i) {
+  vec3 start = FETCH(step_start, i).xyz, x = position[i].xyz, v = velocity[i].xyz;
+  met_braking = vec3(0.0);
+  int met = 0;
+  // A solid that moves is where the step takes it, but a piece ends before the step does.
+#if SOLID_ROWS > 0
+#define STOP(kind, moves, first, end)                                \
+  if (!moves || piece_count == 1)                                    \
+    for (int row = first; row < end; row += solid_rows(kind))        \
+      met += meet_solid(kind, moves, row, start, x, v, 0.0);
+  EACH_SOLID(STOP)
+#endif
+  RARELY(met > 0) {
+    position[i].xyz = x - met_braking;
+    velocity[i].xyz = v;
+  }
+}
 
 void main() {
   int i = int(gl_GlobalInvocationID.x), first = SUMS * i;
@@ -21,4 +43,5 @@ void main() {
     velocity[i].xyz += vec3(sums[first + 12], sums[first + 13], sums[first + 14]) / (units_of_speed() * weight);
     for (int k = 8; k < 15; ++k) sums[first + k] = 0;
   }
+  RARELY(position[i].w > 0.0) stop_at_solids(i);
 }
