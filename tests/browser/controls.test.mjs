@@ -287,10 +287,12 @@ browserTest("speed, help, fit and hiding: the remaining controls do what they sa
         .join();
     });
   const home = await camera();
+  await page.keyboard.down("Alt"); // orbits on the cloth, too, wherever it is by now
   await page.mouse.move(500, 400);
   await page.mouse.down();
   await page.mouse.move(620, 380, { steps: 5 });
   await page.mouse.up();
+  await page.keyboard.up("Alt");
   await eventually("the orbited camera", camera, (now) => now !== home);
   await page.waitForTimeout(600); // the swing of the damped controls ends
   await page.keyboard.press("f");
