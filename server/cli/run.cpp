@@ -207,7 +207,7 @@ int run(const RunOptions& options) {
     if (outputs->trace)
       if (Status added = outputs->trace->add(state); !added) return added;
     if (!outputs->states || !options.every) return ok();
-    return outputs->states->add(simulation.model(), simulation.read_state(),
+    return outputs->states->add(simulation.model(), simulation.scene(), simulation.read_state(),
                                 comment(state, scene_name, false));
   };
   const Result<Progress> progress = advance(simulation, *steps, *every, at_stop);
@@ -216,7 +216,7 @@ int run(const RunOptions& options) {
   const sim::State state = simulation.read_state();
   if (outputs->states && !options.every) {
     const std::string about = comment(progress->state, scene_name, progress->diverged);
-    if (Status added = outputs->states->add(simulation.model(), state, about); !added)
+    if (Status added = outputs->states->add(simulation.model(), simulation.scene(), state, about); !added)
       return fail(added.error(), exit_internal);
   }
   if (outputs->trace && progress->diverged) outputs->trace->mark_diverged(progress->diverged_by);
@@ -244,7 +244,7 @@ void add_run(CLI::App& app, int& exit_code) {
       ->type_name("T");
   command
       ->add_option("--out", options->out,
-                   "the final mesh (.obj, .ply); with --every the series (.obj, .ply, .pc2)")
+                   "the final mesh (.obj, .ply, .glb); with --every the series (these, .pc2)")
       ->type_name("F");
   command
       ->add_option("--every", options->every, "time between two samples of --out, --trace and --verify [s]")

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "server/base/text.h"
+#include "server/model/glb.h"
 #include "server/model/mesh_file.h"
 
 namespace clothlab::cli {
@@ -58,10 +59,12 @@ Result<StateFiles> StateFiles::create(const std::string& path, bool series) {
   Format format = Format::obj;
   if (extension == ".ply")
     format = Format::ply;
+  else if (extension == ".glb")
+    format = Format::glb;
   else if (extension == ".pc2")
     format = Format::pc2;
   else if (extension != ".obj")
-    return Error{"--out " + path, "unknown kind of file", "one of .obj, .ply, .pc2"};
+    return Error{"--out " + path, "unknown kind of file", "one of .obj, .ply, .glb, .pc2"};
   if (format == Format::pc2 && !series)
     return Error{"--out " + path, "a PC2 file holds a series of samples", "add --every SECONDS"};
   if (Status writable = check_writable("--out", path); !writable) return writable.error();
@@ -75,12 +78,15 @@ std::string StateFiles::next_path() const {
   return (path.parent_path() / (path.stem().string() + number + path.extension().string())).string();
 }
 
-Status StateFiles::add(const model::Model& model, const sim::State& state, const std::string& comment) {
+Status StateFiles::add(const model::Model& model, const scene::Scene& scene, const sim::State& state,
+                       const std::string& comment) {
   Status written = ok();
   if (format_ == Format::pc2)
     written = add_to_point_cache(state);
   else if (format_ == Format::ply)
     written = write_file(next_path(), ply_bytes(model, state.position, comment));
+  else if (format_ == Format::glb)
+    written = write_file(next_path(), glb_bytes(model, scene, state.position, comment));
   else
     written = write_file(next_path(), obj_text(model, state.position, comment));
   ++samples_;

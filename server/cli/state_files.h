@@ -1,4 +1,5 @@
-// The files of `--out`: the final state or a series of samples, as OBJ, PLY or PC2 (point cache 2).
+// The files of `--out`: the final state or a series of samples, as OBJ, PLY, binary glTF or PC2 (point cache
+// 2).
 #pragma once
 
 #include <cstdint>
@@ -19,16 +20,17 @@ Status write_file(const std::string& path, const std::string& bytes);
 
 class StateFiles {
  public:
-  /// `series`: true if `add` is called for every sample, not only for the final state. OBJ and PLY samples
-  /// are then numbered (out.obj becomes out-0000.obj, out-0001.obj, ...). One PC2 file holds all samples, and
-  /// is possible only for a series.
+  /// `series`: true if `add` is called for every sample, not only for the final state. All samples
+  /// but those of a PC2 file are then numbered (out.obj becomes out-0000.obj, out-0001.obj, ...). One PC2
+  /// file holds all samples, and is possible only for a series.
   static Result<StateFiles> create(const std::string& path, bool series);
 
   /// Writes one sample. `comment` is one line about this state; a PC2 file cannot hold it.
-  Status add(const model::Model& model, const sim::State& state, const std::string& comment);
+  Status add(const model::Model& model, const scene::Scene& scene, const sim::State& state,
+             const std::string& comment);
 
  private:
-  enum class Format { obj, ply, pc2 };
+  enum class Format { obj, ply, glb, pc2 };
 
   StateFiles(std::string path, Format format, bool series)
       : path_(std::move(path)), format_(format), series_(series) {}

@@ -158,13 +158,15 @@ std::optional<HttpAnswer> HttpRequest::find_protected(const std::string& path) {
     return HttpAnswer{
         200, "text/plain; version=0.0.4; charset=utf-8", metrics_text(hub_.metrics(), hub_.gauges()), {}};
   const std::string session = query(wsi_, "session", main_session);
-  const bool mesh = path == "/api/mesh.obj", picture = path == "/api/snapshot.png";
+  const bool mesh = path == "/api/mesh.obj", model = path == "/api/mesh.glb",
+             picture = path == "/api/snapshot.png";
   const bool collider = path == "/api/collider.ply";
   const bool page = path == "/api/recording.html", recorded = page || path == "/api/recording.clothlab";
-  if (!mesh && !picture && !collider && !recorded && path != "/api/scene")
-    return plain(404,
-                 "the API has /api/scene, /api/mesh.obj, /api/collider.ply, /api/snapshot.png, "
-                 "/api/recording.clothlab and /api/recording.html");
+  if (!mesh && !model && !picture && !collider && !recorded && path != "/api/scene")
+    return plain(
+        404,
+        "the API has /api/scene, /api/mesh.obj, /api/mesh.glb, /api/collider.ply, /api/snapshot.png, "
+        "/api/recording.clothlab and /api/recording.html");
   Room* room = hub_.find_room(session);
   if (!room || !room->started())
     return plain(404,
@@ -172,8 +174,9 @@ std::optional<HttpAnswer> HttpRequest::find_protected(const std::string& path) {
   if (path == "/api/scene") return HttpAnswer{200, "application/json", room->document().dump(2) + "\n", {}};
   if (recorded) return recording(*room, page);
   if (collider) return collider_mesh(room->scene(), query(wsi_, "name", ""));
-  if (mesh) return ask_session(session, {});
-  const session::Export what{side(query(wsi_, "width", "1280"), max_snapshot_side),
+  using Kind = session::Export::Kind;
+  if (mesh || model) return ask_session(session, {mesh ? Kind::obj : Kind::glb});
+  const session::Export what{Kind::picture, side(query(wsi_, "width", "1280"), max_snapshot_side),
                              side(query(wsi_, "height", "720"), max_snapshot_side)};
   if (what.width == 0 || what.height == 0)
     return plain(400, "width and height are whole numbers from 1 to " + std::to_string(max_snapshot_side));

@@ -80,10 +80,11 @@ struct Demand {
 struct Watchers {
   int count = 0;
 };
-/// Asks for the present state for the HTTP API, which makes a picture (width > 0) or a mesh from it. Answered
-/// by Captured. `Ticket::asker` is the HTTP request.
+/// Asks for the present state for the HTTP API, which makes a file from it. Answered by Captured.
+/// `Ticket::asker` is the HTTP request.
 struct Export {
-  int width = 0, height = 0;  ///< [pixels]
+  enum class Kind { obj, glb, picture } kind = Kind::obj;
+  int width = 0, height = 0;  ///< of a picture [pixels]
 };
 /// Asks which steps the session can go on from.
 struct GetTimeline {};

@@ -7,6 +7,7 @@
 
 #include "server/base/priority.h"
 #include "server/gl/context.h"
+#include "server/model/glb.h"
 #include "server/model/mesh_file.h"
 #include "server/render/renderer.h"
 #include "server/session/fault.h"
@@ -16,8 +17,16 @@ namespace clothlab::session {
 
 namespace {
 
-bool is_picture(const Export& what) {
-  return what.width > 0;
+const char* type_of(Export::Kind kind) {
+  switch (kind) {
+    case Export::Kind::obj:
+      return "text/plain; charset=utf-8";
+    case Export::Kind::glb:
+      return "model/gltf-binary";
+    case Export::Kind::picture:
+      return "image/png";
+  }
+  return "";
 }
 
 /// A PNG. Each picture has a new context, as Mesa frees a picture's memory, up to 0.8 GB, only with its
@@ -81,9 +90,7 @@ void Exporter::run() {
       if (ending_) return;
       task = *std::exchange(task_, std::nullopt);
     }
-    const char* type = task.moment.recording   ? "text/html; charset=utf-8"
-                       : is_picture(task.what) ? "image/png"
-                                               : "text/plain; charset=utf-8";
+    const char* type = task.moment.recording ? "text/html; charset=utf-8" : type_of(task.what.kind);
     Exported made{task.asker, type, carry_out(task)};
     {
       const std::lock_guard lock(mutex_);
@@ -108,8 +115,10 @@ Result<std::string> make_export(std::optional<int> gpu, const Moment& moment, co
   if (moment.recording) return stream::player_page(*moment.recording, moment.title);
   const Result<model::Model> model = model::build(moment.document->scene);
   if (!model) return model.error();
-  if (is_picture(what)) return picture(gpu, moment, *model, what);
-  return model::obj_text(*model, moment.positions, "t = " + json(moment.time).dump() + " s");
+  if (what.kind == Export::Kind::picture) return picture(gpu, moment, *model, what);
+  const std::string comment = "t = " + json(moment.time).dump() + " s";
+  if (what.kind == Export::Kind::obj) return model::obj_text(*model, moment.positions, comment);
+  return model::glb_bytes(*model, moment.document->scene, moment.positions, comment);
 }
 
 }  // namespace clothlab::session

@@ -45,6 +45,14 @@ browserTest("a picture is a PNG of the canvas at full resolution, on the page's 
   assert.equal(seen.clear, 0, "nothing is transparent");
 });
 
+browserTest("a model is the cloths as binary glTF", async () => {
+  const viewer = await here.open({ session: "save-model", width: 1280, height: 800 });
+  const { name, bytes } = await saved(viewer, () => viewer.page.getByRole("button", { name: "Model" }).click());
+  assert.match(name, /^seed-\d+\.\d\ds\.glb$/);
+  assert.equal(bytes.subarray(0, 4).toString(), "glTF");
+  assert.equal(bytes.readUInt32LE(8), bytes.length);
+});
+
 browserTest("a video is a WebM that plays, with the motion that was on screen", async () => {
   const viewer = await here.open({ session: "save-video", width: 900, height: 600, sharp: true });
   const { page } = viewer;

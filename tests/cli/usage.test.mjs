@@ -50,7 +50,7 @@ const wrong = {
   "a value out of range": [["run", "seed", "--time", "1", "--set", "/solver/dt=-1"], /\/solver\/dt/],
   "a key that is not there": [["run", "seed", "--time", "1", "--set", "/solver/dd=1"], /\/solver\/dd/],
   "an assignment without a value": [["run", "seed", "--time", "1", "--set", "/solver/dt"], /--set|\/solver\/dt/],
-  "an unknown kind of mesh file": [["run", "seed", "--time", "1", "--out", "a.stl"], /\.obj, \.ply, \.pc2/],
+  "an unknown kind of mesh file": [["run", "seed", "--time", "1", "--out", "a.stl"], /\.obj, \.ply, \.glb, \.pc2/],
   "a point cache of one state": [["run", "seed", "--time", "1", "--out", "a.pc2"], /--every/],
   "--every for nothing": [["run", "seed", "--time", "1", "--every", "0.1"], /--out, --trace or --verify/],
   "--every below a step": [["run", "flag", "--time", "1", "--every", "1e-5", "--trace", "t.csv"], /one step/],

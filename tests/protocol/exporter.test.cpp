@@ -45,7 +45,7 @@ TEST_CASE("the exporter makes one file at a time, gives way while it does, and t
   };
   Exporter exporter(make, [&] { ++told; });
   CHECK(exporter.idle());
-  exporter.begin(7, {10, 20}, moment_at(1));
+  exporter.begin(7, {session::Export::Kind::picture, 10, 20}, moment_at(1));
   CHECK_FALSE(exporter.idle());
   CHECK_FALSE(exporter.take());
   may_end = true;
@@ -56,7 +56,7 @@ TEST_CASE("the exporter makes one file at a time, gives way while it does, and t
   CHECK(picture.asker == 7);
   CHECK(*picture.body == "10 at 1");
   CHECK(std::string(picture.content_type) == "image/png");
-  exporter.begin(8, {0, 0}, moment_at(2));
+  exporter.begin(8, {}, moment_at(2));
   const Exported mesh = made_by(exporter);
   CHECK(*mesh.body == "0 at 2");
   CHECK(std::string(mesh.content_type) == "text/plain; charset=utf-8");
@@ -74,10 +74,10 @@ TEST_CASE("an export that cannot be made is an error, and the next one is made")
   };
   Exporter exporter(make, [] {});
   for (const char* why : {"not enough memory", "the file fell over", "it would not"}) {
-    exporter.begin(1, {10, 10}, {});
+    exporter.begin(1, {session::Export::Kind::picture, 10, 10}, {});
     CHECK(made_by(exporter).body.error().text().find(why) != std::string::npos);
   }
-  exporter.begin(1, {10, 10}, {});
+  exporter.begin(1, {session::Export::Kind::picture, 10, 10}, {});
   CHECK(*made_by(exporter).body == "made");
 }
 
@@ -91,7 +91,7 @@ TEST_CASE("an exporter that ends finishes what it makes") {
   };
   {
     Exporter exporter(make, [] {});
-    exporter.begin(1, {10, 10}, {});
+    exporter.begin(1, {session::Export::Kind::picture, 10, 10}, {});
     await([&] { return begun.load(); });
   }
   CHECK(ended);
@@ -109,7 +109,8 @@ TEST_CASE("a picture or mesh of a moment needs no session") {
   CHECK(mesh->find("t = 0.5 s") != std::string::npos);
   CHECK(mesh->find("\nv 0.24 0 0\n") != std::string::npos);
   std::thread([&] {
-    const Result<std::string> picture = session::make_export(std::nullopt, moment, {64, 48});
+    const Result<std::string> picture =
+        session::make_export(std::nullopt, moment, {session::Export::Kind::picture, 64, 48});
     REQUIRE(picture);
     CHECK(picture->substr(1, 3) == "PNG");
   }).join();

@@ -8,6 +8,7 @@ import { fileURLToPath } from "node:url";
 import { once } from "node:events";
 import { after, before, test } from "node:test";
 import { gunzipSync } from "node:zlib";
+import gltf from "gltf-validator";
 import { Client, Server, sleep, withTimeout } from "./harness.mjs";
 
 async function eventually(look, good, what) {
@@ -417,8 +418,18 @@ test("/api/mesh.obj is the present cloth", async () => {
   await client.close();
 });
 
+test("/api/mesh.glb is the present cloths as binary glTF", async () => {
+  const { status, headers, body } = await server.get("/api/mesh.glb?session=main");
+  assert.equal(status, 200);
+  assert.equal(headers["content-type"], "model/gltf-binary");
+  assert.equal(body.subarray(0, 4).toString(), "glTF");
+  assert.equal(body.readUInt32LE(8), body.length);
+  const { issues } = await gltf.validateBytes(new Uint8Array(body));
+  assert.equal(issues.numErrors + issues.numWarnings, 0);
+});
+
 test("the API of a session that is not open answers 404 and opens none", async () => {
-  for (const path of ["/api/scene", "/api/mesh.obj", "/api/snapshot.png"])
+  for (const path of ["/api/scene", "/api/mesh.obj", "/api/mesh.glb", "/api/snapshot.png"])
     assert.equal((await server.get(`${path}?session=nobody`)).status, 404);
   assert.equal(await server.metric("clothlab_sessions"), 1);
 });

@@ -33,7 +33,7 @@ void draw() {
   moment.document = std::make_shared<const scene::Document>(std::move(*document));
   std::thread([&] {
     lower_priority(10);
-    REQUIRE(session::make_export(std::nullopt, moment, {64, 48}));
+    REQUIRE(session::make_export(std::nullopt, moment, {session::Export::Kind::picture, 64, 48}));
   }).join();
 }
 

@@ -114,7 +114,7 @@ export class Page {
     const layout: Layout = (this.layout = new Layout(() => stage.resize(layout.freeArea())));
     this.hand = this.makeHand(stage);
     this.inside = this.makeInside(stage);
-    bindSaveButtons({ stage, sceneName: () => this.sceneName });
+    bindSaveButtons({ stage, sceneName: () => this.sceneName, get: (path) => this.connection.get(path) });
     this.bind(layout, new ThemeSwitch(() => stage.setTheme()));
     stage.onLost = () =>
       notice("warning", {

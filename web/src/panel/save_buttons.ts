@@ -1,4 +1,5 @@
-// The buttons that save what is on screen, as a picture or a video. What they do is loaded with the first press.
+// The buttons that save what is on screen, as a picture or a video, and the cloths as a model. What they do is loaded
+// with the first press.
 import { button } from "./dom";
 import { noticeError } from "./notices";
 import type { ScreenSaver } from "./screen_saver";
@@ -7,6 +8,7 @@ import type { Stage } from "../view/stage";
 export interface Screen {
   stage: Stage;
   sceneName(): string;
+  get(path: string): Promise<ArrayBuffer>; ///< of the session
 }
 
 export function bindSaveButtons(screen: Screen): void {
@@ -19,5 +21,6 @@ export function bindSaveButtons(screen: Screen): void {
     });
   };
   button("save-picture").onclick = () => use((saver) => saver.savePicture());
+  button("save-model").onclick = () => use((saver) => void saver.saveModel());
   button("save-video").onclick = () => use((saver) => saver.toggleVideo());
 }

@@ -1,4 +1,5 @@
-// Saves what is on screen: a PNG of the picture, or a video that the browser itself records of it.
+// Saves what is on screen: a PNG of the picture, or a video that the browser itself records of it; and the present
+// cloths as the server writes them.
 import { button } from "./dom";
 import { fileName } from "./file_name";
 import { notice, noticeError } from "./notices";
@@ -65,6 +66,15 @@ export class ScreenSaver {
       if (blob) save(blob, name);
       else noticeError("Not saved", new Error("The browser made no picture of it."));
     }, "image/png");
+  }
+
+  async saveModel(): Promise<void> {
+    try {
+      const bytes = await this.screen.get("/api/mesh.glb");
+      save(new Blob([bytes], { type: "model/gltf-binary" }), fileName(this.screen.sceneName(), this.time, "glb"));
+    } catch (error) {
+      noticeError("Not saved", error as Error);
+    }
   }
 
   toggleVideo(): void {
