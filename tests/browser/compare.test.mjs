@@ -6,24 +6,9 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { browserTest, eventually, screenshots, withServer } from "./browser.mjs";
+import { small } from "./small.mjs";
 
 const here = withServer();
-const small = {
-  version: 1,
-  name: "small",
-  gravity: [0, -9.8, 0],
-  cloths: [
-    {
-      name: "cloth",
-      mesh: { grid: { columns: 7, rows: 7, width: 1, height: 1 } },
-      mass: { per_vertex: 0.1 },
-      transform: { translate: [0, 1, 0] },
-      material: { model: "springs", structural: 400, shear: 200, bend: 20, damping: 0.2 },
-      pins: [{ at: "corner:0,0" }, { at: "corner:6,0" }],
-    },
-  ],
-  solver: { method: "symplectic_euler", dt: 0.004 },
-};
 const sizes = [
   ["desktop", { width: 1440, height: 900, hasTouch: false }],
   ["phone", { width: 390, height: 844, hasTouch: true }],

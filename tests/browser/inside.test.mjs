@@ -1,5 +1,6 @@
 // See inside: what is drawn over the cloth, the range of its colours, and the curves, by pointer, finger and key.
 import assert from "node:assert/strict";
+import { finiteElements } from "../protocol/inspected.mjs";
 import { browserTest, eventually, screenshots, withServer } from "./browser.mjs";
 
 const here = withServer();
@@ -139,15 +140,7 @@ browserTest("finite elements are offered where the scene has them, springs where
   await box(viewer, "structural").waitFor();
   assert.equal(await box(viewer, "Elements").isVisible(), false);
   await client.request("scene.patch", {
-    patch: [
-      {
-        op: "replace",
-        path: "/cloths/0/material",
-        value: { model: "fem", warp: 200, weft: 100, shear: 20, damping: 0.001 },
-      },
-      { op: "replace", path: "/cloths/0/mass", value: { area_density: 0.15 } },
-      { op: "replace", path: "/solver/dt", value: 0.0002 },
-    ],
+    patch: finiteElements,
   });
   await box(viewer, "Elements").click();
   await eventually(

@@ -3,26 +3,9 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { Server } from "../protocol/harness.mjs";
 import { browserTest, eventually, screenshots, withServer } from "./browser.mjs";
+import { small } from "./small.mjs";
 
 const here = withServer();
-
-/// The cloth hangs from its upper corners; there are no colliders.
-const small = {
-  version: 1,
-  name: "small",
-  gravity: [0, -9.8, 0],
-  cloths: [
-    {
-      name: "cloth",
-      mesh: { grid: { columns: 7, rows: 7, width: 1, height: 1 } },
-      mass: { per_vertex: 0.1 },
-      transform: { translate: [0, 1, 0] },
-      material: { model: "springs", structural: 400, shear: 200, bend: 20, damping: 0.2 },
-      pins: [{ at: "corner:0,0" }, { at: "corner:6,0" }],
-    },
-  ],
-  solver: { method: "symplectic_euler", dt: 0.004 },
-};
 
 /// A page with the drawer open on the small scene, and a script beside it. The session is paused: the machine only
 /// measures, and what one test has measured the cache gives to the next.

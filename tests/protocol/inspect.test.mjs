@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { Client, Server } from "./harness.mjs";
-import { arrays, nearByBruteForce, nearest, same } from "./inspected.mjs";
+import { arrays, finiteElements, nearByBruteForce, nearest, same } from "./inspected.mjs";
 
 let server;
 before(async () => (server = await Server.start("--max-sessions", "16")));
@@ -92,15 +92,7 @@ const noShear = { model: "springs", structural: 20000, shear: 0, bend: 2000, dam
 test("finite elements have the strain that the server says", async () => {
   const { client } = await enter("seed");
   await client.request("scene.patch", {
-    patch: [
-      {
-        op: "replace",
-        path: "/cloths/0/material",
-        value: { model: "fem", warp: 200, weft: 100, shear: 20, damping: 0.001 },
-      },
-      { op: "replace", path: "/cloths/0/mass", value: { area_density: 0.15 } },
-      { op: "replace", path: "/solver/dt", value: 0.0002 },
-    ],
+    patch: finiteElements,
   });
   const at = await stepTo(client, 600);
   const elements = await all(client, "inspect.elements", elementLayout);

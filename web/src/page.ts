@@ -188,8 +188,8 @@ export class Page {
         this.enableEdits();
         this.lab.link(state === "open");
         this.slow.link(state === "open");
-        if (state !== "open") this.compare.lost();
         if (state !== "open") {
+          this.compare.lost();
           this.hand?.lost();
           this.store.forget();
           this.guide.baseline.lost();

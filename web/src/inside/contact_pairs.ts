@@ -99,5 +99,6 @@ export function contactsText({ searched, total, count }: ContactsAnswer, pairs: 
     pairs.count > 0
       ? ` Nearest: ${millimetres(pairs.gap[0] as number)} of ${millimetres(pairs.keep[0] as number)}.`
       : "";
-  return `${shown[0]?.toUpperCase() ?? ""}${shown.slice(1)}${list}.${nearest}${searched ? "" : " Cloth near cloth is told after the next step."}`;
+  const later = searched ? "" : " Cloth near cloth is told after the next step.";
+  return `${shown[0]?.toUpperCase() ?? ""}${shown.slice(1)}${list}.${nearest}${later}`;
 }
