@@ -15,7 +15,7 @@ before(async () => {
       "inside/choices",
       "inside/shown_places",
       "link/protocol",
-      "inside/arrays",
+      "link/arrays",
       "panel/status_log",
     ].map(load),
   );

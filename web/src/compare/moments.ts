@@ -1,4 +1,5 @@
 // The moments of a comparison as they come: both sides' places at 0, 1/rate, 2/rate, ... seconds.
+import { floats } from "../link/arrays";
 import type { MovedCollider } from "../link/scene_types";
 
 /// The answer to `lab.moments`.
@@ -14,13 +15,6 @@ export interface MomentsAnswer {
 export interface Between {
   index: number;
   share: number; ///< [0, 1)
-}
-
-function numbersIn(base64: string): Float32Array<ArrayBuffer> {
-  const text = atob(base64);
-  const bytes = new Uint8Array(text.length);
-  for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
-  return new Float32Array(bytes.buffer);
 }
 
 export class Moments {
@@ -45,7 +39,7 @@ export class Moments {
 
   /// Takes the moments that follow those that are there. Throws an Error if the answer does not follow.
   append(answer: MomentsAnswer): void {
-    const [a, b] = [numbersIn(answer.a), numbersIn(answer.b)];
+    const [a, b] = [floats(answer.a), floats(answer.b)];
     const size = 3 * this.vertices;
     if (answer.from !== this.count || a.length !== answer.count * size || b.length !== a.length)
       throw new Error(`moments ${answer.from} to ${answer.from + answer.count} do not follow ${this.count}`);

@@ -1,5 +1,5 @@
 // The pairs that contact keeps apart, as inspect.contacts tells them, and where they are in a later frame.
-import { floats, octets, uints } from "./arrays";
+import { floats, octets, uints } from "../link/arrays";
 
 export const kinds = ["vertex–vertex", "vertex–triangle", "edge–edge", "on solids"] as const;
 const edgeEdge = 2,

@@ -1,5 +1,5 @@
 // Fetches the springs and finite elements of the scene, page by page, and again when the cloth is another.
-import { floats, joined, octets, uints } from "./arrays";
+import { floats, joined, octets, uints } from "../link/arrays";
 import type { Elements, Springs } from "./strain";
 
 interface Part {

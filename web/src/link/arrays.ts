@@ -1,4 +1,4 @@
-// The numbers of the answers to inspect.*: little-endian arrays in base64.
+// Arrays in answers: little-endian numbers in base64.
 
 export function bytesOf(text: string): ArrayBuffer {
   const binary = atob(text);
