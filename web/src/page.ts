@@ -1,5 +1,5 @@
 // Connects the parts of the page: the link, the scene's document, the stage and the controls.
-import { CompareDoor } from "./compare/door";
+import { Drawers } from "./drawers";
 import { Connection, type LinkEvents } from "./link/connection";
 import { act } from "./panel/act";
 import { ColourBy } from "./panel/colour_by";
@@ -11,7 +11,6 @@ import { beyond, type Stability } from "./panel/gauge";
 import { Hud, type Status } from "./panel/hud";
 import { Refusals } from "./panel/refusals";
 import { bindFirstSteps } from "./panel/newcomer";
-import { Lab } from "./lab/drawer";
 import { InsideDoor } from "./inside/door";
 import { StatusLog } from "./panel/status_log";
 import { Layout } from "./panel/layout";
@@ -35,7 +34,6 @@ import { hook } from "./test_hook";
 import { bindCameraInput } from "./view/camera_input";
 import { bindTimeline } from "./panel/timeline_opener";
 import { ThemeSwitch } from "./view/theme";
-import { TextDoor } from "./text/door";
 import { Transport } from "./panel/transport";
 import { type History, Undo } from "./panel/undo";
 import { timeStep } from "./panel/solver_section";
@@ -71,9 +69,7 @@ export class Page {
     load: (name) => this.loadPreset(name),
   });
   private readonly panel: Panel = this.makePanel();
-  private readonly lab = this.makeLab();
-  private readonly text = this.makeText();
-  private readonly compare = this.makeCompare();
+  private readonly drawers = this.makeDrawers();
   private readonly notifications = this.makeNotifications();
   private readonly colourBy = new ColourBy(
     (field) => {
@@ -100,8 +96,6 @@ export class Page {
   private welcome = (): void => undefined; // a newcomer
   private sceneName = "";
   private stability: Stability | null = null; // in the last status
-  private messageBytes = 65536; // the most that a message may have
-  private methods: string[] = [];
   private mayEdit = true; // false for a viewer, who may only watch
 
   constructor() {
@@ -131,11 +125,17 @@ export class Page {
   }
 
   private bind(layout: Layout, theme: ThemeSwitch): void {
-    const lab = (): void => this.lab.toggle();
-    const text = (): void => this.text.toggle();
-    const compare = (): void => this.compare.toggle();
-    const inside = (): void => this.inside?.toggle();
-    bindCommands({ transport: this.transport, layout, theme, fit: () => this.stage.fit(), lab, text, compare, inside });
+    const lab = (): void => this.drawers.toggle("lab");
+    bindCommands({
+      transport: this.transport,
+      layout,
+      theme,
+      fit: () => this.stage.fit(),
+      lab,
+      text: () => this.drawers.toggle("text"),
+      compare: () => this.drawers.toggle("compare"),
+      inside: () => this.inside?.toggle(),
+    });
     bindCameraInput(this.stage.controls, () => this.hand?.holding === true);
     bindTimeline({
       picture: this.picture,
@@ -154,7 +154,7 @@ export class Page {
       mayEdit: () => this.mayEdit,
       refused: (title, error, patch) => this.refusals.tell(title, error, patch),
       hung: () => this.picture.fitAtNext(),
-      scene: (files) => this.text.take(files),
+      scene: (files) => this.drawers.take(files),
     });
   }
 
@@ -186,10 +186,9 @@ export class Page {
       state: (state, retryIn, why) => {
         this.link.show(state, retryIn, why);
         this.enableEdits();
-        this.lab.link(state === "open");
+        this.drawers.link(state === "open");
         this.slow.link(state === "open");
         if (state !== "open") {
-          this.compare.lost();
           this.hand?.lost();
           this.store.forget();
           this.guide.baseline.lost();
@@ -231,8 +230,8 @@ export class Page {
         edit: (operations) => this.store.edit(operations),
         busy: (path) => this.store.busy(path),
         loadPreset: (name) => this.loadPreset(name),
-        openText: () => this.text.toggle(),
-        openCompare: () => this.compare.toggle(),
+        openText: () => this.drawers.toggle("text"),
+        openCompare: () => this.drawers.toggle("compare"),
         openGallery: () => this.presets.openGallery(),
         act: (deed) =>
           act(deed, {
@@ -254,8 +253,8 @@ export class Page {
         }),
       edit: (operations) => this.store.edit(operations),
       document: () => this.store.document,
-      mayEdit: () => this.mayEdit && !this.compare.drawn,
-      mayGrab: () => this.mayEdit && this.connection.open && !this.divergence.now && !this.compare.drawn,
+      mayEdit: () => this.mayEdit && !this.drawers.compared,
+      mayGrab: () => this.mayEdit && this.connection.open && !this.divergence.now && !this.drawers.compared,
     });
   }
 
@@ -277,55 +276,18 @@ export class Page {
     });
   }
 
-  private makeLab(): Lab {
-    return new Lab({
+  private makeDrawers(): Drawers {
+    return new Drawers({
+      session: this.session,
+      store: this.store,
       request: (method, params) => this.connection.request(method, params),
-      document: () => this.store.document,
-      addressed: (patch) => (Array.isArray(patch) ? this.store.addressed(patch) : patch),
-      undo: (revision) => void this.undo.go("undo", revision),
-      mayEdit: () => this.mayEdit,
-      applied: showApplied,
-      compare: (patch) => this.compare.begin({ patch }),
-      toggled: (open) => this.drawerToggled(this.lab, open),
-    });
-  }
-
-  private makeCompare(): CompareDoor {
-    return new CompareDoor({
-      request: (method, params) => this.connection.request(method, params),
-      document: () => this.store.document,
-      stored: () => this.store.stored,
-      addressed: (operations) => this.store.addressed(operations),
+      preset: (name) => this.guide.baseline.preset(name),
       stage: () => this.stage,
-      methods: () => this.methods,
       mayEdit: () => this.mayEdit,
-      mostBytes: () => this.messageBytes,
-      use: (patch, what) => void this.lab.apply(patch, what),
-      toggled: (open) => this.drawerToggled(this.compare, open),
+      undo: (revision) => void this.undo.go("undo", revision),
+      toggled: (open) => this.layout?.labToggled(open),
       returned: () => this.picture.again(),
     });
-  }
-
-  private makeText(): TextDoor {
-    return new TextDoor({
-      session: this.session,
-      request: (method, params) => this.connection.request(method, params),
-      stored: () => this.store.stored && { document: this.store.stored, revision: this.store.revision },
-      preset: (name) => this.guide.baseline.preset(name),
-      mayEdit: () => this.mayEdit,
-      mostBytes: () => this.messageBytes,
-      applied: showApplied,
-      toggled: (open) => this.drawerToggled(this.text, open),
-    });
-  }
-
-  // One of the drawers that share the room beside the cloth opened, which closes the others, or closed.
-  private drawerToggled(drawer: { shut(): void }, open: boolean): void {
-    if (open) {
-      for (const other of [this.lab, this.compare, this.text]) if (other !== drawer) other.shut();
-      document.body.classList.add("lab-open");
-    }
-    this.layout?.labToggled(open);
   }
 
   private makeNotifications(): Record<string, (params: Params) => void> {
@@ -334,8 +296,7 @@ export class Page {
       scene: (params) => {
         this.guide.baseline.take(params.document as SceneDocument);
         this.store.replace(params.document as SceneDocument, Number(params.revision));
-        this.text.arrived();
-        this.compare.arrived();
+        this.drawers.arrived();
       },
       "scene.changed": (params) => this.store.patched(Number(params.revision), params.patch as Patch),
       "scene.history": (params) => this.undo.told(params as unknown as History),
@@ -356,14 +317,8 @@ export class Page {
         this.divergence.follow(params as Status);
       },
       "sim.diverged": (params) => this.divergence.tell(params as unknown as Diverged),
-      "lab.progress": (params) => {
-        this.lab.progress(params);
-        this.compare.told("progress", params);
-      },
-      "lab.result": (params) => {
-        this.lab.arrived(params);
-        this.compare.told("result", params);
-      },
+      "lab.progress": (params) => this.drawers.told("progress", params),
+      "lab.result": (params) => this.drawers.told("result", params),
       viewers: (params) => this.hud.set("viewers", String(params.count)),
       notice: (params) => notice(params.level as Level, { title: String(params.text) }),
     };
@@ -372,14 +327,12 @@ export class Page {
   private greeted(params: Params): void {
     this.hud.setRenderer(String(params.renderer));
     this.mayEdit = params.role !== "viewer";
-    this.messageBytes = (params.limits as { message_bytes?: number } | undefined)?.message_bytes ?? this.messageBytes;
     this.hand?.greeted(Number(params.client));
     this.undo.greeted(Number(params.client));
     this.welcome();
-    this.methods = (params.methods as string[] | undefined) ?? [];
-    this.panel.setMethods(this.methods);
-    this.lab.setMethods(this.methods);
-    this.lab.roleChanged();
+    const methods = (params.methods as string[] | undefined) ?? [];
+    this.panel.setMethods(methods);
+    this.drawers.greeted(methods, (params.limits as { message_bytes?: number } | undefined)?.message_bytes);
     document.body.classList.toggle("viewer", !this.mayEdit);
     this.enableEdits();
     this.presets.fetch();
@@ -406,9 +359,7 @@ export class Page {
     this.hand?.sceneChanged();
     this.inside?.sceneChanged();
     this.panel.show(document, this.store.stored ?? document);
-    this.lab.sceneChanged();
-    this.text.sceneChanged();
-    this.compare.sceneChanged();
+    this.drawers.sceneChanged();
   }
 
   private drawDocument(fit: boolean, whole = false): void {
