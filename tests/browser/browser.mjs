@@ -14,9 +14,17 @@ const candidates = [
 ];
 const executablePath = candidates.find((path) => path && existsSync(path));
 
-/// A test that needs a browser. It is skipped, with a message, only if there is none.
+// With CLOTHLAB_BROWSER_TESTS=first only the first test of each file runs, the one of its main path: drawing in software
+// makes all of them last half an hour.
+const onlyFirst = process.env.CLOTHLAB_BROWSER_TESTS === "first";
+let declared = 0; // tests of this file so far
+
+/// A test that needs a browser. It is skipped, with a message, if there is none or it is not asked for.
 export function browserTest(name, body) {
-  const skip = executablePath ? false : "no Chromium here: install chromium, or name one in CLOTHLAB_BROWSER";
+  declared += 1;
+  let skip = false;
+  if (!executablePath) skip = "no Chromium here: install chromium, or name one in CLOTHLAB_BROWSER";
+  else if (onlyFirst && declared > 1) skip = "only the first of each file, says CLOTHLAB_BROWSER_TESTS";
   test(name, { skip, timeout: 600_000 }, async () => {
     try {
       await body();

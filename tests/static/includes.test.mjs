@@ -1,5 +1,6 @@
-// A file includes each header of the standard library that it needs, itself or through our own headers. A header that
-// comes only through the library's own headers may be missing with another version of the compiler.
+// A file includes what it needs, itself or through our own headers: headers of the standard library, as one that comes
+// only through the library's own headers may be missing with another version of the compiler; and our own, as one that
+// another source of the same unity build includes is missing when each is compiled alone.
 import assert from "node:assert/strict";
 import { readdirSync, readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
@@ -117,17 +118,78 @@ const code = (source) =>
   );
 
 function missing(source, has) {
-  const names = new Set([...code(source).matchAll(/\bstd::(\w+)/g)].map(([, name]) => name));
-  return [...names]
+  const text = code(source);
+  const names = new Set([...text.matchAll(/\bstd::(\w+)/g)].map(([, name]) => name));
+  const found = [...names]
     .filter((name) => declaredBy.has(name) && !declaredBy.get(name).some((header) => has.has(header)))
     .map((name) => `std::${name} needs <${declaredBy.get(name)[0]}>`);
+  const libraries = ["glm", "nlohmann"].filter((library) => new RegExp(`\\b${library}::`).test(text));
+  for (const library of libraries)
+    if (![...has].some((header) => header.startsWith(`${library}/`))) found.push(`${library}:: needs <${library}/...>`);
+  return found;
 }
 
-test("a name of the standard library comes from a header that is included for it, not from another's insides", () => {
+test("a name of a library comes from a header that is included for it, not from another's insides", () => {
   const found = [];
   for (const folder of ["server", "tests"])
     for (const path of sources(folder))
       for (const what of missing(text(path), reachable(path))) found.push(`${path}: ${what}`);
+  assert.deepEqual(found, []);
+});
+
+const definedType =
+  /\b(?:struct|class|enum(?: class)?|using) (?:\[\[\w+\]\] |alignas\(\w+\) )?(\w+)(?: final)?(?=[ :\n][^;]*?\{| =)/g;
+// Functions of one word share their names with variables and members.
+const declaredFunction = /^(?!using|return|#)[\w:<>*&, [\]]+[ *&]([a-z]+_\w*[a-z0-9])\(/gm;
+
+/// The types and the functions that our headers declare, and the headers that do.
+function ourNames() {
+  const declaredIn = new Map();
+  for (const folder of ["server", "tests"])
+    for (const path of sources(folder))
+      if (path.endsWith(".h"))
+        for (const pattern of [definedType, declaredFunction])
+          for (const [, name] of code(text(path)).matchAll(pattern))
+            declaredIn.set(name, [...(declaredIn.get(name) ?? []), path]);
+  return declaredIn;
+}
+
+/// Paths of all files that a file includes, itself or through others, and its own.
+function included(path, seen = new Set()) {
+  if (seen.has(path)) return seen;
+  seen.add(path);
+  for (const [, own] of text(path).matchAll(/^\s*#\s*include\s+"([^"]+)"/gm)) {
+    const found = [own, join(dirname(path), own)].find((candidate) => text(candidate) !== null);
+    if (found) included(found, seen);
+  }
+  return seen;
+}
+
+/// Names of ours that a source uses and neither includes nor declares; but not those of namespace elements, whose laws
+/// are shared with the shaders.
+function unreachable(source, files, names) {
+  const text = code(source);
+  const used = text.match(/(?<![.\w]|->|\b(?:elements|std)::)(?:[A-Z]\w+|[a-z]+_\w*[a-z0-9](?=\())/g);
+  const declared = new Set(
+    [/\b(?:struct|class|enum class|using|typename) (?:\w+::)*(\w+)/g, /(?<!\breturn)[\w>&*\]] [*&]?(\w+)(?: =|\()/g]
+      .flatMap((pattern) => [...text.matchAll(pattern)])
+      .map(([, name]) => name),
+  );
+  return [...new Set(used)].filter(
+    (name) => names.has(name) && !declared.has(name) && !names.get(name).some((path) => files.has(path)),
+  );
+}
+
+test("a name of our own comes from a header that is included for it, not for another source", () => {
+  const names = ourNames();
+  assert.ok(names.size > 500, `${names.size}`);
+  const found = [];
+  for (const folder of ["server", "tests"])
+    for (const path of sources(folder))
+      if (!path.startsWith("tests/bench/peers/"))
+        // they mean other libraries' types
+        for (const name of unreachable(text(path), included(path), names))
+          found.push(`${path}: ${name} needs "${names.get(name)[0]}"`);
   assert.deepEqual(found, []);
 });
 
@@ -136,4 +198,11 @@ test("the check sees a missing header and none in comments and strings", () => {
     "std::uint8_t needs <cstdint>",
   ]);
   assert.deepEqual(missing("std::uint8_t a;", new Set(["cstdint"])), []);
+  const names = new Map([
+    ["Scene", ["server/model/scene.h"]],
+    ["read_scene", ["server/model/scene.h"]],
+  ]);
+  assert.deepEqual(unreachable("void f(const Scene&) { x::read_scene(); }", new Set(), names), ["Scene", "read_scene"]);
+  assert.deepEqual(unreachable("struct Scene;\nvoid f(const Scene&);", new Set(), names), []);
+  assert.deepEqual(unreachable("void f(const Scene&);", new Set(["server/model/scene.h"]), names), []);
 });
