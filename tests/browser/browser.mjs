@@ -14,8 +14,8 @@ const candidates = [
 ];
 const executablePath = candidates.find((path) => path && existsSync(path));
 
-// With CLOTHLAB_BROWSER_TESTS=first only the first test of each file runs, the one of its main path: drawing in software
-// makes all of them last half an hour.
+// With CLOTHLAB_BROWSER_TESTS=first only the first test of each file runs, the one of its main path: as pictures are
+// drawn in software, all of them take half an hour.
 const onlyFirst = process.env.CLOTHLAB_BROWSER_TESTS === "first";
 let declared = 0; // tests of this file so far
 

@@ -1,4 +1,4 @@
-// The drawers that share the room beside the cloth: the lab, the comparison and the scene's text. One is open at a time.
+// The drawers that share the room beside the cloth: the lab, the comparison and the scene's text. At most one is open.
 import { CompareDoor } from "./compare/door";
 import { Lab } from "./lab/drawer";
 import type { SceneStore } from "./link/scene_store";
