@@ -65,6 +65,14 @@ const links = shared.map(({ path }) => `<link rel="modulepreload" href="${path.s
 const page = join(dist, "index.html");
 writeFileSync(page, readFileSync(page, "utf8").replace(/(?= *<script)/, `  ${links.join("\n  ")}\n`));
 
+// The thread that unpacks frames is a script of its own: browsers load no modules there, or learned it late.
+await build({
+  ...common,
+  entryPoints: { unpack: "src/link/unpack_worker.ts" },
+  outdir: "dist",
+  format: "iife",
+});
+
 // The page that plays a recording is a single file: it is opened from a disk, where nothing can be loaded. The server's
 // program puts in @title@ and @recording@ (server/stream/player_page.cpp).
 const { outputFiles } = await build({

@@ -23,6 +23,8 @@ import { Presets } from "./panel/presets";
 import { RecordButton } from "./panel/record_button";
 import { bindSaveButtons } from "./panel/save_buttons";
 import { Bodies } from "./link/bodies";
+import { canInflate } from "./link/inflate";
+import { LineWatch, type Second } from "./link/line_watch";
 import { SlowWatch } from "./panel/slow_watch";
 import { SceneStore } from "./link/scene_store";
 import { Picture } from "./picture";
@@ -40,6 +42,10 @@ import { timeStep } from "./panel/solver_section";
 
 type Params = Record<string, unknown>;
 
+/// The session has new frames to send, as fast as they are asked for.
+const keepsUp = ({ playing, asleep, real_time_factor: factor = 1, speed = 1 }: Status): boolean =>
+  playing === true && !asleep && factor >= 0.9 * speed;
+
 export class Page {
   private stage!: Stage; // set by show(), before the first event of the connection
   private readonly hud = new Hud();
@@ -55,6 +61,8 @@ export class Page {
     told: ({ undo }) => this.slow.changed(undo),
   });
   private readonly slow = new SlowWatch(() => void this.undo.go("undo"));
+  private readonly line = new LineWatch();
+  private lastSecond: Second = { pictures: 0, frames: 0, latency: 0, steps: false };
   private readonly bodies = new Bodies(
     (name) => this.connection.get("/api/collider.ply", { name }),
     () => this.drawDocument(this.stage.fitted),
@@ -116,12 +124,21 @@ export class Page {
         lines: ["It gives them back by itself; if not, reload the page."],
       });
     stage.resize(layout.freeArea());
-    setInterval(() => this.hud.tick(this.connection.bytesReceived), 1000);
+    setInterval(() => this.second(), 1000);
     this.picture.start(stage);
   }
 
   close(): void {
     this.connection.close();
+  }
+
+  private second(): void {
+    this.hud.tick(this.connection.bytesReceived);
+    if (this.line.second(this.lastSecond) && canInflate()) {
+      this.connection.setEncoding("c16");
+      this.hud.explain("rate", "everything received, a second; frames come compressed, as the line is slow");
+    }
+    this.lastSecond = { ...this.lastSecond, pictures: 0, frames: 0 };
   }
 
   private bind(layout: Layout, theme: ThemeSwitch): void {
@@ -169,7 +186,10 @@ export class Page {
   private makePicture(): Picture {
     return new Picture({
       acknowledge: (sequence) => this.connection.acknowledge(sequence),
-      ticked: () => this.hand?.tick(),
+      ticked: () => {
+        this.lastSecond.pictures++;
+        this.hand?.tick();
+      },
       drawn: ({ header, field }) => {
         this.hud.countDrawn();
         this.hud.setTime(header.time);
@@ -202,10 +222,14 @@ export class Page {
       },
       frame: (frame, field) => {
         this.hud.countReceived();
+        this.lastSecond.frames++;
         this.slow.picture();
         this.picture.take(frame, field);
       },
-      latency: (milliseconds) => this.hud.set("latency", `${milliseconds.toFixed(milliseconds < 10 ? 1 : 0)} ms`),
+      latency: (milliseconds) => {
+        this.lastSecond.latency = milliseconds;
+        this.hud.set("latency", `${milliseconds.toFixed(milliseconds < 10 ? 1 : 0)} ms`);
+      },
       problem: (error) => noticeError("The server sent something unexpected", error),
     };
   }
@@ -305,6 +329,7 @@ export class Page {
       },
       "sim.status": (params) => {
         this.hud.showStatus(params as Status);
+        this.lastSecond.steps = keepsUp(params as Status);
         this.statusLog.take(params as Status);
         this.transport.status(params as Status);
         this.slow.told(params as Status);

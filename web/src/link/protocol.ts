@@ -6,6 +6,7 @@ const kindTopology = 1;
 const kindFrame = 2;
 const encodingF32 = 0;
 const encodingQ16 = 1;
+const encodingC16 = 2;
 const q16Bytes = 8; ///< per vertex
 const flagAsleep = 1;
 const flagDiverged = 2;
@@ -59,10 +60,9 @@ function demand(condition: boolean, what: string): asserts condition {
   if (!condition) throw new BadMessage(what);
 }
 
-/// Decodes a message. Throws a BadMessage; reads nothing outside the buffer. Frames are q16: the page asks for no other
-/// encoding.
+/// Decodes a message but for c16 frames. Throws a BadMessage; reads nothing outside the buffer.
 export function decode(buffer: ArrayBuffer): { topology: Topology } | { frame: Frame } {
-  const header = decodeHeader(buffer);
+  const header = decodeHeader(buffer, encodingQ16);
   if (header.kind === kindTopology) return { topology: decodeTopology(header, buffer) };
   demand(
     header.payloadBytes === (header.range > 0 ? q16Bytes + 1 : q16Bytes) * header.vertexCount,
@@ -71,7 +71,43 @@ export function decode(buffer: ArrayBuffer): { topology: Topology } | { frame: F
   return { frame: { header, buffer } };
 }
 
-function decodeHeader(buffer: ArrayBuffer): Header {
+/// True if the message says that it is a c16 frame, which `unpack` (unpack.ts) decodes.
+export function isPacked(buffer: ArrayBuffer): boolean {
+  const [kind, encoding] = new Uint8Array(buffer, 0, Math.min(2, buffer.byteLength));
+  return kind === kindFrame && encoding === encodingC16;
+}
+
+/// The header of a c16 frame and its deflated payload. Throws a BadMessage.
+export function decodePacked(buffer: ArrayBuffer): { header: Header; deflated: Uint8Array } {
+  return { header: decodeHeader(buffer, encodingC16), deflated: new Uint8Array(buffer, headerBytes) };
+}
+
+/// The q16 message with the header of a c16 one, `numbers` [vertex_count * 3], `normals` [vertex_count] and the field's
+/// bytes.
+export function q16Frame(
+  packed: ArrayBuffer,
+  numbers: Uint16Array,
+  normals: Uint16Array,
+  field: Uint8Array,
+): ArrayBuffer {
+  const vertices = normals.length;
+  const buffer = new ArrayBuffer(headerBytes + q16Bytes * vertices + field.length);
+  new Uint8Array(buffer).set(new Uint8Array(packed, 0, headerBytes));
+  const view = new DataView(buffer);
+  view.setUint8(1, encodingQ16);
+  view.setUint32(56, buffer.byteLength - headerBytes, true);
+  const words = new Uint16Array(buffer, headerBytes, 4 * vertices);
+  for (let i = 0; i < vertices; ++i) {
+    words[4 * i] = numbers[3 * i] as number;
+    words[4 * i + 1] = numbers[3 * i + 1] as number;
+    words[4 * i + 2] = numbers[3 * i + 2] as number;
+    words[4 * i + 3] = normals[i] as number;
+  }
+  new Uint8Array(buffer, headerBytes + q16Bytes * vertices).set(field);
+  return buffer;
+}
+
+function decodeHeader(buffer: ArrayBuffer, frameEncoding: number): Header {
   demand(buffer.byteLength >= headerBytes, `a binary message of ${buffer.byteLength} bytes has no room for a header`);
   const view = new DataView(buffer);
   const kind = view.getUint8(0),
@@ -100,7 +136,7 @@ function decodeHeader(buffer: ArrayBuffer): Header {
   const isFrame = kind === kindFrame;
   demand(isFrame || kind === kindTopology, `a binary message is of the unknown kind ${kind}`);
   demand(
-    encoding === (isFrame ? encodingQ16 : encodingF32),
+    encoding === (isFrame ? frameEncoding : encodingF32),
     `a binary message of kind ${kind} has the encoding ${encoding}`,
   );
   demand(

@@ -81,6 +81,12 @@ export class Hud {
     if (cell && cell.textContent !== text) cell.textContent = text;
   }
 
+  /// Sets a row's tooltip.
+  explain(row: Row, title: string): void {
+    const line = this.cells.get(row)?.parentElement;
+    if (line) line.title = title;
+  }
+
   /// Shows the renderer's name without versions and buses; the tooltip has all of it.
   setRenderer(name: string): void {
     this.set("renderer", name.split(/ \(|\//)[0] ?? name);

@@ -1,8 +1,9 @@
 // Reads a recording, a .clothlab file (server/stream/README.md). Whatever is not exactly one throws a BadRecording.
+import { inflateRaw, type Inflate } from "../link/inflate";
 import { BadMessage, decode, type Topology } from "../link/protocol";
 import { applyPatch } from "../link/json_patch";
 import type { InlineMesh, MovedCollider, Patch, SceneDocument, Vec3 } from "../link/scene_types";
-import { candidatesOf, edgesOf, unfold, type Candidates } from "./prediction";
+import { candidatesOf, edgesOf, unfold, type Candidates } from "../link/prediction";
 
 const headBytes = 16;
 const chunkHeadBytes = 12;
@@ -16,14 +17,6 @@ export class BadRecording extends Error {}
 function demand(condition: boolean, what: string): asserts condition {
   if (!condition) throw new BadRecording(what);
 }
-
-export type Inflate = (bytes: Uint8Array) => Promise<Uint8Array>;
-
-/// As browsers have it.
-export const inflateRaw: Inflate = async (bytes) => {
-  const stream = new Blob([bytes.slice()]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
-};
 
 /// What the frames of a stretch of a recording have in common.
 export interface Setting {

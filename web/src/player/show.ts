@@ -1,43 +1,10 @@
 // Makes what the stage draws of a moment of a recording: a q16 frame with normals, and with the cloth's strain.
+import { packedNormals } from "../link/normals";
 import type { ShownFrame } from "../link/protocol";
 import type { Moment, Setting } from "./recording";
 
 const headerBytes = 64;
 const quantities = 65535;
-
-/// A number as the octahedral normal has it: of 127, in a byte.
-const signed = (share: number): number => Math.round(share * 127) & 255;
-
-/// The normals of a frame's vertices, as q16 has them: two bytes, the lower half of the octahedron folded out.
-function normals(numbers: Uint16Array, triangles: Uint32Array): Uint16Array {
-  const sums = new Float32Array(numbers.length);
-  const at = (vertex: number, axis: number): number => numbers[3 * vertex + axis] as number;
-  for (let t = 0; t < triangles.length; t += 3) {
-    const [a, b, c] = [triangles[t], triangles[t + 1], triangles[t + 2]] as [number, number, number];
-    const ux = at(b, 0) - at(a, 0),
-      uy = at(b, 1) - at(a, 1),
-      uz = at(b, 2) - at(a, 2);
-    const vx = at(c, 0) - at(a, 0),
-      vy = at(c, 1) - at(a, 1),
-      vz = at(c, 2) - at(a, 2);
-    const x = uy * vz - uz * vy,
-      y = uz * vx - ux * vz,
-      z = ux * vy - uy * vx;
-    for (const corner of [a, b, c]) {
-      sums[3 * corner] = (sums[3 * corner] as number) + x;
-      sums[3 * corner + 1] = (sums[3 * corner + 1] as number) + y;
-      sums[3 * corner + 2] = (sums[3 * corner + 2] as number) + z;
-    }
-  }
-  return Uint16Array.from({ length: numbers.length / 3 }, (_, i) => {
-    const [x, y, z] = [sums[3 * i], sums[3 * i + 1], sums[3 * i + 2]] as [number, number, number];
-    const size = Math.abs(x) + Math.abs(y) + Math.abs(z);
-    if (size === 0) return signed(1) << 8; // none: up
-    const [p, q] = [x / size, y / size];
-    if (z >= 0) return signed(p) | (signed(q) << 8);
-    return signed((1 - Math.abs(q)) * (p < 0 ? -1 : 1)) | (signed((1 - Math.abs(p)) * (q < 0 ? -1 : 1)) << 8);
-  });
-}
 
 export class Shower {
   private range = 0.0005; // of the strain that has been seen: it only grows, so that colours are steady
@@ -58,7 +25,7 @@ export class Shower {
     const wide = (axis: number): number => Math.max(0, (most[axis] as number) - (least[axis] as number));
     const buffer = new ArrayBuffer(headerBytes + 8 * vertices + (strained ? vertices : 0));
     const words = new Uint16Array(buffer, headerBytes, 4 * vertices);
-    const both = normals(numbers, topology.triangles);
+    const both = packedNormals(numbers, topology.triangles, [1, 1, 1]);
     for (let i = 0; i < vertices; ++i) {
       for (let axis = 0; axis < 3; ++axis)
         words[4 * i + axis] = Math.round(
