@@ -1,6 +1,6 @@
 // The drawers that share the room beside the cloth: the lab, the comparison and the scene's text. At most one is open.
 import { CompareDoor } from "./compare/door";
-import { Lab } from "./lab/drawer";
+import { LabDoor } from "./lab/door";
 import type { SceneStore } from "./link/scene_store";
 import type { SceneDocument } from "./link/scene_types";
 import { showApplied } from "./panel/notices";
@@ -22,7 +22,7 @@ export interface DrawersHost {
 }
 
 export class Drawers {
-  private readonly lab: Lab;
+  private readonly lab: LabDoor;
   private readonly compare: CompareDoor;
   private readonly text: TextDoor;
   private methods: string[] = [];
@@ -35,7 +35,7 @@ export class Drawers {
       mayEdit: () => host.mayEdit(),
       applied: showApplied,
     };
-    this.lab = new Lab({
+    this.lab = new LabDoor({
       ...shared,
       document: () => store.document,
       addressed: (patch) => (Array.isArray(patch) ? store.addressed(patch) : patch),
@@ -51,7 +51,7 @@ export class Drawers {
       stage: () => host.stage(),
       methods: () => this.methods,
       mostBytes: () => this.messageBytes,
-      use: (patch, what) => void this.lab.apply(patch, what),
+      use: (patch, what) => this.lab.apply(patch, what),
       toggled: (open) => this.toggled(this.compare, open),
       returned: () => host.returned(),
     });
@@ -87,8 +87,7 @@ export class Drawers {
   greeted(methods: string[], messageBytes: number | undefined): void {
     this.methods = methods;
     this.messageBytes = messageBytes ?? this.messageBytes;
-    this.lab.setMethods(methods);
-    this.lab.roleChanged();
+    this.lab.greeted(methods);
   }
 
   /// Called when the session's scene has come: the address may carry another one, or a comparison.
@@ -103,8 +102,7 @@ export class Drawers {
 
   /// Takes lab.progress and lab.result.
   told(method: "progress" | "result", params: Params): void {
-    if (method === "progress") this.lab.progress(params);
-    else this.lab.arrived(params);
+    this.lab.told(method, params);
     this.compare.told(method, params);
   }
 

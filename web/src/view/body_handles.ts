@@ -54,11 +54,6 @@ export class BodyHandles {
     return this.controls.axis !== null;
   }
 
-  /// A click at this point of the canvas, not on cloth.
-  click(x: number, y: number): void {
-    this.choose(this.picker.body(x, y)?.index ?? null);
-  }
-
   /// Chooses the next body, for keys.
   chooseNext(): void {
     const bodies = (this.events.document()?.colliders ?? []).flatMap((of, i) => (poseOf(of) ? [i] : []));

@@ -1,7 +1,7 @@
 // The hand of somebody who does not point: G grabs the vertex in the middle of the view, arrows pull it; B chooses a
 // body, arrows move it.
 import { takes } from "../panel/keys";
-import type { BodyHandles } from "./body_handles";
+import type { BodyDoor } from "./body_door";
 import type { Grab } from "./grab";
 
 const stride = 16; // [CSS pixels] a press of an arrow; with Shift a quarter
@@ -13,7 +13,7 @@ const ownsKeys = (target: EventTarget | null): boolean =>
   target.id !== "view" &&
   target.closest("input, select, button, summary, [tabindex]") !== null;
 
-export function bindGrabKeys(grab: Grab, bodies: BodyHandles): void {
+export function bindGrabKeys(grab: Grab, bodies: BodyDoor): void {
   const whileHeldByKeys: Record<string, (fine: number) => void> = {
     ArrowLeft: (fine) => grab.nudge(-stride * fine, 0),
     ArrowRight: (fine) => grab.nudge(stride * fine, 0),
@@ -39,7 +39,7 @@ export function bindGrabKeys(grab: Grab, bodies: BodyHandles): void {
     PageUp: (fine) => bodies.nudge(0, 0, fine),
     PageDown: (fine) => bodies.nudge(0, 0, -fine),
     t: () => bodies.toggleMode(),
-    Escape: () => bodies.choose(null),
+    Escape: () => bodies.leave(),
   };
   const free: Record<string, () => void> = {
     g: () => grab.grabMiddle(),

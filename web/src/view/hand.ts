@@ -1,5 +1,6 @@
 // The hand on the picture: pulling the cloth, the handles of bodies, and the keys of both.
-import { BodyHandles, type BodyEvents } from "./body_handles";
+import { BodyDoor } from "./body_door";
+import type { BodyEvents } from "./body_handles";
 import { Grab, type GrabEvents, type HandAt } from "./grab";
 import { bindGrabKeys } from "./grab_keys";
 import { GrabPointers } from "./grab_pointers";
@@ -9,12 +10,12 @@ export type HandHost = Omit<GrabEvents, "took"> & BodyEvents;
 
 export class Hand {
   private readonly grab: Grab;
-  private readonly bodies: BodyHandles;
+  private readonly bodies: BodyDoor;
 
   constructor(stage: Stage, host: HandHost) {
     const { notify, patch, document, mayGrab } = host;
-    this.bodies = new BodyHandles(stage, host);
-    this.grab = new Grab(stage, { notify, patch, document, mayGrab, took: () => this.bodies.choose(null) });
+    this.bodies = new BodyDoor(stage, host);
+    this.grab = new Grab(stage, { notify, patch, document, mayGrab, took: () => this.bodies.leave() });
     new GrabPointers(stage, this.grab, {
       busy: (event) => this.bodies.takes(event),
       clicked: (x, y) => this.bodies.click(x, y),

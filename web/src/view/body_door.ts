@@ -1,0 +1,66 @@
+// The way to the handles of bodies, which are loaded when somebody chooses one.
+import { noticeError } from "../panel/notices";
+import type { BodyEvents, BodyHandles } from "./body_handles";
+import { Picker } from "./picking";
+import type { Stage } from "./stage";
+
+export class BodyDoor {
+  private handles: BodyHandles | null = null;
+  private loading: Promise<typeof import("./body_handles")> | null = null;
+  private readonly picker: Picker;
+
+  constructor(
+    private readonly stage: Stage,
+    private readonly events: BodyEvents,
+  ) {
+    this.picker = new Picker(stage);
+  }
+
+  get hasChosen(): boolean {
+    return this.handles?.hasChosen ?? false;
+  }
+
+  /// True if a handle is under the pointer: the press is its own.
+  takes(event: PointerEvent): boolean {
+    return this.handles?.takes(event) ?? false;
+  }
+
+  /// A click at this point of the canvas, not on cloth.
+  click(x: number, y: number): void {
+    const index = this.picker.body(x, y)?.index ?? null;
+    if (index === null) this.leave();
+    else this.with((handles) => handles.choose(index));
+  }
+
+  /// Chooses the next body, for keys.
+  chooseNext(): void {
+    this.with((handles) => handles.chooseNext());
+  }
+
+  /// No body is chosen any more.
+  leave(): void {
+    this.handles?.choose(null);
+  }
+
+  /// The document has changed.
+  follow(): void {
+    this.handles?.follow();
+  }
+  toggleMode(): void {
+    this.handles?.toggleMode();
+  }
+  nudge(right: number, up: number, away: number): void {
+    this.handles?.nudge(right, up, away);
+  }
+
+  private with(use: (handles: BodyHandles) => void): void {
+    if (!this.events.mayEdit()) return;
+    this.loading ??= import("./body_handles");
+    this.loading
+      .then((module) => use((this.handles ??= new module.BodyHandles(this.stage, this.events))))
+      .catch((error: Error) => {
+        this.loading = null;
+        noticeError("The handles of bodies could not be loaded", error);
+      });
+  }
+}
