@@ -136,9 +136,11 @@ test("a reset, another scene and another mesh end hands; other changes do not", 
   await client.request("scene.patch", { patch: [{ op: "replace", path: "/cloths/0/mass/per_vertex", value: 0.004 }] });
   assert.equal((await client.nextNotification("sim.status")).hands.length, 1);
   await near(client, vertex, target);
-  assert.equal(
-    client.messages.filter(({ method, params }) => method === "notice" && params.level !== "info").length,
-    0,
+  const warned = ({ method, params }) => method === "notice" && params.level !== "info";
+  assert.deepEqual(
+    // a busy machine's session may say that it cannot keep up
+    client.messages.filter((message) => warned(message) && !/cannot keep up/.test(message.params.text)),
+    [],
   );
   await client.close();
 });
