@@ -40,18 +40,23 @@ class Line {
   }
 }
 
-const line = new Line();
-after(() => line.server?.close());
+let line = null;
+after(() => line?.server.close());
 
-browserTest("behind a slow line the page asks for compressed frames, and shows the session's places", async () => {
-  await line.start(here.server.port);
-  const viewer = await here.open({ server: line, session: "far", drawn: 1 });
+/// A page behind the line: what it has asked for of the stream, in order.
+async function behind(session) {
+  if (!line) await (line = new Line()).start(here.server.port);
+  line.bytesPerSecond = 0;
+  const viewer = await here.open({ server: line, session, drawn: 1 });
   const asked = [];
-  const noted = (socket) => socket.on("framesent", ({ payload }) => asked.push(String(payload)));
-  viewer.page.on("websocket", noted);
+  viewer.page.on("websocket", (socket) => socket.on("framesent", ({ payload }) => asked.push(String(payload))));
   await viewer.page.reload();
   await viewer.until(() => window.clothlab?.framesDrawn >= 3);
-  const subscribed = () => asked.filter((text) => text.includes("stream.subscribe"));
+  return { viewer, subscribed: () => asked.filter((text) => text.includes("stream.subscribe")) };
+}
+
+browserTest("behind a slow line the page asks for compressed frames, and shows the session's places", async () => {
+  const { viewer, subscribed } = await behind("far");
   assert.match(subscribed().at(-1), /"q16"/);
   line.bytesPerSecond = 40_000; // eight q16 frames of the seed a second
   await eventually("a wish for c16", subscribed, (all) => all.at(-1).includes('"c16"'));
@@ -78,4 +83,15 @@ browserTest("behind a slow line the page asks for compressed frames, and shows t
     [],
   );
   await client.close();
+});
+
+browserTest("where no thread can unpack frames, the page goes back to q16, and goes on", async () => {
+  const { viewer, subscribed } = await behind("no-thread");
+  await viewer.page.route("**/unpack.js", (route) => route.abort());
+  line.bytesPerSecond = 40_000;
+  await eventually("c16, and q16 again", subscribed, (all) => all.length >= 3 && all.at(-1).includes('"q16"'));
+  assert.match(subscribed().at(-2), /"c16"/);
+  line.bytesPerSecond = 0;
+  const drawn = await viewer.read("framesDrawn");
+  await viewer.until((before) => window.clothlab.framesDrawn > before + 20, drawn);
 });

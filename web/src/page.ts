@@ -23,7 +23,6 @@ import { Presets } from "./panel/presets";
 import { RecordButton } from "./panel/record_button";
 import { bindSaveButtons } from "./panel/save_buttons";
 import { Bodies } from "./link/bodies";
-import { canInflate } from "./link/inflate";
 import { LineWatch, type Second } from "./link/line_watch";
 import { SlowWatch } from "./panel/slow_watch";
 import { SceneStore } from "./link/scene_store";
@@ -134,10 +133,8 @@ export class Page {
 
   private second(): void {
     this.hud.tick(this.connection.bytesReceived);
-    if (this.line.second(this.lastSecond) && canInflate()) {
-      this.connection.setEncoding("c16");
+    if (this.line.second(this.lastSecond) && this.connection.compress())
       this.hud.explain("rate", "everything received, a second; frames come compressed, as the line is slow");
-    }
     this.lastSecond = { ...this.lastSecond, pictures: 0, frames: 0 };
   }
 

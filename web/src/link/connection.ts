@@ -1,4 +1,5 @@
 // The link to the server: connects, authenticates, subscribes, measures the round trip, and reconnects after a loss.
+import { canInflate } from "./inflate";
 import { inTab } from "./kept";
 import { PackedFrames } from "./packed_frames";
 import { BadMessage, decode, isPacked, type FieldName, type Frame, type Topology } from "./protocol";
@@ -14,10 +15,6 @@ export interface LinkEvents {
   latency(milliseconds: number): void;
   problem(error: Error): void;
 }
-
-/// How frames come: q16, which WebGL takes as it is, or c16, the same positions in about a third of the bytes, which a
-/// thread of the page's unpacks.
-export type Encoding = "q16" | "c16";
 
 const subprotocol = "clothlab.v1";
 const firstDelay = 0.25; // [s]: a restarted server is usually back at once
@@ -36,8 +33,16 @@ export class Connection {
   private refused = false;
   private field: FieldName | null = null;
   private agreed: FieldName | null = null; // what the frames that come now have
-  private encoding: Encoding = "q16";
-  private readonly packed = new PackedFrames((error) => this.failed(error));
+  private encoding: "q16" | "c16" = "q16"; // as WebGL takes it, or in fewer bytes, which a thread of the page's unpacks
+  private canUnpack = canInflate();
+  private readonly packed = new PackedFrames({
+    refused: (error) => this.distrust(error),
+    broken: () => {
+      this.canUnpack = false;
+      this.encoding = "q16";
+      this.tryLater("compressed frames cannot be read here"); // those under way are lost, and would be waited for
+    },
+  });
 
   constructor(
     private readonly session: string,
@@ -79,11 +84,12 @@ export class Connection {
     if (this.rpc && this.open) this.subscribe(this.rpc).catch(() => undefined);
   }
 
-  /// Asks for frames in this encoding, now and on every later link.
-  setEncoding(encoding: Encoding): void {
-    if (encoding === this.encoding) return;
-    this.encoding = encoding;
+  /// Asks for compressed frames, now and on every later link. False: this browser cannot read them.
+  compress(): boolean {
+    if (!this.canUnpack || this.encoding === "c16") return this.canUnpack;
+    this.encoding = "c16";
     if (this.rpc && this.open) this.subscribe(this.rpc).catch(() => undefined);
+    return true;
   }
 
   // Every frame after the answer has the field.
@@ -161,7 +167,8 @@ export class Connection {
       if (isPacked(data)) this.packed.unpack(data, (buffer) => this.take(buffer, agreed));
       else this.take(data, agreed);
     } catch (error) {
-      this.failed(error as Error);
+      if (error instanceof BadMessage) this.distrust(error);
+      else this.events.problem(error as Error);
     }
   }
 
@@ -173,11 +180,6 @@ export class Connection {
     } else {
       this.events.frame(read.frame, field);
     }
-  }
-
-  private failed(error: Error): void {
-    if (error instanceof BadMessage) this.distrust(error);
-    else this.events.problem(error);
   }
 
   // Reconnects, as later messages might be misread, too; but late, as the server may well send the same again.

@@ -10,7 +10,8 @@ export class PackedFrames {
   private mesh: Mesh | null = null;
   private waiting: Done[] = []; // for the answers to come, in their order
 
-  constructor(private readonly failed: (error: Error) => void) {}
+  /// `refused`: a message is no frame; `broken`: there is no thread for them here.
+  constructor(private readonly events: { refused(error: BadMessage): void; broken(): void }) {}
 
   /// Takes the topology of the frames that follow.
   take({ vertexCount, triangles }: Mesh): void {
@@ -37,9 +38,9 @@ export class PackedFrames {
     this.worker.onmessage = ({ data }: MessageEvent<FromWorker>) => {
       const done = this.waiting.shift();
       if ("buffer" in data) done?.(data.buffer);
-      else this.failed(new BadMessage(data.problem));
+      else this.events.refused(new BadMessage(data.problem));
     };
-    this.worker.onerror = ({ message }) => this.failed(new Error(`frames cannot be unpacked: ${message}`));
+    this.worker.onerror = () => this.events.broken();
     if (this.mesh) this.send({ mesh: this.mesh });
   }
 
