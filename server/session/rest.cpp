@@ -14,6 +14,9 @@ constexpr double pixel = 1.0 / 720;
 constexpr double pixels_a_second = 10;
 // So small a swing cannot be seen, and a cloth that creeps so slowly takes 50 stretches for a pixel.
 constexpr double pixels_a_stretch = 0.02;
+// Where surfaces lie on each other, their few passes leave a creep that takes 10 stretches for a pixel, and
+// speeds, of vertices that go nowhere, of somewhat more than gravity gives in a step.
+constexpr double pixels_on_surfaces = 0.1, falls_on_surfaces = 2;
 // Rounding moves coordinates in float32 by up to this many units in the last place.
 constexpr double roundings = 4;
 constexpr double pi = 3.14159265358979;
@@ -67,8 +70,10 @@ void Rest::follow(const scene::Scene& scene, const model::Model& model) {
     smallest = std::min(smallest, size_of(model, cloth));
     largest = std::max(largest, size_of(model, cloth));
   }
-  speed_ = pixels_a_second * pixel * smallest;
-  drift_ = pixels_a_stretch * pixel * smallest;
+  const bool surfaces = scene.self_collision && scene.self_collision->kind == scene::ContactKind::surface;
+  speed_ = pixels_a_second * pixel * smallest +
+           (surfaces ? falls_on_surfaces * glm::length(scene.gravity) * scene.solver.dt : 0.0);
+  drift_ = (surfaces ? pixels_on_surfaces : pixels_a_stretch) * pixel * smallest;
   const double half_swing = pi * std::sqrt(diagonal * largest / glm::length(scene.gravity));
   stretch_ = std::clamp(margin * half_swing, shortest_stretch, longest_stretch);
 }

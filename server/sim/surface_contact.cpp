@@ -15,15 +15,16 @@ namespace clothlab::sim {
 
 namespace {
 
-/// Passes of pushes after a step, or each piece of one, and of the filter: in each of the filter's, a layer
-/// that moves ahead makes room for the one behind it.
+/// Passes after a step, or each piece of one. Of pushes, which rub, too. Of friction alone: what the last
+/// pushes move sideways nothing has rubbed yet, and in long steps sheets that lie on others would creep. Of
+/// the filter: in each, a layer that moves ahead makes room for the one behind it.
 struct Passes {
-  int pushes, filter;
+  int pushes, rubs, filter;
 };
-constexpr Passes of_short_step{2, 3}, of_long_step{4, 3};
+constexpr Passes of_short_step{2, 0, 3}, of_long_step{4, 4, 3};
 /// The filter can stop neither bodies nor pins: pushes alone must get the cloth out of their way, layer
 /// behind layer.
-constexpr Passes of_short_driven_step{8, 3}, of_long_driven_step{16, 8};
+constexpr Passes of_short_driven_step{8, 0, 3}, of_long_driven_step{16, 1, 8};
 /// A step longer than this [s] is gone in pieces where vertices are fast, in so many at most. The shorter a
 /// piece, the fewer pairs are near enough to meet in it; but even one that is not needed costs its
 /// dispatches, a tenth of a short step.
@@ -79,6 +80,7 @@ Result<SurfaceContact> SurfaceContact::create(const model::Model& model, const P
   made.start_ = vector_per_vertex(made.vertex_count_);
   made.path_ = vector_per_vertex(made.vertex_count_);
   made.sums_ = gl::Buffer(made.vertex_count_ * sums_of_vertex * sizeof(std::int32_t));
+  made.borne_ = gl::Buffer(made.vertex_count_ * 8 * sizeof(float));
   made.limits_ = gl::Buffer(made.vertex_count_ * sizeof(std::uint32_t));
   return made;
 }
@@ -105,6 +107,7 @@ void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Mode
                         : long_steps_ ? of_long_step
                                       : of_short_step;
   push_passes_ = passes.pushes;
+  rub_passes_ = passes.rubs;
   filter_passes_ = passes.filter;
   set_colliders(apply_, scene, motions, contact_margin(scene, model));
   forces_.set("friction", static_cast<float>(scene.self_collision ? scene.self_collision->friction : 0.0));
@@ -187,17 +190,23 @@ void SurfaceContact::push_and_filter(StateBuffers& state, int row, std::uint32_t
   state.position().buffer.bind_storage(slot_next_position);
   state.velocity().buffer.bind_storage(slot_next_velocity);
   sums_.bind_storage(slot_contact_sums);
-  limits_.bind_storage(slot_step_limits);
-  target_.buffer.bind_storage(slot_step_target);
+  pairs_.bind_friction_left();
+  borne_.bind_storage(slot_borne);
 
   run(contacts_,
       pieces_ > 1 ? offsetof(SurfaceControl, contact_groups) : offsetof(SurfaceControl, pair_groups));
   if (driven_) apply_.set("start_row", row);
-  for (int pass = 0; pass < push_passes_; ++pass) {
+  for (int pass = 0; pass < push_passes_ + rub_passes_; ++pass) {
+    const bool rubs = pass >= push_passes_;
+    forces_.set("rubs", rubs ? 1 : 0);
+    forces_.set("next_rubs", rub_passes_ > 0 && pass >= push_passes_ - 1 ? 1 : 0);
     run(forces_, touching);
     apply_.set("recount", long_steps_ && pass > 0 ? 1 : 0);
+    apply_.set("solid_friction", rub_passes_ == 0 ? 0 : rubs ? 3 : pass > 0 ? 2 : 1);
     run(apply_, pushed);
   }
+  limits_.bind_storage(slot_step_limits);
+  target_.buffer.bind_storage(slot_step_target);
   begin_.use();
   begin_.set("turn", turn_);
   begin_.set("last_piece", last_piece ? 1 : 0);

@@ -64,12 +64,12 @@ class SurfaceContact {
   /// that it moves.
   void push_and_filter(StateBuffers& state, int row, std::uint32_t changing, bool last_piece);
 
-  std::uint32_t cloth_vertex_count_ = 0, vertex_count_ = 0;  ///< with the places of bodies
-  int turn_ = 0;                                             ///< whose step_counts the next step has
-  bool driven_ = false;                                      ///< pins, bodies or colliders move
-  bool long_steps_ = false;                                  ///< the method's
-  int pieces_ = 1;                                           ///< the most in a step
-  int push_passes_ = 0, filter_passes_ = 0;                  ///< in a piece
+  std::uint32_t cloth_vertex_count_ = 0, vertex_count_ = 0;   ///< with the places of bodies
+  int turn_ = 0;                                              ///< whose step_counts the next step has
+  bool driven_ = false;                                       ///< pins, bodies or colliders move
+  bool long_steps_ = false;                                   ///< the method's
+  int pieces_ = 1;                                            ///< the most in a step
+  int push_passes_ = 0, rub_passes_ = 0, filter_passes_ = 0;  ///< in a piece
   bool keeps_start_ = false;  ///< the strain limit writes over the positions at the step's start
   SurfaceBodies bodies_;
   SurfacePairs pairs_;
@@ -77,6 +77,7 @@ class SurfaceContact {
   gl::TextureBuffer start_;  ///< of the step, or of the piece under way
   gl::TextureBuffer target_, path_;
   gl::Buffer sums_, limits_;
+  gl::Buffer borne_;  ///< what solids bear of each vertex: shaders/surface/apply.comp
 };
 
 }  // namespace clothlab::sim

@@ -87,6 +87,7 @@ void SurfacePairs::make_lists(const Capacities& wanted) {
   pairs_ = {gl::Buffer(std::size_t{capacity_.pairs} * 4 * sizeof(std::uint32_t)), GL_RGBA32UI};
   near_pairs_ = {gl::Buffer(std::size_t{capacity_.pairs} * 12 * sizeof(std::uint32_t)), GL_RGBA32UI};
   chosen_pairs_ = gl::Buffer(std::size_t{capacity_.pairs} * 2 * sizeof(std::uint32_t));
+  friction_left_ = gl::Buffer(std::size_t{capacity_.pairs} * 2 * sizeof(float));
   for (const gl::Program* program : programs()) {
     glProgramUniform1ui(program->id(), program->location("leaf_pair_capacity"), capacity_.leaf_pairs);
     glProgramUniform1ui(program->id(), program->location("triangle_pair_capacity"), capacity_.triangle_pairs);

@@ -50,6 +50,9 @@ class SurfacePairs {
   /// Sets what a pass after the step needs to know of the search. It may change with every `update`.
   void set_limits(const gl::Program& program) const;
   const gl::Buffer& control() const { return control_; }
+  /// What the friction of each pair that pushes may still take in a step. After the pushes the slot is
+  /// another buffer's.
+  void bind_friction_left() const { friction_left_.bind_storage(slot_friction_left); }
 
   struct Pair {
     std::array<std::uint32_t, 4> corners{};  ///< a vertex and a triangle, or the ends of two edges
@@ -82,7 +85,7 @@ class SurfacePairs {
   gl::Program corners_, leaf_boxes_program_, leaf_pairs_program_, triangle_pairs_program_, candidates_,
       pairs_program_, finish_;
   SurfaceBlocks blocks_;
-  gl::Buffer control_, chosen_pairs_;
+  gl::Buffer control_, chosen_pairs_, friction_left_;
   gl::ReadbackRing sizes_ring_;
   gl::TextureBuffer triangles_, rest_places_, neighbour_pairs_, triangle_corners_, leaf_boxes_, leaf_pairs_,
       triangle_pairs_, pairs_, near_pairs_;

@@ -105,21 +105,48 @@ FUNCTION Separation separation(bool edges, Corners c) {
   return vertex_and_triangle(c);
 }
 
+/// What friction may still take in a step: so much as the loads allow that contacts have borne in its passes so far,
+/// less what it has taken.
+struct FrictionLeft {
+  real displacement;  // [m]
+  real velocity;      // [m/s]
+};
+
+/// What friction takes of v, a displacement or velocity whose part along n is no sliding: the share `part`, but at most
+/// what is `left`.
+FUNCTION vec3 rub(vec3 v, vec3 n, real part, INOUT(real) left) {
+  vec3 sliding = v - n * dot(v, n);
+  real size = sqrt(dot(sliding, sliding)), takes = min(part * size, left);
+  if (!(takes > real(0.0))) return vec3(real(0.0));
+  left -= takes;
+  return sliding * (takes / size);
+}
+
 /// A pair that was `gap` [m] apart along n at the step's start, and whose nearest points have moved by `moved` [m]
-/// relative to each other since, with relative velocity v [m/s]. True if it is nearer than `keep` [m]. Then `push` [m]
-/// and `impulse` [m/s] are the changes of both that keep it apart, with Coulomb friction, to be shared by its corners.
-/// Of an overlap at the step's start the share `mend` is removed, and becomes no velocity.
+/// relative to each other since, with relative velocity v [m/s]. If it is nearer than `keep` [m], then `push` [m] and
+/// `impulse` [m/s] are the changes of both that keep it apart, with Coulomb friction: the `part` of them that is this
+/// pair's, to be shared by its corners. Of an overlap at the step's start the share `mend` is removed, and becomes no
+/// velocity. `rubs`: a pass of friction alone, of what pushes have moved sideways since. False: nothing changes.
 FUNCTION bool surface_contact(vec3 n, real gap, vec3 moved, vec3 v, real keep, real friction, real restitution,
-                              real mend, OUT(vec3) push, OUT(vec3) impulse) {
+                              real mend, real part, bool rubs, INOUT(FrictionLeft) left, OUT(vec3) push,
+                              OUT(vec3) impulse) {
   push = vec3(real(0.0));
   impulse = vec3(real(0.0));
-  real wanted = gap < keep ? gap + mend * (keep - gap) : keep;
-  real approach = -dot(moved, n);
-  real lacks = wanted - (gap - approach);
-  if (!(lacks > real(0.0))) return false;
-  real load = min(lacks, max(approach, real(0.0)));
-  push = n * lacks - friction_displacement(moved, n, friction, load);
-  impulse = contact_velocity(v, n, friction, restitution) - v;
+  if (!rubs) {
+    real wanted = gap < keep ? gap + mend * (keep - gap) : keep;
+    real approach = -dot(moved, n);
+    real lacks = wanted - (gap - approach);
+    if (!(lacks > real(0.0))) return false;
+    real stopped = (real(1.0) + restitution) * max(-dot(v, n), real(0.0));
+    push = n * (part * lacks);
+    impulse = n * (part * stopped);
+    left.displacement += friction * part * min(lacks, max(approach, real(0.0)));
+    left.velocity += friction * part * stopped;
+  } else if (!(left.displacement > real(0.0) || left.velocity > real(0.0))) {
+    return false;
+  }
+  push = push - rub(moved, n, part, left.displacement);
+  impulse = impulse - rub(v, n, part, left.velocity);
   return true;
 }
 

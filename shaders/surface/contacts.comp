@@ -7,6 +7,7 @@ READ_UVEC4(pair_list, unit_surface_pairs);
 layout(std430, binding = slot_near_pairs) writeonly buffer NearPairs { uvec4 near_list[]; };
 layout(std430, binding = slot_contact_sums) buffer Sums { int sums[]; };
 layout(std430, binding = slot_chosen_pairs) writeonly buffer Chosen { uint touching_pairs[]; };
+layout(std430, binding = slot_friction_left) writeonly buffer Left { vec2 friction_left[]; };
 
 void main() {
   uint item = gl_GlobalInvocationID.x;
@@ -34,6 +35,7 @@ void main() {
         atomicMax(control.step_counts[turn].touching_groups, place / uint(GROUP_SIZE) + 1u);
       control.step_counts[turn].pushed_groups = uint((changing_vertex_count + GROUP_SIZE - 1) / GROUP_SIZE);
       touching_pairs[place] = slot;
+      friction_left[place] = vec2(0.0);
       for (int k = 0; k < 4; ++k)
         if (corner[k] < uint(cloth_vertex_count)) atomicAdd(sums[SUMS * int(corner[k]) + 3], 1);
     }

@@ -6,8 +6,11 @@ READ_VEC4(position, unit_position);  // w: inverse mass [1/kg]
 READ_VEC4(velocity, unit_velocity);
 READ_VEC4(step_start, unit_step_start);
 READ_VEC4(body_places, unit_body_places);  // home, motion; friction, restitution
+layout(std430, binding = slot_friction_left) buffer Left { vec2 friction_left[]; };  // of each of chosen_pairs
 uniform float friction;                    // of cloths
-uniform float mend;  // share of an overlap that the passes of a step remove
+uniform float mend;     // share of an overlap that the passes of a step remove
+uniform int rubs;       // 1: a pass of friction alone
+uniform int next_rubs;  // 1: the next pass is one, shared by all pairs that have friction left
 
 /// Friction and restitution of a pair: a body's, if it has a corner of one.
 vec2 surface_of(uvec4 corner) {
@@ -24,7 +27,7 @@ void give_way(uvec4 corner, vec4 weight, vec4 mobility, vec3 push, vec3 impulse)
     if (mobility[k] != 0.0) {
       add(corner[k], 8, weight[k] * push * units_of_length());
       add(corner[k], 12, weight[k] * impulse * units_of_speed());
-      atomicAdd(sums[SUMS * int(corner[k]) + 11], int(ceil(abs(weight[k]) * weight_units)));
+      atomicAdd(sums[SUMS * int(corner[k]) + 11], weight_in_units(weight[k]));
     }
 }
 
@@ -46,18 +49,25 @@ void main() {
   float give = dot(mobility, weight);
   vec3 push, impulse;
   vec2 surface = surface_of(corner);
-  RARELY(give > 0.0 && surface_contact(apart.xyz, apart.w, moved, v, kept_apart(corner, weight), surface.x, surface.y,
-                                       mend * uintBitsToFloat(known.part), push, impulse)) {
-    bvec4 gives = notEqual(mobility, vec4(0.0)), first = bvec4(true, is_edges(pair), false, false);
-    bool both_give = (gives.x || (first.y && gives.y)) && ((!first.y && gives.y) || gives.z || gives.w);
+  if (!(give > 0.0)) return;
+  bvec4 gives = notEqual(mobility, vec4(0.0)), first = bvec4(true, is_edges(pair), false, false);
+  bool both_give = (gives.x || (first.y && gives.y)) && ((!first.y && gives.y) || gives.z || gives.w);
+  vec2 before = friction_left[gl_GlobalInvocationID.x];
+  FrictionLeft left = FrictionLeft(before.x, before.y);
+  float part = !both_give ? 1.0 : rubs != 0 ? part_that_rubs(corner, mobility, give) : 1.0 / crowd(corner, mobility, 3);
+  bool acts = surface_contact(apart.xyz, apart.w, moved, v, kept_apart(corner, weight), surface.x, surface.y,
+                              mend * uintBitsToFloat(known.part), part, rubs != 0, left, push, impulse);
+  RARELY(acts || (next_rubs != 0 && (left.displacement > 0.0 || left.velocity > 0.0)))
     for (int k = 0; k < 4; ++k)
-      if (corner[k] < uint(cloth_vertex_count)) atomicAdd(sums[SUMS * int(corner[k]) + 15], 1);
+      if (corner[k] < uint(cloth_vertex_count))
+        atomicAdd(sums[SUMS * int(corner[k]) + 15], next_rubs != 0 ? weight_in_units(weight[k]) : 1);
+  RARELY(acts) {
+    friction_left[gl_GlobalInvocationID.x] = vec2(left.displacement, left.velocity);
     if (!both_give) {
       give_way(corner, weight, mobility, push, impulse);
     } else {
-      float share = 1.0 / (give * crowd(corner, mobility, 3));
-      push *= share * units_of_length();
-      impulse *= share * units_of_speed();
+      push *= units_of_length() / give;
+      impulse *= units_of_speed() / give;
       for (int k = 0; k < 4; ++k)
         if (mobility[k] != 0.0) {
           add(corner[k], 0, mobility[k] * push);

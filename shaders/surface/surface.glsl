@@ -105,6 +105,7 @@ float kept_apart(uvec4 corner, vec4 weight) {
 float units_of_length() { return 67108864.0 / uintBitsToFloat(known.query); }
 float units_of_speed() { return units_of_length() * dt; }
 const float weight_units = 65536.0;
+int weight_in_units(float weight) { return int(ceil(abs(weight) * weight_units)); }
 #define SUMS 16  // of a vertex: near_pairs.glsl
 ivec3 in_units(vec3 v) { return ivec3(round(clamp(v, vec3(-1e9), vec3(1e9)))); }
 

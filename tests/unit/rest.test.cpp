@@ -141,3 +141,14 @@ TEST_CASE("a cloth in gusts is never at rest, one in steady wind may be") {
   CHECK_FALSE(in(R"({"velocity": [0, 0, 3], "gust": 0.3, "gust_frequency": 0})"));
   CHECK_FALSE(in(R"({"velocity": [0, 0, 0], "gust": 0.3, "gust_frequency": 0.5})"));
 }
+
+TEST_CASE("surfaces that lie on each other are at rest with what the passes of their contact leave") {
+  const Rest without = watching(strip());
+  const scene::Scene scene = strip({"/self_collision={\"kind\":\"surface\"}", "/solver/dt=0.0005"});
+  Rest rest = watching(scene);
+  CHECK(rest.drift() > without.drift());
+  CHECK(rest.speed() > without.speed() + glm::length(scene.gravity) * scene.solver.dt);
+  CHECK(found_at_rest(rest, 60, [&](double t) { return 0.9 * rest.drift() * t / rest.stretch(); }));
+  rest.disturb();
+  CHECK_FALSE(found_at_rest(rest, 60, [&](double t) { return 1.2 * rest.drift() * t / rest.stretch(); }));
+}

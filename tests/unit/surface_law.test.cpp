@@ -130,16 +130,50 @@ TEST_CASE(
     "a push takes the approach, holds what is slower than friction allows, and mends a share of an overlap") {
   dvec3 push, impulse;
   const dvec3 n(0, 1, 0);
-  REQUIRE(
-      elements::surface_contact(n, 0.01, {0.001, -0.004, 0}, {1, -4, 0}, 0.01, 0.5, 0.0, 0.1, push, impulse));
+  const auto contact = [&](double gap, const dvec3& moved, const dvec3& v) {
+    elements::FrictionLeft left{};
+    return elements::surface_contact(n, gap, moved, v, 0.01, 0.5, 0.0, 0.1, 1.0, false, left, push, impulse);
+  };
+  REQUIRE(contact(0.01, {0.001, -0.004, 0}, {1, -4, 0}));
   CHECK(glm::length(push - dvec3(-0.001, 0.004, 0)) < 1e-15);
   CHECK(glm::length(impulse - dvec3(-1, 4, 0)) < 1e-12);
-  REQUIRE(
-      elements::surface_contact(n, 0.01, {0.004, -0.004, 0}, {4, -4, 0}, 0.01, 0.5, 0.0, 0.1, push, impulse));
+  REQUIRE(contact(0.01, {0.004, -0.004, 0}, {4, -4, 0}));
   CHECK(glm::length(push - dvec3(-0.002, 0.004, 0)) < 1e-15);
-  REQUIRE(elements::surface_contact(n, 0.005, {}, {}, 0.01, 0.5, 0.0, 0.1, push, impulse));
+  REQUIRE(contact(0.005, {}, {}));
   CHECK(glm::length(push - dvec3(0, 0.0005, 0)) < 1e-15);
   CHECK(impulse == dvec3(0.0));
-  CHECK_FALSE(
-      elements::surface_contact(n, 0.02, {0, -0.009, 0}, {0, -9, 0}, 0.01, 0.5, 0.0, 0.1, push, impulse));
+  CHECK_FALSE(contact(0.02, {0, -0.009, 0}, {0, -9, 0}));
+}
+
+TEST_CASE("friction of all passes of a step together takes no more than the pushes of all passes allow") {
+  dvec3 push, impulse;
+  const dvec3 n(0, 1, 0);
+  constexpr double friction = 0.5;
+  elements::FrictionLeft left{};
+  const auto pass = [&](const dvec3& moved, const dvec3& v, bool rubs) {
+    return elements::surface_contact(n, 0.01, moved, v, 0.01, friction, 0.0, 0.1, 0.25, rubs, left, push,
+                                     impulse);
+  };
+  CHECK_FALSE(pass({0.1, 0, 0}, {9, 0, 0}, true));  // friction alone, and nothing has pushed yet
+  dvec3 moved(0.1, -0.004, 0), v(9, -4, 0);
+  double slid = 0.0, slowed = 0.0;
+  for (int k = 0; k < 8; ++k) {
+    const bool rubs = k >= 4;
+    if (!pass(moved, v, rubs)) continue;
+    if (rubs) CHECK((std::abs(push.y) < 1e-15 && std::abs(impulse.y) < 1e-12));
+    moved += push;
+    v += impulse;
+    slid -= push.x;
+    slowed -= impulse.x;
+  }
+  const double stopped = 1.0 - std::pow(0.75, 4);  // a quarter of what is left, four times
+  CHECK(moved.y == Approx(-0.004 * (1.0 - stopped)));
+  CHECK(slid == Approx(friction * 0.004 * stopped));
+  CHECK(slowed == Approx(friction * 4.0 * stopped));
+  // What is slower than that stops, in passes of friction, too.
+  left = {friction * 0.004, friction * 4.0};
+  moved = {0.001, 0, 0};
+  for (int k = 0; k < 60; ++k)
+    if (pass(moved, {}, true)) moved += push;
+  CHECK(glm::length(moved) < 1e-9);
 }
