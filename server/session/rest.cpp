@@ -70,7 +70,7 @@ void Rest::follow(const scene::Scene& scene, const model::Model& model) {
     smallest = std::min(smallest, size_of(model, cloth));
     largest = std::max(largest, size_of(model, cloth));
   }
-  const bool surfaces = scene.self_collision && scene.self_collision->kind == scene::ContactKind::surface;
+  const bool surfaces = scene.collides(scene::ContactKind::surface);
   speed_ = pixels_a_second * pixel * smallest +
            (surfaces ? falls_on_surfaces * glm::length(scene.gravity) * scene.solver.dt : 0.0);
   drift_ = (surfaces ? pixels_on_surfaces : pixels_a_stretch) * pixel * smallest;
