@@ -172,6 +172,7 @@ Result<Program> Program::load(std::initializer_list<std::string> paths, const De
   if (!linked)
     return Error{"shaders/" + *paths.begin(), info_log(program.id_, glGetProgramiv, glGetProgramInfoLog),
                  "mend the shader and start again"};
+  glObjectLabel(GL_PROGRAM, program.id_, -1, paths.begin()->c_str());  // for debuggers and bench_profile
   program.list_uniforms();
   return program;
 }
