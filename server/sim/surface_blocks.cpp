@@ -12,7 +12,6 @@ namespace clothlab::sim {
 Result<SurfaceBlocks> SurfaceBlocks::create(const SurfaceTriangles& surface, std::uint32_t vertex_count) {
   SurfaceBlocks made;
   const std::vector<std::vector<std::uint32_t>>& blocks = surface.blocks;
-  made.block_count_ = static_cast<std::uint32_t>(blocks.size());
   std::vector<std::uint32_t> words;
   std::size_t end = blocks.size();
   for (const std::vector<std::uint32_t>& block : blocks)
@@ -20,14 +19,18 @@ Result<SurfaceBlocks> SurfaceBlocks::create(const SurfaceTriangles& surface, std
   for (const std::vector<std::uint32_t>& block : blocks)
     words.insert(words.end(), block.begin(), block.end());
   made.vertices_ = {gl::Buffer(words), GL_R32UI};
-  Result<gl::Program> loaded =
-      gl::Program::load({"surface/blocks.comp"}, {{"GROUP_SIZE", std::to_string(group_size)}});
-  if (!loaded) return loaded.error();
-  made.program_ = std::move(*loaded);
-  made.program_.set("block_count", static_cast<GLint>(made.block_count_));
-  made.program_.set("cloth_block_count", static_cast<GLint>(surface.cloth_block_count));
-  made.program_.set("vertex_count", static_cast<GLint>(vertex_count));
-  made.program_.set("triangle_count", static_cast<GLint>(surface.triangles.size()));
+  made.motions_ = {gl::Buffer(std::max<std::size_t>(blocks.size(), 1) * 24 * sizeof(float)), GL_RGBA32F};
+  for (auto [program, name] :
+       {std::pair{&made.motions_program_, "block_motions"}, {&made.program_, "blocks"}}) {
+    Result<gl::Program> loaded = gl::Program::load({std::string("surface/") + name + ".comp"},
+                                                   {{"GROUP_SIZE", std::to_string(group_size)}});
+    if (!loaded) return loaded.error();
+    *program = std::move(*loaded);
+    program->set("block_count", static_cast<GLint>(blocks.size()));
+    program->set("cloth_block_count", static_cast<GLint>(surface.cloth_block_count));
+    program->set("vertex_count", static_cast<GLint>(vertex_count));
+    program->set("triangle_count", static_cast<GLint>(surface.triangles.size()));
+  }
   return made;
 }
 
@@ -36,23 +39,27 @@ void SurfaceBlocks::set_skin(float skin) {
 }
 
 void SurfaceBlocks::check(const StateBuffers& state, const gl::TextureBuffer& built) const {
-  bind(state, built);
-  glDispatchCompute(1, 1, 1);
-  wait_for_writes();
+  run(state, built, [] { glDispatchCompute(1, 1, 1); });
 }
 
 void SurfaceBlocks::check_again(const StateBuffers& state, const gl::TextureBuffer& built,
                                 std::size_t groups) const {
-  bind(state, built);
-  glDispatchComputeIndirect(static_cast<GLintptr>(groups));
-  wait_for_writes();
+  run(state, built, [&] { glDispatchComputeIndirect(static_cast<GLintptr>(groups)); });
 }
 
-void SurfaceBlocks::bind(const StateBuffers& state, const gl::TextureBuffer& built) const {
+template <class Dispatch>
+void SurfaceBlocks::run(const StateBuffers& state, const gl::TextureBuffer& built,
+                        const Dispatch& dispatch) const {
   state.position().bind(unit_position);
   built.bind(unit_position_when_built);
   vertices_.bind(unit_block_vertices);
-  program_.use();
+  motions_.bind(unit_block_motions);
+  motions_.buffer.bind_storage(slot_block_motions);
+  for (const gl::Program* program : {&motions_program_, &program_}) {
+    program->use();
+    dispatch();
+    wait_for_writes();
+  }
 }
 
 }  // namespace clothlab::sim

@@ -1,6 +1,6 @@
 // Tells when the pairs that a search for contact between surfaces has listed are no longer all that can meet
-// (shaders/surface/blocks.comp). It follows the motion of blocks of triangles, so
-// that a cloth which moves as a whole, or swings, needs few searches.
+// (shaders/surface/blocks.comp). It follows the motion of blocks of triangles, so that a cloth which falls or
+// turns as a whole, or swings, needs few searches.
 #pragma once
 
 #include <cstddef>
@@ -34,11 +34,11 @@ class SurfaceBlocks {
   void check_again(const StateBuffers& state, const gl::TextureBuffer& built, std::size_t groups) const;
 
  private:
-  void bind(const StateBuffers& state, const gl::TextureBuffer& built) const;
+  template <class Dispatch>
+  void run(const StateBuffers& state, const gl::TextureBuffer& built, const Dispatch& dispatch) const;
 
-  std::uint32_t block_count_ = 0;
-  gl::Program program_;
-  gl::TextureBuffer vertices_;
+  gl::Program motions_program_, program_;
+  gl::TextureBuffer vertices_, motions_;
 };
 
 }  // namespace clothlab::sim

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstring>
 #include <string>
+#include <tuple>
 
 #include "server/scene/method.h"
 #include "server/sim/colliders.h"
@@ -33,7 +34,7 @@ constexpr int most_pieces = 8;
 /// How far a vertex goes in a piece where pins, bodies or colliders move, in thicknesses: pushes make room
 /// for so much, layer behind layer.
 constexpr double driven_advance = 0.25;
-constexpr std::size_t sums_of_vertex = 16;  // as in surface.glsl
+constexpr std::size_t words_of_vertex = 8;  // shaders/surface/vertex_contacts.glsl
 /// Share of an overlap that a step mends, and the most that it does a second [1/s]: what is mended is no
 /// velocity, but it moves what lies on it.
 constexpr double mended_in_step = 0.2, mended_in_second = 20.0;
@@ -61,15 +62,22 @@ Result<SurfaceContact> SurfaceContact::create(const model::Model& model, const P
   made.driven_ = plan.moving > 0;
   made.pairs_.set_driven(made.driven_);
   const gl::Defines defines = step_defines(plan);
-  for (auto [program, name] : {std::pair{&made.contacts_, "contacts"},
-                               {&made.forces_, "forces"},
-                               {&made.apply_, "apply"},
-                               {&made.begin_, "begin"},
-                               {&made.path_program_, "path"},
-                               {&made.advance_, "advance"},
-                               {&made.limit_, "limit"},
-                               {&made.move_, "move"}}) {
-    Result<gl::Program> loaded = gl::Program::load({std::string("surface/") + name + ".comp"}, defines);
+  const auto with_pass = [&](const char* pass) {
+    gl::Defines more = defines;
+    more.emplace_back("PASS", pass);
+    return more;
+  };
+  for (const auto& [program, name, with] : {std::tuple{&made.contacts_, "contacts", defines},
+                                            {&made.forces_, "forces", defines},
+                                            {&made.apply_, "apply", defines},
+                                            {&made.begin_, "begin", defines},
+                                            {&made.path_program_, "path", defines},
+                                            {&made.advance_, "advance", defines},
+                                            {&made.limit_first_, "limit", with_pass("0")},
+                                            {&made.limit_again_, "limit", with_pass("1")},
+                                            {&made.limit_stop_, "limit", with_pass("2")},
+                                            {&made.move_, "move", defines}}) {
+    Result<gl::Program> loaded = gl::Program::load({std::string("surface/") + name + ".comp"}, with);
     if (!loaded) return loaded.error();
     *program = std::move(*loaded);
     program->set("vertex_count", static_cast<GLint>(made.vertex_count_));
@@ -79,14 +87,16 @@ Result<SurfaceContact> SurfaceContact::create(const model::Model& model, const P
   made.target_ = vector_per_vertex(made.vertex_count_);
   made.start_ = vector_per_vertex(made.vertex_count_);
   made.path_ = vector_per_vertex(made.vertex_count_);
-  made.sums_ = gl::Buffer(made.vertex_count_ * sums_of_vertex * sizeof(std::int32_t));
+  made.vertex_contacts_ = {gl::Buffer(made.vertex_count_ * words_of_vertex * sizeof(std::uint32_t)),
+                           GL_RGBA32UI};
   made.borne_ = gl::Buffer(made.vertex_count_ * 8 * sizeof(float));
   made.limits_ = gl::Buffer(made.vertex_count_ * sizeof(std::uint32_t));
   return made;
 }
 
-std::array<const gl::Program*, 8> SurfaceContact::programs() const {
-  return {&contacts_, &forces_, &apply_, &begin_, &limit_, &move_, &path_program_, &advance_};
+std::array<const gl::Program*, 10> SurfaceContact::programs() const {
+  return {&contacts_, &forces_,      &apply_,       &begin_,      &path_program_,
+          &advance_,  &limit_first_, &limit_again_, &limit_stop_, &move_};
 }
 
 void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Model& model,
@@ -118,7 +128,7 @@ void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Mode
 void SurfaceContact::invalidate() {
   bodies_.invalidate();
   pairs_.invalidate();
-  sums_.fill(0);
+  vertex_contacts_.buffer.fill(0);
   limits_.fill(std::bit_cast<std::uint32_t>(1.0f));
   turn_ = 0;
 }
@@ -164,7 +174,7 @@ void SurfaceContact::keep_apart(StateBuffers& state, int row) {
 }
 
 void SurfaceContact::push_and_filter(StateBuffers& state, int row, std::uint32_t changing, bool last_piece) {
-  for (const gl::Program* program : {&contacts_, &apply_, &begin_, &move_})
+  for (const gl::Program* program : {&contacts_, &begin_, &move_})
     program->set("changing_vertex_count", static_cast<GLint>(changing));
   const std::size_t counts =
       offsetof(SurfaceControl, step_counts) + static_cast<std::size_t>(turn_) * sizeof(StepCounts);
@@ -182,29 +192,35 @@ void SurfaceContact::push_and_filter(StateBuffers& state, int row, std::uint32_t
                     cut_vertices = counts + offsetof(StepCounts, cut_vertices);
   pairs_.bind();
   bodies_.bind();
-  for (const gl::Program* program : {&contacts_, &begin_, &limit_}) pairs_.set_limits(*program);
+  for (const gl::Program* program : {&contacts_, &begin_, &limit_first_, &limit_again_, &limit_stop_})
+    pairs_.set_limits(*program);
   state.position().bind(unit_position);
   state.velocity().bind(unit_velocity);
   (keeps_start_ || pieces_ > 1 ? start_ : state.previous_position()).bind(unit_step_start);
   target_.bind(unit_step_target);
   state.position().buffer.bind_storage(slot_next_position);
   state.velocity().buffer.bind_storage(slot_next_velocity);
-  sums_.bind_storage(slot_contact_sums);
-  pairs_.bind_friction_left();
-  borne_.bind_storage(slot_borne);
+  vertex_contacts_.buffer.bind_storage(slot_vertex_contacts);
+  vertex_contacts_.bind(unit_vertex_contacts);
+  pairs_.bind_contacts();
 
   run(contacts_,
       pieces_ > 1 ? offsetof(SurfaceControl, contact_groups) : offsetof(SurfaceControl, pair_groups));
   if (driven_) apply_.set("start_row", row);
+  pairs_.bind_pushes();
+  borne_.bind_storage(slot_borne);
   for (int pass = 0; pass < push_passes_ + rub_passes_; ++pass) {
     const bool rubs = pass >= push_passes_;
+    const int next_rubs = rub_passes_ > 0 && pass >= push_passes_ - 1 ? 1 : 0;
     forces_.set("rubs", rubs ? 1 : 0);
-    forces_.set("next_rubs", rub_passes_ > 0 && pass >= push_passes_ - 1 ? 1 : 0);
+    forces_.set("next_rubs", next_rubs);
+    apply_.set("next_rubs", next_rubs);
     run(forces_, touching);
     apply_.set("recount", long_steps_ && pass > 0 ? 1 : 0);
     apply_.set("solid_friction", rub_passes_ == 0 ? 0 : rubs ? 3 : pass > 0 ? 2 : 1);
     run(apply_, pushed);
   }
+  pairs_.bind();
   limits_.bind_storage(slot_step_limits);
   target_.buffer.bind_storage(slot_step_target);
   begin_.use();
@@ -217,14 +233,13 @@ void SurfaceContact::push_and_filter(StateBuffers& state, int row, std::uint32_t
     // What nothing may stop spreads its step over all passes but the last one, lest it comes upon layers that
     // are yet to make room.
     const float held_part = last ? 1.0f : 1.0f / static_cast<float>(filter_passes_ - 1 - pass);
-    limit_.set("held_part", held_part);
+    const gl::Program& limit = pass == 0 ? limit_first_ : limit_again_;
+    limit.set("held_part", held_part);
     move_.set("held_part", held_part);
-    limit_.set("again", pass);
-    limit_.set("impulses", 0);
-    run(limit_, pass == 0 ? near : meeting);
+    run(limit, pass == 0 ? near : meeting);
     if (last) {
-      limit_.set("impulses", 1);
-      run(limit_, meeting);
+      limit_stop_.set("held_part", held_part);
+      run(limit_stop_, meeting);
     }
     move_.set("last", last ? 1 : 0);
     run(move_, pass == 0 || driven_ ? vertices : cut_vertices);

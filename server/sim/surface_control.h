@@ -14,13 +14,14 @@ using DispatchGroups = std::array<std::uint32_t, 3>;
 struct StepCounts {
   DispatchGroups near_groups{0, 1, 1}, vertex_groups{0, 1, 1}, touching_groups{0, 1, 1},
       pushed_groups{0, 1, 1}, meeting_groups{0, 1, 1}, cut_vertices{0, 1, 1};
-  std::uint32_t near = 0, touching = 0, meeting = 0, cuts = 0, unused = 0, unused_2 = 0;
+  std::uint32_t near = 0, touching = 0, meeting = 0, cuts = 0, touched = 0, unused = 0;
 };
 
 struct SurfaceControl {
   std::array<StepCounts, 2> step_counts;
   DispatchGroups rebuild{0, 1, 1}, leaf_groups{0, 1, 1}, split{0, 1, 1}, pair_groups{0, 1, 1};
-  DispatchGroups candidate_groups{0, 1, 1}, check{1, 1, 1}, contact_groups{0, 1, 1};
+  DispatchGroups neighbour_groups{0, 1, 1}, candidate_groups{0, 1, 1}, check{1, 1, 1},
+      contact_groups{0, 1, 1};
   std::uint32_t leaf_pairs = 0, triangle_pairs = 0, candidates = 0, pairs = 0;
   std::uint32_t fastest = 0, fastest_vertex = 0;
   std::uint32_t query = 0, flat_query = 0, overflow = 0;

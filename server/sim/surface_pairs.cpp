@@ -41,8 +41,10 @@ Result<SurfacePairs> SurfacePairs::create(const model::Model& model, const Surfa
                                {&made.leaf_boxes_program_, "leaf_boxes"},
                                {&made.leaf_pairs_program_, "leaf_pairs"},
                                {&made.triangle_pairs_program_, "triangle_pairs"},
+                               {&made.neighbours_, "neighbours"},
                                {&made.candidates_, "candidates"},
                                {&made.pairs_program_, "pairs"},
+                               {&made.rest_, "rest"},
                                {&made.finish_, "finish"}}) {
     Result<gl::Program> loaded = gl::Program::load({std::string("surface/") + name + ".comp"}, defines);
     if (!loaded) return loaded.error();
@@ -76,7 +78,7 @@ Result<SurfacePairs> SurfacePairs::create(const model::Model& model, const Surfa
 void SurfacePairs::make_lists(const Capacities& wanted) {
   GLint texels = 0;
   glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
-  const std::uint32_t most = std::min(most_listed, static_cast<std::uint32_t>(texels) / 3);
+  const std::uint32_t most = std::min(most_listed, static_cast<std::uint32_t>(texels) / 4);
   capacity_ = {std::min(wanted.leaf_pairs, most), std::min(wanted.triangle_pairs, most),
                std::min(wanted.pairs, most)};
   const auto pairs_of_numbers = [](std::uint32_t count) {
@@ -86,8 +88,10 @@ void SurfacePairs::make_lists(const Capacities& wanted) {
   triangle_pairs_ = pairs_of_numbers(capacity_.triangle_pairs);
   pairs_ = {gl::Buffer(std::size_t{capacity_.pairs} * 4 * sizeof(std::uint32_t)), GL_RGBA32UI};
   near_pairs_ = {gl::Buffer(std::size_t{capacity_.pairs} * 12 * sizeof(std::uint32_t)), GL_RGBA32UI};
-  chosen_pairs_ = gl::Buffer(std::size_t{capacity_.pairs} * 2 * sizeof(std::uint32_t));
-  friction_left_ = gl::Buffer(std::size_t{capacity_.pairs} * 2 * sizeof(float));
+  chosen_pairs_ = {gl::Buffer(std::size_t{capacity_.pairs} * 2 * sizeof(std::uint32_t)), GL_R32UI};
+  friction_left_ = pairs_of_numbers(capacity_.pairs);
+  contact_links_ = pairs_of_numbers(4 * capacity_.pairs);
+  contact_pushes_ = {gl::Buffer(std::size_t{capacity_.pairs} * 8 * sizeof(float)), GL_RGBA32F};
   for (const gl::Program* program : programs()) {
     glProgramUniform1ui(program->id(), program->location("leaf_pair_capacity"), capacity_.leaf_pairs);
     glProgramUniform1ui(program->id(), program->location("triangle_pair_capacity"), capacity_.triangle_pairs);
@@ -95,13 +99,9 @@ void SurfacePairs::make_lists(const Capacities& wanted) {
   }
 }
 
-std::array<const gl::Program*, 7> SurfacePairs::programs() const {
-  return {&corners_,
-          &leaf_boxes_program_,
-          &leaf_pairs_program_,
-          &triangle_pairs_program_,
-          &candidates_,
-          &pairs_program_,
+std::array<const gl::Program*, 9> SurfacePairs::programs() const {
+  return {&corners_,    &leaf_boxes_program_, &leaf_pairs_program_, &triangle_pairs_program_,
+          &neighbours_, &candidates_,         &pairs_program_,      &rest_,
           &finish_};
 }
 
@@ -184,9 +184,11 @@ void SurfacePairs::search(const StateBuffers& state) {
   dispatch(triangle_pairs_program_, offsetof(SurfaceControl, leaf_groups));
   near_pairs_.buffer.bind_storage(slot_near_pairs);
   near_pairs_.bind(unit_near_pairs);
+  dispatch(neighbours_, offsetof(SurfaceControl, neighbour_groups));
   dispatch(candidates_, offsetof(SurfaceControl, split));
   pairs_.buffer.bind_storage(slot_surface_pairs);
   dispatch(pairs_program_, offsetof(SurfaceControl, candidate_groups));
+  dispatch(rest_, offsetof(SurfaceControl, pair_groups));
   dispatch(finish_, offsetof(SurfaceControl, rebuild));
   searched_ = true;
 }
@@ -250,7 +252,20 @@ void SurfacePairs::bind() const {
   pairs_.bind(unit_surface_pairs);
   near_pairs_.bind(unit_near_pairs);
   near_pairs_.buffer.bind_storage(slot_near_pairs);
-  chosen_pairs_.bind_storage(slot_chosen_pairs);
+  chosen_pairs_.buffer.bind_storage(slot_chosen_pairs);
+}
+
+void SurfacePairs::bind_contacts() const {
+  friction_left_.buffer.bind_storage(slot_friction_left);
+  contact_links_.buffer.bind_storage(slot_contact_links);
+}
+
+void SurfacePairs::bind_pushes() const {
+  chosen_pairs_.bind(unit_chosen_pairs);
+  friction_left_.bind(unit_friction_left);
+  contact_links_.bind(unit_contact_links);
+  contact_pushes_.bind(unit_contact_pushes);
+  contact_pushes_.buffer.bind_storage(slot_contact_pushes);
 }
 
 void SurfacePairs::set_limits(const gl::Program& program) const {

@@ -50,9 +50,10 @@ class SurfacePairs {
   /// Sets what a pass after the step needs to know of the search. It may change with every `update`.
   void set_limits(const gl::Program& program) const;
   const gl::Buffer& control() const { return control_; }
-  /// What the friction of each pair that pushes may still take in a step. After the pushes the slot is
-  /// another buffer's.
-  void bind_friction_left() const { friction_left_.bind_storage(slot_friction_left); }
+  /// Binds what contacts write of each near pair, and what its pushes read and write. The slots are other
+  /// buffers' afterwards.
+  void bind_contacts() const;
+  void bind_pushes() const;
 
   struct Pair {
     std::array<std::uint32_t, 4> corners{};  ///< a vertex and a triangle, or the ends of two edges
@@ -74,7 +75,7 @@ class SurfacePairs {
     std::uint32_t leaf_pairs = 0, triangle_pairs = 0, pairs = 0;
   };
   void make_lists(const Capacities& wanted);
-  std::array<const gl::Program*, 7> programs() const;
+  std::array<const gl::Program*, 9> programs() const;
   bool waits() const { return driven_ || in_pieces_; }
 
   std::uint32_t vertex_count_ = 0, triangle_count_ = 0;
@@ -82,13 +83,13 @@ class SurfacePairs {
   float most_query_ = 0, skin_ = 0;  ///< [m]
   bool driven_ = false, in_pieces_ = false, searched_ = false;
   std::uint64_t updates_ = 0;  ///< calls of `update` since `invalidate`
-  gl::Program corners_, leaf_boxes_program_, leaf_pairs_program_, triangle_pairs_program_, candidates_,
-      pairs_program_, finish_;
+  gl::Program corners_, leaf_boxes_program_, leaf_pairs_program_, triangle_pairs_program_, neighbours_,
+      candidates_, pairs_program_, rest_, finish_;
   SurfaceBlocks blocks_;
-  gl::Buffer control_, chosen_pairs_, friction_left_;
+  gl::Buffer control_;
   gl::ReadbackRing sizes_ring_;
   gl::TextureBuffer triangles_, rest_places_, neighbour_pairs_, triangle_corners_, leaf_boxes_, leaf_pairs_,
-      triangle_pairs_, pairs_, near_pairs_;
+      triangle_pairs_, pairs_, near_pairs_, chosen_pairs_, friction_left_, contact_links_, contact_pushes_;
   gl::TextureBuffer built_position_;
 };
 

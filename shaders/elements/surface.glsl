@@ -57,52 +57,36 @@ FUNCTION Separation no_separation() {
   return best;
 }
 
-FUNCTION Separation vertex_and_triangle(Corners c) {
-  Separation best = no_separation();
-  real u = nearest_on(c.x[0], c.x[1], c.x[2]);
-  compare_points(false, c, real(1.0), u - real(1.0), -u, real(0.0), best);
-  u = nearest_on(c.x[0], c.x[2], c.x[3]);
-  compare_points(false, c, real(1.0), real(0.0), u - real(1.0), -u, best);
-  u = nearest_on(c.x[0], c.x[3], c.x[1]);
-  compare_points(false, c, real(1.0), -u, real(0.0), u - real(1.0), best);
-  vec3 a = c.x[1] - c.x[0], b = c.x[2] - c.x[0], d = c.x[3] - c.x[0];
-  vec3 normal = cross(b - a, d - a);
-  real w1 = dot(normal, cross(b, d)), w2 = dot(normal, cross(d, a)), w3 = dot(normal, cross(a, b));
-  real sum = w1 + w2 + w3, size = sqrt(dot(normal, normal));
-  if (w1 >= real(0.0) && w2 >= real(0.0) && w3 >= real(0.0) && sum > real(0.0)) {
-    real side = dot(normal, a) > real(0.0) ? real(-1.0) : real(1.0);
-    compare(false, c, normal * (side / size), real(1.0), -w1 / sum, -w2 / sum, -w3 / sum, best);
-  }
-  return best;
-}
-
-/// Near-parallel edges have no normal: then an end of one of them is nearest, or as near as rounding tells.
-FUNCTION Separation two_edges(Corners c) {
-  Separation best = no_separation();
-  real u = nearest_on(c.x[0], c.x[2], c.x[3]);
-  compare_points(true, c, real(1.0), real(0.0), u - real(1.0), -u, best);
-  u = nearest_on(c.x[1], c.x[2], c.x[3]);
-  compare_points(true, c, real(0.0), real(1.0), u - real(1.0), -u, best);
-  u = nearest_on(c.x[2], c.x[0], c.x[1]);
-  compare_points(true, c, real(1.0) - u, u, real(-1.0), real(0.0), best);
-  u = nearest_on(c.x[3], c.x[0], c.x[1]);
-  compare_points(true, c, real(1.0) - u, u, real(0.0), real(-1.0), best);
-  vec3 along = c.x[1] - c.x[0], other = c.x[3] - c.x[2], between = c.x[0] - c.x[2];
-  vec3 normal = cross(along, other);
-  real squared = dot(normal, normal);
-  if (squared > real(1e-10) * dot(along, along) * dot(other, other)) {
-    real s = dot(cross(other, between), normal) / squared, t = dot(cross(along, between), normal) / squared;
-    if (s >= real(0.0) && s <= real(1.0) && t >= real(0.0) && t <= real(1.0)) {
-      real side = dot(normal, between) < real(0.0) ? real(-1.0) : real(1.0);
-      compare(true, c, normal * (side / sqrt(squared)), real(1.0) - s, s, t - real(1.0), -t, best);
-    }
-  }
-  return best;
-}
-
+/// Both kinds in one, with as much in common as can be: software OpenGL runs both sides of every `if`. Near-parallel
+/// edges have no normal: then an end of one of them is nearest, or as near as rounding tells.
 FUNCTION Separation separation(bool edges, Corners c) {
-  if (edges) return two_edges(c);
-  return vertex_and_triangle(c);
+  const real one = real(1.0), zero = real(0.0);
+  Separation best = no_separation();
+  // A corner and a segment of the other part: the vertex and each side of the triangle, or each end of two edges.
+  real u = nearest_on(c.x[0], c.x[2], c.x[3]);
+  compare_points(edges, c, one, zero, u - one, -u, best);
+  u = nearest_on(edges ? c.x[1] : c.x[0], edges ? c.x[2] : c.x[1], edges ? c.x[3] : c.x[2]);
+  compare_points(edges, c, edges ? zero : one, edges ? one : u - one, edges ? u - one : -u, edges ? -u : zero, best);
+  u = nearest_on(edges ? c.x[2] : c.x[0], edges ? c.x[0] : c.x[3], c.x[1]);
+  compare_points(edges, c, edges ? one - u : one, edges ? u : -u, edges ? -one : zero, edges ? zero : u - one, best);
+  u = nearest_on(c.x[3], c.x[0], c.x[1]);
+  if (edges) compare_points(edges, c, one - u, u, zero, -one, best);
+  // Along the normal of a triangle, or of two edges.
+  vec3 along = edges ? c.x[1] - c.x[0] : c.x[2] - c.x[1], other = edges ? c.x[3] - c.x[2] : c.x[3] - c.x[1];
+  vec3 normal = cross(along, other);
+  real squared = dot(normal, normal), size = sqrt(squared);
+  vec3 p = c.x[1] - c.x[0], q = c.x[2] - c.x[0], r = c.x[3] - c.x[0];
+  real first = dot(normal, cross(edges ? other : q, edges ? -q : r));
+  real second = dot(normal, cross(edges ? along : r, edges ? -q : p));
+  real third = dot(normal, cross(p, q)), sum = edges ? squared : first + second + third;
+  bool within = first >= zero && second >= zero && (edges ? first <= sum && second <= sum : third >= zero);
+  if (within && sum > zero && (!edges || squared > real(1e-10) * dot(along, along) * dot(other, other))) {
+    real side = (edges ? dot(normal, q) : dot(normal, p)) > zero ? -one : one;
+    real s = first / sum, t = second / sum;
+    compare(edges, c, normal * (side / size), edges ? one - s : one, edges ? s : -s, edges ? t - one : -t,
+            edges ? -t : -(third / sum), best);
+  }
+  return best;
 }
 
 /// What friction may still take in a step: so much as the loads allow that contacts have borne in its passes so far,

@@ -1,15 +1,19 @@
 // Contact, 3 of 3: the pushes on each vertex, in place. A solid that it is pushed into stops it, with friction: so what
 // lies on a solid carries what lies on it.
 #include "surface.glsl"
+#include "vertex_contacts.glsl"
 #include "../methods/motions.glsl"
 #include "../collide/colliders.glsl"
 READ_VEC4(step_start, unit_step_start);
 layout(std430, binding = slot_next_position) buffer Position { vec4 position[]; };
 layout(std430, binding = slot_next_velocity) buffer Velocity { vec4 velocity[]; };
-layout(std430, binding = slot_contact_sums) buffer Sums { int sums[]; };
+READ_UVEC4(vertex_contacts, unit_vertex_contacts);
+READ_UVEC2(contact_links, unit_contact_links);    // contacts.comp
+READ_VEC4(contact_pushes, unit_contact_pushes);  // forces.comp
 // 1: from now on only those pairs share a vertex that pushed it in this pass. In the first passes too many others may
 // begin to.
 uniform int recount;
+uniform int next_rubs;  // as in forces.comp
 // What a pass does with the friction that a solid has left over for the vertices that it bears: 0, nothing, as no pass
 // of friction alone follows; 1, the first of a step, counts it from zero; 2, counts on; 3, friction alone, uses it too.
 uniform int solid_friction;
@@ -43,7 +47,7 @@ void stop_at_solids(int i) {
       met += meet_solid(kind, moves, row, start, x, v, 0.0);
   EACH_SOLID(STOP)
 #endif
-  RARELY(met > 0) {
+  if (met > 0) {
     if (solid_friction != 0) count_friction(i, x - position[i].xyz, v - velocity[i].xyz);
     position[i].xyz = x - met_braking;
     velocity[i].xyz = v;
@@ -61,22 +65,54 @@ void rub_on_solid(int i) {
   borne[i].velocity.w = left.velocity;
 }
 
-void main() {
-  int i = int(gl_GlobalInvocationID.x), first = SUMS * i;
-  if (i >= changing_vertex_count || sums[first + 3] == 0) return;
-  position[i].xyz += vec3(sums[first], sums[first + 1], sums[first + 2]) / units_of_length();
-  velocity[i].xyz += vec3(sums[first + 4], sums[first + 5], sums[first + 6]) / units_of_speed();
-  for (int k = 0; k < 3; ++k) sums[first + k] = sums[first + 4 + k] = 0;
-  RARELY(recount != 0) sums[first + 3] = max(1, sums[first + 15]);  // 0 would say that no pair touches it
-  sums[first + 15] = 0;
-  float weight = float(sums[first + 11]) / weight_units;
-  RARELY(weight > 0.0) {
-    position[i].xyz += vec3(sums[first + 8], sums[first + 9], sums[first + 10]) / (units_of_length() * weight);
-    velocity[i].xyz += vec3(sums[first + 12], sums[first + 13], sums[first + 14]) / (units_of_speed() * weight);
-    for (int k = 8; k < 15; ++k) sums[first + k] = 0;
+/// Sums over the contacts of a vertex.
+struct Pushes {
+  ivec3 push, impulse;          // of those whose parts both give way [units of length, of speed]
+  ivec3 push_one, impulse_one;  // of the others, weighted by how near the contact is to the vertex
+  int weight_one;               // [1 / weight_units]
+  int sharing;                  // pairs that share it in the next pass, or their weights
+};
+
+Pushes pushes_on(uint contact, float inverse_mass) {
+  Pushes all = Pushes(ivec3(0), ivec3(0), ivec3(0), ivec3(0), 0, 0);
+  while (contact != 0u) {
+    --contact;
+    uvec2 link = FETCH_UVEC2(contact_links, contact);
+    vec4 push = FETCH(contact_pushes, 2u * (contact / 4u)), impulse = FETCH(contact_pushes, 2u * (contact / 4u) + 1u);
+    float weight = uintBitsToFloat(link.y), mobility = weight * inverse_mass;
+    int weight_here = weight_in_units(weight);
+    bool one = push.w == pushes_one && mobility != 0.0;
+    float factor = one ? weight : push.w == pushes_both ? mobility : 0.0;
+    ivec3 pushed = in_units(factor * push.xyz), changed = in_units(factor * impulse.xyz);
+    all.push += one ? ivec3(0) : pushed;
+    all.impulse += one ? ivec3(0) : changed;
+    all.push_one += one ? pushed : ivec3(0);
+    all.impulse_one += one ? changed : ivec3(0);
+    all.weight_one += one ? weight_here : 0;
+    all.sharing += impulse.w == 0.0 ? 0 : next_rubs != 0 ? weight_here : 1;
+    contact = link.x;
   }
+  return all;
+}
+
+void main() {
+  if (gl_GlobalInvocationID.x >= known.step_counts[turn].touched) return;
+  int i = int(FETCH(vertex_contacts, 2u * gl_GlobalInvocationID.x).y);
+  vec4 x = position[i];
+  vec3 v = velocity[i].xyz;
+  Pushes all = pushes_on(FETCH(vertex_contacts, 2 * i).x, x.w);
+  x.xyz += vec3(all.push) / units_of_length();
+  v += vec3(all.impulse) / units_of_speed();
+  if (recount != 0) at_vertex[i].sharing = uint(max(1, all.sharing));  // 0 would say that no pair touches it
+  float weight = float(all.weight_one) / weight_units;
+  if (weight > 0.0) {
+    x.xyz += vec3(all.push_one) / (units_of_length() * weight);
+    v += vec3(all.impulse_one) / (units_of_speed() * weight);
+  }
+  position[i].xyz = x.xyz;
+  velocity[i].xyz = v;
   if (solid_friction == 1) borne[i] = Borne(vec4(0.0), vec4(0.0));
-  RARELY(position[i].w > 0.0) {
+  if (x.w > 0.0) {
     stop_at_solids(i);
     if (solid_friction == 3) rub_on_solid(i);
   }

@@ -2,10 +2,10 @@
 // farther for it. Without near pairs that is the end; else `position` starts over at the start. Also gets the counts
 // ready for the next one.
 #include "surface.glsl"
+#include "vertex_contacts.glsl"
 READ_VEC4(step_start, unit_step_start);
 layout(std430, binding = slot_next_position) buffer Position { vec4 position[]; };
 layout(std430, binding = slot_next_velocity) buffer Velocity { vec4 velocity[]; };
-layout(std430, binding = slot_contact_sums) buffer Sums { int sums[]; };
 layout(std430, binding = slot_step_target) writeonly buffer Target { vec4 target[]; };
 
 uniform int last_piece;  // 1: of the step
@@ -16,7 +16,7 @@ void prepare_next_piece() {
   control.step_counts[next].touching_groups = control.step_counts[next].meeting_groups = 0u;
   control.step_counts[next].pushed_groups = control.step_counts[next].cut_vertices = 0u;
   control.step_counts[next].near = control.step_counts[next].touching = 0u;
-  control.step_counts[next].meeting = control.step_counts[next].cuts = 0u;
+  control.step_counts[next].meeting = control.step_counts[next].cuts = control.step_counts[next].touched = 0u;
   if (piece_count == 1) return;
   float gone = uintBitsToFloat(known.gone), part = uintBitsToFloat(known.part);
   gone = part >= 1.0 - gone ? 1.0 : gone + part;
@@ -31,24 +31,24 @@ void main() {
   if (i >= changing_vertex_count || !(uintBitsToFloat(known.part) > 0.0)) return;
   vec4 start = FETCH(step_start, i), end = position[i];
   bool free = end.w > 0.0, filtered = known.step_counts[turn].near > 0u;
-  RARELY(filtered && sums[SUMS * i + 3] != 0) {
+  if (filtered && at_vertex[i].first != 0u) {
     if (free) velocity[i].w += 1.0;
-    sums[SUMS * i + 3] = 0;
+    at_vertex[i].first = at_vertex[i].sharing = 0u;
   }
   vec3 moved = end.xyz - start.xyz;
   float went = length(moved), query_radius = uintBitsToFloat(known.flat_query), most = step_share * query_radius;
-  RARELY(went > 0.9 * most && query_radius < most_query) {
+  if (went > 0.9 * most && query_radius < most_query) {
     if (went < 1e30) atomicMax(control.fastest, floatBitsToUint(went));
     control.rebuild_groups = uint((max(vertex_count, triangle_count) + GROUP_SIZE - 1) / GROUP_SIZE);
   }
-  RARELY(free && went > most) {
+  if (free && went > most) {
     end.xyz = start.xyz + moved * (most / went);
     position[i] = end;
     atomicAdd(control.step_counts[turn].cuts, 1u);
     atomicAdd(control.cuts, 1u);
   }
-  RARELY(free && known.overflow != 0u) position[i] = end = start;
+  if (free && known.overflow != 0u) position[i] = end = start;
   // Bodies that do not move come here in the first steps alone.
-  RARELY(filtered || i >= cloth_vertex_count) target[i] = end;
-  RARELY(filtered) position[i] = vec4(start.xyz, end.w);
+  if (filtered || i >= cloth_vertex_count) target[i] = end;
+  if (filtered) position[i] = vec4(start.xyz, end.w);
 }

@@ -1,58 +1,63 @@
-// Validity of the listed pairs, in one work group: asks for a search if two blocks of triangles have moved so far,
-// relative to each other, that a pair which the last search left out may be near now. Motion that both share, such as
-// a falling or a swinging cloth's, does not count. A pair that was left out was farther apart than the search
-// reached, and no nearer than the boxes of its blocks; how much nearer it came is at most the largest relative motion
-// of its corners.
+// Validity of the listed pairs, in one work group: asks for a search if two blocks of triangles have come so much
+// nearer to each other that a pair which the last search left out may be near now. Motion that both share does not
+// count, neither a falling cloth's nor a swinging one's. A pair that was left out was farther apart than the search
+// reached, and no nearer than the spheres about its blocks; it came nearer by no more than two of its corners did.
 #include "surface.glsl"
-READ_VEC4(position, unit_position);
-READ_VEC4(position_when_built, unit_position_when_built);
-READ_UINT(block_vertices, unit_block_vertices);  // where each block's list ends, then the lists
-uniform int block_count;                         // at most GROUP_SIZE
-uniform int cloth_block_count;                   // those of bodies come after them, and do not meet each other
+READ_VEC4(block_motions, unit_block_motions);
+uniform int block_count;        // at most GROUP_SIZE
+uniform int cloth_block_count;  // those of bodies come after them, and do not meet each other
 
 const float rounding = 1.001;
 
-// For each block the box about its vertices at the last search, and the box about their motions since.
-shared vec3 low[GROUP_SIZE], high[GROUP_SIZE], motion_low[GROUP_SIZE], motion_high[GROUP_SIZE];
+/// A block: all its vertices were within `radius` of `place` at the last search. Now they are where `turn` about that
+/// place, which then goes to `moved`, takes them, but for `bend`; and where the shift `motion` takes them, but for
+/// `change`. [m]
+struct Block {
+  vec3 place, moved, motion;
+  float radius, bend, change;
+  mat3 turn;
+};
 
-void measure(int block) {
-  uint begin = block > 0 ? FETCH_UINT(block_vertices, block - 1) : uint(block_count);
-  uint end = FETCH_UINT(block_vertices, block);
-  vec3 least = vec3(1e30), most = vec3(-1e30), least_motion = least, most_motion = most;
-  for (uint k = begin; k < end; ++k) {
-    uint vertex = FETCH_UINT(block_vertices, k);
-    vec3 built = FETCH(position_when_built, vertex).xyz, moved = FETCH(position, vertex).xyz - built;
-    least = min(least, built);
-    most = max(most, built);
-    least_motion = min(least_motion, moved);
-    most_motion = max(most_motion, moved);
-  }
-  low[block] = least;
-  high[block] = most;
-  motion_low[block] = least_motion;
-  motion_high[block] = most_motion;
+Block block_at(int i) {
+  vec4 place = FETCH(block_motions, 6 * i), moved = FETCH(block_motions, 6 * i + 1);
+  vec4 motion = FETCH(block_motions, 6 * i + 2);
+  mat3 rows = mat3(FETCH(block_motions, 6 * i + 3).xyz, FETCH(block_motions, 6 * i + 4).xyz,
+                   FETCH(block_motions, 6 * i + 5).xyz);
+  return Block(place.xyz, moved.xyz, motion.xyz, place.w, moved.w, motion.w, transpose(rows));
+}
+
+/// By how much a vertex of one block and one of the other have come nearer to each other, at most [m]. A rotation of
+/// both changes no distance.
+float approach(Block one, Block other) {
+  vec3 between = other.place - one.place, now = other.moved - one.moved;
+  mat3 turned = other.turn - one.turn;
+  // The Frobenius norm of the difference of two rotations is sqrt(2) times its largest stretch.
+  float twist = sqrt(0.5 * (dot(turned[0], turned[0]) + dot(turned[1], turned[1]) + dot(turned[2], turned[2])));
+  float as_one = length(now - one.turn * between) + twist * other.radius;
+  float as_other = length(now - other.turn * between) + twist * one.radius;
+  float as_rigid = min(as_one, as_other) + one.bend + other.bend;
+  float as_shifted = length(other.motion - one.motion) + one.change + other.change;
+  return min(as_rigid, as_shifted);
 }
 
 /// True if no pair of this block and another can be near that is not listed.
-bool valid(int one) {
-  vec3 at = low[one], to = high[one], least_motion = motion_low[one], most_motion = motion_high[one];
+bool valid(int i) {
+  Block one = block_at(i);
   bool all_valid = true;
   // Each two blocks once: every block looks at the half of the ring that begins with itself.
   for (int k = 0; k <= block_count / 2; ++k) {
-    int other = one + k < block_count ? one + k : one + k - block_count;
-    vec3 relative = max(abs(most_motion - motion_low[other]), abs(least_motion - motion_high[other]));
-    vec3 between = max(max(at - high[other], low[other] - to), vec3(0.0));
-    float room = max(length(between) - uintBitsToFloat(known.query), skin);
-    bool may_meet = one < cloth_block_count || other < cloth_block_count;
-    all_valid = all_valid && (!may_meet || rounding * length(relative) <= room);
+    int j = i + k < block_count ? i + k : i + k - block_count;
+    Block other = block_at(j);
+    float apart = length(other.place - one.place) - one.radius - other.radius;
+    float room = max(apart - uintBitsToFloat(known.query), skin);
+    bool may_meet = i < cloth_block_count || j < cloth_block_count;
+    all_valid = all_valid && (!may_meet || rounding * approach(one, other) <= room);
   }
   return all_valid;
 }
 
 void main() {
   int block = int(gl_LocalInvocationID.x);
-  if (block < block_count) measure(block);
-  barrier();
   if (block < block_count && !valid(block))
     control.rebuild_groups = uint((max(vertex_count, triangle_count) + GROUP_SIZE - 1) / GROUP_SIZE);
 }

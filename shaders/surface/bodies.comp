@@ -12,7 +12,7 @@ void main() {
   vec4 home = FETCH(body_places, 2 * i);
   int motion = int(home.w);
   vec3 x = home.xyz, v = vec3(0.0);
-  RARELY(motion >= 0) {
+  if (motion >= 0) {
     x = placed(motion, row, home.xyz);
     v = velocity_at(motion, row, x);
   }

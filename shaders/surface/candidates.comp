@@ -1,11 +1,10 @@
-// Pair search, 5 of 7: which vertices and triangles, and which edges, of two triangles that are near each other have
+// Pair search, 6 of 9: which vertices and triangles, and which edges, of two triangles that are near each other have
 // boxes that are near. Each vertex and edge is owned by one of its triangles, so that no pair is found twice (Curtis et
 // al. 2008, "Fast Collision Detection for Deformable Models using Representative-Triangles").
 #include "surface.glsl"
 #include "triangles.glsl"
 READ_UVEC2(triangle_pair_list, unit_triangle_pairs);
-// Two triangles, the number of a pair of theirs, and no_force_bit or 0.
-layout(std430, binding = slot_near_pairs) writeonly buffer Candidates { uvec4 list[]; };
+layout(std430, binding = slot_near_pairs) writeonly buffer Candidates { uvec4 list[]; };  // pairs
 
 /// The pairs that two triangles own, as bits: 0 to 2 a vertex of the first and the second, 3 to 5 a vertex of the
 /// second and the first, 6 to 14 an edge of each.
@@ -41,6 +40,22 @@ uint near_pairs(vec3 one[3], vec3 other[3], float reach) {
   return found;
 }
 
+/// A corner of two triangles, 3 to 5 of the second.
+uint corner(uvec2 both, int k) {
+  return FETCH(triangle_corners, k < 3 ? 3u * both.x + uint(k) : 3u * both.y + uint(k - 3)).w & number_mask;
+}
+
+/// The pair of two triangles of one of the bits: a vertex, and a triangle n, n + 1, n + 2; or edges m to m_end and n to
+/// n_end.
+uvec4 pair_of_bit(uvec2 both, int bit) {
+  bool edges = bit >= 6;
+  int m = edges ? bit / 3 - 2 : bit, n = edges ? 3 + bit % 3 : bit < 3 ? 3 : 0;
+  uvec4 pair = uvec4(corner(both, m), corner(both, edges ? (m + 1) % 3 : n), corner(both, edges ? n : n + 1),
+                     corner(both, edges ? 3 + (n - 2) % 3 : n + 2));
+  if (edges) pair.x |= edges_bit;
+  return pair;
+}
+
 void main() {
   uint item = gl_GlobalInvocationID.x;
   if (item >= min(known.triangle_pairs, triangle_pair_capacity)) return;
@@ -55,12 +70,14 @@ void main() {
     other.x[k] -= origin;
   }
   uint left = owned_pairs(one.tags, other.tags) & near_pairs(one.x, other.x, reach);
-  RARELY(left != 0u) {
+  if (left != 0u) {
     uint slot = atomicAdd(control.candidates, uint(bitCount(left)));
     uint end = min(slot + uint(bitCount(left)), 3u * pair_capacity);
-    if (slot < end)
-      atomicMax(control.candidate_groups, (uint(neighbour_pair_count) + end - 1u) / uint(GROUP_SIZE) + 1u);
-    for (; slot < end; left &= left - 1u, ++slot)
-      list[slot] = uvec4(both, findLSB(left), flat_at_rest ? no_force_bit : 0u);
+    if (slot < end) atomicMax(control.candidate_groups, (end - 1u) / uint(GROUP_SIZE) + 1u);
+    for (; slot < end; left &= left - 1u, ++slot) {
+      uvec4 pair = pair_of_bit(both, findLSB(left));
+      if (flat_at_rest) pair.y |= no_force_bit;
+      list[slot] = pair;
+    }
   }
 }

@@ -1,13 +1,23 @@
-// Contact, 1 of 3: the pairs that are near at the step's start, how they are apart then, and how many of them touch at
+// Contact, 1 of 3: the pairs that are near at the step's start, how they are apart then, and which of them touch at
 // each vertex.
 #include "surface.glsl"
+#include "vertex_contacts.glsl"
 READ_VEC4(position, unit_position);  // after the step
 READ_VEC4(step_start, unit_step_start);
 READ_UVEC4(pair_list, unit_surface_pairs);
 layout(std430, binding = slot_near_pairs) writeonly buffer NearPairs { uvec4 near_list[]; };
-layout(std430, binding = slot_contact_sums) buffer Sums { int sums[]; };
 layout(std430, binding = slot_chosen_pairs) writeonly buffer Chosen { uint touching_pairs[]; };
 layout(std430, binding = slot_friction_left) writeonly buffer Left { vec2 friction_left[]; };
+// Of each corner of each near pair, by 4 * pair + corner: the next contact of the same vertex (VertexContacts::first),
+// and the corner's weight, as bits. In what order a vertex has them depends on the order of threads: what is made of
+// them must not.
+layout(std430, binding = slot_contact_links) writeonly buffer Links { uvec2 contact_links[]; };
+
+void add_touched(uint vertex) {
+  uint place = atomicAdd(control.step_counts[turn].touched, 1u);
+  if (place % uint(GROUP_SIZE) == 0u) atomicMax(control.step_counts[turn].pushed_groups, place / uint(GROUP_SIZE) + 1u);
+  at_vertex[place].touched = vertex;
+}
 
 void main() {
   uint item = gl_GlobalInvocationID.x;
@@ -19,7 +29,7 @@ void main() {
   Corners c;
   for (int k = 0; k < 4; ++k) c.x[k] = start[k] - start[0];
   Separation apart = separation(edges, c);
-  RARELY(apart.gap < uintBitsToFloat((pair.y & no_force_bit) != 0u ? known.flat_query : known.query)) {
+  if (apart.gap < uintBitsToFloat((pair.y & no_force_bit) != 0u ? known.flat_query : known.query)) {
     uint slot = atomicAdd(control.step_counts[turn].near, 1u);
     if (slot % uint(GROUP_SIZE) == 0u) atomicMax(control.step_counts[turn].near_groups, slot / uint(GROUP_SIZE) + 1u);
     control.step_counts[turn].vertex_groups = uint((changing_vertex_count + GROUP_SIZE - 1) / GROUP_SIZE);
@@ -33,11 +43,16 @@ void main() {
       uint place = atomicAdd(control.step_counts[turn].touching, 1u);
       if (place % uint(GROUP_SIZE) == 0u)
         atomicMax(control.step_counts[turn].touching_groups, place / uint(GROUP_SIZE) + 1u);
-      control.step_counts[turn].pushed_groups = uint((changing_vertex_count + GROUP_SIZE - 1) / GROUP_SIZE);
       touching_pairs[place] = slot;
       friction_left[place] = vec2(0.0);
       for (int k = 0; k < 4; ++k)
-        if (corner[k] < uint(cloth_vertex_count)) atomicAdd(sums[SUMS * int(corner[k]) + 3], 1);
+        if (corner[k] < uint(cloth_vertex_count)) {
+          uint contact = 4u * slot + uint(k);
+          uint next = atomicExchange(at_vertex[corner[k]].first, contact + 1u);
+          contact_links[contact] = uvec2(next, floatBitsToUint(apart.weight[k]));
+          if (next == 0u) add_touched(corner[k]);
+          atomicAdd(at_vertex[corner[k]].sharing, 1u);
+        }
     }
   }
 }

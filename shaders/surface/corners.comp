@@ -1,4 +1,4 @@
-// Pair search, 1 of 7: where all vertices are, once more for each triangle, and how fast the fastest is.
+// Pair search, 1 of 9: where all vertices are, once more for each triangle, and how fast the fastest is.
 #include "surface.glsl"
 #include "triangles.glsl"
 READ_VEC4(position, unit_position);
@@ -12,7 +12,8 @@ void main() {
   if (i == 0) {
     control.leaf_pairs = control.triangle_pairs = control.candidates = control.pairs = 0u;
     control.leaf_groups = control.split_groups = control.pair_groups = 0u;
-    control.candidate_groups = uint((neighbour_pair_count + GROUP_SIZE - 1) / GROUP_SIZE);
+    control.candidate_groups = 0u;
+    control.neighbour_groups = uint((neighbour_pair_count + GROUP_SIZE - 1) / GROUP_SIZE);
   }
   if (i < vertex_count) {
     position_when_built[i] = FETCH(position, i);

@@ -1,4 +1,4 @@
-// Pair search, 7 of 7: ends it until a vertex asks for another.
+// Pair search, 9 of 9: ends it until a vertex asks for another.
 #include "surface.glsl"
 
 void main() {
@@ -20,6 +20,7 @@ void main() {
   if (all_leaves) control.most_triangle_pairs = max(known.most_triangle_pairs, known.triangle_pairs);
   control.most_pairs = max(known.most_pairs, needed);
   control.fastest = control.fastest_vertex = 0u;
-  control.rebuild_groups = control.leaf_groups = control.split_groups = control.candidate_groups = 0u;
+  control.rebuild_groups = control.leaf_groups = control.split_groups = 0u;
+  control.neighbour_groups = control.candidate_groups = 0u;
   ++control.rebuilds;
 }

@@ -1,4 +1,4 @@
-// Pair search, 2 of 7: boxes of leaves, which are LEAF_SIZE triangles each that lie together.
+// Pair search, 2 of 9: boxes of leaves, which are LEAF_SIZE triangles each that lie together.
 #include "surface.glsl"
 #include "triangles.glsl"
 layout(std430, binding = slot_leaf_boxes) writeonly buffer LeafBoxes { vec4 leaf_boxes[]; };

@@ -1,4 +1,4 @@
-// Pair search, 3 of 7: pairs of leaves whose boxes are near each other; a leaf is near itself.
+// Pair search, 3 of 9: pairs of leaves whose boxes are near each other; a leaf is near itself.
 #include "surface.glsl"
 READ_VEC4(leaf_boxes, unit_leaf_boxes);
 layout(std430, binding = slot_leaf_pairs) writeonly buffer LeafPairs { uvec2 found[]; };
@@ -17,7 +17,7 @@ void main() {
   for (int k = 0; k < of_cloths + leaf_count - cloth_leaves; ++k) {
     bool body = k >= of_cloths;
     int other = body ? cloth_leaves + k - of_cloths : one + k < cloth_leaves ? one + k : one + k - cloth_leaves;
-    RARELY(all(lessThanEqual(low, FETCH(leaf_boxes, 2 * other + 1).xyz)) &&
+    if (all(lessThanEqual(low, FETCH(leaf_boxes, 2 * other + 1).xyz)) &&
            all(lessThanEqual(FETCH(leaf_boxes, 2 * other).xyz, high)) &&
            (body || 2 * k != cloth_leaves || one < other) &&
            (cloth_pairs != 0 || LEAF_SIZE * (max(one, other) + 1) > cloth_triangle_count)) {

@@ -1,25 +1,28 @@
 // The filter, 2 of 3: each near pair shortens the steps of its corners to what they can take without crossing a plane
-// that divides the pair. With `impulses`, afterwards: takes the approaching velocity, along their normals, from the
-// pairs whose planes limit a step the most.
+// that divides the pair. PASS 0: the first, over all near pairs, from the step's start; 1: another, over those that
+// could meet; 2: after the last of them, takes the approaching velocity, along their normals, from the pairs whose
+// planes limit a step the most.
 #include "surface.glsl"
 #include "near_pairs.glsl"
+#include "vertex_contacts.glsl"
 READ_VEC4(position, unit_position);  // so far; w: inverse mass [1/kg]
 READ_VEC4(velocity, unit_velocity);
 READ_VEC4(step_target, unit_step_target);
 layout(std430, binding = slot_step_limits) coherent buffer Limits { uint limits[]; };  // float bits, 1 or less
 layout(std430, binding = slot_near_pairs) writeonly buffer NearPairs { uvec4 near_list[]; };
-uniform int again;  // 0: the first pass, over all near pairs, from the step's start; else over those that could meet
-uniform int impulses;
+// Pairs that push, and from pair_capacity on those that could meet.
+layout(std430, binding = slot_chosen_pairs) buffer Chosen { uint chosen_pairs[]; };
 uniform float held_part;  // of what is left of their steps, that corners which nothing may stop take in this pass
 
-void shorten(bool edges, uvec4 corner, vec4 shares) {
+void shorten(uvec4 corner, vec4 shares) {
   control.step_counts[turn].cut_vertices = known.step_counts[turn].vertex_groups;
   for (int k = 0; k < 4; ++k) {
-    if (corner[k] < uint(cloth_vertex_count)) atomicAdd(sums[SUMS * int(corner[k]) + 7], 1);
+    if (corner[k] < uint(cloth_vertex_count)) atomicAdd(at_vertex[corner[k]].shortening, 1u);
     if (shares[k] < 1.0) atomicMin(limits[corner[k]], floatBitsToUint(shares[k]));
   }
 }
 
+#if PASS == 2
 void stop(uvec4 corner, vec4 shares, vec3 n, vec4 weight, vec4 inverse_mass) {
   bool limiting = false;
   float approach = 0.0;
@@ -30,26 +33,34 @@ void stop(uvec4 corner, vec4 shares, vec3 n, vec4 weight, vec4 inverse_mass) {
   vec4 mobility = weight * inverse_mass;
   float give = dot(mobility, weight);
   if (!limiting || !(approach > 0.0) || !(give > 0.0)) return;
-  vec3 impulse = n * (approach * units_of_speed() / (give * crowd(corner, mobility, 7)));
-  for (int k = 0; k < 4; ++k)
-    if (mobility[k] != 0.0) add(corner[k], 4, mobility[k] * impulse);
+  vec3 impulse = n * (approach * units_of_speed() / (give * crowd(corner, mobility, 1u)));
+  for (int k = 0; k < 4; ++k) {
+    ivec3 whole = in_units(mobility[k] * impulse);
+    for (int axis = 0; axis < 3; ++axis)
+      if (whole[axis] != 0) atomicAdd(at_vertex[corner[k]].impulse[axis], whole[axis]);
+  }
 }
+#endif
 
 /// After a pass every pair is on its sides of the plane that divided it before, but for one whose corners nothing may
 /// stop. It may meet, then.
 void count_if_forced(bool edges, Corners now, vec3 n, vec4 inverse_mass) {
   bool held = any(equal(inverse_mass, vec4(0.0)));
-  RARELY(held && gap_along(edges, now, n) <= 0.0) atomicAdd(control.forced, 1u);
+  if (held && gap_along(edges, now, n) <= 0.0) atomicAdd(control.forced, 1u);
 }
 
 void main() {
   uint item = gl_GlobalInvocationID.x;
-  if (item >= (again == 0 ? known.step_counts[turn].near : known.step_counts[turn].meeting)) return;
-  RARELY(again != 0) item = chosen_pairs[pair_capacity + item];
+#if PASS == 0
+  if (item >= known.step_counts[turn].near) return;
+#else
+  if (item >= known.step_counts[turn].meeting) return;
+  item = chosen_pairs[pair_capacity + item];
+#endif
   uvec4 pair = FETCH(near_pairs, 3u * item), corner = corners_of(pair);
   bool edges = is_edges(pair);
   vec4 apart = uintBitsToFloat(FETCH(near_pairs, 3u * item + 1u));
-  vec4 weight = uintBitsToFloat(FETCH(near_pairs, 3u * item + 2u)), inverse_mass;
+  vec4 inverse_mass;
   vec3 origin = FETCH(position, corner.x).xyz, steps[4];
   Corners c;
   float size = 0.0;
@@ -60,13 +71,14 @@ void main() {
     inverse_mass[k] = x.w;
     size = max(size, length(c.x[k]) + length(steps[k]));
   }
-  RARELY(again != 0) {
-    if (impulses == 0) count_if_forced(edges, c, apart.xyz, inverse_mass);
-    Separation now = separation(edges, c);
-    apart = vec4(now.n, now.gap);
-    weight = vec4(now.weight[0], now.weight[1], now.weight[2], now.weight[3]);
-    near_list[3u * item + 1u] = floatBitsToUint(apart);
-  }
+#if PASS == 1
+  count_if_forced(edges, c, apart.xyz, inverse_mass);
+#endif
+#if PASS > 0
+  Separation now = separation(edges, c);
+  apart = vec4(now.n, now.gap);
+  near_list[3u * item + 1u] = floatBitsToUint(apart);
+#endif
   StepsAlong along;
   for (int k = 0; k < 4; ++k) {
     along.y[k] = dot(apart.xyz, c.x[k]);
@@ -74,16 +86,18 @@ void main() {
     along.held[k] = inverse_mass[k] == 0.0;
   }
   float rounding = rounding_at(origin, size);
+#if PASS == 0
   // What this direction divides for the whole step stays divided, whatever parts of it the corners take.
-  RARELY(again == 0 && could_meet(edges, along, 2.0 * rounding)) {
+  if (could_meet(edges, along, 2.0 * rounding)) {
     uint place = atomicAdd(control.step_counts[turn].meeting, 1u);
     if (place % uint(GROUP_SIZE) == 0u)
       atomicMax(control.step_counts[turn].meeting_groups, place / uint(GROUP_SIZE) + 1u);
     chosen_pairs[pair_capacity + place] = item;
   }
+#endif
   for (int k = 0; k < 4; ++k)
     if (along.held[k]) along.d[k] *= held_part;
-  RARELY(could_meet(edges, along, rounding)) {
+  if (could_meet(edges, along, rounding)) {
     float plane = dividing_plane(edges, along, rounding);
     vec4 shares;
     for (int k = 0; k < 4; ++k) {
@@ -91,9 +105,12 @@ void main() {
       float room = side * (along.y[k] - plane), away = side * along.d[k];
       shares[k] = along.held[k] ? 1.0 : share_of_step(room, away, length(steps[k]), rounding);
     }
-    RARELY(min(min(shares.x, shares.y), min(shares.z, shares.w)) < 1.0) {
-      if (impulses == 0) shorten(edges, corner, shares);
-      else stop(corner, shares, apart.xyz, weight, inverse_mass);
+    if (min(min(shares.x, shares.y), min(shares.z, shares.w)) < 1.0) {
+#if PASS == 2
+      stop(corner, shares, apart.xyz, vec4(now.weight[0], now.weight[1], now.weight[2], now.weight[3]), inverse_mass);
+#else
+      shorten(corner, shares);
+#endif
     }
   }
 }

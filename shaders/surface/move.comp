@@ -1,9 +1,9 @@
 // The filter, 3 of 3: takes the shortened steps, in place; with `last`, also the impulses.
 #include "surface.glsl"
+#include "vertex_contacts.glsl"
 READ_VEC4(step_target, unit_step_target);
 layout(std430, binding = slot_next_position) buffer Position { vec4 position[]; };
 layout(std430, binding = slot_next_velocity) buffer Velocity { vec4 velocity[]; };
-layout(std430, binding = slot_contact_sums) buffer Sums { int sums[]; };
 layout(std430, binding = slot_step_limits) buffer Limits { uint limits[]; };
 uniform int last;
 uniform float held_part;  // as in limit.comp
@@ -19,12 +19,12 @@ void main() {
   bool free = position[i].w > 0.0;
   float share = free ? uintBitsToFloat(limits[i]) : held_part;
   vec3 x = position[i].xyz;
-  RARELY(share < 1.0 && free) {
+  if (share < 1.0 && free) {
     float size = length(goal.xyz - x);
     if (share * size < shortest_part * rounding_at(x, size)) share = 0.0;
   }
   position[i].xyz = share < 1.0 ? x + share * (goal.xyz - x) : goal.xyz;
-  RARELY(share < 1.0 && free) {
+  if (share < 1.0 && free) {
     limits[i] = floatBitsToUint(1.0);
     if (last != 0) {
       atomicAdd(control.step_counts[turn].cuts, 1u);
@@ -32,11 +32,12 @@ void main() {
       if (share < jammed_share) velocity[i].xyz *= 0.5;
     }
   }
-  RARELY(sums[SUMS * i + 7] != 0) {
-    if (last != 0) {
-      velocity[i].xyz += vec3(sums[SUMS * i + 4], sums[SUMS * i + 5], sums[SUMS * i + 6]) / units_of_speed();
-      for (int k = 4; k < 7; ++k) sums[SUMS * i + k] = 0;
-    }
-    sums[SUMS * i + 7] = 0;
+  if (at_vertex[i].shortening != 0u) {
+    if (last != 0)
+      for (int k = 0; k < 3; ++k) {
+        velocity[i][k] += float(at_vertex[i].impulse[k]) / units_of_speed();
+        at_vertex[i].impulse[k] = 0;
+      }
+    at_vertex[i].shortening = 0u;
   }
 }

@@ -3,9 +3,11 @@
 // (blocks.comp). After a step of any method the near ones among them push each other apart
 // (elements/surface.glsl); then a filter shortens the steps of vertices so that no pair meets, which keeps a state
 // without intersections so. All sums are of integers, so that no outcome depends on the order of threads.
+//
+// Software OpenGL runs all the code of a kernel for all its items, both sides of an `if` and the body of a loop that no
+// item enters. So what few items need is a kernel of its own, over a list of these items.
 layout(local_size_x = GROUP_SIZE) in;
 #include "../access.glsl"
-#include "../rarely.glsl"
 #include "../elements/types.glsl"
 #include "../elements/contact.glsl"
 #include "../elements/surface.glsl"
@@ -14,14 +16,15 @@ struct StepCounts {  // of a step; steps take turns with two of them
   uint near_groups, near_groups_y, near_groups_z;              // over the near pairs
   uint vertex_groups, vertex_groups_y, vertex_groups_z;        // over the vertices, if a pair is near
   uint touching_groups, touching_groups_y, touching_groups_z;  // over the near pairs that push
-  uint pushed_groups, pushed_groups_y, pushed_groups_z;        // over the vertices, if a pair pushes
+  uint pushed_groups, pushed_groups_y, pushed_groups_z;        // over the vertices that they touch
   uint meeting_groups, meeting_groups_y, meeting_groups_z;     // over the near pairs that could meet
   uint cut_vertices, cut_vertices_y, cut_vertices_z;           // over the vertices, if a step is shortened
   uint near;                                                   // near pairs
   uint touching;                                               // of these, those that push
   uint meeting;                                                // of these, those that could meet
   uint cuts;                                                   // vertices whose steps were shortened
-  uint unused, unused_2;
+  uint touched;                                                // vertices that the pairs which push touch
+  uint unused;
 };
 
 // Set by the GPU: arguments of indirect dispatches, and what a search found (server/sim/surface_control.h). Laid out
@@ -32,6 +35,7 @@ struct Control {
   uint leaf_groups, leaf_groups_y, leaf_groups_z;           // over triangles of pairs of leaves
   uint split_groups, split_groups_y, split_groups_z;        // over pairs of triangles
   uint pair_groups, pair_groups_y, pair_groups_z;           // over pairs
+  uint neighbour_groups, neighbour_groups_y, neighbour_groups_z;  // over pairs of neighbours
   uint candidate_groups, candidate_groups_y, candidate_groups_z;  // over pairs whose boxes are near
   uint check_groups, check_groups_y, check_groups_z;              // 1 while a part of the step is left (advance.comp)
   uint contact_groups, contact_groups_y, contact_groups_z;        // over pairs, the same
@@ -106,11 +110,14 @@ float units_of_length() { return 67108864.0 / uintBitsToFloat(known.query); }
 float units_of_speed() { return units_of_length() * dt; }
 const float weight_units = 65536.0;
 int weight_in_units(float weight) { return int(ceil(abs(weight) * weight_units)); }
-#define SUMS 16  // of a vertex: near_pairs.glsl
 ivec3 in_units(vec3 v) { return ivec3(round(clamp(v, vec3(-1e9), vec3(1e9)))); }
 
 /// What rounding may add to a corner's place, and to what is computed of it [m].
 float rounding_at(vec3 x, float size) { return 2.5e-7 * max(abs(x.x), max(abs(x.y), abs(x.z))) + 1e-6 * size; }
+
+// What a pair pushes (forces.comp, apply.comp): nothing; both parts, whose corners take their shares by inverse mass
+// and weight, which keeps momentum; or one part, as the other gives no way.
+const float no_push = 0.0, pushes_both = 1.0, pushes_one = 2.0;
 
 bool is_edges(uvec4 pair) { return (pair.x & edges_bit) != 0u; }
 uvec4 corners_of(uvec4 pair) { return pair & corner_mask; }

@@ -1,6 +1,6 @@
-// Pair search, 4 of 7: pairs of triangles of two near leaves whose boxes are near each other, but for triangles that
-// share a vertex (pairs.comp). Those that lie side by side at rest would all be near each other in a fine mesh: the
-// search does not reach as far for them.
+// Pair search, 4 of 9: pairs of triangles of two near leaves whose boxes are near each other, but for triangles that
+// share a vertex (neighbours.comp). Those that lie side by side at rest would all be near each other in a fine mesh:
+// the search does not reach as far for them.
 #include "surface.glsl"
 #include "triangles.glsl"
 READ_VEC4(leaf_boxes, unit_leaf_boxes);

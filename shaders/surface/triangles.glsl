@@ -1,4 +1,4 @@
-// The triangles of a search, each as three texels, which boxes.comp writes: a corner's place as bits, and its number
+// The triangles of a search, each as three texels, which corners.comp writes: a corner's place as bits, and its number
 // with bits for the parts that the triangle owns.
 READ_UVEC4(triangle_corners, unit_triangle_corners);
 
