@@ -8,7 +8,7 @@ READ_VEC4(step_start, unit_step_start);
 layout(std430, binding = slot_next_position) buffer Position { vec4 position[]; };
 layout(std430, binding = slot_next_velocity) buffer Velocity { vec4 velocity[]; };
 READ_UVEC4(vertex_contacts, unit_vertex_contacts);
-READ_UVEC2(contact_links, unit_contact_links);    // contacts.comp
+READ_UVEC2(contact_links, unit_contact_links);   // contacts.comp
 READ_VEC4(contact_pushes, unit_contact_pushes);  // forces.comp
 // 1: from now on only those pairs share a vertex that pushed it in this pass. In the first passes too many others may
 // begin to.
@@ -65,10 +65,11 @@ void rub_on_solid(int i) {
   borne[i].velocity.w = left.velocity;
 }
 
-/// Sums over the contacts of a vertex.
+/// Sums over the contacts of a vertex. A part that meets one which gives no way must do all of it: a vertex that
+/// several such pairs push takes their mean, weighted by how near their contact is to it.
 struct Pushes {
-  ivec3 push, impulse;          // of those whose parts both give way [units of length, of speed]
-  ivec3 push_one, impulse_one;  // of the others, weighted by how near the contact is to the vertex
+  ivec3 push, impulse;          // of pairs whose parts both give way [units of length, of speed]
+  ivec3 push_one, impulse_one;  // of the others, by weight, in the same units
   int weight_one;               // [1 / weight_units]
   int sharing;                  // pairs that share it in the next pass, or their weights
 };
