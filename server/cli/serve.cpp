@@ -13,6 +13,7 @@
 #include "server/base/log.h"
 #include "server/base/memory.h"
 #include "server/cli/commands.h"
+#include "server/gl/context.h"
 #include "server/model/model.h"
 #include "server/model/size.h"
 #include "server/net/server.h"
@@ -146,6 +147,7 @@ int serve(ServeArguments& arguments) {
   set_log_level(*log_level(arguments.log_level));
   share_free_memory();
   StopOnSignal::block();
+  gl::compute_without_helper_threads();
   Result<std::unique_ptr<net::Server>> server = net::Server::listen(std::move(arguments.options));
   if (!server) return fail(server.error(), exit_internal);
   StopOnSignal stop(**server);

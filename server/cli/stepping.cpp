@@ -4,10 +4,12 @@
 #include <cmath>
 
 #include "server/base/text.h"
+#include "server/gl/context.h"
 #include "server/lab/measure/automatic.h"
 #include "server/lab/measure/choice.h"
 #include "server/model/stability.h"
 #include "server/scene/method.h"
+#include "server/sim/cost.h"
 #include "server/sim/motion_table.h"
 
 namespace clothlab::cli {
@@ -44,6 +46,11 @@ Result<scene::Scene> settle_method(scene::Scene scene, std::string& chosen) {
   return scene;
 }
 
+/// Where the only scene of this program is computed.
+gl::HelperThreads threads_for(const scene::Scene& scene) {
+  return sim::needs_no_helper_threads(scene) ? gl::HelperThreads::none : gl::HelperThreads::sessions;
+}
+
 }  // namespace
 
 void add_gpu(CLI::App& command, std::optional<int>& gpu) {
@@ -56,7 +63,8 @@ std::optional<Prepared> prepare(const SceneChoice& choice, std::optional<int> gp
     exit_code = fail(document.error(), exit_usage);
     return std::nullopt;
   }
-  Result<std::unique_ptr<gl::Context>> context = gl::Context::create(gpu);
+  gl::compute_without_helper_threads();
+  Result<std::unique_ptr<gl::Context>> context = gl::Context::create(gpu, threads_for(document->scene));
   if (!context) {
     exit_code = fail(context.error(), context.error().where == "--gpu" ? exit_usage : exit_no_opengl);
     return std::nullopt;

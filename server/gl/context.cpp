@@ -3,6 +3,8 @@
 #include <glad/egl.h>
 #include <glad/gl.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <mutex>
 
@@ -19,7 +21,7 @@ std::mutex egl_mutex;
 struct Candidate {
   EGLDeviceEXT handle = nullptr;  ///< null: the surfaceless platform, where devices cannot be listed
   Device device;
-  HelperThreads threads = HelperThreads::light_sessions;
+  HelperThreads threads = HelperThreads::none;
 };
 
 std::string text(const char* value) {
@@ -65,9 +67,8 @@ EGLDisplay open_display(const Candidate& candidate) {
   const auto is = [&](HelperThreads threads) { return candidate.threads == threads; };
   // Mesa opens one display for an empty list of attributes and another one for no list.
   const EGLint nothing[] = {EGL_NONE};
-  const EGLint* attributes =
-      is(HelperThreads::heavy_sessions) || is(HelperThreads::pictures) ? nothing : nullptr;
-  if (candidate.handle && (is(HelperThreads::light_sessions) || is(HelperThreads::heavy_sessions)))
+  const EGLint* attributes = is(HelperThreads::none_too) || is(HelperThreads::sessions) ? nothing : nullptr;
+  if (candidate.handle && (is(HelperThreads::none) || is(HelperThreads::none_too)))
     return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, candidate.handle, attributes);
   return eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, attributes);
 }
@@ -140,6 +141,23 @@ std::optional<Opened> open_apart(Candidate candidate, HelperThreads threads) {
 
 }  // namespace
 
+void compute_without_helper_threads() {
+  const std::lock_guard lock(egl_mutex);
+  if (!load_egl()) return;
+  std::vector<Candidate> all = candidates();
+  // Without devices there is one display for all.
+  if (std::any_of(all.begin(), all.end(),
+                  [](const Candidate& one) { return !one.device.software || !one.handle; }))
+    return;
+  for (Candidate& candidate : all)
+    for (const HelperThreads threads : {HelperThreads::sessions, HelperThreads::lab}) {
+      candidate.threads = threads;
+      const EGLDisplay display = open_display(candidate);
+      if (display != EGL_NO_DISPLAY) eglInitialize(display, nullptr, nullptr);
+    }
+  setenv("LP_NUM_THREADS", "0", 1);
+}
+
 std::string renderer_name() {
   return gl_text(GL_RENDERER);
 }
@@ -182,7 +200,7 @@ Result<std::unique_ptr<Context>> Context::create(std::optional<int> gpu, HelperT
                     ": " + candidate.device.problem;
         continue;
       }
-      if (threads != HelperThreads::light_sessions && candidate.handle && candidate.device.software) {
+      if (threads != HelperThreads::none && candidate.handle && candidate.device.software) {
         close(opened);
         const std::optional<Opened> apart = open_apart(candidate, threads);
         opened = apart ? *apart : open(candidate);

@@ -33,16 +33,24 @@ Result<std::vector<Device>> list_devices();
 /// Software OpenGL computes on helper threads, which all contexts of one EGL display share. They carry out
 /// one dispatch after another, however long, at the priority of the thread that made the display's first
 /// context. Mesa has four displays for its software device; each value names the contexts that share one.
-enum class HelperThreads { light_sessions, heavy_sessions, lab, pictures };
+/// `none`, `none_too`: contexts compute on the thread that calls, one after another on each display, if the
+/// program began with `compute_without_helper_threads`.
+enum class HelperThreads { none, none_too, sessions, lab };
+
+/// From now on contexts of `none` and `none_too` compute on the thread that calls; those of the other
+/// displays on as many helper threads as the environment's LP_NUM_THREADS says, by default one for each core.
+/// Mesa reads that variable when it opens a display: so this opens the other displays, then sets it to 0.
+/// Must be called before the program's first context and its first thread. No effect where there is a GPU.
+void compute_without_helper_threads();
 
 /// A context that belongs to the thread that made it current. Its device is `gpu` if given; else the first
 /// usable device that is not software; else Mesa's software rasteriser.
 class Context {
  public:
   /// Makes a context and makes it current on the calling thread. `threads` has no effect on a GPU; if Mesa
-  /// cannot open another display, light_sessions is used. Error: what is missing and the package to install.
+  /// cannot open another display, that of `none` is used. Error: what is missing and the package to install.
   static Result<std::unique_ptr<Context>> create(std::optional<int> gpu = std::nullopt,
-                                                 HelperThreads threads = HelperThreads::light_sessions);
+                                                 HelperThreads threads = HelperThreads::none);
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;

@@ -33,7 +33,7 @@ const char* type_of(Export::Kind kind) {
 /// context.
 Result<std::string> picture(std::optional<int> gpu, const Moment& moment, const model::Model& model,
                             const Export& what) {
-  const Result<std::unique_ptr<gl::Context>> context = gl::Context::create(gpu, gl::HelperThreads::pictures);
+  const Result<std::unique_ptr<gl::Context>> context = gl::Context::create(gpu);
   if (!context) return context.error();
   const Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create();
   if (!renderer) return renderer.error();

@@ -63,8 +63,7 @@ class Exporter {
 };
 
 /// A PNG or OBJ file of `moment`, or the page of the recording in it. For a PNG a GL context is current on
-/// the calling thread until the picture is drawn, with helper threads of that thread's priority. Error: what
-/// failed, e.g. no usable OpenGL.
+/// the calling thread until the picture is drawn. Error: what failed, e.g. no usable OpenGL.
 Result<std::string> make_export(std::optional<int> gpu, const Moment& moment, const Export& what);
 
 }  // namespace clothlab::session

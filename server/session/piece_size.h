@@ -14,11 +14,15 @@ namespace clothlab::session {
 /// There the times of earlier pieces say how many dispatches fit.
 class PieceSize {
  public:
-  static constexpr double budget = 0.010;  ///< the time a piece may take [s]
+  static constexpr double budget = 0.010;    ///< the time a piece may take [s]
+  static constexpr double shortest = 0.004;  ///< the same while others wait [s]
 
-  sim::Pace pace(sim::Pace::Clock::time_point now) const {
+  /// `others`: number of sessions that wait for this piece to end. Pieces are shorter then, so that these
+  /// wait less, but not so short that most of a piece goes by until its data is in the processor's caches.
+  sim::Pace pace(sim::Pace::Clock::time_point now, std::uint32_t others) const {
     using namespace std::chrono;
-    return {now + duration_cast<sim::Pace::Clock::duration>(duration<double>(budget)), most_places_};
+    const duration<double> most(std::max(budget / (1 + others), shortest));
+    return {now + duration_cast<sim::Pace::Clock::duration>(most), most_places_};
   }
 
   /// Takes in that a piece with `places` places to stop took `seconds` [s].

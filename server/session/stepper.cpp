@@ -7,6 +7,7 @@
 #include "server/model/size.h"
 #include "server/model/thickness.h"
 #include "server/scene/method.h"
+#include "server/session/display_turn.h"
 #include "server/session/fault.h"
 
 namespace clothlab::session {
@@ -25,8 +26,7 @@ Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Excha
       std::unique_ptr<Stepper>(new Stepper(std::move(document), exchange, limits, gpu, std::move(meshes)));
   const Result<scene::Scene> scene = stepper->prepare(stepper->document_);
   if (!scene) return scene.error();
-  Result<std::unique_ptr<Engine>> engine =
-      Engine::create(*scene, exchange, {gpu, Engine::threads_for(*scene), last_frame});
+  Result<std::unique_ptr<Engine>> engine = Engine::create(*scene, exchange, {gpu, last_frame});
   if (!engine) return engine.error();
   stepper->engine_ = std::move(*engine);
   stepper->guard_.emplace(stepper->simulation());
@@ -83,20 +83,26 @@ Clock::time_point Stepper::turn(std::vector<Command>& commands) {
   const Clock::time_point now = Clock::now();
   if (watchers_ > 0) last_watched_ = now;
   if (replay_) {
-    advance(now);
+    advance(now, 0);
     return replay_ || !waiting_commands_.empty() ? Clock::now() : next_turn(Clock::now());
   }
-  frames().make_urgent(simulation(), now);
-  advance(now);
-  frames().make_urgent(simulation(), now);
-  frames().make_due(simulation(), Clock::now());
-  frames().poll();
+  {
+    // Not on a GPU, whose driver shares it out; nor in the first step after a change, in which software
+    // OpenGL may compile kernels for seconds.
+    std::optional<DisplayTurn> turn;
+    if (engine_->software() && compiled_) turn.emplace(engine_->place.threads());
+    frames().make_urgent(simulation(), now);
+    advance(now, turn ? turn->others() : 0);
+    frames().make_urgent(simulation(), now);
+    frames().make_due(simulation(), Clock::now());
+    frames().poll();
+  }
   follow_recording();
   follow_diagnostics(Clock::now());
   return next_turn(Clock::now());
 }
 
-void Stepper::advance(Clock::time_point now) {
+void Stepper::advance(Clock::time_point now, std::uint32_t others) {
   note_finished(now);
   const bool run = running(now);
   if (run && !was_running_) real_time_.restart(now);
@@ -105,12 +111,7 @@ void Stepper::advance(Clock::time_point now) {
   want_steps(now, run);
   if (replay_ && simulation().step_index() == replay_->step) return end_replay();
   if (simulation().steps_to_do() == 0) return;
-  const std::uint64_t before = simulation().step_index();
-  const Clock::time_point begun = Clock::now();
-  sim::Pace pace = piece_size_.pace(begun);
-  simulation().resume(pace);
-  const auto steps = static_cast<std::uint32_t>(simulation().step_index() - before);
-  engine_->backlog.push({steps, pace.passed, begun});
+  const std::uint32_t steps = queue_piece(others);
   note_finished(Clock::now());
   if (steps == 0) return;
   ++state_version_;
@@ -119,6 +120,19 @@ void Stepper::advance(Clock::time_point now) {
   if (waiting_.empty()) return;
   finish_waiting(false);
   if (waiting_.empty()) frames().state_changed_now();
+}
+
+/// Queues a piece of the steps to do, while `others` wait to compute. Returns the number of steps that it
+/// ends.
+std::uint32_t Stepper::queue_piece(std::uint32_t others) {
+  const std::uint64_t before = simulation().step_index();
+  const Clock::time_point begun = Clock::now();
+  sim::Pace pace = piece_size_.pace(begun, others);
+  simulation().resume(pace);
+  const auto steps = static_cast<std::uint32_t>(simulation().step_index() - before);
+  engine_->backlog.push({steps, pace.passed, begun});
+  if (steps > 0) compiled_ = true;
+  return steps;
 }
 
 void Stepper::want_steps(Clock::time_point now, bool run) {

@@ -132,7 +132,7 @@ class Stepper {
   void tell_if_rebuilt(sim::ChangeDepth depth);
   Result<sim::ChangeDepth> change(const scene::Scene& scene);
   Result<sim::ChangeDepth> change_engine(const scene::Scene& scene);
-  Result<sim::ChangeDepth> move_to(const scene::Scene& scene, gl::HelperThreads threads);
+  Result<sim::ChangeDepth> move_to(const scene::Scene& scene);
   void adopt(scene::Document document, sim::ChangeDepth depth);
   void take_over(scene::Document document, sim::ChangeDepth depth);
   void restart();
@@ -165,7 +165,8 @@ class Stepper {
   void warn_if_unconverged();
   void warn_if_thin();
   // In stepper.cpp.
-  void advance(Clock::time_point now);
+  void advance(Clock::time_point now, std::uint32_t others);
+  std::uint32_t queue_piece(std::uint32_t others);
   void want_steps(Clock::time_point now, bool run);
   void note_finished(Clock::time_point now);
   void finish_waiting(bool all);
@@ -189,6 +190,7 @@ class Stepper {
   std::optional<int> gpu_;
   std::unique_ptr<Engine> engine_;
   PieceSize piece_size_;
+  bool compiled_ = false;  ///< a step has ended since the scene was built or changed
   RealTime real_time_;
   StepLimit step_limit_;
   Rest rest_;

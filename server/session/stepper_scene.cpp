@@ -144,17 +144,17 @@ Result<sim::ChangeDepth> Stepper::change(const scene::Scene& scene) {
   return depth;
 }
 
-/// Applies a changed scene. A scene that becomes heavy or light on software OpenGL moves to another engine;
+/// Applies a changed scene. A scene that becomes small or large on software OpenGL moves to another engine;
 /// the step that is under way is then given up.
 Result<sim::ChangeDepth> Stepper::change_engine(const scene::Scene& scene) {
-  const gl::HelperThreads threads = Engine::threads_for(scene, engine_->threads);
-  if (!engine_->software() || threads == engine_->threads) return simulation().change(scene);
-  const Result<sim::ChangeDepth> depth = move_to(scene, threads);
+  compiled_ = false;
+  if (engine_->place.stays(scene) || !engine_->software()) return simulation().change(scene);
+  const Result<sim::ChangeDepth> depth = move_to(scene);
   if (depth && *depth != sim::ChangeDepth::cloth) begin_timeline();  // its states were on the other engine
   return depth;
 }
 
-Result<sim::ChangeDepth> Stepper::move_to(const scene::Scene& scene, gl::HelperThreads threads) {
+Result<sim::ChangeDepth> Stepper::move_to(const scene::Scene& scene) {
   struct Current {  // makes the context of `engine_` current, however this function ends
     std::unique_ptr<Engine>& engine;
     ~Current() { (void)engine->context->make_current(); }
@@ -163,9 +163,8 @@ Result<sim::ChangeDepth> Stepper::move_to(const scene::Scene& scene, gl::HelperT
   const bool anew = depth == sim::ChangeDepth::cloth;
   sim::State state;
   if (!anew) state = simulation().read_state();
-  Result<std::unique_ptr<Engine>> made =
-      Engine::create(scene, exchange_,
-                     {gpu_, threads, frames().last(), simulation().topology_revision() + (anew ? 1u : 0u)});
+  Result<std::unique_ptr<Engine>> made = Engine::create(
+      scene, exchange_, {gpu_, frames().last(), simulation().topology_revision() + (anew ? 1u : 0u)});
   if (!made) return made.error();
   if (!anew) (*made)->simulation->restore(state, simulation().time(), simulation().step_index());
   (*made)->frames->take_over(frames());

@@ -15,12 +15,16 @@ namespace {
 constexpr double gather = 50e-9;  ///< one evaluation of the forces
 constexpr double wind =
     1.5 * gather;  ///< on one evaluation: it reads as many vertices, and has two roots a triangle
-constexpr double contacts = 150e-9;  ///< self-collision in one step, without the neighbour search
-constexpr double sweep = 210e-9;     ///< one sweep of PBD, XPBD or VBD
-constexpr double newton = 3.4e-6;    ///< one Newton step of implicit Euler, which rarely takes more than two
+constexpr double contacts = 150e-9;          ///< of points in one step, without the neighbour search
+constexpr double surface_contacts = 1.1e-6;  ///< of surfaces in one step, with the searches while folds snap
+constexpr double sweep = 210e-9;             ///< one sweep of PBD, XPBD or VBD
+constexpr double newton = 3.4e-6;  ///< one Newton step of implicit Euler, which rarely takes more than two
 constexpr double strain_limit_cost = 20 * gather;  ///< the strain limit's sweeps in one step
 constexpr double pair_cost = 3e-9;                 ///< one other vertex that a neighbour search looks at
 constexpr double searches_per_step = 0.05;  ///< number of neighbour searches per step while a cloth moves
+
+/// Where one thread and two are even, within the noise of a machine of two cores.
+constexpr double most_vertices_of_one_thread = 32 * 32;
 
 /// Number of other vertices that a neighbour search looks at for each vertex (crowding.h). For a grid that
 /// starts flat it follows from the spacing; any other cloth is taken to lie in a heap: all its vertices.
@@ -46,11 +50,20 @@ double expected_step_seconds(const scene::Scene& scene) {
   for (const scene::Cloth& cloth : scene.cloths) {
     double cost = cost_per_vertex;
     if (cloth.strain_limit()) cost += strain_limit_cost;
-    if (scene.self_collision)
+    if (scene.collides(scene::ContactKind::surface))
+      cost += surface_contacts;
+    else if (scene.self_collision)
       cost += contacts + searches_per_step * pair_cost * candidates(cloth, scene.self_collision->thickness);
     total += cost * static_cast<double>(scene::vertex_count(cloth.mesh));
   }
   return total;
+}
+
+bool needs_no_helper_threads(const scene::Scene& scene) {
+  double vertices = 0.0;
+  for (const scene::Cloth& cloth : scene.cloths)
+    vertices += static_cast<double>(scene::vertex_count(cloth.mesh));
+  return vertices <= most_vertices_of_one_thread;
 }
 
 }  // namespace clothlab::sim

@@ -7,16 +7,19 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "server/session/display_turn.h"
 #include "server/session/stepper.h"
 #include "server/sim/cost.h"
 #include "tests/scenes.h"
 
 using namespace clothlab;
 using gl::HelperThreads;
+using session::ComputePlace;
 
 namespace {
 
@@ -43,24 +46,76 @@ session::Command patch(scene::json what) {
 
 }  // namespace
 
-TEST_CASE(
-    "a scene is heavy where software OpenGL could not step it in real time, and stays so near the boundary") {
-  const auto threads_for = session::Engine::threads_for;
-  CHECK(threads_for(test::seed(), HelperThreads::light_sessions) == HelperThreads::light_sessions);
-  CHECK(threads_for(large_seed(64), HelperThreads::light_sessions) == HelperThreads::light_sessions);
-  CHECK(threads_for(large_seed(256), HelperThreads::light_sessions) == HelperThreads::heavy_sessions);
+TEST_CASE("scenes that one core steps in real time are spread over two displays without helper threads") {
+  const ComputePlace first = ComputePlace::claim(test::seed());
+  {
+    const ComputePlace second = ComputePlace::claim(test::seed());
+    CHECK(first.threads() != HelperThreads::sessions);
+    CHECK(second.threads() != HelperThreads::sessions);
+    CHECK(first.threads() != second.threads());
+  }
+  const ComputePlace third = ComputePlace::claim(test::seed());  // the second has given up its claim
+  CHECK(third.threads() != first.threads());
+  ComputePlace moved = ComputePlace::claim(large_seed(256));
+  moved = ComputePlace::claim(large_seed(40));  // as much as three of the seed
+  const ComputePlace fifth = ComputePlace::claim(test::seed()), sixth = ComputePlace::claim(test::seed());
+  CHECK(fifth.threads() != moved.threads());
+  CHECK(sixth.threads() != moved.threads());
+}
+
+TEST_CASE("sessions that share a display compute in turns, and one that takes long is not waited for") {
+  using Turn = session::DisplayTurn;
+  auto first = std::make_unique<Turn>(HelperThreads::none);
+  CHECK(first->others() == 0);
+  { const Turn elsewhere(HelperThreads::none_too); }  // does not wait
+
+  // Three more ask one after the other, while the first keeps its turn; each keeps its own for 5 ms.
+  std::mutex mutex;
+  std::vector<int> order;
+  int at_once = 0;
+  std::vector<std::thread> others;
+  for (int i = 0; i < 3; ++i) {
+    others.emplace_back([&, i] {
+      const Turn turn(HelperThreads::none);
+      {
+        const std::lock_guard lock(mutex);
+        CHECK(++at_once == 1);
+        order.push_back(i);
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      const std::lock_guard lock(mutex);
+      --at_once;
+    });
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  for (std::thread& other : others) other.join();  // the first still has not ended
+  CHECK(order == std::vector{0, 1, 2});
+  first.reset();
+  const Turn last(HelperThreads::none);
+  CHECK(last.others() == 0);
+}
+
+TEST_CASE("a scene is heavy if one core could not step it in real time, and stays so near the boundary") {
+  const auto heavy = [](const scene::Scene& scene) {
+    return ComputePlace::claim(scene).threads() == HelperThreads::sessions;
+  };
+  CHECK_FALSE(heavy(test::seed()));
+  CHECK(heavy(large_seed(256)));
   scene::Scene scene = test::seed();
   scene.solver.method = scene::Method::xpbd;
   scene.solver.iterations = 10000;
-  CHECK(threads_for(scene, HelperThreads::light_sessions) == HelperThreads::heavy_sessions);
+  CHECK(heavy(scene));
   scene = large_seed(100);
   scene.self_collision->thickness = 10.0;
-  CHECK(threads_for(scene, HelperThreads::light_sessions) == HelperThreads::heavy_sessions);
+  CHECK(heavy(scene));
 
   scene = test::seed();
-  scene.solver.dt = 1.2 * sim::expected_step_seconds(scene);
-  CHECK(threads_for(scene, HelperThreads::light_sessions) == HelperThreads::light_sessions);
-  CHECK(threads_for(scene, HelperThreads::heavy_sessions) == HelperThreads::heavy_sessions);
+  scene.solver.dt = 2.5 * sim::expected_step_seconds(scene);  // takes 0.4 of a core
+  ComputePlace light = ComputePlace::claim(test::seed()), helped = ComputePlace::claim(large_seed(256));
+  CHECK(light.stays(scene));
+  CHECK(helped.stays(scene));
+  CHECK_FALSE(light.stays(large_seed(256)));
+  CHECK_FALSE(helped.stays(test::seed()));
 }
 
 TEST_CASE("heavy scenes have helper threads of their own, which give way") {
@@ -69,9 +124,7 @@ TEST_CASE("heavy scenes have helper threads of their own, which give way") {
   REQUIRE(light);
   if (!(*light)->software()) return;  // a GPU has none
   const std::map<int, int> before = threads();
-  session::Engine::Wanted wanted;
-  wanted.threads = HelperThreads::heavy_sessions;
-  const auto heavy = session::Engine::create(test::seed(), exchange, wanted);
+  const auto heavy = session::Engine::create(large_seed(256), exchange, {});
   REQUIRE(heavy);
   int added = 0;
   for (const auto& [thread, niceness] : threads()) {

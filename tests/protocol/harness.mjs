@@ -51,11 +51,15 @@ export class Server {
   static async start(...args) {
     const server = new Server();
     server.startedAt = performance.now();
-    server.child = spawn(program, ["serve", ...(args.includes("--port") ? [] : ["--port", "0"]), ...args], {
-      stdio: ["ignore", "pipe", "pipe"],
-      // Tokens of the shell must not reach the tests.
-      env: { ...process.env, XDG_CACHE_HOME: cacheHome, CLOTHLAB_TOKEN: undefined, CLOTHLAB_VIEW_TOKEN: undefined },
-    });
+    server.child = spawn(
+      process.env.CLOTHLAB,
+      ["serve", ...(args.includes("--port") ? [] : ["--port", "0"]), ...args],
+      {
+        stdio: ["ignore", "pipe", "pipe"],
+        // Tokens of the shell must not reach the tests.
+        env: { ...process.env, XDG_CACHE_HOME: cacheHome, CLOTHLAB_TOKEN: undefined, CLOTHLAB_VIEW_TOKEN: undefined },
+      },
+    );
     server.closed = once(server.child, "close");
     children.add(server.child);
     server.closed.then(() => children.delete(server.child));
