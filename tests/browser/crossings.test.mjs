@@ -31,6 +31,7 @@ const eye = (page) => page.evaluate(() => window.clothlab.stage.controls.object.
 /// A page whose user has chosen contact between surfaces for a cloth that passes through another one.
 async function refusedPage(session, options) {
   const here = await both(session, options);
+  await options?.before?.(here.viewer.page);
   await here.client.request("sim.pause");
   await here.client.request("scene.load", { scene: crossing });
   const { page } = here.viewer;
@@ -74,6 +75,30 @@ for (const [width, height] of [
     },
   );
 }
+
+/// Keeps the page's connections where a test can close them.
+async function keepSockets(page) {
+  await page.addInitScript(() => {
+    window.sockets = [];
+    window.WebSocket = class extends WebSocket {
+      constructor(...words) {
+        super(...words);
+        window.sockets.push(this);
+      }
+    };
+  });
+  await page.reload();
+}
+
+browserTest("a connection that is lost and comes back leaves the notice of crossings", async () => {
+  const { viewer, client } = await refusedPage("crossings-again", { before: keepSockets });
+  const { page } = viewer;
+  await page.evaluate(() => window.sockets.at(-1).close());
+  await viewer.until(() => window.sockets.length > 1 && window.sockets.at(-1).readyState === WebSocket.OPEN);
+  await page.waitForTimeout(500); // the scene comes, and comes again
+  assert.equal(await refusal(page).count(), 1);
+  await client.close();
+});
 
 browserTest("a loaded scene takes crossings and their notice away", async () => {
   const { viewer, client } = await refusedPage("crossings-load");

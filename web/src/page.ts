@@ -373,7 +373,7 @@ export class Page {
     hook.document = document;
     this.slow.dt = document.solver.dt;
     this.picture.moved = [];
-    if (whole) this.refusals.forget();
+    this.refusals.sceneShown(this.store.revision, whole);
     const newScene = whole && document.name !== this.sceneName;
     this.sceneName = document.name;
     element("scene-name", HTMLElement).textContent = document.name;

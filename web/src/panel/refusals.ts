@@ -12,6 +12,7 @@ interface Host {
 
 export class Refusals {
   private closeCrossings = (): void => undefined;
+  private revision = 0;
 
   constructor(private readonly host: Host) {}
 
@@ -24,8 +25,10 @@ export class Refusals {
     else noticeError(title, error);
   }
 
-  /// Another scene is shown: a refusal for crossings of the last one goes.
-  forget(): void {
-    this.closeCrossings();
+  /// The scene is shown at this revision, all of it or what a patch changed. A refusal for crossings of another scene
+  /// goes; it stays where a connection that came back brings the same scene again.
+  sceneShown(revision: number, whole: boolean): void {
+    if (whole && revision !== this.revision) this.closeCrossings();
+    this.revision = revision;
   }
 }
