@@ -14,8 +14,8 @@ namespace {
 using gl::HelperThreads;
 
 /// The part of one core's time that a scene in real time takes, by the estimate, above which it moves to the
-/// helper threads and below which it comes back. Half, as estimates may be two times too low.
-constexpr double to_leave = 0.5, to_return = 0.25;
+/// helper threads and below which it comes back. Estimates are right within a factor of about two.
+constexpr double to_leave = 0.8, to_return = 0.4;
 
 constexpr std::array without_helpers{HelperThreads::none, HelperThreads::none_too};
 

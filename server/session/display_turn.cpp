@@ -73,4 +73,10 @@ DisplayTurn::~DisplayTurn() {
   if (display.holder == this) display.next();
 }
 
+std::size_t DisplayTurn::waiting(gl::HelperThreads threads) {
+  Display& display = display_of(threads);
+  const std::lock_guard lock(display.mutex);
+  return display.waiting.size();
+}
+
 }  // namespace clothlab::session

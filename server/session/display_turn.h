@@ -3,6 +3,7 @@
 // processor's caches.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "server/gl/context.h"
@@ -19,6 +20,8 @@ class [[nodiscard]] DisplayTurn {
   DisplayTurn(const DisplayTurn&) = delete;
   DisplayTurn& operator=(const DisplayTurn&) = delete;
 
+  /// Number of turns that wait for the display now.
+  static std::size_t waiting(gl::HelperThreads display);
   /// Number of others that waited when it began.
   std::uint32_t others() const { return others_; }
 

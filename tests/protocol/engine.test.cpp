@@ -86,7 +86,7 @@ TEST_CASE("sessions that share a display compute in turns, and one that takes lo
       const std::lock_guard lock(mutex);
       --at_once;
     });
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    while (Turn::waiting(HelperThreads::none) < static_cast<std::size_t>(i) + 1) std::this_thread::yield();
   }
   for (std::thread& other : others) other.join();  // the first still has not ended
   CHECK(order == std::vector{0, 1, 2});
@@ -110,7 +110,7 @@ TEST_CASE("a scene is heavy if one core could not step it in real time, and stay
   CHECK(heavy(scene));
 
   scene = test::seed();
-  scene.solver.dt = 2.5 * sim::expected_step_seconds(scene);  // takes 0.4 of a core
+  scene.solver.dt = sim::expected_step_seconds(scene) / 0.6;
   ComputePlace light = ComputePlace::claim(test::seed()), helped = ComputePlace::claim(large_seed(256));
   CHECK(light.stays(scene));
   CHECK(helped.stays(scene));
