@@ -86,7 +86,13 @@ TEST_CASE("sessions that share a display compute in turns, and one that takes lo
       const std::lock_guard lock(mutex);
       --at_once;
     });
-    while (Turn::waiting(HelperThreads::none) < static_cast<std::size_t>(i) + 1) std::this_thread::yield();
+    // The next asks once this one waits, or has begun because the first has taken too long.
+    const auto begun = [&] {
+      const std::lock_guard lock(mutex);
+      return order.size();
+    };
+    while (Turn::waiting(HelperThreads::none) + begun() < static_cast<std::size_t>(i) + 1)
+      std::this_thread::yield();
   }
   for (std::thread& other : others) other.join();  // the first still has not ended
   CHECK(order == std::vector{0, 1, 2});
