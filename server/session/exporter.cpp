@@ -33,7 +33,8 @@ const char* type_of(Export::Kind kind) {
 /// context.
 Result<std::string> picture(std::optional<int> gpu, const Moment& moment, const model::Model& model,
                             const Export& what) {
-  const Result<std::unique_ptr<gl::Context>> context = gl::Context::create(gpu);
+  // With the lab, which can wait: a picture on a display of small sessions would hold these up for seconds.
+  const Result<std::unique_ptr<gl::Context>> context = gl::Context::create(gpu, gl::HelperThreads::lab);
   if (!context) return context.error();
   const Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create();
   if (!renderer) return renderer.error();
