@@ -7,6 +7,7 @@
 #include "server/base/priority.h"
 #include "server/gl/context.h"
 #include "server/session/fault.h"
+#include "server/session/helper_threads.h"
 
 namespace clothlab::net {
 
@@ -106,6 +107,7 @@ Result<lab::Outcome> LabWorker::carry_out(const Task& task, const std::stop_toke
 
 Result<LabWorker::Run> open_lab(std::optional<int> gpu) {
   lower_priority(19);
+  session::make_helper_threads(gpu, gl::HelperThreads::lab);
   Result<std::unique_ptr<gl::Context>> context = gl::Context::create(gpu, gl::HelperThreads::lab);
   if (!context) return context.error();
   return LabWorker::Run([context = std::shared_ptr<gl::Context>(std::move(*context))](
