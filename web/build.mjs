@@ -92,3 +92,18 @@ writeFileSync(
   join(dist, "player.html"),
   player.replace(/@(style|player)@/g, (_, name) => filled[name]),
 );
+
+// The page of a sweep is a single file, too; the program puts in @title@ and @table@ (server/sweep/table.cpp).
+const { outputFiles: sweepFiles } = await build({
+  ...common,
+  entryPoints: { sweep: "src/sweep/main.ts", style: "src/sweep/sweep.css" },
+  outdir: "dist",
+  format: "iife",
+  write: false,
+});
+const sweepText = (ending) => sweepFiles.find(({ path }) => path.endsWith(ending)).text.trim();
+const sweep = { style: sweepText(".css"), script: sweepText(".js") };
+writeFileSync(
+  join(dist, "sweep.html"),
+  readFileSync(join(here, "src/sweep/sweep.html"), "utf8").replace(/@(style|script)@/g, (_, name) => sweep[name]),
+);

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <random>
 
 #include "server/base/text.h"
 
@@ -21,7 +22,8 @@ Result<std::string> read_file(const fs::path& path) {
 
 Status replace_file(const fs::path& path, const std::string& bytes) {
   fs::path unfinished = path;
-  unfinished += formatted(".%d%s", getpid(), unfinished_suffix);
+  // Not the process alone: in two containers it may have one number, and in both this thread, too.
+  unfinished += formatted(".%d-%08x%s", getpid(), std::random_device{}(), unfinished_suffix);
   std::error_code failure;
   errno = 0;
   {

@@ -32,6 +32,7 @@ void add_chart(CLI::App& app, int& exit_code);
 void add_stability(CLI::App& app, int& exit_code);
 void add_choose(CLI::App& app, int& exit_code);
 void add_simplify(CLI::App& app, int& exit_code);
+void add_sweep(CLI::App& app, int& exit_code);
 void add_validate(CLI::App& app, int& exit_code);
 void add_presets(CLI::App& app, int& exit_code);
 void add_fabrics(CLI::App& app, int& exit_code);

@@ -1,22 +1,16 @@
 #include "server/cli/lab_command.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <ctime>
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <thread>
 
 #include "server/base/text.h"
+#include "server/cli/long_job.h"
 #include "server/cli/state_files.h"
 #include "server/cli/stepping.h"
 #include "server/gl/context.h"
@@ -29,70 +23,6 @@ namespace clothlab::cli {
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr int exit_interrupted = 128 + SIGINT;  // the code that shells give a program ended by Ctrl-C
-
-/// The first SIGINT (Ctrl-C) or SIGTERM asks the job to stop, the second ends the program as usual. Must be
-/// made before any other thread: threads inherit the blocked signals only from then on.
-class StopOnInterrupt {
- public:
-  StopOnInterrupt() {
-    sigemptyset(&signals_);
-    sigaddset(&signals_, SIGINT);
-    sigaddset(&signals_, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &signals_, &before_);
-    thread_ = std::thread([this] { wait(); });
-  }
-  ~StopOnInterrupt() {
-    done_ = true;
-    thread_.join();
-    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
-  }
-  StopOnInterrupt(const StopOnInterrupt&) = delete;
-  StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
-
-  std::stop_token token() const { return stop_.get_token(); }
-
- private:
-  void wait() {
-    const timespec poll_interval{0, 50'000'000};
-    while (!done_) {
-      if (sigtimedwait(&signals_, nullptr, &poll_interval) < 0) continue;
-      stop_.request_stop();
-      pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);  // this thread's: the next signal ends the program
-      while (!done_) std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    }
-  }
-
-  std::stop_source stop_;
-  std::atomic<bool> done_ = false;
-  sigset_t signals_{}, before_{};
-  std::thread thread_;
-};
-
-/// One line of progress on stderr, which `show` overwrites. Prints nothing if stderr is not a terminal.
-class ProgressLine {
- public:
-  ~ProgressLine() { clear(); }
-  void show(const lab::Progress& progress) {
-    const auto now = std::chrono::steady_clock::now();
-    if (!terminal_ || (shown_ && now - last_ < std::chrono::milliseconds(100))) return;
-    last_ = now;
-    shown_ = true;
-    const double share = progress.total > 0 ? std::clamp(progress.done / progress.total, 0.0, 1.0) : 0.0;
-    std::fprintf(stderr, "\r\033[K%3.0f %%  %.100s", 100 * share, progress.doing.c_str());
-    std::fflush(stderr);
-  }
-  void clear() {
-    if (shown_) std::fputs("\r\033[K", stderr);
-    shown_ = false;
-  }
-
- private:
-  const bool terminal_ = isatty(STDERR_FILENO) == 1;
-  bool shown_ = false;
-  std::chrono::steady_clock::time_point last_;
-};
 
 constexpr std::array extensions{".json", ".csv", ".svg"};
 

@@ -35,6 +35,7 @@ void describe(CLI::App& app, int& exit_code) {
   add_stability(app, exit_code);
   add_choose(app, exit_code);
   add_simplify(app, exit_code);
+  add_sweep(app, exit_code);
   add_validate(app, exit_code);
   add_presets(app, exit_code);
   add_fabrics(app, exit_code);

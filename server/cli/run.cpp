@@ -10,8 +10,8 @@
 #include "server/cli/commands.h"
 #include "server/cli/state_files.h"
 #include "server/cli/stepping.h"
-#include "server/cli/verify.h"
 #include "server/scene/method.h"
+#include "server/sim/crossing_check.h"
 
 namespace clothlab::cli {
 
@@ -200,7 +200,7 @@ int run(const RunOptions& options) {
   if (!every) return fail(every.error(), exit_usage);
 
   if (!options.trace.empty()) outputs->trace.emplace(options.trace);
-  std::optional<CrossingCheck> check;
+  std::optional<sim::CrossingCheck> check;
   if (options.verify) check.emplace(simulation);
   const auto at_stop = [&](const sim::Diagnostics& state) -> Status {
     if (check) check->add(simulation.read_state(), state.time);

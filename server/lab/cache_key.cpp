@@ -4,41 +4,16 @@
 
 #include "server/base/data_files.h"
 #include "server/base/files.h"
-#include "server/base/text.h"
+#include "server/base/hash.h"
 #include "server/lab/cache.h"
+#include "server/lab/scene_hash.h"
 #include "server/scene/method.h"
-#include "server/scene/named_fabric.h"
 
 namespace clothlab::lab {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-/// A hash of 128 bits from two lanes of 64 bits: FNV-1a, and a variant of it. It does not withstand an
-/// attacker, who would gain nothing from a collision.
-class Hash {
- public:
-  void add(const std::string& bytes) {
-    for (const char byte : bytes) {
-      const auto value = static_cast<std::uint8_t>(byte);
-      first_ = (first_ ^ value) * 0x100000001b3ull;
-      // A different multiplier, so that bytes that collide in one lane do not collide in the other.
-      second_ = (second_ + value + 1) * 0x9e3779b97f4a7c15ull;
-      second_ ^= second_ >> 32;
-    }
-    // The length is hashed too, so that "ab", "c" and "a", "bc" give different hashes.
-    first_ = (first_ ^ bytes.size()) * 0x100000001b3ull;
-    second_ = (second_ ^ bytes.size()) * 0x9e3779b97f4a7c15ull;
-  }
-  std::string text() const {
-    return formatted("%016llx%016llx", static_cast<unsigned long long>(first_),
-                     static_cast<unsigned long long>(second_));
-  }
-
- private:
-  std::uint64_t first_ = 0xcbf29ce484222325ull, second_ = 0x84222325cbf29ce4ull;
-};
 
 /// A hash of the program's file and of the shaders that it compiles while it runs.
 std::string build_hash() {
@@ -57,35 +32,6 @@ std::string build_hash() {
     if (const Result<std::string> text = read_file(file)) hash.add(*text);
   }
   return hash.text();
-}
-
-/// The scene without what does not change the motion: names, colours and textures.
-json without_appearance(json scene) {
-  scene.erase("name");
-  for (json& cloth : scene["cloths"])
-    for (const char* key : {"name", "color", "texture"}) cloth.erase(key);
-  for (json& collider : scene["colliders"]) collider.erase("name");
-  return scene;
-}
-
-/// What the document does not contain: the meshes that it names.
-void add_named_meshes(Hash& hash, const scene::Scene& scene) {
-  const auto add = [&](const auto& list) {
-    hash.add(std::string(reinterpret_cast<const char*>(list.data()), list.size() * sizeof(list[0])));
-  };
-  for (const scene::Cloth& cloth : scene.cloths) {
-    const auto* mesh = std::get_if<scene::TriangleMesh>(&cloth.mesh);
-    if (!mesh || mesh->vertex_of.empty()) continue;
-    add(mesh->vertices);
-    add(mesh->triangles);
-    add(mesh->pattern);
-  }
-  for (const scene::Collider& collider : scene.colliders) {
-    const auto* body = std::get_if<scene::Body>(&collider.shape);
-    if (!body) continue;
-    add(body->mesh->vertices);
-    add(body->mesh->triangles);
-  }
 }
 
 /// The names of `methods` (empty: of all), sorted, as their order does not change a result.
@@ -134,8 +80,7 @@ CacheKey cache_key(const scene::Document& document, const Job& job, const std::s
   hash.add(renderer);
   hash.add(name(job));
   hash.add(std::visit([](const auto& request) { return of(request); }, job).dump());
-  hash.add(without_appearance(scene::spelled_out(document)).dump());
-  add_named_meshes(hash, document.scene);
+  add_scene(hash, document);
   return {hash.text(), document.scene.name};
 }
 

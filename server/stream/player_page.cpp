@@ -1,13 +1,9 @@
-#include "server/base/data_files.h"
-#include "server/base/files.h"
+#include "server/base/page_template.h"
 #include "server/stream/recording.h"
 
 namespace clothlab::stream {
 
 namespace {
-
-constexpr const char* page_file = "web/dist/player.html";
-constexpr std::string_view title_place = "@title@", recording_place = "@recording@";
 
 std::string base64(std::string_view bytes) {
   static constexpr std::string_view letters =
@@ -24,37 +20,10 @@ std::string base64(std::string_view bytes) {
   return out;
 }
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char letter : text)
-    if (letter == '<')
-      out += "&lt;";
-    else if (letter == '&')
-      out += "&amp;";
-    else
-      out += letter;
-  return out;
-}
-
-bool fill_in(std::string& page, std::string_view place, const std::string& text) {
-  const std::size_t at = page.find(place);
-  if (at == std::string::npos) return false;
-  page.replace(at, place.size(), text);
-  return true;
-}
-
 }  // namespace
 
 Result<std::string> player_page(std::string_view recording, const std::string& title) {
-  const Error not_built{page_file, "the player has not been built",
-                        "run `npm --prefix web ci` and `npm --prefix web run build`"};
-  const Result<std::filesystem::path> path = data_path(page_file);
-  if (!path) return not_built;
-  Result<std::string> page = read_file(*path);
-  if (!page) return page.error();
-  if (!fill_in(*page, title_place, escaped(title)) || !fill_in(*page, recording_place, base64(recording)))
-    return not_built;
-  return page;
+  return filled_page("player.html", {{"@title@", as_html(title)}, {"@recording@", base64(recording)}});
 }
 
 }  // namespace clothlab::stream

@@ -1,27 +1,11 @@
 // The page on every window and by every means: contrast and names by axe-core, sizes from 320 px to 4K, keyboard, less
 // motion, folded panels.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
-import { createRequire } from "node:module";
+import { violations } from "./axe.mjs";
 import { browserTest, eventually, screenshots, withServer } from "./browser.mjs";
 import { hiddenPoints } from "./hidden_points.mjs";
 
 const here = withServer();
-const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
-const rules = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"];
-
-/// What axe-core finds wrong, each with the elements and the reason.
-async function violations({ page }, when) {
-  await page.waitForTimeout(400); // what slides in has arrived
-  if (!(await page.evaluate(() => "axe" in window))) await page.evaluate(axe);
-  const found = await page.evaluate(
-    async (values) => (await window.axe.run(document, { runOnly: { type: "tag", values } })).violations,
-    rules,
-  );
-  return found.flatMap(({ id, nodes }) =>
-    nodes.map(({ target, any, all, none }) => `${when}: ${id}: ${target}: ${[...any, ...all, ...none][0]?.message}`),
-  );
-}
 
 for (const [width, height] of [
   [1440, 900],

@@ -1,15 +1,15 @@
-#include "server/cli/verify.h"
+#include "server/sim/crossing_check.h"
 
 #include "server/base/text.h"
 #include "server/model/bodies.h"
 #include "server/model/clean_start.h"
 
-namespace clothlab::cli {
+namespace clothlab::sim {
 
-CrossingCheck::CrossingCheck(const sim::Simulation& simulation)
+CrossingCheck::CrossingCheck(const Simulation& simulation)
     : simulation_(simulation), surfaces_(model::surfaces_of(simulation.model())) {}
 
-void CrossingCheck::add(const sim::State& state, double time) {
+void CrossingCheck::add(const State& state, double time) {
   if (samples_ > 0 && time == last_.time) return;
   std::vector<glm::dvec3> x(state.position.begin(), state.position.end());
   for (const glm::dvec3& of_body : model::body_positions(simulation_.model(), time))
@@ -45,4 +45,4 @@ std::string CrossingCheck::in_words() const {
          with_significant_digits(first_->time, 9) + " s: " + pairs_.front();
 }
 
-}  // namespace clothlab::cli
+}  // namespace clothlab::sim

@@ -11,14 +11,14 @@
 #include "server/model/crossings.h"
 #include "server/sim/simulation.h"
 
-namespace clothlab::cli {
+namespace clothlab::sim {
 
 class CrossingCheck {
  public:
-  explicit CrossingCheck(const sim::Simulation& simulation);
+  explicit CrossingCheck(const Simulation& simulation);
 
   /// Counts the crossings of the state at `time` [s]. A state at the time of the last one is that again.
-  void add(const sim::State& state, double time);
+  void add(const State& state, double time);
 
   /// Adds `crossings`, the largest count, and `crossing_check`, the details, to the report.
   void report(nlohmann::ordered_json& report) const;
@@ -31,7 +31,7 @@ class CrossingCheck {
     std::uint64_t count = 0;
   };
 
-  const sim::Simulation& simulation_;
+  const Simulation& simulation_;
   model::Surfaces surfaces_;
   std::uint64_t samples_ = 0, crossed_ = 0;  // all, and those with crossings
   Sample last_, worst_;
@@ -39,4 +39,4 @@ class CrossingCheck {
   std::vector<std::string> pairs_;  // of that one, the first few
 };
 
-}  // namespace clothlab::cli
+}  // namespace clothlab::sim
