@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "server/cli/lab_command.h"
+#include "server/cli/lab_tables.h"
 #include "server/lab/draw/plot.h"
 #include "server/lab/exports.h"
 #include "server/scene/method.h"
@@ -118,6 +119,7 @@ void add_chart(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<ChartOptions>();
   add_lab_options(*command, options->lab);
   add_methods(*command, options->lab);
+  add_shard(*command, options->lab);
   command
       ->add_option("--iterations", options->iterations,
                    "only these, of methods that iterate, e.g. 1,4,16 (else several)")
@@ -131,6 +133,7 @@ void add_chart(CLI::App& app, int& exit_code) {
   command->footer(std::string(R"(Examples:
   clothlab chart seed --out results
   clothlab chart my-scene.json --methods verlet,xpbd --iterations 1,4 --time 0.5 --budget 30
+  clothlab chart seed --out results --shard 2/8
 )") + lab_footer);
   command->callback([options, &exit_code] { exit_code = chart(*options); });
 }

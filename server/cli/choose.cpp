@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "server/cli/lab_command.h"
+#include "server/cli/lab_tables.h"
 #include "server/lab/draw/plot.h"
 
 namespace clothlab::cli {

@@ -7,16 +7,20 @@
 #include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <limits>
 #include <memory>
 
 #include "server/base/text.h"
 #include "server/cli/long_job.h"
+#include "server/cli/shard.h"
 #include "server/cli/state_files.h"
 #include "server/cli/stepping.h"
 #include "server/gl/context.h"
 #include "server/lab/cache.h"
 #include "server/lab/exports.h"
+#include "server/lab/shards.h"
 #include "server/scene/method.h"
+#include "server/sweep/quiet.h"
 
 namespace clothlab::cli {
 
@@ -96,6 +100,14 @@ void add_lab_options(CLI::App& command, LabOptions& options) {
   add_gpu(command, options.gpu);
 }
 
+void add_shard(CLI::App& command, LabOptions& options) {
+  command
+      .add_option(
+          "--shard", options.shard,
+          "measure every n-th method, from the i-th on, on one core; --out then gets what all shards have")
+      ->type_name("I/N");
+}
+
 void add_methods(CLI::App& command, LabOptions& options) {
   command.add_option("--methods", options.methods, "only these, e.g. verlet,xpbd (all: see `clothlab info`)")
       ->type_name("A,B");
@@ -128,11 +140,103 @@ Status check_positive(const std::string& option, double value, double most) {
                "above 0, at most " + with_significant_digits(most, 6)};
 }
 
+namespace {
+
+/// Measures with progress on stderr. `so_far`, if given, gets what there is of a job that is stopped.
+Result<lab::Outcome> measure(const scene::Document& document, const lab::Job& job,
+                             const std::stop_token& stop, std::optional<lab::Outcome>* so_far = nullptr) {
+  ProgressLine line;
+  const lab::Control<lab::Outcome> control{stop, [&](const lab::Progress& progress) { line.show(progress); },
+                                           [&](const lab::Outcome& partial) {
+                                             if (so_far) *so_far = partial;
+                                           }};
+  return lab::run(document, job, control);
+}
+
+/// A chart's costs count only if no other program worked on the same cores.
+Result<lab::Outcome> measure_part(const scene::Document& document, const lab::Job& job,
+                                  const std::stop_token& stop) {
+  const sweep::Quiet quiet;
+  Result<lab::Outcome> outcome = measure(document, job, stop);
+  if (!outcome) return outcome;
+  const std::optional<double> others = quiet.others();
+  if (auto* chart = std::get_if<lab::Chart>(&*outcome); chart && !(others && *others <= quiet.most_others))
+    lab::leave_out_costs(*chart, "Other programs worked on the same cores: costs are left out.");
+  return outcome;
+}
+
+/// The parts of a job in the folder of its shards. A part has one name on all machines.
+class Parts {
+ public:
+  Parts(const scene::Document& document, std::vector<lab::Job> jobs, const std::string& out)
+      : document_(document), jobs_(std::move(jobs)), folder_(fs::path(out) / "parts") {}
+
+  /// Measures the parts of `shard` that are not there. Error: cancelled, or a part cannot be written.
+  Status measure(const Shard& shard, const std::stop_token& stop, bool fresh) const {
+    for (std::size_t i = shard.number - 1; i < jobs_.size(); i += shard.of) {
+      if (!fresh && find(i)) continue;
+      const Result<lab::Outcome> outcome = measure_part(document_, jobs_[i], stop);
+      if (!outcome) return outcome.error();
+      cache().keep(key(i), *outcome);
+      if (!find(i))
+        return Error{folder_.string(), "the result could not be written",
+                     "check the disk's space and the folder's permissions"};
+    }
+    return ok();
+  }
+
+  /// All that are there, as one result; none: there are none.
+  std::optional<lab::Outcome> joined() const {
+    std::vector<lab::Outcome> parts;
+    for (std::size_t i = 0; i < jobs_.size(); ++i)
+      if (std::optional<lab::Outcome> part = find(i)) parts.push_back(std::move(*part));
+    if (parts.empty()) return std::nullopt;
+    return lab::joined(std::move(parts), jobs_.size());
+  }
+
+ private:
+  /// A new one each time, which has nothing in its memory: others write into the folder, too.
+  lab::Cache cache() const { return lab::Cache(folder_, {0, std::numeric_limits<std::uintmax_t>::max()}); }
+  lab::CacheKey key(std::size_t i) const { return lab::cache_key(document_, jobs_[i], ""); }
+  std::optional<lab::Outcome> find(std::size_t i) const { return cache().find(key(i)); }
+
+  const scene::Document& document_;
+  std::vector<lab::Job> jobs_;
+  fs::path folder_;
+};
+
+int run_shard(const LabOptions& options, const scene::Document& document, const lab::Job& job,
+              void (*print)(const lab::Outcome&)) {
+  const Result<Shard> shard = shard_of(options.shard);
+  if (!shard) return fail(shard.error(), exit_usage);
+  if (options.out.empty())
+    return fail({"--shard", "no --out", "the folder that all shards write into"}, exit_usage);
+  Result<std::vector<lab::Job>> jobs = lab::split(document, job);
+  if (!jobs) return fail_job(jobs.error());
+  if (shard->of > jobs->size())
+    note("there are " + std::to_string(jobs->size()) + " methods: more shards than these have nothing to do");
+  gl::compute_without_helper_threads();
+  const StopOnInterrupt interrupt;
+  const Result<std::unique_ptr<gl::Context>> context = gl::Context::create(options.gpu);
+  if (!context) return fail(context.error(), context.error().where == "--gpu" ? exit_usage : exit_no_opengl);
+  const Parts parts(document, std::move(*jobs), options.out);
+  const Status measured = parts.measure(*shard, interrupt.token(), options.fresh);
+  if (!measured && !lab::was_cancelled(measured.error())) return fail_job(measured.error());
+  if (const std::optional<lab::Outcome> whole = parts.joined())
+    if (const int code = report(options, *whole, print); code != exit_done) return code;
+  if (measured) return exit_done;
+  note("interrupted: the methods that are done are kept; the same command goes on from there");
+  return exit_interrupted;
+}
+
+}  // namespace
+
 int run_lab(const LabOptions& options, const lab::Job& job, void (*print)(const lab::Outcome&)) {
   const Result<scene::Document> document = options.scene.load();
   if (!document) return fail(document.error(), exit_usage);
   if (Status possible = check_out(options, lab::name(job)); !possible)
     return fail(possible.error(), exit_usage);
+  if (!options.shard.empty()) return run_shard(options, *document, job, print);
 
   const StopOnInterrupt interrupt;
   const Result<std::unique_ptr<gl::Context>> context = gl::Context::create(options.gpu);
@@ -145,13 +249,8 @@ int run_lab(const LabOptions& options, const lab::Job& job, void (*print)(const 
       return report(options, *known, print);
     }
 
-  ProgressLine line;
   std::optional<lab::Outcome> so_far;
-  const lab::Control<lab::Outcome> control{interrupt.token(),
-                                           [&](const lab::Progress& progress) { line.show(progress); },
-                                           [&](const lab::Outcome& partial) { so_far = partial; }};
-  const Result<lab::Outcome> outcome = lab::run(*document, job, control);
-  line.clear();
+  const Result<lab::Outcome> outcome = measure(*document, job, interrupt.token(), &so_far);
   if (outcome) {
     cache.keep(key, *outcome);
     return report(options, *outcome, print);
@@ -161,47 +260,6 @@ int run_lab(const LabOptions& options, const lab::Job& job, void (*print)(const 
     if (const int code = report(options, *so_far, print); code != exit_done) return code;
   note(so_far ? "interrupted: the result is incomplete" : "interrupted before there was any result");
   return exit_interrupted;
-}
-
-void print_table(const std::vector<std::vector<std::string>>& rows) {
-  // Counts characters, not bytes: "×" and "⁻" are several bytes long but one column wide.
-  const auto columns_of = [](const std::string& text) {
-    return static_cast<std::size_t>(
-        std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; }));
-  };
-  std::vector<std::size_t> widths;
-  for (const auto& row : rows)
-    for (std::size_t column = 0; column < row.size(); ++column) {
-      if (column == widths.size()) widths.push_back(0);
-      widths[column] = std::max(widths[column], columns_of(row[column]));
-    }
-  for (const auto& row : rows) {
-    std::string line;
-    for (std::size_t column = 0; column < row.size(); ++column) {
-      line += row[column];
-      if (column + 1 < row.size()) line.append(widths[column] - columns_of(row[column]) + 2, ' ');
-    }
-    std::cout << line << "\n";
-  }
-}
-
-void print_notes(const std::vector<std::string>& notes) {
-  for (const std::string& words : notes)
-    if (!words.empty()) std::cout << "note: " << words << "\n";
-}
-
-void print_heading(const std::string& what, double time, const std::string& renderer, bool complete) {
-  std::cout << what << ", " << with_significant_digits(time, 6) << " s simulated on " << renderer
-            << (complete ? "" : ", NOT COMPLETE") << "\n";
-}
-
-std::string set_options(const lab::Setting& setting) {
-  std::string options;
-  const nlohmann::json patch = lab::patch(setting);
-  for (const auto& [key, value] : patch.at("solver").items())
-    options += (options.empty() ? "--set /solver/" : " --set /solver/") + key + "=" +
-               (value.is_string() ? value.get<std::string>() : value.dump());
-  return options;
 }
 
 }  // namespace clothlab::cli

@@ -17,11 +17,14 @@ struct LabOptions {
   std::string out;      ///< folder; empty: no files
   bool fresh = false;   ///< measure anew, even if the cache has the result
   bool json = false;    ///< print the result as JSON instead of a table
+  std::string shard;    ///< "i/n": only these methods; empty: all
   std::optional<int> gpu;
 };
 
 /// Adds S, --set, --out, --json, --fresh and --gpu.
 void add_lab_options(CLI::App& command, LabOptions& options);
+/// Adds --shard.
+void add_shard(CLI::App& command, LabOptions& options);
 /// Adds --methods.
 void add_methods(CLI::App& command, LabOptions& options);
 /// Adds --time, with the present value of `seconds` [s] as its default.
@@ -33,21 +36,14 @@ Status check_positive(const std::string& option, double value, double most);
 
 /// Runs the job or takes its result from the cache. Writes KIND.json, KIND.csv and KIND.svg into the folder
 /// of --out, if given, and prints the result with `print` or as JSON. Ctrl-C ends the job early; the result
-/// so far is still written and printed. Returns the exit code, 130 if interrupted.
+/// so far is still written and printed. Returns the exit code, 130 if interrupted. With --shard it measures
+/// some of the methods, keeps each result below parts/ in that folder, and writes what all shards have so
+/// far.
 int run_lab(const LabOptions& options, const lab::Job& job, void (*print)(const lab::Outcome&));
 
 /// The largest --time [s]; a larger one is taken for a mistake.
 inline constexpr double most_lab_time = 1000;
 /// The end of the help text of each of these commands.
 extern const char* const lab_footer;
-
-/// Prints rows of cells on stdout, in columns as wide as their widest cell and two blanks apart.
-void print_table(const std::vector<std::vector<std::string>>& rows);
-/// Prints each text of `notes` that is not empty as "note: ..." on stdout.
-void print_notes(const std::vector<std::string>& notes);
-/// Prints "WHAT, 1 s simulated on llvmpipe (...)", followed by ", NOT COMPLETE" unless `complete`.
-void print_heading(const std::string& what, double time, const std::string& renderer, bool complete);
-/// The --set options that make a command step a scene with `setting`.
-std::string set_options(const lab::Setting& setting);
 
 }  // namespace clothlab::cli

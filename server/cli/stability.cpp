@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "server/cli/lab_command.h"
+#include "server/cli/lab_tables.h"
 #include "server/lab/draw/plot.h"
 #include "server/scene/method.h"
 
@@ -66,6 +67,7 @@ void add_stability(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<StabilityOptions>();
   add_lab_options(*command, options->lab);
   add_methods(*command, options->lab);
+  add_shard(*command, options->lab);
   command
       ->add_option("--field", options->field,
                    "the number of the scene that is varied against dt, by JSON Pointer; or all stiffnesses")

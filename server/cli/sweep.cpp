@@ -1,5 +1,4 @@
 // `clothlab sweep F --out DIR`: measures a scene along axes of its numbers, a share of the points at a time.
-#include <charconv>
 #include <chrono>
 #include <iostream>
 #include <memory>
@@ -8,6 +7,7 @@
 #include "server/base/text.h"
 #include "server/cli/commands.h"
 #include "server/cli/long_job.h"
+#include "server/cli/shard.h"
 #include "server/cli/stepping.h"
 #include "server/gl/context.h"
 #include "server/lab/draw/plot.h"
@@ -25,22 +25,6 @@ struct SweepOptions {
   std::string file, out, merge, shard = "1/1", asset_root;
   std::optional<int> gpu;
 };
-
-struct Shard {
-  std::size_t number = 1, of = 1;
-};
-
-Result<Shard> shard_of(const std::string& text) {
-  Shard shard;
-  const char* end = text.data() + text.size();
-  const auto first = std::from_chars(text.data(), end, shard.number);
-  if (first.ec == std::errc() && first.ptr != end && *first.ptr == '/') {
-    const auto second = std::from_chars(first.ptr + 1, end, shard.of);
-    if (second.ec == std::errc() && second.ptr == end && shard.number >= 1 && shard.number <= shard.of)
-      return shard;
-  }
-  return Error{"--shard", "\"" + text + "\"", "i/n with 1 <= i <= n, e.g. 3/8"};
-}
 
 /// What a shard did.
 struct Done {
