@@ -65,7 +65,11 @@ std::optional<Row> Folder::result(const std::string& id) const {
 
 Status Folder::keep(const std::string& id, const Measured& measured) const {
   std::error_code failure;
-  fs::create_directories(file(id, "").parent_path(), failure);
+  const fs::path folder = file(id, "").parent_path();
+  fs::create_directories(folder, failure);
+  if (failure)
+    return Error{folder.string(), "could not be made: " + failure.message(),
+                 "check the disk's space and the folder's permissions"};
   // First the mesh: whoever finds the result finds it, too.
   if (!measured.shape.empty())
     if (Status written = replace_file(file(id, ".ply"), measured.shape); !written) return written;

@@ -58,7 +58,9 @@ std::optional<double> Quiet::others() const {
   const Reading now = read();
   const double elapsed = std::chrono::duration<double>(now.at - start_.at).count();
   if (!now.busy || !start_.busy || elapsed <= 0) return std::nullopt;
-  return std::max(0.0, (*now.busy - *start_.busy - (now.own - start_.own)) / elapsed);
+  // /proc/stat counts in ticks of 10 ms, so that the work of a core may seem one tick more at each end.
+  const double ticks = 2.0 / static_cast<double>(sysconf(_SC_CLK_TCK));
+  return std::max(0.0, (*now.busy - *start_.busy - (now.own - start_.own) - ticks) / elapsed);
 }
 
 }  // namespace clothlab::sweep

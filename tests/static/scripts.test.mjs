@@ -9,6 +9,7 @@ import { files, root } from "./files.mjs";
 const scripts = files.filter(
   (path) =>
     path.endsWith(".sh") ||
+    path.endsWith(".sbatch") ||
     (!/\.\w+$/.test(path) && /^#!.*\b(ba)?sh\b/.test(readFileSync(join(root, path), "latin1").slice(0, 60))),
 );
 
