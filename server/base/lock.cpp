@@ -1,4 +1,4 @@
-#include "server/base/folder_lock.h"
+#include "server/base/lock.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -11,26 +11,41 @@
 
 namespace clothlab {
 
-Result<FolderLock> FolderLock::take(const std::filesystem::path& folder) {
-  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+Result<Lock> Lock::take(const std::filesystem::path& path, int flags, Kind kind) {
+  constexpr mode_t of_owner = 0600;
+  const int descriptor = open(path.c_str(), flags | O_CLOEXEC, of_owner);
   if (descriptor < 0)
-    return Error{folder.string(), std::string("cannot be opened: ") + std::strerror(errno),
+    return Error{path.string(), std::string("cannot be opened: ") + std::strerror(errno),
                  "give a folder that can be read and written"};
-  FolderLock lock(descriptor);
-  if (flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    return Error{folder.string(), "another process is using this folder",
+  Lock lock(descriptor);
+  if (flock(descriptor, (kind == Kind::shared ? LOCK_SH : LOCK_EX) | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    return Error{path.string(),
+                 std::string("another process is using this ") + (flags & O_DIRECTORY ? "folder" : "file"),
                  "end that process, or choose a different folder"};
   return lock;
 }
 
-FolderLock::FolderLock(FolderLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+Result<Lock> Lock::folder(const std::filesystem::path& folder, Kind kind) {
+  return take(folder, O_RDONLY | O_DIRECTORY, kind);
+}
 
-FolderLock& FolderLock::operator=(FolderLock&& other) noexcept {
+Result<Lock> Lock::file(const std::filesystem::path& file) {
+  return take(file, O_RDWR | O_CREAT, Kind::exclusive);
+}
+
+bool Lock::held_by_another(const std::filesystem::path& file) {
+  std::error_code failure;
+  return std::filesystem::exists(file, failure) && !Lock::file(file);
+}
+
+Lock::Lock(Lock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+Lock& Lock::operator=(Lock&& other) noexcept {
   std::swap(descriptor_, other.descriptor_);
   return *this;
 }
 
-FolderLock::~FolderLock() {
+Lock::~Lock() {
   if (descriptor_ >= 0) close(descriptor_);
 }
 

@@ -1,5 +1,5 @@
-// A lock on a folder that one process at a time can hold. The operating system keeps the lock (flock(2)) and
-// releases it when the process ends, however it ends; the lock leaves no file in the folder.
+// A lock on a folder or a file. The operating system keeps it (flock(2)) and releases it when the process
+// ends, however it ends.
 #pragma once
 
 #include <filesystem>
@@ -8,18 +8,30 @@
 
 namespace clothlab {
 
-class FolderLock {
+class Lock {
  public:
-  /// Locks `folder`. Error: another process holds the lock, or the folder cannot be opened. On a file system
-  /// without locks every call succeeds.
-  static Result<FolderLock> take(const std::filesystem::path& folder);
-  FolderLock() = default;
-  FolderLock(FolderLock&& other) noexcept;
-  FolderLock& operator=(FolderLock&& other) noexcept;
-  ~FolderLock();
+  enum class Kind {
+    exclusive,  ///< one process alone
+    shared,     ///< several processes, but none that wants it exclusively
+  };
+  // On a file system without locks every call below succeeds.
+
+  /// Locks a folder, in which this leaves no file. Error: another process holds the lock, or the folder
+  /// cannot be opened.
+  static Result<Lock> folder(const std::filesystem::path& folder, Kind kind = Kind::exclusive);
+  /// Locks a file for this process alone, and makes it if it is missing. Error: as above.
+  static Result<Lock> file(const std::filesystem::path& file);
+  /// True if another process has locked the file; false if it is missing.
+  static bool held_by_another(const std::filesystem::path& file);
+
+  Lock() = default;
+  Lock(Lock&& other) noexcept;
+  Lock& operator=(Lock&& other) noexcept;
+  ~Lock();
 
  private:
-  explicit FolderLock(int descriptor) : descriptor_(descriptor) {}
+  static Result<Lock> take(const std::filesystem::path& path, int flags, Kind kind);
+  explicit Lock(int descriptor) : descriptor_(descriptor) {}
   int descriptor_ = -1;
 };
 

@@ -9,13 +9,14 @@
 #include <utility>
 
 #include "server/base/files.h"
-#include "server/base/folder_lock.h"
+#include "server/base/lock.h"
 #include "server/base/log.h"
 #include "server/base/memory.h"
 #include "server/cli/commands.h"
 #include "server/gl/context.h"
 #include "server/model/model.h"
 #include "server/model/size.h"
+#include "server/net/request_headers.h"
 #include "server/net/server.h"
 
 namespace clothlab::cli {
@@ -103,16 +104,22 @@ Status check(const ServeArguments& arguments) {
   for (const std::string& file : {options.tls_certificate, options.tls_key})
     if (!file.empty() && !std::filesystem::is_regular_file(file))
       return Error{file, "is not a file", "give a PEM file"};
+  if (options.share_state && options.state_folder.empty())
+    return Error{"--share-state-dir", "given without --state-dir", "name the folder that the servers share"};
+  for (const std::string& proxy : options.trusted_proxies)
+    if (!net::is_ip_address(proxy))
+      return Error{"--trusted-proxy", "\"" + proxy + "\"", "an IPv4 or IPv6 address, e.g. 192.0.2.7"};
   return ok();
 }
 
 /// Makes the folder of --state-dir if needed, checks that it can be written, and locks it for as long as the
-/// returned lock lives: two servers would overwrite each other's sessions.
-Result<FolderLock> claim_state_folder(const net::Options& options) {
-  if (options.state_folder.empty()) return FolderLock();
+/// returned lock lives: two servers would overwrite each other's sessions, unless both share it.
+Result<Lock> claim_state_folder(const net::Options& options) {
+  if (options.state_folder.empty()) return Lock();
   std::error_code failure;
   std::filesystem::create_directories(options.state_folder, failure);
-  Result<FolderLock> lock = FolderLock::take(options.state_folder);
+  Result<Lock> lock =
+      Lock::folder(options.state_folder, options.share_state ? Lock::Kind::shared : Lock::Kind::exclusive);
   if (!lock)
     return Error{"--state-dir " + options.state_folder.string(), lock.error().what, lock.error().remedy};
   const std::filesystem::path trial = options.state_folder / "trial";
@@ -137,7 +144,7 @@ int serve(ServeArguments& arguments) {
     return fail(small.error(), exit_usage);
   if (const Result<model::Model> model = model::build(document->scene); !model)
     return fail(model.error(), exit_usage);
-  const Result<FolderLock> state_folder = claim_state_folder(arguments.options);
+  const Result<Lock> state_folder = claim_state_folder(arguments.options);
   if (!state_folder) return fail(state_folder.error(), exit_usage);
   // Clients reach the files of a folder only if the user has named it.
   if (arguments.scene.asset_root.empty()) (*assets)->close();
@@ -228,6 +235,14 @@ void add_serve(CLI::App& app, int& exit_code) {
       ->add_option("--state-dir", options.state_folder,
                    "a folder that keeps each session's scene and state, and brings them back after a restart")
       ->type_name("FOLDER");
+  command->add_flag("--share-state-dir", options.share_state,
+                    "other servers use that folder, too; each session is open in one of them at a time");
+  command
+      ->add_option("--trusted-proxy", options.trusted_proxies,
+                   "the address of a proxy whose X-Forwarded-For says where a connection comes from")
+      ->type_name("ADDRESS")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option("--gpu", arguments->gpu, "the device by its number in `clothlab info`")
       ->type_name("N")
       ->check(whole_number(0, 1000));

@@ -85,7 +85,7 @@ void finish_late(lws* wsi, HttpRequest::Progress progress) {
 int on_socket(lws* wsi, int socket) {
   Hub& hub = server_of(wsi).hub();
   const std::string address = peer_address(socket);
-  if (!hub.connections().full(network_of(address))) return 0;
+  if (!hub.connections().full(address)) return 0;
   ++hub.metrics().refused;
   log(LogLevel::debug, "connection_refused", {{"address", address}, {"why", "too many connections"}});
   return -1;
@@ -94,7 +94,7 @@ int on_socket(lws* wsi, int socket) {
 int on_connection(lws* wsi) {
   Hub& hub = server_of(wsi).hub();
   watch_connection(lws_get_socket_fd(wsi));
-  hub.connections().opened(wsi, network_of(peer_address(wsi)));
+  hub.connections().opened(wsi, peer_address(wsi));
   await_request(wsi);
   return 0;
 }
@@ -104,7 +104,7 @@ int refuse(lws* wsi, const RequestFault& fault) {
   constexpr std::size_t longest = 200;  // bytes of the Origin to log, so that no client fills the log
   ++server_of(wsi).hub().metrics().refused;
   log(LogLevel::warning, "client_refused",
-      {{"address", peer_address(wsi)},
+      {{"address", client_address(wsi, server_of(wsi).hub().options().trusted_proxies)},
        {"origin", header(wsi, WSI_TOKEN_ORIGIN).substr(0, longest)},
        {"status", std::to_string(fault.status)},
        {"why", fault.why}});
@@ -133,7 +133,7 @@ int on_upgrade(lws* wsi, const char* to) {
 int on_handshake(lws* wsi) {
   std::string why;
   const unsigned status = server_of(wsi).refusal(wsi, why);
-  return status == 0 ? 0 : refuse(wsi, {status, why, {}});
+  return status == 0 ? 0 : refuse(wsi, {status, why, status == 503 ? "retry-after: 1\r\n" : ""});
 }
 
 int on_http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size) {

@@ -18,7 +18,7 @@ Client::Client(Hub& hub, lws* wsi, std::string session)
       wsi_(wsi),
       id_(hub.next_id()),
       session_(std::move(session)),
-      address_(peer_address(wsi)),
+      address_(client_address(wsi, hub.options().trusted_proxies)),
       role_(hub.role_of("")),
       messages_(hub.limits().message_rate, burst_of(hub.limits()), session::now_us()),
       grab_notices_(1, 3, session::now_us()) {
@@ -28,7 +28,7 @@ Client::Client(Hub& hub, lws* wsi, std::string session)
   if (role_ == Role::none)
     lws_set_timer_usecs(wsi_, lws_usec_t{hub.limits().auth_seconds} * LWS_USEC_PER_SEC);
   else if (!enter_room())
-    close(close_policy, "too many sessions");
+    close_without_room();
 }
 
 Client::~Client() {
@@ -39,6 +39,14 @@ Client::~Client() {
        {"closed", close_reason_}});
   leave_room();
   hub_.remove(*this);
+}
+
+/// Closes a connection whose session cannot be opened here.
+void Client::close_without_room() {
+  if (hub_.elsewhere(session_))
+    close(close_try_again, "another server has this session open");
+  else
+    close(close_policy, "too many sessions");
 }
 
 bool Client::enter_room() {

@@ -67,6 +67,7 @@ class Client {
 
  private:
   bool enter_room();
+  void close_without_room();
   /// The bytes that the message may have which is being received, of which `data` has just come.
   std::size_t most_bytes(std::string_view data);
   int refuse_too_long(std::size_t most);

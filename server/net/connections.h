@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "server/net/limits.h"
 
@@ -15,18 +16,21 @@ namespace clothlab::net {
 class Connections {
  public:
   /// Allows twice as many connections as WebSockets, by address and in all, which leaves half to plain HTTP.
-  explicit Connections(const Limits& limits)
-      : most_(2 * static_cast<std::size_t>(limits.clients)),
+  /// A proxy that is trusted has connections of many clients: only the limit of all holds for it.
+  Connections(const Limits& limits, const std::vector<std::string>& trusted_proxies)
+      : trusted_proxies_(trusted_proxies),
+        most_(2 * static_cast<std::size_t>(limits.clients)),
         most_of_one_(2 * static_cast<std::size_t>(limits.clients_per_address)) {}
 
   bool full(const std::string& address) const;
   void opened(lws* wsi, const std::string& address);
   void closed(lws* wsi);
-  std::size_t count() const { return address_of_.size(); }
+  std::size_t count() const { return network_of_connection_.size(); }
 
  private:
+  std::vector<std::string> trusted_proxies_;
   std::size_t most_, most_of_one_;
-  std::map<lws*, std::string> address_of_;
+  std::map<lws*, std::string> network_of_connection_;
   std::map<std::string, std::size_t> count_of_;
 };
 

@@ -59,10 +59,14 @@ HttpAnswer collider_mesh(const scene::Scene& scene, const std::string& name) {
 
 constexpr int patience = 30;  ///< with what is made for a request [s]
 
-HttpAnswer busy() {
-  HttpAnswer refusal = plain(503, "the server has as many pictures and meshes to make as it may; ask again");
+HttpAnswer try_again(const std::string& why) {
+  HttpAnswer refusal = plain(503, why);
   refusal.headers = {{"retry-after:", "1"}};
   return refusal;
+}
+
+HttpAnswer busy() {
+  return try_again("the server has as many pictures and meshes to make as it may; ask again");
 }
 
 /// The width or height that `text` gives, a whole number in [1, most] [pixels]; 0 for any other text.
@@ -141,7 +145,8 @@ std::optional<HttpAnswer> HttpRequest::refusal() const {
   const std::string scheme = "Bearer ";
   TokenCheck verdict;
   if (given.rfind(scheme, 0) == 0)
-    verdict = hub_.check_token(given.substr(scheme.size()), peer_address(wsi_), {});
+    verdict = hub_.check_token(given.substr(scheme.size()),
+                               client_address(wsi_, hub_.options().trusted_proxies), {});
   if (verdict.role != Role::none) return std::nullopt;
   if (verdict.wait == 0) {
     HttpAnswer refusal = plain(401, "send the server's token as `Authorization: Bearer TOKEN`");
@@ -168,6 +173,7 @@ std::optional<HttpAnswer> HttpRequest::find_protected(const std::string& path) {
         "the API has /api/scene, /api/mesh.obj, /api/mesh.glb, /api/collider.ply, /api/snapshot.png, "
         "/api/recording.clothlab and /api/recording.html");
   Room* room = hub_.find_room(session);
+  if (!room && hub_.elsewhere(session)) return try_again("another server has this session open; ask again");
   if (!room || !room->started())
     return plain(404,
                  "no such session is open; one opens when a page or script connects to /ws?session=NAME");

@@ -58,10 +58,9 @@ LabQueue::Port Hub::lab_port() {
     if (Room* room = find_room(session)) room->post({{}, session::Release{}});
   };
   port.steps = [this] { return steps(); };
-  // The renderer of `main` is the lab's too: the lab's context is on the device that the sessions run on.
+  // The sessions' renderer is the lab's, too: the lab's context is on the device that the sessions run on.
   const auto key = [this](const scene::Document& document, const lab::Job& job) {
-    const Room* room = find_room(main_session);
-    return lab::cache_key(document, job, room ? room->renderer() : "");
+    return lab::cache_key(document, job, renderer());
   };
   port.known = [this, key](const scene::Document& document, const lab::Job& job) {
     return lab_cache_.find(key(document, job));
@@ -114,15 +113,40 @@ bool Hub::has_place_for(const std::string& name) {
          !sleeping_room().empty();
 }
 
+std::string Hub::renderer() const {
+  for (const auto& [name, room] : rooms_)
+    if (room->started()) return room->renderer();
+  return {};
+}
+
 Room* Hub::open_room(const std::string& name) {
   if (Room* room = find_room(name)) return room;
   if (!has_place_for(name)) return nullptr;
+  Lock claim;
+  if (options_.share_state) {
+    Result<Lock> taken = Lock::file(lock_file(name));
+    if (!taken) return nullptr;
+    claim = std::move(*taken);
+  }
   if (rooms_.size() >= static_cast<std::size_t>(limits().sessions)) retire(sleeping_room());
-  return (rooms_[name] = std::make_unique<Room>(*this, name, wake_)).get();
+  return (rooms_[name] = std::make_unique<Room>(*this, name, wake_, std::move(claim))).get();
+}
+
+std::filesystem::path Hub::lock_file(const std::string& name) const {
+  return options_.state_folder / (name + ".lock");
+}
+
+bool Hub::elsewhere(const std::string& name) {
+  return options_.share_state && !find_room(name) && Lock::held_by_another(lock_file(name));
+}
+
+void Hub::give_up_sleeping_rooms() {
+  if (!options_.share_state) return;
+  for (std::string name = sleeping_room(); !name.empty(); name = sleeping_room()) retire(name);
 }
 
 bool Hub::knows_session(const std::string& name) {
-  if (find_room(name)) return true;
+  if (find_room(name) || name == main_session) return true;
   std::error_code failure;
   return !options_.state_folder.empty() &&
          std::filesystem::exists(session::session_file(options_.state_folder, name), failure);
@@ -132,7 +156,8 @@ std::string Hub::sleeping_room() const {
   std::string longest;
   std::int64_t since = session::now_us() - std::int64_t{limits().scene.unwatched_seconds} * 1'000'000;
   for (const auto& [name, room] : rooms_) {
-    if (name == main_session || !room->empty() || room->unwatched_since() > since) continue;
+    if ((name == main_session && !options_.share_state) || !room->empty() || room->unwatched_since() > since)
+      continue;
     since = room->unwatched_since();
     longest = name;
   }
@@ -147,8 +172,10 @@ void Hub::retire(const std::string& name) {
   std::erase_if(retiring_, [](const std::future<void>& end) {
     return end.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
   });
-  retiring_.push_back(std::async(std::launch::async, [session = found->second->give_up_session()]() mutable {
+  retiring_.push_back(std::async(std::launch::async, [session = found->second->give_up_session(),
+                                                      claim = found->second->give_up_claim()]() mutable {
     session.reset();
+    claim = Lock();  // after the session is saved
     release_free_memory();
   }));
   rooms_.erase(found);

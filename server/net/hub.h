@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <filesystem>
 #include <functional>
 #include <future>
 #include <map>
@@ -57,13 +58,21 @@ class Hub {
   std::string host_refusal(const std::string& host) const;
 
   Room* find_room(const std::string& name);
-  /// The room of this name, opened if it is new; null beyond --max-sessions. To make place, the room that has
-  /// been without clients for the longest time, at least --unwatched-timeout, is closed, but never `main`.
+  /// The room of this name, opened if it is new; null beyond --max-sessions, and if another server has the
+  /// session open. To make place, the room that has
+  /// been without clients for the longest time, at least --unwatched-timeout, is closed; `main` only where
+  /// servers share the state folder.
   Room* open_room(const std::string& name);
   bool has_place_for(const std::string& name);
+  /// True if another server that shares the state folder has the session open.
+  bool elsewhere(const std::string& name);
   /// True if the session is open or kept in the state folder. A viewer may enter no other session, because
   /// that would create it.
   bool knows_session(const std::string& name);
+
+  /// Where servers share the state folder: gives up the sessions without clients for --unwatched-timeout, so
+  /// that another server can open them.
+  void give_up_sleeping_rooms();
 
   void add(Client& client);
   void remove(Client& client);
@@ -104,11 +113,13 @@ class Hub {
   std::uint64_t steps() const;
   void retire(const std::string& name);
   std::string sleeping_room() const;
+  std::string renderer() const;
+  std::filesystem::path lock_file(const std::string& session) const;
 
   Options options_;
   std::function<void()> wake_;
   Metrics metrics_;
-  Connections connections_{options_.limits};
+  Connections connections_{options_.limits, options_.trusted_proxies};
   TokenGuard token_guard_{options_.limits.wrong_tokens};
   lab::Cache lab_cache_;
   std::unique_ptr<LabQueue> lab_;

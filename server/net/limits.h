@@ -57,5 +57,7 @@ inline constexpr int unsent_kernel_bytes = 64 * 1024;
 
 // Close codes of RFC 6455.
 inline constexpr int close_protocol = 1002, close_policy = 1008, close_too_big = 1009, close_internal = 1011;
+// And of the registry of IANA.
+inline constexpr int close_restart = 1012, close_try_again = 1013;
 
 }  // namespace clothlab::net

@@ -31,7 +31,11 @@ Outcome auth(Client& client, const Request& request) {
                     "no session " + client.session() + " is open; an operator opens it by connecting to it",
                     nullptr};
   if (!client.admit(role))
-    return RpcError{error_over_limit, "too many sessions; see --max-sessions", nullptr};
+    return RpcError{error_over_limit,
+                    client.hub().elsewhere(client.session())
+                        ? "another server has this session open; connect again"
+                        : "too many sessions; see --max-sessions",
+                    nullptr};
   return json{{"role", name(role)}};
 }
 

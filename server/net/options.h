@@ -21,7 +21,9 @@ struct Options {
   std::string view_token;                 ///< makes a client a viewer, who may change nothing; empty: none
   std::vector<std::string> allow_origin;  ///< origins allowed too, e.g. "https://example.org"
   Limits limits;
-  std::filesystem::path state_folder;  ///< keeps the sessions' files; empty: sessions are not kept
+  std::filesystem::path state_folder;        ///< keeps the sessions' files; empty: sessions are not kept
+  bool share_state = false;                  ///< other servers use that folder, too
+  std::vector<std::string> trusted_proxies;  ///< addresses whose X-Forwarded-For is believed
   std::optional<int> gpu;
   std::string tls_certificate, tls_key;  ///< PEM files; empty: plain HTTP
 };

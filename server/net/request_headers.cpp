@@ -37,11 +37,15 @@ std::string without_port(const std::string& host) {
   return port ? host.substr(0, colon) : std::string();
 }
 
+bool parses(int family, const std::string& address) {
+  in6_addr parsed{};  // large enough for both families
+  return inet_pton(family, address.c_str(), &parsed) == 1;
+}
+
+/// An address as a Host header has it.
 bool is_address(const std::string& name) {
-  in6_addr parsed{};  // large enough for both kinds
-  if (name.starts_with('[') && name.ends_with(']'))
-    return inet_pton(AF_INET6, name.substr(1, name.size() - 2).c_str(), &parsed) == 1;
-  return inet_pton(AF_INET, name.c_str(), &parsed) == 1;
+  if (name.starts_with('[') && name.ends_with(']')) return parses(AF_INET6, name.substr(1, name.size() - 2));
+  return parses(AF_INET, name);
 }
 }  // namespace
 
@@ -65,6 +69,26 @@ std::string peer_address(int socket) {
 
 std::string peer_address(lws* wsi) {
   return peer_address(lws_get_socket_fd(wsi));
+}
+
+bool is_ip_address(const std::string& text) {
+  return parses(AF_INET, text) || parses(AF_INET6, text);
+}
+
+std::string client_address(lws* wsi, const std::vector<std::string>& trusted) {
+  std::string address = peer_address(wsi);
+  const auto is_proxy = [&] { return std::find(trusted.begin(), trusted.end(), address) != trusted.end(); };
+  if (!is_proxy()) return address;
+  std::string list = header(wsi, WSI_TOKEN_X_FORWARDED_FOR);
+  while (is_proxy() && !list.empty()) {
+    const std::size_t comma = list.rfind(',');
+    std::string last = list.substr(comma == std::string::npos ? 0 : comma + 1);
+    list.resize(comma == std::string::npos ? 0 : comma);
+    std::erase(last, ' ');
+    if (!is_ip_address(last)) break;
+    address = last;
+  }
+  return address;
 }
 
 std::string network_of(const std::string& address) {

@@ -12,6 +12,12 @@ namespace clothlab::net {
 /// The IPv4 or IPv6 address at the other end of a socket; empty if the connection has ended.
 std::string peer_address(int socket);
 std::string peer_address(lws* wsi);
+/// The client's address: the one at the other end or, where that is one of the `trusted` proxies, the last in
+/// X-Forwarded-For that is none of them. Each proxy appends the address that it was reached from, so that
+/// what a client writes there itself comes before, and is never read.
+std::string client_address(lws* wsi, const std::vector<std::string>& trusted);
+/// True for an IPv4 or IPv6 address, without a port.
+bool is_ip_address(const std::string& text);
 /// The name under which limits count an address: an IPv4 address itself, but an IPv6 address's /64 network,
 /// because one host can use all addresses of its /64 network.
 std::string network_of(const std::string& address);

@@ -19,8 +19,12 @@ bool is_session_name(const std::string& name) {
   return !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), allowed);
 }
 
-Room::Room(Hub& hub, std::string name, const std::function<void()>& wake)
-    : hub_(hub), name_(std::move(name)), wake_(wake), unwatched_since_(session::now_us()) {
+Room::Room(Hub& hub, std::string name, const std::function<void()>& wake, Lock claim)
+    : hub_(hub),
+      name_(std::move(name)),
+      wake_(wake),
+      claim_(std::move(claim)),
+      unwatched_since_(session::now_us()) {
   const Options& options = hub_.options();
   std::optional<std::filesystem::path> stem;
   if (!options.state_folder.empty()) stem = options.state_folder / name_;

@@ -7,8 +7,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "server/base/lock.h"
 #include "server/net/json_rpc.h"
 #include "server/net/outbox.h"
 #include "server/session/session.h"
@@ -25,7 +27,8 @@ bool is_session_name(const std::string& name);
 
 class Room {
  public:
-  Room(Hub& hub, std::string name, const std::function<void()>& wake);
+  /// `claim`: this server's right to open the session, where several share the state folder.
+  Room(Hub& hub, std::string name, const std::function<void()>& wake, Lock claim);
 
   const std::string& name() const { return name_; }
   bool started() const { return !renderer_.empty(); }
@@ -65,6 +68,8 @@ class Room {
   void stop();
   /// Hands the session to the caller, who ends it; its steps stay counted in the metrics.
   std::unique_ptr<session::Session> give_up_session();
+  /// To be released when the session has ended.
+  Lock give_up_claim() { return std::move(claim_); }
   bool beats() const { return !session_ || session_->beats(); }
   bool asleep() const { return asleep_; }  ///< as of the last status
   std::uint64_t steps() const { return session_ ? session_->exchange().steps() : 0; }
@@ -97,6 +102,7 @@ class Room {
   Hub& hub_;
   std::string name_;
   std::function<void()> wake_;
+  Lock claim_;
   std::shared_ptr<session::MeshShelf> meshes_;  ///< outlives `session_`, which may be replaced
   std::unique_ptr<session::Session> session_;
   std::vector<Client*> clients_;

@@ -95,10 +95,15 @@ std::optional<session::Failed> Server::run(const std::function<void()>& ready) {
   if (!files_.built())
     log(LogLevel::warning, "page_not_built",
         {{"remedy", "npm --prefix web ci && npm --prefix web run build, or server/run"}});
-  hub_.open_room(main_session);
-  bool announced = false;
+  // Where servers share the sessions, each session is opened by the server that is asked for it first.
+  bool announced = hub_.options().share_state;
+  if (announced)
+    ready();
+  else
+    hub_.open_room(main_session);
   while (!stopping_) {
     if (lws_service(context_, 0) < 0) break;
+    hub_.give_up_sleeping_rooms();
     if (announced) continue;
     if (hub_.main_failure()) return hub_.main_failure();
     const Room* room = hub_.find_room(main_session);
@@ -110,8 +115,9 @@ std::optional<session::Failed> Server::run(const std::function<void()>& ready) {
 }
 
 void Server::say_goodbye() {
+  // With 1012 a client knows that it may come back at once: another server goes on with its session.
   constexpr int going_away = 1001;
-  hub_.close_all(going_away, "the server is shutting down");
+  hub_.close_all(hub_.options().share_state ? close_restart : going_away, "the server is shutting down");
   const std::int64_t until = session::now_us() + 300'000;
   while (!hub_.empty() && session::now_us() < until) {
     lws_cancel_service(context_);  // so that lws_service returns soon
@@ -135,7 +141,10 @@ unsigned Server::refusal(lws* wsi, std::string& why) {
   if (!origin_allowed(header(wsi, WSI_TOKEN_ORIGIN), header(wsi, WSI_TOKEN_HOST),
                       hub_.options().allow_origin))
     return why = "pages of this origin may not connect; see --allow-origin", HTTP_STATUS_FORBIDDEN;
-  if (hub_.full(peer_address(wsi)))
+  if (stopping_) return why = "the server is shutting down", HTTP_STATUS_SERVICE_UNAVAILABLE;
+  if (hub_.elsewhere(session))
+    return why = "another server has this session open; connect again", HTTP_STATUS_SERVICE_UNAVAILABLE;
+  if (hub_.full(client_address(wsi, hub_.options().trusted_proxies)))
     return why = "this address has as many clients as it may; see --max-clients-per-address",
            HTTP_STATUS_SERVICE_UNAVAILABLE;
   if (hub_.full())

@@ -1,0 +1,37 @@
+// --trusted-proxy: behind a proxy, limits and logs go by the address that the proxy names.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { Client, runProgram, Server } from "./harness.mjs";
+
+const from = (server, list) => Client.connect(server, { headers: { "X-Forwarded-For": list } });
+
+test("clients of a trusted proxy are told apart; what a client claims itself is not believed", async () => {
+  const server = await Server.start("--max-clients-per-address", "1", "--trusted-proxy", "127.0.0.1");
+  await from(server, "192.0.2.1");
+  await from(server, "192.0.2.2");
+  await from(server, "2001:db8::1");
+  await assert.rejects(from(server, "192.0.2.1"), { status: 503 });
+  await assert.rejects(from(server, "203.0.113.9, 192.0.2.2"), { status: 503 }); // the proxy appended the last
+  await assert.rejects(from(server, "192.0.2.2, 127.0.0.1"), { status: 503 }); // through two proxies
+  await assert.rejects(from(server, "2001:db8::2"), { status: 503 }); // of the same network
+  assert.match(server.stderr, /event=client_connected .*address=192\.0\.2\.1 /);
+  await Client.connect(server); // without the header: the proxy's own address
+  await assert.rejects(from(server, "no address"), { status: 503 });
+  assert.equal(await server.stop(), 0);
+});
+
+test("without --trusted-proxy the header is ignored, and so it is from another address than the proxy's", async () => {
+  for (const trusted of [[], ["--trusted-proxy", "192.0.2.7"]]) {
+    const server = await Server.start("--max-clients-per-address", "1", ...trusted);
+    await from(server, "192.0.2.1");
+    await assert.rejects(from(server, "192.0.2.2"), { status: 503 });
+    assert.match(server.stderr, /event=client_connected .*address=127\.0\.0\.1 /);
+    assert.equal(await server.stop(), 0);
+  }
+});
+
+test("a trusted proxy that is no address is refused", async () => {
+  const { code, stderr } = await runProgram(["serve", "--port", "0", "--trusted-proxy", "proxy.local"]);
+  assert.equal(code, 2);
+  assert.match(stderr, /--trusted-proxy: "proxy\.local"; an IPv4 or IPv6 address, e\.g\. 192\.0\.2\.7/);
+});
