@@ -1,9 +1,8 @@
 #include "server/base/deflate.h"
 
-#include <zlib.h>
+#include <libdeflate.h>
 
-#include <algorithm>
-#include <limits>
+#include <memory>
 #include <new>
 
 #include "server/base/text.h"
@@ -12,38 +11,28 @@ namespace clothlab {
 
 namespace {
 
-constexpr int raw = -15;  // no header or checksum, a window of 32 kB
-constexpr int blocks_of_4096 = 6;
 /// The most bytes that a byte of deflate can stand for.
 constexpr std::size_t most_expansion = 1032;
 
-/// zlib counts in 32 bits: a longer stretch goes in pieces.
-uInt piece(std::size_t size) {
-  return static_cast<uInt>(std::min<std::size_t>(size, std::numeric_limits<uInt>::max()));
+struct Free {
+  void operator()(libdeflate_compressor* compressor) const { libdeflate_free_compressor(compressor); }
+  void operator()(libdeflate_decompressor* decompressor) const { libdeflate_free_decompressor(decompressor); }
+};
+using Compressor = std::unique_ptr<libdeflate_compressor, Free>;
+
+Compressor compressor_of(int level) {
+  Compressor made(libdeflate_alloc_compressor(level));
+  if (!made) throw std::bad_alloc();
+  return made;
 }
 
 }  // namespace
 
 std::vector<std::uint8_t> deflate_raw(std::span<const std::uint8_t> bytes, std::size_t front) {
-  z_stream stream{};
-  if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, raw, blocks_of_4096, Z_DEFAULT_STRATEGY) !=
-      Z_OK)
-    throw std::bad_alloc();
-  std::vector<std::uint8_t> out(front + deflateBound(&stream, static_cast<uLong>(bytes.size())));
-  stream.next_in = const_cast<Bytef*>(bytes.data());
-  stream.next_out = out.data() + front;
-  std::size_t in_left = bytes.size(), out_left = out.size() - front;
-  int state = Z_OK;
-  while (state == Z_OK) {
-    const uInt in = piece(in_left), room = piece(out_left);
-    stream.avail_in = in;
-    stream.avail_out = room;
-    state = deflate(&stream, in == in_left ? Z_FINISH : Z_NO_FLUSH);
-    in_left -= in - stream.avail_in;
-    out_left -= room - stream.avail_out;
-  }
-  deflateEnd(&stream);
-  out.resize(out.size() - out_left);
+  static thread_local const Compressor compressor = compressor_of(6);  // its tables are large
+  std::vector<std::uint8_t> out(front + libdeflate_deflate_compress_bound(compressor.get(), bytes.size()));
+  out.resize(front + libdeflate_deflate_compress(compressor.get(), bytes.data(), bytes.size(),
+                                                 out.data() + front, out.size() - front));
   return out;
 }
 
@@ -52,29 +41,33 @@ Result<std::vector<std::uint8_t>> inflate_raw(std::span<const std::uint8_t> byte
     return Error{"deflate stream", what, formatted("exactly %zu bytes, compressed", size)};
   };
   if (size / most_expansion > bytes.size()) return refused("too few bytes for what they should hold");
-  z_stream stream{};
-  if (inflateInit2(&stream, raw) != Z_OK) throw std::bad_alloc();
-  std::vector<std::uint8_t> out(size + 1);  // a byte more, which must stay unused
-  stream.next_in = const_cast<Bytef*>(bytes.data());
-  stream.next_out = out.data();
-  std::size_t in_left = bytes.size(), out_left = out.size();
-  int state = Z_OK;
-  while (state == Z_OK) {
-    const uInt in = piece(in_left), room = piece(out_left);
-    stream.avail_in = in;
-    stream.avail_out = room;
-    state = inflate(&stream, Z_NO_FLUSH);
-    in_left -= in - stream.avail_in;
-    out_left -= room - stream.avail_out;
-    if (out_left == 0) break;
+  const std::unique_ptr<libdeflate_decompressor, Free> decompressor(libdeflate_alloc_decompressor());
+  if (!decompressor) throw std::bad_alloc();
+  std::vector<std::uint8_t> out(size);
+  std::size_t read = 0, written = 0;
+  switch (libdeflate_deflate_decompress_ex(decompressor.get(), bytes.data(), bytes.size(), out.data(), size,
+                                           &read, &written)) {
+    case LIBDEFLATE_SUCCESS:
+      break;
+    case LIBDEFLATE_INSUFFICIENT_SPACE:
+      return refused("more bytes than there should be");
+    default:
+      return refused("a stream that is broken, or ends too soon");
   }
-  inflateEnd(&stream);
-  if (out_left == 0) return refused("more bytes than there should be");
-  if (state != Z_STREAM_END) return refused("a stream that is broken, or ends too soon");
-  if (in_left > 0) return refused("bytes after the end of the stream");
-  if (out_left > 1) return refused("fewer bytes than there should be");
-  out.pop_back();
+  if (read < bytes.size()) return refused("bytes after the end of the stream");
+  if (written < size) return refused("fewer bytes than there should be");
   return out;
+}
+
+std::string gzip(std::string_view bytes) {
+  const Compressor compressor = compressor_of(9);
+  std::string out(libdeflate_gzip_compress_bound(compressor.get(), bytes.size()), '\0');
+  out.resize(libdeflate_gzip_compress(compressor.get(), bytes.data(), bytes.size(), out.data(), out.size()));
+  return out;
+}
+
+std::uint32_t crc32_of(std::uint32_t before, std::string_view bytes) {
+  return libdeflate_crc32(before, bytes.data(), bytes.size());
 }
 
 }  // namespace clothlab

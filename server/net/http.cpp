@@ -133,9 +133,12 @@ HttpAnswer HttpRequest::file(const std::string& path) const {
     answer.status = 304;
     return answer;
   }
-  const bool zip = !file->gzipped.empty() && prefers_gzip(header(wsi_, WSI_TOKEN_HTTP_ACCEPT_ENCODING));
-  if (zip) answer.headers.emplace_back("content-encoding:", "gzip");
-  answer.body = zip ? file->gzipped : file->body;
+  answer.body = file->body;
+  if (file->gzipped.empty()) return answer;
+  const Coding coding = preferred_coding(header(wsi_, WSI_TOKEN_HTTP_ACCEPT_ENCODING), !file->brotli.empty());
+  if (coding == Coding::identity) return answer;
+  answer.headers.emplace_back("content-encoding:", coding == Coding::brotli ? "br" : "gzip");
+  answer.body = coding == Coding::brotli ? file->brotli : file->gzipped;
   return answer;
 }
 

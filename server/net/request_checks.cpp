@@ -126,20 +126,24 @@ std::optional<RequestFault> handshake_fault(lws* wsi) {
   return std::nullopt;
 }
 
-bool prefers_gzip(const std::string& accept_encoding) {
+Coding preferred_coding(const std::string& accept_encoding, bool brotli_there) {
   std::optional<double> gzip, identity, any;
+  double brotli = 0;
   std::string_view rest = accept_encoding;
   while (!rest.empty()) {
     std::string_view item = cut_first(rest, ',');
     const std::string_view coding = cut_first(item, ';');
     const double q = weight(item);
     if (equal_ignoring_case(coding, "gzip") || equal_ignoring_case(coding, "x-gzip")) gzip = q;
+    if (equal_ignoring_case(coding, "br") && brotli_there) brotli = q;
     if (equal_ignoring_case(coding, "identity")) identity = q;
     if (coding == "*") any = q;
   }
-  const double wish = gzip.value_or(any.value_or(0));
+  const double zip = gzip.value_or(any.value_or(0));
   // A client that does not name `identity` accepts no coding, but prefers the codings that it names.
-  return wish > 0 && wish >= identity.value_or(0);
+  const double plain = identity.value_or(0);
+  if (brotli > 0 && brotli >= zip && brotli >= plain) return Coding::brotli;
+  return zip > 0 && zip >= plain ? Coding::gzip : Coding::identity;
 }
 
 }  // namespace clothlab::net

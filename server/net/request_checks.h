@@ -27,7 +27,10 @@ std::optional<RequestFault> request_fault(lws* wsi);
 /// The first fault of a WebSocket handshake that has no request_fault; empty: the handshake is well-formed.
 std::optional<RequestFault> handshake_fault(lws* wsi);
 
-/// True if a client that sent this Accept-Encoding prefers gzip to no coding (RFC 7231, 5.3.4).
-bool prefers_gzip(const std::string& accept_encoding);
+enum class Coding { identity, gzip, brotli };
+
+/// The coding that a client which sent this Accept-Encoding prefers (RFC 7231, 5.3.4); of those that it likes
+/// equally the one that takes fewest bytes. Brotli only if it is `there`, and the client names it.
+Coding preferred_coding(const std::string& accept_encoding, bool brotli_there);
 
 }  // namespace clothlab::net

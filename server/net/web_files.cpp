@@ -1,11 +1,10 @@
 #include "server/net/web_files.h"
 
-#include <zlib.h>
-
 #include <array>
 #include <cstdint>
 
 #include "server/base/data_files.h"
+#include "server/base/deflate.h"
 #include "server/base/files.h"
 #include "server/base/text.h"
 
@@ -15,6 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr const char* brotli_extension = ".br";  ///< of what web/build.mjs writes beside a file
 constexpr const char* not_built = R"(<!doctype html>
 <html lang="en"><meta charset="utf-8"><title>Clothlab</title>
 <h1>The page has not been built</h1>
@@ -49,21 +49,6 @@ std::string type_of(const std::string& path) {
   return "application/octet-stream";
 }
 
-std::string gzip(const std::string& body) {
-  z_stream stream{};
-  constexpr int window_with_gzip_header = 15 + 16;
-  if (deflateInit2(&stream, 6, Z_DEFLATED, window_with_gzip_header, 8, Z_DEFAULT_STRATEGY) != Z_OK) return {};
-  std::string out(deflateBound(&stream, static_cast<uLong>(body.size())), '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(body.data()));
-  stream.avail_in = static_cast<uInt>(body.size());
-  stream.next_out = reinterpret_cast<Bytef*>(out.data());
-  stream.avail_out = static_cast<uInt>(out.size());
-  const bool done = deflate(&stream, Z_FINISH) == Z_STREAM_END;
-  out.resize(done ? stream.total_out : 0);
-  deflateEnd(&stream);
-  return out.size() < body.size() ? out : std::string();
-}
-
 std::string etag_of(const std::string& body) {
   std::uint64_t hash = 14695981039346656037ull;  // FNV-1a
   for (const char c : body) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
@@ -72,20 +57,24 @@ std::string etag_of(const std::string& body) {
 
 }  // namespace
 
-void WebFiles::add(const std::string& path, std::string body) {
+void WebFiles::add(const std::string& path, std::string body, std::string brotli) {
   const std::string type = type_of(path);
   const bool packed_already = type.rfind("image/", 0) == 0 && type != "image/svg+xml";
   std::string gzipped = packed_already ? std::string() : gzip(body);
+  if (gzipped.size() >= body.size()) gzipped.clear();
   std::string etag = etag_of(body);
-  files_[path] = {type, std::move(body), std::move(gzipped), std::move(etag)};
+  files_[path] = {type, std::move(body), std::move(gzipped), std::move(brotli), std::move(etag)};
 }
 
 void WebFiles::add_all(const fs::path& root, const fs::path& below) {
   std::error_code failure;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root, failure)) {
     if (entry.is_symlink(failure) || !entry.is_regular_file(failure)) continue;
+    if (entry.path().extension() == brotli_extension) continue;
+    const Result<std::string> brotli = read_file(entry.path().string() + brotli_extension);
     if (Result<std::string> body = read_file(entry.path()))
-      add((below / entry.path().lexically_relative(root)).generic_string(), std::move(*body));
+      add((below / entry.path().lexically_relative(root)).generic_string(), std::move(*body),
+          brotli ? *brotli : std::string());
   }
 }
 

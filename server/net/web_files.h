@@ -12,6 +12,7 @@ struct WebFile {
   std::string type;  ///< content-type, with its charset
   std::string body;
   std::string gzipped;  ///< `body` compressed; empty where that saves nothing
+  std::string brotli;   ///< the same, smaller; empty for a file that the page's build has not compressed
   std::string etag;     ///< hash of `body`, in quotes
 };
 
@@ -27,7 +28,7 @@ class WebFiles {
 
  private:
   void add_all(const std::filesystem::path& root, const std::filesystem::path& below);
-  void add(const std::string& path, std::string body);
+  void add(const std::string& path, std::string body, std::string brotli = {});
 
   std::map<std::string, WebFile> files_;
   bool built_ = false;

@@ -1,7 +1,5 @@
 #include "server/stream/recording.h"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -94,10 +92,10 @@ void Recording::chunk(const char (&kind)[5], std::string_view head, std::string_
   std::string start(kind, 4);
   const std::size_t size = head.size() + content.size();
   put_number(start, static_cast<std::uint32_t>(size));
-  uLong check = 0;
+  std::uint32_t check = 0;
   for (const std::string_view part : {std::string_view(kind, 4), head, content})
-    check = crc32(check, reinterpret_cast<const Bytef*>(part.data()), static_cast<uInt>(part.size()));
-  put_number(start, static_cast<std::uint32_t>(check));
+    check = crc32_of(check, part);
+  put_number(start, check);
   put_(start.append(head));
   put_(content);
   bytes_ += start.size() + content.size();

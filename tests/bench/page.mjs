@@ -1,7 +1,7 @@
 // Cost of the page: bytes, time to the first frame, frames/s drawn in a headless Chromium with software WebGL.
 // By hand, on a quiet machine:
 //   CLOTHLAB=build/release/clothlab node tests/bench/page.mjs [SECONDS] [--out FILE]
-import { readdirSync, readFileSync } from "node:fs";
+import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { writeFile } from "node:fs/promises";
 import { cpus, loadavg } from "node:os";
 import { fileURLToPath } from "node:url";
@@ -15,9 +15,12 @@ const out = args[0] === "--out" ? args[1] : null;
 const load = loadavg()[0]; // of other processes: if it is not near 0, every time below is wrong
 
 const dist = fileURLToPath(new URL("../../web/dist/", import.meta.url));
-const bytes = Object.fromEntries(
-  readdirSync(dist).map((name) => [name, gzipSync(readFileSync(dist + name), { level: 6 }).length]),
-);
+const names = readdirSync(dist).filter((name) => !name.endsWith(".br"));
+const sizes = (size) => {
+  const bytes = Object.fromEntries(names.map((name) => [name, size(name)]));
+  return { total: Object.values(bytes).reduce((sum, each) => sum + each, 0), ...bytes };
+};
+const bytes = (name) => readFileSync(dist + name);
 
 const server = await Server.start();
 const browser = await launch();
@@ -60,7 +63,8 @@ const result = {
   machine: `${cpus()[0].model}, ${cpus().length} cores`,
   load_before: Number(load.toFixed(2)),
   browser: `Chromium ${browser.version()}, headless, SwiftShader`,
-  page_bytes_gzip: { total: Object.values(bytes).reduce((sum, size) => sum + size, 0), ...bytes },
+  page_bytes_gzip: sizes((name) => gzipSync(bytes(name), { level: 9 }).length),
+  page_bytes_brotli: sizes((name) => bytes(existsSync(`${dist}${name}.br`) ? `${name}.br` : name).length),
   first_frame_ms: { cold: firstFrames[0], warm_median: median(firstFrames.slice(1)), warm: firstFrames.slice(1) },
   frames: frameRates,
 };

@@ -7,7 +7,7 @@ import { join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { once } from "node:events";
 import { after, before, test } from "node:test";
-import { gunzipSync } from "node:zlib";
+import { brotliDecompressSync, gunzipSync } from "node:zlib";
 import gltf from "gltf-validator";
 import { Client, Server, sleep, withTimeout } from "./harness.mjs";
 
@@ -50,9 +50,15 @@ test("the page comes as HTML, with the headers that keep it to itself", async ()
 
 test("the page comes compressed to who understands it, and not again to who has it", async () => {
   const plain = await server.get("/");
-  const packed = await server.get("/", { "accept-encoding": "gzip, br" });
-  assert.equal(packed.headers["content-encoding"], "gzip");
-  assert.deepEqual(gunzipSync(packed.body), plain.body);
+  for (const [accepts, coding, unpack] of [
+    ["gzip", "gzip", gunzipSync],
+    ["gzip, deflate, br", "br", brotliDecompressSync],
+  ]) {
+    const packed = await server.get("/", { "accept-encoding": accepts });
+    assert.equal(packed.headers["content-encoding"], coding);
+    assert.deepEqual(unpack(packed.body), plain.body);
+  }
+  assert.equal((await server.get("/index.html.br")).status, 404);
   const known = await server.get("/", { "if-none-match": plain.headers.etag });
   assert.equal(known.status, 304);
   assert.equal(known.body.length, 0);
