@@ -155,6 +155,7 @@ void Client::handle(const std::string& text) {
 void Client::answer(const session::Ticket& ticket, const std::variant<json, RpcError>& answer) {
   const auto* result = std::get_if<json>(&answer);
   const auto* error = std::get_if<RpcError>(&answer);
+  if (error && error->code == error_over_limit) ++hub_.metrics().over_limit;
   if (!ticket.id) {
     if (error && ticket.method.starts_with("grab.")) tell_refused_grab(ticket.method, *error);
     return;
@@ -194,6 +195,7 @@ void Client::wake() {
 void Client::close(int code, std::string reason) {
   if (close_code_ != 0) return;
   close_code_ = code;
+  if (code == close_policy || code == close_too_big) ++hub_.metrics().over_limit;
   close_reason_ = std::move(reason);
   wake();
   // The socket of a client that reads nothing never becomes writeable, so it is closed after 2 s.

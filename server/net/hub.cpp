@@ -85,9 +85,13 @@ Role Hub::role_of(const std::string& token) const {
 TokenCheck Hub::check_token(const std::string& token, const std::string& address, std::vector<LogField> who) {
   const std::int64_t now = session::now_us();
   const std::string network = network_of(address);
-  if (const int wait = token_guard_.wait(network, now)) return {Role::none, wait};
+  if (const int wait = token_guard_.wait(network, now)) {
+    ++metrics_.tokens_refused;
+    return {Role::none, wait};
+  }
   const Role role = role_of(token);
   if (role != Role::none) return {role, 0};
+  ++metrics_.tokens_refused;
   token_guard_.was_wrong(network, now);
   who.push_back({"address", address});
   log(LogLevel::warning, "token_refused", who);
@@ -262,7 +266,12 @@ void Hub::stop_sessions() {
 
 Gauges Hub::gauges() const {
   Gauges gauges{rooms_.size(), clients_.size(), 0, steps(), lab_->gauges(), 0, exports_waiting()};
-  for (const auto& [name, room] : rooms_) gauges.asleep += room->asleep() ? 1u : 0u;
+  for (const auto& [name, room] : rooms_) {
+    gauges.asleep += room->asleep() ? 1u : 0u;
+    gauges.stuck += room->beats() ? 0u : 1u;
+    if (const std::optional<double> pace = room->pace())
+      gauges.slowest = std::min(gauges.slowest.value_or(*pace), *pace);
+  }
   for (const auto& [id, client] : clients_) gauges.viewers += client->pacing().subscribed() ? 1u : 0u;
   return gauges;
 }

@@ -1,6 +1,12 @@
 #include "server/net/metrics.h"
 
+#include <time.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
 
 #include "server/base/text.h"
 
@@ -16,6 +22,27 @@ void family(std::string& out, const std::string& name, const char* type, const c
             const std::string& value) {
   head(out, name, type, help);
   out += name + " " + value + "\n";
+}
+
+/// What this process uses, as Linux tells it.
+struct Usage {
+  double cpu_seconds = 0;
+  std::uint64_t resident_bytes = 0, open_files = 0;
+};
+
+Usage usage_now() {
+  Usage usage;
+  timespec cpu{};
+  if (clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu) == 0)
+    usage.cpu_seconds = static_cast<double>(cpu.tv_sec) + 1e-9 * static_cast<double>(cpu.tv_nsec);
+  std::uint64_t pages = 0, resident = 0;
+  if (std::ifstream("/proc/self/statm") >> pages >> resident)
+    usage.resident_bytes = resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  std::error_code failure;
+  for (std::filesystem::directory_iterator file("/proc/self/fd", failure), end; !failure && file != end;
+       file.increment(failure))
+    ++usage.open_files;
+  return usage;
 }
 
 }  // namespace
@@ -75,6 +102,13 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
   count("clothlab_sessions", "gauge", "sessions open", gauges.sessions);
   count("clothlab_sessions_asleep", "gauge",
         "playing sessions that do not step because their cloth is at rest", gauges.asleep);
+  count("clothlab_sessions_stuck", "gauge", "sessions whose thread does not answer", gauges.stuck);
+  head(out, "clothlab_slowest_real_time_factor", "gauge",
+       "simulated seconds per second over those asked for, of the slowest session that steps; none: none "
+       "steps");
+  if (gauges.slowest)
+    out += "clothlab_slowest_real_time_factor " + with_significant_digits(*gauges.slowest, 9) + "\n";
+  count("clothlab_divergences_total", "counter", "simulations that blew up", metrics.divergences);
   count("clothlab_clients", "gauge", "WebSocket connections", gauges.clients);
   count("clothlab_viewers", "gauge", "connections subscribed to frames", gauges.viewers);
   count("clothlab_steps_total", "counter", "simulation steps",
@@ -85,6 +119,12 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
   count("clothlab_bytes_sent_total", "counter", "bytes of WebSocket messages sent", metrics.bytes_sent);
   count("clothlab_messages_received_total", "counter", "messages received", metrics.messages_received);
   count("clothlab_refused_total", "counter", "WebSocket handshakes and connections refused", metrics.refused);
+  count("clothlab_tokens_refused_total", "counter", "tokens refused, over WebSockets and HTTP",
+        metrics.tokens_refused);
+  count("clothlab_over_limit_total", "counter",
+        "connections closed over a limit (1008, 1009) and requests answered with -32002", metrics.over_limit);
+  count("clothlab_sessions_failed_total", "counter", "sessions that failed and were not restored",
+        metrics.sessions_failed);
   count("clothlab_sessions_brought_back_total", "counter", "sessions that failed and were restored",
         metrics.sessions_brought_back);
   count("clothlab_exports_waiting", "gauge", "pictures and meshes that wait or are being made",
@@ -109,6 +149,11 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
   head(out, "clothlab_gpu_pass_seconds", "histogram",
        "time a pass takes on the GPU; about ten samples a second from each session");
   metrics.gpu_passes.write(out, "clothlab_gpu_pass_seconds", "pass");
+  const Usage usage = usage_now();
+  family(out, "process_cpu_seconds_total", "counter", "processor time of the server, all threads",
+         with_significant_digits(usage.cpu_seconds, 9));
+  count("process_resident_memory_bytes", "gauge", "memory of the server in RAM", usage.resident_bytes);
+  count("process_open_fds", "gauge", "files and sockets open", usage.open_files);
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -49,9 +50,13 @@ struct Metrics {
   std::uint64_t frames_skipped = 0;  ///< replaced by newer frames before they could be sent
   std::uint64_t bytes_sent = 0;      ///< WebSocket payloads
   std::uint64_t messages_received = 0;
-  std::uint64_t refused = 0;  ///< refused handshakes and connections
+  std::uint64_t refused = 0;         ///< refused handshakes and connections
+  std::uint64_t tokens_refused = 0;  ///< wrong ones, and those not checked after many wrong ones
+  std::uint64_t over_limit = 0;      ///< connections closed with 1008 or 1009, and errors -32002
+  std::uint64_t divergences = 0;     ///< simulations that have blown up
   std::uint64_t sessions_brought_back = 0;
-  std::uint64_t exports = 0;  ///< pictures and meshes made, failed ones included
+  std::uint64_t sessions_failed = 0;  ///< that were not brought back
+  std::uint64_t exports = 0;          ///< pictures and meshes made, failed ones included
   std::uint64_t steps_of_closed_sessions = 0;
   /// Time that sent frames spent in the server [s]: from the request to pack a frame, after its steps, until
   /// its bytes left, without the time for which the viewer's rate or acknowledgements held it back.
@@ -74,6 +79,8 @@ struct Gauges {
   LabGauges lab;
   std::size_t asleep = 0;           ///< sessions whose cloth is at rest
   std::size_t exports_waiting = 0;  ///< pictures and meshes that wait or are being made
+  std::size_t stuck = 0;            ///< sessions whose thread does not answer; /healthz is 503 then
+  std::optional<double> slowest;    ///< the least Room::pace; none: no session steps
 };
 
 std::string metrics_text(const Metrics& metrics, const Gauges& gauges);

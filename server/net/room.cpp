@@ -167,7 +167,9 @@ void Room::handle(session::SceneLost& lost) {
 
 void Room::handle(session::Failed& failed) {
   log(LogLevel::error, "session_failed", {{"session", name_}, {"why", failed.error.text()}});
+  pace_.reset();
   if (bring_back(failed)) return;
+  ++hub_.metrics().sessions_failed;
   broadcast("notice", {{"level", "error"}, {"text", failed.error.text()}});
   while (!clients_.empty()) {
     Client* client = clients_.back();
@@ -208,6 +210,8 @@ void Room::handle(session::TopologyChanged& changed) {
 
 void Room::handle(const session::Status& status) {
   asleep_ = status.run.state() == session::RunState::State::asleep;
+  pace_.reset();
+  if (status.paced) pace_ = status.real_time_factor / status.speed;
   handle(status.pass_times);
   if (status.real_time_factor > 0)
     hub_.lab().speed_reported(name_, status.real_time_factor / status.speed, session::now_us());
@@ -240,6 +244,7 @@ void Room::handle(session::SolverChanged& changed) {
 }
 
 void Room::handle(session::Diverged& diverged) {
+  ++hub_.metrics().divergences;
   broadcast("sim.diverged", {{"reason", diverged.reason},
                              {"remedy", {{"text", diverged.remedy}, {"patch", diverged.patch}}}});
 }

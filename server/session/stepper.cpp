@@ -250,6 +250,7 @@ void Stepper::publish_status(Clock::time_point now) {
   status.run = run_;
   status.speed = real_time_.speed();
   status.real_time_factor = was_running_ ? real_time_.factor() : 0;
+  status.paced = was_running_ && real_time_.sampled();
   follow_step_limit();
   status.dt_limit = step_limit_.dt_limit();
   status.margin = step_limit_.margin();

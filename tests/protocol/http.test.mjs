@@ -312,7 +312,7 @@ function readMetrics(text) {
     if (comment) {
       const [, what, name, rest] = comment;
       if (what === "TYPE") types.set(name, rest);
-      assert.ok(name.startsWith("clothlab_"), name);
+      assert.match(name, /^(?:clothlab|process)_/);
       assert.equal(
         types.get(name) === "counter" || what === "HELP",
         name.endsWith("_total") || what === "HELP",
