@@ -18,10 +18,14 @@ Result<Lock> Lock::take(const std::filesystem::path& path, int flags, Kind kind)
     return Error{path.string(), std::string("cannot be opened: ") + std::strerror(errno),
                  "give a folder that can be read and written"};
   Lock lock(descriptor);
-  if (flock(descriptor, (kind == Kind::shared ? LOCK_SH : LOCK_EX) | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+  if (flock(descriptor, (kind == Kind::shared ? LOCK_SH : LOCK_EX) | LOCK_NB) == 0) return lock;
+  if (errno == EWOULDBLOCK)
     return Error{path.string(),
                  std::string("another process is using this ") + (flags & O_DIRECTORY ? "folder" : "file"),
                  "end that process, or choose a different folder"};
+  if (kind == Kind::shared)
+    return Error{path.string(), std::string("its file system has no locks: ") + std::strerror(errno),
+                 "choose a folder on a file system that locks between machines, such as NFS 4"};
   return lock;
 }
 

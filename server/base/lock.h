@@ -14,7 +14,7 @@ class Lock {
     exclusive,  ///< one process alone
     shared,     ///< several processes, but none that wants it exclusively
   };
-  // On a file system without locks every call below succeeds.
+  // On a file system without locks an exclusive lock always succeeds, a shared one never.
 
   /// Locks a folder, in which this leaves no file. Error: another process holds the lock, or the folder
   /// cannot be opened.
