@@ -238,8 +238,10 @@ int run_lab(const LabOptions& options, const lab::Job& job, void (*print)(const 
     return fail(possible.error(), exit_usage);
   if (!options.shard.empty()) return run_shard(options, *document, job, print);
 
+  gl::compute_without_helper_threads();
   const StopOnInterrupt interrupt;
-  const Result<std::unique_ptr<gl::Context>> context = gl::Context::create(options.gpu);
+  const Result<std::unique_ptr<gl::Context>> context =
+      gl::Context::create(options.gpu, threads_for(document->scene));
   if (!context) return fail(context.error(), context.error().where == "--gpu" ? exit_usage : exit_no_opengl);
   lab::Cache cache;
   const lab::CacheKey key = lab::cache_key(*document, job, gl::renderer_name());

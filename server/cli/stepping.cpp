@@ -46,12 +46,11 @@ Result<scene::Scene> settle_method(scene::Scene scene, std::string& chosen) {
   return scene;
 }
 
-/// Where the only scene of this program is computed.
+}  // namespace
+
 gl::HelperThreads threads_for(const scene::Scene& scene) {
   return sim::needs_no_helper_threads(scene) ? gl::HelperThreads::none : gl::HelperThreads::sessions;
 }
-
-}  // namespace
 
 void add_gpu(CLI::App& command, std::optional<int>& gpu) {
   command.add_option("--gpu", gpu, "the device to use, by the number `clothlab info` shows")->type_name("N");

@@ -15,6 +15,9 @@
 
 namespace clothlab::cli {
 
+/// Where software OpenGL computes the only scene of this program.
+gl::HelperThreads threads_for(const scene::Scene& scene);
+
 /// Adds `--gpu N`.
 void add_gpu(CLI::App& command, std::optional<int>& gpu);
 

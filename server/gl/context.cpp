@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <map>
 #include <mutex>
+#include <thread>
 
 namespace clothlab::gl {
 
@@ -23,6 +25,22 @@ struct Candidate {
   Device device;
   HelperThreads threads = HelperThreads::none;
 };
+
+/// The displays that are open, and whether software OpenGL computes on helper threads for them. Guarded by
+/// egl_mutex.
+std::map<EGLDisplay, bool>& helped_displays() {
+  static std::map<EGLDisplay, bool> displays;
+  return displays;
+}
+
+/// Opens the display. Mesa reads LP_NUM_THREADS only the first time; without it a single core has no helper.
+bool initialize(EGLDisplay display) {
+  if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) return false;
+  const char* number = std::getenv("LP_NUM_THREADS");
+  const bool helped = number ? std::atoi(number) != 0 : std::thread::hardware_concurrency() > 1;
+  helped_displays().emplace(display, helped);
+  return true;
+}
 
 std::string text(const char* value) {
   return value ? value : "";
@@ -98,7 +116,7 @@ Opened open(Candidate& candidate) {
   Device& device = candidate.device;
   Opened opened;
   opened.display = open_display(candidate);
-  if (opened.display == EGL_NO_DISPLAY || !eglInitialize(opened.display, nullptr, nullptr)) {
+  if (!initialize(opened.display)) {
     device.problem = "EGL cannot open the device";
     return {};
   }
@@ -152,10 +170,16 @@ void compute_without_helper_threads() {
   for (Candidate& candidate : all)
     for (const HelperThreads threads : {HelperThreads::sessions, HelperThreads::lab}) {
       candidate.threads = threads;
-      const EGLDisplay display = open_display(candidate);
-      if (display != EGL_NO_DISPLAY) eglInitialize(display, nullptr, nullptr);
+      initialize(open_display(candidate));
     }
   setenv("LP_NUM_THREADS", "0", 1);
+}
+
+bool computes_on_calling_thread() {
+  if (!software_renderer()) return false;
+  const std::lock_guard lock(egl_mutex);
+  const auto found = helped_displays().find(eglGetCurrentDisplay());
+  return found != helped_displays().end() && !found->second;
 }
 
 std::string renderer_name() {

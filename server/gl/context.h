@@ -24,6 +24,10 @@ struct Device {
 /// True if the calling thread's current context is one of Mesa's software rasteriser.
 bool software_renderer();
 
+/// True if the calling thread's current context is one of software OpenGL without helper threads (see
+/// HelperThreads): a dispatch then costs a few microseconds besides its work, else several times that.
+bool computes_on_calling_thread();
+
 /// GL_RENDERER of the calling thread's current context.
 std::string renderer_name();
 

@@ -135,10 +135,11 @@ gl::Defines visit_defines(const Visits& visits, bool elements) {
   return defines;
 }
 
-std::uint32_t lanes_of_one_group(std::uint32_t vertex_count, bool self_collision,
+std::uint32_t lanes_of_one_group(std::uint32_t vertex_count, bool self_collision, std::uint32_t small,
                                  const std::function<std::uint64_t(std::uint32_t)>& turns) {
   const char* asked = std::getenv("CLOTHLAB_SWEEPS");
   if (asked && std::string_view(asked) == "dispatches") return 0;
+  if (!asked && gl::computes_on_calling_thread() && vertex_count > small) return 0;
   GLint shared_bytes = 0, most_lanes = 0;
   glGetIntegerv(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE, &shared_bytes);
   glGetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &most_lanes);

@@ -43,9 +43,10 @@ gl::Defines visit_defines(const Visits& visits, bool elements);
 /// A GPU gets as many threads as a work group can have. Software OpenGL runs 8 at a time, and each barrier
 /// costs more with more threads; but it silently ends every loop of a kernel after 65535 turns in all
 /// (gallivm's LP_MAX_TGSI_LOOP_ITERATIONS). So it gets the fewest threads, 8 to 128, with which
-/// `turns(threads)`, the turns in one thread, stay well below that. CLOTHLAB_SWEEPS=dispatches in the
-/// environment makes it 0, to compare the two forms.
-std::uint32_t lanes_of_one_group(std::uint32_t vertex_count, bool self_collision,
+/// `turns(threads)`, the turns in one thread, stay well below that. And it reads shared memory thread by
+/// thread: where it computes on the thread that calls, many dispatches are faster for more than `small`
+/// vertices. CLOTHLAB_SWEEPS=dispatches or one_group in the environment forces a form, to compare the two.
+std::uint32_t lanes_of_one_group(std::uint32_t vertex_count, bool self_collision, std::uint32_t small,
                                  const std::function<std::uint64_t(std::uint32_t)>& turns);
 
 }  // namespace clothlab::sim
