@@ -80,7 +80,7 @@ struct Gauges {
   std::size_t asleep = 0;           ///< sessions whose cloth is at rest
   std::size_t exports_waiting = 0;  ///< pictures and meshes that wait or are being made
   std::size_t stuck = 0;            ///< sessions whose thread does not answer; /healthz is 503 then
-  std::optional<double> slowest;    ///< the least Room::pace; none: no session steps
+  std::optional<double> slowest{};  ///< the least Room::pace; none: no session steps
 };
 
 std::string metrics_text(const Metrics& metrics, const Gauges& gauges);
