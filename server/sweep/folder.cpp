@@ -38,11 +38,11 @@ Result<Folder> Folder::open(const fs::path& path, const Plan& plan) {
 }
 
 Result<std::pair<Folder, Plan>> Folder::find(const fs::path& path,
-                                             std::shared_ptr<const scene::Assets> meshes) {
+                                             const std::shared_ptr<const scene::Assets>& meshes) {
   std::error_code failure;
   if (!fs::exists(path / plan_file, failure))
     return Error{path.string(), "has no sweep.json", "name the folder that a sweep wrote with --out"};
-  Result<Plan> plan = read_plan((path / plan_file).string(), std::move(meshes));
+  Result<Plan> plan = read_plan((path / plan_file).string(), meshes);
   if (!plan) return plan.error();
   return std::pair(Folder(path), std::move(*plan));
 }

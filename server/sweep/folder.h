@@ -20,7 +20,7 @@ class Folder {
   static Result<Folder> open(const std::filesystem::path& path, const Plan& plan);
   /// A folder of a sweep that was begun before, and its plan. Error: there is none, or it is damaged.
   static Result<std::pair<Folder, Plan>> find(const std::filesystem::path& path,
-                                              std::shared_ptr<const scene::Assets> meshes);
+                                              const std::shared_ptr<const scene::Assets>& meshes);
 
   /// The result of the point `id`. None: it is not done, or its file is damaged.
   std::optional<Row> result(const std::string& id) const;

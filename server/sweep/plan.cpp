@@ -241,7 +241,7 @@ std::string common_to_all(const Plan& plan) {
 
 }  // namespace
 
-Result<Plan> read_plan(const std::string& path, std::shared_ptr<const scene::Assets> meshes) {
+Result<Plan> read_plan(const std::string& path, const std::shared_ptr<const scene::Assets>& meshes) {
   const Result<std::string> text = read_file(path);
   if (!text) return text.error();
   Result<json> file = scene::parse_json(*text, path, true, {scene::max_file_bytes, scene::max_json_depth});

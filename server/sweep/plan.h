@@ -66,6 +66,6 @@ inline constexpr std::size_t most_points = 10'000'000, most_values = 100'000;
 
 /// Reads the file of a sweep (JSON, comments allowed). `meshes`: where the meshes are that its scenes name.
 /// Error: a JSON Pointer into the file, what is there, what is allowed; or a place that no scene has.
-Result<Plan> read_plan(const std::string& path, std::shared_ptr<const scene::Assets> meshes);
+Result<Plan> read_plan(const std::string& path, const std::shared_ptr<const scene::Assets>& meshes);
 
 }  // namespace clothlab::sweep
