@@ -43,7 +43,9 @@ browserTest(
   async () => {
     const viewer = await open("seed.html");
     await drawn(viewer, 3);
-    const early = { cloth: await viewer.cloth(), time: await viewer.read("simTime") };
+    // The time first: on a busy machine it may be at its end once the picture is read.
+    const time = await viewer.read("simTime");
+    const early = { cloth: await viewer.cloth(), time };
     await viewer.until((from) => window.clothlab.simTime > from + 0.5, early.time);
     const later = await viewer.cloth();
     await viewer.page.screenshot({ path: join(screenshots, "recording.png") });

@@ -85,7 +85,7 @@ test("the field's range holds the largest value that sim.status tells, and the b
   const status = await client.nextNotification("sim.status", ({ step }) => step === 600);
   const told = { strain: status.max_strain, speed: status.max_speed, contact: 1 };
   for (const field of names) {
-    const next = client.nextFrame();
+    const next = client.nextFrame((frame) => frame.step === 600); // none that was under way before
     await subscribe({ field });
     const { range, field: values } = await next;
     const largest = Math.max(...values);
