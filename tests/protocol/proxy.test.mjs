@@ -11,7 +11,8 @@ test("clients of a trusted proxy are told apart; what a client claims itself is 
   await from(server, "192.0.2.2");
   await from(server, "2001:db8::1");
   await assert.rejects(from(server, "192.0.2.1"), { status: 503 });
-  await assert.rejects(from(server, "203.0.113.9, 192.0.2.2"), { status: 503 }); // the proxy appended the last
+  for (const claimed of ["203.0.113.9", "198.51.100.1, 203.0.113.9"]) // the proxy appended the last
+    await assert.rejects(from(server, `${claimed}, 192.0.2.2`), { status: 503 });
   await assert.rejects(from(server, "192.0.2.2, 127.0.0.1"), { status: 503 }); // through two proxies
   await assert.rejects(from(server, "2001:db8::2"), { status: 503 }); // of the same network
   assert.match(server.stderr, /event=client_connected .*address=192\.0\.2\.1 /);
