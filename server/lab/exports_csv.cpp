@@ -2,6 +2,7 @@
 // each point, cell, trial or variant. A field without a finite number is left empty.
 #include <cmath>
 
+#include "server/base/csv.h"
 #include "server/base/text.h"
 #include "server/lab/exports.h"
 #include "server/scene/method.h"
@@ -22,13 +23,7 @@ class Table {
   Table& add(const std::string& words) {
     if (!first_) text_ += ',';
     first_ = false;
-    if (words.find_first_of(",\"\r\n") == std::string::npos) {
-      text_ += words;
-      return *this;
-    }
-    text_ += '"';
-    for (const char character : words) text_ += character == '"' ? "\"\"" : std::string(1, character);
-    text_ += '"';
+    text_ += csv_field(words);
     return *this;
   }
   Table& add(const char* words) { return add(std::string(words)); }

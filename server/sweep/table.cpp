@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "server/base/csv.h"
 #include "server/base/page_template.h"
 
 namespace clothlab::sweep {
@@ -22,12 +23,7 @@ void for_each_value(const Row& value, const std::string& name, const Each& each)
 
 std::string field(const json& value) {
   if (value.is_null()) return "";
-  const std::string words = value.is_string() ? value.get<std::string>() : value.dump();
-  if (words.find_first_of(",\"\r\n") == std::string::npos) return words;
-  std::string quoted(1, '"');
-  for (const char character : words) quoted.append(character == '"' ? 2 : 1, character);
-  quoted += '"';
-  return quoted;
+  return csv_field(value.is_string() ? value.get<std::string>() : value.dump());
 }
 
 void add_row(std::string& text, const std::vector<std::string>& fields) {
@@ -73,7 +69,7 @@ Table table_of(const Folder& folder, const Plan& plan) {
 std::string csv(const Table& table) {
   std::string text;
   std::vector<std::string> fields;
-  for (const std::string& column : table.columns) fields.push_back(field(column));
+  for (const std::string& column : table.columns) fields.push_back(csv_field(column));
   add_row(text, fields);
   for (const std::vector<json>& row : table.rows) {
     fields.clear();

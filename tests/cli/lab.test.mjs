@@ -4,35 +4,9 @@ import { spawn } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { clothlab, folder } from "./program.mjs";
+import { cache, lab } from "./lab_program.mjs";
+import { clothlab, folder, program } from "./program.mjs";
 
-const cache = join(folder, "cache");
-const environment = { XDG_CACHE_HOME: cache };
-const program = process.env.CLOTHLAB ?? "build/release/clothlab";
-
-// Small enough to measure in seconds: 25 vertices, one corner held.
-writeFileSync(
-  join(folder, "small.json"),
-  JSON.stringify({
-    version: 1,
-    name: "small",
-    self_collision: null,
-    cloths: [
-      {
-        mesh: { grid: { columns: 5, rows: 5, width: 1, height: 1 } },
-        pins: [{ at: "corner:0,0" }],
-        material: { model: "springs", structural: 2000, shear: 1000, bend: 200, damping: 2 },
-      },
-    ],
-    solver: { method: "symplectic_euler", dt: 0.002 },
-  }),
-);
-
-function lab(...args) {
-  const result = clothlab(args, environment);
-  assert.equal(result.status, 0, result.stderr);
-  return result;
-}
 const read = (...path) => readFileSync(join(folder, ...path), "utf8");
 const chart = [
   "chart",

@@ -1,34 +1,11 @@
 // `clothlab chart` and `stability` in shards, which share a folder.
 import assert from "node:assert/strict";
-import { readdirSync, readFileSync, statSync, truncateSync, writeFileSync } from "node:fs";
+import { readdirSync, readFileSync, statSync, truncateSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
+import { environment, lab } from "./lab_program.mjs";
 import { clothlab, folder } from "./program.mjs";
 
-const environment = { XDG_CACHE_HOME: join(folder, "cache") };
-// 25 vertices, one corner held.
-writeFileSync(
-  join(folder, "small.json"),
-  JSON.stringify({
-    version: 1,
-    name: "small",
-    self_collision: null,
-    cloths: [
-      {
-        mesh: { grid: { columns: 5, rows: 5, width: 1, height: 1 } },
-        pins: [{ at: "corner:0,0" }],
-        material: { model: "springs", structural: 2000, shear: 1000, bend: 200, damping: 2 },
-      },
-    ],
-    solver: { method: "symplectic_euler", dt: 0.002 },
-  }),
-);
-
-function lab(...args) {
-  const result = clothlab(args, environment);
-  assert.equal(result.status, 0, result.stderr);
-  return result;
-}
 const read = (...path) => JSON.parse(readFileSync(join(folder, ...path), "utf8"));
 const methods = ["verlet", "symplectic_euler", "rk4"];
 const of = (out, shard) => ["--methods", methods.join(), "--out", out, "--shard", shard];

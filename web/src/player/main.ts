@@ -7,6 +7,7 @@ import { Stage } from "../view/stage";
 import { openWebGl } from "../view/webgl";
 import { Player } from "./player";
 import { Reader, type Recording } from "./recording";
+import { followSystemTheme } from "../system_theme";
 
 declare global {
   interface Window {
@@ -32,16 +33,6 @@ function describe({ rate, frames, diverged }: Recording): void {
   if (!diverged) return;
   message.textContent = `It blew up after this: ${diverged.reason}. ${diverged.remedy}.`;
   message.hidden = false;
-}
-
-function followTheme(stage: Stage): void {
-  const dark = matchMedia("(prefers-color-scheme: dark)");
-  const apply = (): void => {
-    document.documentElement.dataset.theme = dark.matches ? "dark" : "light";
-    stage.setTheme();
-  };
-  dark.addEventListener("change", apply);
-  apply();
 }
 
 function bind(stage: Stage, player: Player): void {
@@ -92,7 +83,7 @@ async function start(): Promise<void> {
   describe(recording);
   const stage = (hook.stage = new Stage(graphics));
   stage.onLost = () => fail("The browser took the graphics away. It gives them back by itself; if not, reload.");
-  followTheme(stage);
+  followSystemTheme(() => stage.setTheme());
   const resize = (): void =>
     stage.resize({ left: 0, top: 0, width: innerWidth, height: Math.max(1, innerHeight - 80) });
   addEventListener("resize", resize);

@@ -1,4 +1,5 @@
 // The page of a sweep: any two columns of its table against each other, coloured by an axis.
+import { followSystemTheme } from "../system_theme";
 import { brief, type Scale, scaleOf, type Value } from "./scale";
 
 interface Table {
@@ -215,10 +216,4 @@ check("y", "Logarithmic up");
 part("choices").addEventListener("change", draw);
 addEventListener("resize", draw);
 part("rows").addEventListener("toggle", fillTable, { once: true });
-const dark = matchMedia("(prefers-color-scheme: dark)");
-const theme = (): void => {
-  document.documentElement.dataset.theme = dark.matches ? "dark" : "light";
-};
-dark.addEventListener("change", theme);
-theme();
-draw();
+followSystemTheme(draw);
