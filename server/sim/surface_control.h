@@ -22,6 +22,7 @@ struct SurfaceControl {
   DispatchGroups rebuild{0, 1, 1}, leaf_groups{0, 1, 1}, split{0, 1, 1}, pair_groups{0, 1, 1};
   DispatchGroups neighbour_groups{0, 1, 1}, candidate_groups{0, 1, 1}, check{1, 1, 1},
       contact_groups{0, 1, 1};
+  DispatchGroups rest{0, 1, 1}, finish{0, 1, 1};
   std::uint32_t leaf_pairs = 0, triangle_pairs = 0, candidates = 0, pairs = 0;
   std::uint32_t fastest = 0, fastest_vertex = 0;
   std::uint32_t query = 0, flat_query = 0, overflow = 0;

@@ -188,8 +188,8 @@ void SurfacePairs::search(const StateBuffers& state) {
   dispatch(candidates_, offsetof(SurfaceControl, split));
   pairs_.buffer.bind_storage(slot_surface_pairs);
   dispatch(pairs_program_, offsetof(SurfaceControl, candidate_groups));
-  dispatch(rest_, offsetof(SurfaceControl, pair_groups));
-  dispatch(finish_, offsetof(SurfaceControl, rebuild));
+  dispatch(rest_, offsetof(SurfaceControl, rest));
+  dispatch(finish_, offsetof(SurfaceControl, finish));
   searched_ = true;
 }
 

@@ -152,6 +152,19 @@ FUNCTION bool solid_near(int kind, Solid before, Solid after, vec3 from, vec3 to
   return false;
 }
 
+/// A cheaper test, for a solid at rest: false if no point within `reach` [m] of x can meet it.
+FUNCTION bool solid_within(int kind, Solid solid, vec3 x, real reach) {
+  vec3 from = x - solid.point;
+  real distance = solid.radius + reach;
+  if (kind == solid_sphere) return dot(from, from) <= distance * distance;
+  if (kind == solid_plane) return dot(from, solid.direction) <= distance;
+  if (solid_has_axes(kind)) {
+    vec3 along = along_axes(solid, from), apart = max(along, -along) - solid.extent;
+    return max(apart.x, max(apart.y, apart.z)) <= distance;
+  }
+  return false;
+}
+
 /// Contact of the path from -> to [m] with a solid of this kind, which moves from `before` to `after` meanwhile. True
 /// if they meet; then `stopped` is where the path ends instead, on the solid's surface or outside, and `normal` the
 /// unit normal there. An unknown kind meets nothing.

@@ -41,10 +41,8 @@ void stop_at_solids(int i) {
   int met = 0;
   // A solid that moves is where the step takes it, but a piece ends before the step does.
 #if SOLID_ROWS > 0
-#define STOP(kind, moves, first, end)                                \
-  if (!moves || piece_count == 1)                                    \
-    for (int row = first; row < end; row += solid_rows(kind))        \
-      met += meet_solid(kind, moves, row, start, x, v, 0.0);
+#define STOP(kind, moves, first, end) \
+  if (!moves || piece_count == 1) met += meet_run(kind, moves, first, end, start, x, v, 0.0);
   EACH_SOLID(STOP)
 #endif
   if (met > 0) {

@@ -13,6 +13,7 @@ void main() {
     control.leaf_pairs = control.triangle_pairs = control.candidates = control.pairs = 0u;
     control.leaf_groups = control.split_groups = control.pair_groups = 0u;
     control.candidate_groups = 0u;
+    control.finish_groups = 1u;
     control.neighbour_groups = uint((neighbour_pair_count + GROUP_SIZE - 1) / GROUP_SIZE);
   }
   if (i < vertex_count) {

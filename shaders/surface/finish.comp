@@ -21,6 +21,6 @@ void main() {
   control.most_pairs = max(known.most_pairs, needed);
   control.fastest = control.fastest_vertex = 0u;
   control.rebuild_groups = control.leaf_groups = control.split_groups = 0u;
-  control.neighbour_groups = control.candidate_groups = 0u;
+  control.neighbour_groups = control.candidate_groups = control.rest_groups = control.finish_groups = 0u;
   ++control.rebuilds;
 }

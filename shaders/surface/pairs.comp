@@ -16,7 +16,10 @@ void main() {
   if (separation(edges, c).gap < reach) {
     uint slot = atomicAdd(control.pairs, 1u);
     if (slot < pair_capacity) {
-      if (slot % uint(GROUP_SIZE) == 0u) atomicMax(control.pair_groups, slot / uint(GROUP_SIZE) + 1u);
+      if (slot % uint(GROUP_SIZE) == 0u) {
+        atomicMax(control.pair_groups, slot / uint(GROUP_SIZE) + 1u);
+        atomicMax(control.rest_groups, slot / uint(GROUP_SIZE) + 1u);
+      }
       list[slot] = pair;
     }
   }

@@ -39,6 +39,8 @@ struct Control {
   uint candidate_groups, candidate_groups_y, candidate_groups_z;  // over pairs whose boxes are near
   uint check_groups, check_groups_y, check_groups_z;              // 1 while a part of the step is left (advance.comp)
   uint contact_groups, contact_groups_y, contact_groups_z;        // over pairs, the same
+  uint rest_groups, rest_groups_y, rest_groups_z;                 // over pairs, in a search
+  uint finish_groups, finish_groups_y, finish_groups_z;           // 1 in a search
   uint leaf_pairs;           // found by the search
   uint triangle_pairs;       // the same
   uint candidates;           // the same

@@ -259,12 +259,32 @@ TEST_CASE("no place and no path, however special, gives a solid of any kind a nu
   }
 }
 
+TEST_CASE("a path that meets a solid at rest is no longer than what the cheapest test reaches") {
+  std::mt19937 random(11);
+  for (const Shape& home : a_shape_of_each_kind) {
+    INFO(scene::shape_to_json(home));
+    int met = 0, out_of_reach = 0;
+    for (int round = 0; round < 20000; ++round) {
+      const double reach = std::pow(10.0, static_cast<double>(random() % 4) - 2.0);
+      const dvec3 from = 1.5 * random_vector(random), to = from + reach * random_vector(random);
+      const bool within = elements::solid_within(scene::solid(home).kind, with_margin(home), from,
+                                                 glm::distance(from, to));
+      if (path(home, home, from, to).met) CHECK(within);
+      met += path(home, home, from, to).met;
+      out_of_reach += !within;
+    }
+    CHECK(met > 100);
+    CHECK(out_of_reach > 100);
+  }
+}
+
 TEST_CASE("an unknown kind of solid meets nothing") {
   const elements::Solid solid{dvec3(0.0), dvec3(0.0, 1.0, 0.0), 1.0, dvec3(1.0, 0.0, 0.0), dvec3(0.1)};
   for (const int kind : {-1, elements::solid_kinds}) {
     dvec3 stopped, normal;
     const dvec3 from(0.0, 3.0, 0.0), to(0.0, -0.5, 0.0);
     CHECK(!elements::solid_near(kind, solid, solid, from, to));
+    CHECK(!elements::solid_within(kind, solid, from, 10.0));
     CHECK(!elements::solid_contact(kind, solid, solid, from, to, stopped, normal));
     CHECK(stopped == to);
   }
