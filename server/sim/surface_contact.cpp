@@ -62,22 +62,23 @@ Result<SurfaceContact> SurfaceContact::create(const model::Model& model, const P
   made.driven_ = plan.moving > 0;
   made.pairs_.set_driven(made.driven_);
   const gl::Defines defines = step_defines(plan);
-  const auto with_pass = [&](const char* pass) {
+  const auto with = [&](const char* name, const char* value) {
     gl::Defines more = defines;
-    more.emplace_back("PASS", pass);
+    more.emplace_back(name, value);
     return more;
   };
-  for (const auto& [program, name, with] : {std::tuple{&made.contacts_, "contacts", defines},
-                                            {&made.forces_, "forces", defines},
-                                            {&made.apply_, "apply", defines},
-                                            {&made.begin_, "begin", defines},
-                                            {&made.path_program_, "path", defines},
-                                            {&made.advance_, "advance", defines},
-                                            {&made.limit_first_, "limit", with_pass("0")},
-                                            {&made.limit_again_, "limit", with_pass("1")},
-                                            {&made.limit_stop_, "limit", with_pass("2")},
-                                            {&made.move_, "move", defines}}) {
-    Result<gl::Program> loaded = gl::Program::load({std::string("surface/") + name + ".comp"}, with);
+  for (const auto& [program, name, its_defines] : {std::tuple{&made.contacts_, "contacts", defines},
+                                                   {&made.forces_, "forces", defines},
+                                                   {&made.apply_, "apply", defines},
+                                                   {&made.begin_, "begin", defines},
+                                                   {&made.path_program_, "path", defines},
+                                                   {&made.advance_, "advance", defines},
+                                                   {&made.limit_first_, "limit", with("PASS", "0")},
+                                                   {&made.limit_again_, "limit", with("PASS", "1")},
+                                                   {&made.limit_stop_, "limit", with("PASS", "2")},
+                                                   {&made.move_, "move", with("LAST", "0")},
+                                                   {&made.move_last_, "move", with("LAST", "1")}}) {
+    Result<gl::Program> loaded = gl::Program::load({std::string("surface/") + name + ".comp"}, its_defines);
     if (!loaded) return loaded.error();
     *program = std::move(*loaded);
     program->set("vertex_count", static_cast<GLint>(made.vertex_count_));
@@ -90,13 +91,13 @@ Result<SurfaceContact> SurfaceContact::create(const model::Model& model, const P
   made.vertex_contacts_ = {gl::Buffer(made.vertex_count_ * words_of_vertex * sizeof(std::uint32_t)),
                            GL_RGBA32UI};
   made.borne_ = gl::Buffer(made.vertex_count_ * 8 * sizeof(float));
-  made.limits_ = gl::Buffer(made.vertex_count_ * sizeof(std::uint32_t));
+  made.limits_ = {gl::Buffer(made.vertex_count_ * sizeof(std::uint32_t)), GL_R32UI};
   return made;
 }
 
-std::array<const gl::Program*, 10> SurfaceContact::programs() const {
-  return {&contacts_, &forces_,      &apply_,       &begin_,      &path_program_,
-          &advance_,  &limit_first_, &limit_again_, &limit_stop_, &move_};
+std::array<const gl::Program*, 11> SurfaceContact::programs() const {
+  return {&contacts_,    &forces_,      &apply_,      &begin_, &path_program_, &advance_,
+          &limit_first_, &limit_again_, &limit_stop_, &move_,  &move_last_};
 }
 
 void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Model& model,
@@ -129,7 +130,7 @@ void SurfaceContact::invalidate() {
   bodies_.invalidate();
   pairs_.invalidate();
   vertex_contacts_.buffer.fill(0);
-  limits_.fill(std::bit_cast<std::uint32_t>(1.0f));
+  limits_.buffer.fill(std::bit_cast<std::uint32_t>(1.0f));
   turn_ = 0;
 }
 
@@ -174,7 +175,7 @@ void SurfaceContact::keep_apart(StateBuffers& state, int row) {
 }
 
 void SurfaceContact::push_and_filter(StateBuffers& state, int row, std::uint32_t changing, bool last_piece) {
-  for (const gl::Program* program : {&contacts_, &begin_, &move_})
+  for (const gl::Program* program : {&contacts_, &begin_, &move_, &move_last_})
     program->set("changing_vertex_count", static_cast<GLint>(changing));
   const std::size_t counts =
       offsetof(SurfaceControl, step_counts) + static_cast<std::size_t>(turn_) * sizeof(StepCounts);
@@ -221,7 +222,8 @@ void SurfaceContact::push_and_filter(StateBuffers& state, int row, std::uint32_t
     run(apply_, pushed);
   }
   pairs_.bind();
-  limits_.bind_storage(slot_step_limits);
+  limits_.bind(unit_step_limits);
+  limits_.buffer.bind_storage(slot_step_limits);
   target_.buffer.bind_storage(slot_step_target);
   begin_.use();
   begin_.set("turn", turn_);
@@ -235,14 +237,14 @@ void SurfaceContact::push_and_filter(StateBuffers& state, int row, std::uint32_t
     const float held_part = last ? 1.0f : 1.0f / static_cast<float>(filter_passes_ - 1 - pass);
     const gl::Program& limit = pass == 0 ? limit_first_ : limit_again_;
     limit.set("held_part", held_part);
-    move_.set("held_part", held_part);
     run(limit, pass == 0 ? near : meeting);
     if (last) {
       limit_stop_.set("held_part", held_part);
       run(limit_stop_, meeting);
     }
-    move_.set("last", last ? 1 : 0);
-    run(move_, pass == 0 || driven_ ? vertices : cut_vertices);
+    const gl::Program& move = last ? move_last_ : move_;
+    move.set("held_part", held_part);
+    run(move, pass == 0 || driven_ ? vertices : cut_vertices);
   }
   turn_ = 1 - turn_;
 }

@@ -56,7 +56,7 @@ class SurfaceContact {
   static const std::size_t bytes_of_counts;
 
  private:
-  std::array<const gl::Program*, 10> programs() const;
+  std::array<const gl::Program*, 11> programs() const;
   /// Takes vertices along the next piece of the step (shaders/surface/advance.comp), from where they are;
   /// `piece` 0: from the step's start, with the pairs that `update_pairs` has brought up to date.
   void advance(const StateBuffers& state, int piece, std::uint32_t changing);
@@ -73,11 +73,10 @@ class SurfaceContact {
   bool keeps_start_ = false;  ///< the strain limit writes over the positions at the step's start
   SurfaceBodies bodies_;
   SurfacePairs pairs_;
-  gl::Program contacts_, forces_, apply_, begin_, move_, path_program_, advance_;
+  gl::Program contacts_, forces_, apply_, begin_, move_, move_last_, path_program_, advance_;
   gl::Program limit_first_, limit_again_, limit_stop_;
   gl::TextureBuffer start_;  ///< of the step, or of the piece under way
-  gl::TextureBuffer target_, path_, vertex_contacts_;
-  gl::Buffer limits_;
+  gl::TextureBuffer target_, path_, vertex_contacts_, limits_;
   gl::Buffer borne_;  ///< what solids bear of each vertex: shaders/surface/apply.comp
 };
 

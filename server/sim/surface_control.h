@@ -19,15 +19,16 @@ struct StepCounts {
 
 struct SurfaceControl {
   std::array<StepCounts, 2> step_counts;
-  DispatchGroups rebuild{0, 1, 1}, leaf_groups{0, 1, 1}, split{0, 1, 1}, pair_groups{0, 1, 1};
+  DispatchGroups rebuild{0, 1, 1}, leaf_groups{0, 1, 1}, bundle_groups{0, 1, 1}, split{0, 1, 1},
+      pair_groups{0, 1, 1};
   DispatchGroups neighbour_groups{0, 1, 1}, candidate_groups{0, 1, 1}, check{1, 1, 1},
       contact_groups{0, 1, 1};
   DispatchGroups rest{0, 1, 1}, finish{0, 1, 1};
-  std::uint32_t leaf_pairs = 0, triangle_pairs = 0, candidates = 0, pairs = 0;
+  std::uint32_t leaf_pairs = 0, bundle_pairs = 0, triangle_pairs = 0, candidates = 0, pairs = 0;
   std::uint32_t fastest = 0, fastest_vertex = 0;
   std::uint32_t query = 0, flat_query = 0, overflow = 0;
-  std::uint32_t rebuilds = 0, cuts = 0, forced = 0, most_leaf_pairs = 0, most_triangle_pairs = 0,
-                most_pairs = 0;
+  std::uint32_t rebuilds = 0, cuts = 0, forced = 0, most_leaf_pairs = 0, most_bundle_pairs = 0,
+                most_triangle_pairs = 0, most_pairs = 0;
   float longest = 0.0f, gone = 0.0f, part = 1.0f;
   std::uint32_t unused = 0;
 };

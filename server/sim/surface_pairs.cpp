@@ -14,8 +14,6 @@ namespace clothlab::sim {
 
 namespace {
 
-/// Triangles of a leaf that a thread compares with those of another leaf.
-constexpr std::uint32_t triangles_of_thread = 4;
 constexpr std::uint64_t updates_between_size_looks = 8;
 constexpr std::uint32_t most_listed = 1u << 21;
 
@@ -35,11 +33,12 @@ Result<SurfacePairs> SurfacePairs::create(const model::Model& model, const Surfa
   made.triangle_count_ = static_cast<std::uint32_t>(surface.triangles.size());
   const gl::Defines defines{{"GROUP_SIZE", std::to_string(group_size)},
                             {"LEAF_SIZE", std::to_string(leaf_size)},
-                            {"TOGETHER", std::to_string(triangles_of_thread)},
+                            {"BUNDLE_SIZE", std::to_string(bundle_size)},
                             {"OUT_OF_PLANE", std::to_string(out_of_plane)}};
   for (auto [program, name] : {std::pair{&made.corners_, "corners"},
-                               {&made.leaf_boxes_program_, "leaf_boxes"},
+                               {&made.boxes_program_, "boxes"},
                                {&made.leaf_pairs_program_, "leaf_pairs"},
+                               {&made.bundle_pairs_program_, "bundle_pairs"},
                                {&made.triangle_pairs_program_, "triangle_pairs"},
                                {&made.neighbours_, "neighbours"},
                                {&made.candidates_, "candidates"},
@@ -65,10 +64,12 @@ Result<SurfacePairs> SurfacePairs::create(const model::Model& model, const Surfa
   made.rest_places_ = {gl::Buffer(surface.rest_places), GL_RGBA32F};
   made.neighbour_pairs_ = {gl::Buffer(surface.neighbour_pairs), GL_RGBA32UI};
   made.triangle_corners_ = {gl::Buffer(made.triangle_count_ * 12 * sizeof(std::uint32_t)), GL_RGBA32UI};
-  made.leaf_boxes_ = {gl::Buffer(leaves * 8 * sizeof(float)), GL_RGBA32F};
+  const std::uint32_t bundles = (made.triangle_count_ + bundle_size - 1) / bundle_size;
+  made.boxes_ = {gl::Buffer((leaves + bundles) * 8 * sizeof(float)), GL_RGBA32F};
   made.built_position_ = {gl::Buffer(made.vertex_count_ * 4 * sizeof(float)), GL_RGBA32F};
   constexpr std::uint32_t generous = 1u << 17;  // entries: little memory, and lists seldom have to grow
-  made.make_lists({8 * leaves + 256, std::min(8 * made.triangle_count_, 2 * made.triangle_count_ + generous),
+  made.make_lists({8 * leaves + 256, 8 * bundles + 1024,
+                   std::min(8 * made.triangle_count_, 2 * made.triangle_count_ + generous),
                    std::min(32 * made.vertex_count_, 8 * made.vertex_count_ + generous)});
   const SurfaceControl nothing;
   made.control_.upload(&nothing, sizeof nothing);
@@ -79,12 +80,13 @@ void SurfacePairs::make_lists(const Capacities& wanted) {
   GLint texels = 0;
   glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
   const std::uint32_t most = std::min(most_listed, static_cast<std::uint32_t>(texels) / 4);
-  capacity_ = {std::min(wanted.leaf_pairs, most), std::min(wanted.triangle_pairs, most),
-               std::min(wanted.pairs, most)};
+  capacity_ = {std::min(wanted.leaf_pairs, most), std::min(wanted.bundle_pairs, most),
+               std::min(wanted.triangle_pairs, most), std::min(wanted.pairs, most)};
   const auto pairs_of_numbers = [](std::uint32_t count) {
     return gl::TextureBuffer(gl::Buffer(std::size_t{count} * 2 * sizeof(std::uint32_t)), GL_RG32UI);
   };
   leaf_pairs_ = pairs_of_numbers(capacity_.leaf_pairs);
+  bundle_pairs_ = pairs_of_numbers(capacity_.bundle_pairs);
   triangle_pairs_ = pairs_of_numbers(capacity_.triangle_pairs);
   pairs_ = {gl::Buffer(std::size_t{capacity_.pairs} * 4 * sizeof(std::uint32_t)), GL_RGBA32UI};
   near_pairs_ = {gl::Buffer(std::size_t{capacity_.pairs} * 12 * sizeof(std::uint32_t)), GL_RGBA32UI};
@@ -94,14 +96,22 @@ void SurfacePairs::make_lists(const Capacities& wanted) {
   contact_pushes_ = {gl::Buffer(std::size_t{capacity_.pairs} * 8 * sizeof(float)), GL_RGBA32F};
   for (const gl::Program* program : programs()) {
     glProgramUniform1ui(program->id(), program->location("leaf_pair_capacity"), capacity_.leaf_pairs);
+    glProgramUniform1ui(program->id(), program->location("bundle_pair_capacity"), capacity_.bundle_pairs);
     glProgramUniform1ui(program->id(), program->location("triangle_pair_capacity"), capacity_.triangle_pairs);
     glProgramUniform1ui(program->id(), program->location("pair_capacity"), capacity_.pairs);
   }
 }
 
-std::array<const gl::Program*, 9> SurfacePairs::programs() const {
-  return {&corners_,    &leaf_boxes_program_, &leaf_pairs_program_, &triangle_pairs_program_,
-          &neighbours_, &candidates_,         &pairs_program_,      &rest_,
+std::array<const gl::Program*, 10> SurfacePairs::programs() const {
+  return {&corners_,
+          &boxes_program_,
+          &leaf_pairs_program_,
+          &bundle_pairs_program_,
+          &triangle_pairs_program_,
+          &neighbours_,
+          &candidates_,
+          &pairs_program_,
+          &rest_,
           &finish_};
 }
 
@@ -166,7 +176,7 @@ void SurfacePairs::search(const StateBuffers& state) {
   triangles_.bind(unit_surface_triangles);
   rest_places_.bind(unit_rest_places);
   triangle_corners_.bind(unit_triangle_corners);
-  leaf_boxes_.bind(unit_leaf_boxes);
+  boxes_.bind(unit_boxes);
   leaf_pairs_.bind(unit_leaf_pairs);
   neighbour_pairs_.bind(unit_neighbour_pairs);
   triangle_pairs_.bind(unit_triangle_pairs);
@@ -176,12 +186,15 @@ void SurfacePairs::search(const StateBuffers& state) {
   triangle_corners_.buffer.bind_storage(slot_triangle_corners);
   built_position_.buffer.bind_storage(slot_surface_built);
   dispatch(corners_, offsetof(SurfaceControl, rebuild));
-  leaf_boxes_.buffer.bind_storage(slot_leaf_boxes);
-  dispatch(leaf_boxes_program_, offsetof(SurfaceControl, rebuild));
+  boxes_.buffer.bind_storage(slot_boxes);
+  dispatch(boxes_program_, offsetof(SurfaceControl, rebuild));
   leaf_pairs_.buffer.bind_storage(slot_leaf_pairs);
   dispatch(leaf_pairs_program_, offsetof(SurfaceControl, rebuild));
+  bundle_pairs_.buffer.bind_storage(slot_bundle_pairs);
+  dispatch(bundle_pairs_program_, offsetof(SurfaceControl, leaf_groups));
+  bundle_pairs_.bind(unit_bundle_pairs);  // the unit was that of the triangles, which only the corners read
   triangle_pairs_.buffer.bind_storage(slot_triangle_pairs);
-  dispatch(triangle_pairs_program_, offsetof(SurfaceControl, leaf_groups));
+  dispatch(triangle_pairs_program_, offsetof(SurfaceControl, bundle_groups));
   near_pairs_.buffer.bind_storage(slot_near_pairs);
   near_pairs_.bind(unit_near_pairs);
   dispatch(neighbours_, offsetof(SurfaceControl, neighbour_groups));
@@ -232,6 +245,7 @@ bool SurfacePairs::read_sizes(bool within_step) {
     return full ? std::min(2 * found, most_listed) : capacity;
   };
   const Capacities next{wanted(capacity_.leaf_pairs, control.most_leaf_pairs),
+                        wanted(capacity_.bundle_pairs, control.most_bundle_pairs),
                         wanted(capacity_.triangle_pairs, control.most_triangle_pairs),
                         wanted(capacity_.pairs, control.most_pairs)};
   if (longer)

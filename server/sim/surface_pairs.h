@@ -72,10 +72,10 @@ class SurfacePairs {
   void limit_query(float most);
   /// How many entries the lists of a search have room for.
   struct Capacities {
-    std::uint32_t leaf_pairs = 0, triangle_pairs = 0, pairs = 0;
+    std::uint32_t leaf_pairs = 0, bundle_pairs = 0, triangle_pairs = 0, pairs = 0;
   };
   void make_lists(const Capacities& wanted);
-  std::array<const gl::Program*, 9> programs() const;
+  std::array<const gl::Program*, 10> programs() const;
   bool waits() const { return driven_ || in_pieces_; }
 
   std::uint32_t vertex_count_ = 0, triangle_count_ = 0;
@@ -83,13 +83,14 @@ class SurfacePairs {
   float most_query_ = 0, skin_ = 0;  ///< [m]
   bool driven_ = false, in_pieces_ = false, searched_ = false;
   std::uint64_t updates_ = 0;  ///< calls of `update` since `invalidate`
-  gl::Program corners_, leaf_boxes_program_, leaf_pairs_program_, triangle_pairs_program_, neighbours_,
-      candidates_, pairs_program_, rest_, finish_;
+  gl::Program corners_, boxes_program_, leaf_pairs_program_, bundle_pairs_program_, triangle_pairs_program_,
+      neighbours_, candidates_, pairs_program_, rest_, finish_;
   SurfaceBlocks blocks_;
   gl::Buffer control_;
   gl::ReadbackRing sizes_ring_;
-  gl::TextureBuffer triangles_, rest_places_, neighbour_pairs_, triangle_corners_, leaf_boxes_, leaf_pairs_,
-      triangle_pairs_, pairs_, near_pairs_, chosen_pairs_, friction_left_, contact_links_, contact_pushes_;
+  gl::TextureBuffer triangles_, rest_places_, neighbour_pairs_, triangle_corners_, boxes_, leaf_pairs_,
+      bundle_pairs_, triangle_pairs_, pairs_, near_pairs_, chosen_pairs_, friction_left_, contact_links_,
+      contact_pushes_;
   gl::TextureBuffer built_position_;
 };
 

@@ -20,11 +20,13 @@ constexpr std::uint32_t owns_vertex_bit = 0x80000000u, owns_edge_bit = 0x4000000
 using Corners = std::array<std::uint32_t, 3>;
 
 /// Halves `triangles` along their longest extent, at multiples of `block`, until each part has at most that
-/// many, and from then on at multiples of `leaf_size`.
+/// many, from then on at multiples of `leaf_size`, and of a leaf at those of `bundle_size`.
 void order_by_place(std::span<std::uint32_t> triangles, const std::vector<model::dvec3>& middle,
                     std::uint32_t block) {
-  if (triangles.size() <= leaf_size) return;
-  const std::size_t unit = triangles.size() > block ? block : leaf_size;
+  if (triangles.size() <= bundle_size) return;
+  const std::size_t unit = triangles.size() > block       ? block
+                           : triangles.size() > leaf_size ? leaf_size
+                                                          : bundle_size;
   model::dvec3 low = middle[triangles[0]], high = low;
   for (const std::uint32_t triangle : triangles) {
     low = glm::min(low, middle[triangle]);

@@ -14,6 +14,8 @@ namespace clothlab::sim {
 
 /// Triangles of a leaf: those that lie together at the start, whose box stands for all of them in a search.
 inline constexpr std::uint32_t leaf_size = 16;
+/// The same of a bundle, a part of a leaf.
+inline constexpr std::uint32_t bundle_size = 4;
 
 /// Near triangles of a cloth are side by side at rest if their middles are this far out of each other's
 /// plane, or less, as a share of their distance.
@@ -26,7 +28,8 @@ struct BodyPlace {
   std::uint32_t body = 0;  ///< index into Model::bodies
 };
 
-/// Triangles of cloths, and after them those of bodies. Each `leaf_size` in turn are a leaf.
+/// Triangles of cloths, and after them those of bodies. Each `leaf_size` in turn are a leaf, each
+/// `bundle_size` a bundle.
 struct SurfaceTriangles {
   /// The corners of each triangle: a vertex, with owns_vertex_bit and owns_edge_bit of
   /// shaders/surface/triangles.glsl where the triangle owns it, or the edge from it to the next corner; and

@@ -3,8 +3,10 @@
 // ready for the next one.
 #include "surface.glsl"
 #include "vertex_contacts.glsl"
+READ_VEC4(position, unit_position);  // at the step's end; w: inverse mass [1/kg]
 READ_VEC4(step_start, unit_step_start);
-layout(std430, binding = slot_next_position) buffer Position { vec4 position[]; };
+READ_UVEC4(vertex_contacts, unit_vertex_contacts);
+layout(std430, binding = slot_next_position) writeonly buffer Position { vec4 next_position[]; };
 layout(std430, binding = slot_next_velocity) buffer Velocity { vec4 velocity[]; };
 layout(std430, binding = slot_step_target) writeonly buffer Target { vec4 target[]; };
 
@@ -29,9 +31,9 @@ void main() {
   int i = int(gl_GlobalInvocationID.x);
   if (i == 0) prepare_next_piece();
   if (i >= changing_vertex_count || !(uintBitsToFloat(known.part) > 0.0)) return;
-  vec4 start = FETCH(step_start, i), end = position[i];
+  vec4 start = FETCH(step_start, i), end = FETCH(position, i);
   bool free = end.w > 0.0, filtered = known.step_counts[turn].near > 0u;
-  if (filtered && at_vertex[i].first != 0u) {
+  if (filtered && FETCH(vertex_contacts, 2 * i).x != 0u) {
     if (free) velocity[i].w += 1.0;
     at_vertex[i].first = at_vertex[i].sharing = 0u;
   }
@@ -43,12 +45,12 @@ void main() {
   }
   if (free && went > most) {
     end.xyz = start.xyz + moved * (most / went);
-    position[i] = end;
+    next_position[i] = end;
     atomicAdd(control.step_counts[turn].cuts, 1u);
     atomicAdd(control.cuts, 1u);
   }
-  if (free && known.overflow != 0u) position[i] = end = start;
+  if (free && known.overflow != 0u) next_position[i] = end = start;
   // Bodies that do not move come here in the first steps alone.
   if (filtered || i >= cloth_vertex_count) target[i] = end;
-  if (filtered) position[i] = vec4(start.xyz, end.w);
+  if (filtered) next_position[i] = vec4(start.xyz, end.w);
 }

@@ -1,4 +1,4 @@
-// Pair search, 6 of 9: which vertices and triangles, and which edges, of two triangles that are near each other have
+// Pair search, 7 of 10: which vertices and triangles, and which edges, of two triangles that are near each other have
 // boxes that are near. Each vertex and edge is owned by one of its triangles, so that no pair is found twice (Curtis et
 // al. 2008, "Fast Collision Detection for Deformable Models using Representative-Triangles").
 #include "surface.glsl"

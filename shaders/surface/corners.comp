@@ -1,4 +1,4 @@
-// Pair search, 1 of 9: where all vertices are, once more for each triangle, and how fast the fastest is.
+// Pair search, 1 of 10: where all vertices are, once more for each triangle, and how fast the fastest is.
 #include "surface.glsl"
 #include "triangles.glsl"
 READ_VEC4(position, unit_position);
@@ -10,8 +10,8 @@ layout(std430, binding = slot_surface_built) writeonly buffer Built { vec4 posit
 void main() {
   int i = int(gl_GlobalInvocationID.x);
   if (i == 0) {
-    control.leaf_pairs = control.triangle_pairs = control.candidates = control.pairs = 0u;
-    control.leaf_groups = control.split_groups = control.pair_groups = 0u;
+    control.leaf_pairs = control.bundle_pairs = control.triangle_pairs = control.candidates = control.pairs = 0u;
+    control.leaf_groups = control.bundle_groups = control.split_groups = control.pair_groups = 0u;
     control.candidate_groups = 0u;
     control.finish_groups = 1u;
     control.neighbour_groups = uint((neighbour_pair_count + GROUP_SIZE - 1) / GROUP_SIZE);

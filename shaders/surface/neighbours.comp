@@ -1,4 +1,4 @@
-// Pair search, 5 of 9: the candidates of triangles that share a vertex. What can meet there is known beforehand, and
+// Pair search, 6 of 10: the candidates of triangles that share a vertex. What can meet there is known beforehand, and
 // most of it is never near.
 #include "surface.glsl"
 #include "reach.glsl"

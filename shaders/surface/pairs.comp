@@ -1,4 +1,4 @@
-// Pair search, 7 of 9: the candidates that are near each other, not their boxes alone.
+// Pair search, 8 of 10: the candidates that are near each other, not their boxes alone.
 #include "surface.glsl"
 READ_VEC4(position, unit_position);
 READ_UVEC4(candidate_list, unit_near_pairs);

@@ -1,4 +1,4 @@
-// Pair search, 8 of 9: marks pairs of two parts of one cloth that are nearer to each other at rest than the thickness:
+// Pair search, 9 of 10: marks pairs of two parts of one cloth that are nearer to each other at rest than the thickness:
 // no force keeps them apart.
 #include "surface.glsl"
 READ_VEC4(rest_position, unit_rest_position);  // w: the cloth

@@ -32,7 +32,8 @@ struct StepCounts {  // of a step; steps take turns with two of them
 struct Control {
   StepCounts step_counts[2];
   uint rebuild_groups, rebuild_groups_y, rebuild_groups_z;  // over triangles and vertices
-  uint leaf_groups, leaf_groups_y, leaf_groups_z;           // over triangles of pairs of leaves
+  uint leaf_groups, leaf_groups_y, leaf_groups_z;           // over bundles of pairs of leaves
+  uint bundle_groups, bundle_groups_y, bundle_groups_z;     // over pairs of bundles
   uint split_groups, split_groups_y, split_groups_z;        // over pairs of triangles
   uint pair_groups, pair_groups_y, pair_groups_z;           // over pairs
   uint neighbour_groups, neighbour_groups_y, neighbour_groups_z;  // over pairs of neighbours
@@ -42,6 +43,7 @@ struct Control {
   uint rest_groups, rest_groups_y, rest_groups_z;                 // over pairs, in a search
   uint finish_groups, finish_groups_y, finish_groups_z;           // 1 in a search
   uint leaf_pairs;           // found by the search
+  uint bundle_pairs;         // the same
   uint triangle_pairs;       // the same
   uint candidates;           // the same
   uint pairs;                // the same
@@ -54,6 +56,7 @@ struct Control {
   uint cuts;                 // vertices whose steps were shortened, over all steps
   uint forced;               // pairs that pins or bodies took over the plane between them, over all steps
   uint most_leaf_pairs;      // found by any search
+  uint most_bundle_pairs;    // the same
   uint most_triangle_pairs;  // the same
   uint most_pairs;           // the same
   uint longest;              // longest way of a vertex in this step [m], as bits
@@ -74,7 +77,7 @@ uniform float thickness;    // [m]
 uniform float skin;         // [m]
 uniform float most_query;   // [m]
 uniform float least_query;  // [m]
-uniform uint pair_capacity, triangle_pair_capacity, leaf_pair_capacity;
+uniform uint pair_capacity, triangle_pair_capacity, bundle_pair_capacity, leaf_pair_capacity;
 uniform int neighbour_pair_count;
 uniform int piece_count;    // most pieces in which a step is gone (advance.comp)
 uniform int turn;           // whose step_counts this step has

@@ -1,17 +1,13 @@
-// Pair search, 4 of 9: pairs of triangles of two near leaves whose boxes are near each other, but for triangles that
+// Pair search, 5 of 10: pairs of triangles of two near bundles whose boxes are near each other, but for triangles that
 // share a vertex (neighbours.comp). Those that lie side by side at rest would all be near each other in a fine mesh:
 // the search does not reach as far for them.
 #include "surface.glsl"
 #include "triangles.glsl"
-READ_VEC4(leaf_boxes, unit_leaf_boxes);
-READ_UVEC2(leaf_pair_list, unit_leaf_pairs);
+READ_UVEC2(bundle_pair_list, unit_bundle_pairs);
 READ_VEC4(rest_places, unit_rest_places);  // middle of a triangle's box, cloth; normal, radius about the middle
 layout(std430, binding = slot_triangle_pairs) writeonly buffer TrianglePairs { uvec2 found[]; };
 
 uniform int cloth_pairs;  // 0: cloths meet bodies alone
-
-/// Triangles of the first leaf that a thread looks at together: they share what it reads of the second's.
-const int together = TOGETHER;
 
 struct RestPlace {
   vec4 middle, normal;
@@ -43,51 +39,41 @@ void keep(int i, int j, bool flat_at_rest) {
   if (slot % uint(GROUP_SIZE) == 0u) atomicMax(control.split_groups, slot / uint(GROUP_SIZE) + 1u);
 }
 
-void keep_if_near(int i, int j, float flat_reach) {
-  bool flat_at_rest = side_by_side_at_rest(rest_place(i), rest_place(j));
-  Triangle one = triangle_at(i), other = triangle_at(j);
-  if (!flat_at_rest || apart(low_of(one), high_of(one), low_of(other), high_of(other)) <= flat_reach)
-    keep(i, j, flat_at_rest);
-}
-
 void main() {
-  int item = int(gl_GlobalInvocationID.x) * together / LEAF_SIZE;
-  if (item >= int(min(known.leaf_pairs, leaf_pair_capacity))) return;
-  uvec2 leaves = FETCH_UVEC2(leaf_pair_list, item);
+  int item = int(gl_GlobalInvocationID.x);
+  if (item >= int(min(known.bundle_pairs, bundle_pair_capacity))) return;
+  uvec2 bundles = FETCH_UVEC2(bundle_pair_list, item);
   float reach = reach_of(next_query()), flat_reach = reach_of(next_flat_query());
-  vec3 low[together], high[together], group_low = vec3(1e30), group_high = vec3(-1e30);
-  uvec3 numbers[together];
-  int begin = LEAF_SIZE * int(leaves.x) + int(gl_GlobalInvocationID.x) * together % LEAF_SIZE;
-  for (int k = 0; k < together; ++k) {
+  vec3 low[BUNDLE_SIZE], high[BUNDLE_SIZE];
+  uvec3 numbers[BUNDLE_SIZE];
+  int begin = BUNDLE_SIZE * int(bundles.x), other_begin = BUNDLE_SIZE * int(bundles.y);
+  for (int k = 0; k < BUNDLE_SIZE; ++k) {
     Triangle t = triangle_at(min(begin + k, triangle_count - 1));
     low[k] = low_of(t);
     high[k] = high_of(t);
     numbers[k] = t.tags & number_mask;
-    group_low = min(group_low, low[k]);
-    group_high = max(group_high, high[k]);
   }
-  int first = LEAF_SIZE * int(leaves.y), end = min(first + LEAF_SIZE, triangle_count);
-  if (leaves.x == leaves.y) first = begin + 1;
-  bool near_leaf = apart(group_low, group_high, FETCH(leaf_boxes, 2 * int(leaves.y)).xyz,
-                         FETCH(leaf_boxes, 2 * int(leaves.y) + 1).xyz) <= reach;
   // First comparisons of boxes, then what few of them leave: threads that run together seldom leave the same.
-  const int at_once = 32 / together;
-  for (int some = near_leaf ? LEAF_SIZE * int(leaves.y) : end; some < end; some += at_once) {
-    uint near = 0u;
-    for (int j = max(some, first); j < min(some + at_once, end); ++j) {
-      Triangle t = triangle_at(j);
-      vec3 other_low = low_of(t), other_high = high_of(t);
-      for (int k = 0; k < together; ++k) {
-        int bodies = int(begin + k >= cloth_triangle_count) + int(j >= cloth_triangle_count);
-        bool meet = bodies == 1 || (bodies == 0 && cloth_pairs != 0), once = leaves.x != leaves.y || begin + k < j;
-        if (apart(low[k], high[k], other_low, other_high) <= reach && begin + k < triangle_count && meet && once &&
-            !share_vertex(numbers[k], t.tags & number_mask))
-          near |= 1u << (together * (j - some) + k);
+  uint near = 0u, very_near = 0u;
+  for (int m = 0; m < BUNDLE_SIZE; ++m) {
+    int j = other_begin + m;
+    Triangle t = triangle_at(min(j, triangle_count - 1));
+    vec3 other_low = low_of(t), other_high = high_of(t);
+    for (int k = 0; k < BUNDLE_SIZE; ++k) {
+      int i = begin + k, bodies = int(i >= cloth_triangle_count) + int(j >= cloth_triangle_count);
+      bool meet = bodies == 1 || (bodies == 0 && cloth_pairs != 0), once = bundles.x != bundles.y || i < j;
+      float gap = apart(low[k], high[k], other_low, other_high);
+      if (gap <= reach && max(i, j) < triangle_count && meet && once &&
+          !share_vertex(numbers[k], t.tags & number_mask)) {
+        near |= 1u << (BUNDLE_SIZE * m + k);
+        if (gap <= flat_reach) very_near |= 1u << (BUNDLE_SIZE * m + k);
       }
     }
-    for (; near != 0u; near &= near - 1u) {
-      int number = findLSB(near);
-      keep_if_near(begin + number % together, some + number / together, flat_reach);
-    }
+  }
+  for (; near != 0u; near &= near - 1u) {
+    int number = findLSB(near);
+    int i = begin + number % BUNDLE_SIZE, j = other_begin + number / BUNDLE_SIZE;
+    bool flat_at_rest = side_by_side_at_rest(rest_place(i), rest_place(j));
+    if (!flat_at_rest || (very_near >> number & 1u) != 0u) keep(i, j, flat_at_rest);
   }
 }
