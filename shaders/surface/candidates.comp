@@ -3,6 +3,7 @@
 // al. 2008, "Fast Collision Detection for Deformable Models using Representative-Triangles").
 #include "surface.glsl"
 #include "triangles.glsl"
+#include "box_gap.glsl"
 READ_UVEC2(triangle_pair_list, unit_triangle_pairs);
 layout(std430, binding = slot_near_pairs) writeonly buffer Candidates { uvec4 list[]; };  // pairs
 
@@ -15,25 +16,20 @@ uint owned_pairs(uvec3 one, uvec3 other) {
          other_vertex.z << 5u | edges * (edge.x << 6u | edge.y << 9u | edge.z << 12u);
 }
 
-/// True if the two boxes are within `reach` [m] of each other.
-bool boxes_near(vec3 low, vec3 high, vec3 other_low, vec3 other_high, float reach) {
-  vec3 apart = max(other_low - high, low - other_high);
-  return max(apart.x, max(apart.y, apart.z)) <= reach;
-}
-
 /// The pairs whose boxes are near, as the same bits. Loops of constant length over constant numbers: the places stay in
 /// registers.
 uint near_pairs(vec3 one[3], vec3 other[3], float reach) {
+  float most = reach * reach;
   uint found = 0u;
   vec3 low = min(one[0], min(one[1], one[2])), high = max(one[0], max(one[1], one[2]));
   vec3 other_low = min(other[0], min(other[1], other[2])), other_high = max(other[0], max(other[1], other[2]));
   for (int k = 0; k < 3; ++k) {
-    if (boxes_near(one[k], one[k], other_low, other_high, reach)) found |= 1u << k;
-    if (boxes_near(other[k], other[k], low, high, reach)) found |= 8u << k;
+    if (box_gap_squared(one[k], one[k], other_low, other_high) <= most) found |= 1u << k;
+    if (box_gap_squared(other[k], other[k], low, high) <= most) found |= 8u << k;
     vec3 end = one[(k + 1) % 3], edge_low = min(one[k], end), edge_high = max(one[k], end);
     for (int m = 0; m < 3; ++m) {
       vec3 other_end = other[(m + 1) % 3];
-      if (boxes_near(edge_low, edge_high, min(other[m], other_end), max(other[m], other_end), reach))
+      if (box_gap_squared(edge_low, edge_high, min(other[m], other_end), max(other[m], other_end)) <= most)
         found |= 64u << (3 * k + m);
     }
   }

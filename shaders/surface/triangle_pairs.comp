@@ -3,6 +3,7 @@
 // the search does not reach as far for them.
 #include "surface.glsl"
 #include "triangles.glsl"
+#include "box_gap.glsl"
 READ_UVEC2(bundle_pair_list, unit_bundle_pairs);
 READ_VEC4(rest_places, unit_rest_places);  // middle of a triangle's box, cloth; normal, radius about the middle
 layout(std430, binding = slot_triangle_pairs) writeonly buffer TrianglePairs { uvec2 found[]; };
@@ -25,11 +26,6 @@ bool side_by_side_at_rest(RestPlace one, RestPlace other) {
 
 bool share_vertex(uvec3 one, uvec3 other) {
   return any(equal(one, other)) || any(equal(one, other.yzx)) || any(equal(one, other.zxy));
-}
-
-float apart(vec3 low, vec3 high, vec3 other_low, vec3 other_high) {
-  vec3 gaps = max(other_low - high, low - other_high);
-  return max(gaps.x, max(gaps.y, gaps.z));
 }
 
 void keep(int i, int j, bool flat_at_rest) {
@@ -62,11 +58,11 @@ void main() {
     for (int k = 0; k < BUNDLE_SIZE; ++k) {
       int i = begin + k, bodies = int(i >= cloth_triangle_count) + int(j >= cloth_triangle_count);
       bool meet = bodies == 1 || (bodies == 0 && cloth_pairs != 0), once = bundles.x != bundles.y || i < j;
-      float gap = apart(low[k], high[k], other_low, other_high);
-      if (gap <= reach && max(i, j) < triangle_count && meet && once &&
+      float gap = box_gap_squared(low[k], high[k], other_low, other_high);
+      if (gap <= reach * reach && max(i, j) < triangle_count && meet && once &&
           !share_vertex(numbers[k], t.tags & number_mask)) {
         near |= 1u << (BUNDLE_SIZE * m + k);
-        if (gap <= flat_reach) very_near |= 1u << (BUNDLE_SIZE * m + k);
+        if (gap <= flat_reach * flat_reach) very_near |= 1u << (BUNDLE_SIZE * m + k);
       }
     }
   }
