@@ -79,23 +79,19 @@ int meet_solid(int kind, bool moves, int first, vec3 from, inout vec3 x, inout v
 }
 
 /// The same at a run of solids of one kind: those from row `first` to row `end`. Software OpenGL runs all the code of
-/// an `if` for each of them; so of many at rest it first finds those that the step can reach, by a cheap test. A solid
-/// at rest shortens a path, or turns it along its surface: what follows it stays within three lengths of its start.
+/// an `if` for each of them; so of many at rest it looks, by a cheap test, for the next one that the path can meet.
 int meet_run(int kind, bool moves, int first, int end, vec3 from, inout vec3 x, inout vec3 v, float reach) {
-  const int few = 4, bits = 32;
-  int rows = solid_rows(kind), count = (end - first) / rows, of_bit = (count + bits - 1) / bits, met = 0;
-  if (moves || count <= few) {
-    for (int row = first; row < end; row += rows) met += meet_solid(kind, moves, row, from, x, v, reach);
-    return met;
-  }
-  uint near = 0u;
-  float beyond = 3.0 * distance(from, x);
-  for (int k = 0; k < count; ++k)
-    if (solid_within(kind, solid_at(kind, first + k * rows, reach), from, beyond)) near |= 1u << (k / of_bit);
-  for (; near != 0u; near &= near - 1u) {
-    int begin = findLSB(near) * of_bit;
-    for (int k = begin; k < min(begin + of_bit, count); ++k)
-      met += meet_solid(kind, moves, first + k * rows, from, x, v, reach);
+  const int few = 4;
+  int rows = solid_rows(kind), met = 0;
+  bool many = !moves && end - first > few * rows;
+  for (int row = first; row < end; row += rows) {
+    if (many) {
+      int next = end;
+      for (int other = end - rows; other >= first; other -= rows)
+        if (other >= row && solid_within(kind, solid_at(kind, other, reach), from, distance(from, x))) next = other;
+      row = next;
+    }
+    if (row < end) met += meet_solid(kind, moves, row, from, x, v, reach);
   }
   return met;
 }

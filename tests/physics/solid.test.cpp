@@ -77,6 +77,31 @@ TEST_CASE("a step against solids of every kind at once is the same on the GPU an
   }
 }
 
+TEST_CASE("many solids of a kind, at rest, are met as the reference meets them, one after the other") {
+  const auto context = test::context();
+  for (const scene::Shape& shape : a_shape_of_each_kind) {
+    INFO(scene::shape_to_json(shape));
+    std::vector<scene::Collider> colliders;
+    for (int n = 0; n < 40; ++n) {  // they overlap: what one stops, the next may stop, too
+      const glm::dvec3 place(0.4 * (n % 4) - 0.6, 0.5 * (n / 4 % 3) - 0.5, 0.3 * (n / 12) - 0.5);
+      colliders.push_back({std::to_string(n),
+                           scene::moved_shape(shape, turned_by({0.1, 0.2 * n, 0.3}), place),
+                           0.3,
+                           0.2,
+                           {}});
+    }
+    const scene::Scene scene = loose_vertices(colliders);
+    Stepped gpu(Side::gpu, scene), truth(Side::reference, scene);
+    gpu.step(1);
+    truth.step(1);
+    const reference::State found = gpu.state(), wanted = truth.state();
+    int differ = 0;
+    for (std::size_t i = 0; i < found.position.size(); ++i)
+      differ += glm::distance(found.position[i], wanted.position[i]) >= 1e-5;
+    CHECK(differ == 0);
+  }
+}
+
 TEST_CASE("solids of two kinds are met in the same order wherever the scene names them") {
   const auto context = test::context();
   std::vector<scene::Collider> colliders;

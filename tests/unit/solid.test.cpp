@@ -267,8 +267,8 @@ TEST_CASE("a path that meets a solid at rest is no longer than what the cheapest
     for (int round = 0; round < 20000; ++round) {
       const double reach = std::pow(10.0, static_cast<double>(random() % 4) - 2.0);
       const dvec3 from = 1.5 * random_vector(random), to = from + reach * random_vector(random);
-      const bool within = elements::solid_within(scene::solid(home).kind, with_margin(home), from,
-                                                 glm::distance(from, to));
+      const bool within =
+          elements::solid_within(scene::solid(home).kind, with_margin(home), from, glm::distance(from, to));
       if (path(home, home, from, to).met) CHECK(within);
       met += path(home, home, from, to).met;
       out_of_reach += !within;
