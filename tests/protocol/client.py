@@ -299,8 +299,12 @@ class Connection(unittest.TestCase):
         with self.assertRaises(clothlab.ConnectionLost):
             cloth.reconnect()
         passing.process.wait(30)
-        with Server("--port", passing.port):
-            cloth.reconnect()
+        another = []
+        later = threading.Timer(1, lambda: another.append(Server("--port", passing.port)))
+        later.start()
+        cloth.reconnect(patience=60)
+        later.join()
+        with another[0]:
             self.assertEqual(cloth["/name"], "seed")
             cloth.close()
 

@@ -166,13 +166,20 @@ test("no server, a refusal, a closed connection, and one made anew", async () =>
   cloth.close();
 });
 
-test("the end of a server ends what waits", async () => {
+test("the end of a server ends what waits, and another one is found", async (t) => {
   const passing = await Server.start();
   const cloth = await clothlab.connect(passing.host);
   const waiting = error(clothlab.ConnectionLost, cloth.wait("no.such"));
   await passing.stop();
   assert.equal((await waiting).code, 1001);
   await error(clothlab.ConnectionLost, cloth.reconnect());
+  const found = cloth.reconnect(60);
+  await sleep(1000);
+  const another = await Server.start("--port", new URL(`http://${passing.host}`).port);
+  t.after(() => another.stop());
+  await found;
+  assert.equal(await cloth.get("/name"), "seed");
+  cloth.close();
 });
 
 test("tokens make operators and viewers", async (t) => {

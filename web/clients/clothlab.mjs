@@ -75,6 +75,7 @@ export class Timeout extends ClothlabError {
 }
 
 const headerBytes = 64;
+const retryTime = 0.5; // [s] between two tries to connect anew
 
 /** What is connected: the same for all frames until another mesh. */
 export class Topology {
@@ -291,8 +292,23 @@ export class Session {
 
   // The connection
 
-  /** Connects anew, to the same session with the same token. Frames, hands and jobs of before are gone. */
-  async reconnect() {
+  /**
+   * Connects anew, to the same session with the same token. Frames, hands and jobs of before are gone.
+   * @param {number} [patience] [s] for how long to try again if there is no server, or it refuses: while one is
+   *     started anew, or another takes the session over (the connection was lost with code 1012)
+   */
+  async reconnect(patience = 0) {
+    const until = performance.now() + 1000 * patience;
+    for (;;)
+      try {
+        return await this._connect();
+      } catch (error) {
+        if (!(error instanceof ConnectionLost) || performance.now() + 1000 * retryTime > until) throw error;
+        await new Promise((resolve) => setTimeout(resolve, 1000 * retryTime));
+      }
+  }
+
+  async _connect() {
     this.close();
     const { host, secure, session, token, timeout, Socket } = this._setup;
     this._lost = this._topology = this._frame = this._subscribed = null;

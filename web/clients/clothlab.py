@@ -47,6 +47,7 @@ Json = Any
 Verify = Union[bool, str, ssl.SSLContext]
 
 SUBPROTOCOL = "clothlab.v1"
+RETRY_TIME = 0.5  # [s] between two tries to connect anew
 
 
 class ClothlabError(Exception):
@@ -387,8 +388,22 @@ class Session:
 
     # -- the connection
 
-    def reconnect(self) -> None:
-        """Connects anew, to the same session with the same token. Frames, hands and jobs of before are gone."""
+    def reconnect(self, patience: float = 0) -> None:
+        """Connects anew, to the same session with the same token. Frames, hands and jobs of before are gone.
+
+        patience: [s] for how long to try again if there is no server, or it refuses: while one is started anew, or
+        another takes the session over (the connection was lost with code 1012).
+        """
+        until = time.monotonic() + patience
+        while True:
+            try:
+                return self._connect()
+            except ConnectionLost:
+                if time.monotonic() + RETRY_TIME > until:
+                    raise
+            time.sleep(RETRY_TIME)
+
+    def _connect(self) -> None:
         if hasattr(self, "_socket"):
             self.close()
         self._socket = _WebSocket(self._address, self.timeout)
