@@ -2,12 +2,13 @@
 // bundles: the same, of BUNDLE_SIZE.
 #include "surface.glsl"
 #include "triangles.glsl"
+#include "boxes.glsl"
 layout(std430, binding = slot_boxes) writeonly buffer Boxes { vec4 boxes[]; };
 
 void main() {
-  int item = int(gl_GlobalInvocationID.x), leaf_count = (triangle_count + LEAF_SIZE - 1) / LEAF_SIZE;
-  bool leaf = item < leaf_count;
-  int size = leaf ? LEAF_SIZE : BUNDLE_SIZE, begin = leaf ? LEAF_SIZE * item : BUNDLE_SIZE * (item - leaf_count);
+  int item = int(gl_GlobalInvocationID.x);
+  bool leaf = item < leaf_count();
+  int size = leaf ? LEAF_SIZE : BUNDLE_SIZE, begin = leaf ? LEAF_SIZE * item : BUNDLE_SIZE * (item - leaf_count());
   if (begin >= triangle_count) return;
   vec3 low = vec3(1e30), high = vec3(-1e30);
   for (int i = begin; i < min(begin + size, triangle_count); ++i) {

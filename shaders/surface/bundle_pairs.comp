@@ -1,6 +1,6 @@
 // Pair search, 4 of 10: pairs of bundles, of two near leaves, whose boxes are near each other; a bundle is near itself.
 #include "surface.glsl"
-#include "box_gap.glsl"
+#include "boxes.glsl"
 READ_VEC4(boxes, unit_boxes);
 READ_UVEC2(leaf_pair_list, unit_leaf_pairs);
 layout(std430, binding = slot_bundle_pairs) writeonly buffer BundlePairs { uvec2 found[]; };
@@ -11,15 +11,14 @@ void main() {
   int item = int(gl_GlobalInvocationID.x);
   if (item / bundles_of_leaf >= int(min(known.leaf_pairs, leaf_pair_capacity))) return;
   ivec2 leaves = ivec2(FETCH_UVEC2(leaf_pair_list, item / bundles_of_leaf));
-  int leaf_count = (triangle_count + LEAF_SIZE - 1) / LEAF_SIZE;
   int bundle_count = (triangle_count + BUNDLE_SIZE - 1) / BUNDLE_SIZE;
   int one = bundles_of_leaf * leaves.x + item % bundles_of_leaf, first = bundles_of_leaf * leaves.y;
   if (one >= bundle_count) return;
   float reach = reach_of(next_query());
-  vec3 low = FETCH(boxes, 2 * (leaf_count + one)).xyz, high = FETCH(boxes, 2 * (leaf_count + one) + 1).xyz;
+  vec3 low = FETCH(boxes, 2 * (leaf_count() + one)).xyz, high = FETCH(boxes, 2 * (leaf_count() + one) + 1).xyz;
   uint near = 0u;
   for (int k = 0; k < bundles_of_leaf; ++k) {
-    int other = min(first + k, bundle_count - 1), box = 2 * (leaf_count + other);
+    int other = min(first + k, bundle_count - 1), box = 2 * (leaf_count() + other);
     if (box_gap_squared(low, high, FETCH(boxes, box).xyz, FETCH(boxes, box + 1).xyz) <= reach * reach &&
         first + k < bundle_count && (leaves.x != leaves.y || one <= other))
       near |= 1u << k;

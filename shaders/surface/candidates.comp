@@ -3,7 +3,7 @@
 // al. 2008, "Fast Collision Detection for Deformable Models using Representative-Triangles").
 #include "surface.glsl"
 #include "triangles.glsl"
-#include "box_gap.glsl"
+#include "boxes.glsl"
 READ_UVEC2(triangle_pair_list, unit_triangle_pairs);
 layout(std430, binding = slot_near_pairs) writeonly buffer Candidates { uvec4 list[]; };  // pairs
 

@@ -3,7 +3,7 @@
 // the search does not reach as far for them.
 #include "surface.glsl"
 #include "triangles.glsl"
-#include "box_gap.glsl"
+#include "boxes.glsl"
 READ_UVEC2(bundle_pair_list, unit_bundle_pairs);
 READ_VEC4(rest_places, unit_rest_places);  // middle of a triangle's box, cloth; normal, radius about the middle
 layout(std430, binding = slot_triangle_pairs) writeonly buffer TrianglePairs { uvec2 found[]; };
