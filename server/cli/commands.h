@@ -25,6 +25,7 @@ enum ExitCode : int {
 // Each function adds its subcommand to `app`. If the command line calls that subcommand, it runs and stores
 // its exit code in `exit_code`.
 void add_serve(CLI::App& app, int& exit_code);
+void add_relay(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
 void add_render(CLI::App& app, int& exit_code);
 void add_record(CLI::App& app, int& exit_code);

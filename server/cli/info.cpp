@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "server/base/data_files.h"
+#include "server/bus/bus.h"
 #include "server/cli/commands.h"
 #include "server/gl/context.h"
 #include "server/scene/method.h"
@@ -32,6 +33,9 @@ void print_device(const gl::Device& device, bool used) {
 int info() {
   std::cout << "clothlab " CLOTHLAB_VERSION ", compiler " __VERSION__ ", libwebsockets "
             << lws_get_library_version() << "\n";
+  const std::string bus = bus::library();
+  std::cout << "bus      "
+            << (bus.empty() ? "none: built without libnats, so no --publish and no relay" : bus) << "\n";
   std::cout << "methods ";
   for (const scene::Method method : scene::methods) std::cout << " " << scene::name(method);
   std::cout << "\n";

@@ -28,6 +28,7 @@ void describe(CLI::App& app, int& exit_code) {
   app.require_subcommand(0, 1);
   // One line for each subcommand, in the order in which the help lists them.
   add_serve(app, exit_code);
+  add_relay(app, exit_code);
   add_run(app, exit_code);
   add_render(app, exit_code);
   add_record(app, exit_code);

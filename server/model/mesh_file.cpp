@@ -92,4 +92,11 @@ std::string ply_bytes(const scene::TriangleMesh& mesh, const std::string& commen
   return out;
 }
 
+std::optional<std::string> collider_ply(const scene::Scene& scene, const std::string& name) {
+  for (const scene::Collider& collider : scene.colliders)
+    if (const auto* body = std::get_if<scene::Body>(&collider.shape); body && collider.name == name)
+      return ply_bytes(*body->mesh, "a collider of Clothlab");
+  return std::nullopt;
+}
+
 }  // namespace clothlab::model

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,5 +21,8 @@ std::string ply_bytes(const Model& model, const std::vector<glm::vec3>& position
 
 /// A binary little-endian PLY file of a body's mesh, in the mesh's own frame, as server/net/README.md has it.
 std::string ply_bytes(const scene::TriangleMesh& mesh, const std::string& comment);
+
+/// The same of the collider of this name; none: the scene has no such collider, or it is no mesh.
+std::optional<std::string> collider_ply(const scene::Scene& scene, const std::string& name);
 
 }  // namespace clothlab::model

@@ -45,7 +45,8 @@ nlohmann::json hello_params(const Hub& hub, const Room& room, const Client& clie
           {"client", client.id()},  // `by` in the scene.changed of this client's edits
           {"renderer", room.renderer()},
           {"methods", method_list()},
-          {"requests", method_names()},
+          {"requests", method_names(hub.relays())},
+          {"relay", hub.relays()},
           {"encodings", encoding_list()},
           {"fields", field_list()},
           {"limits",

@@ -45,16 +45,12 @@ HttpAnswer plain(unsigned status, const std::string& text) {
   return {status, "text/plain; charset=utf-8", text + "\n", {}};
 }
 
-/// The mesh of the collider of this name: the page asks for it, as the document may have only the name of a
-/// file.
-HttpAnswer collider_mesh(const scene::Scene& scene, const std::string& name) {
-  for (const scene::Collider& collider : scene.colliders)
-    if (const auto* body = std::get_if<scene::Body>(&collider.shape); body && collider.name == name)
-      return {200,
-              "application/octet-stream",
-              model::ply_bytes(*body->mesh, "a collider of Clothlab"),
-              {{"cache-control:", "no-store"}}};
+HttpAnswer no_collider() {
   return plain(404, "the scene has no mesh collider of this name; name=NAME is that of /api/scene's list");
+}
+
+HttpAnswer binary(std::string bytes) {
+  return {200, "application/octet-stream", std::move(bytes), {{"cache-control:", "no-store"}}};
 }
 
 constexpr int patience = 30;  ///< with what is made for a request [s]
@@ -181,8 +177,11 @@ std::optional<HttpAnswer> HttpRequest::find_protected(const std::string& path) {
     return plain(404,
                  "no such session is open; one opens when a page or script connects to /ws?session=NAME");
   if (path == "/api/scene") return HttpAnswer{200, "application/json", room->document().dump(2) + "\n", {}};
+  // The document may have only the name of a mesh's file, so the page asks for what the server has read.
+  if (collider) return collider_mesh(*room, query(wsi_, "name", ""));
+  if (hub_.relays())
+    return plain(404, "a relay only passes on what viewers see; ask the server that runs the session");
   if (recorded) return recording(*room, page);
-  if (collider) return collider_mesh(room->scene(), query(wsi_, "name", ""));
   using Kind = session::Export::Kind;
   if (mesh || model) return ask_session(session, {mesh ? Kind::obj : Kind::glb});
   const session::Export what{Kind::picture, side(query(wsi_, "width", "1280"), max_snapshot_side),
@@ -190,6 +189,17 @@ std::optional<HttpAnswer> HttpRequest::find_protected(const std::string& path) {
   if (what.width == 0 || what.height == 0)
     return plain(400, "width and height are whole numbers from 1 to " + std::to_string(max_snapshot_side));
   return ask_session(session, what);
+}
+
+std::optional<HttpAnswer> HttpRequest::collider_mesh(Room& room, const std::string& name) {
+  if (hub_.relays()) {
+    if (const std::shared_ptr<const std::string> known = room.relayed_collider(name)) return binary(*known);
+    lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, patience);
+    room.ask_collider(name, id_);
+    return std::nullopt;
+  }
+  std::optional<std::string> mesh = model::collider_ply(room.scene(), name);
+  return mesh ? binary(std::move(*mesh)) : no_collider();
 }
 
 std::optional<HttpAnswer> HttpRequest::recording(const Room& room, bool page) {
@@ -200,8 +210,7 @@ std::optional<HttpAnswer> HttpRequest::recording(const Room& room, bool page) {
                  ? "this session is being recorded; record.stop over the WebSocket ends that"
                  : "nothing has been recorded in this session; record.start over the WebSocket does that");
   file_name_ = "clothlab-" + room.name() + (page ? ".html" : ".clothlab");
-  if (!page)
-    return HttpAnswer{200, "application/octet-stream", *facts.file, {{"cache-control:", "no-store"}}};
+  if (!page) return binary(*facts.file);
   if (hub_.exports_full()) return busy();
   lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, patience);
   hub_.make_page(id_, facts);
@@ -226,6 +235,10 @@ void HttpRequest::deliver(session::Exported exported) {
       exported.body
           ? send({200, exported.content_type, std::move(*exported.body), {{"cache-control:", "no-store"}}})
           : send(plain(500, exported.body.error().text())));
+}
+
+void HttpRequest::deliver_collider(const std::shared_ptr<const std::string>& mesh) {
+  finish_(wsi_, send(mesh ? binary(*mesh) : no_collider()));
 }
 
 HttpRequest::Progress HttpRequest::refuse(const HttpAnswer& refusal) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -47,6 +48,8 @@ class HttpRequest {
   /// Answers with the picture or mesh that this request asked for, or with the error. The request is
   /// destroyed.
   void deliver(session::Exported exported);
+  /// The same with the mesh of a collider, null: there is none.
+  void deliver_collider(const std::shared_ptr<const std::string>& mesh);
   /// True if the client has closed the connection, so that nobody waits for the answer.
   bool hung_up() const;
 
@@ -58,6 +61,8 @@ class HttpRequest {
   std::optional<HttpAnswer> find_protected(const std::string& path);
   /// Asks the session for a picture or mesh. Returns the refusal if too many wait already.
   std::optional<HttpAnswer> ask_session(const std::string& session, session::Export what);
+  /// The mesh of a collider, of which a relay asks the server.
+  std::optional<HttpAnswer> collider_mesh(Room& room, const std::string& name);
   /// The room's recording, alone or (after a while) in its page; a refusal if there is none.
   std::optional<HttpAnswer> recording(const Room& room, bool page);
   Progress send(const HttpAnswer& answer);

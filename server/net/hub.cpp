@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <random>
 
 #include "server/base/memory.h"
+#include "server/base/text.h"
 #include "server/net/client.h"
 #include "server/net/http.h"
 #include "server/net/request_headers.h"
@@ -76,8 +78,20 @@ LabQueue::Port Hub::lab_port() {
   return port;
 }
 
+Status Hub::join_bus() {
+  if (options_.bus.empty()) return ok();
+  std::random_device random;
+  run_name_ = formatted("%08x%08x", random(), random());
+  Result<std::unique_ptr<bus::Bus>> joined =
+      bus::connect(options_.bus, relays() ? "clothlab relay" : "clothlab serve", wake_);
+  if (!joined) return joined.error();
+  bus_ = std::move(*joined);
+  return ok();
+}
+
 Role Hub::role_of(const std::string& token) const {
-  if (!needs_token() || same(token, options_.token)) return Role::operator_;
+  if (!needs_token()) return relays() ? Role::viewer : Role::operator_;
+  if (!options_.token.empty() && same(token, options_.token)) return Role::operator_;
   if (!options_.view_token.empty() && same(token, options_.view_token)) return Role::viewer;
   return Role::none;
 }
@@ -99,7 +113,9 @@ TokenCheck Hub::check_token(const std::string& token, const std::string& address
 }
 
 std::string Hub::host_refusal(const std::string& host) const {
-  if (needs_token() || host_trusted(host, options_.allow_origin)) return {};
+  // Where everybody may watch, nobody needs another's name to do so.
+  if (needs_token() || (relays() && !is_loopback(options_.bind))) return {};
+  if (host_trusted(host, options_.allow_origin)) return {};
   const std::string name = host_text(host);
   const std::string scheme = options_.tls_certificate.empty() ? "http://" : "https://";
   return "this server requires no token, and so answers under an address or localhost only, not as " + name +
@@ -145,12 +161,12 @@ bool Hub::elsewhere(const std::string& name) {
 }
 
 void Hub::give_up_sleeping_rooms() {
-  if (!options_.share_state) return;
+  if (!opens_on_demand()) return;
   for (std::string name = sleeping_room(); !name.empty(); name = sleeping_room()) retire(name);
 }
 
 bool Hub::knows_session(const std::string& name) {
-  if (find_room(name) || name == main_session) return true;
+  if (find_room(name) || name == main_session || relays()) return true;
   std::error_code failure;
   return !options_.state_folder.empty() &&
          std::filesystem::exists(session::session_file(options_.state_folder, name), failure);
@@ -160,7 +176,7 @@ std::string Hub::sleeping_room() const {
   std::string longest;
   std::int64_t since = session::now_us() - std::int64_t{limits().scene.unwatched_seconds} * 1'000'000;
   for (const auto& [name, room] : rooms_) {
-    if ((name == main_session && !options_.share_state) || !room->empty() || room->unwatched_since() > since)
+    if ((name == main_session && !opens_on_demand()) || !room->empty() || room->unwatched_since() > since)
       continue;
     since = room->unwatched_since();
     longest = name;
@@ -171,6 +187,7 @@ std::string Hub::sleeping_room() const {
 void Hub::retire(const std::string& name) {
   const auto found = rooms_.find(name);
   lab_->session_left(name);
+  if (relays()) return void(rooms_.erase(found));  // it has no thread to wait for
   // The session's thread may need a turn to end, so another thread waits for it. Futures of threads that have
   // ended are dropped, because each keeps its thread's stack.
   std::erase_if(retiring_, [](const std::future<void>& end) {
@@ -243,7 +260,20 @@ void Hub::deliver(session::Exported exported) {
   if (found != waiting_.end()) found->second->deliver(std::move(exported));
 }
 
+void Hub::deliver_collider(std::uint64_t asker, const relay::Feed::ColliderMesh& mesh) {
+  const auto found = waiting_.find(asker);
+  if (found != waiting_.end()) found->second->deliver_collider(mesh);
+}
+
+void Hub::pump_bus() {
+  if (!bus_) return;
+  bus_->take(from_bus_);
+  for (const bus::Message& message : from_bus_)
+    if (Room* room = find_room(relay::session_of(message.subject))) room->receive(message);
+}
+
 void Hub::pump() {
+  pump_bus();
   std::vector<std::string> failed;
   for (const auto& [name, room] : rooms_) {
     room->pump();
@@ -260,6 +290,7 @@ void Hub::stop_sessions() {
   for (const auto& [name, room] : rooms_) room->stop();
   lab_->stop();
   for (const auto& [name, room] : rooms_) room->give_up_session().reset();
+  if (bus_) bus_->close();
   retiring_.clear();  // waits for each session that is being closed
   exporter_.stop();
 }
@@ -272,6 +303,7 @@ Gauges Hub::gauges() const {
     if (const std::optional<double> pace = room->pace())
       gauges.slowest = std::min(gauges.slowest.value_or(*pace), *pace);
   }
+  if (bus_) gauges.bus = bus_->counts();
   for (const auto& [id, client] : clients_) gauges.viewers += client->pacing().subscribed() ? 1u : 0u;
   return gauges;
 }

@@ -1,5 +1,5 @@
-// The state of the service thread: rooms (a session and its clients), all clients, and the HTTP requests in
-// progress. Only the service thread touches it.
+// The state of the service thread: rooms (a session and its clients), all clients, the HTTP requests in
+// progress, and the message bus. Only the service thread touches it.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "server/base/log.h"
+#include "server/bus/bus.h"
 #include "server/lab/cache.h"
 #include "server/net/connections.h"
 #include "server/net/lab_queue.h"
@@ -40,6 +41,8 @@ class Hub {
  public:
   /// `wake` makes the service thread call `pump`; any thread may call it.
   Hub(Options options, std::function<void()> wake);
+  /// Connects to the bus of the options, if there is one. To be called before any room is opened.
+  Status join_bus();
   ~Hub();
 
   const Options& options() const { return options_; }
@@ -48,20 +51,28 @@ class Hub {
   LabQueue& lab() { return *lab_; }
   Connections& connections() { return connections_; }
 
-  /// The role that a token gives its client; without `--token` every client is an operator.
+  /// The role that a token gives its client; where no token is needed every client is an operator, of a relay
+  /// a viewer.
   Role role_of(const std::string& token) const;
   /// The role of a token that came from `address`, or how long that address must wait after too many wrong
   /// tokens. A wrong token is counted, and logged with the fields `who`.
   TokenCheck check_token(const std::string& token, const std::string& address, std::vector<LogField> who);
-  bool needs_token() const { return !options_.token.empty(); }
+  bool needs_token() const { return !options_.token.empty() || !options_.view_token.empty(); }
   /// Why a request with this Host header is refused; empty: it is not. With `--token` any name is allowed.
   std::string host_refusal(const std::string& host) const;
 
+  /// The message bus, null without one; `run_name` is what this run of the program calls itself there.
+  bus::Bus* bus() { return bus_.get(); }
+  const std::string& run_name() const { return run_name_; }
+  /// True for `clothlab relay`: sessions run elsewhere, and viewers only watch.
+  bool relays() const { return options_.relay; }
+  /// True if sessions are opened when somebody asks for them and given up when nobody watches, `main` too.
+  bool opens_on_demand() const { return options_.share_state || relays(); }
+
   Room* find_room(const std::string& name);
   /// The room of this name, opened if it is new; null beyond --max-sessions, and if another server has the
-  /// session open. To make place, the room that has
-  /// been without clients for the longest time, at least --unwatched-timeout, is closed; `main` only where
-  /// servers share the state folder.
+  /// session open. To make place, the room that has been without viewers for the longest time, at least
+  /// --unwatched-timeout, is closed; `main` only where sessions are opened on demand.
   Room* open_room(const std::string& name);
   bool has_place_for(const std::string& name);
   /// True if another server that shares the state folder has the session open.
@@ -70,7 +81,7 @@ class Hub {
   /// that would create it.
   bool knows_session(const std::string& name);
 
-  /// Where servers share the state folder: gives up the sessions without clients for --unwatched-timeout, so
+  /// Where sessions are opened on demand: gives up those that nobody has watched for --unwatched-timeout, so
   /// that another server can open them.
   void give_up_sleeping_rooms();
 
@@ -93,10 +104,13 @@ class Hub {
   /// Takes the moment that a session has handed over for a picture or mesh, or the reason why it did not.
   void captured(session::Captured captured);
 
+  /// Passes on the mesh of a collider that the HTTP request `asker` asked for; null: there is none.
+  void deliver_collider(std::uint64_t asker, const relay::Feed::ColliderMesh& mesh);
+
   /// Has the page of a recording made for the HTTP request `asker`.
   void make_page(std::uint64_t asker, const session::RecordingFacts& recording);
 
-  /// Passes on what the sessions, the exporter and the lab have put out.
+  /// Passes on what the sessions, the exporter, the lab and the bus have put out.
   void pump();
   /// Stops every session's thread and the lab's, and waits for them.
   void stop_sessions();
@@ -108,6 +122,7 @@ class Hub {
 
  private:
   LabQueue::Port lab_port();
+  void pump_bus();
   void deliver(session::Exported exported);
   void pump_exports();
   std::uint64_t steps() const;
@@ -124,12 +139,16 @@ class Hub {
   lab::Cache lab_cache_;
   std::unique_ptr<LabQueue> lab_;
   session::Exporter exporter_;
+  std::string run_name_;
+  std::unique_ptr<bus::Bus> bus_;  ///< before the rooms, which use it
+  std::vector<bus::Message> from_bus_;
   std::deque<session::Captured> captured_;  ///< what the exporter makes next, first come first
   std::map<std::string, std::unique_ptr<Room>> rooms_;
   std::map<std::uint64_t, Client*> clients_;
   std::map<std::uint64_t, HttpRequest*> waiting_;
   std::vector<std::future<void>> retiring_;
-  std::uint64_t last_id_ = 0;
+  /// Of clients and requests. Those of relays differ from those of the server whose messages they pass on.
+  std::uint64_t last_id_ = options_.relay ? std::uint64_t{1} << 40 : 0;
   std::optional<session::Failed> main_failure_;
 };
 

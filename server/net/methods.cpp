@@ -41,59 +41,66 @@ Outcome auth(Client& client, const Request& request) {
 
 struct Method {
   const char* name;
-  bool operators_only;  ///< true: only operators may call the method
+  enum class For {
+    everybody,
+    direct,    ///< everybody but viewers of a relay, which has no session to ask
+    operators  ///< it changes something
+  } who;
   Outcome (*run)(Client&, const Request&);
 };
 
+using For = Method::For;
+
 constexpr std::array methods{
-    Method{"auth", false, auth},
-    Method{"grab.end", true, grab_end},
-    Method{"grab.move", true, grab_move},
-    Method{"grab.start", true, grab_start},
-    Method{"inspect.contacts", false, inspect_contacts},
-    Method{"inspect.elements", false, inspect_elements},
-    Method{"inspect.springs", false, inspect_springs},
-    Method{"lab.cancel", true, lab_cancel},
-    Method{"lab.chart", true, lab_chart},
-    Method{"lab.choose", true, lab_choose},
-    Method{"lab.compare", true, lab_compare},
-    Method{"lab.export", true, lab_export},
-    Method{"lab.jobs", true, lab_jobs},
-    Method{"lab.moments", true, lab_moments},
-    Method{"lab.simplify", true, lab_simplify},
-    Method{"lab.stability", true, lab_stability},
-    Method{"mesh.upload", true, mesh_upload},
-    Method{"ping", false, ping},
-    Method{"record.get", false, record_get},
-    Method{"record.start", true, record_start},
-    Method{"record.stop", true, record_stop},
-    Method{"scene.get", false, scene_get},
-    Method{"scene.load", true, scene_load},
-    Method{"scene.patch", true, scene_patch},
-    Method{"scene.presets", false, scene_presets},
-    Method{"scene.redo", true, scene_redo},
-    Method{"scene.undo", true, scene_undo},
-    Method{"sim.pause", true, sim_pause},
-    Method{"sim.play", true, sim_play},
-    Method{"sim.reset", true, sim_reset},
-    Method{"sim.speed", true, sim_speed},
-    Method{"sim.step", true, sim_step},
-    Method{"stream.ack", false, stream_ack},
-    Method{"stream.subscribe", false, stream_subscribe},
-    Method{"stream.unsubscribe", false, stream_unsubscribe},
-    Method{"timeline.get", false, timeline_get},
-    Method{"timeline.resume", true, timeline_resume},
+    Method{"auth", For::everybody, auth},
+    Method{"grab.end", For::operators, grab_end},
+    Method{"grab.move", For::operators, grab_move},
+    Method{"grab.start", For::operators, grab_start},
+    Method{"inspect.contacts", For::direct, inspect_contacts},
+    Method{"inspect.elements", For::direct, inspect_elements},
+    Method{"inspect.springs", For::direct, inspect_springs},
+    Method{"lab.cancel", For::operators, lab_cancel},
+    Method{"lab.chart", For::operators, lab_chart},
+    Method{"lab.choose", For::operators, lab_choose},
+    Method{"lab.compare", For::operators, lab_compare},
+    Method{"lab.export", For::operators, lab_export},
+    Method{"lab.jobs", For::operators, lab_jobs},
+    Method{"lab.moments", For::operators, lab_moments},
+    Method{"lab.simplify", For::operators, lab_simplify},
+    Method{"lab.stability", For::operators, lab_stability},
+    Method{"mesh.upload", For::operators, mesh_upload},
+    Method{"ping", For::everybody, ping},
+    Method{"record.get", For::direct, record_get},
+    Method{"record.start", For::operators, record_start},
+    Method{"record.stop", For::operators, record_stop},
+    Method{"scene.get", For::everybody, scene_get},
+    Method{"scene.load", For::operators, scene_load},
+    Method{"scene.patch", For::operators, scene_patch},
+    Method{"scene.presets", For::everybody, scene_presets},
+    Method{"scene.redo", For::operators, scene_redo},
+    Method{"scene.undo", For::operators, scene_undo},
+    Method{"sim.pause", For::operators, sim_pause},
+    Method{"sim.play", For::operators, sim_play},
+    Method{"sim.reset", For::operators, sim_reset},
+    Method{"sim.speed", For::operators, sim_speed},
+    Method{"sim.step", For::operators, sim_step},
+    Method{"stream.ack", For::everybody, stream_ack},
+    Method{"stream.subscribe", For::everybody, stream_subscribe},
+    Method{"stream.unsubscribe", For::everybody, stream_unsubscribe},
+    Method{"timeline.get", For::direct, timeline_get},
+    Method{"timeline.resume", For::operators, timeline_resume},
 };
 
-RpcError unknown(const std::string& method) {
-  return {error_unknown_method, method + ": there is no such method", {{"allowed", method_names()}}};
+RpcError unknown(const std::string& method, bool on_relay) {
+  return {error_unknown_method, method + ": there is no such method", {{"allowed", method_names(on_relay)}}};
 }
 
 }  // namespace
 
-std::vector<std::string> method_names() {
+std::vector<std::string> method_names(bool on_relay) {
   std::vector<std::string> names;
-  for (const Method& method : methods) names.emplace_back(method.name);
+  for (const Method& method : methods)
+    if (!on_relay || method.who == For::everybody) names.emplace_back(method.name);
   return names;
 }
 
@@ -119,10 +126,15 @@ Outcome call(Client& client, const Request& request) {
     return RpcError{error_not_allowed, "this server requires a token: call auth {token} first", nullptr};
   const auto method = std::find_if(methods.begin(), methods.end(),
                                    [&](const Method& candidate) { return request.method == candidate.name; });
-  if (method == methods.end()) return unknown(request.method);
-  if (method->operators_only && client.role() != Role::operator_)
+  if (method == methods.end()) return unknown(request.method, client.hub().relays());
+  if (method->who == For::operators && client.role() != Role::operator_)
     return RpcError{error_not_allowed, request.method + " changes something; a viewer may only look",
                     nullptr};
+  if (method->who == For::direct && client.hub().relays())
+    return RpcError{
+        error_not_allowed,
+        request.method + " is answered by the server that runs the session; a relay only passes frames on",
+        nullptr};
   if (!client.room() && request.method != "auth")
     return RpcError{error_over_limit, "no session is open for this connection; connect again", nullptr};
   return method->run(client, request);

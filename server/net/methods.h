@@ -19,8 +19,8 @@ using Outcome = std::variant<json, RpcError, AnsweredLater>;
 /// Checks the method's name, the client's role and the parameters, then carries the request out.
 Outcome call(Client& client, const Request& request);
 
-/// The names of all methods that the server supports.
-std::vector<std::string> method_names();
+/// The names of all methods that the server supports, or a relay.
+std::vector<std::string> method_names(bool on_relay);
 bool is_method(const std::string& name);
 
 /// Says which client an answer goes to, and which of its requests the answer belongs to.

@@ -138,6 +138,15 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
   count("clothlab_lab_failed_total", "counter", "jobs of the lab that failed", gauges.lab.failed);
   family(out, "clothlab_lab_seconds_total", "counter", "seconds that jobs of the lab that have ended ran",
          with_significant_digits(gauges.lab.seconds, 9));
+  if (gauges.bus) {
+    count("clothlab_bus_connected", "gauge", "1 if the message bus answers, else 0",
+          gauges.bus->connected ? 1 : 0);
+    count("clothlab_bus_messages_sent_total", "counter", "messages sent to the bus", gauges.bus->sent);
+    count("clothlab_bus_bytes_sent_total", "counter", "bytes of these messages", gauges.bus->sent_bytes);
+    count("clothlab_bus_messages_dropped_total", "counter",
+          "messages not sent, as the bus was away or slow, and frames replaced by newer ones",
+          gauges.bus->dropped);
+  }
   head(out, "clothlab_frame_latency_seconds", "histogram",
        "from the request to pack a frame until its bytes are sent, without waits for the viewer");
   metrics.latency.write(out, "clothlab_frame_latency_seconds");

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "server/bus/bus.h"
+
 namespace clothlab::net {
 
 /// Counts durations [s] in buckets between fixed edges.
@@ -77,10 +79,11 @@ struct Gauges {
   std::size_t sessions = 0, clients = 0, viewers = 0;
   std::uint64_t steps = 0;  ///< of the open sessions, since each was opened
   LabGauges lab;
-  std::size_t asleep = 0;           ///< sessions whose cloth is at rest
-  std::size_t exports_waiting = 0;  ///< pictures and meshes that wait or are being made
-  std::size_t stuck = 0;            ///< sessions whose thread does not answer; /healthz is 503 then
-  std::optional<double> slowest{};  ///< the least Room::pace; none: no session steps
+  std::size_t asleep = 0;            ///< sessions whose cloth is at rest
+  std::size_t exports_waiting = 0;   ///< pictures and meshes that wait or are being made
+  std::size_t stuck = 0;             ///< sessions whose thread does not answer; /healthz is 503 then
+  std::optional<double> slowest{};   ///< the least Room::pace; none: no session steps
+  std::optional<bus::Counts> bus{};  ///< none: without a message bus
 };
 
 std::string metrics_text(const Metrics& metrics, const Gauges& gauges);

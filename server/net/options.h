@@ -1,4 +1,4 @@
-// The command-line options of `clothlab serve`.
+// The command-line options of `clothlab serve` and `clothlab relay`.
 #pragma once
 
 #include <filesystem>
@@ -24,6 +24,8 @@ struct Options {
   std::filesystem::path state_folder;        ///< keeps the sessions' files; empty: sessions are not kept
   bool share_state = false;                  ///< other servers use that folder, too
   std::vector<std::string> trusted_proxies;  ///< addresses whose X-Forwarded-For is believed
+  std::string bus;                           ///< the URL of a message bus; empty: none
+  bool relay = false;  ///< sessions run on other servers, and come by the bus; else they are published on it
   std::optional<int> gpu;
   std::string tls_certificate, tls_key;  ///< PEM files; empty: plain HTTP
 };

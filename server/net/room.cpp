@@ -25,6 +25,11 @@ Room::Room(Hub& hub, std::string name, const std::function<void()>& wake, Lock c
       wake_(wake),
       claim_(std::move(claim)),
       unwatched_since_(session::now_us()) {
+  if (hub_.relays()) {
+    begin_feed();
+    return;
+  }
+  if (hub_.bus()) publisher_.emplace(*hub_.bus(), name_, hub_.run_name());
   const Options& options = hub_.options();
   std::optional<std::filesystem::path> stem;
   if (!options.state_folder.empty()) stem = options.state_folder / name_;
@@ -67,8 +72,9 @@ bool Room::capture(std::uint64_t asker, const session::Export& what) {
   return true;
 }
 
-std::unique_ptr<session::Session> Room::give_up_session() {
+std::unique_ptr<session::Source> Room::give_up_session() {
   hub_.metrics().steps_of_closed_sessions += steps();
+  feed_ = nullptr;
   return std::move(session_);
 }
 
@@ -78,8 +84,14 @@ void Room::stop() {
 
 void Room::enter(Client& client) {
   clients_.push_back(&client);
-  post({{}, session::Watchers{static_cast<int>(clients_.size())}});
   if (started()) greet(client);
+  watchers_changed();
+}
+
+/// Somebody has come or gone, here or at a relay.
+void Room::watchers_changed() {
+  post({{}, session::Watchers{static_cast<int>(clients_.size()) + relayed_viewers()}});
+  if (empty()) unwatched_since_ = session::now_us();
   broadcast_viewers();
 }
 
@@ -87,10 +99,8 @@ void Room::leave(Client& client) {
   clients_.erase(std::remove(clients_.begin(), clients_.end(), &client), clients_.end());
   hub_.lab().client_left(client.id());
   let_go(client);
-  if (clients_.empty()) unwatched_since_ = session::now_us();
-  post({{}, session::Watchers{static_cast<int>(clients_.size())}});
   demand_changed(std::nullopt);
-  broadcast_viewers();
+  watchers_changed();
 }
 
 void Room::let_go(const Client& client) {
@@ -98,7 +108,15 @@ void Room::let_go(const Client& client) {
 }
 
 void Room::demand_changed(std::optional<stream::Form> fresh) {
+  std::array<bool, stream::form_count> at_once{};
+  if (fresh) at_once[fresh->index()] = true;
+  demand_changed(at_once);
+}
+
+void Room::demand_changed(const std::array<bool, stream::form_count>& fresh) {
   session::Demand demand;
+  demand.fresh = fresh;
+  if (publisher_) demand.rate = publisher_->audience().rates();
   for (const Client* client : clients_) {
     if (!client->pacing().subscribed()) continue;
     double& rate = demand.rate[client->pacing().form().index()];
@@ -110,15 +128,15 @@ void Room::demand_changed(std::optional<stream::Form> fresh) {
       session_->exchange().forget_frame(stream::Form::at(i));
     demanded_[i] = demand.rate[i];
   }
-  if (fresh) demand.fresh[fresh->index()] = true;
   post({{}, demand});
 }
 
 void Room::pump() {
   if (!session_) return;
+  const std::int64_t now = session::now_us();
+  if (feed_) feed_->pump(now);
   session_->exchange().take_events(events_);
   for (session::Event& event : events_) std::visit([&](auto& what) { handle(what); }, event);
-  const std::int64_t now = session::now_us();
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     const stream::Form form = stream::Form::at(i);
     const stream::SharedMessage latest = demanded_[i] > 0 ? frame(form) : nullptr;
@@ -126,6 +144,7 @@ void Room::pump() {
     seen_[i] = last_frame_ = latest->header.sequence;
     for (Client* client : clients_) client->frame_arrived(form, now);
   }
+  if (publisher_) pass_frames_on(now);
 }
 
 void Room::handle(session::Started& started) {
@@ -152,7 +171,7 @@ bool Room::bring_back(const session::Failed& failed) {
   for (session::Event& event : given_up_events_) std::visit([&](auto& what) { handle(what); }, event);
   given_up_events_.clear();
   for (Client* client : clients_) client->session_replaced();
-  post({{}, session::Watchers{static_cast<int>(clients_.size())}});
+  post({{}, session::Watchers{static_cast<int>(clients_.size()) + relayed_viewers()}});
   for (std::size_t i = 0; i < stream::form_count; ++i) demand_changed(stream::Form::at(i));
   hub_.lab().session_replaced(name_);
   broadcast("notice", {{"level", "warning"},
@@ -192,6 +211,7 @@ void Room::handle(session::SceneChanged& changed) {
   document_ = changed.document;
   revision_ = changed.revision;
   hub_.lab().scene_changed(name_, *document_);
+  if (changed.told) return;
   if (changed.patch)
     broadcast("scene.changed", {{"revision", revision_}, {"patch", *changed.patch}, {"by", changed.by}});
   else if (started())
@@ -205,6 +225,7 @@ void Room::handle(session::HistoryChanged& changed) {
 
 void Room::handle(session::TopologyChanged& changed) {
   topology_ = changed.message;
+  if (publisher_) publisher_->topology(topology_);
   for (Client* client : clients_) client->wake();
 }
 
@@ -215,9 +236,10 @@ void Room::handle(const session::Status& status) {
   handle(status.pass_times);
   if (status.real_time_factor > 0)
     hub_.lab().speed_reported(name_, status.real_time_factor / status.speed, session::now_us());
-  if (clients_.empty() || !started()) return;
+  if (empty() || !started()) return;
   const SharedText text = make_text(notification_text("sim.status", status_params(status)));
   for (Client* client : clients_) client->send_status(text);
+  if (publisher_) publisher_->text(text);
 }
 
 void Room::handle(const gl::StageTimes& times) {
@@ -253,6 +275,15 @@ void Room::handle(session::Notice& notice) {
   broadcast("notice", {{"level", notice.level}, {"text", notice.text}});
 }
 
+void Room::handle(session::Told& told) {
+  const SharedText text = make_text(told.text);
+  for (Client* client : clients_)
+    if (told.status)
+      client->send_status(text);
+    else
+      client->send(text);
+}
+
 void Room::handle(session::Captured& captured) {
   --capturing_;
   hub_.captured(std::move(captured));
@@ -277,13 +308,16 @@ void Room::greet(Client& client) {
 }
 
 void Room::broadcast(const char* method, const json& params) {
-  if (clients_.empty()) return;
+  if (empty()) return;
   const SharedText text = make_text(notification_text(method, params));
   for (Client* client : clients_) client->send(text);
+  if (publisher_) publisher_->text(text);
 }
 
+/// Tells how many watch. Viewers of a relay are told by the server, which knows of all relays.
 void Room::broadcast_viewers() {
-  broadcast("viewers", {{"count", clients_.size()}});
+  if (!feed_)
+    broadcast("viewers", {{"count", clients_.size() + static_cast<std::size_t>(relayed_viewers())}});
 }
 
 json Room::status_params(const session::Status& status) const {

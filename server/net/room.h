@@ -1,4 +1,5 @@
 // A session as the service thread sees it: its clients, its scene and topology as last announced, its frames.
+// The session runs in this process, or a bus brings it from another server (Options::relay_from).
 #pragma once
 
 #include <array>
@@ -13,6 +14,8 @@
 #include "server/base/lock.h"
 #include "server/net/json_rpc.h"
 #include "server/net/outbox.h"
+#include "server/net/publisher.h"
+#include "server/relay/feed.h"
 #include "server/session/session.h"
 
 namespace clothlab::net {
@@ -43,11 +46,16 @@ class Room {
   session::RecordingFacts recording() const {
     return session_ ? session_->exchange().recording() : session::RecordingFacts{};
   }
+  // Only on a relay: the mesh of a collider, null: not known yet; and asking for it, which
+  // Hub::deliver_collider answers.
+  relay::Feed::ColliderMesh relayed_collider(const std::string& name) const;
+  void ask_collider(const std::string& name, std::uint64_t asker);
 
   void enter(Client& client);
   void leave(Client& client);
   void let_go(const Client& client);  ///< ends the client's hold on the cloth
-  bool empty() const { return clients_.empty(); }
+  /// True if nobody watches, here or through a relay.
+  bool empty() const { return clients_.empty() && relayed_viewers() == 0; }
   std::int64_t unwatched_since() const { return unwatched_since_; }  ///< when the last client left [us]
   /// Tells the session which frames its viewers want, after a subscription has changed. `fresh`: a client
   /// needs a frame of this form at once, even if nothing moves.
@@ -61,13 +69,15 @@ class Room {
   /// moment. False: too many commands of this asker wait already.
   [[nodiscard]] bool capture(std::uint64_t asker, const session::Export& what);
   std::size_t capturing() const { return capturing_; }  ///< moments asked for that have not come yet
-  /// Takes the session's events and new frames, and passes them on to clients, hub and lab.
+  /// Takes the session's events and new frames, and passes them on to clients, hub, lab and bus.
   void pump();
+  /// Takes a message of the bus that belongs to this session.
+  void receive(const bus::Message& message);
   const std::optional<session::Failed>& failure() const { return failure_; }
 
   void stop();
   /// Hands the session to the caller, who ends it; its steps stay counted in the metrics.
-  std::unique_ptr<session::Session> give_up_session();
+  std::unique_ptr<session::Source> give_up_session();
   /// To be released when the session has ended.
   Lock give_up_claim() { return std::move(claim_); }
   bool beats() const { return !session_ || session_->beats(); }
@@ -87,6 +97,7 @@ class Room {
   void handle(session::SolverChanged& changed);
   void handle(session::Diverged& diverged);
   void handle(session::Notice& notice);
+  void handle(session::Told& told);
   void handle(session::Captured& captured);
   void handle(session::SceneReached& reached);
   void handle(session::SceneLost& lost);
@@ -95,8 +106,14 @@ class Room {
   void handle(const session::Status& status);
   void handle(const gl::StageTimes& times);
   void begin_session(std::shared_ptr<const session::Saved> saved);
+  void begin_feed();
+  int relayed_viewers() const { return publisher_ ? publisher_->audience().viewers() : 0; }
+  void watchers_changed();
+  void pass_frames_on(std::int64_t now);
+  void hear_want(const bus::Message& message, std::int64_t now);
   bool bring_back(const session::Failed& failed);
   void greet(Client& client);
+  void demand_changed(const std::array<bool, stream::form_count>& fresh);
   void broadcast(const char* method, const json& params);
   void broadcast_viewers();
   json status_params(const session::Status& status) const;
@@ -106,7 +123,9 @@ class Room {
   std::function<void()> wake_;
   Lock claim_;
   std::shared_ptr<session::MeshShelf> meshes_;  ///< outlives `session_`, which may be replaced
-  std::unique_ptr<session::Session> session_;
+  std::unique_ptr<session::Source> session_;
+  relay::Feed* feed_ = nullptr;         ///< `session_` on a relay; null elsewhere
+  std::optional<Publisher> publisher_;  ///< with --publish
   std::vector<Client*> clients_;
   std::vector<session::Event> events_, given_up_events_;
   std::string renderer_;

@@ -62,6 +62,7 @@ Result<std::unique_ptr<Server>> Server::listen(Options options) {
     log(LogLevel::error, "libwebsockets", {{"text", text}});
   });
   auto server = std::unique_ptr<Server>(new Server(std::move(options)));
+  if (const Status joined = server->hub_.join_bus(); !joined) return joined.error();
   const Options& with = server->hub_.options();
   const std::string address = with.bind == "localhost" ? "127.0.0.1" : with.bind;
   lws_context_creation_info info{};
@@ -108,8 +109,7 @@ std::optional<session::Failed> Server::run(const std::function<void()>& ready) {
   if (!files_.built())
     log(LogLevel::warning, "page_not_built",
         {{"remedy", "npm --prefix web ci && npm --prefix web run build, or server/run"}});
-  // Where servers share the sessions, each session is opened by the server that is asked for it first.
-  bool announced = hub_.options().share_state;
+  bool announced = hub_.opens_on_demand();
   if (announced)
     ready();
   else
@@ -132,7 +132,7 @@ std::optional<session::Failed> Server::run(const std::function<void()>& ready) {
 void Server::say_goodbye() {
   // With 1012 a client knows that it may come back at once: another server goes on with its session.
   constexpr int going_away = 1001;
-  hub_.close_all(hub_.options().share_state ? close_restart : going_away, "the server is shutting down");
+  hub_.close_all(hub_.opens_on_demand() ? close_restart : going_away, "the server is shutting down");
   const std::int64_t until = session::now_us() + 300'000;
   while (!hub_.empty() && session::now_us() < until) {
     lws_cancel_service(context_);  // so that lws_service returns soon

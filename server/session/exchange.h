@@ -56,6 +56,7 @@ struct SceneChanged {
   std::uint64_t revision = 0;
   std::optional<json> patch;
   std::uint64_t by = 0;
+  bool told = false;  ///< viewers know of it already
 };
 /// What can be undone and redone now; see server/net/asyncapi.yaml.
 struct HistoryChanged {
@@ -79,6 +80,11 @@ struct Diverged {
 struct Notice {
   const char* level = "info";  ///< info | warning | error
   std::string text;
+};
+/// A notification for all viewers, whose text another process has made.
+struct Told {
+  std::string text;
+  bool status = false;  ///< it is a sim.status: a newer one replaces it
 };
 /// All that another thread needs to draw the scene at one moment.
 struct Moment {
@@ -119,8 +125,8 @@ struct Status {
   gl::StageTimes pass_times;  ///< the GPU times that have arrived since the last status
 };
 using Event = std::variant<Started, Failed, Reply, SceneChanged, HistoryChanged, TopologyChanged,
-                           PartsChanged, SolverChanged, Diverged, Notice, Captured, SceneReached, SceneLost,
-                           Held, ChoiceWanted, Status>;
+                           PartsChanged, SolverChanged, Diverged, Notice, Told, Captured, SceneReached,
+                           SceneLost, Held, ChoiceWanted, Status>;
 
 class Exchange {
  public:

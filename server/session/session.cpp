@@ -59,7 +59,7 @@ Result<std::unique_ptr<Stepper>> begin(Beginning& beginning, const Limits& limit
 
 Session::Session(Beginning beginning, const Limits& limits, std::optional<int> gpu,
                  std::function<void()> wake)
-    : exchange_(std::move(wake)) {
+    : Source(std::move(wake)) {
   exchange_.beat();
   thread_ = std::thread([this, limits, gpu, beginning = std::move(beginning)]() mutable {
     try {

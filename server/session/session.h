@@ -9,9 +9,9 @@
 #include <thread>
 
 #include "server/scene/document.h"
-#include "server/session/exchange.h"
 #include "server/session/limits.h"
 #include "server/session/mesh_shelf.h"
+#include "server/session/source.h"
 
 namespace clothlab::session {
 
@@ -25,27 +25,22 @@ struct Beginning {
   std::shared_ptr<MeshShelf> meshes;          ///< that scenes may name; null: none
 };
 
-class Session {
+class Session final : public Source {
  public:
   /// Starts the thread. An event tells whether that succeeds (Started or Failed).
   Session(Beginning beginning, const Limits& limits, std::optional<int> gpu, std::function<void()> wake);
   /// Ends the thread and waits for its end, which comes after the present turn.
-  ~Session();
-  Session(const Session&) = delete;
-  Session& operator=(const Session&) = delete;
+  ~Session() override;
 
-  Exchange& exchange() { return exchange_; }
-  const Exchange& exchange() const { return exchange_; }
   /// A thread without a heartbeat for this long is taken for stuck [s].
   static constexpr double longest_silence = 10;
-  bool beats() const {
+  bool beats() const override {
     return static_cast<double>(now_us() - exchange_.heartbeat_us()) < longest_silence * 1e6;
   }
 
  private:
   void run(Beginning& beginning, const Limits& limits, std::optional<int> gpu);
 
-  Exchange exchange_;
   std::thread thread_;
 };
 

@@ -16,6 +16,12 @@ std::uint8_t* put(std::uint8_t* out, const T& value) {
   return out + sizeof(T);
 }
 
+template <class T>
+const std::uint8_t* get(const std::uint8_t* in, T& value) {
+  std::memcpy(&value, in, sizeof(T));
+  return in + sizeof(T);
+}
+
 }  // namespace
 
 void write_header(const Header& header, std::uint8_t* out) {
@@ -31,6 +37,29 @@ void write_header(const Header& header, std::uint8_t* out) {
     for (int axis = 0; axis < 3; ++axis) out = put(out, (*corner)[axis]);
   out = put(out, header.payload_bytes);
   put(out, header.range);
+}
+
+std::optional<Header> read_header(const std::uint8_t* message, std::size_t size) {
+  if (size < header_bytes) return std::nullopt;
+  Header header;
+  std::uint8_t kind = 0, encoding = 0;
+  const std::uint8_t* in = get(get(message, kind), encoding);
+  if (kind < static_cast<std::uint8_t>(MessageKind::topology) ||
+      kind > static_cast<std::uint8_t>(MessageKind::frame) || encoding >= encoding_count)
+    return std::nullopt;
+  header.kind = static_cast<MessageKind>(kind);
+  header.encoding = static_cast<Encoding>(encoding);
+  in = get(in, header.flags);
+  in = get(in, header.topology_revision);
+  in = get(in, header.sequence);
+  in = get(in, header.vertex_count);
+  in = get(in, header.time);
+  in = get(in, header.step);
+  for (glm::vec3* corner : {&header.box_minimum, &header.box_extent})
+    for (int axis = 0; axis < 3; ++axis) in = get(in, (*corner)[axis]);
+  in = get(in, header.payload_bytes);
+  get(in, header.range);
+  return header.payload_bytes == size - header_bytes ? std::optional(header) : std::nullopt;
 }
 
 SharedMessage encode_topology(const model::Model& model, std::uint32_t revision) {

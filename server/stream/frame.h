@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "server/model/model.h"
@@ -52,6 +53,10 @@ using SharedMessage = std::shared_ptr<const Message>;
 
 /// Writes the header little-endian into `out[0, 64)`.
 void write_header(const Header& header, std::uint8_t* out);
+
+/// Reads the header of a whole message of `size` bytes. No value: it is no message of this protocol, or not
+/// whole.
+std::optional<Header> read_header(const std::uint8_t* message, std::size_t size);
 
 /// The topology message: triangles, cloths, texture coordinates.
 SharedMessage encode_topology(const model::Model& model, std::uint32_t revision);

@@ -133,7 +133,7 @@ std::map<const Session*, Scribe>& scribes() {
 }  // namespace
 
 Session::Session(Beginning beginning, const Limits&, std::optional<int>, std::function<void()> wake)
-    : exchange_(std::move(wake)) {
+    : Source(std::move(wake)) {
   exchange_.beat();
   scribes().emplace(this, Scribe(std::move(beginning.document), exchange_));
   fuzz::sessions().push_back(this);

@@ -48,12 +48,17 @@ const children = new Set();
 if (process.env.NODE_TEST_CONTEXT) after(() => children.forEach((child) => child.kill("SIGKILL")));
 
 export class Server {
-  static async start(...args) {
+  static start(...args) {
+    return Server.launch("serve", ...args);
+  }
+
+  /// `clothlab serve` or `clothlab relay`.
+  static async launch(command, ...args) {
     const server = new Server();
     server.startedAt = performance.now();
     server.child = spawn(
       process.env.CLOTHLAB,
-      ["serve", ...(args.includes("--port") ? [] : ["--port", "0"]), ...args],
+      [command, ...(args.includes("--port") ? [] : ["--port", "0"]), ...args],
       {
         stdio: ["ignore", "pipe", "pipe"],
         // Tokens of the shell must not reach the tests.
@@ -70,10 +75,10 @@ export class Server {
         server.stdout += data;
         if (server.stdout.includes("\n")) resolve(server.stdout);
       });
-      server.child.on("close", (code) => reject(new Error(`serve ended with ${code}: ${server.stderr}`)));
+      server.child.on("close", (code) => reject(new Error(`${command} ended with ${code}: ${server.stderr}`)));
     });
     const match = /^listening on (https?):\/\/([^/]+):(\d+)\/\n/.exec(await withTimeout(line, "the server to listen"));
-    if (!match) throw new Error(`serve said ${JSON.stringify(server.stdout)}`);
+    if (!match) throw new Error(`${command} said ${JSON.stringify(server.stdout)}`);
     server.port = Number(match[3]);
     server.host = `127.0.0.1:${server.port}`;
     return server;

@@ -356,6 +356,7 @@ export class Page {
     this.panel.setMethods(methods);
     this.drawers.greeted(methods, (params.limits as { message_bytes?: number } | undefined)?.message_bytes);
     document.body.classList.toggle("viewer", !this.mayEdit);
+    document.body.classList.toggle("relayed", params.relay === true);
     this.enableEdits();
     this.presets.fetch();
   }

@@ -1,0 +1,54 @@
+// Publishes a session on a bus for relays (server/relay): what viewers get, once for all of them, and only
+// while a relay wants it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "server/bus/bus.h"
+#include "server/net/json_rpc.h"
+#include "server/net/outbox.h"
+#include "server/relay/audience.h"
+#include "server/stream/frame.h"
+
+namespace clothlab::net {
+
+class Publisher {
+ public:
+  /// `origin` names this run of the server: relays that know another one ask for everything anew.
+  Publisher(bus::Bus& bus, std::string session, std::string origin);
+  ~Publisher();
+  Publisher(const Publisher&) = delete;
+  Publisher& operator=(const Publisher&) = delete;
+
+  relay::Audience& audience() { return audience_; }
+  const relay::Audience& audience() const { return audience_; }
+
+  /// All that a viewer gets when it enters.
+  struct State {
+    const std::string& renderer;
+    const json& document;
+    std::uint64_t revision;
+    const json& history;
+    const stream::SharedMessage& topology;
+  };
+  /// Answers a relay's want with what is new to it.
+  void answer(const relay::Want& want, const std::string& reply, const State& state);
+  /// Answers with the mesh of a collider, empty: there is none.
+  void answer_collider(const std::string& name, const std::string& reply, std::string mesh);
+
+  void text(const SharedText& text);
+  void topology(const stream::SharedMessage& topology);
+  void frame(const stream::SharedMessage& frame);
+
+ private:
+  void send(std::string subject, const stream::SharedMessage& message, std::string note, bus::Keep keep);
+
+  bus::Bus& bus_;
+  std::string session_, origin_;
+  relay::Audience audience_;
+};
+
+}  // namespace clothlab::net

@@ -1,0 +1,281 @@
+#include "server/relay/feed.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "server/scene/document.h"
+
+namespace clothlab::relay {
+
+namespace {
+
+constexpr std::int64_t hurry_us =
+    200'000;  ///< the least time between two wants, but for those of new viewers
+/// Before the name, as JSON, of the collider whose mesh is in an answer.
+constexpr std::string_view collider_note = "collider ";
+
+std::string_view text_in(const std::vector<std::uint8_t>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// A copy of the message with the room in front that libwebsockets needs, and the header rewritten.
+std::shared_ptr<stream::Message> renumbered(const std::vector<std::uint8_t>& bytes,
+                                            const stream::Header& header) {
+  auto message = std::make_shared<stream::Message>();
+  message->header = header;
+  message->bytes.reserve(stream::front_room + bytes.size());
+  message->bytes.resize(stream::front_room);
+  message->bytes.insert(message->bytes.end(), bytes.begin(), bytes.end());
+  stream::write_header(header, message->bytes.data() + stream::front_room);
+  return message;
+}
+
+}  // namespace
+
+Feed::Feed(bus::Bus& bus, std::string session, std::string relay, Deliver deliver, std::function<void()> wake)
+    : Source(std::move(wake)),
+      bus_(bus),
+      session_(std::move(session)),
+      deliver_(std::move(deliver)),
+      begun_(session::now_us()) {
+  want_.relay = std::move(relay);
+  bus_.subscribe(answer_subject(session_, want_.relay), bus::Keep::all);
+  bus_.subscribe(subject(session_, text_word), bus::Keep::all);
+  bus_.subscribe(subject(session_, topology_word), bus::Keep::all);
+}
+
+Feed::~Feed() {
+  set_rates({});
+  for (const std::string& each : {answer_subject(session_, want_.relay), subject(session_, text_word),
+                                  subject(session_, topology_word)})
+    bus_.unsubscribe(each);
+  want_.viewers = 0;
+  bus_.send({subject(session_, want_word), bus::bytes_of(text_of(want_))}, bus::Keep::all);
+}
+
+void Feed::pump(std::int64_t now) {
+  do {
+    exchange_.take_commands(commands_, session::Clock::now());
+    for (session::Command& command : commands_) carry_out(command, now);
+  } while (!commands_.empty());
+  if (now >= want_due_) send_want(now);
+  look_for_silence(now);
+}
+
+void Feed::carry_out(session::Command& command, std::int64_t now) {
+  if (const auto* watchers = std::get_if<session::Watchers>(&command.what)) {
+    want_.viewers = watchers->count;
+    want_soon(now);
+  } else if (const auto* demand = std::get_if<session::Demand>(&command.what)) {
+    if (demand->rate != want_.rates) want_due_ = now;
+    set_rates(demand->rate);
+  } else if (std::holds_alternative<session::GetScene>(command.what)) {
+    exchange_.emit(session::Reply{command.ticket, json{{"document", document_}, {"revision", revision_}}});
+  }
+}
+
+void Feed::set_rates(const Rates& rates) {
+  for (std::size_t i = 0; i < form_count; ++i) {
+    if ((rates[i] > 0) == (want_.rates[i] > 0)) continue;
+    const std::string frames = frame_subject(session_, stream::Form::at(i));
+    if (rates[i] > 0)
+      bus_.subscribe(frames, bus::Keep::newest);
+    else
+      bus_.unsubscribe(frames);
+  }
+  want_.rates = rates;
+}
+
+void Feed::want_soon(std::int64_t now) {
+  want_due_ = std::min(want_due_, std::max(now, wanted_ + hurry_us));
+}
+
+void Feed::send_want(std::int64_t now) {
+  wanted_ = now;
+  want_due_ = now + want_period_us;
+  bus_.send({subject(session_, want_word),
+             bus::bytes_of(text_of(want_)),
+             {},
+             answer_subject(session_, want_.relay)},
+            bus::Keep::all);
+}
+
+void Feed::heard(std::int64_t now) {
+  heard_ = now;
+  if (std::exchange(silent_, false)) tell("info", "the session's server answers again");
+}
+
+void Feed::look_for_silence(std::int64_t now) {
+  if (!started_ && !failed_ && now - begun_ > patience_us) {
+    failed_ = true;
+    exchange_.emit(session::Failed{{"session " + session_, "its server does not answer over the bus",
+                                    "try again; an operator sees to it that the server and the bus run"}});
+  }
+  if (started_ && !silent_ && now - heard_ > patience_us) {
+    silent_ = true;
+    tell("warning", "the session's server does not answer; the cloth stands still here until it does");
+  }
+}
+
+void Feed::tell(const char* level, const std::string& text) {
+  exchange_.emit(session::Notice{level, text});
+}
+
+void Feed::receive(const bus::Message& message, std::int64_t now) {
+  if (failed_) return;
+  if (message.subject == answer_subject(session_, want_.relay)) return take_answer(message, now);
+  if (!started_) return;
+  if (message.subject == subject(session_, text_word)) return take_text(message, now);
+  if (message.subject == subject(session_, topology_word)) return take_topology(message.bytes);
+  for (std::size_t i = 0; i < form_count; ++i)
+    if (want_.rates[i] > 0 && message.subject == frame_subject(session_, stream::Form::at(i)))
+      return take_frame(message, stream::Form::at(i), now);
+}
+
+void Feed::take_answer(const bus::Message& message, std::int64_t now) {
+  if (message.unheard) {
+    if (started_) return;
+    failed_ = true;
+    return exchange_.emit(session::Failed{{"session " + session_, "no server on the bus has it open",
+                                           "an operator opens it by connecting to its server"}});
+  }
+  heard(now);
+  if (message.note.starts_with(collider_note))
+    return take_collider(message.note.substr(collider_note.size()), message.bytes);
+  if (!message.bytes.empty() &&
+      message.bytes.front() == static_cast<std::uint8_t>(stream::MessageKind::topology))
+    return take_topology(message.bytes);
+  const json state = json::parse(message.bytes.begin(), message.bytes.end(), nullptr, false);
+  try {
+    if (state.is_object()) take_state(state);
+  } catch (const json::exception&) {  // not what a server of this version says
+  }
+}
+
+/// What the server answers to a want: of all that viewers get first, that which this relay does not have.
+void Feed::take_state(const json& state) {
+  const auto origin = state.at("origin").get<std::string>();
+  const bool other = origin != want_.known.origin;
+  if (other) renumber_ = true;
+  want_.known.origin = origin;
+  if (const auto scene = state.find("document"); scene != state.end()) {
+    const auto revision = state.at("revision").get<std::uint64_t>();
+    take_scene(*scene, revision, started_ && !other && revision == revision_);
+  }
+  if (const auto history = state.find("history"); history != state.end() && history->is_object())
+    exchange_.emit(session::HistoryChanged{*history});
+  renderer_ = state.value("renderer", renderer_);
+  if (!started_ && document_.is_object() && topology_) {
+    started_ = true;
+    exchange_.emit(session::Started{renderer_});
+  }
+}
+
+void Feed::take_scene(json document, std::uint64_t revision, bool told) {
+  if (!told) colliders_.clear();
+  document_ = std::move(document);
+  revision_ = want_.known.revision = revision;
+  auto shared = std::make_shared<scene::Document>();
+  shared->value = document_;
+  exchange_.emit(session::SceneChanged{std::move(shared), revision_, std::nullopt, 0, told});
+}
+
+void Feed::take_text(const bus::Message& message, std::int64_t now) {
+  const json said = json::parse(message.bytes.begin(), message.bytes.end(), nullptr, false);
+  try {
+    if (!said.is_object()) return;
+    const auto method = said.at("method").get<std::string>();
+    const json& params = said.at("params");
+    if (method == "scene")
+      take_scene(params.at("document"), params.at("revision").get<std::uint64_t>(), false);
+    else if (method == "scene.changed")
+      take_patch(params, now);
+    else if (method == "scene.history")
+      exchange_.emit(session::HistoryChanged{params});
+    else
+      exchange_.emit(session::Told{std::string(text_in(message.bytes)), method == "sim.status"});
+  } catch (const json::exception&) {  // not what a server of this version says
+  }
+}
+
+/// Passes a change on at once. It is made here as the page makes it, without the defaults that the server
+/// fills in: the next answer brings the whole document, for those who come later.
+void Feed::take_patch(const json& params, std::int64_t now) {
+  const auto revision = params.at("revision").get<std::uint64_t>();
+  if (revision <= revision_) return;
+  if (revision > revision_ + 1) return want_soon(now);  // one before it was lost: all is asked for again
+  const json& patch = params.at("patch");
+  json changed = document_;
+  if (patch.is_object())
+    changed.merge_patch(patch);
+  else
+    changed = changed.patch(patch);
+  if (changed.value("colliders", json()) != document_.value("colliders", json())) colliders_.clear();
+  document_ = std::move(changed);
+  revision_ = revision;
+  auto shared = std::make_shared<scene::Document>();
+  shared->value = document_;
+  exchange_.emit(
+      session::SceneChanged{std::move(shared), revision_, patch, params.value("by", std::uint64_t{0})});
+}
+
+void Feed::take_topology(const std::vector<std::uint8_t>& bytes) {
+  std::optional<stream::Header> header = stream::read_header(bytes.data(), bytes.size());
+  if (!header || header->kind != stream::MessageKind::topology) return;
+  want_.known.topology = header->topology_revision;
+  if (bytes == their_topology_) return;
+  their_topology_ = bytes;
+  header->topology_revision = topology_ ? topology_->header.topology_revision + 1 : 1;
+  topology_ = renumbered(bytes, *header);
+  exchange_.forget_frames();
+  exchange_.emit(session::TopologyChanged{topology_});
+}
+
+void Feed::take_frame(const bus::Message& message, stream::Form form, std::int64_t now) {
+  std::optional<stream::Header> header = stream::read_header(message.bytes.data(), message.bytes.size());
+  if (!header || header->kind != stream::MessageKind::frame || header->encoding != form.encoding) return;
+  if (header->topology_revision != want_.known.topology) return want_soon(now);
+  if (std::exchange(renumber_, false)) frame_offset_ = last_frame_ + 1 - header->sequence;
+  header->sequence += frame_offset_;
+  // Of different forms frames may come a little out of order.
+  if (static_cast<std::int32_t>(header->sequence - last_frame_) > 0) last_frame_ = header->sequence;
+  header->topology_revision = topology_->header.topology_revision;
+  header->field = form.field;
+  const std::shared_ptr<stream::Message> frame = renumbered(message.bytes, *header);
+  frame->made_at_us = now;
+  if (!message.note.empty()) {
+    frame->colliders.resize(stream::front_room);
+    frame->colliders.insert(frame->colliders.end(), message.note.begin(), message.note.end());
+  }
+  exchange_.publish(frame);
+}
+
+Feed::ColliderMesh Feed::collider(const std::string& name) const {
+  const auto found = colliders_.find(name);
+  return found == colliders_.end() ? nullptr : found->second;
+}
+
+void Feed::ask_collider(const std::string& name, std::uint64_t asker) {
+  Asked& asked = asked_[name];
+  asked.askers.push_back(asker);
+  const std::int64_t now = session::now_us();
+  if (now - asked.at < want_period_us) return;
+  asked.at = now;
+  bus_.send(
+      {subject(session_, collider_word), bus::bytes_of(name), {}, answer_subject(session_, want_.relay)},
+      bus::Keep::all);
+}
+
+void Feed::take_collider(const std::string& quoted_name, const std::vector<std::uint8_t>& bytes) {
+  const json parsed = json::parse(quoted_name, nullptr, false);
+  const auto name = parsed.is_string() ? parsed.get<std::string>() : std::string();
+  const auto found = asked_.find(name);
+  if (found == asked_.end()) return;
+  const std::vector<std::uint64_t> askers = std::move(found->second.askers);
+  asked_.erase(found);
+  ColliderMesh mesh;
+  if (!bytes.empty()) mesh = colliders_[name] = std::make_shared<const std::string>(text_in(bytes));
+  for (const std::uint64_t asker : askers) deliver_(asker, mesh);
+}
+
+}  // namespace clothlab::relay
