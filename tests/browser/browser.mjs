@@ -19,15 +19,16 @@ const executablePath = candidates.find((path) => path && existsSync(path));
 const onlyFirst = process.env.CLOTHLAB_BROWSER_TESTS === "first";
 let declared = 0; // tests of this file so far
 
-/// A test that needs a browser. It is skipped, with a message, if there is none or it is not asked for.
+/// A test that needs a browser. It is skipped, with a message, if there is none or it is not asked for. `body` gets
+/// the context of the test.
 export function browserTest(name, body) {
   declared += 1;
   let skip = false;
   if (!executablePath) skip = "no Chromium here: install chromium, or name one in CLOTHLAB_BROWSER";
   else if (onlyFirst && declared > 1) skip = "only the first of each file, says CLOTHLAB_BROWSER_TESTS";
-  test(name, { skip, timeout: 600_000 }, async () => {
+  test(name, { skip, timeout: 600_000 }, async (t) => {
     try {
-      await body();
+      await body(t);
     } finally {
       // pages left open would go on drawing
       await Promise.all((running?.contexts() ?? []).map((context) => context.close()));
