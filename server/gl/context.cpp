@@ -4,6 +4,7 @@
 #include <glad/gl.h>
 
 #include <algorithm>
+#include <condition_variable>
 #include <cstdlib>
 #include <cstring>
 #include <map>
@@ -26,20 +27,47 @@ struct Candidate {
   HelperThreads threads = HelperThreads::none;
 };
 
-/// The displays that are open, and whether software OpenGL computes on helper threads for them. Guarded by
-/// egl_mutex.
-std::map<EGLDisplay, bool>& helped_displays() {
-  static std::map<EGLDisplay, bool> displays;
+struct OpenDisplay {
+  bool helped = false;  ///< software OpenGL computes on helper threads for it
+  int contexts = 0;     ///< that exist
+};
+/// The displays that are open. Guarded by egl_mutex.
+std::map<EGLDisplay, OpenDisplay>& open_displays() {
+  static std::map<EGLDisplay, OpenDisplay> displays;
   return displays;
 }
+/// Notified when a context has gone.
+std::condition_variable context_gone;
 
-/// Opens the display. Mesa reads LP_NUM_THREADS only the first time; without it a single core has no helper.
+/// The number of helper threads that the environment asks for, by default one for each core; on a single core
+/// there are none.
+std::string wanted_helpers() {
+  const char* number = std::getenv("LP_NUM_THREADS");
+  const unsigned cores = std::thread::hardware_concurrency();
+  return number ? number : std::to_string(cores > 1 ? cores : 0);
+}
+/// The same as the program began; set by `compute_without_helper_threads`.
+std::string helpers_at_first;
+
+/// Opens the display, if it is not open yet: only then does Mesa read LP_NUM_THREADS.
 bool initialize(EGLDisplay display) {
   if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) return false;
-  const char* number = std::getenv("LP_NUM_THREADS");
-  const bool helped = number ? std::atoi(number) != 0 : std::thread::hardware_concurrency() > 1;
-  helped_displays().emplace(display, helped);
+  open_displays().emplace(display, OpenDisplay{std::atoi(wanted_helpers().c_str()) != 0, 0});
   return true;
+}
+
+/// Opens the display anew if it does not compute with, or without, helper threads as wanted. Waits until no
+/// context of it exists.
+void reopen(EGLDisplay display, bool helped, std::unique_lock<std::mutex>& lock) {
+  helped = helped && std::atoi(helpers_at_first.c_str()) != 0;
+  const auto fits = [&] { return display == EGL_NO_DISPLAY || open_displays()[display].helped == helped; };
+  context_gone.wait(lock, [&] { return fits() || open_displays()[display].contexts == 0; });
+  if (fits()) return;
+  eglTerminate(display);
+  open_displays().erase(display);
+  setenv("LP_NUM_THREADS", helped ? helpers_at_first.c_str() : "0", 1);
+  initialize(display);
+  setenv("LP_NUM_THREADS", "0", 1);
 }
 
 std::string text(const char* value) {
@@ -148,9 +176,11 @@ void close(const Opened& opened) {
 
 /// Opens the same software device through the display of `threads`, because in Mesa each display has its own
 /// helper threads. Empty if that display leads to another device.
-std::optional<Opened> open_apart(Candidate candidate, HelperThreads threads) {
+std::optional<Opened> open_apart(Candidate candidate, HelperThreads threads, std::optional<bool> helped,
+                                 std::unique_lock<std::mutex>& lock) {
   const std::string wanted = candidate.device.name;
   candidate.threads = threads;
+  if (helped && !helpers_at_first.empty()) reopen(open_display(candidate), *helped, lock);
   const Opened opened = open(candidate);
   if (candidate.device.usable && candidate.device.name == wanted) return opened;
   if (candidate.device.usable) close(opened);
@@ -161,7 +191,7 @@ std::optional<Opened> open_apart(Candidate candidate, HelperThreads threads) {
 
 void compute_without_helper_threads() {
   const std::lock_guard lock(egl_mutex);
-  if (!load_egl()) return;
+  if (!helpers_at_first.empty() || !load_egl()) return;
   std::vector<Candidate> all = candidates();
   // Without devices there is one display for all.
   if (std::any_of(all.begin(), all.end(),
@@ -172,14 +202,15 @@ void compute_without_helper_threads() {
       candidate.threads = threads;
       initialize(open_display(candidate));
     }
+  helpers_at_first = wanted_helpers();
   setenv("LP_NUM_THREADS", "0", 1);
 }
 
 bool computes_on_calling_thread() {
   if (!software_renderer()) return false;
   const std::lock_guard lock(egl_mutex);
-  const auto found = helped_displays().find(eglGetCurrentDisplay());
-  return found != helped_displays().end() && !found->second;
+  const auto found = open_displays().find(eglGetCurrentDisplay());
+  return found != open_displays().end() && !found->second.helped;
 }
 
 std::string renderer_name() {
@@ -204,8 +235,9 @@ Result<std::vector<Device>> list_devices() {
   return devices;
 }
 
-Result<std::unique_ptr<Context>> Context::create(std::optional<int> gpu, HelperThreads threads) {
-  const std::lock_guard lock(egl_mutex);
+Result<std::unique_ptr<Context>> Context::create(std::optional<int> gpu, HelperThreads threads,
+                                                 std::optional<bool> helped) {
+  std::unique_lock lock(egl_mutex);
   if (Status loaded = load_egl(); !loaded) return loaded.error();
   std::vector<Candidate> all = candidates();
   const int count = static_cast<int>(all.size());
@@ -226,13 +258,14 @@ Result<std::unique_ptr<Context>> Context::create(std::optional<int> gpu, HelperT
       }
       if (threads != HelperThreads::none && candidate.handle && candidate.device.software) {
         close(opened);
-        const std::optional<Opened> apart = open_apart(candidate, threads);
+        const std::optional<Opened> apart = open_apart(candidate, threads, helped, lock);
         opened = apart ? *apart : open(candidate);
       }
       std::unique_ptr<Context> context(new Context);
       context->device_ = candidate.device;
       context->display_ = opened.display;
       context->context_ = opened.context;
+      ++open_displays()[opened.display].contexts;
       return context;
     }
   }
@@ -243,6 +276,11 @@ Context::~Context() {
   if (eglGetCurrentContext() == context_)
     eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
   eglDestroyContext(display_, context_);
+  {
+    const std::lock_guard lock(egl_mutex);
+    --open_displays()[display_].contexts;
+  }
+  context_gone.notify_all();
 }
 
 bool Context::lost() const {

@@ -38,7 +38,7 @@ Result<std::vector<Device>> list_devices();
 /// one dispatch after another, however long, at the priority of the thread that made the display's first
 /// context. Mesa has four displays for its software device; each value names the contexts that share one.
 /// `none`, `none_too`: contexts compute on the thread that calls, one after another on each display, if the
-/// program began with `compute_without_helper_threads`.
+/// program began with `compute_without_helper_threads`. `lab`: see `helped` of Context::create.
 enum class HelperThreads { none, none_too, sessions, lab };
 
 /// From now on contexts of `none` and `none_too` compute on the thread that calls; those of the other
@@ -52,9 +52,12 @@ void compute_without_helper_threads();
 class Context {
  public:
   /// Makes a context and makes it current on the calling thread. `threads` has no effect on a GPU; if Mesa
-  /// cannot open another display, that of `none` is used. Error: what is missing and the package to install.
+  /// cannot open another display, that of `none` is used. `helped`: the display of `threads` is to compute
+  /// with, or without, helper threads; for that it may have to be opened anew, which waits until no other
+  /// context of it exists. Error: what is missing and the package to install.
   static Result<std::unique_ptr<Context>> create(std::optional<int> gpu = std::nullopt,
-                                                 HelperThreads threads = HelperThreads::none);
+                                                 HelperThreads threads = HelperThreads::none,
+                                                 std::optional<bool> helped = std::nullopt);
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;

@@ -7,7 +7,7 @@
 #include "server/base/priority.h"
 #include "server/gl/context.h"
 #include "server/session/fault.h"
-#include "server/session/helper_threads.h"
+#include "server/sim/cost.h"
 
 namespace clothlab::net {
 
@@ -107,14 +107,15 @@ Result<lab::Outcome> LabWorker::carry_out(const Task& task, const std::stop_toke
 
 Result<LabWorker::Run> open_lab(std::optional<int> gpu) {
   lower_priority(19);
-  session::make_helper_threads(gpu, gl::HelperThreads::lab);
-  Result<std::unique_ptr<gl::Context>> context = gl::Context::create(gpu, gl::HelperThreads::lab);
-  if (!context) return context.error();
-  return LabWorker::Run([context = std::shared_ptr<gl::Context>(std::move(*context))](
-                            const scene::Document& document, const lab::Job& job,
-                            const lab::Control<lab::Outcome>& control) -> Result<lab::Outcome> {
+  return LabWorker::Run([gpu](const scene::Document& document, const lab::Job& job,
+                              const lab::Control<lab::Outcome>& control) -> Result<lab::Outcome> {
+    // With helper threads or without, whichever is faster for this scene, as sessions and the command line
+    // compute; else the costs would be another's.
+    const Result<std::unique_ptr<gl::Context>> context =
+        gl::Context::create(gpu, gl::HelperThreads::lab, !sim::needs_no_helper_threads(document.scene));
+    if (!context) return context.error();
     Result<lab::Outcome> outcome = lab::run(document, job, control);
-    if (context->lost() || session::fault_due(session::Fault::context_lost, session::fault_in_lab, 0))
+    if ((*context)->lost() || session::fault_due(session::Fault::context_lost, session::fault_in_lab, 0))
       return Error{"OpenGL", "the device was reset while it measured, and nothing on it can be trusted",
                    "ask again"};
     return outcome;

@@ -185,10 +185,14 @@ void Room::handle(session::SceneLost& lost) {
 }
 
 void Room::handle(session::Failed& failed) {
-  log(LogLevel::error, "session_failed", {{"session", name_}, {"why", failed.error.text()}});
   pace_.reset();
-  if (bring_back(failed)) return;
-  ++hub_.metrics().sessions_failed;
+  if (feed_) {  // viewers have asked for what no server has open
+    log(LogLevel::warning, "session_not_there", {{"session", name_}, {"why", failed.error.text()}});
+  } else {
+    log(LogLevel::error, "session_failed", {{"session", name_}, {"why", failed.error.text()}});
+    if (bring_back(failed)) return;
+    ++hub_.metrics().sessions_failed;
+  }
   broadcast("notice", {{"level", "error"}, {"text", failed.error.text()}});
   while (!clients_.empty()) {
     Client* client = clients_.back();

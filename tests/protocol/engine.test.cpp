@@ -3,11 +3,13 @@
 
 #include <sys/resource.h>
 
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -139,6 +141,42 @@ TEST_CASE("heavy scenes have helper threads of their own, which give way") {
     ++added;
   }
   CHECK(added > 1);
+}
+
+TEST_CASE(
+    "the lab's display computes with helper threads or without, as its scene needs, once nothing else uses "
+    "it") {
+  gl::compute_without_helper_threads();
+  const auto create = [](bool helped) {
+    Result<std::unique_ptr<gl::Context>> context =
+        gl::Context::create(std::nullopt, HelperThreads::lab, helped);
+    REQUIRE(context);
+    return std::move(*context);
+  };
+  if (!create(false)->device().software) return;  // a GPU has none
+  std::set<std::uint64_t> hashes;
+  for (const bool helped : {true, false, true, true, false}) {
+    const std::unique_ptr<gl::Context> context = create(helped);
+    CHECK(gl::computes_on_calling_thread() == !helped);
+    const Result<std::unique_ptr<sim::Simulation>> simulation = sim::Simulation::create(test::seed());
+    REQUIRE(simulation);
+    (*simulation)->step(10);
+    hashes.insert(sim::state_hash((*simulation)->read_state()));
+  }
+  CHECK(hashes.size() == 1);
+  std::unique_ptr<gl::Context> picture = create(true);
+  picture->release_current();
+  std::atomic<bool> opened{false};
+  std::thread lab([&] {
+    const std::unique_ptr<gl::Context> context = create(false);
+    opened = true;
+    CHECK(gl::computes_on_calling_thread());
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  CHECK(!opened);
+  picture.reset();
+  lab.join();
+  CHECK(opened);
 }
 
 TEST_CASE(

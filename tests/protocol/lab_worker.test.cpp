@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <stop_token>
 #include <thread>
 
 #include "server/base/priority.h"
@@ -44,21 +45,37 @@ int niceness(int thread) {
 }  // namespace
 
 TEST_CASE("the lab's thread and those of its OpenGL have the lowest priority, the others keep theirs") {
+  gl::compute_without_helper_threads();
   Result<std::unique_ptr<gl::Context>> session = gl::Context::create();
   REQUIRE(session);
   std::map<int, int> of_session;  // thread -> niceness
   for (const int thread : threads()) of_session[thread] = niceness(thread);
   draw();  // pictures share the lab's threads, and may be the first to need them
-  std::thread([&] {
-    const Result<net::LabWorker::Run> lab = net::open_lab(std::nullopt);
-    REQUIRE(lab);
-    std::size_t added = 0;
-    for (const int thread : threads()) {
-      const auto known = of_session.find(thread);
-      CHECK(niceness(thread) == (known == of_session.end() ? 19 : known->second));
-      added += known == of_session.end() ? 1u : 0u;
-    }
-    // Software OpenGL computes on threads besides the one that calls it.
-    if ((*session)->device().software) CHECK(added > 1);
-  }).join();
+  for (const int side : {25, 128, 25, 128}) {  // the lab computes itself, then on helper threads
+    Result<scene::Document> document = scene::load_preset("seed");
+    REQUIRE(document);
+    document->scene.cloths[0].mesh = scene::Grid{side, side, 1.0, 1.0};
+    document->scene.cloths[0].pins.clear();
+    std::thread([&] {
+      const Result<net::LabWorker::Run> lab = net::open_lab(std::nullopt);
+      REQUIRE(lab);
+      std::stop_source stop;
+      std::size_t added = 0;
+      lab::Control<lab::Outcome> control;
+      control.stop = stop.get_token();
+      control.progress = [&](const lab::Progress&) {
+        if (stop.stop_requested()) return;
+        stop.request_stop();
+        for (const int thread : threads()) {
+          const auto known = of_session.find(thread);
+          CHECK(niceness(thread) == (known == of_session.end() ? 19 : known->second));
+          added += known == of_session.end() ? 1u : 0u;
+        }
+        CHECK(gl::computes_on_calling_thread() == (side == 25));
+      };
+      CHECK(!(*lab)(*document, lab::MapRequest{}, control));
+      // Software OpenGL computes on threads besides the one that calls it.
+      if ((*session)->device().software) CHECK(added > (side == 25 ? 0 : 1));
+    }).join();
+  }
 }

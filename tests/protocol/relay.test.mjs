@@ -183,6 +183,7 @@ test("a session that no server has open is refused with its reason, and the rela
     /session nowhere: no server on the bus has it open; an operator opens it/,
   );
   assert.equal((await relay.get("/healthz")).status, 200);
+  assert.equal(await relay.metric("clothlab_sessions_failed_total"), 0); // or each typing error would be an alert
 });
 
 test("nothing is published while no relay wants it, and only what it wants", { skip }, async () => {
