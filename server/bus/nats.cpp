@@ -63,7 +63,7 @@ class Nats final : public Bus {
  public:
   Nats(std::string url, std::function<void()> wake) : url_(std::move(url)), wake_(std::move(wake)) {}
   ~Nats() override { close(); }
-  /// Error: the URL is none.
+  /// Error: the URL is none, or the bus refuses this client.
   Status open(const std::string& name);
 
   void send(Outgoing message, Keep keep) override;
@@ -74,6 +74,7 @@ class Nats final : public Bus {
   void close() override;
 
  private:
+  natsStatus join(natsOptions* options);
   void order(Order order);
   void run();
   void carry_out(Send& send);
@@ -82,6 +83,7 @@ class Nats final : public Bus {
   bool publish(const Outgoing& message, std::size_t index, std::size_t count, std::size_t most);
   void receive(natsMsg* message);
   void changed(bool connected);
+  void closed();
 
   static void on_message(natsConnection*, natsSubscription*, natsMsg* message, void* self) {
     const Owned<natsMsg> owned(message);
@@ -89,6 +91,7 @@ class Nats final : public Bus {
   }
   static void on_connected(natsConnection*, void* self) { static_cast<Nats*>(self)->changed(true); }
   static void on_disconnected(natsConnection*, void* self) { static_cast<Nats*>(self)->changed(false); }
+  static void on_closed(natsConnection*, void* self) { static_cast<Nats*>(self)->closed(); }
   static void on_error(natsConnection*, natsSubscription*, natsStatus status, void*) {
     log(LogLevel::warning, "bus_error", {{"why", natsStatus_GetText(status)}});
   }
@@ -118,6 +121,34 @@ std::string trusted_certificates() {
   return std::filesystem::exists(usual, failure) ? usual : "";
 }
 
+/// True if trying again would not help.
+bool refused(natsStatus status) {
+  return status == NATS_CONNECTION_AUTH_FAILED || status == NATS_SSL_ERROR || status == NATS_INVALID_ARG ||
+         status == NATS_ADDRESS_MISSING || status == NATS_SECURE_CONNECTION_REQUIRED ||
+         status == NATS_SECURE_CONNECTION_WANTED;
+}
+
+/// The URL as it may be shown.
+std::string without_password(const std::string& url) {
+  const std::size_t slashes = url.find("//"), at = url.rfind('@');
+  if (at == std::string::npos) return url;
+  return (slashes == std::string::npos ? "" : url.substr(0, slashes + 2)) + url.substr(at + 1);
+}
+
+/// Connects; a bus that does not answer is tried again and again.
+natsStatus Nats::join(natsOptions* options) {
+  natsConnection* connection = nullptr;
+  natsStatus status = natsConnection_Connect(&connection, options);
+  if (status != NATS_OK && !refused(status)) {
+    log(LogLevel::warning, "bus_away", {{"why", natsStatus_GetText(status)}});
+    status = natsOptions_SetRetryOnFailedConnect(options, true, on_connected, this);
+    if (status == NATS_OK) status = natsConnection_Connect(&connection, options);
+  }
+  connection_.reset(connection);
+  if (status == NATS_OK) changed(true);
+  return status == NATS_NOT_YET_CONNECTED ? NATS_OK : status;
+}
+
 Status Nats::open(const std::string& name) {
   natsOptions* made = nullptr;
   natsStatus status = natsOptions_Create(&made);
@@ -134,10 +165,10 @@ Status Nats::open(const std::string& name) {
   set(natsOptions_SetMaxReconnect(made, -1));
   set(natsOptions_SetReconnectWait(made, again_ms));
   set(natsOptions_SetReconnectJitter(made, again_ms, again_ms));
-  set(natsOptions_SetRetryOnFailedConnect(made, true, on_connected, this));
   set(natsOptions_SetReconnectedCB(made, on_connected, this));
   set(natsOptions_SetDisconnectedCB(made, on_disconnected, this));
   set(natsOptions_SetErrorHandler(made, on_error, this));
+  set(natsOptions_SetClosedCB(made, on_closed, this));
   set(natsOptions_SetPingInterval(made, ping_ms));
   set(natsOptions_SetMaxPingsOut(made, 2));
   set(natsOptions_SetWriteDeadline(made, write_ms));
@@ -145,18 +176,13 @@ Status Nats::open(const std::string& name) {
   set(natsOptions_SetNoEcho(made, true));
   // One thread delivers the messages of all subscriptions, so they come in the order in which they were sent.
   set(natsOptions_UseGlobalMessageDelivery(made, true));
-  if (status == NATS_OK) {
-    natsConnection* connection = nullptr;
-    status = natsConnection_Connect(&connection, made);
-    connection_.reset(connection);
-    if (status == NATS_OK) changed(true);
-    if (status == NATS_NOT_YET_CONNECTED) {
-      log(LogLevel::warning, "bus_away", {{"why", "no bus answers yet; it is tried again"}});
-      status = NATS_OK;
-    }
+  if (status == NATS_OK) status = join(made);
+  if (status != NATS_OK) {
+    const char* why = nats_GetLastError(nullptr);
+    return Error{"the bus at " + without_password(url_),
+                 std::string(natsStatus_GetText(status)) + (why && *why ? ": " + std::string(why) : ""),
+                 "an address, a user and a password that it accepts, as nats://USER:PASSWORD@127.0.0.1:4222"};
   }
-  if (status != NATS_OK)
-    return Error{"the bus", natsStatus_GetText(status), "an address such as nats://127.0.0.1:4222"};
   thread_ = std::thread([this] { run(); });
   return ok();
 }
@@ -185,6 +211,17 @@ void Nats::changed(bool connected) {
     log(LogLevel::info, "bus_connected", {});
   else
     log(LogLevel::warning, "bus_away", {{"why", "the connection was lost; it is made again"}});
+}
+
+/// The library gives up a bus that refuses this client twice, and closes the connection for good.
+void Nats::closed() {
+  {
+    const std::lock_guard lock(mutex_);
+    counts_.connected = false;
+    if (stopping_) return;
+  }
+  log(LogLevel::error, "bus_closed",
+      {{"why", "the bus refuses this client now; mend that, then start this program again"}});
 }
 
 void Nats::send(Outgoing message, Keep keep) {
@@ -336,7 +373,8 @@ Counts Nats::counts() const {
 Result<std::unique_ptr<Bus>> connect(const std::string& url, const std::string& name,
                                      std::function<void()> wake) {
   if (!url.starts_with("nats://") && !url.starts_with("tls://"))
-    return Error{"the bus", "\"" + url + "\"", "an address such as nats://127.0.0.1:4222, or tls://..."};
+    return Error{"the bus", "\"" + without_password(url) + "\"",
+                 "an address such as nats://127.0.0.1:4222, or tls://..."};
   auto bus = std::make_unique<Nats>(url, std::move(wake));
   if (const Status opened = bus->open(name); !opened) return opened.error();
   return Result<std::unique_ptr<Bus>>(std::move(bus));

@@ -26,13 +26,13 @@ void Publisher::answer(const relay::Want& want, const std::string& reply, const 
                    {"document", state.document},
                    {"revision", state.revision},
                    {"history", state.history}});
-  bus_.send({reply, bus::bytes_of(answer.dump(-1, ' ', false, json::error_handler_t::replace))},
-            bus::Keep::all);
+  bus_.send({reply, bus::bytes_of(relay::text_of(answer))}, bus::Keep::all);
 }
 
 void Publisher::answer_collider(const std::string& name, const std::string& reply, std::string mesh) {
   if (!reply.empty())
-    bus_.send({reply, bus::bytes_of(std::move(mesh)), "collider " + json(name).dump()}, bus::Keep::all);
+    bus_.send({reply, bus::bytes_of(std::move(mesh)), "collider " + relay::text_of(json(name))},
+              bus::Keep::all);
 }
 
 void Publisher::text(const SharedText& text) {

@@ -1,5 +1,5 @@
 // A session as the service thread sees it: its clients, its scene and topology as last announced, its frames.
-// The session runs in this process, or a bus brings it from another server (Options::relay_from).
+// The session runs in this process, or a bus brings it from another server (Options::relay).
 #pragma once
 
 #include <array>

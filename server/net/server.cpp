@@ -132,7 +132,10 @@ std::optional<session::Failed> Server::run(const std::function<void()>& ready) {
 void Server::say_goodbye() {
   // With 1012 a client knows that it may come back at once: another server goes on with its session.
   constexpr int going_away = 1001;
-  hub_.close_all(hub_.opens_on_demand() ? close_restart : going_away, "the server is shutting down");
+  if (hub_.opens_on_demand())
+    hub_.close_all(close_restart, "this server stops; another one goes on, connect again");
+  else
+    hub_.close_all(going_away, "the server is shutting down");
   const std::int64_t until = session::now_us() + 300'000;
   while (!hub_.empty() && session::now_us() < until) {
     lws_cancel_service(context_);  // so that lws_service returns soon

@@ -16,7 +16,7 @@ std::array<bool, form_count> Audience::heard(const Want& want, std::int64_t now)
       fresh[i] = want.rates[i] > 0 && relay.rates[i] <= 0;
       if (fresh[i]) lanes_[i] = {};
     }
-    relay = {want.rates, want.viewers, now + lease_us};
+    relay = {want.rates, std::max(want.viewers, wanted ? 1 : 0), now + lease_us};
   }
   sum_up();
   return fresh;

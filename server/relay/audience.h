@@ -19,7 +19,8 @@ class Audience {
   bool forget_silent(std::int64_t now);
 
   bool empty() const { return relays_.empty(); }
-  int viewers() const;  ///< of all relays
+  /// Of all relays; one that wants frames and tells of no viewer counts as one.
+  int viewers() const;
   const Rates& rates() const { return rates_; }
 
   /// True once for each frame of this form that is to be sent: it is another one than the last, and the rate

@@ -145,7 +145,7 @@ void Feed::take_answer(const bus::Message& message, std::int64_t now) {
   if (!message.bytes.empty() &&
       message.bytes.front() == static_cast<std::uint8_t>(stream::MessageKind::topology))
     return take_topology(message.bytes);
-  const json state = json::parse(message.bytes.begin(), message.bytes.end(), nullptr, false);
+  const json state = value_of(text_in(message.bytes));
   try {
     if (state.is_object()) take_state(state);
   } catch (const json::exception&) {  // not what a server of this version says
@@ -181,7 +181,7 @@ void Feed::take_scene(json document, std::uint64_t revision, bool told) {
 }
 
 void Feed::take_text(const bus::Message& message, std::int64_t now) {
-  const json said = json::parse(message.bytes.begin(), message.bytes.end(), nullptr, false);
+  const json said = value_of(text_in(message.bytes));
   try {
     if (!said.is_object()) return;
     const auto method = said.at("method").get<std::string>();
@@ -256,9 +256,10 @@ Feed::ColliderMesh Feed::collider(const std::string& name) const {
 }
 
 void Feed::ask_collider(const std::string& name, std::uint64_t asker) {
+  const std::int64_t now = session::now_us();
+  std::erase_if(asked_, [&](const auto& item) { return now - item.second.at > patience_us; });
   Asked& asked = asked_[name];
   asked.askers.push_back(asker);
-  const std::int64_t now = session::now_us();
   if (now - asked.at < want_period_us) return;
   asked.at = now;
   bus_.send(
@@ -267,7 +268,7 @@ void Feed::ask_collider(const std::string& name, std::uint64_t asker) {
 }
 
 void Feed::take_collider(const std::string& quoted_name, const std::vector<std::uint8_t>& bytes) {
-  const json parsed = json::parse(quoted_name, nullptr, false);
+  const json parsed = value_of(quoted_name);
   const auto name = parsed.is_string() ? parsed.get<std::string>() : std::string();
   const auto found = asked_.find(name);
   if (found == asked_.end()) return;

@@ -1,7 +1,9 @@
 #include "server/relay/wire.h"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
+
+#include "server/scene/document.h"
 
 namespace clothlab::relay {
 
@@ -46,36 +48,50 @@ std::string text_of(const Want& want) {
   json forms = json::object();
   for (std::size_t i = 0; i < form_count; ++i)
     if (want.rates[i] > 0) forms[name_of(stream::Form::at(i))] = want.rates[i];
-  return json{
-      {"relay", want.relay},
-      {"viewers", want.viewers},
-      {"forms", std::move(forms)},
-      {"known",
-       {{"origin", want.known.origin}, {"revision", want.known.revision}, {"topology", want.known.topology}}}}
-      .dump(-1, ' ', false, json::error_handler_t::replace);
+  return text_of(json{{"relay", want.relay},
+                      {"viewers", want.viewers},
+                      {"forms", std::move(forms)},
+                      {"known",
+                       {{"origin", want.known.origin},
+                        {"revision", want.known.revision},
+                        {"topology", want.known.topology}}}});
+}
+
+std::string text_of(const json& value) {
+  return value.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+json value_of(std::string_view text) {
+  // A notification has the document, of at most max_json_depth levels, within its parameters.
+  Result<json> value = scene::parse_json(std::string(text), "the bus", false,
+                                         {scene::max_file_bytes, scene::max_json_depth + 4});
+  return value ? std::move(*value) : json();
 }
 
 std::optional<Want> read_want(std::string_view text) {
   constexpr std::size_t longest = 16 * 1024;
   if (text.size() > longest) return std::nullopt;
   try {
-    const json from = json::parse(text);
+    const json from = value_of(text);
+    if (!from.is_object()) return std::nullopt;
     Want want;
     read(from, "relay", want.relay);
     read(from, "viewers", want.viewers);
     json forms = json::object(), known = json::object();
     read(from, "forms", forms);
     read(from, "known", known);
-    if (!from.is_object() || !forms.is_object() || !known.is_object()) return std::nullopt;
+    if (!forms.is_object() || !known.is_object()) return std::nullopt;
     for (std::size_t i = 0; i < form_count; ++i)
       read(forms, name_of(stream::Form::at(i)).c_str(), want.rates[i]);
     read(known, "origin", want.known.origin);
     read(known, "revision", want.known.revision);
     read(known, "topology", want.known.topology);
-    want.viewers = std::max(0, want.viewers);
-    const bool fit = std::all_of(want.rates.begin(), want.rates.end(),
-                                 [](double rate) { return std::isfinite(rate) && rate >= 0; });
-    return fit ? std::optional(want) : std::nullopt;
+    want.viewers = std::clamp(want.viewers, 0, most_viewers);
+    for (double& rate : want.rates) {
+      if (!(rate >= 0)) return std::nullopt;
+      rate = std::min(rate, most_rate);
+    }
+    return want;
   } catch (const json::exception&) {
     return std::nullopt;
   }

@@ -46,8 +46,16 @@ struct Want {
   Known known;
 };
 std::string text_of(const Want& want);
+/// Compact JSON; what is no UTF-8 in it is replaced.
+std::string text_of(const json& value);
+/// The value of a text of the bus; null: it is no JSON, or too deep to handle.
+json value_of(std::string_view text);
 /// No value: the text is no such request.
 std::optional<Want> read_want(std::string_view text);
+
+/// The most frames a second that a want can ask for, and viewers that it can tell; more are taken for these.
+inline constexpr double most_rate = 120;
+inline constexpr int most_viewers = 1'000'000;
 
 /// The lease of a want: without another one for this long a relay is taken for gone [us].
 inline constexpr std::int64_t lease_us = 3'500'000;

@@ -293,6 +293,23 @@ test("a relay with a token lets in who has it, and started before the bus it wai
   await other.stop();
 });
 
+test("a bus that asks for a password gets it from the URL; a wrong one is told, and never shown", {
+  skip,
+}, async () => {
+  const closed = await NatsServer.start("authorization { user: cloth, password: secret }");
+  const url = (password) => `nats://cloth:${password}@127.0.0.1:${closed.port}`;
+  for (const password of ["wrong", ""]) {
+    const { code, stderr } = await runProgram(["relay", "--port", "0", "--from", url(password)]);
+    assert.equal(code, 1);
+    assert.match(stderr, /the bus at nats:\/\/127\.0\.0\.1:\d+: .*Authorization/i);
+    assert.doesNotMatch(stderr, /wrong/);
+  }
+  const server = await Server.launch("relay", "--from", url("secret"));
+  assert.equal(await server.metric("clothlab_bus_connected"), 1);
+  assert.equal(await server.stop(), 0);
+  await closed.stop();
+});
+
 test("wrong addresses of a bus are told, with what is allowed", { skip }, async () => {
   for (const args of [
     ["serve", "--port", "0", "--publish", "localhost:4222"],

@@ -135,6 +135,11 @@ TEST_CASE("a want reads back as it was written, and what is none is refused") {
     CHECK(!relay::read_want(wrong));
   CHECK(!relay::read_want(std::string(1 << 20, ' ') + "{}"));
   CHECK(relay::read_want("{}"));
+  CHECK(!relay::read_want(R"({"known":)" + std::string(5000, '[') + std::string(5000, ']') + "}"));
+  const auto greedy = relay::read_want(R"({"viewers":2000000000,"forms":{"q16":1e300}})");
+  REQUIRE(greedy);
+  CHECK(greedy->viewers == relay::most_viewers);
+  CHECK(greedy->rates[stream::Form(Encoding::q16).index()] == relay::most_rate);
 }
 
 TEST_CASE("subjects name the session, the encoding and the field") {
@@ -162,6 +167,9 @@ TEST_CASE("what all relays want is the most that any of them wants, until its le
   CHECK(audience.rates()[q16] == 30);
   CHECK(audience.rates()[f32] == 0);
   CHECK(audience.viewers() == 2);
+  a.viewers = 0;  // as a script may say that only wants frames
+  audience.heard(a, 4 * second);
+  CHECK(audience.viewers() == 1);
   audience.heard({"a", 0, {}, {}}, 4 * second);  // it says goodbye
   CHECK(audience.empty());
 }
@@ -314,6 +322,7 @@ TEST_CASE("messages that are none of this protocol change nothing") {
       R"({"method":"scene","params":{}})",
       R"({"method":"scene.changed","params":{"revision":8,"patch":[{"op":"x"}]}})",
       R"({"method":7,"params":{}})",
+      R"({"method":"scene","params":)" + std::string(100000, '[') + std::string(100000, ']') + "}",
       std::string(100, '\x02'),
       std::string(64, '\1')};
   for (const std::string& text : wrong)
