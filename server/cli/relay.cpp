@@ -33,7 +33,7 @@ void add_relay(CLI::App& app, int& exit_code) {
             "sessions that are shown at the same time");
   add_connection_limits(*command, options.limits);
   command->footer(R"(Example, all on one machine:
-  nats-server -a 127.0.0.1 &
+  /usr/sbin/nats-server -a 127.0.0.1 &                 unless it runs already: apt-get install nats-server
   clothlab serve --publish nats://127.0.0.1:4222 &
   clothlab relay --from nats://127.0.0.1:4222          open http://127.0.0.1:8081
 

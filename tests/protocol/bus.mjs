@@ -8,9 +8,12 @@ import { join } from "node:path";
 import { after } from "node:test";
 import { sleep, withTimeout } from "./harness.mjs";
 
+// Debian has it in a folder that only root looks into.
+const env = { ...process.env, PATH: `${process.env.PATH}:/usr/sbin` };
+
 /// Why tests that need a bus are skipped; false: they are not.
 export function noBus() {
-  if (spawnSync("nats-server", ["--version"]).error) return "nats-server is not installed";
+  if (spawnSync("nats-server", ["--version"], { env }).error) return "nats-server is not installed";
   const info = spawnSync(process.env.CLOTHLAB, ["info"], { encoding: "utf8" }).stdout;
   return /^bus +nats /m.test(info) ? false : "this program was built without libnats";
 }
@@ -42,7 +45,7 @@ export class NatsServer {
     const folder = mkdtempSync(join(tmpdir(), "clothlab-nats-"));
     const file = join(folder, "nats.conf");
     writeFileSync(file, `host: 127.0.0.1\nport: ${this.port}\n${this.settings}\n`);
-    this.child = spawn("nats-server", ["-c", file], { stdio: ["ignore", "ignore", "pipe"] });
+    this.child = spawn("nats-server", ["-c", file], { stdio: ["ignore", "ignore", "pipe"], env });
     children.add(this.child);
     let said = "";
     this.child.stderr.on("data", (data) => (said += data));
