@@ -147,16 +147,17 @@ void Feed::take_answer(const bus::Message& message, std::int64_t now) {
     return take_topology(message.bytes);
   const json state = value_of(text_in(message.bytes));
   try {
-    if (state.is_object()) take_state(state);
+    if (state.is_object()) take_state(state, now);
   } catch (const json::exception&) {  // not what a server of this version says
   }
 }
 
 /// What the server answers to a want: of all that viewers get first, that which this relay does not have.
-void Feed::take_state(const json& state) {
+void Feed::take_state(const json& state, std::int64_t now) {
   const auto origin = state.at("origin").get<std::string>();
   const bool other = origin != want_.known.origin;
   if (other) renumber_ = true;
+  if (other && !want_.known.origin.empty()) origin_changed(now);
   want_.known.origin = origin;
   if (const auto scene = state.find("document"); scene != state.end()) {
     const auto revision = state.at("revision").get<std::uint64_t>();
@@ -169,6 +170,15 @@ void Feed::take_state(const json& state) {
     started_ = true;
     exchange_.emit(session::Started{renderer_});
   }
+}
+
+/// A server that was started again answers under another name once; two servers take turns.
+void Feed::origin_changed(std::int64_t now) {
+  const bool soon = origin_changed_ && now - *origin_changed_ < patience_us;
+  origin_changed_ = now;
+  if (!soon || std::exchange(told_of_two_, true)) return;
+  tell("error", "two servers publish the session " + session_ +
+                    " on this bus, and both are shown; one of them has to use another name, or another bus");
 }
 
 void Feed::take_scene(json document, std::uint64_t revision, bool told) {

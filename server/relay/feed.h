@@ -48,7 +48,8 @@ class Feed final : public session::Source {
   void heard(std::int64_t now);
   void look_for_silence(std::int64_t now);
   void take_answer(const bus::Message& message, std::int64_t now);
-  void take_state(const json& state);
+  void take_state(const json& state, std::int64_t now);
+  void origin_changed(std::int64_t now);
   void take_text(const bus::Message& message, std::int64_t now);
   void take_scene(json document, std::uint64_t revision, bool told);
   void take_patch(const json& params, std::int64_t now);
@@ -65,6 +66,8 @@ class Feed final : public session::Source {
   std::int64_t begun_ = 0, heard_ = 0;      ///< when made, and when the server answered last [us]
   std::int64_t wanted_ = 0, want_due_ = 0;  ///< when the want was sent last, and when it is due [us]
   bool started_ = false, failed_ = false, silent_ = false;
+  std::optional<std::int64_t> origin_changed_;  ///< when another server answered than before [us]
+  bool told_of_two_ = false;                    ///< that two servers publish the session
 
   std::string renderer_;
   json document_;

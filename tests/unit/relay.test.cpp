@@ -359,6 +359,15 @@ TEST_CASE(
   CHECK(silent.of<session::Failed>().size() == 1);
 }
 
+TEST_CASE("two servers with one session on a bus are told once, a server that was started again is not") {
+  Pair pair;
+  for (const char* origin : {"origin-1", "origin-2", "origin-2", "origin-2"}) pair.pass(origin);
+  CHECK(pair.of<session::Notice>().empty());
+  for (const char* origin : {"origin-1", "origin-2", "origin-1"}) pair.pass(origin);
+  REQUIRE(pair.of<session::Notice>().size() == 1);
+  CHECK(pair.of<session::Notice>()[0].text.find("two servers publish the session main") == 0);
+}
+
 TEST_CASE("the mesh of a collider is asked for once and kept until the colliders change") {
   Pair pair;
   pair.pass();
