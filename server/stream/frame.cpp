@@ -22,44 +22,36 @@ const std::uint8_t* get(const std::uint8_t* in, T& value) {
   return in + sizeof(T);
 }
 
+/// Calls `use` with each field of a header, in the order in which they are sent.
+template <class AnyHeader, class Use>
+void for_each_field(AnyHeader& header, const Use& use) {
+  use(header.kind);
+  use(header.encoding);
+  use(header.flags);
+  use(header.topology_revision);
+  use(header.sequence);
+  use(header.vertex_count);
+  use(header.time);
+  use(header.step);
+  for (auto* corner : {&header.box_minimum, &header.box_extent})
+    for (int axis = 0; axis < 3; ++axis) use((*corner)[axis]);
+  use(header.payload_bytes);
+  use(header.range);
+}
+
 }  // namespace
 
 void write_header(const Header& header, std::uint8_t* out) {
-  out = put(out, header.kind);
-  out = put(out, header.encoding);
-  out = put(out, header.flags);
-  out = put(out, header.topology_revision);
-  out = put(out, header.sequence);
-  out = put(out, header.vertex_count);
-  out = put(out, header.time);
-  out = put(out, header.step);
-  for (const glm::vec3* corner : {&header.box_minimum, &header.box_extent})
-    for (int axis = 0; axis < 3; ++axis) out = put(out, (*corner)[axis]);
-  out = put(out, header.payload_bytes);
-  put(out, header.range);
+  for_each_field(header, [&](const auto& field) { out = put(out, field); });
 }
 
 std::optional<Header> read_header(const std::uint8_t* message, std::size_t size) {
   if (size < header_bytes) return std::nullopt;
   Header header;
-  std::uint8_t kind = 0, encoding = 0;
-  const std::uint8_t* in = get(get(message, kind), encoding);
-  if (kind < static_cast<std::uint8_t>(MessageKind::topology) ||
-      kind > static_cast<std::uint8_t>(MessageKind::frame) || encoding >= encoding_count)
-    return std::nullopt;
-  header.kind = static_cast<MessageKind>(kind);
-  header.encoding = static_cast<Encoding>(encoding);
-  in = get(in, header.flags);
-  in = get(in, header.topology_revision);
-  in = get(in, header.sequence);
-  in = get(in, header.vertex_count);
-  in = get(in, header.time);
-  in = get(in, header.step);
-  for (glm::vec3* corner : {&header.box_minimum, &header.box_extent})
-    for (int axis = 0; axis < 3; ++axis) in = get(in, (*corner)[axis]);
-  in = get(in, header.payload_bytes);
-  get(in, header.range);
-  return header.payload_bytes == size - header_bytes ? std::optional(header) : std::nullopt;
+  for_each_field(header, [&](auto& field) { message = get(message, field); });
+  const bool known = (header.kind == MessageKind::topology || header.kind == MessageKind::frame) &&
+                     static_cast<std::size_t>(header.encoding) < encoding_count;
+  return known && header.payload_bytes == size - header_bytes ? std::optional(header) : std::nullopt;
 }
 
 SharedMessage encode_topology(const model::Model& model, std::uint32_t revision) {

@@ -112,13 +112,13 @@ test("the mesh of a collider comes through the relay, once for all", { skip }, a
     [1, 0, 0],
     [0, 0, 1],
     [0, 1, 0],
-  ]; // prettier-ignore
+  ];
   const triangles = [
     [0, 1, 2],
     [0, 3, 1],
     [0, 2, 3],
     [1, 3, 2],
-  ]; // prettier-ignore
+  ];
   await operator.request("scene.patch", {
     patch: [
       {
