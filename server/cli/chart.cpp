@@ -42,11 +42,11 @@ std::string cheapest(const lab::Chart& chart, scene::Method method, std::size_t 
 }
 
 void print_best(const lab::Chart& chart) {
-  std::size_t axis = 0;  // positions, or the first axis that has errors
-  while (axis + 1 < lab::all_axes.size() && !chart.axes[axis].available) ++axis;
-  if (!chart.axes[axis].available) return;
-  std::cout << "\nms of stepping per simulated second, cheapest with an error of "
-            << lab::name(lab::all_axes[axis]) << " of at most\n";
+  const std::optional<lab::Axis> shown = lab::first_with_errors(chart);
+  if (!shown) return;
+  const std::size_t axis = lab::index(*shown);
+  std::cout << "\nms of stepping per simulated second, cheapest with an error of " << lab::name(*shown)
+            << " of at most\n";
   std::vector<std::vector<std::string>> rows{{"", "1e-2", "1e-3", "1e-4"}};
   for (const scene::Method method : scene::methods) {
     bool any = false;

@@ -13,6 +13,7 @@
 #include "server/lab/draw/plot.h"
 #include "server/sweep/folder.h"
 #include "server/sweep/measure.h"
+#include "server/sweep/pictures.h"
 #include "server/sweep/table.h"
 
 namespace clothlab::cli {
@@ -96,8 +97,18 @@ int run_sweep(const SweepOptions& options) {
   std::cout << plan->name << ", shard " << options.shard << " of " << lab::count(plan->size(), "point")
             << ": " << in_words(*done) << "\n";
   if (done->refused > 0) note("the first that is no valid scene: " + done->first_refusal);
-  if (shard->of == 1) std::cout << "`clothlab sweep --merge " << options.out << "` makes a table of them\n";
+  if (shard->of == 1)
+    std::cout << "`clothlab sweep --merge " << options.out << "` makes tables and pictures of them\n";
   return exit_done;
+}
+
+/// ", chart.svg, map.svg", or how many there are.
+std::string in_words(const std::vector<std::string>& pictures) {
+  constexpr std::size_t most_named = 4;
+  if (pictures.size() > most_named) return " and " + lab::count(pictures.size(), "picture") + " (*.svg)";
+  std::string words;
+  for (const std::string& name : pictures) words += ", " + name;
+  return words;
 }
 
 int merge(const SweepOptions& options) {
@@ -111,7 +122,14 @@ int merge(const SweepOptions& options) {
                                    std::pair{"table.json", sweep::to_json(table).dump() + "\n"}})
     if (Status written = replace_file(folder / name, text); !written)
       return fail(written.error(), exit_internal);
-  const Result<std::string> page = sweep::page(table);
+  const sweep::Pictures pictures = sweep::pictures(found->second, table);
+  std::vector<std::string> names;
+  for (const sweep::Picture& picture : pictures.drawn) {
+    if (Status written = replace_file(folder / picture.name, picture.svg); !written)
+      return fail(written.error(), exit_internal);
+    names.push_back(picture.name);
+  }
+  const Result<std::string> page = sweep::page(table, names);
   if (page) {
     if (Status written = replace_file(folder / "sweep.html", *page); !written)
       return fail(written.error(), exit_internal);
@@ -120,7 +138,11 @@ int merge(const SweepOptions& options) {
   }
   std::cout << table.name << ": " << table.rows.size() << " of " << lab::count(table.points, "point") << "\n"
             << "written: " << (folder / "table.csv").string() << ", table.json"
-            << (page ? ", sweep.html" : "") << "\n";
+            << (page ? ", sweep.html" : "") << in_words(names) << "\n";
+  if (pictures.beyond > 0)
+    note(lab::count(pictures.beyond, "picture") +
+         " more would be needed for all combinations of values; at most " +
+         std::to_string(sweep::most_pictures) + " are drawn");
   if (table.missing > 0)
     note(lab::count(table.missing, "point is", "points are") +
          " not measured, or their files are damaged; the sweep's command measures them");
@@ -141,7 +163,8 @@ void add_sweep(CLI::App& app, int& exit_code) {
   command->add_option("--shard", options->shard, "measure every n-th point, from the i-th on")
       ->type_name("I/N")
       ->capture_default_str();
-  command->add_option("--merge", options->merge, "make tables of the results that are in a folder")
+  command
+      ->add_option("--merge", options->merge, "make tables and pictures of the results that are in a folder")
       ->type_name("DIR")
       ->excludes(file);
   add_asset_root(*command, options->asset_root);

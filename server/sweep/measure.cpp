@@ -54,14 +54,21 @@ Result<const lab::Truth*> Measurement::truth_of(const scene::Document& scene, co
 }
 
 Status Measurement::add_errors(const scene::Document& scene, Row& result, const std::stop_token& stop) {
-  const Result<const lab::Truth*> found = truth_of(scene, stop);
-  if (!found) return found.error();
-  const lab::Truth& truth = **found;
+  const Result<const lab::Truth*> known = truth_of(scene, stop);
+  if (!known) return known.error();
+  const lab::Truth& truth = **known;
+  result["size_m"] = truth.size;
   result["horizon_s"] = truth.horizon;
-  Row& errors = result["error"] = {{"position_over_size", nullptr},
-                                   {"largest_position_over_size", nullptr},
-                                   {"energy_share", nullptr},
-                                   {"strain_share", nullptr}};
+  lab::Trial trial;
+  if (truth.why_no_reference.empty()) {
+    Result<lab::Trial> found = trials_.run(scene.scene, truth, truth.time, stop);
+    if (!found) return found.error();
+    trial = std::move(*found);
+  }
+  result["error"] = {{"position_over_size", number(trial.error[lab::index(lab::Axis::position)])},
+                     {"largest_position_over_size", number(trial.largest_position_error)},
+                     {"energy_share", number(trial.error[lab::index(lab::Axis::energy)])},
+                     {"strain_share", number(trial.error[lab::index(lab::Axis::strain)])}};
   if (!truth.why_no_reference.empty()) {
     result["why_no_error"] = truth.why_no_reference;
     return ok();
@@ -70,12 +77,6 @@ Status Measurement::add_errors(const scene::Document& scene, Row& result, const 
     result["reference_error"] = number(truth.position_error / truth.size);
   else
     result["why_no_error"] = truth.horizon_reason;
-  const Result<lab::Trial> trial = trials_.run(scene.scene, truth, truth.time, stop);
-  if (!trial) return trial.error();
-  errors["position_over_size"] = number(trial->error[lab::index(lab::Axis::position)]);
-  errors["largest_position_over_size"] = number(trial->largest_position_error);
-  errors["energy_share"] = number(trial->error[lab::index(lab::Axis::energy)]);
-  errors["strain_share"] = number(trial->error[lab::index(lab::Axis::strain)]);
   return ok();
 }
 
@@ -107,14 +108,15 @@ Result<std::string> Measurement::add_run(const scene::Scene& scene, Row& result,
   if (!prepared) return prepared.error();
   sim::Simulation& simulation = **prepared;
   sim::GuardedRun guard(simulation);
-  guard.start(model::dt_limit_if_near(simulation.model(), scene));
+  const double dt_limit = model::dt_limit_if_near(simulation.model(), scene);
+  guard.start(dt_limit);
   std::optional<sim::CrossingCheck> crossings;
   if (plan_.quantities.crossings) crossings.emplace(simulation);
   result["vertices"] = simulation.model().vertex_count();
   const auto steps = static_cast<std::uint64_t>(std::max(1.0, std::round(plan_.time / scene.solver.dt)));
   const auto apart = static_cast<std::uint64_t>(std::max(1.0, std::round(plan_.every / scene.solver.dt)));
   lab::Stepping stepping(simulation);
-  double strain = 0, speed = 0;
+  double strain = 0, speed = 0, energy = 0;
   std::uint64_t done = 0;
   bool held = true;
   while (held && done < steps) {
@@ -127,11 +129,14 @@ Result<std::string> Measurement::add_run(const scene::Scene& scene, Row& result,
     if (!held) break;
     strain = std::max(strain, guard.state().max_strain);
     speed = std::max(speed, guard.state().max_speed);
+    energy = std::max(energy, guard.state().kinetic + guard.state().elastic);
     if (crossings) crossings->add(simulation.read_state(), guard.state().time);
   }
+  result["dt_limit_s"] = number(dt_limit);
   result["blew_up_at_s"] = held ? Row() : number(static_cast<double>(done) * scene.solver.dt);
   result["largest_strain"] = number(strain);
   result["largest_speed_m_per_s"] = number(speed);
+  result["largest_kinetic_and_elastic_j"] = number(energy);
   const sim::Diagnostics& last = held ? guard.state() : guard.last_good();
   result["end"] = {{"time_s", number(last.time)},
                    {"kinetic_j", number(last.kinetic)},
@@ -148,8 +153,8 @@ Result<std::string> Measurement::add_run(const scene::Scene& scene, Row& result,
 Result<Measured> Measurement::measure(const scene::Document& scene, const std::stop_token& stop) {
   Measured measured;
   Row& result = measured.result;
-  result["method"] = scene::name(scene.scene.solver.method);
-  result["dt_s"] = scene.scene.solver.dt;
+  const json setting = lab::to_json(lab::setting_of(scene.scene));
+  for (const char* name : {"method", "dt_s", "iterations", "tolerance"}) result[name] = setting[name];
   result["renderer"] = gl::renderer_name();
   result["version"] = CLOTHLAB_VERSION;
   Result<std::string> shape = add_run(scene.scene, result, stop);

@@ -61,6 +61,7 @@ Table table_of(const Folder& folder, const Plan& plan) {
       row[found->second] = value;
     });
     table.rows.push_back(std::move(row));
+    table.points_of_rows.push_back(point);
   }
   for (std::vector<json>& row : table.rows) row.resize(table.columns.size());
   return table;
@@ -79,11 +80,13 @@ std::string csv(const Table& table) {
   return text;
 }
 
-Result<std::string> page(const Table& table) {
+Result<std::string> page(const Table& table, const std::vector<std::string>& pictures) {
   if (table.rows.size() > most_rows_of_page)
     return Error{"the page", std::to_string(table.rows.size()) + " points",
                  "at most " + std::to_string(most_rows_of_page) + "; table.csv has all of them"};
-  std::string data = to_json(table).dump(-1, ' ', false, json::error_handler_t::replace);
+  json content = to_json(table);
+  content["pictures"] = pictures;
+  std::string data = content.dump(-1, ' ', false, json::error_handler_t::replace);
   // A text in it must not end the element that it is in.
   for (std::size_t at = 0; (at = data.find('<', at)) != std::string::npos;) data.replace(at, 1, "\\u003c");
   return filled_page("sweep.html", {{"@title@", as_html(table.name)}, {"@table@", data}});

@@ -42,6 +42,7 @@ async function open(options) {
 browserTest("a sweep's page draws any two columns, filters, and says all of a point", async () => {
   const { page, complaints } = await open({ viewport: { width: 1000, height: 900 }, bypassCSP: true });
   assert.equal(await page.locator("h1").textContent(), plan.name);
+  assert.deepEqual(await page.locator("#pictures a").allTextContents(), ["map.svg"]);
   const [marks, lines] = [page.locator(".point"), page.locator("#plot path")];
   await page.locator("select[name=x]").selectOption("dt");
   await page.locator("select[name=y]").selectOption("largest_strain");

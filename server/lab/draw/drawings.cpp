@@ -33,12 +33,17 @@ std::string scene_and_renderer(const std::string& scene, const std::string& rend
 
 double write_heading(Svg& svg, const std::string& title, const std::vector<std::string>& lines) {
   double y = margin + title_size * 0.8;
+  constexpr double width = picture_width - 2 * margin, bold = 1.1;  // bold letters over plain ones
+  // A long title gets smaller letters, so that the picture stays as high as it is.
+  const double needed = bold * text_width(title, title_size);
+  const double size = std::clamp(title_size * width / needed, small_size, title_size);
   svg.open("g", {{"class", "heading"}});
-  svg.text(margin, y, title, title_size, "start",
-           {{"class", "text title"}, {"fill", ink}, {"font-weight", "bold"}});
+  for (const std::string& line : wrapped(title, width / bold, size, 1))
+    svg.text(margin, y, line, size, "start",
+             {{"class", "text title"}, {"fill", ink}, {"font-weight", "bold"}});
   y += 0.3 * title_size;
   for (const std::string& words : lines)
-    for (const std::string& line : wrapped(words, picture_width - 2 * margin, small_size, 2)) {
+    for (const std::string& line : wrapped(words, width, small_size, 2)) {
       y += line_height * small_size;
       svg.text(margin, y, line, small_size, "start", {{"class", "text soft"}, {"fill", soft_ink}});
     }

@@ -28,7 +28,8 @@ const char* colour(scene::Method method);
 /// The shape of a method's mark, for mark_path.
 std::size_t mark_shape(scene::Method method);
 
-/// Writes the title and, below it, `lines`, each wrapped to at most two. Returns y of the next line of text.
+/// Writes the title on one line and, below it, `lines`, each wrapped to at most two. Returns y of the next
+/// line of text.
 double write_heading(Svg& svg, const std::string& title, const std::vector<std::string>& lines);
 /// Writes notes below a picture, from `y` on, in at most `most_lines` lines per paragraph. Returns y of the
 /// next line of text.

@@ -199,7 +199,12 @@ class Panel {
   }
 
   void draw_present() {
-    if (method_.method != map_.present_method) return;
+    const auto within = [](const Scale& scale, double value) {
+      return value >= scale.low && value <= scale.high;
+    };
+    if (method_.method != map_.present_method || !within(x_, map_.present_value) ||
+        !within(y_, map_.present_dt))
+      return;
     for (const auto& [colour, width] : {std::pair{paper, 5.0}, std::pair{ink, 2.2}})
       svg_.add("circle", {{"class", "ring present"},
                           {"cx", x_(map_.present_value)},

@@ -106,8 +106,10 @@ std::string draw(const StabilityMap& map) {
   if (methods.empty())
     svg.text(picture_width / 2, top + row_height / 2, "Nothing is measured yet.", text_size, "middle",
              {{"class", "text"}, {"fill", ink}});
-  const std::string x_label = (map.field == "stiffness" ? "all stiffnesses" : map.field) +
-                              (map.unit.empty() ? "" : " [" + map.unit + "]");
+  // All stiffnesses have a unit; an axis of a sweep may have their name, but no unit.
+  const std::string x_label =
+      (map.field == "stiffness" && !map.unit.empty() ? "all stiffnesses" : map.field) +
+      (map.unit.empty() ? "" : " [" + map.unit + "]");
   svg.text((panels_left + picture_width - margin) / 2, labels, x_label, text_size, "middle",
            {{"class", "text label"}, {"fill", ink}});
   const double middle = top + rows * row_height / 2;

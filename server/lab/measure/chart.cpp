@@ -289,4 +289,10 @@ Result<Chart> chart(const scene::Scene& scene, const ChartRequest& request, cons
   return ChartMeasurement(scene, suited, control).run();
 }
 
+std::optional<Axis> first_with_errors(const Chart& chart) {
+  for (const Axis axis : all_axes)
+    if (chart.axes[index(axis)].available) return axis;
+  return std::nullopt;
+}
+
 }  // namespace clothlab::lab

@@ -86,6 +86,9 @@ struct Chart {
   bool complete = false;           ///< false while the chart is being measured, and if it was cancelled
 };
 
+/// Positions, or else the first axis that has errors. None: no axis has.
+std::optional<Axis> first_with_errors(const Chart& chart);
+
 struct ChartRequest {
   std::vector<scene::Method> methods;  ///< empty: all that suit the scene
   std::vector<int> iterations;         ///< empty: 1, 4, 16 for methods that sweep; 1, 4 for implicit Euler

@@ -9,6 +9,7 @@ interface Table {
   points: number;
   missing: number;
   rows: Value[][];
+  pictures: string[]; // files beside the page
 }
 
 const table = JSON.parse(document.getElementById("data")?.textContent ?? "") as Table;
@@ -200,6 +201,10 @@ part("name").textContent = table.sweep;
 part("about").textContent =
   `${table.rows.length} of ${table.points} points measured` +
   (table.missing > 0 ? `; ${table.missing} are missing` : "");
+part("pictures").append(
+  ...(table.pictures.length > 0 ? ["Pictures: "] : []),
+  ...table.pictures.flatMap((name, i) => [i > 0 ? ", " : "", element("a", name, { href: name })]),
+);
 const prefer = (...names: string[]): string => names.find((name) => drawable.includes(name)) ?? drawable[0] ?? "";
 const numbers = table.axes.filter(isNumber);
 choice("x", "Across", drawable, prefer("error_position_over_size", ...numbers.slice(-1)));
