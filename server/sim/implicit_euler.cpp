@@ -1,7 +1,9 @@
 // Implicit Euler on the GPU: shaders/methods/implicit_*.comp. Vectors and sums stay on the GPU; the host only
 // asks, every few iterations, if a solve has ended.
 #include <array>
+#include <cstddef>
 
+#include "server/sim/coarse_level.h"
 #include "server/sim/integrator.h"
 
 namespace clothlab::sim {
@@ -15,24 +17,33 @@ constexpr int iterations_between_looks = 8;
 /// Passes of self-collision after the solve. Each pass leaves half of the speed at which two vertices
 /// approach each other, or less.
 constexpr int contact_passes = 4;
+constexpr std::uint32_t trends = 3;  ///< TRENDS in implicit_euler.glsl
 
-/// The start of the buffer Control in implicit_update.comp.
+/// The buffer Control of shaders/methods/implicit_control.glsl.
 struct Control {
   std::uint32_t groups = 0, groups_y = 1, groups_z = 1;
+  std::uint32_t single = 1, single_y = 1, single_z = 1;
   std::uint32_t iterations = 0, converged = 0;
-  std::array<std::uint32_t, 3> unused{};
+  float along = 0, kept = 0, last = 0;
+  std::uint32_t unused = 0;
 };
 
 class ImplicitEuler : public Integrator {
  public:
-  static Result<std::unique_ptr<Integrator>> create(std::uint32_t vertex_count, const Plan& plan) {
-    std::unique_ptr<ImplicitEuler> made(new ImplicitEuler(vertex_count));
+  static Result<std::unique_ptr<Integrator>> create(const model::Model& model, const Plan& plan) {
+    std::unique_ptr<ImplicitEuler> made(new ImplicitEuler(model, plan));
     gl::Defines defines = step_defines(plan);
     defines.emplace_back("GROUP_COUNT", std::to_string(made->groups_));
+    for (gl::Defines::value_type& define : made->coarse_.defines()) defines.push_back(std::move(define));
     if (!plan.pins && plan.solid_count() == 0) defines.emplace_back("FREE", "1");
     for (auto [program, name] : {std::pair{&made->start_, "start"},
                                  {&made->system_, "system"},
+                                 {&made->project_, "project"},
+                                 {&made->improve_, "improve"},
+                                 {&made->collect_, "collect"},
+                                 {&made->precondition_, "precondition"},
                                  {&made->multiply_, "multiply"},
+                                 {&made->step_, "step"},
                                  {&made->update_, "update"},
                                  {&made->search_, "search"},
                                  {&made->advance_, "advance"},
@@ -51,17 +62,19 @@ class ImplicitEuler : public Integrator {
       Result<gl::Program> loaded = gl::Program::load({"methods/implicit_wind.comp"}, defines);
       if (!loaded) return loaded.error();
       made->wind_ = std::move(*loaded);
-      made->wind_loads_ = {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
+      made->wind_loads_ = {gl::Buffer(std::size_t{model.vertex_count()} * 4 * sizeof(float)), GL_RGBA32F};
     }
     return std::unique_ptr<Integrator>(std::move(made));
   }
 
   void set_parameters(const Surroundings& around) override {
     for (const gl::Program* program :
-         {&start_, &system_, &multiply_, &update_, &search_, &advance_, &end_, &contacts_, &wind_})
+         {&start_, &system_, &project_, &improve_, &collect_, &precondition_, &multiply_, &step_, &update_,
+          &search_, &advance_, &end_, &contacts_, &wind_})
       if (program->id()) set_step_uniforms(*program, around);
     if (around.scene.solver.dt != dt_) restart();  // impulses kept in `contact_friction_` are forces times dt
     dt_ = around.scene.solver.dt;
+    coarse_.set_parameters(around.model, around.scene);
     most_newton_steps_ = around.scene.solver.iterations;
     system_.set("tolerance", static_cast<float>(around.scene.solver.tolerance));
   }
@@ -71,6 +84,10 @@ class ImplicitEuler : public Integrator {
     const Vectors* last = nullptr;
     for (int newton = 0; newton < most_newton_steps_; ++newton) {
       set_up(newton == 0);
+      if (newton == 0) {
+        improve_guess();
+        coarse_.prepare({start_position_, constraint_, block_a_, block_b_}, touches_);
+      }
       Control solved;
       co_await solve(solved);
       ++work_.newton_steps;
@@ -91,10 +108,12 @@ class ImplicitEuler : public Integrator {
     finish(state, *last, row);
   }
 
-  /// Forgets all contacts with colliders: -1 is `untouched` in implicit_friction.glsl.
+  /// Forgets the past velocities and all contacts with colliders: -1 is `untouched` in
+  /// implicit_friction.glsl.
   void restart() override {
     const std::vector<float> untouched(contact_friction_.bytes() / sizeof(float), -1.0F);
     contact_friction_.upload(untouched.data(), contact_friction_.bytes());
+    past_velocities_.fill(0);
   }
 
   SolverWork work() const override { return work_; }
@@ -105,7 +124,9 @@ class ImplicitEuler : public Integrator {
     gl::TextureBuffer change, residual, preconditioned, direction, direction_product;
   };
 
-  explicit ImplicitEuler(std::uint32_t vertex_count) : groups_(vertex_groups(vertex_count)) {
+  ImplicitEuler(const model::Model& model, const Plan& plan)
+      : groups_(vertex_groups(model.vertex_count())), touches_(plan.solid_count() > 0), coarse_(model) {
+    const std::size_t vertex_count = model.vertex_count();
     for (gl::TextureBuffer* vector : {&start_position_, &start_velocity_, &position_, &velocity_, &guess_,
                                       &constraint_, &surface_, &product_, &block_a_, &block_b_})
       *vector = {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
@@ -113,9 +134,12 @@ class ImplicitEuler : public Integrator {
       for (gl::TextureBuffer* vector :
            {&set.change, &set.residual, &set.preconditioned, &set.direction, &set.direction_product})
         *vector = {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
+    for (gl::TextureBuffer* of_each : {&trends_, &trend_products_})
+      *of_each = {gl::Buffer(vertex_count * trends * 4 * sizeof(float)), GL_RGBA32F};
+    past_velocities_ = gl::Buffer(vertex_count * trends * 4 * sizeof(float));
     contact_friction_ = gl::Buffer(vertex_count * 4 * sizeof(float));
     sums_ = {gl::Buffer(groups_ * 12 * sizeof(float)), GL_RGBA32F};  // at most three vec4 per work group
-    control_ = gl::Buffer(sizeof(Control) + most_iterations * 2 * sizeof(float));
+    control_ = gl::Buffer(sizeof(Control));
   }
 
   void run(const gl::Program& program) {
@@ -166,10 +190,24 @@ class ImplicitEuler : public Integrator {
     velocity_.bind(unit_velocity);
     guess_.bind(unit_change);
     vectors_[0].residual.buffer.bind_storage(slot_residual);
-    vectors_[0].preconditioned.buffer.bind_storage(slot_preconditioned);
     block_a_.buffer.bind_storage(slot_block_a);
     block_b_.buffer.bind_storage(slot_block_b);
+    trends_.buffer.bind_storage(slot_trends);
+    past_velocities_.bind_storage(slot_past_velocities);
     run(system_);
+  }
+
+  /// Adds to the first guess what the last steps' velocities tell of this one's.
+  void improve_guess() {
+    vectors_[0].residual.bind(unit_residual);
+    trends_.bind(unit_trends);
+    trend_products_.buffer.bind_storage(slot_trend_products);
+    sums_.buffer.bind_storage(slot_group_sums);
+    run(project_);
+    trend_products_.bind(unit_trend_products);
+    vectors_[0].residual.buffer.bind_storage(slot_residual);
+    guess_.buffer.bind_storage(slot_guess);
+    run(improve_);
   }
 
   /// Solves the linear system by conjugate gradients. `control` receives how the solve ended.
@@ -177,7 +215,9 @@ class ImplicitEuler : public Integrator {
     control = Control{};
     control.groups = groups_;
     control_.upload(&control, sizeof control);
+    coarse_.bind();
     for (int done = 0; done < most_iterations && control.groups > 0; done += iterations_between_looks) {
+      precondition(vectors_[done % 2]);
       for (int i = 0; i < iterations_between_looks; ++i) {
         iterate(done + i);
         co_await may_stop;
@@ -186,30 +226,49 @@ class ImplicitEuler : public Integrator {
     }
   }
 
+  /// Makes the preconditioned residual from the residual alone. Iterations keep the patches' sums up to date
+  /// by themselves, and their rounding errors add up: in a stiff cloth a solve would end too early.
+  void precondition(const Vectors& now) {
+    now.residual.bind(unit_residual);
+    run_if_needed(collect_, offsetof(Control, groups));
+    take_step(-1);
+    now.preconditioned.buffer.bind_storage(slot_preconditioned);
+    run_if_needed(precondition_, offsetof(Control, groups));
+  }
+
+  /// Runs a program unless the solve has ended.
+  void run_if_needed(const gl::Program& program, std::size_t groups) {
+    program.use();
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, control_.id());
+    glDispatchComputeIndirect(static_cast<GLintptr>(groups));
+    wait_for_writes();
+    ++dispatches_;
+  }
+
+  void take_step(int iteration) {
+    control_.bind_storage(slot_solver_control);
+    coarse_.bind_vectors();
+    step_.set("iteration", iteration);
+    run_if_needed(step_, offsetof(Control, single));
+  }
+
   void iterate(int iteration) {
     const Vectors &now = vectors_[iteration % 2], &next = vectors_[(iteration + 1) % 2];
-    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, control_.id());
     now.residual.bind(unit_residual);
     now.preconditioned.bind(unit_preconditioned);
     product_.buffer.bind_storage(slot_product);
-    sums_.buffer.bind_storage(slot_group_sums);
-    multiply_.use();
-    glDispatchComputeIndirect(0);
-    wait_for_writes();
+    run_if_needed(multiply_, offsetof(Control, groups));
+    take_step(iteration);
     now.direction.bind(unit_direction);
     now.direction_product.bind(unit_direction_product);
     (iteration == 0 ? guess_ : now.change).bind(unit_change);
     next.residual.buffer.bind_storage(slot_residual);
     next.preconditioned.buffer.bind_storage(slot_preconditioned);
-    control_.bind_storage(slot_solver_control);
     next.direction.buffer.bind_storage(slot_direction);
     next.direction_product.buffer.bind_storage(slot_direction_product);
     next.change.buffer.bind_storage(slot_change);
-    update_.use();
     update_.set("iteration", iteration);
-    glDispatchComputeIndirect(0);
-    wait_for_writes();
-    dispatches_ += 2;
+    run_if_needed(update_, offsetof(Control, groups));
   }
 
   /// Does the line search, then adds the share of the solved change that it found best to the estimate.
@@ -250,9 +309,12 @@ class ImplicitEuler : public Integrator {
   }
 
   GLuint groups_;
+  bool touches_;  ///< whether the scene has colliders that a vertex may touch
+  CoarseLevel coarse_;
   double dt_ = 0;
   int most_newton_steps_ = 1;
-  gl::Program start_, system_, multiply_, update_, search_, advance_, end_;
+  gl::Program start_, system_, project_, improve_, collect_, precondition_, multiply_, step_, update_;
+  gl::Program search_, advance_, end_;
   gl::Program contacts_, wind_;                        ///< none if the scene has no self-collision, no wind
   gl::TextureBuffer start_position_, start_velocity_;  ///< state at the step's start, after self-collision
   gl::TextureBuffer position_, velocity_;              ///< estimate of the state at the step's end
@@ -260,6 +322,8 @@ class ImplicitEuler : public Integrator {
   gl::TextureBuffer constraint_, surface_;             ///< for each vertex: its contact with a collider
   gl::TextureBuffer wind_loads_;                       ///< for each vertex: the wind at the step's start
   gl::Buffer contact_friction_;                        ///< friction of the contacts, kept between steps
+  gl::TextureBuffer trends_, trend_products_;          ///< for each vertex `trends` vectors
+  gl::Buffer past_velocities_;                         ///< at the starts of the last `trends` steps
   gl::TextureBuffer block_a_, block_b_, product_, sums_;
   std::array<Vectors, 2> vectors_;  ///< each iteration reads one set and writes the other
   gl::Buffer control_;
@@ -268,8 +332,8 @@ class ImplicitEuler : public Integrator {
 
 }  // namespace
 
-Result<std::unique_ptr<Integrator>> make_implicit_euler(std::uint32_t vertex_count, const Plan& plan) {
-  return ImplicitEuler::create(vertex_count, plan);
+Result<std::unique_ptr<Integrator>> make_implicit_euler(const model::Model& model, const Plan& plan) {
+  return ImplicitEuler::create(model, plan);
 }
 
 }  // namespace clothlab::sim

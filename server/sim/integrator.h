@@ -61,7 +61,7 @@ Result<std::unique_ptr<Integrator>> make_integrator(const Surroundings& around, 
 Result<std::unique_ptr<Integrator>> make_whole_step(scene::Method method, std::uint32_t vertex_count,
                                                     const Plan& plan);
 Result<std::unique_ptr<Integrator>> make_rk4(std::uint32_t vertex_count, const Plan& plan);
-Result<std::unique_ptr<Integrator>> make_implicit_euler(std::uint32_t vertex_count, const Plan& plan);
+Result<std::unique_ptr<Integrator>> make_implicit_euler(const model::Model& model, const Plan& plan);
 Result<std::unique_ptr<Integrator>> make_gauss_seidel(const Surroundings& around, const Plan& plan);
 
 /// Makes everything that the kernels queued so far write visible to the next kernels, to indirect dispatches

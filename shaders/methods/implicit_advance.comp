@@ -20,18 +20,8 @@ uniform bool another;  // another Newton step follows in this time step
 layout(std430, binding = slot_start_velocity) buffer Inertia { vec4 start_velocity[]; };
 layout(std430, binding = slot_grip) buffer Grip { vec4 grip[]; };
 
-/// Total of one of the line search's sums.
-vec4 total(int sum) {
-  vec4 all = vec4(0.0);
-#if GROUP_COUNT <= 16  // too few groups to be worth a barrier
-  for (int group = 0; group < GROUP_COUNT; ++group) all += FETCH(group_sums, SUMS * group + sum);
-  return all;
-#else
-  for (int group = int(gl_LocalInvocationID.x); group < GROUP_COUNT; group += GROUP_SIZE)
-    all += FETCH(group_sums, SUMS * group + sum);
-  return sum_of_group(all);
-#endif
-}
+#define ROWS SUMS
+#include "implicit_total.glsl"
 
 /// The largest share that the next smaller one does not beat by a hundredth: rounding must not decide.
 float best_share() {

@@ -26,6 +26,11 @@ vec3 filtered(vec3 v, float inverse_mass, vec4 constraint) {
   return inverse_mass > 0.0 && !sticks(constraint) ? v - constraint.xyz * dot(constraint.xyz, v) : vec3(0.0);
 }
 
+/// Trends of the motion, from which a better first guess is combined: the first, second and third differences of the
+/// last steps' velocities, from the first what gravity adds to the guess taken off. So the sum of the first two
+/// continues the velocities as a parabola.
+#define TRENDS 3
+
 /// The line search makes this number of sums, each a vec4. With FREE, for a cloth on which nothing but its own springs
 /// acts, there is one more: the momentum that the linear solver left out.
 #ifdef FREE

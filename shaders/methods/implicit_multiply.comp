@@ -1,13 +1,11 @@
 // Implicit Euler's conjugate gradients, first half of an iteration: the matrix times the preconditioned residual, and
-// the sums that the second half needs. As both sums are made at once, an iteration takes two dispatches: Chronopoulos &
-// Gear 1989.
+// all sums of an iteration at once: Chronopoulos & Gear 1989.
 #include "implicit_euler.glsl"
-#include "group_sums.glsl"
+#include "implicit_patch_sums.glsl"
 READ_VEC4(constraint, unit_constraint);
 READ_VEC4(residual, unit_residual);
 READ_VEC4(preconditioned, unit_preconditioned);
 layout(std430, binding = slot_product) writeonly buffer Product { vec4 product[]; };
-layout(std430, binding = slot_group_sums) writeonly buffer Sums { vec4 group_sums[]; };  // one per work group
 
 vec3 multiply(int i, vec4 x, vec3 z) {
   vec3 result = z * ((1.0 + dt * drag(i)) / x.w);
@@ -28,17 +26,19 @@ vec3 multiply(int i, vec4 x, vec3 z) {
 
 void main() {
   int i = int(gl_GlobalInvocationID.x);
-  vec4 sum = vec4(0.0);
+  vec4 products = vec4(0.0);
+  vec3 moved = vec3(0.0);
   if (i < vertex_count) {
     vec4 x = FETCH(position, i), r = FETCH(residual, i);
     vec3 w = vec3(0.0);
     if (x.w > 0.0) {
-      vec3 z = FETCH(preconditioned, i).xyz, left = filtered(r.xyz, x.w, FETCH(constraint, i));
+      vec4 held = FETCH(constraint, i);
+      vec3 z = FETCH(preconditioned, i).xyz, left = filtered(r.xyz, x.w, held);
       w = multiply(i, x, z);  // z is filtered: so are its products with w and r
-      sum = vec4(dot(r.xyz, z), dot(w, z), x.w * dot(left, left), r.w);
+      products = vec4(dot(r.xyz, z), dot(w, z), x.w * dot(left, left), r.w);
+      moved = filtered(w, x.w, held);
     }
     product[i] = vec4(w, 0.0);
   }
-  vec4 total = sum_of_group(sum);
-  if (gl_LocalInvocationID.x == 0) group_sums[gl_WorkGroupID.x] = total;
+  write_patch_sums(products, moved);
 }

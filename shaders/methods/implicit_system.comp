@@ -1,14 +1,17 @@
 // Implicit Euler, once per Newton step: the residual of the first guess, and each vertex's block of the matrix,
-// factorised.
+// factorised. In the first Newton step also the trends of the motion.
 #include "implicit_euler.glsl"
 READ_VEC4(start_velocity, unit_start_velocity);
 READ_VEC4(constraint, unit_constraint);
 READ_VEC4(change, unit_change);
 // Not filtered; w: the vertex's share of the residual that may remain.
 layout(std430, binding = slot_residual) writeonly buffer Residual { vec4 residual[]; };
-layout(std430, binding = slot_preconditioned) writeonly buffer Preconditioned { vec4 preconditioned[]; };
 layout(std430, binding = slot_block_a) writeonly buffer BlockA { vec4 block_a[]; };
 layout(std430, binding = slot_block_b) writeonly buffer BlockB { vec4 block_b[]; };
+READ_VEC4(before_velocity, unit_before_velocity);  // the state at the step's start
+layout(std430, binding = slot_trends) writeonly buffer Trends { vec4 trends[]; };  // TRENDS per vertex, filtered
+// TRENDS per vertex: the velocities at the starts of the last steps, the newest first; w: 0 if it is not known.
+layout(std430, binding = slot_past_velocities) buffer Past { vec4 past_velocities[]; };
 uniform float tolerance;  // relative, of the residual
 uniform bool first;       // the first Newton step of the time step
 
@@ -22,6 +25,19 @@ float good_enough(float inverse_mass, vec3 v, vec3 force, float stiffness, float
               dt * dt * inverse_mass * dot(force, force);
   float rounding = first ? 0.0 : 2.4e-9 * dt * (stiffness * length(x) + damping * length(u));
   return tolerance * tolerance * own + inverse_mass * rounding * rounding;
+}
+
+void write_trends(int i, float inverse_mass, vec4 held) {
+  vec3 now = FETCH(before_velocity, i).xyz;
+  vec4 last = past_velocities[TRENDS * i], second = past_velocities[TRENDS * i + 1];
+  vec4 third = past_velocities[TRENDS * i + 2];
+  vec3 trend[TRENDS] = vec3[](last.w * (now - last.xyz - dt * gravity.xyz),
+                              second.w * (now - 2.0 * last.xyz + second.xyz),
+                              third.w * (now - 3.0 * (last.xyz - second.xyz) - third.xyz));
+  for (int t = 0; t < TRENDS; ++t) trends[TRENDS * i + t] = vec4(filtered(trend[t], inverse_mass, held), 0.0);
+  past_velocities[TRENDS * i] = vec4(now, 1.0);
+  past_velocities[TRENDS * i + 1] = last;
+  past_velocities[TRENDS * i + 2] = second;
 }
 
 void main() {
@@ -49,13 +65,14 @@ void main() {
     add_block(matrix, diagonal, corner);
   }
 #end
+  vec4 held = FETCH(constraint, i);
+  if (first) write_trends(i, x.w, held);
   if (x.w == 0.0) {
-    residual[i] = preconditioned[i] = block_a[i] = block_b[i] = vec4(0.0);
+    residual[i] = block_a[i] = block_b[i] = vec4(0.0);
     return;
   }
   float m = 1.0 / x.w, inertia = m * (1.0 + dt * drag(i));
   vec3 v = FETCH(start_velocity, i).xyz;
-  vec4 held = FETCH(constraint, i);
   vec3 r = m * (v - u + dt * (gravity.xyz - drag(i) * u)) + dt * force - inertia * d - product;
 
   vec3 a, b;
@@ -63,5 +80,4 @@ void main() {
   block_a[i] = vec4(a, 0.0);
   block_b[i] = vec4(b, 0.0);
   residual[i] = vec4(r, good_enough(x.w, v, force, stiffness, damping, x.xyz, u));
-  preconditioned[i] = vec4(filtered(solve_block(a, b, filtered(r, x.w, held)), x.w, held), 0.0);
 }

@@ -1,0 +1,51 @@
+// The coarse level of implicit Euler's preconditioner: the cloth as patches that move without deforming.
+// Block Jacobi alone passes news on from vertex to vertex, one an iteration; the coarse level passes them on
+// from patch to patch at once. Two-level additive Schwarz with the patches' indicator functions: Nicolaides
+// 1987; Toselli & Widlund 2005, chapter 3.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "server/gl/buffer.h"
+#include "server/gl/program.h"
+#include "server/model/model.h"
+#include "server/scene/scene.h"
+
+namespace clothlab::sim {
+
+/// What the matrix is at a vertex, as the kernels of implicit Euler have it.
+struct FineLevel {
+  const gl::TextureBuffer &position, &constraint, &block_a, &block_b;
+};
+
+class CoarseLevel {
+ public:
+  /// Divides the vertices into patches, which stay.
+  explicit CoarseLevel(const model::Model& model);
+  ~CoarseLevel();
+  CoarseLevel(CoarseLevel&&) noexcept;
+  CoarseLevel& operator=(CoarseLevel&&) noexcept;
+
+  /// What kernels must know to read the lists: see shaders/methods/implicit_patches.glsl.
+  gl::Defines defines() const;
+
+  /// Takes over the elements' numbers, which may change.
+  void set_parameters(const model::Model& model, const scene::Scene& scene);
+
+  /// Makes the matrix of the patches at the present estimate, and its inverse. Waits for the GPU. `contacts`:
+  /// whether anything may be in contact with a collider.
+  void prepare(const FineLevel& fine, bool contacts);
+
+  /// Binds all that the kernels of a solve read, and where they write the sums over patches.
+  void bind() const;
+  /// Binds where implicit_step.comp writes.
+  void bind_vectors() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace clothlab::sim
