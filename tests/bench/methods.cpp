@@ -74,7 +74,9 @@ double bytes_a_vertex(scene::Method method, double entries, double iterations) {
   const double once = (3 + 6) * vector + (entries * 4 + 5 + 4) * vector +  // start, system
                       (entries * 4 + 4) * vector + (7 + 4) * vector +      // search, advance
                       (9 + 2) * vector;                                    // end
-  return once + iterations * ((entries * 3 + 4 + 1) + (11 + 5)) * vector;  // multiply, update
+  const double guess = (entries * 5 + 5 + 3) * vector + (9 + 2) * vector;  // project, improve
+  // multiply, update; every eighth time collect and precondition
+  return once + guess + iterations * ((entries * 3 + 4 + 1) + (11 + 5) + (3 + 6 + 1) / 8.0) * vector;
 }
 
 struct Contestant {
