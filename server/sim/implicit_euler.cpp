@@ -1,5 +1,6 @@
-// Implicit Euler on the GPU: shaders/methods/implicit_*.comp. Vectors and sums stay on the GPU; the host only
-// asks, every few iterations, if a solve has ended.
+// Implicit Euler on the GPU: shaders/methods/implicit_*.comp. Vectors and sums stay on the GPU; the host
+// makes the inverse of the coarse level once a time step, and asks, every few iterations, if a solve has
+// ended.
 #include <array>
 #include <cstddef>
 

@@ -27,7 +27,7 @@ vec3 multiply(int i, vec4 x, vec3 z) {
 void main() {
   int i = int(gl_GlobalInvocationID.x);
   vec4 products = vec4(0.0);
-  vec3 moved = vec3(0.0);
+  vec3 filtered_product = vec3(0.0);
   if (i < vertex_count) {
     vec4 x = FETCH(position, i), r = FETCH(residual, i);
     vec3 w = vec3(0.0);
@@ -36,9 +36,9 @@ void main() {
       vec3 z = FETCH(preconditioned, i).xyz, left = filtered(r.xyz, x.w, held);
       w = multiply(i, x, z);  // z is filtered: so are its products with w and r
       products = vec4(dot(r.xyz, z), dot(w, z), x.w * dot(left, left), r.w);
-      moved = filtered(w, x.w, held);
+      filtered_product = filtered(w, x.w, held);
     }
     product[i] = vec4(w, 0.0);
   }
-  write_patch_sums(products, moved);
+  write_patch_sums(products, filtered_product);
 }
