@@ -25,7 +25,7 @@ using glm::dvec3;
 using model::Element;
 
 /// More patches make fewer iterations, but their inverse grows with the cube of their number. In a seed of
-/// 25x25 vertices 26 patches halve the iterations, in one of 64x64 48 do (tests/README.md).
+/// 25x25 vertices 31 patches spare two iterations in five, in one of 64x64 48 do (tests/README.md).
 constexpr std::uint32_t vertices_a_patch = 20, most_patches = 48;
 static_assert(most_patches <= group_size);  // shaders/methods/implicit_step.comp has a thread for each
 

@@ -31,7 +31,7 @@ lab::MapColumn finished(Trials trials) {
     }
     if (!column.failed) column.held = cell.dt;
     const double growth = std::log10(trials.energies[cell.dt] / trials.energies.begin()->second);
-    cell.growth = std::isfinite(growth) ? std::clamp(growth, 0.0, 6.0) : 0.0;
+    cell.growth = std::isfinite(growth) ? std::clamp(growth, 0.0, lab::most_growth) : 0.0;
   }
   // Far below the limit only a lower bound of it is known: then the limit is above all steps that were tried.
   if (trials.of_longest)

@@ -19,7 +19,6 @@ using scene::Method;
 constexpr int rows = 8;             // number of first trials around the limit ...
 constexpr double farthest = 1.7;    // ... at steps up to this factor shorter or longer
 constexpr double precision = 1.01;  // the search ends at this ratio of the failed to the held step
-constexpr double most_growth = 6.0;
 constexpr int trials_expected = rows + 5;
 /// Steps that a method without a step limit is tried at; each has to hold [s].
 constexpr std::array long_steps{1.0 / 30, 1.0 / 10};

@@ -12,10 +12,13 @@
 
 namespace clothlab::lab {
 
+inline constexpr double most_growth = 6.0;  ///< of energy, that a map tells apart
+
 /// One trial: a run of the scene with one time step.
 struct MapCell {
-  double dt = 0;      ///< [s]
-  double growth = 0;  ///< log10 of the largest kinetic + elastic energy over that with a stable step; 0 to 6
+  double dt = 0;  ///< [s]
+  double growth =
+      0;  ///< log10 of the largest kinetic + elastic energy over that with a stable step; 0 to most_growth
   bool blew_up = false;
 };
 
