@@ -1,51 +1,32 @@
-// Implicit Euler on the GPU: shaders/methods/implicit_*.comp. Vectors and sums stay on the GPU; the host
-// makes the inverse of the coarse level once a time step, and asks, every few iterations, if a solve has
-// ended.
-#include <array>
+// Implicit Euler on the GPU: shaders/methods/implicit_*.comp. This file has the passes of a step before and
+// after the solves, conjugate_gradients.h the solver.
 #include <cstddef>
+#include <string>
+#include <utility>
 
-#include "server/sim/coarse_level.h"
+#include "server/sim/conjugate_gradients.h"
 #include "server/sim/integrator.h"
 
 namespace clothlab::sim {
 
 namespace {
 
-/// Number of iterations after which a solve ends even if it has not met its tolerance. Each iteration makes
-/// the error smaller, so an early end costs accuracy, not stability.
-constexpr int most_iterations = 1000;
-constexpr int iterations_between_looks = 8;
 /// Passes of self-collision after the solve. Each pass leaves half of the speed at which two vertices
 /// approach each other, or less.
 constexpr int contact_passes = 4;
 constexpr std::uint32_t trends = 3;  ///< TRENDS in implicit_euler.glsl
-
-/// The buffer Control of shaders/methods/implicit_control.glsl.
-struct Control {
-  std::uint32_t groups = 0, groups_y = 1, groups_z = 1;
-  std::uint32_t single = 1, single_y = 1, single_z = 1;
-  std::uint32_t iterations = 0, converged = 0;
-  float along = 0, kept = 0, last = 0;
-  std::uint32_t unused = 0;
-};
 
 class ImplicitEuler : public Integrator {
  public:
   static Result<std::unique_ptr<Integrator>> create(const model::Model& model, const Plan& plan) {
     std::unique_ptr<ImplicitEuler> made(new ImplicitEuler(model, plan));
     gl::Defines defines = step_defines(plan);
-    defines.emplace_back("GROUP_COUNT", std::to_string(made->groups_));
-    for (gl::Defines::value_type& define : made->coarse_.defines()) defines.push_back(std::move(define));
+    for (gl::Defines::value_type& define : made->solver_.defines()) defines.push_back(std::move(define));
     if (!plan.pins && plan.solid_count() == 0) defines.emplace_back("FREE", "1");
     for (auto [program, name] : {std::pair{&made->start_, "start"},
                                  {&made->system_, "system"},
                                  {&made->project_, "project"},
                                  {&made->improve_, "improve"},
-                                 {&made->collect_, "collect"},
-                                 {&made->precondition_, "precondition"},
-                                 {&made->multiply_, "multiply"},
-                                 {&made->step_, "step"},
-                                 {&made->update_, "update"},
                                  {&made->search_, "search"},
                                  {&made->advance_, "advance"},
                                  {&made->end_, "end"}}) {
@@ -54,6 +35,7 @@ class ImplicitEuler : public Integrator {
       if (!loaded) return loaded.error();
       *program = std::move(*loaded);
     }
+    if (const Status loaded = made->solver_.load(defines); !loaded) return loaded.error();
     if (plan.self_collision) {
       Result<gl::Program> loaded = gl::Program::load({"methods/implicit_contacts.comp"}, defines);
       if (!loaded) return loaded.error();
@@ -70,43 +52,35 @@ class ImplicitEuler : public Integrator {
 
   void set_parameters(const Surroundings& around) override {
     for (const gl::Program* program :
-         {&start_, &system_, &project_, &improve_, &collect_, &precondition_, &multiply_, &step_, &update_,
-          &search_, &advance_, &end_, &contacts_, &wind_})
+         {&start_, &system_, &project_, &improve_, &search_, &advance_, &end_, &contacts_, &wind_})
       if (program->id()) set_step_uniforms(*program, around);
     if (around.scene.solver.dt != dt_) restart();  // impulses kept in `contact_friction_` are forces times dt
     dt_ = around.scene.solver.dt;
-    coarse_.set_parameters(around.model, around.scene);
+    solver_.set_parameters(around);
     most_newton_steps_ = around.scene.solver.iterations;
     system_.set("tolerance", static_cast<float>(around.scene.solver.tolerance));
   }
 
   Work step(StateBuffers& state, int row) override {
     begin(state, row);
-    const Vectors* last = nullptr;
+    Solved solved;
     for (int newton = 0; newton < most_newton_steps_; ++newton) {
       set_up(newton == 0);
       if (newton == 0) {
         improve_guess();
-        coarse_.prepare({start_position_, constraint_, block_a_, block_b_}, touches_);
+        solver_.prepare({start_position_, constraint_, block_a_, block_b_}, touches_);
       }
-      Control solved;
-      co_await solve(solved);
+      co_await solver_.solve(guess_, solved);
+      dispatches_ += solved.dispatches;
       ++work_.newton_steps;
       work_.linear_iterations += solved.iterations;
       work_.unconverged += solved.converged ? 0 : 1;
-      if (newton > 0 && solved.iterations == 0) {  // the estimate already meets the tolerance
-        last = &vectors_[0];
-        break;
-      }
-      if (solved.iterations == 0)  // the guess is the solution: copy it to where `advance` reads
-        glCopyNamedBufferSubData(guess_.buffer.id(), vectors_[0].change.buffer.id(), 0, 0,
-                                 static_cast<GLsizeiptr>(guess_.buffer.bytes()));
-      last = &vectors_[solved.iterations % 2];
-      advance(*last, row, newton + 1 < most_newton_steps_);
+      if (newton > 0 && solved.iterations == 0) break;  // the estimate already meets the tolerance
+      advance(solved, row, newton + 1 < most_newton_steps_);
       co_await may_stop;
     }
     if (contacts_.id()) keep_apart();
-    finish(state, *last, row);
+    finish(state, *solved.residual, row);
   }
 
   /// Forgets the past velocities and all contacts with colliders: -1 is `untouched` in
@@ -120,27 +94,16 @@ class ImplicitEuler : public Integrator {
   SolverWork work() const override { return work_; }
 
  private:
-  /// The vectors that conjugate gradients carry from one iteration to the next.
-  struct Vectors {
-    gl::TextureBuffer change, residual, preconditioned, direction, direction_product;
-  };
-
   ImplicitEuler(const model::Model& model, const Plan& plan)
-      : groups_(vertex_groups(model.vertex_count())), touches_(plan.solid_count() > 0), coarse_(model) {
+      : groups_(vertex_groups(model.vertex_count())), touches_(plan.solid_count() > 0), solver_(model) {
     const std::size_t vertex_count = model.vertex_count();
     for (gl::TextureBuffer* vector : {&start_position_, &start_velocity_, &position_, &velocity_, &guess_,
-                                      &constraint_, &surface_, &product_, &block_a_, &block_b_})
+                                      &constraint_, &surface_, &block_a_, &block_b_})
       *vector = {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
-    for (Vectors& set : vectors_)
-      for (gl::TextureBuffer* vector :
-           {&set.change, &set.residual, &set.preconditioned, &set.direction, &set.direction_product})
-        *vector = {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
     for (gl::TextureBuffer* of_each : {&trends_, &trend_products_})
       *of_each = {gl::Buffer(vertex_count * trends * 4 * sizeof(float)), GL_RGBA32F};
     past_velocities_ = gl::Buffer(vertex_count * trends * 4 * sizeof(float));
     contact_friction_ = gl::Buffer(vertex_count * 4 * sizeof(float));
-    sums_ = {gl::Buffer(groups_ * 12 * sizeof(float)), GL_RGBA32F};  // at most three vec4 per work group
-    control_ = gl::Buffer(sizeof(Control));
   }
 
   void run(const gl::Program& program) {
@@ -157,8 +120,7 @@ class ImplicitEuler : public Integrator {
     start_velocity_.bind(unit_start_velocity);
     constraint_.bind(unit_constraint);
     surface_.bind(unit_surface);
-    product_.bind(unit_product);
-    sums_.bind(unit_group_sums);
+    solver_.bind();
     block_a_.bind(unit_block_a);
     block_b_.bind(unit_block_b);
     if (wind_.id()) {
@@ -190,7 +152,7 @@ class ImplicitEuler : public Integrator {
     system_.set("first", first ? 1 : 0);
     velocity_.bind(unit_velocity);
     guess_.bind(unit_change);
-    vectors_[0].residual.buffer.bind_storage(slot_residual);
+    solver_.residual().buffer.bind_storage(slot_residual);
     block_a_.buffer.bind_storage(slot_block_a);
     block_b_.buffer.bind_storage(slot_block_b);
     trends_.buffer.bind_storage(slot_trends);
@@ -200,84 +162,23 @@ class ImplicitEuler : public Integrator {
 
   /// Adds to the first guess what the last steps' velocities tell of this one's.
   void improve_guess() {
-    vectors_[0].residual.bind(unit_residual);
+    solver_.residual().bind(unit_residual);
     trends_.bind(unit_trends);
     trend_products_.buffer.bind_storage(slot_trend_products);
-    sums_.buffer.bind_storage(slot_group_sums);
+    solver_.sums().buffer.bind_storage(slot_group_sums);
     run(project_);
     trend_products_.bind(unit_trend_products);
-    vectors_[0].residual.buffer.bind_storage(slot_residual);
+    solver_.residual().buffer.bind_storage(slot_residual);
     guess_.buffer.bind_storage(slot_guess);
     run(improve_);
   }
 
-  /// Solves the linear system by conjugate gradients. `control` receives how the solve ended.
-  Work solve(Control& control) {
-    control = Control{};
-    control.groups = groups_;
-    control_.upload(&control, sizeof control);
-    coarse_.bind();
-    for (int done = 0; done < most_iterations && control.groups > 0; done += iterations_between_looks) {
-      precondition(vectors_[done % 2]);
-      for (int i = 0; i < iterations_between_looks; ++i) {
-        iterate(done + i);
-        co_await may_stop;
-      }
-      control_.download(&control, sizeof control);
-    }
-  }
-
-  /// Makes the preconditioned residual from the residual alone. Iterations keep the patches' sums up to date
-  /// by themselves, and their rounding errors add up: in a stiff cloth a solve would end too early.
-  void precondition(const Vectors& now) {
-    now.residual.bind(unit_residual);
-    run_if_needed(collect_, offsetof(Control, groups));
-    take_step(-1);
-    now.preconditioned.buffer.bind_storage(slot_preconditioned);
-    run_if_needed(precondition_, offsetof(Control, groups));
-  }
-
-  /// Runs a program unless the solve has ended.
-  void run_if_needed(const gl::Program& program, std::size_t groups) {
-    program.use();
-    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, control_.id());
-    glDispatchComputeIndirect(static_cast<GLintptr>(groups));
-    wait_for_writes();
-    ++dispatches_;
-  }
-
-  void take_step(int iteration) {
-    control_.bind_storage(slot_solver_control);
-    coarse_.bind_vectors();
-    step_.set("iteration", iteration);
-    run_if_needed(step_, offsetof(Control, single));
-  }
-
-  void iterate(int iteration) {
-    const Vectors &now = vectors_[iteration % 2], &next = vectors_[(iteration + 1) % 2];
-    now.residual.bind(unit_residual);
-    now.preconditioned.bind(unit_preconditioned);
-    product_.buffer.bind_storage(slot_product);
-    run_if_needed(multiply_, offsetof(Control, groups));
-    take_step(iteration);
-    now.direction.bind(unit_direction);
-    now.direction_product.bind(unit_direction_product);
-    (iteration == 0 ? guess_ : now.change).bind(unit_change);
-    next.residual.buffer.bind_storage(slot_residual);
-    next.preconditioned.buffer.bind_storage(slot_preconditioned);
-    next.direction.buffer.bind_storage(slot_direction);
-    next.direction_product.buffer.bind_storage(slot_direction_product);
-    next.change.buffer.bind_storage(slot_change);
-    update_.set("iteration", iteration);
-    run_if_needed(update_, offsetof(Control, groups));
-  }
-
   /// Does the line search, then adds the share of the solved change that it found best to the estimate.
   /// `another`: a further Newton step may follow in this time step.
-  void advance(const Vectors& solved, int row, bool another) {
-    solved.change.bind(unit_change);
-    solved.residual.bind(unit_residual);
-    sums_.buffer.bind_storage(slot_group_sums);
+  void advance(const Solved& solved, int row, bool another) {
+    solved.change->bind(unit_change);
+    solved.residual->bind(unit_residual);
+    solver_.sums().buffer.bind_storage(slot_group_sums);
     run(search_);
     position_.buffer.bind_storage(slot_next_position);
     bind_estimate();
@@ -298,10 +199,10 @@ class ImplicitEuler : public Integrator {
     }
   }
 
-  void finish(StateBuffers& state, const Vectors& solved, int row) {
+  void finish(StateBuffers& state, const gl::TextureBuffer& residual, int row) {
     position_.bind(unit_position);
     velocity_.bind(unit_velocity);
-    solved.residual.bind(unit_residual);
+    residual.bind(unit_residual);
     contact_friction_.bind_storage(slot_grip);
     state.bind_outputs();
     end_.set("start_row", row);
@@ -311,11 +212,10 @@ class ImplicitEuler : public Integrator {
 
   GLuint groups_;
   bool touches_;  ///< whether the scene has colliders that a vertex may touch
-  CoarseLevel coarse_;
+  ConjugateGradients solver_;
   double dt_ = 0;
   int most_newton_steps_ = 1;
-  gl::Program start_, system_, project_, improve_, collect_, precondition_, multiply_, step_, update_;
-  gl::Program search_, advance_, end_;
+  gl::Program start_, system_, project_, improve_, search_, advance_, end_;
   gl::Program contacts_, wind_;                        ///< none if the scene has no self-collision, no wind
   gl::TextureBuffer start_position_, start_velocity_;  ///< state at the step's start, after self-collision
   gl::TextureBuffer position_, velocity_;              ///< estimate of the state at the step's end
@@ -325,9 +225,7 @@ class ImplicitEuler : public Integrator {
   gl::Buffer contact_friction_;                        ///< friction of the contacts, kept between steps
   gl::TextureBuffer trends_, trend_products_;          ///< for each vertex `trends` vectors
   gl::Buffer past_velocities_;                         ///< at the starts of the last `trends` steps
-  gl::TextureBuffer block_a_, block_b_, product_, sums_;
-  std::array<Vectors, 2> vectors_;  ///< each iteration reads one set and writes the other
-  gl::Buffer control_;
+  gl::TextureBuffer block_a_, block_b_;                ///< each vertex' own block of the matrix
   SolverWork work_;
 };
 

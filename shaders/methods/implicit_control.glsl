@@ -1,4 +1,5 @@
-// How a solve goes on: written by implicit_step.comp, read by indirect dispatches and server/sim/implicit_euler.cpp.
+// How a solve goes on: written by implicit_step.comp, read by indirect dispatches and by
+// server/sim/conjugate_gradients.cpp.
 layout(std430, binding = slot_solver_control) buffer Control {
   uint groups, groups_y, groups_z;  // of the next dispatches with a thread per vertex: 0 once this solve has ended
   uint single, single_y, single_z;  // of the next dispatches of one work group: 0, too
