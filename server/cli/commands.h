@@ -48,9 +48,10 @@ void note(const std::string& text);
 /// versions of CLI11.
 CLI::Validator whole_number(int least, int most);
 
-/// Prints warnings on stderr, `about` before each: if the time step is near or beyond the longest stable one,
-/// and if the thickness of self-collision is too small for the mesh.
-void print_warnings(const model::Model& model, const scene::Scene& scene, const std::string& about = "");
+/// Prints warnings on stderr, `about` before each: if the time step is near or beyond `dt_limit`, the longest
+/// stable one [s], and if the thickness of self-collision is too small for the mesh.
+void print_warnings(const model::Model& model, const scene::Scene& scene, double dt_limit,
+                    const std::string& about = "");
 
 /// Adds `--asset-root FOLDER`.
 void add_asset_root(CLI::App& command, std::string& folder);

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "server/base/data_files.h"
+#include "server/base/text.h"
 #include "server/bus/bus.h"
 #include "server/cli/commands.h"
 #include "server/gl/context.h"
@@ -20,10 +21,17 @@ void print_data_folder(const std::string& what, const std::string& file) {
   std::cout << what << (found ? found->parent_path().string() : "missing: " + found.error().text()) << "\n";
 }
 
+/// "24.6 GB of memory"
+std::string memory_text(const gl::Device& device) {
+  if (device.memory == 0) return "memory not told by the driver";
+  return formatted("%.1f GB of memory", 1e-9 * static_cast<double>(device.memory));
+}
+
 void print_device(const gl::Device& device, bool used) {
   std::cout << (used ? "* " : "  ") << device.index << ": ";
   if (device.usable)
-    std::cout << device.name << ", OpenGL " << device.version << (device.software ? " (software)" : "");
+    std::cout << device.name << ", OpenGL " << device.version << (device.software ? " (software), " : ", ")
+              << memory_text(device);
   else
     std::cout << "not usable: " << device.problem;
   if (!device.node.empty()) std::cout << ", " << device.node;

@@ -92,7 +92,7 @@ int record_scene(const RecordOptions& options) {
         {simulation.time(), simulation.step_index(), 0, positions, stream::moving_colliders(simulation)});
     return ok();
   };
-  const Result<Progress> progress = advance(simulation, *steps, every, add);
+  const Result<Progress> progress = advance(*prepared, *steps, every, add);
   if (!progress) return fail(progress.error(), exit_internal);
   recording.finish(ending_of(*progress));
   if (Status written = write(options, bytes, simulation.scene().name); !written)

@@ -72,7 +72,7 @@ int render_scene(const RenderOptions& options) {
   if (!steps) return fail(steps.error(), exit_usage);
   const auto nothing_to_do = [](const sim::Diagnostics&) { return ok(); };
   const Result<Progress> progress =
-      advance(simulation, *steps, std::max<std::uint64_t>(*steps, 1), nothing_to_do);
+      advance(*prepared, *steps, std::max<std::uint64_t>(*steps, 1), nothing_to_do);
   if (!progress) return fail(progress.error(), exit_internal);
   if (Status drawn = draw(simulation, *size, options.out); !drawn) return fail(drawn.error(), exit_internal);
   std::cout << options.out << ": " << options.size << ", " << simulation.scene().name << " at "

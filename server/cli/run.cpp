@@ -10,6 +10,7 @@
 #include "server/cli/commands.h"
 #include "server/cli/state_files.h"
 #include "server/cli/stepping.h"
+#include "server/gl/buffer.h"
 #include "server/scene/method.h"
 #include "server/sim/crossing_check.h"
 
@@ -68,6 +69,7 @@ Report make_report(const Prepared& prepared, const Progress& progress, double wa
   report["renderer"] = prepared.context->device().name;
   report["device"] = device_report(prepared.context->device());
   report["vertices"] = vertices;
+  report["memory_bytes"] = gl::buffer_bytes();
   report["method"] = scene::name(simulation.scene().solver.method);
   report["dt"] = simulation.scene().solver.dt;
   if (!prepared.chosen.empty()) report["chosen"] = prepared.chosen;
@@ -120,7 +122,8 @@ void print_summary(const Report& report, double simulated) {
               with_significant_digits(report["sim_time"], 9).c_str(),
               with_significant_digits(step_seconds, 9).c_str());
   if (step_seconds > 0)
-    std::printf(" (%.1f times real time, %.1f ns per vertex and step)", simulated / step_seconds,
+    std::printf(" (%s times real time, %.1f ns per vertex and step)",
+                with_significant_digits(simulated / step_seconds, 2).c_str(),
                 report["ns_per_vertex_step"].get<double>());
   std::printf("\nlargest strain %s, state %s, on %s\n",
               with_significant_digits(report["max_strain"], 9).c_str(),
@@ -210,7 +213,7 @@ int run(const RunOptions& options) {
     return outputs->states->add(simulation.model(), simulation.scene(), simulation.read_state(),
                                 comment(state, scene_name, false));
   };
-  const Result<Progress> progress = advance(simulation, *steps, *every, at_stop);
+  const Result<Progress> progress = advance(*prepared, *steps, *every, at_stop);
   if (!progress) return fail(progress.error(), exit_internal);
 
   const sim::State state = simulation.read_state();

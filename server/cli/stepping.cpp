@@ -81,8 +81,9 @@ std::optional<Prepared> prepare(const SceneChoice& choice, std::optional<int> gp
         fail(simulation.error(), simulation.error().where.starts_with("/") ? exit_usage : exit_internal);
     return std::nullopt;
   }
-  print_warnings((*simulation)->model(), *settled);
-  return Prepared{std::move(*context), std::move(*simulation), chosen};
+  const double limit = model::dt_limit_if_near((*simulation)->model(), *settled);
+  print_warnings((*simulation)->model(), *settled, limit);
+  return Prepared{std::move(*context), std::move(*simulation), limit, chosen};
 }
 
 Result<std::uint64_t> whole_steps(const std::string& option, double seconds, double dt) {
@@ -98,16 +99,16 @@ Result<std::uint64_t> whole_steps(const std::string& option, double seconds, dou
   return static_cast<std::uint64_t>(steps);
 }
 
-Result<Progress> advance(sim::Simulation& simulation, std::uint64_t steps, std::uint64_t every,
+Result<Progress> advance(const Prepared& prepared, std::uint64_t steps, std::uint64_t every,
                          const AtStop& at_stop) {
+  sim::Simulation& simulation = *prepared.simulation;
   Progress progress;
   // One step that is not timed: drivers compile a kernel when it first runs.
   sim::timed_steps(simulation, 1);
   simulation.reset();
-  const double limit = model::dt_limit_if_near(simulation.model(), simulation.scene());
-  const std::uint64_t check_every = steps_between_checks(simulation.scene().solver.dt, limit);
+  const std::uint64_t check_every = steps_between_checks(simulation.scene().solver.dt, prepared.dt_limit);
   sim::GuardedRun run(simulation);
-  run.start(limit);
+  run.start(prepared.dt_limit);
   progress.state = run.state();
   if (Status stop = at_stop(progress.state); !stop) return stop.error();
 

@@ -25,6 +25,7 @@ void add_gpu(CLI::App& command, std::optional<int>& gpu);
 struct Prepared {
   std::unique_ptr<gl::Context> context;
   std::unique_ptr<sim::Simulation> simulation;
+  double dt_limit;     ///< longest stable step, or a lower bound that dt is well below [s]
   std::string chosen;  ///< for the method `auto`: the chosen setting and the reason; else empty
 };
 /// Loads the scene and makes its simulation. For the method `auto` the lab first chooses a setting, with
@@ -49,7 +50,7 @@ using AtStop = std::function<Status(const sim::Diagnostics&)>;
 
 /// Steps `steps` times. Calls `at_stop` at the start, after every `every` steps, and at the end. If the
 /// simulation blows up, restores its last good state and returns.
-Result<Progress> advance(sim::Simulation& simulation, std::uint64_t steps, std::uint64_t every,
+Result<Progress> advance(const Prepared& prepared, std::uint64_t steps, std::uint64_t every,
                          const AtStop& at_stop);
 
 /// The exit code of a command whose steps are done. If they diverged, also prints a note on stderr: the

@@ -4,6 +4,7 @@
 
 #include "server/cli/commands.h"
 #include "server/model/model.h"
+#include "server/model/stability.h"
 
 namespace clothlab::cli {
 
@@ -35,7 +36,7 @@ bool report(const std::string& name, const std::string& asset_root) {
             << (springs > 0 || triangles == 0 ? counted(springs, "spring", "springs") + ", " : "")
             << (triangles > 0 ? counted(triangles, "finite element", "finite elements") + ", " : "")
             << counted(document->scene.colliders.size(), "collider", "colliders") << ")\n";
-  print_warnings(*model, document->scene, name + ": ");
+  print_warnings(*model, document->scene, model::dt_limit_if_near(*model, document->scene), name + ": ");
   return true;
 }
 

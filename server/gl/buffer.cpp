@@ -9,6 +9,14 @@
 
 namespace clothlab::gl {
 
+namespace {
+thread_local std::size_t held = 0;  // a buffer is freed where it was made: there its context is current
+}
+
+std::size_t buffer_bytes() {
+  return held;
+}
+
 Buffer::Buffer(std::size_t bytes, const void* data, GLbitfield flags) : bytes_(bytes) {
   glCreateBuffers(1, &id_);
   while (glGetError() == GL_OUT_OF_MEMORY) {
@@ -18,11 +26,14 @@ Buffer::Buffer(std::size_t bytes, const void* data, GLbitfield flags) : bytes_(b
     glDeleteBuffers(1, &id_);
     throw std::bad_alloc();
   }
+  held += bytes;
   if (!data && (flags & GL_MAP_PERSISTENT_BIT) == 0) fill(0);
 }
 
 Buffer::~Buffer() {
-  if (id_) glDeleteBuffers(1, &id_);
+  if (!id_) return;
+  glDeleteBuffers(1, &id_);
+  held -= bytes_;
 }
 
 Buffer& Buffer::operator=(Buffer&& other) noexcept {

@@ -42,6 +42,10 @@ class Buffer {
   std::size_t bytes_ = 0;
 };
 
+/// Bytes of all buffers that the calling thread has made and not freed: what its scene takes of the device's
+/// memory, or of the machine's where that computes.
+std::size_t buffer_bytes();
+
 /// A texture view of a buffer. On software OpenGL kernels read it much faster than a storage buffer
 /// (shaders/access.glsl).
 class BufferTexture {

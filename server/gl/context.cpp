@@ -2,6 +2,7 @@
 
 #include <glad/egl.h>
 #include <glad/gl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <condition_variable>
@@ -9,6 +10,7 @@
 #include <cstring>
 #include <map>
 #include <mutex>
+#include <string_view>
 #include <thread>
 
 namespace clothlab::gl {
@@ -76,6 +78,27 @@ std::string text(const char* value) {
 
 std::string gl_text(GLenum name) {
   return text(reinterpret_cast<const char*>(glGetString(name)));
+}
+
+bool has_extension(std::string_view wanted) {
+  GLint count = 0;
+  glGetIntegerv(GL_NUM_EXTENSIONS, &count);
+  for (GLint i = 0; i < count; ++i)
+    if (wanted == reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, static_cast<GLuint>(i))))
+      return true;
+  return false;
+}
+
+/// The memory of a device whose context is current [bytes]; 0 if the driver does not tell.
+std::uint64_t memory_of(const Device& device) {
+  if (device.software)
+    return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
+           static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  if (!has_extension("GL_NVX_gpu_memory_info")) return 0;  // NVIDIA's driver and Mesa's for AMD have it
+  constexpr GLenum dedicated_kilobytes = 0x9047;           // GPU_MEMORY_INFO_DEDICATED_VIDMEM_NVX
+  GLint kilobytes = 0;
+  glGetIntegerv(dedicated_kilobytes, &kilobytes);
+  return 1024 * static_cast<std::uint64_t>(std::max(kilobytes, 0));
 }
 
 Status load_egl() {
@@ -165,6 +188,7 @@ Opened open(Candidate& candidate) {
   device.vendor = gl_text(GL_VENDOR);
   // Some drivers list Mesa's rasteriser as an ordinary device.
   device.software = device.software || software_renderer();
+  device.memory = memory_of(device);
   device.usable = true;
   return opened;
 }

@@ -1,6 +1,7 @@
 // A headless OpenGL 4.5 core context through surfaceless EGL.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,8 +18,10 @@ struct Device {
   std::string vendor;     ///< GL_VENDOR
   std::string node;       ///< device file /dev/dri/..., or empty
   bool software = false;  ///< it is Mesa's software rasteriser
-  bool usable = false;    ///< OpenGL 4.5 core works on this device
-  std::string problem;    ///< why it is not usable
+  /// Its memory [bytes], the machine's where that computes; 0 if the driver does not tell.
+  std::uint64_t memory = 0;
+  bool usable = false;  ///< OpenGL 4.5 core works on this device
+  std::string problem;  ///< why it is not usable
 };
 
 /// True if the calling thread's current context is one of Mesa's software rasteriser.

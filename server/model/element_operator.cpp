@@ -114,16 +114,23 @@ double ElementOperator::bound(MatrixOf matrix_of) const {
                                     [&](std::uint32_t vertex) { return !pinned(vertex); });
     auto bounds = linear.hessian;
     for (auto& hessian : bounds) hessian = elements::element_bound(hessian);
-    for (std::size_t c = 0; c < corners; ++c) {
-      glm::dmat3 own(0.0);  // the corner's own block K_cc, one column for each axis
-      for (int axis = 0; axis < 3; ++axis) {
-        std::array<dvec3, corners> vector{};
-        vector[c][axis] = 1.0;
-        own[axis] = product<Law>(bounds, vector, matrix_of)[c];
-      }
+    const auto add = [&](std::size_t c, const glm::dmat3& own) {  // own: the corner's block K_cc
       const double scale = scale_[linear.vertices[c]];
       block[linear.vertices[c]] += static_cast<double>(free) * scale * scale * own;
+    };
+    for (std::size_t c = 0; c + 1 < corners; ++c) {
+      dvec3 diagonal(0.0), below(0.0);  // below: the elements 21, 31, 32
+      elements::add_block(matrix_of(bounds[c]), diagonal, below);
+      add(c, {diagonal[0], below[0], below[1], below[0], diagonal[1], below[2], below[1], below[2],
+              diagonal[2]});
     }
+    glm::dmat3 last(0.0);  // one column for each axis
+    for (int axis = 0; axis < 3; ++axis) {
+      std::array<dvec3, corners> vector{};
+      vector[corners - 1][axis] = 1.0;
+      last[axis] = product<Law>(bounds, vector, matrix_of)[corners - 1];
+    }
+    add(corners - 1, last);
   });
   double largest = 0.0;
   for (const glm::dmat3& matrix : block) largest = std::max(largest, largest_eigenpair(matrix).value);

@@ -299,6 +299,7 @@ Gauges Hub::gauges() const {
   Gauges gauges{rooms_.size(), clients_.size(), 0, steps(), lab_->gauges(), 0, exports_waiting()};
   for (const auto& [name, room] : rooms_) {
     gauges.asleep += room->asleep() ? 1u : 0u;
+    gauges.memory_bytes += room->memory_bytes();
     gauges.stuck += room->beats() ? 0u : 1u;
     if (const std::optional<double> pace = room->pace())
       gauges.slowest = std::min(gauges.slowest.value_or(*pace), *pace);

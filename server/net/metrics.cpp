@@ -102,6 +102,8 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
   count("clothlab_sessions", "gauge", "sessions open", gauges.sessions);
   count("clothlab_sessions_asleep", "gauge",
         "playing sessions that do not step because their cloth is at rest", gauges.asleep);
+  count("clothlab_sessions_memory_bytes", "gauge", "buffers of the open sessions on their device",
+        gauges.memory_bytes);
   count("clothlab_sessions_stuck", "gauge", "sessions whose thread does not answer", gauges.stuck);
   head(out, "clothlab_slowest_real_time_factor", "gauge",
        "simulated seconds per second over those asked for, of the slowest session that steps; none: none "

@@ -83,6 +83,7 @@ struct Gauges {
   std::size_t exports_waiting = 0;   ///< pictures and meshes that wait or are being made
   std::size_t stuck = 0;             ///< sessions whose thread does not answer; /healthz is 503 then
   std::optional<double> slowest{};   ///< the least Room::pace; none: no session steps
+  std::uint64_t memory_bytes = 0;    ///< of all buffers of the open sessions on their device
   std::optional<bus::Counts> bus{};  ///< none: without a message bus
 };
 

@@ -235,6 +235,7 @@ void Room::handle(session::TopologyChanged& changed) {
 
 void Room::handle(const session::Status& status) {
   asleep_ = status.run.state() == session::RunState::State::asleep;
+  memory_bytes_ = status.memory_bytes;
   pace_.reset();
   if (status.paced) pace_ = status.real_time_factor / status.speed;
   handle(status.pass_times);

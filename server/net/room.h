@@ -82,6 +82,8 @@ class Room {
   Lock give_up_claim() { return std::move(claim_); }
   bool beats() const { return !session_ || session_->beats(); }
   bool asleep() const { return asleep_; }  ///< as of the last status
+  /// Of the session's buffers on its device, as of the last status.
+  std::size_t memory_bytes() const { return memory_bytes_; }
   /// Simulated seconds per second over those asked for, as of the last status; none: it does not step.
   std::optional<double> pace() const { return pace_; }
   std::uint64_t steps() const { return session_ ? session_->exchange().steps() : 0; }
@@ -144,6 +146,7 @@ class Room {
   std::size_t capturing_ = 0;
   std::int64_t unwatched_since_ = 0;
   bool asleep_ = false;
+  std::size_t memory_bytes_ = 0;
   std::optional<double> pace_;
 };
 

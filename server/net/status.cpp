@@ -41,6 +41,7 @@ json status_of_session(const session::Status& status) {
           {"contacts", d.contacts},
           {"surface", surface_counts(d)},
           {"hands", hands_text(status.hands)},
+          {"memory_bytes", status.memory_bytes},
           {"stability",
            {{"dt_limit", std::isfinite(status.dt_limit) ? json(status.dt_limit) : json(nullptr)},
             {"margin", status.margin ? json(*status.margin) : json(nullptr)}}},

@@ -118,6 +118,7 @@ struct Status {
   RunState run;
   double speed = 1, real_time_factor = 0;
   bool paced = false;            ///< it steps by the clock, and real_time_factor is measured
+  std::size_t memory_bytes = 0;  ///< of all buffers on the device
   double dt_limit = 0;           ///< [s]; infinite: any step is stable, 0: no step is
   std::optional<double> margin;  ///< dt over dt_limit; none: any step is stable, or no step is
   sim::Diagnostics diagnostics;

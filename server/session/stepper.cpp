@@ -4,6 +4,7 @@
 #include <new>
 #include <utility>
 
+#include "server/gl/buffer.h"
 #include "server/model/size.h"
 #include "server/model/thickness.h"
 #include "server/scene/method.h"
@@ -251,6 +252,7 @@ void Stepper::publish_status(Clock::time_point now) {
   status.speed = real_time_.speed();
   status.real_time_factor = was_running_ ? real_time_.factor() : 0;
   status.paced = was_running_ && real_time_.sampled();
+  status.memory_bytes = gl::buffer_bytes();
   follow_step_limit();
   status.dt_limit = step_limit_.dt_limit();
   status.margin = step_limit_.margin();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <set>
 
 #include "server/base/files.h"
@@ -239,6 +240,31 @@ std::string common_to_all(const Plan& plan) {
   return hash.text();
 }
 
+/// The axis that writes at `place` or above it, as a pointer into the file.
+std::string axis_of(const Plan& plan, const std::string& place) {
+  for (std::size_t a = 0; a < plan.axes.size(); ++a)
+    for (const std::string& at : plan.axes[a].at)
+      if ((place + "/").starts_with(at + "/")) return "/axes/" + std::to_string(a) + "/at";
+  return "/axes";
+}
+
+/// Refuses a sweep whose points all fail for one reason, such as a misspelt place. Looks at the first point
+/// and at those that differ from it along one axis: a key that only some scenes have is in one of them.
+Status check_points(const Plan& plan) {
+  constexpr std::size_t most_tried = 64;  // values of an axis
+  std::optional<Error> common;
+  std::size_t stride = plan.size();
+  for (const Axis& axis : plan.axes) {
+    stride /= axis.values.size();
+    for (std::size_t i = 0; i < std::min(axis.values.size(), most_tried); ++i) {
+      const Result<scene::Document> scene = plan.scene(i * stride);
+      if (scene || (common && common->text() != scene.error().text())) return ok();
+      common = scene.error();
+    }
+  }
+  return Error{axis_of(plan, common->where), "no point makes a valid scene: " + common->text(), ""};
+}
+
 }  // namespace
 
 Result<Plan> read_plan(const std::string& path, const std::shared_ptr<const scene::Assets>& meshes) {
@@ -269,7 +295,7 @@ Result<Plan> read_plan(const std::string& path, const std::shared_ptr<const scen
   plan.file["name"] = plan.name;
   if (const auto* name = plan.file["scene"].get_ptr<const std::string*>(); name && !scene::is_preset(*name))
     plan.file["scene"] = plan.base.value;
-  for (const Status& checked : {check_size(plan), check_places(plan)})
+  for (const Status& checked : {check_size(plan), check_places(plan), check_points(plan)})
     if (!checked) return checked.error();
   plan.common = common_to_all(plan);
   return plan;

@@ -132,6 +132,11 @@ test("values that make no scene are kept with the reason, and a blow-up with its
 for (const [what, content, words] of [
   ["an unknown key", { ...plan, axis: [] }, /\/axis: unknown key "axis"; one of .*did you mean "axes"/],
   ["a place that no scene has", { ...plan, axes: [{ at: "/solvr/dt", values: [1] }] }, /\/axes\/0\/at: "\/solvr\/dt"/],
+  [
+    "a misspelt key",
+    { ...plan, axes: [{ at: "/solver/dtt", values: [0.001, 0.002] }] },
+    /\/axes\/0\/at: no point makes a valid scene: \/solver\/dtt: unknown key "dtt".*did you mean "dt"/,
+  ],
   ["two axes of one name", { ...plan, axes: [plan.axes[1], plan.axes[1]] }, /\/axes\/1\/name: "dt"; another name/],
   ["no axes", { scene }, /\/axes: nothing; an array/],
   [

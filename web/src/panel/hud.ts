@@ -14,6 +14,7 @@ export interface Status {
   max_strain?: number;
   max_speed?: number;
   contacts?: number;
+  memory_bytes?: number;
   surface?: { pairs: number; cuts: number; searches: number } | null;
   asleep?: boolean;
   recording?: RecordingFacts;
@@ -36,6 +37,7 @@ const rows = [
   ["contacts", "Contacts", "vertices that touch something"],
   ["surface", "Surface", "pairs of edges and triangles that can meet, and steps of vertices that were cut short"],
   ["vertices", "Vertices", "vertices of all cloths"],
+  ["memory", "Memory", "what the session takes of the memory that its server computes in"],
   ["viewers", "Viewers", "pages and scripts that watch this session"],
   ["renderer", "Server", "what the server computes on"],
 ] as const;
@@ -45,6 +47,7 @@ type Row = (typeof rows)[number][0];
 const factorText = (factor: number): string =>
   `×${factor >= 0.1 || factor === 0 ? factor.toFixed(2) : factor.toPrecision(1)}`;
 
+const megabytes = (bytes: number): string => `${(bytes / 1e6).toPrecision(bytes < 1e9 ? 2 : 3)} MB`;
 const compact = new Intl.NumberFormat("en", { notation: "compact" });
 const short = (count: number): string => compact.format(count);
 
@@ -124,6 +127,7 @@ export class Hud {
     }
     if (status.max_strain !== undefined) this.set("strain", `${(100 * status.max_strain).toFixed(1)} %`);
     if (status.contacts !== undefined) this.set("contacts", String(status.contacts));
+    if (status.memory_bytes !== undefined) this.set("memory", megabytes(status.memory_bytes));
     if (status.surface !== undefined) this.showSurface(status.surface);
     if (status.passes) this.showPasses(status.passes, status.terms ?? [], status.skipped ?? []);
     if (status.pass_seconds) this.passSeconds = status.pass_seconds;
