@@ -61,6 +61,7 @@ Result<SelfCollision> SelfCollision::create(const model::Model& model, std::uint
   }
   const NeighbourControl nothing;
   made.control_ = gl::Buffer(sizeof(NeighbourControl), &nothing);
+  made.asks_ = gl::software_renderer();
   made.counters_ring_ = gl::ReadbackRing(sizeof(NeighbourControl), 1);
   made.heads_ = {gl::Buffer(cells * sizeof(std::uint32_t)), GL_R32UI};
   made.heads_.buffer.fill(chain_end);  // later each search empties them at its end
@@ -130,6 +131,21 @@ Work SelfCollision::update_lists() {
   built_position_.bind(unit_position_when_built);
   excluded_.bind(unit_excluded);
   first_excluded_.bind(unit_first_excluded);
+  if (search_is_due()) co_await search();
+  if (updates_++ % updates_between_looks == 0) read_counters();
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+}
+
+/// Whether lists may have to be rebuilt. Software OpenGL has carried out a dispatch when the call returns,
+/// and is asked: that costs less than three dispatches that do nothing. A GPU would have to be waited for.
+bool SelfCollision::search_is_due() const {
+  if (!asks_) return true;
+  std::uint32_t groups = 0;
+  control_.download(&groups, sizeof groups, offsetof(NeighbourControl, rebuild));
+  return groups > 0;
+}
+
+Work SelfCollision::search() {
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, control_.id());
   const auto dispatch = [](std::size_t arguments) {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
@@ -156,8 +172,6 @@ Work SelfCollision::update_lists() {
     limit_range(range_groups_ / 2);
     control_.upload(&range_groups_, sizeof range_groups_, offsetof(NeighbourControl, search));
   }
-  if (updates_++ % updates_between_looks == 0) read_counters();
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
 /// Reads back the counters that the look before had copied, and queues a copy for the next look. The first

@@ -65,6 +65,8 @@ class SelfCollision {
 
  private:
   void limit_range(std::uint32_t groups);
+  bool search_is_due() const;
+  Work search();
   void read_counters();
 
   std::uint32_t vertex_count_ = 0, slots_ = neighbour_slots;
@@ -72,6 +74,7 @@ class SelfCollision {
   double candidates_ = 0;
   std::uint64_t updates_ = 0;  ///< calls of update_lists since `invalidate`
   bool searched_ = false;      ///< since `invalidate`
+  bool asks_ = false;          ///< the host reads whether a search is due
   std::uint32_t longest_ = 0;  ///< Counters::longest as last read back
   float skin_ = 0;             ///< [m]
   float reach_ = 0;            ///< contact distance + skin: how far the lists look [m]

@@ -38,12 +38,47 @@ LeftOut left_out_at(int i) {
   return list;
 }
 
-bool is_in(LeftOut list, uint j) {
+bool is_held(LeftOut list, uint j) {
   uvec4 other = uvec4(j);
-  bool found = any(equal(list.held[0], other)) || any(equal(list.held[1], other)) || any(equal(list.held[2], other));
+  return any(equal(list.held[0], other)) || any(equal(list.held[1], other)) || any(equal(list.held[2], other));
+}
+
+bool is_in_rest(LeftOut list, uint j) {
+  bool found = false;
   for (int at = list.next; at < list.end; ++at)
     if (FETCH_UINT(excluded, at) == j) found = true;
   return found;
+}
+
+/// Chains yet to be walked: the first vertex of each. The first ones come first, then chain_end.
+struct Chains { uint first[8]; };
+
+/// The chains that hold all vertices within `reach` of x. Cells are twice the reach wide, so these are the eight cells
+/// on this vertex's side of its cell. Different cells may share a bucket: its chain is there once, and vertices of other
+/// cells in it are too far away to be listed.
+Chains chains_near(vec3 x) {
+  Chains chains;
+  for (int k = 0; k < 8; ++k) chains.first[k] = chain_end;
+  ivec3 corner = corner_of(x);
+  uint buckets[8];
+  for (int at = 0; at < 8; ++at) {
+    buckets[at] = bucket_of(corner + ivec3(at & 1, at >> 1 & 1, at >> 2));
+    bool known = false;
+    for (int k = 0; k < at; ++k) known = known || buckets[k] == buckets[at];
+    uint chain = known ? chain_end : FETCH_UINT(head, buckets[at]);
+    if (chain != chain_end) {
+      for (int k = 7; k > 0; --k) chains.first[k] = chains.first[k - 1];
+      chains.first[0] = chain;
+    }
+  }
+  return chains;
+}
+
+uint take_chain(inout Chains chains) {
+  uint chain = chains.first[0];
+  for (int k = 0; k < 7; ++k) chains.first[k] = chains.first[k + 1];
+  chains.first[7] = chain_end;
+  return chain;
 }
 
 void main() {
@@ -55,39 +90,35 @@ void main() {
   }
   if (i >= vertex_count) return;
   vec3 x = FETCH(position, i).xyz;
-  // Cells are twice the reach wide, so only the eight cells on this vertex's side of its cell can hold a neighbour. One
-  // loop walks all eight chains: the threads of a group, whose chains differ in length, do not wait for each other at
-  // each cell.
-  ivec3 corner = corner_of(x);
   int first = i * NEIGHBOUR_SLOTS;
   LeftOut left_out = left_out_at(i);
+  Chains chains = chains_near(x);
+  uint j = take_chain(chains);
   int count = 0;
   uint lost = 0;
-  ivec3 cell = corner;
-  uint j = FETCH_UINT(head, bucket_of(cell));
-  for (int at = 0;;) {
-    if (j == chain_end) {
-      if (++at == 8) break;
-      cell = corner + ivec3(at & 1, at >> 1 & 1, at >> 2);
-      j = FETCH_UINT(head, bucket_of(cell));
-      continue;
+  // Software OpenGL carries out every line of a loop for all threads of a group as long as one of them goes on, whatever
+  // the conditions. So the inner loop has only what finds the next neighbour; what lists it, which is rare, is outside.
+  for (;;) {
+    uint found = chain_end;
+    float gap = 0.0;
+    while (j != chain_end && found == chain_end) {
+      gap = distance(x, FETCH(position, j).xyz);
+      if (gap < reach && !is_held(left_out, j)) found = j;
+      j = FETCH_UINT(next, j);
+      if (j == chain_end) j = take_chain(chains);
     }
-    vec3 y = FETCH(position, j).xyz;
-    float gap = distance(x, y);
-    // A bucket may hold several cells; only vertices of this cell count, so that no vertex is listed twice.
-    if (j != uint(i) && gap < reach && cell_of(y) == cell && !is_in(left_out, j)) {
-      int slot = count;
-      if (count < NEIGHBOUR_SLOTS) ++count;
-      else ++lost;
-      for (; slot > 0; --slot) {
-        uvec2 other = neighbours[first + slot - 1];
-        float other_gap = uintBitsToFloat(other.y);
-        if (other_gap < gap || (other_gap == gap && other.x < j)) break;
-        if (slot < NEIGHBOUR_SLOTS) neighbours[first + slot] = other;
-      }
-      if (slot < NEIGHBOUR_SLOTS) neighbours[first + slot] = uvec2(j, floatBitsToUint(gap));
+    if (found == chain_end) break;
+    if (is_in_rest(left_out, found)) continue;
+    int slot = count;
+    if (count < NEIGHBOUR_SLOTS) ++count;
+    else ++lost;
+    for (; slot > 0; --slot) {
+      uvec2 other = neighbours[first + slot - 1];
+      float other_gap = uintBitsToFloat(other.y);
+      if (other_gap < gap || (other_gap == gap && other.x < found)) break;
+      if (slot < NEIGHBOUR_SLOTS) neighbours[first + slot] = other;
     }
-    j = FETCH_UINT(next, j);
+    if (slot < NEIGHBOUR_SLOTS) neighbours[first + slot] = uvec2(found, floatBitsToUint(gap));
   }
   for (int slot = 0; slot < count; ++slot) {
     int j = int(neighbours[first + slot].x);
