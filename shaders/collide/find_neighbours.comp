@@ -7,7 +7,7 @@ layout(local_size_x = GROUP_SIZE) in;
 
 READ_VEC4(position, unit_position);
 READ_UINT(head, unit_cell_heads);
-READ_UINT(next, unit_cell_chains);
+READ_UVEC4(links, unit_cell_chains);  // xyz: the vertex' place, as bits; w: the next one in the cell
 READ_VEC4(rest_position, unit_rest_position);  // w: the cloth
 READ_UINT(excluded, unit_excluded);  // vertices that self-collision leaves out, vertex after vertex
 READ_UINT(first_excluded, unit_first_excluded);  // [vertex_count + 1]
@@ -102,9 +102,10 @@ void main() {
     uint found = chain_end;
     float gap = 0.0;
     while (j != chain_end && found == chain_end) {
-      gap = distance(x, FETCH(position, j).xyz);
+      uvec4 link = FETCH(links, j);
+      gap = distance(x, uintBitsToFloat(link.xyz));
       if (gap < reach && !is_held(left_out, j)) found = j;
-      j = FETCH_UINT(next, j);
+      j = link.w;
       if (j == chain_end) j = take_chain(chains);
     }
     if (found == chain_end) break;
