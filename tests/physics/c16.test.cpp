@@ -35,7 +35,7 @@ stream::Message packed(const Positions& positions, const std::vector<std::uint8_
 }  // namespace
 
 TEST_CASE(
-    "what is deflated is read to the same, and a part of it, more than it, or another size is refused") {
+    "what is deflated is read to the same, and a part of it, more than it, or too large a content is refused") {
   std::mt19937 random(1);
   std::vector<std::uint8_t> bytes(5000);
   for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random() % 7);
@@ -47,9 +47,8 @@ TEST_CASE(
     CHECK(std::equal(read->begin(), read->end(), some.begin(), some.end()));
     for (std::size_t part = 0; part < stream.size(); ++part)
       CHECK_FALSE(inflate_raw({stream.data(), part}, size));
-    CHECK_FALSE(inflate_raw(stream, size + 1));
+    CHECK(inflate_raw(stream, std::size_t{1} << 60) == read);
     if (size > 0) CHECK_FALSE(inflate_raw(stream, size - 1));
-    CHECK_FALSE(inflate_raw(stream, std::size_t{1} << 60));
     stream.push_back(0);
     CHECK_FALSE(inflate_raw(stream, size));
   }

@@ -101,9 +101,8 @@ TEST_CASE("c16 frames hold the committed bytes, with a field and without") {
         stream::compress(*packed, stream::Predictor(model.vertex_count(), model.triangles));
     const std::string expected = golden(name);
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(expected.data());
-    const std::size_t planes = (field == Field::none ? 6 : 7) * model.vertex_count();
-    const auto ours = inflate_raw({made->data() + 64, made->size() - 64}, planes);
-    const auto committed = inflate_raw({bytes + 64, expected.size() - 64}, planes);
+    const auto ours = inflate_raw({made->data() + 64, made->size() - 64}, 1000);
+    const auto committed = inflate_raw({bytes + 64, expected.size() - 64}, 1000);
     REQUIRE(ours);
     REQUIRE(committed);
     CHECK(*ours == *committed);
@@ -129,7 +128,7 @@ TEST_CASE(
     const std::vector<std::uint8_t> bytes(text.begin(), text.end());
     const auto same = [](const std::vector<std::uint8_t>& given) {
       const Result<fuzz::Decoded> message = fuzz::decode_frame(given);
-      if (message && message->header.encoding == 2) {
+      if (message && message->header.encoding == 3) {
         const Result<fuzz::Decoded> again = fuzz::decode_frame(fuzz::encode_frame(*message));
         return again && std::get<fuzz::Compressed>(again->payload).vertices ==
                             std::get<fuzz::Compressed>(message->payload).vertices;
