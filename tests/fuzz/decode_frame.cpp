@@ -245,6 +245,9 @@ int low_bits(std::int64_t near) {
 Result<Decoded> read_compressed(std::span<const std::uint8_t> bytes, const FrameHeader& header,
                                 Triangles triangles) {
   const std::size_t count = header.vertex_count, field_bytes = header.range > 0.0f ? count : 0;
+  for (const auto& triangle : triangles)
+    for (const std::uint32_t corner : triangle)
+      if (corner >= count) return refused(12, std::to_string(count) + " vertices", "those of the topology");
   const auto content = inflate_raw(bytes.subspan(header_bytes), field_bytes + (3 * 28 * count + 7) / 8);
   if (!content) return refused(header_bytes, content.error().what, content.error().remedy);
   const auto wrong = [] { return refused(header_bytes, "more or fewer numbers", "three for each vertex"); };
