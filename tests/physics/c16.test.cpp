@@ -72,8 +72,13 @@ TEST_CASE("c16 is read to the same positions and field, whatever the triangles a
     std::vector<std::uint8_t> field(round % 3 == 0 ? positions.size() : 0);
     for (std::uint8_t& byte : field) byte = static_cast<std::uint8_t>(random());
 
+    stream::Message frame = packed(positions, field);
+    constexpr std::array usual{0.7f, 1.3f, 2.0f}, odd{0.0f, 1e-45f, 3e38f};  // [m]
+    for (int axis = 0; axis < 3; ++axis)
+      frame.header.box_extent[axis] = (random() % 8 == 0 ? odd : usual)[random() % 3];
+
     const stream::Predictor predictor(static_cast<std::uint32_t>(positions.size()), triangles);
-    const stream::SharedMessage made = stream::compress(packed(positions, field), predictor);
+    const stream::SharedMessage made = stream::compress(frame, predictor);
     const auto read = fuzz::decode_frame({made->data(), made->size()}, triangles);
     REQUIRE(read);
     CHECK(std::get<fuzz::Compressed>(read->payload).vertices == positions);
