@@ -2,6 +2,7 @@
 
 #include <libdeflate.h>
 
+#include <algorithm>
 #include <memory>
 #include <new>
 
@@ -36,26 +37,25 @@ std::vector<std::uint8_t> deflate_raw(std::span<const std::uint8_t> bytes, std::
   return out;
 }
 
-Result<std::vector<std::uint8_t>> inflate_raw(std::span<const std::uint8_t> bytes, std::size_t size) {
+Result<std::vector<std::uint8_t>> inflate_raw(std::span<const std::uint8_t> bytes, std::size_t most) {
   const auto refused = [&](const char* what) {
-    return Error{"deflate stream", what, formatted("exactly %zu bytes, compressed", size)};
+    return Error{"deflate stream", what, formatted("at most %zu bytes, compressed", most)};
   };
-  if (size / most_expansion > bytes.size()) return refused("too few bytes for what they should hold");
   const std::unique_ptr<libdeflate_decompressor, Free> decompressor(libdeflate_alloc_decompressor());
   if (!decompressor) throw std::bad_alloc();
-  std::vector<std::uint8_t> out(size);
+  std::vector<std::uint8_t> out(std::min(most, most_expansion * bytes.size()));
   std::size_t read = 0, written = 0;
-  switch (libdeflate_deflate_decompress_ex(decompressor.get(), bytes.data(), bytes.size(), out.data(), size,
-                                           &read, &written)) {
+  switch (libdeflate_deflate_decompress_ex(decompressor.get(), bytes.data(), bytes.size(), out.data(),
+                                           out.size(), &read, &written)) {
     case LIBDEFLATE_SUCCESS:
       break;
     case LIBDEFLATE_INSUFFICIENT_SPACE:
-      return refused("more bytes than there should be");
+      return refused("more bytes than there may be");
     default:
       return refused("a stream that is broken, or ends too soon");
   }
   if (read < bytes.size()) return refused("bytes after the end of the stream");
-  if (written < size) return refused("fewer bytes than there should be");
+  out.resize(written);
   return out;
 }
 

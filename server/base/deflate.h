@@ -16,9 +16,9 @@ namespace clothlab {
 /// bytes of 0 that the caller fills. With the usual effort, level 6.
 std::vector<std::uint8_t> deflate_raw(std::span<const std::uint8_t> bytes, std::size_t front = 0);
 
-/// Decompresses exactly `size` bytes, from exactly these. Anything else is an Error, and no more memory is
+/// Decompresses `most` bytes at most, from exactly these. Anything else is an Error, and no more memory is
 /// taken than such a stream can fill.
-Result<std::vector<std::uint8_t>> inflate_raw(std::span<const std::uint8_t> bytes, std::size_t size);
+Result<std::vector<std::uint8_t>> inflate_raw(std::span<const std::uint8_t> bytes, std::size_t most);
 
 /// A gzip file (RFC 1952) of `bytes`, with great effort, level 9: each server packs its page at its start.
 std::string gzip(std::string_view bytes);

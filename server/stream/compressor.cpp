@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "server/base/deflate.h"
-#include "server/stream/planes.h"
+#include "server/stream/c16.h"
 
 namespace clothlab::stream {
 
@@ -15,36 +15,30 @@ namespace {
 constexpr std::size_t most_waiting = 2;
 
 struct Packed {  // as pack.comp writes q16; the normal is not sent
-  std::uint16_t position[axes];
+  Position position;
   std::uint16_t normal;
 };
 static_assert(sizeof(Packed) == facts(Encoding::q16).bytes_per_vertex);
 
-/// The planes: low bytes of x, of y, of z, then high bytes, then the field's bytes.
-std::vector<std::uint8_t> planes_of(const Message& packed, const Predictor& predictor) {
+/// The field's bytes, then the bits of the positions.
+std::vector<std::uint8_t> content_of(const Message& packed, const Predictor& predictor) {
   const std::size_t count = predictor.vertex_count();
   const std::uint8_t* payload = packed.data() + header_bytes;
-  std::vector<Packed> vertices(count);
-  std::memcpy(vertices.data(), payload, count * sizeof(Packed));
-  const std::size_t field_bytes = packed.header.field == Field::none ? 0 : count;
-  std::vector<std::uint8_t> planes(2 * axes * count + field_bytes);
-  for (std::uint32_t i = 0; i < count; ++i)
-    for (std::size_t axis = 0; axis < axes; ++axis) {
-      const std::int32_t prediction =
-          predictor.at(i, vertices.data()->position, sizeof(Packed) / sizeof(std::uint16_t), axis);
-      put_byte_planes(folded(vertices[i].position[axis], prediction), planes[axis * count + i],
-                      planes[(axes + axis) * count + i]);
-    }
-  if (field_bytes > 0)
-    std::memcpy(planes.data() + 2 * axes * count, payload + count * sizeof(Packed), field_bytes);
-  return planes;
+  std::vector<Position> positions(count);
+  for (std::size_t i = 0; i < count; ++i)
+    std::memcpy(&positions[i], payload + i * sizeof(Packed), sizeof(Position));
+  const std::uint8_t* field = payload + count * sizeof(Packed);
+  std::vector<std::uint8_t> content(field, field + (packed.header.field == Field::none ? 0 : count));
+  const glm::vec3& extent = packed.header.box_extent;
+  put_positions(content, positions, {extent.x, extent.y, extent.z}, predictor);
+  return content;
 }
 
 }  // namespace
 
 SharedMessage compress(const Message& packed, const Predictor& predictor) {
   auto message = std::make_shared<Message>();
-  message->bytes = deflate_raw(planes_of(packed, predictor), front_room + header_bytes);
+  message->bytes = deflate_raw(content_of(packed, predictor), front_room + header_bytes);
   message->header = packed.header;
   message->header.payload_bytes =
       static_cast<std::uint32_t>(message->bytes.size() - front_room - header_bytes);

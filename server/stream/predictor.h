@@ -15,7 +15,14 @@ class Predictor {
   Predictor() = default;
   Predictor(std::uint32_t vertex_count, std::span<const std::array<std::uint32_t, 3>> triangles);
 
+  using Candidate = std::array<std::uint32_t, 3>;  ///< a, b, c stand for a + b - c
+
   std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(first_.size() - 1); }
+
+  /// Of vertex i. Without a parallelogram it is one vertex three times, for vertex 0 itself.
+  Candidate first_candidate(std::uint32_t i) const {
+    return first_[i] < first_[i + 1] ? candidates_[first_[i]] : Candidate{i, i, i};
+  }
 
   /// The prediction for vertex i of `values` [vertex_count, stride], of which `axis` is read: the mean of its
   /// candidates, rounded down. Reads vertices below i only.
@@ -32,8 +39,7 @@ class Predictor {
   }
 
  private:
-  using Candidate = std::array<std::uint32_t, 3>;  ///< a, b, c stand for a + b - c
-  std::vector<std::uint32_t> first_{0};            ///< [vertex_count + 1] into `candidates_`
+  std::vector<std::uint32_t> first_{0};  ///< [vertex_count + 1] into `candidates_`
   std::vector<Candidate> candidates_;
 };
 

@@ -11,14 +11,16 @@
 
 #include "server/base/deflate.h"
 #include "server/model/rest_lengths.h"
+#include "server/stream/folded.h"
 #include "server/stream/frame.h"
-#include "server/stream/planes.h"
 
 namespace clothlab::stream {
 
 namespace {
 
 using nlohmann::json;
+
+constexpr std::size_t axes = 3;
 
 /// Positions are rounded to this share of a mean edge: a slope changes by half of it at most, which no
 /// picture shows.

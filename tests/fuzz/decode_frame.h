@@ -16,7 +16,7 @@ namespace clothlab::fuzz {
 
 struct FrameHeader {
   std::uint8_t kind = 2;      ///< 1 topology, 2 frame
-  std::uint8_t encoding = 0;  ///< 0 f32, 1 q16, 2 c16
+  std::uint8_t encoding = 0;  ///< 0 f32, 1 q16, 3 c16
   std::uint16_t flags = 0;    ///< bit 0 asleep, bit 1 diverged
   std::uint32_t topology_revision = 0, sequence = 0, vertex_count = 0;
   double time = 0;  ///< [s]

@@ -2,7 +2,8 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { before, test } from "node:test";
-import { deflateRawSync, inflateRawSync } from "node:zlib";
+import { inflateRawSync } from "node:zlib";
+import { holding, right, wrong } from "../protocol/c16_contents.mjs";
 import { load } from "./module.mjs";
 
 const read = (name) => readFileSync(new URL(`../golden/${name}`, import.meta.url));
@@ -79,14 +80,8 @@ test("a c16 frame that is cut, damaged, too long or of another mesh is refused, 
     if (length >= 64) new DataView(announced.buffer).setUint32(56, length - 64, true);
     if (length >= 64) await refused(announced, `${length} bytes, announced`);
   }
-  for (const size of [0, 54, 62, 64]) {
-    const payload = deflateRawSync(Buffer.alloc(size));
-    const message = new Uint8Array(64 + payload.length);
-    message.set(bytes.subarray(0, 64));
-    message.set(payload, 64);
-    new DataView(message.buffer).setUint32(56, payload.length, true);
-    await refused(message, `${size} bytes instead of 63`);
-  }
+  for (const { content: held } of right) await unpacker.unpack(holding(bytes, held).buffer);
+  for (const { what, content: held } of wrong(content.content)) await refused(holding(bytes, held), what);
   await refused(golden("frame-q16").bytes, "q16");
   unpacker.take({ vertexCount: 8, triangles: new Uint32Array() });
   await refused(bytes, "another mesh");

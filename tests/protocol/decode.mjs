@@ -6,7 +6,8 @@ const headerBytes = 64;
 const topology = 1,
   frame = 2;
 const f32 = 0,
-  c16 = 2; // between them q16
+  q16 = 1,
+  c16 = 3;
 const knownFlags = 3; // asleep, diverged
 
 export class BadMessage extends Error {}
@@ -48,7 +49,10 @@ function readHeader(view) {
 function checkHeader(header, byteLength) {
   const { kind, encoding, flags } = header;
   demand(kind === topology || kind === frame, `there is no kind ${kind}`);
-  demand(encoding === f32 || (encoding <= c16 && kind === frame), `kind ${kind} has no encoding ${encoding}`);
+  demand(
+    encoding === f32 || (kind === frame && (encoding === q16 || encoding === c16)),
+    `kind ${kind} has no encoding ${encoding}`,
+  );
   demand((flags & ~(kind === frame ? knownFlags : 0)) === 0, `kind ${kind} has no flags ${flags}`);
   demand(header.time >= 0 && header.time < Infinity, `the time is ${header.time}`);
   demand(header.boxMinimum.every(Number.isFinite), `the box begins at ${header.boxMinimum}`);
@@ -114,10 +118,11 @@ const place = ({ boxMinimum, boxExtent }, quantised) =>
 function readC16(payload, header, topologyBefore) {
   const { vertexCount, range } = header;
   demand(topologyBefore?.vertexCount === vertexCount, `no topology of ${vertexCount} vertices came before a c16 frame`);
-  const read = readCompressed(payload, vertexCount, topologyBefore.triangles, range > 0);
-  demand(read, `the payload is no deflate stream of ${range > 0 ? 7 : 6} bytes for each of ${vertexCount} vertices`);
+  const read = readCompressed(payload, vertexCount, header.boxExtent, topologyBefore.triangles, range > 0);
+  demand(read, `the payload is no deflate stream of the numbers of ${vertexCount} vertices`);
   const field = range > 0 ? { field: Array.from(read.fieldBytes, (byte) => (range * byte) / 255) } : {};
-  return { quantised: read.quantised, positions: read.quantised.map((q) => place(header, q)), ...field };
+  const { quantised, numbers } = read;
+  return { quantised, numbers, positions: quantised.map((q) => place(header, q)), ...field };
 }
 
 function readQuantised(view, header) {

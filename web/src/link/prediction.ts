@@ -1,4 +1,5 @@
-// Predicts vertices from those before them, by the rules of c16 (server/net/README.md), and lists a mesh's edges.
+// Predicts vertices from those before them, as c16 and recordings do (server/net/README.md, server/stream/README.md),
+// and lists a mesh's edges.
 
 /// For each vertex i the triples [first[i], first[i + 1]) of `triples`; the mean of their a + b - c predicts it.
 export interface Candidates {

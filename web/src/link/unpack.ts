@@ -1,7 +1,8 @@
 // Turns c16 frames into q16 ones (server/net/README.md): the positions bit for bit, and normals made of them.
+import { readPositions } from "./c16";
 import { inflateRaw, type Inflate } from "./inflate";
 import { packedNormals } from "./normals";
-import { candidatesOf, unfold, type Candidates } from "./prediction";
+import { candidatesOf, type Candidates } from "./prediction";
 import { BadMessage, decodePacked, q16Frame } from "./protocol";
 
 /// What frames need of the topology that came before them.
@@ -34,13 +35,11 @@ export class Unpacker {
     const content = await this.inflate(deflated).catch((error: unknown) => {
       throw new BadMessage(`a c16 frame cannot be inflated: ${String(error)}`);
     });
-    const planeCount = range > 0 ? 7 : 6;
-    if (content.length !== planeCount * vertexCount)
-      throw new BadMessage(`a c16 frame of ${vertexCount} vertices holds ${content.length} bytes`);
-    const planes = Array.from({ length: planeCount }, (_, k) =>
-      content.subarray(k * vertexCount, (k + 1) * vertexCount),
-    );
-    const numbers = unfold(planes, candidates, null);
-    return q16Frame(message, numbers, packedNormals(numbers, mesh.triangles, boxExtent), planes[6] ?? new Uint8Array());
+    const fieldBytes = range > 0 ? vertexCount : 0;
+    if (content.length < fieldBytes)
+      throw new BadMessage(`a c16 frame of ${vertexCount} vertices has too short a field`);
+    const numbers = readPositions(content.subarray(fieldBytes), candidates, boxExtent);
+    const normals = packedNormals(numbers, mesh.triangles, boxExtent);
+    return q16Frame(message, numbers, normals, content.subarray(0, fieldBytes));
   }
 }
