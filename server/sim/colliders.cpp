@@ -1,8 +1,10 @@
 #include "server/sim/colliders.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <glm/vec4.hpp>
+#include <variant>
 
 #include "server/model/motion.h"
 #include "server/scene/solid.h"
@@ -10,21 +12,36 @@
 
 namespace clothlab::sim {
 
-double contact_margin(const scene::Scene& scene, const model::Model& model) {
-  if (scene.self_collision) return 0.5 * scene.self_collision->thickness;
+namespace {
+
+double longest_mean_edge(const model::Model& model) {
   double edge = 0.0;
   for (const model::ClothRange& cloth : model.cloths) edge = std::max(edge, cloth.mean_edge_length);
-  return 0.01 * edge;
+  return edge;
 }
 
-void set_colliders(const gl::Program& program, const scene::Scene& scene, const MotionTable& motions,
-                   double margin) {
+}  // namespace
+
+double contact_margin(const scene::Scene& scene, const model::Model& model) {
+  return scene.self_collision ? 0.5 * scene.self_collision->thickness : 0.01 * longest_mean_edge(model);
+}
+
+double contact_margin(const scene::Scene& scene, const model::Model& model, const scene::Collider& collider) {
+  const double margin = contact_margin(scene, model);
+  const bool may_cut =
+      scene.collides(scene::ContactKind::surface) && std::holds_alternative<scene::Box>(collider.shape);
+  return may_cut ? std::max(margin, longest_mean_edge(model) / std::sqrt(8.0)) : margin;
+}
+
+void set_colliders(const gl::Program& program, const scene::Scene& scene, const model::Model& model,
+                   const MotionTable& motions) {
   std::vector<glm::vec4> rows;  // those of each collider as shaders/collide/colliders.glsl has them
   for (std::size_t kind = 0; kind < scene::solid_kinds; ++kind)
     for (const scene::Collider& collider : scene.colliders) {
       if (collider.shape.index() != kind) continue;
       const scene::Solid solid = scene::solid(collider.shape);
-      rows.emplace_back(glm::vec3(solid.point), static_cast<float>(solid.radius + margin));
+      rows.emplace_back(glm::vec3(solid.point),
+                        static_cast<float>(solid.radius + contact_margin(scene, model, collider)));
       rows.emplace_back(glm::vec3(solid.direction), static_cast<float>(solid.extent.x));
       rows.emplace_back(collider.friction, collider.restitution, motions.index(collider.motion),
                         solid.extent.y);

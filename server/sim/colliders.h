@@ -13,10 +13,15 @@ namespace clothlab::sim {
 /// never lets a vertex in.
 double contact_margin(const scene::Scene& scene, const model::Model& model);
 
+/// The same of one collider. Under the self-collision kind `surface`, whose thickness may be much less than
+/// an edge, a box keeps vertices so far away that an edge between two of them does not cut its corners: an
+/// edge of length l around a right angle needs l / sqrt(8). Else the cloth would catch on them.
+double contact_margin(const scene::Scene& scene, const model::Model& model, const scene::Collider& collider);
+
 /// Sets the uniform `solids` of `program`, which must have been compiled for this scene's solids
-/// (Plan::solids). `margin`: see contact_margin [m].
-void set_colliders(const gl::Program& program, const scene::Scene& scene, const MotionTable& motions,
-                   double margin);
+/// (Plan::solids).
+void set_colliders(const gl::Program& program, const scene::Scene& scene, const model::Model& model,
+                   const MotionTable& motions);
 
 /// The scene's colliders with their shapes moved to where they are at `time` [s].
 std::vector<scene::Collider> colliders_at(const scene::Scene& scene, double time);

@@ -40,7 +40,7 @@ void set_step_uniforms(const gl::Program& program, const Surroundings& around) {
   glProgramUniform4f(program.id(), program.location("gravity"), static_cast<float>(scene.gravity.x),
                      static_cast<float>(scene.gravity.y), static_cast<float>(scene.gravity.z),
                      static_cast<float>(scene.air_drag));
-  set_colliders(program, scene, around.motions, contact_margin(scene, around.model));
+  set_colliders(program, scene, around.model, around.motions);
   if (scene.wind)
     glProgramUniform2f(program.id(), program.location("wind_coefficients"),
                        static_cast<float>(scene.wind->drag), static_cast<float>(scene.wind->lift));

@@ -85,7 +85,6 @@ double distance_from(const scene::Solid& solid, const dvec3& x, dvec3& normal) {
 }
 
 void add_solids(const Near& near, const model::Model& model, const scene::Scene& scene, double time) {
-  const double margin = contact_margin(scene, model);
   const std::vector<scene::Collider> colliders = colliders_at(scene, time);
   for (std::uint32_t collider = 0; collider < colliders.size(); ++collider) {
     if (colliders[collider].shape.index() >= scene::solid_kinds) continue;
@@ -96,7 +95,7 @@ void add_solids(const Near& near, const model::Model& model, const scene::Scene&
       NearPair pair{Kind::vertex_solid, {i, collider, NearPair::none, NearPair::none}, {1}, {near.place[i]}};
       pair.gap = distance_from(solid, near.place[i], normal);
       pair.nearest[1] = near.place[i] - normal * pair.gap;
-      pair.keep = margin;
+      pair.keep = contact_margin(scene, model, colliders[collider]);
       near.add(pair);
     }
   }

@@ -120,7 +120,7 @@ void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Mode
   push_passes_ = passes.pushes;
   rub_passes_ = passes.rubs;
   filter_passes_ = passes.filter;
-  set_colliders(apply_, scene, motions, contact_margin(scene, model));
+  set_colliders(apply_, scene, model, motions);
   forces_.set("friction", static_cast<float>(scene.self_collision ? scene.self_collision->friction : 0.0));
   forces_.set("mend", static_cast<float>(std::min(mended_in_step, mended_in_second * dt)));
   invalidate();

@@ -10,23 +10,21 @@
 
 namespace clothlab::stream {
 
-enum class Encoding : std::uint8_t { f32, q16, c16 };
+enum class Encoding : std::uint8_t { f32 = 0, q16 = 1, c16 = 2 };
 
 struct EncodingFacts {
   Encoding encoding;
-  std::uint8_t number;           ///< as headers say it; 2 was c16 by other rules, which nobody sends any more
   const char* name;              ///< as stream.subscribe spells it
   std::size_t bytes_per_vertex;  ///< as the GPU packs it
   const char* define;            ///< the define that pack.comp is compiled with
   Encoding packed_as;            ///< an encoding whose bytes the GPU packs for this one
 };
 
-/// In the order of `Encoding`.
+/// In the order of `Encoding`, whose numbers are sent in each header.
 inline constexpr std::array encodings{
-    EncodingFacts{Encoding::f32, 0, "f32", 24, "ENCODING_F32", Encoding::f32},
-    EncodingFacts{Encoding::q16, 1, "q16", 8, "ENCODING_Q16", Encoding::q16},
-    EncodingFacts{Encoding::c16, 3, "c16", 8, "ENCODING_Q16",
-                  Encoding::q16},  // then compressed: compressor.h
+    EncodingFacts{Encoding::f32, "f32", 24, "ENCODING_F32", Encoding::f32},
+    EncodingFacts{Encoding::q16, "q16", 8, "ENCODING_Q16", Encoding::q16},
+    EncodingFacts{Encoding::c16, "c16", 8, "ENCODING_Q16", Encoding::q16},  // then compressed: compressor.h
 };
 inline constexpr std::size_t encoding_count = encodings.size();
 static_assert(
@@ -44,11 +42,6 @@ constexpr const EncodingFacts& facts(Encoding encoding) {
 constexpr std::optional<Encoding> encoding_of(std::string_view name) {
   for (const EncodingFacts& each : encodings)
     if (each.name == name) return each.encoding;
-  return std::nullopt;
-}
-constexpr std::optional<Encoding> encoding_of(std::uint8_t number) {
-  for (const EncodingFacts& each : encodings)
-    if (each.number == number) return each.encoding;
   return std::nullopt;
 }
 

@@ -23,10 +23,10 @@ const std::uint8_t* get(const std::uint8_t* in, T& value) {
 }
 
 /// Calls `use` with each field of a header, in the order in which they are sent.
-template <class AnyHeader, class Number, class Use>
-void for_each_field(AnyHeader& header, Number& encoding, const Use& use) {
+template <class AnyHeader, class Use>
+void for_each_field(AnyHeader& header, const Use& use) {
   use(header.kind);
-  use(encoding);
+  use(header.encoding);
   use(header.flags);
   use(header.topology_revision);
   use(header.sequence);
@@ -42,20 +42,16 @@ void for_each_field(AnyHeader& header, Number& encoding, const Use& use) {
 }  // namespace
 
 void write_header(const Header& header, std::uint8_t* out) {
-  for_each_field(header, facts(header.encoding).number, [&](const auto& field) { out = put(out, field); });
+  for_each_field(header, [&](const auto& field) { out = put(out, field); });
 }
 
 std::optional<Header> read_header(const std::uint8_t* message, std::size_t size) {
   if (size < header_bytes) return std::nullopt;
   Header header;
-  std::uint8_t number = 0;
-  for_each_field(header, number, [&](auto& field) { message = get(message, field); });
-  const std::optional<Encoding> encoding = encoding_of(number);
-  if (!encoding || (header.kind != MessageKind::topology && header.kind != MessageKind::frame) ||
-      header.payload_bytes != size - header_bytes)
-    return std::nullopt;
-  header.encoding = *encoding;
-  return header;
+  for_each_field(header, [&](auto& field) { message = get(message, field); });
+  const bool known = (header.kind == MessageKind::topology || header.kind == MessageKind::frame) &&
+                     static_cast<std::size_t>(header.encoding) < encoding_count;
+  return known && header.payload_bytes == size - header_bytes ? std::optional(header) : std::nullopt;
 }
 
 SharedMessage encode_topology(const model::Model& model, std::uint32_t revision) {

@@ -17,7 +17,7 @@ for (const side of [25, 64]) {
   const client = await Client.connect(server, { session: `unpack-${side}` });
   const messages = [];
   client.socket.on("message", (data, isBinary) => {
-    if (isBinary && data[0] === 2 && data[1] === 3) messages.push(new Uint8Array(data).slice().buffer);
+    if (isBinary && data[0] === 2 && data[1] === 2) messages.push(new Uint8Array(data).slice().buffer);
   });
   const { document } = await client.request("scene.load", { preset: "drape" }).then(() => client.request("scene.get"));
   document.cloths[0].mesh.grid.columns = document.cloths[0].mesh.grid.rows = side;

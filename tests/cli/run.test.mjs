@@ -18,6 +18,7 @@ test("the report holds what the contract promises", () => {
   run("seed", "--time", "0.05", "--report", "report.json");
   const r = report("report.json");
   assert.equal(r.vertices, 625);
+  assert.ok(r.memory_bytes > 625 * 2 * 2 * 16, "two copies of positions and velocities, 16 bytes each");
   assert.equal(r.steps, 50);
   assert.ok(Math.abs(r.sim_time - 0.05) < 1e-9);
   assert.ok(r.renderer.length > 0 && r.passes.length > 0);

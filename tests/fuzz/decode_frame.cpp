@@ -53,8 +53,8 @@ Result<FrameHeader> read_header(std::span<const std::uint8_t> bytes) {
   header.box_extent = number_at<std::array<float, 3>>(bytes, 44);
   if (header.kind != 1 && header.kind != 2)
     return refused(0, "kind " + std::to_string(header.kind), "1 or 2");
-  if (header.encoding > 1 && (header.encoding != 3 || header.kind == 1))
-    return refused(1, "encoding " + std::to_string(header.encoding), "0 (f32), 1 (q16) or 3 (c16)");
+  if (header.encoding > (header.kind == 1 ? 1 : 2))
+    return refused(1, "encoding " + std::to_string(header.encoding), "0 (f32), 1 (q16) or 2 (c16)");
   if (header.flags > 3) return refused(2, "flags " + std::to_string(header.flags), "bits 0 and 1");
   if (!(header.time >= 0.0 && std::isfinite(header.time)))
     return refused(16, "a time that is none", "0 s or later");
@@ -319,7 +319,7 @@ Result<Decoded> decode_frame(std::span<const std::uint8_t> bytes, Triangles tria
     if (!topology) return topology.error();
     return Decoded{*header, std::move(*topology), {}};
   }
-  if (header->encoding == 3) return read_compressed(bytes, *header, triangles);
+  if (header->encoding == 2) return read_compressed(bytes, *header, triangles);
   if (header->encoding == 1) {
     static_assert(sizeof(Quantised::Vertex) == 8);
     auto vertices = read_vertices<Quantised::Vertex>(bytes, *header);

@@ -15,7 +15,7 @@ namespace {
 stream::Header server_header(const fuzz::FrameHeader& header, std::size_t payload) {
   stream::Header same;
   same.kind = static_cast<stream::MessageKind>(header.kind);
-  same.encoding = stream::encoding_of(header.encoding).value();
+  same.encoding = static_cast<stream::Encoding>(header.encoding);
   same.flags = header.flags;
   same.topology_revision = header.topology_revision;
   same.sequence = header.sequence;

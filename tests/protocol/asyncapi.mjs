@@ -78,7 +78,7 @@ export function readBinary(bytes) {
     return read;
   };
   const header = record(layout.header, {});
-  const encoding = { 0: "f32", 1: "q16", 3: "c16" }[header.encoding];
+  const encoding = ["f32", "q16", "c16"][header.encoding];
   const payload = record(header.kind === 1 ? layout.topology : layout[encoding], header);
   if (header.range > 0 && encoding !== "c16") Object.assign(payload, record(layout.field, header));
   if (at !== bytes.byteLength) throw new Error(`${bytes.byteLength - at} bytes too many`);

@@ -6,8 +6,7 @@ const headerBytes = 64;
 const topology = 1,
   frame = 2;
 const f32 = 0,
-  q16 = 1,
-  c16 = 3;
+  c16 = 2; // between them q16
 const knownFlags = 3; // asleep, diverged
 
 export class BadMessage extends Error {}
@@ -49,10 +48,7 @@ function readHeader(view) {
 function checkHeader(header, byteLength) {
   const { kind, encoding, flags } = header;
   demand(kind === topology || kind === frame, `there is no kind ${kind}`);
-  demand(
-    encoding === f32 || (kind === frame && (encoding === q16 || encoding === c16)),
-    `kind ${kind} has no encoding ${encoding}`,
-  );
+  demand(encoding === f32 || (encoding <= c16 && kind === frame), `kind ${kind} has no encoding ${encoding}`);
   demand((flags & ~(kind === frame ? knownFlags : 0)) === 0, `kind ${kind} has no flags ${flags}`);
   demand(header.time >= 0 && header.time < Infinity, `the time is ${header.time}`);
   demand(header.boxMinimum.every(Number.isFinite), `the box begins at ${header.boxMinimum}`);

@@ -105,7 +105,7 @@ test("c16 has the positions of q16 in the same step, bit for bit, and the same f
         for (const encoding of ["q16", "c16"]) {
           await client.request("stream.subscribe", { encoding, field });
           frames[encoding] = await client.frame(
-            (frame) => frame.encoding === (encoding === "q16" ? 1 : 3) && frame.range > 0 === (field !== "none"),
+            (frame) => frame.encoding === (encoding === "q16" ? 1 : 2) && frame.range > 0 === (field !== "none"),
           );
         }
         const { q16, c16 } = frames;

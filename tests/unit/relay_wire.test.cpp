@@ -1,7 +1,5 @@
 // What a server and its relays say to each other, as pure functions: wants, subjects, leases and rates,
 // headers.
-#include <utility>
-
 #include "server/relay/audience.h"
 #include "server/stream/frame.h"
 #include "tests/catch.h"
@@ -107,17 +105,12 @@ TEST_CASE(
   CHECK(header->topology_revision == 4);
   CHECK(header->sequence == 9);
   for (std::size_t size = 0; size < frame.size(); ++size) CHECK(!stream::read_header(frame.data(), size));
-  for (const auto& [at, wrong] : {std::pair{0u, 3}, {0u, 255}, {1u, 2}, {1u, 4}, {1u, 255}}) {
-    std::vector<std::uint8_t> bytes = frame;
-    bytes[at] = static_cast<std::uint8_t>(wrong);
-    CHECK(!stream::read_header(bytes.data(), bytes.size()));
-  }
-  for (const stream::EncodingFacts& each : stream::encodings) {
-    written.encoding = each.encoding;
-    stream::write_header(written, frame.data());
-    CHECK(frame[1] == each.number);
-    CHECK(stream::read_header(frame.data(), frame.size())->encoding == each.encoding);
-  }
+  for (const std::size_t at : {0u, 1u})
+    for (const std::uint8_t wrong : {std::uint8_t{3}, std::uint8_t{255}}) {
+      std::vector<std::uint8_t> bytes = frame;
+      bytes[at] = wrong;
+      CHECK(!stream::read_header(bytes.data(), bytes.size()));
+    }
 }
 
 }  // namespace clothlab
