@@ -104,7 +104,7 @@ void main() {
     while (j != chain_end && found == chain_end) {
       uvec4 link = FETCH(links, j);
       gap = distance(x, uintBitsToFloat(link.xyz));
-      if (gap < reach && !is_held(left_out, j)) found = j;
+      if (gap < reach && j != uint(i) && !is_held(left_out, j)) found = j;
       j = link.w;
       if (j == chain_end) j = take_chain(chains);
     }
