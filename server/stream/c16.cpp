@@ -68,7 +68,8 @@ class Writer {
     std::array<std::int32_t, 3> p;
     for (std::size_t axis = 0; axis < 3; ++axis)
       p[axis] = predictor_.at(i, positions_.data()->data(), 3, axis);
-    const auto& [a, b, c] = predictor_.first_candidate(i);
+    const Predictor::Candidate candidate = predictor_.first_candidate(i);
+    const std::uint32_t a = candidate[0], b = candidate[1], c = candidate[2];
     const auto add = [&](std::size_t turn, std::size_t axis, std::int32_t prediction) {
       // Of vertex 0 this is before its own number.
       const std::uint32_t near = std::uint32_t{numbers_[a][turn]} + numbers_[b][turn] + numbers_[c][turn];
