@@ -27,6 +27,12 @@ double covering_radius(const dvec3& a, const dvec3& b, const dvec3& c) {
   return foot > 0.0 ? 0.5 * middle * middle / foot : 0.5 * longest;
 }
 
+double coarsest_edge(const Model& model) {
+  double edge = 0.0;
+  for (const ClothRange& cloth : model.cloths) edge = std::max(edge, cloth.mean_edge_length);
+  return edge;
+}
+
 double least_safe_thickness(const Model& model) {
   double largest = 0.0;
   for (const auto& [a, b, c] : model.triangles)

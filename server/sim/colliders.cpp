@@ -7,30 +7,21 @@
 #include <variant>
 
 #include "server/model/motion.h"
+#include "server/model/thickness.h"
 #include "server/scene/solid.h"
 #include "shaders/elements/elements.h"
 
 namespace clothlab::sim {
 
-namespace {
-
-double longest_mean_edge(const model::Model& model) {
-  double edge = 0.0;
-  for (const model::ClothRange& cloth : model.cloths) edge = std::max(edge, cloth.mean_edge_length);
-  return edge;
-}
-
-}  // namespace
-
 double contact_margin(const scene::Scene& scene, const model::Model& model) {
-  return scene.self_collision ? 0.5 * scene.self_collision->thickness : 0.01 * longest_mean_edge(model);
+  return scene.self_collision ? 0.5 * scene.self_collision->thickness : 0.01 * model::coarsest_edge(model);
 }
 
 double contact_margin(const scene::Scene& scene, const model::Model& model, const scene::Collider& collider) {
   const double margin = contact_margin(scene, model);
   const bool may_cut =
       scene.collides(scene::ContactKind::surface) && std::holds_alternative<scene::Box>(collider.shape);
-  return may_cut ? std::max(margin, longest_mean_edge(model) / std::sqrt(8.0)) : margin;
+  return may_cut ? std::max(margin, model::coarsest_edge(model) / std::sqrt(8.0)) : margin;
 }
 
 void set_colliders(const gl::Program& program, const scene::Scene& scene, const model::Model& model,

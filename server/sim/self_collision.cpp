@@ -10,6 +10,7 @@
 
 #include "server/base/text.h"
 #include "server/model/crowding.h"
+#include "server/model/thickness.h"
 #include "server/sim/plan.h"
 #include "server/sim/state.h"
 
@@ -77,8 +78,7 @@ Result<SelfCollision> SelfCollision::create(const model::Model& model, std::uint
 Status SelfCollision::set_parameters(const scene::SelfCollision& parameters, const model::Model& model) {
   // A thicker skin makes rebuilds rarer but lists longer. With a skin of one mesh edge, and a thickness below
   // one edge, the lists of a flat cloth are empty: vertices that near to each other share an element.
-  double edge = 0.0;
-  for (const model::ClothRange& cloth : model.cloths) edge = std::max(edge, cloth.mean_edge_length);
+  const double edge = model::coarsest_edge(model);
   const double skin = std::max(edge, 0.5 * parameters.thickness), reach = parameters.thickness + skin;
   const bool same = static_cast<float>(reach) == reach_;
   const double candidates = same ? candidates_ : model::crowding(model.start_position, 2.0 * reach);

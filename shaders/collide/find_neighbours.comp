@@ -54,8 +54,8 @@ bool is_in_rest(LeftOut list, uint j) {
 struct Chains { uint first[8]; };
 
 /// The chains that hold all vertices within `reach` of x. Cells are twice the reach wide, so these are the eight cells
-/// on this vertex's side of its cell. Different cells may share a bucket: its chain is there once, and vertices of other
-/// cells in it are too far away to be listed.
+/// on this vertex's side of its cell. Different cells may share a bucket: its chain is there once, and vertices of
+/// other cells in it are too far away to be listed.
 Chains chains_near(vec3 x) {
   Chains chains;
   for (int k = 0; k < 8; ++k) chains.first[k] = chain_end;
@@ -96,8 +96,9 @@ void main() {
   uint j = take_chain(chains);
   int count = 0;
   uint lost = 0;
-  // Software OpenGL carries out every line of a loop for all threads of a group as long as one of them goes on, whatever
-  // the conditions. So the inner loop has only what finds the next neighbour; what lists it, which is rare, is outside.
+  // Software OpenGL carries out every line of a loop for all threads of a group as long as one of them goes on,
+  // whatever the conditions. So the inner loop has only what finds the next neighbour; what lists it, which is rare,
+  // is outside.
   for (;;) {
     uint found = chain_end;
     float gap = 0.0;
