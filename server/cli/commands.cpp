@@ -35,9 +35,8 @@ CLI::Validator whole_number(int least, int most) {
 
 void print_warnings(const model::Model& model, const scene::Scene& scene, double dt_limit,
                     const std::string& about) {
-  std::vector<std::string> warnings{model::thickness_warning(model, scene)};
-  if (!scene.solver.automatic)  // else the lab chooses the step, not the user
-    warnings.push_back(model::step_warning(scene.solver, dt_limit));
+  const std::vector<std::string> warnings{model::thickness_warning(model, scene),
+                                          model::step_warning(scene.solver, dt_limit)};
   for (const std::string& warning : warnings) {
     if (warning.empty()) continue;
     std::cout.flush();

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -16,7 +17,7 @@ namespace clothlab::fuzz {
 
 struct FrameHeader {
   std::uint8_t kind = 2;      ///< 1 topology, 2 frame
-  std::uint8_t encoding = 0;  ///< 0 f32, 1 q16, 3 c16
+  std::uint8_t encoding = 0;  ///< 0 f32, 1 q16, 2 c16
   std::uint16_t flags = 0;    ///< bit 0 asleep, bit 1 diverged
   std::uint32_t topology_revision = 0, sequence = 0, vertex_count = 0;
   double time = 0;  ///< [s]
@@ -53,6 +54,11 @@ struct Decoded {
   std::variant<Topology, Float32, Quantised, Compressed> payload;
   std::vector<std::uint8_t> field;  ///< [vertex_count] of range / 255; empty without a field
 };
+
+inline constexpr std::size_t header_bytes = 64;
+
+/// An error at a byte of a message.
+Error refused(std::size_t offset, std::string found, std::string allowed);
 
 using Triangles = std::span<const std::array<std::uint32_t, 3>>;
 
