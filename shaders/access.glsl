@@ -1,6 +1,6 @@
-// Reading of buffers. A kernel reads through a buffer texture, which on Mesa's llvmpipe takes less than half the time
-// of a storage buffer (tests/bench/step.mjs measures it); with READ_STORAGE it reads a storage buffer. Writes always go
-// to storage buffers. Use: READ_VEC4(position, unit_position); ... vec4 p = FETCH(position, i);
+// Reading of buffers: through a buffer texture, or with READ_STORAGE from a storage buffer, whichever is faster on the
+// device (server/gl/reads.h; on Mesa's llvmpipe a texture takes less than half the time). Writes always go to storage
+// buffers. Use: READ_VEC4(position, unit_position); ... vec4 p = FETCH(position, i);
 #include "slots.glsl"
 #ifdef READ_STORAGE
 #define READ_BUFFER_(type, name, unit) \

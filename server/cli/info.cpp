@@ -1,5 +1,5 @@
-// `clothlab info`: prints versions, methods, the folders of the data files, and all OpenGL devices with a
-// mark at the default one.
+// `clothlab info`: prints versions, methods, the folders of the data files, all OpenGL devices with a mark at
+// the default one, and what is measured of that.
 #include <libwebsockets.h>
 
 #include <iostream>
@@ -10,7 +10,9 @@
 #include "server/bus/bus.h"
 #include "server/cli/commands.h"
 #include "server/gl/context.h"
+#include "server/gl/reads.h"
 #include "server/scene/method.h"
+#include "server/sim/sweep_form.h"
 
 namespace clothlab::cli {
 
@@ -38,7 +40,20 @@ void print_device(const gl::Device& device, bool used) {
   std::cout << "\n";
 }
 
+/// What is measured of the device that is used, once, and kept (gl/device_fact.h).
+void print_measured() {
+  const double storage = gl::storage_over_texture_reads();
+  std::cout << formatted("     reads of storage buffers take %.2g times as long as of buffer textures: %s\n",
+                         storage,
+                         gl::fastest_reads() == gl::Reads::storage ? "storage buffers" : "buffer textures");
+  for (const bool by_vertex : {false, true})
+    std::cout << formatted(
+        "     a small cloth under %s is swept by one work group up to %.0f vertices a colour\n",
+        by_vertex ? "vbd" : "pbd and xpbd", sim::vertices_a_dispatch(by_vertex));
+}
+
 int info() {
+  gl::compute_without_helper_threads();  // as small cloths do
   std::cout << "clothlab " CLOTHLAB_VERSION ", compiler " __VERSION__ ", libwebsockets "
             << lws_get_library_version() << "\n";
   const std::string bus = bus::library();
@@ -57,6 +72,7 @@ int info() {
   for (const gl::Device& device : *devices)
     print_device(device, context && (*context)->device().index == device.index);
   if (!context) return fail(context.error(), exit_no_opengl);
+  print_measured();
   return exit_done;
 }
 

@@ -1,10 +1,9 @@
 #include "server/gl/buffer.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <new>
-#include <string_view>
 
+#include "server/gl/reads.h"
 #include "shaders/slots.h"
 
 namespace clothlab::gl {
@@ -74,20 +73,9 @@ BufferTexture& BufferTexture::operator=(BufferTexture&& other) noexcept {
   return *this;
 }
 
-bool reads_are_storage() {
-  static const bool storage = [] {
-    const char* reads = std::getenv("CLOTHLAB_READS");
-    return reads && std::string_view(reads) == "storage";
-  }();
-  return storage;
-}
-
 void TextureBuffer::bind(GLuint unit) const {
-  if (reads_are_storage()) {
-    buffer.bind_storage(number_of_slots + unit);
-  } else {
-    texture.bind(unit);
-  }
+  texture.bind(unit);
+  if (fastest_reads() == Reads::storage) buffer.bind_storage(number_of_slots + unit);
 }
 
 ReadbackRing::ReadbackRing(std::size_t slot_bytes, int slots)

@@ -61,10 +61,6 @@ class BufferTexture {
   GLuint id_ = 0;
 };
 
-/// True with CLOTHLAB_READS=storage in the environment: kernels then read storage buffers instead of buffer
-/// textures, to compare their speed.
-bool reads_are_storage();
-
 /// A buffer that kernels read through shaders/access.glsl, and that other kernels may write.
 struct TextureBuffer {
   Buffer buffer;

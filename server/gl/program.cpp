@@ -9,7 +9,6 @@
 
 #include "server/base/data_files.h"
 #include "server/base/files.h"
-#include "server/gl/buffer.h"
 
 namespace clothlab::gl {
 
@@ -135,11 +134,11 @@ std::string info_log(GLuint id, Get get, GetLog get_log) {
   return log;
 }
 
-Result<GLuint> compile(const std::string& path, const Defines& defines) {
+Result<GLuint> compile(const std::string& path, const Defines& defines, Reads reads) {
   Source source;
   const std::string prologue = "shaders/" + path + ":0";
   source.add_line("#version 450 core", prologue);
-  if (reads_are_storage()) source.add_line("#define READ_STORAGE", prologue);
+  if (reads == Reads::storage) source.add_line("#define READ_STORAGE", prologue);
   for (const auto& [name, value] : defines) source.add_line("#define " + name + " " + value, prologue);
   if (Status status = Expansion(source, defines).add(path); !status) return status.error();
 
@@ -158,10 +157,16 @@ Result<GLuint> compile(const std::string& path, const Defines& defines) {
 }  // namespace
 
 Result<Program> Program::load(std::initializer_list<std::string> paths, const Defines& defines) {
+  if (fastest_reads() == Reads::storage)
+    if (Result<Program> program = load(paths, defines, Reads::storage)) return program;
+  return load(paths, defines, Reads::textures);
+}
+
+Result<Program> Program::load(std::initializer_list<std::string> paths, const Defines& defines, Reads reads) {
   Program program;
   program.id_ = glCreateProgram();
   for (const std::string& path : paths) {
-    Result<GLuint> shader = compile(path, defines);
+    Result<GLuint> shader = compile(path, defines, reads);
     if (!shader) return shader.error();
     glAttachShader(program.id_, *shader);
     glDeleteShader(*shader);  // freed with the program

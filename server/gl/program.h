@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "server/base/result.h"
+#include "server/gl/reads.h"
 
 namespace clothlab::gl {
 
@@ -23,9 +24,11 @@ class Program {
  public:
   Program() = default;
   /// Compiles and links `paths`, e.g. {"render/cloth.vert", "render/cloth.geom", "render/cloth.frag"} or one
-  /// .comp; the stage follows from the file's ending. `defines` come right after #version 450 core. Errors:
-  /// where = "shaders/FILE:LINE" of the source file, also inside an #include.
+  /// .comp; the stage follows from the file's ending. `defines` come right after #version 450 core. Reads
+  /// storage buffers where that is fastest and the device lets a program have as many as it reads, else
+  /// buffer textures. Errors: where = "shaders/FILE:LINE" of the source file, also inside an #include.
   static Result<Program> load(std::initializer_list<std::string> paths, const Defines& defines = {});
+  static Result<Program> load(std::initializer_list<std::string> paths, const Defines& defines, Reads reads);
   ~Program();
   Program(Program&& other) noexcept { *this = std::move(other); }
   Program& operator=(Program&& other) noexcept {

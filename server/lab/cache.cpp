@@ -1,7 +1,6 @@
 #include "server/lab/cache.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -28,15 +27,6 @@ Outcome named(Outcome outcome, const std::string& scene) {
 }
 
 }  // namespace
-
-fs::path cache_folder() {
-  // A relative path would depend on the current folder; the XDG specification says to ignore it.
-  const char* cache = std::getenv("XDG_CACHE_HOME");
-  if (cache && fs::path(cache).is_absolute()) return fs::path(cache) / "clothlab" / "lab";
-  const char* home = std::getenv("HOME");
-  if (home && fs::path(home).is_absolute()) return fs::path(home) / ".cache" / "clothlab" / "lab";
-  return {};
-}
 
 std::optional<Outcome> Cache::find(const CacheKey& key) {
   const std::lock_guard lock(mutex_);

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "server/base/cache_folder.h"
 #include "server/lab/job.h"
 
 namespace clothlab::lab {
@@ -23,10 +24,6 @@ struct CacheKey {
 /// `renderer`: gl::renderer_name() of the context the job would run in.
 CacheKey cache_key(const scene::Document& document, const Job& job, const std::string& renderer);
 
-/// $XDG_CACHE_HOME/clothlab/lab, or ~/.cache/clothlab/lab; empty where neither $XDG_CACHE_HOME nor $HOME is
-/// an absolute path.
-std::filesystem::path cache_folder();
-
 /// All functions may be called from any thread, and several programs may use one folder.
 class Cache {
  public:
@@ -36,7 +33,7 @@ class Cache {
   };
 
   /// Where `folder` is empty or cannot be written, results are kept in memory only.
-  explicit Cache(std::filesystem::path folder = cache_folder()) : Cache(std::move(folder), Limits{}) {}
+  explicit Cache(std::filesystem::path folder = cache_folder("lab")) : Cache(std::move(folder), Limits{}) {}
   Cache(std::filesystem::path folder, Limits limits) : folder_(std::move(folder)), limits_(limits) {}
 
   std::optional<Outcome> find(const CacheKey& key);

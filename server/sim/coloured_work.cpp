@@ -1,15 +1,10 @@
 #include "server/sim/coloured_work.h"
 
-#include <glad/gl.h>
-
 #include <algorithm>
 #include <array>
-#include <cstdlib>
-#include <string_view>
 #include <type_traits>
 
 #include "server/base/text.h"
-#include "server/gl/context.h"
 #include "server/model/constraint_gains.h"
 
 namespace clothlab::sim {
@@ -133,22 +128,6 @@ gl::Defines visit_defines(const Visits& visits, bool elements) {
   });
   defines.emplace_back("SWEPT_LAWS", swept);
   return defines;
-}
-
-std::uint32_t lanes_of_one_group(std::uint32_t vertex_count, bool self_collision, std::uint32_t small,
-                                 const std::function<std::uint64_t(std::uint32_t)>& turns) {
-  const char* asked = std::getenv("CLOTHLAB_SWEEPS");
-  if (asked && std::string_view(asked) == "dispatches") return 0;
-  if (!asked && gl::computes_on_calling_thread() && vertex_count > small) return 0;
-  GLint shared_bytes = 0, most_lanes = 0;
-  glGetIntegerv(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE, &shared_bytes);
-  glGetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &most_lanes);
-  const std::size_t needed = std::size_t{vertex_count} * 16 * (self_collision ? 2 : 1);
-  if (needed > static_cast<std::size_t>(shared_bytes)) return 0;
-  if (!gl::software_renderer()) return static_cast<std::uint32_t>(most_lanes);
-  for (std::uint32_t lanes = 8; lanes <= 128; lanes *= 2)
-    if (turns(lanes) < 50000) return lanes;  // well below 65535: how Mesa counts is not documented
-  return 0;
 }
 
 }  // namespace clothlab::sim

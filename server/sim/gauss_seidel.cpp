@@ -11,6 +11,7 @@
 #include "server/scene/method.h"
 #include "server/sim/coloured_work.h"
 #include "server/sim/integrator.h"
+#include "server/sim/sweep_form.h"
 
 namespace clothlab::sim {
 
@@ -83,12 +84,9 @@ class GaussSeidel : public Integrator {
         cloths_(static_cast<std::uint32_t>(around.model.cloths.size())),
         work_(by_vertex_ ? visited_vertices(around.model, around.scene)
                          : visited_elements(around.model, around.scene)) {
-    // On software OpenGL the one work group takes longer with each vertex as a dispatch does without any: the
-    // two are even at so many vertices for each dispatch of a sweep (tests/README.md).
-    const std::uint32_t vertices_a_dispatch = by_vertex_ ? 18 : 6;
-    lanes_ = lanes_of_one_group(vertex_count_, plan.self_collision,
-                                vertices_a_dispatch * (work_.colours() + (contacts_ ? 1 : 0)),
-                                [&](std::uint32_t lanes) { return turns(around.model, plan, lanes); });
+    lanes_ = lanes_of_one_group({vertex_count_, work_.colours() + (contacts_ ? 1 : 0), by_vertex_,
+                                 plan.self_collision,
+                                 [&](std::uint32_t lanes) { return turns(around.model, plan, lanes); }});
     remainders_ = gl::Buffer(vertex_count_ * 8 * sizeof(float));
     if (by_vertex_) {
       visited_ = {gl::Buffer(work_.order), GL_R32UI};

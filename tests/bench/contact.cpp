@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "server/gl/context.h"
+#include "server/model/bodies.h"
 #include "server/model/crossings.h"
 #include "server/sim/simulation.h"
 #include "tests/contact_scenes.h"
@@ -77,6 +78,8 @@ int main(int argc, char** argv) {
     diverged = !finite(state);
     if (diverged) break;
     std::vector<model::dvec3> places(state.position.begin(), state.position.end());
+    for (const model::dvec3& of_body : model::body_positions(simulation.model(), simulation.time()))
+      places.emplace_back(glm::vec3(of_body));
     const std::uint64_t count = model::find_crossings(surfaces, places).count;
     ++frames;
     crossed += count > 0;

@@ -1,0 +1,23 @@
+// What is measured about a device instead of assumed, because devices and their drivers differ.
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace clothlab::gl {
+
+/// The number `name` of the device of the calling thread's current context. The first call that asks for it
+/// finds it out by `measure`; from then on it is kept, in memory and, by device and driver, in
+/// `cache_folder("devices")`, for other runs of the program. To have it measured again, delete the file.
+/// `measure` may ask for other facts. One thread measures at a time.
+double device_fact(const std::string& name, const std::function<double()>& measure);
+
+/// The median of `rounds` measurements of each of two ways to do the same work, in turn, so that what else
+/// the machine does slows both alike. Each way queues its work `times` times; it is repeated more often until
+/// the first one takes a millisecond. Seconds for one time.
+struct TwoTimes {
+  double one = 0.0, other = 0.0;
+};
+TwoTimes time_in_turn(const std::function<void(int times)>& one, const std::function<void(int times)>& other);
+
+}  // namespace clothlab::gl

@@ -1,0 +1,65 @@
+#include "server/gl/reads.h"
+
+#include <glad/gl.h>
+
+#include <cstdlib>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/gl/buffer.h"
+#include "server/gl/device_fact.h"
+#include "server/gl/program.h"
+#include "shaders/slots.h"
+
+namespace clothlab::gl {
+
+namespace {
+
+constexpr int side = 256, group_size = 128;
+/// Storage reads must be so much faster to be chosen: a kernel with many of them still reads textures, as
+/// devices bind fewer storage buffers.
+constexpr double clearly = 0.9;
+
+double measure() {
+  const Defines defines{{"GROUP_SIZE", std::to_string(group_size)}, {"SIDE", std::to_string(side)}};
+  const Result<Program> textures = Program::load({"reads.comp"}, defines, Reads::textures),
+                        storage = Program::load({"reads.comp"}, defines, Reads::storage);
+  if (!textures || !storage) return 1.0;
+  const TextureBuffer places(Buffer(std::vector<float>(side * side * 4, 1.0f)), GL_RGBA32F);
+  const Buffer sums(side * side * 4 * sizeof(float));
+  sums.bind_storage(slot_next_position);
+  places.texture.bind(unit_position);
+  places.buffer.bind_storage(number_of_slots + unit_position);
+  const auto run = [](const Program& program) {
+    return [&program](int times) {
+      program.use();
+      for (int i = 0; i < times; ++i) {
+        glDispatchCompute(side * side / group_size, 1, 1);
+        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+      }
+    };
+  };
+  const TwoTimes times = time_in_turn(run(*textures), run(*storage));
+  return times.other / times.one;
+}
+
+}  // namespace
+
+double storage_over_texture_reads() {
+  return device_fact("storage reads over texture reads", measure);
+}
+
+Reads fastest_reads() {
+  static const Reads fastest = [] {
+    const char* asked = std::getenv("CLOTHLAB_READS");
+    const bool storage =
+        asked ? std::string_view(asked) == "storage" : storage_over_texture_reads() < clearly;
+    GLint bindings = 0;
+    glGetIntegerv(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, &bindings);
+    return storage && bindings >= number_of_slots + number_of_units ? Reads::storage : Reads::textures;
+  }();
+  return fastest;
+}
+
+}  // namespace clothlab::gl
