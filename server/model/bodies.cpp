@@ -1,6 +1,7 @@
 #include "server/model/bodies.h"
 
 #include <algorithm>
+#include <array>
 #include <glm/common.hpp>
 #include <limits>
 #include <numeric>
@@ -89,24 +90,58 @@ std::vector<Bounds> boxes_of(const std::vector<std::array<dvec3, 3>>& triangles)
   return boxes;
 }
 
+void add_body(Model& model, const scene::Collider& collider, Index number, const std::vector<dvec3>& vertices,
+              const std::vector<Corners>& triangles) {
+  const Index first = model.body_vertex_count();
+  model.bodies.push_back({number, first, static_cast<Index>(vertices.size()),
+                          static_cast<Index>(model.body_triangles.size()),
+                          static_cast<Index>(triangles.size()), collider.motion,
+                          std::holds_alternative<scene::Box>(collider.shape)});
+  const Index from = model.vertex_count() + first;
+  for (const auto& [a, b, c] : triangles) model.body_triangles.push_back({a + from, b + from, c + from});
+  model.body_position.insert(model.body_position.end(), vertices.begin(), vertices.end());
+  model.vertex_body.resize(model.body_position.size(), static_cast<Index>(model.bodies.size() - 1));
+}
+
+/// Corner k of a box is on the far side of axis i where bit i of k is set.
+std::vector<dvec3> corners_of(const scene::Box& box) {
+  std::vector<dvec3> corners;
+  for (int k = 0; k < 8; ++k)
+    corners.push_back(box.center +
+                      box.axes * (box.half * dvec3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1)));
+  return corners;
+}
+
+/// Two of each face, counter-clockwise seen from outside.
+constexpr std::array<Corners, 12> box_triangles{{{0, 4, 6},
+                                                 {0, 6, 2},
+                                                 {1, 3, 7},
+                                                 {1, 7, 5},
+                                                 {0, 1, 5},
+                                                 {0, 5, 4},
+                                                 {2, 6, 7},
+                                                 {2, 7, 3},
+                                                 {0, 2, 3},
+                                                 {0, 3, 1},
+                                                 {4, 5, 7},
+                                                 {4, 7, 6}}};
+
 }  // namespace
+
+bool has_edges(const scene::Scene& scene, const scene::Collider& collider) {
+  return scene.collides(scene::ContactKind::surface) && std::holds_alternative<scene::Box>(collider.shape) &&
+         std::holds_alternative<std::monostate>(collider.motion);
+}
 
 void add_bodies(Model& model, const scene::Scene& scene) {
   for (Index i = 0; i < scene.colliders.size(); ++i) {
     const scene::Collider& collider = scene.colliders[i];
-    const auto* body = std::get_if<scene::Body>(&collider.shape);
-    if (!body) continue;
-    const scene::TriangleMesh& mesh = *body->mesh;
-    const Index first = model.body_vertex_count();
-    model.bodies.push_back({i, first, static_cast<Index>(mesh.vertices.size()),
-                            static_cast<Index>(model.body_triangles.size()),
-                            static_cast<Index>(mesh.triangles.size()), collider.motion});
-    const Index from = model.vertex_count() + first;
-    for (const auto& [a, b, c] : mesh.triangles)
-      model.body_triangles.push_back({a + from, b + from, c + from});
-    const std::vector<dvec3> position = scene::placed(body->transform, mesh.vertices);
-    model.body_position.insert(model.body_position.end(), position.begin(), position.end());
-    model.vertex_body.resize(model.body_position.size(), static_cast<Index>(model.bodies.size() - 1));
+    if (const auto* body = std::get_if<scene::Body>(&collider.shape))
+      add_body(model, collider, i, scene::placed(body->transform, body->mesh->vertices),
+               body->mesh->triangles);
+    else if (has_edges(scene, collider))
+      add_body(model, collider, i, corners_of(std::get<scene::Box>(collider.shape)),
+               {box_triangles.begin(), box_triangles.end()});
   }
 }
 

@@ -8,6 +8,12 @@
 
 namespace clothlab::model {
 
+/// True for a box at rest among surfaces: beside the solid that keeps vertices out, its corners and edges
+/// keep apart from triangles and edges of cloth, which would else cut its corners and catch there. (Those of
+/// a box that moves would be driven through the cloth: it keeps vertices farther away instead,
+/// `contact_margin`.)
+bool has_edges(const scene::Scene& scene, const scene::Collider& collider);
+
 /// Adds the scene's bodies to a model that has all its cloths.
 void add_bodies(Model& model, const scene::Scene& scene);
 

@@ -47,8 +47,9 @@ Place place_of(std::uint32_t vertex, const Model& model, const scene::Scene& sce
   const std::uint32_t of_body = vertex - model.vertex_count();
   const BodyRange& body = model.bodies[model.vertex_body[of_body]];
   const scene::Collider& collider = scene.colliders[body.collider];
-  const scene::TriangleMesh& mesh = *std::get<scene::Body>(collider.shape).mesh;
-  return {true, body.collider, collider.name, number_in_document(mesh, of_body - body.first_vertex)};
+  const std::uint32_t number = of_body - body.first_vertex;
+  const auto* of_mesh = std::get_if<scene::Body>(&collider.shape);  // else a corner of a box
+  return {true, body.collider, collider.name, of_mesh ? number_in_document(*of_mesh->mesh, number) : number};
 }
 
 /// E.g. `/cloths/0 ("left")`.
@@ -135,7 +136,7 @@ std::string list_of(const Crossings& found, const Model& model, const scene::Sce
 
 Status check_cloths(const Model& model, const scene::Scene& scene, bool at_present,
                     const std::vector<dvec3>& x, const std::string& remedy) {
-  const Crossings found = find_crossings(surfaces_of(model, false), x, at_start);
+  const Crossings found = find_crossings(surfaces_of(model, Bodies::none), x, at_start);
   if (found.count == 0) return ok();
   return Error{"/self_collision/kind",
                std::string("\"surface\", but ") + (at_present ? "the cloth at present" : "the start") +
@@ -146,7 +147,7 @@ Status check_cloths(const Model& model, const scene::Scene& scene, bool at_prese
 
 /// Error: cloth at the start goes through a body. `x`: of all cloths and bodies.
 Status check_bodies(const Model& model, const scene::Scene& scene, const std::vector<dvec3>& x) {
-  Surfaces surfaces = surfaces_of(model);
+  Surfaces surfaces = surfaces_of(model, Bodies::meshes);
   surfaces.among_cloths = false;
   const Crossings found = find_crossings(surfaces, x, at_start);
   if (found.count == 0) return ok();
@@ -183,6 +184,7 @@ Status check_inside(const Model& model, const scene::Scene& scene, const std::ve
   const std::vector<std::uint32_t> pieces = one_of_each_piece(model);
   const std::vector<dvec3> of_bodies(x.begin() + model.vertex_count(), x.end());
   for (std::uint32_t body = 0; body < model.bodies.size(); ++body) {
+    if (model.bodies[body].box) continue;
     const BodyInside inside(model, body, of_bodies);
     for (const std::uint32_t vertex : pieces) {
       if (!inside.contains(x[vertex])) continue;
@@ -210,7 +212,10 @@ std::string in_words(const Crossing& crossing, const Model& model, const scene::
 
 Status check_start(const Model& model, const scene::Scene& scene) {
   const bool surfaces = scene.collides(scene::ContactKind::surface);
-  if (!surfaces && model.bodies.empty()) return ok();
+  // Boxes push cloth out that starts in them.
+  const bool has_meshes =
+      std::any_of(model.bodies.begin(), model.bodies.end(), [](const BodyRange& body) { return !body.box; });
+  if (!surfaces && !has_meshes) return ok();
   std::vector<dvec3> x = as_floats(model.start_position);
   if (surfaces)
     if (Status apart = check_cloths(
@@ -218,7 +223,7 @@ Status check_start(const Model& model, const scene::Scene& scene) {
             "cloths moved apart (transform, mesh, start) until none touches another one or itself");
         !apart)
       return apart;
-  if (model.bodies.empty()) return ok();
+  if (!has_meshes) return ok();
   const std::vector<dvec3> bodies = as_floats(body_positions(model, 0.0));
   x.insert(x.end(), bodies.begin(), bodies.end());
   if (Status apart = check_bodies(model, scene, x); !apart) return apart;

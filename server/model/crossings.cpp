@@ -78,11 +78,13 @@ bool meets(const dvec3& p, const dvec3& q, const dvec3& a, const dvec3& b, const
   return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
 }
 
-Surfaces surfaces_of(const Model& model, bool bodies) {
+Surfaces surfaces_of(const Model& model, Bodies bodies) {
   Surfaces surfaces{model.triangles, {}, model.vertex_count()};
-  if (bodies)
-    surfaces.triangles.insert(surfaces.triangles.end(), model.body_triangles.begin(),
-                              model.body_triangles.end());
+  for (const BodyRange& body : model.bodies) {
+    if (bodies == Bodies::none || (body.box && bodies == Bodies::meshes)) continue;
+    const auto first = model.body_triangles.begin() + body.first_triangle;
+    surfaces.triangles.insert(surfaces.triangles.end(), first, first + body.triangle_count);
+  }
   for (const auto& [a, b, c] : surfaces.triangles)
     for (const auto& [p, q] : {std::array{a, b}, {b, c}, {c, a}})
       surfaces.edges.push_back({std::min(p, q), std::max(p, q)});

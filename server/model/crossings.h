@@ -27,8 +27,9 @@ struct Surfaces {
   bool among_cloths = true;  ///< false: cloths are compared with bodies alone
 };
 
-/// The surfaces of all cloths and, unless `bodies` is false, of all bodies.
-Surfaces surfaces_of(const Model& model, bool bodies = true);
+/// The surfaces of all cloths, and of which bodies.
+enum class Bodies { none, meshes, all };
+Surfaces surfaces_of(const Model& model, Bodies bodies = Bodies::all);
 
 /// An edge that meets a triangle with which it shares no vertex.
 struct Crossing {

@@ -27,12 +27,14 @@ struct ClothRange {
   double mean_edge_length = 0;  ///< at rest, over the edges of all triangles [m]
 };
 
-/// A collider that is a body of triangles, and its part of the arrays of all bodies.
+/// A collider that is a body of triangles, or a box whose edges meet those of cloth (has_edges), and its part
+/// of the arrays of all bodies.
 struct BodyRange {
   std::uint32_t collider = 0;                            ///< its place in the scene's list
   std::uint32_t first_vertex = 0, vertex_count = 0;      ///< of body_position
   std::uint32_t first_triangle = 0, triangle_count = 0;  ///< of body_triangles
   scene::Motion motion;
+  bool box = false;
 };
 
 inline constexpr std::int32_t not_pinned = -1;

@@ -6,6 +6,7 @@
 #include <glm/vec4.hpp>
 #include <variant>
 
+#include "server/model/bodies.h"
 #include "server/model/motion.h"
 #include "server/model/thickness.h"
 #include "server/scene/solid.h"
@@ -19,8 +20,9 @@ double contact_margin(const scene::Scene& scene, const model::Model& model) {
 
 double contact_margin(const scene::Scene& scene, const model::Model& model, const scene::Collider& collider) {
   const double margin = contact_margin(scene, model);
-  const bool may_cut =
-      scene.collides(scene::ContactKind::surface) && std::holds_alternative<scene::Box>(collider.shape);
+  const bool may_cut = scene.collides(scene::ContactKind::surface) &&
+                       std::holds_alternative<scene::Box>(collider.shape) &&
+                       !model::has_edges(scene, collider);
   return may_cut ? std::max(margin, model::coarsest_edge(model) / std::sqrt(8.0)) : margin;
 }
 

@@ -14,8 +14,9 @@ namespace clothlab::sim {
 double contact_margin(const scene::Scene& scene, const model::Model& model);
 
 /// The same of one collider. Under the self-collision kind `surface`, whose thickness may be much less than
-/// an edge, a box keeps vertices so far away that an edge between two of them does not cut its corners: an
-/// edge of length l around a right angle needs l / sqrt(8). Else the cloth would catch on them.
+/// an edge, a box that moves keeps vertices so far away that an edge between two of them does not cut its
+/// corners: an edge of length l around a right angle needs l / sqrt(8). Else the cloth would catch on them.
+/// (A box at rest keeps its corners and edges apart from the cloth instead: model::has_edges.)
 double contact_margin(const scene::Scene& scene, const model::Model& model, const scene::Collider& collider);
 
 /// Sets the uniform `solids` of `program`, which must have been compiled for this scene's solids

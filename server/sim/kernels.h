@@ -28,6 +28,9 @@ struct Kernels {
   /// Makes the kernels of `scene`; nothing is carried over from an earlier step.
   static Result<Kernels> create(const scene::Scene& scene);
 
+  /// Places that the state's buffers need behind the cloths' vertices.
+  std::uint32_t body_places() const { return surface_contact ? surface_contact->extra_places() : 0; }
+
   const model::Model& scene_model() const { return as_in_scene ? *as_in_scene : model; }
 
   /// Takes over the numbers of a scene with the same structure.

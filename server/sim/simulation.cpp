@@ -60,8 +60,7 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const scene::Scene& scene
   self.scene = scene;
   self.topology_revision = topology_revision;
   self.rest = rest_positions(self.kernels.model);
-  self.state = StateBuffers(self.kernels.model, self.kernels.motions,
-                            self.kernels.surface_contact ? self.kernels.surface_contact->extra_places() : 0);
+  self.state = StateBuffers(self.kernels.model, self.kernels.motions, self.kernels.body_places());
   self.last_good = LastGood(self.kernels.model.vertex_count());
   self.keep_start();
   return made;
@@ -83,7 +82,7 @@ Result<ChangeDepth> Simulation::change(const scene::Scene& scene) {
       if (Status apart = model::check_present(model(), scene, read_state().position); !apart)
         return apart.error();
     self.give_up_work();
-    self.kernels = std::move(*kernels);
+    self.take_kernels(std::move(*kernels));
   } else if (depth == ChangeDepth::uniform) {
     self.give_up_work();
     if (Status updated = self.kernels.update(scene); !updated) return updated.error();
@@ -164,7 +163,7 @@ Status Simulation::go_to_kept(std::uint64_t step, const scene::Scene& scene) {
   if (kernels->self_collision && kernels->plan.neighbour_slots != then.neighbour_slots)
     if (Status grown = kernels->grow(scene, then.neighbour_slots); !grown) return grown.error();
   self.give_up_work();
-  self.kernels = std::move(*kernels);
+  self.take_kernels(std::move(*kernels));
   self.scene = scene;
   self.settled = then.settled;
   self.kernels.motions.settle(self.settled);

@@ -192,6 +192,11 @@ struct Simulation::Implementation {
     kernels.motions.settle(settled);
   }
 
+  void take_kernels(Kernels next) {
+    kernels = std::move(next);
+    state.make_room(kernels.body_places());
+  }
+
   /// Takes over a changed scene; positions, velocities and time stay as they are.
   void adopt(const scene::Scene& next) {
     if (next.solver.dt != scene.solver.dt) {

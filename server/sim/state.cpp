@@ -47,6 +47,16 @@ StateBuffers::StateBuffers(const model::Model& model, const MotionTable& motions
   reset(model, motions);
 }
 
+void StateBuffers::make_room(std::uint32_t extra) {
+  const std::size_t wanted = (vertex_count_ + extra) * sizeof(glm::vec4);
+  if (wanted <= position().buffer.bytes()) return;
+  for (gl::TextureBuffer* buffer : {&position_[0], &position_[1], &velocity_[0], &velocity_[1]}) {
+    gl::TextureBuffer larger{gl::Buffer(wanted), GL_RGBA32F};
+    larger.buffer.copy_from(buffer->buffer);
+    *buffer = std::move(larger);
+  }
+}
+
 void StateBuffers::show() {
   shown_ = current_;
   is_aside_ = false;

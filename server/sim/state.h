@@ -16,6 +16,8 @@ class StateBuffers {
   /// The state at the start: the model's start positions, no velocity. The buffers have room for `extra`
   /// places behind its vertices, which are no part of the state (surface_bodies.h).
   StateBuffers(const model::Model& model, const MotionTable& motions, std::uint32_t extra = 0);
+  /// Makes room for so many, if there is none yet: bodies may come while the simulation runs.
+  void make_room(std::uint32_t extra);
 
   /// The present copy, which a pass reads. `swap` makes the other copy the present one.
   const gl::TextureBuffer& position() const { return position_[current_]; }

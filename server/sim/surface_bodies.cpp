@@ -23,6 +23,8 @@ Result<SurfaceBodies> SurfaceBodies::create(const model::Model& model, const Pla
 
 void SurfaceBodies::set_parameters(const scene::Scene& scene, const model::Model& model,
                                    const MotionTable& motions) {
+  // Boxes may be put elsewhere as the simulation runs.
+  for (std::uint32_t i = 0; i < model.body_vertex_count(); ++i) places_[i].home = model.body_position[i];
   std::vector<glm::vec4> words;
   moves_ = false;
   for (const BodyPlace& place : places_) {
@@ -31,7 +33,8 @@ void SurfaceBodies::set_parameters(const scene::Scene& scene, const model::Model
     const int motion = motions.index(body.motion);
     moves_ = moves_ || motion >= 0;
     words.emplace_back(glm::vec3(place.home), static_cast<float>(motion));
-    words.emplace_back(collider.friction, collider.restitution, 0.0, 0.0);
+    const int first_of_box = body.box ? static_cast<int>(model.vertex_count() + body.first_vertex) : -1;
+    words.emplace_back(collider.friction, collider.restitution, first_of_box, 0.0);
   }
   if (words.empty()) words.resize(1);
   buffer_ = {gl::Buffer(words), GL_RGBA32F};

@@ -22,7 +22,7 @@ class SurfaceBodies {
   static Result<SurfaceBodies> create(const model::Model& model, const Plan& plan,
                                       const SurfaceTriangles& surface);
 
-  /// Takes over friction, restitution and motions. `invalidate` must follow.
+  /// Takes over places, friction, restitution and motions. `invalidate` must follow.
   void set_parameters(const scene::Scene& scene, const model::Model& model, const MotionTable& motions);
 
   /// Places added to the state's vertices.
@@ -36,7 +36,7 @@ class SurfaceBodies {
   /// motion table, or at its end.
   void place_at_start(const StateBuffers& state, int row) const;
   void place_at_end(const StateBuffers& state, int row);
-  /// For kernels that ask for the friction of bodies.
+  /// For kernels that ask for the friction of bodies, or what is inside boxes.
   void bind() const { buffer_.bind(unit_body_places); }
 
  private:

@@ -136,6 +136,7 @@ void SurfaceContact::invalidate() {
 
 Work SurfaceContact::update_pairs(const StateBuffers& state, int row) {
   bodies_.place_at_start(state, row);
+  bodies_.bind();
   co_await pairs_.update(state);
   if (keeps_start_ || pieces_ > 1) start_.buffer.copy_from(state.position().buffer);
 }

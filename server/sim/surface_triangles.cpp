@@ -127,6 +127,19 @@ void add_body(SurfaceTriangles& made, std::vector<Corners>& triangles, const mod
   });
 }
 
+/// A box does not turn, and its corners are bounds enough.
+void add_box(SurfaceTriangles& made, std::vector<Corners>& triangles, const model::Model& model,
+             std::uint32_t body) {
+  const std::uint32_t first = model.vertex_count() + model.bodies[body].first_vertex;
+  std::vector<std::uint32_t>& block = made.blocks.emplace_back();
+  for (std::uint32_t corner = 0; corner < 8; ++corner) {
+    block.push_back(first + corner);
+    for (const std::uint32_t axis : {1u, 2u, 4u})
+      if ((corner & axis) == 0)
+        triangles.push_back({first + corner, first + corner + axis, first + corner + axis});
+  }
+}
+
 std::vector<std::array<std::uint32_t, 4>> with_owned_parts(const std::vector<Corners>& triangles,
                                                            std::uint32_t vertex_count) {
   std::vector<std::array<std::uint32_t, 4>> list;
@@ -138,7 +151,7 @@ std::vector<std::array<std::uint32_t, 4>> with_owned_parts(const std::vector<Cor
       const std::uint32_t a = corners[k], b = corners[(k + 1) % 3];
       tags[k] = a | (vertex_owned[a] ? 0 : owns_vertex_bit);
       vertex_owned[a] = true;
-      if (edges.emplace(std::min(a, b), std::max(a, b)).second) tags[k] |= owns_edge_bit;
+      if (a != b && edges.emplace(std::min(a, b), std::max(a, b)).second) tags[k] |= owns_edge_bit;
     }
   }
   return list;
@@ -249,8 +262,12 @@ SurfaceTriangles surface_triangles(const model::Model& model, std::uint32_t most
     place.push_back(model.body_position[i]);
     made.body_places.push_back({model.body_position[i], model.vertex_body[i]});
   }
-  for (std::uint32_t body = 0; body < bodies; ++body)
-    add_body(made, triangles, model, place, body, blocks_of_body);
+  for (std::uint32_t body = 0; body < bodies; ++body) {
+    if (model.bodies[body].box)
+      add_box(made, triangles, model, body);
+    else
+      add_body(made, triangles, model, place, body, blocks_of_body);
+  }
   made.triangles = with_owned_parts(triangles, model.vertex_count() + model.body_vertex_count());
   made.rest_places = places_at_rest(triangles, model);
   NeighbourPairs neighbours(made);

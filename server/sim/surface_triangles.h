@@ -21,7 +21,7 @@ inline constexpr std::uint32_t bundle_size = 4;
 /// plane, or less, as a share of their distance.
 inline constexpr double out_of_plane = 0.35;
 
-/// A vertex of a body, or a corner of the box about a block of its triangles. The state's buffers hold them
+/// A vertex of a body, or a corner of the bounds of a block of its triangles. The state's buffers hold them
 /// after the cloths' vertices, in this order; shaders/surface/bodies.comp places them.
 struct BodyPlace {
   model::dvec3 home;       ///< at time 0 [m]
@@ -29,7 +29,8 @@ struct BodyPlace {
 };
 
 /// Triangles of cloths, and after them those of bodies. Each `leaf_size` in turn are a leaf, each
-/// `bundle_size` a bundle.
+/// `bundle_size` a bundle. Of a box each edge is a triangle without area, from a corner to the other one
+/// twice: what cloth meets of a box is its corners and edges, as a solid keeps vertices out of it.
 struct SurfaceTriangles {
   /// The corners of each triangle: a vertex, with owns_vertex_bit and owns_edge_bit of
   /// shaders/surface/triangles.glsl where the triangle owns it, or the edge from it to the next corner; and
@@ -38,7 +39,7 @@ struct SurfaceTriangles {
   std::uint32_t cloth_triangle_count = 0;
   std::vector<BodyPlace> body_places;
   /// The vertices of each block (surface_blocks.h): of triangles of cloths, and then, for those of bodies,
-  /// which are rigid, the corners of their boxes. The first three, far apart, show how the block turns.
+  /// which are rigid, the corners of their bounds. The first three, far apart, show how the block turns.
   std::vector<std::vector<std::uint32_t>> blocks;
   std::uint32_t cloth_block_count = 0;
   /// For each triangle at rest the middle of its box, and its cloth, or -1 for a body's; its normal, and its

@@ -1,7 +1,7 @@
 // Places the vertices of bodies, behind those of cloths, where their motions have them at one time of a step.
 #include "surface.glsl"
 #include "../methods/motions.glsl"
-READ_VEC4(body_places, unit_body_places);  // home, motion or -1; friction, restitution
+READ_VEC4(body_places, unit_body_places);  // home, motion or -1; friction, restitution, a box's corner
 layout(std430, binding = slot_next_position) writeonly buffer Position { vec4 position[]; };
 layout(std430, binding = slot_next_velocity) writeonly buffer Velocity { vec4 velocity[]; };
 uniform int row;  // 0: the step's start; END_ROW: its end

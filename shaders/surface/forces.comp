@@ -5,7 +5,7 @@
 READ_VEC4(position, unit_position);  // w: inverse mass [1/kg]
 READ_VEC4(velocity, unit_velocity);
 READ_VEC4(step_start, unit_step_start);
-READ_VEC4(body_places, unit_body_places);  // home, motion; friction, restitution
+READ_VEC4(body_places, unit_body_places);  // home, motion; friction, restitution, a box's corner
 READ_UINT(touching_pairs, unit_chosen_pairs);
 READ_UVEC2(friction_before, unit_friction_left);  // of each of touching_pairs
 layout(std430, binding = slot_friction_left) writeonly buffer Left { vec2 friction_left[]; };

@@ -1,8 +1,27 @@
 // Pair search, 8 of 10: the candidates that are near each other, not their boxes alone.
 #include "surface.glsl"
 READ_VEC4(position, unit_position);
+READ_VEC4(body_places, unit_body_places);  // home, motion; friction, restitution, a box's corner
 READ_UVEC4(candidate_list, unit_near_pairs);
 layout(std430, binding = slot_surface_pairs) writeonly buffer Pairs { uvec4 list[]; };
+
+/// True if the part of a pair that is cloth is nearest to the other one at a place within that one's box: where a box
+/// was put, or where cloth started. Such a pair would keep the cloth in; vertices are pushed out without it. `c`: the
+/// corners' places less `origin`.
+bool within_box(uvec4 corner, Corners c, vec3 origin, Separation apart) {
+  int body = int(max(corner.x, corner.w)) - cloth_vertex_count;
+  int first = body < 0 ? -1 : int(FETCH(body_places, 2 * body + 1).z);
+  vec3 nearest = vec3(0.0), from = FETCH(position, max(first, 0)).xyz - origin;
+  for (int k = 0; k < 4; ++k)
+    if (int(corner[k]) < cloth_vertex_count) nearest += abs(apart.weight[k]) * c.x[k];
+  bool within = first >= 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    vec3 side = FETCH(position, max(first, 0) + (1 << axis)).xyz - origin - from;
+    float along = dot(nearest - from, side);
+    within = within && along > 0.0 && along < dot(side, side);
+  }
+  return within;
+}
 
 void main() {
   uint item = gl_GlobalInvocationID.x;
@@ -13,7 +32,8 @@ void main() {
   Corners c;
   for (int k = 0; k < 4; ++k) c.x[k] = FETCH(position, corner[k]).xyz - origin;
   float reach = reach_of(flat_at_rest ? next_flat_query() : next_query());
-  if (separation(edges, c).gap < reach) {
+  Separation apart = separation(edges, c);
+  if (apart.gap < reach && !within_box(corner, c, origin, apart)) {
     uint slot = atomicAdd(control.pairs, 1u);
     if (slot < pair_capacity) {
       if (slot % uint(GROUP_SIZE) == 0u) {

@@ -239,11 +239,12 @@ TEST_CASE("bodies cross cloths, not each other") {
                              {0.31, 0.5, -0.4}})
     x.push_back(place);
   model.body_triangles = {{first, first + 1, first + 2}, {first + 3, first + 4, first + 5}};
+  model.bodies = {{.triangle_count = 2}};
   Surfaces surfaces = model::surfaces_of(model);
   const model::Crossings found = model::find_crossings(surfaces, x, {1000});
   CHECK(found.count > 4);
   for (const model::Crossing& each : found.first) CHECK((each.edge[0] < first) != (each.triangle[0] < first));
-  CHECK(model::find_crossings(model::surfaces_of(model, false), x).count == 0);
+  CHECK(model::find_crossings(model::surfaces_of(model, Bodies::none), x).count == 0);
 
   // Of two sheets that cross, one is a body: cloths can be left out among themselves.
   model::Model both;
