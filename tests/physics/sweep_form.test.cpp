@@ -1,5 +1,6 @@
 // Which of the two forms of a sweep a cloth gets (server/sim/sweep_form.h).
-#include <catch2/catch_test_macros.hpp>
+#include <catch2/catch.hpp>
+
 #include <cstdlib>
 
 #include "server/sim/sweep_form.h"

@@ -244,7 +244,7 @@ TEST_CASE("bodies cross cloths, not each other") {
   const model::Crossings found = model::find_crossings(surfaces, x, {1000});
   CHECK(found.count > 4);
   for (const model::Crossing& each : found.first) CHECK((each.edge[0] < first) != (each.triangle[0] < first));
-  CHECK(model::find_crossings(model::surfaces_of(model, Bodies::none), x).count == 0);
+  CHECK(model::find_crossings(model::surfaces_of(model, model::Bodies::none), x).count == 0);
 
   // Of two sheets that cross, one is a body: cloths can be left out among themselves.
   model::Model both;
