@@ -7,19 +7,13 @@
 READ_UVEC2(triangle_pair_list, unit_triangle_pairs);
 layout(std430, binding = slot_near_pairs) writeonly buffer Candidates { uvec4 list[]; };  // pairs
 
-/// An edge of a box has the form of a triangle: vertices of cloth are none of its matter.
-uint vertices_that_meet(uvec3 triangle) {
-  return (triangle.y & number_mask) == (triangle.z & number_mask) ? 0u : 7u;
-}
-
 /// The pairs that two triangles own, as bits: 0 to 2 a vertex of the first and the second, 3 to 5 a vertex of the
 /// second and the first, 6 to 14 an edge of each.
 uint owned_pairs(uvec3 one, uvec3 other) {
   uvec3 vertex = one >> 31u, other_vertex = other >> 31u, edge = one >> 30u & 1u, other_edge = other >> 30u & 1u;
   uint edges = other_edge.x | other_edge.y << 1u | other_edge.z << 2u;
-  uint vertices = (vertex.x | vertex.y << 1u | vertex.z << 2u) & vertices_that_meet(other);
-  uint other_vertices = (other_vertex.x | other_vertex.y << 1u | other_vertex.z << 2u) & vertices_that_meet(one);
-  return vertices | other_vertices << 3u | edges * (edge.x << 6u | edge.y << 9u | edge.z << 12u);
+  return vertex.x | vertex.y << 1u | vertex.z << 2u | other_vertex.x << 3u | other_vertex.y << 4u |
+         other_vertex.z << 5u | edges * (edge.x << 6u | edge.y << 9u | edge.z << 12u);
 }
 
 /// The pairs whose boxes are near, as the same bits. Loops of constant length over constant numbers: the places stay in
