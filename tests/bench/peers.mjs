@@ -9,16 +9,15 @@
 // round of a scene takes a quarter of an hour and more, most of it Bullet's.
 // Crossings are counted in the state at every tenth of a second, exactly, in double precision, by the search that
 // `clothlab run --verify` uses; of clothlab's own runs twice, by `--verify` and from the meshes it wrote.
-import { execFileSync, spawnSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { cpus, loadavg, tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { parseArgs } from "node:util";
 import { document, every, peer, scenes } from "./peers/scenes.mjs";
+import { buildBullet, bulletVersion, clothlab, median, readMesh, run, threads } from "./peers/shared.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const program = process.env.CLOTHLAB ?? join(here, "../../build/release/clothlab");
 const { values, positionals } = parseArgs({
   options: {
     sides: { type: "string", default: "25" },
@@ -31,36 +30,12 @@ const { values, positionals } = parseArgs({
   allowPositionals: true,
 });
 const machine = positionals[0] ?? `${cpus().length}-cores`;
-const threads = process.env.LP_NUM_THREADS ?? "0";
-
-if (spawnSync("pkg-config", ["--exists", "bullet"]).status !== 0) {
-  console.error("Bullet is not installed: apt-get install libbullet-dev");
-  process.exit(1);
-}
-const peers = join(here, "../../build/peers");
-execFileSync("cmake", ["-S", join(here, "peers"), "-B", peers, "-DCMAKE_BUILD_TYPE=Release"], { stdio: "ignore" });
-execFileSync("cmake", ["--build", peers], { stdio: "ignore" });
+const peers = buildBullet();
 
 const load = loadavg()[0];
 const folder = mkdtempSync(join(tmpdir(), "clothlab-peers-"));
 const readJson = (path) => JSON.parse(readFileSync(path, "utf8"));
 const lines = (text) => text.trim().split("\n").map(JSON.parse);
-const run = (command, words) =>
-  execFileSync(command, words, {
-    encoding: "utf8",
-    maxBuffer: 1 << 28,
-    env: { ...process.env, LP_NUM_THREADS: threads },
-  });
-
-/** Vertices and triangles, counted from 0, of an .obj file. */
-function readMesh(path) {
-  const text = readFileSync(path, "utf8");
-  const rows = (pattern) => [...text.matchAll(pattern)].map((found) => found.slice(1).map(Number));
-  return {
-    vertices: rows(/^v (\S+) (\S+) (\S+)/gm),
-    triangles: rows(/^f (\d+)\S* (\d+)\S* (\d+)/gm).map((corners) => corners.map((corner) => corner - 1)),
-  };
-}
 
 /** The worst of all samples in `frames`, and the last one's crossings. A frame that is not finite is null. */
 function judge(scene, frames) {
@@ -82,7 +57,7 @@ function describe(name, side, place) {
   const scene = document(name, side, "surface", values.method, Number(values.iterations));
   const [written, start] = ["scene.json", "start.obj"].map((file) => join(place, file));
   writeFileSync(written, JSON.stringify({ ...scene, name: "start" }));
-  run(program, ["run", written, "--time", String(scene.solver.dt), "--every", "1", "--out", start]);
+  run(clothlab, ["run", written, "--time", String(scene.solver.dt), "--every", "1", "--out", start]);
   const mesh = readMesh(start.replace(".obj", "-0000.obj"));
   writeFileSync(written, JSON.stringify(peer(scene, mesh)));
   return written;
@@ -92,7 +67,7 @@ function runClothlab(kind, name, side, scene, frames) {
   const [file, report] = ["scene.json", "report.json"].map((each) => join(frames, each));
   writeFileSync(file, JSON.stringify(document(name, side, kind, values.method, Number(values.iterations))));
   const words = ["--time", String(scenes[name].seconds), "--every", String(every), "--verify"];
-  run(program, ["run", file, ...words, "--report", report, "--out", join(frames, "frame.obj")]);
+  run(clothlab, ["run", file, ...words, "--report", report, "--out", join(frames, "frame.obj")]);
   const { step_s, steps, vertices, renderer, crossings } = readJson(report);
   const found = judge(scene, frames);
   if (found.crossings_most !== crossings)
@@ -112,7 +87,6 @@ const programs = {
   "Bullet deformable": (_name, _side, ...where) => runBullet("deformable", ...where),
 };
 
-const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
 let renderer = "";
 /** All programs on one scene, in every round: what they came to is the same each time, what it cost is not. */
 function measure(name, side) {
@@ -151,7 +125,7 @@ const summary = {
   what: "clothlab beside Bullet's soft bodies: ns a vertex and step, crossings, largest stretch of an edge",
   machine,
   renderer,
-  bullet: execFileSync("pkg-config", ["--modversion", "bullet"], { encoding: "utf8" }).trim(),
+  bullet: bulletVersion(),
   cpu: cpus()[0].model,
   cores: cpus().length,
   llvmpipe_threads: Number(threads),

@@ -1,4 +1,4 @@
-// peer_bullet classic|deformable SCENE FOLDER: simulates a scene of tests/bench/peers.mjs with Bullet, writes
+// peer_bullet classic|deformable SCENE FOLDER: simulates a scene (peer.h) with Bullet, writes
 // each sample to FOLDER/frame-NNNN.obj, and prints what stepping cost, as JSON.
 #include <chrono>
 #include <cstdio>

@@ -1,6 +1,7 @@
-// Bullet's classic soft body: position-based links, one after the other, ten times a step.
+// Bullet's classic soft body: position-based links, one after the other, ten times a step unless the scene
+// says how often.
 //
-// Stiffness. A sweep moves a link by the share kLST of its error, whatever the step. Over ten sweeps a link
+// Stiffness. A sweep moves a link by the share kLST of its error, whatever the step. Over all sweeps a link
 // alone is to move as far as one step of implicit Euler would move it: by w / (w + 1 / (k dt^2)), w the sum
 // of both inverse masses. Links know no damping and no stiffness under compression other than under tension.
 //
@@ -24,12 +25,10 @@ namespace clothlab::peers {
 
 namespace {
 
-constexpr int sweeps = 10;
-
 /// The share of its error that a sweep takes from a link of stiffness `k`, over a vertex's mass [1/s^2].
-double share(double k, double inverse_masses, double dt) {
-  const double whole = inverse_masses / (inverse_masses + 1.0 / (k * dt * dt));
-  return 1.0 - std::pow(1.0 - whole, 1.0 / sweeps);
+double share(double k, double inverse_masses, const Scene& scene) {
+  const double whole = inverse_masses / (inverse_masses + 1.0 / (k * scene.dt * scene.dt));
+  return 1.0 - std::pow(1.0 - whole, 1.0 / scene.sweeps);
 }
 
 /// Links of a stiffness, and of as many fixed ends, share a material.
@@ -40,7 +39,7 @@ void set_stiffness(btSoftBody& cloth, const Scene& scene) {
     const double inverse_masses = static_cast<double>(link.m_n[0]->m_im) + link.m_n[1]->m_im;
     const double k = link.m_bbending ? scene.bend : scene.stiffness;
     if (inverse_masses == 0.0) continue;  // nothing moves it
-    const double of_sweep = share(k, inverse_masses, scene.dt);
+    const double of_sweep = share(k, inverse_masses, scene);
     btSoftBody::Material*& material = materials[of_sweep];
     if (!material) {
       material = cloth.appendMaterial();
@@ -62,15 +61,18 @@ class Classic : public World {
     info.m_sparsesdf.Reset();  // takes it over
     cloth_ = make_cloth(info, scene);
     btSoftBody::Config& settings = cloth_->m_cfg;
-    settings.piterations = sweeps;
-    settings.collisions = btSoftBody::fCollision::SDF_RS | btSoftBody::fCollision::CL_SS;
+    settings.piterations = scene.sweeps;
+    settings.collisions = btSoftBody::fCollision::SDF_RS;
     settings.kKHR = 1;  // contact with what does not move is hard, as for the deformable cloth
     settings.kDP = static_cast<btScalar>(scene.air_drag * scene.dt);
     settings.kDF = static_cast<btScalar>(scene.friction);
     // Bullet takes a mass of 1e18 for a pinned vertex of a cluster, and the cluster's inertia overflows a
     // float.
-    set_pinned_mass(*cloth_, scene, 1000);
-    cloth_->generateClusters(0);
+    if (scene.thickness > 0.0) {
+      settings.collisions |= btSoftBody::fCollision::CL_SS;
+      set_pinned_mass(*cloth_, scene, 1000);
+      cloth_->generateClusters(0);
+    }
     set_pinned_mass(*cloth_, scene, 0);
     set_stiffness(*cloth_, scene);
     world_.addSoftBody(cloth_.get());
@@ -80,8 +82,10 @@ class Classic : public World {
   void step(double time) override {
     aim(*cloth_, scene_, time);
     world_.stepSimulation(static_cast<btScalar>(scene_.dt), 0);
-    btSoftColliders::CollideCL_SS self;
-    self.ProcessSoftSoft(cloth_.get(), cloth_.get());
+    if (scene_.thickness > 0.0) {
+      btSoftColliders::CollideCL_SS self;
+      self.ProcessSoftSoft(cloth_.get(), cloth_.get());
+    }
     place(*cloth_, scene_, time);
   }
 

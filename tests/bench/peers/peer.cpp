@@ -51,14 +51,19 @@ Scene load(const std::string& path) {
   made.stiffness = material.at("structural").get<double>() / mass;
   made.bend = material.at("bend").get<double>() / mass;
   made.damping = material.at("damping").get<double>() / mass;
-  made.thickness = document.at("self_collision").at("thickness").get<double>();
-  made.friction = document.at("self_collision").at("friction").get<double>();
-  for (const json& collider : document.at("colliders")) made.colliders.push_back(collider_of(collider));
+  if (document.contains("self_collision")) {
+    made.thickness = document.at("self_collision").at("thickness").get<double>();
+    made.friction = document.at("self_collision").at("friction").get<double>();
+  }
+  for (const json& collider : document.value("colliders", json::array()))
+    made.colliders.push_back(collider_of(collider));
   made.gravity = vector_of(document.at("gravity"));
-  made.air_drag = document.at("air_drag").get<double>();
+  made.air_drag = document.value("air_drag", 0.0);
   made.dt = document.at("solver").at("dt").get<double>();
   made.steps = file.at("steps").get<int>();
   made.steps_a_sample = file.at("steps_a_sample").get<int>();
+  made.sweeps = file.value("sweeps", made.sweeps);
+  made.implicit = file.value("implicit", made.implicit);
   return made;
 }
 

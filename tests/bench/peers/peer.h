@@ -33,14 +33,17 @@ struct Scene {
   /// Of the springs, over the mass of a vertex [1/s^2], [1/s^2], [1/s]: a vertex weighs 1 for Bullet, whose
   /// solver stops at a residual that does not know the unit. The motion is the same.
   double stiffness = 0.0, bend = 0.0, damping = 0.0;
-  double thickness = 0.0, friction = 0.0;  ///< of the cloth against itself [m]
+  double thickness = 0.0, friction = 0.0;  ///< of the cloth against itself [m]; 0: it does not meet itself
   std::vector<Collider> colliders;
   dvec3 gravity{0.0};
   double air_drag = 0.0, dt = 0.0;  ///< [1/s], [s]
   int steps = 0, steps_a_sample = 1;
+  int sweeps = 10;        ///< over the links of a classic body in a step
+  bool implicit = false;  ///< the elastic forces of a deformable body
 };
 
-/// The scene of a file that tests/bench/peers.mjs wrote; throws what nlohmann::json throws.
+/// The scene of a file that tests/bench/peers.mjs or peer_accuracy.mjs wrote; throws what nlohmann::json
+/// throws.
 Scene load(const std::string& path);
 
 /// Where vertex `i` of `turned` is at `time` [m].
