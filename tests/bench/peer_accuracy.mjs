@@ -90,7 +90,7 @@ for (const program of contestants) {
 const samplesIn = (round, { samples: [ms] }) => (ms < fast_ms ? 3 : ms > slow_ms && round > 2 ? 0 : 1);
 for (let round = 0; round < Number(values.rounds); ++round)
   for (const program of contestants)
-    for (const candidate of program.candidates.flat())
+    for (const candidate of new Set(program.candidates.flat()))
       for (let sample = 0; sample < samplesIn(round, candidate); ++sample)
         candidate.samples.push(swingWith(program, candidate).ms);
 
@@ -179,7 +179,8 @@ writeFileSync(out, `${text}\n`);
 const cell = (t, r) => {
   if (!t.reached) return `not reached (${digits(1e6 * r.least_error_tried.error_m, 2)} um)`;
   const iterations = t.iterations > 1 ? `, ${t.iterations}` : "";
-  return `${digits(t.ms_a_simulated_s.median, 2)} (${digits(1000 * t.dt_s, 2)} ms${iterations})`;
+  const { median: middle, min } = t.ms_a_simulated_s;
+  return `${digits(middle, 2)} / ${digits(min, 2)} (${digits(1000 * t.dt_s, 2)} ms${iterations})`;
 };
 const percent = (value) => `${(100 * value).toFixed(2)} %`;
 const head = ["program", ...targets.map((target) => target.toExponential()), "stretch at rest"];

@@ -4,11 +4,11 @@
 // The elastic forces are explicit, unless the scene asks otherwise, and damping is implicit: Bullet's default
 // and what its own demonstration of self-collision does; so is the projection of contacts. (Its implicit
 // scheme for springs diverges in the scenes of peers.mjs as soon as some are compressed, and with pinned
-// vertices adds forces to the wrong ones. The cloth of peer_accuracy.mjs it swings well, but never to rest.) The springs' law is ours:
-// stiffness, damping along the spring and the bending springs' own stiffness are the same. The stiffness
-// of repulsion is that of the springs. Faces meet bodies where there is a ball, beside vertices: without that
-// the drape is stretched by 28 % at its end, not 7 %. With it, where a floor needs vertices alone, the fold
-// is pressed 12 cm into the floor. It may not fall asleep: the others do not.
+// vertices adds forces to the wrong ones. It swings the cloth of peer_accuracy.mjs well, but never to rest.)
+// The springs' law is ours: stiffness, damping along the spring and the bending springs' own stiffness are
+// the same. The stiffness of repulsion is that of the springs. Faces meet bodies where there is a ball,
+// beside vertices: without that the drape is stretched by 28 % at its end, not 7 %. With it, where a floor
+// needs vertices alone, the fold is pressed 12 cm into the floor. It may not fall asleep: the others do not.
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 #include <BulletSoftBody/btDeformableBodySolver.h>
 #include <BulletSoftBody/btDeformableMultiBodyConstraintSolver.h>

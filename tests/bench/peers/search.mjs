@@ -54,12 +54,18 @@ export function search({ least_steps, iterations }, measure, targets) {
   };
 
   const ladders = iterations.map(climb);
-  const candidates = targets.map((target, t) =>
-    ladders
-      .map((ladder) => first(ladder, target))
-      .filter((found) => found && found.ms <= hopeless * least[t])
-      .map(({ steps, iterations: count, error }) => ({ steps, iterations: count, error, samples: [] })),
-  );
+  // A setting that is the first for several targets is one candidate.
+  const known = new Map();
+  const candidate = ({ steps, iterations: count, error }) => {
+    const key = `${steps} ${count}`;
+    if (!known.has(key)) known.set(key, { steps, iterations: count, error, samples: [] });
+    return known.get(key);
+  };
+  const candidates = targets.map((target) => {
+    const found = ladders.map((ladder) => first(ladder, target)).filter(Boolean);
+    const most = hopeless * Math.min(...found.map(({ ms }) => ms));
+    return found.filter(({ ms }) => ms <= most).map(candidate);
+  });
   const best = runs.reduce((a, b) => (b.error < a.error ? b : a));
   return { ladders, candidates, best };
 }
