@@ -12,12 +12,12 @@ namespace clothlab::gl {
 /// `measure` may ask for other facts. One thread measures at a time.
 double device_fact(const std::string& name, const std::function<double()>& measure);
 
-/// The median of `rounds` measurements of each of two ways to do the same work, in turn, so that what else
-/// the machine does slows both alike. Each way queues its work `times` times; it is repeated more often until
-/// the first one takes a millisecond. Seconds for one time.
+/// What two ways to do the same work take [s]: medians of several measurements of both in turn, so that what
+/// else the machine does slows both alike.
 struct TwoTimes {
   double one = 0.0, other = 0.0;
 };
+/// `one` and `other` queue their work `times` times: as often as the first one takes a millisecond for.
 TwoTimes time_in_turn(const std::function<void(int times)>& one, const std::function<void(int times)>& other);
 
 }  // namespace clothlab::gl

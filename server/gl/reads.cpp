@@ -2,7 +2,9 @@
 
 #include <glad/gl.h>
 
+#include <atomic>
 #include <cstdlib>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -51,14 +53,17 @@ double storage_over_texture_reads() {
 }
 
 Reads fastest_reads() {
-  static const Reads fastest = [] {
-    const char* asked = std::getenv("CLOTHLAB_READS");
-    const bool storage =
-        asked ? std::string_view(asked) == "storage" : storage_over_texture_reads() < clearly;
-    GLint bindings = 0;
-    glGetIntegerv(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, &bindings);
-    return storage && bindings >= number_of_slots + number_of_units ? Reads::storage : Reads::textures;
-  }();
+  // No static variable that waits until another thread has set it: that one may wait for this one, which
+  // measures something else.
+  static std::atomic<std::optional<Reads>> known;
+  if (const std::optional<Reads> fastest = known.load()) return *fastest;
+  const char* asked = std::getenv("CLOTHLAB_READS");
+  const bool storage = asked ? std::string_view(asked) == "storage" : storage_over_texture_reads() < clearly;
+  GLint bindings = 0;
+  glGetIntegerv(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, &bindings);
+  const Reads fastest =
+      storage && bindings >= number_of_slots + number_of_units ? Reads::storage : Reads::textures;
+  known = fastest;
   return fastest;
 }
 

@@ -105,7 +105,7 @@ void add_cloths(SurfaceTriangles& made, std::vector<Corners>& triangles, const m
   made.cloth_block_count = static_cast<std::uint32_t>(made.blocks.size());
 }
 
-void add_body(SurfaceTriangles& made, std::vector<Corners>& triangles, const model::Model& model,
+void add_mesh(SurfaceTriangles& made, std::vector<Corners>& triangles, const model::Model& model,
               const Places& place, std::uint32_t body, std::uint32_t most_blocks) {
   const model::BodyRange& range = model.bodies[body];
   const std::uint32_t block = block_size(range.triangle_count, most_blocks);
@@ -254,9 +254,12 @@ class NeighbourPairs {
 SurfaceTriangles surface_triangles(const model::Model& model, std::uint32_t most_blocks) {
   SurfaceTriangles made;
   const auto bodies = static_cast<std::uint32_t>(model.bodies.size());
-  const std::uint32_t blocks_of_body = bodies > 0 ? std::max(most_blocks / 4 / bodies, 1u) : 0;
+  const auto boxes = static_cast<std::uint32_t>(
+      std::count_if(model.bodies.begin(), model.bodies.end(), [](const auto& body) { return body.box; }));
+  const std::uint32_t meshes = bodies - boxes;
+  const std::uint32_t blocks_of_mesh = meshes > 0 ? std::max(most_blocks / 4 / meshes, 1u) : 0;
   std::vector<Corners> triangles;
-  add_cloths(made, triangles, model, most_blocks - bodies * blocks_of_body);
+  add_cloths(made, triangles, model, most_blocks - meshes * blocks_of_mesh - boxes);
   Places place = model.start_position;
   for (std::uint32_t i = 0; i < model.body_vertex_count(); ++i) {
     place.push_back(model.body_position[i]);
@@ -266,7 +269,7 @@ SurfaceTriangles surface_triangles(const model::Model& model, std::uint32_t most
     if (model.bodies[body].box)
       add_box(made, triangles, model, body);
     else
-      add_body(made, triangles, model, place, body, blocks_of_body);
+      add_mesh(made, triangles, model, place, body, blocks_of_mesh);
   }
   made.triangles = with_owned_parts(triangles, model.vertex_count() + model.body_vertex_count());
   made.rest_places = places_at_rest(triangles, model);

@@ -52,7 +52,7 @@ struct SurfaceTriangles {
   static std::uint32_t number_of(std::uint32_t corner) { return corner & 0x3fffffffu; }
 };
 
-/// `most_blocks`: largest number of blocks, above 0.
+/// `most_blocks`: largest number of blocks, at least twice the colliders that a scene may have.
 SurfaceTriangles surface_triangles(const model::Model& model, std::uint32_t most_blocks);
 
 }  // namespace clothlab::sim
