@@ -93,7 +93,7 @@ class GaussSeidel : public Integrator {
       velocity_before_ = gl::Buffer(vertex_count_ * 4 * sizeof(float));
       targets_ = gl::Buffer(vertex_count_ * 4 * sizeof(float));
       if (restores_momentum_)
-        momentum_sums_ = gl::Buffer(cloths_ * std::max<std::size_t>(lanes_, group_size) * 4 * sizeof(float));
+        momentum_sums_ = gl::Buffer(cloths_ * std::size_t{group_size} * 4 * sizeof(float));
     } else if (plan.method == scene::Method::xpbd) {
       pushes_ = gl::Buffer(std::max<std::size_t>(remembered_pushes(work_), 1) * 4 * sizeof(float));
     }
@@ -112,7 +112,8 @@ class GaussSeidel : public Integrator {
     std::uint64_t sweep = 0;
     for (std::uint32_t colour = 0; colour < work_.colours(); ++colour)
       sweep += 1 + rounds(work_.offsets[colour + 1] - work_.offsets[colour]) * visit;
-    const std::uint64_t balance = restores_momentum_ ? cloths_ * (2 * rounds(vertex_count_) + lanes) : 0;
+    const std::uint64_t balance =
+        restores_momentum_ ? cloths_ * (2 * rounds(vertex_count_) + 2 * std::uint64_t{group_size}) : 0;
     if (contacts_)
       sweep += rounds(vertex_count_) * (colliders + (plan.self_collision ? plan.neighbour_slots : 0));
     std::uint64_t fan = 0;

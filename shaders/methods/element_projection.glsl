@@ -51,8 +51,11 @@ void visit_Law(int item) {
   LawEdges place, moved, before;
   for (int k = 0; k < Law_CORNERS - 1; ++k) {
     int i = visit.vertices[0], j = visit.vertices[k + 1];
-    moved.d[k] = drift(FETCH(velocity, i).xyz - FETCH(velocity, j).xyz) + (d[0] - d[k + 1]);
-    place.d[k] = (FETCH(position, i).xyz - FETCH(position, j).xyz) + moved.d[k];
+    // precise: both forms of the kernel are compiled apart and must round alike.
+    precise vec3 way = drift(FETCH(velocity, i).xyz - FETCH(velocity, j).xyz) + (d[0] - d[k + 1]);
+    precise vec3 now = (FETCH(position, i).xyz - FETCH(position, j).xyz) + way;
+    moved.d[k] = way;
+    place.d[k] = now;
     before.d[k] = vec3(0.0);
 #ifdef MEMORY
     if (sweep > 0) before.d[k] = pushed[first_push + k].xyz;

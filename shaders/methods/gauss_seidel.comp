@@ -62,25 +62,28 @@ void wait() {
 // Sweeps that move one vertex after another give a cloth that nothing holds a false momentum, as large as their error.
 // Springs and self-collision only pass momentum on: the false part is taken from all vertices of the cloth alike.
 uniform ivec2 free_vertices[CLOTH_COUNT];  // first, end; empty for a cloth with pins
-// for each thread: xyz [kg m], w [kg]
+// SLICE_SIZE sums for each cloth: xyz [kg m], w [kg]
 layout(std430, binding = slot_lacking) coherent buffer Lacking { vec4 lacking[]; };
 
-/// Called by one work group; each thread adds up the sums of all threads, in the same order.
+/// Called by one work group. Which vertices make a sum, and in what order, does not depend on its number of threads:
+/// both forms of the kernel come to the same bits.
 void balance(int cloth) {
-  int first_sum = cloth * GROUP_SIZE, lane = int(gl_LocalInvocationID.x), end = free_vertices[cloth].y;
-  vec4 sum = vec4(0.0);
-  for (int i = free_vertices[cloth].x + lane; i < end; i += GROUP_SIZE) {
+  int first_sum = cloth * SLICE_SIZE, lane = int(gl_LocalInvocationID.x), end = free_vertices[cloth].y;
+  for (int k = lane; k < SLICE_SIZE; k += GROUP_SIZE) {
+    vec4 sum = vec4(0.0);
+    for (int i = free_vertices[cloth].x + k; i < end; i += SLICE_SIZE) {
 #ifdef WIND
-    float mass = 1.0 / FETCH(position, i).w + mobility * remainders[i].position.w;
-    sum += mass * vec4(targets[i].xyz - deviation(i).xyz, 1.0);
+      float mass = 1.0 / FETCH(position, i).w + mobility * remainders[i].position.w;
+      sum += mass * vec4(targets[i].xyz - deviation(i).xyz, 1.0);
 #else
-    sum += vec4(targets[i].xyz - deviation(i).xyz, 1.0) / FETCH(position, i).w;
+      sum += vec4(targets[i].xyz - deviation(i).xyz, 1.0) / FETCH(position, i).w;
 #endif
+    }
+    lacking[first_sum + k] = sum;
   }
-  lacking[first_sum + lane] = sum;
   wait();
-  sum = vec4(0.0);
-  for (int k = 0; k < GROUP_SIZE; ++k) sum += lacking[first_sum + k];
+  vec4 sum = vec4(0.0);
+  for (int k = 0; k < SLICE_SIZE; ++k) sum += lacking[first_sum + k];
   for (int i = free_vertices[cloth].x + lane; i < end; i += GROUP_SIZE) {
     vec4 d = deviation(i);
     set_deviation(i, vec4(d.xyz + sum.xyz / sum.w, d.w));

@@ -16,10 +16,11 @@ vec3 push_of_pairs(int i, vec4 x, vec3 v, vec4 d, inout int touched) {
   for (int slot = 0; slot < count; ++slot) {
     uvec2 neighbour = FETCH_UVEC2(neighbours, i * NEIGHBOUR_SLOTS + slot);
     vec4 y = FETCH(position, neighbour.x), e = deviation(neighbour.x);
-    vec3 moved = drift(v - FETCH(velocity, neighbour.x).xyz) + (d.xyz - e.xyz);
-    vec3 before = x.xyz - y.xyz, correction;
-    if (!pair_contact(before, before + moved, uintBitsToFloat(neighbour.y), self_friction,
-                      min(0.2, mending * dt), correction))
+    // precise: both forms of the kernel are compiled apart and must round alike.
+    precise vec3 moved = drift(v - FETCH(velocity, neighbour.x).xyz) + (d.xyz - e.xyz);
+    precise vec3 before = x.xyz - y.xyz, now = before + moved;
+    vec3 correction;
+    if (!pair_contact(before, now, uintBitsToFloat(neighbour.y), self_friction, min(0.2, mending * dt), correction))
       continue;
     ++touched;
     push += (x.w / (x.w + y.w) / max(2.0, max(d.w, e.w))) * correction;
