@@ -56,6 +56,7 @@ browserTest("a sweep's page draws any two columns, filters, and says all of a po
   await marks.nth(1).focus();
   assert.match(await page.locator("#picked").textContent(), /method rk4, rows 11, dt 0.001, .*vertices 55/);
   await page.getByText("All points").click();
+  await page.locator("tr").nth(12).waitFor(); // the table is made once it is unfolded
   assert.equal(await page.locator("tr").count(), 13);
   await page.screenshot({ path: join(screenshots, "sweep.png"), fullPage: true });
   assert.deepEqual(complaints, []);
