@@ -194,8 +194,9 @@ export class Viewer {
   }
 }
 
-// Runs in a blank page: the browser decodes its own screenshot.
-async function countRed(png) {
+/// Pixels of the cloth's red in a picture of the window (a PNG in base64). Runs in a blank page, whose browser decodes
+/// it.
+export async function countRed(png) {
   const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${png}`)).blob());
   const context = new OffscreenCanvas(image.width, image.height).getContext("2d");
   context.drawImage(image, 0, 0);
