@@ -43,8 +43,8 @@ void Stepper::warn_if_forced() {
   forced_announced_ = true;
   exchange_.emit(
       Notice{"warning",
-             "pins or bodies that move force cloth where it cannot go: nothing stops them, and what "
-             "is in their way may be passed through; slower or smaller motions help"});
+             "pins or bodies that move press cloth where it cannot go: a pin waits until there is room, "
+             "and a body may pass through what is in its way; slower or smaller motions help"});
 }
 
 // A few steps that do not converge need no warning: they occur when a cloth falls into its strain limit.

@@ -100,6 +100,7 @@ gl::Defines step_defines(const Plan& plan) {
                       {"EACH_SOLID(meet)", each_solid(plan)}};
   for (gl::Defines::value_type& define : law_defines(plan.laws)) defines.push_back(std::move(define));
   if (plan.wind) defines.emplace_back("WIND", "1");
+  if (plan.pins && plan.surface_contact()) defines.emplace_back("PINS_WAIT", "1");
   if (plan.self_collision) {
     defines.emplace_back("SELF_COLLISION", "1");
     defines.emplace_back("NEIGHBOUR_SLOTS", std::to_string(plan.neighbour_slots));

@@ -23,8 +23,8 @@ struct Passes {
   int pushes, rubs, filter;
 };
 constexpr Passes of_short_step{2, 0, 3}, of_long_step{4, 4, 3};
-/// The filter can stop neither bodies nor pins: pushes alone must get the cloth out of their way, layer
-/// behind layer.
+/// The filter stops no body, and pins should not wait for what can move: pushes must get the cloth out of
+/// their way, layer behind layer.
 constexpr Passes of_short_driven_step{8, 0, 3}, of_long_driven_step{16, 1, 8};
 /// A step longer than this [s] is gone in pieces where vertices are fast, in so many at most. The shorter a
 /// piece, the fewer pairs are near enough to meet in it; but even one that is not needed costs its
@@ -91,7 +91,8 @@ Result<SurfaceContact> SurfaceContact::create(const model::Model& model, const P
   made.vertex_contacts_ = {gl::Buffer(made.vertex_count_ * words_of_vertex * sizeof(std::uint32_t)),
                            GL_RGBA32UI};
   made.borne_ = gl::Buffer(made.vertex_count_ * 8 * sizeof(float));
-  made.limits_ = {gl::Buffer(made.vertex_count_ * sizeof(std::uint32_t)), GL_R32UI};
+  const std::size_t limits = made.vertex_count_ + 2 * static_cast<std::size_t>(plan.moving);
+  made.limits_ = {gl::Buffer(limits * sizeof(std::uint32_t)), GL_R32UI};
   return made;
 }
 
@@ -233,19 +234,19 @@ void SurfaceContact::push_and_filter(StateBuffers& state, int row, std::uint32_t
   wait_for_writes();
   for (int pass = 0; pass < filter_passes_; ++pass) {
     const bool last = pass == filter_passes_ - 1;
-    // What nothing may stop spreads its step over all passes but the last one, lest it comes upon layers that
+    // What moves by itself spreads its step over all passes but the last one, lest it comes upon layers that
     // are yet to make room.
     const float held_part = last ? 1.0f : 1.0f / static_cast<float>(filter_passes_ - 1 - pass);
     const gl::Program& limit = pass == 0 ? limit_first_ : limit_again_;
-    limit.set("held_part", held_part);
-    run(limit, pass == 0 ? near : meeting);
-    if (last) {
-      limit_stop_.set("held_part", held_part);
-      run(limit_stop_, meeting);
-    }
     const gl::Program& move = last ? move_last_ : move_;
-    move.set("held_part", held_part);
-    run(move, pass == 0 || driven_ ? vertices : cut_vertices);
+    const auto run_pass = [&](const gl::Program& program, std::size_t groups) {
+      program.set("held_part", held_part);
+      program.set("pass", pass);
+      run(program, groups);
+    };
+    run_pass(limit, pass == 0 ? near : meeting);
+    if (last) run_pass(limit_stop_, meeting);
+    run_pass(move, pass == 0 || driven_ ? vertices : cut_vertices);
   }
   turn_ = 1 - turn_;
 }

@@ -43,10 +43,10 @@ class SurfaceContact {
   bool searched() const { return pairs_.searched(); }
 
   struct Counters {
-    std::uint32_t pairs = 0;     ///< that the last search listed
-    std::uint32_t near = 0;      ///< of these, in the last step
-    std::uint32_t cuts = 0;      ///< vertices whose steps were shortened, over all steps
-    std::uint32_t forced = 0;    ///< pairs that pins or bodies may have taken through each other, the same
+    std::uint32_t pairs = 0;   ///< that the last search listed
+    std::uint32_t near = 0;    ///< of these, in the last step
+    std::uint32_t cuts = 0;    ///< vertices whose steps were shortened, over all steps
+    std::uint32_t forced = 0;  ///< times that a pin waited or a body took a pair through each other, the same
     std::uint32_t rebuilds = 0;  ///< searches
   };
   /// Queues a copy of the counts to `bytes_of_counts` of `target`, from `offset`. `read_counts` makes

@@ -39,10 +39,29 @@ vec3 acceleration(int i, vec4 x, vec3 v, int row) {
   return a;
 }
 
-/// State of a pinned vertex, by its motion: at the pose table's row `row`, counted from the step's start.
-void follow_motion(int i, float motion_index, int row, out vec3 x, out vec3 v) {
+#ifdef PINS_WAIT
+const float catch_up = 1.0;  // how much faster than its motion a pin goes that contact held back [m/s]
+
+/// A pin that is behind its motion (shaders/surface/limit.comp) comes after it without a jump. `way`: of the motion
+/// since the step's start [m].
+void catch_up_from(vec3 start, float way, inout vec3 x, inout vec3 v) {
+  vec3 missing = x - start;
+  float most = way + dt * catch_up, left = length(missing);
+  if (left > most) {
+    x = start + missing * (most / left);
+    v = (x - start) / dt;
+  }
+}
+#endif
+
+/// State of a pinned vertex, by its motion: at the pose table's row `row`, counted from the step's start, where it is
+/// at `start`.
+void follow_motion(int i, vec3 start, float motion_index, int row, out vec3 x, out vec3 v) {
   vec3 home = FETCH(rest_position, i).xyz;
   int motion = int(motion_index);
   x = motion < 0 ? home : placed(motion, row, home);
   v = motion < 0 ? vec3(0.0) : velocity_at(motion, row, x);
+#ifdef PINS_WAIT
+  catch_up_from(start, motion < 0 ? 0.0 : distance(x, placed(motion, 0, home)), x, v);
+#endif
 }

@@ -24,7 +24,7 @@ void begin(int i) {
   if (x.w > 0.0) {
     set_deviation(i, vec4(remainder(i) + first_deviation(i, x, v.xyz), v.w));
   } else {
-    follow_motion(i, v.w, END_ROW, there, moving);
+    follow_motion(i, x.xyz, v.w, END_ROW, there, moving);
     set_deviation(i, vec4((there - x.xyz) - free_displacement(v.xyz), 0.0));
   }
 }
@@ -102,7 +102,7 @@ void finish(int i) {
 #endif
     tag = d.w;
   } else {
-    follow_motion(i, tag, END_ROW, x_next, v_next);
+    follow_motion(i, x.xyz, tag, END_ROW, x_next, v_next);
   }
   end_step(i, vec4(x_next, x.w), vec4(v_next, tag));
 }

@@ -32,7 +32,7 @@ void main() {
   vec3 x_next, v_next;
   float tag = FETCH(before_velocity, i).w;
   if (x.w == 0.0) {
-    follow_motion(i, tag, END_ROW, x_next, v_next);
+    follow_motion(i, FETCH(before_position, i).xyz, tag, END_ROW, x_next, v_next);
   } else {
     bool kept = FETCH(constraint, i).xyz != vec3(0.0);
     x_next = x.xyz;

@@ -74,7 +74,7 @@ void main() {
   int contacts = 0;
   if (x.w == 0.0) {
     vec3 x_next, v_next;
-    follow_motion(i, v.w, END_ROW, x_next, v_next);
+    follow_motion(i, x.xyz, v.w, END_ROW, x_next, v_next);
     start = Beginning(v.xyz, (x_next - x.xyz) / dt);
   } else {
 #ifdef SELF_COLLISION

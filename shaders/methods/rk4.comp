@@ -33,7 +33,7 @@ void main() {
   vec4 x = FETCH(start_position, i), v = FETCH(start_velocity, i);
   vec3 x_next, v_next;
   if (x.w == 0.0) {
-    follow_motion(i, v.w, STAGE < 3 ? 1 : END_ROW, x_next, v_next);
+    follow_motion(i, x.xyz, v.w, STAGE < 3 ? 1 : END_ROW, x_next, v_next);
   } else {
     vec4 x_now = FETCH(position, i), v_now = FETCH(velocity, i);
     vec3 a = acceleration(i, x_now, v_now.xyz, STAGE - 1 - (STAGE > 2 ? 1 : 0));
@@ -69,7 +69,7 @@ void main() {
   vec4 x = FETCH(start_position, i), v = FETCH(start_velocity, i);
   vec3 x_next, v_next;
   float tag = v.w;
-  if (x.w == 0.0) follow_motion(i, v.w, END_ROW, x_next, v_next);
+  if (x.w == 0.0) follow_motion(i, x.xyz, v.w, END_ROW, x_next, v_next);
   else tag = float(move_freely(i, x, v, x_next, v_next));
   end_step(i, vec4(x_next, x.w), vec4(v_next, tag));
 }

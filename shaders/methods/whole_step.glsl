@@ -33,7 +33,7 @@ void main() {
   vec4 x = FETCH(position, i), v = FETCH(velocity, i);
   vec3 x_next, v_next;
   float tag = v.w;
-  if (x.w == 0.0) follow_motion(i, v.w, END_ROW, x_next, v_next);
+  if (x.w == 0.0) follow_motion(i, x.xyz, v.w, END_ROW, x_next, v_next);
   else tag = float(move_freely(i, x, v, x_next, v_next));
   end_step(i, vec4(x_next, x.w), vec4(v_next, tag));
 }

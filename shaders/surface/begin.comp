@@ -9,6 +9,7 @@ READ_UVEC4(vertex_contacts, unit_vertex_contacts);
 layout(std430, binding = slot_next_position) writeonly buffer Position { vec4 next_position[]; };
 layout(std430, binding = slot_next_velocity) buffer Velocity { vec4 velocity[]; };
 layout(std430, binding = slot_step_target) writeonly buffer Target { vec4 target[]; };
+layout(std430, binding = slot_step_limits) writeonly buffer Limits { uint limits[]; };  // step_limits.glsl
 
 uniform int last_piece;  // 1: of the step
 
@@ -30,9 +31,13 @@ void prepare_next_piece() {
 void main() {
   int i = int(gl_GlobalInvocationID.x);
   if (i == 0) prepare_next_piece();
+#if MOTION_COUNT > 0
+  if (i == 0)
+    for (int k = 0; k < MOTION_COUNT; ++k) limits[vertex_count + 2 * k] = floatBitsToUint(1.0);
+#endif
   if (i >= changing_vertex_count || !(uintBitsToFloat(known.part) > 0.0)) return;
   vec4 start = FETCH(step_start, i), end = FETCH(position, i);
-  bool free = end.w > 0.0, filtered = known.step_counts[turn].near > 0u;
+  bool free = end.w > 0.0, of_cloth = i < cloth_vertex_count, filtered = known.step_counts[turn].near > 0u;
   if (filtered && FETCH(vertex_contacts, 2 * i).x != 0u) {
     if (free) velocity[i].w += 1.0;
     at_vertex[i].first = at_vertex[i].sharing = 0u;
@@ -43,13 +48,13 @@ void main() {
     if (went < 1e30) atomicMax(control.fastest, floatBitsToUint(went));
     control.rebuild_groups = uint((max(vertex_count, triangle_count) + GROUP_SIZE - 1) / GROUP_SIZE);
   }
-  if (free && went > most) {
+  if (of_cloth && went > most) {
     end.xyz = start.xyz + moved * (most / went);
     next_position[i] = end;
     atomicAdd(control.step_counts[turn].cuts, 1u);
     atomicAdd(control.cuts, 1u);
   }
-  if (free && known.overflow != 0u) next_position[i] = end = start;
+  if (of_cloth && known.overflow != 0u) next_position[i] = end = start;
   // Bodies that do not move come here in the first steps alone.
   if (filtered || i >= cloth_vertex_count) target[i] = end;
   if (filtered) next_position[i] = vec4(start.xyz, end.w);

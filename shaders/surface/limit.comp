@@ -5,20 +5,26 @@
 #include "surface.glsl"
 #include "near_pairs.glsl"
 #include "vertex_contacts.glsl"
+#include "step_limits.glsl"
 READ_VEC4(position, unit_position);  // so far; w: inverse mass [1/kg]
 READ_VEC4(velocity, unit_velocity);
 READ_VEC4(step_target, unit_step_target);
-layout(std430, binding = slot_step_limits) coherent buffer Limits { uint limits[]; };  // float bits, 1 or less
+layout(std430, binding = slot_step_limits) coherent buffer Limits { uint limits[]; };
 layout(std430, binding = slot_near_pairs) writeonly buffer NearPairs { uvec4 near_list[]; };
 // Pairs that push, and from pair_capacity on those that could meet.
 layout(std430, binding = slot_chosen_pairs) buffer Chosen { uint chosen_pairs[]; };
-uniform float held_part;  // of what is left of their steps, that corners which nothing may stop take in this pass
+uniform float held_part;  // of what is left of their steps, that pins and bodies go for in this pass
 
-void shorten(uvec4 corner, vec4 shares) {
+uint limit_of_corner(uint corner, float inverse_mass) {
+  return uint(limit_of(int(corner), inverse_mass, FETCH(velocity, corner).w));
+}
+
+void shorten(uvec4 corner, vec4 shares, vec4 inverse_mass) {
   control.step_counts[turn].cut_vertices = known.step_counts[turn].vertex_groups;
   for (int k = 0; k < 4; ++k) {
     if (corner[k] < uint(cloth_vertex_count)) atomicAdd(at_vertex[corner[k]].shortening, 1u);
-    if (shares[k] < 1.0) atomicMin(limits[corner[k]], floatBitsToUint(shares[k]));
+    if (shares[k] < 1.0) 
+      atomicMin(limits[limit_of_corner(corner[k], inverse_mass[k])], floatBitsToUint(shares[k]));
   }
 }
 
@@ -27,7 +33,8 @@ void stop(uvec4 corner, vec4 shares, vec3 n, vec4 weight, vec4 inverse_mass) {
   bool limiting = false;
   float approach = 0.0;
   for (int k = 0; k < 4; ++k) {
-    limiting = limiting || (shares[k] < 1.0 && floatBitsToUint(shares[k]) == limits[corner[k]]);
+    limiting = limiting || (shares[k] < 1.0 && floatBitsToUint(shares[k]) ==
+                                                   limits[limit_of_corner(corner[k], inverse_mass[k])]);
     approach -= weight[k] * dot(n, FETCH(velocity, corner[k]).xyz);
   }
   vec4 mobility = weight * inverse_mass;
@@ -42,11 +49,11 @@ void stop(uvec4 corner, vec4 shares, vec3 n, vec4 weight, vec4 inverse_mass) {
 }
 #endif
 
-/// After a pass every pair is on its sides of the plane that divided it before, but for one whose corners nothing may
-/// stop. It may meet, then.
-void count_if_forced(bool edges, Corners now, vec3 n, vec4 inverse_mass) {
-  bool held = any(equal(inverse_mass, vec4(0.0)));
-  if (held && gap_along(edges, now, n) <= 0.0) atomicAdd(control.forced, 1u);
+/// After a pass every pair is on its sides of the plane that divided it before, but for one of a body, whose corners
+/// nothing stops. It may meet, then.
+void count_if_forced(bool edges, Corners now, vec3 n, uvec4 corner) {
+  bool of_body = int(max(corner.x, corner.w)) >= cloth_vertex_count;
+  if (of_body && gap_along(edges, now, n) <= 0.0) atomicAdd(control.forced, 1u);
 }
 
 void main() {
@@ -72,7 +79,7 @@ void main() {
     size = max(size, length(c.x[k]) + length(steps[k]));
   }
 #if PASS == 1
-  count_if_forced(edges, c, apart.xyz, inverse_mass);
+  count_if_forced(edges, c, apart.xyz, corner);
 #endif
 #if PASS > 0
   Separation now = separation(edges, c);
@@ -83,7 +90,7 @@ void main() {
   for (int k = 0; k < 4; ++k) {
     along.y[k] = dot(apart.xyz, c.x[k]);
     along.d[k] = dot(apart.xyz, steps[k]);
-    along.held[k] = inverse_mass[k] == 0.0;
+    along.held[k] = int(corner[k]) >= cloth_vertex_count;
   }
   float rounding = rounding_at(origin, size);
 #if PASS == 0
@@ -95,8 +102,11 @@ void main() {
     chosen_pairs[pair_capacity + place] = item;
   }
 #endif
-  for (int k = 0; k < 4; ++k)
-    if (along.held[k]) along.d[k] *= held_part;
+  for (int k = 0; k < 4; ++k) {
+    float part = inverse_mass[k] == 0.0 ? held_part : 1.0;
+    steps[k] *= part;
+    along.d[k] *= part;
+  }
   if (could_meet(edges, along, rounding)) {
     float plane = dividing_plane(edges, along, rounding);
     vec4 shares;
@@ -109,7 +119,7 @@ void main() {
 #if PASS == 2
       stop(corner, shares, apart.xyz, vec4(now.weight[0], now.weight[1], now.weight[2], now.weight[3]), inverse_mass);
 #else
-      shorten(corner, shares);
+      shorten(corner, shares, inverse_mass);
 #endif
     }
   }

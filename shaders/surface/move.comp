@@ -2,6 +2,7 @@
 // impulses.
 #include "surface.glsl"
 #include "vertex_contacts.glsl"
+#include "step_limits.glsl"
 READ_VEC4(position, unit_position);  // so far; w: inverse mass [1/kg]
 READ_VEC4(step_target, unit_step_target);
 READ_UVEC4(vertex_contacts, unit_vertex_contacts);
@@ -16,10 +17,13 @@ uniform float held_part;  // as in limit.comp
 const float jammed_share = 0.1;
 
 #if LAST
-void count_cut(int i, float share) {
+void count_cut(int i, float share, bool pinned) {
   atomicAdd(control.step_counts[turn].cuts, 1u);
   atomicAdd(control.cuts, 1u);
-  if (share < jammed_share) velocity[i].xyz *= 0.5;
+  bool jammed = share < jammed_share;
+  if (pinned) velocity[i].xyz *= share;
+  else if (jammed) velocity[i].xyz *= 0.5;
+  if (pinned && jammed) atomicAdd(control.forced, 1u);
 }
 
 void take_impulses(int i) {
@@ -32,20 +36,26 @@ void take_impulses(int i) {
 
 void main() {
   int i = int(gl_GlobalInvocationID.x);
+#if MOTION_COUNT > 0
+  if (i == 0)
+    for (int k = 0; k < MOTION_COUNT; ++k) limits[vertex_count + 2 * k + 1 - pass % 2] = floatBitsToUint(1.0);
+#endif
   if (i >= changing_vertex_count) return;
   vec4 goal = FETCH(step_target, i), x = FETCH(position, i);
-  bool free = x.w > 0.0;
-  float share = free ? uintBitsToFloat(FETCH_UINT(step_limits, i)) : held_part;
-  bool cut = free && share < 1.0;
-  vec3 way = goal.xyz - x.xyz;
+  bool moves_by_itself = x.w == 0.0;
+  float part = moves_by_itself ? held_part : 1.0;
+  float tag = moves_by_itself ? velocity[i].w : -1.0;
+  float share = uintBitsToFloat(FETCH_UINT(step_limits, limit_of(i, x.w, tag)));
+  bool cut = share < 1.0;
+  vec3 way = part * (goal.xyz - x.xyz);
   if (cut) {
     float size = length(way);
     if (share * size < shortest_part * rounding_at(x.xyz, size)) share = 0.0;
     limits[i] = floatBitsToUint(1.0);
   }
-  moved_position[i] = vec4(share < 1.0 ? x.xyz + share * way : goal.xyz, x.w);
+  moved_position[i] = vec4(min(share, part) < 1.0 ? x.xyz + share * way : goal.xyz, x.w);
 #if LAST
-  if (cut) count_cut(i, share);
+  if (cut) count_cut(i, share, moves_by_itself);
 #endif
   if (FETCH(vertex_contacts, 2 * i + 1).w != 0u) {
 #if LAST

@@ -54,7 +54,7 @@ struct Control {
   uint overflow;             // 1: a list had no room for all pairs, and nothing may move
   uint rebuilds;
   uint cuts;                 // vertices whose steps were shortened, over all steps
-  uint forced;               // pairs that pins or bodies took over the plane between them, over all steps
+  uint forced;               // over all steps: pins that waited; pairs that bodies took over the plane between them
   uint most_leaf_pairs;      // found by any search
   uint most_bundle_pairs;    // the same
   uint most_triangle_pairs;  // the same

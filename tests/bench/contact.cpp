@@ -96,5 +96,6 @@ int main(int argc, char** argv) {
       static_cast<unsigned long long>(crossed), static_cast<unsigned long long>(most),
       diverged ? "true" : "false", largest_strain,
       1e9 * stepping /
-          (simulation.model().vertex_count() * std::max<std::uint64_t>(simulation.step_index(), 1)));
+          static_cast<double>(simulation.model().vertex_count() *
+                              std::max<std::uint64_t>(simulation.step_index(), 1)));
 }
