@@ -125,19 +125,23 @@ void print_summary(const Report& report, double simulated) {
     std::printf(" (%s times real time, %.1f ns per vertex and step)",
                 with_significant_digits(simulated / step_seconds, 2).c_str(),
                 report["ns_per_vertex_step"].get<double>());
-  std::printf("\nlargest strain %s, state %s, on %s\n",
+  std::printf("\nlargest strain at the end %s, state %s, on %s\n",
               with_significant_digits(report["max_strain"], 9).c_str(),
               report["state_hash"].get<std::string>().c_str(), report["renderer"].get<std::string>().c_str());
   std::fflush(stdout);
 }
 
-/// Prints notes on stderr about neighbours left out of self-collision, linear solves that missed their
-/// tolerance and springs beyond their strain limit.
+/// Prints notes on stderr about neighbours left out of self-collision, what moves by itself and had no room,
+/// linear solves that missed their tolerance and springs beyond their strain limit.
 void print_shortcomings(const sim::Simulation& simulation, const sim::Diagnostics& state) {
   if (state.neighbours_dropped > 0)
     note("self-collision left out " + std::to_string(state.neighbours_dropped) +
          " neighbours, counted at each search, that had no room in a vertex's list: a smaller thickness or a "
          "coarser mesh helps");
+  if (state.surface_forced > 0)
+    note("pins or bodies pressed cloth where it cannot go, " + std::to_string(state.surface_forced) +
+         " times: a pin waited until there was room, and a body may have passed through what was in its way; "
+         "slower or smaller motions help");
   if (const std::uint64_t solves = simulation.solver_work().unconverged; solves > 0)
     note(std::to_string(solves) +
          " linear solves ended before they met solver.tolerance; a smaller dt or a larger tolerance helps");
