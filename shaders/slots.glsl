@@ -49,6 +49,7 @@ const int slot_slope = 3;
 const int unit_deviation = 9;        // the pass before; methods/deviation.glsl
 const int unit_visits = 10;          // PBD, XPBD: server/sim/gauss_seidel.cpp; methods/element_projection.glsl
 const int unit_visited = 11;         // VBD: server/sim/gauss_seidel.cpp; methods/vertex_descent.glsl
+const int unit_pushed = 11;          // XPBD: the sweep before; methods/element_projection.glsl
 const int slot_deviation = 3;        // each pass; the next one, as unit_deviation
 const int slot_pushed = 4;           // XPBD
 const int slot_lacking = 4;          // VBD

@@ -60,7 +60,10 @@ class GaussSeidel : public Integrator {
       if (restores_momentum_) momentum_sums_.bind_storage(slot_lacking);
     } else {
       visit_list_.bind(unit_visits);
-      if (pushes_.bytes() > 0) pushes_.bind_storage(slot_pushed);
+      if (pushes_.buffer.bytes() > 0) {
+        pushes_.bind(unit_pushed);
+        pushes_.buffer.bind_storage(slot_pushed);
+      }
     }
     if (lanes_ > 0)
       step_in_one_group(row);
@@ -95,7 +98,8 @@ class GaussSeidel : public Integrator {
       if (restores_momentum_)
         momentum_sums_ = gl::Buffer(cloths_ * std::size_t{group_size} * 4 * sizeof(float));
     } else if (plan.method == scene::Method::xpbd) {
-      pushes_ = gl::Buffer(std::max<std::size_t>(remembered_pushes(work_), 1) * 4 * sizeof(float));
+      pushes_ = {gl::Buffer(std::max<std::size_t>(remembered_pushes(work_), 1) * 4 * sizeof(float)),
+                 GL_RGBA32F};
     }
     if (lanes_ > 0) return;
     for (gl::TextureBuffer& deviation : deviation_) deviation = per_vertex(vertex_count_);
@@ -259,8 +263,8 @@ class GaussSeidel : public Integrator {
   gl::Program whole_, begin_, contacts_pass_, balance_, finish_;
   std::vector<gl::Program> visits_;  ///< for each of work_.functions; without a program if it has no items
   std::array<gl::TextureBuffer, 2> deviation_;  ///< a pass of contacts reads one and writes the other
-  gl::TextureBuffer visit_list_, visited_;
-  gl::Buffer pushes_, targets_, velocity_before_, momentum_sums_, remainders_;
+  gl::TextureBuffer visit_list_, visited_, pushes_;
+  gl::Buffer targets_, velocity_before_, momentum_sums_, remainders_;
 };
 
 }  // namespace

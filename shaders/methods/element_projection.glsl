@@ -5,6 +5,12 @@ READ_UVEC4(visits, unit_visits);  // law after law, colour after colour: server/
 #ifdef MEMORY
 // For each element, and each corner but the first: the first's pushes away from that corner in this step so far [kg m].
 layout(std430, binding = slot_pushed) buffer Pushed { vec4 pushed[]; };
+#ifdef ONE_GROUP
+vec3 pushed_before(int i) { return pushed[i].xyz; }
+#else  // the sweep before was another dispatch
+READ_VEC4(pushed_read, unit_pushed);
+vec3 pushed_before(int i) { return FETCH(pushed_read, i).xyz; }
+#endif
 #endif
 
 #ifdef WIND
@@ -58,7 +64,7 @@ void visit_Law(int item) {
     place.d[k] = now;
     before.d[k] = vec3(0.0);
 #ifdef MEMORY
-    if (sweep > 0) before.d[k] = pushed[first_push + k].xyz;
+    if (sweep > 0) before.d[k] = pushed_before(first_push + k);
 #endif
   }
 #ifdef MEMORY
