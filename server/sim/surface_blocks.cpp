@@ -35,7 +35,7 @@ Result<SurfaceBlocks> SurfaceBlocks::create(const SurfaceTriangles& surface, std
 }
 
 void SurfaceBlocks::set_skin(float skin) {
-  program_.set("skin", skin);
+  program_.set("most_skin", skin);
 }
 
 void SurfaceBlocks::check(const StateBuffers& state, const gl::TextureBuffer& built) const {

@@ -23,7 +23,7 @@ class SurfaceBlocks {
 
   static Result<SurfaceBlocks> create(const SurfaceTriangles& surface, std::uint32_t vertex_count);
 
-  /// `skin` [m]: by how much a search reaches farther than it must.
+  /// `skin` [m]: by how much a search reaches farther than it must, at most.
   void set_skin(float skin);
 
   /// Asks for a search, in the control block that must be bound, if one is needed. `built`: the positions at

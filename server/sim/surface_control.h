@@ -30,7 +30,8 @@ struct SurfaceControl {
   std::uint32_t rebuilds = 0, cuts = 0, forced = 0, most_leaf_pairs = 0, most_bundle_pairs = 0,
                 most_triangle_pairs = 0, most_pairs = 0;
   float longest = 0.0f, gone = 0.0f, part = 1.0f;
-  std::uint32_t unused = 0;
+  float skin = 0.0f, next_skin = 0.0f;
+  std::uint32_t checks = 0;
 };
 
 }  // namespace clothlab::sim

@@ -132,7 +132,6 @@ void SurfacePairs::set_parameters(const scene::Scene& scene, const model::Model&
     program->set("dt", static_cast<float>(scene.solver.dt));
     program->set("piece_count", pieces);
     program->set("thickness", static_cast<float>(thickness));
-    program->set("skin", skin_);
     program->set("least_query", least_query);
     program->set("cloth_pairs", scene.collides(scene::ContactKind::surface) ? 1 : 0);
   }
@@ -155,6 +154,7 @@ void SurfacePairs::forget_pairs(bool within_step) {
   control.rebuilds = before.rebuilds;
   control.cuts = before.cuts;
   control.forced = before.forced;
+  control.next_skin = before.next_skin;
   if (within_step) {
     control.longest = before.longest;
     control.gone = before.gone;

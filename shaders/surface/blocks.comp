@@ -7,7 +7,15 @@ READ_VEC4(block_motions, unit_block_motions);
 uniform int block_count;        // at most GROUP_SIZE
 uniform int cloth_block_count;  // those of bodies come after them, and do not meet each other
 
+uniform float most_skin;        // [m]
+
 const float rounding = 1.001;
+
+// A wide skin makes searches rare but lists long, and every step reads the lists. Few pairs are read in less time than
+// a search takes. Of more, a search should list so many that the next one is due about `wanted_checks` later; and lists
+// that stay valid for much longer are made anew, with a narrower skin.
+const uint few_pairs = 4096u, wanted_checks = 8u;
+const float least_share = 0.125;  // of the widest skin
 
 /// A block: all its vertices were within `radius` of `place` at the last search. Now they are where `turn` about that
 /// place, which then goes to `moved`, takes them, but for `bend`; and where the shift `motion` takes them, but for
@@ -49,15 +57,31 @@ bool valid(int i) {
     int j = i + k < block_count ? i + k : i + k - block_count;
     Block other = block_at(j);
     float apart = length(other.place - one.place) - one.radius - other.radius;
-    float room = max(apart - uintBitsToFloat(known.query), skin);
+    float room = max(apart - uintBitsToFloat(known.query), uintBitsToFloat(known.skin));
     bool may_meet = i < cloth_block_count || j < cloth_block_count;
     all_valid = all_valid && (!may_meet || rounding * approach(one, other) <= room);
   }
   return all_valid;
 }
 
+/// True if the lists are longer than they need be.
+bool too_long() {
+  return known.pairs > few_pairs && known.checks >= 4u * wanted_checks &&
+         uintBitsToFloat(known.skin) > 1.01 * least_share * most_skin;
+}
+
+float next_skin() {
+  float skin = uintBitsToFloat(known.skin), lasts = float(max(known.checks, 1u));
+  if (skin == 0.0 || known.pairs <= few_pairs) return most_skin;
+  return clamp(skin * float(wanted_checks) / lasts, least_share * most_skin, most_skin);
+}
+
 void main() {
   int block = int(gl_LocalInvocationID.x);
-  if (block < block_count && !valid(block))
+  if (block == 0) {
+    control.next_skin = floatBitsToUint(next_skin());
+    ++control.checks;
+  }
+  if (block < block_count && (!valid(block) || too_long()))
     control.rebuild_groups = uint((max(vertex_count, triangle_count) + GROUP_SIZE - 1) / GROUP_SIZE);
 }

@@ -5,6 +5,8 @@ void main() {
   if (gl_GlobalInvocationID.x > 0u) return;
   control.query = floatBitsToUint(next_query());
   control.flat_query = floatBitsToUint(next_flat_query());
+  control.skin = known.next_skin;
+  control.checks = 0u;
   // Candidates are where near pairs will be, with three times the room. What was found beyond a list's room was not
   // searched further, and what was depends on the order of threads: then only what is complete counts.
   uint room_for_candidates = (known.candidates + 2u) / 3u;

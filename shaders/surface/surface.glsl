@@ -62,7 +62,9 @@ struct Control {
   uint longest;              // longest way of a vertex in this step [m], as bits
   uint gone;                 // share of the step that it has gone before this piece, as bits of a float
   uint part;                 // share of the step that this piece goes, the same
-  uint unused;
+  uint skin;                 // by how much the last search reached farther than it had to [m], as bits
+  uint next_skin;            // the same of a search that is due (blocks.comp)
+  uint checks;               // of the listed pairs since the last search
 };
 layout(std430, binding = slot_surface_control) coherent buffer SurfaceControl { Control control; };
 // The same memory, for what the kernel that reads it does not change: on software OpenGL reading a storage buffer takes
@@ -74,7 +76,6 @@ layout(std140, binding = slot_known_control) uniform KnownControl { Control know
 uniform int vertex_count, triangle_count, cloth_vertex_count, cloth_triangle_count, changing_vertex_count;
 uniform float dt;           // [s]
 uniform float thickness;    // [m]
-uniform float skin;         // [m]
 uniform float most_query;   // [m]
 uniform float least_query;  // [m]
 uniform uint pair_capacity, triangle_pair_capacity, bundle_pair_capacity, leaf_pair_capacity;
@@ -100,7 +101,7 @@ float next_flat_query() {
 /// The same of pairs that forces keep apart.
 float next_query() { return max(next_flat_query(), min(1.2 * thickness, most_query)); }
 /// How near pairs are that the search lists [m].
-float reach_of(float query_radius) { return query_radius + skin; }
+float reach_of(float query_radius) { return query_radius + uintBitsToFloat(known.next_skin); }
 
 /// How far a pair is kept apart [m], by the weights of its nearest points: within the triangle, or within both edges,
 /// the thickness. At a rim another pair is nearer, or will be: slanting pushes between flat layers would brake their

@@ -174,6 +174,36 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("many pairs that stay near are listed anew with a narrower skin, which widens as they move again") {
+  const auto context = test::context();
+  scene::Scene scene = two_sheets(0.008);
+  for (scene::Cloth& cloth : scene.cloths) cloth.mesh = scene::Grid{19, 19, size, size};
+  scene.cloths[1].transform.translate.y = 0.006;
+  const Result<model::Model> model = model::build(scene);
+  Search search(scene, *model);
+  // Waves that make a sheet slide to and fro over the other one by up to 2 cm.
+  const auto slid = [&](std::uint32_t i, double phase) {
+    const double way = model->vertex_cloth[i] == 0 ? 0.0 : 0.02 * std::sin(phase);
+    return glm::vec3(model->rest_position[i] + glm::dvec3(way, 0.0, 0.0));
+  };
+  const auto at_rest = [&](std::uint32_t i) { return slid(i, 0.0); };
+  for (int step = 0; step < 5; ++step) search.update(at_rest);  // lists grow
+  const std::uint32_t many = search.control.pairs, searches = search.control.rebuilds;
+  const float wide = search.control.skin;
+  CHECK(many > 4096);
+  for (int step = 0; step < 70; ++step) search.update(at_rest);
+  // Lists that nothing made invalid were made anew: twice, as each may narrow the skin by a factor of four.
+  CHECK(search.control.rebuilds == searches + 2);
+  CHECK(search.control.skin == wide / 8);
+  CHECK(search.control.pairs < many - many / 8);
+  CHECK(near_pairs(search, *model).missing == 0);
+  for (int step = 1; step <= 60; ++step) {
+    search.update([&](std::uint32_t i) { return slid(i, 0.05 * step); });
+    if (step % 20 == 10) CHECK(near_pairs(search, *model).missing == 0);
+  }
+  CHECK(search.control.skin > wide / 4);
+}
+
 TEST_CASE("surfaces that turn and fall as one need no search, and one as soon as they turn differently") {
   const auto context = test::context();
   const scene::Scene scene = two_sheets(0.002);
