@@ -125,9 +125,9 @@ void SurfacePairs::set_parameters(const scene::Scene& scene, const model::Model&
   in_pieces_ = pieces > 1;
   // Parts of a flat grid that share no vertex are 0.7 of a cell's side apart, which is 0.6 of the mean edge.
   // A search that reaches less far for what is side by side lists nothing then.
-  skin_ = static_cast<float>(std::max(0.55 * edge - 1.2 * thickness, 0.3 * edge));
+  const double skin = std::max(0.55 * edge - 1.2 * thickness, 0.3 * edge);
   const auto least_query = static_cast<float>(std::min(1.2 * thickness, 0.25 * edge));
-  blocks_.set_skin(skin_);
+  blocks_.set_skin(static_cast<float>(skin));
   for (const gl::Program* program : programs()) {
     program->set("dt", static_cast<float>(scene.solver.dt));
     program->set("piece_count", pieces);

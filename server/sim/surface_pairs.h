@@ -80,7 +80,7 @@ class SurfacePairs {
 
   std::uint32_t vertex_count_ = 0, triangle_count_ = 0;
   Capacities capacity_;
-  float most_query_ = 0, skin_ = 0;  ///< [m]
+  float most_query_ = 0;  ///< [m]
   bool driven_ = false, in_pieces_ = false, searched_ = false;
   std::uint64_t updates_ = 0;  ///< calls of `update` since `invalidate`
   gl::Program corners_, boxes_program_, leaf_pairs_program_, bundle_pairs_program_, triangle_pairs_program_,

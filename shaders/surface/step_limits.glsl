@@ -3,10 +3,10 @@
 // for each motion, which passes use in turns.
 uniform int pass;  // of the filter, in this step or piece
 
-/// `tag`: of a pinned vertex its motion's index or -1.
+/// Where the limit of vertex i is. `tag`: of a pinned one its motion's index or -1. A body has none, whatever moves it.
 int limit_of(int i, float inverse_mass, float tag) {
 #if MOTION_COUNT > 0
-  if (inverse_mass == 0.0 && tag >= 0.0) return vertex_count + 2 * int(tag) + pass % 2;
+  if (i < cloth_vertex_count && inverse_mass == 0.0 && tag >= 0.0) return vertex_count + 2 * int(tag) + pass % 2;
 #endif
   return i;
 }
