@@ -12,10 +12,10 @@ uniform float most_skin;        // [m]
 const float rounding = 1.001;
 
 // A wide skin makes searches rare but lists long, and every step reads the lists. Few pairs are read in less time than
-// a search takes. Of more, a search should list so many that the next one is due about `wanted_checks` later; and lists
-// that stay valid for much longer are made anew, with a narrower skin.
-const uint few_pairs = 4096u, wanted_checks = 8u;
-const float least_share = 0.125;  // of the widest skin
+// a search takes. To read more takes about as long as to search for them: a search should list so many that the next
+// one is due about `wanted_checks` later, and lists that stay valid for much longer are made anew, with a narrower skin.
+const uint few_pairs = 4096u, wanted_checks = 3u;
+const float least_share = 0.0625;  // of the widest skin
 
 /// A block: all its vertices were within `radius` of `place` at the last search. Now they are where `turn` about that
 /// place, which then goes to `moved`, takes them, but for `bend`; and where the shift `motion` takes them, but for
@@ -67,7 +67,7 @@ bool valid(int i) {
 /// True if the lists are longer than they need be.
 bool too_long() {
   return known.pairs > few_pairs && known.checks >= 4u * wanted_checks &&
-         uintBitsToFloat(known.skin) > 1.01 * least_share * most_skin;
+         uintBitsToFloat(known.skin) > 2.0 * least_share * most_skin;
 }
 
 float next_skin() {
