@@ -6,16 +6,16 @@
 READ_VEC4(block_motions, unit_block_motions);
 uniform int block_count;        // at most GROUP_SIZE
 uniform int cloth_block_count;  // those of bodies come after them, and do not meet each other
-
 uniform float most_skin;        // [m]
 
 const float rounding = 1.001;
 
 // A wide skin makes searches rare but lists long, and every step reads the lists. Few pairs are read in less time than
-// a search takes. To read more takes about as long as to search for them: a search should list so many that the next
-// one is due about `wanted_checks` later, and lists that stay valid for much longer are made anew, with a narrower skin.
-const uint few_pairs = 4096u, wanted_checks = 3u;
+// a search takes. The more there are, the sooner the next search should be due; and lists that stay valid for much
+// longer than that are made anew, with a narrower skin.
+const uint few_pairs = 4096u;
 const float least_share = 0.0625;  // of the widest skin
+float wanted_checks() { return clamp(2e5 / float(known.pairs), 3.0, 24.0); }
 
 /// A block: all its vertices were within `radius` of `place` at the last search. Now they are where `turn` about that
 /// place, which then goes to `moved`, takes them, but for `bend`; and where the shift `motion` takes them, but for
@@ -66,14 +66,14 @@ bool valid(int i) {
 
 /// True if the lists are longer than they need be.
 bool too_long() {
-  return known.pairs > few_pairs && known.checks >= 4u * wanted_checks &&
+  return known.pairs > few_pairs && float(known.checks) >= 4.0 * wanted_checks() &&
          uintBitsToFloat(known.skin) > 2.0 * least_share * most_skin;
 }
 
 float next_skin() {
   float skin = uintBitsToFloat(known.skin), lasts = float(max(known.checks, 1u));
   if (skin == 0.0 || known.pairs <= few_pairs) return most_skin;
-  return clamp(skin * float(wanted_checks) / lasts, least_share * most_skin, most_skin);
+  return clamp(skin * wanted_checks() / lasts, least_share * most_skin, most_skin);
 }
 
 void main() {

@@ -23,7 +23,7 @@ void shorten(uvec4 corner, vec4 shares, vec4 inverse_mass) {
   control.step_counts[turn].cut_vertices = known.step_counts[turn].vertex_groups;
   for (int k = 0; k < 4; ++k) {
     if (corner[k] < uint(cloth_vertex_count)) atomicAdd(at_vertex[corner[k]].shortening, 1u);
-    if (shares[k] < 1.0) 
+    if (shares[k] < 1.0)
       atomicMin(limits[limit_of_corner(corner[k], inverse_mass[k])], floatBitsToUint(shares[k]));
   }
 }
@@ -33,8 +33,8 @@ void stop(uvec4 corner, vec4 shares, vec3 n, vec4 weight, vec4 inverse_mass) {
   bool limiting = false;
   float approach = 0.0;
   for (int k = 0; k < 4; ++k) {
-    limiting = limiting || (shares[k] < 1.0 && floatBitsToUint(shares[k]) ==
-                                                   limits[limit_of_corner(corner[k], inverse_mass[k])]);
+    uint least = limits[limit_of_corner(corner[k], inverse_mass[k])];
+    limiting = limiting || (shares[k] < 1.0 && floatBitsToUint(shares[k]) == least);
     approach -= weight[k] * dot(n, FETCH(velocity, corner[k]).xyz);
   }
   vec4 mobility = weight * inverse_mass;
