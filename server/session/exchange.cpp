@@ -1,6 +1,7 @@
 #include "server/session/exchange.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace clothlab::session {
@@ -116,7 +117,24 @@ void Exchange::emit(Event event) {
   {
     const std::lock_guard lock(mutex_);
     remove_awaited(event);
-    events_.push_back(std::move(event));
+    place_of_events().push_back(std::move(event));
+    if (holding_) return;
+  }
+  wake_();
+}
+
+void Exchange::hold_events() {
+  const std::lock_guard lock(mutex_);
+  holding_ = true;
+}
+
+void Exchange::release_events() {
+  {
+    const std::lock_guard lock(mutex_);
+    holding_ = false;
+    if (held_.empty()) return;
+    std::move(held_.begin(), held_.end(), std::back_inserter(events_));
+    held_.clear();
   }
   wake_();
 }
@@ -125,7 +143,8 @@ void Exchange::publish(const Status& status) {
   {
     const std::lock_guard lock(mutex_);
     std::erase_if(events_, [](const Event& event) { return std::holds_alternative<Status>(event); });
-    events_.push_back(status);
+    place_of_events().push_back(status);
+    if (holding_) return;
   }
   wake_();
 }

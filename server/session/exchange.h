@@ -158,6 +158,18 @@ class Exchange {
   /// most `commands_a_turn`, so that a session with many commands still ends, beats and makes frames in time.
   bool take_commands(std::vector<Command>& out, Clock::time_point until);
   void emit(Event event);
+  /// While it lives, events are held back; at its end the service thread gets them all at once. So a viewer
+  /// who comes when a change has been answered is greeted with the changed scene. Not nested.
+  class Batch {
+   public:
+    explicit Batch(Exchange& exchange) : exchange_(exchange) { exchange_.hold_events(); }
+    ~Batch() { exchange_.release_events(); }
+    Batch(const Batch&) = delete;
+    Batch& operator=(const Batch&) = delete;
+
+   private:
+    Exchange& exchange_;
+  };
   /// Adds a status to the events and removes older statuses that still wait. The new status comes after all
   /// waiting events, as it shows the state after them.
   void publish(const Status& status);
@@ -178,12 +190,17 @@ class Exchange {
   };
   static std::optional<Awaited> answer_to(const Command& command);
   void remove_awaited(const Event& event);
+  std::vector<Event>& place_of_events() { return holding_ ? held_ : events_; }
+  void hold_events();
+  void release_events();
 
   std::function<void()> wake_;
   mutable std::mutex mutex_;
   std::condition_variable commands_changed_;
   CommandQueue commands_;
   std::vector<Event> events_;
+  std::vector<Event> held_;  ///< the events of the batch that is open
+  bool holding_ = false;
   std::array<stream::SharedMessage, form_count> frames_;
   std::list<Awaited> awaited_;  ///< in the order of asking, so the next to be answered is near the front
   std::shared_ptr<const Saved> saved_;

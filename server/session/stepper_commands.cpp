@@ -10,6 +10,7 @@
 namespace clothlab::session {
 
 void Stepper::handle(Command& command) {
+  const Exchange::Batch batch(exchange_);
   try {
     std::visit([&](auto& what) { perform(what, command.ticket); }, command.what);
   } catch (const std::bad_alloc&) {

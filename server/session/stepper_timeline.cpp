@@ -121,6 +121,7 @@ std::uint64_t Stepper::replay_changes() {
 }
 
 void Stepper::end_replay() {
+  const Exchange::Batch batch(exchange_);
   const Replay done = std::move(*replay_);
   replay_.reset();
   const Timeline::Event then = timeline_.in_force(done.step + 1);

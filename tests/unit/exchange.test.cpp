@@ -60,6 +60,29 @@ TEST_CASE("events arrive once and in order, and each wakes the service thread") 
   CHECK(events.empty());
 }
 
+TEST_CASE("events of a batch arrive together at its end, and wake the service thread once") {
+  int wakes = 0;
+  Exchange exchange([&wakes] { ++wakes; });
+  std::vector<session::Event> events;
+  exchange.emit(session::Notice{"info", "before"});
+  {
+    const Exchange::Batch batch(exchange);
+    exchange.emit(session::Notice{"info", "first"});
+    exchange.publish(session::Status{});
+    exchange.emit(session::Notice{"info", "second"});
+    exchange.take_events(events);
+    CHECK(events.size() == 1);
+    CHECK(wakes == 1);
+  }
+  CHECK(wakes == 2);
+  exchange.take_events(events);
+  REQUIRE(events.size() == 3);
+  CHECK(std::get<session::Notice>(events[0]).text == "first");
+  CHECK(std::get<session::Notice>(events[2]).text == "second");
+  { const Exchange::Batch empty(exchange); }
+  CHECK(wakes == 2);
+}
+
 TEST_CASE("only the newest status waits, after the events before it and before those after it") {
   Exchange exchange([] {});
   const auto status = [](double speed) {
