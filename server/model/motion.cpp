@@ -63,7 +63,38 @@ Pose pose_of(const scene::Placed& pin, double time, bool settled) {
   return pose;
 }
 
+double top_speed_of(std::monostate, const dvec3&) {
+  return 0.0;
+}
+
+double top_speed_of(const scene::Oscillate& motion, const dvec3&) {
+  return std::abs(2.0 * std::numbers::pi * motion.frequency * motion.amplitude);
+}
+
+double top_speed_of(const scene::Linear& motion, const dvec3&) {
+  return glm::length(motion.velocity);
+}
+
+double top_speed_of(const scene::Spin& motion, const dvec3& home) {
+  const double rate = motion.degrees_per_second * std::numbers::pi / 180.0;
+  return std::abs(rate) * glm::length(glm::cross(motion.axis, home - motion.center));
+}
+
+double top_speed_of(const scene::Placed& pin, const dvec3& home) {
+  const double glide = 1.5 / scene::Placed::glide * glm::distance(pin.place, home);
+  // On its way it is between `home` and `place`, and no farther from an axis than the farther one of them.
+  return glide + std::visit(
+                     [&](const auto& kind) {
+                       return std::max(top_speed_of(kind, home), top_speed_of(kind, pin.place));
+                     },
+                     pin.then);
+}
+
 }  // namespace
+
+double top_speed(const scene::Motion& motion, const dvec3& home) {
+  return std::visit([&](const auto& kind) { return top_speed_of(kind, home); }, motion);
+}
 
 dvec3 Pose::velocity_at(const dvec3& position) const {
   return linear_velocity + glm::cross(angular_velocity, position);

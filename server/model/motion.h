@@ -26,6 +26,9 @@ struct Pose {
 /// does not glide there from its rest place.
 Pose pose(const scene::Motion& motion, double time, bool settled = false);
 
+/// A speed that the point whose home is at `home` never exceeds under `motion` [m/s].
+double top_speed(const scene::Motion& motion, const glm::dvec3& home);
+
 /// Velocity of the air [m/s] at `time` [s] since the start.
 glm::dvec3 wind_velocity(const scene::Wind& wind, double time);
 

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <glm/geometric.hpp>
 #include <string>
 #include <tuple>
 
+#include "server/model/motion.h"
 #include "server/scene/method.h"
+#include "server/scene/solid.h"
 #include "server/sim/colliders.h"
 #include "server/sim/integrator.h"
 #include "server/sim/surface_control.h"
@@ -32,12 +36,39 @@ constexpr Passes of_short_driven_step{8, 0, 3}, of_long_driven_step{16, 1, 8};
 constexpr double longest_whole_step = 0.001;
 constexpr int most_pieces = 8;
 /// How far a vertex goes in a piece where pins, bodies or colliders move, in thicknesses: pushes make room
-/// for so much, layer behind layer.
+/// for so much, layer behind layer. Where they are too fast for that in `most_pieces`, a step of any length
+/// has more.
 constexpr double driven_advance = 0.25;
+constexpr int most_driven_pieces = 64;
 constexpr std::size_t words_of_vertex = 8;  // shaders/surface/vertex_contacts.glsl
 /// Share of an overlap that a step mends, and the most that it does a second [1/s]: what is mended is no
 /// velocity, but it moves what lies on it.
 constexpr double mended_in_step = 0.2, mended_in_second = 20.0;
+
+/// No pin, body or collider ever moves faster [m/s].
+double fastest_driven(const scene::Scene& scene, const model::Model& model) {
+  double fastest = 0.0;
+  for (std::uint32_t i = 0; i < model.vertex_count(); ++i)
+    if (model.pin_motion[i] != model::not_pinned)
+      fastest =
+          std::max(fastest, model::top_speed(model.motions[static_cast<std::size_t>(model.pin_motion[i])],
+                                             model.rest_position[i]));
+  for (std::uint32_t i = 0; i < model.body_vertex_count(); ++i)
+    fastest = std::max(fastest,
+                       model::top_speed(model.bodies[model.vertex_body[i]].motion, model.body_position[i]));
+  for (const scene::Collider& collider : scene.colliders) {
+    if (collider.shape.index() >= scene::solid_kinds) continue;
+    const scene::Solid solid = scene::solid(collider.shape);
+    const double reach = solid.radius + glm::length(solid.extent);
+    for (int axis = 0; axis < 3; ++axis)  // around a line in space, one of these six points is farthest
+      for (const double side : {-1.0, 1.0}) {
+        model::dvec3 point = solid.point;
+        point[axis] += side * std::sqrt(3.0) * reach;
+        fastest = std::max(fastest, model::top_speed(collider.motion, point));
+      }
+  }
+  return fastest;
+}
 
 gl::TextureBuffer vector_per_vertex(std::uint32_t vertex_count) {
   return {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
@@ -105,9 +136,11 @@ void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Mode
                                     const MotionTable& motions) {
   const double dt = scene.solver.dt;
   bodies_.set_parameters(scene, model, motions);
-  pieces_ = dt > longest_whole_step ? most_pieces : 1;
-  pairs_.set_parameters(scene, model, pieces_);
   const double advance = driven_ ? driven_advance * SurfacePairs::thickness(scene, model) : 1e30;
+  const double driven_pieces = driven_ ? std::ceil(dt * fastest_driven(scene, model) / advance) : 1.0;
+  pieces_ = std::max(dt > longest_whole_step ? most_pieces : 1,
+                     static_cast<int>(std::min<double>(driven_pieces, most_driven_pieces)));
+  pairs_.set_parameters(scene, model, pieces_);
   advance_.set("most_advance", static_cast<float>(advance));
   for (const gl::Program* program : programs()) {
     program->set("dt", static_cast<float>(dt));
@@ -121,7 +154,10 @@ void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Mode
   push_passes_ = passes.pushes;
   rub_passes_ = passes.rubs;
   filter_passes_ = passes.filter;
-  set_colliders(apply_, scene, model, motions);
+  for (const gl::Program* program : {&apply_, &advance_, &move_, &move_last_})
+    set_colliders(*program, scene, model, motions);
+  for (const gl::Program* program : {&move_, &move_last_})
+    program->set("margin", static_cast<float>(contact_margin(scene, model)));
   forces_.set("friction", static_cast<float>(scene.self_collision ? scene.self_collision->friction : 0.0));
   forces_.set("mend", static_cast<float>(std::min(mended_in_step, mended_in_second * dt)));
   invalidate();
@@ -142,7 +178,7 @@ Work SurfaceContact::update_pairs(const StateBuffers& state, int row) {
   if (keeps_start_ || pieces_ > 1) start_.buffer.copy_from(state.position().buffer);
 }
 
-void SurfaceContact::advance(const StateBuffers& state, int piece, std::uint32_t changing) {
+void SurfaceContact::advance(const StateBuffers& state, int row, int piece, std::uint32_t changing) {
   const auto run = [&](const gl::Program& program) {
     program.use();
     program.set("changing_vertex_count", static_cast<GLint>(changing));
@@ -152,6 +188,7 @@ void SurfaceContact::advance(const StateBuffers& state, int piece, std::uint32_t
   state.position().bind(unit_position);
   state.velocity().bind(unit_velocity);
   state.position().buffer.bind_storage(slot_next_position);
+  state.velocity().buffer.bind_storage(slot_next_velocity);
   pairs_.bind();
   if (piece == 0) {
     start_.bind(unit_step_start);
@@ -164,6 +201,7 @@ void SurfaceContact::advance(const StateBuffers& state, int piece, std::uint32_t
   path_.bind(unit_path);
   start_.buffer.bind_storage(slot_step_start);
   advance_.set("piece", piece);
+  if (driven_) advance_.set("start_row", row);
   run(advance_);
 }
 
@@ -171,7 +209,7 @@ void SurfaceContact::keep_apart(StateBuffers& state, int row) {
   const std::uint32_t changing = bodies_.changes() ? vertex_count_ : cloth_vertex_count_;
   bodies_.place_at_end(state, row);
   for (int piece = 0; piece < pieces_; ++piece) {
-    if (pieces_ > 1) advance(state, piece, changing);
+    if (pieces_ > 1) advance(state, row, piece, changing);
     push_and_filter(state, row, changing, piece == pieces_ - 1);
   }
 }

@@ -59,7 +59,7 @@ class SurfaceContact {
   std::array<const gl::Program*, 11> programs() const;
   /// Takes vertices along the next piece of the step (shaders/surface/advance.comp), from where they are;
   /// `piece` 0: from the step's start, with the pairs that `update_pairs` has brought up to date.
-  void advance(const StateBuffers& state, int piece, std::uint32_t changing);
+  void advance(const StateBuffers& state, int row, int piece, std::uint32_t changing);
   /// Of a step, or of a piece of it; `row`: of the motion table, at the step's start; `changing`: vertices
   /// that it moves.
   void push_and_filter(StateBuffers& state, int row, std::uint32_t changing, bool last_piece);

@@ -14,8 +14,15 @@ uniform vec4 solids[SOLID_ROWS];
 // The surface met last: its unit normal, its velocity [m/s] at the contact, friction and restitution.
 vec3 met_normal, met_velocity;
 vec2 met_surface;
-/// Displacement [m] that friction takes from the step. The caller applies it: not all callers use the velocity given.
+/// Displacement [m] that friction takes from the path. The caller applies it: not all callers use the velocity given.
 vec3 met_braking;
+
+#ifdef SOLIDS_IN_PIECES
+float piece_begin = 0.0, piece_end = 1.0;  // of the step, which part the path is
+float path_time() { return dt * (piece_end - piece_begin); }
+#else
+float path_time() { return dt; }
+#endif
 
 #ifdef SECOND_VELOCITY
 vec3 second_velocity;  // a second velocity of the vertex: contacts change it, too
@@ -29,7 +36,8 @@ void meet_surface(vec3 surface, vec3 normal, vec3 from, vec3 x, inout vec3 v) {
   met_normal = normal;
   met_velocity = moving;
   met_surface = surface.xy;
-  met_braking += contact_braking(x - met_braking - from - dt * moving, v - moving, normal, surface.x, surface.y);
+  vec3 slid = x - met_braking - from - path_time() * moving;
+  met_braking += contact_braking(slid, v - moving, normal, surface.x, surface.y);
   v = moving + contact_velocity(v - moving, normal, surface.x, surface.y);
 #ifdef SECOND_VELOCITY
   second_velocity = moving + contact_velocity(second_velocity - moving, normal, surface.x, surface.y);
@@ -57,7 +65,19 @@ Solid moved_to(int kind, int motion, int row, Solid solid) {
   return solid;
 }
 
-/// Stops the step from -> x at a solid, thicker by `reach` [m], and changes the end velocity v. `first`: its first row.
+/// Between two places of a solid, at a share of the way.
+Solid between(Solid before, Solid after, float share) {
+  Solid solid = after;
+  solid.point = mix(before.point, after.point, share);
+  solid.direction = normalize(mix(before.direction, after.direction, share));
+  vec3 second = mix(before.second, after.second, share);
+  vec3 across = second - solid.direction * dot(second, solid.direction);
+  float squared = dot(across, across);
+  if (squared > 0.0) solid.second = across * inversesqrt(squared);
+  return solid;
+}
+
+/// Stops the path from -> x at a solid, thicker by `reach` [m], and changes the end velocity v. `first`: its first row.
 /// Returns the number of contacts, 0 or 1.
 int meet_solid(int kind, bool moves, int first, vec3 from, inout vec3 x, inout vec3 v, float reach) {
   vec3 surface = solids[first + 2].xyz;
@@ -66,6 +86,11 @@ int meet_solid(int kind, bool moves, int first, vec3 from, inout vec3 x, inout v
   if (moves) {
     after = moved_to(kind, int(surface.z), END_ROW, before);
     before = moved_to(kind, int(surface.z), 0, before);
+#ifdef SOLIDS_IN_PIECES
+    Solid start = before, end = after;
+    before = between(start, end, piece_begin);
+    after = between(start, end, piece_end);
+#endif
   }
   RARELY(solid_near(kind, before, after, from, x)) {
     vec3 stopped, normal;
@@ -96,6 +121,19 @@ int meet_run(int kind, bool moves, int first, int end, vec3 from, inout vec3 x, 
   return met;
 }
 #endif
+
+/// Depth of x below the surface of the solid at rest in which it is deepest, thicker by `reach` [m]; less than 0
+/// outside of all.
+float depth_in_solids_at_rest(vec3 x, float reach) {
+  float depth = -1e30;
+#if SOLID_ROWS > 0
+#define DEEPEST(kind, moves, first, end)                       \
+  for (int row = first; !moves && row < end; row += solid_rows(kind)) \
+    depth = max(depth, solid_depth(kind, solid_at(kind, row, reach), x));
+  EACH_SOLID(DEEPEST)
+#endif
+  return depth;
+}
 
 /// Stops the step from -> x, with end velocity v, at the solids, thicker by `reach` [m]. Returns the number of solids
 /// met.

@@ -134,6 +134,15 @@ FUNCTION bool body_contact(vec3 extent, real radius, vec3 from, vec3 to, OUT(rea
   return push > real(0.0);
 }
 
+/// Depth of x below the surface of a solid of this kind [m]; less than 0 outside. An unknown kind is nowhere.
+FUNCTION real solid_depth(int kind, Solid solid, vec3 x) {
+  vec3 from = x - solid.point, normal;
+  if (kind == solid_sphere) return solid.radius - sqrt(dot(from, from));
+  if (kind == solid_plane) return plane_depth(solid, x);
+  if (solid_has_axes(kind)) return body_depth(solid.extent, solid.radius, along_axes(solid, from), normal);
+  return real(-1e30);
+}
+
 /// A cheap test before solid_contact: false if the path from -> to cannot meet the solid, which moves from `before` to
 /// `after` meanwhile.
 FUNCTION bool solid_near(int kind, Solid before, Solid after, vec3 from, vec3 to) {

@@ -2,10 +2,14 @@
 // pairs allow; then pushes and the filter follow, before the next piece. So the search need not reach as far as the
 // fastest vertex goes in a step. What changes a velocity on the way changes what is left of the way.
 #include "surface.glsl"
+#include "../methods/motions.glsl"
+#define SOLIDS_IN_PIECES
+#include "../collide/colliders.glsl"
 READ_VEC4(path, unit_path);  // if free: its way less its velocity [m/s]; if held: where it ends [m]; w: inverse mass
 READ_VEC4(velocity, unit_velocity);
 layout(std430, binding = slot_next_position) buffer Position { vec4 position[]; };
 layout(std430, binding = slot_step_start) buffer Start { vec4 piece_start[]; };
+layout(std430, binding = slot_next_velocity) writeonly buffer Velocity { vec4 velocity_left[]; };
 uniform float most_advance;  // of a vertex in a piece [m]
 uniform int piece;  // 0: the first, which begins where the step does; `position` has the step's end then
 
@@ -27,5 +31,16 @@ void main() {
   bool free = way.w > 0.0;
   vec3 end = free ? start.xyz + (FETCH(velocity, i).xyz + way.xyz) * (part * dt)
                   : part < left ? start.xyz + (way.xyz - start.xyz) * (part / left) : way.xyz;
+#if SOLID_ROWS > 0
+  if (free) {
+    vec3 v = FETCH(velocity, i).xyz;
+    piece_begin = 1.0 - left;
+    piece_end = piece_begin + part;
+    if (resolve_colliders(start.xyz, end, v, 0.0) > 0) {
+      end -= met_braking;
+      velocity_left[i].xyz = v;
+    }
+  }
+#endif
   position[i] = vec4(end, way.w);
 }

@@ -3,6 +3,7 @@
 #include "surface.glsl"
 #include "vertex_contacts.glsl"
 #include "../methods/motions.glsl"
+#define SOLIDS_IN_PIECES
 #include "../collide/colliders.glsl"
 READ_VEC4(step_start, unit_step_start);
 layout(std430, binding = slot_next_position) buffer Position { vec4 position[]; };
@@ -39,10 +40,10 @@ void stop_at_solids(int i) {
   vec3 start = FETCH(step_start, i).xyz, x = position[i].xyz, v = velocity[i].xyz;
   met_braking = vec3(0.0);
   int met = 0;
-  // A solid that moves is where the step takes it, but a piece ends before the step does.
 #if SOLID_ROWS > 0
-#define STOP(kind, moves, first, end) \
-  if (!moves || piece_count == 1) met += meet_run(kind, moves, first, end, start, x, v, 0.0);
+  piece_begin = uintBitsToFloat(known.gone);
+  piece_end = piece_begin + uintBitsToFloat(known.part);
+#define STOP(kind, moves, first, end) met += meet_run(kind, moves, first, end, start, x, v, 0.0);
   EACH_SOLID(STOP)
 #endif
   if (met > 0) {
@@ -56,7 +57,7 @@ void rub_on_solid(int i) {
   Borne on = borne[i];
   FrictionLeft left = FrictionLeft(on.normal.w, on.velocity.w);
   if (!(left.displacement > 0.0 || left.velocity > 0.0)) return;
-  vec3 moved = position[i].xyz - FETCH(step_start, i).xyz - dt * on.velocity.xyz;
+  vec3 moved = position[i].xyz - FETCH(step_start, i).xyz - dt * uintBitsToFloat(known.part) * on.velocity.xyz;
   position[i].xyz -= rub(moved, on.normal.xyz, 1.0, left.displacement);
   velocity[i].xyz -= rub(velocity[i].xyz - on.velocity.xyz, on.normal.xyz, 1.0, left.velocity);
   borne[i].normal.w = left.displacement;

@@ -3,6 +3,8 @@
 #include "surface.glsl"
 #include "vertex_contacts.glsl"
 #include "step_limits.glsl"
+#include "../methods/motions.glsl"
+#include "../collide/colliders.glsl"
 READ_VEC4(position, unit_position);  // so far; w: inverse mass [1/kg]
 READ_VEC4(step_target, unit_step_target);
 READ_UVEC4(vertex_contacts, unit_vertex_contacts);
@@ -11,6 +13,7 @@ layout(std430, binding = slot_next_position) writeonly buffer Position { vec4 mo
 layout(std430, binding = slot_next_velocity) buffer Velocity { vec4 velocity[]; };
 layout(std430, binding = slot_step_limits) writeonly buffer Limits { uint limits[]; };
 uniform float held_part;  // as in limit.comp
+uniform float margin;     // at which solids keep vertices [m]
 
 /// A vertex that takes less than this of its step is jammed between others: what its springs give it would add up, step
 /// after step, until it comes free. It loses half of its speed in a step.
@@ -34,6 +37,13 @@ void take_impulses(int i) {
 }
 #endif
 
+/// A step around a solid, of which a vertex takes a share, may end within the solid: then it takes none. Solids yield
+/// half of their margin, or what lies on one could not slide.
+bool ends_in_solid(vec3 x, vec3 there) {
+  float depth = depth_in_solids_at_rest(there, -0.5 * margin);
+  return depth > 0.0 && depth > depth_in_solids_at_rest(x, -0.5 * margin);
+}
+
 void main() {
   int i = int(gl_GlobalInvocationID.x);
 #if MOTION_COUNT > 0
@@ -51,6 +61,9 @@ void main() {
   if (cut) {
     float size = length(way);
     if (share * size < shortest_part * rounding_at(x.xyz, size)) share = 0.0;
+#if SOLID_ROWS > 0
+    if (!moves_by_itself && ends_in_solid(x.xyz, x.xyz + share * way)) share = 0.0;
+#endif
     limits[i] = floatBitsToUint(1.0);
   }
   moved_position[i] = vec4(min(share, part) < 1.0 ? x.xyz + share * way : goal.xyz, x.w);

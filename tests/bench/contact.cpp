@@ -2,8 +2,9 @@
 // crossings its frames have. Prints a line of JSON; tests/bench/contact.mjs makes a table of many.
 //   bench_contact SCENE KIND METHOD SIZE THICKNESS SPEED TIME [MOST_SECONDS]
 // A frame is a thirtieth of a second, or a step where that is longer. Crossings are edges that meet a
-// triangle of a cloth, counted without rounding in double precision (server/model/crossings.h). It ends
-// early, and says so, if the simulation diverges or after MOST_SECONDS of wall time.
+// triangle of a cloth, counted without rounding in double precision (server/model/crossings.h). `deepest_mm`
+// is how deep a vertex that no pin holds was in a solid in any frame, -1000 if none was. It ends early,
+// and says so, if the simulation diverges or after MOST_SECONDS of wall time.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -18,6 +19,7 @@
 #include "server/model/crossings.h"
 #include "server/sim/simulation.h"
 #include "tests/contact_scenes.h"
+#include "tests/within_solids.h"
 
 using namespace clothlab;
 
@@ -67,7 +69,7 @@ int main(int argc, char** argv) {
   const double dt = document->scene.solver.dt, start = seconds();
   const auto steps = std::max(1u, static_cast<std::uint32_t>(std::lround(1.0 / (30.0 * dt))));
   std::uint64_t most = 0, frames = 0, crossed = 0;
-  double stepping = 0.0, largest_strain = 0.0;
+  double stepping = 0.0, largest_strain = 0.0, deepest = 0.0;
   bool diverged = false;
   while (simulation.time() < time - 0.5 * dt && seconds() - start < most_seconds && !diverged) {
     const double before = seconds();
@@ -84,17 +86,18 @@ int main(int argc, char** argv) {
     ++frames;
     crossed += count > 0;
     most = std::max(most, count);
+    deepest = std::max(deepest, test::deepest_in_solids(simulation, state));
     largest_strain = std::max(largest_strain, static_cast<double>(simulation.diagnose().max_strain));
   }
   std::printf(
       "{\"scene\":\"%s\",\"kind\":\"%s\",\"method\":\"%s\",\"size\":%d,\"thickness\":%g,\"speed\":%g,"
       "\"vertices\":%u,\"dt\":%g,\"time\":%.4g,\"frames\":%llu,\"crossed_frames\":%llu,\"most_crossings\":%"
       "llu,"
-      "\"diverged\":%s,\"max_strain\":%.3g,\"ns_per_vertex_step\":%.0f}\n",
+      "\"diverged\":%s,\"deepest_mm\":%.3g,\"max_strain\":%.3g,\"ns_per_vertex_step\":%.0f}\n",
       argv[1], argv[2], argv[3], options.size, options.thickness, options.speed,
       simulation.model().vertex_count(), dt, simulation.time(), static_cast<unsigned long long>(frames),
       static_cast<unsigned long long>(crossed), static_cast<unsigned long long>(most),
-      diverged ? "true" : "false", largest_strain,
+      diverged ? "true" : "false", 1e3 * deepest, largest_strain,
       1e9 * stepping /
           static_cast<double>(simulation.model().vertex_count() *
                               std::max<std::uint64_t>(simulation.step_index(), 1)));

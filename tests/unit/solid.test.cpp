@@ -113,6 +113,8 @@ TEST_CASE("a vertex that rests within a solid, of any kind, leaves it by the sho
       const double depth = test::depth(shape, x) + margin;
       const Outcome outcome = path(shape, shape, x, x);
       CHECK(outcome.met == (depth > 0.0));
+      CHECK(elements::solid_depth(scene::solid(shape).kind, with_margin(shape), x) ==
+            Approx(depth).margin(1e-12));
       if (!outcome.met) continue;
       ++inside;
       CHECK(glm::distance(outcome.stopped, x) == Approx(depth));
@@ -286,6 +288,7 @@ TEST_CASE("an unknown kind of solid meets nothing") {
     const dvec3 from(0.0, 3.0, 0.0), to(0.0, -0.5, 0.0);
     CHECK(!elements::solid_near(kind, solid, solid, from, to));
     CHECK(!elements::solid_within(kind, solid, from, 10.0));
+    CHECK(elements::solid_depth(kind, solid, to) < 0.0);
     CHECK(!elements::solid_contact(kind, solid, solid, from, to, stopped, normal));
     CHECK(stopped == to);
   }
