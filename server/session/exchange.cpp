@@ -97,7 +97,14 @@ void Exchange::stop() {
 void Exchange::take_events(std::vector<Event>& out) {
   out.clear();
   const std::lock_guard lock(mutex_);
-  out.swap(events_);
+  if (!holding_) {
+    out.swap(events_);
+    return;
+  }
+  const auto held = events_.begin() + held_from_;
+  std::move(events_.begin(), held, std::back_inserter(out));
+  events_.erase(events_.begin(), held);
+  held_from_ = 0;
 }
 
 stream::SharedMessage Exchange::frame(stream::Form form) const {
@@ -117,7 +124,7 @@ void Exchange::emit(Event event) {
   {
     const std::lock_guard lock(mutex_);
     remove_awaited(event);
-    place_of_events().push_back(std::move(event));
+    events_.push_back(std::move(event));
     if (holding_) return;
   }
   wake_();
@@ -126,15 +133,16 @@ void Exchange::emit(Event event) {
 void Exchange::hold_events() {
   const std::lock_guard lock(mutex_);
   holding_ = true;
+  held_from_ = std::ssize(events_);
 }
 
 void Exchange::release_events() {
   {
     const std::lock_guard lock(mutex_);
+    const bool none_held = held_from_ == std::ssize(events_);
     holding_ = false;
-    if (held_.empty()) return;
-    std::move(held_.begin(), held_.end(), std::back_inserter(events_));
-    held_.clear();
+    held_from_ = 0;
+    if (none_held) return;
   }
   wake_();
 }
@@ -142,8 +150,11 @@ void Exchange::release_events() {
 void Exchange::publish(const Status& status) {
   {
     const std::lock_guard lock(mutex_);
-    std::erase_if(events_, [](const Event& event) { return std::holds_alternative<Status>(event); });
-    place_of_events().push_back(status);
+    const auto older = std::remove_if(events_.begin() + held_from_, events_.end(), [](const Event& event) {
+      return std::holds_alternative<Status>(event);
+    });
+    events_.erase(older, events_.end());
+    events_.push_back(status);
     if (holding_) return;
   }
   wake_();

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <glm/vec3.hpp>
@@ -190,17 +191,16 @@ class Exchange {
   };
   static std::optional<Awaited> answer_to(const Command& command);
   void remove_awaited(const Event& event);
-  std::vector<Event>& place_of_events() { return holding_ ? held_ : events_; }
   void hold_events();
-  void release_events();
+  void release_events();  ///< allocates nothing, as it must not fail
 
   std::function<void()> wake_;
   mutable std::mutex mutex_;
   std::condition_variable commands_changed_;
   CommandQueue commands_;
   std::vector<Event> events_;
-  std::vector<Event> held_;  ///< the events of the batch that is open
-  bool holding_ = false;
+  bool holding_ = false;          ///< a batch is open
+  std::ptrdiff_t held_from_ = 0;  ///< index of its first event; 0 if none is open
   std::array<stream::SharedMessage, form_count> frames_;
   std::list<Awaited> awaited_;  ///< in the order of asking, so the next to be answered is near the front
   std::shared_ptr<const Saved> saved_;
