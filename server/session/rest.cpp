@@ -14,9 +14,9 @@ constexpr double pixel = 1.0 / 720;
 constexpr double pixels_a_second = 10;
 // So small a swing cannot be seen, and a cloth that creeps so slowly takes 50 stretches for a pixel.
 constexpr double pixels_a_stretch = 0.02;
-// Where surfaces lie on each other, their few passes leave a creep that takes 10 stretches for a pixel, and
+// Where surfaces lie on each other, their few passes leave a creep that takes 3 stretches for a pixel, and
 // speeds, of vertices that go nowhere, of somewhat more than gravity gives in a step.
-constexpr double pixels_on_surfaces = 0.1, falls_on_surfaces = 2;
+constexpr double pixels_on_surfaces = 0.3, falls_on_surfaces = 2;
 // Rounding moves coordinates in float32 by up to this many units in the last place.
 constexpr double roundings = 4;
 constexpr double pi = 3.14159265358979;

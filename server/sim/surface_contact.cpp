@@ -43,7 +43,7 @@ constexpr int most_driven_pieces = 64;
 constexpr std::size_t words_of_vertex = 8;  // shaders/surface/vertex_contacts.glsl
 /// Share of an overlap that a step mends, and the most that it does a second [1/s]: what is mended is no
 /// velocity, but it moves what lies on it.
-constexpr double mended_in_step = 0.2, mended_in_second = 20.0;
+constexpr double mended_in_step = 0.05, mended_in_second = 5.0;
 
 /// No pin, body or collider ever moves faster [m/s].
 double fastest_driven(const scene::Scene& scene, const model::Model& model) {
@@ -253,9 +253,10 @@ void SurfaceContact::push_and_filter(StateBuffers& state, int row, std::uint32_t
   for (int pass = 0; pass < push_passes_ + rub_passes_; ++pass) {
     const bool rubs = pass >= push_passes_;
     const int next_rubs = rub_passes_ > 0 && pass >= push_passes_ - 1 ? 1 : 0;
-    forces_.set("rubs", rubs ? 1 : 0);
+    forces_.set("first_pass", pass == 0 ? 1 : 0);
+    forces_.set("pushes", rubs ? 0 : 1);
+    forces_.set("rubs", rubs || rub_passes_ < push_passes_ ? 1 : 0);
     forces_.set("next_rubs", next_rubs);
-    apply_.set("next_rubs", next_rubs);
     run(forces_, touching);
     apply_.set("recount", long_steps_ && pass > 0 ? 1 : 0);
     apply_.set("solid_friction", rub_passes_ == 0 ? 0 : rubs ? 3 : pass > 0 ? 2 : 1);

@@ -91,7 +91,7 @@ void SurfacePairs::make_lists(const Capacities& wanted) {
   pairs_ = {gl::Buffer(std::size_t{capacity_.pairs} * 4 * sizeof(std::uint32_t)), GL_RGBA32UI};
   near_pairs_ = {gl::Buffer(std::size_t{capacity_.pairs} * 12 * sizeof(std::uint32_t)), GL_RGBA32UI};
   chosen_pairs_ = {gl::Buffer(std::size_t{capacity_.pairs} * 2 * sizeof(std::uint32_t)), GL_R32UI};
-  friction_left_ = pairs_of_numbers(capacity_.pairs);
+  pair_loads_ = {gl::Buffer(std::size_t{capacity_.pairs} * 4 * sizeof(float)), GL_RGBA32F};
   contact_links_ = pairs_of_numbers(4 * capacity_.pairs);
   contact_pushes_ = {gl::Buffer(std::size_t{capacity_.pairs} * 8 * sizeof(float)), GL_RGBA32F};
   for (const gl::Program* program : programs()) {
@@ -270,13 +270,13 @@ void SurfacePairs::bind() const {
 }
 
 void SurfacePairs::bind_contacts() const {
-  friction_left_.buffer.bind_storage(slot_friction_left);
+  pair_loads_.buffer.bind_storage(slot_pair_loads);
   contact_links_.buffer.bind_storage(slot_contact_links);
 }
 
 void SurfacePairs::bind_pushes() const {
   chosen_pairs_.bind(unit_chosen_pairs);
-  friction_left_.bind(unit_friction_left);
+  pair_loads_.bind(unit_pair_loads);
   contact_links_.bind(unit_contact_links);
   contact_pushes_.bind(unit_contact_pushes);
   contact_pushes_.buffer.bind_storage(slot_contact_pushes);

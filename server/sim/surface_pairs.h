@@ -89,7 +89,7 @@ class SurfacePairs {
   gl::Buffer control_;
   gl::ReadbackRing sizes_ring_;
   gl::TextureBuffer triangles_, rest_places_, neighbour_pairs_, triangle_corners_, boxes_, leaf_pairs_,
-      bundle_pairs_, triangle_pairs_, pairs_, near_pairs_, chosen_pairs_, friction_left_, contact_links_,
+      bundle_pairs_, triangle_pairs_, pairs_, near_pairs_, chosen_pairs_, pair_loads_, contact_links_,
       contact_pushes_;
   gl::TextureBuffer built_position_;
 };

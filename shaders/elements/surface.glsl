@@ -96,6 +96,13 @@ struct FrictionLeft {
   real velocity;      // [m/s]
 };
 
+/// What a pair knows of the passes of a step so far.
+struct PairLoad {
+  real push;     // along its normal, that it began with and that may be taken back [m]
+  real impulse;  // [m/s]
+  FrictionLeft left;
+};
+
 /// What friction takes of v, a displacement or velocity whose part along n is no sliding: the share `part`, but at most
 /// what is `left`.
 FUNCTION vec3 rub(vec3 v, vec3 n, real part, INOUT(real) left) {
@@ -110,28 +117,34 @@ FUNCTION vec3 rub(vec3 v, vec3 n, real part, INOUT(real) left) {
 /// relative to each other since, with relative velocity v [m/s]. If it is nearer than `keep` [m], then `push` [m] and
 /// `impulse` [m/s] are the changes of both that keep it apart, with Coulomb friction: the `part` of them that is this
 /// pair's, to be shared by its corners. Of an overlap at the step's start the share `mend` is removed, and becomes no
-/// velocity. `rubs`: a pass of friction alone, of what pushes have moved sideways since. False: nothing changes.
+/// velocity. What the pair began with (PairLoad) is taken back where it is too much: nothing pulls.
+/// `pushes`, `rubs`: what the pass does, or both. False: nothing changes.
 FUNCTION bool surface_contact(vec3 n, real gap, vec3 moved, vec3 v, real keep, real friction, real restitution,
-                              real mend, real part, bool rubs, INOUT(FrictionLeft) left, OUT(vec3) push,
+                              real mend, real part, bool pushes, bool rubs, INOUT(PairLoad) load, OUT(vec3) push,
                               OUT(vec3) impulse) {
   push = vec3(real(0.0));
   impulse = vec3(real(0.0));
-  if (!rubs) {
-    real wanted = gap < keep ? gap + mend * (keep - gap) : keep;
-    real approach = -dot(moved, n);
-    real lacks = wanted - (gap - approach);
-    if (!(lacks > real(0.0))) return false;
-    real stopped = (real(1.0) + restitution) * max(-dot(v, n), real(0.0));
-    push = n * (part * lacks);
-    impulse = n * (part * stopped);
-    left.displacement += friction * part * min(lacks, max(approach, real(0.0)));
-    left.velocity += friction * part * stopped;
-  } else if (!(left.displacement > real(0.0) || left.velocity > real(0.0))) {
-    return false;
+  real wanted = gap < keep ? gap + mend * (keep - gap) : keep;
+  real approach = -dot(moved, n), lacks = wanted - (gap - approach);
+  bool bears = pushes && (lacks > real(0.0) || load.push > real(0.0));
+  if (bears) {
+    real more = max(part * lacks, -load.push), stopped = -dot(v, n);
+    load.push = min(load.push, load.push + more);
+    real harder = part * (stopped > real(0.0) ? (real(1.0) + restitution) * stopped : stopped);
+    harder = max(lacks > real(0.0) || load.push > real(0.0) ? harder : min(harder, real(0.0)), -load.impulse);
+    load.impulse = min(load.impulse, load.impulse + harder);
+    push = n * more;
+    impulse = n * harder;
+    real carried = min(more, part * max(approach, real(0.0)));
+    load.left.displacement = max(load.left.displacement + friction * carried, real(0.0));
+    load.left.velocity = max(load.left.velocity + friction * harder, real(0.0));
   }
-  push = push - rub(moved, n, part, left.displacement);
-  impulse = impulse - rub(v, n, part, left.velocity);
-  return true;
+  bool brakes = rubs && (load.left.displacement > real(0.0) || load.left.velocity > real(0.0));
+  if (brakes) {
+    push = push - rub(moved, n, part, load.left.displacement);
+    impulse = impulse - rub(v, n, part, load.left.velocity);
+  }
+  return bears || brakes;
 }
 
 /// Largest part of its step that a corner takes. `room` [m]: its distance from the plane that divides the pair,

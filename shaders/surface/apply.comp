@@ -14,7 +14,6 @@ READ_VEC4(contact_pushes, unit_contact_pushes);  // forces.comp
 // 1: from now on only those pairs share a vertex that pushed it in this pass. In the first passes too many others may
 // begin to.
 uniform int recount;
-uniform int next_rubs;  // as in forces.comp
 // What a pass does with the friction that a solid has left over for the vertices that it bears: 0, nothing, as no pass
 // of friction alone follows; 1, the first of a step, counts it from zero; 2, counts on; 3, friction alone, uses it too.
 uniform int solid_friction;
@@ -70,7 +69,7 @@ struct Pushes {
   ivec3 push, impulse;          // of pairs whose parts both give way [units of length, of speed]
   ivec3 push_one, impulse_one;  // of the others, by weight, in the same units
   int weight_one;               // [1 / weight_units]
-  int sharing;                  // pairs that share it in the next pass, or their weights
+  int sharing;                  // weights of the pairs that share it in the next pass
 };
 
 Pushes pushes_on(uint contact, float inverse_mass) {
@@ -89,7 +88,7 @@ Pushes pushes_on(uint contact, float inverse_mass) {
     all.push_one += one ? pushed : ivec3(0);
     all.impulse_one += one ? changed : ivec3(0);
     all.weight_one += one ? weight_here : 0;
-    all.sharing += impulse.w == 0.0 ? 0 : next_rubs != 0 ? weight_here : 1;
+    all.sharing += impulse.w == 0.0 ? 0 : weight_here;
     contact = link.x;
   }
   return all;

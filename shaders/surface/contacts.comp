@@ -7,7 +7,7 @@ READ_VEC4(step_start, unit_step_start);
 READ_UVEC4(pair_list, unit_surface_pairs);
 layout(std430, binding = slot_near_pairs) writeonly buffer NearPairs { uvec4 near_list[]; };
 layout(std430, binding = slot_chosen_pairs) writeonly buffer Chosen { uint touching_pairs[]; };
-layout(std430, binding = slot_friction_left) writeonly buffer Left { vec2 friction_left[]; };
+layout(std430, binding = slot_pair_loads) writeonly buffer Loads { vec4 pair_loads[]; };  // forces.comp
 // Of each corner of each near pair, by 4 * pair + corner: the next contact of the same vertex (VertexContacts::first),
 // and the corner's weight, as bits. In what order a vertex has them depends on the order of threads: what is made of
 // them must not.
@@ -44,14 +44,14 @@ void main() {
       if (place % uint(GROUP_SIZE) == 0u)
         atomicMax(control.step_counts[turn].touching_groups, place / uint(GROUP_SIZE) + 1u);
       touching_pairs[place] = slot;
-      friction_left[place] = vec2(0.0);
+      pair_loads[place] = vec4(0.0);
       for (int k = 0; k < 4; ++k)
         if (corner[k] < uint(cloth_vertex_count)) {
           uint contact = 4u * slot + uint(k);
           uint next = atomicExchange(at_vertex[corner[k]].first, contact + 1u);
           contact_links[contact] = uvec2(next, floatBitsToUint(apart.weight[k]));
           if (next == 0u) add_touched(corner[k]);
-          atomicAdd(at_vertex[corner[k]].sharing, 1u);
+          atomicAdd(at_vertex[corner[k]].sharing, uint(weight_in_units(apart.weight[k])));
         }
     }
   }

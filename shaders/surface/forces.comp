@@ -7,15 +7,31 @@ READ_VEC4(velocity, unit_velocity);
 READ_VEC4(step_start, unit_step_start);
 READ_VEC4(body_places, unit_body_places);  // home, motion; friction, restitution, a box's corner
 READ_UINT(touching_pairs, unit_chosen_pairs);
-READ_UVEC2(friction_before, unit_friction_left);  // of each of touching_pairs
-layout(std430, binding = slot_friction_left) writeonly buffer Left { vec2 friction_left[]; };
+// Of each of touching_pairs its PairLoad (elements/surface.glsl): push, impulse, what is left to friction of both.
+READ_VEC4(loads_before, unit_pair_loads);
+layout(std430, binding = slot_pair_loads) writeonly buffer Loads { vec4 pair_loads[]; };
 // Of each near pair two texels: push [units of length] and its kind (surface.glsl); impulse [units of speed], and 1 if
 // the pair shares its corners in the next pass.
 layout(std430, binding = slot_contact_pushes) writeonly buffer Pushes { vec4 contact_pushes[]; };
 uniform float friction;  // of cloths
 uniform float mend;      // share of an overlap that the passes of a step remove
-uniform int rubs;        // 1: a pass of friction alone
-uniform int next_rubs;   // 1: the next pass is one, shared by all pairs that have friction left
+uniform int first_pass;  // 1: the first pass of a step
+uniform int pushes;      // 1: the pass pushes pairs apart
+uniform int rubs;        // 1: it brakes what slides
+uniform int next_rubs;   // 1: the next pass brakes alone, and is shared by all pairs that have friction left
+
+/// Relaxation of passes of friction alone: near 2 they stop sooner what slides.
+const float stops_sooner = 1.9;
+
+/// How far a pair that is nearer than it is kept apart, by `overlap` [m], is pushed as a whole step begins [m]; it
+/// takes its part of that. The few passes of a step carry too little through many layers; so layers settle where their
+/// overlaps tell what they carry, and the passes have only the rest to find. No memory of the step before is needed,
+/// and what is too much is taken back. At most eight layers' weight: layers thrown upon each other shall not spring
+/// apart.
+float first_push(float overlap) {
+  float layer = 10.0 * dt * dt;
+  return uintBitsToFloat(known.part) < 1.0 ? 0.0 : 2.0 * clamp(overlap, 0.0, 4.0 * layer);
+}
 
 /// Friction and restitution of a pair: a body's, if it has a corner of one.
 vec2 surface_of(uvec4 corner) {
@@ -45,17 +61,28 @@ void main() {
   vec2 surface = surface_of(corner);
   bvec4 gives = notEqual(mobility, vec4(0.0)), first = bvec4(true, is_edges(pair), false, false);
   bool both_give = (gives.x || (first.y && gives.y)) && ((!first.y && gives.y) || gives.z || gives.w);
-  vec2 before = uintBitsToFloat(FETCH_UVEC2(friction_before, gl_GlobalInvocationID.x));
-  FrictionLeft left = FrictionLeft(before.x, before.y);
-  float part = rubs != 0 ? part_that_rubs(corner, mobility, give) : 1.0 / crowd(corner, mobility, 0u);
-  if (!both_give) part = 1.0;
-  bool acts = surface_contact(apart.xyz, apart.w, moved, v, kept_apart(corner, weight), surface.x, surface.y,
-                              mend * uintBitsToFloat(known.part), part, rubs != 0, left, push, impulse);
+  vec4 before = FETCH(loads_before, gl_GlobalInvocationID.x);
+  PairLoad load = PairLoad(before.x, before.y, FrictionLeft(before.z, before.w));
+  float part = both_give ? part_of_pair(corner, mobility, give, pushes != 0 ? 1.0 : stops_sooner) : 1.0;
+  float keep = kept_apart(corner, weight), begins = 0.0;
+  // What pushes a part that must do all of it is a mean of several pairs': nothing of that could be taken back.
+  if (first_pass != 0 && both_give) begins = part * first_push(keep - apart.w);
+  moved += begins * apart.xyz;
+  v += begins / dt * apart.xyz;
+  load.push += begins;
+  load.impulse += begins / dt;
+  load.left.displacement += surface.x * begins;
+  load.left.velocity += surface.x * begins / dt;
+  bool acts = surface_contact(apart.xyz, apart.w, moved, v, keep, surface.x, surface.y,
+                              mend * uintBitsToFloat(known.part), part, pushes != 0, rubs != 0, load, push, impulse);
+  push += begins * apart.xyz;
+  impulse += begins / dt * apart.xyz;
   acts = acts && give > 0.0;
-  bool shares = acts || (next_rubs != 0 && (left.displacement > 0.0 || left.velocity > 0.0));
+  bool shares = acts || (next_rubs != 0 && (load.left.displacement > 0.0 || load.left.velocity > 0.0));
   push *= units_of_length() / (both_give ? give : 1.0);
   impulse *= units_of_speed() / (both_give ? give : 1.0);
   contact_pushes[2u * item] = vec4(push, !acts ? no_push : both_give ? pushes_both : pushes_one);
   contact_pushes[2u * item + 1u] = vec4(impulse, shares ? 1.0 : 0.0);
-  if (acts) friction_left[gl_GlobalInvocationID.x] = vec2(left.displacement, left.velocity);
+  if (acts)
+    pair_loads[gl_GlobalInvocationID.x] = vec4(load.push, load.impulse, load.left.displacement, load.left.velocity);
 }

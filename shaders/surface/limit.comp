@@ -40,7 +40,7 @@ void stop(uvec4 corner, vec4 shares, vec3 n, vec4 weight, vec4 inverse_mass) {
   vec4 mobility = weight * inverse_mass;
   float give = dot(mobility, weight);
   if (!limiting || !(approach > 0.0) || !(give > 0.0)) return;
-  vec3 impulse = n * (approach * units_of_speed() / (give * crowd(corner, mobility, 1u)));
+  vec3 impulse = n * (approach * units_of_speed() / (give * crowd(corner, mobility)));
   for (int k = 0; k < 4; ++k) {
     ivec3 whole = in_units(mobility[k] * impulse);
     for (int axis = 0; axis < 3; ++axis)

@@ -3,24 +3,21 @@ READ_UVEC4(near_pairs, unit_near_pairs);
 // Of each vertex two texels (vertex_contacts.glsl).
 READ_UVEC4(vertex_contacts, unit_vertex_contacts);
 
-/// Most pairs that push (`texel` 0), or shorten steps at (1), a corner that gives way: each takes that share, lest they
-/// do too much.
-float crowd(uvec4 corner, vec4 mobility, uint texel) {
+/// Most pairs that shorten steps at a corner that gives way: each takes that share, lest they do too much.
+float crowd(uvec4 corner, vec4 mobility) {
   uint most = 1u;
   for (int k = 0; k < 4; ++k) {
-    uint pairs = FETCH(vertex_contacts, 2u * corner[k] + texel).w;
+    uint pairs = FETCH(vertex_contacts, 2u * corner[k] + 1u).w;
     if (mobility[k] != 0.0) most = max(most, pairs);
   }
   return float(most);
 }
 
-/// Part of what slides at a pair that it brakes in a pass of friction alone. Without the factor the magnitudes in each
-/// row of the matrix of all pairs would sum to 1 at most (Gershgorin); less than 2 keeps the passes convergent, and
-/// near it they stop sooner what slides.
-const float over_relaxation = 1.9;
-float part_that_rubs(uvec4 corner, vec4 mobility, float give) {
+/// Part of what a pair lacks, or of what slides at it, that it takes in a pass. With `relaxation` 1 the magnitudes in
+/// each row of the matrix of all pairs sum to 1 at most (Gershgorin); less than 2 keeps the passes convergent.
+float part_of_pair(uvec4 corner, vec4 mobility, float give, float relaxation) {
   float all = 0.0;
   for (int k = 0; k < 4; ++k)
     all += abs(mobility[k]) * float(FETCH(vertex_contacts, 2u * corner[k]).w) / weight_units;
-  return min(over_relaxation * give / all, 1.0);
+  return min(relaxation * give / all, 1.0);
 }

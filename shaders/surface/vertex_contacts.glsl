@@ -4,7 +4,7 @@ struct VertexContacts {
   uint first;       // of the contacts that touch it: contact_links, by number + 1; 0: none
   uint touched;     // not of this vertex: the list of those that contacts touch, in any order
   uint unused;
-  uint sharing;     // pairs that share it; before a pass of friction alone the sum of their weights [1 / weight_units]
+  uint sharing;     // sum of the weights of the pairs that share it [1 / weight_units]
   int impulse[3];   // of the filter [units of speed]
   uint shortening;  // pairs that shorten its step
 };

@@ -131,8 +131,9 @@ TEST_CASE(
   dvec3 push, impulse;
   const dvec3 n(0, 1, 0);
   const auto contact = [&](double gap, const dvec3& moved, const dvec3& v) {
-    elements::FrictionLeft left{};
-    return elements::surface_contact(n, gap, moved, v, 0.01, 0.5, 0.0, 0.1, 1.0, false, left, push, impulse);
+    elements::PairLoad load{};
+    return elements::surface_contact(n, gap, moved, v, 0.01, 0.5, 0.0, 0.1, 1.0, true, true, load, push,
+                                     impulse);
   };
   REQUIRE(contact(0.01, {0.001, -0.004, 0}, {1, -4, 0}));
   CHECK(glm::length(push - dvec3(-0.001, 0.004, 0)) < 1e-15);
@@ -149,10 +150,10 @@ TEST_CASE("friction of all passes of a step together takes no more than the push
   dvec3 push, impulse;
   const dvec3 n(0, 1, 0);
   constexpr double friction = 0.5;
-  elements::FrictionLeft left{};
+  elements::PairLoad load{};
   const auto pass = [&](const dvec3& moved, const dvec3& v, bool rubs) {
-    return elements::surface_contact(n, 0.01, moved, v, 0.01, friction, 0.0, 0.1, 0.25, rubs, left, push,
-                                     impulse);
+    return elements::surface_contact(n, 0.01, moved, v, 0.01, friction, 0.0, 0.1, 0.25, !rubs, true, load,
+                                     push, impulse);
   };
   CHECK_FALSE(pass({0.1, 0, 0}, {9, 0, 0}, true));  // friction alone, and nothing has pushed yet
   dvec3 moved(0.1, -0.004, 0), v(9, -4, 0);
@@ -171,7 +172,7 @@ TEST_CASE("friction of all passes of a step together takes no more than the push
   CHECK(slid == Approx(friction * 0.004 * stopped));
   CHECK(slowed == Approx(friction * 4.0 * stopped));
   // What is slower than that stops, in passes of friction, too.
-  left = {friction * 0.004, friction * 4.0};
+  load.left = {friction * 0.004, friction * 4.0};
   moved = {0.001, 0, 0};
   for (int k = 0; k < 60; ++k)
     if (pass(moved, {}, true)) moved += push;
