@@ -295,7 +295,7 @@ test("a frame that breaks the protocol closes its connection with 1002, and noth
     );
     assert.equal(said(bytes, 8).readUInt16BE(0), 1002, what);
     assert.ok(
-      !heard(bytes).some(({ opcode, payload }) => opcode === 1 && payload.includes("4711")),
+      !heard(bytes).some(({ opcode, payload }) => opcode === 1 && payload.includes(`"id":4711`)),
       `${what} is not answered`,
     );
     socket.net.destroy();
@@ -305,7 +305,7 @@ test("a frame that breaks the protocol closes its connection with 1002, and noth
 test("a masked frame in front of an unmasked one is answered", async () => {
   const socket = await connected();
   socket.write(frame(1, text));
-  await socket.until((bytes) => heard(bytes).some(({ payload }) => payload.includes("4711")));
+  await socket.until((bytes) => heard(bytes).some(({ payload }) => payload.includes(`"id":4711`)));
   socket.write(frame(1, text, { masked: false }));
   const close = said(
     await withTimeout(
@@ -330,7 +330,7 @@ test("control frames between the pieces of a message are answered, and the messa
     ]),
   );
   const bytes = await withTimeout(
-    socket.until((all) => heard(all).some(({ payload }) => payload.includes("4711"))),
+    socket.until((all) => heard(all).some(({ payload }) => payload.includes(`"id":4711`))),
     "the answer",
   );
   assert.equal(said(bytes, 10).toString(), "between");
