@@ -14,6 +14,8 @@ uniform vec4 solids[SOLID_ROWS];
 // The surface met last: its unit normal, its velocity [m/s] at the contact, friction and restitution.
 vec3 met_normal, met_velocity;
 vec2 met_surface;
+/// How deep in it the path began [m], 0 outside.
+float met_depth;
 /// Displacement [m] that friction takes from the path. The caller applies it: not all callers use the velocity given.
 vec3 met_braking;
 
@@ -96,6 +98,7 @@ int meet_solid(int kind, bool moves, int first, vec3 from, inout vec3 x, inout v
     vec3 stopped, normal;
     if (solid_contact(kind, before, after, from, x, stopped, normal)) {
       x = stopped;
+      met_depth = max(solid_depth(kind, before, from), 0.0);
       meet_surface(surface, normal, from, x, v);
       met = 1;
     }

@@ -151,11 +151,14 @@ FUNCTION bool surface_contact(vec3 n, real gap, vec3 moved, vec3 v, real keep, r
 /// `away` [m]: by how much its step goes away from it, `size` [m]: the step's length. `rounding` [m]: more than
 /// rounding adds to a place. Any smaller part of the step is safe, too: nearer to the plane than `rounding`, a part
 /// of a step that leads away only a little may be turned about by rounding, so that only steps are taken that clearly
-/// lead away.
-FUNCTION real share_of_step(real room, real away, real size, real rounding) {
+/// lead away. `least` [m], not less than `rounding`: no step leads nearer to the plane than that, or what is
+/// pressed together, and takes most of the room that is left again and again, would soon have none to move in any
+/// direction. Where there is less, a step may still take a tenth of it, or nothing could slide.
+FUNCTION real share_of_step(real room, real away, real size, real rounding, real least) {
   if (!(room >= rounding)) return away >= rounding && away >= real(0.1) * size ? real(1.0) : real(0.0);
-  if (room + away >= rounding) return real(1.0);
-  real meets = (room - rounding) / -away;
+  real nearest = room < least ? max(rounding, real(0.9) * room) : least;
+  if (room + away >= nearest) return real(1.0);
+  real meets = (room - nearest) / -away;
   return max(min(real(0.85) * meets, meets - real(1e-3)), real(0.0));
 }
 /// The shortest part of a step [m], in units of `rounding`, that a corner may take, but for the whole step: along a

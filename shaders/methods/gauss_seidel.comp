@@ -42,10 +42,12 @@ void advance(int i, vec3 x, vec3 v, vec3 d, out vec3 x_next, out vec3 v_next) {
   v_next = then;
 }
 
-/// Velocity of a vertex after an impact on a surface: it leaves with the restitution's share of its speed.
+/// Velocity of a vertex after an impact on a surface: it leaves with the restitution's share of its speed. What moved
+/// it out of a solid in which it began the step is no velocity: it may have been put there.
 vec3 rebound(vec3 x, vec3 v_start, vec3 v) {
   vec3 free = x + free_displacement(v_start), unused = v_start;
   RARELY(resolve_colliders(x, free, unused, 0.0) > 0) {
+    v -= met_normal * clamp(dot(v - met_velocity, met_normal), 0.0, met_depth / dt);
     if (met_surface.y > 0.0 && hits(v_start))
       v += met_normal * (met_surface.y * dot(met_velocity - v_start, met_normal) - dot(v - met_velocity, met_normal));
   }

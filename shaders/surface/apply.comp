@@ -35,7 +35,8 @@ void count_friction(int i, vec3 back, vec3 change) {
   borne[i] = Borne(vec4(met_normal, max(left.displacement, 0.0)), vec4(met_velocity, max(left.velocity, 0.0)));
 }
 
-void stop_at_solids(int i) {
+/// Returns whether one has met it: 2, one that presses.
+int stop_at_solids(int i) {
   vec3 start = FETCH(step_start, i).xyz, x = position[i].xyz, v = velocity[i].xyz;
   met_braking = vec3(0.0);
   int met = 0;
@@ -50,6 +51,7 @@ void stop_at_solids(int i) {
     position[i].xyz = x - met_braking;
     velocity[i].xyz = v;
   }
+  return met == 0 ? 0 : dot(met_velocity, met_normal) > least_pressing ? 2 : 1;
 }
 
 void rub_on_solid(int i) {
@@ -70,17 +72,19 @@ struct Pushes {
   ivec3 push_one, impulse_one;  // of the others, by weight, in the same units
   int weight_one;               // [1 / weight_units]
   int sharing;                  // weights of the pairs that share it in the next pass
+  uint backing;                 // by what has pushed it
 };
 
 Pushes pushes_on(uint contact, float inverse_mass) {
-  Pushes all = Pushes(ivec3(0), ivec3(0), ivec3(0), ivec3(0), 0, 0);
+  Pushes all = Pushes(ivec3(0), ivec3(0), ivec3(0), ivec3(0), 0, 0, 0u);
   while (contact != 0u) {
     --contact;
     uvec2 link = FETCH_UVEC2(contact_links, contact);
     vec4 push = FETCH(contact_pushes, 2u * (contact / 4u)), impulse = FETCH(contact_pushes, 2u * (contact / 4u) + 1u);
     float weight = uintBitsToFloat(link.y), mobility = weight * inverse_mass;
     int weight_here = weight_in_units(weight);
-    bool one = push.w == pushes_one && mobility != 0.0;
+    bool one = abs(push.w) >= pushes_one && push.w * mobility > 0.0;
+    uint backing = one ? uint(abs(push.w) - pushes_one) : 0u;
     float factor = one ? weight : push.w == pushes_both ? mobility : 0.0;
     ivec3 pushed = in_units(factor * push.xyz), changed = in_units(factor * impulse.xyz);
     all.push += one ? ivec3(0) : pushed;
@@ -89,6 +93,7 @@ Pushes pushes_on(uint contact, float inverse_mass) {
     all.impulse_one += one ? changed : ivec3(0);
     all.weight_one += one ? weight_here : 0;
     all.sharing += impulse.w == 0.0 ? 0 : weight_here;
+    all.backing = max(all.backing, max(backing, 1u) - 1u);
     contact = link.x;
   }
   return all;
@@ -111,8 +116,11 @@ void main() {
   position[i].xyz = x.xyz;
   velocity[i].xyz = v;
   if (solid_friction == 1) borne[i] = Borne(vec4(0.0), vec4(0.0));
+  uint backing = max(at_vertex[i].backing, all.backing);
   if (x.w > 0.0) {
-    stop_at_solids(i);
+    int met = stop_at_solids(i);
+    if (met == 2 || (met == 1 && backing > 0u)) backing = most_backing;
     if (solid_friction == 3) rub_on_solid(i);
   }
+  at_vertex[i].backing = backing;
 }

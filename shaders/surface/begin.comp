@@ -40,7 +40,7 @@ void main() {
   bool free = end.w > 0.0, of_cloth = i < cloth_vertex_count, filtered = known.step_counts[turn].near > 0u;
   if (filtered && FETCH(vertex_contacts, 2 * i).x != 0u) {
     if (free) velocity[i].w += 1.0;
-    at_vertex[i].first = at_vertex[i].sharing = 0u;
+    at_vertex[i].first = at_vertex[i].backing = at_vertex[i].sharing = 0u;
   }
   vec3 moved = end.xyz - start.xyz;
   float went = length(moved), query_radius = uintBitsToFloat(known.flat_query), most = step_share * query_radius;

@@ -33,11 +33,39 @@ float first_push(float overlap) {
   return uintBitsToFloat(known.part) < 1.0 ? 0.0 : 2.0 * clamp(overlap, 0.0, 4.0 * layer);
 }
 
+/// Share of an overlap that this part of a step mends. Where layers are pressed, it is at least so much that they
+/// come a tenth of their distance apart, or the filter would leave them no room to give way.
+float mended(float gap, float keep, bool pressed) {
+  float mends = mend * uintBitsToFloat(known.part), least = 0.1 * keep;
+  return pressed && gap < least ? max(mends, (least - gap) / (keep - gap)) : mends;
+}
+
 /// Friction and restitution of a pair: a body's, if it has a corner of one.
 vec2 surface_of(uvec4 corner) {
   vec2 found = vec2(friction, 0.0);
   int body = int(max(corner.x, corner.w)) - cloth_vertex_count;
   if (body >= 0) found = FETCH(body_places, 2 * body + 1).xy;
+  return found;
+}
+
+/// How firmly a pair's two parts are backed; n leads from the second to the first. A body is backed more firmly than
+/// any cloth while it presses, or is pressed against.
+uvec2 backing_of(uvec4 corner, vec4 weight, bool edges, vec3 n) {
+  uvec2 found = uvec2(0u);
+  vec3 body_speed = vec3(0.0);
+  bvec2 of_body = bvec2(int(corner.x) >= cloth_vertex_count, int(corner.w) >= cloth_vertex_count);
+  for (int k = 0; k < 4; ++k) {
+    bool of_first = k == 0 || (edges && k == 1);
+    uint backing = weight[k] == 0.0 ? 0u : FETCH(vertex_contacts, 2u * corner[k]).z;
+    if (of_first) found.x = max(found.x, backing);
+    else found.y = max(found.y, backing);
+    if (of_first ? of_body.x : of_body.y) body_speed += weight[k] * FETCH(velocity, corner[k]).xyz;
+  }
+  // The weights of the second part are negative.
+  bool presses = dot(body_speed, n) < -least_pressing;
+  uint of_pressed = most_backing + 1u;
+  if (of_body.x) found.x = presses || found.y > 0u ? of_pressed : 0u;
+  if (of_body.y) found.y = presses || found.x > 0u ? of_pressed : 0u;
   return found;
 }
 
@@ -50,17 +78,21 @@ void main() {
   uvec4 corner = corners_of(pair);
   vec3 moved = vec3(0.0), v = vec3(0.0);
   vec4 mobility;
+  bool edges = is_edges(pair);
+  uvec2 backing = backing_of(corner, weight, edges, apart.xyz);
   for (int k = 0; k < 4; ++k) {
     vec4 x = FETCH(position, corner[k]);
     moved += weight[k] * (x.xyz - FETCH(step_start, corner[k]).xyz);
     v += weight[k] * FETCH(velocity, corner[k]).xyz;
-    mobility[k] = weight[k] * x.w;
+    bool of_first = k == 0 || (edges && k == 1), gives_way = of_first ? backing.x <= backing.y : backing.y <= backing.x;
+    mobility[k] = gives_way ? weight[k] * x.w : 0.0;
   }
   float give = dot(mobility, weight);
   vec3 push, impulse;
   vec2 surface = surface_of(corner);
-  bvec4 gives = notEqual(mobility, vec4(0.0)), first = bvec4(true, is_edges(pair), false, false);
-  bool both_give = (gives.x || (first.y && gives.y)) && ((!first.y && gives.y) || gives.z || gives.w);
+  bvec4 gives = notEqual(mobility, vec4(0.0));
+  bool first_gives = gives.x || (edges && gives.y), second_gives = (!edges && gives.y) || gives.z || gives.w;
+  bool both_give = first_gives && second_gives;
   vec4 before = FETCH(loads_before, gl_GlobalInvocationID.x);
   PairLoad load = PairLoad(before.x, before.y, FrictionLeft(before.z, before.w));
   float part = both_give ? part_of_pair(corner, mobility, give, pushes != 0 ? 1.0 : stops_sooner) : 1.0;
@@ -73,15 +105,18 @@ void main() {
   load.impulse += begins / dt;
   load.left.displacement += surface.x * begins;
   load.left.velocity += surface.x * begins / dt;
-  bool acts = surface_contact(apart.xyz, apart.w, moved, v, keep, surface.x, surface.y,
-                              mend * uintBitsToFloat(known.part), part, pushes != 0, rubs != 0, load, push, impulse);
+  float mends = mended(apart.w, keep, max(backing.x, backing.y) > 0u);
+  bool acts = surface_contact(apart.xyz, apart.w, moved, v, keep, surface.x, surface.y, mends, part, pushes != 0,
+                              rubs != 0, load, push, impulse);
   push += begins * apart.xyz;
   impulse += begins / dt * apart.xyz;
   acts = acts && give > 0.0;
   bool shares = acts || (next_rubs != 0 && (load.left.displacement > 0.0 || load.left.velocity > 0.0));
   push *= units_of_length() / (both_give ? give : 1.0);
   impulse *= units_of_speed() / (both_give ? give : 1.0);
-  contact_pushes[2u * item] = vec4(push, !acts ? no_push : both_give ? pushes_both : pushes_one);
+  float pushed = pushes_one + (backing.x != backing.y ? float(max(backing.x, backing.y)) : 0.0);
+  if (!first_gives) pushed = -pushed;
+  contact_pushes[2u * item] = vec4(push, !acts ? no_push : both_give ? pushes_both : pushed);
   contact_pushes[2u * item + 1u] = vec4(impulse, shares ? 1.0 : 0.0);
   if (acts)
     pair_loads[gl_GlobalInvocationID.x] = vec4(load.push, load.impulse, load.left.displacement, load.left.velocity);

@@ -19,6 +19,9 @@ uint limit_of_corner(uint corner, float inverse_mass) {
   return uint(limit_of(int(corner), inverse_mass, FETCH(velocity, corner).w));
 }
 
+/// How near the filter lets a vertex come to a plane that divides a pair, as a share of the thickness.
+const float least_room = 0.02;
+
 void shorten(uvec4 corner, vec4 shares, vec4 inverse_mass) {
   control.step_counts[turn].cut_vertices = known.step_counts[turn].vertex_groups;
   for (int k = 0; k < 4; ++k) {
@@ -92,7 +95,7 @@ void main() {
     along.d[k] = dot(apart.xyz, steps[k]);
     along.held[k] = int(corner[k]) >= cloth_vertex_count;
   }
-  float rounding = rounding_at(origin, size);
+  float rounding = rounding_at(origin, size), least = max(rounding, least_room * thickness);
 #if PASS == 0
   // What this direction divides for the whole step stays divided, whatever parts of it the corners take.
   if (could_meet(edges, along, 2.0 * rounding)) {
@@ -113,7 +116,7 @@ void main() {
     for (int k = 0; k < 4; ++k) {
       float side = k == 0 || (edges && k == 1) ? 1.0 : -1.0;
       float room = side * (along.y[k] - plane), away = side * along.d[k];
-      shares[k] = along.held[k] ? 1.0 : share_of_step(room, away, length(steps[k]), rounding);
+      shares[k] = along.held[k] ? 1.0 : share_of_step(room, away, length(steps[k]), rounding, least);
     }
     if (min(min(shares.x, shares.y), min(shares.z, shares.w)) < 1.0) {
 #if PASS == 2

@@ -70,7 +70,7 @@ TEST_CASE(
   std::mt19937 random(11);
   std::uniform_real_distribution<double> either(-1.0, 1.0);
   constexpr double rounding = 1e-6;
-  int cut = 0;
+  int cut = 0, near = 0;
   for (int trial = 0; trial < 2000; ++trial) {
     const bool edges = trial % 2 == 0;
     const Corners c = random_pair(random, 0.2);
@@ -86,9 +86,11 @@ TEST_CASE(
     const double plane = elements::dividing_plane(edges, along, rounding);
     for (int k = 0; k < 4; ++k) {
       const double side = k == 0 || (edges && k == 1) ? 1.0 : -1.0, room = side * (along.y[k] - plane);
-      const double share = elements::share_of_step(room, side * along.d[k], glm::length(step[k]), rounding);
+      const double away = side * along.d[k], least = trial % 4 < 2 ? rounding : 0.02;
+      const double share = elements::share_of_step(room, away, glm::length(step[k]), rounding, least);
       CHECK((share >= 0.0 && share <= 1.0));
-      CHECK(room + share * side * along.d[k] >= 0.5 * rounding);
+      CHECK(room + share * away >= (room < least ? 0.9 * room : least) - 0.5 * rounding);
+      near += room < least && share < 1.0;
       cut += share < 1.0;
     }
     if (elements::could_meet(edges, along, rounding)) continue;
@@ -97,6 +99,7 @@ TEST_CASE(
     CHECK(elements::gap_along(edges, after, apart.n) > 0.0);
   }
   CHECK(cut > 500);
+  CHECK(near > 50);
 }
 
 TEST_CASE(
@@ -115,7 +118,7 @@ TEST_CASE(
     const glm::vec3 goal(dvec3(x) + wanted);
     const dvec3 step = dvec3(goal) - dvec3(x);
     const double room = 4.0 * rounding * std::abs(either(random)), size = glm::length(step);
-    double share = elements::share_of_step(room, glm::dot(n, step), size, rounding);
+    double share = elements::share_of_step(room, glm::dot(n, step), size, rounding, rounding);
     if (share < 1.0 || trial % 2 == 0) share *= std::abs(either(random));  // another pair may ask for less
     if (share < 1.0 && share * size < elements::shortest_part * rounding) share = 0.0;
     const glm::vec3 after = share < 1.0 ? x + static_cast<float>(share) * (goal - x) : goal;
