@@ -14,7 +14,7 @@ uniform vec4 solids[SOLID_ROWS];
 // The surface met last: its unit normal, its velocity [m/s] at the contact, friction and restitution.
 vec3 met_normal, met_velocity;
 vec2 met_surface;
-/// How deep in it the path began [m], 0 outside.
+/// How deep within that solid the path began [m]; 0: outside.
 float met_depth;
 /// Displacement [m] that friction takes from the path. The caller applies it: not all callers use the velocity given.
 vec3 met_braking;

@@ -35,7 +35,7 @@ void count_friction(int i, vec3 back, vec3 change) {
   borne[i] = Borne(vec4(met_normal, max(left.displacement, 0.0)), vec4(met_velocity, max(left.velocity, 0.0)));
 }
 
-/// Returns whether one has met it: 2, one that presses.
+/// Returns 0 if none has met it, 1 if one has, 2 if that one presses (least_pressing).
 int stop_at_solids(int i) {
   vec3 start = FETCH(step_start, i).xyz, x = position[i].xyz, v = velocity[i].xyz;
   met_braking = vec3(0.0);
@@ -72,7 +72,7 @@ struct Pushes {
   ivec3 push_one, impulse_one;  // of the others, by weight, in the same units
   int weight_one;               // [1 / weight_units]
   int sharing;                  // weights of the pairs that share it in the next pass
-  uint backing;                 // by what has pushed it
+  uint backing;                 // that they give it
 };
 
 Pushes pushes_on(uint contact, float inverse_mass) {

@@ -122,16 +122,16 @@ ivec3 in_units(vec3 v) { return ivec3(round(clamp(v, vec3(-1e9), vec3(1e9)))); }
 float rounding_at(vec3 x, float size) { return 2.5e-7 * max(abs(x.x), max(abs(x.y), abs(x.z))) + 1e-6 * size; }
 
 // What a pair pushes (forces.comp, apply.comp): nothing; both parts, whose corners take their shares by inverse mass
-// and weight, which keeps momentum; or one part, as the other gives no way. Then the other's backing is added, and the
-// sign tells which part it is: that of positive weights or of negative ones.
+// and weight, which keeps momentum; or one part, as the other gives no way. That is a positive number for the first
+// part (whose weights are positive), a negative one for the second; the other part's backing is added to its size.
 const float no_push = 0.0, pushes_both = 1.0, pushes_one = 2.0;
 
 // A solid or body that moves against cloth backs the layer that it meets: that pushes the next layer as if its own mass
 // were infinite, and backs it, one less firmly; and so on. So few passes get many layers out of the way. A solid or
-// body that they are pressed against backs those that it bears. ("Shock propagation": Guendelman, Bridson,
-// Fedkiw 2003, section 7.)
-const uint most_backing = 16u;         // of a vertex
-const float least_pressing = 0.1;      // approach of a solid that presses [m/s]
+// body that they are pressed against backs those that it bears. ("Shock propagation": Guendelman, Bridson and Fedkiw,
+// 2003.)
+const uint most_backing = 16u;     // of a vertex
+const float least_pressing = 0.1;  // speed at which a solid or body comes nearer, if it presses [m/s]
 
 bool is_edges(uvec4 pair) { return (pair.x & edges_bit) != 0u; }
 uvec4 corners_of(uvec4 pair) { return pair & corner_mask; }
