@@ -49,7 +49,8 @@ struct Diagnostics {
   std::uint32_t surface_cuts =
       0;  ///< steps of vertices that the filter shortened, since the kernels were made
   std::uint32_t surface_forced =
-      0;  ///< times that contact made a pin wait or a body may have taken a pair through each other, the same
+      0;  ///< times that a pin waited, a body may have taken a pair through each other, or a solid came over
+          ///< a vertex that contact kept where it was, the same
   std::uint32_t surface_searches = 0;  ///< searches for pairs, the same
 };
 

@@ -247,7 +247,8 @@ void SurfaceContact::push_and_filter(StateBuffers& state, int row, std::uint32_t
 
   run(contacts_,
       pieces_ > 1 ? offsetof(SurfaceControl, contact_groups) : offsetof(SurfaceControl, pair_groups));
-  if (driven_) apply_.set("start_row", row);
+  if (driven_)
+    for (const gl::Program* program : {&apply_, &move_last_}) program->set("start_row", row);
   pairs_.bind_pushes();
   borne_.bind_storage(slot_borne);
   for (int pass = 0; pass < push_passes_ + rub_passes_; ++pass) {

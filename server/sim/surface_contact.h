@@ -46,7 +46,8 @@ class SurfaceContact {
     std::uint32_t pairs = 0;   ///< that the last search listed
     std::uint32_t near = 0;    ///< of these, in the last step
     std::uint32_t cuts = 0;    ///< vertices whose steps were shortened, over all steps
-    std::uint32_t forced = 0;  ///< times that a pin waited or a body took a pair through each other, the same
+    std::uint32_t forced = 0;  ///< times that a pin waited, a body took a pair through each other, or a solid
+                               ///< came over a vertex that the filter kept, the same
     std::uint32_t rebuilds = 0;  ///< searches
   };
   /// Queues a copy of the counts to `bytes_of_counts` of `target`, from `offset`. `read_counts` makes

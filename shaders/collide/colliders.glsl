@@ -79,21 +79,28 @@ Solid between(Solid before, Solid after, float share) {
   return solid;
 }
 
-/// Stops the path from -> x at a solid, thicker by `reach` [m], and changes the end velocity v. `first`: its first row.
-/// Returns the number of contacts, 0 or 1.
-int meet_solid(int kind, bool moves, int first, vec3 from, inout vec3 x, inout vec3 v, float reach) {
-  vec3 surface = solids[first + 2].xyz;
-  int met = 0;
-  Solid before = solid_at(kind, first, reach), after = before;
+/// Where a solid, thicker by `reach` [m], is when the path begins and when it ends. `first`: its first row.
+void place_solid(int kind, bool moves, int first, float reach, out Solid before, out Solid after) {
+  before = after = solid_at(kind, first, reach);
   if (moves) {
-    after = moved_to(kind, int(surface.z), END_ROW, before);
-    before = moved_to(kind, int(surface.z), 0, before);
+    int motion = int(solids[first + 2].z);
+    after = moved_to(kind, motion, END_ROW, before);
+    before = moved_to(kind, motion, 0, before);
 #ifdef SOLIDS_IN_PIECES
     Solid start = before, end = after;
     before = between(start, end, piece_begin);
     after = between(start, end, piece_end);
 #endif
   }
+}
+
+/// Stops the path from -> x at a solid, thicker by `reach` [m], and changes the end velocity v. `first`: its first row.
+/// Returns the number of contacts, 0 or 1.
+int meet_solid(int kind, bool moves, int first, vec3 from, inout vec3 x, inout vec3 v, float reach) {
+  vec3 surface = solids[first + 2].xyz;
+  int met = 0;
+  Solid before, after;
+  place_solid(kind, moves, first, reach, before, after);
   RARELY(solid_near(kind, before, after, from, x)) {
     vec3 stopped, normal;
     if (solid_contact(kind, before, after, from, x, stopped, normal)) {
@@ -134,6 +141,21 @@ float depth_in_solids_at_rest(vec3 x, float reach) {
   for (int row = first; !moves && row < end; row += solid_rows(kind)) \
     depth = max(depth, solid_depth(kind, solid_at(kind, row, reach), x));
   EACH_SOLID(DEEPEST)
+#endif
+  return depth;
+}
+
+/// The same of the solids that move, where the path ends.
+float depth_in_moving_solids(vec3 x, float reach) {
+  float depth = -1e30;
+#if SOLID_ROWS > 0
+  Solid before, after;
+#define DEEPEST_MOVING(kind, moves, first, end)                        \
+  for (int row = first; moves && row < end; row += solid_rows(kind)) { \
+    place_solid(kind, true, row, reach, before, after);                \
+    depth = max(depth, solid_depth(kind, after, x));                   \
+  }
+  EACH_SOLID(DEEPEST_MOVING)
 #endif
   return depth;
 }

@@ -4,6 +4,7 @@
 #include "vertex_contacts.glsl"
 #include "step_limits.glsl"
 #include "../methods/motions.glsl"
+#define SOLIDS_IN_PIECES
 #include "../collide/colliders.glsl"
 READ_VEC4(position, unit_position);  // so far; w: inverse mass [1/kg]
 READ_VEC4(step_target, unit_step_target);
@@ -20,13 +21,21 @@ uniform float margin;     // at which solids keep vertices [m]
 const float jammed_share = 0.1;
 
 #if LAST
-void count_cut(int i, float share, bool pinned) {
+/// True if a solid that moves has come over a place where the filter keeps a vertex.
+bool within_moving_solid(vec3 x) {
+#if SOLID_ROWS > 0
+  if (piece_count > 1) piece_end = uintBitsToFloat(known.gone);
+#endif
+  return depth_in_moving_solids(x, -margin) > 0.0;
+}
+
+void count_cut(int i, vec3 x, float share, bool pinned) {
   atomicAdd(control.step_counts[turn].cuts, 1u);
   atomicAdd(control.cuts, 1u);
   bool jammed = share < jammed_share;
   if (pinned) velocity[i].xyz *= share;
   else if (jammed) velocity[i].xyz *= 0.5;
-  if (pinned && jammed) atomicAdd(control.forced, 1u);
+  if (pinned ? jammed : within_moving_solid(x)) atomicAdd(control.forced, 1u);
 }
 
 void take_impulses(int i) {
@@ -66,9 +75,10 @@ void main() {
 #endif
     limits[i] = floatBitsToUint(1.0);
   }
-  moved_position[i] = vec4(min(share, part) < 1.0 ? x.xyz + share * way : goal.xyz, x.w);
+  vec3 there = min(share, part) < 1.0 ? x.xyz + share * way : goal.xyz;
+  moved_position[i] = vec4(there, x.w);
 #if LAST
-  if (cut) count_cut(i, share, moves_by_itself);
+  if (cut) count_cut(i, there, share, moves_by_itself);
 #endif
   if (FETCH(vertex_contacts, 2 * i + 1).w != 0u) {
 #if LAST

@@ -54,7 +54,8 @@ struct Control {
   uint overflow;             // 1: a list had no room for all pairs, and nothing may move
   uint rebuilds;
   uint cuts;                 // vertices whose steps were shortened, over all steps
-  uint forced;               // over all steps: pins that waited; pairs that bodies took over the plane between them
+  uint forced;               // over all steps: pins that waited; pairs that bodies took over the plane between them;
+                             // vertices that the filter kept where a solid came over them
   uint most_leaf_pairs;      // found by any search
   uint most_bundle_pairs;    // the same
   uint most_triangle_pairs;  // the same

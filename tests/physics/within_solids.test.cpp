@@ -112,3 +112,24 @@ TEST_CASE("a light layer between a solid that moves and heavy layers stays out o
     }
   }
 }
+
+TEST_CASE("a solid that presses cloth where it cannot go is told of, one that only pushes it is not") {
+  const auto context = test::context();
+  for (const bool floor : {true, false}) {
+    INFO((floor ? "onto a floor" : "in free air"));
+    test::ContactOptions options;
+    options.size = 8;
+    options.method = "xpbd";
+    options.kind = "surface";
+    const test::json sphere = {{"center", {0, 0.5, 0}}, {"radius", 0.15}};
+    const test::json motion = {{"linear", {{"velocity", {0, -4, 0}}}}};
+    std::vector<test::json> colliders = {test::contact::collider("ball", "sphere", sphere, motion)};
+    if (floor) colliders.push_back(test::contact::floor());
+    const auto document = scene::validate(
+        test::contact::scene_of("press", options, test::contact::pile(options, 2, 0.06), colliders));
+    REQUIRE(document);
+    const auto simulation = test::simulation(document->scene);
+    simulation->step(32);  // the ball's lowest point ends 16 cm below the floor
+    CHECK((simulation->diagnose().surface_forced > 0) == floor);
+  }
+}
