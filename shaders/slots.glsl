@@ -104,17 +104,18 @@ const int slot_change = 6;              // update
 const int slot_wind = 0;                // wind
 
 // Contact between surfaces: surface/NAME.comp. The slots are read as the units of the same name, too.
-const int unit_surface_triangles = 9;   // server/sim/surface_pairs.cpp; corners
-const int unit_triangle_corners = 10;   // corners; boxes, triangle_pairs, candidates
+const int unit_surface_triangles = 9;   // server/sim/surface_pairs.cpp; triangle_boxes
+const int unit_triangle_boxes = 10;     // triangle_boxes; boxes, triangle_pairs, candidates
+const int unit_expected = 8;            // triangle_boxes; neighbours, candidates, pairs, block_motions
 const int unit_boxes = 11;              // boxes; leaf_pairs, bundle_pairs
 const int unit_leaf_pairs = 12;         // leaf_pairs; bundle_pairs
 const int unit_bundle_pairs = 9;        // bundle_pairs; triangle_pairs
 const int unit_neighbour_pairs = 17;    // server/sim/surface_pairs.cpp; neighbours
 const int unit_triangle_pairs = 13;     // triangle_pairs; candidates
-const int unit_surface_pairs = 14;      // pairs, rest; contacts
+const int unit_surface_pairs = 14;      // pairs, rest; cull, contacts
 const int unit_near_pairs = 15;         // neighbours, candidates; pairs, and: contacts; forces, limit
 const int unit_rest_places = 16;        // server/sim/surface_pairs.cpp; triangle_pairs
-const int unit_step_start = 16;         // the step before, advance; path, contacts, forces, begin
+const int unit_step_start = 16;         // the step before, advance; path, cull, contacts, forces, begin
 const int unit_path = 17;               // path; advance
 const int unit_step_target = 17;        // begin; limit, move
 const int unit_step_limits = 10;        // limit, move; move
@@ -124,12 +125,12 @@ const int unit_block_motions = 11;      // block_motions; blocks
 const int unit_vertex_contacts = 9;     // contacts, apply, limit; forces, apply, begin, limit, move
 const int unit_contact_links = 10;      // contacts; apply
 const int unit_contact_pushes = 11;     // forces; apply
-const int unit_chosen_pairs = 12;       // contacts; forces
+const int unit_chosen_pairs = 12;       // cull, contacts; contacts, forces
 const int unit_pair_loads = 13;         // contacts, forces; forces
 const int slot_surface_control = 2;     // surface/*.comp; the same, indirect dispatches
 const int slot_known_control = 0;       // the same buffer as a uniform block
-const int slot_triangle_corners = 3;    // corners
-const int slot_surface_built = 4;       // corners; block_motions, as unit_position_when_built
+const int slot_triangle_boxes = 3;      // triangle_boxes
+const int slot_expected = 4;            // triangle_boxes
 const int slot_block_motions = 3;       // block_motions
 const int slot_boxes = 3;               // boxes
 const int slot_leaf_pairs = 3;          // leaf_pairs
@@ -146,7 +147,7 @@ const int slot_borne = 6;               // apply; apply
 const int slot_step_target = 6;         // begin
 const int slot_path = 6;                // path
 const int slot_step_start = 5;          // advance
-const int slot_chosen_pairs = 7;        // contacts, limit; limit
+const int slot_chosen_pairs = 7;        // cull, contacts, limit; limit
 
 // The hands': hands/NAME.comp, on the present copy of the state, before a step and after it.
 const int slot_held_position = 0;  // hold, release; all as unit_position

@@ -19,7 +19,7 @@ Result<SurfaceBlocks> SurfaceBlocks::create(const SurfaceTriangles& surface, std
   for (const std::vector<std::uint32_t>& block : blocks)
     words.insert(words.end(), block.begin(), block.end());
   made.vertices_ = {gl::Buffer(words), GL_R32UI};
-  made.motions_ = {gl::Buffer(std::max<std::size_t>(blocks.size(), 1) * 24 * sizeof(float)), GL_RGBA32F};
+  made.motions_ = {gl::Buffer(std::max<std::size_t>(blocks.size(), 1) * 8 * sizeof(float)), GL_RGBA32F};
   for (auto [program, name] :
        {std::pair{&made.motions_program_, "block_motions"}, {&made.program_, "blocks"}}) {
     Result<gl::Program> loaded = gl::Program::load({std::string("surface/") + name + ".comp"},
@@ -34,24 +34,25 @@ Result<SurfaceBlocks> SurfaceBlocks::create(const SurfaceTriangles& surface, std
   return made;
 }
 
-void SurfaceBlocks::set_skin(float skin) {
+void SurfaceBlocks::set_parameters(float skin, float dt) {
   program_.set("most_skin", skin);
+  program_.set("dt", dt);
 }
 
-void SurfaceBlocks::check(const StateBuffers& state, const gl::TextureBuffer& built) const {
-  run(state, built, [] { glDispatchCompute(1, 1, 1); });
+void SurfaceBlocks::check(const StateBuffers& state, const gl::TextureBuffer& expected) const {
+  run(state, expected, [] { glDispatchCompute(1, 1, 1); });
 }
 
-void SurfaceBlocks::check_again(const StateBuffers& state, const gl::TextureBuffer& built,
+void SurfaceBlocks::check_again(const StateBuffers& state, const gl::TextureBuffer& expected,
                                 std::size_t groups) const {
-  run(state, built, [&] { glDispatchComputeIndirect(static_cast<GLintptr>(groups)); });
+  run(state, expected, [&] { glDispatchComputeIndirect(static_cast<GLintptr>(groups)); });
 }
 
 template <class Dispatch>
-void SurfaceBlocks::run(const StateBuffers& state, const gl::TextureBuffer& built,
+void SurfaceBlocks::run(const StateBuffers& state, const gl::TextureBuffer& expected,
                         const Dispatch& dispatch) const {
   state.position().bind(unit_position);
-  built.bind(unit_position_when_built);
+  expected.bind(unit_expected);
   vertices_.bind(unit_block_vertices);
   motions_.bind(unit_block_motions);
   motions_.buffer.bind_storage(slot_block_motions);

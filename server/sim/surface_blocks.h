@@ -1,6 +1,6 @@
 // Tells when the pairs that a search for contact between surfaces has listed are no longer all that can meet
-// (shaders/surface/blocks.comp). It follows the motion of blocks of triangles, so that a cloth which falls or
-// turns as a whole, or swings, needs few searches.
+// (shaders/surface/blocks.comp). It follows the motion of blocks of triangles, so that a cloth which falls, or
+// goes on as it went at the search, needs few searches.
 #pragma once
 
 #include <cstddef>
@@ -23,19 +23,19 @@ class SurfaceBlocks {
 
   static Result<SurfaceBlocks> create(const SurfaceTriangles& surface, std::uint32_t vertex_count);
 
-  /// `skin` [m]: by how much a search reaches farther than it must, at most.
-  void set_skin(float skin);
+  /// `skin`: by how much a search reaches farther than it must, at most [m]; `dt`: of the steps [s].
+  void set_parameters(float skin, float dt);
 
-  /// Asks for a search, in the control block that must be bound, if one is needed. `built`: the positions at
-  /// the last search.
-  void check(const StateBuffers& state, const gl::TextureBuffer& built) const;
+  /// Asks for a search, in the control block that must be bound, if one is needed. `expected`:
+  /// of each vertex, as shaders/surface/expected.glsl has it.
+  void check(const StateBuffers& state, const gl::TextureBuffer& expected) const;
   /// The same, dispatched indirectly: `groups` is the offset in the control block of 1, or of 0 to do
   /// nothing.
-  void check_again(const StateBuffers& state, const gl::TextureBuffer& built, std::size_t groups) const;
+  void check_again(const StateBuffers& state, const gl::TextureBuffer& expected, std::size_t groups) const;
 
  private:
   template <class Dispatch>
-  void run(const StateBuffers& state, const gl::TextureBuffer& built, const Dispatch& dispatch) const;
+  void run(const StateBuffers& state, const gl::TextureBuffer& expected, const Dispatch& dispatch) const;
 
   gl::Program motions_program_, program_;
   gl::TextureBuffer vertices_, motions_;

@@ -98,7 +98,8 @@ Result<SurfaceContact> SurfaceContact::create(const model::Model& model, const P
     more.emplace_back(name, value);
     return more;
   };
-  for (const auto& [program, name, its_defines] : {std::tuple{&made.contacts_, "contacts", defines},
+  for (const auto& [program, name, its_defines] : {std::tuple{&made.cull_, "cull", defines},
+                                                   {&made.contacts_, "contacts", defines},
                                                    {&made.forces_, "forces", defines},
                                                    {&made.apply_, "apply", defines},
                                                    {&made.begin_, "begin", defines},
@@ -127,8 +128,8 @@ Result<SurfaceContact> SurfaceContact::create(const model::Model& model, const P
   return made;
 }
 
-std::array<const gl::Program*, 11> SurfaceContact::programs() const {
-  return {&contacts_,    &forces_,      &apply_,      &begin_, &path_program_, &advance_,
+std::array<const gl::Program*, 12> SurfaceContact::programs() const {
+  return {&cull_, &contacts_,    &forces_,      &apply_,      &begin_, &path_program_, &advance_,
           &limit_first_, &limit_again_, &limit_stop_, &move_,  &move_last_};
 }
 
@@ -233,7 +234,7 @@ void SurfaceContact::push_and_filter(StateBuffers& state, int row, std::uint32_t
                     cut_vertices = counts + offsetof(StepCounts, cut_vertices);
   pairs_.bind();
   bodies_.bind();
-  for (const gl::Program* program : {&contacts_, &begin_, &limit_first_, &limit_again_, &limit_stop_})
+  for (const gl::Program* program : {&cull_, &contacts_, &begin_, &limit_first_, &limit_again_, &limit_stop_})
     pairs_.set_limits(*program);
   state.position().bind(unit_position);
   state.velocity().bind(unit_velocity);
@@ -245,8 +246,9 @@ void SurfaceContact::push_and_filter(StateBuffers& state, int row, std::uint32_t
   vertex_contacts_.bind(unit_vertex_contacts);
   pairs_.bind_contacts();
 
-  run(contacts_,
+  run(cull_,
       pieces_ > 1 ? offsetof(SurfaceControl, contact_groups) : offsetof(SurfaceControl, pair_groups));
+  run(contacts_, counts + offsetof(StepCounts, kept_groups));
   if (driven_)
     for (const gl::Program* program : {&apply_, &move_last_}) program->set("start_row", row);
   pairs_.bind_pushes();

@@ -57,7 +57,7 @@ class SurfaceContact {
   static const std::size_t bytes_of_counts;
 
  private:
-  std::array<const gl::Program*, 11> programs() const;
+  std::array<const gl::Program*, 12> programs() const;
   /// Takes vertices along the next piece of the step (shaders/surface/advance.comp), from where they are;
   /// `piece` 0: from the step's start, with the pairs that `update_pairs` has brought up to date.
   void advance(const StateBuffers& state, int row, int piece, std::uint32_t changing);
@@ -74,7 +74,7 @@ class SurfaceContact {
   bool keeps_start_ = false;  ///< the strain limit writes over the positions at the step's start
   SurfaceBodies bodies_;
   SurfacePairs pairs_;
-  gl::Program contacts_, forces_, apply_, begin_, move_, move_last_, path_program_, advance_;
+  gl::Program cull_, contacts_, forces_, apply_, begin_, move_, move_last_, path_program_, advance_;
   gl::Program limit_first_, limit_again_, limit_stop_;
   gl::TextureBuffer start_;  ///< of the step, or of the piece under way
   gl::TextureBuffer target_, path_, vertex_contacts_, limits_;

@@ -12,9 +12,9 @@ using DispatchGroups = std::array<std::uint32_t, 3>;
 
 /// Of a step; steps take turns with two of them.
 struct StepCounts {
-  DispatchGroups near_groups{0, 1, 1}, vertex_groups{0, 1, 1}, touching_groups{0, 1, 1},
+  DispatchGroups kept_groups{0, 1, 1}, near_groups{0, 1, 1}, vertex_groups{0, 1, 1}, touching_groups{0, 1, 1},
       pushed_groups{0, 1, 1}, meeting_groups{0, 1, 1}, cut_vertices{0, 1, 1};
-  std::uint32_t near = 0, touching = 0, meeting = 0, cuts = 0, touched = 0, unused = 0;
+  std::uint32_t near = 0, touching = 0, meeting = 0, cuts = 0, touched = 0, kept = 0, unused = 0;
 };
 
 struct SurfaceControl {
@@ -31,6 +31,7 @@ struct SurfaceControl {
                 most_triangle_pairs = 0, most_pairs = 0;
   float longest = 0.0f, gone = 0.0f, part = 1.0f;
   float skin = 0.0f, next_skin = 0.0f;
+  float ahead = 0.0f, next_ahead = 0.0f, since = 0.0f;
   std::uint32_t checks = 0;
 };
 

@@ -35,7 +35,7 @@ Result<SurfacePairs> SurfacePairs::create(const model::Model& model, const Surfa
                             {"LEAF_SIZE", std::to_string(leaf_size)},
                             {"BUNDLE_SIZE", std::to_string(bundle_size)},
                             {"OUT_OF_PLANE", std::to_string(out_of_plane)}};
-  for (auto [program, name] : {std::pair{&made.corners_, "corners"},
+  for (auto [program, name] : {std::pair{&made.triangle_boxes_program_, "triangle_boxes"},
                                {&made.boxes_program_, "boxes"},
                                {&made.leaf_pairs_program_, "leaf_pairs"},
                                {&made.bundle_pairs_program_, "bundle_pairs"},
@@ -63,10 +63,10 @@ Result<SurfacePairs> SurfacePairs::create(const model::Model& model, const Surfa
   made.triangles_ = {gl::Buffer(surface.triangles), GL_RGBA32UI};
   made.rest_places_ = {gl::Buffer(surface.rest_places), GL_RGBA32F};
   made.neighbour_pairs_ = {gl::Buffer(surface.neighbour_pairs), GL_RGBA32UI};
-  made.triangle_corners_ = {gl::Buffer(made.triangle_count_ * 12 * sizeof(std::uint32_t)), GL_RGBA32UI};
+  made.triangle_boxes_ = {gl::Buffer(made.triangle_count_ * 16 * sizeof(std::uint32_t)), GL_RGBA32UI};
   const std::uint32_t bundles = (made.triangle_count_ + bundle_size - 1) / bundle_size;
-  made.boxes_ = {gl::Buffer((leaves + bundles) * 8 * sizeof(float)), GL_RGBA32F};
-  made.built_position_ = {gl::Buffer(made.vertex_count_ * 4 * sizeof(float)), GL_RGBA32F};
+  made.boxes_ = {gl::Buffer((leaves + bundles) * 16 * sizeof(float)), GL_RGBA32F};
+  made.expected_ = {gl::Buffer(made.vertex_count_ * 8 * sizeof(float)), GL_RGBA32F};
   constexpr std::uint32_t generous = 1u << 17;  // entries: little memory, and lists seldom have to grow
   made.make_lists({8 * leaves + 256, 8 * bundles + 1024,
                    std::min(8 * made.triangle_count_, 2 * made.triangle_count_ + generous),
@@ -103,7 +103,7 @@ void SurfacePairs::make_lists(const Capacities& wanted) {
 }
 
 std::array<const gl::Program*, 10> SurfacePairs::programs() const {
-  return {&corners_,
+  return {&triangle_boxes_program_,
           &boxes_program_,
           &leaf_pairs_program_,
           &bundle_pairs_program_,
@@ -124,10 +124,11 @@ void SurfacePairs::set_parameters(const scene::Scene& scene, const model::Model&
   const double thickness = SurfacePairs::thickness(scene, model), edge = finest_edge(model);
   in_pieces_ = pieces > 1;
   // Parts of a flat grid that share no vertex are 0.7 of a cell's side apart, which is 0.6 of the mean edge.
-  // A search that reaches less far for what is side by side lists nothing then.
-  const double skin = std::max(0.55 * edge - 1.2 * thickness, 0.3 * edge);
+  // A search that reaches less far for what is side by side, also where the cloth goes together somewhat,
+  // lists little.
+  const double skin = std::max(0.45 * edge - 1.2 * thickness, 0.2 * edge);
   const auto least_query = static_cast<float>(std::min(1.2 * thickness, 0.25 * edge));
-  blocks_.set_skin(static_cast<float>(skin));
+  blocks_.set_parameters(static_cast<float>(skin), static_cast<float>(scene.solver.dt));
   for (const gl::Program* program : programs()) {
     program->set("dt", static_cast<float>(scene.solver.dt));
     program->set("piece_count", pieces);
@@ -155,6 +156,7 @@ void SurfacePairs::forget_pairs(bool within_step) {
   control.cuts = before.cuts;
   control.forced = before.forced;
   control.next_skin = before.next_skin;
+  control.next_ahead = before.next_ahead;
   if (within_step) {
     control.longest = before.longest;
     control.gone = before.gone;
@@ -175,7 +177,7 @@ void SurfacePairs::search(const StateBuffers& state) {
   state.velocity().bind(unit_velocity);
   triangles_.bind(unit_surface_triangles);
   rest_places_.bind(unit_rest_places);
-  triangle_corners_.bind(unit_triangle_corners);
+  triangle_boxes_.bind(unit_triangle_boxes);
   boxes_.bind(unit_boxes);
   leaf_pairs_.bind(unit_leaf_pairs);
   neighbour_pairs_.bind(unit_neighbour_pairs);
@@ -183,16 +185,17 @@ void SurfacePairs::search(const StateBuffers& state) {
   control_.bind_storage(slot_surface_control);
   control_.bind_uniform(slot_known_control);
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, control_.id());
-  triangle_corners_.buffer.bind_storage(slot_triangle_corners);
-  built_position_.buffer.bind_storage(slot_surface_built);
-  dispatch(corners_, offsetof(SurfaceControl, rebuild));
+  expected_.bind(unit_expected);
+  triangle_boxes_.buffer.bind_storage(slot_triangle_boxes);
+  expected_.buffer.bind_storage(slot_expected);
+  dispatch(triangle_boxes_program_, offsetof(SurfaceControl, rebuild));
   boxes_.buffer.bind_storage(slot_boxes);
   dispatch(boxes_program_, offsetof(SurfaceControl, rebuild));
   leaf_pairs_.buffer.bind_storage(slot_leaf_pairs);
   dispatch(leaf_pairs_program_, offsetof(SurfaceControl, rebuild));
   bundle_pairs_.buffer.bind_storage(slot_bundle_pairs);
   dispatch(bundle_pairs_program_, offsetof(SurfaceControl, leaf_groups));
-  bundle_pairs_.bind(unit_bundle_pairs);  // the unit was that of the triangles, which only the corners read
+  bundle_pairs_.bind(unit_bundle_pairs);  // the unit was that of the triangles, which only their boxes are made of
   triangle_pairs_.buffer.bind_storage(slot_triangle_pairs);
   dispatch(triangle_pairs_program_, offsetof(SurfaceControl, bundle_groups));
   near_pairs_.buffer.bind_storage(slot_near_pairs);
@@ -209,7 +212,7 @@ void SurfacePairs::search(const StateBuffers& state) {
 Work SurfacePairs::update(const StateBuffers& state) {
   wait_for_writes();
   bind();
-  blocks_.check(state, built_position_);
+  blocks_.check(state, expected_);
   search(state);
   const bool look = updates_++ % updates_between_size_looks == 0 || waits();
   for (int attempt = 0; look && read_sizes(false) && attempt < 4; ++attempt) {
@@ -219,7 +222,7 @@ Work SurfacePairs::update(const StateBuffers& state) {
 }
 
 void SurfacePairs::update_within_step(const StateBuffers& state) {
-  blocks_.check_again(state, built_position_, offsetof(SurfaceControl, check));
+  blocks_.check_again(state, expected_, offsetof(SurfaceControl, check));
   search(state);
   for (int attempt = 0; driven_ && read_sizes(true) && attempt < 4; ++attempt) search(state);
 }
@@ -267,6 +270,7 @@ void SurfacePairs::bind() const {
   near_pairs_.bind(unit_near_pairs);
   near_pairs_.buffer.bind_storage(slot_near_pairs);
   chosen_pairs_.buffer.bind_storage(slot_chosen_pairs);
+  chosen_pairs_.bind(unit_chosen_pairs);
 }
 
 void SurfacePairs::bind_contacts() const {

@@ -83,15 +83,15 @@ class SurfacePairs {
   float most_query_ = 0;  ///< [m]
   bool driven_ = false, in_pieces_ = false, searched_ = false;
   std::uint64_t updates_ = 0;  ///< calls of `update` since `invalidate`
-  gl::Program corners_, boxes_program_, leaf_pairs_program_, bundle_pairs_program_, triangle_pairs_program_,
+  gl::Program triangle_boxes_program_, boxes_program_, leaf_pairs_program_, bundle_pairs_program_, triangle_pairs_program_,
       neighbours_, candidates_, pairs_program_, rest_, finish_;
   SurfaceBlocks blocks_;
   gl::Buffer control_;
   gl::ReadbackRing sizes_ring_;
-  gl::TextureBuffer triangles_, rest_places_, neighbour_pairs_, triangle_corners_, boxes_, leaf_pairs_,
+  gl::TextureBuffer triangles_, rest_places_, neighbour_pairs_, triangle_boxes_, boxes_, leaf_pairs_,
       bundle_pairs_, triangle_pairs_, pairs_, near_pairs_, chosen_pairs_, pair_loads_, contact_links_,
       contact_pushes_;
-  gl::TextureBuffer built_position_;
+  gl::TextureBuffer expected_;
 };
 
 }  // namespace clothlab::sim

@@ -79,20 +79,6 @@ std::vector<std::uint32_t> vertices_of(std::span<const Corners> triangles) {
   return vertices;
 }
 
-/// Puts three vertices first that are far apart: a wide triangle, as they lie at the start.
-void put_triangle_first(std::vector<std::uint32_t>& vertices, const Places& place) {
-  const auto farthest = [&](std::size_t from, const auto& measure) {
-    const auto most = std::max_element(
-        vertices.begin() + static_cast<std::ptrdiff_t>(from), vertices.end(),
-        [&](std::uint32_t one, std::uint32_t other) { return measure(place[one]) < measure(place[other]); });
-    std::swap(vertices[from], *most);
-  };
-  const model::dvec3 first = place[vertices[0]];
-  farthest(1, [&](const model::dvec3& x) { return glm::distance(x, first); });
-  const model::dvec3 side = place[vertices[1]] - first;
-  farthest(2, [&](const model::dvec3& x) { return glm::length(glm::cross(side, x - first)); });
-}
-
 void add_cloths(SurfaceTriangles& made, std::vector<Corners>& triangles, const model::Model& model,
                 std::uint32_t most_blocks) {
   const std::uint32_t block = block_size(model.triangles.size(), most_blocks);
@@ -100,7 +86,6 @@ void add_cloths(SurfaceTriangles& made, std::vector<Corners>& triangles, const m
   made.cloth_triangle_count = model.triangle_count();
   each_block(triangles.size(), block, [&](std::size_t first, std::size_t end) {
     made.blocks.push_back(vertices_of(std::span(triangles).subspan(first, end - first)));
-    put_triangle_first(made.blocks.back(), model.start_position);
   });
   made.cloth_block_count = static_cast<std::uint32_t>(made.blocks.size());
 }

@@ -39,7 +39,7 @@ struct SurfaceTriangles {
   std::uint32_t cloth_triangle_count = 0;
   std::vector<BodyPlace> body_places;
   /// The vertices of each block (surface_blocks.h): of triangles of cloths, and then, for those of bodies,
-  /// which are rigid, the corners of their bounds. The first three, far apart, show how the block turns.
+  /// which are rigid, the corners of their bounds.
   std::vector<std::vector<std::uint32_t>> blocks;
   std::uint32_t cloth_block_count = 0;
   /// For each triangle at rest the middle of its box, and its cloth, or -1 for a body's; its normal, and its

@@ -1,4 +1,4 @@
-// Contact, 3 of 3: the pushes on each vertex, in place. A solid that it is pushed into stops it, with friction: so what
+// Contact, 4 of 4: the pushes on each vertex, in place. A solid that it is pushed into stops it, with friction: so what
 // lies on a solid carries what lies on it.
 #include "surface.glsl"
 #include "vertex_contacts.glsl"

@@ -15,11 +15,13 @@ uniform int last_piece;  // 1: of the step
 
 void prepare_next_piece() {
   int next = 1 - turn;
+  control.step_counts[next].kept_groups = control.step_counts[next].kept = 0u;
   control.step_counts[next].near_groups = control.step_counts[next].vertex_groups = 0u;
   control.step_counts[next].touching_groups = control.step_counts[next].meeting_groups = 0u;
   control.step_counts[next].pushed_groups = control.step_counts[next].cut_vertices = 0u;
   control.step_counts[next].near = control.step_counts[next].touching = 0u;
   control.step_counts[next].meeting = control.step_counts[next].cuts = control.step_counts[next].touched = 0u;
+  control.since = floatBitsToUint(uintBitsToFloat(known.since) + uintBitsToFloat(known.part) * dt);
   if (piece_count == 1) return;
   float gone = uintBitsToFloat(known.gone), part = uintBitsToFloat(known.part);
   gone = part >= 1.0 - gone ? 1.0 : gone + part;

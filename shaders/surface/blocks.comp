@@ -1,7 +1,8 @@
 // Validity of the listed pairs, in one work group: asks for a search if two blocks of triangles have come so much
-// nearer to each other that a pair which the last search left out may be near now. Motion that both share does not
-// count, neither a falling cloth's nor a swinging one's. A pair that was left out was farther apart than the search
-// reached, and no nearer than the spheres about its blocks; it came nearer by no more than two of its corners did.
+// nearer to each other than the last search expected that a pair which it left out may be near now. What moves straight
+// on was expected, and motion that both share does not count. A pair that was left out would be farther apart than the
+// search reached, and no nearer than the spheres about its blocks; it is nearer than that by no more than two of its
+// corners are.
 #include "surface.glsl"
 READ_VEC4(block_motions, unit_block_motions);
 uniform int block_count;        // at most GROUP_SIZE
@@ -17,36 +18,20 @@ const uint few_pairs = 4096u;
 const float least_share = 0.0625;  // of the widest skin
 float wanted_checks() { return clamp(2e5 / float(known.pairs), 3.0, 24.0); }
 
-/// A block: all its vertices were within `radius` of `place` at the last search. Now they are where `turn` about that
-/// place, which then goes to `moved`, takes them, but for `bend`; and where the shift `motion` takes them, but for
-/// `change`. [m]
+/// A block: the search expected all its vertices within `radius` of `place` now. They are where the shift `motion` takes
+/// them from there, but for `change`. [m]
 struct Block {
-  vec3 place, moved, motion;
-  float radius, bend, change;
-  mat3 turn;
+  vec3 place, motion;
+  float radius, change;
 };
 
 Block block_at(int i) {
-  vec4 place = FETCH(block_motions, 6 * i), moved = FETCH(block_motions, 6 * i + 1);
-  vec4 motion = FETCH(block_motions, 6 * i + 2);
-  mat3 rows = mat3(FETCH(block_motions, 6 * i + 3).xyz, FETCH(block_motions, 6 * i + 4).xyz,
-                   FETCH(block_motions, 6 * i + 5).xyz);
-  return Block(place.xyz, moved.xyz, motion.xyz, place.w, moved.w, motion.w, transpose(rows));
+  vec4 place = FETCH(block_motions, 2 * i), motion = FETCH(block_motions, 2 * i + 1);
+  return Block(place.xyz, motion.xyz, place.w, motion.w);
 }
 
-/// By how much a vertex of one block and one of the other have come nearer to each other, at most [m]. A rotation of
-/// both changes no distance.
-float approach(Block one, Block other) {
-  vec3 between = other.place - one.place, now = other.moved - one.moved;
-  mat3 turned = other.turn - one.turn;
-  // The Frobenius norm of the difference of two rotations is sqrt(2) times its largest stretch.
-  float twist = sqrt(0.5 * (dot(turned[0], turned[0]) + dot(turned[1], turned[1]) + dot(turned[2], turned[2])));
-  float as_one = length(now - one.turn * between) + twist * other.radius;
-  float as_other = length(now - other.turn * between) + twist * one.radius;
-  float as_rigid = min(as_one, as_other) + one.bend + other.bend;
-  float as_shifted = length(other.motion - one.motion) + one.change + other.change;
-  return min(as_rigid, as_shifted);
-}
+/// By how much a vertex of one block and one of the other have come nearer to each other than expected, at most [m].
+float approach(Block one, Block other) { return length(other.motion - one.motion) + one.change + other.change; }
 
 /// True if no pair of this block and another can be near that is not listed.
 bool valid(int i) {
@@ -76,10 +61,19 @@ float next_skin() {
   return clamp(skin * wanted_checks() / lasts, least_share * most_skin, most_skin);
 }
 
+const float most_steps_ahead = 24.0;
+/// How far ahead the next search looks [s]: as long as this one's lists have lasted. Looking less far makes them invalid
+/// sooner; looking farther lists pairs that meet later than the search after it is due.
+float next_ahead() {
+  float ahead = uintBitsToFloat(known.ahead), lasted = uintBitsToFloat(known.since);
+  return min(clamp(lasted, max(0.5 * ahead, dt), max(2.0 * ahead, 4.0 * dt)), most_steps_ahead * dt);
+}
+
 void main() {
   int block = int(gl_LocalInvocationID.x);
   if (block == 0) {
     control.next_skin = floatBitsToUint(next_skin());
+    control.next_ahead = floatBitsToUint(next_ahead());
     ++control.checks;
   }
   if (block < block_count && (!valid(block) || too_long()))

@@ -2,7 +2,6 @@
 // bundles: the same, of BUNDLE_SIZE.
 #include "surface.glsl"
 #include "triangles.glsl"
-#include "boxes.glsl"
 layout(std430, binding = slot_boxes) writeonly buffer Boxes { vec4 boxes[]; };
 
 void main() {
@@ -10,12 +9,14 @@ void main() {
   bool leaf = item < leaf_count();
   int size = leaf ? LEAF_SIZE : BUNDLE_SIZE, begin = leaf ? LEAF_SIZE * item : BUNDLE_SIZE * (item - leaf_count());
   if (begin >= triangle_count) return;
-  vec3 low = vec3(1e30), high = vec3(-1e30);
+  Box box = Box(vec3(1e30), vec3(-1e30), vec3(1e30), vec3(-1e30));
   for (int i = begin; i < min(begin + size, triangle_count); ++i) {
-    Triangle t = triangle_at(i);
-    low = min(low, low_of(t));
-    high = max(high, high_of(t));
+    Box its = triangle_at(i).box;
+    box = Box(min(box.low, its.low), max(box.high, its.high), min(box.low_ahead, its.low_ahead),
+              max(box.high_ahead, its.high_ahead));
   }
-  boxes[2 * item] = vec4(low, 0.0);
-  boxes[2 * item + 1] = vec4(high, 0.0);
+  boxes[4 * item] = vec4(box.low, 0.0);
+  boxes[4 * item + 1] = vec4(box.high, 0.0);
+  boxes[4 * item + 2] = vec4(box.low_ahead, 0.0);
+  boxes[4 * item + 3] = vec4(box.high_ahead, 0.0);
 }

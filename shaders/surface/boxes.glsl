@@ -1,9 +1,22 @@
 /// Leaves of LEAF_SIZE triangles each: their boxes come first in the list of boxes, those of bundles after them.
 int leaf_count() { return (triangle_count + LEAF_SIZE - 1) / LEAF_SIZE; }
 
-/// The square of the distance between two boxes, along any direction [m^2]. In a sheet that lies askew to the axes half
-/// as many are near as by the largest gap along an axis.
-float box_gap_squared(vec3 low, vec3 high, vec3 other_low, vec3 other_high) {
-  vec3 gaps = max(max(other_low - high, low - other_high), 0.0);
+/// About what moves: where it is at the search, and where it will be, as far ahead as the search looks.
+struct Box {
+  vec3 low, high, low_ahead, high_ahead;
+};
+
+Box box_of(vec3 x[3], vec3 ahead[3]) {
+  return Box(min(x[0], min(x[1], x[2])), max(x[0], max(x[1], x[2])), min(ahead[0], min(ahead[1], ahead[2])),
+             max(ahead[0], max(ahead[1], ahead[2])));
+}
+
+/// The square of the distance that two boxes keep all the time, along any direction [m^2]. In a sheet that lies askew to
+/// the axes half as many are near as by the largest gap along an axis. What moves straight on keeps along an axis at
+/// least the lesser of the gaps at both ends.
+float box_gap_squared(Box one, Box other) {
+  vec3 above = min(other.low - one.high, other.low_ahead - one.high_ahead);
+  vec3 below = min(one.low - other.high, one.low_ahead - other.high_ahead);
+  vec3 gaps = max(max(above, below), 0.0);
   return dot(gaps, gaps);
 }

@@ -1,7 +1,6 @@
 // Pair search, 4 of 10: pairs of bundles, of two near leaves, whose boxes are near each other; a bundle is near itself.
 #include "surface.glsl"
-#include "boxes.glsl"
-READ_VEC4(boxes, unit_boxes);
+#include "box_list.glsl"
 READ_UVEC2(leaf_pair_list, unit_leaf_pairs);
 layout(std430, binding = slot_bundle_pairs) writeonly buffer BundlePairs { uvec2 found[]; };
 
@@ -15,11 +14,11 @@ void main() {
   int one = bundles_of_leaf * leaves.x + item % bundles_of_leaf, first = bundles_of_leaf * leaves.y;
   if (one >= bundle_count) return;
   float reach = reach_of(next_query());
-  vec3 low = FETCH(boxes, 2 * (leaf_count() + one)).xyz, high = FETCH(boxes, 2 * (leaf_count() + one) + 1).xyz;
+  Box box = box_at(leaf_count() + one);
   uint near = 0u;
   for (int k = 0; k < bundles_of_leaf; ++k) {
-    int other = min(first + k, bundle_count - 1), box = 2 * (leaf_count() + other);
-    if (box_gap_squared(low, high, FETCH(boxes, box).xyz, FETCH(boxes, box + 1).xyz) <= reach * reach &&
+    int other = min(first + k, bundle_count - 1);
+    if (box_gap_squared(box, box_at(leaf_count() + other)) <= reach * reach &&
         first + k < bundle_count && (leaves.x != leaves.y || one <= other))
       near |= 1u << k;
   }

@@ -3,7 +3,7 @@
 // al. 2008, "Fast Collision Detection for Deformable Models using Representative-Triangles").
 #include "surface.glsl"
 #include "triangles.glsl"
-#include "boxes.glsl"
+#include "expected.glsl"
 READ_UVEC2(triangle_pair_list, unit_triangle_pairs);
 layout(std430, binding = slot_near_pairs) writeonly buffer Candidates { uvec4 list[]; };  // pairs
 
@@ -16,29 +16,48 @@ uint owned_pairs(uvec3 one, uvec3 other) {
          other_vertex.z << 5u | edges * (edge.x << 6u | edge.y << 9u | edge.z << 12u);
 }
 
+/// Where the corners of a triangle are, and where they will be.
+struct Paths {
+  vec3 x[3], ahead[3];
+};
+
+Paths paths_of(uvec3 tags) {
+  Paths p;
+  for (int k = 0; k < 3; ++k) {
+    uint vertex = tags[k] & number_mask;
+    p.x[k] = place_at_search(vertex);
+    p.ahead[k] = p.x[k] + expected_motion(vertex);
+  }
+  return p;
+}
+
+Box box_of_vertex(Paths p, int k) { return Box(p.x[k], p.x[k], p.ahead[k], p.ahead[k]); }
+
+Box box_of_edge(Paths p, int k) {
+  int end = (k + 1) % 3;
+  return Box(min(p.x[k], p.x[end]), max(p.x[k], p.x[end]), min(p.ahead[k], p.ahead[end]),
+             max(p.ahead[k], p.ahead[end]));
+}
+
 /// The pairs whose boxes are near, as the same bits. Loops of constant length over constant numbers: the places stay in
 /// registers.
-uint near_pairs(vec3 one[3], vec3 other[3], float reach) {
+uint near_pairs(Triangle one, Triangle other, float reach) {
   float most = reach * reach;
   uint found = 0u;
-  vec3 low = min(one[0], min(one[1], one[2])), high = max(one[0], max(one[1], one[2]));
-  vec3 other_low = min(other[0], min(other[1], other[2])), other_high = max(other[0], max(other[1], other[2]));
+  Paths paths = paths_of(one.tags), other_paths = paths_of(other.tags);
   for (int k = 0; k < 3; ++k) {
-    if (box_gap_squared(one[k], one[k], other_low, other_high) <= most) found |= 1u << k;
-    if (box_gap_squared(other[k], other[k], low, high) <= most) found |= 8u << k;
-    vec3 end = one[(k + 1) % 3], edge_low = min(one[k], end), edge_high = max(one[k], end);
-    for (int m = 0; m < 3; ++m) {
-      vec3 other_end = other[(m + 1) % 3];
-      if (box_gap_squared(edge_low, edge_high, min(other[m], other_end), max(other[m], other_end)) <= most)
-        found |= 64u << (3 * k + m);
-    }
+    if (box_gap_squared(box_of_vertex(paths, k), other.box) <= most) found |= 1u << k;
+    if (box_gap_squared(box_of_vertex(other_paths, k), one.box) <= most) found |= 8u << k;
+    Box edge = box_of_edge(paths, k);
+    for (int m = 0; m < 3; ++m)
+      if (box_gap_squared(edge, box_of_edge(other_paths, m)) <= most) found |= 64u << (3 * k + m);
   }
   return found;
 }
 
 /// A corner of two triangles, 3 to 5 of the second.
 uint corner(uvec2 both, int k) {
-  return FETCH(triangle_corners, k < 3 ? 3u * both.x + uint(k) : 3u * both.y + uint(k - 3)).w & number_mask;
+  return FETCH(triangle_boxes, k < 3 ? 4u * both.x + uint(k) : 4u * both.y + uint(k - 3)).w & number_mask;
 }
 
 /// The pair of two triangles of one of the bits: a vertex, and a triangle n, n + 1, n + 2; or edges m to m_end and n to
@@ -60,12 +79,7 @@ void main() {
   both.y &= ~flat_bit;
   Triangle one = triangle_at(int(both.x)), other = triangle_at(int(both.y));
   float reach = reach_of(flat_at_rest ? next_flat_query() : next_query());
-  vec3 origin = one.x[0];
-  for (int k = 0; k < 3; ++k) {
-    one.x[k] -= origin;
-    other.x[k] -= origin;
-  }
-  uint left = owned_pairs(one.tags, other.tags) & near_pairs(one.x, other.x, reach);
+  uint left = owned_pairs(one.tags, other.tags) & near_pairs(one, other, reach);
   if (left != 0u) {
     uint slot = atomicAdd(control.candidates, uint(bitCount(left)));
     uint end = min(slot + uint(bitCount(left)), 3u * pair_capacity);

@@ -1,10 +1,11 @@
-// Contact, 1 of 3: the pairs that are near at the step's start, how they are apart then, and which of them touch at
+// Contact, 2 of 4: the pairs that are near at the step's start, how they are apart then, and which of them touch at
 // each vertex.
 #include "surface.glsl"
 #include "vertex_contacts.glsl"
 READ_VEC4(position, unit_position);  // after the step
 READ_VEC4(step_start, unit_step_start);
 READ_UVEC4(pair_list, unit_surface_pairs);
+READ_UINT(kept_pairs, unit_chosen_pairs);  // cull.comp
 layout(std430, binding = slot_near_pairs) writeonly buffer NearPairs { uvec4 near_list[]; };
 layout(std430, binding = slot_chosen_pairs) writeonly buffer Chosen { uint touching_pairs[]; };
 layout(std430, binding = slot_pair_loads) writeonly buffer Loads { vec4 pair_loads[]; };  // forces.comp
@@ -20,9 +21,8 @@ void add_touched(uint vertex) {
 }
 
 void main() {
-  uint item = gl_GlobalInvocationID.x;
-  if (item >= min(known.pairs, pair_capacity)) return;
-  uvec4 pair = FETCH(pair_list, item), corner = corners_of(pair);
+  if (gl_GlobalInvocationID.x >= known.step_counts[turn].kept) return;
+  uvec4 pair = FETCH(pair_list, FETCH_UINT(kept_pairs, pair_capacity + gl_GlobalInvocationID.x)), corner = corners_of(pair);
   bool edges = is_edges(pair);
   vec3 start[4];
   for (int k = 0; k < 4; ++k) start[k] = FETCH(step_start, corner[k]).xyz;

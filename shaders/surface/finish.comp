@@ -6,6 +6,8 @@ void main() {
   control.query = floatBitsToUint(next_query());
   control.flat_query = floatBitsToUint(next_flat_query());
   control.skin = known.next_skin;
+  control.ahead = known.next_ahead;
+  control.since = floatBitsToUint(0.0);
   control.checks = 0u;
   // Candidates are where near pairs will be, with three times the room. What was found beyond a list's room was not
   // searched further, and what was depends on the order of threads: then only what is complete counts.

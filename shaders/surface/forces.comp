@@ -1,4 +1,4 @@
-// Contact, 2 of 3: pushes of the near pairs that touch, at the places and velocities that the step, or the pass before,
+// Contact, 3 of 4: pushes of the near pairs that touch, at the places and velocities that the step, or the pass before,
 // has made.
 #include "surface.glsl"
 #include "near_pairs.glsl"

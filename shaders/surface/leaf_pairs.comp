@@ -1,7 +1,6 @@
 // Pair search, 3 of 10: pairs of leaves whose boxes are near each other; a leaf is near itself.
 #include "surface.glsl"
-#include "boxes.glsl"
-READ_VEC4(boxes, unit_boxes);
+#include "box_list.glsl"
 layout(std430, binding = slot_leaf_pairs) writeonly buffer LeafPairs { uvec2 found[]; };
 
 uniform int cloth_pairs;  // 0: cloths meet bodies alone
@@ -11,14 +10,14 @@ void main() {
   int cloth_leaves = (cloth_triangle_count + LEAF_SIZE - 1) / LEAF_SIZE;
   if (one >= cloth_leaves) return;
   float reach = reach_of(next_query());
-  vec3 low = FETCH(boxes, 2 * one).xyz, high = FETCH(boxes, 2 * one + 1).xyz;
+  Box box = box_at(one);
   // Each two leaves of cloths once: every leaf looks at the half of the ring that begins with itself; and at all leaves
   // of bodies. A leaf may hold both, at the border.
   int of_cloths = cloth_leaves / 2 + 1;
   for (int k = 0; k < of_cloths + leaf_count() - cloth_leaves; ++k) {
     bool body = k >= of_cloths;
     int other = body ? cloth_leaves + k - of_cloths : one + k < cloth_leaves ? one + k : one + k - cloth_leaves;
-    if (box_gap_squared(low, high, FETCH(boxes, 2 * other).xyz, FETCH(boxes, 2 * other + 1).xyz) <= reach * reach &&
+    if (box_gap_squared(box, box_at(other)) <= reach * reach &&
            (body || 2 * k != cloth_leaves || one < other) &&
            (cloth_pairs != 0 || LEAF_SIZE * (max(one, other) + 1) > cloth_triangle_count)) {
       uint slot = atomicAdd(control.leaf_pairs, 1u);

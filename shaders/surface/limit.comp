@@ -11,7 +11,7 @@ READ_VEC4(velocity, unit_velocity);
 READ_VEC4(step_target, unit_step_target);
 layout(std430, binding = slot_step_limits) coherent buffer Limits { uint limits[]; };
 layout(std430, binding = slot_near_pairs) writeonly buffer NearPairs { uvec4 near_list[]; };
-// Pairs that push, and from pair_capacity on those that could meet.
+// Pairs that push, and from pair_capacity on, in place of those that cull.comp kept, those that could meet.
 layout(std430, binding = slot_chosen_pairs) buffer Chosen { uint chosen_pairs[]; };
 uniform float held_part;  // of what is left of their steps, that pins and bodies go for in this pass
 

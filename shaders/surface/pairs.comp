@@ -1,6 +1,7 @@
-// Pair search, 8 of 10: the candidates that are near each other, not their boxes alone.
+// Pair search, 8 of 10: the candidates that are near each other, not their boxes alone: now, or ahead in the direction
+// that divides them now.
 #include "surface.glsl"
-READ_VEC4(position, unit_position);
+#include "expected.glsl"
 READ_VEC4(body_places, unit_body_places);  // home, motion; friction, restitution, a box's corner
 READ_UVEC4(candidate_list, unit_near_pairs);
 layout(std430, binding = slot_surface_pairs) writeonly buffer Pairs { uvec4 list[]; };
@@ -11,12 +12,12 @@ layout(std430, binding = slot_surface_pairs) writeonly buffer Pairs { uvec4 list
 bool within_box(uvec4 corner, Corners c, vec3 origin, Separation apart) {
   int body = int(max(corner.x, corner.w)) - cloth_vertex_count;
   int first = body < 0 ? -1 : int(FETCH(body_places, 2 * body + 1).z);
-  vec3 nearest = vec3(0.0), from = FETCH(position, max(first, 0)).xyz - origin;
+  vec3 nearest = vec3(0.0), from = place_at_search(uint(max(first, 0))) - origin;
   for (int k = 0; k < 4; ++k)
     if (int(corner[k]) < cloth_vertex_count) nearest += abs(apart.weight[k]) * c.x[k];
   bool within = first >= 0;
   for (int axis = 0; axis < 3; ++axis) {
-    vec3 side = FETCH(position, max(first, 0) + (1 << axis)).xyz - origin - from;
+    vec3 side = place_at_search(uint(max(first, 0) + (1 << axis))) - origin - from;
     float along = dot(nearest - from, side);
     within = within && along > 0.0 && along < dot(side, side);
   }
@@ -28,12 +29,15 @@ void main() {
   if (item >= min(known.candidates, 3u * pair_capacity)) return;
   uvec4 pair = FETCH(candidate_list, item), corner = corners_of(pair);
   bool edges = is_edges(pair), flat_at_rest = (pair.y & no_force_bit) != 0u;
-  vec3 origin = FETCH(position, corner.x).xyz;
-  Corners c;
-  for (int k = 0; k < 4; ++k) c.x[k] = FETCH(position, corner[k]).xyz - origin;
+  vec3 origin = place_at_search(corner.x);
+  Corners c, ahead;
+  for (int k = 0; k < 4; ++k) {
+    c.x[k] = place_at_search(corner[k]) - origin;
+    ahead.x[k] = c.x[k] + expected_motion(corner[k]);
+  }
   float reach = reach_of(flat_at_rest ? next_flat_query() : next_query());
   Separation apart = separation(edges, c);
-  if (apart.gap < reach && !within_box(corner, c, origin, apart)) {
+  if (min(apart.gap, gap_along(edges, ahead, apart.n)) < reach && !within_box(corner, c, origin, apart)) {
     uint slot = atomicAdd(control.pairs, 1u);
     if (slot < pair_capacity) {
       if (slot % uint(GROUP_SIZE) == 0u) {

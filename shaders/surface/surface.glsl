@@ -13,6 +13,7 @@ layout(local_size_x = GROUP_SIZE) in;
 #include "../elements/surface.glsl"
 
 struct StepCounts {  // of a step; steps take turns with two of them
+  uint kept_groups, kept_groups_y, kept_groups_z;              // over the listed pairs that may be near
   uint near_groups, near_groups_y, near_groups_z;              // over the near pairs
   uint vertex_groups, vertex_groups_y, vertex_groups_z;        // over the vertices, if a pair is near
   uint touching_groups, touching_groups_y, touching_groups_z;  // over the near pairs that push
@@ -24,6 +25,7 @@ struct StepCounts {  // of a step; steps take turns with two of them
   uint meeting;                                                // of these, those that could meet
   uint cuts;                                                   // vertices whose steps were shortened
   uint touched;                                                // vertices that the pairs which push touch
+  uint kept;                                                   // listed pairs that may be near
   uint unused;
 };
 
@@ -65,6 +67,9 @@ struct Control {
   uint part;                 // share of the step that this piece goes, the same
   uint skin;                 // by how much the last search reached farther than it had to [m], as bits
   uint next_skin;            // the same of a search that is due (blocks.comp)
+  uint ahead;                // how far ahead the last search looked [s], as bits
+  uint next_ahead;           // the same of a search that is due (blocks.comp)
+  uint since;                // time since the last search [s], as bits
   uint checks;               // of the listed pairs since the last search
 };
 layout(std430, binding = slot_surface_control) coherent buffer SurfaceControl { Control control; };

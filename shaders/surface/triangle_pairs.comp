@@ -3,7 +3,6 @@
 // the search does not reach as far for them.
 #include "surface.glsl"
 #include "triangles.glsl"
-#include "boxes.glsl"
 READ_UVEC2(bundle_pair_list, unit_bundle_pairs);
 READ_VEC4(rest_places, unit_rest_places);  // middle of a triangle's box, cloth; normal, radius about the middle
 layout(std430, binding = slot_triangle_pairs) writeonly buffer TrianglePairs { uvec2 found[]; };
@@ -40,13 +39,12 @@ void main() {
   if (item >= int(min(known.bundle_pairs, bundle_pair_capacity))) return;
   uvec2 bundles = FETCH_UVEC2(bundle_pair_list, item);
   float reach = reach_of(next_query()), flat_reach = reach_of(next_flat_query());
-  vec3 low[BUNDLE_SIZE], high[BUNDLE_SIZE];
+  Box box[BUNDLE_SIZE];
   uvec3 numbers[BUNDLE_SIZE];
   int begin = BUNDLE_SIZE * int(bundles.x), other_begin = BUNDLE_SIZE * int(bundles.y);
   for (int k = 0; k < BUNDLE_SIZE; ++k) {
     Triangle t = triangle_at(min(begin + k, triangle_count - 1));
-    low[k] = low_of(t);
-    high[k] = high_of(t);
+    box[k] = t.box;
     numbers[k] = t.tags & number_mask;
   }
   // First comparisons of boxes, then what few of them leave: threads that run together seldom leave the same.
@@ -54,11 +52,10 @@ void main() {
   for (int m = 0; m < BUNDLE_SIZE; ++m) {
     int j = other_begin + m;
     Triangle t = triangle_at(min(j, triangle_count - 1));
-    vec3 other_low = low_of(t), other_high = high_of(t);
     for (int k = 0; k < BUNDLE_SIZE; ++k) {
       int i = begin + k, bodies = int(i >= cloth_triangle_count) + int(j >= cloth_triangle_count);
       bool meet = bodies == 1 || (bodies == 0 && cloth_pairs != 0), once = bundles.x != bundles.y || i < j;
-      float gap = box_gap_squared(low[k], high[k], other_low, other_high);
+      float gap = box_gap_squared(box[k], t.box);
       if (gap <= reach * reach && max(i, j) < triangle_count && meet && once &&
           !share_vertex(numbers[k], t.tags & number_mask)) {
         near |= 1u << (BUNDLE_SIZE * m + k);
