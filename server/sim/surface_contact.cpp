@@ -212,6 +212,7 @@ void SurfaceContact::keep_apart(StateBuffers& state, int row) {
   for (int piece = 0; piece < pieces_; ++piece) {
     if (pieces_ > 1) advance(state, row, piece, changing);
     push_and_filter(state, row, changing, piece == pieces_ - 1);
+    if (pairs_.none(offsetof(SurfaceControl, check))) break;  // all of the step is gone
   }
 }
 
@@ -253,7 +254,8 @@ void SurfaceContact::push_and_filter(StateBuffers& state, int row, std::uint32_t
     for (const gl::Program* program : {&apply_, &move_last_}) program->set("start_row", row);
   pairs_.bind_pushes();
   borne_.bind_storage(slot_borne);
-  for (int pass = 0; pass < push_passes_ + rub_passes_; ++pass) {
+  const int passes = pairs_.none(touching) ? 0 : push_passes_ + rub_passes_;
+  for (int pass = 0; pass < passes; ++pass) {
     const bool rubs = pass >= push_passes_;
     const int next_rubs = rub_passes_ > 0 && pass >= push_passes_ - 1 ? 1 : 0;
     forces_.set("first_pass", pass == 0 ? 1 : 0);
@@ -274,11 +276,12 @@ void SurfaceContact::push_and_filter(StateBuffers& state, int row, std::uint32_t
   begin_.set("last_piece", last_piece ? 1 : 0);
   glDispatchCompute(vertex_groups(changing), 1, 1);
   wait_for_writes();
-  for (int pass = 0; pass < filter_passes_; ++pass) {
-    const bool last = pass == filter_passes_ - 1;
+  const int filter_passes = pairs_.none(near) ? 0 : filter_passes_;
+  for (int pass = 0; pass < filter_passes; ++pass) {
+    const bool last = pass == filter_passes - 1;
     // What moves by itself spreads its step over all passes but the last one, lest it comes upon layers that
     // are yet to make room.
-    const float held_part = last ? 1.0f : 1.0f / static_cast<float>(filter_passes_ - 1 - pass);
+    const float held_part = last ? 1.0f : 1.0f / static_cast<float>(filter_passes - 1 - pass);
     const gl::Program& limit = pass == 0 ? limit_first_ : limit_again_;
     const gl::Program& move = last ? move_last_ : move_;
     const auto run_pass = [&](const gl::Program& program, std::size_t groups) {

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "server/gl/context.h"
 #include "server/sim/integrator.h"
 #include "server/sim/surface_control.h"
 
@@ -29,6 +30,7 @@ double finest_edge(const model::Model& model) {
 
 Result<SurfacePairs> SurfacePairs::create(const model::Model& model, const SurfaceTriangles& surface) {
   SurfacePairs made;
+  made.asks_ = gl::software_renderer();
   made.vertex_count_ = model.vertex_count() + static_cast<std::uint32_t>(surface.body_places.size());
   made.triangle_count_ = static_cast<std::uint32_t>(surface.triangles.size());
   const gl::Defines defines{{"GROUP_SIZE", std::to_string(group_size)},
@@ -167,7 +169,14 @@ void SurfacePairs::forget_pairs(bool within_step) {
   searched_ = false;
 }
 
+bool SurfacePairs::none(std::size_t groups) const {
+  std::uint32_t count = 1;
+  if (asks_) control_.download(&count, sizeof count, groups);
+  return count == 0;
+}
+
 void SurfacePairs::search(const StateBuffers& state) {
+  if (none(offsetof(SurfaceControl, rebuild))) return;
   const auto dispatch = [](const gl::Program& program, std::size_t groups) {
     program.use();
     glDispatchComputeIndirect(static_cast<GLintptr>(groups));

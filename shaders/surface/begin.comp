@@ -27,7 +27,7 @@ void prepare_next_piece() {
   gone = part >= 1.0 - gone ? 1.0 : gone + part;
   control.gone = floatBitsToUint(gone);
   control.check_groups = gone < 1.0 ? 1u : 0u;
-  if (last_piece != 0) control.longest = 0u;
+  if (last_piece != 0 || !(gone < 1.0)) control.longest = 0u;
 }
 
 void main() {
