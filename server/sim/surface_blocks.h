@@ -1,6 +1,6 @@
 // Tells when the pairs that a search for contact between surfaces has listed are no longer all that can meet
-// (shaders/surface/blocks.comp). It follows the motion of blocks of triangles, so that a cloth which falls, or
-// goes on as it went at the search, needs few searches.
+// (shaders/surface/blocks.comp). It follows the motion of blocks of triangles, so that a cloth which falls,
+// or goes on as it went at the search, needs few searches.
 #pragma once
 
 #include <cstddef>

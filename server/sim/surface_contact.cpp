@@ -31,8 +31,8 @@ constexpr Passes of_short_step{2, 0, 3}, of_long_step{4, 4, 3};
 /// their way, layer behind layer.
 constexpr Passes of_short_driven_step{8, 0, 3}, of_long_driven_step{16, 1, 8};
 /// A step longer than this [s] is gone in pieces where vertices are fast, in so many at most. The shorter a
-/// piece, the fewer pairs are near enough to meet in it; but even one that is not needed costs its
-/// dispatches, a tenth of a short step.
+/// piece, the fewer pairs are near enough to meet in it; but even one that is not needed costs a GPU its
+/// dispatches.
 constexpr double longest_whole_step = 0.001;
 constexpr int most_pieces = 8;
 /// How far a vertex goes in a piece where pins, bodies or colliders move, in thicknesses: pushes make room
@@ -129,8 +129,8 @@ Result<SurfaceContact> SurfaceContact::create(const model::Model& model, const P
 }
 
 std::array<const gl::Program*, 12> SurfaceContact::programs() const {
-  return {&cull_, &contacts_,    &forces_,      &apply_,      &begin_, &path_program_, &advance_,
-          &limit_first_, &limit_again_, &limit_stop_, &move_,  &move_last_};
+  return {&cull_,    &contacts_,    &forces_,      &apply_,      &begin_, &path_program_,
+          &advance_, &limit_first_, &limit_again_, &limit_stop_, &move_,  &move_last_};
 }
 
 void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Model& model,
@@ -247,8 +247,7 @@ void SurfaceContact::push_and_filter(StateBuffers& state, int row, std::uint32_t
   vertex_contacts_.bind(unit_vertex_contacts);
   pairs_.bind_contacts();
 
-  run(cull_,
-      pieces_ > 1 ? offsetof(SurfaceControl, contact_groups) : offsetof(SurfaceControl, pair_groups));
+  run(cull_, pieces_ > 1 ? offsetof(SurfaceControl, contact_groups) : offsetof(SurfaceControl, pair_groups));
   run(contacts_, counts + offsetof(StepCounts, kept_groups));
   if (driven_)
     for (const gl::Program* program : {&apply_, &move_last_}) program->set("start_row", row);

@@ -204,7 +204,8 @@ void SurfacePairs::search(const StateBuffers& state) {
   dispatch(leaf_pairs_program_, offsetof(SurfaceControl, rebuild));
   bundle_pairs_.buffer.bind_storage(slot_bundle_pairs);
   dispatch(bundle_pairs_program_, offsetof(SurfaceControl, leaf_groups));
-  bundle_pairs_.bind(unit_bundle_pairs);  // the unit was that of the triangles, which only their boxes are made of
+  bundle_pairs_.bind(
+      unit_bundle_pairs);  // the unit was that of the triangles, which only their boxes are made of
   triangle_pairs_.buffer.bind_storage(slot_triangle_pairs);
   dispatch(triangle_pairs_program_, offsetof(SurfaceControl, bundle_groups));
   near_pairs_.buffer.bind_storage(slot_near_pairs);

@@ -50,9 +50,9 @@ class SurfacePairs {
   /// Sets what a pass after the step needs to know of the search. It may change with every `update`.
   void set_limits(const gl::Program& program) const;
   const gl::Buffer& control() const { return control_; }
-  /// True if an indirect dispatch of the groups at this offset in the control block would do nothing. Software
-  /// OpenGL has carried out a dispatch when the call returns, and is asked: that costs less than a dispatch
-  /// that does nothing. A GPU would have to be waited for: then false.
+  /// True if an indirect dispatch of the groups at this offset in the control block would do nothing.
+  /// Software OpenGL has carried out a dispatch when the call returns, and is asked: that costs less than a
+  /// dispatch that does nothing. A GPU would have to be waited for: then false.
   bool none(std::size_t groups) const;
   /// Binds what contacts write of each near pair, and what its pushes read and write. The slots are other
   /// buffers' afterwards.
@@ -86,10 +86,10 @@ class SurfacePairs {
   Capacities capacity_;
   float most_query_ = 0;  ///< [m]
   bool driven_ = false, in_pieces_ = false, searched_ = false;
-  bool asks_ = false;  ///< none(groups) asks
+  bool asks_ = false;          ///< none(groups) asks
   std::uint64_t updates_ = 0;  ///< calls of `update` since `invalidate`
-  gl::Program triangle_boxes_program_, boxes_program_, leaf_pairs_program_, bundle_pairs_program_, triangle_pairs_program_,
-      neighbours_, candidates_, pairs_program_, rest_, finish_;
+  gl::Program triangle_boxes_program_, boxes_program_, leaf_pairs_program_, bundle_pairs_program_,
+      triangle_pairs_program_, neighbours_, candidates_, pairs_program_, rest_, finish_;
   SurfaceBlocks blocks_;
   gl::Buffer control_;
   gl::ReadbackRing sizes_ring_;

@@ -11,14 +11,16 @@ void main() {
   int block = int(gl_GlobalInvocationID.x);
   if (block >= block_count) return;
   // A vertex is expected to move straight on, as far ahead as the search looked, and no farther.
-  float ahead = uintBitsToFloat(known.ahead), share = ahead > 0.0 ? min(uintBitsToFloat(known.since) / ahead, 1.0) : 0.0;
+  float ahead = uintBitsToFloat(known.ahead), since = uintBitsToFloat(known.since);
+  float share = ahead > 0.0 ? min(since / ahead, 1.0) : 0.0;
   uint begin = block > 0 ? FETCH_UINT(block_vertices, block - 1) : uint(block_count);
   uint end = FETCH_UINT(block_vertices, block);
   // Boxes of the places that the search expected, and of what the motions were beyond that.
   vec3 low = vec3(1e30), high = -low, low_motion = low, high_motion = high;
   for (uint k = begin; k < end; ++k) {
     uint vertex = FETCH_UINT(block_vertices, k);
-    vec3 place = place_at_search(vertex) + share * expected_motion(vertex), motion = FETCH(position, vertex).xyz - place;
+    vec3 place = place_at_search(vertex) + share * expected_motion(vertex);
+    vec3 motion = FETCH(position, vertex).xyz - place;
     low = min(low, place);
     high = max(high, place);
     low_motion = min(low_motion, motion);

@@ -1,8 +1,8 @@
 // Validity of the listed pairs, in one work group: asks for a search if two blocks of triangles have come so much
-// nearer to each other than the last search expected that a pair which it left out may be near now. What moves straight
-// on was expected, and motion that both share does not count. A pair that was left out would be farther apart than the
-// search reached, and no nearer than the spheres about its blocks; it is nearer than that by no more than two of its
-// corners are.
+// nearer to each other than the last search expected that a pair which it left out may be near now. What keeps its
+// velocity was expected, and motion that both share does not count. Had all gone as expected, a pair that was left out
+// would be farther apart than the search reached, and no nearer than the spheres about its blocks. It is nearer than
+// that by no more than two of its corners are.
 #include "surface.glsl"
 READ_VEC4(block_motions, unit_block_motions);
 uniform int block_count;        // at most GROUP_SIZE
@@ -18,8 +18,8 @@ const uint few_pairs = 4096u;
 const float least_share = 0.0625;  // of the widest skin
 float wanted_checks() { return clamp(2e5 / float(known.pairs), 3.0, 24.0); }
 
-/// A block: the search expected all its vertices within `radius` of `place` now. They are where the shift `motion` takes
-/// them from there, but for `change`. [m]
+/// A block: the search expected all its vertices within `radius` of `place` now. Each is where the shift `motion` takes
+/// it from where it was expected, but for `change`. [m]
 struct Block {
   vec3 place, motion;
   float radius, change;
@@ -62,8 +62,8 @@ float next_skin() {
 }
 
 const float most_steps_ahead = 24.0;
-/// How far ahead the next search looks [s]: as long as this one's lists have lasted. Looking less far makes them invalid
-/// sooner; looking farther lists pairs that meet later than the search after it is due.
+/// How far ahead the next search looks [s]: as long as this one's lists have lasted. If it looked less far, its lists
+/// would be invalid sooner; if farther, they would have pairs that meet only after the next search.
 float next_ahead() {
   float ahead = uintBitsToFloat(known.ahead), lasted = uintBitsToFloat(known.since);
   return min(clamp(lasted, max(0.5 * ahead, dt), max(2.0 * ahead, 4.0 * dt)), most_steps_ahead * dt);

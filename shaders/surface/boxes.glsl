@@ -1,7 +1,8 @@
 /// Leaves of LEAF_SIZE triangles each: their boxes come first in the list of boxes, those of bundles after them.
 int leaf_count() { return (triangle_count + LEAF_SIZE - 1) / LEAF_SIZE; }
 
-/// About what moves: where it is at the search, and where it will be, as far ahead as the search looks.
+/// About something where it is at the search, and where it will be, as far ahead as the search looks, if it keeps its
+/// velocity [m].
 struct Box {
   vec3 low, high, low_ahead, high_ahead;
 };
@@ -11,9 +12,9 @@ Box box_of(vec3 x[3], vec3 ahead[3]) {
              max(ahead[0], max(ahead[1], ahead[2])));
 }
 
-/// The square of the distance that two boxes keep all the time, along any direction [m^2]. In a sheet that lies askew to
-/// the axes half as many are near as by the largest gap along an axis. What moves straight on keeps along an axis at
-/// least the lesser of the gaps at both ends.
+/// The square of the distance that two boxes keep all the way, along any direction [m^2]. Along an axis the gap between
+/// what moves straight on is never less than the lesser of those at both ends. In a sheet that lies askew to the axes
+/// half as many are near as by the largest gap along an axis.
 float box_gap_squared(Box one, Box other) {
   vec3 above = min(other.low - one.high, other.low_ahead - one.high_ahead);
   vec3 below = min(one.low - other.high, one.low_ahead - other.high_ahead);

@@ -22,7 +22,8 @@ void add_touched(uint vertex) {
 
 void main() {
   if (gl_GlobalInvocationID.x >= known.step_counts[turn].kept) return;
-  uvec4 pair = FETCH(pair_list, FETCH_UINT(kept_pairs, pair_capacity + gl_GlobalInvocationID.x)), corner = corners_of(pair);
+  uvec4 pair = FETCH(pair_list, FETCH_UINT(kept_pairs, pair_capacity + gl_GlobalInvocationID.x));
+  uvec4 corner = corners_of(pair);
   bool edges = is_edges(pair);
   vec3 start[4];
   for (int k = 0; k < 4; ++k) start[k] = FETCH(step_start, corner[k]).xyz;

@@ -5,10 +5,10 @@
 READ_VEC4(position, unit_position);
 READ_VEC4(velocity, unit_velocity);
 READ_UVEC4(surface_triangles, unit_surface_triangles);  // w: parts of triangles.glsl, of each corner in turn
-layout(std430, binding = slot_triangle_boxes) writeonly buffer TriangleBoxes { uvec4 boxes[]; };    // triangles.glsl
-layout(std430, binding = slot_expected) writeonly buffer Expected { vec4 expected[]; };  // expected.glsl
+layout(std430, binding = slot_triangle_boxes) writeonly buffer TriangleBoxes { uvec4 boxes[]; };  // triangles.glsl
+layout(std430, binding = slot_expected) writeonly buffer Expected { vec4 expected[]; };            // expected.glsl
 
-/// How far a vertex will have moved when the search looks no farther ahead [m].
+/// How far a vertex goes at its velocity in the time that the search looks ahead [m].
 vec3 motion_ahead(uint vertex) {
   vec3 v = FETCH(velocity, vertex).xyz;
   return dot(v, v) < 1e30 ? v * uintBitsToFloat(known.next_ahead) : vec3(0.0);
