@@ -20,22 +20,25 @@ for (const [width, height, hasTouch] of [
       await range.waitFor();
       const box = await page.locator("#timeline").boundingBox();
       assert.ok(box.x >= 0 && box.x + box.width <= width && box.y + box.height <= height, JSON.stringify(box));
-      await viewer.until(() => window.clothlab.lastFrame.header.step > 400);
+      await viewer.until(() => window.clothlab.lastFrame.header.step > 1000);
       const early = await step(viewer);
       await client.request("scene.patch", { patch: { gravity: [0, -3, 0] } });
       await viewer.until((then) => window.clothlab.lastFrame.header.step > then + 300, early);
       assert.match(await range.getAttribute("aria-valuetext"), /live, step \d+/);
       assert.match(await page.locator(".timeline-size").textContent(), /^\d+ s, \d+\.\d MB$/);
 
-      // by pointer or finger: a third along the bar
+      // by pointer or finger: on the bar, as far along as a part of `early` is, however long the session has run by now
+      const told = async () => Number(/step (\d+)/.exec(await range.getAttribute("aria-valuetext"))[1]);
       const bar = await range.boundingBox();
-      const [x, y] = [bar.x + bar.width / 3, bar.y + bar.height / 2];
-      await (hasTouch ? page.touchscreen.tap(x, y) : page.mouse.click(x, y));
+      const lookBack = async (part) => {
+        const [x, y] = [bar.x + (bar.width * part * early) / (await told()), bar.y + bar.height / 2];
+        await (hasTouch ? page.touchscreen.tap(x, y) : page.mouse.click(x, y));
+      };
+      await lookBack(0.5);
       await page.getByRole("button", { name: "Live" }).and(page.locator(":enabled")).waitFor();
       const value = async () => Number(await range.inputValue());
       const at = await value();
       assert.ok(at > 0 && at < Number(await range.getAttribute("max")), `${at}`);
-      const told = async () => Number(/step (\d+)/.exec(await range.getAttribute("aria-valuetext"))[1]);
       const shown = await eventually(
         "the frame there",
         () => step(viewer),
@@ -71,7 +74,7 @@ for (const [width, height, hasTouch] of [
         () => step(viewer),
         (now) => now > shown + 500,
       );
-      await (hasTouch ? page.touchscreen.tap(x, y) : page.mouse.click(x, y));
+      await lookBack(0.25);
       await eventually(
         "the past",
         () => step(viewer),
