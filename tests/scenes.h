@@ -24,11 +24,22 @@ inline std::unique_ptr<gl::Context> context() {
 }
 
 /// Such a context whose work groups four threads compute, in an order that differs from run to run, if it is
-/// Mesa's software OpenGL and the process has made no other context before. (Other tests compute on one
-/// thread.)
+/// Mesa's software OpenGL. (Other tests compute on one thread.)
 inline std::unique_ptr<gl::Context> threaded_context() {
+  // Mesa reads the variable when it opens a display. The one of all other tests is opened before.
+  context();
+  const char* others = std::getenv("LP_NUM_THREADS");
+  const std::string before = others ? others : "";
   setenv("LP_NUM_THREADS", "4", 1);
-  return context();
+  Result<std::unique_ptr<gl::Context>> made = gl::Context::create(std::nullopt, gl::HelperThreads::sessions);
+  if (others)
+    setenv("LP_NUM_THREADS", before.c_str(), 1);
+  else
+    unsetenv("LP_NUM_THREADS");
+  INFO((made ? "" : made.error().text()));
+  REQUIRE(made);
+  REQUIRE_FALSE(gl::computes_on_calling_thread());
+  return std::move(*made);
 }
 
 inline std::unique_ptr<sim::Simulation> simulation(const scene::Scene& scene) {

@@ -1,18 +1,10 @@
 // Chromium with the page, and what tests read from the page: pixels, positions, controls.
 import assert from "node:assert/strict";
-import { existsSync, mkdirSync } from "node:fs";
+import { mkdirSync } from "node:fs";
 import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
-import { chromium } from "playwright-core";
 import { Client, patience, Server } from "../protocol/harness.mjs";
-
-const candidates = [
-  process.env.CLOTHLAB_BROWSER,
-  "/usr/bin/chromium",
-  "/usr/bin/google-chrome",
-  "/usr/bin/google-chrome-stable",
-];
-const executablePath = candidates.find((path) => path && existsSync(path));
+import { browser, executablePath } from "./chromium.mjs";
 
 // With CLOTHLAB_BROWSER_TESTS=first only the first test of each file runs, the one of its main path: as pictures are
 // drawn in software, all of them take half an hour.
@@ -23,9 +15,8 @@ let declared = 0; // tests of this file so far
 /// the context of the test.
 export function browserTest(name, body) {
   declared += 1;
-  let skip = false;
-  if (!executablePath) skip = "no Chromium here: install chromium, or name one in CLOTHLAB_BROWSER";
-  else if (onlyFirst && declared > 1) skip = "only the first of each file, says CLOTHLAB_BROWSER_TESTS";
+  if (onlyFirst && declared > 1) return;
+  const skip = executablePath ? false : "no Chromium here: install chromium, or name one in CLOTHLAB_BROWSER";
   test(name, { skip, timeout: 600_000 }, async (t) => {
     try {
       await body(t);
@@ -55,22 +46,7 @@ let running = null;
 /// The browser; null if there is none.
 export async function launch() {
   if (!executablePath) return null;
-  running = await chromium.launch({
-    executablePath,
-    headless: true,
-    args: [
-      "--no-sandbox",
-      "--use-angle=swiftshader",
-      "--enable-unsafe-swiftshader",
-      "--ignore-gpu-blocklist",
-      "--disable-quic",
-      "--no-first-run",
-      "--disable-background-networking",
-      "--disable-component-update",
-      "--disable-sync",
-      "--disable-gpu-compositing",
-    ],
-  });
+  running = await browser();
   return running;
 }
 

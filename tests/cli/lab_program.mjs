@@ -2,10 +2,11 @@
 import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
+import { cacheIn } from "../caches.mjs";
 import { clothlab, folder } from "./program.mjs";
 
 export const cache = join(folder, "cache");
-export const environment = { XDG_CACHE_HOME: cache };
+export const environment = cacheIn(cache);
 
 // Small enough to measure in seconds: 25 vertices, one corner held.
 writeFileSync(

@@ -11,7 +11,7 @@ const methods = ["verlet", "symplectic_euler", "rk4"];
 const of = (out, shard) => ["--methods", methods.join(), "--out", out, "--shard", shard];
 
 test("a chart in shards has the points of all methods, the present setting first", () => {
-  const chart = (shard) => lab("chart", "small.json", "--time", "0.1", "--budget", "3", ...of("chart", shard));
+  const chart = (shard) => lab("chart", "small.json", "--time", "0.1", "--budget", "100", ...of("chart", shard));
   assert.match(chart("1/2").stdout, /NOT COMPLETE/);
   const half = read("chart", "chart.json");
   assert.equal(half.complete, false);

@@ -1,5 +1,5 @@
 // Shared by the fuzz targets. A target is a file with LLVMFuzzerTestOneInput: under clang it is linked with
-// libFuzzer, otherwise with replay.cpp, which runs it over the files of tests/fuzz/corpus. Its checks hold
+// libFuzzer, otherwise with replay.cpp, which runs it over its inputs of tests/fuzz/corpus. Its checks hold
 // for every input.
 #pragma once
 

@@ -1,43 +1,66 @@
-// A main for fuzz targets without libFuzzer: runs each file, and each file below each folder, through the
-// target once.
-#include <algorithm>
-#include <filesystem>
+// A main for fuzz targets without libFuzzer: runs each input of each packed file (corpus.mjs says how it is
+// packed) through the target once.
+#include <cctype>
 #include <fstream>
-#include <iterator>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "tests/fuzz/fuzz.h"
 
 namespace {
 
-std::vector<std::filesystem::path> files_below(int count, char** arguments) {
-  std::vector<std::filesystem::path> files;
-  for (int i = 1; i < count; ++i) {
-    if (!std::filesystem::is_directory(arguments[i])) {
-      files.emplace_back(arguments[i]);
+int digit(char c) {
+  return std::isdigit(static_cast<unsigned char>(c)) ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+}
+
+/// Empty if a backslash is followed by what it never is.
+std::optional<std::string> unescaped(std::string_view text) {
+  std::string bytes;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '\\') {
+      bytes += text[i];
       continue;
     }
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(arguments[i]))
-      if (entry.is_regular_file()) files.push_back(entry.path());
+    const char letter = ++i < text.size() ? text[i] : ' ';
+    if (letter == '\\') {
+      bytes += '\\';
+    } else if (letter == 'n') {
+      bytes += '\n';
+    } else if (letter == 't') {
+      bytes += '\t';
+    } else if (letter == 'x' && i + 2 < text.size() && digit(text[i + 1]) >= 0 && digit(text[i + 2]) >= 0) {
+      bytes += static_cast<char>(16 * digit(text[i + 1]) + digit(text[i + 2]));
+      i += 2;
+    } else {
+      return std::nullopt;
+    }
   }
-  std::sort(files.begin(), files.end());
-  return files;
+  return bytes;
 }
 
 }  // namespace
 
 int main(int count, char** arguments) {
-  const std::vector<std::filesystem::path> files = files_below(count, arguments);
-  for (const auto& path : files) {
-    std::ifstream file(path, std::ios::binary);
-    const std::vector<char> bytes{std::istreambuf_iterator<char>(file), {}};
-    if (!file) {
-      std::fprintf(stderr, "%s: cannot be read\n", path.c_str());
-      return 1;
+  std::size_t inputs = 0;
+  for (int i = 1; i < count; ++i) {
+    std::ifstream file(arguments[i], std::ios::binary);
+    for (std::string line; std::getline(file, line); ++inputs) {
+      const std::size_t tab = line.find('\t');
+      const std::optional<std::string> bytes =
+          tab == std::string::npos ? std::nullopt : unescaped(std::string_view(line).substr(tab + 1));
+      if (!bytes) {
+        std::fprintf(stderr, "%s: line %zu is not packed by corpus.mjs\n", arguments[i], inputs + 1);
+        return 1;
+      }
+      // The last name printed is that of the input that failed.
+      std::fprintf(stderr, "%s\n", line.substr(0, tab).c_str());
+      // Of its own size, so that a sanitizer sees what is read beyond the end.
+      const std::vector<std::uint8_t> exact(bytes->begin(), bytes->end());
+      LLVMFuzzerTestOneInput(exact.data(), exact.size());
     }
-    std::fprintf(stderr, "%s\n", path.c_str());  // the last path printed is the one that failed
-    LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
   }
-  std::fprintf(stderr, "%zu inputs\n", files.size());
-  return files.empty() ? 1 : 0;
+  std::fprintf(stderr, "%zu inputs\n", inputs);
+  return inputs == 0 ? 1 : 0;
 }

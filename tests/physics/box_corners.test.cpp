@@ -1,7 +1,5 @@
 // Under the self-collision kind `surface`, whose thickness may be much less than an edge, cloth must not
 // catch on the corners of a box, which would cut an edge between two vertices that the solid keeps out.
-#include <catch2/catch.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -13,6 +11,7 @@
 #include "server/sim/colliders.h"
 #include "server/sim/crossing_check.h"
 #include "server/sim/simulation.h"
+#include "tests/catch.h"
 #include "tests/contact_scenes.h"
 #include "tests/physics/stage.h"
 

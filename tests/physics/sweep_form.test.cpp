@@ -1,9 +1,8 @@
 // Which of the two forms of a sweep a cloth gets (server/sim/sweep_form.h).
-#include <catch2/catch.hpp>
-
 #include <cstdlib>
 
 #include "server/sim/sweep_form.h"
+#include "tests/catch.h"
 #include "tests/scenes.h"
 
 using namespace clothlab;

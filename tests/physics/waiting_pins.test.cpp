@@ -1,7 +1,5 @@
 // Under surface contact a pin that moves waits where cloth or a body is in its way, and comes after its
 // motion once the way is free.
-#include <catch2/catch.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -9,6 +7,7 @@
 #include "server/model/bodies.h"
 #include "server/model/crossings.h"
 #include "tests/body_meshes.h"
+#include "tests/catch.h"
 #include "tests/physics/stage.h"
 
 using namespace clothlab;

@@ -1,11 +1,10 @@
 // Under surface contact no vertex ends a step within a solid: neither where the filter cuts its way around
 // one, nor where a push has bent its way, nor where a solid that moves comes upon it.
-#include <catch2/catch.hpp>
-
 #include <algorithm>
 
 #include "server/model/bodies.h"
 #include "server/model/crossings.h"
+#include "tests/catch.h"
 #include "tests/contact_scenes.h"
 #include "tests/physics/stage.h"
 #include "tests/within_solids.h"

@@ -1,7 +1,7 @@
 // stream.subscribe with a field: a number at each vertex, after all vertices.
 import assert from "node:assert/strict";
 import { after, afterEach, before, beforeEach, test } from "node:test";
-import { Client, Server, sleep } from "./harness.mjs";
+import { Client, Server } from "./harness.mjs";
 
 let server, client;
 before(async () => (server = await Server.start()));
@@ -116,7 +116,7 @@ test("who asks for no field gets the same bytes, whatever others of the session 
   const theirs = await other.frame();
   const next = client.nextFrame();
   await client.request("scene.patch", { patch: { name: "another" } });
-  const beside = await Promise.race([next, sleep(500).then(() => alone)]);
+  const beside = await Promise.race([next, client.statuses(5).then(() => alone)]);
   const { sequence: _, receivedAt: __, ...before } = alone;
   const { sequence: ___, receivedAt: ____, ...now } = beside;
   assert.deepEqual(now, before);
@@ -136,7 +136,7 @@ test("a viewer who changes the field without acknowledging goes on where it does
     "2 frames",
   );
   await subscribe({ in_flight: 2, field: "speed" });
-  await sleep(200);
+  await client.statuses(3);
   assert.equal(client.frames.length, 2);
   client.acknowledge = true;
   client.notify("stream.ack", { frame: client.frames[1].sequence });

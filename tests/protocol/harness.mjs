@@ -7,6 +7,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after } from "node:test";
 import WebSocket from "ws";
+import { cacheIn } from "../caches.mjs";
 import { decode } from "./decode.mjs";
 
 const program = process.env.CLOTHLAB;
@@ -42,6 +43,8 @@ export async function runProgram(args) {
 /// The lab's cache of results is each test file's own.
 const cacheHome = mkdtempSync(join(tmpdir(), "clothlab-cache-"));
 process.on("exit", () => rmSync(cacheHome, { recursive: true, force: true }));
+/// For the program, and for programs that start it.
+export const cacheEnvironment = cacheIn(cacheHome);
 
 /// A test that fails stops before it ends its server, which would keep the test file's process alive without end.
 const children = new Set();
@@ -62,7 +65,7 @@ export class Server {
       {
         stdio: ["ignore", "pipe", "pipe"],
         // Tokens of the shell must not reach the tests.
-        env: { ...process.env, XDG_CACHE_HOME: cacheHome, CLOTHLAB_TOKEN: undefined, CLOTHLAB_VIEW_TOKEN: undefined },
+        env: { ...process.env, ...cacheEnvironment, CLOTHLAB_TOKEN: undefined, CLOTHLAB_VIEW_TOKEN: undefined },
       },
     );
     server.closed = once(server.child, "close");
@@ -242,6 +245,21 @@ export class Client {
       method,
       patience,
     ).then((message) => message.params);
+  }
+  /// Waits until the server has told its status so many times more, as it does ten times a second whatever happens: for
+  /// claims that nothing else comes meanwhile.
+  async statuses(count) {
+    for (let i = 0; i < count; ++i) await this.nextNotification("sim.status");
+  }
+  /// The next `count` frames, and the seconds from now to the last of them.
+  async nextFrames(count) {
+    const [from, before] = [performance.now(), this.frames.length];
+    await this.until(
+      () => this.frames.slice(before + count - 1),
+      () => true,
+      `${count} frames`,
+    );
+    return { frames: this.frames.slice(before, before + count), seconds: (performance.now() - from) / 1000 };
   }
   /// An answer with id null: the server could not read the request.
   errorWithoutId(from = 0) {

@@ -172,7 +172,7 @@ test("a job that asks for it pauses the session, tells all who are there, and le
     if (press) await other.request(press);
     await client.request("lab.cancel", { job });
     assert.equal((await ends(client, job)).beside, false);
-    await sleep(300);
+    await client.statuses(3);
     assert.equal((await client.nextNotification("sim.status")).playing, press === null);
   }
   await client.close();

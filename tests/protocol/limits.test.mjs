@@ -202,7 +202,7 @@ test("headers that do not come within --header-timeout, however they dribble, cl
   const dribble = setInterval(() => slow.destroyed || slow.write("X-Slow: 1\r\n"), 200);
   await withTimeout(Promise.all([silent.over, slow.over]), "both to be closed");
   clearInterval(dribble);
-  await sleep(1500);
+  await client.statuses(15);
   await client.request("ping", { t: 1 });
   await client.close();
 });
@@ -272,7 +272,7 @@ test("a viewer that answers no ping within --idle-timeout is closed; one that on
   deaf.write(upgrade);
   deaf.resume();
   await withTimeout(deaf.over, "the deaf one to be closed");
-  await sleep(3000);
+  await client.statuses(30);
   await client.request("ping", { t: 1 });
   await client.close();
 });

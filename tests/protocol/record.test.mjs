@@ -146,9 +146,9 @@ test("a paused session adds no frames, and a second recording takes the first on
   await client.request("record.start");
   await client.request("sim.pause");
   await recorded(1);
-  await sleep(300); // the frame of the last step is on its way
+  await client.statuses(4); // the frame of the last step is on its way
   const { frames } = await client.request("record.get");
-  await sleep(500);
+  await client.statuses(5);
   assert.equal((await client.request("record.get")).frames, frames);
   await client.request("record.stop");
   assert.equal((await client.request("record.get")).state, "ready");

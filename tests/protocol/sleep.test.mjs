@@ -54,7 +54,7 @@ test("a cloth at rest falls asleep: it plays, time stands still, no pass runs, a
   await client.frame((frame) => frame.flags & 1);
   const frames = client.frames.length;
   const before = await client.nextNotification("sim.status");
-  await sleep(500);
+  await client.statuses(5);
   assert.equal(client.frames.length, frames);
   const later = await client.nextNotification("sim.status");
   assert.equal(later.step, before.step);

@@ -193,6 +193,13 @@ test("a name of our own comes from a header that is included for it, not for ano
   assert.deepEqual(found, []);
 });
 
+test("a test includes Catch by tests/catch.h, which serves both its versions", () => {
+  const found = [...sources("tests")].filter(
+    (path) => !/^tests\/catch(_main)?\./.test(path) && /#\s*include\s+<catch2\//.test(text(path)),
+  );
+  assert.deepEqual(found, []);
+});
+
 test("the check sees a missing header and none in comments and strings", () => {
   assert.deepEqual(missing('std::uint8_t a;  // std::vector\nauto b = "std::map";', new Set(["cctype"])), [
     "std::uint8_t needs <cstdint>",

@@ -2,8 +2,9 @@
 #include "server/model/motion.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
+
+#include "tests/catch.h"
 
 using namespace clothlab;
 using glm::dvec3;
