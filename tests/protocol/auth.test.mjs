@@ -8,7 +8,10 @@ after(() => server.stop());
 
 test("with --token the server says nothing until auth has succeeded", async () => {
   const client = await Client.connect(server);
-  await sleep(500);
+  const other = await Client.connect(server); // is told something meanwhile
+  await other.request("auth", { token: "look" });
+  await other.statuses(5);
+  await other.close();
   assert.deepEqual(client.messages, []);
   const answer = client.request("auth", { token: "secret" });
   await client.notification("scene");

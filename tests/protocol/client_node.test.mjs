@@ -100,8 +100,7 @@ test("frames come in order, a slow loop sees the newest, and they stop with the 
   for await (const frame of cloth.frames({ encoding: "q16" })) {
     steps.push(frame.step);
     if (steps.length === 2) break;
-    await sleep(1000);
-    before = (await cloth.status()).step;
+    ({ step: before } = await cloth.wait("sim.status", ({ step }) => step > steps[0] + 1000));
   }
   // One that had waited during the sleep would be as old as the first.
   assert.ok(steps[1] > (steps[0] + before) / 2, `${steps}, in between at ${before}`);
