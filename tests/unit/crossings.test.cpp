@@ -239,7 +239,7 @@ TEST_CASE("bodies cross cloths, not each other") {
                              {0.31, 0.5, -0.4}})
     x.push_back(place);
   model.body_triangles = {{first, first + 1, first + 2}, {first + 3, first + 4, first + 5}};
-  model.bodies = {{.triangle_count = 2}};
+  model.bodies = {{.triangle_count = 2, .motion = {}}};
   Surfaces surfaces = model::surfaces_of(model);
   const model::Crossings found = model::find_crossings(surfaces, x, {1000});
   CHECK(found.count > 4);
