@@ -1,5 +1,6 @@
-// A cache for the program under test that is a test file's own, but for what the user's has: measurements of the device,
-// and shaders that Mesa has compiled. Without these the first program of each file computes for seconds before it steps.
+// A cache for the program under test that is a test file's own, but for what the user's has: measurements of the
+// device, and shaders that Mesa has compiled. Without these the first program of each file computes for seconds before
+// it steps.
 import { existsSync, mkdirSync, symlinkSync } from "node:fs";
 import { homedir } from "node:os";
 import { join } from "node:path";

@@ -9,7 +9,8 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
 
-/// Cases of a test by their seconds, in the output of Catch2's `--durations yes` and of `node --test`, both its reports.
+/// Cases of a test by their seconds, in the output of Catch2's `--durations yes` and of `node --test`, both its
+/// reports.
 export function casesOf(output) {
   const found = [];
   for (const [, seconds, name] of output.matchAll(/^(\d+\.\d{3}) s: (.+)$/gm)) found.push([Number(seconds), name]);

@@ -1,6 +1,6 @@
 #!/usr/bin/env node
-// The inputs of a fuzz target in one file, tests/fuzz/corpus/TARGET.txt, and as the folder of files that libFuzzer reads
-// and writes:
+// The inputs of a fuzz target in one file, tests/fuzz/corpus/TARGET.txt, and as the folder of files that libFuzzer
+// reads and writes:
 //   node tests/fuzz/corpus.mjs unpack TARGET FOLDER        writes each input as a file of FOLDER
 //   node tests/fuzz/corpus.mjs pack FOLDER TARGET          makes the target's file of all files of FOLDER
 //   node tests/fuzz/corpus.mjs add TARGET FILE [NAME]      adds an input, or replaces it; NAME: else the file's

@@ -13,8 +13,9 @@ beforeEach(async () => {
 });
 afterEach(() => client.close());
 
-/// Whether so many frames have taken as long as they must at this rate. Of those in flight one may have been due before,
-/// and none is sooner than nine tenths of an interval after the one before it; how much later they are is the machine's.
+/// Whether so many frames have taken as long as they must at this rate. Of those in flight one may have been due
+/// before, and none is sooner than nine tenths of an interval after the one before it; how much later they are is the
+/// machine's.
 const notFaster = ({ frames, seconds }, rate) =>
   assert.ok(
     seconds > (0.9 * (frames.length - 2)) / rate,

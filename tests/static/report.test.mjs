@@ -1,5 +1,5 @@
-// What tests/report.mjs reads out of ctest's log: times, and tests that were skipped, which continuous integration takes
-// for failures.
+// What tests/report.mjs reads out of ctest's log: times, and tests that were skipped, which continuous integration
+// takes for failures.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
