@@ -44,6 +44,13 @@ const near = (found, wanted, what) =>
 for (const encoding of ["f32", "q16"])
   test(`before each ${encoding} frame the session tells where what moves is: what spins has turned, too`, async () => {
     const client = await Client.connect(server, { session: encoding });
+    // A cloth of few vertices: what moves goes through it.
+    const grid = { columns: 4, rows: 4, width: 1, height: 1 };
+    const few = [
+      { op: "replace", path: "/cloths/0/pins", value: [{ at: "corner:0,0" }] },
+      { op: "replace", path: "/cloths/0/mesh", value: { grid } },
+    ];
+    await client.request("scene.patch", { patch: few });
     await client.request("scene.patch", { patch: { colliders } });
     await client.request("stream.subscribe", { encoding, rate: 60, in_flight: 2 });
     const frame = await client.frame(({ time }) => time > 0.4);
