@@ -116,6 +116,7 @@ const int unit_surface_pairs = 14;      // pairs, rest; cull, contacts
 const int unit_near_pairs = 15;         // neighbours, candidates; pairs, and: contacts; forces, limit
 const int unit_rest_places = 16;        // server/sim/surface_pairs.cpp; triangle_pairs
 const int unit_step_start = 16;         // the step before, advance; path, cull, contacts, forces, begin
+const int unit_step_velocity = 11;      // the step before; begin
 const int unit_path = 17;               // path; advance
 const int unit_step_target = 17;        // begin; limit, move
 const int unit_step_limits = 10;        // limit, move; move

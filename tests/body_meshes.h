@@ -56,6 +56,38 @@ inline scene::TriangleMesh cube_mesh() {
   return mesh;
 }
 
+/// An open square of 1 m in the x-z plane, about the origin: `columns` x `columns` squares of two triangles.
+inline scene::TriangleMesh plate_mesh(std::uint32_t columns) {
+  scene::TriangleMesh mesh;
+  for (std::uint32_t row = 0; row <= columns; ++row)
+    for (std::uint32_t column = 0; column <= columns; ++column)
+      mesh.vertices.emplace_back(column / double(columns) - 0.5, 0.0, row / double(columns) - 0.5);
+  for (std::uint32_t row = 0; row < columns; ++row)
+    for (std::uint32_t column = 0; column < columns; ++column) {
+      const std::uint32_t a = row * (columns + 1) + column, b = a + columns + 1;
+      mesh.triangles.push_back({a, b, b + 1});
+      mesh.triangles.push_back({b + 1, a + 1, a});
+    }
+  return mesh;
+}
+
+/// Of a mesh the triangles that lie below the origin: of a ball, an open bowl.
+inline scene::TriangleMesh lower_half(scene::TriangleMesh mesh) {
+  std::erase_if(mesh.triangles, [&](const Corners& t) {
+    return mesh.vertices[t[0]].y + mesh.vertices[t[1]].y + mesh.vertices[t[2]].y > 0.0;
+  });
+  std::map<std::uint32_t, std::uint32_t> kept;
+  std::vector<glm::dvec3> vertices;
+  for (Corners& triangle : mesh.triangles)
+    for (std::uint32_t& corner : triangle) {
+      const auto [at, fresh] = kept.try_emplace(corner, static_cast<std::uint32_t>(vertices.size()));
+      if (fresh) vertices.push_back(mesh.vertices[corner]);
+      corner = at->second;
+    }
+  mesh.vertices = std::move(vertices);
+  return mesh;
+}
+
 /// The same surface, its other side outside.
 inline scene::TriangleMesh turned_over(scene::TriangleMesh mesh) {
   for (Corners& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);

@@ -98,6 +98,7 @@ Report make_report(const Prepared& prepared, const Progress& progress, double wa
   const Report surface{{"pairs", progress.state.surface_pairs},
                        {"cuts", progress.state.surface_cuts},
                        {"forced", progress.state.surface_forced},
+                       {"not_taken", progress.state.surface_not_taken},
                        {"searches", progress.state.surface_searches}};
   if (simulation.scene().collides(scene::ContactKind::surface)) report["self_collision"] = surface;
   if (progress.state.surface_searches > 0)
@@ -138,8 +139,12 @@ void print_shortcomings(const sim::Simulation& simulation, const sim::Diagnostic
     note("self-collision left out " + std::to_string(state.neighbours_dropped) +
          " neighbours, counted at each search, that had no room in a vertex's list: a smaller thickness or a "
          "coarser mesh helps");
-  if (state.surface_forced > 0)
-    note("pins or bodies pressed cloth where it cannot go, " + std::to_string(state.surface_forced) +
+  if (state.surface_not_taken > 0)
+    note(std::to_string(state.surface_not_taken) +
+         " steps were not taken, or not to their end, as more pairs of triangles and edges could meet than "
+         "any list has room for: a coarser mesh, a smaller dt or a slower motion helps");
+  if (const std::uint32_t forced = state.surface_forced - state.surface_not_taken; forced > 0)
+    note("pins or bodies pressed cloth where it cannot go, " + std::to_string(forced) +
          " times: a pin waited until there was room, and a body may have passed through what was in its way; "
          "slower or smaller motions help");
   if (const std::uint64_t solves = simulation.solver_work().unconverged; solves > 0)

@@ -12,6 +12,7 @@ json surface_counts(const sim::Diagnostics& d) {
   return {{"pairs", d.surface_pairs},
           {"cuts", d.surface_cuts},
           {"forced", d.surface_forced},
+          {"not_taken", d.surface_not_taken},
           {"searches", d.surface_searches}};
 }
 

@@ -202,6 +202,7 @@ void Stepper::request_diagnosis(Clock::time_point now) {
 void Stepper::accept(sim::GuardedRun::Verdict verdict) {
   if (verdict == sim::GuardedRun::Verdict::blown_up) return diverge();
   warn_if_crowded();
+  warn_if_not_taken();
   warn_if_forced();
   warn_if_unconverged();
 }

@@ -161,6 +161,7 @@ class Stepper {
   // In stepper_warnings.cpp.
   void warn_if_slow(Clock::time_point now);
   void warn_if_crowded();
+  void warn_if_not_taken();
   void warn_if_forced();
   void warn_if_unconverged();
   void warn_if_thin();
@@ -224,7 +225,7 @@ class Stepper {
   Clock::time_point next_status_{}, next_diagnosis_{};
   Clock::time_point slow_since_{};
   bool slow_announced_ = false, crowded_announced_ = false, forced_announced_ = false,
-       unconverged_announced_ = false;
+       not_taken_announced_ = false, unconverged_announced_ = false;
   bool layers_may_pass_ = false;  ///< layers of cloth can pass through each other
 };
 

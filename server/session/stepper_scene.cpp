@@ -214,7 +214,8 @@ void Stepper::state_replaced() {
   finish_waiting(true);
   wake_up();
   run_.begin_again();
-  slow_announced_ = crowded_announced_ = forced_announced_ = unconverged_announced_ = false;
+  slow_announced_ = crowded_announced_ = forced_announced_ = not_taken_announced_ = unconverged_announced_ =
+      false;
   ++state_version_;
   real_time_.restart(Clock::now());
   frames().restart();

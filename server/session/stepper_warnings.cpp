@@ -38,8 +38,17 @@ void Stepper::warn_if_crowded() {
                         "a smaller thickness or a coarser mesh helps"});
 }
 
+void Stepper::warn_if_not_taken() {
+  if (not_taken_announced_ || guard_->state().surface_not_taken == 0) return;
+  not_taken_announced_ = true;
+  exchange_.emit(Notice{
+      "warning",
+      "a step was not taken, as more pairs of triangles and edges could meet in it than any list has room "
+      "for: cloth stands still then; a coarser mesh, a smaller dt or a slower motion helps"});
+}
+
 void Stepper::warn_if_forced() {
-  if (forced_announced_ || guard_->state().surface_forced == 0) return;
+  if (forced_announced_ || guard_->state().surface_forced <= guard_->state().surface_not_taken) return;
   forced_announced_ = true;
   exchange_.emit(
       Notice{"warning",

@@ -98,6 +98,7 @@ bool DiagnosticsPass::poll(Diagnostics& out, bool wait) {
     out.surface_pairs = surfaces.pairs;
     out.surface_cuts = surfaces.cuts;
     out.surface_forced = surfaces.forced;
+    out.surface_not_taken = surfaces.not_taken;
     out.surface_searches = surfaces.rebuilds;
   }
   out.contacts = static_cast<std::uint32_t>(contacts);

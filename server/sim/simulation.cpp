@@ -252,6 +252,10 @@ State Simulation::read_state() {
 NearPairs Simulation::near_pairs() {
   return sim::near_pairs(implementation_->kernels, scene(), read_state(), time());
 }
+void Simulation::shorten_contact_lists(std::uint32_t entries, bool for_good) {
+  if (implementation_->kernels.surface_contact)
+    implementation_->kernels.surface_contact->shorten_lists(entries, for_good);
+}
 void Simulation::finish() {
   glFinish();
 }

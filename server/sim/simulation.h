@@ -49,8 +49,10 @@ struct Diagnostics {
   std::uint32_t surface_cuts =
       0;  ///< steps of vertices that the filter shortened, since the kernels were made
   std::uint32_t surface_forced =
-      0;  ///< times that a pin waited, a body may have taken a pair through each other, or a solid came over
-          ///< a vertex that contact kept where it was, the same
+      0;  ///< times that a pin waited, a body may have taken a pair through each other, a solid came over
+          ///< a vertex that contact kept where it was, or a step was not taken, the same
+  std::uint32_t surface_not_taken =
+      0;  ///< steps not taken, or not to their end, as lists had no room for all pairs, the same
   std::uint32_t surface_searches = 0;  ///< searches for pairs, the same
 };
 
@@ -174,6 +176,10 @@ class Simulation {
   void forget_carried();
   /// True while a step has begun and not ended.
   bool in_step() const;
+
+  /// For tests: the lists of contact between surfaces have room for so many entries, until a step makes them
+  /// longer; `for_good`: none does, until the next call. Not to be called within a step.
+  void shorten_contact_lists(std::uint32_t entries, bool for_good = false);
 
   /// Waits until the GPU has finished every queued step.
   void finish();

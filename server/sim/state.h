@@ -22,8 +22,9 @@ class StateBuffers {
   /// The present copy, which a pass reads. `swap` makes the other copy the present one.
   const gl::TextureBuffer& position() const { return position_[current_]; }
   const gl::TextureBuffer& velocity() const { return velocity_[current_]; }
-  /// The positions at the start of the last step, until the next step writes over them.
+  /// The state at the start of the last step, until the next step writes over it.
   const gl::TextureBuffer& previous_position() const { return position_[1 - current_]; }
+  const gl::TextureBuffer& previous_velocity() const { return velocity_[1 - current_]; }
   void bind_for_step() const;  ///< the present copy for reading, the other for writing
   void bind_outputs() const;   ///< the other copy for writing
   void swap() { current_ = 1 - current_; }

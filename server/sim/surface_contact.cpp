@@ -40,6 +40,8 @@ constexpr int most_pieces = 8;
 /// has more.
 constexpr double driven_advance = 0.25;
 constexpr int most_driven_pieces = 64;
+/// The filter stops no body. Where one goes farther than the listed pairs allow in these, a step has more.
+constexpr int most_body_pieces = 1024;
 constexpr std::size_t words_of_vertex = 8;  // shaders/surface/vertex_contacts.glsl
 /// Share of an overlap that a step mends, and the most that it does a second [1/s]: what is mended is no
 /// velocity, but it moves what lies on it.
@@ -119,6 +121,7 @@ Result<SurfaceContact> SurfaceContact::create(const model::Model& model, const P
   }
   made.target_ = vector_per_vertex(made.vertex_count_);
   made.start_ = vector_per_vertex(made.vertex_count_);
+  made.start_velocity_ = vector_per_vertex(made.vertex_count_);
   made.path_ = vector_per_vertex(made.vertex_count_);
   made.vertex_contacts_ = {gl::Buffer(made.vertex_count_ * words_of_vertex * sizeof(std::uint32_t)),
                            GL_RGBA32UI};
@@ -176,16 +179,19 @@ Work SurfaceContact::update_pairs(const StateBuffers& state, int row) {
   bodies_.place_at_start(state, row);
   bodies_.bind();
   co_await pairs_.update(state);
-  if (keeps_start_ || pieces_ > 1) start_.buffer.copy_from(state.position().buffer);
+  if (!keeps_start_ && pieces_ == 1) co_return;
+  start_.buffer.copy_from(state.position().buffer);
+  start_velocity_.buffer.copy_from(state.velocity().buffer);
 }
 
-void SurfaceContact::advance(const StateBuffers& state, int row, int piece, std::uint32_t changing) {
+bool SurfaceContact::advance(const StateBuffers& state, int row, int piece, std::uint32_t changing) {
   const auto run = [&](const gl::Program& program) {
     program.use();
     program.set("changing_vertex_count", static_cast<GLint>(changing));
     glDispatchCompute(vertex_groups(changing), 1, 1);
     wait_for_writes();
   };
+  bool room = true;
   state.position().bind(unit_position);
   state.velocity().bind(unit_velocity);
   state.position().buffer.bind_storage(slot_next_position);
@@ -196,23 +202,28 @@ void SurfaceContact::advance(const StateBuffers& state, int row, int piece, std:
     path_.buffer.bind_storage(slot_path);
     run(path_program_);
   } else {
-    pairs_.update_within_step(state);
+    room = pairs_.update_within_step(state);
     pairs_.bind();
   }
   path_.bind(unit_path);
   start_.buffer.bind_storage(slot_step_start);
-  advance_.set("piece", piece);
+  advance_.set("piece", std::min(piece, pieces_ - 1));
   if (driven_) advance_.set("start_row", row);
   run(advance_);
+  return room;
 }
 
 void SurfaceContact::keep_apart(StateBuffers& state, int row) {
   const std::uint32_t changing = bodies_.changes() ? vertex_count_ : cloth_vertex_count_;
   bodies_.place_at_end(state, row);
-  for (int piece = 0; piece < pieces_; ++piece) {
-    if (pieces_ > 1) advance(state, row, piece, changing);
-    push_and_filter(state, row, changing, piece == pieces_ - 1);
-    if (pairs_.none(offsetof(SurfaceControl, check))) break;  // all of the step is gone
+  const int most = pieces_ > 1 && bodies_.changes() ? most_body_pieces : pieces_;
+  for (int piece = 0; piece < most; ++piece) {
+    const bool room = pieces_ == 1 || advance(state, row, piece, changing);
+    const bool last = piece == most - 1 || !room;
+    push_and_filter(state, row, changing, last);
+    // Whether all of the step is gone. A GPU is waited for only where more pieces than expected may follow.
+    const std::size_t left = offsetof(SurfaceControl, check);
+    if (last || (piece < pieces_ - 1 ? pairs_.none(left) : pairs_.none_for_sure(left))) break;
   }
 }
 
@@ -267,6 +278,7 @@ void SurfaceContact::push_and_filter(StateBuffers& state, int row, std::uint32_t
     run(apply_, pushed);
   }
   pairs_.bind();
+  (keeps_start_ || pieces_ > 1 ? start_velocity_ : state.previous_velocity()).bind(unit_step_velocity);
   limits_.bind(unit_step_limits);
   limits_.buffer.bind_storage(slot_step_limits);
   target_.buffer.bind_storage(slot_step_target);
@@ -303,8 +315,9 @@ void SurfaceContact::copy_counts(const gl::Buffer& target, std::size_t offset) c
 SurfaceContact::Counters SurfaceContact::read_counts(const std::byte* counts) {
   SurfaceControl control;
   std::memcpy(&control, counts, sizeof control);
-  return {control.pairs, std::max(control.step_counts[0].near, control.step_counts[1].near), control.cuts,
-          control.forced, control.rebuilds};
+  return {control.pairs,     std::max(control.step_counts[0].near, control.step_counts[1].near),
+          control.cuts,      control.forced,
+          control.not_taken, control.rebuilds};
 }
 
 }  // namespace clothlab::sim

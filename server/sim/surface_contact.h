@@ -38,6 +38,7 @@ class SurfaceContact {
   /// Forgets the pairs and what is carried over from step to step.
   void invalidate();
 
+  void shorten_lists(std::uint32_t entries, bool for_good) { pairs_.shorten_lists(entries, for_good); }
   /// As of SurfacePairs.
   std::vector<SurfacePairs::Pair> read_pairs() const { return pairs_.read_pairs(); }
   bool searched() const { return pairs_.searched(); }
@@ -46,9 +47,10 @@ class SurfaceContact {
     std::uint32_t pairs = 0;   ///< that the last search listed
     std::uint32_t near = 0;    ///< of these, in the last step
     std::uint32_t cuts = 0;    ///< vertices whose steps were shortened, over all steps
-    std::uint32_t forced = 0;  ///< times that a pin waited, a body took a pair through each other, or a solid
-                               ///< came over a vertex that the filter kept, the same
-    std::uint32_t rebuilds = 0;  ///< searches
+    std::uint32_t forced = 0;  ///< times that a pin waited, a body took a pair through each other, a solid
+                               ///< came over a vertex that the filter kept, or a step was not taken, the same
+    std::uint32_t not_taken = 0;  ///< steps that were not taken, or not to their end, the same
+    std::uint32_t rebuilds = 0;   ///< searches
   };
   /// Queues a copy of the counts to `bytes_of_counts` of `target`, from `offset`. `read_counts` makes
   /// Counters of them.
@@ -59,8 +61,9 @@ class SurfaceContact {
  private:
   std::array<const gl::Program*, 12> programs() const;
   /// Takes vertices along the next piece of the step (shaders/surface/advance.comp), from where they are;
-  /// `piece` 0: from the step's start, with the pairs that `update_pairs` has brought up to date.
-  void advance(const StateBuffers& state, int row, int piece, std::uint32_t changing);
+  /// `piece` 0: from the step's start, with the pairs that `update_pairs` has brought up to date. False: no
+  /// piece can be taken.
+  bool advance(const StateBuffers& state, int row, int piece, std::uint32_t changing);
   /// Of a step, or of a piece of it; `row`: of the motion table, at the step's start; `changing`: vertices
   /// that it moves.
   void push_and_filter(StateBuffers& state, int row, std::uint32_t changing, bool last_piece);
@@ -76,7 +79,8 @@ class SurfaceContact {
   SurfacePairs pairs_;
   gl::Program cull_, contacts_, forces_, apply_, begin_, move_, move_last_, path_program_, advance_;
   gl::Program limit_first_, limit_again_, limit_stop_;
-  gl::TextureBuffer start_;  ///< of the step, or of the piece under way
+  gl::TextureBuffer start_;           ///< of the step, or of the piece under way
+  gl::TextureBuffer start_velocity_;  ///< of the step
   gl::TextureBuffer target_, path_, vertex_contacts_, limits_;
   gl::Buffer borne_;  ///< what solids bear of each vertex: shaders/surface/apply.comp
 };

@@ -27,9 +27,9 @@ struct SurfaceControl {
   std::uint32_t leaf_pairs = 0, bundle_pairs = 0, triangle_pairs = 0, candidates = 0, pairs = 0;
   std::uint32_t fastest = 0, fastest_vertex = 0;
   std::uint32_t query = 0, flat_query = 0, overflow = 0;
-  std::uint32_t rebuilds = 0, cuts = 0, forced = 0, most_leaf_pairs = 0, most_bundle_pairs = 0,
+  std::uint32_t rebuilds = 0, cuts = 0, forced = 0, not_taken = 0, most_leaf_pairs = 0, most_bundle_pairs = 0,
                 most_triangle_pairs = 0, most_pairs = 0;
-  float longest = 0.0f, gone = 0.0f, part = 1.0f;
+  float longest = 0.0f, longest_of_bodies = 0.0f, gone = 0.0f, part = 1.0f;
   float skin = 0.0f, next_skin = 0.0f;
   float ahead = 0.0f, next_ahead = 0.0f, since = 0.0f;
   std::uint32_t checks = 0;

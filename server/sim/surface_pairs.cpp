@@ -18,6 +18,13 @@ namespace {
 constexpr std::uint64_t updates_between_size_looks = 8;
 constexpr std::uint32_t most_listed = 1u << 21;
 
+/// How many entries a list may have on this device.
+std::uint32_t most_entries() {
+  GLint texels = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
+  return std::min(most_listed, static_cast<std::uint32_t>(texels) / 4);
+}
+
 /// The least mean edge of a cloth [m].
 double finest_edge(const model::Model& model) {
   double edge = 0.0;
@@ -69,6 +76,7 @@ Result<SurfacePairs> SurfacePairs::create(const model::Model& model, const Surfa
   const std::uint32_t bundles = (made.triangle_count_ + bundle_size - 1) / bundle_size;
   made.boxes_ = {gl::Buffer((leaves + bundles) * 16 * sizeof(float)), GL_RGBA32F};
   made.expected_ = {gl::Buffer(made.vertex_count_ * 8 * sizeof(float)), GL_RGBA32F};
+  made.most_ = most_entries();
   constexpr std::uint32_t generous = 1u << 17;  // entries: little memory, and lists seldom have to grow
   made.make_lists({8 * leaves + 256, 8 * bundles + 1024,
                    std::min(8 * made.triangle_count_, 2 * made.triangle_count_ + generous),
@@ -79,11 +87,8 @@ Result<SurfacePairs> SurfacePairs::create(const model::Model& model, const Surfa
 }
 
 void SurfacePairs::make_lists(const Capacities& wanted) {
-  GLint texels = 0;
-  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
-  const std::uint32_t most = std::min(most_listed, static_cast<std::uint32_t>(texels) / 4);
-  capacity_ = {std::min(wanted.leaf_pairs, most), std::min(wanted.bundle_pairs, most),
-               std::min(wanted.triangle_pairs, most), std::min(wanted.pairs, most)};
+  capacity_ = {std::min(wanted.leaf_pairs, most_), std::min(wanted.bundle_pairs, most_),
+               std::min(wanted.triangle_pairs, most_), std::min(wanted.pairs, most_)};
   const auto pairs_of_numbers = [](std::uint32_t count) {
     return gl::TextureBuffer(gl::Buffer(std::size_t{count} * 2 * sizeof(std::uint32_t)), GL_RG32UI);
   };
@@ -138,7 +143,9 @@ void SurfacePairs::set_parameters(const scene::Scene& scene, const model::Model&
     program->set("least_query", least_query);
     program->set("cloth_pairs", scene.collides(scene::ContactKind::surface) ? 1 : 0);
   }
-  limit_query(static_cast<float>(24.0 * edge + 4.0 * thickness));
+  widest_query_ = static_cast<float>(24.0 * edge + 4.0 * thickness);
+  narrowest_query_ = 0.25f * least_query;
+  limit_query(widest_query_);
 }
 
 void SurfacePairs::limit_query(float most) {
@@ -151,16 +158,27 @@ void SurfacePairs::invalidate() {
   updates_ = 0;
 }
 
+void SurfacePairs::shorten_lists(std::uint32_t entries, bool for_good) {
+  most_ = for_good ? entries : most_entries();
+  make_lists({entries, entries, entries, entries});
+  invalidate();
+}
+
 void SurfacePairs::forget_pairs(bool within_step) {
   SurfaceControl before, control;
   control_.download(&before, sizeof before);
   control.rebuilds = before.rebuilds;
   control.cuts = before.cuts;
   control.forced = before.forced;
-  control.next_skin = before.next_skin;
-  control.next_ahead = before.next_ahead;
+  control.not_taken = before.not_taken;
+  // A search that is to list less reaches less far in all that makes it reach.
+  const float narrower =
+      std::min(most_query_ / std::max(std::bit_cast<float>(before.query), most_query_), 1.0f);
+  control.next_skin = narrower * before.next_skin;
+  control.next_ahead = narrower * before.next_ahead;
   if (within_step) {
     control.longest = before.longest;
+    control.longest_of_bodies = before.longest_of_bodies;
     control.gone = before.gone;
     control.part = before.part;
   }
@@ -170,13 +188,17 @@ void SurfacePairs::forget_pairs(bool within_step) {
 }
 
 bool SurfacePairs::none(std::size_t groups) const {
+  return asks_ && none_for_sure(groups);
+}
+
+bool SurfacePairs::none_for_sure(std::size_t groups) const {
   std::uint32_t count = 1;
-  if (asks_) control_.download(&count, sizeof count, groups);
+  control_.download(&count, sizeof count, groups);
   return count == 0;
 }
 
-void SurfacePairs::search(const StateBuffers& state) {
-  if (none(offsetof(SurfaceControl, rebuild))) return;
+bool SurfacePairs::search(const StateBuffers& state) {
+  if (none(offsetof(SurfaceControl, rebuild))) return false;
   const auto dispatch = [](const gl::Program& program, std::size_t groups) {
     program.use();
     glDispatchComputeIndirect(static_cast<GLintptr>(groups));
@@ -217,30 +239,36 @@ void SurfacePairs::search(const StateBuffers& state) {
   dispatch(rest_, offsetof(SurfaceControl, rest));
   dispatch(finish_, offsetof(SurfaceControl, finish));
   searched_ = true;
+  return true;
 }
 
 Work SurfacePairs::update(const StateBuffers& state) {
   wait_for_writes();
   bind();
   blocks_.check(state, expected_);
-  search(state);
-  const bool look = updates_++ % updates_between_size_looks == 0 || waits();
-  for (int attempt = 0; look && read_sizes(false) && attempt < 4; ++attempt) {
+  const bool searched = search(state);
+  bool look = updates_++ % updates_between_size_looks == 0 || waits();
+  if (searched && asks_) look = look || !none(offsetof(SurfaceControl, overflow));
+  while (look && make_room(false)) {
     co_await may_stop;
     search(state);
   }
 }
 
-void SurfacePairs::update_within_step(const StateBuffers& state) {
+bool SurfacePairs::update_within_step(const StateBuffers& state) {
   blocks_.check_again(state, expected_, offsetof(SurfaceControl, check));
-  search(state);
-  for (int attempt = 0; driven_ && read_sizes(true) && attempt < 4; ++attempt) search(state);
+  const bool searched = search(state);
+  const bool look = driven_ || (searched && asks_ && !none(offsetof(SurfaceControl, overflow)));
+  while (look && make_room(true)) search(state);
+  return !no_room_;
 }
 
-/// Makes lists longer that have too little room (or the search shorter, if they may not be longer), by the
+/// Makes lists longer that have too little room, or the search shorter, if they may not be longer: by the
 /// sizes that the look before had copied, and queues a copy for the next look. The first look after
-/// `invalidate` reads its own copy at once. Returns true if the pairs must be searched anew.
-bool SurfacePairs::read_sizes(bool within_step) {
+/// `invalidate`, and every look of a simulation that waits, reads its own copy at once. Returns true if the
+/// pairs must be searched anew. That ends: a list grows until it has all it may have, and then the query
+/// radius shrinks until it is the least.
+bool SurfacePairs::make_room(bool within_step) {
   SurfaceControl control;
   const auto take = [&] {
     const std::span<const std::byte> seen = sizes_ring_.front(true);
@@ -250,26 +278,36 @@ bool SurfacePairs::read_sizes(bool within_step) {
   if (!sizes_ring_.empty()) take();
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   sizes_ring_.push(control_, sizeof control);
-  if (updates_ <= 1 || waits()) take();
+  if (updates_ <= 1 || waits() || asks_) take();
   bool longer = false;
   const auto wanted = [&](std::uint32_t capacity, std::uint32_t found) {
-    const bool full = 4 * std::uint64_t{found} > 3 * std::uint64_t{capacity} && capacity < most_listed;
+    const bool full = 4 * std::uint64_t{found} > 3 * std::uint64_t{capacity} && capacity < most_;
     longer = longer || full;
-    return full ? std::min(2 * found, most_listed) : capacity;
+    return full ? std::min(2 * std::min(found, most_), most_) : capacity;
   };
   const Capacities next{wanted(capacity_.leaf_pairs, control.most_leaf_pairs),
                         wanted(capacity_.bundle_pairs, control.most_bundle_pairs),
                         wanted(capacity_.triangle_pairs, control.most_triangle_pairs),
                         wanted(capacity_.pairs, control.most_pairs)};
+  no_room_ = !longer && control.overflow != 0 && query_of(control) <= narrowest_query_;
+  if (no_room_) return false;
+  if (!longer && control.overflow == 0) {
+    if (most_query_ < widest_query_ && 8 * std::uint64_t{control.most_pairs} < capacity_.pairs)
+      limit_query(std::min(2.0f * most_query_, widest_query_));
+    return false;
+  }
   if (longer)
     make_lists(next);
-  else if (control.overflow != 0)
-    limit_query(0.5f * most_query_);  // no list may be longer: rather a limit on speed than no steps at all
   else
-    return false;
+    limit_query(0.5f * query_of(control));  // rather a limit on speed than no steps at all
   forget_pairs(within_step);
   updates_ = 0;
   return true;
+}
+
+/// The query radius of the last search [m].
+float SurfacePairs::query_of(const SurfaceControl& control) const {
+  return std::min(std::bit_cast<float>(control.query), most_query_);
 }
 
 void SurfacePairs::bind() const {

@@ -19,6 +19,8 @@
 
 namespace clothlab::sim {
 
+struct SurfaceControl;
+
 class SurfacePairs {
  public:
   static Result<SurfacePairs> create(const model::Model& model, const SurfaceTriangles& surface);
@@ -34,16 +36,20 @@ class SurfacePairs {
   /// To be called before a step: brings the pairs up to date. Rest positions must be bound. Every few calls,
   /// at a fixed count and not by time, reads back how long the lists need to be, and makes them longer. Until
   /// then no free vertex moves; where other things do (`set_driven`), or steps are long enough to go in
-  /// pieces, it reads back in every call, and waits.
+  /// pieces, it reads back in every call, and waits. Software OpenGL is asked after every search.
   Work update(const StateBuffers& state);
-  /// The same between two pieces of a step, without a stop; it reads back only where other things move.
-  void update_within_step(const StateBuffers& state);
+  /// The same between two pieces of a step, without a stop; a GPU is asked only where other things move.
+  /// False: no list may be as long as the pairs need, so no piece can be taken.
+  bool update_within_step(const StateBuffers& state);
 
   /// `driven`: pins, bodies or colliders move, also while a list is too short.
   void set_driven(bool driven) { driven_ = driven; }
 
   /// Forgets the pairs; only the counts over all steps stay.
   void invalidate();
+  /// For tests: the same, and the lists have room for so many entries until they are made longer; `for_good`:
+  /// they may not be.
+  void shorten_lists(std::uint32_t entries, bool for_good);
 
   /// Binds the pairs, the near pairs and the control block, whose arguments indirect dispatches then take.
   void bind() const;
@@ -54,6 +60,8 @@ class SurfacePairs {
   /// Software OpenGL has carried out a dispatch when the call returns, and is asked: that costs less than a
   /// dispatch that does nothing. A GPU would have to be waited for: then false.
   bool none(std::size_t groups) const;
+  /// The same, waiting for a GPU.
+  bool none_for_sure(std::size_t groups) const;
   /// Binds what contacts write of each near pair, and what its pushes read and write. The slots are other
   /// buffers' afterwards.
   void bind_contacts() const;
@@ -70,8 +78,9 @@ class SurfacePairs {
   bool searched() const { return searched_; }
 
  private:
-  void search(const StateBuffers& state);
-  bool read_sizes(bool within_step);
+  bool search(const StateBuffers& state);  ///< false: none was due
+  bool make_room(bool within_step);
+  float query_of(const SurfaceControl& control) const;
   void forget_pairs(bool within_step = false);  ///< within a step: not how far it has got
   void limit_query(float most);
   /// How many entries the lists of a search have room for.
@@ -84,7 +93,9 @@ class SurfacePairs {
 
   std::uint32_t vertex_count_ = 0, triangle_count_ = 0;
   Capacities capacity_;
-  float most_query_ = 0;  ///< [m]
+  std::uint32_t most_ = 0;                                         ///< entries that any list may have
+  float most_query_ = 0, widest_query_ = 0, narrowest_query_ = 0;  ///< [m]
+  bool no_room_ = false;  ///< the last look found that no search can do with lists of `most_` entries
   bool driven_ = false, in_pieces_ = false, searched_ = false;
   bool asks_ = false;          ///< none(groups) asks
   std::uint64_t updates_ = 0;  ///< calls of `update` since `invalidate`

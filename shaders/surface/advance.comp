@@ -17,17 +17,24 @@ void main() {
   int i = int(gl_GlobalInvocationID.x);
   float left = 1.0 - uintBitsToFloat(known.gone), longest = uintBitsToFloat(known.longest);
   float most = 0.8 * step_share * uintBitsToFloat(known.flat_query);
-  most = min(most, max(most_advance, longest / float(piece_count)));
-  float part = piece == piece_count - 1 || longest * left <= most ? left : most / longest;
+  if (piece < piece_count - 1) most = min(most, max(most_advance, longest / float(piece_count)));
+  // The filter cuts the steps of what goes too far in the last piece, but not those of bodies: for them it is not the
+  // last (SurfaceContact::keep_apart).
+  if (piece == piece_count - 1) longest = uintBitsToFloat(known.longest_of_bodies);
+  float part = !pairs_are_known() ? 0.0 : longest * left <= most ? left : most / longest;
   if (i == 0) {
     control.part = floatBitsToUint(part);
     control.contact_groups = part > 0.0 ? known.pair_groups : 0u;
   }
-  if (i >= changing_vertex_count || !(part > 0.0)) return;
+  if (i >= changing_vertex_count) return;
   if (piece == 0 && part >= 1.0) return;  // all are where the step ends
   vec4 start = position[i], way = FETCH(path, i);
   if (piece == 0) start = piece_start[i];
   else piece_start[i] = start;
+  if (!(part > 0.0)) {  // the method's end of the step is not the filter's
+    position[i] = vec4(start.xyz, way.w);
+    return;
+  }
   bool free = way.w > 0.0;
   vec3 end = free ? start.xyz + (FETCH(velocity, i).xyz + way.xyz) * (part * dt)
                   : part < left ? start.xyz + (way.xyz - start.xyz) * (part / left) : way.xyz;

@@ -65,38 +65,71 @@ void rub_on_solid(int i) {
   borne[i].velocity.w = left.velocity;
 }
 
-/// Sums over the contacts of a vertex. A part that meets one which gives no way must do all of it: a vertex that
-/// several such pairs push takes their mean, weighted by how near their contact is to it.
-struct Pushes {
-  ivec3 push, impulse;          // of pairs whose parts both give way [units of length, of speed]
-  ivec3 push_one, impulse_one;  // of the others, by weight, in the same units
-  int weight_one;               // [1 / weight_units]
-  int sharing;                  // weights of the pairs that share it in the next pass
-  uint backing;                 // that they give it
+/// What the pair of a contact does to the vertex.
+struct Contact {
+  uint next;     // contact of the vertex, by number + 1; 0: none
+  vec3 push;     // [m]
+  vec3 impulse;  // [m/s]
+  bool one;      // the other part gives no way
+  uint weight;   // how near the contact is to the vertex [1 / weight_units]
+  bool shares;   // the pair shares the vertex in the next pass
+  uint backing;  // that the pair gives the vertex
 };
 
-Pushes pushes_on(uint contact, float inverse_mass) {
-  Pushes all = Pushes(ivec3(0), ivec3(0), ivec3(0), ivec3(0), 0, 0, 0u);
+Contact contact_at(uint contact, float inverse_mass) {
+  uvec2 link = FETCH_UVEC2(contact_links, contact);
+  vec4 push = FETCH(contact_pushes, 2u * (contact / 4u)), impulse = FETCH(contact_pushes, 2u * (contact / 4u) + 1u);
+  float weight = uintBitsToFloat(link.y), mobility = weight * inverse_mass;
+  bool one = abs(push.w) >= pushes_one && push.w * mobility > 0.0;
+  float factor = one ? sign(weight) : push.w == pushes_both ? mobility : 0.0;
+  uint backing = one ? max(uint(abs(push.w) - pushes_one), 1u) - 1u : 0u;
+  return Contact(link.x, factor * push.xyz, factor * impulse.xyz, one, weight_in_units(weight), impulse.w != 0.0,
+                 backing);
+}
+
+float largest_of(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
+
+/// What the contacts of a vertex are, before their pushes are summed.
+struct Contacts {
+  uint count;
+  uint weight_one;  // of those whose other part gives no way [1 / weight_units]
+  uint sharing;     // of the pairs that share the vertex in the next pass, the same
+  uint backing;     // that they give it
+  float push;       // the largest component of any [m]
+  float impulse;    // the same [m/s]
+};
+
+Contacts contacts_of(uint contact, float inverse_mass) {
+  Contacts all = Contacts(0u, 0u, 0u, 0u, 0.0, 0.0);
   while (contact != 0u) {
-    --contact;
-    uvec2 link = FETCH_UVEC2(contact_links, contact);
-    vec4 push = FETCH(contact_pushes, 2u * (contact / 4u)), impulse = FETCH(contact_pushes, 2u * (contact / 4u) + 1u);
-    float weight = uintBitsToFloat(link.y), mobility = weight * inverse_mass;
-    int weight_here = weight_in_units(weight);
-    bool one = abs(push.w) >= pushes_one && push.w * mobility > 0.0;
-    uint backing = one ? uint(abs(push.w) - pushes_one) : 0u;
-    float factor = one ? weight : push.w == pushes_both ? mobility : 0.0;
-    ivec3 pushed = in_units(factor * push.xyz), changed = in_units(factor * impulse.xyz);
-    all.push += one ? ivec3(0) : pushed;
-    all.impulse += one ? ivec3(0) : changed;
-    all.push_one += one ? pushed : ivec3(0);
-    all.impulse_one += one ? changed : ivec3(0);
-    all.weight_one += one ? weight_here : 0;
-    all.sharing += impulse.w == 0.0 ? 0 : weight_here;
-    all.backing = max(all.backing, max(backing, 1u) - 1u);
-    contact = link.x;
+    Contact c = contact_at(contact - 1u, inverse_mass);
+    all = Contacts(all.count + 1u, all.weight_one + (c.one ? c.weight : 0u), all.sharing + (c.shares ? c.weight : 0u),
+                   max(all.backing, c.backing), max(all.push, largest_of(c.push)),
+                   max(all.impulse, largest_of(c.impulse)));
+    contact = c.next;
   }
   return all;
+}
+
+/// How many units make 1, in a sum of `count` numbers of at most `largest`: then no sum is beyond 2^30 and what
+/// rounding adds, half a unit for each number, whatever the numbers are.
+float units_for(float largest, uint count) { return 1073741824.0 / (max(largest, 1e-20) * float(max(count, 1u))); }
+
+/// Sums over the contacts of a vertex, of integers: so their order does not matter. A part that meets one which gives
+/// no way must do all of it: a vertex that several such pairs push takes their mean, weighted by how near their contact
+/// is to it.
+void add_pushes(uint contact, float inverse_mass, Contacts all, inout vec3 x, inout vec3 v) {
+  float units_of_push = units_for(all.push, all.count), units_of_impulse = units_for(all.impulse, all.count);
+  ivec3 pushed = ivec3(0), changed = ivec3(0);
+  while (contact != 0u) {
+    Contact c = contact_at(contact - 1u, inverse_mass);
+    float share = c.one ? float(c.weight) / float(all.weight_one) : 1.0;
+    pushed += ivec3(round(share * units_of_push * c.push));
+    changed += ivec3(round(share * units_of_impulse * c.impulse));
+    contact = c.next;
+  }
+  x += vec3(pushed) / units_of_push;
+  v += vec3(changed) / units_of_impulse;
 }
 
 void main() {
@@ -104,15 +137,10 @@ void main() {
   int i = int(FETCH(vertex_contacts, 2u * gl_GlobalInvocationID.x).y);
   vec4 x = position[i];
   vec3 v = velocity[i].xyz;
-  Pushes all = pushes_on(FETCH(vertex_contacts, 2 * i).x, x.w);
-  x.xyz += vec3(all.push) / units_of_length();
-  v += vec3(all.impulse) / units_of_speed();
-  if (recount != 0) at_vertex[i].sharing = uint(max(1, all.sharing));  // 0 would say that no pair touches it
-  float weight = float(all.weight_one) / weight_units;
-  if (weight > 0.0) {
-    x.xyz += vec3(all.push_one) / (units_of_length() * weight);
-    v += vec3(all.impulse_one) / (units_of_speed() * weight);
-  }
+  uint first = FETCH(vertex_contacts, 2 * i).x;
+  Contacts all = contacts_of(first, x.w);
+  add_pushes(first, x.w, all, x.xyz, v);
+  if (recount != 0) at_vertex[i].sharing = max(1u, all.sharing);  // 0 would say that no pair touches it
   position[i].xyz = x.xyz;
   velocity[i].xyz = v;
   if (solid_friction == 1) borne[i] = Borne(vec4(0.0), vec4(0.0));

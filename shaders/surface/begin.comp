@@ -11,7 +11,9 @@ layout(std430, binding = slot_next_velocity) buffer Velocity { vec4 velocity[]; 
 layout(std430, binding = slot_step_target) writeonly buffer Target { vec4 target[]; };
 layout(std430, binding = slot_step_limits) writeonly buffer Limits { uint limits[]; };  // step_limits.glsl
 
-uniform int last_piece;  // 1: of the step
+READ_VEC4(step_velocity, unit_step_velocity);  // at the step's start
+
+uniform int last_piece;  // 1: of the step; what is left of it then is not taken
 
 void prepare_next_piece() {
   int next = 1 - turn;
@@ -22,12 +24,22 @@ void prepare_next_piece() {
   control.step_counts[next].near = control.step_counts[next].touching = 0u;
   control.step_counts[next].meeting = control.step_counts[next].cuts = control.step_counts[next].touched = 0u;
   control.since = floatBitsToUint(uintBitsToFloat(known.since) + uintBitsToFloat(known.part) * dt);
-  if (piece_count == 1) return;
   float gone = uintBitsToFloat(known.gone), part = uintBitsToFloat(known.part);
   gone = part >= 1.0 - gone ? 1.0 : gone + part;
+  if (piece_count == 1) gone = pairs_are_known() ? 1.0 : 0.0;
+  if (last_piece != 0 && gone < 1.0) {
+    atomicAdd(control.not_taken, 1u);
+    atomicAdd(control.forced, 1u);
+  }
+  if (piece_count == 1) return;
   control.gone = floatBitsToUint(gone);
   control.check_groups = gone < 1.0 ? 1u : 0u;
-  if (last_piece != 0 || !(gone < 1.0)) control.longest = 0u;
+  if (last_piece != 0 || !(gone < 1.0)) control.longest = control.longest_of_bodies = 0u;
+}
+
+/// None of the step is taken: a vertex has the velocity that it had at the step's start.
+void take_none(int i, bool free) {
+  if (free && i < cloth_vertex_count) velocity[i].xyz = FETCH(step_velocity, i).xyz;
 }
 
 void main() {
@@ -37,9 +49,14 @@ void main() {
   if (i == 0)
     for (int k = 0; k < MOTION_COUNT; ++k) limits[vertex_count + 2 * k] = floatBitsToUint(1.0);
 #endif
-  if (i >= changing_vertex_count || !(uintBitsToFloat(known.part) > 0.0)) return;
+  if (i >= changing_vertex_count) return;
   vec4 start = FETCH(step_start, i), end = FETCH(position, i);
-  bool free = end.w > 0.0, of_cloth = i < cloth_vertex_count, filtered = known.step_counts[turn].near > 0u;
+  bool free = end.w > 0.0;
+  if (!(uintBitsToFloat(known.part) > 0.0)) {
+    if (last_piece != 0 && !(uintBitsToFloat(known.gone) > 0.0)) take_none(i, free);
+    return;
+  }
+  bool of_cloth = i < cloth_vertex_count, filtered = known.step_counts[turn].near > 0u;
   if (filtered && FETCH(vertex_contacts, 2 * i).x != 0u) {
     if (free) velocity[i].w += 1.0;
     at_vertex[i].first = at_vertex[i].backing = at_vertex[i].sharing = 0u;
@@ -56,7 +73,11 @@ void main() {
     atomicAdd(control.step_counts[turn].cuts, 1u);
     atomicAdd(control.cuts, 1u);
   }
-  if (of_cloth && known.overflow != 0u) next_position[i] = end = start;
+  if (of_cloth && !pairs_are_known()) {  // of a step in pieces nothing has been taken (advance.comp)
+    next_position[i] = end = vec4(start.xyz, end.w);
+    take_none(i, free);
+  }
+  if (!of_cloth && went > step_share * uintBitsToFloat(known.query)) atomicAdd(control.forced, 1u);
   // Bodies that do not move come here in the first steps alone.
   if (filtered || i >= cloth_vertex_count) target[i] = end;
   if (filtered) next_position[i] = vec4(start.xyz, end.w);

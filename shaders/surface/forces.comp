@@ -10,8 +10,8 @@ READ_UINT(touching_pairs, unit_chosen_pairs);
 // Of each of touching_pairs its PairLoad (elements/surface.glsl): push, impulse, what is left to friction of both.
 READ_VEC4(loads_before, unit_pair_loads);
 layout(std430, binding = slot_pair_loads) writeonly buffer Loads { vec4 pair_loads[]; };
-// Of each near pair two texels: push [units of length] and its kind (surface.glsl); impulse [units of speed], and 1 if
-// the pair shares its corners in the next pass.
+// Of each near pair two texels: push [m] and its kind (surface.glsl); impulse [m/s], and 1 if the pair shares its
+// corners in the next pass. Where both parts give way, both are over what the pair gives [1/kg].
 layout(std430, binding = slot_contact_pushes) writeonly buffer Pushes { vec4 contact_pushes[]; };
 uniform float friction;  // of cloths
 uniform float mend;      // share of an overlap that the passes of a step remove
@@ -112,8 +112,8 @@ void main() {
   impulse += begins / dt * apart.xyz;
   acts = acts && give > 0.0;
   bool shares = acts || (next_rubs != 0 && (load.left.displacement > 0.0 || load.left.velocity > 0.0));
-  push *= units_of_length() / (both_give ? give : 1.0);
-  impulse *= units_of_speed() / (both_give ? give : 1.0);
+  push /= both_give ? give : 1.0;
+  impulse /= both_give ? give : 1.0;
   float pushed = pushes_one + (backing.x != backing.y ? float(max(backing.x, backing.y)) : 0.0);
   if (!first_gives) pushed = -pushed;
   contact_pushes[2u * item] = vec4(push, !acts ? no_push : both_give ? pushes_both : pushed);

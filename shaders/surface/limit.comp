@@ -32,6 +32,8 @@ void shorten(uvec4 corner, vec4 shares, vec4 inverse_mass) {
 }
 
 #if PASS == 2
+#include "speed_units.glsl"
+
 void stop(uvec4 corner, vec4 shares, vec3 n, vec4 weight, vec4 inverse_mass) {
   bool limiting = false;
   float approach = 0.0;
@@ -43,9 +45,10 @@ void stop(uvec4 corner, vec4 shares, vec3 n, vec4 weight, vec4 inverse_mass) {
   vec4 mobility = weight * inverse_mass;
   float give = dot(mobility, weight);
   if (!limiting || !(approach > 0.0) || !(give > 0.0)) return;
-  vec3 impulse = n * (approach * units_of_speed() / (give * crowd(corner, mobility)));
+  vec3 impulse = n * (approach / give);
+  float sharers = crowd(corner, mobility);
   for (int k = 0; k < 4; ++k) {
-    ivec3 whole = in_units(mobility[k] * impulse);
+    ivec3 whole = in_units_of_speed(mobility[k] * impulse, sharers);
     for (int axis = 0; axis < 3; ++axis)
       if (whole[axis] != 0) atomicAdd(at_vertex[corner[k]].impulse[axis], whole[axis]);
   }

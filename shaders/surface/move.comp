@@ -21,6 +21,8 @@ uniform float margin;     // at which solids keep vertices [m]
 const float jammed_share = 0.1;
 
 #if LAST
+#include "speed_units.glsl"
+
 /// True if a solid that moves has come over a place where the filter keeps a vertex.
 bool within_moving_solid(vec3 x) {
 #if SOLID_ROWS > 0

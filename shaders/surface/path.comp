@@ -13,6 +13,9 @@ void main() {
   vec4 end = FETCH(position, i);
   vec3 way = end.xyz - FETCH(step_start, i).xyz;
   float size = length(way);
-  if (size > 0.0 && size < 1e30) atomicMax(control.longest, floatBitsToUint(size));
+  if (size > 0.0 && size < 1e30) {
+    atomicMax(control.longest, floatBitsToUint(size));
+    if (i >= cloth_vertex_count) atomicMax(control.longest_of_bodies, floatBitsToUint(size));
+  }
   path[i] = end.w > 0.0 ? vec4(way / dt - FETCH(velocity, i).xyz, end.w) : end;
 }

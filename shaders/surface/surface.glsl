@@ -2,7 +2,8 @@
 // scene. A search lists the pairs that can meet until parts of the surfaces have moved too far relative to each other
 // (blocks.comp). After a step of any method the near ones among them push each other apart
 // (elements/surface.glsl); then a filter shortens the steps of vertices so that no pair meets, which keeps a state
-// without intersections so. All sums are of integers, so that no outcome depends on the order of threads.
+// without intersections so. All sums are of integers, so that no outcome depends on the order of threads. Beside each
+// stands why it cannot overflow.
 //
 // Software OpenGL runs all the code of a kernel for all its items, both sides of an `if` and the body of a loop that no
 // item enters. So what few items need is a kernel of its own, over a list of these items.
@@ -57,12 +58,15 @@ struct Control {
   uint rebuilds;
   uint cuts;                 // vertices whose steps were shortened, over all steps
   uint forced;               // over all steps: pins that waited; pairs that bodies took over the plane between them;
-                             // vertices that the filter kept where a solid came over them
+                             // vertices that the filter kept where a solid came over them; vertices of bodies that
+                             // went farther than the listed pairs allow; and not_taken
+  uint not_taken;            // steps, over all, that were not taken, or not to their end, as pairs were not known
   uint most_leaf_pairs;      // found by any search
   uint most_bundle_pairs;    // the same
   uint most_triangle_pairs;  // the same
   uint most_pairs;           // the same
   uint longest;              // longest way of a vertex in this step [m], as bits
+  uint longest_of_bodies;    // the same of a vertex of a body
   uint gone;                 // share of the step that it has gone before this piece, as bits of a float
   uint part;                 // share of the step that this piece goes, the same
   uint skin;                 // by how much the last search reached farther than it had to [m], as bits
@@ -109,6 +113,10 @@ float next_query() { return max(next_flat_query(), min(1.2 * thickness, most_que
 /// How near pairs are that the search lists [m].
 float reach_of(float query_radius) { return query_radius + uintBitsToFloat(known.next_skin); }
 
+/// False: not all pairs that can meet are known, as a list has no room for them, or none was searched. Then nothing may
+/// move.
+bool pairs_are_known() { return known.overflow == 0u && uintBitsToFloat(known.flat_query) > 0.0; }
+
 /// How far a pair is kept apart [m], by the weights of its nearest points: within the triangle, or within both edges,
 /// the thickness. At a rim another pair is nearer, or will be: slanting pushes between flat layers would brake their
 /// sliding. But at the corners of bodies no other is, and their rims keep half of the thickness.
@@ -117,12 +125,10 @@ float kept_apart(uvec4 corner, vec4 weight) {
   return int(max(corner.x, corner.w)) >= cloth_vertex_count ? 0.5 * thickness : 0.0;
 }
 
-/// Integers in which the sums of pushes [m] and impulses [m/s] are counted.
-float units_of_length() { return 67108864.0 / uintBitsToFloat(known.query); }
-float units_of_speed() { return units_of_length() * dt; }
-const float weight_units = 65536.0;
-int weight_in_units(float weight) { return int(ceil(abs(weight) * weight_units)); }
-ivec3 in_units(vec3 v) { return ivec3(round(clamp(v, vec3(-1e9), vec3(1e9)))); }
+/// Integers in which the weights of a vertex's pairs are counted. As a weight is at most 1, and no list has more than
+/// 2^21 pairs (server/sim/surface_pairs.cpp: most_listed), no sum is beyond 2^31.
+const float weight_units = 1024.0;
+uint weight_in_units(float weight) { return uint(ceil(abs(weight) * weight_units)); }
 
 /// What rounding may add to a corner's place, and to what is computed of it [m].
 float rounding_at(vec3 x, float size) { return 2.5e-7 * max(abs(x.x), max(abs(x.y), abs(x.z))) + 1e-6 * size; }
