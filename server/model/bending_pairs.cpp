@@ -31,14 +31,13 @@ void PairSum::merge() {
   merged_ = kept;
 }
 
-std::vector<BendingPair> PairSum::take(const std::vector<char>& held) && {
+std::vector<BendingPair> PairSum::take() && {
   constexpr double rounding = 1e-10;  // share of the largest stiffness
   merge();
   double largest = 0.0;
   for (const BendingPair& pair : pairs_) largest = std::max(largest, std::abs(pair.stiffness));
-  std::erase_if(pairs_, [&](const BendingPair& pair) {
-    return std::abs(pair.stiffness) <= rounding * largest || (held[pair.a] && held[pair.b]);
-  });
+  std::erase_if(pairs_,
+                [&](const BendingPair& pair) { return std::abs(pair.stiffness) <= rounding * largest; });
   return std::move(pairs_);
 }
 

@@ -19,9 +19,8 @@ class PairSum {
   /// `stiffness` [N/m] between two different vertices.
   void add(std::uint32_t v, std::uint32_t w, double stiffness);
 
-  /// The pairs in rising order, without those that rounding has left of nothing and those of two `held`
-  /// vertices.
-  std::vector<BendingPair> take(const std::vector<char>& held) &&;
+  /// The pairs in rising order, without those that rounding has left of nothing.
+  std::vector<BendingPair> take() &&;
 
  private:
   void merge();

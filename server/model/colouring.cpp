@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <type_traits>
 
 namespace clothlab::model {
 
@@ -105,10 +106,20 @@ Colouring colour_batch(const Model& model, const scene::Scene& scene, const Batc
   return group(colour);
 }
 
+/// Whether the order in which VBD visits the element's vertices counts. Bending of pins alone is listed for
+/// its energy: it moves nothing, and must not change the order of what moves.
+template <class Law>
+bool counts(const Model& model, const Element<Law>& element) {
+  constexpr bool bends = std::is_same_v<Law, elements::Bending> || std::is_same_v<Law, elements::Shell>;
+  return !bends || std::any_of(element.vertices.begin(), element.vertices.end(),
+                               [&](Index vertex) { return model.pin_motion[vertex] == not_pinned; });
+}
+
 /// Takes the colours from the grids in which an element joins two vertices of one colour.
 void drop_clashes(const Model& model, const scene::Scene& scene, std::vector<Index>& colour) {
   std::vector<char> clashes(scene.cloths.size(), 0);
   each_element(model.elements, [&](const auto& element) {
+    if (!counts(model, element)) return;
     for (std::size_t b = 1; b < element.vertices.size(); ++b)
       for (std::size_t a = 0; a < b; ++a)
         if (colour[element.vertices[a]] == colour[element.vertices[b]])
@@ -142,13 +153,15 @@ Colouring colour_vertices(const Model& model, const scene::Scene& scene) {
     if (colour[i] == uncoloured) queue.push_back(i);
   std::vector<Index> degree(model.vertex_count(), 0);
   model.elements.each([&](const auto& batch) {
-    for (Index i = 0; i < degree.size(); ++i)
-      degree[i] += batch.at_vertex.offsets[i + 1] - batch.at_vertex.offsets[i];
+    for (const auto& element : batch)
+      if (counts(model, element))
+        for (const Index vertex : element.vertices) ++degree[vertex];
   });
   std::stable_sort(queue.begin(), queue.end(), [&](Index a, Index b) { return degree[a] > degree[b]; });
   const auto neighbours = [&](Index vertex, auto visit) {
     model.elements.each([&](const auto& batch) {
       batch.at(vertex, [&](const auto& element, std::size_t) {
+        if (!counts(model, element)) return;
         for (const Index other : element.vertices)
           if (other != vertex) visit(other);
       });

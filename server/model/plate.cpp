@@ -178,18 +178,17 @@ std::vector<BendingPair> bending_pairs(const Triangles& triangles, const std::ve
   const Plate plate{triangles, flat, held, stiffness, neighbours(triangles)};
   PairSum pairs;
   for (Index triangle = 0; triangle < triangles.size(); ++triangle) add_triangle(plate, triangle, pairs);
-  return std::move(pairs).take(held);
+  return std::move(pairs).take();
 }
 
-std::vector<BendingPair> bending_pairs(const std::vector<CurvatureRows>& triangles,
-                                       const std::vector<char>& held) {
+std::vector<BendingPair> bending_pairs(const std::vector<CurvatureRows>& triangles) {
   PairSum pairs;
   for (const auto& [vertices, row] : triangles)
     for (std::size_t v = 0; v < vertices.size(); ++v)
       for (std::size_t w = 0; w < v; ++w)
         pairs.add(vertices[v], vertices[w],
                   -(row[0][v] * row[0][w] + row[1][v] * row[1][w] + row[2][v] * row[2][w]));
-  return std::move(pairs).take(held);
+  return std::move(pairs).take();
 }
 
 }  // namespace clothlab::model

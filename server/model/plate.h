@@ -16,7 +16,9 @@ struct PlateStiffness {
   double warp = 0, weft = 0, twist = 0;
 };
 
-/// The pairs of a plate, each once, in rising order. Its energy is the sum of
+/// The pairs of a plate, each once, in rising order. A pair of two held vertices moves nothing, but without
+/// it the sum over all pairs would be no energy: it is negative where the sheet is flat. The plate's is the
+/// sum of
 ///   area / 2 (warp k_ww^2 + weft k_ff^2 + 4 twist k_wf^2)
 /// over the triangles, with the curvature k of Morley's element (1968): it follows from the slopes across the
 /// middles of a triangle's edges, less those of the triangle itself. The slope at an edge is the mean of its
@@ -44,8 +46,7 @@ struct CurvatureRows {
 std::vector<CurvatureRows> curvature_rows(const Triangles& triangles, const std::vector<FlatTriangle>& flat,
                                           const std::vector<char>& held, const PlateStiffness& stiffness);
 
-/// The pairs that have the energy of the rows, each once, in rising order; none of two `held` vertices.
-std::vector<BendingPair> bending_pairs(const std::vector<CurvatureRows>& triangles,
-                                       const std::vector<char>& held);
+/// The pairs that have the energy of the rows, each once, in rising order.
+std::vector<BendingPair> bending_pairs(const std::vector<CurvatureRows>& triangles);
 
 }  // namespace clothlab::model

@@ -128,16 +128,16 @@ void add_curvature(Model& model, const CurvedTriangle& triangle, Index first, do
 }
 
 /// Appends the bending of a sheet whose rest shape is that of its vertices, which are curved.
-void add_shell(Model& model, std::vector<CurvatureRows> rows, const std::vector<char>& held, Index first,
-               double damping, bool sweeps_elements) {
+void add_shell(Model& model, std::vector<CurvatureRows> rows, Index first, double damping,
+               bool sweeps_elements) {
   constexpr double flattened = 0.1;  // share of its area below which a triangle has no whole normal
   const std::vector<dvec3> rest(model.rest_position.begin() + first, model.rest_position.end());
   const std::vector<CurvedTriangle> triangles = curved_triangles(std::move(rows), rest);
   std::vector<CurvatureRows> curved;
   for (const CurvedTriangle& triangle : triangles) curved.push_back(triangle.rows);
-  add_pairs(model, bending_pairs(curved, held), first, damping);
+  add_pairs(model, bending_pairs(curved), first, damping);
   Batch<elements::Shell>& shell = model.elements.of<elements::Shell>();
-  for (const Rise& rise : rises(triangles, rest, held)) {
+  for (const Rise& rise : rises(triangles, rest)) {
     const auto& [a, b, c] = rise.triangle;
     shell.push_back({{a + first, b + first, c + first, rise.vertex + first},
                      {rise.pull, 0.5 * rise.pull * rise.height, damping, flattened * rise.twice_area, 0.0}});
@@ -171,8 +171,7 @@ Status add_sheet(Model& model, const scene::Cloth& cloth, const TextureAxes& axe
   const auto& [warp, weft, twist] = material.bending;
   const PlateStiffness plate{warp, weft, twist.value_or(0.5 * std::sqrt(warp * weft))};
   if (!pattern_of(cloth) && is_curved(model, first_triangle)) {
-    add_shell(model, curvature_rows(triangles, flat, held, plate), held, first, material.damping,
-              sweeps_elements);
+    add_shell(model, curvature_rows(triangles, flat, held, plate), first, material.damping, sweeps_elements);
     return ok();
   }
   add_pairs(model, bending_pairs(triangles, flat, held, plate), first, material.damping);

@@ -46,8 +46,7 @@ std::vector<CurvedTriangle> curved_triangles(std::vector<CurvatureRows> plate,
   return result;
 }
 
-std::vector<Rise> rises(const std::vector<CurvedTriangle>& triangles, const std::vector<dvec3>& rest,
-                        const std::vector<char>& held) {
+std::vector<Rise> rises(const std::vector<CurvedTriangle>& triangles, const std::vector<dvec3>& rest) {
   constexpr double rounding = 1e-10;  // share of the largest pull
   std::vector<Rise> result;
   double largest = 0.0;
@@ -56,11 +55,8 @@ std::vector<Rise> rises(const std::vector<CurvedTriangle>& triangles, const std:
     const dvec3& first = rest[triangle[0]];
     const dvec3 area = glm::cross(rest[triangle[1]] - first, rest[triangle[2]] - first);
     const double twice_area = glm::length(area);
-    const bool all_held =
-        std::all_of(triangle.begin(), triangle.end(), [&](auto corner) { return held[corner]; });
     for (std::size_t k = own_corners; k < rows.vertices.size(); ++k) {
       const std::uint32_t vertex = rows.vertices[k];
-      if (all_held && held[vertex]) continue;
       double pull = 0.0;
       for (std::size_t i = 0; i < along_normal.size(); ++i) pull += along_normal[i] * rows.row[i][k];
       if (pull == 0.0) continue;

@@ -37,8 +37,6 @@ std::vector<CurvedTriangle> curved_triangles(std::vector<CurvatureRows> plate,
 
 /// What the triangles' energy has beside that of the pairs made from their rows: the sum over all rises of
 ///   pull (rest height / 2 - height).
-/// A rise of held vertices alone is left out.
-std::vector<Rise> rises(const std::vector<CurvedTriangle>& triangles, const std::vector<dvec3>& rest,
-                        const std::vector<char>& held);
+std::vector<Rise> rises(const std::vector<CurvedTriangle>& triangles, const std::vector<dvec3>& rest);
 
 }  // namespace clothlab::model

@@ -1,8 +1,10 @@
 // Energies, strain and speed as the GPU sums them, against sums over the same state in double precision.
 #include <algorithm>
+#include <cmath>
 
 #include "shaders/elements/elements.h"
 #include "tests/scenes.h"
+#include "tests/small_scenes.h"
 #include "tests/spring_laws.h"
 
 using namespace clothlab;
@@ -55,6 +57,28 @@ TEST_CASE("diagnostics are the sums over the state: energies, largest strain and
   CHECK(found.pin_force == Approx(pin_force).epsilon(1e-3));
   CHECK(found.contact_mass == Approx(0.1 * found.contacts).epsilon(1e-5));
   CHECK(found.contact_force >= 9.8 * found.contact_mass * (1 - 1e-5));
+}
+
+TEST_CASE("a flat sheet of finite elements has no elastic energy at rest, however it is pinned") {
+  const auto context = test::context();
+  const auto edge = [](int row) { return scene::Pin{scene::AtEdge{scene::AtEdge::Line::row, row}, {}}; };
+  for (const scene::Method method : {scene::Method::verlet, scene::Method::xpbd, scene::Method::vbd}) {
+    for (const std::vector<scene::Pin>& pins :
+         {std::vector<scene::Pin>{}, {edge(0)}, {edge(0), edge(1)}, {edge(0), edge(2), edge(4), edge(9)}}) {
+      scene::Scene scene = test::sheet_of_elements(method, 1e-4, 10);
+      std::get<scene::Fem>(scene.cloths[0].material).bending = {1e-3, 4e-3, std::nullopt};
+      scene.cloths[0].pins = pins;
+      const auto simulation = test::simulation(scene);
+      // Terms of either sign, each rounded by 2^-24 in squares, products and sums of some ten terms.
+      double terms = 0.0;
+      const model::Model& model = simulation->model();
+      for (const auto& pair : model.elements.of<elements::Bending>())
+        terms += std::abs(element_energy(pair.law, model::edges(pair, 0, model.rest_position)));
+      INFO(scene::name(method) << ", " << pins.size() << " pinned rows, terms of " << terms << " J");
+      CHECK(terms > 1e-4);
+      CHECK(std::abs(simulation->diagnose().elastic) < 10 * 0x1p-24 * terms);
+    }
+  }
 }
 
 TEST_CASE("a value that is not finite is told, wherever it is") {

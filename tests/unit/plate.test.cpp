@@ -135,17 +135,8 @@ TEST_CASE("the pairs of a plate have the energy of its triangles, whatever the s
       double sum = 0.0;
       for (const auto& rows : model::curvature_rows(mesh.triangles, mesh.flat(), held, stiffness))
         sum += energy(rows, x);
-      auto pairs = model::bending_pairs(mesh.triangles, mesh.flat(), held, stiffness);
-      // Pairs of two held vertices are left out: their energy is no function of what moves.
-      if (!clamped) CHECK(energy(pairs, x) == Approx(sum).epsilon(1e-9));
-      auto other = x;
-      for (std::size_t i = 0; i < other.size(); ++i)
-        if (!held[i])
-          other[i] += dvec3(0.01 * static_cast<double>(i % 7), 0.02, 0.03 * static_cast<double>(i % 3));
-      double moved = 0.0;
-      for (const auto& rows : model::curvature_rows(mesh.triangles, mesh.flat(), held, stiffness))
-        moved += energy(rows, other);
-      CHECK(energy(pairs, other) - energy(pairs, x) == Approx(moved - sum).epsilon(1e-8));
+      const auto pairs = model::bending_pairs(mesh.triangles, mesh.flat(), held, stiffness);
+      CHECK(energy(pairs, x) == Approx(sum).epsilon(1e-9));
       for (std::size_t i = 1; i < pairs.size(); ++i)
         CHECK(std::pair(pairs[i - 1].a, pairs[i - 1].b) < std::pair(pairs[i].a, pairs[i].b));
     }
