@@ -74,7 +74,7 @@ class Stepped {
   static reference::World world_of(const scene::Scene& scene) {
     Result<model::Model> model = model::build(scene);
     REQUIRE(model);
-    return *reference::make_world(scene, sim::contact_margin(scene, *model));
+    return *reference::make_world(scene, sim::contact_margins(scene, *model));
   }
 
   reference::World world_;

@@ -27,9 +27,9 @@ double covering_radius(const dvec3& a, const dvec3& b, const dvec3& c) {
   return foot > 0.0 ? 0.5 * middle * middle / foot : 0.5 * longest;
 }
 
-double coarsest_edge(const Model& model) {
-  double edge = 0.0;
-  for (const ClothRange& cloth : model.cloths) edge = std::max(edge, cloth.mean_edge_length);
+double least_mean_edge(const Model& model) {
+  double edge = model.cloths.empty() ? 0.0 : model.cloths.front().mean_edge_length;
+  for (const ClothRange& cloth : model.cloths) edge = std::min(edge, cloth.mean_edge_length);
   return edge;
 }
 

@@ -13,8 +13,8 @@ namespace clothlab::model {
 /// less where an angle is obtuse.
 double covering_radius(const dvec3& a, const dvec3& b, const dvec3& c);
 
-/// The mean edge of the cloth with the longest ones, at rest [m]; 0 without cloths.
-double coarsest_edge(const Model& model);
+/// The mean edge of the cloth with the shortest ones, at rest [m]; 0 without cloths.
+double least_mean_edge(const Model& model);
 
 /// The least self_collision.thickness [m] with which no vertex slips through a triangle at rest: 1.2 times
 /// the largest covering radius. On a square grid that is 0.85 of the spacing. 0 without triangles.

@@ -13,20 +13,20 @@ namespace clothlab::reference {
 
 namespace {
 
-/// The collider `home` moved to `pose` and grown by the contact margin, in the form that its law takes.
-elements::Solid solid_at(const World& world, const scene::Solid& home, const model::Pose& pose) {
-  return {pose.place(home.point), pose.rotation * home.direction, home.radius + world.contact_margin,
+/// The collider `home` moved to `pose` and grown by a contact margin [m], in the form that its law takes.
+elements::Solid solid_at(const scene::Solid& home, double margin, const model::Pose& pose) {
+  return {pose.place(home.point), pose.rotation * home.direction, home.radius + margin,
           pose.rotation * home.second, home.extent};
 }
 
 /// Stops the step from -> x at one collider; true if the collider is in the way.
-bool meet_solid(const World& world, const scene::Collider& collider, double t, const dvec3& from, dvec3& x,
-                Surface& met) {
+bool meet_solid(const World& world, const scene::Collider& collider, double t, double margin,
+                const dvec3& from, dvec3& x, Surface& met) {
   const scene::Solid home = scene::solid(collider.shape);
   const model::Pose before = model::pose(collider.motion, t);
   const model::Pose after = model::pose(collider.motion, t + world.scene.solver.dt);
   dvec3 stopped, normal;
-  if (!elements::solid_contact(home.kind, solid_at(world, home, before), solid_at(world, home, after), from,
+  if (!elements::solid_contact(home.kind, solid_at(home, margin, before), solid_at(home, margin, after), from,
                                x, stopped, normal))
     return false;
   x = stopped;
@@ -37,13 +37,14 @@ bool meet_solid(const World& world, const scene::Collider& collider, double t, c
 /// Stops the step from -> x at each collider in turn, one kind of shape after another, as on the GPU. Calls
 /// touch(surface) for each collider met, and returns their number.
 template <class Touch>
-int meet_each(const World& world, double t, const dvec3& from, dvec3& x, Touch touch) {
+int meet_each(const World& world, double t, std::size_t vertex, const dvec3& from, dvec3& x, Touch touch) {
+  const double margin = world.contact_margin[world.model.vertex_cloth[vertex]];
   int count = 0;
   Surface met;
   for (std::size_t kind = 0; kind < scene::solid_kinds; ++kind)
     for (const scene::Collider& collider : world.scene.colliders) {
       if (collider.shape.index() != kind) continue;
-      if (!meet_solid(world, collider, t, from, x, met)) continue;
+      if (!meet_solid(world, collider, t, margin, from, x, met)) continue;
       touch(met);
       ++count;
     }
@@ -52,11 +53,12 @@ int meet_each(const World& world, double t, const dvec3& from, dvec3& x, Touch t
 
 }  // namespace
 
-int meet_colliders(const World& world, double t, const dvec3& from, dvec3& x, dvec3& v, dvec3* second) {
+int meet_colliders(const World& world, double t, std::size_t vertex, const dvec3& from, dvec3& x, dvec3& v,
+                   dvec3* second) {
   dvec3 braking(0.0);
   // Verlet moves its vertices with the second velocity.
   const dvec3* moves = second ? second : &v;
-  const int count = meet_each(world, t, from, x, [&](const Surface& met) {
+  const int count = meet_each(world, t, vertex, from, x, [&](const Surface& met) {
     const dvec3 moved = x - braking - from - world.scene.solver.dt * met.velocity;
     braking +=
         elements::contact_braking(moved, *moves - met.velocity, met.normal, met.friction, met.restitution);
@@ -71,8 +73,9 @@ int meet_colliders(const World& world, double t, const dvec3& from, dvec3& x, dv
   return count;
 }
 
-int stop_at_colliders_position(const World& world, double t, const dvec3& from, dvec3& x, Surface& last) {
-  return meet_each(world, t, from, x, [&](const Surface& met) { last = met; });
+int stop_at_colliders_position(const World& world, double t, std::size_t vertex, const dvec3& from, dvec3& x,
+                               Surface& last) {
+  return meet_each(world, t, vertex, from, x, [&](const Surface& met) { last = met; });
 }
 
 double inverse_mass(const World& world, std::uint32_t vertex) {

@@ -8,10 +8,10 @@
 namespace clothlab::reference {
 
 /// Stops the step from -> x of a vertex with end velocity v at the colliders, which move from time t to t +
-/// dt. Changes x and v; returns the number of colliders met. If the vertex has moved with a velocity other
-/// than v, `second` points to that velocity, and contacts change it like v. Friction takes as large a share
-/// of the displacement as of the sliding velocity.
-int meet_colliders(const World& world, double t, const dvec3& from, dvec3& x, dvec3& v,
+/// dt and which it keeps its cloth's distance from. Changes x and v; returns the number of colliders met. If
+/// the vertex has moved with a velocity other than v, `second` points to that velocity, and contacts change
+/// it like v. Friction takes as large a share of the displacement as of the sliding velocity.
+int meet_colliders(const World& world, double t, std::size_t vertex, const dvec3& from, dvec3& x, dvec3& v,
                    dvec3* second = nullptr);
 
 /// The surface that a vertex met: unit normal and velocity [m/s] at the vertex, friction, restitution.
@@ -22,7 +22,8 @@ struct Surface {
 
 /// Like meet_colliders, but changes only the position x. If it meets a collider, `last` becomes the surface
 /// met last.
-int stop_at_colliders_position(const World& world, double t, const dvec3& from, dvec3& x, Surface& last);
+int stop_at_colliders_position(const World& world, double t, std::size_t vertex, const dvec3& from, dvec3& x,
+                               Surface& last);
 
 /// 1 / mass [1/kg], 0 if pinned.
 double inverse_mass(const World& world, std::uint32_t vertex);

@@ -43,7 +43,8 @@ dvec3 first_guess(const SweepState& step, std::uint32_t i, const std::optional<d
   };
   dvec3 stopped = step.x[i] + free;
   Surface met;
-  if (stop_at_colliders_position(world, step.t, step.x[i], stopped, met) == 0) return free - not_followed();
+  if (stop_at_colliders_position(world, step.t, i, step.x[i], stopped, met) == 0)
+    return free - not_followed();
   const dvec3& n = met.normal;
   const double depth = glm::dot(stopped - (step.x[i] + free), n);
   const dvec3 on_surface = free + n * depth, carried = dt * met.velocity;
@@ -60,7 +61,7 @@ std::vector<std::optional<dvec3>> velocities_to_keep(const SweepState& step) {
   for (std::uint32_t i = 0; i < before.size(); ++i) {
     dvec3 stopped = step.x[i] + step.free_displacement[i] + step.blown[i];
     Surface met;
-    if (stop_at_colliders_position(step.world, step.t, step.x[i], stopped, met) > 0 &&
+    if (stop_at_colliders_position(step.world, step.t, i, step.x[i], stopped, met) > 0 &&
         hits(step, met, step.v[i]))
       before[i].reset();
   }
@@ -136,7 +137,7 @@ SweepState begin(const World& world, const State& state, double t, double t_next
 dvec3 bounced(const SweepState& step, std::uint32_t i, const dvec3& v) {
   dvec3 stopped = step.x[i] + step.free_displacement[i];
   Surface met;
-  if (stop_at_colliders_position(step.world, step.t, step.x[i], stopped, met) == 0 ||
+  if (stop_at_colliders_position(step.world, step.t, i, step.x[i], stopped, met) == 0 ||
       !(met.restitution > 0.0))
     return v;
   if (!hits(step, met, step.v[i])) return v;

@@ -24,13 +24,17 @@ void stop_at_colliders(const World& world, const State& before, double t, State&
     // the velocity at its end.
     dvec3* half = next.half_dt.empty() ? nullptr : &next.half_velocity[i];
     next.contacts[i] +=
-        meet_colliders(world, t, before.position[i], next.position[i], next.velocity[i], half);
+        meet_colliders(world, t, i, before.position[i], next.position[i], next.velocity[i], half);
   }
 }
 
 }  // namespace
 
 Result<World> make_world(const scene::Scene& scene, double contact_margin) {
+  return make_world(scene, std::vector<double>(scene.cloths.size(), contact_margin));
+}
+
+Result<World> make_world(const scene::Scene& scene, const std::vector<double>& contact_margin) {
   Result<model::Model> model = model::build(scene);
   if (!model) return model.error();
   World world{scene, std::move(*model), contact_margin, {}, {}};

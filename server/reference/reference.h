@@ -21,7 +21,7 @@ using glm::dvec3;
 struct World {
   scene::Scene scene;
   model::Model model;
-  double contact_margin = 0;  ///< distance kept from a collider's surface [m]
+  std::vector<double> contact_margin;  ///< [cloth_count] distance kept from a collider's surface [m]
   std::array<model::Colouring, elements::swept_count>
       element_colours;              ///< the orders of PBD's and XPBD's sweeps
   model::Colouring vertex_colours;  ///< the order of VBD's sweeps
@@ -48,6 +48,8 @@ struct State {
 };
 
 /// A world for `scene`, or an error that says why its model cannot be built.
+Result<World> make_world(const scene::Scene& scene, const std::vector<double>& contact_margin);
+/// The same, with one margin for all cloths.
 Result<World> make_world(const scene::Scene& scene, double contact_margin);
 
 /// The state at time 0: start positions, and velocity 0.

@@ -118,7 +118,7 @@ RestShape descend(const World& world, const Vectors& start, const std::stop_toke
 std::optional<Error> violated(const World& world, const Vectors& x) {
   for (std::size_t i = 0; i < x.size(); ++i) {
     dvec3 stopped = x[i], v(0.0);
-    if (!world.pinned(i) && meet_colliders(world, 0.0, x[i], stopped, v) > 0)
+    if (!world.pinned(i) && meet_colliders(world, 0.0, i, x[i], stopped, v) > 0)
       return Error{"/colliders", "vertex " + std::to_string(i) + " would hang inside a collider",
                    "a rest shape is found only where the cloth hangs clear of the colliders"};
   }

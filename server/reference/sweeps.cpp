@@ -49,7 +49,7 @@ dvec3 stopped_move(SweepState& step, std::uint32_t i, const dmat3& inverse, dvec
   const dvec3 trial = step.now(i) + move;
   dvec3 stopped = trial;
   Surface met;
-  step.colliders_met[i] = stop_at_colliders_position(step.world, step.t, step.x[i], stopped, met);
+  step.colliders_met[i] = stop_at_colliders_position(step.world, step.t, i, step.x[i], stopped, met);
   if (!step.world.scene.collides(scene::ContactKind::points))
     step.contacts[i] = step.colliders_met[i];  // else contact_pass counts
   if (step.colliders_met[i] == 0) return move;
@@ -150,7 +150,7 @@ void contact_pass(SweepState& step) {
     const dvec3 trial = step.now(i);
     dvec3 stopped = trial;
     Surface met;
-    const int count = stop_at_colliders_position(world, step.t, step.x[i], stopped, met);
+    const int count = stop_at_colliders_position(world, step.t, i, step.x[i], stopped, met);
     contacts[i] +=
         std::max(count, step.colliders_met[i]);  // VBD's visit may have put the vertex on the surface
     if (count == 0) continue;

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 #include <numbers>
+#include <vector>
 
 #include "server/base/text.h"
 #include "server/model/wind.h"
@@ -51,19 +52,32 @@ double collider_speed(const scene::Collider& collider, double size) {
   return largest_speed(collider.motion, bounds.center, std::isinf(bounds.radius) ? size : bounds.radius);
 }
 
-struct Extent {
-  double size = 0;      ///< diagonal of the box about the rest shape [m]
-  double farthest = 0;  ///< largest coordinate [m]
+/// What the allowance takes from one cloth.
+struct Scale {
+  double size = 0;       ///< diagonal of the box about the rest shape [m]
+  double farthest = 0;   ///< largest coordinate [m]
+  double mass = 0;       ///< of the vertices that no pin holds [kg]
+  double pin_speed = 0;  ///< of the fastest pin [m/s]
 };
 
-Extent extent(const model::Model& model) {
+Scale scale_of(const model::Model& model, const model::ClothRange& cloth) {
   glm::dvec3 low(1e300), high(-1e300);
-  for (const glm::dvec3& x : model.rest_position) {
+  Scale scale;
+  for (std::uint32_t i = cloth.first_vertex; i < cloth.first_vertex + cloth.vertex_count; ++i) {
+    const glm::dvec3& x = model.rest_position[i];
     low = glm::min(low, x);
     high = glm::max(high, x);
+    const std::int32_t pin = model.pin_motion[i];
+    if (pin == model::not_pinned)
+      scale.mass += model.mass[i];
+    else
+      scale.pin_speed =
+          std::max(scale.pin_speed, largest_speed(model.motions[static_cast<std::size_t>(pin)], x, 0.0));
   }
   const glm::dvec3 far = glm::max(glm::abs(low), glm::abs(high));
-  return {glm::distance(low, high), std::max({far.x, far.y, far.z})};
+  scale.size = glm::distance(low, high);
+  scale.farthest = std::max({far.x, far.y, far.z});
+  return scale;
 }
 
 /// Allowance::energy_ratio.
@@ -78,32 +92,31 @@ double stable_swing(double dt, double dt_limit) {
 }  // namespace
 
 Allowance allowance(const scene::Scene& scene, const model::Model& model, double dt_limit) {
-  const Extent cloth = extent(model);
   Allowance allowed;
-  double mass = 0.0, elastic = 0.0;
-  for (std::uint32_t i = 0; i < model.vertex_count(); ++i) {
-    const std::int32_t pin = model.pin_motion[i];
-    if (pin == model::not_pinned)
-      mass += model.mass[i];
-    else
-      allowed.pin_speed =
-          std::max(allowed.pin_speed,
-                   largest_speed(model.motions[static_cast<std::size_t>(pin)], model.rest_position[i], 0.0));
+  const double wind = scene.wind ? model::largest_wind_speed(*scene.wind) : 0.0;
+  std::vector<double> farthest;
+  for (const model::ClothRange& range : model.cloths) {
+    const Scale cloth = scale_of(model, range);
+    double near = 0.0;
+    for (const scene::Collider& collider : scene.colliders)
+      near = std::max(near, collider_speed(collider, cloth.size));
+    allowed.pin_speed = std::max(allowed.pin_speed, cloth.pin_speed);
+    allowed.collider_speed = std::max(allowed.collider_speed, near);
+    const double speed = cloth.pin_speed + near;
+    allowed.slack_energy += cloth.mass * (0.25 * glm::length(scene.gravity) * cloth.size +
+                                          2.0 * speed * speed + 0.5 * wind * wind);
+    farthest.push_back(cloth.farthest);
   }
-  for (const scene::Collider& collider : scene.colliders)
-    allowed.collider_speed = std::max(allowed.collider_speed, collider_speed(collider, cloth.size));
   const double push = scene.self_collision ? 0.2 * scene.self_collision->thickness : 0.0;
+  double elastic = 0.0;
   model::each_element(model.elements, [&](const auto& element) {
     // The push of self-collision, a thousandth of the element's size, and float32's rounding of coordinates.
-    const double stretch = push + 1e-3 * element_size(element.law) + 1e-6 * cloth.farthest;
+    const double stretch =
+        push + 1e-3 * element_size(element.law) + 1e-6 * farthest[model.vertex_cloth[element.vertices[0]]];
     elastic += 0.5 * element_stiffness(element.law) * stretch * stretch;
   });
-  const double speed = allowed.pin_speed + allowed.collider_speed;
-  const double wind = scene.wind ? model::largest_wind_speed(*scene.wind) : 0.0;
+  allowed.slack_energy += elastic;
   allowed.wind_power = model::largest_wind_power(model, scene);
-  allowed.slack_energy =
-      mass * (0.25 * glm::length(scene.gravity) * cloth.size + 2.0 * speed * speed + 0.5 * wind * wind) +
-      elastic;
   allowed.energy_ratio = stable_swing(scene.solver.dt, dt_limit);
   allowed.counts_elastic = !scene::sweeps(scene.solver.method);
   allowed.growth = scene.solver.dt > dt_limit ? proved_already : growth_that_proves;

@@ -21,13 +21,13 @@ struct Allowance {
   bool counts_elastic = true;  ///< true if growth of elastic energy counts, false if only kinetic energy does
 };
 
-/// The allowance for a scene. `slack_energy` is the scene's own scale of energy, a sum: to lift the cloth by
-/// a quarter of its size; to move it at twice the speed of the pins and colliders, and at the wind's; to
-/// stretch each element by a thousandth of its size, by the push of self-collision in a step and by the
-/// rounding of float32. `energy_ratio` is how far the energy of a stable vibration varies under symplectic
-/// Euler, (1 + s) / (1 - s) with s = dt / dt_limit, and at least 2. `counts_elastic` is false for methods
-/// that sweep (PBD, XPBD, VBD): with too few sweeps the cloth stretches far, and its full stiffness then
-/// gives an elastic energy that no work has put in. That is no blow-up.
+/// The allowance for a scene. `slack_energy` is the scene's own scale of energy, a sum over its cloths: to
+/// lift each by a quarter of its size; to move it at twice the speed of its pins and of the colliders, and at
+/// the wind's; to stretch each element by a thousandth of its size, by the push of self-collision in a step
+/// and by the rounding of float32. `energy_ratio` is how far the energy of a stable vibration varies under
+/// symplectic Euler, (1 + s) / (1 - s) with s = dt / dt_limit, and at least 2. `counts_elastic` is false for
+/// methods that sweep (PBD, XPBD, VBD): with too few sweeps the cloth stretches far, and its full stiffness
+/// then gives an elastic energy that no work has put in. That is no blow-up.
 Allowance allowance(const scene::Scene& scene, const model::Model& model, double dt_limit);
 
 /// True if a change of scene may change the energy of a state. A change of the solver (e.g. of dt) cannot.

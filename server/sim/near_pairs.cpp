@@ -95,7 +95,7 @@ void add_solids(const Near& near, const model::Model& model, const scene::Scene&
       NearPair pair{Kind::vertex_solid, {i, collider, NearPair::none, NearPair::none}, {1}, {near.place[i]}};
       pair.gap = distance_from(solid, near.place[i], normal);
       pair.nearest[1] = near.place[i] - normal * pair.gap;
-      pair.keep = contact_margin(scene, model, colliders[collider]);
+      pair.keep = contact_margin(scene, model, model.vertex_cloth[i], colliders[collider]);
       near.add(pair);
     }
   }

@@ -49,6 +49,18 @@ std::string each_solid(const Plan& plan) {
   return list;
 }
 
+/// Whether the distance that cloths keep from solids may be another for each (sim::contact_margin): with the
+/// thickness of self-collision only from boxes that move among surfaces.
+bool margins_differ(const scene::Scene& scene) {
+  if (scene.cloths.size() < 2) return false;
+  const auto differs = [&](const scene::Collider& collider) {
+    if (collider.is_body()) return false;
+    return !scene.self_collision || (scene.collides(scene::ContactKind::surface) && moves(collider.motion) &&
+                                     std::holds_alternative<scene::Box>(collider.shape));
+  };
+  return std::any_of(scene.colliders.begin(), scene.colliders.end(), differs);
+}
+
 }  // namespace
 
 std::vector<scene::Motion> moving_motions(const scene::Scene& scene) {
@@ -83,6 +95,7 @@ Plan plan(const scene::Scene& scene) {
   plan.solids = solid_runs(scene);
   plan.bodies = static_cast<int>(std::count_if(scene.colliders.begin(), scene.colliders.end(),
                                                [](const auto& collider) { return collider.is_body(); }));
+  if (margins_differ(scene)) plan.cloths_apart = static_cast<int>(scene.cloths.size());
   plan.moving = static_cast<int>(moving_motions(scene).size());
   plan.self_collision = scene.collides(scene::ContactKind::points);
   plan.surfaces = scene.collides(scene::ContactKind::surface);
@@ -100,6 +113,10 @@ gl::Defines step_defines(const Plan& plan) {
                       {"EACH_SOLID(meet)", each_solid(plan)}};
   for (gl::Defines::value_type& define : law_defines(plan.laws)) defines.push_back(std::move(define));
   if (plan.wind) defines.emplace_back("WIND", "1");
+  if (plan.cloths_apart > 0) {
+    defines.emplace_back("CLOTHS_APART", std::to_string(plan.cloths_apart));
+    if (plan.surfaces) defines.emplace_back("APART_FROM_MOVING_BOXES", "1");
+  }
   if (plan.pins && plan.surface_contact()) defines.emplace_back("PINS_WAIT", "1");
   if (plan.self_collision) {
     defines.emplace_back("SELF_COLLISION", "1");

@@ -42,6 +42,7 @@ struct Plan {
   int moving = 0;                ///< distinct motions of pins and colliders, null left out
   std::vector<SolidRun> solids;  ///< in runs as long as possible
   int bodies = 0;                ///< colliders that are bodies of triangles
+  int cloths_apart = 0;          ///< number of cloths if each is kept from solids by its own distance; else 0
   bool self_collision = false;   ///< between vertices
   bool surfaces = false;         ///< between surfaces of cloths
   bool wind = false;

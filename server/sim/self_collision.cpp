@@ -77,8 +77,10 @@ Result<SelfCollision> SelfCollision::create(const model::Model& model, std::uint
 
 Status SelfCollision::set_parameters(const scene::SelfCollision& parameters, const model::Model& model) {
   // A thicker skin makes rebuilds rarer but lists longer. With a skin of one mesh edge, and a thickness below
-  // one edge, the lists of a flat cloth are empty: vertices that near to each other share an element.
-  const double edge = model::coarsest_edge(model);
+  // one edge, the lists of a flat cloth are empty: vertices that near to each other share an element. Of
+  // several cloths the finest decides: with another's skin each of its vertices would list all that lie about
+  // it.
+  const double edge = model::least_mean_edge(model);
   const double skin = std::max(edge, 0.5 * parameters.thickness), reach = parameters.thickness + skin;
   const bool same = static_cast<float>(reach) == reach_;
   const double candidates = same ? candidates_ : model::crowding(model.start_position, 2.0 * reach);

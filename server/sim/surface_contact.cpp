@@ -161,7 +161,7 @@ void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Mode
   for (const gl::Program* program : {&apply_, &advance_, &move_, &move_last_})
     set_colliders(*program, scene, model, motions);
   for (const gl::Program* program : {&move_, &move_last_})
-    program->set("margin", static_cast<float>(contact_margin(scene, model)));
+    program->set("margin", static_cast<float>(least_contact_margin(scene, model)));
   forces_.set("friction", static_cast<float>(scene.self_collision ? scene.self_collision->friction : 0.0));
   forces_.set("mend", static_cast<float>(std::min(mended_in_step, mended_in_second * dt)));
   invalidate();

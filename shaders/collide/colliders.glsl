@@ -11,6 +11,30 @@
 uniform vec4 solids[SOLID_ROWS];
 #endif
 
+// The margin in `solids` is the least that any cloth keeps. Where others keep more, CLOTHS_APART is defined as the
+// number of cloths, and a kernel says whose path it is with `meet_as` before it asks for solids.
+#ifdef CLOTHS_APART
+uniform vec2 cloths_apart[CLOTHS_APART];  // the first vertex of each cloth; how much more it keeps [m]
+float farther = 0.0;                      // the share of this vertex's cloth [m]
+
+void meet_as(int vertex) {
+  for (int cloth = 0; cloth < CLOTHS_APART; ++cloth)
+    if (vertex >= int(cloths_apart[cloth].x)) farther = cloths_apart[cloth].y;
+}
+
+/// With surfaces that touch, cloths differ only in how far they keep from boxes that move.
+float own_reach(int kind, bool moves) {
+#ifdef APART_FROM_MOVING_BOXES
+  return kind == solid_box && moves ? farther : 0.0;
+#else
+  return farther;
+#endif
+}
+#else
+void meet_as(int vertex) {}
+float own_reach(int kind, bool moves) { return 0.0; }
+#endif
+
 // The surface met last: its unit normal, its velocity [m/s] at the contact, friction and restitution.
 vec3 met_normal, met_velocity;
 vec2 met_surface;
@@ -81,7 +105,7 @@ Solid between(Solid before, Solid after, float share) {
 
 /// Where a solid, thicker by `reach` [m], is when the path begins and when it ends. `first`: its first row.
 void place_solid(int kind, bool moves, int first, float reach, out Solid before, out Solid after) {
-  before = after = solid_at(kind, first, reach);
+  before = after = solid_at(kind, first, reach + own_reach(kind, moves));
   if (moves) {
     int motion = int(solids[first + 2].z);
     after = moved_to(kind, motion, END_ROW, before);
@@ -119,11 +143,12 @@ int meet_run(int kind, bool moves, int first, int end, vec3 from, inout vec3 x, 
   const int few = 4;
   int rows = solid_rows(kind), met = 0;
   bool many = !moves && end - first > few * rows;
+  float near = reach + own_reach(kind, moves);
   for (int row = first; row < end; row += rows) {
     if (many) {
       int next = end;
       for (int other = end - rows; other >= first; other -= rows)
-        if (other >= row && solid_within(kind, solid_at(kind, other, reach), from, distance(from, x))) next = other;
+        if (other >= row && solid_within(kind, solid_at(kind, other, near), from, distance(from, x))) next = other;
       row = next;
     }
     if (row < end) met += meet_solid(kind, moves, row, from, x, v, reach);
@@ -139,7 +164,7 @@ float depth_in_solids_at_rest(vec3 x, float reach) {
 #if SOLID_ROWS > 0
 #define DEEPEST(kind, moves, first, end)                       \
   for (int row = first; !moves && row < end; row += solid_rows(kind)) \
-    depth = max(depth, solid_depth(kind, solid_at(kind, row, reach), x));
+    depth = max(depth, solid_depth(kind, solid_at(kind, row, reach + own_reach(kind, false)), x));
   EACH_SOLID(DEEPEST)
 #endif
   return depth;

@@ -100,6 +100,7 @@ void finish(int i) {
   if (x.w > 0.0) {
     advance(i, x.xyz, v.xyz, d.xyz, x_next, v_next);
 #if SOLID_ROWS > 0
+    meet_as(i);
     v_next = rebound(x.xyz, v.xyz, v_next);
 #endif
     tag = d.w;

@@ -60,6 +60,7 @@ vec3 follow_contact(int i, float inverse_mass, vec3 u) {
 /// Begins the contact with a collider that the estimate has entered. Returns the change of velocity as above.
 vec3 meet_contact(int i, float inverse_mass, vec3 start, vec3 x, vec3 u) {
   vec3 stopped = x, after = u, change = vec3(0.0);
+  meet_as(i);
   RARELY(resolve_colliders(start, stopped, after, 0.0) > 0) {
     change = met_normal * (dot(stopped - x, met_normal) / dt);
     vec3 sliding = along_surface(u - met_velocity, met_normal);

@@ -38,6 +38,7 @@ void main() {
     x_next = x.xyz;
     v_next = FETCH(velocity, i).xyz;
     RARELY(kept) leave_contact(i, x.w, x_next, v_next);
+    meet_as(i);
     int met = resolve_colliders(FETCH(before_position, i).xyz, x_next, v_next, 0.0);
     x_next -= met_braking;
     tag = FETCH(start_velocity, i).w + float(kept ? max(met, 1) : met);

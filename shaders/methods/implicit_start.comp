@@ -55,6 +55,7 @@ Beginning foresee(int i, vec3 x, vec3 v, float inverse_mass) {
   constraint[i] = vec4(0.0);
   float near = 0.25 * dt * length(start.guess);
   bool met = false;
+  meet_as(i);
   RARELY(!pulled && resolve_colliders(x, stopped, after, near) > 0) {
     met = true;
     float lacks = (dot(stopped - x, met_normal) - near) / dt - dot(start.guess, met_normal);

@@ -58,6 +58,7 @@ int move_freely(int i, vec4 x, vec4 v, out vec3 x_next, out vec3 v_next) {
 #endif
   v_next = v.xyz + dt / 6.0 * (a1 + 2.0 * (a2 + a3) + a4) + impulse;
   x_next = x.xyz + push + dt * (v.xyz + impulse + dt / 6.0 * (a1 + a2 + a3));
+  meet_as(i);
   contacts += resolve_colliders(x.xyz, x_next, v_next, 0.0);
   x_next -= met_braking;
   return contacts;

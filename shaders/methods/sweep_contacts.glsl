@@ -45,6 +45,7 @@ void meet(int i) {
 #endif
 #endif
   vec3 wanted = x.xyz + (free + d.xyz), stopped = wanted;
+  meet_as(i);
   int met = resolve_colliders(x.xyz, stopped, v, 0.0);
   RARELY(met > 0) {
     vec3 back = stopped - wanted;

@@ -46,6 +46,7 @@ vec3 first_deviation(int i, vec4 x, vec3 v) {
   free += blown;
 #endif
   vec3 stopped = x.xyz + free, unused = v;
+  meet_as(i);
   int met = resolve_colliders(x.xyz, stopped, unused, 0.0);
   RARELY(met > 0) {
     back = met_normal * dot(stopped - (x.xyz + free), met_normal);
@@ -113,6 +114,7 @@ void visit_vertex(int item) {
   vec3 a, b;
   factorise(diagonal, corner, inertia, a, b);
   precise vec3 descent = solve_block(a, b, residual);
+  meet_as(i);
   int met = stop(x.xyz, free_displacement(v) + d, a, b, descent);
 #ifdef SELF_COLLISION
   targets[i].w = float(met);

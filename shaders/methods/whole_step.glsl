@@ -21,6 +21,7 @@ int move_freely(int i, vec4 x, vec4 v, out vec3 x_next, out vec3 v_next) {
   contacts = self_contacts(i, x, v, push, impulse);
 #endif
   integrate(i, x, v.xyz, a, push, impulse, x_next, v_next);
+  meet_as(i);
   int met = resolve_colliders(x.xyz, x_next, v_next, 0.0);
   x_next -= met_braking;
   end(i, met, v_next);

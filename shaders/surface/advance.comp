@@ -43,6 +43,7 @@ void main() {
     vec3 v = FETCH(velocity, i).xyz;
     piece_begin = 1.0 - left;
     piece_end = piece_begin + part;
+    meet_as(i);
     if (resolve_colliders(start.xyz, end, v, 0.0) > 0) {
       end -= met_braking;
       velocity_left[i].xyz = v;

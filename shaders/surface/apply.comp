@@ -41,6 +41,7 @@ int stop_at_solids(int i) {
   met_braking = vec3(0.0);
   int met = 0;
 #if SOLID_ROWS > 0
+  meet_as(i);
   piece_begin = uintBitsToFloat(known.gone);
   piece_end = piece_begin + uintBitsToFloat(known.part);
 #define STOP(kind, moves, first, end) met += meet_run(kind, moves, first, end, start, x, v, 0.0);

@@ -99,7 +99,7 @@ Agreement compare_contacts(scene::Scene scene, scene::Method method, std::uint64
   // The last bit may decide if a vertex touches: such vertices are found by moving the surfaces a little.
   const auto moved = [&](double by) {
     reference::World world = world_of(scene);
-    world.contact_margin += by;
+    for (double& margin : world.contact_margin) margin += by;
     if (world.scene.self_collision) world.scene.self_collision->thickness += by;
     return world;
   };

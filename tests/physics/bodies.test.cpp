@@ -54,7 +54,7 @@ TEST_CASE(
         scene::Scene scene = soft_sheet(method);
         scene.colliders = {{"body", shape, 0.3, 0.0, motion}};
         Stepped gpu(Side::gpu, scene), truth(Side::reference, scene);
-        const double margin = gpu.world().contact_margin;
+        const double margin = gpu.world().contact_margin[0];
         double apart = 0.0, inside[2] = {-1.0, -1.0};
         for (int n = 10; n <= 80; n += 10) {
           gpu.step(10);
@@ -110,7 +110,7 @@ TEST_CASE("a bar and a board at 1, 10 and 50 m/s do not pass through cloth, unde
           scene.colliders = {{"body", shape, 0.3, 0.0, scene::Linear{{0.0, speed, 0.0}}}};
           Stepped stepped(side, scene);
           const std::vector<dvec3> home = stepped.state().position;
-          const double margin = stepped.world().contact_margin;
+          const double margin = stepped.world().contact_margin[0];
           double inside = -1.0;
           const int steps = static_cast<int>(0.5 / speed / scene.solver.dt);
           for (int n = 1; n <= steps; ++n) {
@@ -148,7 +148,7 @@ TEST_CASE(
         for (int n = 1; n <= steps; ++n) {
           simulation->step(1);
           inside = std::max(inside, deepest(shape, {}, in_double(simulation->read_state(), 0).position) +
-                                        world.contact_margin);
+                                        world.contact_margin[0]);
         }
         INFO(scene::name(method) << ", " << scene::shape_to_json(shape) << ", " << speed << " m/s: " << inside
                                  << " m inside the margin");
@@ -172,7 +172,7 @@ TEST_CASE("a sheet on a tilted box slips where tan(angle) exceeds mu, as Coulomb
         scene.colliders = {{"slope", scene::Box{-0.05 * up, {0.6, 0.05, 0.6}, tilt}, mu, 0.0, {}}};
         scene.cloths[0].transform.rotate = {0.0, 0.0, angle * 180.0 / pi};
         scene.cloths[0].transform.translate =
-            sim::contact_margin(scene, *model::build(scene)) * up - dvec3(0.0, 0.0, 0.25);
+            sim::contact_margin(scene, *model::build(scene), 0) * up - dvec3(0.0, 0.0, 0.25);
         Stepped stepped(side, scene);
         const auto place = [&] {
           double sum = 0.0;

@@ -80,8 +80,8 @@ TEST_CASE("cloth that is drawn over the end of a table does not catch on it", "[
       auto simulation = test::simulation(scene);
       const model::Model& model = simulation->model();
       const auto& box = std::get<scene::Box>(scene.colliders[0].shape);
-      const double margin = sim::contact_margin(scene, model, scene.colliders[0]);
-      CHECK((margin > sim::contact_margin(scene, model)) == moves);
+      const double margin = sim::contact_margin(scene, model, 0, scene.colliders[0]);
+      CHECK((margin > sim::contact_margin(scene, model, 0)) == moves);
       for (int part = 0; part < 20; ++part) {
         simulation->step(steps);
         const std::vector<glm::vec3> place = simulation->read_state().position;

@@ -111,7 +111,7 @@ Agreement compare_contacts(scene::Scene scene, Method method, int iterations, st
   REQUIRE(simulation->change(scene));
   const auto moved = [&](double by) {
     reference::World world = world_of(scene);
-    world.contact_margin += by;
+    for (double& margin : world.contact_margin) margin += by;
     if (world.scene.self_collision) world.scene.self_collision->thickness += by;
     return world;
   };

@@ -33,7 +33,7 @@ scene::Scene on_slope(Method method, double degrees, double friction, double dt,
   scene.colliders = {{"slope", scene::Plane{}, friction, 0.0, {}}};
   const Result<model::Model> model = model::build(scene);
   REQUIRE(model);
-  cloth.transform.translate.y = sim::contact_margin(scene, *model);
+  cloth.transform.translate.y = sim::contact_margin(scene, *model, 0);
   return scene;
 }
 

@@ -36,7 +36,7 @@ TEST_CASE("no vertex is left inside a solid, of any kind, that stands, moves or 
         // No friction: it acts along the surface as it was, and this one turns by degrees per step.
         const scene::Scene scene = loose_vertices({{"solid", shape, 0.0, 0.2, motion}});
         Stepped stepped(side, scene), free(side, loose_vertices({}));
-        const double margin = stepped.world().contact_margin;
+        const double margin = stepped.world().contact_margin[0];
         REQUIRE(margin > 0.0);
         for (int n = 1; n <= 10; ++n) {
           stepped.step(1);

@@ -34,7 +34,7 @@ inline scene::Scene two_sheets() {
 
 /// The same scene for the double-precision reference.
 inline reference::World world_of(const scene::Scene& scene) {
-  return *reference::make_world(scene, sim::contact_margin(scene, *model::build(scene)));
+  return *reference::make_world(scene, sim::contact_margins(scene, *model::build(scene)));
 }
 
 /// The reference's state from the GPU's: the same numbers, in double.

@@ -245,6 +245,16 @@ TEST_CASE("a falling cloth, and one that colliders throw and carry, is within th
   rolling.colliders[0].motion = scene::Spin{{0.0, 1.0, 0.0}, {0.0, 0.6, 0.0}, 180.0};
   CHECK(sim::allowance(rolling, model, 0.0017).collider_speed == Approx(3.14159265 * 0.25));
 
+  // A cloth far away, pinned, adds nothing but what rounding stretches of its own.
+  scene::Scene beside = seed;
+  scene::Cloth& far = beside.cloths.emplace_back(seed.cloths[0]);
+  far.mesh = scene::Grid{25, 25, 100.0, 100.0};
+  far.transform.translate = {1000.0, 0.0, 0.0};
+  far.material = scene::Springs{1.0, 1.0, 1.0, 0.0};
+  far.pins = {{scene::AtBox{glm::dvec3(-1e4), glm::dvec3(1e4)}, {}}};
+  CHECK(sim::allowance(beside, *model::build(beside), 0.0017).slack_energy ==
+        Approx(allowance.slack_energy).epsilon(1e-3));
+
   scene::Scene slower = seed;
   slower.solver.dt = 0.1;
   CHECK_FALSE(sim::changes_energy(seed, slower));

@@ -57,11 +57,11 @@ TEST_CASE("a box has corners and edges in the model if it rests, among surfaces"
     volume += glm::dot(p, glm::cross(q, r)) / 6.0;
   }
   CHECK(volume == Approx(8.0 * box.half.x * box.half.y * box.half.z).epsilon(1e-12));
-  CHECK(sim::contact_margin(scene, *model, scene.colliders[1]) == sim::contact_margin(scene, *model));
+  CHECK(sim::contact_margin(scene, *model, 0, scene.colliders[1]) == sim::contact_margin(scene, *model, 0));
 
   scene.colliders[1].motion = scene::Linear{};
   CHECK(model::build(scene)->bodies.empty());
-  CHECK(sim::contact_margin(scene, *model, scene.colliders[1]) > sim::contact_margin(scene, *model));
+  CHECK(sim::contact_margin(scene, *model, 0, scene.colliders[1]) > sim::contact_margin(scene, *model, 0));
   scene = above_box();
   scene.self_collision->kind = scene::ContactKind::points;
   CHECK(model::build(scene)->bodies.empty());

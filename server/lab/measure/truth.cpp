@@ -265,7 +265,7 @@ Result<Truth> truth(const scene::Scene& scene, const TruthRequest& request, cons
                     const std::function<void(double share)>& progress) {
   Result<model::Model> model = model::build(scene);
   if (!model) return model.error();
-  Result<World> world = reference::make_world(scene, sim::contact_margin(scene, *model));
+  Result<World> world = reference::make_world(scene, sim::contact_margins(scene, *model));
   if (!world) return world.error();
   Truth truth;
   truth.world = std::move(*world);
