@@ -11,8 +11,10 @@
 #include "server/cli/state_files.h"
 #include "server/cli/stepping.h"
 #include "server/gl/buffer.h"
+#include "server/model/near_start.h"
 #include "server/scene/method.h"
 #include "server/sim/crossing_check.h"
+#include "server/sim/plan.h"
 
 namespace clothlab::cli {
 
@@ -143,7 +145,12 @@ void print_shortcomings(const sim::Simulation& simulation, const sim::Diagnostic
     note(std::to_string(state.surface_not_taken) +
          " steps were not taken, or not to their end, as more pairs of triangles and edges could meet than "
          "any list has room for: a coarser mesh, a smaller dt or a slower motion helps");
-  if (const std::uint32_t forced = state.surface_forced - state.surface_not_taken; forced > 0)
+  // A start that is too near has been told before the first step, and is the cause if nothing moves by
+  // itself.
+  const bool from_start = sim::moving_motions(simulation.scene()).empty() &&
+                          !model::near_start_warning(simulation.model(), simulation.scene()).empty();
+  const std::uint32_t forced = state.surface_forced - state.surface_not_taken;
+  if (forced > 0 && !from_start)
     note("pins or bodies pressed cloth where it cannot go, " + std::to_string(forced) +
          " times: a pin waited until there was room, and a body may have passed through what was in its way; "
          "slower or smaller motions help");

@@ -1,11 +1,10 @@
 // From the polygons of a file to a mesh that can be simulated.
 #include <algorithm>
-#include <cmath>
-#include <glm/geometric.hpp>
 #include <numeric>
-#include <tuple>
 
+#include "server/mesh/open_places.h"
 #include "server/mesh/raw.h"
+#include "server/mesh/sides.h"
 
 namespace clothlab::mesh {
 
@@ -14,44 +13,10 @@ namespace {
 using glm::dvec3;
 using Index = std::uint32_t;
 
-/// For each vertex the first one at exactly the same place.
-std::vector<Index> first_at_place(const std::vector<dvec3>& vertices) {
-  std::vector<Index> order(vertices.size()), first(vertices.size());
-  std::iota(order.begin(), order.end(), 0u);
-  const auto key = [&](Index i) { return std::tie(vertices[i].x, vertices[i].y, vertices[i].z); };
-  std::sort(order.begin(), order.end(),
-            [&](Index a, Index b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
-  for (std::size_t i = 0; i < order.size(); ++i)
-    first[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1]] : order[i];
-  return first;
-}
-
-/// A side of a triangle.
-struct Side {
-  Index low, high;  ///< its vertices
-  Index triangle;   ///< whose side it is
-  bool forward;     ///< the triangle goes from `low` to `high`
-  bool operator<(const Side& other) const {
-    return std::tie(low, high, triangle) < std::tie(other.low, other.high, other.triangle);
-  }
-  bool same_edge(const Side& other) const { return low == other.low && high == other.high; }
-};
-
-std::vector<Side> sides_of(const std::vector<std::array<Index, 3>>& triangles) {
-  std::vector<Side> sides;
-  sides.reserve(3 * triangles.size());
-  for (Index i = 0; i < triangles.size(); ++i)
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const Index a = triangles[i][corner], b = triangles[i][(corner + 1) % 3];
-      sides.push_back({std::min(a, b), std::max(a, b), i, a < b});
-    }
-  std::sort(sides.begin(), sides.end());
-  return sides;
-}
-
 class Assembly {
  public:
-  explicit Assembly(Raw raw) : raw_(std::move(raw)) {}
+  /// `first`: see joined().
+  Assembly(const Raw& raw, const std::vector<Index>& first) : raw_(raw), first_(first) {}
 
   Result<Mesh> run() {
     if (raw_.vertices.empty() || raw_.faces.empty())
@@ -63,8 +28,11 @@ class Assembly {
     if (const Status cut = make_triangles(); !cut) return cut.error();
     drop_unused();
     if (const Status single = refuse_doubles(); !single) return single.error();
-    if (const Status turned = turn_to_one_side(); !turned) return turned.error();
+    const std::vector<Side> sides = sides_of(mesh_.triangles);
+    if (const Status turned = turn_to_one_side(sides); !turned) return turned.error();
     count_parts();
+    mesh_.notes = notes_of(open_places(mesh_.vertices, mesh_.triangles, sides),
+                           [&](std::size_t triangle) { return mesh_.place_of(triangle); });
     return std::move(mesh_);
   }
 
@@ -72,8 +40,7 @@ class Assembly {
   std::string place(std::size_t line) const { return raw_.line_word + (" " + std::to_string(line)); }
 
   Status make_triangles() {
-    const std::vector<Index> first = first_at_place(raw_.vertices);
-    for (Index i = 0; i < first.size(); ++i) mesh_.merged += first[i] != i;
+    for (Index i = 0; i < first_.size(); ++i) mesh_.merged += first_[i] != i;
     const bool textured = std::all_of(raw_.corners.begin(), raw_.corners.end(),
                                       [](const Corner& corner) { return corner.texture != no_texture; });
     mesh_.triangles.reserve(raw_.triangles);
@@ -89,7 +56,7 @@ class Assembly {
       sorted.clear();
       for (Index i = 0; i < face.count; ++i) {
         corners.push_back(raw_.vertices[of[i].vertex]);
-        sorted.push_back(first[of[i].vertex]);
+        sorted.push_back(first_[of[i].vertex]);
       }
       std::sort(sorted.begin(), sorted.end());
       if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
@@ -102,14 +69,14 @@ class Assembly {
         if (has_no_area(corners[a], corners[b], corners[c]))
           return raw_.error(face.line, "a triangle without area (its corners are in line)",
                             "triangles with an area");
-        mesh_.triangles.push_back({first[of[a].vertex], first[of[b].vertex], first[of[c].vertex]});
+        mesh_.triangles.push_back({first_[of[a].vertex], first_[of[b].vertex], first_[of[c].vertex]});
         mesh_.face_line.push_back(face.line);
         if (textured)
           mesh_.texture.push_back(
               {raw_.texture[of[a].texture], raw_.texture[of[b].texture], raw_.texture[of[c].texture]});
       }
     }
-    mesh_.vertex_of = first;
+    mesh_.vertex_of = first_;
     return ok();
   }
 
@@ -148,8 +115,7 @@ class Assembly {
 
   /// Two triangles at an edge have the same side outside if they go along it in opposite directions. Edges of
   /// three or more triangles are left aside.
-  Status turn_to_one_side() {
-    const std::vector<Side> sides = sides_of(mesh_.triangles);
+  Status turn_to_one_side(const std::vector<Side>& sides) {
     constexpr Index none = 0xffffffffu;
     struct Neighbour {
       Index triangle = none;
@@ -157,14 +123,13 @@ class Assembly {
     };
     std::vector<std::array<Neighbour, 3>> neighbours(mesh_.triangles.size());
     std::vector<std::uint8_t> count(mesh_.triangles.size(), 0);
-    for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
-      for (end = begin; end < sides.size() && sides[end].same_edge(sides[begin]);) ++end;
-      if (end - begin != 2) continue;
+    each_edge(sides, [&](std::size_t begin, std::size_t end) {
+      if (end - begin != 2) return;
       const Side &a = sides[begin], &b = sides[begin + 1];
       const bool turned = a.forward == b.forward;
       neighbours[a.triangle][count[a.triangle]++] = {b.triangle, turned};
       neighbours[b.triangle][count[b.triangle]++] = {a.triangle, turned};
-    }
+    });
     enum : std::uint8_t { unseen, kept, turned_over };
     std::vector<std::uint8_t> state(mesh_.triangles.size(), unseen);
     std::vector<Index> open;
@@ -210,14 +175,20 @@ class Assembly {
     for (Index i = 0; i < root.size(); ++i) mesh_.parts += find(i) == i;
   }
 
-  Raw raw_;
+  const Raw& raw_;
+  const std::vector<Index>& first_;
   Mesh mesh_;
 };
 
 }  // namespace
 
-Result<Mesh> assemble(Raw raw) {
-  return Assembly(std::move(raw)).run();
+Result<Mesh> assemble(const Raw& raw) {
+  const std::vector<Index> first = joined(raw, true);
+  Result<Mesh> mesh = Assembly(raw, first).run();
+  if (mesh) return mesh;
+  // What is a mesh as it is written is not refused for what joining would make of it.
+  const std::vector<Index> exact = joined(raw, false);
+  return first == exact ? mesh : Assembly(raw, exact).run();
 }
 
 }  // namespace clothlab::mesh

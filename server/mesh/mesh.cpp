@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "server/mesh/open_places.h"
 #include "server/mesh/raw.h"
 
 namespace clothlab::mesh {
@@ -61,7 +62,13 @@ Result<Mesh> assemble_triangles(const std::vector<glm::dvec3>& vertices,
     raw.faces.push_back({3 * i, 3, i});
     for (const std::uint32_t corner : triangles[i]) raw.corners.push_back({corner, no_texture});
   }
-  return assemble(std::move(raw));
+  return assemble(raw);
+}
+
+std::vector<std::string> notes_of_triangles(const std::vector<glm::dvec3>& vertices,
+                                            const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  return notes_of(open_places(vertices, triangles, sides_of(triangles)),
+                  [](std::size_t triangle) { return "triangle " + std::to_string(triangle); });
 }
 
 Result<Mesh> read(std::string_view bytes, const std::string& name, const Limits& limits) {
@@ -70,7 +77,7 @@ Result<Mesh> read(std::string_view bytes, const std::string& name, const Limits&
   const bool ply = ends_in_ply(name) || bytes.starts_with("ply\n") || bytes.starts_with("ply\r");
   Result<Raw> raw = ply ? read_ply(bytes, name, limits) : read_obj(bytes, name, limits);
   if (!raw) return raw.error();
-  return assemble(std::move(*raw));
+  return assemble(*raw);
 }
 
 }  // namespace clothlab::mesh

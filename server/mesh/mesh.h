@@ -26,12 +26,15 @@ struct Mesh {
   std::vector<std::array<glm::dvec2, 3>> texture;
   /// [vertices of the file] the vertex that became of each, or no_vertex.
   std::vector<std::uint32_t> vertex_of;
-  std::size_t merged = 0;   ///< vertices of the file at exactly the place of an earlier one
+  std::size_t merged = 0;   ///< vertices of the file that are one with an earlier one, at its place
   std::size_t unused = 0;   ///< vertices of the file that are part of no face
   std::size_t flipped = 0;  ///< triangles turned over, so that each part has one outside
   std::size_t parts = 0;    ///< pieces that share no vertex
   /// Where to find the triangle's face in the file, e.g. "line 12", for errors.
   std::string place_of(std::size_t triangle) const;
+
+  std::vector<std::string>
+      notes;  ///< what a person should know of it, by line: where it is open, in sentences
 
   std::vector<std::uint32_t> face_line;  ///< [triangle_count]
   const char* line_word = "line";        ///< of a binary file, which has no lines: "face"
@@ -58,5 +61,9 @@ Result<Mesh> read(std::string_view bytes, const std::string& name, const Limits&
 /// them from 0: "triangle 3".
 Result<Mesh> assemble_triangles(const std::vector<glm::dvec3>& vertices,
                                 const std::vector<std::array<std::uint32_t, 3>>& triangles);
+
+/// Mesh::notes of triangles that stay as they are given, counted from 0.
+std::vector<std::string> notes_of_triangles(const std::vector<glm::dvec3>& vertices,
+                                            const std::vector<std::array<std::uint32_t, 3>>& triangles);
 
 }  // namespace clothlab::mesh

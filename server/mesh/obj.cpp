@@ -92,14 +92,12 @@ class ObjReader {
 
   Status read_vertex(std::string_view rest) {
     glm::dvec3 place(0.0);
-    for (int axis = 0; axis < 3; ++axis)
-      if (const Status read = number(next_word(rest),
-                                     axis == 0   ? "x"
-                                     : axis == 1 ? "y"
-                                                 : "z",
-                                     place[axis]);
-          !read)
-        return read.error();
+    constexpr const char* names[] = {"x", "y", "z"};
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::string_view word = next_word(rest);
+      if (const Status read = number(word, names[axis], place[axis]); !read) return read.error();
+      raw_.unit = std::min(raw_.unit, unit_of(word));
+    }
     if (const Status rest_read = no_more_than(rest, 4); !rest_read) return rest_read.error();
     return raw_.add_vertex(place, line_, limits_);
   }

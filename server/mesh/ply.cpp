@@ -227,6 +227,7 @@ class PlyReader {
       const std::optional<double> number = number_in(word);
       if (!number)
         return wrong(word.empty() ? "too few numbers" : quoted(word), "a number of each property of it");
+      unit_ = unit_of(word);
       return *number;
     }
     if (rest_.size() < type.bytes)
@@ -304,7 +305,10 @@ class PlyReader {
         const Result<double> number = value(*property.type);
         if (!number) return number.error();
         const auto slot = std::find(wanted.begin(), wanted.end(), &property);
-        if (slot != wanted.end()) numbers[static_cast<std::size_t>(slot - wanted.begin())] = *number;
+        if (slot == wanted.end()) continue;
+        const auto at = static_cast<std::size_t>(slot - wanted.begin());
+        numbers[at] = *number;
+        if (at < 3 && format_ == Format::text) raw_.unit = std::min(raw_.unit, unit_);
       }
       if (format_ == Format::text)
         if (const std::string_view more = next_word(words_); !more.empty())
@@ -353,6 +357,7 @@ class PlyReader {
   Lines lines_;
   Raw raw_;
   Format format_ = Format::text;
+  double unit_ = 0;  ///< of the last value of a text (unit_of)
   std::vector<Element> elements_;
   std::string_view rest_;   ///< of a binary file: what is still to be read
   std::string_view words_;  ///< of a text: what is still to be read of this line

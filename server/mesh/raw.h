@@ -2,6 +2,8 @@
 // server/mesh.
 #pragma once
 
+#include <limits>
+
 #include "server/mesh/mesh.h"
 
 namespace clothlab::mesh {
@@ -25,6 +27,9 @@ struct Raw {
   std::vector<Corner> corners;
   std::vector<Face> faces;
   std::size_t triangles = 0;  ///< into which the faces will be cut
+  /// Of the last digit of the coordinate that is written with the most digits [m]; infinite if none is
+  /// written.
+  double unit = std::numeric_limits<double>::infinity();
   const char* line_word = "line";
 
   Error error(std::size_t line, std::string what, std::string remedy) const;
@@ -37,9 +42,13 @@ struct Raw {
 Result<Raw> read_obj(std::string_view text, const std::string& name, const Limits& limits);
 Result<Raw> read_ply(std::string_view bytes, const std::string& name, const Limits& limits);
 
+/// For each vertex the first of those that are one with it, which is itself if no earlier one is (join.cpp).
+/// If not `rounded`, only those at exactly the same place are.
+std::vector<std::uint32_t> joined(const Raw& raw, bool rounded);
+
 /// Makes triangles of the polygons, merges vertices at the same place, leaves out unused ones, turns
 /// triangles so that neighbours have the same side outside, and refuses what cannot be simulated.
-Result<Mesh> assemble(Raw raw);
+Result<Mesh> assemble(const Raw& raw);
 
 /// Cuts a polygon into triangles that do not overlap, even if it is not convex: `triangles` gets triples of
 /// indices into `corners`. `budget` bounds the work over all polygons of a file. Returns an empty text, or

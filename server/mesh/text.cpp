@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 namespace clothlab::mesh {
 
@@ -41,6 +42,15 @@ std::optional<Number> whole(std::string_view word) {
 
 std::optional<double> number_in(std::string_view word) {
   return whole<double>(word);
+}
+
+double unit_of(std::string_view word) {
+  const std::size_t exponent = word.find_first_of("eE"), point = word.find('.');
+  const std::string_view digits = word.substr(0, exponent);
+  const auto decimals = point < digits.size() ? static_cast<std::int64_t>(digits.size() - point - 1) : 0;
+  const std::int64_t power =
+      exponent < word.size() ? integer_in(word.substr(exponent + 1)).value_or(0) : std::int64_t{0};
+  return std::pow(10.0, static_cast<double>(power - decimals));
 }
 
 std::optional<std::int64_t> integer_in(std::string_view word) {

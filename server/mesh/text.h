@@ -28,6 +28,8 @@ std::string_view next_word(std::string_view& rest);
 
 /// The number that the whole word is, or nothing. "nan" and "inf" are numbers here.
 std::optional<double> number_in(std::string_view word);
+/// The place value of the last digit of a word that is a number: 0.01 of "1.25", 1e-05 of "2.50e-3".
+double unit_of(std::string_view word);
 std::optional<std::int64_t> integer_in(std::string_view word);
 
 /// The word in quotation marks for a message: cut after 40 bytes, all but printable ASCII as "?".

@@ -203,6 +203,10 @@ Status check_inside(const Model& model, const scene::Scene& scene, const std::ve
 
 }  // namespace
 
+std::string place_in_words(std::uint32_t vertex, const Model& model, const scene::Scene& scene) {
+  return corners("vertex", std::array{vertex}, model, scene);
+}
+
 std::string in_words(const Crossing& crossing, const Model& model, const scene::Scene& scene) {
   const dvec3& at = crossing.place;
   return corners("edge", crossing.edge, model, scene) + " meets " +

@@ -15,6 +15,9 @@ namespace clothlab::model {
 /// Vertices have the numbers that the document gives them: its own, or those of the mesh's file.
 std::string in_words(const Crossing& crossing, const Model& model, const scene::Scene& scene);
 
+/// E.g. `vertex 3 of /cloths/0 ("left")`. Vertices count from those of cloths on, bodies' behind them.
+std::string place_in_words(std::uint32_t vertex, const Model& model, const scene::Scene& scene);
+
 /// An error if the scene's kind of self-collision needs a start without crossings and it has some, in the
 /// positions as the GPU gets them: float32. It points at the kind, names the first pairs and their number,
 /// and says what helps. Its facts have more of the pairs, with their places. Whatever the kind, an error that

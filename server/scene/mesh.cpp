@@ -79,7 +79,7 @@ SharedMesh find_mesh(const Reader& obj, const Assets* assets, const char* instea
 }
 
 TriangleMesh of_file(const mesh::Mesh& file) {
-  return {file.vertices, file.triangles, {}, file.vertex_of};
+  return {file.vertices, file.triangles, {}, file.vertex_of, file.notes};
 }
 
 TriangleMesh read_named_mesh(const Reader& mesh, const Assets* assets) {
@@ -87,7 +87,15 @@ TriangleMesh read_named_mesh(const Reader& mesh, const Assets* assets) {
   const SharedMesh file = find_mesh(obj, assets, "a grid, or vertices and triangles");
   if (!file) return {};
   TriangleMesh result = of_file(*file);
+  for (std::string& note : result.notes) note = obj.string("") + ": " + note;
   if (!pattern.is_null()) read_pattern(pattern, obj.string(""), *file, result);
+  return result;
+}
+
+/// The mesh of a cloth in the document, which stays as it is: its vertices are named by number.
+TriangleMesh read_own_mesh(const Reader& mesh) {
+  TriangleMesh result = read_triangle_mesh(mesh, max_vertices, max_triangles);
+  if (!mesh.failed()) result.notes = mesh::notes_of_triangles(result.vertices, result.triangles);
   return result;
 }
 
@@ -103,16 +111,28 @@ TriangleMesh read_body_mesh(const Reader& mesh) {
 
 }  // namespace
 
+std::vector<std::string> mesh_notes(const Scene& scene) {
+  std::vector<std::string> notes;
+  const auto add = [&](const char* list, std::size_t i, const TriangleMesh& mesh) {
+    for (const std::string& note : mesh.notes) notes.push_back(list + std::to_string(i) + "/mesh: " + note);
+  };
+  for (std::size_t i = 0; i < scene.cloths.size(); ++i)
+    if (const auto* mesh = std::get_if<TriangleMesh>(&scene.cloths[i].mesh)) add("/cloths/", i, *mesh);
+  for (std::size_t i = 0; i < scene.colliders.size(); ++i)
+    if (const auto* body = std::get_if<Body>(&scene.colliders[i].shape)) add("/colliders/", i, *body->mesh);
+  return notes;
+}
+
 Mesh read_mesh(const Reader& mesh, const Assets* assets) {
   mesh.object({"grid", "vertices", "triangles", "obj", "pattern"});
   if (mesh.has("pattern") && !mesh.has("obj")) mesh.fail("\"pattern\" only beside \"obj\"");
   if (mesh.has("triangles")) {
     if (mesh.has("grid") || mesh.has("obj"))
       mesh.fail("either \"grid\", or \"obj\", or \"vertices\" and \"triangles\"");
-    return read_triangle_mesh(mesh, max_vertices, max_triangles);
+    return read_own_mesh(mesh);
   }
   const std::string kind = mesh.exactly_one({"grid", "vertices", "obj"});
-  if (kind == "vertices") return read_triangle_mesh(mesh, max_vertices, max_triangles);
+  if (kind == "vertices") return read_own_mesh(mesh);
   if (kind == "obj") return read_named_mesh(mesh, assets);
   return read_grid(mesh.member("grid"));
 }

@@ -40,6 +40,7 @@ struct TriangleMesh {
   /// Of a file: [vertices of the file] the vertex that became of each, or mesh::no_vertex. Documents count
   /// the vertices of the file. Empty: every vertex has its own number.
   std::vector<std::uint32_t> vertex_of{};
+  std::vector<std::string> notes{};  ///< what a person should know of it, in sentences (mesh::Mesh::notes)
   bool operator==(const TriangleMesh&) const = default;
 };
 
@@ -310,5 +311,9 @@ struct Scene {
   bool collides(ContactKind kind) const { return self_collision && self_collision->kind == kind; }
   bool operator==(const Scene&) const = default;
 };
+
+/// What a person should know of the meshes of the scene's cloths and bodies, a sentence each, with the place
+/// in the document.
+std::vector<std::string> mesh_notes(const Scene& scene);
 
 }  // namespace clothlab::scene

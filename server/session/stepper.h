@@ -165,6 +165,8 @@ class Stepper {
   void warn_if_forced();
   void warn_if_unconverged();
   void warn_if_thin();
+  void warn_if_near();
+  void warn_of_meshes();
   // In stepper.cpp.
   void advance(Clock::time_point now, std::uint32_t others);
   std::uint32_t queue_piece(std::uint32_t others);
@@ -226,7 +228,9 @@ class Stepper {
   Clock::time_point slow_since_{};
   bool slow_announced_ = false, crowded_announced_ = false, forced_announced_ = false,
        not_taken_announced_ = false, unconverged_announced_ = false;
-  bool layers_may_pass_ = false;  ///< layers of cloth can pass through each other
+  bool layers_may_pass_ = false;         ///< layers of cloth can pass through each other
+  std::string near_start_;               ///< model::near_start_warning of the present cloth
+  std::vector<std::string> mesh_notes_;  ///< told of the present scene (scene::mesh_notes)
 };
 
 }  // namespace clothlab::session

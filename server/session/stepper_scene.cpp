@@ -195,7 +195,9 @@ void Stepper::take_over(scene::Document document, sim::ChangeDepth depth) {
   announce_parts();
   announce_solver();
   if (depth == sim::ChangeDepth::none) return;
+  if (depth == sim::ChangeDepth::cloth) warn_if_near();
   warn_if_thin();
+  warn_of_meshes();
   step_limit_.set_scene(simulation().model(), scene());
   follow_step_limit();  // now, as another change may come before the next status
   if (depth == sim::ChangeDepth::cloth) return guard_->start(step_limit_.dt_limit());

@@ -1,11 +1,15 @@
 // What a session warns its viewers of, each once until the scene or the cloth is another.
+#include <algorithm>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "server/base/text.h"
+#include "server/model/near_start.h"
 #include "server/model/thickness.h"
 #include "server/scene/method.h"
 #include "server/session/stepper.h"
+#include "server/sim/plan.h"
 
 namespace clothlab::session {
 
@@ -50,6 +54,8 @@ void Stepper::warn_if_not_taken() {
 void Stepper::warn_if_forced() {
   if (forced_announced_ || guard_->state().surface_forced <= guard_->state().surface_not_taken) return;
   forced_announced_ = true;
+  // A start that is too near has been told, and is the cause if nothing moves by itself.
+  if (!near_start_.empty() && sim::moving_motions(scene()).empty()) return;
   exchange_.emit(
       Notice{"warning",
              "pins or bodies that move press cloth where it cannot go: a pin waits until there is room, "
@@ -75,6 +81,22 @@ void Stepper::warn_if_thin() {
   const std::string warning = model::thickness_warning(simulation().model(), scene());
   if (!std::exchange(layers_may_pass_, !warning.empty()) && layers_may_pass_)
     exchange_.emit(Notice{"warning", warning});
+}
+
+// Warns once of a start, which another cloth has, that leaves contact no room.
+void Stepper::warn_if_near() {
+  std::string warning = model::near_start_warning(simulation().model(), scene());
+  if (!warning.empty() && warning != near_start_) exchange_.emit(Notice{"warning", warning});
+  near_start_ = std::move(warning);
+}
+
+// Tells each note of the scene's meshes once, until the scene no longer has it.
+void Stepper::warn_of_meshes() {
+  std::vector<std::string> notes = scene::mesh_notes(scene());
+  for (const std::string& note : notes)
+    if (std::find(mesh_notes_.begin(), mesh_notes_.end(), note) == mesh_notes_.end())
+      exchange_.emit(Notice{"warning", note});
+  mesh_notes_ = std::move(notes);
 }
 
 }  // namespace clothlab::session

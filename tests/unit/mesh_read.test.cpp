@@ -1,5 +1,6 @@
 // Reading .obj and .ply files: what becomes of them, and what is said of those that are no mesh.
 #include <algorithm>
+#include <cstdio>
 #include <glm/geometric.hpp>
 #include <set>
 
@@ -136,6 +137,117 @@ TEST_CASE("vertices at exactly the same place are one, unused ones are left out,
   CHECK(mesh.unused == 1);
   CHECK(mesh.parts == 1);
   CHECK(mesh.vertex_of == std::vector<std::uint32_t>{mesh::no_vertex, 0, 1, 2, 3, 0, 2});
+}
+
+namespace {
+
+/// Two squares of 1 m, side by side along y, whose corners at the seam are `apart` in x. Each number has
+/// `digits` behind the point; less than 0: as many as it takes.
+std::string two_squares(double apart, int digits, double scale = 1.0) {
+  std::string text;
+  const auto vertex = [&](double x, double y) {
+    char line[200];
+    if (digits < 0)
+      std::snprintf(line, sizeof line, "v %.17g %.17g 0\n", scale * x, scale * y);
+    else
+      std::snprintf(line, sizeof line, "v %.*f %.*f 0\n", digits, scale * x, digits, scale * y);
+    text += line;
+  };
+  for (const double y : {0.0, 0.5, 1.0}) {
+    vertex(0, y);
+    vertex(1, y);
+  }
+  for (const double y : {0.0, 0.5, 1.0}) {
+    vertex(1 + apart, y);
+    vertex(2, y);
+  }
+  return text + "f 1 2 4 3\nf 3 4 6 5\nf 7 8 10 9\nf 9 10 12 11\n";
+}
+
+}  // namespace
+
+TEST_CASE(
+    "vertices that rounding has taken apart are one: in doubles, in floats, in the last digit of a text") {
+  for (const auto& [apart, digits] :
+       {std::pair{7e-17, -1}, {2.3e-16, -1}, {1.2e-7, -1}, {1e-6, 6}, {-1e-7, 7}}) {
+    INFO(apart << " m apart, " << digits << " digits");
+    const mesh::Mesh mesh = read(two_squares(apart, digits));
+    CHECK(mesh.parts == 1);
+    CHECK(mesh.vertices.size() == 9);
+    CHECK(mesh.merged == 3);
+    CHECK(mesh.vertex_of[6] == mesh.vertex_of[1]);
+    CHECK(mesh.vertices[mesh.vertex_of[6]].x == 1.0);
+    CHECK(mesh.notes.empty());
+  }
+  // About the origin, where a copy that should be 0 is not: 7e-17.
+  std::string about_zero =
+      "v -1 0 0\nv 0 0 0\nv 0 1 0\nv 7e-17 0 0\nv 1 0 0\nv -7e-17 1 1e-18\nf 1 2 3\nf 4 5 6\n";
+  CHECK(read(about_zero).parts == 1);
+}
+
+TEST_CASE(
+    "vertices that are apart by more than rounding stay two, and where borders all but meet that is told by "
+    "line") {
+  for (const auto& [apart, digits] : {std::pair{2e-6, -1}, {1e-4, 4}, {1e-5, 6}, {3e-4, -1}}) {
+    INFO(apart << " m apart, " << digits << " digits");
+    const mesh::Mesh mesh = read(two_squares(apart, digits));
+    CHECK(mesh.parts == 2);
+    CHECK(mesh.merged == 0);
+    REQUIRE(mesh.notes.size() == 1);
+    INFO(mesh.notes[0]);
+    CHECK(mesh.notes[0].find("3 corners") == 0);
+    CHECK(mesh.notes[0].find("line 13 and line 15") != std::string::npos);
+  }
+  // Layers that lie on each other: a thousandth of their sides apart, or more.
+  CHECK(read(two_squares(1e-3, -1)).notes.empty());
+  CHECK(read(two_squares(1e-2, -1)).parts == 2);
+}
+
+TEST_CASE(
+    "layers of cloth are not joined however near they are, nor are the sides of a mesh however fine it is") {
+  const std::string upper = "v 0 0 1e-8\nv 1 0 1e-8\nv 1 1 1e-8\nv 0 1 1e-8\n";
+  const mesh::Mesh layers = read(square + upper + "f 1 2 3 4\nf 5 6 7 8\n");
+  CHECK(layers.parts == 2);
+  CHECK(layers.merged == 0);
+  CHECK(layers.notes.size() == 1);
+  // A fine mesh beside a far vertex, whose coordinate would make a thousand times its sides the same place.
+  for (const double side : {1e-5, 1e-3}) {
+    const mesh::Mesh fine =
+        read(two_squares(0.0, -1, side) + "v 1e5 0 0\nv 1e5 1 0\nv 1e5 0 1\nf 13 14 15\n");
+    CHECK(fine.vertices.size() == 12);
+    const mesh::Mesh split =
+        read(two_squares(1e-9, -1, side) + "v 1e5 0 0\nv 1e5 1 0\nv 1e5 0 1\nf 13 14 15\n");
+    CHECK(split.parts == 2);
+    CHECK(split.vertices.size() == 12);
+  }
+}
+
+TEST_CASE("a corner on an edge that has no vertex there is told by line") {
+  // The left square has an edge from (1, 0) to (1, 1); the right ones have a corner in its middle.
+  const std::string right = "v 1 0.5 0\nv 2 0 0\nv 2 0.5 0\nv 2 1 0\n";
+  const mesh::Mesh mesh = read(square + right + "f 1 2 3 4\nf 2 6 7 5\nf 5 7 8 3\n");
+  CHECK(mesh.parts == 1);
+  REQUIRE(mesh.notes.size() == 1);
+  INFO(mesh.notes[0]);
+  CHECK(mesh.notes[0].find("1 corner ") == 0);
+  CHECK(mesh.notes[0].find("on an edge") != std::string::npos);
+  CHECK(mesh.notes[0].find("line 9") != std::string::npos);
+  CHECK(read(square + "v 2 0 0\nv 2 1 0\nf 1 2 3 4\nf 2 5 6 3\n").notes.empty());
+}
+
+TEST_CASE(
+    "triangles given as such are joined likewise as a body, and told of as a cloth, which stays as it is") {
+  const std::vector<glm::dvec3> vertices{{0, 0, 0},     {1, 0, 0}, {0, 1, 0},
+                                         {1, 7e-17, 0}, {1, 1, 0}, {0, 1, 0}};
+  const std::vector<std::array<std::uint32_t, 3>> triangles{{0, 1, 2}, {3, 4, 5}};
+  const Result<mesh::Mesh> body = mesh::assemble_triangles(vertices, triangles);
+  REQUIRE(body);
+  CHECK(body->parts == 1);
+  const std::vector<std::string> notes = mesh::notes_of_triangles(vertices, triangles);
+  REQUIRE(notes.size() == 1);
+  INFO(notes[0]);
+  CHECK(notes[0].find("2 corners") == 0);
+  CHECK(notes[0].find("triangle 0 and triangle 1") != std::string::npos);
 }
 
 TEST_CASE("several parts, holes and edges of three triangles are meshes") {
