@@ -167,7 +167,7 @@ void gauss_seidel_step(const World& world, State& state, double t, double t_next
     next.velocity.push_back(bounced(step, i, step.displacement[i] / step.dt));
   }
   place_pins(world, t_next, next.position, next.velocity);
-  limit_strain(world, next);
+  limit_strain(world, state, next);
   state = std::move(next);
 }
 

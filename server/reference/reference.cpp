@@ -112,7 +112,7 @@ void advance(StepMethod method, const World& world, State& state, double t, doub
   next.contacts = touched;
   place_pins(world, t_next, next.position, next.velocity);
   stop_at_colliders(world, state, t, next);
-  limit_strain(world, next);
+  limit_strain(world, state, next);
   state = std::move(next);
 }
 

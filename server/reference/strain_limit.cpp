@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "server/model/limit_shares.h"
+
 namespace clothlab::reference {
 
 namespace {
@@ -68,19 +70,55 @@ double sweep(const World& world, std::vector<dvec3>& x) {
   return worst;
 }
 
-}  // namespace
+bool any_limit(const World& world) {
+  const std::vector<scene::Cloth>& cloths = world.scene.cloths;
+  return std::any_of(cloths.begin(), cloths.end(),
+                     [](const scene::Cloth& cloth) { return cloth.strain_limit().has_value(); });
+}
 
-double limit_strain(const World& world, State& state) {
-  const auto limited = [](const scene::Cloth& cloth) { return cloth.strain_limit().has_value(); };
-  if (std::none_of(world.scene.cloths.begin(), world.scene.cloths.end(), limited)) return 0.0;
-  const std::vector<dvec3> before = state.position;
-  double worst = sweep(world, state.position);
-  for (int n = 1; worst > enough && n < most_sweeps; ++n) worst = sweep(world, state.position);
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    const dvec3 gained = (state.position[i] - before[i]) / world.scene.solver.dt;
+/// Sweeps until no spring or thread is too long. Returns the largest excess in the last sweep.
+double sweep_all(const World& world, std::vector<dvec3>& x) {
+  double worst = sweep(world, x);
+  for (int n = 1; worst > enough && n < most_sweeps; ++n) worst = sweep(world, x);
+  return worst;
+}
+
+/// Gives the state each cloth's share of the corrections.
+void take(const World& world, const std::vector<model::LimitShare>& shares, const std::vector<dvec3>& limited,
+          State& state) {
+  for (std::size_t i = 0; i < limited.size(); ++i) {
+    const auto& [place, velocity] = shares[world.model.vertex_cloth[i]];
+    const dvec3 moved = limited[i] - state.position[i], gained = velocity * moved / world.scene.solver.dt;
+    state.position[i] = place < 1.0 ? state.position[i] + place * moved : limited[i];
     state.velocity[i] += gained;
     if (!state.half_velocity.empty()) state.half_velocity[i] += gained;
   }
+}
+
+}  // namespace
+
+double limit_strain(const World& world, State& state) {
+  if (!any_limit(world)) return 0.0;
+  std::vector<dvec3> limited = state.position;
+  const double worst = sweep_all(world, limited);
+  take(world, std::vector<model::LimitShare>(world.model.cloths.size()), limited, state);
+  return worst;
+}
+
+double limit_strain(const World& world, const State& before, State& state) {
+  if (!any_limit(world)) return 0.0;
+  model::LimitedStep step{
+      world.scene.solver.dt, {}, before.position, before.velocity, state.position, state.velocity,
+      state.position};
+  const double worst = sweep_all(world, step.limited);
+  std::vector<model::LimitShare> shares(world.model.cloths.size());
+  std::vector<dvec3> probe = before.position;
+  if (worst > enough || sweep(world, probe) > enough) {
+    for (std::size_t i = 0; i < probe.size(); ++i)
+      step.inverse_mass.push_back(world.pinned(i) ? 0.0 : 1.0 / world.model.mass[i]);
+    shares = model::limit_shares(world.model, step);
+  }
+  take(world, shares, step.limited, state);
   return worst;
 }
 

@@ -13,4 +13,8 @@ namespace clothlab::reference {
 /// pins leave no way to meet the limit.
 double limit_strain(const World& world, State& state);
 
+/// The same after a step that began at `before`. Where the limit is not kept, or was not kept there, a cloth
+/// takes only a share of the corrections (model::limit_shares).
+double limit_strain(const World& world, const State& before, State& state);
+
 }  // namespace clothlab::reference

@@ -87,7 +87,7 @@ struct Simulation::Implementation {
     co_await kernels.integrator->step(state, row);
     passed(scene::name(kernels.plan.method));
     if (kernels.strain_limit) {
-      co_await kernels.strain_limit->apply(state);
+      co_await kernels.strain_limit->apply(state, kernels.model);
       passed("strain_limit");
     }
     if (kernels.surface_contact) {

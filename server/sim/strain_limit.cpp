@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/mat3x3.hpp>
+#include <glm/vec4.hpp>
+
+#include "server/model/limit_shares.h"
 
 namespace clothlab::sim {
 
@@ -90,11 +93,35 @@ void StrainLimit::set_parameters(const Surroundings& around) {
 }
 
 void StrainLimit::restart() {
+  doubted_ = false;
   pulls_.fill(0);
   if (threads_) threads_->restart();
 }
 
-Work StrainLimit::apply(StateBuffers& state) {
+std::vector<float> StrainLimit::shares(const StateBuffers& state, const model::Model& model,
+                                       const gl::TextureBuffer& corrected) const {
+  const auto read = [&](const gl::TextureBuffer& from, std::vector<glm::dvec3>& into) {
+    std::vector<glm::vec4> rows(model.vertex_count());
+    from.buffer.download(rows.data(), rows.size() * sizeof(glm::vec4));
+    into.assign(rows.begin(), rows.end());
+    return rows;
+  };
+  model::LimitedStep step;
+  step.dt = dt_;
+  for (const glm::vec4& row : read(state.position(), step.free)) step.inverse_mass.push_back(row.w);
+  read(state.velocity(), step.free_velocity);
+  read(state.previous_position(), step.start);
+  read(state.previous_velocity(), step.start_velocity);
+  read(corrected, step.limited);
+  std::vector<float> shares;
+  for (const model::LimitShare& share : model::limit_shares(model, step)) {
+    shares.push_back(static_cast<float>(share.place));
+    shares.push_back(static_cast<float>(share.velocity));
+  }
+  return shares;
+}
+
+Work StrainLimit::apply(StateBuffers& state, const model::Model& model) {
   state.position().bind(unit_position);
   state.previous_position().bind(unit_start_position);
   position_[0].buffer.bind_storage(slot_next_position);
@@ -128,14 +155,25 @@ Work StrainLimit::apply(StateBuffers& state) {
   work_.sweeps += control.sweeps;
   work_.unconverged += control.groups > 0 ? 1 : 0;
 
+  const gl::TextureBuffer& corrected = position_[control.sweeps % 2];
+  std::vector<float> taken(2 * model.cloths.size(), 1.0F);
+  if (doubted_ || control.groups > 0) {
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    taken = shares(state, model, corrected);
+  }
   state.bind_for_step();
-  position_[control.sweeps % 2].bind(unit_corrected_position);
+  corrected.bind(unit_corrected_position);
   end_.use();
+  glProgramUniform2fv(end_.id(), end_.location("shares"), static_cast<GLsizei>(model.cloths.size()),
+                      taken.data());
   glDispatchCompute(groups_, 1, 1);
   wait_for_writes();
   state.swap();
   // If the limits cannot be met, the pulls grow without bound: the next step must not begin with them.
-  if (control.groups > 0) restart();
+  const bool kept = control.groups == 0 &&
+                    std::all_of(taken.begin(), taken.end(), [](float share) { return share == 1.0F; });
+  if (!kept) restart();
+  doubted_ = !kept;
 }
 
 }  // namespace clothlab::sim

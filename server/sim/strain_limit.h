@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "server/sim/integrator.h"
 #include "server/sim/thread_limit.h"
@@ -21,7 +22,7 @@ class StrainLimit {
   /// Shortens the springs, and threads of triangles, that are too long in the state that a step has just
   /// made. The element lists, their slices and rest positions must be bound. The work may stop between two
   /// sweeps.
-  Work apply(StateBuffers& state);
+  Work apply(StateBuffers& state, const model::Model& model);
 
   /// Forgets the pulls of the last step. To be called if the present state was not made by that step.
   void restart();
@@ -29,11 +30,18 @@ class StrainLimit {
   StrainLimitWork work() const { return work_; }
 
  private:
+  /// For each cloth the parts of its corrections that it takes (model::limit_shares): of places, of
+  /// velocities. `corrected`: the places after all of them. Waits for the GPU.
+  std::vector<float> shares(const StateBuffers& state, const model::Model& model,
+                            const gl::TextureBuffer& corrected) const;
+
   gl::Program start_, sweep_, end_;
   std::array<gl::TextureBuffer, 2> position_, group_excess_;  ///< a sweep reads one and writes the other
   gl::Buffer pulls_, pull_impulses_, control_;
   std::optional<ThreadLimit> threads_;  ///< if cloths of finite elements have a limit
   double dt_ = 0;                       ///< [s]
+  /// The present state may be beyond its limits: the step that made it could not keep them.
+  bool doubted_ = false;
   GLuint groups_ = 0;
   StrainLimitWork work_;
 };

@@ -6,6 +6,8 @@
 #include <glm/geometric.hpp>
 #include <random>
 
+#include "server/model/limit_shares.h"
+#include "shaders/elements/elements.h"
 #include "tests/catch.h"
 #include "tests/small_scenes.h"
 #include "tests/unit/world.h"
@@ -106,4 +108,79 @@ TEST_CASE("a limit that the pins forbid is reported, and the free vertices still
   CHECK(left > 0.3);
   CHECK(left < 0.9);
   CHECK(state.position[4].z == 3.0);
+}
+
+namespace {
+
+/// Kinetic and elastic energy [J] of a cloth that travels with `pins` [m/s].
+double energy_with(const model::Model& model, const std::vector<glm::dvec3>& x,
+                   const std::vector<glm::dvec3>& v, const glm::dvec3& pins) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < v.size(); ++i)
+    if (model.pin_motion[i] == model::not_pinned)
+      sum += 0.5 * model.mass[i] * glm::dot(v[i] - pins, v[i] - pins);
+  model::each_element(model.elements, [&](const auto& element) {
+    sum += element_energy(element.law, model::edges(element, 0, x));
+  });
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("whatever a strain limit corrects, a cloth takes no share of it that gives energy") {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> either(-1.0, 1.0);
+  for (const bool pinned : {true, false})
+    for (const double corrects : {1e-6, 1e-4, 1e-2, 1.0}) {
+      scene::Scene scene = test::swinging_cloth(Method::xpbd, 5e-3);
+      if (!pinned) scene.cloths[0].pins.clear();
+      const model::Model model = *model::build(scene);
+      const std::size_t count = model.vertex_count();
+      const glm::dvec3 pins(2.0, 0.0, 1.0);
+      model::LimitedStep step{5e-3, {}, model.rest_position, {}, {}, {}, {}};
+      const auto around = [&](double size) {
+        return size * glm::dvec3(either(random), either(random), either(random));
+      };
+      for (std::size_t i = 0; i < count; ++i) {
+        const bool held = model.pin_motion[i] != model::not_pinned;
+        step.inverse_mass.push_back(held ? 0.0 : 1.0 / model.mass[i]);
+        step.start_velocity.push_back(around(1.0));
+        step.free.push_back(held ? step.start[i] + step.dt * pins : step.start[i] + around(0.01));
+        step.free_velocity.push_back(around(1.0));
+        step.limited.push_back(held ? step.free[i] : step.free[i] + around(corrects));
+      }
+      const auto [place, velocity] = model::limit_shares(model, step).at(0);
+      std::vector<glm::dvec3> x = step.free, v = step.free_velocity;
+      for (std::size_t i = 0; i < count; ++i) {
+        x[i] += place * (step.limited[i] - step.free[i]);
+        v[i] += velocity / step.dt * (step.limited[i] - step.free[i]);
+      }
+      INFO((pinned ? "pinned" : "free")
+           << ", corrections of " << corrects << " m: shares " << place << " and " << velocity);
+      const glm::dvec3 with = pinned ? pins : glm::dvec3(0.0);
+      const double before = std::max(energy_with(model, step.free, step.free_velocity, with),
+                                     energy_with(model, step.start, step.start_velocity, with));
+      CHECK(energy_with(model, x, v, with) <= before * (1.0 + 2e-5));
+      CHECK((place >= 0.0 && place <= 1.0 && velocity >= 0.0 && velocity <= place));
+      if (corrects == 1.0) CHECK(place < 1.0);
+      if (!pinned) CHECK(place == velocity);
+    }
+}
+
+TEST_CASE("a correction that takes energy is taken whole") {
+  const scene::Scene scene = test::swinging_cloth(Method::xpbd, 5e-3);
+  const model::Model model = *model::build(scene);
+  model::LimitedStep step{5e-3, {}, model.rest_position, {}, model.rest_position, {}, model.rest_position};
+  for (std::size_t i = 0; i < model.vertex_count(); ++i) {
+    const bool held = model.pin_motion[i] != model::not_pinned;
+    step.inverse_mass.push_back(held ? 0.0 : 1.0 / model.mass[i]);
+    // It has flown apart, with the velocity of that; the limit brings it back to where it was.
+    const glm::dvec3 flown = held ? glm::dvec3(0.0) : 0.2 * (model.rest_position[i] - model.rest_position[0]);
+    step.start_velocity.push_back(flown / step.dt);
+    step.free[i] += flown;
+    step.free_velocity.push_back(flown / step.dt);
+  }
+  const auto [place, velocity] = model::limit_shares(model, step).at(0);
+  CHECK(place == 1.0);
+  CHECK(velocity == 1.0);
 }
