@@ -9,6 +9,7 @@
 #include "server/model/near_start.h"
 #include "server/model/stability.h"
 #include "server/model/thickness.h"
+#include "server/sim/slipping.h"
 
 namespace clothlab::cli {
 
@@ -36,9 +37,9 @@ CLI::Validator whole_number(int least, int most) {
 
 void print_warnings(const model::Model& model, const scene::Scene& scene, double dt_limit,
                     const std::string& about) {
-  std::vector<std::string> warnings{model::thickness_warning(model, scene),
-                                    model::near_start_warning(model, scene),
-                                    model::step_warning(scene.solver, dt_limit)};
+  std::vector<std::string> warnings{
+      model::thickness_warning(model, scene), sim::slipping_warning(scene, model),
+      model::near_start_warning(model, scene), model::step_warning(scene.solver, dt_limit)};
   for (const std::string& note : scene::mesh_notes(scene)) warnings.push_back(note);
   for (const std::string& warning : warnings) {
     if (warning.empty()) continue;

@@ -10,6 +10,7 @@
 #include "server/scene/method.h"
 #include "server/session/display_turn.h"
 #include "server/session/fault.h"
+#include "server/sim/slipping.h"
 
 namespace clothlab::session {
 
@@ -37,6 +38,7 @@ Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Excha
   stepper->announce_parts();
   stepper->announce_solver();
   stepper->layers_may_pass_ = !model::thickness_warning(stepper->simulation().model(), *scene).empty();
+  stepper->solids_may_slip_ = !sim::slipping_warning(*scene, stepper->simulation().model()).empty();
   stepper->step_limit_.set_scene(stepper->simulation().model(), *scene);
   stepper->rest_.follow(*scene, stepper->simulation().model());
   stepper->guard_->start(stepper->step_limit_.dt_limit());

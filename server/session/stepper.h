@@ -165,6 +165,7 @@ class Stepper {
   void warn_if_forced();
   void warn_if_unconverged();
   void warn_if_thin();
+  void warn_if_slipping();
   void warn_if_near();
   void warn_of_meshes();
   // In stepper.cpp.
@@ -229,6 +230,7 @@ class Stepper {
   bool slow_announced_ = false, crowded_announced_ = false, forced_announced_ = false,
        not_taken_announced_ = false, unconverged_announced_ = false;
   bool layers_may_pass_ = false;         ///< layers of cloth can pass through each other
+  bool solids_may_slip_ = false;         ///< solids can pass through triangles of cloth
   std::string near_start_;               ///< model::near_start_warning of the present cloth
   std::vector<std::string> mesh_notes_;  ///< told of the present scene (scene::mesh_notes)
 };

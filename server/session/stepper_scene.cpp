@@ -197,6 +197,7 @@ void Stepper::take_over(scene::Document document, sim::ChangeDepth depth) {
   if (depth == sim::ChangeDepth::none) return;
   if (depth == sim::ChangeDepth::cloth) warn_if_near();
   warn_if_thin();
+  warn_if_slipping();
   warn_of_meshes();
   step_limit_.set_scene(simulation().model(), scene());
   follow_step_limit();  // now, as another change may come before the next status

@@ -10,6 +10,7 @@
 #include "server/scene/method.h"
 #include "server/session/stepper.h"
 #include "server/sim/plan.h"
+#include "server/sim/slipping.h"
 
 namespace clothlab::session {
 
@@ -80,6 +81,13 @@ void Stepper::warn_if_unconverged() {
 void Stepper::warn_if_thin() {
   const std::string warning = model::thickness_warning(simulation().model(), scene());
   if (!std::exchange(layers_may_pass_, !warning.empty()) && layers_may_pass_)
+    exchange_.emit(Notice{"warning", warning});
+}
+
+// Warns once, after a change of scene that lets a solid pass through triangles of cloth.
+void Stepper::warn_if_slipping() {
+  const std::string warning = sim::slipping_warning(scene(), simulation().model());
+  if (!std::exchange(solids_may_slip_, !warning.empty()) && solids_may_slip_)
     exchange_.emit(Notice{"warning", warning});
 }
 
