@@ -36,12 +36,12 @@ dvec3 pins_velocity(const ClothRange& cloth, const LimitedStep& step) {
 /// square.
 struct Kinetic {
   double start = 0, free = 0, linear = 0, square = 0;
-  bool any_pin = false;
+  bool pins_move = false;  ///< in this step
 
   Kinetic(const ClothRange& cloth, const LimitedStep& step) {
     const dvec3 pins = pins_velocity(cloth, step);
     for (std::uint32_t i = cloth.first_vertex; i < cloth.first_vertex + cloth.vertex_count; ++i) {
-      any_pin = any_pin || step.inverse_mass[i] == 0.0;
+      pins_move = pins_move || (step.inverse_mass[i] == 0.0 && step.free[i] != step.start[i]);
       if (!(step.inverse_mass[i] > 0.0)) continue;
       const double mass = 1.0 / step.inverse_mass[i];
       const dvec3 before = step.start_velocity[i] - pins, now = step.free_velocity[i] - pins,
@@ -79,10 +79,9 @@ std::vector<LimitShare> limit_shares(const Model& model, const LimitedStep& step
       if (!open[c]) continue;
       const double most = std::max(free[c] + motion[c].free, at_start[c] + motion[c].start);
       const double spare = most * (1.0 + energy_rounding) - now[c] - motion[c].free;
-      const double adds = share * (motion[c].linear + share * motion[c].square);
-      // Velocities may take energy from a pinned cloth, but not to pay for a place that has more.
-      if (!(spare >= (motion[c].any_pin ? 0.0 : adds))) continue;
-      shares[c] = {share, motion[c].any_pin ? motion[c].share_within(share, spare) : share};
+      // Velocities may take energy from the cloth, but not to pay for a place that has more.
+      if (motion[c].pins_move && !(spare >= 0.0)) continue;
+      shares[c] = {share, motion[c].pins_move ? motion[c].share_within(share, spare) : share};
       open[c] = 0;
     }
   }

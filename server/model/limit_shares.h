@@ -27,8 +27,9 @@ struct LimitShare {
 /// at the step's start if they were more there: what holds a hanging cloth only gives back what gravity gave
 /// in the step. Energy is that of a traveller with the cloth's pins (their mean velocity in the step), for
 /// whom pins that move alike do no work. Places come first: what was too long before the step is mended, but
-/// becomes no velocity that the cloth has no energy for. A cloth without pins takes the same share of both,
-/// which keeps its angular momentum. Work against gravity counts as none: what hangs too low is lifted.
+/// becomes no velocity that the cloth has no energy for. Where no pin moves, all is
+/// taken: the limit can be kept, if not in one step. Work against gravity counts as none: what hangs too low
+/// is lifted.
 std::vector<LimitShare> limit_shares(const Model& model, const LimitedStep& step);
 
 }  // namespace clothlab::model
