@@ -3,8 +3,8 @@
 // skipped.
 //   node tests/report.mjs [TREE]           TREE: the build folder, build/release
 //   node tests/report.mjs --costs [TREE]   writes tests/costs.txt anew (tests/CMakeLists.txt)
-// With CLOTHLAB_NO_SKIPS=1 it exits with 1 if anything was skipped, or nothing was run: where all tools are installed, as in continuous
-// integration, nothing has to be.
+// With CLOTHLAB_NO_SKIPS=1 it exits with 1 if anything was skipped, or nothing was run: where all tools are installed,
+// as in continuous integration, nothing has to be.
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
