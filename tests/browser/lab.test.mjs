@@ -1,8 +1,7 @@
 // The lab's drawer on the real server, with a cloth small enough to be measured in seconds.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
 import { Server } from "../protocol/harness.mjs";
-import { browserTest, eventually, screenshots, withServer } from "./browser.mjs";
+import { browserTest, bytesOf, eventually, screenshots, withServer } from "./browser.mjs";
 import { small } from "./small.mjs";
 
 const here = withServer();
@@ -190,7 +189,7 @@ browserTest(
         panel.getByRole("button", { name: format, exact: true }).click(),
       ]);
       assert.equal(file.suggestedFilename(), `small-chart.${format.toLowerCase()}`);
-      return readFileSync(await file.path(), "utf8");
+      return (await bytesOf(file)).toString();
     };
     const { points } = JSON.parse(await download("JSON"));
     assert.ok(points.length >= (await marks.count()) && points.every(({ patch }) => patch.solver.dt > 0));

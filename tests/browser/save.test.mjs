@@ -1,14 +1,13 @@
 // What is on screen, saved as a picture and as a video.
 import assert from "node:assert/strict";
-import { readFile } from "node:fs/promises";
-import { browserTest, countRed, eventually, screenshots, withServer } from "./browser.mjs";
+import { browserTest, bytesOf, countRed, eventually, screenshots, withServer } from "./browser.mjs";
 
 const here = withServer();
 
 /// The file that a press saves.
 async function saved({ page }, press) {
   const [download] = await Promise.all([page.waitForEvent("download"), press()]);
-  return { name: download.suggestedFilename(), bytes: await readFile(await download.path()) };
+  return { name: download.suggestedFilename(), bytes: await bytesOf(download) };
 }
 
 browserTest("a picture is a PNG of the canvas at full resolution, on the page's backdrop", async () => {

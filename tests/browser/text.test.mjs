@@ -1,11 +1,11 @@
 // The scene as text: edited, saved, dropped, and copied as something to run.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { Server } from "../protocol/harness.mjs";
-import { browserTest, eventually, screenshots, withServer } from "./browser.mjs";
+import { browserTest, bytesOf, eventually, screenshots, withServer } from "./browser.mjs";
 
 const { both, open } = withServer();
 const sizes = { desktop: { width: 1440, height: 900 }, phone: { width: 390, height: 844, hasTouch: true } };
@@ -137,7 +137,7 @@ browserTest("a saved scene can be dropped again, with the meshes it names; the w
     page.getByRole("button", { name: "Save as file" }).click(),
   ]);
   assert.equal(download.suggestedFilename(), "seed.json");
-  const saved = JSON.parse(readFileSync(await download.path(), "utf8"));
+  const saved = JSON.parse((await bytesOf(download)).toString());
   const before = await scene();
   assert.deepEqual(saved, before);
   await page.keyboard.press("Escape");
