@@ -15,7 +15,7 @@ export interface Status {
   max_speed?: number;
   contacts?: number;
   memory_bytes?: number;
-  surface?: { pairs: number; cuts: number; searches: number } | null;
+  surface?: { pairs: number; cuts: number; not_taken: number; searches: number } | null;
   asleep?: boolean;
   recording?: RecordingFacts;
   diverged?: boolean;
@@ -137,7 +137,9 @@ export class Hud {
   private showSurface(counts: Status["surface"]): void {
     const row = this.cells.get("surface")?.parentElement;
     if (row) row.hidden = !counts;
-    if (counts) this.set("surface", `${short(counts.pairs)} pairs, ${short(counts.cuts)} cut`);
+    if (!counts) return;
+    const missed = counts.not_taken > 0 ? `, ${short(counts.not_taken)} steps not taken` : "";
+    this.set("surface", `${short(counts.pairs)} pairs, ${short(counts.cuts)} cut${missed}`);
   }
 
   /// Turns the counts since the last call into rates. Call it about once a second.
