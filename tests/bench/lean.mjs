@@ -16,8 +16,7 @@ function alternating(side) {
   const vertices = [];
   const triangles = [];
   for (let row = 0; row < side; ++row)
-    for (let column = 0; column < side; ++column)
-      vertices.push([column / (side - 1) - 0.5, 0, row / (side - 1)]);
+    for (let column = 0; column < side; ++column) vertices.push([column / (side - 1) - 0.5, 0, row / (side - 1)]);
   for (let row = 0; row + 1 < side; ++row)
     for (let column = 0; column + 1 < side; ++column) {
       const a = row * side + column;
@@ -64,6 +63,8 @@ for (const side of [25, 49])
     ["springs", grid(side), { model: "springs", structural: 200, shear: 100, bend: 2, damping: 0.01 }],
   ]) {
     const [early, late] = [0.1, 0.25].map((time) => 1000 * lean(mesh, material, side, time));
-    console.log(`${`${side}x${side}, ${name}`.padEnd(44)} ${early.toPrecision(2).padStart(7)} ${late.toPrecision(2).padStart(8)}`);
+    console.log(
+      `${`${side}x${side}, ${name}`.padEnd(44)} ${early.toPrecision(2).padStart(7)} ${late.toPrecision(2).padStart(8)}`,
+    );
   }
 rmSync(folder, { recursive: true });

@@ -38,8 +38,8 @@ export async function eventually(what, read, good, milliseconds = patience) {
   }
 }
 
-/// The bytes of a file that the page has saved. The browser may be another process's (chromium.mjs), so that the file has
-/// no path here.
+/// The bytes of a file that the page has saved. The browser may be another process's (chromium.mjs), so that the file
+/// has no path here.
 export async function bytesOf(download) {
   const parts = [];
   for await (const part of await download.createReadStream()) parts.push(part);

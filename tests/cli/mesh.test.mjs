@@ -66,8 +66,21 @@ test("a seam that rounding has opened is closed, and one that stays open is told
   assert.match(open.stdout, /8 vertices/);
   assert.match(open.stderr, /\/cloths\/0\/mesh: seam\.obj: 2 corners .*line 9 and line 10: the mesh is open there/);
   assert.match(told(halves(0, true)).stderr, /1 corner at its borders lies on an edge .*line 9/);
-  const vertices = [[0, 0, 0], [1, 0, 0], [0, 0, 1], [1, 0, 0], [1, 0, 1], [0, 0, 1]]; // prettier-ignore
-  const mesh = { vertices, triangles: [[0, 2, 1], [3, 5, 4]] }; // prettier-ignore
+  const vertices = [
+    [0, 0, 0],
+    [1, 0, 0],
+    [0, 0, 1],
+    [1, 0, 0],
+    [1, 0, 1],
+    [0, 0, 1],
+  ]; // prettier-ignore
+  const mesh = {
+    vertices,
+    triangles: [
+      [0, 2, 1],
+      [3, 5, 4],
+    ],
+  }; // prettier-ignore
   writeFileSync(join(folder, "scenes/own.json"), JSON.stringify({ version: 1, cloths: [{ mesh }] }));
   const own = clothlab(["validate", "scenes/own.json"]);
   assert.match(own.stderr, /\/cloths\/0\/mesh: 2 corners .*triangle 0 and triangle 1/);

@@ -253,7 +253,8 @@ TEST_CASE("surfaces that fall as one need no search, and one as soon as they fal
     search.update([&](std::uint32_t i) { return fallen(i, 0.1 * update); });
   CHECK(search.control.rebuilds == searches);
   search.update([&](std::uint32_t i) { return fallen(i, model.vertex_cloth[i] == 1 ? 2.9 : 2.88); });
-  // Two sheets that are nearer to each other have more pairs, and another search may follow, with longer lists.
+  // Two sheets that are nearer to each other have more pairs, and another search may follow, with longer
+  // lists.
   CHECK(search.control.rebuilds > searches);
   CHECK(search.control.rebuilds <= searches + 2);
 }
