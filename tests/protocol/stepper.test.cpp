@@ -97,7 +97,10 @@ TEST_CASE("in steady state the stepping thread allocates nothing but the frames 
   session.commands.push_back({{}, demand});
   session.allocations_for(40);
   constexpr std::size_t frames = 120, a_frame = 2;  // the message with its reference count, and its bytes
-  const std::size_t counted = session.allocations_for(frames);
+  // The longest stable step is searched for beside the session, and is taken over once, which allocates. On a
+  // busy machine it can be found in any of these windows, but not in more than one.
+  std::size_t counted = session.allocations_for(frames);
+  if (counted > frames * a_frame) counted = std::min(counted, session.allocations_for(frames));
   CHECK(counted >= frames);  // the counter works
   // A slow machine gets one notice that it is slow, which needs some allocations, too.
   constexpr std::size_t a_notice = 16;
