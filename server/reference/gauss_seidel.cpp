@@ -16,12 +16,12 @@ namespace clothlab::reference {
 
 namespace {
 
-/// The share of `pull` [m/s^2] that a vertex followed in the step before (Chen et al. 2024, section 3.7): 0
-/// at rest, so that a cloth at rest starts its step where it stays; 1 in free fall, in air too. A share just
-/// below 1 counts as 1, because the GPU's float32 does not give exactly 1.
-double followed(const dvec3& acceleration, const dvec3& pull) {
-  const double squared = glm::dot(pull, pull);
-  return squared > 0.0 ? std::clamp(1.02 * glm::dot(acceleration, pull) / squared, 0.0, 1.0) : 1.0;
+/// Whether a vertex fell freely in the step before, as in shaders/methods/vertex_descent.glsl: 1 if its
+/// acceleration was `pull` [m/s^2] but for two hundredths, 0 if but for a tenth or more. So a cloth at rest
+/// starts its step where it stays.
+double falls(const dvec3& acceleration, const dvec3& pull) {
+  const double size = glm::length(pull);
+  return size > 0.0 ? std::clamp((0.1 - glm::distance(acceleration, pull) / size) / 0.08, 0.0, 1.0) : 1.0;
 }
 
 /// True if a vertex with velocity v hits the surface in an impact: it approaches faster than gravity alone
@@ -30,8 +30,8 @@ bool hits(const SweepState& step, const Surface& met, const dvec3& v) {
   return glm::dot(met.velocity - v, met.normal) > 2.0 * step.dt * glm::length(step.world.scene.gravity);
 }
 
-/// The displacement from which VBD's sweeps start [m]: inertia's displacement plus the followed share of
-/// gravity's and the wind's. Where the free motion meets a collider, the surface and friction cut both down.
+/// The displacement from which VBD's sweeps start [m]: inertia's displacement, and gravity's and the wind's
+/// where the vertex falls freely. Where the free motion meets a collider, the surface and friction cut both down.
 dvec3 first_guess(const SweepState& step, std::uint32_t i, const std::optional<dvec3>& velocity_before) {
   const World& world = step.world;
   const double dt = step.dt, drag = model::mobility(world.scene);
@@ -39,7 +39,7 @@ dvec3 first_guess(const SweepState& step, std::uint32_t i, const std::optional<d
   dvec3 pull = world.scene.gravity + step.blown[i] / (drag * dt * dt), felt(0.0);
   if (velocity_before) felt = (v / drag - *velocity_before) / dt;
   const auto not_followed = [&] {
-    return velocity_before ? (1.0 - followed(felt, pull)) * drag * dt * dt * pull : dvec3(0.0);
+    return velocity_before ? (1.0 - falls(felt, pull)) * drag * dt * dt * pull : dvec3(0.0);
   };
   dvec3 stopped = step.x[i] + free;
   Surface met;
@@ -49,6 +49,7 @@ dvec3 first_guess(const SweepState& step, std::uint32_t i, const std::optional<d
   const double depth = glm::dot(stopped - (step.x[i] + free), n);
   const dvec3 on_surface = free + n * depth, carried = dt * met.velocity;
   pull -= n * glm::dot(pull, n);
+  felt -= n * glm::dot(felt, n);
   felt += elements::friction_displacement(on_surface - carried, n, met.friction, depth) / (drag * dt * dt);
   const dvec3 moved = on_surface - not_followed();
   return moved - elements::friction_displacement(moved - carried, n, met.friction, depth);

@@ -3,7 +3,7 @@
 // collider in the way is met with the vertex's own block: it pushes as hard as it must, and friction follows from that.
 #include "blocks.glsl"
 READ_UINT(visited, unit_visited);  // free vertices, colour after colour
-/// Velocity at the last step's start [m/s]; w: 0 if there is none to use.
+/// Velocity at the last step's start [m/s]; w: that step's dt [s], or 0 if there is none to use.
 layout(std430, binding = slot_velocity_before) buffer VelocityBefore { vec4 velocity_before[]; };
 /// Where inertia and wind would take each vertex, as a deviation [m], with the pushes of self-collision since the
 /// step's start; w: number of colliders met at the last visit.
@@ -22,22 +22,26 @@ vec3 displacement_by_wind(int i, vec4 x, vec3 v) {
 }
 #endif
 
-/// Share of `pull` that an acceleration has followed, [0, 1]. Nearly all counts as all: rounding just below 1 would
-/// brake a falling cloth, step after step.
-float followed(vec3 acceleration, vec3 pull) {
+/// Whether a vertex falls freely, [0, 1]: 1 if its acceleration was `pull` but for two hundredths, 0 if but for a tenth
+/// or more. Chen et al. (section 3.7) have the share of the pull that it has followed instead. But what sweeps make of a
+/// guess is the next one's acceleration, so such a share follows the true one late where sweeps are few, and a pull that
+/// comes late feeds a swing, for ever.
+float falls(vec3 acceleration, vec3 pull) {
+  vec3 other = acceleration - pull;
   float squared = dot(pull, pull);
-  return squared > 0.0 ? clamp(1.02 * dot(acceleration, pull) / squared, 0.0, 1.0) : 1.0;
+  return squared > 0.0 ? clamp((0.1 - sqrt(dot(other, other) / squared)) / 0.08, 0.0, 1.0) : 1.0;
 }
 
-/// Their adaptive guess (section 3.7): as much of gravity and wind as the vertex has followed lately, so that a cloth
-/// at rest starts from rest. If its free motion meets a collider, the guess is that motion stopped there, with
-/// friction, and of both the part along the surface: sweeps move a stiff cloth so little that one on a slope would stay
-/// where it was.
+/// The first guess: inertia's motion, with gravity's and the wind's where the vertex falls freely, so that a cloth at
+/// rest starts from rest. If its free motion meets a collider, the guess is that motion stopped there, with friction,
+/// and of both the part along the surface: sweeps move a stiff cloth so little that one on a slope would stay where it
+/// was.
 vec3 first_deviation(int i, vec4 x, vec3 v) {
   vec4 before = velocity_before[i];
-  velocity_before[i] = vec4(v, 1.0);
+  velocity_before[i] = vec4(v, dt);
   targets[i] = vec4(remainder(i), 0.0);
-  vec3 felt = (v / mobility - before.xyz) / dt, pull = gravity.xyz, back = vec3(0.0), sliding = vec3(0.0);
+  vec3 felt = (v / mobility - before.xyz) / (before.w > 0.0 ? before.w : dt);
+  vec3 pull = gravity.xyz, back = vec3(0.0), sliding = vec3(0.0);
   vec3 free = free_displacement(v);
 #ifdef WIND
   vec3 blown = displacement_by_wind(i, x, v);
@@ -51,13 +55,14 @@ vec3 first_deviation(int i, vec4 x, vec3 v) {
   RARELY(met > 0) {
     back = met_normal * dot(stopped - (x.xyz + free), met_normal);
     pull -= met_normal * dot(pull, met_normal);
+    felt -= met_normal * dot(felt, met_normal);
     sliding = free + back - dt * met_velocity;
     vec3 taken = friction_displacement(sliding, met_normal, met_surface.x, dot(back, met_normal));
     felt += taken / (mobility * dt * dt);  // without friction it would have followed by that much more
     // The change of velocity in an impact says nothing of the next step.
     if (hits(v)) velocity_before[i].w = 0.0;
   }
-  float share = before.w == 0.0 ? 1.0 : followed(felt, pull);
+  float share = before.w == 0.0 ? 1.0 : falls(felt, pull);
   vec3 less = drift(dt * (share - 1.0) * pull);
   RARELY(met > 0) back -= friction_displacement(sliding + less, met_normal, met_surface.x, dot(back, met_normal));
 #ifdef WIND
