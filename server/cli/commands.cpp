@@ -8,6 +8,7 @@
 
 #include "server/model/near_start.h"
 #include "server/model/stability.h"
+#include "server/model/sweep_stretch.h"
 #include "server/model/thickness.h"
 #include "server/sim/slipping.h"
 
@@ -39,7 +40,8 @@ void print_warnings(const model::Model& model, const scene::Scene& scene, double
                     const std::string& about) {
   std::vector<std::string> warnings{
       model::thickness_warning(model, scene), sim::slipping_warning(scene, model),
-      model::near_start_warning(model, scene), model::step_warning(scene.solver, dt_limit)};
+      model::near_start_warning(model, scene), model::step_warning(scene.solver, dt_limit),
+      model::sweeps_warning(model, scene)};
   for (const std::string& note : scene::mesh_notes(scene)) warnings.push_back(note);
   for (const std::string& warning : warnings) {
     if (warning.empty()) continue;

@@ -15,6 +15,7 @@
 #include "server/scene/method.h"
 #include "server/sim/crossing_check.h"
 #include "server/sim/plan.h"
+#include "server/sim/solved.h"
 
 namespace clothlab::cli {
 
@@ -93,6 +94,12 @@ Report make_report(const Prepared& prepared, const Progress& progress, double wa
     report["solver"] = {{"newton_steps", work.newton_steps},
                         {"linear_iterations", work.linear_iterations},
                         {"unconverged", work.unconverged}};
+  if (const sim::Solves& solves = simulation.solves(); solves.measured > 0)
+    report["solves"] = {{"measured", solves.measured},
+                        {"unsolved", solves.unsolved_steps},
+                        {"left_m", solves.left},
+                        {"ratio", solves.ratio},
+                        {"undone", solves.undone}};
   if (const sim::StrainLimitWork work = simulation.strain_limit_work(); work.sweeps > 0)
     report["strain_limit"] = {{"sweeps", work.sweeps}, {"unconverged", work.unconverged}};
   if (simulation.scene().collides(scene::ContactKind::points))
@@ -157,6 +164,7 @@ void print_shortcomings(const sim::Simulation& simulation, const sim::Diagnostic
   if (const std::uint64_t solves = simulation.solver_work().unconverged; solves > 0)
     note(std::to_string(solves) +
          " linear solves ended before they met solver.tolerance; a smaller dt or a larger tolerance helps");
+  if (simulation.solves().often_unsolved()) note(sim::in_words(simulation.solves(), simulation.scene()));
   if (const std::uint64_t steps = simulation.strain_limit_work().unconverged; steps > 0)
     note(std::to_string(steps) +
          " steps ended with a spring or thread longer than its strain_limit; a smaller dt or a larger limit "

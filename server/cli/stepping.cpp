@@ -18,12 +18,6 @@ namespace {
 
 constexpr double most_steps = 1e12;
 
-/// The number of steps between two checks for a blow-up. Usually a whole batch, so that checks cost little;
-/// fewer if `dt` is near or beyond `limit` [s], so that a blow-up is seen soon and more good steps are kept.
-std::uint64_t steps_between_checks(double dt, double limit) {
-  return dt > model::margin_to_warn * limit ? sim::batch_steps / 8 : sim::batch_steps;
-}
-
 /// Replaces the method `auto` by the setting that the lab chooses, or by a stable one if the lab cannot
 /// choose; `chosen` receives the setting and the reason. A scene with another method is returned unchanged.
 Result<scene::Scene> settle_method(scene::Scene scene, std::string& chosen) {
@@ -106,7 +100,7 @@ Result<Progress> advance(const Prepared& prepared, std::uint64_t steps, std::uin
   // One step that is not timed: drivers compile a kernel when it first runs.
   sim::timed_steps(simulation, 1);
   simulation.reset();
-  const std::uint64_t check_every = steps_between_checks(simulation.scene().solver.dt, prepared.dt_limit);
+  const std::uint64_t judged_every = sim::judged_every(simulation.scene(), simulation.model());
   sim::GuardedRun run(simulation);
   run.start(prepared.dt_limit);
   progress.state = run.state();
@@ -115,10 +109,14 @@ Result<Progress> advance(const Prepared& prepared, std::uint64_t steps, std::uin
   std::uint64_t next_stop = 0;
   while (progress.steps < steps) {
     if (progress.steps == next_stop) next_stop = std::min(next_stop + every, steps);
-    const std::uint64_t count = std::min(next_stop - progress.steps, check_every);
+    const std::uint64_t count =
+        std::min(next_stop - progress.steps, judged_every - progress.steps % judged_every);
     progress.step_seconds += run.step(static_cast<std::uint32_t>(count));
     progress.steps += count;
-    progress.diverged = run.judge_now() == sim::GuardedRun::Verdict::blown_up;
+    if (progress.steps % judged_every == 0 || progress.steps == steps)
+      progress.diverged = run.judge_now() == sim::GuardedRun::Verdict::blown_up;
+    else
+      run.look();  // whoever has the run stop here changes nothing of what is said of it
     if (progress.diverged) {
       progress.diverged_by = simulation.time();
       progress.setback = run.go_back();

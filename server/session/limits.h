@@ -12,6 +12,7 @@ struct Limits {
   int vertices = static_cast<int>(scene::max_vertices);      ///< at most, per scene
   int springs = 16 * static_cast<int>(scene::max_vertices);  ///< at most, per scene
   int recording_bytes = 64 << 20;  ///< at most, per recording, of which a session keeps one
+  int kept_every = 1000;           ///< a state is kept for the timeline every so many steps, or sooner
   int unwatched_seconds = 30;  ///< without viewers for so long, a session stops stepping until one comes [s]
 };
 

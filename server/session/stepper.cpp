@@ -42,6 +42,7 @@ Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Excha
   stepper->step_limit_.set_scene(stepper->simulation().model(), *scene);
   stepper->rest_.follow(*scene, stepper->simulation().model());
   stepper->guard_->start(stepper->step_limit_.dt_limit());
+  stepper->judge_scene();
   stepper->begin_timeline();
   return stepper;
 }
@@ -114,6 +115,7 @@ void Stepper::advance(Clock::time_point now, std::uint32_t others) {
   want_steps(now, run);
   if (replay_ && simulation().step_index() == replay_->step) return end_replay();
   if (simulation().steps_to_do() == 0) return;
+  free_left_engine();
   const std::uint32_t steps = queue_piece(others);
   note_finished(Clock::now());
   if (steps == 0) return;
@@ -173,7 +175,8 @@ void Stepper::finish_waiting(bool all) {
 }
 
 void Stepper::follow_diagnostics(Clock::time_point now) {
-  if (const std::optional<sim::GuardedRun::Verdict> verdict = guard_->poll_verdict()) {
+  while (const std::optional<sim::GuardedRun::Verdict> verdict = guard_->poll_verdict()) {
+    next_diagnosis_ = now + period(diagnosis_rate);
     accept(*verdict);
     const sim::Diagnostics& arrived = guard_->state();
     if (running(now) && hands_.empty() &&
@@ -188,6 +191,11 @@ void Stepper::follow_diagnostics(Clock::time_point now) {
     return;
   next_status_ = std::max(next_status_ + period(status_rate), now);
   publish_status(now);
+}
+
+/// A blow-up is looked for as `run` does, by steps; the other diagnoses are to be seen.
+void Stepper::judge_scene() {
+  guard_->judge_every(sim::judged_every(scene(), simulation().model()));
 }
 
 // A state that stands still is diagnosed once.
@@ -207,6 +215,7 @@ void Stepper::accept(sim::GuardedRun::Verdict verdict) {
   warn_if_not_taken();
   warn_if_forced();
   warn_if_unconverged();
+  warn_if_unsolved();
 }
 
 void Stepper::fall_asleep() {

@@ -133,6 +133,9 @@ class Stepper {
   Result<sim::ChangeDepth> change(const scene::Scene& scene);
   Result<sim::ChangeDepth> change_engine(const scene::Scene& scene);
   Result<sim::ChangeDepth> move_to(const scene::Scene& scene);
+  bool returns_to_left_engine(const scene::Scene& scene) const;
+  void settle_in(std::unique_ptr<Engine> next);
+  void free_left_engine();
   void adopt(scene::Document document, sim::ChangeDepth depth);
   void take_over(scene::Document document, sim::ChangeDepth depth);
   void restart();
@@ -143,8 +146,8 @@ class Stepper {
   void perform(ResumeAt& resume, const Ticket& ticket);
   void begin_timeline();
   std::uint64_t next_step_to_begin() const;
-  void scene_on_timeline(sim::ChangeDepth depth);
-  void hands_on_timeline(bool other_holds);
+  void scene_on_timeline();
+  void hands_on_timeline();
   void bound_timeline();
   void timeline_went_back();
   json timeline_told();
@@ -164,6 +167,7 @@ class Stepper {
   void warn_if_not_taken();
   void warn_if_forced();
   void warn_if_unconverged();
+  void warn_if_unsolved();
   void warn_if_thin();
   void warn_if_slipping();
   void warn_if_near();
@@ -176,6 +180,7 @@ class Stepper {
   void finish_waiting(bool all);
   void follow_diagnostics(Clock::time_point now);
   void request_diagnosis(Clock::time_point now);
+  void judge_scene();
   void accept(sim::GuardedRun::Verdict verdict);
   void fall_asleep();
   void wake_up();
@@ -193,6 +198,7 @@ class Stepper {
   Limits limits_;
   std::optional<int> gpu_;
   std::unique_ptr<Engine> engine_;
+  std::unique_ptr<Engine> left_;  ///< by a change since the last step; a change back returns to it
   PieceSize piece_size_;
   bool compiled_ = false;  ///< a step has ended since the scene was built or changed
   RealTime real_time_;
@@ -228,7 +234,8 @@ class Stepper {
   Clock::time_point next_status_{}, next_diagnosis_{};
   Clock::time_point slow_since_{};
   bool slow_announced_ = false, crowded_announced_ = false, forced_announced_ = false,
-       not_taken_announced_ = false, unconverged_announced_ = false;
+       not_taken_announced_ = false, unconverged_announced_ = false, unsolved_announced_ = false;
+  bool unsolved_told_ = false;           ///< as of sim.status
   bool layers_may_pass_ = false;         ///< layers of cloth can pass through each other
   bool solids_may_slip_ = false;         ///< solids can pass through triangles of cloth
   std::string near_start_;               ///< model::near_start_warning of the present cloth

@@ -33,7 +33,7 @@ void Stepper::perform(GrabStart& start, const Ticket& ticket) {
 void Stepper::perform(GrabMove& move, const Ticket& ticket) {
   if (!hands_.move(ticket.asker, move)) return reply(ticket, no_hold(move.hand));
   (void)simulation().set_hands(hands_.for_simulation());  // with the same holds it cannot fail
-  hands_on_timeline(false);
+  hands_on_timeline();
   reply(ticket, json::object());
 }
 
@@ -47,7 +47,7 @@ void Stepper::perform(GrabEnd& end, const Ticket& ticket) {
 /// Takes the hands over into the simulation, which then no longer rests.
 clothlab::Status Stepper::hands_changed() {
   if (clothlab::Status set = simulation().set_hands(hands_.for_simulation()); !set) return set;
-  hands_on_timeline(true);
+  hands_on_timeline();
   guard_->set_hands(hands_.force(), hands_.reach());
   wake_up();
   return ok();

@@ -148,6 +148,13 @@ Result<sim::ChangeDepth> Stepper::change(const scene::Scene& scene) {
 /// the step that is under way is then given up.
 Result<sim::ChangeDepth> Stepper::change_engine(const scene::Scene& scene) {
   compiled_ = false;
+  if (returns_to_left_engine(scene)) {
+    const sim::ChangeDepth depth = sim::change_depth(simulation().scene(), scene);
+    (void)left_->context->make_current();
+    settle_in(std::move(left_));
+    begin_timeline();
+    return depth;
+  }
   if (engine_->place.stays(scene) || !engine_->software()) return simulation().change(scene);
   const Result<sim::ChangeDepth> depth = move_to(scene);
   if (depth && *depth != sim::ChangeDepth::cloth) begin_timeline();  // its states were on the other engine
@@ -163,16 +170,35 @@ Result<sim::ChangeDepth> Stepper::move_to(const scene::Scene& scene) {
   const bool anew = depth == sim::ChangeDepth::cloth;
   sim::State state;
   if (!anew) state = simulation().read_state();
+  free_left_engine();
   Result<std::unique_ptr<Engine>> made = Engine::create(
       scene, exchange_, {gpu_, frames().last(), simulation().topology_revision() + (anew ? 1u : 0u)});
   if (!made) return made.error();
   if (!anew) (*made)->simulation->restore(state, simulation().time(), simulation().step_index());
-  (*made)->frames->take_over(frames());
-  engine_.swap(*made);
-  made->reset();
-  guard_->move_to(simulation());
-  if (!anew && !hands_.empty()) (void)simulation().set_hands(hands_.for_simulation());
+  settle_in(std::move(*made));
+  if (anew) free_left_engine();
   return depth;
+}
+
+/// Whether a change ends where the last ones began, on another engine, with no step between: what methods
+/// remember is still there.
+bool Stepper::returns_to_left_engine(const scene::Scene& scene) const {
+  return left_ && left_->simulation->step_index() == simulation().step_index() &&
+         sim::change_depth(left_->simulation->scene(), scene) == sim::ChangeDepth::none;
+}
+
+/// `next`, whose context is current, becomes the engine. The one before is kept until the next step.
+void Stepper::settle_in(std::unique_ptr<Engine> next) {
+  next->frames->take_over(frames());
+  left_ = std::exchange(engine_, std::move(next));
+  guard_->move_to(simulation());
+  if (!hands_.empty()) (void)simulation().set_hands(hands_.for_simulation());
+}
+
+void Stepper::free_left_engine() {
+  if (!left_) return;
+  left_.reset();
+  (void)engine_->context->make_current();
 }
 
 void Stepper::adopt(scene::Document document, sim::ChangeDepth depth) {
@@ -188,7 +214,7 @@ void Stepper::take_over(scene::Document document, sim::ChangeDepth depth) {
     run_.go_on();  // like any other change: playing or paused as before a blow-up
     state_replaced();
   } else {
-    scene_on_timeline(depth);
+    scene_on_timeline();
     frames().state_changed_now();
   }
   ++state_version_;
@@ -200,6 +226,7 @@ void Stepper::take_over(scene::Document document, sim::ChangeDepth depth) {
   warn_if_slipping();
   warn_of_meshes();
   step_limit_.set_scene(simulation().model(), scene());
+  judge_scene();
   follow_step_limit();  // now, as another change may come before the next status
   if (depth == sim::ChangeDepth::cloth) return guard_->start(step_limit_.dt_limit());
   guard_->set_dt_limit(step_limit_.dt_limit());
@@ -213,12 +240,13 @@ void Stepper::restart() {
 }
 
 void Stepper::state_replaced() {
+  free_left_engine();
   end_hands();
   finish_waiting(true);
   wake_up();
   run_.begin_again();
   slow_announced_ = crowded_announced_ = forced_announced_ = not_taken_announced_ = unconverged_announced_ =
-      false;
+      unsolved_announced_ = false;
   ++state_version_;
   real_time_.restart(Clock::now());
   frames().restart();

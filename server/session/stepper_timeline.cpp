@@ -14,7 +14,7 @@ void Stepper::begin_timeline() {
   timeline_.begin(document_, scene(), simulation().step_index());
   try {
     simulation().keep_state();
-    simulation().kept().every = Timeline::interval(scene());
+    simulation().kept().every = Timeline::interval(scene(), limits_.kept_every);
   } catch (const std::bad_alloc&) {  // without memory for one state the session runs without a timeline
     simulation().kept().every = 0;
   }
@@ -30,19 +30,16 @@ std::uint64_t Stepper::next_step_to_begin() const {
   return simulation().step_index() + (simulation().in_step() ? 1u : 0u);
 }
 
-void Stepper::scene_on_timeline(sim::ChangeDepth depth) {
-  const bool forgets = depth != sim::ChangeDepth::none;
-  if (forgets) simulation().forget_carried();
+void Stepper::scene_on_timeline() {
   if (simulation().kept().count() == 0) return;
-  simulation().kept().every = Timeline::interval(scene());
-  timeline_.add_scene(next_step_to_begin(), document_, scene(), forgets);
+  simulation().kept().every = Timeline::interval(scene(), limits_.kept_every);
+  timeline_.add_scene(next_step_to_begin(), document_, scene(), false);
   bound_timeline();
 }
 
-void Stepper::hands_on_timeline(bool other_holds) {
-  if (other_holds) simulation().forget_carried();
+void Stepper::hands_on_timeline() {
   if (simulation().kept().count() == 0) return;
-  timeline_.add_hands(next_step_to_begin(), hands_.for_simulation(), other_holds);
+  timeline_.add_hands(next_step_to_begin(), hands_.for_simulation());
   bound_timeline();
 }
 
@@ -50,7 +47,10 @@ void Stepper::bound_timeline() {
   sim::KeptStates& kept = simulation().kept();
   if (kept.count() == 0) return;  // the cloth is new, and the timeline is about to begin
   while (timeline_.bytes() > Timeline::most_bytes && simulation().step_index() > kept.oldest()->step) {
-    if (kept.count() < 2) simulation().keep_state();
+    if (kept.count() < 2) {  // the log goes on from the next one
+      kept.after_step = true;
+      break;
+    }
     kept.drop_oldest();
     timeline_.forget_before(kept.oldest()->step);
   }
@@ -91,6 +91,7 @@ void Stepper::perform(ResumeAt& resume, const Ticket& ticket) {
                                             std::to_string(newest) + "; see timeline.get"}));
   const std::uint64_t from = simulation().kept().at_or_before(resume.step)->step;
   const Timeline::Event then = timeline_.in_force(from);
+  free_left_engine();
   if (const clothlab::Status back = simulation().go_to_kept(resume.step, *then.scene); !back)
     return reply(ticket, Refusal{Refusal::Reason::failed, back.error()});
   (void)simulation().set_hands(*then.hands);  // the kernels are there
@@ -111,7 +112,7 @@ std::uint64_t Stepper::replay_changes() {
     if (event.scene) {
       if (const Result<sim::ChangeDepth> done = simulation().change(*event.scene); !done)
         exchange_.emit(Notice{"error", "the timeline cannot be replayed exactly: " + done.error().text()});
-      simulation().kept().every = Timeline::interval(scene());
+      simulation().kept().every = Timeline::interval(scene(), limits_.kept_every);
     }
     if (event.hands) (void)simulation().set_hands(*event.hands);
     if (event.forgets) simulation().forget_carried();
@@ -128,7 +129,7 @@ void Stepper::end_replay() {
   const json before = std::exchange(document_, *then.document).value;
   if (!then.hands->empty()) {  // who held the cloth then does so no longer
     (void)simulation().set_hands({});
-    hands_on_timeline(true);
+    hands_on_timeline();
   }
   guard_->set_hands(0, 0);
   (void)automatic_.settle(document_, Clock::now());
@@ -138,6 +139,7 @@ void Stepper::end_replay() {
   frames().restart();
   rest_.follow(scene(), simulation().model());
   step_limit_.set_scene(simulation().model(), scene());
+  judge_scene();
   follow_step_limit();
   guard_->start(step_limit_.dt_limit());
   announce_parts();

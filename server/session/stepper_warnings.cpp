@@ -11,6 +11,7 @@
 #include "server/session/stepper.h"
 #include "server/sim/plan.h"
 #include "server/sim/slipping.h"
+#include "server/sim/solved.h"
 
 namespace clothlab::session {
 
@@ -75,6 +76,18 @@ void Stepper::warn_if_unconverged() {
                          "a shorter time step or pins that leave room helps"
                        : "the linear solver often ends before it meets solver.tolerance; a "
                          "shorter time step or a larger tolerance helps"});
+}
+
+/// Tells when steps are far from solved, and sim.status when they are so no more.
+void Stepper::warn_if_unsolved() {
+  const sim::Solves& solves = simulation().solves();
+  if (solves.unsolved() != unsolved_told_) {
+    unsolved_told_ = solves.unsolved();
+    announce_solver();
+  }
+  if (unsolved_announced_ || !solves.often_unsolved()) return;
+  unsolved_announced_ = true;
+  exchange_.emit(Notice{"warning", sim::in_words(solves, scene())});
 }
 
 // Warns once, after a change of scene that lets layers of cloth pass through each other.

@@ -15,9 +15,9 @@ constexpr std::size_t memory_of_text = 8;
 
 }  // namespace
 
-std::uint32_t Timeline::interval(const scene::Scene& scene) {
-  const double steps = std::min(
-      {most_steps, most_seconds / scene.solver.dt, replay_seconds / sim::expected_step_seconds(scene)});
+std::uint32_t Timeline::interval(const scene::Scene& scene, int most_steps) {
+  const double steps = std::min({static_cast<double>(most_steps), most_seconds / scene.solver.dt,
+                                 replay_seconds / sim::expected_step_seconds(scene)});
   return static_cast<std::uint32_t>(std::max(1.0, std::round(steps)));
 }
 
@@ -38,9 +38,9 @@ void Timeline::add_scene(std::uint64_t step, const scene::Document& document, co
        memory_of_text * document.value.dump().size() + sizeof(Event)});
 }
 
-void Timeline::add_hands(std::uint64_t step, std::vector<sim::Hand> hands, bool forgets) {
+void Timeline::add_hands(std::uint64_t step, std::vector<sim::Hand> hands) {
   const std::size_t bytes = sizeof(Event) + hands.size() * sizeof(sim::Hand);
-  add({step, nullptr, nullptr, std::move(hands), forgets, bytes});
+  add({step, nullptr, nullptr, std::move(hands), false, bytes});
 }
 
 /// What came within a step that has been given up now comes before it.

@@ -18,7 +18,6 @@ class Timeline {
  public:
   static constexpr std::size_t most_bytes = 16 * 1024 * 1024;  ///< of what is kept here, about
   static constexpr double most_seconds = 1;    ///< of simulated time between two kept states [s]
-  static constexpr double most_steps = 1000;   ///< between them
   static constexpr double replay_seconds = 2;  ///< that these steps may take, by an estimate [s]
 
   struct Event {
@@ -28,17 +27,17 @@ class Timeline {
     std::shared_ptr<const scene::Document> document{};
     std::shared_ptr<const scene::Scene> scene{};
     std::optional<std::vector<sim::Hand>> hands{};
-    bool forgets = false;  ///< the passes forget what they carry from step to step
+    bool forgets = false;  ///< the passes forget what they carry: the run went back to its last good state
     std::size_t bytes = 0;
   };
 
-  /// Steps from one kept state to the next: by the scene alone, so that the run depends on nothing else.
-  static std::uint32_t interval(const scene::Scene& scene);
+  /// Steps from one kept state to the next, `most_steps` at most.
+  static std::uint32_t interval(const scene::Scene& scene, int most_steps);
 
   void begin(const scene::Document& document, const scene::Scene& scene, std::uint64_t step);
   void add_scene(std::uint64_t step, const scene::Document& document, const scene::Scene& scene,
                  bool forgets);
-  void add_hands(std::uint64_t step, std::vector<sim::Hand> hands, bool forgets);
+  void add_hands(std::uint64_t step, std::vector<sim::Hand> hands);
   /// What came before a step that can no longer be reached is forgotten.
   void forget_before(std::uint64_t step);
   /// What came after a step is forgotten: the run goes on from that step.

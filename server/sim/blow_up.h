@@ -43,7 +43,8 @@ class BlowUp {
   enum class Verdict {
     good,      ///< the run may later go back to this state
     doubtful,  ///< the run goes on, but this state must not be kept to go back to
-    blown_up
+    blown_up,
+    unjudged  ///< only looked at: of a GuardedRun that judges at other steps
   };
 
   /// Begins a new ledger with `state`, which counts as good whatever it is.

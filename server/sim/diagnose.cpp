@@ -37,10 +37,11 @@ Result<DiagnosticsPass> DiagnosticsPass::create(std::uint32_t vertex_count) {
   return pass;
 }
 
-bool DiagnosticsPass::request(const StateBuffers& state, const SelfCollision* self_collision,
+void DiagnosticsPass::request(const StateBuffers& state, const SelfCollision* self_collision,
                               const SurfaceContact* surfaces, const glm::dvec3& gravity, double time,
                               std::uint64_t step) {
-  if (ring_.full()) return false;
+  if (ring_.full() && !ring_.front(true).empty()) take(arrived_.emplace_back());
+  if (ring_.full()) return;  // the device is lost
   program_.use();
   glUniform4f(program_.location("gravity"), static_cast<float>(gravity.x), static_cast<float>(gravity.y),
               static_cast<float>(gravity.z), 0.0f);
@@ -60,12 +61,22 @@ bool DiagnosticsPass::request(const StateBuffers& state, const SelfCollision* se
   }
   ring_.push(results_, results_.bytes());
   pending_[requested_++ % ring_slots] = {time, step, self_collision != nullptr, surfaces != nullptr};
-  return true;
 }
 
 bool DiagnosticsPass::poll(Diagnostics& out, bool wait) {
-  const std::span<const std::byte> bytes = ring_.front(wait);
-  if (bytes.empty()) return false;
+  if (!arrived_.empty()) {
+    out = arrived_.front();
+    arrived_.pop_front();
+    return true;
+  }
+  if (ring_.front(wait).empty()) return false;
+  take(out);
+  return true;
+}
+
+/// The oldest result in the ring, which has arrived.
+void DiagnosticsPass::take(Diagnostics& out) {
+  const std::span<const std::byte> bytes = ring_.front(true);
   out = Diagnostics{};
   const Pending& pending = pending_[delivered_++ % ring_slots];
   out.time = pending.time;
@@ -104,7 +115,6 @@ bool DiagnosticsPass::poll(Diagnostics& out, bool wait) {
   out.contacts = static_cast<std::uint32_t>(contacts);
   out.max_speed = std::sqrt(speed_squared);
   ring_.pop();
-  return true;
 }
 
 }  // namespace clothlab::sim

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <deque>
 
 #include "server/gl/program.h"
 #include "server/sim/self_collision.h"
@@ -17,15 +18,17 @@ class DiagnosticsPass {
  public:
   static Result<DiagnosticsPass> create(std::uint32_t vertex_count);
 
-  /// Queues the reduction. Returns false, without queueing it, if too many results are still on their way.
-  /// The element lists and their slices must be bound. `self_collision` and `surfaces` may be null.
-  bool request(const StateBuffers& state, const SelfCollision* self_collision, const SurfaceContact* surfaces,
+  /// Queues the reduction; waits for the oldest if too many are still on their way. The element lists and
+  /// their slices must be bound. `self_collision` and `surfaces` may be null.
+  void request(const StateBuffers& state, const SelfCollision* self_collision, const SurfaceContact* surfaces,
                const glm::dvec3& gravity, double time, std::uint64_t step);
   /// Stores the oldest result in `out` and returns true if it has arrived; with `wait`, waits for it. Returns
   /// false if no result is there.
   bool poll(Diagnostics& out, bool wait);
 
  private:
+  void take(Diagnostics& out);
+
   gl::Program program_;
   gl::Buffer results_;  ///< the partial results, then the counters of self-collision and of surfaces
   gl::ReadbackRing ring_;
@@ -38,6 +41,7 @@ class DiagnosticsPass {
   static constexpr std::size_t ring_slots = 3;
   std::array<Pending, ring_slots> pending_{};
   std::size_t requested_ = 0, delivered_ = 0;
+  std::deque<Diagnostics> arrived_;  ///< out of a ring that was full
   std::uint32_t groups_ = 0;
 };
 

@@ -78,6 +78,19 @@ class GaussSeidel : public Integrator {
     if (by_vertex_) velocity_before_.fill(0);
   }
 
+  int iterations() const override { return sweeps_; }
+
+  Work again(StateBuffers& state, int row, int iterations) override {
+    const Uncounted uncounted(*this);
+    set_sweeps(iterations);
+    co_await step(state, row);
+  }
+
+  void carry(Carrier& carrier) override {
+    carrier.buffer(remainders_);
+    if (by_vertex_) carrier.buffer(velocity_before_);
+  }
+
  private:
   GaussSeidel(const Surroundings& around, const Plan& plan)
       : by_vertex_(scene::sweeps_vertices(plan.method)),
@@ -103,6 +116,30 @@ class GaussSeidel : public Integrator {
     }
     if (lanes_ > 0) return;
     for (gl::TextureBuffer& deviation : deviation_) deviation = per_vertex(vertex_count_);
+  }
+
+  /// While it lives, what is dispatched is not counted, and sweeps may be others; it may end half-way.
+  class Uncounted {
+   public:
+    explicit Uncounted(GaussSeidel& of) : of_(of), dispatches_(of.dispatches_), sweeps_(of.sweeps_) {}
+    ~Uncounted() {
+      of_.dispatches_ = dispatches_;
+      of_.set_sweeps(sweeps_);
+    }
+    Uncounted(const Uncounted&) = delete;
+
+   private:
+    GaussSeidel& of_;
+    std::uint64_t dispatches_;
+    int sweeps_;
+  };
+
+  void set_sweeps(int sweeps) {
+    sweeps_ = sweeps;
+    for (const gl::Program* program : {&whole_, &begin_, &contacts_pass_, &balance_, &finish_})
+      if (program->id()) program->set("last_sweep", sweeps - 1);
+    for (const gl::Program& program : visits_)
+      if (program.id()) program.set("last_sweep", sweeps - 1);
   }
 
   /// Upper bound of the turns that one thread takes in all loops of a step, if the work group has `lanes`

@@ -2,8 +2,20 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+
+#include "server/model/stability.h"
+#include "server/sim/motion_table.h"
 
 namespace clothlab::sim {
+
+std::uint32_t judged_every(const scene::Scene& scene, const model::Model& model) {
+  constexpr double a_second = 60;
+  const double dt = scene.solver.dt, most = dt > model::margin_to_warn * model::dt_limit_bound(model, scene)
+                                                ? batch_steps / 8
+                                                : batch_steps;
+  return static_cast<std::uint32_t>(std::clamp(std::round(1.0 / (a_second * dt)), 1.0, most));
+}
 
 double timed_steps(Simulation& simulation, std::uint32_t count) {
   const auto start = std::chrono::steady_clock::now();
@@ -15,6 +27,12 @@ double timed_steps(Simulation& simulation, std::uint32_t count) {
 void GuardedRun::move_to(Simulation& simulation) {
   simulation_ = &simulation;
   verdict_requested_ = false;  // a diagnosis still on its way belongs to the old simulation
+  judge_every(every_);
+}
+
+void GuardedRun::judge_every(std::uint32_t steps) {
+  every_ = steps;
+  simulation_->diagnose_every(steps);
 }
 
 Allowance GuardedRun::allowance() const {
@@ -29,6 +47,7 @@ void GuardedRun::start(double dt_limit, std::optional<double> swing) {
   dt_limit_ = dt_limit;
   swing_ = swing;
   state_ = simulation_->diagnose();
+  judged_step_ = state_.step;
   verdict_requested_ = false;
   blow_up_.start(allowance(), state_);
 }
@@ -50,7 +69,7 @@ void GuardedRun::rebase() {
 }
 
 GuardedRun::Verdict GuardedRun::judge(const Diagnostics& state) {
-  verdict_requested_ = false;
+  judged_step_ = state.step;
   state_ = state;
   const Verdict verdict = blow_up_.judge(state);
   if (pull_before_.force > pull_.force || pull_before_.reach > pull_.reach) {
@@ -61,19 +80,36 @@ GuardedRun::Verdict GuardedRun::judge(const Diagnostics& state) {
   return verdict;
 }
 
+/// Judges a state that has arrived, if its turn has come.
+GuardedRun::Verdict GuardedRun::take(const Diagnostics& state) {
+  if (state.step >= requested_step_) verdict_requested_ = false;
+  if (every_ == 0 || (state.step % every_ == 0 && state.step > judged_step_)) return judge(state);
+  state_ = state;
+  return Verdict::unjudged;
+}
+
 GuardedRun::Verdict GuardedRun::judge_now() {
+  Diagnostics arrived;
+  while (simulation_->poll_diagnostics(arrived, true))
+    if (every_ > 0 && take(arrived) == Verdict::blown_up) return Verdict::blown_up;
+  verdict_requested_ = false;
   return judge(simulation_->diagnose());
+}
+
+void GuardedRun::look() {
+  state_ = simulation_->diagnose();
 }
 
 void GuardedRun::request_verdict() {
   simulation_->request_diagnostics();
+  requested_step_ = simulation_->step_index();
   verdict_requested_ = true;
 }
 
 std::optional<GuardedRun::Verdict> GuardedRun::poll_verdict() {
   Diagnostics arrived;
-  if (!verdict_requested_ || !simulation_->poll_diagnostics(arrived)) return std::nullopt;
-  return judge(arrived);
+  if (!(verdict_requested_ || every_ > 0) || !simulation_->poll_diagnostics(arrived)) return std::nullopt;
+  return take(arrived);
 }
 
 GuardedRun::Setback GuardedRun::go_back() {
@@ -81,6 +117,7 @@ GuardedRun::Setback GuardedRun::go_back() {
   Setback setback{blow_up_.reason() + model::against_limit(scene.solver, dt_limit_),
                   model::remedy(simulation_->model(), scene, dt_limit_)};
   simulation_->go_back();
+  verdict_requested_ = false;
   state_ = blow_up_.last_good();
   return setback;
 }

@@ -13,6 +13,11 @@
 
 namespace clothlab::sim {
 
+/// A run is judged after each so many steps, and at its end: 60 times a simulated second, each 64 steps, or
+/// each 8 where the step may be near the longest stable one. By the scene alone, so that what is said of a
+/// run does not depend on who looks at it.
+std::uint32_t judged_every(const scene::Scene& scene, const model::Model& model);
+
 /// Does `count` steps and waits for the GPU. Returns the time that this took [s].
 double timed_steps(Simulation& simulation, std::uint32_t count);
 
@@ -30,6 +35,10 @@ class GuardedRun {
   void start(double dt_limit, std::optional<double> swing = std::nullopt);
   /// To be called when the scene has changed or its longest stable step `dt_limit` [s] is known better.
   void set_dt_limit(double dt_limit);
+  /// From now on only states after each `steps` steps are judged, each of them, whenever and however often
+  /// the run is looked at: the simulation asks for their diagnoses itself. 0: whatever is asked for is
+  /// judged.
+  void judge_every(std::uint32_t steps);
   /// To be called when other hands hold the cloth: the most that they pull with [N], and over which way that
   /// sets a vertex going [m] (model::Hold). What held since the last judgement counts in the next one.
   void set_hands(double force, double reach);
@@ -40,10 +49,13 @@ class GuardedRun {
   /// Calls `timed_steps`.
   double step(std::uint32_t count) { return timed_steps(*simulation_, count); }
 
-  /// Diagnoses the present state, waiting for the GPU, and judges it. A good state is kept, to go back to.
+  /// Diagnoses the present state, waiting for the GPU, and judges it, after what is still to be judged. A
+  /// good state is kept, to go back to.
   Verdict judge_now();
+  /// Only diagnoses the present state, waiting for the GPU.
+  void look();
   // `judge_now` without waiting for the GPU: call `request_verdict`, then `poll_verdict` until it returns a
-  // verdict.
+  // verdict. It also returns, in order, those of the states of `judge_every`, which nobody need request.
   void request_verdict();
   bool verdict_requested() const { return verdict_requested_; }
   std::optional<Verdict> poll_verdict();
@@ -66,6 +78,7 @@ class GuardedRun {
  private:
   Allowance allowance() const;
   Verdict judge(const Diagnostics& state);
+  Verdict take(const Diagnostics& state);
 
   Simulation* simulation_;
   BlowUp blow_up_;
@@ -76,6 +89,9 @@ class GuardedRun {
     double force = 0, reach = 0;
   } pull_, pull_before_;  ///< of the hands now, and at most since the last judgement
   bool verdict_requested_ = false;
+  std::uint64_t requested_step_ = 0;
+  std::uint32_t every_ = 0;
+  std::uint64_t judged_step_ = 0;  ///< the last of `judge_every`
 };
 
 }  // namespace clothlab::sim

@@ -91,6 +91,20 @@ class ImplicitEuler : public Integrator {
     past_velocities_.fill(0);
   }
 
+  int iterations() const override { return most_newton_steps_; }
+  int fewest_iterations() const override { return 1; }
+
+  Work again(StateBuffers& state, int row, int iterations) override {
+    const Uncounted uncounted(*this);
+    most_newton_steps_ = iterations;
+    co_await step(state, row);
+  }
+
+  void carry(Carrier& carrier) override {
+    carrier.buffer(contact_friction_);
+    carrier.buffer(past_velocities_);
+  }
+
   SolverWork work() const override { return work_; }
 
  private:
@@ -105,6 +119,25 @@ class ImplicitEuler : public Integrator {
     past_velocities_ = gl::Buffer(vertex_count * trends * 4 * sizeof(float));
     contact_friction_ = gl::Buffer(vertex_count * 4 * sizeof(float));
   }
+
+  /// While it lives, no work is counted, and Newton steps may be more; it may end half-way.
+  class Uncounted {
+   public:
+    explicit Uncounted(ImplicitEuler& of)
+        : of_(of), dispatches_(of.dispatches_), work_(of.work_), most_newton_steps_(of.most_newton_steps_) {}
+    ~Uncounted() {
+      of_.dispatches_ = dispatches_;
+      of_.work_ = work_;
+      of_.most_newton_steps_ = most_newton_steps_;
+    }
+    Uncounted(const Uncounted&) = delete;
+
+   private:
+    ImplicitEuler& of_;
+    std::uint64_t dispatches_;
+    SolverWork work_;
+    int most_newton_steps_;
+  };
 
   void run(const gl::Program& program) {
     program.use();

@@ -9,6 +9,7 @@
 #include "server/gl/program.h"
 #include "server/model/model.h"
 #include "server/scene/scene.h"
+#include "server/sim/carried.h"
 #include "server/sim/motion_table.h"
 #include "server/sim/plan.h"
 #include "server/sim/self_collision.h"
@@ -40,6 +41,15 @@ class Integrator {
   /// Forgets what was carried over from the last step. To be called if the present state was not made by this
   /// object's last step, or if that step was given up half-way.
   virtual void restart() {}
+
+  /// Names what the next step needs of the last one, besides the state. It must be all of it.
+  virtual void carry(Carrier&) {}
+
+  /// Of methods that iterate: the iterations of a step, and the fewest that it can be done with; else 0.
+  virtual int iterations() const { return 0; }
+  virtual int fewest_iterations() const { return 0; }
+  /// A step as `step` does, with so many iterations, which is not counted. For methods that iterate.
+  virtual Work again(StateBuffers&, int /*row*/, int /*iterations*/) { return {}; }
 
   virtual SolverWork work() const { return {}; }
 

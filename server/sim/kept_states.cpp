@@ -1,31 +1,28 @@
 #include "server/sim/kept_states.h"
 
-#include <glm/vec4.hpp>
 #include <new>
 #include <utility>
 
 namespace clothlab::sim {
 
-void KeptStates::keep(const StateBuffers& state, std::uint32_t vertex_count, KeptState when) {
-  const std::size_t size = vertex_count * sizeof(glm::vec4);
+void KeptStates::keep(const std::function<void(KeptState&)>& copy) {
+  KeptState next;
   const auto take_the_oldest = [&] {
-    when.position = std::move(states_.front().position);
-    when.velocity = std::move(states_.front().velocity);
+    next = std::move(states_.front());
     drop_oldest();
   };
-  if (!states_.empty() && (states_.size() >= most_states || bytes() + 2 * size > most_bytes)) {
+  const std::size_t expected = states_.empty() ? 0 : states_.back().bytes();
+  while (!states_.empty() && (states_.size() >= most_states || bytes() + expected > most_bytes))
     take_the_oldest();
-  } else {
-    try {
-      when.position = gl::Buffer(size);
-      when.velocity = gl::Buffer(size);
-    } catch (const std::bad_alloc&) {  // a shorter timeline is no reason to fail
-      if (states_.empty()) throw;
-      take_the_oldest();
-    }
+  try {
+    copy(next);
+  } catch (const std::bad_alloc&) {  // a shorter timeline is no reason to fail
+    if (states_.empty()) throw;
+    take_the_oldest();
+    copy(next);
   }
-  state.save(when.position, when.velocity);
-  states_.push_back(std::move(when));
+  states_.push_back(std::move(next));
+  after_step = false;
 }
 
 const KeptState* KeptStates::at_or_before(std::uint64_t step) const {
@@ -35,9 +32,9 @@ const KeptState* KeptStates::at_or_before(std::uint64_t step) const {
 }
 
 std::size_t KeptStates::bytes() const {
-  return states_.empty()
-             ? 0
-             : states_.size() * (states_.front().position.bytes() + states_.front().velocity.bytes());
+  std::size_t sum = 0;
+  for (const KeptState& state : states_) sum += state.bytes();
+  return sum;
 }
 
 void KeptStates::drop_after(std::uint64_t step) {

@@ -99,10 +99,45 @@ Status Kernels::grow(const scene::Scene& scene, std::uint32_t slots) {
   grown->take_counters(*self_collision);
   *self_collision = std::move(*grown);
   plan = larger;
+  // Longer lists are no reason to forget the last step.
+  Carried remembered;
+  {
+    Carrier out = Carrier::to(remembered);
+    integrator->carry(out);
+  }
   integrator = std::move(*adapted);
   integrator->set_parameters(surroundings(scene));
   integrator->restart();
+  Carrier back = Carrier::from(remembered);
+  integrator->carry(back);
   return ok();
+}
+
+void Kernels::carry_method(Carrier& carrier) {
+  integrator->carry(carrier);
+  if (strain_limit) strain_limit->carry(carrier);
+}
+
+void Kernels::carry(Carrier& carrier) {
+  carry_method(carrier);
+  if (self_collision) self_collision->carry(carrier);
+  if (surface_contact) surface_contact->carry(carrier);
+}
+
+void Kernels::forget() {
+  if (self_collision) self_collision->invalidate();
+  integrator->restart();
+  if (strain_limit) strain_limit->restart();
+  if (surface_contact) surface_contact->invalidate();
+}
+
+void Kernels::end_step() {
+  if (self_collision) self_collision->end_step();
+  if (surface_contact) surface_contact->end_step();
+}
+
+void Kernels::give_up_step() {
+  if (self_collision) self_collision->give_up_step();
 }
 
 Status Kernels::update(const scene::Scene& scene) {

@@ -36,6 +36,17 @@ struct Kernels {
   /// Takes over the numbers of a scene with the same structure.
   Status update(const scene::Scene& scene);
 
+  /// Names what the method and the strain limit carry from step to step: what a step may change before it is
+  /// given up.
+  void carry_method(Carrier& carrier);
+  /// Names all that passes carry from step to step. `bind_constants` of the simulation must have been called.
+  void carry(Carrier& carrier);
+  /// Forgets all of it.
+  void forget();
+  /// To be called when a step has ended, or is given up: it may begin again.
+  void end_step();
+  void give_up_step();
+
   /// Brings the neighbour lists up to date. Makes them longer if they have become too short for all pairs, as
   /// far as the limits on their size allow. The scene must have self-collision. The work may stop on its way.
   Work update_lists(const scene::Scene& scene);

@@ -11,6 +11,7 @@
 #include "server/base/text.h"
 #include "server/model/crowding.h"
 #include "server/model/thickness.h"
+#include "server/sim/integrator.h"
 #include "server/sim/plan.h"
 #include "server/sim/state.h"
 
@@ -116,10 +117,57 @@ void SelfCollision::invalidate() {
                   offsetof(NeighbourControl, search));
   heads_.buffer.fill(chain_end);  // a search that was given up has left vertices in the cells
   updates_ = 0;
-  searched_ = false;
+  searched_ = updated_ = false;
 }
 
-Work SelfCollision::update_lists() {
+void SelfCollision::give_up_step() {
+  NeighbourControl now;
+  control_.download(&now, sizeof now);
+  // What the step's end has asked for is of places that are given up. A search that was under way begins
+  // anew.
+  const bool searching = !updated_ && (now.rebuild[0] > 0 || now.finish[0] > 0);
+  now.rebuild[0] = searching ? vertex_groups(vertex_count_) : 0;
+  now.search = {range_groups_, 0, 1};
+  now.finish = {0, 1, 1};
+  control_.upload(&now, sizeof now);
+  if (searching) heads_.buffer.fill(chain_end);
+}
+
+void SelfCollision::carry(Carrier& carrier) {
+  bool searched = searched_;
+  NeighbourControl control;
+  if (!carrier.loads()) control_.download(&control, sizeof control);
+  carrier.number(searched);
+  carrier.number(control.rebuild);
+  carrier.number(control.counters);
+  carrier.number(updates_);
+  carrier.number(updated_);
+  carrier.number(longest_);
+  carrier.ring(counters_ring_);
+  carrier.buffer(built_position_.buffer);
+  if (!carrier.loads() || !carrier.fits()) return;
+  const std::uint64_t updates = updates_;
+  const bool updated = updated_;
+  invalidate();
+  if (searched) search_again();
+  updates_ = updates;
+  updated_ = updated;
+  control_.upload(&control.rebuild, sizeof control.rebuild, offsetof(NeighbourControl, rebuild));
+  control_.upload(&control.counters, sizeof control.counters, counters_offset);
+}
+
+/// Makes the lists that were found at `built_position_`.
+void SelfCollision::search_again() {
+  gl::TextureBuffer places{gl::Buffer(built_position_.buffer.bytes()), GL_RGBA32F};
+  places.buffer.copy_from(built_position_.buffer);
+  places.bind(unit_position);
+  bind();
+  Work work = search();
+  for (Pace unlimited; !work.done();) work.resume(unlimited);
+  wait_for_writes();
+}
+
+void SelfCollision::bind() const {
   control_.bind_storage(slot_neighbour_control);
   heads_.buffer.bind_storage(slot_cell_heads);
   chains_.buffer.bind_storage(slot_cell_chains);
@@ -133,8 +181,14 @@ Work SelfCollision::update_lists() {
   built_position_.bind(unit_position_when_built);
   excluded_.bind(unit_excluded);
   first_excluded_.bind(unit_first_excluded);
+}
+
+Work SelfCollision::update_lists() {
+  bind();
+  if (updated_) co_return;
   if (search_is_due()) co_await search();
   if (updates_++ % updates_between_looks == 0) read_counters();
+  updated_ = true;
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 

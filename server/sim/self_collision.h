@@ -9,6 +9,7 @@
 #include "server/gl/program.h"
 #include "server/model/model.h"
 #include "server/scene/scene.h"
+#include "server/sim/carried.h"
 #include "server/sim/work.h"
 
 namespace clothlab::sim {
@@ -41,6 +42,13 @@ class SelfCollision {
   void take_counters(const SelfCollision& other);
   /// Has the lists rebuilt before the next step, however far vertices have moved.
   void invalidate();
+  /// Makes the lists those that a step given up has begun with: it is about to begin again.
+  void give_up_step();
+  /// To be called when a step has ended: the next one brings the lists up to date anew.
+  void end_step() { updated_ = false; }
+  /// Names the lists and when they were made. They are found again from the places at which the search was
+  /// made, so rest positions must be bound. Waits for the GPU.
+  void carry(Carrier& carrier);
 
   float skin() const { return skin_; }
 
@@ -64,9 +72,11 @@ class SelfCollision {
   static constexpr std::size_t counters_offset = 3 * sizeof(std::uint32_t);
 
  private:
+  void bind() const;
   void limit_range(std::uint32_t groups);
   bool search_is_due() const;
   Work search();
+  void search_again();
   void read_counters();
 
   std::uint32_t vertex_count_ = 0, slots_ = neighbour_slots;
@@ -74,6 +84,7 @@ class SelfCollision {
   double candidates_ = 0;
   std::uint64_t updates_ = 0;  ///< calls of update_lists since `invalidate`
   bool searched_ = false;      ///< since `invalidate`
+  bool updated_ = false;       ///< for the step under way
   bool asks_ = false;          ///< the host reads whether a search is due
   std::uint32_t longest_ = 0;  ///< Counters::longest as last read back
   float skin_ = 0;             ///< [m]

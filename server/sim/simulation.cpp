@@ -82,12 +82,15 @@ Result<ChangeDepth> Simulation::change(const scene::Scene& scene) {
       if (Status apart = model::check_present(model(), scene, read_state().position); !apart)
         return apart.error();
     self.give_up_work();
+    self.note_before_changes();
     self.take_kernels(std::move(*kernels));
   } else if (depth == ChangeDepth::uniform) {
     self.give_up_work();
+    self.note_before_changes();
     if (Status updated = self.kernels.update(scene); !updated) return updated.error();
   }
   self.adopt(scene);
+  if (depth != ChangeDepth::none) self.undo_changes();
   return depth;
 }
 
@@ -149,7 +152,8 @@ void Simulation::keep_state() {
   implementation_->keep_state();
 }
 void Simulation::forget_carried() {
-  implementation_->forget();
+  implementation_->before_changes.reset();
+  implementation_->kernels.forget();
 }
 bool Simulation::in_step() const {
   return implementation_->in_step;
@@ -163,15 +167,11 @@ Status Simulation::go_to_kept(std::uint64_t step, const scene::Scene& scene) {
   if (kernels->self_collision && kernels->plan.neighbour_slots != then.neighbour_slots)
     if (Status grown = kernels->grow(scene, then.neighbour_slots); !grown) return grown.error();
   self.give_up_work();
+  self.before_changes.reset();
   self.take_kernels(std::move(*kernels));
   self.scene = scene;
-  self.settled = then.settled;
-  self.kernels.motions.settle(self.settled);
   (void)self.set_hands({});
-  self.state.load(then.position, then.velocity);
-  self.state_replaced(then.time, then.step);
-  self.start_time = then.start_time;
-  self.start_step = then.start_step;
+  if (Status done = self.go_on_from(then); !done) return done;
   self.kept.drop_after(then.step);
   self.keep_start();
   return ok();
@@ -204,6 +204,9 @@ double Simulation::search_candidates() const {
 SolverWork Simulation::solver_work() const {
   return implementation_->kernels.integrator->work();
 }
+const Solves& Simulation::solves() const {
+  return implementation_->solved.solves();
+}
 StrainLimitWork Simulation::strain_limit_work() const {
   return implementation_->kernels.strain_limit ? implementation_->kernels.strain_limit->work()
                                                : StrainLimitWork{};
@@ -213,19 +216,18 @@ std::uint64_t Simulation::dispatches() const {
 }
 
 void Simulation::request_diagnostics() {
-  Implementation& self = *implementation_;
-  self.bind_constants();
-  const SelfCollision* self_collision = self.kernels.self_collision ? &*self.kernels.self_collision : nullptr;
-  const SurfaceContact* surfaces = self.kernels.surface_contact ? &*self.kernels.surface_contact : nullptr;
-  if (self.diagnostics.request(self.state, self_collision, surfaces, self.scene.gravity, time(),
-                               self.step_index))
-    self.last_good.put_aside(self.state, time(), self.step_index);
+  implementation_->request_diagnostics();
 }
 
-bool Simulation::poll_diagnostics(Diagnostics& out) {
-  if (!implementation_->diagnostics.poll(out, false)) return false;
+bool Simulation::poll_diagnostics(Diagnostics& out, bool wait) {
+  if (!implementation_->diagnostics.poll(out, wait)) return false;
   implementation_->diagnosed_step = out.step;
+  implementation_->last_good.free_before(out.step);
   return true;
+}
+
+void Simulation::diagnose_every(std::uint32_t steps) {
+  implementation_->diagnosed_every = steps;
 }
 
 Diagnostics Simulation::diagnose() {
@@ -233,8 +235,7 @@ Diagnostics Simulation::diagnose() {
   while (implementation_->diagnostics.poll(result, true)) {
   }  // take older results that are still on their way
   request_diagnostics();
-  implementation_->diagnostics.poll(result, true);
-  implementation_->diagnosed_step = result.step;
+  poll_diagnostics(result, true);
   return result;
 }
 

@@ -72,6 +72,21 @@ struct SolverWork {
   std::uint64_t unconverged = 0;  ///< linear solves that ended before the tolerance was met
 };
 
+/// How far the solves of a run's steps are from solved (solved.h), by the step that was measured last. All 0
+/// for methods that do not iterate.
+struct Solves {
+  std::uint64_t measured = 0, unsolved_steps = 0;  ///< steps
+  std::uint64_t step = 0;                          ///< number of the last one
+  double left = 0;    ///< how far from where it ended the solved step ends, at the farthest vertex, about [m]
+  double ratio = 0;   ///< what an iteration still changes, over what the one before did
+  double undone = 0;  ///< `left` as an acceleration that the step leaves out, over that of gravity
+
+  /// True if the last step measured was far from solved.
+  bool unsolved() const;
+  /// True if two steps measured or more were, and half of all.
+  bool often_unsolved() const;
+};
+
 /// Counts of the work of the strain limit.
 struct StrainLimitWork {
   std::uint64_t sweeps = 0;
@@ -121,6 +136,8 @@ class Simulation {
 
   /// The work of the present method's equation solver since the kernels were made.
   SolverWork solver_work() const;
+  /// Since the kernels were made, or the state was set from outside.
+  const Solves& solves() const;
   /// The work of the strain limit since the kernels were made.
   StrainLimitWork strain_limit_work() const;
   /// Number of dispatches that the present method has queued since the kernels were made, without those of
@@ -144,7 +161,10 @@ class Simulation {
   /// Diagnostics without waiting for the GPU: call `request_diagnostics`, then `poll_diagnostics` until it
   /// returns true with a result in `out` (usually a frame later).
   void request_diagnostics();
-  bool poll_diagnostics(Diagnostics& out);
+  /// With `wait`, waits for a result that is on its way.
+  bool poll_diagnostics(Diagnostics& out, bool wait = false);
+  /// From now on requests diagnostics itself after each `steps` steps; 0: never.
+  void diagnose_every(std::uint32_t steps);
   /// Diagnostics of the present state, waiting for the GPU.
   Diagnostics diagnose();
 

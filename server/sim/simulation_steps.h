@@ -3,6 +3,10 @@
 #pragma once
 
 #include <algorithm>
+#include <glm/vec4.hpp>
+#include <limits>
+#include <new>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -15,6 +19,7 @@
 #include "server/sim/last_good.h"
 #include "server/sim/scene_order.h"
 #include "server/sim/simulation.h"
+#include "server/sim/solved.h"
 #include "server/sim/state.h"
 
 namespace clothlab::sim {
@@ -29,8 +34,20 @@ struct Simulation::Implementation {
   std::vector<scene::Motion> settled;  ///< of pins with a place that came when the cloth was on its way
   DiagnosticsPass diagnostics;
   std::uint64_t diagnosed_step = 0;  ///< step_index of the diagnosis that arrived last
+  std::uint32_t diagnosed_every = 0;
   LastGood last_good;
   KeptStates kept;
+  SolvedMeasure solved;
+  /// What methods carry, at the start of the step under way if that may be cut; else empty.
+  Carried at_step_start;
+  bool may_be_cut = false, has_step_start = false;
+  /// The scene before the changes since the last step, and the state under it: a change back goes on from
+  /// there.
+  struct BeforeChanges {
+    scene::Scene scene;
+    KeptState state;
+  };
+  std::optional<BeforeChanges> before_changes;
   std::uint32_t topology_revision = 0;
   std::uint64_t step_index = 0;
   // Time is start_time + (step_index - start_step) dt. A sum over the steps would drift by rounding. A change
@@ -74,7 +91,6 @@ struct Simulation::Implementation {
     const auto passed = [timer](const char* pass) {
       if (timer) timer->stage(pass);
     };
-    hands.hold(state, scene);
     state.position().bind(unit_position);
     if (kernels.self_collision) {
       co_await kernels.update_lists(scene);
@@ -84,6 +100,9 @@ struct Simulation::Implementation {
       co_await kernels.surface_contact->update_pairs(state, row);
       passed("pair_search");
     }
+    hands.hold(state, scene);
+    if (solved.due(step_index)) co_await solved.measure(state, kernels, scene, row, step_index);
+    state.position().bind(unit_position);
     co_await kernels.integrator->step(state, row);
     passed(scene::name(kernels.plan.method));
     if (kernels.strain_limit) {
@@ -104,19 +123,39 @@ struct Simulation::Implementation {
     upload_poses(count);
     for (std::uint32_t step = 0; step < count && steps_to_do > 0; ++step) {
       if (timer) timer->begin();
-      in_step = true;
+      begin_step();
       co_await run_step(static_cast<int>(step) * kernels.plan.pose_rows(), timer);
       if (timer) std::exchange(timer, nullptr)->end();
-      in_step = false;
+      in_step = has_step_start = false;
+      kernels.end_step();
       state.show();
       ++step_index;
       --steps_to_do;
       if (kept.due(step_index)) keep_state();
+      if (diagnosed_every > 0 && step_index % diagnosed_every == 0) request_diagnostics();
       co_await may_stop;
     }
   }
 
+  void request_diagnostics() {
+    bind_constants();
+    const SelfCollision* self_collision = kernels.self_collision ? &*kernels.self_collision : nullptr;
+    const SurfaceContact* surfaces = kernels.surface_contact ? &*kernels.surface_contact : nullptr;
+    diagnostics.request(state, self_collision, surfaces, scene.gravity, time_of(step_index), step_index);
+    last_good.put_aside(state, time_of(step_index), step_index);
+  }
+
+  void begin_step() {
+    before_changes.reset();
+    in_step = true;
+    if (!may_be_cut) return;
+    Carrier carrier = Carrier::to(at_step_start);
+    kernels.carry_method(carrier);
+    has_step_start = true;
+  }
+
   void resume(Pace& pace) {
+    may_be_cut = pace.limited();
     while (steps_to_do > 0) {
       if (work.done())
         work = run_batch(std::min(steps_to_do, batch_steps));
@@ -129,47 +168,85 @@ struct Simulation::Implementation {
     }
   }
 
-  /// Gives up the batch under way, with any step that it has begun, and leaves no steps to do.
+  /// Gives up the batch under way, with any step that it has begun, and leaves no steps to do. All is as if
+  /// that step had not begun.
   void give_up_work() {
     steps_to_do = 0;
     work = Work();
     if (!std::exchange(in_step, false)) return;
     state.give_up_step();
-    forget();
-  }
-
-  /// Makes all passes forget what they carry over from step to step, which belongs to another state.
-  void forget() {
-    if (kernels.self_collision) kernels.self_collision->invalidate();
-    kernels.integrator->restart();
-    if (kernels.strain_limit) kernels.strain_limit->restart();
-    if (kernels.surface_contact) kernels.surface_contact->invalidate();
+    kernels.give_up_step();
+    if (!std::exchange(has_step_start, false)) return kernels.forget();
+    Carrier carrier = Carrier::from(at_step_start);
+    kernels.carry_method(carrier);
   }
 
   /// To be called when the state was set from outside and not made by a step: passes forget what they carry
   /// over, and time and step number are set.
   void state_replaced(double time, std::uint64_t step) {
-    forget();
+    before_changes.reset();
+    kernels.forget();
     start_time = time;
     step_index = start_step = step;
+    solved.begin(step);
   }
 
-  /// Keeps the state at the end of a step. The run goes on from it as one that goes back to it does.
+  /// Copies all that the next step depends on besides the scene. Not to be called within a step.
+  void copy_to(KeptState& copy) {
+    const std::size_t size = kernels.model.vertex_count() * sizeof(glm::vec4);
+    for (gl::Buffer* buffer : {&copy.position, &copy.velocity})
+      if (buffer->bytes() != size) *buffer = gl::Buffer(size);
+    state.save(copy.position, copy.velocity);
+    Carrier carrier = Carrier::to(copy.carried);
+    kernels.carry(carrier);
+    copy.step = step_index;
+    copy.time = time_of(step_index);
+    copy.start_time = start_time;
+    copy.start_step = start_step;
+    copy.settled = settled;
+    copy.neighbour_slots = kernels.plan.neighbour_slots;
+  }
+
+  /// Goes on from a copy, under the scene that it was made under. Error: the kernels cannot be made, and
+  /// nothing has changed.
+  Status go_on_from(const KeptState& copy) {
+    if (kernels.self_collision && kernels.plan.neighbour_slots != copy.neighbour_slots)
+      if (Status grown = kernels.grow(scene, copy.neighbour_slots); !grown) return grown;
+    settled = copy.settled;
+    kernels.motions.settle(settled);
+    state.load(copy.position, copy.velocity);
+    start_time = copy.start_time;
+    start_step = copy.start_step;
+    step_index = copy.step;
+    bind_constants();
+    Carrier carrier = Carrier::from(copy.carried);
+    kernels.carry(carrier);
+    if (!carrier.fits()) kernels.forget();
+    return ok();
+  }
+
   void keep_state() {
-    forget();
-    kept.keep(state, kernels.model.vertex_count(),
-              {{},
-               {},
-               step_index,
-               time_of(step_index),
-               start_time,
-               start_step,
-               settled,
-               kernels.plan.neighbour_slots});
+    kept.keep([this](KeptState& copy) { copy_to(copy); });
+  }
+
+  /// To be called before a change of scene, when no step is under way.
+  void note_before_changes() try {
+    if (before_changes) return;
+    before_changes.emplace(BeforeChanges{scene, {}});
+    copy_to(before_changes->state);
+  } catch (const std::bad_alloc&) {  // then the next step begins with new lists and first guesses
+    before_changes.reset();
+  }
+  /// To be called after a change of scene: if it ends where the changes began, nothing has changed.
+  void undo_changes() {
+    if (!before_changes || change_depth(before_changes->scene, scene) != ChangeDepth::none) return;
+    (void)go_on_from(before_changes->state);
+    before_changes.reset();
   }
 
   /// Makes the present state the good state.
   void keep_start() {
+    last_good.free_before(std::numeric_limits<std::uint64_t>::max());
     last_good.put_aside(state, time_of(step_index), step_index);
     last_good.keep(step_index);
   }
@@ -194,6 +271,7 @@ struct Simulation::Implementation {
 
   void take_kernels(Kernels next) {
     kernels = std::move(next);
+    solved.begin(step_index);
     state.make_room(kernels.body_places());
   }
 
@@ -207,6 +285,7 @@ struct Simulation::Implementation {
         differs(scene, next, &scene::Cloth::mass) || differs(scene, next, &scene::Cloth::weights) ||
         differs(scene, next, &scene::Cloth::pins) || moving_motions(scene) != moving_motions(next);
     settle_new_pins(next);
+    if (next.solver != scene.solver) solved.begin(step_index);
     scene = next;
     if (constants) state.rewrite_constants(kernels.model, kernels.motions);
     if (!hands.empty())

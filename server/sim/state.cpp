@@ -57,6 +57,15 @@ void StateBuffers::make_room(std::uint32_t extra) {
   }
 }
 
+void StateBuffers::copy_from(const StateBuffers& other) {
+  vertex_count_ = other.vertex_count_;
+  const std::size_t size = other.position().buffer.bytes();
+  for (gl::TextureBuffer* buffer : {&position_[0], &position_[1], &velocity_[0], &velocity_[1]})
+    if (buffer->buffer.bytes() != size) *buffer = {gl::Buffer(size), GL_RGBA32F};
+  position_[current_].buffer.copy_from(other.position().buffer);
+  velocity_[current_].buffer.copy_from(other.velocity().buffer);
+}
+
 void StateBuffers::show() {
   shown_ = current_;
   is_aside_ = false;

@@ -29,6 +29,9 @@ class StateBuffers {
   void bind_outputs() const;   ///< the other copy for writing
   void swap() { current_ = 1 - current_; }
 
+  /// Makes the present copy that of another state, whole.
+  void copy_from(const StateBuffers& other);
+
   /// To be called when a step has ended: everything outside of the step's passes now sees the present copy.
   void show();
   /// The state that is seen outside of a step's passes. While a step is under way: the state at its start.

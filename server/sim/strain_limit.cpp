@@ -98,6 +98,11 @@ void StrainLimit::restart() {
   if (threads_) threads_->restart();
 }
 
+void StrainLimit::carry(Carrier& carrier) {
+  carrier.buffer(pulls_);
+  if (threads_) threads_->carry(carrier);
+}
+
 std::vector<float> StrainLimit::shares(const StateBuffers& state, const model::Model& model,
                                        const gl::TextureBuffer& corrected) const {
   const auto read = [&](const gl::TextureBuffer& from, std::vector<glm::dvec3>& into) {

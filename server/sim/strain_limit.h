@@ -26,6 +26,8 @@ class StrainLimit {
 
   /// Forgets the pulls of the last step. To be called if the present state was not made by that step.
   void restart();
+  /// Names the pulls of the last step.
+  void carry(Carrier& carrier);
 
   StrainLimitWork work() const { return work_; }
 

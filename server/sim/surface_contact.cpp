@@ -173,12 +173,23 @@ void SurfaceContact::invalidate() {
   vertex_contacts_.buffer.fill(0);
   limits_.buffer.fill(std::bit_cast<std::uint32_t>(1.0f));
   turn_ = 0;
+  updated_ = false;
+}
+
+void SurfaceContact::carry(Carrier& carrier) {
+  pairs_.carry(carrier);
+  carrier.buffer(vertex_contacts_.buffer);
+  carrier.buffer(limits_.buffer);
+  carrier.number(turn_);
+  carrier.number(updated_);
+  if (carrier.loads()) bodies_.invalidate();  // whose places are behind a state's that is put back
 }
 
 Work SurfaceContact::update_pairs(const StateBuffers& state, int row) {
   bodies_.place_at_start(state, row);
   bodies_.bind();
-  co_await pairs_.update(state);
+  if (!updated_) co_await pairs_.update(state);
+  updated_ = true;
   if (!keeps_start_ && pieces_ == 1) co_return;
   start_.buffer.copy_from(state.position().buffer);
   start_velocity_.buffer.copy_from(state.velocity().buffer);

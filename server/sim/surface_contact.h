@@ -11,6 +11,7 @@
 #include "server/gl/program.h"
 #include "server/model/model.h"
 #include "server/scene/scene.h"
+#include "server/sim/carried.h"
 #include "server/sim/plan.h"
 #include "server/sim/state.h"
 #include "server/sim/surface_bodies.h"
@@ -37,6 +38,11 @@ class SurfaceContact {
 
   /// Forgets the pairs and what is carried over from step to step.
   void invalidate();
+  /// To be called when a step has ended: the next one brings the pairs up to date anew. A step that is given
+  /// up and begins again does not.
+  void end_step() { updated_ = false; }
+  /// Names the pairs and what is carried over from step to step. Waits for the GPU.
+  void carry(Carrier& carrier);
 
   void shorten_lists(std::uint32_t entries, bool for_good) { pairs_.shorten_lists(entries, for_good); }
   /// As of SurfacePairs.
@@ -69,6 +75,7 @@ class SurfaceContact {
   void push_and_filter(StateBuffers& state, int row, std::uint32_t changing, bool last_piece);
 
   std::uint32_t cloth_vertex_count_ = 0, vertex_count_ = 0;   ///< with the places of bodies
+  bool updated_ = false;                                      ///< pairs, for the step under way
   int turn_ = 0;                                              ///< whose step_counts the next step has
   bool driven_ = false;                                       ///< pins, bodies or colliders move
   bool long_steps_ = false;                                   ///< the method's

@@ -187,6 +187,27 @@ void SurfacePairs::forget_pairs(bool within_step) {
   searched_ = false;
 }
 
+void SurfacePairs::carry(Carrier& carrier) {
+  SurfaceControl control;
+  if (!carrier.loads()) control_.download(&control, sizeof control);
+  Capacities capacity = capacity_;
+  float most_query = most_query_;
+  carrier.number(control);
+  carrier.number(capacity);
+  carrier.number(most_query);
+  carrier.number(updates_);
+  carrier.number(searched_);
+  carrier.ring(sizes_ring_);
+  if (carrier.loads() && carrier.fits()) {
+    if (capacity != capacity_) make_lists(capacity);
+    limit_query(most_query);
+    control_.upload(&control, sizeof control);
+  }
+  carrier.buffer(expected_.buffer);
+  const std::uint32_t pairs = searched_ ? std::min(control.pairs, capacity_.pairs) : 0;
+  carrier.buffer(pairs_.buffer, std::size_t{pairs} * 4 * sizeof(std::uint32_t));
+}
+
 bool SurfacePairs::none(std::size_t groups) const {
   return asks_ && none_for_sure(groups);
 }

@@ -12,6 +12,7 @@
 #include "server/gl/program.h"
 #include "server/model/model.h"
 #include "server/scene/scene.h"
+#include "server/sim/carried.h"
 #include "server/sim/state.h"
 #include "server/sim/surface_blocks.h"
 #include "server/sim/surface_triangles.h"
@@ -50,6 +51,8 @@ class SurfacePairs {
   /// For tests: the same, and the lists have room for so many entries until they are made longer; `for_good`:
   /// they may not be.
   void shorten_lists(std::uint32_t entries, bool for_good);
+  /// Names the pairs, with all that says how long they hold and how long the lists are.
+  void carry(Carrier& carrier);
 
   /// Binds the pairs, the near pairs and the control block, whose arguments indirect dispatches then take.
   void bind() const;
@@ -86,6 +89,7 @@ class SurfacePairs {
   /// How many entries the lists of a search have room for.
   struct Capacities {
     std::uint32_t leaf_pairs = 0, bundle_pairs = 0, triangle_pairs = 0, pairs = 0;
+    bool operator==(const Capacities&) const = default;
   };
   void make_lists(const Capacities& wanted);
   std::array<const gl::Program*, 10> programs() const;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "server/gl/buffer.h"
+#include "server/sim/carried.h"
 #include "server/sim/element_lists.h"
 
 namespace clothlab::sim {
@@ -17,6 +18,7 @@ class ThreadLimit {
   void set_parameters(const model::Model& model);
   void bind() const;
   void restart() { pulls_.fill(0); }
+  void carry(Carrier& carrier) { carrier.buffer(pulls_); }
 
  private:
   std::vector<std::uint32_t> triangles_;  ///< [limited triangle] its membrane's number in the model

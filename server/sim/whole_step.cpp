@@ -41,6 +41,10 @@ class WholeStep : public Integrator {
     if (carries()) carried_[current_].buffer.fill(0);
   }
 
+  void carry(Carrier& carrier) override {
+    if (carries()) carrier.buffer(carried_[current_].buffer);
+  }
+
  private:
   gl::Program program_;
   bool carries() const { return carried_[0].buffer.bytes() > 0; }

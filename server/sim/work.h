@@ -21,6 +21,9 @@ struct Pace {
   std::uint32_t most_places = std::numeric_limits<std::uint32_t>::max();  ///< largest number of places
   std::uint32_t passed = 0;                                               ///< places reached so far
 
+  bool limited() const {
+    return until != Clock::time_point::max() || most_places != std::numeric_limits<std::uint32_t>::max();
+  }
   bool enough() {
     return ++passed >= most_places || (until != Clock::time_point::max() && Clock::now() >= until);
   }
