@@ -83,7 +83,7 @@ HangingStretch hanging_stretch(const Model& model, const scene::Scene& scene) {
 }
 
 std::string sweeps_warning(const Model& model, const scene::Scene& scene) {
-  constexpr double much = 0.1, little = 0.02;
+  constexpr double much = 0.2, little = 0.02;
   const scene::Solver& solver = scene.solver;
   if (solver.automatic) return {};
   const HangingStretch stretch = hanging_stretch(model, scene);

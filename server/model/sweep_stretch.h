@@ -22,7 +22,7 @@ struct HangingStretch {
 /// the law says, but stretches by as much on its way there.
 HangingStretch hanging_stretch(const Model& model, const scene::Scene& scene);
 
-/// A warning to the user if sweeps add a tenth of the length or more; empty if not.
+/// A warning to the user if sweeps add a fifth of the length or more; empty if not.
 std::string sweeps_warning(const Model& model, const scene::Scene& scene);
 
 }  // namespace clothlab::model

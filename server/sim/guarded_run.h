@@ -13,9 +13,9 @@
 
 namespace clothlab::sim {
 
-/// A run is judged after each so many steps, and at its end: 60 times a simulated second, each 64 steps, or
-/// each 8 where the step may be near the longest stable one. By the scene alone, so that what is said of a
-/// run does not depend on who looks at it.
+/// A run is judged after each so many steps, and at its end: 60 times a simulated second, each 32 steps at
+/// least, or each 4 where the step may be near the longest stable one. By the scene alone, so that what is
+/// said of a run does not depend on who looks at it.
 std::uint32_t judged_every(const scene::Scene& scene, const model::Model& model);
 
 /// Does `count` steps and waits for the GPU. Returns the time that this took [s].

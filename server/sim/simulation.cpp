@@ -207,6 +207,9 @@ SolverWork Simulation::solver_work() const {
 const Solves& Simulation::solves() const {
   return implementation_->solved.solves();
 }
+void Simulation::measure_solves(bool on) {
+  implementation_->measures_solves = on;
+}
 StrainLimitWork Simulation::strain_limit_work() const {
   return implementation_->kernels.strain_limit ? implementation_->kernels.strain_limit->work()
                                                : StrainLimitWork{};

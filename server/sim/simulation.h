@@ -81,9 +81,10 @@ struct Solves {
   double ratio = 0;   ///< what an iteration still changes, over what the one before did
   double undone = 0;  ///< `left` as an acceleration that the step leaves out, over that of gravity
 
-  /// True if the last step measured was far from solved.
+  /// True if the last step measured was far from solved: it left out more than gravity does, and iterations
+  /// hardly came nearer.
   bool unsolved() const;
-  /// True if two steps measured or more were, and half of all.
+  /// True if two steps measured or more were, and more than half of all.
   bool often_unsolved() const;
 };
 
@@ -138,6 +139,8 @@ class Simulation {
   SolverWork solver_work() const;
   /// Since the kernels were made, or the state was set from outside.
   const Solves& solves() const;
+  /// Whether steps are measured from now on; without a call, they are.
+  void measure_solves(bool on);
   /// The work of the strain limit since the kernels were made.
   StrainLimitWork strain_limit_work() const;
   /// Number of dispatches that the present method has queued since the kernels were made, without those of

@@ -58,12 +58,12 @@ double farthest_coordinate(const std::vector<glm::vec4>& places) {
 }  // namespace
 
 bool Solves::unsolved() const {
-  constexpr double much = 0.5;
-  return undone > much;
+  constexpr double much = 1.0, hardly_nearer = 0.95;
+  return undone > much && ratio > hardly_nearer;
 }
 
 bool Solves::often_unsolved() const {
-  return unsolved_steps >= 2 && 2 * unsolved_steps >= measured;
+  return unsolved_steps >= 2 && 2 * unsolved_steps > measured;
 }
 
 std::string in_words(const Solves& solves, const scene::Scene& scene) {
