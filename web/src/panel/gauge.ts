@@ -27,8 +27,8 @@ export interface Reading {
   filled: number;
 }
 
-/// The gauge's reading for a time step [s].
-export function reading(dt: number, limit: number | null): Reading {
+/// The gauge's reading for a time step [s]. `unsolved`: the method's iterations end far from the step's solution.
+export function reading(dt: number, limit: number | null, unsolved = false): Reading {
   const always = (verdict: Verdict, word: string): Reading => ({
     verdict,
     word,
@@ -36,6 +36,14 @@ export function reading(dt: number, limit: number | null): Reading {
     spoken: `${word} at any time step`,
     filled: 1,
   });
+  if (limit === null && unsolved)
+    return {
+      verdict: "near",
+      word: "Unsolved",
+      share: "steps end far from solved",
+      spoken: "stable, but steps end far from solved",
+      filled: 1,
+    };
   if (limit === null) return always("good", "Stable");
   if (limit <= 0) return always("beyond", "Unstable");
   const ratio = dt / limit;
@@ -88,8 +96,8 @@ export class Gauge {
     this.limit.onclick = () => setTimeStep(this.saferStep);
   }
 
-  show(dt: number, { dt_limit }: Stability): void {
-    const now = reading(dt, dt_limit);
+  show(dt: number, { dt_limit }: Stability, unsolved: boolean): void {
+    const now = reading(dt, dt_limit, unsolved);
     const { style, dataset } = this.element;
     this.element.hidden = false;
     if (dataset.verdict !== now.verdict) this.spoken.textContent = `time step: ${now.word.toLowerCase()}`;
@@ -101,7 +109,7 @@ export class Gauge {
     this.share.textContent = now.share;
     this.track.setAttribute("aria-valuenow", (end * now.filled).toFixed(3));
     this.track.setAttribute("aria-valuetext", now.spoken);
-    this.element.title = explain(dt, dt_limit);
+    this.element.title = explain(dt, dt_limit, unsolved);
     this.showLimit(dt_limit);
   }
 
@@ -116,7 +124,12 @@ export class Gauge {
   }
 }
 
-function explain(dt: number, limit: number | null): string {
+function explain(dt: number, limit: number | null, unsolved: boolean): string {
+  if (limit === null && unsolved)
+    return (
+      "The iterations of a step leave out more than gravity does in it: the cloth stretches and lags more than its " +
+      "material would. A shorter time step, more iterations or another method helps."
+    );
   if (limit === null)
     return "This method is stable at any time step; a long one damps the motion and asks for more iterations.";
   if (limit <= 0)

@@ -291,7 +291,7 @@ export class Panel {
 
   private moveGauge(): void {
     if (!this.stability) return;
-    this.gauge.show(Number(this.values[timeStep]), this.stability);
+    this.gauge.show(Number(this.values[timeStep]), this.stability, this.facts.unsolved ?? false);
     const control = this.controls.find(({ field }) => field.key === timeStep);
     if (control?.controller instanceof SliderController) control.controller.mark(this.stability.dt_limit);
   }
