@@ -150,10 +150,11 @@ const int slot_path = 6;                // path
 const int slot_step_start = 5;          // advance
 const int slot_chosen_pairs = 7;        // cull, contacts, limit; limit
 
-// The hands': hands/NAME.comp, on the present copy of the state, before a step and after it.
+// The hands': hands/NAME.comp, on the present copy of the state, just before a method's step and after it: what the
+// neighbour search has bound for the method stays bound.
 const int slot_held_position = 0;  // hold, release; all as unit_position
 const int slot_held_velocity = 1;  // hold; all as unit_velocity
-const int slot_held = 2;           // server/sim/hands.cpp; both
+const int slot_held = 3;           // server/sim/hands.cpp; both
 
 // The strain limit's: strain_limit/NAME.comp.
 const int unit_group_excess = 10;        // sweep; the next sweep

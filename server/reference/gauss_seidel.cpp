@@ -31,7 +31,8 @@ bool hits(const SweepState& step, const Surface& met, const dvec3& v) {
 }
 
 /// The displacement from which VBD's sweeps start [m]: inertia's displacement, and gravity's and the wind's
-/// where the vertex falls freely. Where the free motion meets a collider, the surface and friction cut both down.
+/// where the vertex falls freely. Where the free motion meets a collider, the surface and friction cut both
+/// down.
 dvec3 first_guess(const SweepState& step, std::uint32_t i, const std::optional<dvec3>& velocity_before) {
   const World& world = step.world;
   const double dt = step.dt, drag = model::mobility(world.scene);

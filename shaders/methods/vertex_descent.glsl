@@ -23,9 +23,9 @@ vec3 displacement_by_wind(int i, vec4 x, vec3 v) {
 #endif
 
 /// Whether a vertex falls freely, [0, 1]: 1 if its acceleration was `pull` but for two hundredths, 0 if but for a tenth
-/// or more. Chen et al. (section 3.7) have the share of the pull that it has followed instead. But what sweeps make of a
-/// guess is the next one's acceleration, so such a share follows the true one late where sweeps are few, and a pull that
-/// comes late feeds a swing, for ever.
+/// or more. Chen et al. (section 3.7) have the share of the pull that it has followed instead. But what sweeps make of
+/// a guess is the next one's acceleration, so such a share follows the true one late where sweeps are few, and a pull
+/// that comes late feeds a swing, for ever.
 float falls(vec3 acceleration, vec3 pull) {
   vec3 other = acceleration - pull;
   float squared = dot(pull, pull);

@@ -24,7 +24,7 @@ test("sim.status has every field of the contract, with the passes that run and t
   assert.ok(status.skipped.every(({ name, reason }) => name && reason));
   assert.ok(status.stability.dt_limit > 0 && status.stability.margin > 0);
   const { thickness_that_holds: holds, ...solver } = status.solver;
-  assert.deepEqual(solver, { pbd_stiffness: null, auto: null, from_fabrics: [null] });
+  assert.deepEqual(solver, { pbd_stiffness: null, auto: null, unsolved: false, from_fabrics: [null] });
   // a vertex in the middle of a cell, and a fifth more
   assert.ok(Math.abs(holds - 1.2 / 24 / Math.SQRT2) < 1e-9, `${holds}`);
   assert.equal(status.surface, null);
