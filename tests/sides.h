@@ -47,6 +47,11 @@ class Stepped {
   /// Energy of the present state, summed in double precision on either side [J].
   reference::Energy energy() { return reference::energy(world_, state()); }
 
+  /// Steps of the GPU's side that have ended, and were counted, with a strain limit not met.
+  std::uint64_t beyond_limit() const {
+    return simulation_ ? simulation_->strain_limit_work().unconverged : 0;
+  }
+
   /// Goes on from the present state with a changed scene of the same vertices.
   void change(const scene::Scene& scene) {
     world_ = world_of(scene);

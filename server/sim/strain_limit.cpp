@@ -100,6 +100,7 @@ void StrainLimit::restart() {
 
 void StrainLimit::carry(Carrier& carrier) {
   carrier.buffer(pulls_);
+  carrier.number(doubted_);
   if (threads_) threads_->carry(carrier);
 }
 
