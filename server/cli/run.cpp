@@ -95,10 +95,9 @@ Report make_report(const Prepared& prepared, const Progress& progress, double wa
                         {"linear_iterations", work.linear_iterations},
                         {"unconverged", work.unconverged}};
   if (const sim::Solves& solves = simulation.solves(); solves.measured > 0)
-    report["solves"] = {{"measured", solves.measured},
-                        {"unsolved", solves.unsolved_steps},
-                        {"left_m", solves.left},
-                        {"ratio", solves.ratio},
+    report["solves"] = {{"measured", solves.measured}, {"unsolved", solves.unsolved_steps},
+                        {"left_m", solves.left},       {"left_edges", solves.edges},
+                        {"ratio", solves.ratio},       {"share", solves.share},
                         {"undone", solves.undone}};
   if (const sim::StrainLimitWork work = simulation.strain_limit_work(); work.sweeps > 0)
     report["strain_limit"] = {{"sweeps", work.sweeps}, {"unconverged", work.unconverged}};

@@ -10,6 +10,7 @@
 #include "server/base/text.h"
 #include "server/model/remedy.h"
 #include "server/scene/method.h"
+#include "server/scene/ranges.h"
 
 namespace clothlab::model {
 
@@ -90,16 +91,20 @@ std::string sweeps_warning(const Model& model, const scene::Scene& scene) {
   if (stretch.by_sweeps < std::max(much, stretch.by_law)) return {};
   const double too_much = stretch.by_sweeps / std::max(little, stretch.by_law);
   const double dt = rounded_down(solver.dt / std::sqrt(too_much));
-  const std::string times =
-      std::to_string(solver.iterations) + (solver.iterations == 1 ? " sweep" : " sweeps");
-  return formatted(
-             "%s of %s in a step of %.3g s are too few for this cloth: where it hangs it will stretch "
-             "by about %.0f %%",
-             times.c_str(), scene::name(solver.method), solver.dt, 100.0 * stretch.by_sweeps) +
+  const double enough = std::ceil(solver.iterations * too_much);
+  constexpr double far = 10.0;  // beyond any cloth; the estimate then says no more
+  return formatted("%d %s of %s in a step of %.3g s are too few for this cloth: where it hangs ",
+                   solver.iterations, solver.iterations == 1 ? "sweep" : "sweeps", scene::name(solver.method),
+                   solver.dt) +
+         (solver.method == scene::Method::vbd ? "or swings " : "") +
+         (stretch.by_sweeps > far
+              ? std::string("it will stretch to many times its length")
+              : formatted("it will stretch by about %.0f %%", 100.0 * stretch.by_sweeps)) +
          (stretch.by_law > 0.0 ? formatted(", not by %.2g %%", 100.0 * stretch.by_law) : std::string()) +
-         (solver.method == scene::Method::vbd ? " as it moves" : "") +
-         formatted("; dt = %.2g s holds, or %.0f iterations, or the method implicit_euler", dt,
-                   std::ceil(solver.iterations * too_much));
+         formatted("; dt = %.2g s holds, or ", dt) +
+         (enough <= scene::ranges::iterations.maximum ? formatted("%.0f iterations, or ", enough)
+                                                      : std::string()) +
+         "the method implicit_euler";
 }
 
 }  // namespace clothlab::model

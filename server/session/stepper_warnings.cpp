@@ -81,8 +81,8 @@ void Stepper::warn_if_unconverged() {
 /// Tells when steps are far from solved, and sim.status when they are so no more.
 void Stepper::warn_if_unsolved() {
   const sim::Solves& solves = simulation().solves();
-  if (solves.unsolved() != unsolved_told_) {
-    unsolved_told_ = solves.unsolved();
+  if (solves.unsolved != unsolved_told_) {
+    unsolved_told_ = solves.unsolved;
     announce_solver();
   }
   if (unsolved_announced_ || !solves.often_unsolved()) return;

@@ -40,10 +40,8 @@ class Carrier {
   /// What is on its way to the host in a ring of one slot. Waits for it.
   void ring(gl::ReadbackRing& ring);
   template <class Number>
-    requires std::is_trivially_copyable_v<Number>
-  void number(Number& number) {
-    raw(&number, sizeof number);
-  }
+  requires std::is_trivially_copyable_v<Number>
+  void number(Number& number) { raw(&number, sizeof number); }
   /// False: what was asked for is not what the copies are of. Passes must then forget what they carry.
   bool fits() const { return fits_; }
 

@@ -76,15 +76,19 @@ struct SolverWork {
 /// for methods that do not iterate.
 struct Solves {
   std::uint64_t measured = 0, unsolved_steps = 0;  ///< steps
+  std::uint64_t since_first = 0;                   ///< steps measured since the first that was unsolved
   std::uint64_t step = 0;                          ///< number of the last one
-  double left = 0;    ///< how far from where it ended the solved step ends, at the farthest vertex, about [m]
-  double ratio = 0;   ///< what an iteration still changes, over what the one before did
+  double left = 0;   ///< how far from where it ended the solved step ends, at the farthest vertex, about [m]
+  double edges = 0;  ///< the same over the mean edge of the vertex's cloth, at most
+  double ratio = 0;  ///< what an iteration still changes, over what the one before did
+  double share = 0;  ///< what all of the step's iterations leave of what the first one found to change, about
   double undone = 0;  ///< `left` as an acceleration that the step leaves out, over that of gravity
 
-  /// True if the last step measured was far from solved: it left out more than gravity does, and iterations
-  /// hardly came nearer.
-  bool unsolved() const;
-  /// True if two steps measured or more were, and more than half of all.
+  /// The last step measured was far from solved: much is left for its iterations to change, by how far it
+  /// would move a vertex and as a force.
+  bool unsolved = false;
+  /// True if half of the steps measured were, or more, since the first that was: a cloth may fall before it
+  /// has anything to solve.
   bool often_unsolved() const;
 };
 

@@ -21,7 +21,7 @@ std::string in_words(const Solves& solves, const scene::Scene& scene);
 
 class SolvedMeasure {
  public:
-  /// True if the step after so many is measured: 8, 16, ..., 256 steps after `begin`, and each 256 after
+  /// True if the step after so many is measured: 8, 12, 16, 24, ..., 256 steps after `begin`, each 256 after
   /// that. So the four steps' work for one costs less than 2 % of a long run.
   bool due(std::uint64_t step) const;
 

@@ -104,7 +104,7 @@ TEST_CASE("in steady state the stepping thread allocates nothing but the frames 
   CHECK(counted >= frames);  // the counter works
   // A slow machine gets one notice that it is slow, which needs some allocations, too; and of each second a
   // state is kept, with its buffers.
-  constexpr std::size_t a_notice = 16, kept_states = 4, a_kept_state = 24;
+  constexpr std::size_t a_notice = 16, kept_states = 4, a_kept_state = 48;
   CHECK(counted <= frames * a_frame + a_notice + kept_states * a_kept_state);
 }
 

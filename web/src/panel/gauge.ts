@@ -127,8 +127,8 @@ export class Gauge {
 function explain(dt: number, limit: number | null, unsolved: boolean): string {
   if (limit === null && unsolved)
     return (
-      "The iterations of a step leave out more than gravity does in it: the cloth stretches and lags more than its " +
-      "material would. A shorter time step, more iterations or another method helps."
+      "The iterations of a step leave much of it unsolved: the cloth stretches and lags more than its material " +
+      "would. A shorter time step, more iterations or another method helps."
     );
   if (limit === null)
     return "This method is stable at any time step; a long one damps the motion and asks for more iterations.";
