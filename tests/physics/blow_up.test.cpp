@@ -40,7 +40,7 @@ TEST_CASE("no preset is taken for a blow-up, and nearly all of its states are on
   for (const std::string& name : scene::preset_names()) {
     if (name == "blowup") continue;
     const auto simulation = test::simulation(preset(name));
-    const Watched run = watch(*simulation, 2.5, 20);
+    const Watched run = watch(*simulation, 1.0, 10);
     INFO(name << ": " << run.good << " of " << run.looks << " good");
     CHECK(run.verdict != Verdict::blown_up);
     CHECK(run.good > 0.9 * run.looks);

@@ -51,6 +51,9 @@ TEST_CASE(
   for (const Method method : scene::methods)
     for (const scene::Shape& shape : {capsule, box})
       for (const scene::Motion& motion : {scene::Motion{}, spin}) {
+        // Either shape under every method, one at rest and one turning; all four under two methods.
+        const bool turns = motion.index() != scene::Motion{}.index(), is_box = shape.index() == box.index();
+        if (turns != is_box && method != Method::symplectic_euler && method != Method::xpbd) continue;
         scene::Scene scene = soft_sheet(method);
         scene.colliders = {{"body", shape, 0.3, 0.0, motion}};
         Stepped gpu(Side::gpu, scene), truth(Side::reference, scene);

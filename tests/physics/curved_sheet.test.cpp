@@ -66,7 +66,8 @@ TEST_CASE(
       scene.cloths[0].transform.rotate = {90.0, 20.0, 0.0};
       Stepped stepped(Side::gpu, scene);
       const std::vector<dvec3> rest = stepped.state().position;
-      stepped.step(200);
+      // A bend that pushes at rest shows in the first steps; those of methods that iterate are long ones.
+      stepped.step(scene::iterates(method) ? 40 : 200);
       const double bent = shape_error(rest, stepped.state().position);
       INFO(scene::name(method) << ", " << rest.size() << " vertices: " << bent);
       // Of 0.1 m: floats round places by 6e-9 m, and the softest bends answer to that some hundred times.
@@ -109,6 +110,7 @@ TEST_CASE("an arch that is flattened springs back to its shape") {
   for (const Method method : {Method::symplectic_euler, Method::implicit_euler, Method::xpbd, Method::vbd}) {
     scene::Scene scene = of(arch(), method, 0.01);
     scene.air_drag = 4.0;
+    if (scene::any_step_is_stable(method)) scene.solver.dt = 4e-3;
     scene.cloths[0].start = scene::Stretch{{1.0, 0.1, 1.0}};
     Stepped stepped(Side::gpu, scene);
     const std::vector<dvec3> rest = stepped.world().model.rest_position;

@@ -26,7 +26,7 @@ bool finite(const sim::State& state) {
 }
 
 scene::Scene sheet(Method method, const scene::TriangleMesh& mesh) {
-  scene::Scene scene = bare_scene(method, 2e-3);
+  scene::Scene scene = bare_scene(method, 4e-3);
   scene.gravity = {0.0, -9.81, 0.0};
   scene.air_drag = 2.0;
   scene.cloths = {

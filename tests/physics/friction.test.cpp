@@ -37,8 +37,12 @@ TEST_CASE(
       if (large && side == Side::reference) continue;
       for (const double dt : {0.001, 0.004, 0.008, 0.016}) {
         for (const double degrees : {5.0, 15.0, 30.0}) {
-          if (large && (degrees != 15.0 || dt < 0.008)) continue;  // saves time
+          // Every slope with one step, every step on one slope: they do not depend on each other.
+          if (degrees != 15.0 && (large || dt != 0.008)) continue;
+          if (large && dt < 0.008) continue;
           for (const double friction : {0.0, 0.1, 0.3, 0.6, 1.0}) {
+            if (dt == 0.001 && friction != 0.1 && friction != 0.3)
+              continue;  // one that slides, one that stands
             const double angle = degrees * std::numbers::pi / 180.0, seconds = 0.48;
             const double pull =
                 std::max(0.0, standard_gravity * (std::sin(angle) - friction * std::cos(angle)));

@@ -21,12 +21,16 @@ namespace {
 
 constexpr std::array methods{Method::pbd, Method::xpbd, Method::vbd};
 
-std::vector<glm::dvec3> after(scene::Scene scene, Method method, int iterations, int steps) {
+/// Places after one step, and after four.
+std::array<std::vector<glm::dvec3>, 2> after_one_and_four(Side side, scene::Scene scene, Method method,
+                                                          int iterations) {
   scene.solver.method = method;
   scene.solver.iterations = iterations;
-  Stepped gpu(Side::gpu, scene);
-  gpu.step(steps);
-  return gpu.state().position;
+  Stepped stepped(side, scene);
+  stepped.step(1);
+  const std::vector<glm::dvec3> one = stepped.state().position;
+  stepped.step(3);
+  return {one, stepped.state().position};
 }
 
 /// The seed's cloth with pins that stand still, without colliders and self-collision.
@@ -73,16 +77,15 @@ TEST_CASE(
         Case{"the seed's cloth, 2 ms", seed_cloth(2e-3), 1.0, 100},
         Case{"the seed's cloth, 5 ms", seed_cloth(5e-3), 1.0, 300}}) {
     scene::Scene scene = one.scene;
-    scene.solver.method = Method::implicit_euler;
     scene.solver.tolerance = 1e-7;
-    scene.solver.iterations = 20;  // Newton steps
-    for (const int steps : {1, 8}) {
-      Stepped truth(one.side, scene);
-      truth.step(steps);
-      const auto exact = truth.state().position;
-      for (const Method method : {Method::xpbd, Method::vbd}) {
-        const double off = reference::rms_distance(after(scene, method, one.iterations, steps), exact);
-        INFO(one.what << ", " << scene::name(method) << ", " << steps << " steps: " << off << " m");
+    constexpr int newton_steps = 20;
+    const auto exact = after_one_and_four(one.side, scene, Method::implicit_euler, newton_steps);
+    for (const Method method : {Method::xpbd, Method::vbd}) {
+      const auto found = after_one_and_four(Side::gpu, scene, method, one.iterations);
+      for (const std::size_t later : {0u, 1u}) {
+        const double off = reference::rms_distance(found[later], exact[later]);
+        INFO(one.what << ", " << scene::name(method) << (later ? ", 4 steps: " : ", 1 step: ") << off
+                      << " m");
         CHECK(off < 1e-5 * one.size);
       }
     }
@@ -164,12 +167,12 @@ TEST_CASE("PBD, XPBD and VBD end in the same bits twice, however the steps are g
       for (const std::uint32_t batch : batches) simulation->step(batch);
       return sim::state_hash(simulation->read_state());
     };
-    const std::uint64_t expected = hash({600});
+    const std::uint64_t expected = hash({240});  // it lies on the ball from step 90 on
     INFO(scene::name(method));
-    CHECK(hash({600}) == expected);
-    CHECK(hash({1, 199, 33, 367}) == expected);
+    CHECK(hash({240}) == expected);
+    CHECK(hash({1, 99, 33, 107}) == expected);
     scene.cloths[0].mass.value *= 1.0001;
-    CHECK(hash({600}) != expected);  // the hash differs after other steps
+    CHECK(hash({240}) != expected);  // the hash differs after other steps
   }
 }
 
@@ -177,8 +180,7 @@ TEST_CASE("one work group and a dispatch a colour come to the same state, PBD, X
   const auto context = test::context();
   for (const Method method : methods) {
     // Software OpenGL ends a kernel's loops after 65535 turns: many sweeps need more lanes.
-    for (const auto& [iterations, steps, self] :
-         {std::tuple{3, 400, true}, {64, 20, true}, {256, 5, false}}) {
+    for (const auto& [iterations, steps, self] : {std::tuple{3, 200, true}, {64, 8, true}, {256, 3, false}}) {
       scene::Scene scene = test::seed();
       if (!self) scene.self_collision.reset();
       scene.solver = {.method = method, .dt = 2e-3, .iterations = iterations};
@@ -197,6 +199,7 @@ TEST_CASE("both forms of the sweeps round alike in a free heap, where forces are
       if (meets_itself) heap.self_collision = scene::SelfCollision{0.05, 0.1};
       heap.solver = {.method = method, .dt = 1e-3, .iterations = 10};
       INFO(scene::name(method) << (meets_itself ? ", it meets itself" : ""));
-      CHECK(hash_of_form("one_group", heap, 300) == hash_of_form("dispatches", heap, 300));
+      // Forces are largest at the start, and a bit that differs never comes right again.
+      CHECK(hash_of_form("one_group", heap, 80) == hash_of_form("dispatches", heap, 80));
     }
 }

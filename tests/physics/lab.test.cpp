@@ -70,7 +70,7 @@ TEST_CASE("the lab's reference of the swinging cloth is as exact as it says, for
   CHECK(found.why_no_reference.empty());
   CHECK(found.horizon == 0.3);  // it buckles at 0.5 s
   REQUIRE(found.position.size() == samples_to_horizon);
-  const auto exact = reference::trajectory(found.world, {0.3}, test::cloth_unit / 100);
+  const auto exact = reference::trajectory(found.world, {0.3}, test::cloth_unit / 50);
   REQUIRE(exact);
   const double off = reference::rms_distance(found.position.back(), exact->states[0].position);
   // The estimate is within a factor of three of the error, and as small as was asked for.
@@ -166,7 +166,7 @@ TEST_CASE(
   CHECK(made->runner_up->setting.method != chosen.method);
 
   const auto exact =
-      reference::trajectory(*reference::make_world(swinging(), 0.0), {0.15, 0.3}, test::cloth_unit / 100);
+      reference::trajectory(*reference::make_world(swinging(), 0.0), {0.15, 0.3}, test::cloth_unit / 25);
   REQUIRE(exact);
   auto simulation = sim::Simulation::create(with(swinging(), chosen));
   REQUIRE(simulation);

@@ -95,7 +95,9 @@ TEST_CASE("a free sheet keeps its linear momentum to 1e-5 under every method") {
     for (const Model model : models) {
       for (const Method method : scene::methods) {
         if (scene::unsuited(method, held(method, 1e-4, model))) continue;
-        const double change = change_after_release(side, method, 0.1 * cloth_unit, model).linear;
+        // Methods that hold at any step take longer ones, of which each costs many sweeps or products.
+        const double dt = (scene::any_step_is_stable(method) ? 0.4 : 0.1) * cloth_unit;
+        const double change = change_after_release(side, method, dt, model).linear;
         INFO(scene::name(method) << ", " << name(model) << ", " << name(side) << ": " << change);
         // Every element's forces cancel: the rounding of 400 steps is left. Implicit Euler's linear solver
         // on the GPU stops at a tolerance of 1e-4, and VBD moves one vertex at a time: both give back the

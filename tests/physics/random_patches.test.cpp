@@ -110,7 +110,7 @@ class Session {
 };
 
 struct Seeds {
-  std::uint64_t from = 1, to = 12;
+  std::uint64_t from = 1, to = 6;
 };
 
 Seeds seeds() {

@@ -67,7 +67,7 @@ TEST_CASE(
   for (const Method method : sheet_methods())
     for (const double grain : {0.0, 30.0}) {
       const scene::Scene scene = strip(method, limit, grain);
-      Stepped stepped(Side::gpu, scene), free(Side::gpu, strip(method, std::nullopt, grain));
+      Stepped stepped(Side::gpu, scene);
       INFO(scene::name(method) << ", grain " << grain);
       const int steps = static_cast<int>(0.36 / scene.solver.dt);
       Largest most;
@@ -75,7 +75,6 @@ TEST_CASE(
         stepped.step(steps / 12 - 1);
         const std::uint64_t told = stepped.beyond_limit();
         stepped.step(1);
-        free.step(steps / 12);
         most = largest_threads(stepped.world(), stepped.state().position);
         if (stepped.beyond_limit() == told) CHECK(std::max(most.warp, most.weft) <= limit + rounding);
       }
@@ -83,6 +82,10 @@ TEST_CASE(
       CHECK(100 * stepped.beyond_limit() <= static_cast<std::uint64_t>(steps));
       // It hangs at its limit, and would hang far beyond.
       CHECK(std::max(most.warp, most.weft) > 0.95 * limit);
+      // (The strip's weight does that whatever the method.)
+      if (method != Method::symplectic_euler) continue;
+      Stepped free(Side::gpu, strip(method, std::nullopt, grain));
+      free.step(steps);
       const Largest without = largest_threads(free.world(), free.state().position);
       CHECK(std::max(without.warp, without.weft) > 2.0 * limit);
     }
@@ -108,7 +111,7 @@ TEST_CASE("a strip at its strain limit hangs on the GPU where it does in the ref
     for (const double grain : {0.0, 30.0}) {
       const scene::Scene scene = strip(method, 0.05, grain);
       Stepped gpu(Side::gpu, scene), reference(Side::reference, scene);
-      const int steps = static_cast<int>(0.4 / scene.solver.dt);
+      const int steps = static_cast<int>(0.2 / scene.solver.dt);  // it falls to its limit in 0.06 s
       gpu.step(steps);
       reference.step(steps);
       const double apart = reference::rms_distance(gpu.state().position, reference.state().position);

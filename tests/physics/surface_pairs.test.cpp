@@ -61,13 +61,24 @@ struct Pairs {
   std::set<Corners> vertex_triangle, edge_edge;
 };
 
-/// Calls take(edges, corners, gap [m]) for all pairs that share no vertex.
+/// Calls take(edges, corners, gap [m]) for all pairs that share no vertex and are nearer than `far` [m].
 template <class Take>
-void for_all_pairs(const model::Model& model, const std::vector<glm::vec3>& x, const Take& take) {
+void for_all_pairs(const model::Model& model, const std::vector<glm::vec3>& x, double far, const Take& take) {
   const auto visit = [&](bool edges, const Corners& corners) {
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < i; ++j)
         if (corners[i] == corners[j]) return;
+    // How far the boxes around the two parts are apart along an axis: they are no nearer.
+    const int parted = edges ? 2 : 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      float low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+      for (int k = 0; k < 4; ++k) {
+        const float at = x[corners[k]][axis];
+        low[k >= parted] = std::min(low[k >= parted], at);
+        high[k >= parted] = std::max(high[k >= parted], at);
+      }
+      if (std::max(low[0] - high[1], low[1] - high[0]) > 1.001 * far) return;
+    }
     elements::Corners places;
     for (int k = 0; k < 4; ++k) places.x[k] = glm::dvec3(x[corners[k]]) - glm::dvec3(x[corners[0]]);
     take(edges, corners, elements::separation(edges, places).gap);
@@ -151,7 +162,8 @@ NearPairs near_pairs(const Search& search, const model::Model& model) {
     (pair.edges ? listed.edge_edge : listed.vertex_triangle).insert(in_order(pair.edges, pair.corners));
   const double query = std::bit_cast<float>(search.control.query);
   const double flat_query = std::bit_cast<float>(search.control.flat_query);
-  for_all_pairs(model, search.position, [&](bool edges, const Corners& corners, double gap) {
+  const double far = std::max(query, flat_query);
+  for_all_pairs(model, search.position, far, [&](bool edges, const Corners& corners, double gap) {
     const bool one_cloth = model.vertex_cloth[corners[0]] == model.vertex_cloth[corners[3]];
     if (!(gap < (one_cloth ? flat_query : query))) return;
     ++found.count;

@@ -83,7 +83,7 @@ TEST_CASE("sheets in a heap, crowded beyond the lists' first room, keep their mo
       // Short enough for springs stretched to ten times their length.
       scene::Scene scene = tangle(method, 5e-4);
       scene.self_collision = scene::SelfCollision{0.03, 0.2};
-      const Drift found = drift(side, scene, 0.4);
+      const Drift found = drift(side, scene, 0.15);
       INFO(scene::name(method) << ", " << name(side) << ": " << found.momentum << ", centre "
                                << found.centre);
       CHECK(found.momentum < most(side));
