@@ -72,7 +72,10 @@ test("a method with a fixed number of sweeps reports nothing of its solver and h
       "/self_collision=null",
     );
     // What two sweeps leave is told; nothing else is.
-    assert.match(stderr, /^(clothlab: (warning: 2 sweeps of|note: \d+ of \d+ steps that were measured ended far from solved)[^\n]*\n)*$/);
+    assert.match(
+      stderr,
+      /^(clothlab: (warning: 2 sweeps of|note: \d+ of \d+ steps that were measured ended far from solved)[^\n]*\n)*$/,
+    );
     const r = report("report.json");
     assert.ok(r.passes.includes(method) && !("solver" in r), JSON.stringify(r));
   }
