@@ -75,7 +75,7 @@ HangingStretch hanging_stretch(const Model& model, const scene::Scene& scene) {
       if (!(edge.length > 0.0)) continue;
       if (edge.stiffness > 0.0)
         stretch.by_law = std::max(stretch.by_law, pull / (edge.stiffness * edge.length));
-      if (!scene::iterates(solver.method)) continue;
+      if (!scene::sweeps(solver.method)) continue;
       const double moved = pull * solver.dt * solver.dt / (solver.iterations * model.mass[edge.free]);
       stretch.by_sweeps = std::max(stretch.by_sweeps, measured_share(solver.method) * moved / edge.length);
     }

@@ -58,7 +58,7 @@ Change change(const std::vector<glm::vec4>& from, const std::vector<glm::vec4>& 
 /// no fault unless a second one comes no nearer.
 bool far_from_solved(const Solves& solves, scene::Method method) {
   constexpr double many_gravities = 1.0, many_edges = 0.3;
-  const double much = scene::iterates(method) ? 0.3 : 0.9;
+  const double much = scene::sweeps(method) ? 0.3 : 0.9;
   return solves.undone > many_gravities && solves.edges > many_edges && solves.share > much;
 }
 
@@ -76,7 +76,7 @@ bool Solves::often_unsolved() const {
 }
 
 std::string in_words(const Solves& solves, const scene::Scene& scene) {
-  const bool sweeps = scene::iterates(scene.solver.method);
+  const bool sweeps = scene::sweeps(scene.solver.method);
   const int count = scene.solver.iterations;
   const char* one = sweeps ? "sweep" : "Newton step";
   return formatted(
