@@ -1,6 +1,6 @@
 // Shared by the fuzz targets. A target is a file with LLVMFuzzerTestOneInput: under clang it is linked with
-// libFuzzer, otherwise with replay.cpp, which runs it over its inputs of tests/fuzz/corpus. Its checks hold
-// for every input.
+// libFuzzer, otherwise all are linked with replay.cpp, which runs one over its inputs of tests/fuzz/corpus.
+// Its checks hold for every input.
 #pragma once
 
 #include <cstddef>

@@ -1,13 +1,13 @@
-// A main for fuzz targets without libFuzzer: runs each input of each packed file (corpus.mjs says how it is
-// packed) through the target once.
+// The fuzz targets without libFuzzer: fuzz_replay TARGET FILE... runs each input of each packed file
+// (corpus.mjs says how it is packed) through the target once.
+#include "tests/fuzz/replay.h"
+
 #include <cctype>
+#include <cstdio>
 #include <fstream>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
-
-#include "tests/fuzz/fuzz.h"
 
 namespace {
 
@@ -43,8 +43,15 @@ std::optional<std::string> unescaped(std::string_view text) {
 }  // namespace
 
 int main(int count, char** arguments) {
+  const auto target = clothlab::fuzz::targets.find(count > 1 ? arguments[1] : "");
+  if (target == clothlab::fuzz::targets.end()) {
+    std::fprintf(stderr, "fuzz_replay TARGET FILE...; targets are");
+    for (const auto& [name, input] : clothlab::fuzz::targets) std::fprintf(stderr, " %s", name.c_str());
+    std::fprintf(stderr, "\n");
+    return 2;
+  }
   std::size_t inputs = 0;
-  for (int i = 1; i < count; ++i) {
+  for (int i = 2; i < count; ++i) {
     std::ifstream file(arguments[i], std::ios::binary);
     for (std::string line; std::getline(file, line); ++inputs) {
       const std::size_t tab = line.find('\t');
@@ -58,7 +65,7 @@ int main(int count, char** arguments) {
       std::fprintf(stderr, "%s\n", line.substr(0, tab).c_str());
       // Of its own size, so that a sanitizer sees what is read beyond the end.
       const std::vector<std::uint8_t> exact(bytes->begin(), bytes->end());
-      LLVMFuzzerTestOneInput(exact.data(), exact.size());
+      target->second(exact.data(), exact.size());
     }
   }
   std::fprintf(stderr, "%zu inputs\n", inputs);
