@@ -37,11 +37,11 @@ std::uint32_t patch_count(std::uint32_t vertices) {
 /// patch of which it has vertices, for its part of the patch's sum.
 struct Lists {
   std::vector<std::uint32_t> words;
-  gl::Defines sections;  ///< where each list begins
+  std::vector<std::pair<const char*, GLint>> first;  ///< where each list begins
   std::uint32_t slots = 0;
 
   void add(const char* name, const std::vector<std::uint32_t>& list) {
-    sections.emplace_back(name, std::to_string(words.size()));
+    first.emplace_back(name, static_cast<GLint>(words.size()));
     words.insert(words.end(), list.begin(), list.end());
   }
 };
@@ -70,12 +70,12 @@ Lists lists_of(const std::vector<std::uint32_t>& patch_of, std::uint32_t count) 
   }
   Lists lists;
   lists.slots = static_cast<std::uint32_t>(slots.size());
-  lists.add("PATCH_OF", patch_of);
-  lists.add("GROUP_SLOTS", group_slots);
-  lists.add("SLOT_MEMBERS", slot_members);
-  lists.add("MEMBERS", members);
-  lists.add("PATCH_SLOTS", patch_slots);
-  lists.add("SLOTS", slots);
+  lists.add("patch_of", patch_of);
+  lists.add("group_slots", group_slots);
+  lists.add("slot_members", slot_members);
+  lists.add("members", members);
+  lists.add("patch_slots", patch_slots);
+  lists.add("slots", slots);
   return lists;
 }
 
@@ -219,10 +219,9 @@ CoarseLevel::~CoarseLevel() = default;
 CoarseLevel::CoarseLevel(CoarseLevel&&) noexcept = default;
 CoarseLevel& CoarseLevel::operator=(CoarseLevel&&) noexcept = default;
 
-gl::Defines CoarseLevel::defines() const {
-  gl::Defines defines = parts_->lists.sections;
-  defines.emplace_back("PATCH_COUNT", std::to_string(parts_->count));
-  return defines;
+void CoarseLevel::set_lists(const gl::Program& program) const {
+  for (const auto& [name, first] : parts_->lists.first) program.set(name, first);
+  program.set("patch_count", static_cast<GLint>(parts_->count));
 }
 
 void CoarseLevel::set_parameters(const model::Model& model, const scene::Scene& scene) {

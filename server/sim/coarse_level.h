@@ -28,8 +28,8 @@ class CoarseLevel {
   CoarseLevel(CoarseLevel&&) noexcept;
   CoarseLevel& operator=(CoarseLevel&&) noexcept;
 
-  /// What kernels must know to read the lists: see shaders/methods/implicit_patches.glsl.
-  gl::Defines defines() const;
+  /// Tells a kernel where the lists are, for shaders/methods/implicit_patches.glsl.
+  void set_lists(const gl::Program& program) const;
 
   /// Takes over the elements' numbers, which may change.
   void set_parameters(const model::Model& model, const scene::Scene& scene);

@@ -104,30 +104,42 @@ std::size_t remembered_pushes(const Visits& visits) {
 
 gl::Defines visit_defines(const Visits& visits, bool elements) {
   std::string each;
+  unsigned number = 0;
   for (const Visits::Function& function : visits.functions)
-    if (function.end_colour > function.first_colour)
-      each +=
-          formatted("sweep(%s, %u, %u) ", function.name.c_str(), function.first_colour, function.end_colour);
-  gl::Defines defines{{"EACH_VISIT(sweep)", each}};
+    if (function.visits()) each += formatted("sweep(%s, %u) ", function.name.c_str(), number++);
+  gl::Defines defines{{"EACH_VISIT(sweep)", each}, {"VISIT_COUNT", std::to_string(number)}};
   if (!elements) return defines;
-  std::size_t texel = 0, push = 0;
   std::string swept;
   elements::each_law<elements::SweptLaws>([&]<class Law>(std::type_identity<Law>) {
     const std::string name = elements::Facts<Law>::name;
-    const Items of_law = items<Law>(visits);
-    if (of_law.count() > 0) swept += name + " ";
-    for (const auto& [fact, number] : {std::pair{"_CORNERS", elements::corners<Law>},
-                                       {"_VISIT_NUMBERS", elements::Facts<Law>::visit_numbers},
-                                       {"_VISIT_TEXELS", elements::visit_texels<Law>}})
-      defines.emplace_back(name + fact, std::to_string(number));
-    defines.emplace_back(name + "_FIRST_ITEM", std::to_string(of_law.first));
-    defines.emplace_back(name + "_FIRST_TEXEL", std::to_string(texel));
-    defines.emplace_back(name + "_FIRST_PUSH", std::to_string(push));
-    texel += of_law.count() * elements::visit_texels<Law>;
-    push += of_law.count() * (elements::corners<Law> - 1);
+    if (items<Law>(visits).count() > 0) swept += name + " ";
+    for (const auto& [fact, value] : {std::pair{"_CORNERS", elements::corners<Law>},
+                                      {"_VISIT_NUMBERS", elements::Facts<Law>::visit_numbers},
+                                      {"_VISIT_TEXELS", elements::visit_texels<Law>}})
+      defines.emplace_back(name + fact, std::to_string(value));
   });
   defines.emplace_back("SWEPT_LAWS", swept);
   return defines;
+}
+
+void set_visits(const gl::Program& program, const Visits& visits, bool elements) {
+  std::vector<GLint> colours;
+  for (const Visits::Function& function : visits.functions) {
+    if (!function.visits()) continue;
+    colours.push_back(static_cast<GLint>(function.first_colour));
+    colours.push_back(static_cast<GLint>(function.end_colour));
+  }
+  glProgramUniform2iv(program.id(), program.location("colours_of"), static_cast<GLsizei>(colours.size() / 2),
+                      colours.data());
+  if (!elements) return;
+  std::size_t texel = 0, push = 0;
+  elements::each_law<elements::SweptLaws>([&]<class Law>(std::type_identity<Law>) {
+    const Items of_law = items<Law>(visits);
+    glProgramUniform3i(program.id(), program.location(std::string("first_of_") + elements::Facts<Law>::name),
+                       static_cast<GLint>(of_law.first), static_cast<GLint>(texel), static_cast<GLint>(push));
+    texel += of_law.count() * elements::visit_texels<Law>;
+    push += of_law.count() * (elements::corners<Law> - 1);
+  });
 }
 
 }  // namespace clothlab::sim

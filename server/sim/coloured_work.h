@@ -19,6 +19,7 @@ struct Visits : model::Colouring {
   struct Function {
     std::string name;  ///< in shaders/methods/: visit_vertex, or visit_Spring and so on for each law
     std::uint32_t first_colour = 0, end_colour = 0;
+    bool visits() const { return end_colour > first_colour; }  ///< any item
   };
   std::vector<Function> functions;
 };
@@ -34,7 +35,12 @@ Visits visited_vertices(const model::Model& model, const scene::Scene& scene);
 std::vector<Words> visit_list(const Visits& visits, const model::Model& model, const scene::Scene& scene);
 /// Number of pushes that XPBD remembers of the visited elements: one for each corner but the first.
 std::size_t remembered_pushes(const Visits& visits);
-/// Defines EACH_VISIT, and for each law where its visits, items and pushes begin: Spring_FIRST_TEXEL, ...
+/// Defines EACH_VISIT and VISIT_COUNT, and for elements the laws and how long their visits are:
+/// Spring_VISIT_TEXELS, ... No number depends on how many items there are: cloths of all sizes share a
+/// kernel.
 gl::Defines visit_defines(const Visits& visits, bool elements);
+/// Tells a kernel that has these defines where each law's items, visits and pushes begin, and the colours of
+/// each function.
+void set_visits(const gl::Program& program, const Visits& visits, bool elements);
 
 }  // namespace clothlab::sim

@@ -37,9 +37,14 @@ ConjugateGradients::ConjugateGradients(const model::Model& model)
 }
 
 gl::Defines ConjugateGradients::defines() const {
-  gl::Defines defines = coarse_.defines();
-  defines.emplace_back("GROUP_COUNT", std::to_string(groups_));
+  gl::Defines defines;
+  if (groups_ <= few_groups) defines.emplace_back("FEW_GROUPS", "1");
   return defines;
+}
+
+void ConjugateGradients::set_layout(const gl::Program& program) const {
+  coarse_.set_lists(program);
+  program.set("group_count", static_cast<GLint>(groups_));
 }
 
 Status ConjugateGradients::load(const gl::Defines& defines) {
@@ -52,6 +57,7 @@ Status ConjugateGradients::load(const gl::Defines& defines) {
         gl::Program::load({std::string("methods/implicit_") + name + ".comp"}, defines);
     if (!loaded) return loaded.error();
     *program = std::move(*loaded);
+    set_layout(*program);
   }
   return ok();
 }

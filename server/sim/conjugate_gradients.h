@@ -25,8 +25,10 @@ class ConjugateGradients {
  public:
   explicit ConjugateGradients(const model::Model& model);
 
-  /// What all kernels of implicit Euler must know of this object's buffers.
+  /// What kernels of implicit Euler are compiled for, beside a step's.
   gl::Defines defines() const;
+  /// Tells a kernel of implicit Euler how this object's buffers are laid out.
+  void set_layout(const gl::Program& program) const;
   /// Loads the kernels; `defines` has those of this object, too.
   Status load(const gl::Defines& defines);
   void set_parameters(const Surroundings& around);

@@ -2,6 +2,7 @@
 // large ones with one dispatch for each phase and each colour.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <string>
 #include <utility>
 #include <vector>
@@ -192,14 +193,15 @@ class GaussSeidel : public Integrator {
       if (name == "GROUP_SIZE") value = std::to_string(lanes_);
     list.emplace_back("SLICE_SIZE", std::to_string(group_size));
     list.emplace_back("ONE_GROUP", "1");
-    list.emplace_back("VERTEX_COUNT", std::to_string(vertex_count_));
-    list.emplace_back("COLOUR_COUNT", std::to_string(work_.colours()));
+    list.emplace_back("VERTEX_ROOM", std::to_string(vertex_room(vertex_count_, plan.self_collision)));
+    list.emplace_back("COLOUR_ROOM", std::to_string(std::bit_ceil(work_.offsets.size())));
     Result<gl::Program> loaded = gl::Program::load({"methods/gauss_seidel.comp"}, list);
     if (!loaded) return loaded.error();
     whole_ = std::move(*loaded);
     const std::vector<GLint> first(work_.offsets.begin(), work_.offsets.end());
     glProgramUniform1iv(whole_.id(), whole_.location("colour_first"), static_cast<GLsizei>(first.size()),
                         first.data());
+    set_visits(whole_, work_, !by_vertex_);
     return ok();
   }
 
@@ -208,14 +210,14 @@ class GaussSeidel : public Integrator {
     std::vector<std::pair<gl::Program*, std::string>> phases{
         {&begin_, "begin"}, {&contacts_pass_, "meet"}, {&finish_, "finish"}};
     for (std::size_t k = 0; k < visits_.size(); ++k)
-      if (work_.functions[k].end_colour > work_.functions[k].first_colour)
-        phases.emplace_back(&visits_[k], work_.functions[k].name);
+      if (work_.functions[k].visits()) phases.emplace_back(&visits_[k], work_.functions[k].name);
     for (auto& [program, phase] : phases) {
       gl::Defines list = defines(plan);
       list.emplace_back("PHASE", phase);
       Result<gl::Program> loaded = gl::Program::load({"methods/gauss_seidel.comp"}, list);
       if (!loaded) return loaded.error();
       *program = std::move(*loaded);
+      set_visits(*program, work_, !by_vertex_);
     }
     if (!restores_momentum_) return ok();
     gl::Defines list = defines(plan);
@@ -268,7 +270,7 @@ class GaussSeidel : public Integrator {
     for (int sweep = 0; sweep < sweeps_; ++sweep) {
       for (std::size_t k = 0; k < visits_.size(); ++k) {
         const Visits::Function& function = work_.functions[k];
-        if (function.first_colour == function.end_colour) continue;
+        if (!function.visits()) continue;
         use(visits_[k], current, current);
         visits_[k].set("sweep", sweep);
         for (std::uint32_t colour = function.first_colour; colour < function.end_colour; ++colour) {

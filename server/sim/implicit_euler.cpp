@@ -34,6 +34,7 @@ class ImplicitEuler : public Integrator {
           gl::Program::load({std::string("methods/implicit_") + name + ".comp"}, defines);
       if (!loaded) return loaded.error();
       *program = std::move(*loaded);
+      made->solver_.set_layout(*program);
     }
     if (const Status loaded = made->solver_.load(defines); !loaded) return loaded.error();
     if (plan.self_collision) {

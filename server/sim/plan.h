@@ -24,6 +24,9 @@ constexpr std::uint32_t vertex_groups(std::uint32_t vertex_count) {
   return (vertex_count + group_size - 1) / group_size;
 }
 
+/// At most so many work groups' results are put together by each thread alone, without a barrier.
+inline constexpr std::uint32_t few_groups = 16;
+
 /// Colliders in a row, as the kernels meet them: kind after kind, within a kind in the scene's order.
 struct SolidRun {
   std::size_t kind = 0;  ///< scene::Shape's index

@@ -48,7 +48,9 @@ float relaxation(const model::Model& model) {
 Result<StrainLimit> StrainLimit::create(const Surroundings& around, const Plan& plan, std::size_t entries) {
   StrainLimit made;
   gl::Defines defines = step_defines(plan);
-  defines.emplace_back("GROUP_COUNT", std::to_string(vertex_groups(around.model.vertex_count())));
+  const std::uint32_t count = around.model.vertex_count();
+  made.groups_ = vertex_groups(count);
+  if (made.groups_ <= few_groups) defines.emplace_back("FEW_GROUPS", "1");
   defines.emplace_back("CLOTH_COUNT", std::to_string(around.scene.cloths.size()));
   if (plan.limits_springs) defines.emplace_back("SPRINGS", "1");
   if (plan.limits_sheets) {
@@ -62,8 +64,7 @@ Result<StrainLimit> StrainLimit::create(const Surroundings& around, const Plan& 
     if (!loaded) return loaded.error();
     *program = std::move(*loaded);
   }
-  const std::uint32_t count = around.model.vertex_count();
-  made.groups_ = vertex_groups(count);
+  made.sweep_.set("group_count", static_cast<GLint>(made.groups_));
   for (gl::TextureBuffer& position : made.position_)
     position = {gl::Buffer(count * 4 * sizeof(float)), GL_RGBA32F};
   for (gl::TextureBuffer& excess : made.group_excess_)

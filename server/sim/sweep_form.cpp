@@ -3,6 +3,7 @@
 #include <glad/gl.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdlib>
 #include <memory>
@@ -75,6 +76,13 @@ double measure(bool by_vertex) {
   return std::clamp(even / small->dispatches, 0.0, any_number);
 }
 
+/// So many vertices have room in a work group's shared memory.
+std::uint32_t most_vertices(bool self_collision) {
+  GLint bytes = 0;
+  glGetIntegerv(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE, &bytes);
+  return static_cast<std::uint32_t>(bytes) / (self_collision ? 32 : 16);
+}
+
 }  // namespace
 
 double vertices_a_dispatch(bool by_vertex) {
@@ -83,12 +91,14 @@ double vertices_a_dispatch(bool by_vertex) {
                          [&] { return measure(by_vertex); });
 }
 
+std::uint32_t vertex_room(std::uint32_t vertices, bool self_collision) {
+  return std::min(std::bit_ceil(std::max(vertices, 64U)), most_vertices(self_collision));
+}
+
 std::uint32_t lanes_of_one_group(const SweptCloth& cloth) {
-  GLint shared_bytes = 0, most_lanes = 0;
-  glGetIntegerv(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE, &shared_bytes);
+  if (cloth.vertices > most_vertices(cloth.self_collision)) return 0;
+  GLint most_lanes = 0;
   glGetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &most_lanes);
-  const std::size_t needed = std::size_t{cloth.vertices} * 16 * (cloth.self_collision ? 2 : 1);
-  if (needed > static_cast<std::size_t>(shared_bytes)) return 0;
   std::uint32_t lanes = static_cast<std::uint32_t>(most_lanes);
   if (gl::software_renderer()) {
     for (lanes = 8; lanes <= 128 && cloth.turns(lanes) >= 50000;)

@@ -27,6 +27,10 @@ struct SweptCloth {
 /// faster, to compare the two.
 std::uint32_t lanes_of_one_group(const SweptCloth& cloth);
 
+/// The number of vertices for which the one work group has shared memory: a power of two, so that few kernels
+/// are compiled for all sizes of cloth, or, where that is too much, as many as there is memory for.
+std::uint32_t vertex_room(std::uint32_t vertices, bool self_collision);
+
 /// One work group takes longer with each vertex, as many dispatches do with each of them. The two are even at
 /// so many vertices for each dispatch of a sweep: measured once on a device (gl/device_fact.h), with sheets
 /// of springs of two sizes, under XPBD or, by vertex, VBD.

@@ -7,7 +7,7 @@
 #else
 #define DEVIATIONS 1
 #endif
-shared vec4 deviations[DEVIATIONS][VERTEX_COUNT];
+shared vec4 deviations[DEVIATIONS][VERTEX_ROOM];
 int copy_read = 0, copy_written = 0;
 int sweep;  // number of the sweep in the step, from 0
 vec4 deviation(uint i) { return deviations[copy_read][i]; }

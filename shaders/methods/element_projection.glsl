@@ -23,6 +23,8 @@ vec3 first_deviation(int i, vec4 x, vec3 v) { return vec3(0.0); }
 #endif
 
 #each Law of SWEPT_LAWS
+uniform ivec3 first_of_Law;  // item, texel of `visits`, push of `pushed`
+
 /// A visit's layout: all vertices, numbers of the law, then the gains.
 struct LawVisit {
   int vertices[Law_CORNERS];
@@ -45,8 +47,8 @@ LawVisit visit_of_Law(int at) {
 }
 
 void visit_Law(int item) {
-  int number = item - Law_FIRST_ITEM, first_push = Law_FIRST_PUSH + number * (Law_CORNERS - 1);
-  LawVisit visit = visit_of_Law(Law_FIRST_TEXEL + number * Law_VISIT_TEXELS);
+  int number = item - first_of_Law.x, first_push = first_of_Law.z + number * (Law_CORNERS - 1);
+  LawVisit visit = visit_of_Law(first_of_Law.y + number * Law_VISIT_TEXELS);
   vec3 d[Law_CORNERS];
   float w[Law_CORNERS], w_all = 0.0;
   for (int k = 0; k < Law_CORNERS; ++k) {

@@ -111,25 +111,25 @@ void finish(int i) {
 }
 
 #ifdef ONE_GROUP
-uniform int colour_first[COLOUR_COUNT + 1];  // item
+uniform int colour_first[COLOUR_ROOM];  // item, of each colour and behind the last
+uniform ivec2 colours_of[VISIT_COUNT];  // for each visit of EACH_VISIT its first colour and the one behind its last
 
 #define EACH(item, first, end) int item = first + int(gl_LocalInvocationID.x); item < end; item += GROUP_SIZE
-// EACH_VISIT(sweep) calls `sweep(visit, first, end)` for each function that visits items, and its colours first to
-// end - 1.
-#define SWEEP(visit, first, end)                                                              \
-  for (int colour = first; colour < end; ++colour) {                                          \
+// EACH_VISIT(sweep) calls `sweep(visit, k)` for each function that visits items, and its number k.
+#define SWEEP(visit, k)                                                                       \
+  for (int colour = colours_of[k].x; colour < colours_of[k].y; ++colour) {                    \
     for (EACH(item, colour_first[colour], colour_first[colour + 1])) visit(item);             \
     wait();                                                                                   \
   }
 
 void main() {
-  for (EACH(i, 0, VERTEX_COUNT)) begin(i);
+  for (EACH(i, 0, vertex_count)) begin(i);
   wait();
   for (sweep = 0; sweep <= last_sweep; ++sweep) {
     EACH_VISIT(SWEEP)
 #ifdef CONTACTS
     copy_written = DEVIATIONS - 1 - copy_read;
-    for (EACH(i, 0, VERTEX_COUNT)) meet(i);
+    for (EACH(i, 0, vertex_count)) meet(i);
     copy_read = copy_written;
     wait();
 #endif
@@ -139,7 +139,7 @@ void main() {
   for (int cloth = 0; cloth < CLOTH_COUNT; ++cloth) balance(cloth);
   wait();
 #endif
-  for (EACH(i, 0, VERTEX_COUNT)) finish(i);
+  for (EACH(i, 0, vertex_count)) finish(i);
 }
 #elif defined(EACH_CLOTH)
 void main() { balance(int(gl_WorkGroupID.x)); }

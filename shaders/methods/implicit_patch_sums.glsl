@@ -10,13 +10,13 @@ void write_patch_sums(vec4 products, vec3 vector) {
   products_of_lanes[lane] = products;
   vectors_of_lanes[lane] = vector;
   barrier();
-  int slot = patch_list(GROUP_SLOTS, group) + lane;
-  if (slot >= patch_list(GROUP_SLOTS, group + 1)) return;
+  int slot = patch_list(group_slots, group) + lane;
+  if (slot >= patch_list(group_slots, group + 1)) return;
   products = vec4(0.0);
   vector = vec3(0.0);
-  int end = patch_list(SLOT_MEMBERS, slot + 1);
-  for (int k = patch_list(SLOT_MEMBERS, slot); k < end; ++k) {
-    int member = patch_list(MEMBERS, k);
+  int end = patch_list(slot_members, slot + 1);
+  for (int k = patch_list(slot_members, slot); k < end; ++k) {
+    int member = patch_list(members, k);
     products += products_of_lanes[member];
     vector += vectors_of_lanes[member];
   }

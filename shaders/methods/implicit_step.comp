@@ -10,12 +10,12 @@ READ_VEC4(coarse_inverse, unit_coarse_inverse);  // for each pair of patches the
 // For each patch the sum of the residual, then of the direction's product with the matrix, then the correction [m/s].
 layout(std430, binding = slot_coarse_vectors) buffer CoarseVectors { vec4 coarse_vectors[]; };
 uniform int iteration;  // -1: none, only the coarse level's equations
-shared vec3 coarse_residual[PATCH_COUNT];
+shared vec3 coarse_residual[GROUP_SIZE];  // of patch_count patches
 
 void add_up(int patch_number, inout vec4 products, inout vec3 vector) {
-  int end = patch_list(PATCH_SLOTS, patch_number + 1);
-  for (int k = patch_list(PATCH_SLOTS, patch_number); k < end; ++k) {
-    int slot = patch_list(SLOTS, k);
+  int end = patch_list(patch_slots, patch_number + 1);
+  for (int k = patch_list(patch_slots, patch_number); k < end; ++k) {
+    int slot = patch_list(slots, k);
     products += FETCH(patch_sums, 2 * slot);
     vector += FETCH(patch_sums, 2 * slot + 1).xyz;
   }
@@ -26,7 +26,7 @@ void main() {
   float last_product = last, last_step = along;
   vec4 products = vec4(0.0);
   vec3 r = vec3(0.0);
-  if (own < PATCH_COUNT) add_up(own, products, r);
+  if (own < patch_count) add_up(own, products, r);
   float step = 0.0, share = 0.0;
   if (iteration >= 0) {
     vec4 sum = sum_of_group(products);  // with barriers: one thread may now write what all have read
@@ -51,24 +51,24 @@ void main() {
     }
     if (ended) return;
   }
-  if (own < PATCH_COUNT) {
+  if (own < patch_count) {
     if (iteration >= 0) {
       vec3 q = r;
-      if (iteration > 0) q += share * coarse_vectors[PATCH_COUNT + own].xyz;
+      if (iteration > 0) q += share * coarse_vectors[patch_count + own].xyz;
       r = coarse_vectors[own].xyz - step * q;
-      coarse_vectors[PATCH_COUNT + own] = vec4(q, 0.0);
+      coarse_vectors[patch_count + own] = vec4(q, 0.0);
     }
     coarse_vectors[own] = vec4(r, 0.0);
     coarse_residual[own] = r;
   }
   barrier();
-  if (own >= PATCH_COUNT) return;
+  if (own >= patch_count) return;
   vec3 correction = vec3(0.0);
-  for (int other = 0; other < PATCH_COUNT; ++other) {
-    int at = 3 * (PATCH_COUNT * own + other);
+  for (int other = 0; other < patch_count; ++other) {
+    int at = 3 * (patch_count * own + other);
     vec3 there = coarse_residual[other];
     correction += vec3(dot(FETCH(coarse_inverse, at).xyz, there), dot(FETCH(coarse_inverse, at + 1).xyz, there),
                        dot(FETCH(coarse_inverse, at + 2).xyz, there));
   }
-  coarse_vectors[2 * PATCH_COUNT + own] = vec4(correction, 0.0);
+  coarse_vectors[2 * patch_count + own] = vec4(correction, 0.0);
 }

@@ -17,16 +17,18 @@ layout(std430, binding = slot_limit_control) buffer Control {
 uniform int sweep;
 uniform float relaxation;  // of springs
 
-#if GROUP_COUNT <= 16  // too few groups to be worth a barrier
+uniform int group_count;
+
+#ifdef FEW_GROUPS  // too few to be worth a barrier
 float excess_before() {
   float most = 0.0;
-  for (int group = 0; group < GROUP_COUNT; ++group) most = max(most, FETCH(group_excess, group).x);
+  for (int group = 0; group < group_count; ++group) most = max(most, FETCH(group_excess, group).x);
   return most;
 }
 #else
 float excess_before() {
   float most = 0.0;
-  for (int group = int(gl_LocalInvocationID.x); group < GROUP_COUNT; group += GROUP_SIZE)
+  for (int group = int(gl_LocalInvocationID.x); group < group_count; group += GROUP_SIZE)
     most = max(most, FETCH(group_excess, group).x);
   return largest_of_group(most);
 }

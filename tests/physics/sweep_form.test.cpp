@@ -1,7 +1,11 @@
-// Which of the two forms of a sweep a cloth gets (server/sim/sweep_form.h).
+// Which of the two forms of a sweep a cloth gets (server/sim/sweep_form.h), and that cloths of all sizes
+// share the kernels of a form.
+#include "server/sim/sweep_form.h"
+
 #include <cstdlib>
 
-#include "server/sim/sweep_form.h"
+#include "server/sim/coloured_work.h"
+#include "server/sim/conjugate_gradients.h"
 #include "tests/catch.h"
 #include "tests/scenes.h"
 
@@ -29,6 +33,33 @@ TEST_CASE("a cloth is swept in the form that was measured to be the faster one o
       const double of_sweep = static_cast<double>(many) - (method == scene::Method::vbd ? 3 : 2);
       INFO(scene::name(method) << ", " << side << " vertices a side, even at " << even);
       CHECK((dispatches() == 1) == (side * side <= even * of_sweep));
+    }
+  }
+}
+
+TEST_CASE(
+    "a cloth that gets another size, as from a slider, needs no kernel that is compiled for that size") {
+  const auto context = test::context();
+  scene::Scene small = test::sheet(9, 9), large = test::sheet(11, 10);
+  const model::Model first = *model::build(small), second = *model::build(large);
+  CHECK(sim::visit_defines(sim::visited_elements(first, small), true) ==
+        sim::visit_defines(sim::visited_elements(second, large), true));
+  CHECK(sim::visit_defines(sim::visited_vertices(first, small), false) ==
+        sim::visit_defines(sim::visited_vertices(second, large), false));
+  CHECK(sim::ConjugateGradients(first).defines() == sim::ConjugateGradients(second).defines());
+  CHECK(sim::step_defines(sim::plan(small)) == sim::step_defines(sim::plan(large)));
+  CHECK(sim::vertex_room(81, false) == sim::vertex_room(110, false));
+}
+
+TEST_CASE("a work group has room for its cloth, and for no more vertices than its shared memory holds") {
+  const auto context = test::context();
+  GLint bytes = 0;
+  glGetIntegerv(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE, &bytes);
+  for (const bool self_collision : {false, true}) {
+    const auto most = static_cast<std::uint32_t>(bytes) / (self_collision ? 32 : 16);
+    for (const std::uint32_t vertices : {1U, 64U, 65U, 1000U, most - 1, most}) {
+      CHECK(sim::vertex_room(vertices, self_collision) >= vertices);
+      CHECK(sim::vertex_room(vertices, self_collision) <= most);
     }
   }
 }
