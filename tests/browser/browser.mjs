@@ -130,6 +130,18 @@ export class Viewer {
     return this.page.waitForFunction(condition, argument, { timeout: patience });
   }
 
+  /// Waits for the picture at rest, which is drawn at full resolution.
+  still() {
+    return this.until(() => window.clothlab.stage.still);
+  }
+
+  /// Stops the page's session by its key, and waits until the picture is at rest.
+  async pause() {
+    await this.page.keyboard.press(" ");
+    await this.page.getByRole("button", { name: "Play", exact: true }).waitFor({ state: "attached" });
+    await this.still();
+  }
+
   read(name) {
     return this.page.evaluate((key) => window.clothlab[key], name);
   }

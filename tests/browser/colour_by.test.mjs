@@ -4,10 +4,10 @@ import { browserTest, eventually, screenshots, withServer } from "./browser.mjs"
 
 const here = withServer();
 
-/// Stops the page's session, and waits until the picture is at rest.
-async function pause(viewer) {
-  await viewer.page.keyboard.press(" ");
-  await viewer.page.waitForTimeout(900);
+/// How much of the cloth's red the picture at rest has [pixels].
+async function red(viewer) {
+  await viewer.still();
+  return (await viewer.cloth()).count;
 }
 const choice = (viewer) => viewer.page.getByRole("combobox", { name: "Colour by" });
 const legend = (viewer) => viewer.page.getByRole("group", { name: "Legend" });
@@ -31,10 +31,10 @@ for (const [width, height] of [
     async () => {
       const viewer = await here.open({ sharp: true, session: `colour-by-${width}`, width, height });
       await viewer.until(() => window.clothlab.simTime > 0.9);
-      await pause(viewer);
+      await viewer.pause();
       assert.equal(await legend(viewer).isVisible(), false);
       assert.equal(await range(viewer), 0);
-      const before = (await viewer.cloth()).count;
+      const before = await red(viewer);
       assert.ok(before > 1000, `${before} red pixels`);
 
       for (const [field, says] of [
@@ -49,9 +49,11 @@ for (const [width, height] of [
           (text) => says.test(text.trim()),
         );
         assert.ok((await range(viewer)) > 0);
-        await viewer.page.waitForTimeout(900);
-        const { count } = await viewer.cloth();
-        assert.ok(count < 0.05 * before, `${count} pixels are still red with ${field}`);
+        await eventually(
+          `red pixels of ${before} with ${field}`,
+          () => red(viewer),
+          (count) => count < 0.05 * before,
+        );
         const [bar, box] = [await viewer.page.locator("#transport").boundingBox(), await legend(viewer).boundingBox()];
         assert.ok(
           box.x >= 0 && box.x + box.width <= width && box.y + box.height <= bar.y,
@@ -67,8 +69,11 @@ for (const [width, height] of [
         () => legend(viewer).isVisible(),
         (visible) => !visible,
       );
-      await viewer.page.waitForTimeout(900);
-      assert.ok((await viewer.cloth()).count > 0.8 * before, "the cloth is red again");
+      await eventually(
+        `red pixels of ${before}, as before`,
+        () => red(viewer),
+        (count) => count > 0.8 * before,
+      );
       assert.equal(await range(viewer), 0);
     },
   );

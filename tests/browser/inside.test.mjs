@@ -14,11 +14,6 @@ async function open(viewer, press = (locator) => locator.click()) {
   await press(opener(viewer));
   await card(viewer).waitFor();
 }
-/// Stops the page's session, and waits until the picture is at rest.
-async function pause({ page }) {
-  await page.keyboard.press(" ");
-  await page.waitForTimeout(900);
-}
 /// The methods that the page asks for.
 const asked = (page) => {
   const methods = [];
@@ -55,13 +50,13 @@ async function difference(viewer, before, after) {
   }
 }
 /// A screenshot of the cloth's part of the window, at rest.
-async function picture({ page }, { width, height }) {
-  await page.waitForTimeout(900);
+async function picture(viewer, { width, height }) {
+  await viewer.still();
   const clip =
     width < 700
       ? { x: 0, y: height * 0.55, width, height: height * 0.25 }
       : { x: width * 0.24, y: height * 0.05, width: width * 0.5, height: height * 0.8 };
-  return page.screenshot({ clip });
+  return viewer.page.screenshot({ clip });
 }
 
 for (const size of [
@@ -74,7 +69,7 @@ for (const size of [
   browserTest(`at ${name} each overlay is drawn, and goes again, by ${touch ? "touch" : "pointer"}`, async () => {
     const viewer = await here.open({ sharp: true, session: `inside-${name}`, hasTouch: touch, ...size });
     await viewer.until(() => window.clothlab.simTime > 0.7);
-    await pause(viewer);
+    await viewer.pause();
     await open(viewer, press);
     const bare = await picture(viewer, size);
     for (const [overlay, least] of [
@@ -97,12 +92,11 @@ for (const size of [
           new RegExp(`Largest strain: .*, ${overlay} spring \\d+–\\d+\\.`),
         );
       }
-      const drawn = await difference(viewer, bare, await picture(viewer, size));
+      const changed = async () => difference(viewer, bare, await picture(viewer, size));
+      await eventually(`pixels of ${overlay}`, changed, (pixels) => pixels > least);
       await viewer.page.screenshot({ path: `${screenshots}inside-${overlay}-${name}.png` });
-      assert.ok(drawn > least, `${drawn} pixels of ${overlay}`);
       await press(box(viewer, overlay));
-      const left = await difference(viewer, bare, await picture(viewer, size));
-      assert.ok(left < 20, `${left} pixels are left of ${overlay}`);
+      await eventually(`pixels left of ${overlay}`, changed, (pixels) => pixels < 20);
       assert.equal(await label.isVisible(), false);
     }
     const [at, bar] = [await card(viewer).boundingBox(), await viewer.page.locator("#transport").boundingBox()];
@@ -115,7 +109,7 @@ for (const size of [
 browserTest("the largest strain that the card tells is that of the server, to the rounding that it tells", async () => {
   const { viewer, client } = await here.both("inside-strain", { width: 1440, height: 900 });
   await viewer.until(() => window.clothlab.simTime > 0.9);
-  await pause(viewer);
+  await viewer.pause();
   const { max_strain } = await client.nextNotification("sim.status");
   await open(viewer);
   for (const kind of ["structural", "shear", "bend"]) await box(viewer, kind).click();
@@ -258,7 +252,7 @@ browserTest("the range of the colours is fixed and automatic again, is kept, and
     () => most.textContent(),
     (text) => text === "≥ 4.5 m/s",
   );
-  await pause(viewer);
+  await viewer.pause();
   await open(viewer);
   await card(viewer).getByRole("radio", { name: "automatic" }).check();
   await eventually(

@@ -41,8 +41,7 @@ for (const [width, height] of [
         colorScheme,
       });
       await viewer.until(() => window.clothlab.simTime > 1.1);
-      await viewer.page.keyboard.press(" ");
-      await viewer.page.waitForTimeout(900); // a picture at rest is drawn at full resolution
+      await viewer.pause();
       assert.equal(await viewer.page.evaluate(() => document.documentElement.dataset.theme), colorScheme);
       assert.deepEqual(await viewer.page.evaluate(cutOff), []);
       await viewer.page.screenshot({ path: `${screenshots}${width}x${height}-${colorScheme}.png` });

@@ -14,8 +14,7 @@ browserTest("a picture is a PNG of the canvas at full resolution, on the page's 
   const viewer = await here.open({ session: "save-picture", width: 1280, height: 800, sharp: true });
   const { page } = viewer;
   await viewer.until(() => window.clothlab.simTime > 0.5);
-  await page.keyboard.press(" ");
-  await page.waitForTimeout(900);
+  await viewer.pause();
   const { name, bytes } = await saved(viewer, () => page.getByRole("button", { name: "Picture" }).click());
   const time = await viewer.read("simTime");
   assert.equal(name, `seed-${time.toFixed(2)}s.png`);

@@ -303,13 +303,18 @@ export class Stage {
     this.lastLook = now;
     this.controls.update();
     const sinceLast = now - this.lastDrawn;
-    if (!this.dirty && (this.scale === this.stillScale || sinceLast < stillAfter)) return false;
+    if (this.still || (!this.dirty && sinceLast < stillAfter)) return false;
     const scale = this.dirty ? this.quality.level.scale : this.stillScale;
     if (scale !== this.scale) this.setScale(scale);
     if (this.dirty) this.quality.sample(sinceLast);
     this.lastDrawn = now;
     this.render();
     return true;
+  }
+
+  /// True while nothing changes and the picture is the one at full resolution.
+  get still(): boolean {
+    return !this.dirty && this.scale === this.stillScale;
   }
 
   /// Draws at full resolution at once; until the caller returns, the picture can be copied from the canvas.
