@@ -1,5 +1,8 @@
 // Catch2 version 2 or 3, whichever the distribution has, under the names of version 3.
+// And how thorough a run of the tests is.
 #pragma once
+
+#include <cstdlib>
 
 #if __has_include(<catch2/catch_all.hpp>)
 #include <catch2/catch_all.hpp>
@@ -12,3 +15,13 @@ inline auto ContainsSubstring(const std::string& part) {
   return Catch::Contains(part);
 }
 #endif
+
+namespace clothlab::test {
+
+/// True with CLOTHLAB_THOROUGH in the environment (tests/all): claims are tried on all that they are about.
+/// Otherwise, as in continuous integration, the dearest are tried on a part of it.
+inline bool thorough() {
+  return std::getenv("CLOTHLAB_THOROUGH") != nullptr;
+}
+
+}  // namespace clothlab::test

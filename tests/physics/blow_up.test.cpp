@@ -37,10 +37,11 @@ Watched watch(sim::Simulation& simulation, double time, std::uint32_t stride) {
 
 TEST_CASE("no preset is taken for a blow-up, and nearly all of its states are ones to go back to") {
   const auto context = test::context();
+  const double watched = test::thorough() ? 2.5 : 0.5;  // [s]
   for (const std::string& name : scene::preset_names()) {
     if (name == "blowup") continue;
     const auto simulation = test::simulation(preset(name));
-    const Watched run = watch(*simulation, 1.0, 10);
+    const Watched run = watch(*simulation, watched, 10);
     INFO(name << ": " << run.good << " of " << run.looks << " good");
     CHECK(run.verdict != Verdict::blown_up);
     CHECK(run.good > 0.9 * run.looks);

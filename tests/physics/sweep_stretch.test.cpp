@@ -52,6 +52,10 @@ TEST_CASE(
     CHECK(warning.find("implicit_euler") != std::string::npos);
     CHECK(model::sweeps_warning(simulation->model(), hanging(50, method, 10, 0.0005)).empty());
   }
+  // Implicit Euler's few Newton steps are no sweeps: the remedy is not warned of.
+  const scene::Scene remedy = hanging(50, Method::implicit_euler, 10, 1.0 / 60.0);
+  CHECK(model::sweeps_warning(*model::build(remedy), remedy).empty());
+  CHECK(model::hanging_stretch(*model::build(remedy), remedy).by_sweeps == 0.0);
   const scene::Scene solved = hanging(9, Method::vbd, 40, 0.0005);
   const auto simulation = test::simulation(solved);
   simulation->step(70);
