@@ -20,6 +20,17 @@ Result<std::string> read_file(const fs::path& path) {
   return std::string(std::istreambuf_iterator<char>(file), {});
 }
 
+bool is_taken(const fs::path& path) {
+  std::error_code failure;  // what cannot be asked about is there
+  return fs::symlink_status(path, failure).type() != fs::file_type::not_found;
+}
+
+fs::path free_path(fs::path path) {
+  const std::string first = path.string();
+  for (int number = 2; is_taken(path); ++number) path = first + "-" + std::to_string(number);
+  return path;
+}
+
 Status replace_file(const fs::path& path, const std::string& bytes) {
   fs::path unfinished = path;
   // Not the process alone: in two containers it may have one number, and in both this thread, too.

@@ -45,7 +45,8 @@ void Room::begin_session(std::shared_ptr<const session::Saved> saved) {
   const Options& options = hub_.options();
   session::Beginning beginning{name_,  options.document, std::move(saved), {}, last_frame_ + frames_unseen,
                                meshes_};
-  if (!options.state_folder.empty()) beginning.file = session::session_file(options.state_folder, name_);
+  if (!options.state_folder.empty() && !file_taken_)
+    beginning.file = session::session_file(options.state_folder, name_);
   give_up_session().reset();
   session_ =
       std::make_unique<session::Session>(std::move(beginning), options.limits.scene, options.gpu, wake_);
@@ -277,7 +278,9 @@ void Room::handle(session::Diverged& diverged) {
 }
 
 void Room::handle(session::Notice& notice) {
-  broadcast("notice", {{"level", notice.level}, {"text", notice.text}});
+  const json params{{"level", notice.level}, {"text", notice.text}};
+  if (notice.standing) standing_notices_.push_back(notification_text("notice", params));
+  if (!notice.standing || started()) broadcast("notice", params);  // else it comes with the greeting
 }
 
 void Room::handle(session::Told& told) {
@@ -310,6 +313,7 @@ void Room::greet(Client& client) {
   client.greet(notification_text("hello", hello_params(hub_, *this, client)));
   client.send(notification_text("scene", {{"document", document()}, {"revision", revision_}}));
   if (history_.is_object()) client.send(notification_text("scene.history", history_));
+  for (const std::string& notice : standing_notices_) client.send(notice);
 }
 
 void Room::broadcast(const char* method, const json& params) {

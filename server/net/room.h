@@ -99,6 +99,7 @@ class Room {
   void handle(session::SolverChanged& changed);
   void handle(session::Diverged& diverged);
   void handle(session::Notice& notice);
+  void handle(session::FileTaken&) { file_taken_ = true; }
   void handle(session::Told& told);
   void handle(session::Captured& captured);
   void handle(session::SceneReached& reached);
@@ -133,7 +134,9 @@ class Room {
   std::string renderer_;
   std::shared_ptr<const scene::Document> document_;
   std::uint64_t revision_ = 0;
-  json history_;  ///< as scene.history tells it
+  json history_;                               ///< as scene.history tells it
+  std::vector<std::string> standing_notices_;  ///< for each client that comes
+  bool file_taken_ = false;                    ///< see session::FileTaken
   stream::SharedMessage topology_;
   json passes_ = json::array(), terms_ = json::array(), skipped_ = json::array(),
        pass_seconds_ = json::object(), solver_ = json::object();

@@ -81,7 +81,11 @@ struct Diverged {
 struct Notice {
   const char* level = "info";  ///< info | warning | error
   std::string text;
+  bool standing = false;  ///< also for each client that comes later
 };
+/// In the place of the session's file is what could not be restored, and could not be moved: threads of the
+/// session to come must not save there either.
+struct FileTaken {};
 /// A notification for all viewers, whose text another process has made.
 struct Told {
   std::string text;
@@ -127,8 +131,8 @@ struct Status {
   gl::StageTimes pass_times;  ///< the GPU times that have arrived since the last status
 };
 using Event = std::variant<Started, Failed, Reply, SceneChanged, HistoryChanged, TopologyChanged,
-                           PartsChanged, SolverChanged, Diverged, Notice, Told, Captured, SceneReached,
-                           SceneLost, Held, ChoiceWanted, Status>;
+                           PartsChanged, SolverChanged, Diverged, Notice, FileTaken, Told, Captured,
+                           SceneReached, SceneLost, Held, ChoiceWanted, Status>;
 
 class Exchange {
  public:

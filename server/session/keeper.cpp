@@ -5,34 +5,71 @@
 #include "server/base/files.h"
 #include "server/base/log.h"
 #include "server/session/exchange.h"
+#include "server/session/mesh_shelf.h"
 #include "server/session/stepper.h"
 
 namespace clothlab::session {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+std::string not_moved(const fs::path& aside, const std::error_code& failure) {
+  return "it could not be moved to " + aside.string() + " (" + failure.message() + "): move it away";
+}
+
+}  // namespace
+
 fs::path session_file(const fs::path& folder, const std::string& session) {
   return folder / (session + ".session");
 }
 
-Result<std::shared_ptr<const Saved>> load_session(const fs::path& file) {
+std::variant<std::shared_ptr<const Saved>, Unrestored> load_session(const fs::path& file) {
+  if (!is_taken(file)) return std::shared_ptr<const Saved>();
   std::error_code failure;
-  if (!fs::exists(file, failure)) return std::shared_ptr<const Saved>();
+  if (!fs::is_regular_file(file, failure))
+    return Unrestored{{file.string(), "it is no file", "move it away, and start the server again"}};
   const Result<std::string> bytes = read_file(file);
   Result<Saved> saved = bytes ? saved_from(*bytes) : bytes.error();
   if (saved) return std::make_shared<const Saved>(std::move(*saved));
   fs::path aside = file;
-  aside += ".unreadable";
+  aside = free_path(aside += ".unreadable");
   fs::rename(file, aside, failure);
-  if (failure)
-    return Error{file.string(), saved.error().what,
-                 "it could not be moved to " + aside.string() + " (" + failure.message() +
-                     "): move it away if it is to be kept"};
-  return Error{file.string(), saved.error().what, "it was moved to " + aside.string()};
+  if (failure) return Unrestored{{file.string(), saved.error().what, not_moved(aside, failure)}};
+  return Unrestored{{file.string(), saved.error().what, "it was moved to " + aside.string()}, true};
+}
+
+Unrestored set_aside(const fs::path& file, const Error& why) {
+  fs::path stem = file, folder = file;
+  stem.replace_extension();
+  folder = free_path(folder.replace_extension(".not-restored"));
+  std::error_code failure;
+  fs::create_directory(folder, failure);
+  if (!failure) fs::rename(file, folder / file.filename(), failure);
+  if (failure) {
+    std::error_code ignored;
+    fs::remove(folder, ignored);
+    return {{why.where, why.what, why.remedy + "; " + not_moved(folder, failure)}};
+  }
+  // The new session may remove or replace its own links.
+  for (const fs::path& mesh : mesh_files(stem)) {
+    fs::create_hard_link(mesh, folder / mesh.filename(), failure);
+    if (failure) fs::copy_file(mesh, folder / mesh.filename(), failure);
+    if (failure)
+      log(LogLevel::error, "mesh_not_set_aside", {{"file", mesh.string()}, {"why", failure.message()}});
+  }
+  return {{why.where, why.what,
+           why.remedy + "; it is kept in " + folder.filename().string() + " of --state-dir" +
+               ": to have it again, end the server, mend that, and move the folder's files back"},
+          true};
+}
+
+bool Keeper::due(const Stepper& stepper) const {
+  return failing_ || stepper.version() != saved_version_;
 }
 
 void Keeper::save_if_due(Stepper& stepper, Clock::time_point now) {
-  if (now < next_ || stepper.version() == saved_version_) return;
+  if (now < next_ || !due(stepper)) return;
   const Clock::time_point begun = Clock::now();
   save(stepper);
   // Reading a large state back takes long. Saving takes at most about a tenth of the session's time.
@@ -40,18 +77,15 @@ void Keeper::save_if_due(Stepper& stepper, Clock::time_point now) {
 }
 
 void Keeper::finish(Stepper& stepper) {
-  if (stepper.version() != saved_version_) save(stepper);
+  if (due(stepper)) save(stepper);
 }
 
 void Keeper::save(Stepper& stepper) {
   saved_version_ = stepper.version();
   auto saved = std::make_shared<const Saved>(stepper.saved());
   exchange_.store_saved(saved);
-  if (file_) write(*saved);
-}
-
-void Keeper::write(const Saved& saved) {
-  const clothlab::Status written = replace_file(*file_, to_bytes(saved));
+  if (!file_) return;
+  const clothlab::Status written = write(*saved);
   if (written) {
     if (std::exchange(failing_, false))
       log(LogLevel::info, "session_saved_again", {{"file", file_->string()}});
@@ -61,6 +95,13 @@ void Keeper::write(const Saved& saved) {
   log(LogLevel::error, "session_not_saved", {{"file", file_->string()}, {"why", written.error().text()}});
   exchange_.emit(Notice{"error", "this session cannot be saved: " + written.error().what +
                                      "; it goes on, but would be lost with the server"});
+}
+
+/// First the meshes, which the scene may name.
+clothlab::Status Keeper::write(const Saved& saved) {
+  if (meshes_)
+    if (clothlab::Status kept = meshes_->keep_rest(); !kept) return kept;
+  return replace_file(*file_, to_bytes(saved));
 }
 
 }  // namespace clothlab::session

@@ -7,41 +7,57 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "server/session/saved.h"
 
 namespace clothlab::session {
 
 class Exchange;
+class MeshShelf;
 class Stepper;
 
 /// FOLDER/NAME.session
 std::filesystem::path session_file(const std::filesystem::path& folder, const std::string& session);
-/// Reads a saved session; null if there is no file. A file that cannot be read is renamed to
-/// NAME.session.unreadable, never deleted; the error says so.
-Result<std::shared_ptr<const Saved>> load_session(const std::filesystem::path& file);
+
+/// What was kept of a session, and is in the way of what is to be saved from now on.
+struct Unrestored {
+  Error why;           ///< with where it was moved to
+  bool moved = false;  ///< false: it is where it was, and nothing may be saved there
+};
+/// Reads a saved session; null if nothing is there. Unrestored: a file that cannot be read is renamed to
+/// NAME.session.unreadable, with a number behind it if there is one. What is no file, as a folder or a pipe,
+/// stays.
+std::variant<std::shared_ptr<const Saved>, Unrestored> load_session(const std::filesystem::path& file);
+/// Moves the file of a session that could be read, but not brought back because of `why`, into a new folder
+/// NAME.not-restored, and links the files of its meshes there: whoever moves the folder's files back has the
+/// session again.
+Unrestored set_aside(const std::filesystem::path& file, const Error& why);
 
 class Keeper {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Without `file` the session is saved in memory only.
-  Keeper(Exchange& exchange, std::optional<std::filesystem::path> file)
-      : exchange_(exchange), file_(std::move(file)) {}
+  /// Without `file` the session is saved in memory only. `meshes` (may be null): those that could not be
+  /// saved when they came are tried again with the session.
+  Keeper(Exchange& exchange, std::optional<std::filesystem::path> file, std::shared_ptr<MeshShelf> meshes)
+      : exchange_(exchange), file_(std::move(file)), meshes_(std::move(meshes)) {}
 
-  /// Saves the session if it has changed and the last save is long enough ago.
+  /// Saves the session if it has changed, or could not be saved, and the last save is long enough ago.
   void save_if_due(Stepper& stepper, Clock::time_point now);
-  /// Saves the session at its end, if it has changed, however recent the last save is.
+  /// Saves the session at its end, if it has changed or could not be saved, however recent the last save is.
   void finish(Stepper& stepper);
 
   static constexpr std::chrono::milliseconds period{900};  ///< so that at most a second is lost
 
  private:
+  bool due(const Stepper& stepper) const;
   void save(Stepper& stepper);
-  void write(const Saved& saved);
+  clothlab::Status write(const Saved& saved);
 
   Exchange& exchange_;
   std::optional<std::filesystem::path> file_;
+  std::shared_ptr<MeshShelf> meshes_;
   std::uint64_t saved_version_ = 0;
   Clock::time_point next_{};
   bool failing_ = false;

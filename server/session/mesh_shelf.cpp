@@ -21,6 +21,23 @@ mesh::Limits upload_limits() {
 
 }  // namespace
 
+std::vector<fs::path> mesh_files(const fs::path& stem) {
+  const std::string begin = stem.filename().string() + ".mesh-";
+  std::vector<std::pair<fs::file_time_type, fs::path>> found;
+  std::error_code failure;
+  for (fs::directory_iterator at(stem.parent_path(), failure), end; !failure && at != end;
+       at.increment(failure)) {
+    const std::string name = at->path().filename().string();
+    // The name of a kept mesh ends with a hash: what is unfinished, or was moved aside, does not.
+    if (name.starts_with(begin) && name.size() == begin.size() + 16 && at->is_regular_file(failure))
+      found.emplace_back(at->last_write_time(failure), at->path());
+  }
+  std::sort(found.begin(), found.end());
+  std::vector<fs::path> files;
+  for (auto& [time, file] : found) files.push_back(std::move(file));
+  return files;
+}
+
 Result<scene::SharedMesh> MeshShelf::mesh(const std::string& name) const {
   {
     const std::lock_guard lock(mutex_);
@@ -96,32 +113,50 @@ clothlab::Status MeshShelf::keep(const std::string& name) {
   SharedItem item;
   {
     const std::lock_guard lock(mutex_);
+    unkept_.erase(name);
     if (const auto found = items_.find(name); found != items_.end()) item = found->second;
   }
   if (!item) remove(name);
   if (!stem_ || !item) return ok();
-  return replace_file(file_of(name), mesh_title + name + "\n" + item->bytes);
+  clothlab::Status written = replace_file(file_of(name), mesh_title + name + "\n" + item->bytes);
+  if (written) return written;
+  const std::lock_guard lock(mutex_);
+  unkept_.insert(name);
+  return written;
+}
+
+clothlab::Status MeshShelf::keep_rest() {
+  std::set<std::string> names;
+  {
+    const std::lock_guard lock(mutex_);
+    names = unkept_;
+  }
+  for (const std::string& name : names)
+    if (clothlab::Status kept = keep(name); !kept) return kept;
+  return ok();
 }
 
 std::vector<Error> MeshShelf::restore() {
   std::vector<Error> errors;
   if (!stem_) return errors;
-  const std::string begin = stem_->filename().string() + ".mesh-";
-  std::vector<std::pair<fs::file_time_type, fs::path>> files;
-  std::error_code failure;
-  for (fs::directory_iterator at(stem_->parent_path(), failure), end; !failure && at != end;
-       at.increment(failure))
-    if (at->path().filename().string().starts_with(begin) && at->path().extension() != unfinished_suffix &&
-        at->is_regular_file(failure) && at->file_size(failure) <= max_upload_bytes + 1024)
-      files.emplace_back(at->last_write_time(failure), at->path());
-  std::sort(files.begin(), files.end());  // the oldest first, as they were uploaded
-  std::size_t restored = 0;               // others' files, whose number is not ours, must push out no mesh
-  for (const auto& [time, file] : files) {
+  const auto set_aside = [&](fs::path file, const std::string& what) {
+    const fs::path aside = free_path(fs::path(file) += ".unreadable");
+    std::error_code failure;
+    fs::rename(file, aside, failure);
+    errors.push_back({file.string(), what, failure ? "move it away" : "it was moved to " + aside.string()});
+  };
+  std::size_t restored = 0;  // others' files, whose number is not ours, must push out no mesh
+  for (const fs::path& file : mesh_files(*stem_)) {
+    std::error_code failure;
+    if (fs::file_size(file, failure) > max_upload_bytes + 1024) {
+      set_aside(file, "is larger than an upload may be");
+      continue;
+    }
     const Result<std::string> bytes = read_file(file);
     const std::size_t end =
         bytes && bytes->starts_with(mesh_title) ? bytes->find('\n', mesh_title.size()) : std::string::npos;
     if (end == std::string::npos) {
-      errors.push_back({file.string(), "is no uploaded mesh", "move it away"});
+      set_aside(file, bytes ? "is no uploaded mesh" : bytes.error().what);
       continue;
     }
     if (restored == max_meshes) continue;
@@ -131,7 +166,7 @@ std::vector<Error> MeshShelf::restore() {
     if (item)
       exchange(name, *item);
     else
-      errors.push_back({file.string(), item.error().text(), "move it away"});
+      set_aside(file, item.error().text());
   }
   return errors;
 }

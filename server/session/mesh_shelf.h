@@ -22,6 +22,9 @@ inline constexpr std::size_t max_meshes = 16;                     ///< uploaded,
 inline constexpr std::size_t max_mesh_bytes = 32 * 1024 * 1024;   ///< of all of them together
 inline constexpr std::size_t max_mesh_name_bytes = 64;            ///< of the name of one
 
+/// The files of the meshes that a shelf with this stem has kept, the oldest first.
+std::vector<std::filesystem::path> mesh_files(const std::filesystem::path& stem);
+
 class MeshShelf : public scene::Assets {
  public:
   struct Item {
@@ -51,7 +54,10 @@ class MeshShelf : public scene::Assets {
 
   /// Writes the mesh of this name into its file, if there is a folder; without such a mesh there is no file.
   clothlab::Status keep(const std::string& name);
-  /// Reads the files of an earlier server. Returns what was wrong with those that were not mesh files.
+  /// Writes the meshes that `keep` could not write. Error: the first that still cannot be written.
+  clothlab::Status keep_rest();
+  /// Reads the files of an earlier server. Returns what was wrong with those that could not be read, and
+  /// where they were moved to: FILE.unreadable, with a number behind it if there is one.
   std::vector<Error> restore();
 
  private:
@@ -62,6 +68,7 @@ class MeshShelf : public scene::Assets {
   std::optional<std::filesystem::path> stem_;
   mutable std::mutex mutex_;
   std::map<std::string, SharedItem> items_;
+  std::set<std::string> unkept_;  ///< names of meshes that could not be written
   std::uint64_t last_number_ = 0;
 };
 

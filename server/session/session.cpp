@@ -3,6 +3,7 @@
 #include <exception>
 #include <new>
 
+#include "server/base/files.h"
 #include "server/base/log.h"
 #include "server/gl/context.h"
 #include "server/session/fault.h"
@@ -13,13 +14,25 @@ namespace clothlab::session {
 
 namespace {
 
+/// Tells of what could not be restored. If it could not be moved either, the session is saved in memory only:
+/// its file would take the place of that.
+void tell_unrestored(Beginning& beginning, Exchange& exchange, const Unrestored& found) {
+  std::string why = found.why.text();
+  if (!found.moved && beginning.file) {
+    beginning.file.reset();
+    exchange.emit(FileTaken{});
+    why += "; this session is not saved before the server starts again";
+  }
+  log(LogLevel::error, "session_not_restored", {{"session", beginning.name}, {"why", why}});
+  exchange.emit(Notice{"error", "the saved session cannot be restored: " + why, true});
+}
+
 /// The state that the session's earlier thread saved, else the state in the session's file; null: neither.
-std::shared_ptr<const Saved> state_to_restore(const Beginning& beginning, Exchange& exchange) {
+std::shared_ptr<const Saved> state_to_restore(Beginning& beginning, Exchange& exchange) {
   if (beginning.saved || !beginning.file) return beginning.saved;
-  Result<std::shared_ptr<const Saved>> loaded = load_session(*beginning.file);
-  if (loaded) return *loaded;
-  log(LogLevel::error, "session_not_restored", {{"session", beginning.name}, {"why", loaded.error().text()}});
-  exchange.emit(Notice{"error", "the saved session cannot be read: " + loaded.error().text()});
+  const auto loaded = load_session(*beginning.file);
+  if (const auto* saved = std::get_if<std::shared_ptr<const Saved>>(&loaded)) return *saved;
+  tell_unrestored(beginning, exchange, std::get<Unrestored>(loaded));
   return nullptr;
 }
 
@@ -42,14 +55,16 @@ Result<std::unique_ptr<Stepper>> bring_back(const Saved& saved, const Beginning&
 Result<std::unique_ptr<Stepper>> begin(Beginning& beginning, const Limits& limits, std::optional<int> gpu,
                                        Exchange& exchange) {
   if (beginning.meshes && !beginning.saved)  // else they are on the shelf already
-    for (const Error& error : beginning.meshes->restore())
+    for (const Error& error : beginning.meshes->restore()) {
       log(LogLevel::error, "mesh_not_restored", {{"session", beginning.name}, {"why", error.text()}});
+      exchange.emit(Notice{"error", "an uploaded mesh cannot be restored: " + error.text(), true});
+    }
   if (const std::shared_ptr<const Saved> saved = state_to_restore(beginning, exchange)) {
     Result<std::unique_ptr<Stepper>> stepper = bring_back(*saved, beginning, limits, gpu, exchange);
     if (stepper) return stepper;
-    log(LogLevel::error, "session_not_restored",
-        {{"session", beginning.name}, {"why", stepper.error().text()}});
-    exchange.emit(Notice{"error", "the saved session cannot be restored: " + stepper.error().text()});
+    const bool kept = beginning.file && is_taken(*beginning.file);
+    tell_unrestored(beginning, exchange,
+                    kept ? set_aside(*beginning.file, stepper.error()) : Unrestored{stepper.error(), true});
   }
   return Stepper::create(std::move(beginning.document), exchange, limits, gpu, beginning.last_frame,
                          beginning.meshes);
@@ -86,7 +101,7 @@ void Session::run(Beginning& beginning, const Limits& limits, std::optional<int>
   Result<std::unique_ptr<Stepper>> stepper = begin(beginning, limits, gpu, exchange_);
   if (!stepper) return exchange_.emit(Failed{stepper.error()});
   exchange_.emit(Started{(*stepper)->renderer()});
-  Keeper keeper(exchange_, beginning.file);
+  Keeper keeper(exchange_, beginning.file, beginning.meshes);
   std::vector<Command> commands;
   Clock::time_point next = Clock::now();
   while (exchange_.take_commands(commands, next)) {

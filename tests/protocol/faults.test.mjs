@@ -1,7 +1,7 @@
 // Faults of one session: it reports them and goes on if it can, and the other sessions are not affected.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { cpSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { cpSync, existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -159,12 +159,20 @@ test("a full disk: the session says that it cannot be saved, goes on, and is sav
     const { time } = await client.nextFrame();
     await client.nextFrame((frame) => frame.time > time + 1.5);
     assert.equal(notices(client).length, 1, "told once");
+    const mesh = "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n".padEnd(20_000, "#");
+    const unkept = client.nextNotification("notice", ({ text }) => /the mesh mine cannot be saved/.test(text));
+    await client.request("mesh.upload", { name: "mine", obj: mesh });
+    await unkept;
+    const kept = () => readdirSync(disk.where).some((name) => /^main\.mesh-[0-9a-f]{16}$/.test(name));
+    assert.equal(kept(), false);
+    await client.request("sim.pause"); // so that nothing changes any more
     rmSync(ballast);
     await client.until(
       () => [server.stderr],
       (text) => text.includes("event=session_saved_again"),
       "the session to be saved",
     );
+    assert.ok(kept(), "the mesh, too");
     await server.stop();
   } finally {
     disk.remove();
