@@ -27,7 +27,9 @@ bool is_taken(const fs::path& path) {
 
 fs::path free_path(fs::path path) {
   const std::string first = path.string();
-  for (int number = 2; is_taken(path); ++number) path = first + "-" + std::to_string(number);
+  std::error_code failure;  // in a folder that cannot be read every path is as good
+  for (int number = 2; fs::exists(fs::symlink_status(path, failure)); ++number)
+    path = first + "-" + std::to_string(number);
   return path;
 }
 

@@ -97,11 +97,12 @@ void Keeper::save(Stepper& stepper) {
                                      "; it goes on, but would be lost with the server"});
 }
 
-/// First the meshes, which the scene may name.
+/// First the meshes, which the scene may name. One that the disk has no room for keeps no session from being
+/// saved.
 clothlab::Status Keeper::write(const Saved& saved) {
-  if (meshes_)
-    if (clothlab::Status kept = meshes_->keep_rest(); !kept) return kept;
-  return replace_file(*file_, to_bytes(saved));
+  clothlab::Status kept = meshes_ ? meshes_->keep_rest() : ok();
+  clothlab::Status written = replace_file(*file_, to_bytes(saved));
+  return written ? kept : written;
 }
 
 }  // namespace clothlab::session

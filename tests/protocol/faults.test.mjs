@@ -166,6 +166,18 @@ test("a full disk: the session says that it cannot be saved, goes on, and is sav
     const kept = () => readdirSync(disk.where).some((name) => /^main\.mesh-[0-9a-f]{16}$/.test(name));
     assert.equal(kept(), false);
     await client.request("sim.pause"); // so that nothing changes any more
+    // With room for the session alone, the session is saved.
+    writeFileSync(ballast, Buffer.alloc(184 * 1024));
+    const { revision } = await client.request("scene.patch", { patch: { name: "small" } });
+    const large = client.nextNotification("notice", ({ text }) => /the mesh large cannot be saved/.test(text));
+    await client.request("mesh.upload", { name: "large", obj: mesh.padEnd(60_000, "#") });
+    await large;
+    const session = () => readFileSync(join(disk.where, "main.session")).toString("latin1");
+    await client.until(
+      () => [session()],
+      (text) => text.includes(`"name":"small"`) && text.includes(`"revision":${revision}`),
+      "the session without its mesh",
+    );
     rmSync(ballast);
     await client.until(
       () => [server.stderr],
