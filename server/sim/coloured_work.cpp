@@ -107,7 +107,7 @@ gl::Defines visit_defines(const Visits& visits, bool elements) {
   unsigned number = 0;
   for (const Visits::Function& function : visits.functions)
     if (function.visits()) each += formatted("sweep(%s, %u) ", function.name.c_str(), number++);
-  gl::Defines defines{{"EACH_VISIT(sweep)", each}, {"VISIT_COUNT", std::to_string(number)}};
+  gl::Defines defines{{"EACH_VISIT(sweep)", each}, {"VISIT_ROOM", std::to_string(std::max(number, 1U))}};
   if (!elements) return defines;
   std::string swept;
   elements::each_law<elements::SweptLaws>([&]<class Law>(std::type_identity<Law>) {

@@ -35,9 +35,9 @@ Visits visited_vertices(const model::Model& model, const scene::Scene& scene);
 std::vector<Words> visit_list(const Visits& visits, const model::Model& model, const scene::Scene& scene);
 /// Number of pushes that XPBD remembers of the visited elements: one for each corner but the first.
 std::size_t remembered_pushes(const Visits& visits);
-/// Defines EACH_VISIT and VISIT_COUNT, and for elements the laws and how long their visits are:
-/// Spring_VISIT_TEXELS, ... No number depends on how many items there are: cloths of all sizes share a
-/// kernel.
+/// Defines EACH_VISIT and VISIT_ROOM, the length of an array of its visits, and for elements the laws and how
+/// long their visits are: Spring_VISIT_TEXELS, ... No number depends on how many items there are: cloths of
+/// all sizes share a kernel.
 gl::Defines visit_defines(const Visits& visits, bool elements);
 /// Tells a kernel that has these defines where each law's items, visits and pushes begin, and the colours of
 /// each function.

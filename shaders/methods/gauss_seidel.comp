@@ -112,7 +112,7 @@ void finish(int i) {
 
 #ifdef ONE_GROUP
 uniform int colour_first[COLOUR_ROOM];  // item, of each colour and behind the last
-uniform ivec2 colours_of[VISIT_COUNT];  // for each visit of EACH_VISIT its first colour and the one behind its last
+uniform ivec2 colours_of[VISIT_ROOM];  // for each visit of EACH_VISIT its first colour and the one behind its last
 
 #define EACH(item, first, end) int item = first + int(gl_LocalInvocationID.x); item < end; item += GROUP_SIZE
 // EACH_VISIT(sweep) calls `sweep(visit, k)` for each function that visits items, and its number k.

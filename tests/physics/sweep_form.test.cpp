@@ -51,6 +51,24 @@ TEST_CASE(
   CHECK(sim::vertex_room(81, false) == sim::vertex_room(110, false));
 }
 
+TEST_CASE("a cloth without a free vertex steps in both forms, where a sweep visits nothing") {
+  const auto context = test::context();
+  for (const scene::Method method : {scene::Method::pbd, scene::Method::xpbd, scene::Method::vbd})
+    for (const char* form : {"one_group", "dispatches"}) {
+      INFO(scene::name(method) << ", " << form);
+      scene::Scene scene = test::sheet(2, 2);
+      scene.solver = {.method = method, .dt = 1e-3, .iterations = 2};
+      scene.cloths[0].pins = {{scene::AtEdge{scene::AtEdge::Line::row, 0}, {}},
+                              {scene::AtEdge{scene::AtEdge::Line::row, 1}, {}}};
+      setenv("CLOTHLAB_SWEEPS", form, 1);
+      const auto simulation = test::simulation(scene);
+      unsetenv("CLOTHLAB_SWEEPS");
+      const auto before = simulation->read_state().position;
+      simulation->step(2);
+      CHECK(simulation->read_state().position == before);
+    }
+}
+
 TEST_CASE("a work group has room for its cloth, and for no more vertices than its shared memory holds") {
   const auto context = test::context();
   GLint bytes = 0;
