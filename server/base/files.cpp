@@ -33,6 +33,19 @@ fs::path free_path(fs::path path) {
   return path;
 }
 
+InTheWay move_aside(const fs::path& file, const std::string& what) {
+  fs::path aside = file;
+  aside = free_path(aside += ".unreadable");
+  std::error_code failure;
+  fs::rename(file, aside, failure);
+  if (failure) return {{file.string(), what, not_moved(aside, failure)}};
+  return {{file.string(), what, "it was moved to " + aside.string()}, true};
+}
+
+std::string not_moved(const fs::path& aside, const std::error_code& failure) {
+  return "it could not be moved to " + aside.string() + " (" + failure.message() + "): move it away";
+}
+
 Status replace_file(const fs::path& path, const std::string& bytes) {
   fs::path unfinished = path;
   // Not the process alone: in two containers it may have one number, and in both this thread, too.

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <system_error>
 
 #include "server/base/result.h"
 
@@ -15,6 +16,17 @@ Result<std::string> read_file(const std::filesystem::path& path);
 bool is_taken(const std::filesystem::path& path);
 /// `path`, or, if something is there, the first of PATH-2, PATH-3, ... where nothing is.
 std::filesystem::path free_path(std::filesystem::path path);
+
+/// What is in the way of a new file.
+struct InTheWay {
+  Error why;           ///< with where it is now, and what to do
+  bool moved = false;  ///< false: it is where it was, and nothing may be written there
+};
+/// Renames a file that cannot be used because of `what` to FILE.unreadable, with a number behind it if there
+/// is one.
+InTheWay move_aside(const std::filesystem::path& file, const std::string& what);
+/// What to do about something that could not be moved.
+std::string not_moved(const std::filesystem::path& aside, const std::error_code& failure);
 
 /// Ending of the name of a file that is still being written.
 inline constexpr const char* unfinished_suffix = ".unfinished";

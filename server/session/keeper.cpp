@@ -12,34 +12,22 @@ namespace clothlab::session {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-std::string not_moved(const fs::path& aside, const std::error_code& failure) {
-  return "it could not be moved to " + aside.string() + " (" + failure.message() + "): move it away";
-}
-
-}  // namespace
-
 fs::path session_file(const fs::path& folder, const std::string& session) {
   return folder / (session + ".session");
 }
 
-std::variant<std::shared_ptr<const Saved>, Unrestored> load_session(const fs::path& file) {
+std::variant<std::shared_ptr<const Saved>, InTheWay> load_session(const fs::path& file) {
   if (!is_taken(file)) return std::shared_ptr<const Saved>();
   std::error_code failure;
   if (!fs::is_regular_file(file, failure))
-    return Unrestored{{file.string(), "it is no file", "move it away, and start the server again"}};
+    return InTheWay{{file.string(), "it is no file", "move it away, and start the server again"}};
   const Result<std::string> bytes = read_file(file);
   Result<Saved> saved = bytes ? saved_from(*bytes) : bytes.error();
   if (saved) return std::make_shared<const Saved>(std::move(*saved));
-  fs::path aside = file;
-  aside = free_path(aside += ".unreadable");
-  fs::rename(file, aside, failure);
-  if (failure) return Unrestored{{file.string(), saved.error().what, not_moved(aside, failure)}};
-  return Unrestored{{file.string(), saved.error().what, "it was moved to " + aside.string()}, true};
+  return move_aside(file, saved.error().what);
 }
 
-Unrestored set_aside(const fs::path& file, const Error& why) {
+InTheWay set_aside(const fs::path& file, const Error& why) {
   fs::path stem = file, folder = file;
   stem.replace_extension();
   folder = free_path(folder.replace_extension(".not-restored"));

@@ -9,6 +9,7 @@
 #include <string>
 #include <variant>
 
+#include "server/base/files.h"
 #include "server/session/saved.h"
 
 namespace clothlab::session {
@@ -19,20 +20,13 @@ class Stepper;
 
 /// FOLDER/NAME.session
 std::filesystem::path session_file(const std::filesystem::path& folder, const std::string& session);
-
-/// What was kept of a session, and is in the way of what is to be saved from now on.
-struct Unrestored {
-  Error why;           ///< with where it was moved to
-  bool moved = false;  ///< false: it is where it was, and nothing may be saved there
-};
-/// Reads a saved session; null if nothing is there. Unrestored: a file that cannot be read is renamed to
-/// NAME.session.unreadable, with a number behind it if there is one. What is no file, as a folder or a pipe,
-/// stays.
-std::variant<std::shared_ptr<const Saved>, Unrestored> load_session(const std::filesystem::path& file);
+/// Reads a saved session; null if nothing is there. A file that cannot be read is moved aside. What is no
+/// file, as a folder or a pipe, stays.
+std::variant<std::shared_ptr<const Saved>, InTheWay> load_session(const std::filesystem::path& file);
 /// Moves the file of a session that could be read, but not brought back because of `why`, into a new folder
 /// NAME.not-restored, and links the files of its meshes there: whoever moves the folder's files back has the
 /// session again.
-Unrestored set_aside(const std::filesystem::path& file, const Error& why);
+InTheWay set_aside(const std::filesystem::path& file, const Error& why);
 
 class Keeper {
  public:

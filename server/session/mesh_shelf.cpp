@@ -28,8 +28,8 @@ std::vector<fs::path> mesh_files(const fs::path& stem) {
   for (fs::directory_iterator at(stem.parent_path(), failure), end; !failure && at != end;
        at.increment(failure)) {
     const std::string name = at->path().filename().string();
-    // The name of a kept mesh ends with a hash: what is unfinished, or was moved aside, does not.
-    if (name.starts_with(begin) && name.size() == begin.size() + 16 && at->is_regular_file(failure))
+    // What is unfinished, was moved aside or belongs to another session has a further ending.
+    if (name.starts_with(begin) && name.find('.', begin.size()) == name.npos && at->is_regular_file(failure))
       found.emplace_back(at->last_write_time(failure), at->path());
   }
   std::sort(found.begin(), found.end());
@@ -139,24 +139,18 @@ clothlab::Status MeshShelf::keep_rest() {
 std::vector<Error> MeshShelf::restore() {
   std::vector<Error> errors;
   if (!stem_) return errors;
-  const auto set_aside = [&](fs::path file, const std::string& what) {
-    const fs::path aside = free_path(fs::path(file) += ".unreadable");
-    std::error_code failure;
-    fs::rename(file, aside, failure);
-    errors.push_back({file.string(), what, failure ? "move it away" : "it was moved to " + aside.string()});
-  };
   std::size_t restored = 0;  // others' files, whose number is not ours, must push out no mesh
   for (const fs::path& file : mesh_files(*stem_)) {
     std::error_code failure;
     if (fs::file_size(file, failure) > max_upload_bytes + 1024) {
-      set_aside(file, "is larger than an upload may be");
+      errors.push_back(move_aside(file, "it is larger than an upload may be").why);
       continue;
     }
     const Result<std::string> bytes = read_file(file);
     const std::size_t end =
         bytes && bytes->starts_with(mesh_title) ? bytes->find('\n', mesh_title.size()) : std::string::npos;
     if (end == std::string::npos) {
-      set_aside(file, bytes ? "is no uploaded mesh" : bytes.error().what);
+      errors.push_back(move_aside(file, bytes ? "it is no uploaded mesh" : bytes.error().what).why);
       continue;
     }
     if (restored == max_meshes) continue;
@@ -166,7 +160,7 @@ std::vector<Error> MeshShelf::restore() {
     if (item)
       exchange(name, *item);
     else
-      set_aside(file, item.error().text());
+      errors.push_back(move_aside(file, item.error().text()).why);
   }
   return errors;
 }

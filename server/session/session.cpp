@@ -16,7 +16,7 @@ namespace {
 
 /// Tells of what could not be restored. If it could not be moved either, the session is saved in memory only:
 /// its file would take the place of that.
-void tell_unrestored(Beginning& beginning, Exchange& exchange, const Unrestored& found) {
+void tell_unrestored(Beginning& beginning, Exchange& exchange, const InTheWay& found) {
   std::string why = found.why.text();
   if (!found.moved && beginning.file) {
     beginning.file.reset();
@@ -32,7 +32,7 @@ std::shared_ptr<const Saved> state_to_restore(Beginning& beginning, Exchange& ex
   if (beginning.saved || !beginning.file) return beginning.saved;
   const auto loaded = load_session(*beginning.file);
   if (const auto* saved = std::get_if<std::shared_ptr<const Saved>>(&loaded)) return *saved;
-  tell_unrestored(beginning, exchange, std::get<Unrestored>(loaded));
+  tell_unrestored(beginning, exchange, std::get<InTheWay>(loaded));
   return nullptr;
 }
 
@@ -64,7 +64,7 @@ Result<std::unique_ptr<Stepper>> begin(Beginning& beginning, const Limits& limit
     if (stepper) return stepper;
     const bool kept = beginning.file && is_taken(*beginning.file);
     tell_unrestored(beginning, exchange,
-                    kept ? set_aside(*beginning.file, stepper.error()) : Unrestored{stepper.error(), true});
+                    kept ? set_aside(*beginning.file, stepper.error()) : InTheWay{stepper.error(), true});
   }
   return Stepper::create(std::move(beginning.document), exchange, limits, gpu, beginning.last_frame,
                          beginning.meshes);

@@ -168,6 +168,6 @@ TEST_CASE(
                      << " refused by the model");
   // The patches are random enough to meet both outcomes, and are seldom refused.
   if (std::getenv("CLOTHLAB_PATCH_SEEDS")) return;
-  CHECK(count.blow_ups > 1);
+  CHECK(count.blow_ups > 5);
   CHECK(count.refused * 10 < count.patches);
 }

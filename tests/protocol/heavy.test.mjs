@@ -35,7 +35,7 @@ for (const name of kinds)
 
       // While it steps, the other session's frames keep coming, and this session tells its state, is paused and steps
       // on.
-      for (let frame = 0; frame < 20; ++frame) await bystander.nextFrame();
+      for (let frame = 0; frame < 60; ++frame) await bystander.nextFrame();
       assert.equal((await heavy.request("scene.get")).revision, applied.revision);
       assert.equal((await heavy.request("sim.pause")).playing, false);
       const { step } = await heavy.request("sim.play");

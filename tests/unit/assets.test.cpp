@@ -195,7 +195,7 @@ TEST_CASE("a session's uploads are bounded, come before files and are there agai
   CHECK(put("one more", all) == "refused");
   CHECK(put("one more", {"leaf.obj"}) == "mesh 1 / \xc3\xa9");
   CHECK_FALSE(shelf.read("a", "v 0 0\n"));
-  Folder::write(folder.outer / "main.mesh-0123456789abcdef", "something else");
+  Folder::write(folder.outer / "main.mesh-0", "something else");
 
   session::MeshShelf again(files, folder.outer / "main");
   CHECK(again.restore().size() == 1);
