@@ -55,6 +55,13 @@ let running = null;
 export async function launch() {
   if (!executablePath) return null;
   running = await browser();
+  // Also pages that a test opens itself wait as long as a busy machine needs.
+  const newContext = running.newContext.bind(running);
+  running.newContext = async (options) => {
+    const context = await newContext(options);
+    context.setDefaultTimeout(patience);
+    return context;
+  };
   return running;
 }
 
@@ -115,7 +122,6 @@ export class Viewer {
     viewer.page = await browser.newPage({ viewport: { width, height }, deviceScaleFactor, colorScheme, ...more });
     // The card of the first minute is for the tests that ask for it.
     if (!newcomer) await viewer.page.addInitScript(() => localStorage.setItem("clothlab-first-steps", "seen"));
-    viewer.page.setDefaultTimeout(patience);
     viewer.complaints = [];
     viewer.page.on("console", (message) => {
       if (["error", "warning"].includes(message.type())) viewer.complaints.push(message.text());
