@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -10,6 +11,8 @@
 #include "server/net/json_rpc.h"
 #include "server/net/outbox.h"
 #include "server/net/pacing.h"
+#include "server/net/service_time.h"
+#include "server/net/timer.h"
 
 struct lws;
 
@@ -50,13 +53,28 @@ class Client {
   /// What a mesh.upload keeps until the session has read its mesh; null while an earlier one does.
   std::shared_ptr<void> begin_upload();
 
+  /// While it lives, the service thread works for the client, which pays for that time.
+  class Served {
+   public:
+    explicit Served(Client& client) : client_(client) {}
+    ~Served() { client_.pay(since_); }
+    Served(const Served&) = delete;
+    Served& operator=(const Served&) = delete;
+
+   private:
+    Client& client_;
+    std::int64_t since_ = thread_time_us();
+  };
+
   // Mostly called by the room.
   void greet(const std::string& hello);  ///< sends `hello` before all text that waits
   void send(const std::string& text) { send(make_text(text)); }
   void send(SharedText text);
   /// Sends the answer to a request; a notification (a ticket without id) gets none, but for a notice of an
   /// error in one that pulls at the cloth.
-  void answer(const session::Ticket& ticket, const std::variant<json, RpcError>& answer);
+  void answer(const session::Ticket& ticket, const std::variant<json, session::JsonText, RpcError>& answer);
+  /// Has the answer made on the workbench. Until it is there, nothing more is read from the client.
+  void answer_aside(session::Ticket ticket, std::function<session::JsonText()> make);
   void send_status(SharedText text);
   /// The session was brought back after it failed: the topology is sent again before the next frame.
   void session_replaced();
@@ -70,11 +88,22 @@ class Client {
   void close_without_room();
   /// The bytes that the message may have which is being received, of which `data` has just come.
   std::size_t most_bytes(std::string_view data);
-  int refuse_too_long(std::size_t most);
+  void refuse_too_long(std::size_t most);
   double price_of_message() const;
   void tell_refused_grab(const std::string& method, const RpcError& error);
+  void receive_part(const char* data, std::size_t size);
   void handle(const std::string& text);
+  void handle_aside(std::string text);
+  template <class Made>
+  void work_aside(std::function<Made()> make, std::function<void(Client&, Made)> then,
+                  std::function<void(Client&)> failed);
+  void take(std::variant<Request, BadRequest> parsed, bool long_text);
+  scene::TextLimits text_limits(std::size_t bytes) const;
+  void pay(std::int64_t since);
+  void stop_reading_if_due();
+  void read_on();
   void schedule_frame(std::int64_t now);
+  bool frame_goes_first();
   bool may_send() const;
   int send_close();
   int send_next();
@@ -95,10 +124,15 @@ class Client {
   bool incoming_text_ = true;
   bool incoming_mesh_ = false;  ///< it is a mesh.upload, which may be longer than other messages
   std::weak_ptr<void> upload_;  ///< what begin_upload made last
+  ServiceTime service_;
+  Timer read_again_;
+  bool reading_ = true;  ///< false: what the client sends stays in its socket
+  bool aside_ = false;   ///< the workbench has something of the client's
   Outbox outbox_;
   FramePacing pacing_;
   TokenBucket messages_;
-  TokenBucket grab_notices_;  ///< a hand that moves may be wrong often: a notice a second is enough
+  TokenBucket grab_notices_;    ///< a hand that moves may be wrong often: a notice a second is enough
+  bool text_was_last_ = false;  ///< the last message sent was of the outbox
   bool topology_sent_ = false;
   std::uint32_t topology_revision_ = 0;
   std::uint32_t colliders_sent_for_ = 0;  ///< sequence number of the frame whose colliders were sent last

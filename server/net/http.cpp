@@ -3,7 +3,9 @@
 #include <libwebsockets.h>
 #include <poll.h>
 
+#include <algorithm>
 #include <charconv>
+#include <utility>
 
 #include "server/model/mesh_file.h"
 #include "server/net/hub.h"
@@ -49,6 +51,10 @@ HttpAnswer no_collider() {
   return plain(404, "the scene has no mesh collider of this name; name=NAME is that of /api/scene's list");
 }
 
+HttpAnswer scene_answer(const std::string& file) {
+  return {200, "application/json", file, {}};
+}
+
 HttpAnswer binary(std::string bytes) {
   return {200, "application/octet-stream", std::move(bytes), {{"cache-control:", "no-store"}}};
 }
@@ -73,10 +79,32 @@ int side(const std::string& text, int most) {
                                                                                                    : 0;
 }
 
+/// While it lives, the service thread works for this address, which pays for that time.
+class Served {
+ public:
+  Served(Hub& hub, std::string network) : hub_(hub), network_(std::move(network)) {}
+  ~Served() { hub_.http_service().spend(network_, session::now_us(), thread_time_us() - since_); }
+  Served(const Served&) = delete;
+  Served& operator=(const Served&) = delete;
+
+ private:
+  Hub& hub_;
+  std::string network_;
+  std::int64_t since_ = thread_time_us();
+};
+
 }  // namespace
 
 HttpRequest::HttpRequest(Hub& hub, const WebFiles& files, lws* wsi, Finish finish)
-    : hub_(hub), files_(files), wsi_(wsi), finish_(finish), id_(hub.next_id()) {
+    : hub_(hub),
+      files_(files),
+      wsi_(wsi),
+      finish_(finish),
+      id_(hub.next_id()),
+      network_(network_of(client_address(wsi, hub.options().trusted_proxies))),
+      later_(wsi, [this] {
+        if (const Progress progress = answer(); progress != Progress::waits) finish_(wsi_, progress);
+      }) {
   hub_.add(id_, *this);
 }
 
@@ -97,7 +125,20 @@ HttpRequest::Progress HttpRequest::begin(const std::string& path) {
     refusal.headers = {{"allow:", "GET, HEAD"}};
     return refuse(refusal);  // the request may have a body
   }
-  if (const std::optional<HttpAnswer> answer = find(path)) return send(*answer);
+  path_ = path;
+  return answer();
+}
+
+HttpRequest::Progress HttpRequest::answer() {
+  const std::int64_t wait = hub_.http_service().wait(network_, session::now_us());
+  if (wait > 0 && path_ != "/healthz") {  // a load balancer asks that, and must not wait for others
+    lws_rx_flow_control(wsi_, 0);
+    lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, patience);
+    later_.start(std::max<std::int64_t>(wait, 2000));
+    return Progress::waits;
+  }
+  const Served served(hub_, network_);
+  if (const std::optional<HttpAnswer> answer = find(path_)) return send(*answer);
   lws_rx_flow_control(wsi_, 0);
   return Progress::waits;
 }
@@ -176,7 +217,7 @@ std::optional<HttpAnswer> HttpRequest::find_protected(const std::string& path) {
   if (!room || !room->started())
     return plain(404,
                  "no such session is open; one opens when a page or script connects to /ws?session=NAME");
-  if (path == "/api/scene") return HttpAnswer{200, "application/json", room->document().dump(2) + "\n", {}};
+  if (path == "/api/scene") return scene_file(*room);
   // The document may have only the name of a mesh's file, so the page asks for what the server has read.
   if (collider) return collider_mesh(*room, query(wsi_, "name", ""));
   if (hub_.relays())
@@ -189,6 +230,29 @@ std::optional<HttpAnswer> HttpRequest::find_protected(const std::string& path) {
   if (what.width == 0 || what.height == 0)
     return plain(400, "width and height are whole numbers from 1 to " + std::to_string(max_snapshot_side));
   return ask_session(session, what);
+}
+
+std::optional<HttpAnswer> HttpRequest::scene_file(Room& room) {
+  if (const session::JsonText& file = room.scene_file()) return scene_answer(*file);
+  lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, patience);
+  const auto pass_on = [&hub = hub_, id = id_, session = room.name()](
+                           const std::shared_ptr<const scene::Document>& of, const session::JsonText& file) {
+    if (Room* there = hub.find_room(session); there && file) there->keep_scene_file(of, file);
+    if (HttpRequest* request = hub.find_request(id)) request->deliver_scene(file);
+  };
+  hub_.workbench().add(
+      [document = room.shared_document(), pass_on]() -> Workbench::Ending {
+        const auto file = std::make_shared<const std::string>(document->value.dump(2) + "\n");
+        return [document, file, pass_on] { pass_on(document, file); };
+      },
+      [pass_on] { pass_on(nullptr, nullptr); });
+  return std::nullopt;
+}
+
+void HttpRequest::deliver_scene(const session::JsonText& file) {
+  const Served served(hub_, network_);
+  finish_(wsi_,
+          send(file ? scene_answer(*file) : plain(500, "there was no memory to write the scene; ask again")));
 }
 
 std::optional<HttpAnswer> HttpRequest::collider_mesh(Room& room, const std::string& name) {
@@ -230,6 +294,7 @@ bool HttpRequest::hung_up() const {
 }
 
 void HttpRequest::deliver(session::Exported exported) {
+  const Served served(hub_, network_);
   finish_(
       wsi_,
       exported.body
@@ -238,6 +303,7 @@ void HttpRequest::deliver(session::Exported exported) {
 }
 
 void HttpRequest::deliver_collider(const std::shared_ptr<const std::string>& mesh) {
+  const Served served(hub_, network_);
   finish_(wsi_, send(mesh ? binary(*mesh) : no_collider()));
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/net/timer.h"
 #include "server/net/web_files.h"
 #include "server/session/exporter.h"
 
@@ -44,19 +45,26 @@ class HttpRequest {
   /// Answers the request, or asks a session for the answer. libwebsockets 4.3 takes what the client sends
   /// next for the next request even while this one waits for its answer. So an answer that is known is
   /// written at once, and while a session is asked nothing more is read.
+  /// While others of the client's address have taken the time of the service thread that is the address's,
+  /// the answer waits.
   Progress begin(const std::string& path);
   /// Answers with the picture or mesh that this request asked for, or with the error. The request is
   /// destroyed.
   void deliver(session::Exported exported);
   /// The same with the mesh of a collider, null: there is none.
   void deliver_collider(const std::shared_ptr<const std::string>& mesh);
+  /// The same with the file that a session's document is.
+  void deliver_scene(const session::JsonText& file);
   /// True if the client has closed the connection, so that nobody waits for the answer.
   bool hung_up() const;
 
  private:
   /// The answer for this path; empty: a session was asked for it.
   std::optional<HttpAnswer> find(const std::string& path);
+  Progress answer();
   HttpAnswer file(const std::string& path) const;
+  /// The document of the room's scene, which the workbench writes.
+  std::optional<HttpAnswer> scene_file(Room& room);
   /// The same for the paths that need a token, if the server has one: /metrics and the API.
   std::optional<HttpAnswer> find_protected(const std::string& path);
   /// Asks the session for a picture or mesh. Returns the refusal if too many wait already.
@@ -76,6 +84,9 @@ class HttpRequest {
   lws* wsi_;
   Finish finish_;
   std::uint64_t id_;
+  std::string network_;  ///< of the client, as limits count it
+  std::string path_{};
+  Timer later_;
   std::string file_name_{};  ///< under which a browser keeps the answer; empty: it shows it
   std::string reader_;       ///< the allowed origin of another page that asks, and may read the answer
   bool head_ = false;        ///< the request is HEAD: its answer has no body

@@ -255,14 +255,17 @@ void Hub::pump_exports() {
   }
 }
 
+HttpRequest* Hub::find_request(std::uint64_t id) {
+  const auto found = waiting_.find(id);
+  return found == waiting_.end() ? nullptr : found->second;
+}
+
 void Hub::deliver(session::Exported exported) {
-  const auto found = waiting_.find(exported.asker);
-  if (found != waiting_.end()) found->second->deliver(std::move(exported));
+  if (HttpRequest* request = find_request(exported.asker)) request->deliver(std::move(exported));
 }
 
 void Hub::deliver_collider(std::uint64_t asker, const relay::Feed::ColliderMesh& mesh) {
-  const auto found = waiting_.find(asker);
-  if (found != waiting_.end()) found->second->deliver_collider(mesh);
+  if (HttpRequest* request = find_request(asker)) request->deliver_collider(mesh);
 }
 
 void Hub::pump_bus() {
@@ -283,6 +286,7 @@ void Hub::pump() {
   }
   for (const std::string& name : failed) retire(name);
   pump_exports();
+  workbench_.pump();
   lab_->pump(session::now_us());
 }
 
@@ -293,6 +297,7 @@ void Hub::stop_sessions() {
   if (bus_) bus_->close();
   retiring_.clear();  // waits for each session that is being closed
   exporter_.stop();
+  workbench_.stop();
 }
 
 Gauges Hub::gauges() const {

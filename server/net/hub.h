@@ -20,7 +20,9 @@
 #include "server/net/metrics.h"
 #include "server/net/options.h"
 #include "server/net/room.h"
+#include "server/net/service_time.h"
 #include "server/net/token_guard.h"
+#include "server/net/workbench.h"
 #include "server/session/exporter.h"
 
 namespace clothlab::net {
@@ -50,6 +52,10 @@ class Hub {
   Metrics& metrics() { return metrics_; }
   LabQueue& lab() { return *lab_; }
   Connections& connections() { return connections_; }
+  Workbench& workbench() { return workbench_; }
+  /// The service thread's time that all clients share, and that requests over plain HTTP do.
+  ServicePool& service() { return service_; }
+  ServicePool& http_service() { return http_service_; }
 
   /// The role that a token gives its client; where no token is needed every client is an operator, of a relay
   /// a viewer.
@@ -97,6 +103,7 @@ class Hub {
 
   void add(std::uint64_t id, HttpRequest& request) { waiting_[id] = &request; }
   void remove_request(std::uint64_t id) { waiting_.erase(id); }
+  HttpRequest* find_request(std::uint64_t id);
   /// The number of pictures and meshes that wait or are being made, including those whose session has not
   /// handed over its moment yet.
   std::size_t exports_waiting() const;
@@ -135,6 +142,9 @@ class Hub {
   std::function<void()> wake_;
   Metrics metrics_;
   Connections connections_{options_.limits, options_.trusted_proxies};
+  ServicePool service_{service_of_address, service_of_all},
+      http_service_{http_service_of_address, http_service_of_all};
+  Workbench workbench_{wake_};
   TokenGuard token_guard_{options_.limits.wrong_tokens};
   lab::Cache lab_cache_;
   std::unique_ptr<LabQueue> lab_;

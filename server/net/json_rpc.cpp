@@ -110,6 +110,10 @@ std::string result_text(const json& id, const json& result) {
   return dump({{"jsonrpc", "2.0"}, {"id", id}, {"result", result}});
 }
 
+std::string result_text(const json& id, const session::JsonText& result) {
+  return "{\"id\":" + dump(id) + ",\"jsonrpc\":\"2.0\",\"result\":" + *result + "}";
+}
+
 std::string error_text(const json& id, const RpcError& error) {
   json body = {{"code", error.code}, {"message", error.message}};
   if (!error.data.is_null()) body["data"] = error.data;
@@ -118,6 +122,10 @@ std::string error_text(const json& id, const RpcError& error) {
 
 std::string notification_text(const char* method, const json& params) {
   return dump({{"jsonrpc", "2.0"}, {"method", method}, {"params", params}});
+}
+
+std::string notification_text(const char* method, const session::JsonText& params) {
+  return std::string("{\"jsonrpc\":\"2.0\",\"method\":\"") + method + "\",\"params\":" + *params + "}";
 }
 
 const json* Params::find(const char* name) {

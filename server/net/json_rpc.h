@@ -10,7 +10,7 @@
 
 #include "server/base/result.h"
 #include "server/scene/document.h"
-#include "server/session/refusal.h"
+#include "server/session/exchange.h"
 
 namespace clothlab::net {
 
@@ -64,8 +64,10 @@ std::variant<Request, BadRequest> parse_request(const std::string& text, scene::
 
 // Messages to the client, as text.
 std::string result_text(const json& id, const json& result);
+std::string result_text(const json& id, const session::JsonText& result);
 std::string error_text(const json& id, const RpcError& error);
 std::string notification_text(const char* method, const json& params);
+std::string notification_text(const char* method, const session::JsonText& params);
 
 /// Reads named parameters one by one and keeps the first fault. `check` also refuses parameters of names that
 /// were never read.

@@ -36,7 +36,9 @@ inline int burst_of(const Limits& limits) {
 
 inline constexpr int max_unadmitted_bytes = 4096;  ///< of a message from a client without a role
 inline constexpr std::size_t max_unsent_text_bytes =
-    4 * 1024 * 1024;                                     ///< of text waiting for a client; beyond: 1008
+    4 * 1024 * 1024;  ///< of text waiting for a client; beyond: 1008
+inline constexpr std::size_t max_answers_ahead_bytes =
+    256 * 1024;  ///< of that text; beyond: nothing is read from the client
 inline constexpr double min_rate = 0.1, max_rate = 120;  ///< frames a second a viewer may ask for
 inline constexpr int max_in_flight = 8;                  ///< unacknowledged frames a viewer may ask for
 inline constexpr std::int64_t max_steps = 1'000'000;     ///< steps of one sim.step

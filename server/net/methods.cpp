@@ -9,14 +9,14 @@ namespace clothlab::net {
 
 namespace {
 
-Outcome ping(Client&, const Request& request) {
+Outcome ping(Client&, Request& request) {
   Params params(request.params);
   const json& t = params.value("t");
   if (auto error = params.check()) return *error;
   return json{{"t", t}};
 }
 
-Outcome auth(Client& client, const Request& request) {
+Outcome auth(Client& client, Request& request) {
   Params params(request.params);
   const std::string token = params.text("token", std::nullopt);
   if (auto error = params.check()) return *error;
@@ -46,7 +46,7 @@ struct Method {
     direct,    ///< everybody but viewers of a relay, which has no session to ask
     operators  ///< it changes something
   } who;
-  Outcome (*run)(Client&, const Request&);
+  Outcome (*run)(Client&, Request&);
 };
 
 using For = Method::For;
@@ -121,7 +121,7 @@ Outcome ask_session(Client& client, const Request& request, decltype(session::Co
                   nullptr};
 }
 
-Outcome call(Client& client, const Request& request) {
+Outcome call(Client& client, Request& request) {
   if (client.role() == Role::none && request.method != "auth")
     return RpcError{error_not_allowed, "this server requires a token: call auth {token} first", nullptr};
   const auto method = std::find_if(methods.begin(), methods.end(),

@@ -31,7 +31,7 @@ scene::dvec3 read_target(Params& params) {
 
 }  // namespace
 
-Outcome grab_start(Client& client, const Request& request) {
+Outcome grab_start(Client& client, Request& request) {
   Params params(request.params);
   session::GrabStart start;
   constexpr std::int64_t most = scene::max_vertices - 1;
@@ -43,7 +43,7 @@ Outcome grab_start(Client& client, const Request& request) {
   return ask_session(client, request, start);
 }
 
-Outcome grab_move(Client& client, const Request& request) {
+Outcome grab_move(Client& client, Request& request) {
   Params params(request.params);
   session::GrabMove move;
   move.target = read_target(params);
@@ -52,7 +52,7 @@ Outcome grab_move(Client& client, const Request& request) {
   return ask_session(client, request, move);
 }
 
-Outcome grab_end(Client& client, const Request& request) {
+Outcome grab_end(Client& client, Request& request) {
   Params params(request.params);
   session::GrabEnd end{read_hand(params)};
   if (auto error = params.check()) return *error;

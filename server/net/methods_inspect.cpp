@@ -9,7 +9,7 @@ namespace clothlab::net {
 namespace {
 
 template <class What>
-Outcome from_first(Client& client, const Request& request) {
+Outcome from_first(Client& client, Request& request) {
   Params params(request.params);
   const std::int64_t first = params.integer("first", 0, 64 * scene::max_vertices, 0);
   if (auto error = params.check()) return *error;
@@ -18,15 +18,15 @@ Outcome from_first(Client& client, const Request& request) {
 
 }  // namespace
 
-Outcome inspect_springs(Client& client, const Request& request) {
+Outcome inspect_springs(Client& client, Request& request) {
   return from_first<session::InspectSprings>(client, request);
 }
 
-Outcome inspect_elements(Client& client, const Request& request) {
+Outcome inspect_elements(Client& client, Request& request) {
   return from_first<session::InspectElements>(client, request);
 }
 
-Outcome inspect_contacts(Client& client, const Request& request) {
+Outcome inspect_contacts(Client& client, Request& request) {
   Params params(request.params);
   const std::int64_t most = params.integer("most", 0, session::max_inspected_contacts, 1000);
   if (auto error = params.check()) return *error;

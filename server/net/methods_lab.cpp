@@ -79,7 +79,7 @@ std::uint64_t job_in(Params& params) {
   return static_cast<std::uint64_t>(params.integer("job", 1, most, std::nullopt));
 }
 
-Outcome ask_lab(Client& client, const Request& request, Params& params, lab::Job job) {
+Outcome ask_lab(Client& client, Request& request, Params& params, lab::Job job) {
   const LabWishes wishes{flag(params, "pause"), flag(params, "fresh")};
   if (auto error = params.check()) return *error;
   LabQueue& lab = client.hub().lab();
@@ -117,7 +117,7 @@ std::string base64_of(const std::vector<float>& numbers) {
 
 }  // namespace
 
-Outcome lab_chart(Client& client, const Request& request) {
+Outcome lab_chart(Client& client, Request& request) {
   Params params(request.params);
   lab::ChartRequest job;
   job.methods = methods_in(params);
@@ -127,7 +127,7 @@ Outcome lab_chart(Client& client, const Request& request) {
   return ask_lab(client, request, params, std::move(job));
 }
 
-Outcome lab_stability(Client& client, const Request& request) {
+Outcome lab_stability(Client& client, Request& request) {
   Params params(request.params);
   constexpr double least = -1e12, most = 1e12;  // for any field; the job checks the field's own range
   constexpr int least_columns = 2, most_columns = 41;
@@ -140,7 +140,7 @@ Outcome lab_stability(Client& client, const Request& request) {
   return ask_lab(client, request, params, std::move(job));
 }
 
-Outcome lab_choose(Client& client, const Request& request) {
+Outcome lab_choose(Client& client, Request& request) {
   Params params(request.params);
   lab::ChooseRequest job;
   job.tolerance = params.number("tolerance", least_tolerance, 1, std::nullopt);
@@ -149,7 +149,7 @@ Outcome lab_choose(Client& client, const Request& request) {
   return ask_lab(client, request, params, std::move(job));
 }
 
-Outcome lab_simplify(Client& client, const Request& request) {
+Outcome lab_simplify(Client& client, Request& request) {
   Params params(request.params);
   lab::SimplifyRequest job;
   job.tolerance = params.number("tolerance", least_tolerance, 1, job.tolerance);
@@ -157,7 +157,7 @@ Outcome lab_simplify(Client& client, const Request& request) {
   return ask_lab(client, request, params, std::move(job));
 }
 
-Outcome lab_compare(Client& client, const Request& request) {
+Outcome lab_compare(Client& client, Request& request) {
   Params params(request.params);
   lab::CompareRequest job;
   if (params.has("patch")) job.patch = params.value("patch");
@@ -169,7 +169,7 @@ Outcome lab_compare(Client& client, const Request& request) {
   return ask_lab(client, request, params, std::move(job));
 }
 
-Outcome lab_cancel(Client& client, const Request& request) {
+Outcome lab_cancel(Client& client, Request& request) {
   Params params(request.params);
   const std::uint64_t job = job_in(params);
   if (auto error = params.check()) return *error;
@@ -178,13 +178,13 @@ Outcome lab_cancel(Client& client, const Request& request) {
   return json{{"job", job}, {"cancelled", std::get<bool>(cancelled)}};
 }
 
-Outcome lab_jobs(Client& client, const Request& request) {
+Outcome lab_jobs(Client& client, Request& request) {
   Params params(request.params);
   if (auto error = params.check()) return *error;
   return json{{"jobs", client.hub().lab().jobs(client.id())}};
 }
 
-Outcome lab_export(Client& client, const Request& request) {
+Outcome lab_export(Client& client, Request& request) {
   Params params(request.params);
   const std::uint64_t job = job_in(params);
   const std::string format = params.text("format", std::nullopt);
@@ -197,13 +197,16 @@ Outcome lab_export(Client& client, const Request& request) {
   const SharedOutcome& outcome = std::get<SharedOutcome>(found);
   if (format == "svg" && std::holds_alternative<lab::Comparison>(*outcome))
     return invalid_params("/format", "svg", "json or csv: there is no picture of a comparison");
-  std::string text = format == "svg"   ? lab::svg(*outcome, *axis)
-                     : format == "csv" ? lab::csv(*outcome)
-                                       : lab::to_json(*outcome).dump(2) + "\n";
-  return json{{"job", job}, {"format", format}, {"text", std::move(text)}};
+  client.answer_aside(ticket(client, request), [outcome = outcome, job, format, axis = *axis] {
+    std::string text = format == "svg"   ? lab::svg(*outcome, axis)
+                       : format == "csv" ? lab::csv(*outcome)
+                                         : lab::to_json(*outcome).dump(2) + "\n";
+    return session::text_of({{"job", job}, {"format", format}, {"text", std::move(text)}});
+  });
+  return AnsweredLater{};
 }
 
-Outcome lab_moments(Client& client, const Request& request) {
+Outcome lab_moments(Client& client, Request& request) {
   Params params(request.params);
   const std::uint64_t job = job_in(params);
   const std::int64_t from = params.integer("from", 0, max_moment, std::nullopt);

@@ -4,21 +4,21 @@
 
 namespace clothlab::net {
 
-Outcome record_start(Client& client, const Request& request) {
+Outcome record_start(Client& client, Request& request) {
   Params params(request.params);
   const double rate = params.number("rate", session::min_recording_rate, session::max_recording_rate, 30);
   if (auto error = params.check()) return *error;
   return ask_session(client, request, session::RecordStart{rate});
 }
 
-Outcome record_stop(Client& client, const Request& request) {
+Outcome record_stop(Client& client, Request& request) {
   Params params(request.params);
   if (auto error = params.check()) return *error;
   return ask_session(client, request, session::RecordStop{});
 }
 
 /// Answered without the session's thread: frames and bytes are those that are written.
-Outcome record_get(Client& client, const Request& request) {
+Outcome record_get(Client& client, Request& request) {
   Params params(request.params);
   if (auto error = params.check()) return *error;
   const session::RecordingFacts facts = client.room()->recording();

@@ -15,7 +15,7 @@ std::optional<std::uint64_t> read_revision(Params& params) {
   return revision < 0 ? std::nullopt : std::optional(static_cast<std::uint64_t>(revision));
 }
 
-Outcome travel(Client& client, const Request& request, session::Direction direction) {
+Outcome travel(Client& client, Request& request, session::Direction direction) {
   Params params(request.params);
   const session::TravelHistory travel{direction, read_revision(params)};
   if (auto error = params.check()) return *error;
@@ -24,42 +24,45 @@ Outcome travel(Client& client, const Request& request, session::Direction direct
 
 }  // namespace
 
-Outcome scene_get(Client& client, const Request& request) {
+Outcome scene_get(Client& client, Request& request) {
   Params params(request.params);
   if (auto error = params.check()) return *error;
   return ask_session(client, request, session::GetScene{});
 }
 
-Outcome scene_load(Client& client, const Request& request) {
+Outcome scene_load(Client& client, Request& request) {
   Params params(request.params);
-  session::LoadScene load{params.text("preset", ""), params.value("scene")};
+  session::LoadScene load{params.text("preset", ""), nullptr};
   if (params.has("preset") == params.has("scene"))
     params.refuse("preset", "either a preset's name, or a scene");
   else if (params.has("preset") && load.preset.empty())
     params.refuse("preset", "a preset's name, see scene.presets");
+  (void)params.value("scene");
   if (auto error = params.check()) return *error;
+  if (params.has("scene")) load.document = std::move(request.params["scene"]);
   return ask_session(client, request, std::move(load));
 }
 
-Outcome scene_patch(Client& client, const Request& request) {
+Outcome scene_patch(Client& client, Request& request) {
   Params params(request.params);
-  session::PatchScene patch{params.value("patch"), std::nullopt};
-  if (!patch.patch.is_object() && !patch.patch.is_array())
+  session::PatchScene patch;
+  if (const json& value = params.value("patch"); !value.is_object() && !value.is_array())
     params.refuse("patch", "an object (RFC 7396 merge patch) or an array (RFC 6902 patch)");
   patch.revision = read_revision(params);
   patch.name = params.label("name", session::max_change_name_bytes, "");
   if (auto error = params.check()) return *error;
+  patch.patch = std::move(request.params["patch"]);
   return ask_session(client, request, std::move(patch));
 }
 
-Outcome scene_undo(Client& client, const Request& request) {
+Outcome scene_undo(Client& client, Request& request) {
   return travel(client, request, session::Direction::undo);
 }
-Outcome scene_redo(Client& client, const Request& request) {
+Outcome scene_redo(Client& client, Request& request) {
   return travel(client, request, session::Direction::redo);
 }
 
-Outcome scene_presets(Client&, const Request& request) {
+Outcome scene_presets(Client&, Request& request) {
   Params params(request.params);
   if (auto error = params.check()) return *error;
   json fabrics = json::array();

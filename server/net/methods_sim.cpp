@@ -8,7 +8,7 @@ namespace clothlab::net {
 namespace {
 
 template <class What>
-Outcome without_parameters(Client& client, const Request& request) {
+Outcome without_parameters(Client& client, Request& request) {
   Params params(request.params);
   if (auto error = params.check()) return *error;
   return ask_session(client, request, What{});
@@ -16,28 +16,28 @@ Outcome without_parameters(Client& client, const Request& request) {
 
 }  // namespace
 
-Outcome sim_play(Client& client, const Request& request) {
+Outcome sim_play(Client& client, Request& request) {
   return without_parameters<session::Play>(client, request);
 }
-Outcome sim_pause(Client& client, const Request& request) {
+Outcome sim_pause(Client& client, Request& request) {
   return without_parameters<session::Pause>(client, request);
 }
-Outcome sim_reset(Client& client, const Request& request) {
+Outcome sim_reset(Client& client, Request& request) {
   return without_parameters<session::Reset>(client, request);
 }
 
-Outcome sim_step(Client& client, const Request& request) {
+Outcome sim_step(Client& client, Request& request) {
   Params params(request.params);
   const std::int64_t steps = params.integer("steps", 1, max_steps, 1);
   if (auto error = params.check()) return *error;
   return ask_session(client, request, session::Step{static_cast<std::uint64_t>(steps)});
 }
 
-Outcome timeline_get(Client& client, const Request& request) {
+Outcome timeline_get(Client& client, Request& request) {
   return without_parameters<session::GetTimeline>(client, request);
 }
 
-Outcome timeline_resume(Client& client, const Request& request) {
+Outcome timeline_resume(Client& client, Request& request) {
   Params params(request.params);
   constexpr std::int64_t most = (std::int64_t{1} << 53) - 1;  // JSON numbers are exact up to here
   const std::int64_t step = params.integer("step", 0, most, std::nullopt);
@@ -45,7 +45,7 @@ Outcome timeline_resume(Client& client, const Request& request) {
   return ask_session(client, request, session::ResumeAt{static_cast<std::uint64_t>(step)});
 }
 
-Outcome sim_speed(Client& client, const Request& request) {
+Outcome sim_speed(Client& client, Request& request) {
   Params params(request.params);
   const double factor = params.number("factor", session::min_speed, session::max_speed, std::nullopt);
   if (auto error = params.check()) return *error;

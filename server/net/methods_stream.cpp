@@ -25,7 +25,7 @@ std::string allowed_fields(const std::string& found) {
 }
 }  // namespace
 
-Outcome stream_subscribe(Client& client, const Request& request) {
+Outcome stream_subscribe(Client& client, Request& request) {
   Params params(request.params);
   const std::string name = params.text("encoding", "q16");
   const std::optional<stream::Encoding> encoding = stream::encoding_of(name);
@@ -42,14 +42,14 @@ Outcome stream_subscribe(Client& client, const Request& request) {
   return agreed;
 }
 
-Outcome stream_unsubscribe(Client& client, const Request& request) {
+Outcome stream_unsubscribe(Client& client, Request& request) {
   Params params(request.params);
   if (auto error = params.check()) return *error;
   client.unsubscribe();
   return json::object();
 }
 
-Outcome stream_ack(Client& client, const Request& request) {
+Outcome stream_ack(Client& client, Request& request) {
   Params params(request.params);
   const std::int64_t frame =
       params.integer("frame", 0, std::numeric_limits<std::uint32_t>::max(), std::nullopt);

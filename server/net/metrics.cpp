@@ -120,6 +120,11 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
         metrics.frames_skipped);
   count("clothlab_bytes_sent_total", "counter", "bytes of WebSocket messages sent", metrics.bytes_sent);
   count("clothlab_messages_received_total", "counter", "messages received", metrics.messages_received);
+  count("clothlab_reading_stopped_total", "counter",
+        "times a client was not read from for a while, as it took its share of the service thread's time, "
+        "did not "
+        "read its answers, or a long message of it was read",
+        metrics.reading_stopped);
   count("clothlab_refused_total", "counter", "WebSocket handshakes and connections refused", metrics.refused);
   count("clothlab_tokens_refused_total", "counter", "tokens refused, over WebSockets and HTTP",
         metrics.tokens_refused);

@@ -52,10 +52,11 @@ struct Metrics {
   std::uint64_t frames_skipped = 0;  ///< replaced by newer frames before they could be sent
   std::uint64_t bytes_sent = 0;      ///< WebSocket payloads
   std::uint64_t messages_received = 0;
-  std::uint64_t refused = 0;         ///< refused handshakes and connections
-  std::uint64_t tokens_refused = 0;  ///< wrong ones, and those not checked after many wrong ones
-  std::uint64_t over_limit = 0;      ///< connections closed with 1008 or 1009, and errors -32002
-  std::uint64_t divergences = 0;     ///< simulations that have blown up
+  std::uint64_t reading_stopped = 0;  ///< times that a client was not read from for a while
+  std::uint64_t refused = 0;          ///< refused handshakes and connections
+  std::uint64_t tokens_refused = 0;   ///< wrong ones, and those not checked after many wrong ones
+  std::uint64_t over_limit = 0;       ///< connections closed with 1008 or 1009, and errors -32002
+  std::uint64_t divergences = 0;      ///< simulations that have blown up
   std::uint64_t sessions_brought_back = 0;
   std::uint64_t sessions_failed = 0;  ///< that were not brought back
   std::uint64_t exports = 0;          ///< pictures and meshes made, failed ones included

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "server/net/limits.h"
 #include "server/stream/frame.h"
 
 namespace clothlab::net {

@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "server/net/limits.h"
+
 namespace clothlab::net {
 
 /// A text message with LWS_PRE spare bytes in front, as libwebsockets requires; all receivers share it.
@@ -32,6 +34,8 @@ class Outbox {
   /// Appends a status and drops the status that still waits, if any. Returns the same as `push`.
   [[nodiscard]] bool push_status(SharedText text);
   bool empty() const { return texts_.empty(); }
+  /// True while so much waits that the client should read before it is answered more.
+  bool crowded() const { return bytes_ > max_answers_ahead_bytes; }
   SharedText pop();  ///< removes the first message; null if empty
 
  private:

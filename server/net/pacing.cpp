@@ -55,6 +55,11 @@ std::int64_t TokenBucket::wait(std::int64_t now) const {
   return missing > 0 ? std::max<std::int64_t>(1, std::llround(1e6 * missing / rate_)) : 0;
 }
 
+void TokenBucket::spend(std::int64_t now, double cost) {
+  tokens_ = left(now) - cost;
+  last_ = now;
+}
+
 bool TokenBucket::take(std::int64_t now, double cost) {
   tokens_ = left(now);
   last_ = now;

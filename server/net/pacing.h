@@ -56,6 +56,8 @@ class TokenBucket {
   /// Takes `cost` tokens. False: less than one is left, and none is taken. A cost above what is left leaves a
   /// debt, which must be gained back first.
   bool take(std::int64_t now, double cost = 1);
+  /// Takes `cost` tokens in any case; what is not there is a debt.
+  void spend(std::int64_t now, double cost);
   /// Time until `take` can succeed [us]; 0: now.
   std::int64_t wait(std::int64_t now) const;
   /// True if the bucket is full.

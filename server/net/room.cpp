@@ -19,6 +19,9 @@ bool is_session_name(const std::string& name) {
   return !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), allowed);
 }
 
+/// Time for a room's events at a time [us]: a quarter of that between two frames.
+constexpr std::int64_t longest_turn_us = 4000;
+
 Room::Room(Hub& hub, std::string name, const std::function<void()>& wake, Lock claim)
     : hub_(hub),
       name_(std::move(name)),
@@ -136,8 +139,7 @@ void Room::pump() {
   if (!session_) return;
   const std::int64_t now = session::now_us();
   if (feed_) feed_->pump(now);
-  session_->exchange().take_events(events_);
-  for (session::Event& event : events_) std::visit([&](auto& what) { handle(what); }, event);
+  handle_events(now);
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     const stream::Form form = stream::Form::at(i);
     const stream::SharedMessage latest = demanded_[i] > 0 ? frame(form) : nullptr;
@@ -146,6 +148,20 @@ void Room::pump() {
     for (Client* client : clients_) client->frame_arrived(form, now);
   }
   if (publisher_) pass_frames_on(now);
+}
+
+/// Handles what the session has put out, for a while: what is left after many answers waits for the next
+/// call, so that frames of other sessions go out between.
+void Room::handle_events(std::int64_t now) {
+  if (events_handled_ == events_.size()) {
+    session_->exchange().take_events(events_);
+    events_handled_ = 0;
+  }
+  while (events_handled_ < events_.size()) {
+    std::visit([&](auto& what) { handle(what); }, events_[events_handled_++]);
+    if (session::now_us() - now < longest_turn_us) continue;
+    return wake_();
+  }
 }
 
 void Room::handle(session::Started& started) {
@@ -206,21 +222,30 @@ void Room::handle(session::Failed& failed) {
 void Room::handle(session::Reply& reply) {
   Client* client = hub_.find_client(reply.ticket.asker);
   if (!client) return;
+  const Client::Served served(*client);
   if (const auto* refusal = std::get_if<session::Refusal>(&reply.answer))
     client->answer(reply.ticket, rpc_error(*refusal));
   else
-    client->answer(reply.ticket, std::get<json>(reply.answer));
+    client->answer(reply.ticket, std::get<session::JsonText>(reply.answer));
 }
 
 void Room::handle(session::SceneChanged& changed) {
   document_ = changed.document;
   revision_ = changed.revision;
+  scene_text_ = changed.text;
+  scene_file_.reset();
+  scene_message_.reset();
   hub_.lab().scene_changed(name_, *document_);
   if (changed.told) return;
   if (changed.patch)
     broadcast("scene.changed", {{"revision", revision_}, {"patch", *changed.patch}, {"by", changed.by}});
-  else if (started())
-    broadcast("scene", {{"document", document()}, {"revision", revision_}});
+  else if (started() && !empty())
+    broadcast(scene_message());
+}
+
+const SharedText& Room::scene_message() {
+  if (!scene_message_) scene_message_ = make_text(notification_text("scene", scene_text_));
+  return scene_message_;
 }
 
 void Room::handle(session::HistoryChanged& changed) {
@@ -311,14 +336,16 @@ void Room::handle(session::ChoiceWanted&) {
 
 void Room::greet(Client& client) {
   client.greet(notification_text("hello", hello_params(hub_, *this, client)));
-  client.send(notification_text("scene", {{"document", document()}, {"revision", revision_}}));
+  client.send(scene_message());
   if (history_.is_object()) client.send(notification_text("scene.history", history_));
   for (const std::string& notice : standing_notices_) client.send(notice);
 }
 
 void Room::broadcast(const char* method, const json& params) {
-  if (empty()) return;
-  const SharedText text = make_text(notification_text(method, params));
+  if (!empty()) broadcast(make_text(notification_text(method, params)));
+}
+
+void Room::broadcast(const SharedText& text) {
   for (Client* client : clients_) client->send(text);
   if (publisher_) publisher_->text(text);
 }

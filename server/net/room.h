@@ -37,6 +37,12 @@ class Room {
   bool started() const { return !renderer_.empty(); }
   const std::string& renderer() const { return renderer_; }
   const json& document() const { return document_->value; }
+  const std::shared_ptr<const scene::Document>& shared_document() const { return document_; }
+  /// The document as a file, null: it has not been written since the scene changed.
+  const session::JsonText& scene_file() const { return scene_file_; }
+  void keep_scene_file(const std::shared_ptr<const scene::Document>& of, session::JsonText file) {
+    if (of == document_) scene_file_ = std::move(file);
+  }
   const scene::Scene& scene() const { return document_->scene; }
   const stream::SharedMessage& topology() const { return topology_; }
   /// The latest frame; null if there is none yet, or if it does not fit the present topology.
@@ -108,6 +114,7 @@ class Room {
   void handle(session::ChoiceWanted&);
   void handle(const session::Status& status);
   void handle(const gl::StageTimes& times);
+  void handle_events(std::int64_t now);
   void begin_session(std::shared_ptr<const session::Saved> saved);
   void begin_feed();
   int relayed_viewers() const { return publisher_ ? publisher_->audience().viewers() : 0; }
@@ -118,7 +125,9 @@ class Room {
   void greet(Client& client);
   void demand_changed(const std::array<bool, stream::form_count>& fresh);
   void broadcast(const char* method, const json& params);
+  void broadcast(const SharedText& text);
   void broadcast_viewers();
+  const SharedText& scene_message();
   json status_params(const session::Status& status) const;
 
   Hub& hub_;
@@ -131,9 +140,13 @@ class Room {
   std::optional<Publisher> publisher_;  ///< with --publish
   std::vector<Client*> clients_;
   std::vector<session::Event> events_, given_up_events_;
+  std::size_t events_handled_ = 0;  ///< of `events_`
   std::string renderer_;
   std::shared_ptr<const scene::Document> document_;
   std::uint64_t revision_ = 0;
+  session::JsonText scene_text_;  ///< `document_` and `revision_` as text
+  session::JsonText scene_file_;
+  SharedText scene_message_;                   ///< the message `scene` of them; null: not needed yet
   json history_;                               ///< as scene.history tells it
   std::vector<std::string> standing_notices_;  ///< for each client that comes
   bool file_taken_ = false;                    ///< see session::FileTaken

@@ -70,7 +70,7 @@ void Feed::carry_out(session::Command& command, std::int64_t now) {
     if (demand->rate != want_.rates) want_due_ = now;
     set_rates(demand->rate);
   } else if (std::holds_alternative<session::GetScene>(command.what)) {
-    exchange_.emit(session::Reply{command.ticket, json{{"document", document_}, {"revision", revision_}}});
+    exchange_.emit(session::Reply{command.ticket, scene_text_});
   }
 }
 
@@ -185,9 +185,15 @@ void Feed::take_scene(json document, std::uint64_t revision, bool told) {
   if (!told) colliders_.clear();
   document_ = std::move(document);
   revision_ = want_.known.revision = revision;
+  tell_scene(std::nullopt, 0, told);
+}
+
+void Feed::tell_scene(std::optional<json> patch, std::uint64_t by, bool told) {
   auto shared = std::make_shared<scene::Document>();
   shared->value = document_;
-  exchange_.emit(session::SceneChanged{std::move(shared), revision_, std::nullopt, 0, told});
+  scene_text_ = session::text_of({{"document", document_}, {"revision", revision_}});
+  exchange_.emit(
+      session::SceneChanged{std::move(shared), scene_text_, revision_, std::move(patch), by, told});
 }
 
 void Feed::take_text(const bus::Message& message, std::int64_t now) {
@@ -223,10 +229,7 @@ void Feed::take_patch(const json& params, std::int64_t now) {
   if (changed.value("colliders", json()) != document_.value("colliders", json())) colliders_.clear();
   document_ = std::move(changed);
   revision_ = revision;
-  auto shared = std::make_shared<scene::Document>();
-  shared->value = document_;
-  exchange_.emit(
-      session::SceneChanged{std::move(shared), revision_, patch, params.value("by", std::uint64_t{0})});
+  tell_scene(patch, params.value("by", std::uint64_t{0}), false);
 }
 
 void Feed::take_topology(const std::vector<std::uint8_t>& bytes) {

@@ -52,6 +52,7 @@ class Feed final : public session::Source {
   void origin_changed(std::int64_t now);
   void take_text(const bus::Message& message, std::int64_t now);
   void take_scene(json document, std::uint64_t revision, bool told);
+  void tell_scene(std::optional<json> patch, std::uint64_t by, bool told);
   void take_patch(const json& params, std::int64_t now);
   void take_topology(const std::vector<std::uint8_t>& bytes);
   void take_frame(const bus::Message& message, stream::Form form, std::int64_t now);
@@ -71,6 +72,7 @@ class Feed final : public session::Source {
 
   std::string renderer_;
   json document_;
+  session::JsonText scene_text_ = session::text_of(nullptr);  ///< as of session::SceneChanged
   std::uint64_t revision_ =
       0;  ///< of `document_`; `want_.known.revision` is that of the last one told as a whole
 

@@ -35,6 +35,7 @@ struct LoadScene {
 struct UploadMesh {
   std::string name;
   std::string bytes;
+  bool in_base64 = false;           ///< the bytes are in base64 still (RFC 4648, padded)
   std::shared_ptr<void> in_hand{};  ///< freed once the bytes are read: the client may send others then
 };
 struct PatchScene {

@@ -10,6 +10,10 @@ std::int64_t now_us() {
   return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch()).count();
 }
 
+JsonText text_of(const json& value) {
+  return std::make_shared<const std::string>(value.dump(-1, ' ', false, json::error_handler_t::replace));
+}
+
 std::optional<Exchange::Awaited> Exchange::answer_to(const Command& command) {
   const auto* reach = std::get_if<ReachScene>(&command.what);
   if (command.ticket.id || reach || std::holds_alternative<Export>(command.what))

@@ -47,13 +47,17 @@ struct Failed {
   Error error;
   bool no_opengl = false;  ///< true: no OpenGL context can be made; the scene was not tried
 };
+/// A JSON value as text: made once, on the session's thread, for all who get it.
+using JsonText = std::shared_ptr<const std::string>;
+JsonText text_of(const json& value);
 struct Reply {
   Ticket ticket;
-  std::variant<json, Refusal> answer;
+  std::variant<JsonText, Refusal> answer;
 };
 /// The document has changed by `patch`, or, without a patch, as a whole. `by` is the asker, 0: the server.
 struct SceneChanged {
   std::shared_ptr<const scene::Document> document;
+  JsonText text;  ///< {"document", "revision"}, as `scene` and scene.get tell them
   std::uint64_t revision = 0;
   std::optional<json> patch;
   std::uint64_t by = 0;

@@ -63,7 +63,7 @@ class Stepper {
     std::deque<Timeline::Event> events;
     Ticket ticket;
   };
-  using Answer = std::variant<json, Refusal>;
+  using Answer = std::variant<json, JsonText, Refusal>;
 
   Stepper(scene::Document document, Exchange& exchange, const Limits& limits, std::optional<int> gpu,
           std::shared_ptr<MeshShelf> meshes)
@@ -141,6 +141,7 @@ class Stepper {
   void restart();
   void state_replaced();
   void announce_scene(std::optional<json> patch, std::uint64_t by);
+  const JsonText& scene_text();
   // In stepper_timeline.cpp.
   void perform(GetTimeline&, const Ticket& ticket);
   void perform(ResumeAt& resume, const Ticket& ticket);
@@ -216,9 +217,16 @@ class Stepper {
   std::uint32_t recorded_revision_ = 0;   ///< of the mesh that the recording has
   std::vector<Ticket> ending_recording_;  ///< requests record.stop that wait for the end of the recording
 
-  json contacts_;  ///< the last answer to InspectContacts
-  std::size_t contacts_most_ = 0;
-  Clock::time_point contacts_at_{};
+  /// The last answer to InspectContacts.
+  struct ContactsTold {
+    JsonText text;  ///< null: none yet
+    std::uint32_t topology_revision = 0;
+    std::uint64_t revision = 0, state_version = 0;
+    std::size_t most = 0;
+    Clock::time_point at{};
+  } contacts_;
+  JsonText scene_text_;  ///< see scene_text
+  std::uint64_t scene_text_revision_ = 0;
 
   std::uint64_t revision_ = 1;
   std::uint32_t topology_revision_ = 0;

@@ -24,7 +24,11 @@ void Stepper::handle(Command& command) {
 }
 
 void Stepper::reply(const Ticket& ticket, Answer answer) {
-  if (ticket.id) exchange_.emit(Reply{ticket, std::move(answer)});
+  if (!ticket.id) return;
+  if (auto* refusal = std::get_if<Refusal>(&answer))
+    return exchange_.emit(Reply{ticket, std::move(*refusal)});
+  const auto* text = std::get_if<JsonText>(&answer);
+  exchange_.emit(Reply{ticket, text ? *text : text_of(std::get<json>(answer))});
 }
 
 json Stepper::where_we_are() const {

@@ -102,16 +102,18 @@ json Stepper::contacts_told(std::size_t most) {
 // again.
 void Stepper::perform(InspectContacts& asked, const Ticket& ticket) {
   const Clock::time_point now = Clock::now();
-  const bool same_scene = contacts_.is_object() && contacts_most_ == asked.most &&
-                          contacts_["topology_revision"] == simulation().topology_revision() &&
-                          contacts_["revision"] == revision_;
-  const bool fresh = run_.plays() && now - contacts_at_ < period(inspection_rate);
-  if (!same_scene || !fresh) {
-    contacts_ = contacts_told(asked.most);
-    contacts_most_ = asked.most;
-    contacts_at_ = now;
-  }
-  reply(ticket, contacts_);
+  const bool same = contacts_.text && contacts_.most == asked.most && contacts_.revision == revision_ &&
+                    contacts_.topology_revision == simulation().topology_revision();
+  const bool unmoved = contacts_.state_version == state_version_;
+  const bool fresh = run_.plays() && now - contacts_.at < period(inspection_rate);
+  if (!same || (!unmoved && !fresh))
+    contacts_ = {text_of(contacts_told(asked.most)),
+                 simulation().topology_revision(),
+                 revision_,
+                 state_version_,
+                 asked.most,
+                 now};
+  reply(ticket, contacts_.text);
 }
 
 }  // namespace clothlab::session

@@ -2,6 +2,7 @@
 #include <glm/common.hpp>
 #include <set>
 
+#include "server/base/base64.h"
 #include "server/session/change_name.h"
 #include "server/session/stepper.h"
 
@@ -63,6 +64,12 @@ void Stepper::keep_mesh(const std::string& name) {
 }
 
 void Stepper::perform(UploadMesh& upload, const Ticket& ticket) {
+  if (upload.in_base64) {
+    std::optional<std::string> decoded = from_base64(upload.bytes);
+    if (!decoded)
+      return reply(ticket, invalid_value({"/obj", "text that is not base64", "base64 (RFC 4648), padded"}));
+    upload.bytes = std::move(*decoded);
+  }
   const std::size_t bytes = upload.bytes.size();
   const Result<MeshShelf::SharedItem> item = meshes_->read(upload.name, std::move(upload.bytes));
   upload.in_hand.reset();

@@ -8,7 +8,7 @@
 namespace clothlab::session {
 
 void Stepper::perform(GetScene&, const Ticket& ticket) {
-  reply(ticket, json{{"document", document_.value}, {"revision", revision_}});
+  reply(ticket, scene_text());
 }
 
 void Stepper::perform(LoadScene& load, const Ticket& ticket) {
@@ -260,8 +260,17 @@ void Stepper::announce_scene(std::optional<json> patch, std::uint64_t by) {
     exchange_.emit(TopologyChanged{stream::encode_topology(simulation().model(), revision)});
   }
   record_change({{patch ? "patch" : "document", patch ? *patch : document_.value}, {"by", by}});
-  exchange_.emit(
-      SceneChanged{std::make_shared<const scene::Document>(document_), revision_, std::move(patch), by});
+  exchange_.emit(SceneChanged{std::make_shared<const scene::Document>(document_), scene_text(), revision_,
+                              std::move(patch), by});
+}
+
+/// The document and its revision as text, made once for each revision.
+const JsonText& Stepper::scene_text() {
+  if (!scene_text_ || scene_text_revision_ != revision_) {
+    scene_text_ = text_of({{"document", document_.value}, {"revision", revision_}});
+    scene_text_revision_ = revision_;
+  }
+  return scene_text_;
 }
 
 }  // namespace clothlab::session

@@ -79,8 +79,7 @@ class Scribe {
 
   void perform(const Command& command) {
     const Ticket& ticket = command.ticket;
-    if (std::holds_alternative<GetScene>(command.what))
-      return reply(ticket, json{{"document", document_.value}, {"revision", revision_}});
+    if (std::holds_alternative<GetScene>(command.what)) return reply(ticket, scene());
     if (const auto* load = std::get_if<LoadScene>(&command.what))
       return take(ticket,
                   load->preset.empty() ? scene::validate(load->document, meshes_)
@@ -105,8 +104,13 @@ class Scribe {
 
  private:
   void reply(const Ticket& ticket, std::variant<json, Refusal> answer) {
-    if (ticket.id) exchange_->emit(Reply{ticket, std::move(answer)});
+    if (!ticket.id) return;
+    if (auto* refusal = std::get_if<Refusal>(&answer))
+      exchange_->emit(Reply{ticket, std::move(*refusal)});
+    else
+      exchange_->emit(Reply{ticket, text_of(std::get<json>(answer))});
   }
+  json scene() const { return {{"document", document_.value}, {"revision", revision_}}; }
   void take(const Ticket& ticket, Result<scene::Document> document, std::optional<json> patch) {
     if (!document) return reply(ticket, invalid_value(document.error()));
     document_ = std::move(*document);
@@ -115,8 +119,8 @@ class Scribe {
     tell(std::move(patch), ticket.asker);
   }
   void tell(std::optional<json> patch, std::uint64_t by) {
-    exchange_->emit(
-        SceneChanged{std::make_shared<const scene::Document>(document_), revision_, std::move(patch), by});
+    exchange_->emit(SceneChanged{std::make_shared<const scene::Document>(document_), text_of(scene()),
+                                 revision_, std::move(patch), by});
   }
 
   std::shared_ptr<MeshShelf> meshes_ = std::make_shared<MeshShelf>();

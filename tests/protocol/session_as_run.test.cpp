@@ -117,7 +117,7 @@ struct Watched {
           if (!diverged) FAIL(refusal->error.text());
           return {};
         }
-        answer = std::get<session::json>(reply->answer);
+        answer = session::json::parse(*std::get<session::JsonText>(reply->answer));
       }
       if (answer) return *answer;
     }
