@@ -1,12 +1,17 @@
 """The Python client as a server serves it, against that server. Run by client_python.test.mjs, with NumPy at hand."""
 
+import base64
 import contextlib
+import hashlib
 import importlib.util
 import io
+import json
 import os
 import pathlib
 import re
 import signal
+import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -67,6 +72,88 @@ class Connected(unittest.TestCase):
     def setUp(self):
         self.cloth = clothlab.connect(server.address, session=self.id().rpartition(".")[2])
         self.addCleanup(self.cloth.close)
+
+
+class Hostile:
+    """Takes one connection, answers its handshake, or sends `head` in its place, and then sends these bytes. Its
+    answers are these, the last one to all further requests."""
+
+    def __init__(self, sends=b"", head=None, answers=({"result": {}},)):
+        self.listener = socket.create_server(("127.0.0.1", 0))
+        self.address = "127.0.0.1:%d" % self.listener.getsockname()[1]
+        self.thread = threading.Thread(target=self.serve, args=(sends, head, list(answers)))
+        self.thread.start()
+
+    def serve(self, sends, head, answers):
+        connection, _ = self.listener.accept()
+        with connection, contextlib.suppress(OSError):
+            request = b""
+            while b"\r\n\r\n" not in request:
+                request += connection.recv(4096)
+            key = re.search(rb"(?i)sec-websocket-key: *(\S+)", request).group(1)
+            proof = hashlib.sha1(key + b"258EAFA5-E914-47DA-95CA-C5AB0DC85B11").digest()
+            good = b"HTTP/1.1 101 x\r\nSec-WebSocket-Accept: " + base64.b64encode(proof) + b"\r\n\r\n"
+            connection.sendall(good if head is None else head)
+            connection.sendall(sends)
+            while asked := connection.recv(6, socket.MSG_WAITALL):  # short messages: two bytes of head, the mask
+                data, mask = connection.recv(asked[1] & 127, socket.MSG_WAITALL), asked[2:]
+                text = bytes(byte ^ mask[i % 4] for i, byte in enumerate(data))
+                if text.startswith(b"{"):
+                    answer = answers.pop(0) if len(answers) > 1 else answers[0]
+                    connection.sendall(said({"id": json.loads(text).get("id"), **answer}))
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.thread.join(30)
+        self.listener.close()
+
+
+def said(value, opcode=1):
+    """A message as a server frames it."""
+    data = value if isinstance(value, bytes) else json.dumps(value).encode()
+    return bytes([0x80 | opcode, 126]) + struct.pack("!H", len(data)) + data
+
+
+HELLO = said({"method": "hello", "params": {"role": "operator"}})
+
+
+class HostileServers(unittest.TestCase):
+    def test_what_breaks_the_protocol_is_an_error_of_this_client_and_never_read_without_bound(self):
+        frame_head = struct.pack("<BBHIIIdQ", 2, 0, 0, 1, 1, 10**9, 0, 0) + bytes(24)
+        for what, given in {
+            "headers without end": {"head": b"HTTP/1.1 101 x\r\n" + b"a: b\r\n" * 20_000},
+            "a header line without end": {"head": b"HTTP/1.1 101 x\r\n" + b"a" * 100_000},
+            "a refusal of negative length": {"head": b"HTTP/1.1 400 x\r\ncontent-length: -1\r\n\r\n"},
+            "a message of 2^62 bytes": {"sends": b"\x81\x7f" + struct.pack("!Q", 1 << 62) + b"x" * 1000},
+            "pieces without end": {"sends": (b"\x01\x7f" + struct.pack("!Q", 1 << 25) + bytes(1 << 25)) * 3},
+            "a long ping": {"sends": b"\x89\x7f" + struct.pack("!Q", 1 << 40)},
+            "a list": {"sends": said([1])},
+            "a text that is no JSON": {"sends": said(b"{")},
+            "a name that is none": {"sends": said({"method": 7})},
+            "parameters without names": {"sends": said({"method": "hello", "params": [1]})},
+            "an error that is a text": {"answers": [{"error": "no"}]},
+            "an error with a list of facts": {"answers": [{"error": {"data": [1]}}]},
+            "an empty binary message": {"sends": said(b"", 2)},
+            "a frame of fewer vertices than it says": {"sends": HELLO + said(
+                struct.pack("<BBHIIIdQ", 1, 0, 0, 1, 0, 0, 0, 0) + bytes(24) + bytes(8), 2) + said(frame_head, 2)},
+        }.items():
+            with self.subTest(what), Hostile(**given) as hostile, self.assertRaises(clothlab.ClothlabError):
+                with clothlab.connect(hostile.address, timeout=20) as cloth:
+                    cloth._wait(lambda: None, "the end", 20)
+
+    def test_answers_that_lack_what_they_should_have_say_so(self):
+        for ask, answer in (
+            (lambda cloth: cloth.get(), None),
+            (lambda cloth: cloth.revision, {"revision": "7"}),
+            (lambda cloth: cloth.presets(), []),
+            (lambda cloth: cloth.export(1, "csv"), {}),
+            (lambda cloth: cloth.chart(), {"job": None}),
+        ):
+            with Hostile(HELLO, answers=[{"result": {}}, {"result": answer}]) as hostile, clothlab.connect(hostile.address, timeout=20) as cloth:
+                with self.assertRaisesRegex(clothlab.ClothlabError, "the answer to .* has no '"):
+                    ask(cloth)
 
 
 class Scene(Connected):

@@ -23,6 +23,7 @@ import collections
 import contextlib
 import hashlib
 import html as html_module
+import http.client
 import json
 import math
 import os
@@ -48,6 +49,11 @@ Verify = Union[bool, str, ssl.SSLContext]
 
 SUBPROTOCOL = "clothlab.v1"
 RETRY_TIME = 0.5  # [s] between two tries to connect anew
+# The most that is taken from a server, whatever it sends.
+MOST_HEAD_BYTES = 64 * 1024  # of the answer to the handshake
+MOST_MESSAGE_BYTES = 64 * 1024 * 1024  # of a message: a million vertices have less
+MOST_ANSWER_BYTES = 512 * 1024 * 1024  # over HTTP: a picture, or a mesh as text
+MOST_HEARD = 10_000  # notifications that wait for wait(), or a measurement; beyond, the oldest are forgotten
 
 
 class ClothlabError(Exception):
@@ -66,7 +72,8 @@ class Refused(ClothlabError):
     def __init__(self, error: Mapping[str, Json]) -> None:
         super().__init__(error.get("message", "the server refused this"))
         self.code: int = error.get("code", 0)
-        self.data: dict[str, Json] = error.get("data") or {}
+        data = error.get("data")
+        self.data: dict[str, Json] = data if isinstance(data, dict) else {}
         self.path: str = self.data.get("path", "")
         self.found: str = self.data.get("found", "")
         self.allowed: Json = self.data.get("allowed", "")
@@ -157,14 +164,20 @@ class _WebSocket:
             f"GET {where} HTTP/1.1\r\nHost: {address.authority}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
             f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: {SUBPROTOCOL}\r\n\r\n"
             .encode("ascii"))
-        status = self.stream.readline(65536).split(b" ", 2)
+        first = self.stream.readline(MOST_HEAD_BYTES)
+        status, left = first.split(b" ", 2), MOST_HEAD_BYTES - len(first)
         headers: dict[str, str] = {}
-        while (line := self.stream.readline(65536)) not in (b"\r\n", b"\n", b""):
+        while left > 0 and (line := self.stream.readline(left)) not in (b"\r\n", b"\n", b""):
+            left -= len(line)
             name, _, value = line.decode("latin-1").partition(":")
             headers[name.strip().lower()] = value.strip()
+        if left <= 0:
+            raise ConnectionLost(f"{address.authority} answers with more than {MOST_HEAD_BYTES} bytes of headers; "
+                                 "is it a Clothlab server?")
         code = int(status[1]) if len(status) > 1 and status[1].isdigit() else 0
         if code != 101:
-            why = self.stream.read(min(int(headers.get("content-length", 0)), 4096)).decode("utf-8", "replace").strip()
+            length = min(max(int(headers.get("content-length", 0)), 0), 4096)
+            why = self.stream.read(length).decode("utf-8", "replace").strip()
             raise ConnectionLost(f"{address.authority} refused the connection ({code}): {why}", code)
         proof = hashlib.sha1((key + "258EAFA5-E914-47DA-95CA-C5AB0DC85B11").encode()).digest()
         if headers.get("sec-websocket-accept") != base64.b64encode(proof).decode():
@@ -197,12 +210,16 @@ class _WebSocket:
                 (size,) = struct.unpack("!H", self._read(2))
             elif size == 127:
                 (size,) = struct.unpack("!Q", self._read(8))
+            if len(message) + size > MOST_MESSAGE_BYTES or (opcode & 8 and size > 125):
+                raise ConnectionLost(f"the server sends a message of more than {MOST_MESSAGE_BYTES} bytes, or a long "
+                                     "control frame; is it a Clothlab server?", 1009)
             data = self._read(size)
             if opcode == self.PING:
                 self.send(data, self.PONG)
             elif opcode == self.CLOSE:
                 code = struct.unpack("!H", data[:2])[0] if size >= 2 else 1005
-                raise ConnectionLost(f"the server closed the connection ({code}): {data[2:].decode()}", code)
+                why = data[2:].decode("utf-8", "replace")
+                raise ConnectionLost(f"the server closed the connection ({code}): {why}", code)
             elif opcode != self.PONG:
                 kind = opcode or kind  # 0: goes on with what came before
                 message += data
@@ -250,6 +267,8 @@ class Topology:
         self.cloths = [slice(first, first + vertices) for first, vertices in ranges]
         self._at = 8 + 8 * cloths
         self._count = count
+        if len(self.payload) != self._at + 12 * count + 8 * self.vertices:
+            raise ClothlabError("a topology that is not as long as it says; fetch the server's own client")
 
     @property
     def triangles(self) -> numpy.ndarray:
@@ -280,6 +299,8 @@ class Frame:
         self.asleep, self.diverged = bool(flags & 1), bool(flags & 2)
         self.topology = topology
         self.payload = data[64:]
+        if len(self.payload) != ((24, 8)[encoding] + (self._range > 0)) * self.vertices:
+            raise ClothlabError("a frame that is not as long as it says; fetch the server's own client")
 
     @property
     def positions(self) -> numpy.ndarray:
@@ -438,7 +459,7 @@ class Session:
     @property
     def role(self) -> str:
         """"operator" or "viewer"."""
-        return self.hello["role"]
+        return _member(self.hello, "role", str, "hello")
 
     def __enter__(self) -> Session:
         return self
@@ -454,7 +475,7 @@ class Session:
                 if kind == _WebSocket.BINARY:
                     self._take_binary(connection, data)
                 else:
-                    self._take_text(json.loads(data))
+                    self._take_text(_message(data))
         except ConnectionLost as error:
             lost = error
         except Exception as error:  # whatever it is, nobody may wait for this thread any longer
@@ -510,11 +531,12 @@ class Session:
     @contextlib.contextmanager
     def _hearing(self, *names: str) -> Iterator[collections.deque[tuple[str, dict[str, Json]]]]:
         """What is told under these names from now on."""
-        entry: tuple[tuple[str, ...], collections.deque[tuple[str, dict[str, Json]]]] = (names, collections.deque())
+        heard: collections.deque[tuple[str, dict[str, Json]]] = collections.deque(maxlen=MOST_HEARD)
+        entry = (names, heard)
         with self._changed:
             self._waiting.append(entry)
         try:
-            yield entry[1]
+            yield heard
         finally:
             with self._changed:
                 self._waiting = [other for other in self._waiting if other is not entry]
@@ -536,6 +558,10 @@ class Session:
         if "error" in message:
             raise Refused(message["error"])
         return message.get("result")
+
+    def _ask(self, method: str, key: str, kind: type, params: Mapping[str, Json] | None = None) -> Any:
+        """This member of a request's result."""
+        return _member(self.request(method, params), key, kind, f"the answer to {method}")
 
     def notify(self, method: str, params: Mapping[str, Json] | None = None) -> None:
         """Sends without waiting for an answer; what is wrong with it comes as a `notice`, if at all."""
@@ -574,7 +600,7 @@ class Session:
 
     def get(self, pointer: str = "") -> Json:
         """The scene, or what is at this pointer in it. Raises KeyError where nothing is."""
-        found = _at(self.request("scene.get")["document"], pointer)
+        found = _at(self._ask("scene.get", "document", dict), pointer)
         if found is None:
             raise KeyError(f"{pointer}: the scene has nothing there")
         return found[0]
@@ -596,7 +622,7 @@ class Session:
 
     @property
     def revision(self) -> int:
-        return self.request("scene.get")["revision"]
+        return self._ask("scene.get", "revision", int)
 
     def patch(self, patch: Mapping[str, Json] | Sequence[Mapping[str, Json]],
               revision: int | None = None) -> dict[str, Json]:
@@ -613,11 +639,11 @@ class Session:
 
     def presets(self) -> list[str]:
         """Their names, for load()."""
-        return self.request("scene.presets")["presets"]
+        return self._ask("scene.presets", "presets", list)
 
     def fabrics(self) -> list[dict[str, str]]:
         """{"name", "feel", "source"} of each measured fabric, for a cloth's /material/fabric."""
-        return self.request("scene.presets")["fabrics"]
+        return self._ask("scene.presets", "fabrics", list)
 
     def upload_mesh(self, name: str, content: str | bytes | os.PathLike[str] | None = None) -> dict[str, Json]:
         """Gives the session a mesh that a cloth or a collider can name: {"mesh": {"obj": name}}.
@@ -724,24 +750,25 @@ class Session:
 
     def export(self, job: int, format: str) -> str:
         """What a job has found, as a file's text: "svg", "csv" or "json"."""
-        return self.request("lab.export", {"job": job, "format": format})["text"]
+        return self._ask("lab.export", "text", str, {"job": job, "format": format})
 
     def _measure(self, method: str, options: Mapping[str, Json],
                  progress: Callable[[float, float], None] | None) -> dict[str, Json]:
         with self._hearing("lab.progress", "lab.result") as queue:
-            job = self.request(method, options)["job"]
+            job = self._ask(method, "job", int, options)
             try:
                 while True:
                     name, params = self._wait(lambda: queue.popleft() if queue else None, method, None)
-                    if params["job"] != job:
+                    if params.get("job") != job:
                         continue
                     if name == "lab.progress" and progress:
-                        progress(params["done"], params["total"])
-                    if name == "lab.result" and params["state"] == "failed":
-                        error = params.get("error") or {}
+                        progress(_member(params, "done", (int, float), name),
+                                 _member(params, "total", (int, float), name))
+                    if name == "lab.result" and params.get("state") == "failed":
+                        error = params["error"] if isinstance(params.get("error"), dict) else {}
                         text = f"{method} failed: {error.get('path', '')} {error.get('found', '')}"
                         raise Refused({"message": text, "data": error, "code": -32603})
-                    if name == "lab.result" and params["state"] in ("finished", "cancelled"):
+                    if name == "lab.result" and params.get("state") in ("finished", "cancelled"):
                         return params
             except BaseException as error:
                 if self.connected and not isinstance(error, Refused):
@@ -756,7 +783,7 @@ class Session:
 
     def mesh(self) -> str:
         """The cloth now as an .obj file."""
-        return self._http("/api/mesh.obj").decode()
+        return self._http("/api/mesh.obj").decode("utf-8", "replace")
 
     def html(self, height: int = 480) -> Page:
         """The live page of this session in a notebook's cell; as the function html()."""
@@ -768,11 +795,34 @@ class Session:
             request.add_unredirected_header("Authorization", "Bearer " + self._address.token)
         try:
             with urllib.request.urlopen(request, timeout=self.timeout, context=self._address.context) as answer:
-                return answer.read()
+                body = answer.read(MOST_ANSWER_BYTES + 1)
         except urllib.error.HTTPError as error:
-            raise ConnectionLost(f"{path} ({error.code}): {error.read().decode().strip()}", error.code) from None
-        except OSError as error:
+            why = error.read(4096).decode("utf-8", "replace").strip()
+            raise ConnectionLost(f"{path} ({error.code}): {why}", error.code) from None
+        except (OSError, http.client.HTTPException, ValueError) as error:
             raise ConnectionLost(f"{path}: {error}") from error
+        if len(body) > MOST_ANSWER_BYTES:
+            raise ConnectionLost(f"{path}: an answer of more than {MOST_ANSWER_BYTES} bytes; ask for less")
+        return body
+
+
+def _message(data: bytes) -> dict[str, Json]:
+    """A text message of JSON-RPC, in the form that all below relies on."""
+    message = json.loads(data)
+    if not isinstance(message, dict):
+        raise ConnectionLost("the server sent a message that is no object; is it a Clothlab server?", 1002)
+    if "method" in message and not (isinstance(message["method"], str)
+                                    and isinstance(message.setdefault("params", {}), dict)):
+        raise ConnectionLost("the server sent a notification without a name, or without named parameters", 1002)
+    if "error" in message and not isinstance(message["error"], dict):
+        message["error"] = {"message": str(message["error"])}
+    return message
+
+
+def _member(of: Json, key: str, kind: type | tuple[type, ...], what: str) -> Any:
+    if isinstance(of, dict) and isinstance(of.get(key), kind):
+        return of[key]
+    raise ClothlabError(f"{what} has no {key!r}, or of another type; fetch the server's own client")
 
 
 def _at(document: Json, pointer: str) -> tuple[Json] | None:
