@@ -58,6 +58,8 @@ int serve(ServeArguments& arguments) {
   if (!assets) return fail(assets.error(), exit_usage);
   Result<scene::Document> document = arguments.scene.load(*assets);
   if (!document) return fail(document.error(), exit_usage);
+  if (Status large = scene::check_bytes(document->value); !large)
+    return fail({arguments.scene.name, large.error().what, large.error().remedy}, exit_usage);
   const net::Limits& limits = options.limits;
   if (const Status small =
           model::check_size(model::size_of(document->scene), static_cast<std::size_t>(limits.scene.vertices),

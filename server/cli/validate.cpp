@@ -40,6 +40,9 @@ bool report(const std::string& name, const std::string& asset_root) {
   const double limit =
       document->scene.solver.automatic ? model::no_limit : model::dt_limit_if_near(*model, document->scene);
   print_warnings(*model, document->scene, limit, name + ": ");
+  if (const Status served = scene::check_bytes(document->value); !served)
+    std::cerr << "clothlab: warning: " << name << ": `clothlab serve` refuses it: " << served.error().text()
+              << std::endl;
   return true;
 }
 

@@ -6,6 +6,7 @@
 #include "server/net/hub.h"
 #include "server/net/limits.h"
 #include "server/net/methods.h"
+#include "server/scene/document.h"
 #include "server/scene/method.h"
 #include "server/session/timeline.h"
 #include "server/sim/kept_states.h"
@@ -59,6 +60,7 @@ nlohmann::json hello_params(const Hub& hub, const Room& room, const Client& clie
             {"clients_per_address", limits.clients_per_address},
             {"vertices", limits.scene.vertices},
             {"springs", limits.scene.springs},
+            {"document_bytes", scene::max_document_bytes},
             {"idle_seconds", limits.idle_seconds},
             {"rate", max_rate},
             {"in_flight", max_in_flight},

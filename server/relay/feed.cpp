@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "server/scene/document.h"
+#include "server/scene/pointer.h"
 
 namespace clothlab::relay {
 
@@ -16,6 +17,15 @@ constexpr std::string_view collider_note = "collider ";
 
 std::string_view text_in(const std::vector<std::uint8_t>& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// What a relay carries out of a change itself, on the thread that serves its viewers.
+constexpr scene::PatchLimits little{1u << 17, scene::max_document_bytes, 1u << 17, 1u << 20};
+
+/// A document that a server may have.
+bool is_served(const json& document) {
+  return document.is_object() && scene::depth(document) <= static_cast<int>(scene::max_json_depth) &&
+         scene::check_bytes(document);
 }
 
 /// A copy of the message with the room in front that libwebsockets needs, and the header rewritten.
@@ -182,6 +192,7 @@ void Feed::origin_changed(std::int64_t now) {
 }
 
 void Feed::take_scene(json document, std::uint64_t revision, bool told) {
+  if (!is_served(document)) return;  // not what a server of this version says
   if (!told) colliders_.clear();
   document_ = std::move(document);
   revision_ = want_.known.revision = revision;
@@ -215,19 +226,17 @@ void Feed::take_text(const bus::Message& message, std::int64_t now) {
 }
 
 /// Passes a change on at once. It is made here as the page makes it, without the defaults that the server
-/// fills in: the next answer brings the whole document, for those who come later.
+/// fills in: the next answer brings the whole document, for those who come later. One that is too much to
+/// make here is asked for as a whole.
 void Feed::take_patch(const json& params, std::int64_t now) {
   const auto revision = params.at("revision").get<std::uint64_t>();
   if (revision <= revision_) return;
   if (revision > revision_ + 1) return want_soon(now);  // one before it was lost: all is asked for again
   const json& patch = params.at("patch");
-  json changed = document_;
-  if (patch.is_object())
-    changed.merge_patch(patch);
-  else
-    changed = changed.patch(patch);
-  if (changed.value("colliders", json()) != document_.value("colliders", json())) colliders_.clear();
-  document_ = std::move(changed);
+  Result<json> changed = scene::patched(document_, patch, little);
+  if (!changed || !is_served(*changed)) return want_soon(now);
+  if (changed->value("colliders", json()) != document_.value("colliders", json())) colliders_.clear();
+  document_ = std::move(*changed);
   revision_ = revision;
   tell_scene(patch, params.value("by", std::uint64_t{0}), false);
 }

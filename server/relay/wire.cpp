@@ -62,9 +62,9 @@ std::string text_of(const json& value) {
 }
 
 json value_of(std::string_view text) {
-  // A notification has the document, of at most max_json_depth levels, within its parameters.
-  Result<json> value = scene::parse_json(std::string(text), "the bus", false,
-                                         {scene::max_file_bytes, scene::max_json_depth + 4});
+  // A notification has the document within its parameters, with a little beside it.
+  constexpr scene::TextLimits limits{scene::max_document_bytes + 64 * 1024, scene::max_json_depth + 4};
+  Result<json> value = scene::parse_json(std::string(text), "the bus", false, limits);
   return value ? std::move(*value) : json();
 }
 

@@ -48,7 +48,7 @@ struct Want {
 std::string text_of(const Want& want);
 /// Compact JSON; what is no UTF-8 in it is replaced.
 std::string text_of(const json& value);
-/// The value of a text of the bus; null: it is no JSON, or too deep to handle.
+/// The value of a text of the bus; null: it is no JSON, or too long or deep for a document that is served.
 json value_of(std::string_view text);
 /// No value: the text is no such request.
 std::optional<Want> read_want(std::string_view text);

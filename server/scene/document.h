@@ -29,6 +29,9 @@ struct Document {
 inline constexpr std::size_t max_json_bytes = 64 * 1024;         ///< one message [bytes]
 inline constexpr std::size_t max_file_bytes = 64 * 1024 * 1024;  ///< a scene file [bytes]
 inline constexpr std::size_t max_json_depth = 32;                ///< levels of nesting
+/// A document that is served, as compact JSON with its defaults [bytes]: each client gets all of it as one
+/// message, beside which others must fit into what may wait for a client that reads slowly.
+inline constexpr std::size_t max_document_bytes = 3 * 1024 * 1024;
 /// The most operations in one RFC 6902 patch.
 inline constexpr std::size_t max_patch_operations = 1024;
 
@@ -46,12 +49,27 @@ Result<json> parse_json(const std::string& text, const std::string& source, bool
 /// say the JSON Pointer, what was found and what is allowed.
 Result<Document> validate(json value, std::shared_ptr<const Assets> assets = nullptr);
 
+/// Error: as a document that is served it has more than `max_document_bytes`.
+Status check_bytes(const json& document);
+
 /// Applies an RFC 7396 merge patch (object) or an RFC 6902 patch (array) and validates the outcome. A merge
 /// patch removes a key with null; an absent key means its default, and the default of a key that may be null
 /// (self_collision, wind, motion, start, strain_limit) is null: `{"self_collision": null}` turns
 /// self-collision off. Error: a JSON Pointer into the patched scene, or "/patch/INDEX/..." for an operation
 /// that cannot be carried out.
 Result<Document> apply_patch(const Document& document, const json& patch);
+
+/// What the operations of one RFC 6902 patch may do beside the patch's own length. Without the limits of
+/// copies a patch could double the document with every operation, by copying it into itself; the others limit
+/// time: a move counts the values that it moves, what is put into a list or taken out those after it.
+struct PatchLimits {
+  std::size_t copied_values = 1u << 20;
+  std::size_t copied_bytes = 16u << 20;  ///< as compact JSON
+  std::size_t moved_values = 1u << 23;
+  std::size_t shifted_values = 1u << 28;
+};
+/// The outcome of either kind of patch, which is not validated. Errors as of apply_patch.
+Result<json> patched(json target, const json& patch, const PatchLimits& limits = {});
 
 /// Sets one value and validates the outcome. `assignment` is POINTER=VALUE, e.g. /solver/dt=0.0005: a JSON
 /// Pointer, then JSON or a plain string. Absent or null parents become objects; `-` as an index

@@ -12,11 +12,6 @@ namespace clothlab::scene {
 
 namespace {
 
-/// The most JSON values that one RFC 6902 patch may copy and move. Without the first limit a patch could
-/// double the document with every operation, by copying it into itself. The second limits time: each move
-/// counts the values that it moves.
-constexpr std::size_t max_copied_values = 1u << 20, max_moved_values = 1u << 23;
-
 std::size_t value_count(const json& value) {
   std::size_t count = 1;
   if (value.is_structured())
@@ -29,7 +24,7 @@ using Tokens = std::vector<std::string>;
 /// Applies the operations of one RFC 6902 patch to `target`. The JSON Pointers of errors are into the patch.
 class Operations {
  public:
-  explicit Operations(json& target) : target_(target) {}
+  Operations(json& target, const PatchLimits& limits) : target_(target), limits_(limits) {}
 
   Status apply(const json& operation, std::size_t index) {
     where_ = "/patch/" + std::to_string(index);
@@ -104,7 +99,7 @@ class Operations {
     return ok();
   }
 
-  Status add(const Tokens& path, json value) const {
+  Status add(const Tokens& path, json value) {
     if (!fits(value, path.size())) return too_deep();
     if (path.empty()) return replace(target_, std::move(value), 0);
     json* parent = find(path, path.size() - 1);
@@ -119,18 +114,22 @@ class Operations {
     if (!index)
       return problem("/path", compact(joined(path)),
                      "an index up to " + std::to_string(parent->size()) + ", or -");
+    if (const Status little = count_shifted(parent->size() - *index); !little) return little;
     parent->insert(parent->begin() + static_cast<std::ptrdiff_t>(*index), std::move(value));
     return ok();
   }
 
-  Status remove(const Tokens& path, const std::string& at) const {
+  Status remove(const Tokens& path, const std::string& at) {
     if (path.empty()) return problem(at, "the whole scene", "a part of it");
     if (!find(path)) return missing(at, path);
     json& parent = *find(path, path.size() - 1);
-    if (parent.is_object())
+    if (parent.is_object()) {
       parent.erase(path.back());
-    else
-      parent.erase(*array_index(path.back(), parent.size()));
+      return ok();
+    }
+    const std::size_t index = *array_index(path.back(), parent.size());
+    if (const Status little = count_shifted(parent.size() - index); !little) return little;
+    parent.erase(index);
     return ok();
   }
 
@@ -142,13 +141,7 @@ class Operations {
     if (move && path == *from) return ok();
     if (move && from->size() < path.size() && std::equal(from->begin(), from->end(), path.begin()))
       return problem("/from", compact(joined(*from)), "a value that does not contain the place it moves to");
-    std::size_t& taken = move ? moved_ : copied_;
-    const std::size_t most = move ? max_moved_values : max_copied_values;
-    taken += value_count(*source);
-    if (taken > most)
-      return problem(
-          "", std::string(move ? "moves" : "copies") + " of more than " + std::to_string(most) + " values",
-          "fewer");
+    if (const Status little = move ? count_moved(*source) : count_copied(*source); !little) return little;
     json value = move ? std::move(*source) : *source;
     if (move) {
       const Status removed = remove(*from, "/from");
@@ -157,32 +150,70 @@ class Operations {
     return add(path, std::move(value));
   }
 
+  Status too_much(const char* of_what, std::size_t most, const char* unit) const {
+    return problem("", std::string(of_what) + " of more than " + std::to_string(most) + " " + unit,
+                   "fewer in one patch");
+  }
+
+  Status count_moved(const json& source) {
+    moved_ += value_count(source);
+    return moved_ > limits_.moved_values ? too_much("moves", limits_.moved_values, "values") : ok();
+  }
+
+  Status count_shifted(std::size_t count) {
+    shifted_ += count;
+    return shifted_ > limits_.shifted_values ? too_much("shifts", limits_.shifted_values, "values of lists")
+                                             : ok();
+  }
+
+  Status count_copied(const json& source) {
+    copied_ += value_count(source);
+    if (copied_ > limits_.copied_values) return too_much("copies", limits_.copied_values, "values");
+    copied_bytes_ += json_bytes(source);
+    return copied_bytes_ > limits_.copied_bytes ? too_much("copies", limits_.copied_bytes, "bytes of JSON")
+                                                : ok();
+  }
+
   json& target_;
+  const PatchLimits& limits_;
   std::string where_;
-  std::size_t copied_ = 0, moved_ = 0;
+  std::size_t copied_ = 0, copied_bytes_ = 0, moved_ = 0, shifted_ = 0;
 };
 
 }  // namespace
 
-Result<Document> apply_patch(const Document& document, const json& patch) {
-  json target = document.value;
+Status check_bytes(const json& document) {
+  const std::size_t bytes = json_bytes(document);
+  if (bytes <= max_document_bytes) return ok();
+  return Error{"", "a scene of " + std::to_string(bytes) + " bytes of JSON, with its defaults",
+               "at most " + std::to_string(max_document_bytes) +
+                   " where it is served; keep large meshes in .obj or .ply files that the scene names, or "
+                   "use fewer cloths, pins and weights"};
+}
+
+Result<json> patched(json target, const json& patch, const PatchLimits& limits) {
   if (patch.is_object()) {
     target.merge_patch(patch);
-    give_way_to_fabrics(document.value, target);
-    return validate(std::move(target), document.assets);
+    return std::move(target);
   }
   if (!patch.is_array())
     return Error{"/patch", compact(patch), "an object (RFC 7396 merge patch) or an array (RFC 6902 patch)"};
   if (patch.size() > max_patch_operations)
     return Error{"/patch", std::to_string(patch.size()) + " operations",
                  "at most " + std::to_string(max_patch_operations)};
-  Operations operations(target);
+  Operations operations(target, limits);
   for (std::size_t i = 0; i < patch.size(); ++i) {
     const Status done = operations.apply(patch[i], i);
     if (!done) return done.error();
   }
-  give_way_to_fabrics(document.value, target);
-  return validate(std::move(target), document.assets);
+  return std::move(target);
+}
+
+Result<Document> apply_patch(const Document& document, const json& patch) {
+  Result<json> target = patched(document.value, patch);
+  if (!target) return target.error();
+  give_way_to_fabrics(document.value, *target);
+  return validate(std::move(*target), document.assets);
 }
 
 }  // namespace clothlab::scene

@@ -77,6 +77,19 @@ std::string compact(const json& value) {
   return text.substr(0, end) + "...";
 }
 
+std::size_t json_bytes(const json& value) {
+  const auto text = [](const json& plain) {
+    return plain.dump(-1, ' ', false, json::error_handler_t::replace).size();
+  };
+  if (!value.is_structured()) return text(value);
+  std::size_t bytes = 2 + (value.empty() ? 0 : value.size() - 1);  // brackets and commas
+  if (value.is_array())
+    for (const json& element : value) bytes += json_bytes(element);
+  else
+    for (const auto& [key, element] : value.items()) bytes += text(key) + 1 + json_bytes(element);
+  return bytes;
+}
+
 int depth(const json& value) {
   if (!value.is_structured()) return 0;
   int deepest = 0;

@@ -1,4 +1,5 @@
-// JSON Pointers (RFC 6901): text to tokens and back, and the rules for an index into an array.
+// JSON Pointers (RFC 6901): text to tokens and back, and the rules for an index into an array; and the size
+// of JSON values.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -25,6 +26,9 @@ json* child(json& value, const std::string& token);
 
 /// JSON on one line for a message; beyond 80 bytes it is cut and ends in "...".
 std::string compact(const json& value);
+
+/// The bytes of compact JSON; its text is made only in pieces.
+std::size_t json_bytes(const json& value);
 
 /// Levels of nesting: 0 for a number or a text, 1 for an array of them.
 int depth(const json& value);

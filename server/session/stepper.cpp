@@ -70,6 +70,7 @@ Saved Stepper::saved() {
 }
 
 Result<scene::Scene> Stepper::prepare(const scene::Document& document) {
+  if (clothlab::Status fits = scene::check_bytes(document.value); !fits) return fits.error();
   const model::Size size = model::size_of(document.scene);
   if (clothlab::Status fits = model::check_size(size, static_cast<std::size_t>(limits_.vertices),
                                                 static_cast<std::size_t>(limits_.springs));

@@ -17,6 +17,8 @@ void Stepper::perform(LoadScene& load, const Ticket& ticket) {
   if (!document && !load.preset.empty())
     return reply(ticket, invalid_value({"/preset", json(load.preset).dump(), document.error().remedy}));
   if (!document) return reply(ticket, invalid_value(document.error()));
+  if (const clothlab::Status fits = scene::check_bytes(document->value); !fits)
+    return reply(ticket, invalid_value(fits.error()));
   History::Change made = history_.prepare(document_.value, document->value,
                                           shortened("Load " + document->scene.name, max_change_name_bytes),
                                           ticket.asker, Clock::now());
@@ -46,6 +48,8 @@ void Stepper::perform(PatchScene& patch, const Ticket& ticket) {
   if (outdated(patch.revision, ticket)) return;
   Result<scene::Document> document = scene::apply_patch(document_, patch.patch);
   if (!document) return reply(ticket, invalid_value(document.error()));
+  if (const clothlab::Status fits = scene::check_bytes(document->value); !fits)
+    return reply(ticket, invalid_value(fits.error()));
   History::Change made =
       history_.prepare(document_.value, document->value, std::move(patch.name), ticket.asker, Clock::now());
   const Result<sim::ChangeDepth> depth = bring(std::move(*document), false);

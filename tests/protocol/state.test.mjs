@@ -309,3 +309,53 @@ test("a viewer may open what is kept, after a restart too, and nothing else", as
   assert.equal(await server.stop(), 0); // and the server has finished writing
   assert.deepEqual(readdirSync(kept).sort(), ["main.session", "other.session"]);
 });
+
+test("a document that patches make larger than a client can get is refused with its size, and the one before is kept over restarts", async () => {
+  const kept = folder();
+  let server = await Server.start("--state-dir", kept);
+  let client = await Client.connect(server);
+  const most = (await client.notification("hello")).limits.document_bytes;
+  const vertices = Array.from({ length: 600 }, (_, i) => [(i % 2) + 0.123456789, 1.123456789, i / 2 + 0.123456789]);
+  const triangles = Array.from({ length: 598 }, (_, i) => [i, i + 1, i + 2]);
+  const weights = Array.from({ length: 1000 }, () => ({ at: "vertex:0", mass: 0.00123456789 }));
+  await client.request("scene.load", { scene: { version: 1, cloths: [{ mesh: { vertices, triangles } }] } });
+  await client.request("scene.patch", { patch: { cloths: [{ mesh: { vertices, triangles }, name: "a" }] } });
+  await client.request("scene.patch", { patch: [{ op: "add", path: "/cloths/0/weights", value: weights }] });
+  await client.request("sim.pause");
+  const copies = (from, count) =>
+    Array.from({ length: count }, (_, i) => [
+      { op: "copy", from: "/cloths/0", path: "/cloths/-" },
+      { op: "replace", path: `/cloths/${from + i}/name`, value: `copy ${from + i}` },
+    ]).flat();
+  const one = JSON.stringify((await client.request("scene.get")).document.cloths[0]).length;
+  const fitting = Math.floor(most / one) - 2; // what is not of cloths has room, too
+  await client.request("scene.patch", { patch: copies(1, fitting) });
+  const { code, data } = await client.refusal("scene.patch", { patch: copies(fitting + 1, 60 - fitting) });
+  assert.equal(code, -32602);
+  assert.equal(data.path, "");
+  const bytes = Number(/^a scene of (\d+) bytes of JSON/.exec(data.found)[1]);
+  assert.ok(bytes > 4 * 1024 * 1024, `more than any client can get: ${bytes}`);
+  assert.match(data.allowed, new RegExp(`^at most ${most} where it is served; keep large meshes in .obj`));
+  const { document, revision } = await client.request("scene.get");
+  assert.equal(document.cloths.length, fitting + 1);
+  await client.request("scene.undo");
+  await client.request("scene.redo");
+  const viewer = await Client.connect(server);
+  assert.deepEqual((await viewer.notification("scene")).document, document);
+  await server.stop();
+  server = await Server.start("--state-dir", kept);
+  client = await Client.connect(server);
+  assert.deepEqual((await client.notification("scene")).document, document);
+  assert.ok((await client.request("scene.get")).revision > revision);
+  assert.equal(await server.stop(), 0);
+
+  const large = join(kept, "large.json");
+  const cloths = Array.from({ length: 60 }, (_, i) => ({ ...document.cloths[0], name: `cloth ${i}` }));
+  writeFileSync(large, JSON.stringify({ ...document, cloths }));
+  const refused = await runProgram(["serve", "--port", "0", "--scene", large]);
+  assert.equal(refused.code, 2);
+  assert.match(refused.stderr, /large\.json: a scene of \d{7} bytes of JSON.*; at most 3145728 where it is served/);
+  const valid = await runProgram(["validate", large]);
+  assert.equal(valid.code, 0);
+  assert.match(valid.stderr, /`clothlab serve` refuses it: a scene of \d{7} bytes/);
+});

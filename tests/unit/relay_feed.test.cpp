@@ -5,6 +5,7 @@
 
 #include "server/net/publisher.h"
 #include "server/relay/feed.h"
+#include "server/scene/document.h"
 #include "tests/catch.h"
 
 namespace clothlab {
@@ -214,6 +215,41 @@ TEST_CASE("after a change that was lost the whole scene is told, and one that co
   pair.say("scene.changed", {{"revision", 9}, {"patch", {{"gravity", 3}}}, {"by", 0}});
   pair.arrive();
   CHECK(pair.of<session::SceneChanged>().size() == 1);
+}
+
+TEST_CASE("a change that would be much work, or too large or deep, is asked for as a whole instead of made") {
+  Pair pair;
+  pair.pass();
+  pair.want_frames();
+  json doubled = json::array(), deep = json::array();
+  for (int i = 0; i < 30; ++i) doubled.push_back({{"op", "copy"}, {"from", ""}, {"path", "/a"}});
+  std::string path;
+  for (int i = 0; i < 40; ++i)
+    deep.push_back({{"op", "add"}, {"path", path += "/a"}, {"value", json::object()}});
+  json long_text{{"a", std::string(scene::max_document_bytes, 'x')}};
+  json nested = 1;
+  for (int i = 0; i < 32; ++i) nested = json{{"a", nested}};
+  for (const json& patch : {doubled, deep, long_text, nested}) {
+    pair.events.clear();
+    pair.say("scene.changed", {{"revision", pair.revision + 1}, {"patch", patch}, {"by", 3}});
+    pair.arrive();
+    CHECK(pair.events.empty());
+    pair.document["gravity"] = ++pair.revision;
+    pair.pass();
+    REQUIRE(pair.of<session::SceneChanged>().size() == 1);
+    CHECK(pair.of<session::SceneChanged>()[0].document->value == pair.document);
+    CHECK(pair.of<session::SceneChanged>()[0].revision == pair.revision);
+  }
+}
+
+TEST_CASE("a document that no server has is not shown") {
+  Pair pair;
+  pair.pass();
+  pair.events.clear();
+  pair.document["a"] = std::string(scene::max_document_bytes, 'x');
+  ++pair.revision;
+  pair.pass();
+  CHECK(pair.of<session::SceneChanged>().empty());
 }
 
 TEST_CASE("messages that are none of this protocol change nothing") {

@@ -2,6 +2,7 @@
 #include <random>
 
 #include "server/scene/document.h"
+#include "server/scene/pointer.h"
 #include "tests/catch.h"
 
 using namespace clothlab;
@@ -113,6 +114,44 @@ TEST_CASE("copying the scene into itself again and again is stopped before memor
   for (std::size_t i = 0; i <= scene::max_patch_operations; ++i)
     patch.push_back({{"op", "test"}, {"path", "/solver/dt"}, {"value", 0.001}});
   CHECK(apply_patch(seed(), patch).error().where == "/patch");
+}
+
+TEST_CASE("a long text copied again and again is stopped before memory runs out") {
+  json patch =
+      json::array({{{"op", "add"}, {"path", "/a"}, {"value", json::array({std::string(60000, 'x')})}}});
+  for (int i = 0; i < 14; ++i)  // doubled so often: a thousand million bytes
+    patch.push_back({{"op", "copy"}, {"from", "/a"}, {"path", "/a/-"}});
+  const auto refused = apply_patch(seed(), patch);
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().what == "copies of more than 16777216 bytes of JSON");
+  CHECK(refused.error().where.starts_with("/patch/"));
+}
+
+TEST_CASE("putting a thousand values before a long list is stopped before it takes seconds") {
+  json patch = json::array({{{"op", "add"}, {"path", "/a"}, {"value", json(std::vector<int>(1000, 0))}}});
+  for (int i = 0; i < 1000; ++i) patch.push_back({{"op", "add"}, {"path", "/a/0"}, {"value", 0}});
+  json target = seed().value;
+  CHECK(scene::patched(target, patch));
+  scene::PatchLimits limits;
+  limits.shifted_values = 1000 * 1000;
+  const auto refused = scene::patched(target, patch, limits);
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().what == "shifts of more than 1000000 values of lists");
+}
+
+TEST_CASE("the size of a document is that of its compact text, to the byte") {
+  json odd = seed().value;
+  odd["x"] = {"a\"b\n\u0001", "\xff",        -1,        1e-300, 0.1, nullptr, true,
+              json::object(), json::array(), "\xc3\xa9"};
+  const std::size_t bytes = odd.dump(-1, ' ', false, json::error_handler_t::replace).size();
+  CHECK(scene::json_bytes(odd) == bytes);
+  CHECK(scene::check_bytes(odd));
+  odd["y"] = std::string(scene::max_document_bytes - bytes - 7, ' ');
+  CHECK(scene::check_bytes(odd));
+  odd["y"] = odd["y"].get<std::string>() + " ";
+  const Status large = scene::check_bytes(odd);
+  REQUIRE_FALSE(large);
+  CHECK(large.error().what == "a scene of 3145729 bytes of JSON, with its defaults");
 }
 
 TEST_CASE("moving a large part is allowed, moving it a thousand times is stopped before it takes minutes") {
