@@ -330,6 +330,7 @@ void Nats::receive(natsMsg* from) {
   if (const char* reply = natsMsg_GetReply(from)) message.reply = reply;
   message.note = header_of(from, note_header);
   message.unheard = natsMsg_IsNoResponders(from);
+  bool alone = false;  // who takes what has come takes all of it: one call for many is enough
   {
     const std::lock_guard lock(mutex_);
     const auto keep = keeps_.find(message.subject);
@@ -350,9 +351,10 @@ void Nats::receive(natsMsg* from) {
     }
     if (come_bytes_ + message.bytes.size() > most_come_bytes) return;
     come_bytes_ += message.bytes.size();
+    alone = come_.empty();
     come_.push_back(std::move(message));
   }
-  wake_();
+  if (alone) wake_();
 }
 
 void Nats::take(std::vector<Message>& out) {

@@ -235,6 +235,7 @@ void Room::handle(session::SceneChanged& changed) {
   scene_text_ = changed.text;
   scene_file_.reset();
   scene_message_.reset();
+  if (publisher_) publisher_->forget_whole();
   hub_.lab().scene_changed(name_, *document_);
   if (changed.told) return;
   if (changed.patch)
@@ -250,6 +251,7 @@ const SharedText& Room::scene_message() {
 
 void Room::handle(session::HistoryChanged& changed) {
   history_ = std::move(changed.told);
+  if (publisher_) publisher_->forget_whole();
   if (started()) broadcast("scene.history", history_);
 }
 

@@ -1,7 +1,5 @@
 // What a room does on a bus: a session that runs here is published for relays, one that runs elsewhere is fed
 // from there.
-#include <algorithm>
-
 #include "server/model/mesh_file.h"
 #include "server/net/hub.h"
 #include "server/net/room.h"
@@ -22,10 +20,10 @@ void Room::begin_feed() {
 /// Sends relays the frames that are due, and forgets relays that have gone.
 void Room::pass_frames_on(std::int64_t now) {
   relay::Audience& audience = publisher_->audience();
-  if (audience.forget_silent(now)) {
-    demand_changed(std::nullopt);
-    watchers_changed();
-  }
+  audience.forget_silent(now);
+  const Publisher::AudienceChange change = publisher_->audience_change(now);
+  if (change.forms) demand_changed(change.fresh);
+  if (change.viewers) watchers_changed();
   for (std::size_t i = 0; i < stream::form_count && !audience.empty(); ++i) {
     const stream::Form form = stream::Form::at(i);
     const stream::SharedMessage latest = demanded_[i] > 0 ? frame(form) : nullptr;
@@ -36,7 +34,7 @@ void Room::pass_frames_on(std::int64_t now) {
 void Room::receive(const bus::Message& message) {
   const std::int64_t now = session::now_us();
   if (feed_) return feed_->receive(message, now);
-  if (!publisher_ || !started()) return;
+  if (!publisher_ || !started() || !publisher_->may_ask(message.reply, now)) return;
   if (message.subject == relay::subject(name_, relay::want_word)) return hear_want(message, now);
   if (message.subject != relay::subject(name_, relay::collider_word)) return;
   const std::string name(message.bytes.begin(), message.bytes.end());
@@ -48,13 +46,7 @@ void Room::hear_want(const bus::Message& message, std::int64_t now) {
       relay::read_want({reinterpret_cast<const char*>(message.bytes.data()), message.bytes.size()});
   if (!want) return;
   publisher_->answer(*want, message.reply, {renderer_, document(), revision_, history_, topology_});
-  relay::Audience& audience = publisher_->audience();
-  const int viewers = audience.viewers();
-  const relay::Rates rates = audience.rates();
-  const std::array<bool, stream::form_count> fresh = audience.heard(*want, now);
-  const bool any_fresh = std::find(fresh.begin(), fresh.end(), true) != fresh.end();
-  if (any_fresh || audience.rates() != rates) demand_changed(fresh);
-  if (audience.viewers() != viewers) watchers_changed();
+  publisher_->heard(*want, now);
 }
 
 relay::Feed::ColliderMesh Room::relayed_collider(const std::string& name) const {

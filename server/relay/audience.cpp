@@ -8,8 +8,10 @@ std::array<bool, form_count> Audience::heard(const Want& want, std::int64_t now)
   std::array<bool, form_count> fresh{};
   const bool wanted = std::any_of(want.rates.begin(), want.rates.end(), [](double rate) { return rate > 0; });
   const auto found = relays_.find(want.relay);
+  const Rates before = found != relays_.end() ? found->second.rates : Rates{};
   if (want.relay.empty() || (!wanted && want.viewers == 0)) {
     if (found != relays_.end()) relays_.erase(found);
+    if (before != Rates{}) sum_up();
   } else if (found != relays_.end() || relays_.size() < max_relays) {
     Relay& relay = relays_[want.relay];
     for (std::size_t i = 0; i < form_count; ++i) {
@@ -17,8 +19,8 @@ std::array<bool, form_count> Audience::heard(const Want& want, std::int64_t now)
       if (fresh[i]) lanes_[i] = {};
     }
     relay = {want.rates, std::max(want.viewers, wanted ? 1 : 0), now + lease_us};
+    if (before != want.rates) sum_up();
   }
-  sum_up();
   return fresh;
 }
 

@@ -226,6 +226,36 @@ test("nothing is published while no relay wants it, and only what it wants", { s
   await operator.close();
 });
 
+test("a flood of requests on the bus, of one relay or of new ones, stops neither the session nor another relay", {
+  skip,
+}, async () => {
+  const [mine, theirs] = [await watch(origin, { session: "flood" }), await watch(relay, { session: "flood" })];
+  await theirs.nextFrame();
+  const flood = await NatsClient.connect(bus);
+  const want = (name, i) => JSON.stringify({ relay: name, viewers: i % 7, forms: { q16: 10 + (i % 100) } });
+  const from = mine.frames.at(-1).time;
+  for (let sent = 0, second = performance.now(); sent < 30_000; ) {
+    for (const until = Math.min(30_000, (performance.now() - second) * 9); sent < until; ++sent) {
+      const name = sent % 2 ? `new-${sent}` : "one";
+      flood.publish("clothlab.flood.want", want(name, sent), `clothlab.flood.for.${name}`);
+      if (sent % 10 === 0) flood.publish("clothlab.flood.collider", "none", `clothlab.flood.for.${name}`);
+    }
+    await sleep(5);
+  }
+  // In each second of it frames have come, here and through the relay, and requests are answered.
+  for (const { frames } of [mine, theirs])
+    for (const part of [1, 2, 3])
+      assert.ok(
+        frames.some(({ time }) => time > from + part - 1 && time <= from + part + 0.5),
+        `second ${part}`,
+      );
+  assert.deepEqual(await mine.request("ping", { t: 1 }), { t: 1 });
+  const told = mine.messages.filter(({ method }) => method === "viewers").length;
+  assert.ok(told < 60, `the number of viewers was told ${told} times`);
+  flood.end();
+  await Promise.all([mine.close(), theirs.close()]);
+});
+
 const until = async (so, what) => {
   for (const end = Date.now() + patience; !(await so()); await sleep(50)) assert.ok(Date.now() < end, what);
 };
