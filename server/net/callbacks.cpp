@@ -70,7 +70,10 @@ int finish_http(HttpSlot& slot, lws* wsi, HttpRequest::Progress progress) {
   slot.request = nullptr;
   if (progress == HttpRequest::Progress::close || lws_http_transaction_completed(wsi))
     return -1;  // `slot` is invalid now
-  await_request(wsi);
+  if (lws_partial_buffered(wsi))
+    lws_set_timeout(wsi, PENDING_TIMEOUT_HTTP_CONTENT, silence_seconds(server_of(wsi).hub().limits()));
+  else
+    await_request(wsi);
   return 0;
 }
 
@@ -145,6 +148,9 @@ int on_http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::si
       return on_connection(wsi);
     case LWS_CALLBACK_WSI_DESTROY:
       server_of(wsi).hub().connections().closed(wsi);
+      return 0;
+    case LWS_CALLBACK_HTTP_BIND_PROTOCOL:  // also once the last of a long answer has been sent
+      await_request(wsi);
       return 0;
     case LWS_CALLBACK_TIMER:
       return slot && slot->asked ? 0 : -1;  // the request's headers have not come in time

@@ -1,8 +1,9 @@
 // Counts and limits the open connections, WebSockets and plain HTTP alike, in all and by the client's
-// address.
+// address; and tells clients that read slowly from those that read nothing.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -25,12 +26,20 @@ class Connections {
   bool full(const std::string& address) const;
   void opened(lws* wsi, const std::string& address);
   void closed(lws* wsi);
-  std::size_t count() const { return network_of_connection_.size(); }
+  std::size_t count() const { return open_.size(); }
+
+  /// To be called once a second. Who has taken something of what is sent since the last call is not silent:
+  /// limits of time begin anew, so that an answer or a message that takes long to send is sent whole.
+  void excuse_slow_readers(int silence_seconds);
 
  private:
+  struct Open {
+    std::string network;
+    std::uint64_t taken = 0;  ///< bytes that the client's system has acknowledged
+  };
   std::vector<std::string> trusted_proxies_;
   std::size_t most_, most_of_one_;
-  std::map<lws*, std::string> network_of_connection_;
+  std::map<lws*, Open> open_;
   std::map<std::string, std::size_t> count_of_;
 };
 

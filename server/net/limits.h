@@ -2,6 +2,7 @@
 // client can meet.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -32,6 +33,11 @@ inline constexpr int message_unit_bytes = 256;
 /// The number of messages that may come at once.
 inline int burst_of(const Limits& limits) {
   return 2 * limits.message_rate;
+}
+
+/// A client that takes nothing of an answer, or asks for nothing more, for this long is closed [s].
+inline int silence_seconds(const Limits& limits) {
+  return std::min(30, limits.idle_seconds);
 }
 
 inline constexpr int max_unadmitted_bytes = 4096;  ///< of a message from a client without a role

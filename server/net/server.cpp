@@ -76,7 +76,7 @@ Result<std::unique_ptr<Server>> Server::listen(Options options) {
   info.max_http_header_data2 = header_room_bytes;
   info.timeout_secs = static_cast<unsigned>(with.limits.header_seconds);
   info.timeout_secs_ah_idle = info.timeout_secs;
-  info.keepalive_timeout = std::min(30, with.limits.idle_seconds);
+  info.keepalive_timeout = silence_seconds(with.limits);
   info.retry_and_idle_policy = &server->keep_alive_;
   info.alpn = "http/1.1";
   if (!with.tls_certificate.empty()) {
@@ -88,6 +88,7 @@ Result<std::unique_ptr<Server>> Server::listen(Options options) {
   lws_context* context = lws_create_context(&info);
   if (!context) return Error{"serve", "libwebsockets could not start", "see the lines above"};
   server->context_ = context;
+  server->look_each_second();
   server->vhost_ = lws_create_vhost(context, &info);
   if (!server->vhost_)
     return Error{"serve", "cannot listen on " + with.bind + " port " + std::to_string(with.port),
@@ -96,6 +97,16 @@ Result<std::unique_ptr<Server>> Server::listen(Options options) {
                                      ? ""
                                      : "; check that --tls-cert and --tls-key are PEM files")};
   return server;
+}
+
+void Server::look_each_second() {
+  look_.server = this;
+  const auto look = [](lws_sorted_usec_list_t* timer) {
+    Server& server = *reinterpret_cast<Look*>(timer)->server;
+    server.hub_.connections().excuse_slow_readers(silence_seconds(server.hub_.limits()));
+    server.look_each_second();
+  };
+  lws_sul_schedule(context_, 0, &look_.timer, look, LWS_USEC_PER_SEC);
 }
 
 std::string Server::url() const {

@@ -38,12 +38,17 @@ class Server {
  private:
   explicit Server(Options options);
   void say_goodbye();
+  void look_each_second();
 
   lws_retry_bo_t keep_alive_;
   WebFiles files_ = WebFiles::load();
   std::atomic<bool> stopping_{false};
   std::atomic<lws_context*> context_{nullptr};
   lws_vhost* vhost_ = nullptr;
+  struct Look {
+    lws_sorted_usec_list_t timer{};
+    Server* server = nullptr;
+  } look_;
   Hub hub_;
 };
 

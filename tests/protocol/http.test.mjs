@@ -1,5 +1,6 @@
 import assert from "node:assert/strict";
-import { cpSync, mkdtempSync, readFileSync, rmSync, symlinkSync } from "node:fs";
+import { randomBytes } from "node:crypto";
+import { cpSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
 import http from "node:http";
 import net from "node:net";
 import { tmpdir } from "node:os";
@@ -496,4 +497,49 @@ test("a picture that nobody waits for any more is not made", async () => {
   const made = (await server.metric("clothlab_exports_total")) - before;
   assert.ok(made < 8, `${made} were made`);
   assert.equal((await server.get("/api/mesh.obj")).status, 200);
+});
+
+/// Reads what `path` answers at this rate [bytes/s], as a slow line does; `stop` ends the reading after so many bytes.
+async function readSlowly(port, path, rate, stop = Number.POSITIVE_INFINITY) {
+  const socket = net.connect({ port, host: "127.0.0.1" });
+  let bytes = 0;
+  socket.on("error", () => {});
+  const closed = once(socket, "close");
+  await once(socket, "connect");
+  socket.write(`GET ${path} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n`);
+  const from = performance.now();
+  socket.on("data", (data) => {
+    bytes += data.length;
+    socket.pause();
+    if (bytes < stop) setTimeout(() => socket.resume(), Math.max(0, from + (1000 * bytes) / rate - performance.now()));
+  });
+  return { socket, closed, bytes: () => bytes };
+}
+
+test("who reads slowly but steadily gets all of an answer, however long it takes; who reads nothing is cut off", async (t) => {
+  const data = mkdtempSync(join(tmpdir(), "clothlab-data-"));
+  t.after(() => rmSync(data, { recursive: true, force: true }));
+  const root = fileURLToPath(new URL("../../", import.meta.url));
+  for (const part of ["shaders", "server/scene/presets"])
+    cpSync(join(root, part), join(data, part), { recursive: true });
+  const size = 16 * 1024 * 1024;
+  cpSync(join(root, "web/clients"), join(data, "web/dist"), { recursive: true });
+  writeFileSync(join(data, "web/dist/large.png"), randomBytes(size));
+  process.env.CLOTHLAB_DATA = data;
+  const impatient = await Server.start("--header-timeout", "1", "--idle-timeout", "2").finally(
+    () => delete process.env.CLOTHLAB_DATA,
+  );
+  t.after(() => impatient.stop());
+  const begun = performance.now();
+  const [slow, silent] = await Promise.all([
+    readSlowly(impatient.port, "/large.png", size / 5), // 5 s, where silence may last 2
+    readSlowly(impatient.port, "/large.png", size, 100_000),
+  ]);
+  await withTimeout(slow.closed, "all of it");
+  assert.ok(slow.bytes() > size, `${slow.bytes()} bytes`);
+  assert.ok(performance.now() - begun > 4000, "it was slow");
+  silent.socket.resume();
+  silent.socket.removeAllListeners("data").on("data", (more) => (silent.rest = (silent.rest ?? 0) + more.length));
+  await withTimeout(silent.closed, "the silent one to be closed");
+  assert.ok(silent.bytes() + (silent.rest ?? 0) < size, "it did not get all");
 });
