@@ -185,11 +185,9 @@ void set_socket_options(lws* wsi) {
   setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
 }
 
-constexpr const char* why_masked = "a client's frames are to be masked (RFC 6455, 5.1)";
-
-/// Answers an unmasked close frame. libwebsockets writes that answer itself and only takes the reason.
-int refuse_unmasked(lws* wsi) {
-  std::string why = why_masked;
+/// Answers a close frame that is not allowed. libwebsockets writes that answer itself and only takes the
+/// reason.
+int refuse_close(lws* wsi, std::string why) {
   lws_close_reason(wsi, LWS_CLOSE_STATUS_PROTOCOL_ERR, reinterpret_cast<unsigned char*>(why.data()),
                    why.size());
   return -1;
@@ -209,14 +207,15 @@ int on_client(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::
       slot->client = new Client(server_of(wsi).hub(), wsi, query(wsi, "session", main_session));
       return 0;
     case LWS_CALLBACK_RECEIVE:
-      if (sent_unmasked(wsi)) return 0;
+      if (frame_fault(wsi)) return 0;
       return slot->client ? slot->client->receive(static_cast<const char*>(in), size) : -1;
     case LWS_CALLBACK_SERVER_WRITEABLE:
       if (slot->ending) return 0;
-      if (slot->client && sent_unmasked(wsi)) slot->client->close(close_protocol, why_masked);
+      if (const char* fault = frame_fault(wsi); fault && slot->client)
+        slot->client->close(close_protocol, fault);
       return slot->client ? slot->client->writeable() : -1;
     case LWS_CALLBACK_WS_PEER_INITIATED_CLOSE:
-      if (sent_unmasked(wsi)) return slot->ending = true, refuse_unmasked(wsi);
+      if (const char* fault = frame_fault(wsi)) return slot->ending = true, refuse_close(wsi, fault);
       return slot->client && slot->client->close_sent() ? -1 : 0;
     case LWS_CALLBACK_TIMER:
       if (slot && slot->client) slot->client->timer();

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "server/net/callbacks.h"
+#include "server/net/frame_watch.h"
 #include "server/net/request_headers.h"
 
 namespace clothlab::net {
@@ -91,6 +92,9 @@ std::optional<RequestFault> request_fault(lws* wsi) {
                             "; cookies of other programs on this host count: remove some, or use 127.0.0.1 "
                             "instead of localhost",
                         {}};
+  if (head_malformed(wsi))
+    return RequestFault{
+        400, "a line of the request's head has no colon; send each header as NAME: VALUE", {}};
   if (header(wsi, WSI_TOKEN_HTTP) == "HTTP/1.1" && !has_header(wsi, WSI_TOKEN_HOST))
     return RequestFault{400, "the request has no Host header; HTTP/1.1 asks for one", {}};
   if (header(wsi, WSI_TOKEN_HOST).find(',') != std::string::npos)

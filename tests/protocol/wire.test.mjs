@@ -168,6 +168,40 @@ test("the page is compressed for whom Accept-Encoding says it may be", async () 
   }
 });
 
+test("a header whose name begins a known one, or a method's, is one like any other, however the bytes come", async () => {
+  for (const name of [
+    "X-Auth",
+    "Accept-CH",
+    "Accept-",
+    "If",
+    "Sec-WebSocket",
+    "Ht",
+    "A",
+    "Get",
+    "Put",
+    "Patch-Level",
+    "Delete-After",
+    "Uri-Args",
+  ])
+    for (const line of [`${host}${name}: 1\r\n`, `${name}: a:b\r\n${host}`])
+      assert.equal(await answers(get(line), 1), 1, JSON.stringify(line));
+  const socket = await Socket.open();
+  for (const byte of get(`X-Auth: 1\r\nPut-After: 2\r\n${host}If: 3\r\n`)) {
+    socket.write(byte);
+    await sleep(1);
+  }
+  await socket.until((bytes) => bytes.includes("200 OK"));
+  socket.net.destroy();
+});
+
+test("a line of a head that is no header is told with 400", async () => {
+  for (const line of ["X-Auth", "something", " folded", "Host", "A"]) {
+    const { status, reason } = await refusal(get(`${host}${line}\r\n`));
+    assert.equal(status, 400, line);
+    assert.match(reason, /has no colon/);
+  }
+});
+
 const handshake = (change = {}) => {
   const headers = {
     Host: "localhost",
@@ -209,9 +243,11 @@ test("a handshake that lacks what it needs is told what, and closed", async () =
     assert.match(reason, said);
     if (expected === 426) assert.match(text, /^sec-websocket-version: 13\r$/im);
   }
-  const early = await refusal(handshake() + "\x81\x80mask");
-  assert.equal(early.status, 400);
-  assert.match(early.reason, /wait for its answer/);
+  for (const hurried of ["\x81\x80mask", "\x81\x05hello\r\n\r\n", "\r\n\r\n", "\x81\x7e\r\nUpgrade: x\r\n\r\n"]) {
+    const early = await refusal(Buffer.from(handshake() + hurried, "latin1"));
+    assert.equal(early.status, 400, JSON.stringify(hurried));
+    assert.match(early.reason, /wait for its answer/);
+  }
 });
 
 test("a subprotocol among many, a key beside much else and a cookie of 10 kB are a good handshake", async () => {
@@ -282,6 +318,7 @@ test("a frame that breaks the protocol closes its connection with 1002, and noth
     "a continuation of nothing": [frame(0, text)],
     "a message within a message": [frame(1, "{", { final: false }), good],
     "a control frame in pieces": [frame(9, "x", { final: false })],
+    "a long control frame": [frame(9, "x".repeat(126))],
   };
   for (const [what, frames] of Object.entries(cases)) {
     const socket = await connected();
@@ -298,6 +335,9 @@ test("a frame that breaks the protocol closes its connection with 1002, and noth
       !heard(bytes).some(({ opcode, payload }) => opcode === 1 && payload.includes(`"id":4711`)),
       `${what} is not answered`,
     );
+    // Statuses come ten times a second to who may still get them.
+    const after = await withTimeout(Promise.race([socket.closed, sleep(300)]), what).then(() => heard(socket.bytes));
+    assert.equal(after.at(-1).opcode, 8, `nothing is sent after the close frame for ${what}`);
     socket.net.destroy();
   }
 });

@@ -45,7 +45,7 @@ TEST_CASE("masked frames of every length pass unchanged, however they are cut in
   for (const std::size_t piece : {1u, 2u, 3u, 7u, 1000u, 1000000u}) {
     FrameWatch watch;
     CHECK(passed(watch, bytes, piece) == bytes);
-    CHECK_FALSE(watch.unmasked());
+    CHECK_FALSE(watch.fault());
   }
 }
 
@@ -56,7 +56,7 @@ TEST_CASE("an unmasked frame and all that follows is replaced by empty masked fr
       const std::string all = good + frame(1, payload, false) + frame(1, 10, true) + "anything";
       FrameWatch watch;
       const std::string seen = passed(watch, all, piece);
-      CHECK(watch.unmasked());
+      CHECK(watch.fault());
       REQUIRE(seen.size() >= good.size() + 6);
       CHECK(seen.substr(0, good.size()) == good);
       for (std::size_t at = good.size(); at < seen.size(); at += 6)
@@ -64,6 +64,26 @@ TEST_CASE("an unmasked frame and all that follows is replaced by empty masked fr
               std::string(at == good.size() ? "\x81" : "\x8A") + std::string("\x80\0\0\0\0", 5));
     }
   }
+}
+
+TEST_CASE("each fault of a frame's first two bytes is found, and nothing of it is passed on") {
+  const auto fault = [](const std::string& bytes) {
+    FrameWatch watch;
+    const std::string seen = passed(watch, bytes, 1000000);
+    CHECK(seen == (watch.fault() ? std::string("\x8A\x80\0\0\0\0", 6) : bytes));
+    return std::string(watch.fault() ? watch.fault() : "");
+  };
+  CHECK(fault("\xC1\x80mask").find("reserved bit") != std::string::npos);
+  CHECK(fault("\x83\x80mask").find("opcode") != std::string::npos);
+  CHECK(fault("\x8B\x80mask").find("opcode") != std::string::npos);
+  CHECK(fault(std::string("\x09\x80mask", 6)).find("one piece") != std::string::npos);
+  CHECK(fault("\x80\x80mask").find("continuation") != std::string::npos);
+  CHECK(fault(std::string("\x01\x80mask\x89\x80mask\x00\x80mask\x80\x80mask\x82\x80mask", 30)).empty());
+  FrameWatch within, long_ping;
+  CHECK(passed(within, "\x01\x80mask\x81\x80mask", 100).size() == 12);
+  CHECK(std::string(within.fault()).find("a message ends") != std::string::npos);
+  CHECK(passed(long_ping, frame(9, 126, true), 1000).substr(0, 6) == std::string("\x89\x80\0\0\0\0", 6));
+  CHECK(std::string(long_ping.fault()).find("125 bytes") != std::string::npos);
 }
 
 TEST_CASE("a replacement is never longer than the room there is") {
