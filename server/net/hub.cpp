@@ -24,6 +24,12 @@ bool same(const std::string& a, const std::string& b) {
   return difference == 0;
 }
 
+/// The same with each proxy's address in the form in which clients' are compared.
+Options with_plain_proxies(Options options) {
+  for (std::string& proxy : options.trusted_proxies) proxy = plain_address(proxy);
+  return options;
+}
+
 }  // namespace
 
 const char* name(Role role) {
@@ -31,7 +37,7 @@ const char* name(Role role) {
 }
 
 Hub::Hub(Options options, std::function<void()> wake)
-    : options_(std::move(options)),
+    : options_(with_plain_proxies(std::move(options))),
       wake_(std::move(wake)),
       lab_(std::make_unique<LabQueue>(
           lab_port(), [gpu = options_.gpu] { return open_lab(gpu); }, options_.limits.lab_seconds)),

@@ -42,6 +42,16 @@ bool parses(int family, const std::string& address) {
   return inet_pton(family, address.c_str(), &parsed) == 1;
 }
 
+/// An IPv4 client of an IPv6 socket is known by its IPv4 address.
+std::string text_of(const in6_addr& address) {
+  char text[INET6_ADDRSTRLEN] = "";
+  if (IN6_IS_ADDR_V4MAPPED(&address))
+    inet_ntop(AF_INET, address.s6_addr + 12, text, sizeof text);
+  else
+    inet_ntop(AF_INET6, &address, text, sizeof text);
+  return text;
+}
+
 /// An address as a Host header has it.
 bool is_address(const std::string& name) {
   if (name.starts_with('[') && name.ends_with(']')) return parses(AF_INET6, name.substr(1, name.size() - 2));
@@ -57,12 +67,7 @@ std::string peer_address(int socket) {
   if (peer.ss_family == AF_INET) {
     inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in&>(peer).sin_addr, text, sizeof text);
   } else if (peer.ss_family == AF_INET6) {
-    const in6_addr& address = reinterpret_cast<const sockaddr_in6&>(peer).sin6_addr;
-    // An IPv4 client of an IPv6 socket is known by its IPv4 address.
-    if (IN6_IS_ADDR_V4MAPPED(&address))
-      inet_ntop(AF_INET, address.s6_addr + 12, text, sizeof text);
-    else
-      inet_ntop(AF_INET6, &address, text, sizeof text);
+    return text_of(reinterpret_cast<const sockaddr_in6&>(peer).sin6_addr);
   }
   return text;
 }
@@ -75,6 +80,18 @@ bool is_ip_address(const std::string& text) {
   return parses(AF_INET, text) || parses(AF_INET6, text);
 }
 
+std::string plain_address(std::string text) {
+  std::erase_if(text, [](char c) { return c == ' ' || c == '\t'; });
+  const bool bracket = text.starts_with('[');
+  if (bracket || std::count(text.begin(), text.end(), ':') == 1) text = without_port(text);
+  if (bracket) text = text.ends_with(']') ? text.substr(1, text.size() - 2) : std::string();
+  in_addr four{};
+  in6_addr six{};
+  if (!bracket && inet_pton(AF_INET, text.c_str(), &four) == 1) return text;
+  if (inet_pton(AF_INET6, text.c_str(), &six) != 1) return {};
+  return text_of(six);
+}
+
 std::string client_address(lws* wsi, const std::vector<std::string>& trusted) {
   std::string address = peer_address(wsi);
   const auto is_proxy = [&] { return std::find(trusted.begin(), trusted.end(), address) != trusted.end(); };
@@ -82,10 +99,9 @@ std::string client_address(lws* wsi, const std::vector<std::string>& trusted) {
   std::string list = header(wsi, WSI_TOKEN_X_FORWARDED_FOR);
   while (is_proxy() && !list.empty()) {
     const std::size_t comma = list.rfind(',');
-    std::string last = list.substr(comma == std::string::npos ? 0 : comma + 1);
+    const std::string last = plain_address(list.substr(comma == std::string::npos ? 0 : comma + 1));
     list.resize(comma == std::string::npos ? 0 : comma);
-    std::erase(last, ' ');
-    if (!is_ip_address(last)) break;
+    if (last.empty()) break;
     address = last;
   }
   return address;
@@ -94,6 +110,7 @@ std::string client_address(lws* wsi, const std::vector<std::string>& trusted) {
 std::string network_of(const std::string& address) {
   in6_addr network{};
   if (inet_pton(AF_INET6, address.c_str(), &network) != 1) return address;
+  if (IN6_IS_ADDR_V4MAPPED(&network)) return text_of(network);
   std::fill(network.s6_addr + 8, network.s6_addr + 16, std::uint8_t{0});
   char text[INET6_ADDRSTRLEN] = "";
   inet_ntop(AF_INET6, &network, text, sizeof text);

@@ -13,11 +13,14 @@ namespace clothlab::net {
 std::string peer_address(int socket);
 std::string peer_address(lws* wsi);
 /// The client's address: the one at the other end or, where that is one of the `trusted` proxies, the last in
-/// X-Forwarded-For that is none of them. Each proxy appends the address that it was reached from, so that
-/// what a client writes there itself comes before, and is never read.
+/// X-Forwarded-For that is none of them, with or without a port. Each proxy appends the address that it was
+/// reached from, so that what a client writes there itself comes before, and is never read.
 std::string client_address(lws* wsi, const std::vector<std::string>& trusted);
 /// True for an IPv4 or IPv6 address, without a port.
 bool is_ip_address(const std::string& text);
+/// The address in a text as proxies write it, alone, with a port, or in brackets, in one form for each
+/// address: 192.0.2.7 also for ::ffff:192.0.2.7; empty if it is none.
+std::string plain_address(std::string text);
 /// The name under which limits count an address: an IPv4 address itself, but an IPv6 address's /64 network,
 /// because one host can use all addresses of its /64 network.
 std::string network_of(const std::string& address);
