@@ -214,6 +214,8 @@ int run(const RunOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   Result<Outputs> outputs = open_outputs(options);
   if (!outputs) return fail(outputs.error(), exit_usage);
+  // However this run ends, its report and trace are never those of another one.
+  for (const std::string& path : {options.report, options.trace}) remove_older(path);
   int exit_code = exit_done;
   const std::optional<Prepared> prepared = prepare(options.scene, options.gpu, exit_code);
   if (!prepared) return exit_code;

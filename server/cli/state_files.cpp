@@ -46,6 +46,11 @@ Status check_writable(const std::string& option, const std::string& path) {
   return ok();
 }
 
+void remove_older(const std::string& path) {
+  std::error_code failure;
+  if (!path.empty() && fs::is_regular_file(path, failure)) fs::remove(path, failure);
+}
+
 Status write_file(const std::string& path, const std::string& bytes) {
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));

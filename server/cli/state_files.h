@@ -15,6 +15,10 @@ namespace clothlab::cli {
 /// Checks that a file can be made or replaced at `path`, without touching it. Errors name `option`.
 Status check_writable(const std::string& option, const std::string& path);
 
+/// Removes the file at `path`, if there is one, which this run would replace at its end: a run that fails
+/// leaves none behind that is of an older one.
+void remove_older(const std::string& path);
+
 /// Makes or replaces the file at `path`, with `bytes` as its contents.
 Status write_file(const std::string& path, const std::string& bytes);
 

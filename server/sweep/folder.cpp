@@ -59,7 +59,7 @@ std::optional<Row> Folder::result(const std::string& id) const {
   const Result<std::string> text = read_file(path);
   if (!text) return std::nullopt;
   Row value = Row::parse(*text, nullptr, false);
-  if (!value.is_object() || value.value("id", "") != id) return std::nullopt;
+  if (!value.is_object() || !value.contains("id") || value["id"] != id) return std::nullopt;
   return value;
 }
 

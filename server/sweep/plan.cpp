@@ -137,11 +137,13 @@ Result<scene::Document> read_scene(const json& value, const fs::path& folder,
 
 /// Writes `value` at `pointer`, whether or not there is a value. False: its parent is missing.
 bool write(json& document, const std::string& pointer, const json& value) {
-  const json::json_pointer place(pointer);
-  if (!document.contains(place) &&
-      !(document.contains(place.parent_pointer()) && document[place.parent_pointer()].is_object()))
-    return false;
-  document[place] = value;
+  const std::vector<std::string> tokens = *scene::split_pointer(pointer);
+  json* at = &document;
+  for (std::size_t i = 0; at && i + 1 < tokens.size(); ++i) at = scene::child(*at, tokens[i]);
+  json* place = at ? scene::child(*at, tokens.back()) : nullptr;
+  if (!place && at && at->is_object()) place = &(*at)[tokens.back()];
+  if (!place) return false;
+  *place = value;
   return true;
 }
 

@@ -296,3 +296,19 @@ test("a scene of surfaces that starts with crossings is refused, with the pairs 
   assert.match(refused.stderr, /"points"/);
   run("fabrics", "--time", "0.01", "--set", '/self_collision={"kind":"points"}');
 });
+
+test("a run that fails leaves no report and no trace of an older one", () => {
+  const outputs = ["--report", "same.json", "--trace", "same.csv"];
+  for (const [failing, status] of [
+    [["nosuch", "--time", "0.01"], 2],
+    [["seed", "--time", "0.01", "--set", "/solver/dt=-1"], 2],
+    [["seed", "--time", "-1"], 2],
+    [["seed", "--time", "0.01", "--gpu", "999"], 3],
+  ]) {
+    run("seed", "--time", "0.01", ...outputs);
+    assert.equal(report("same.json").steps, 10);
+    assert.equal(clothlab(["run", ...failing, ...outputs]).status, status);
+    for (const name of ["same.json", "same.csv"])
+      assert.ok(!readdirSync(folder).includes(name), `${name} after ${failing.join(" ")}`);
+  }
+});

@@ -172,3 +172,29 @@ test("a folder with another sweep, a wrong shard and a folder without a sweep ar
   assert.equal(merged.code, 2);
   assert.match(merged.stderr, /has no sweep.json/);
 });
+
+test("a point's file that is no result of it is measured again, whatever is in it", async () => {
+  const path = file("odd.json", { ...plan, axes: [{ at: "/solver/dt", values: [0.001, 0.002] }] });
+  const out = join(folder, "odd");
+  await run("sweep", path, "--out", out);
+  const names = points(out);
+  for (const odd of ['{"id": 5}', "[1]", '"x"', "{}"]) {
+    writeFileSync(join(out, "points", names[0]), odd);
+    const merged = await run("sweep", "--merge", out);
+    assert.match(merged.stderr, /1 points? (is|are) not measured, or (its file is|their files are) damaged/, odd);
+    assert.match((await run("sweep", path, "--out", out)).stdout, /1 points? measured, 1 there before/);
+  }
+});
+
+test("a place that no scene can have is told as any other that this one has not", async () => {
+  for (const at of [
+    "/cloths/99999999999999999999/mass",
+    "/cloths/18446744073709551616",
+    "/cloths/-/mass",
+    "/cloths/01",
+  ]) {
+    const { code, stderr } = await run("sweep", file("far.json", { ...plan, axes: [{ at, values: [1, 2] }] }));
+    assert.equal(code, 2, at);
+    assert.match(stderr, /\/axes\/0\/at: ".*"; a place that the scene has/);
+  }
+});
