@@ -74,6 +74,8 @@ std::vector<std::string> notes_of_triangles(const std::vector<glm::dvec3>& verti
 Result<Mesh> read(std::string_view bytes, const std::string& name, const Limits& limits) {
   if (bytes.size() > limits.bytes)
     return Error{name, std::to_string(bytes.size()) + " bytes", "at most " + std::to_string(limits.bytes)};
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // which some programs put before UTF-8
+  if (bytes.starts_with(byte_order_mark)) bytes.remove_prefix(byte_order_mark.size());
   const bool ply = ends_in_ply(name) || bytes.starts_with("ply\n") || bytes.starts_with("ply\r");
   Result<Raw> raw = ply ? read_ply(bytes, name, limits) : read_obj(bytes, name, limits);
   if (!raw) return raw.error();

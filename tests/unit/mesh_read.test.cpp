@@ -71,6 +71,17 @@ std::string binary_square(bool big) {
 
 }  // namespace
 
+TEST_CASE("a byte-order mark before a mesh is no part of it") {
+  const std::string mark = "\xEF\xBB\xBF", faces = square + "f 1 2 3 4\n";
+  CHECK(read(mark + faces).vertices == read(faces).vertices);
+  CHECK(read(mark + "# a\r\n" + faces).triangles == read(faces).triangles);
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 0 1\n3 0 1 2\n";
+  for (const char* name : {"a.ply", "a"}) CHECK(read(mark + ply, name).vertices == read(ply, name).vertices);
+  CHECK_FALSE(mesh::read(mark + mark + faces, "a.obj", limits));
+}
+
 TEST_CASE("an .obj file is read with every form of corner, comments, groups and lines that go on") {
   for (const char* face : {"f 1 2 3 4", "f -4 -3 -2 -1", "f 1/1 2/1 3/1 4/1", "f 1//1 2//1 3//1 4//1",
                            "f 1/1/1 2/1/1 3/1/1 4/1/1", "f 1 2 \\\n 3 4", "  f\t1 2 3 4 # all"}) {
