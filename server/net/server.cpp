@@ -27,6 +27,22 @@ std::chrono::microseconds time_to_gather(std::size_t sockets) {
   return std::min(most, for_each * static_cast<int>(sockets));
 }
 
+/// Logs what libwebsockets says, ten lines a second at most: out of descriptors it says so at every look at
+/// the socket that listens.
+void log_line(const std::string& text) {
+  constexpr int most = 10;
+  constexpr std::int64_t second = 1'000'000;
+  static std::int64_t begun = 0;  // all on the service thread
+  static int said = 0;
+  if (const std::int64_t now = session::now_us(); now - begun >= second) {
+    if (said > most)
+      log(LogLevel::error, "libwebsockets", {{"text", "and " + std::to_string(said - most) + " lines more"}});
+    begun = now;
+    said = 0;
+  }
+  if (++said <= most) log(LogLevel::error, "libwebsockets", {{"text", text}});
+}
+
 bool is_ipv6(const std::string& address) {
   return address.find(':') != std::string::npos;
 }
@@ -59,7 +75,7 @@ Result<std::unique_ptr<Server>> Server::listen(Options options) {
   lws_set_log_level(LLL_ERR, [](int, const char* line) {
     std::string text = line;
     while (!text.empty() && text.back() == '\n') text.pop_back();
-    log(LogLevel::error, "libwebsockets", {{"text", text}});
+    log_line(text);
   });
   auto server = std::unique_ptr<Server>(new Server(std::move(options)));
   if (const Status joined = server->hub_.join_bus(); !joined) return joined.error();

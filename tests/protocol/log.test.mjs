@@ -1,7 +1,11 @@
 // The log that the server writes to stderr for its operator.
 import assert from "node:assert/strict";
+import { chmodSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import net from "node:net";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 import { test } from "node:test";
-import { Client, Server } from "./harness.mjs";
+import { Client, Server, sleep } from "./harness.mjs";
 
 const tokens = ["operators-only", "viewers-only"];
 const value = String.raw`(?:"(?:[^"\\\x00-\x1f\x7f]|\\["\\]|\\x[0-9a-f]{2})*"|[^\s"=\\]+)`;
@@ -81,4 +85,30 @@ test("--log-level leaves out what is less urgent", async () => {
   );
   const all = await told("--log-level", "debug");
   assert.ok(all.some(({ level }) => level === "info"));
+});
+
+test("without descriptors left the server says so, ten times a second at most, and goes on once there are some", async (t) => {
+  const folder = mkdtempSync(join(tmpdir(), "clothlab-few-"));
+  const program = process.env.CLOTHLAB;
+  t.after(() => rmSync(folder, { recursive: true, force: true }));
+  const few = join(folder, "few");
+  writeFileSync(few, `#!/bin/sh\nulimit -n 40\nexec "${program}" "$@"\n`);
+  chmodSync(few, 0o755);
+  process.env.CLOTHLAB = few;
+  const server = await Server.start().finally(() => (process.env.CLOTHLAB = program));
+  const client = await Client.connect(server);
+  const sockets = Array.from({ length: 60 }, () => net.connect(server.port, "127.0.0.1").on("error", () => {}));
+  const lines = () => server.stderr.split("\n").filter((text) => text.includes("event=libwebsockets"));
+  for (let tries = 0; lines().length === 0 && tries < 500; ++tries) await sleep(20);
+  await client.statuses(20);
+  const seconds = new Map(); // lines in each second of the clock, in which two seconds of the limit may lie
+  for (const text of lines()) seconds.set(text.slice(0, 24), (seconds.get(text.slice(0, 24)) ?? 0) + 1);
+  assert.ok(seconds.size > 0, "it is told");
+  for (const [second, told] of seconds) assert.ok(told <= 22, `${told} lines in ${second}`);
+  for (const socket of sockets) socket.destroy();
+  for (let tries = 0; (await server.get("/healthz").catch(() => null))?.status !== 200 && tries < 500; ++tries)
+    await sleep(20);
+  assert.deepEqual(await client.request("ping", { t: 1 }), { t: 1 });
+  await client.close();
+  assert.equal(await server.stop(), 0);
 });
