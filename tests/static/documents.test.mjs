@@ -39,6 +39,16 @@ test("every link of a document leads to a file, and to a heading in it", () => {
   assert.deepEqual(wrong, []);
 });
 
+test("the number of methods for operators that a document tells is that of the table", () => {
+  const count = [...read("server/net/methods.cpp").matchAll(/Method\{"[\w.]+", For::operators,/g)].length;
+  const told = documents.flatMap((file) => [...read(file).matchAll(/(\d+) methods for operators/g)]);
+  assert.ok(told.length > 0);
+  assert.deepEqual(
+    told.map(([, number]) => Number(number)),
+    told.map(() => count),
+  );
+});
+
 /// Matches a path with a folder, or a document's bare name, in a comment or a document; not files that a program makes.
 const named =
   /(?<![\w/.<"$~{}-])((?:[\w.-]+\/)+[\w.-]+\.(?:md|h|cpp|glsl|comp|vert|geom|frag|ts|mjs|json|yaml|css|html|sh)|[\w-]+\.md)(?![\w/*])/g;
