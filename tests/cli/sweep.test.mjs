@@ -193,7 +193,12 @@ test("a place that no scene can have is told as any other that this one has not"
     "/cloths/-/mass",
     "/cloths/01",
   ]) {
-    const { code, stderr } = await run("sweep", file("far.json", { ...plan, axes: [{ at, values: [1, 2] }] }));
+    const { code, stderr } = await run(
+      "sweep",
+      file("far.json", { ...plan, axes: [{ at, values: [1, 2] }] }),
+      "--out",
+      folder,
+    );
     assert.equal(code, 2, at);
     assert.match(stderr, /\/axes\/0\/at: ".*"; a place that the scene has/);
   }
