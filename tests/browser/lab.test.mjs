@@ -319,6 +319,7 @@ browserTest(
     await panel.locator('.panel [data-cell][tabindex="0"]').focus();
     const told = await page.getByRole("tooltip").innerText();
     assert.match(told, /^Verlet, dt \S+\s(ms|µs), stiffness × 0.01\n(blew up|held)[^]*theory's limit: /);
+    assert.deepEqual(await strayRules(page), []);
     const before = (await scene()).cloths[0].material;
     await page.keyboard.press("Enter");
     const {
@@ -369,6 +370,7 @@ browserTest(
     const { viewer, page, panel, scene } = await lab("lab-simplify", { tab: "Simplify" });
     await start(panel, "Measure the parts");
     await finished(panel);
+    assert.deepEqual(await strayRules(page), []);
     const row = panel.locator("tbody tr", { hasText: "bend" }).first();
     assert.match(
       await row.innerText(),
@@ -390,9 +392,33 @@ browserTest(
   },
 );
 
-/// Parts of the drawer that stick out of it or of the window, and cut-off words.
+/// Rules of the page's style sheets that are for other parts of it, and hit a part of a drawing: both have a "legend".
+/// Rules for another width count, too.
+const strayRules = (page) =>
+  page.evaluate(() => {
+    const parts = [...document.querySelectorAll(".lab-picture svg, .lab-picture svg *")];
+    if (parts.length === 0) return ["there is no drawing"];
+    const selectors = (rules) =>
+      [...rules].flatMap((rule) =>
+        [rule.selectorText ?? [], ...(rule.cssRules ? selectors(rule.cssRules) : [])].flat(),
+      );
+    const meant = /\.lab-(picture|present)\b|\*$/; // one for everything in the lab is meant, too
+    return [...document.styleSheets]
+      .flatMap(({ cssRules }) => selectors(cssRules))
+      .filter((text) => text.includes(".") && !meant.test(text) && parts.some((part) => part.matches(text)));
+  });
+
+/// Parts of the drawer that stick out of it or of the window, and cut-off words, those of the drawing, too.
 const cutOff = () => {
   const problems = [];
+  for (const node of document.querySelectorAll("#lab .lab-picture svg text")) {
+    const drawing = node.ownerSVGElement.getBoundingClientRect();
+    const { left, right } = node.getBoundingClientRect();
+    if (drawing.width > 0 && (left < drawing.left - 1 || right > drawing.right + 1))
+      problems.push(`"${node.textContent}" from ${left} to ${right} sticks out of its drawing`);
+    if (drawing.width > 0 && getComputedStyle(node).visibility !== "visible")
+      problems.push(`"${node.textContent}" is hidden`);
+  }
   const drawer = document.getElementById("lab").getBoundingClientRect();
   if (drawer.left < 0 || drawer.right > innerWidth || drawer.bottom > innerHeight + 1)
     problems.push("the drawer sticks out");
@@ -413,6 +439,7 @@ browserTest(
   "on a wide window and on a phone, light and dark, nothing of the drawer is cut off, and each tab has its say",
   async () => {
     const { viewer, page, panel } = await charted("lab-looks", { sharp: true });
+    assert.deepEqual(await strayRules(page), []);
     for (const [width, height, colorSchemes] of [
       [1280, 800, ["light", "dark"]],
       [900, 700, ["light"]],
