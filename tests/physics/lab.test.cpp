@@ -179,6 +179,14 @@ TEST_CASE(
   CHECK(std::abs(error / *made->chosen.error[index(Axis::position)] - 1.0) < 0.01);
   CHECK(*made->chosen.largest_position_error <= tolerance);
   CHECK(error <= tolerance);
+
+  // A scene that has this setting already keeps it, and is told so.
+  const auto again = choose(with(swinging(), chosen), {tolerance, {chosen.method}, 0.3}, {});
+  if (!again) FAIL(again.error().text());
+  INFO(again->why);
+  CHECK(again->met);
+  CHECK(again->chosen.setting == again->present.setting);
+  CHECK(again->why.find("own setting is already the best found") != std::string::npos);
 }
 
 TEST_CASE("a job of the lab that is cancelled ends, and says that it is not complete") {

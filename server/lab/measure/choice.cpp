@@ -153,7 +153,7 @@ class Chooser {
       race[i]->best->cost = cost_of((*measured)[i]);
       race[i]->times = (*measured)[i];
     }
-    if (present) choice_.present.cost = cost_of(measured->back());
+    if (present) choice_.present.cost = cost_of(present_times_ = measured->back());
     return ok();
   }
 
@@ -185,7 +185,52 @@ class Chooser {
         runner_up_times_ = candidate->times;
       }
     choice_.why = why_chosen(choice_, ratio_to_runner_up(), for_margin_);
+    return let_present_take_part();
+  }
+
+  /// The scene's own setting stays if it keeps the tolerance with a margin and nothing is sure to be cheaper.
+  Status let_present_take_part() {
+    const Result<bool> keeps = present_keeps();
+    if (!keeps) return keeps.error();
+    if (!*keeps) return ok();
+    const Point& present = choice_.present;
+    if (choice_.met) {
+      if (cheaper_or_closer(choice_.chosen, present)) return ok();
+      if (choice_.chosen.setting.method != present.setting.method) choice_.runner_up = choice_.chosen;
+    }
+    choice_.met = true;
+    choice_.chosen = present;
+    choice_.why = why_present(choice_);
     return ok();
+  }
+
+  /// True if `chosen` is surely cheaper than the present setting, or seems so and is more exact, too.
+  bool cheaper_or_closer(const Point& chosen, const Point& present) const {
+    Setting same_step = chosen.setting;
+    same_step.dt = present.setting.dt;
+    // Steps of one kind cost the same: then no clock need judge.
+    if (same_step == present.setting) return chosen.setting.dt > present.setting.dt;
+    return chosen.cost->median < present.cost->median &&
+           (ratio(present_times_, chosen_times_).low > 1.0 ||
+            *chosen.largest_position_error < *present.largest_position_error);
+  }
+
+  /// True if the scene's own setting may be chosen: it is of a wanted method and keeps the tolerance at every
+  /// step, with a margin of stability.
+  Result<bool> present_keeps() {
+    Point& present = choice_.present;
+    const std::vector<Method>& wanted = request_.methods;
+    const bool is_wanted =
+        wanted.empty() || std::find(wanted.begin(), wanted.end(), present.setting.method) != wanted.end();
+    if (!is_wanted || !present.cost || present.dt_over_limit.value_or(0.0) > model::margin_to_warn)
+      return false;
+    if (!present.error_high) {
+      const auto errors = measure_largest_errors(scene_, truth_, {present.setting}, trials_, control_.stop);
+      if (!errors) return errors.error();
+      set_error(present, errors->front());
+    }
+    if (present.error_high.value_or(worst) > request_.tolerance) return false;
+    return keeps_margin(present);
   }
 
   /// Chooses the cheapest in the race if it holds with a margin. Those that do not get a shorter step, down
@@ -194,7 +239,7 @@ class Chooser {
     bool shortened = false;
     std::vector<Candidate*> out;
     for (Candidate* candidate : race) {
-      const Result<bool> holds = keeps_margin(*candidate);
+      const Result<bool> holds = keeps_margin(*candidate->best);
       if (!holds) return holds.error();
       if (*holds && !shortened) {
         choice_.met = true;
@@ -227,19 +272,19 @@ class Chooser {
     if (second && std::find(race.begin(), race.end(), second) == race.end()) race.push_back(second);
   }
 
-  /// True if the candidate does not blow up within the whole time, neither at its own step nor, if its method
+  /// True if the setting does not blow up within the whole time, neither at its own step nor, if its method
   /// has a step limit, at a step a ninth longer.
-  Result<bool> keeps_margin(const Candidate& candidate) {
-    scene::Scene scene = with(scene_, candidate.best->setting);
+  Result<bool> keeps_margin(const Point& point) {
+    scene::Scene scene = with(scene_, point.setting);
     std::vector<double> steps{scene.solver.dt};
-    if (!scene::any_step_is_stable(candidate.setting.method))
+    if (!scene::any_step_is_stable(point.setting.method))
       steps.push_back(scene.solver.dt / model::margin_to_warn);
     for (const double dt : steps) {
       scene.solver.dt = dt;
       const Result<Trial> trial = trials_.run(scene, truth_, truth_.time, control_.stop);
       if (!trial) return trial.error();
       if (!trial->blew_up_at) continue;
-      choice_.notes.push_back(text(candidate.best->setting) + " keeps the tolerance, but blows up " +
+      choice_.notes.push_back(text(point.setting) + " keeps the tolerance, but blows up " +
                               (dt == steps.front() ? "later" : "with a step a ninth longer") + ", at " +
                               with_significant_digits(*trial->blew_up_at, 3) + " s.");
       return false;
@@ -264,13 +309,16 @@ class Chooser {
     choice_.why = "Nothing that was tried keeps " + with_significant_digits(request_.tolerance, 3) +
                   (error <= request_.tolerance ? " and holds with a margin" : "") + "; nearest came " +
                   text(choice_.chosen.setting) + " with an error of " + error_text(choice_.chosen) + ".";
-    return ok();
+    return let_present_take_part();
   }
 
-  Spread ratio_to_runner_up() const {
+  Spread ratio_to_runner_up() const { return ratio(runner_up_times_, chosen_times_); }
+
+  /// Of two settings' times, round by round.
+  static Spread ratio(const std::vector<double>& times, const std::vector<double>& over) {
     std::vector<double> ratios;
-    for (std::size_t round = 0; round < std::min(chosen_times_.size(), runner_up_times_.size()); ++round)
-      ratios.push_back(runner_up_times_[round] / chosen_times_[round]);
+    for (std::size_t round = 0; round < std::min(times.size(), over.size()); ++round)
+      ratios.push_back(times[round] / over[round]);
     return spread_of(std::move(ratios), 0.01);
   }
 
@@ -281,8 +329,9 @@ class Chooser {
   Truth truth_;
   TrialRunner trials_;
   std::optional<StepSearch> search_;
-  bool for_margin_ = false;                             // of the chosen candidate
-  std::vector<double> chosen_times_, runner_up_times_;  // [round] [ms per simulated second]
+  bool for_margin_ = false;  // of the chosen candidate
+  // [round] [ms per simulated second]
+  std::vector<double> chosen_times_, runner_up_times_, present_times_;
 };
 
 }  // namespace

@@ -30,9 +30,11 @@ struct ChooseRequest {
   std::optional<double> time;          ///< simulated time [s]; none: 1
 };
 
-/// Needs a current GL context. The chosen step is at most 0.9 of the stability limit; if the tolerance is
-/// met, a run with a step a ninth longer did not blow up either. Error: a tolerance out of range, a reference
-/// that is missing or not accurate enough (with what can be done), all settings blew up, GL, or cancelled.
+/// The scene's own setting takes part, if it is of the wanted methods: it stays where nothing is surely
+/// cheaper. Needs a current GL context. The chosen step is at most 0.9 of the stability limit; if the
+/// tolerance is met, a run with a step a ninth longer did not blow up either. Error: a tolerance out of
+/// range, a reference that is missing or not accurate enough (with what can be done), all settings blew up,
+/// GL, or cancelled.
 Result<Choice> choose(const scene::Scene& scene, const ChooseRequest& request,
                       const Control<Choice>& control);
 

@@ -46,4 +46,20 @@ std::string why_chosen(const Choice& choice, const Spread& ratio_to_runner_up, b
   return why + ".";
 }
 
+std::string why_present(const Choice& choice) {
+  const Point& present = choice.present;
+  std::string why = "The scene's own setting is already the best found: " + text(present.setting) +
+                    " costs " + with_significant_digits(present.cost->median, 3) +
+                    " ms a simulated second, with an error of " + error_text(present) +
+                    ", and nothing that keeps " + with_significant_digits(choice.tolerance, 3) +
+                    " is surely cheaper";
+  if (choice.runner_up) {
+    const double ratio = choice.runner_up->cost->median / present.cost->median;
+    why += ". The next best (" + text(choice.runner_up->setting) + ") costs " +
+           (ratio < 1.05 ? "about as much" : times(ratio) + " as much") + ", with an error of " +
+           error_text(*choice.runner_up);
+  }
+  return why + ".";
+}
+
 }  // namespace clothlab::lab

@@ -15,4 +15,7 @@ std::string error_text(const Point& point);
 /// its own, timed in turns. `for_margin`: its step was made shorter because longer ones blow up.
 std::string why_chosen(const Choice& choice, const Spread& ratio_to_runner_up, bool for_margin);
 
+/// Why the scene's own setting stays, in a sentence or two.
+std::string why_present(const Choice& choice);
+
 }  // namespace clothlab::lab

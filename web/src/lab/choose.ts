@@ -107,6 +107,14 @@ export class ChooseTab extends Tab<"choose"> {
 
   private showCards(choice: Choice): void {
     const { chosen, runner_up: runnerUp, present } = choice;
+    if (settingText(chosen) === settingText(present)) {
+      const title = choice.met ? `Present, and the best within ${errorText(choice.tolerance)}` : "Present";
+      this.cards.replaceChildren(
+        this.card(title, present, null, "present"),
+        ...(runnerUp ? [this.card("Runner-up", runnerUp, present, "")] : []),
+      );
+      return;
+    }
     this.cards.replaceChildren(
       this.card(
         choice.met ? `The cheapest within ${errorText(choice.tolerance)}` : "The most accurate found",
