@@ -14,7 +14,8 @@ namespace {
 
 constexpr double safe_share = 0.8;
 constexpr double least_step_share = 0.1;  // a step below this share of the present one makes a run too slow
-constexpr double frame_time = 0.016;      // [s], a display frame at about 60 Hz
+constexpr std::size_t most_searched = 20000;  // vertices whose limit is searched in well under a second
+constexpr double frame_time = 0.016;          // [s], a display frame at about 60 Hz
 
 double within_safe_share(double limit) {
   return std::max(rounded_down(safe_share * limit), scene::ranges::dt.minimum);
@@ -67,6 +68,23 @@ Remedy remedy(const Model& model, const scene::Scene& scene, double limit) {
     remedy.text = "halve the time step, to dt = " + with_significant_digits(remedy.dt, 4) + " s";
   }
   return remedy;
+}
+
+scene::Solver solver_that_holds(const Model& model, const scene::Scene& scene) {
+  scene::Solver solver = scene.solver;
+  if (solver.automatic) return solver;  // the lab chooses a step that holds
+  const double limit =
+      model.vertex_count() <= most_searched ? dt_limit_if_near(model, scene) : dt_limit_bound(model, scene);
+  if (solver.dt <= margin_to_warn * limit) return solver;
+  if (safe_share * limit >= 0.5 * solver.dt) {
+    solver.dt = within_safe_share(limit);
+    return solver;
+  }
+  solver.method = scene::Method::implicit_euler;
+  solver.dt = 1.0 / 60.0;
+  solver.iterations = 1;
+  solver.tolerance = 0.05;
+  return solver;
 }
 
 std::string against_limit(const scene::Solver& solver, double limit) {

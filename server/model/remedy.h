@@ -1,4 +1,5 @@
-// Advice after a run has blown up: the change to the scene that makes it stable.
+// The change to a scene that makes it stable: advice after a run has blown up, and what a change of the cloth
+// asks for that is not to blow up.
 #pragma once
 
 #include <optional>
@@ -21,6 +22,12 @@ struct Remedy {
 /// a step well below `limit`, which then cannot be the cause: implicit Euler;
 /// implicit Euler itself: half the step.
 Remedy remedy(const Model& model, const scene::Scene& scene, double limit);
+
+/// A solver under which the cloth of `scene` holds: the scene's own, if its step is within `margin_to_warn`
+/// of the longest stable one; else a shorter step, if half of it is enough; else implicit Euler with a step
+/// of a frame and one solve, which is the cheapest for stiff cloth. (`remedy` keeps the step under implicit
+/// Euler, as it does not know why the run has blown up.)
+scene::Solver solver_that_holds(const Model& model, const scene::Scene& scene);
 
 /// Text that compares dt with `limit` [s], to be appended to the reason of a blow-up:
 /// ": dt = 0.0025 s is 1.47 times the longest stable step of ...".

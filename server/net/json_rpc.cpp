@@ -165,6 +165,12 @@ std::int64_t Params::integer(const char* name, std::int64_t least, std::int64_t 
   return least;
 }
 
+bool Params::flag(const char* name) {
+  const json& found = value(name);
+  if (!found.is_null() && !found.is_boolean()) refuse(name, "true or false");
+  return found.is_boolean() && found.get<bool>();
+}
+
 std::string Params::text(const char* name, std::optional<std::string> fallback) {
   const json* value = find(name);
   if (!value && fallback) return *fallback;

@@ -82,6 +82,8 @@ class Params {
   std::string text(const char* name, std::optional<std::string> fallback);
   /// A text of 1 to `most` bytes without control characters.
   std::string label(const char* name, std::size_t most, std::optional<std::string> fallback);
+  /// True or false; false if the parameter is left out.
+  bool flag(const char* name);
   /// The parameter's value of any type; null if it is left out.
   const json& value(const char* name);
   bool has(const char* name) const { return params_.contains(name); }

@@ -68,19 +68,13 @@ std::optional<double> time_in(Params& params) {
 
 constexpr double least_tolerance = 1e-9;
 
-bool flag(Params& params, const char* name) {
-  const json& value = params.value(name);
-  if (!value.is_null() && !value.is_boolean()) params.refuse(name, "true or false");
-  return value.is_boolean() && value.get<bool>();
-}
-
 std::uint64_t job_in(Params& params) {
   constexpr std::int64_t most = (std::int64_t{1} << 53) - 1;  // JSON numbers are exact up to here
   return static_cast<std::uint64_t>(params.integer("job", 1, most, std::nullopt));
 }
 
 Outcome ask_lab(Client& client, Request& request, Params& params, lab::Job job) {
-  const LabWishes wishes{flag(params, "pause"), flag(params, "fresh")};
+  const LabWishes wishes{params.flag("pause"), params.flag("fresh")};
   if (auto error = params.check()) return *error;
   LabQueue& lab = client.hub().lab();
   const auto admitted = lab.admit(ticket(client, request), client.room()->name(), std::move(job), wishes);
@@ -163,7 +157,7 @@ Outcome lab_compare(Client& client, Request& request) {
   if (params.has("patch")) job.patch = params.value("patch");
   if (!job.patch.is_object() && !job.patch.is_array())
     params.refuse("patch", "an object (RFC 7396 merge patch) or an array (RFC 6902 patch)");
-  job.truth = flag(params, "truth");
+  job.truth = params.flag("truth");
   job.time = params.number("time", min_lab_time, max_lab_time, job.time);
   job.rate = static_cast<int>(params.integer("rate", min_comparison_rate, max_comparison_rate, job.rate));
   return ask_lab(client, request, params, std::move(job));

@@ -50,6 +50,7 @@ Outcome scene_patch(Client& client, Request& request) {
     params.refuse("patch", "an object (RFC 7396 merge patch) or an array (RFC 6902 patch)");
   patch.revision = read_revision(params);
   patch.name = params.label("name", session::max_change_name_bytes, "");
+  patch.keep_stable = params.flag("keep_stable");
   if (auto error = params.check()) return *error;
   patch.patch = std::move(request.params["patch"]);
   return ask_session(client, request, std::move(patch));

@@ -42,6 +42,7 @@ struct PatchScene {
   json patch;
   std::optional<std::uint64_t> revision;  ///< the scene revision that the patch was made for; none: any
   std::string name{};                     ///< what the history calls it; empty: by what it changes
+  bool keep_stable = false;               ///< change the solver, too, if the cloth would not hold with it
 };
 /// Undoes or redoes a change of the scene.
 struct TravelHistory {

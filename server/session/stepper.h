@@ -125,6 +125,7 @@ class Stepper {
   void perform(PatchScene& patch, const Ticket& ticket);
   void perform(TravelHistory& travel, const Ticket& ticket);
   bool outdated(std::optional<std::uint64_t> revision, const Ticket& ticket);
+  static Result<std::optional<json>> keep_stable(json& patch, scene::Document& document);
   Result<sim::ChangeDepth> travelled(const History::Change& change, Direction direction);
   Result<sim::ChangeDepth> bring(scene::Document document, bool anew);
   void remember(History::Change change);

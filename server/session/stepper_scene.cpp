@@ -2,6 +2,8 @@
 // place.
 #include <utility>
 
+#include "server/model/remedy.h"
+#include "server/scene/method.h"
 #include "server/session/change_name.h"
 #include "server/session/stepper.h"
 
@@ -48,16 +50,45 @@ void Stepper::perform(PatchScene& patch, const Ticket& ticket) {
   if (outdated(patch.revision, ticket)) return;
   Result<scene::Document> document = scene::apply_patch(document_, patch.patch);
   if (!document) return reply(ticket, invalid_value(document.error()));
+  json answer = json::object();
+  if (patch.keep_stable) {
+    const Result<std::optional<json>> solver = keep_stable(patch.patch, *document);
+    if (!solver) return reply(ticket, invalid_value(solver.error()));
+    if (*solver) answer["solver"] = **solver;
+  }
   if (const clothlab::Status fits = scene::check_bytes(document->value); !fits)
     return reply(ticket, invalid_value(fits.error()));
   History::Change made =
       history_.prepare(document_.value, document->value, std::move(patch.name), ticket.asker, Clock::now());
   const Result<sim::ChangeDepth> depth = bring(std::move(*document), false);
   if (!depth) return reply(ticket, invalid_value(depth.error()));
-  reply(ticket, json{{"revision", revision_}, {"applies", sim::name(*depth)}});
+  answer.update({{"revision", revision_}, {"applies", sim::name(*depth)}});
+  reply(ticket, std::move(answer));
   announce_scene(std::move(patch.patch), ticket.asker);
   remember(std::move(made));
   tell_if_rebuilt(*depth);
+}
+
+/// If the cloth of `document`, which `patch` has made, would not hold with its solver, changes the solver of
+/// both, and returns it.
+Result<std::optional<json>> Stepper::keep_stable(json& patch, scene::Document& document) {
+  const Result<model::Model> model = model::build(document.scene);
+  if (!model) return model.error();
+  const scene::Solver solver = model::solver_that_holds(*model, document.scene);
+  if (solver == document.scene.solver) return std::optional<json>();
+  json change{{"method", scene::name(solver.method)},
+              {"dt", solver.dt},
+              {"iterations", solver.iterations},
+              {"tolerance", solver.tolerance}};
+  Result<scene::Document> held = scene::apply_patch(document, {{"solver", change}});
+  if (!held) return held.error();
+  document = std::move(*held);
+  if (patch.is_array())
+    for (const auto& [key, value] : change.items())
+      patch.push_back({{"op", "replace"}, {"path", "/solver/" + key}, {"value", value}});
+  else
+    patch["solver"] = change;
+  return std::optional(std::move(change));
 }
 
 void Stepper::tell_if_rebuilt(sim::ChangeDepth depth) {

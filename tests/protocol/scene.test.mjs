@@ -258,3 +258,38 @@ test("a scene of surfaces that starts with crossings is refused, with the pairs;
   assert.equal((await client.request("scene.get")).revision, before);
   await client.request("scene.patch", { patch: { self_collision: { kind: "points" } } });
 });
+
+test("a patch that keeps the cloth stable changes the solver where it must, for everybody, and undo takes both back", async () => {
+  const other = await Client.connect(server);
+  await other.notification("scene");
+  const { solver } = (await client.request("scene.get")).document;
+  const fabric = (name) => ({ cloths: [{ mesh: { grid: {} }, material: { fabric: name, model: "springs" } }] });
+  const operations = (name) => [
+    { op: "replace", path: "/cloths/0/material", value: { fabric: name, model: "springs" } },
+    { op: "remove", path: "/cloths/0/mass" },
+  ];
+  for (const patch of [operations("cotton"), fabric("denim")]) {
+    const answer = await client.request("scene.patch", { patch, keep_stable: true });
+    const { document } = await client.request("scene.get");
+    assert.deepEqual(document.solver, answer.solver);
+    assert.equal(document.solver.method, "implicit_euler");
+    const told = await other.notification("scene.changed", ({ revision }) => revision === answer.revision);
+    const values = Array.isArray(told.patch)
+      ? Object.fromEntries(told.patch.map(({ path, value }) => [path.replace("/solver/", ""), value]))
+      : told.patch.solver;
+    for (const [key, value] of Object.entries(answer.solver)) assert.equal(values[key], value);
+    await client.request("scene.undo");
+    const back = (await client.request("scene.get")).document;
+    assert.deepEqual([back.solver, back.cloths[0].material.fabric], [solver, undefined]);
+  }
+  // a little beyond the limit: the same method with a shorter step; within it, and unasked: as it is
+  const stiffer = (factor) => ({ path: "/cloths/0/material/structural", op: "replace", value: 20000 * factor });
+  const kept = await client.request("scene.patch", { patch: [stiffer(4)], keep_stable: true });
+  assert.equal(kept.solver.method, solver.method);
+  assert.ok(kept.solver.dt < solver.dt && kept.solver.dt >= 0.5 * solver.dt, `dt = ${kept.solver.dt} s`);
+  assert.equal((await client.request("scene.patch", { patch: [stiffer(1)], keep_stable: true })).solver, undefined);
+  assert.equal((await client.request("scene.patch", { patch: operations("cotton") })).solver, undefined);
+  const { data } = await client.refusal("scene.patch", { patch: {}, keep_stable: "yes" });
+  assert.deepEqual([data.path, data.allowed], ["/keep_stable", "true or false"]);
+  await other.close();
+});

@@ -67,6 +67,26 @@ TEST_CASE("for explicit Euler the remedy is symplectic Euler, at a step that hol
   }
 }
 
+TEST_CASE("a solver that holds stays as it is, one a little beyond its limit gets a shorter step") {
+  scene::Scene seed = test::seed();
+  const model::Model cloth = *model::build(seed);
+  CHECK(model::solver_that_holds(cloth, seed) == seed.solver);
+  const double limit = model::dt_limit(cloth, seed);
+  for (const double share : {0.91, 1.5}) {
+    seed.solver.dt = share * limit;
+    const scene::Solver solver = model::solver_that_holds(cloth, seed);
+    CHECK(solver.method == seed.solver.method);
+    CHECK(solver.dt < model::margin_to_warn * limit);
+    CHECK(solver.dt > 0.7 * limit);
+  }
+  seed.solver.dt = 7.0 * limit;
+  CHECK(model::solver_that_holds(cloth, seed).method == Method::implicit_euler);
+  for (const Method method : {Method::implicit_euler, Method::xpbd}) {
+    seed.solver.method = method;
+    CHECK(model::solver_that_holds(cloth, seed) == seed.solver);
+  }
+}
+
 TEST_CASE("implicit Euler, which has no limit, gets half its step, and what sweeps gets implicit Euler") {
   scene::Scene seed = test::seed();
   seed.solver.method = Method::implicit_euler;
