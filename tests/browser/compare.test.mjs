@@ -383,6 +383,13 @@ browserTest("a link carries the scene and the comparison, and opens both in a se
   assert.equal(await other.page.locator("#compare").count(), 0, "nothing before one has chosen");
   await dialog.getByRole("button", { name: "Open it in a session of its own" }).click();
   const label = other.page.locator(".compare-label.b.ghost");
+  // A link starts no job of the lab: that is left to who has opened it.
+  const begin = async () => {
+    await other.page.getByText("Nothing runs until you start it").waitFor();
+    assert.equal(await here.server.metric("clothlab_lab_running"), 0);
+    await other.page.getByRole("button", { name: /^Start/ }).click();
+  };
+  await begin();
   await label.filter({ hasText: "B: XPBD, dt 4\u00a0ms, 3 iterations" }).waitFor();
   await other.until(() => window.clothlab.document?.name === "small");
   assert.equal(new URL(other.page.url()).hash, "");
@@ -392,6 +399,7 @@ browserTest("a link carries the scene and the comparison, and opens both in a se
   await other.page.keyboard.press("Escape");
   await label.waitFor({ state: "detached" });
   await other.page.evaluate((hash) => (location.hash = hash), link.split("&")[1]);
+  await begin();
   await label.filter({ hasText: "B: XPBD" }).waitFor();
   // declined: neither
   await other.page.keyboard.press("Escape");

@@ -119,6 +119,19 @@ export class Comparison {
 
   /// Opens, fills the form in, and starts.
   begin(wish: Partial<Wish>): void {
+    if (this.filledIn(wish)) this.begun();
+  }
+
+  /// Opens, fills the form in, and leaves the start to the user: a link starts nothing by itself.
+  propose(wish: Partial<Wish>): void {
+    if (!this.filledIn(wish)) return;
+    this.settings.open = true;
+    say(this.done, "This comes by a link. Nothing runs until you start it.");
+    this.start.focus({ preventScroll: true });
+  }
+
+  /// False if B does not fit the scene, which is told.
+  private filledIn(wish: Partial<Wish>): boolean {
     const whole = { ...standard, view: this.found.mode, ...wish };
     this.reveal();
     this.found.choose(whole.view);
@@ -126,9 +139,9 @@ export class Comparison {
       this.form.take(whole);
     } catch (error) {
       say(this.wrong, `B does not fit this scene: ${(error as Error).message}`);
-      return;
+      return false;
     }
-    this.begun();
+    return true;
   }
 
   sceneChanged(): void {

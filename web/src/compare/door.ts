@@ -39,7 +39,7 @@ export class CompareDoor {
     if (!location.hash.startsWith(key) || history.state !== null) return;
     const fragment = location.hash;
     history.replaceState(history.state, "", location.pathname + location.search);
-    this.with(async (comparison, { wishIn }) => comparison.begin(await wishIn(fragment, this.host.mostBytes())));
+    this.with(async (comparison, { wishIn }) => comparison.propose(await wishIn(fragment, this.host.mostBytes())));
   }
 
   sceneChanged(): void {
