@@ -214,6 +214,62 @@ browserTest("a refused edit is explained by a notice, and the control goes back"
   await client.close();
 });
 
+browserTest("a text that is no number stays to be mended, beside what was found and what is allowed", async () => {
+  const { viewer, client, scene } = await both("no-number");
+  const before = await scene();
+  const step = viewer.number("Solver", "time step");
+  const told = viewer.page.getByRole("alert").filter({ hasText: "not a" });
+  await step.fill("fast");
+  await step.press("Enter");
+  assert.match(
+    await told.innerText(),
+    /^“fast” is not a number\. Allowed is a number, such as \S+ or \S+: 1e-9 to 1 s\.$/,
+  );
+  await client.statuses(2);
+  assert.equal(await step.inputValue(), "fast");
+  assert.deepEqual(await scene(), before);
+  await step.fill("0.0008");
+  await step.press("Enter");
+  await eventually(
+    "the time step",
+    async () => (await scene()).solver.dt,
+    (dt) => dt === 0.0008,
+  );
+  assert.equal(await told.count(), 0);
+  // no part of a row is taken for a whole one
+  const columns = viewer.number("Cloth", "columns");
+  await columns.fill("12.5");
+  await columns.press("Enter");
+  assert.match(await told.innerText(), /^“12\.5” is not a whole number\. Allowed is a whole number: 2 to 1024\.$/);
+  assert.equal(await columns.inputValue(), "12.5");
+  await columns.press("Escape"); // closes its explanation
+  await columns.press("Escape");
+  assert.deepEqual([await columns.inputValue(), await told.count()], ["25", 0]);
+  await client.close();
+});
+
+browserTest(
+  "a cloth's pins stay at its corners when it gets other columns and rows, and when it gets them back",
+  async () => {
+    const { viewer, client, scene } = await both("resized");
+    const cloth = async () => (await scene()).cloths[0];
+    const set = async (name, value) => {
+      const field = viewer.number("Cloth", name);
+      await field.fill(String(value));
+      await field.press("Enter");
+      return eventually(name, cloth, ({ mesh }) => mesh.grid[name] === value);
+    };
+    const places = ({ pins }) => pins.map(({ at }) => at);
+    assert.deepEqual(places(await set("columns", 13)), ["corner:0,0", "corner:12,0"]);
+    assert.deepEqual(places(await set("columns", 49)), ["corner:0,0", "corner:48,0"]);
+    await set("rows", 9);
+    await viewer.page.getByRole("button", { name: "Reset all" }).click();
+    const back = await eventually("both back", cloth, ({ mesh }) => mesh.grid.columns === 25 && mesh.grid.rows === 25);
+    assert.deepEqual(places(back), ["corner:0,0", "corner:24,0"]);
+    await client.close();
+  },
+);
+
 browserTest("pause pauses, step steps once, reset goes back to 0, and keys do the same", async () => {
   const { viewer, client } = await both("transport");
   const { page } = viewer;
@@ -303,6 +359,7 @@ browserTest("speed, help, fit and hiding: the remaining controls do what they sa
 browserTest("a preset is loaded from the panel, and a divergence is told with its remedy", async () => {
   const { viewer, client, scene } = await both("preset");
   const preset = viewer.page.locator('.lil-controller:has(.lil-name:text-is("preset")) select');
+  await viewer.pause();
   await preset.selectOption("drape");
   await eventually(
     "the scene's name",
@@ -314,6 +371,8 @@ browserTest("a preset is loaded from the panel, and a divergence is told with it
     () => viewer.page.locator("#scene-name").innerText(),
     (name) => name === "drape",
   );
+  const time = () => viewer.page.evaluate(() => window.clothlab.lastFrame.header.time);
+  await eventually("a scene that was chosen moves, though the one before was paused", time, (now) => now > 0.05);
   await preset.selectOption("blowup");
   const notice = viewer.page.locator(".notice.error");
   await notice.waitFor();

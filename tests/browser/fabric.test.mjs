@@ -50,3 +50,40 @@ browserTest("a fabric from the menu, a number of the cloth's own, and back", asy
   );
   await client.close();
 });
+
+browserTest(
+  "a fabric too stiff for the preset's time step brings a step that holds, told with a way back",
+  async () => {
+    const { viewer, client, scene } = await both("fabric-drape");
+    await client.request("scene.load", { preset: "drape" });
+    await viewer.until(() => window.clothlab.document?.name === "drape");
+    const { solver } = await scene();
+    const menu = viewer.page.getByLabel("fabric", { exact: true });
+    for (const fabric of ["cotton", "silk", "denim", "tango"]) {
+      await menu.selectOption(fabric);
+      await eventually(
+        "fabric",
+        async () => (await scene()).cloths[0].material.fabric,
+        (now) => now === fabric,
+      );
+      await client.statuses(3);
+    }
+    assert.deepEqual(
+      client.messages.filter(({ method }) => method === "sim.diverged"),
+      [],
+    );
+    assert.equal((await scene()).solver.method, "implicit_euler");
+    await client.request("scene.load", { preset: "drape" });
+    await eventually(
+      "custom",
+      () => menu.inputValue(),
+      (value) => value === "custom",
+    );
+    await menu.selectOption("cotton");
+    const told = viewer.page.locator(".notice", { hasText: "Stepped by Implicit Euler, 1/60 s" });
+    await told.getByRole("button", { name: "Undo" }).dispatchEvent("click"); // while it is there, however busy all is
+    await eventually("as it was", scene, (now) => now.solver.dt === solver.dt && now.solver.method === solver.method);
+    assert.equal((await scene()).cloths[0].material.fabric, undefined);
+    await client.close();
+  },
+);

@@ -130,3 +130,13 @@ browserTest("a page that finds no server says so instead of staying empty", asyn
   // Between two attempts the banner says for a moment that it tries again.
   await viewer.page.locator("#banner", { hasText: /Connection lost|No server answers/ }).waitFor({ state: "visible" });
 });
+
+browserTest("an address with a name that no session can have says so, and what is allowed", async () => {
+  const server = await Server.start();
+  const { page } = await open(server, { session: "my%20cloth", drawn: 0 });
+  await page.getByText("a session by “my cloth”, which none can have. Allowed are 1 to 64 of the letters").waitFor();
+  assert.ok(await page.locator("#banner").isHidden());
+  await page.getByRole("link", { name: "Open the session that everybody starts with" }).click();
+  await page.waitForFunction(() => window.clothlab?.framesDrawn >= 1);
+  await server.stop();
+});

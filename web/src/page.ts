@@ -12,6 +12,7 @@ import { Hud, type Status } from "./panel/hud";
 import { Refusals } from "./panel/refusals";
 import { bindFirstSteps } from "./panel/newcomer";
 import { InsideDoor } from "./inside/door";
+import { tellKept } from "./panel/kept_stable";
 import { StatusLog } from "./panel/status_log";
 import { Layout } from "./panel/layout";
 import { LinkView } from "./panel/link_view";
@@ -26,6 +27,8 @@ import { Bodies } from "./link/bodies";
 import { LineWatch, type Second } from "./link/line_watch";
 import { SlowWatch } from "./panel/slow_watch";
 import { SceneStore } from "./link/scene_store";
+import { withPlaces } from "./link/grid_places";
+import { sessionFault } from "./link/session_name";
 import { Picture } from "./picture";
 import type { MovedCollider, Patch, SceneDocument } from "./link/scene_types";
 import type { HandAt } from "./view/grab";
@@ -106,7 +109,9 @@ export class Page {
   private mayEdit = true; // false for a viewer, who may only watch
 
   constructor() {
-    this.connection.connect();
+    const fault = sessionFault(this.session);
+    if (fault) this.link.refuse(fault);
+    else this.connection.connect();
   }
 
   /// Draws on this stage from now on.
@@ -233,7 +238,9 @@ export class Page {
 
   private makeStore(): SceneStore {
     return new SceneStore({
-      send: (patch) => this.connection.request("scene.patch", { patch }),
+      send: (patch, keepStable) =>
+        this.connection.request("scene.patch", { patch, ...(keepStable && { keep_stable: true }) }),
+      kept: (solver, revision) => tellKept(solver, () => void this.undo.go("undo", revision)),
       fetch: () => this.fetchScene(),
       changed: (document, whole) => this.sceneChanged(document, whole),
       applied: showApplied,
@@ -248,7 +255,10 @@ export class Page {
     return new Panel(
       element("panel-body", HTMLElement),
       {
-        edit: (operations) => this.store.edit(operations),
+        edit: (operations, keepStable) => {
+          const { document } = this.store;
+          this.store.edit(document ? withPlaces(document, operations) : operations, keepStable);
+        },
         busy: (path) => this.store.busy(path),
         loadPreset: (name) => this.loadPreset(name),
         openText: () => this.drawers.toggle("text"),
@@ -363,7 +373,10 @@ export class Page {
 
   private loadPreset(name: string): void {
     this.sceneName = "";
-    this.request("scene.load", { preset: name });
+    this.connection.request("scene.load", { preset: name }).then(
+      () => this.transport.start(), // who chooses a scene wants to see it move
+      (error: Error) => this.refusals.tell("The server refused this", error),
+    );
   }
 
   private enableEdits(): void {

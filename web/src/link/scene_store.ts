@@ -6,11 +6,19 @@ import type { Operation, Patch, SceneDocument } from "./scene_types";
 
 const sendEvery = 50; // [ms]
 
+/// To a patch. `solver`: the server has changed it, too, so that the cloth holds.
+interface Answer {
+  revision?: number;
+  applies?: string;
+  solver?: SceneDocument["solver"];
+}
+
 export interface StoreEvents {
-  send(patch: Patch): Promise<{ revision?: number; applies?: string }>;
+  send(patch: Patch, keepStable: boolean): Promise<Answer>;
   fetch(): Promise<void>;
   changed(document: SceneDocument, whole: boolean): void;
   applied(depth: string): void;
+  kept(solver: SceneDocument["solver"], revision: number): void; ///< stable, by another solver
   rejected(error: Error, operations: Operation[]): void;
 }
 
@@ -21,6 +29,7 @@ export class SceneStore {
   private left: LeftToFabric[] = [];
   private readonly queue = new Map<string, Operation>();
   private inFlight: Operation[] | null = null;
+  private keepStable = false;
   private timer = 0;
   private lastSent = -Infinity;
 
@@ -57,7 +66,9 @@ export class SceneStore {
     this.take(applyPatch(this.stored, patch), revision, false);
   }
 
-  edit(operations: Operation[]): void {
+  /// `keepStable`: the server may change the solver with it, so that the cloth holds.
+  edit(operations: Operation[], keepStable = false): void {
+    this.keepStable ||= keepStable;
     for (const operation of operations) {
       for (const path of this.queue.keys()) {
         if (path === operation.path || path.startsWith(operation.path + "/")) this.queue.delete(path);
@@ -102,10 +113,16 @@ export class SceneStore {
     const operations = this.addressed([...this.queue.values()]);
     this.queue.clear();
     this.inFlight = operations;
+    const { keepStable } = this;
+    this.keepStable = false;
     try {
-      const answer = await this.events.send(operations);
+      const { solver, ...answer } = await this.events.send(operations, keepStable);
       this.inFlight = null;
-      if (answer.revision !== undefined) this.patched(answer.revision, operations);
+      const more = Object.entries(solver ?? {}).map(
+        ([key, value]): Operation => ({ op: "replace", path: `/solver/${key}`, value }),
+      );
+      if (answer.revision !== undefined) this.patched(answer.revision, [...operations, ...more]);
+      if (answer.revision !== undefined && solver) this.events.kept(solver, answer.revision);
       if (answer.applies) this.events.applied(answer.applies);
     } catch (error) {
       this.inFlight = null;

@@ -1,7 +1,14 @@
 // Adds or removes a part of the scene, and offers the way back.
+import { keptText } from "./kept_stable";
 import { notice } from "./notices";
 import type { Deed } from "./parts";
 import type { Patch, SceneDocument } from "../link/scene_types";
+
+/// The answer to the patch. `solver`: the server has changed it, too, so that the cloth holds.
+interface Done {
+  revision: number;
+  solver?: SceneDocument["solver"];
+}
 
 interface Host {
   stored(): SceneDocument | null;
@@ -12,11 +19,11 @@ interface Host {
 const toUndo = 14_000; // [ms]
 let closeLast = (): void => undefined; // the button of the last change is the only one
 
-export function act({ says, change }: Deed, host: Host): void {
+export function act({ says, change, keepStable }: Deed, host: Host): void {
   const stored = host.stored();
   if (!stored) return;
   const patch = change(stored);
-  const done = ({ revision }: { revision: number }): void => {
+  const done = ({ revision, solver }: Done): void => {
     // Of this change alone: after another one the server refuses it.
     const back = (): void =>
       void host
@@ -25,11 +32,16 @@ export function act({ says, change }: Deed, host: Host): void {
     closeLast();
     // A phone has room for one notice: a warning that comes meanwhile must not take the way back.
     const undo = { label: "Undo", run: back };
-    const close = notice("info", { title: says, lines: ["For everybody here."], actions: [undo], stays: true });
+    const close = notice("info", {
+      title: says,
+      lines: ["For everybody here.", ...(solver ? [keptText(solver)] : [])],
+      actions: [undo],
+      stays: true,
+    });
     closeLast = close;
     setTimeout(close, toUndo);
   };
   host
-    .request<{ revision: number }>("scene.patch", { patch })
+    .request<Done>("scene.patch", { patch, ...(keepStable && { keep_stable: true }) })
     .then(done, (error: Error) => host.refused("Not done", error, patch));
 }

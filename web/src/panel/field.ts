@@ -42,6 +42,7 @@ export interface FieldBase {
   key: string; ///< unique in the panel
   label: string;
   paths: string[]; ///< the places it writes; it reads the first
+  keepStable?: boolean; ///< the solver changes with it where the cloth would not hold
   onRelease?: boolean; ///< sent when the slider is released: each value rebuilds the cloth
   hint?: string; ///< a sentence before the schema's in its explanation
   about?: string; ///< the place that its explanation is of, if that is not the first of `paths`

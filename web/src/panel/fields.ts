@@ -120,11 +120,12 @@ function clothSection(document: SceneDocument, index: number, fabrics: Fabric[])
   const cloth = document.cloths[index] as SceneDocument["cloths"][number];
   const base = `/cloths/${index}`;
   const count = { min: 3, max: 150, step: 1, whole: true };
+  const resize = { onRelease: true, keepStable: true };
   const grid: Field[] =
     "grid" in cloth.mesh
       ? [
-          number("columns", [`${base}/mesh/grid/columns`], count, { onRelease: true }),
-          number("rows", [`${base}/mesh/grid/rows`], count, { onRelease: true }),
+          number("columns", [`${base}/mesh/grid/columns`], count, resize),
+          number("rows", [`${base}/mesh/grid/rows`], count, resize),
         ]
       : [];
   return {

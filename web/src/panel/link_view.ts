@@ -33,6 +33,16 @@ export class LinkView {
     if (state === "unauthorised") this.ask(why);
   }
 
+  /// The page's address cannot be connected: says why, with a way to the session that everybody starts with.
+  refuse(why: string): void {
+    const way = document.createElement("a");
+    way.href = location.pathname;
+    way.textContent = "Open the session that everybody starts with";
+    element("waiting-text", HTMLElement).replaceChildren(why, " ", way, ".");
+    this.dot.dataset.state = "waiting";
+    this.dot.title = "not connected";
+  }
+
   /// Called when a frame is on screen.
   drawing(): void {
     if (this.everDrawn) return;

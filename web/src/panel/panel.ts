@@ -13,7 +13,7 @@ import { SliderController } from "./slider";
 import { timeStep } from "./solver_section";
 
 export interface PanelEvents {
-  edit(operations: Operation[]): void;
+  edit(operations: Operation[], keepStable?: boolean): void;
   busy(path: string): boolean;
   loadPreset(name: string): void;
   openText(): void;
@@ -190,12 +190,13 @@ export class Panel {
     const controller = this.controllerFor(folder, field);
     const control: Control = { field, controller, held: false, reset: this.resetButton(), back: [] };
     this.controls.push(control);
-    control.reset.onclick = () => this.events.edit(control.back);
+    control.reset.onclick = () => this.events.edit(control.back, field.keepStable);
+    if (controller instanceof SliderController) controller.allowed = () => this.rangeOf(field);
     controller.domElement.append(control.reset); // last: the row of a checkbox is a label, of the first control in it
     this.explanation.attach(controller.domElement, controller.$name, () =>
       this.document && this.stored ? this.guide.explain(field, this.document, this.stored) : null,
     );
-    if (field.note) this.addNote(folder, field.note);
+    if (field.note) this.addNote(folder, { ...field, note: field.note });
     if (field.key === timeStep) folder.$children.append(this.gauge.element);
     controller.onChange((value: unknown) => {
       control.held = field.onRelease === true;
@@ -206,6 +207,12 @@ export class Panel {
       if (field.onRelease && control.held) this.edit(field, value);
       control.held = false;
     });
+  }
+
+  /// What the scene allows there, in words; "" before that is known.
+  private rangeOf(field: Field): string {
+    const told = this.document && this.stored ? this.guide.explain(field, this.document, this.stored) : null;
+    return told?.facts.find(([name]) => name === "Range")?.[1] ?? "";
   }
 
   private resetButton(): HTMLButtonElement {
@@ -234,7 +241,7 @@ export class Panel {
   }
 
   private edit(field: Field, value: unknown): void {
-    if (this.document) this.events.edit(operationsFor(field, value, this.document));
+    if (this.document) this.events.edit(operationsFor(field, value, this.document), field.keepStable);
   }
 
   private controllerFor(folder: GUI, field: Field): Controller {
@@ -258,7 +265,7 @@ export class Panel {
   }
 
   /// Adds a line below a control that explains its present value.
-  private addNote(folder: GUI, says: NonNullable<Field["note"]>): void {
+  private addNote(folder: GUI, { note: says, keepStable }: Field & { note: NonNullable<Field["note"]> }): void {
     const line = document.createElement("p");
     line.className = "note";
     folder.$children.append(line);
@@ -269,17 +276,17 @@ export class Panel {
       if (now === shown) return;
       shown = now;
       line.hidden = note.text === "";
-      line.replaceChildren(note.text, ...this.offer(note));
+      line.replaceChildren(note.text, ...this.offer(note, keepStable));
     });
   }
 
-  private offer({ offer }: Note): HTMLElement[] {
+  private offer({ offer }: Note, keepStable = false): HTMLElement[] {
     if (!offer) return [];
     const button = document.createElement("button");
     button.type = "button";
     button.className = "offer";
     button.textContent = offer.text;
-    button.onclick = () => this.events.edit(offer.operations);
+    button.onclick = () => this.events.edit(offer.operations, keepStable);
     return [button];
   }
 

@@ -6,6 +6,7 @@ import type { Collider, Operation, Pin, SceneDocument, Vec3 } from "../link/scen
 export interface Deed {
   label: string;
   says: string;
+  keepStable?: boolean; ///< the solver changes with it where the cloth would not hold
   change(stored: SceneDocument): Operation[]; ///< of the document as the server keeps it
 }
 
@@ -84,6 +85,7 @@ const held: Partial<Pin>[] = [{ at: "corner:0,0" }, { at: `corner:${columns - 1}
 const cloth: Deed = {
   label: "Cloth",
   says: "A cloth is there",
+  keepStable: true,
   change: ({ cloths }) => {
     const { material, mass } = cloths[0] as SceneDocument["cloths"][number];
     const value = {

@@ -39,6 +39,9 @@ export class SliderController extends Controller {
   private readonly range = document.createElement("input");
   private readonly text = document.createElement("input");
   private readonly tick = document.createElement("i");
+  private readonly fault = document.createElement("p");
+  /// What the scene allows, in words; "" if that is not known.
+  allowed: () => string = () => "";
   private readonly low: number;
   private readonly high: number;
   private readonly stride: number;
@@ -64,15 +67,19 @@ export class SliderController extends Controller {
     this.text.spellcheck = false;
     for (const input of [this.range, this.text])
       input.setAttribute("aria-label", scale.unit ? `${label} [${scale.unit}]` : label);
+    this.fault.id = `fault-${property}`;
+    this.fault.className = "fault";
+    this.fault.setAttribute("role", "alert");
     this.tick.className = "slider-mark";
     this.tick.hidden = true;
     const rail = document.createElement("span");
     rail.className = "slider-rail";
     rail.append(this.range, this.tick);
     this.$widget.append(rail, this.text);
-    this.range.addEventListener("input", () =>
-      this.setValue(toValue(this.snapped(Number(this.range.value)), this.scale)),
-    );
+    this.range.addEventListener("input", () => {
+      this.mend();
+      this.setValue(toValue(this.snapped(Number(this.range.value)), this.scale));
+    });
     this.range.addEventListener("keydown", (event) => this.rangeKey(event));
     this.range.addEventListener("change", () => this._callOnFinishChange());
     this.text.addEventListener("focus", () => this.text.select());
@@ -96,7 +103,7 @@ export class SliderController extends Controller {
     this.range.value = String(at);
     this.range.style.setProperty("--filled", `${(100 * (at - this.low)) / (this.high - this.low)}%`);
     this.range.setAttribute("aria-valuetext", this.named(value) ?? `${readable(value)} ${this.scale.unit ?? ""}`);
-    if (document.activeElement !== this.text) this.text.value = this.written(value);
+    if (document.activeElement !== this.text && !this.faulty) this.text.value = this.written(value);
     return this;
   }
 
@@ -130,6 +137,7 @@ export class SliderController extends Controller {
 
   private jump(at: number, event: KeyboardEvent): void {
     event.preventDefault();
+    this.mend();
     this.setValue(toValue(this.clamped(at), this.scale));
     this._callOnFinishChange();
   }
@@ -152,6 +160,7 @@ export class SliderController extends Controller {
   private key(event: KeyboardEvent): void {
     if (event.key === "Enter") this.text.blur();
     if (event.key === "Escape") {
+      this.mend();
       this.text.value = this.written(Number(this.getValue()));
       this.text.blur();
     }
@@ -160,15 +169,42 @@ export class SliderController extends Controller {
     this.text.value = this.written(Number(this.getValue()));
   }
 
-  // Takes a typed number. It may lie outside the slider's travel: the server decides.
+  // Takes a typed number. It may lie outside the slider's travel: the server decides. What is no number stays, to be
+  // mended, beside what is wrong with it; nothing typed is nothing wanted.
   private take(): void {
     const typed = this.text.value.trim().replace(",", ".");
     const value = typed === this.scale.zeroText ? 0 : Number(typed);
-    const changed = typed !== "" && Number.isFinite(value) && readable(value) !== readable(Number(this.getValue()));
-    if (changed) {
-      this.setValue(this.scale.whole ? Math.round(value) : value);
+    const wrong = this.scale.whole ? !Number.isInteger(value) : !Number.isFinite(value);
+    if (typed !== "" && wrong) {
+      this.complain();
+      return;
+    }
+    this.mend();
+    if (typed !== "" && readable(value) !== readable(Number(this.getValue()))) {
+      this.setValue(value);
       this._callOnFinishChange();
     }
     this.text.value = this.written(Number(this.getValue()));
+  }
+
+  private get faulty(): boolean {
+    return this.fault.isConnected;
+  }
+
+  private complain(): void {
+    const { whole, zeroText } = this.scale;
+    const range = this.allowed();
+    const number = whole ? "a whole number" : "a number, such as 0.25 or 1e-3";
+    const allowed = [number, range && `: ${range}`, zeroText && `, or ${zeroText}`].filter(Boolean).join("");
+    this.fault.textContent = `“${this.text.value.trim()}” is not ${whole ? "a whole" : "a"} number. Allowed is ${allowed}.`;
+    this.text.setAttribute("aria-invalid", "true");
+    this.text.setAttribute("aria-errormessage", this.fault.id);
+    this.domElement.after(this.fault);
+  }
+
+  private mend(): void {
+    this.fault.remove();
+    this.text.removeAttribute("aria-invalid");
+    this.text.removeAttribute("aria-errormessage");
   }
 }

@@ -9,7 +9,7 @@ export const timeStep = "/solver/dt";
 const methodChoice = "/solver/method";
 const iterationCount = "/solver/iterations";
 
-const secondsText = (seconds: number): string => (seconds === 1 / 60 ? "1/60 s" : `${readable(seconds)} s`);
+export const secondsText = (seconds: number): string => (seconds === 1 / 60 ? "1/60 s" : `${readable(seconds)} s`);
 
 const methodOf = (values: Record<string, unknown>): MethodText => methodText(String(values[methodChoice]));
 

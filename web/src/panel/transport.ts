@@ -33,6 +33,10 @@ export class Transport {
     this.assume(!this.playing);
   }
 
+  start(): void {
+    if (!this.playing) this.toggle();
+  }
+
   step(): void {
     this.events.request("sim.step", { steps: 1 });
     this.assume(false);
