@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 
+#include "server/base/memory_budget.h"
 #include "server/scene/ranges.h"
 
 namespace clothlab::session {
@@ -13,6 +15,10 @@ struct Limits {
   int springs = 16 * static_cast<int>(scene::max_vertices);  ///< at most, per scene
   int recording_bytes = 64 << 20;  ///< at most, per recording, of which a session keeps one
   int kept_every = 1000;           ///< a state is kept for the timeline every so many steps, or sooner
+  /// The process's memory, of which a session reserves what its scene takes; null: it is not bounded.
+  std::shared_ptr<MemoryBudget> memory{};
+  /// Of what a session can go back to: half for states, a quarter each for what changed the run and for undo.
+  std::size_t past_bytes = 64 << 20;
   int unwatched_seconds = 30;  ///< without viewers for so long, a session stops stepping until one comes [s]
 };
 
