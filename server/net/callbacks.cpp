@@ -77,8 +77,14 @@ int finish_http(HttpSlot& slot, lws* wsi, HttpRequest::Progress progress) {
   return 0;
 }
 
+/// True while an answer is written in pieces.
+bool sending(const HttpSlot* slot) {
+  return slot && slot->request && slot->request->sending();
+}
+
 /// Ends a request that waited for a session.
 void finish_late(lws* wsi, HttpRequest::Progress progress) {
+  if (progress == HttpRequest::Progress::waits) return;  // for the socket to take the rest
   if (finish_http(*static_cast<HttpSlot*>(lws_wsi_user(wsi)), wsi, progress) != 0)
     lws_set_timeout(wsi, PENDING_TIMEOUT_KILLED_BY_PARENT, LWS_TO_KILL_ASYNC);
   lws_rx_flow_control(wsi, 1);
@@ -153,12 +159,16 @@ int on_http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::si
       await_request(wsi);
       return 0;
     case LWS_CALLBACK_TIMER:
+      if (sending(slot)) return slot->request->ask_socket(), 0;
       return slot && slot->asked ? 0 : -1;  // the request's headers have not come in time
     case LWS_CALLBACK_HTTP:
+      if (sending(slot)) return 0;  // the answer has said that the connection will be closed
       slot->asked = true;
       delete slot->request;
       slot->request = new HttpRequest(server_of(wsi).hub(), server_of(wsi).files(), wsi, finish_late);
       return finish_http(*slot, wsi, slot->request->begin(std::string(static_cast<const char*>(in), size)));
+    case LWS_CALLBACK_HTTP_WRITEABLE:
+      return sending(slot) ? finish_http(*slot, wsi, slot->request->go_on()) : 0;
     case LWS_CALLBACK_CLOSED_HTTP:
       if (slot) finish_http(*slot, wsi, HttpRequest::Progress::close);
       return 0;

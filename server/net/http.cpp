@@ -1,13 +1,17 @@
 #include "server/net/http.h"
 
 #include <libwebsockets.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
+#include <sys/socket.h>
 
 #include <algorithm>
 #include <charconv>
 #include <utility>
 
 #include "server/model/mesh_file.h"
+#include "server/model/size.h"
 #include "server/net/hub.h"
 #include "server/net/limits.h"
 #include "server/net/request_checks.h"
@@ -51,15 +55,29 @@ HttpAnswer no_collider() {
   return plain(404, "the scene has no mesh collider of this name; name=NAME is that of /api/scene's list");
 }
 
-HttpAnswer scene_answer(const std::string& file) {
-  return {200, "application/json", file, {}};
+HttpAnswer scene_answer(std::shared_ptr<const std::string> file) {
+  return {200, "application/json", {}, {}, std::move(file)};
 }
-
+HttpAnswer shared_binary(std::shared_ptr<const std::string> bytes) {
+  return {200, "application/octet-stream", {}, {{"cache-control:", "no-store"}}, std::move(bytes)};
+}
+HttpAnswer page_of_recording(std::shared_ptr<const std::string> page) {
+  return {200, "text/html; charset=utf-8", {}, {{"cache-control:", "no-store"}}, std::move(page)};
+}
 HttpAnswer binary(std::string bytes) {
-  return {200, "application/octet-stream", std::move(bytes), {{"cache-control:", "no-store"}}};
+  return shared_binary(std::make_shared<const std::string>(std::move(bytes)));
 }
 
-constexpr int patience = 30;  ///< with what is made for a request [s]
+constexpr int patience = 30;  ///< with what is made for a request, and with who reads nothing [s]
+
+/// A longer body is written in pieces of so many bytes, each when the socket takes it, from one copy that all
+/// who get it share: somebody who does not read costs one piece.
+constexpr std::size_t piece_bytes = 64 * 1024;
+
+/// A body that lives at least as long as the server's requests.
+std::shared_ptr<const std::string> lasting(const std::string& body) {
+  return {std::shared_ptr<void>(), &body};
+}
 
 HttpAnswer try_again(const std::string& why) {
   HttpAnswer refusal = plain(503, why);
@@ -138,7 +156,7 @@ HttpRequest::Progress HttpRequest::answer() {
     return Progress::waits;
   }
   const Served served(hub_, network_);
-  if (const std::optional<HttpAnswer> answer = find(path_)) return send(*answer);
+  if (std::optional<HttpAnswer> answer = find(path_)) return send(std::move(*answer));
   lws_rx_flow_control(wsi_, 0);
   return Progress::waits;
 }
@@ -170,12 +188,12 @@ HttpAnswer HttpRequest::file(const std::string& path) const {
     answer.status = 304;
     return answer;
   }
-  answer.body = file->body;
+  answer.shared = lasting(file->body);
   if (file->gzipped.empty()) return answer;
   const Coding coding = preferred_coding(header(wsi_, WSI_TOKEN_HTTP_ACCEPT_ENCODING), !file->brotli.empty());
   if (coding == Coding::identity) return answer;
   answer.headers.emplace_back("content-encoding:", coding == Coding::brotli ? "br" : "gzip");
-  answer.body = coding == Coding::brotli ? file->brotli : file->gzipped;
+  answer.shared = lasting(coding == Coding::brotli ? file->brotli : file->gzipped);
   return answer;
 }
 
@@ -233,7 +251,7 @@ std::optional<HttpAnswer> HttpRequest::find_protected(const std::string& path) {
 }
 
 std::optional<HttpAnswer> HttpRequest::scene_file(Room& room) {
-  if (const session::JsonText& file = room.scene_file()) return scene_answer(*file);
+  if (const session::JsonText& file = room.scene_file()) return scene_answer(file);
   lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, patience);
   const auto pass_on = [&hub = hub_, id = id_, session = room.name()](
                            const std::shared_ptr<const scene::Document>& of, const session::JsonText& file) {
@@ -252,12 +270,13 @@ std::optional<HttpAnswer> HttpRequest::scene_file(Room& room) {
 void HttpRequest::deliver_scene(const session::JsonText& file) {
   const Served served(hub_, network_);
   finish_(wsi_,
-          send(file ? scene_answer(*file) : plain(500, "there was no memory to write the scene; ask again")));
+          send(file ? scene_answer(file) : plain(500, "there was no memory to write the scene; ask again")));
 }
 
 std::optional<HttpAnswer> HttpRequest::collider_mesh(Room& room, const std::string& name) {
   if (hub_.relays()) {
-    if (const std::shared_ptr<const std::string> known = room.relayed_collider(name)) return binary(*known);
+    if (const std::shared_ptr<const std::string> known = room.relayed_collider(name))
+      return shared_binary(known);
     lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, patience);
     room.ask_collider(name, id_);
     return std::nullopt;
@@ -274,15 +293,29 @@ std::optional<HttpAnswer> HttpRequest::recording(const Room& room, bool page) {
                  ? "this session is being recorded; record.stop over the WebSocket ends that"
                  : "nothing has been recorded in this session; record.start over the WebSocket does that");
   file_name_ = "clothlab-" + room.name() + (page ? ".html" : ".clothlab");
-  if (!page) return binary(*facts.file);
+  if (!page) return shared_binary(facts.file);
+  if (std::shared_ptr<const std::string> made = hub_.page_of(facts.file)) return page_of_recording(made);
   if (hub_.exports_full()) return busy();
+  // In base64, and as text while it is made; beside the player, which it is written into.
+  constexpr std::uint64_t player = 1 << 20;
+  if (std::optional<HttpAnswer> why = reserve(MemoryBudget::Use::downloads, facts.file->size() * 3 + player))
+    return why;
   lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, patience);
   hub_.make_page(id_, facts);
   return std::nullopt;
 }
 
 std::optional<HttpAnswer> HttpRequest::ask_session(const std::string& session, session::Export what) {
-  if (hub_.exports_full() || !hub_.find_room(session)->capture(id_, what)) return busy();
+  if (hub_.exports_full()) return busy();
+  // A picture takes up to 0.8 GB of software OpenGL, for 4096 x 4096 pixels; one at a time is made.
+  constexpr std::uint64_t pixel = 48, vertex = 1000;
+  const Room& room = *hub_.find_room(session);
+  const std::uint64_t pixels =
+      static_cast<std::uint64_t>(what.width) * static_cast<std::uint64_t>(what.height);
+  if (std::optional<HttpAnswer> why = reserve(
+          MemoryBudget::Use::simulations, pixel * pixels + vertex * model::size_of(room.scene()).vertices))
+    return why;
+  if (!hub_.find_room(session)->capture(id_, what)) return busy();
   lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, patience);
   return std::nullopt;
 }
@@ -293,8 +326,17 @@ bool HttpRequest::hung_up() const {
   return poll(&socket, 1, 0) > 0 && (socket.revents & (POLLRDHUP | POLLHUP | POLLERR)) != 0;
 }
 
+std::optional<HttpAnswer> HttpRequest::reserve(MemoryBudget::Use use, std::uint64_t bytes) {
+  memory_ = {};
+  Result<MemoryBudget::Reservation> place = MemoryBudget::reserve(hub_.limits().scene.memory, use, bytes);
+  if (!place) return try_again(place.error().text());
+  memory_ = std::move(*place);
+  return std::nullopt;
+}
+
 void HttpRequest::deliver(session::Exported exported) {
   const Served served(hub_, network_);
+  memory_ = {};
   finish_(
       wsi_,
       exported.body
@@ -302,9 +344,14 @@ void HttpRequest::deliver(session::Exported exported) {
           : send(plain(500, exported.body.error().text())));
 }
 
+void HttpRequest::deliver_page(std::shared_ptr<const std::string> page) {
+  const Served served(hub_, network_);
+  finish_(wsi_, send(page_of_recording(std::move(page))));
+}
+
 void HttpRequest::deliver_collider(const std::shared_ptr<const std::string>& mesh) {
   const Served served(hub_, network_);
-  finish_(wsi_, send(mesh ? binary(*mesh) : no_collider()));
+  finish_(wsi_, send(mesh ? shared_binary(mesh) : no_collider()));
 }
 
 HttpRequest::Progress HttpRequest::refuse(const HttpAnswer& refusal) {
@@ -313,8 +360,18 @@ HttpRequest::Progress HttpRequest::refuse(const HttpAnswer& refusal) {
   return Progress::close;
 }
 
-// Headers and body in one write: libwebsockets keeps what the socket does not take yet.
-HttpRequest::Progress HttpRequest::send(const HttpAnswer& answer) {
+// The headers and as much of the body as one piece has in one write: libwebsockets keeps what the socket does
+// not take yet. After an answer in pieces the connection is closed: while nothing is read, libwebsockets does
+// not say that the socket takes more, and what is read is the next request, which is not answered then.
+HttpRequest::Progress HttpRequest::send(HttpAnswer answer) {
+  if (!answer.shared) {
+    if (answer.body.size() > piece_bytes)
+      if (std::optional<HttpAnswer> why = reserve(MemoryBudget::Use::downloads, answer.body.size()))
+        answer = std::move(*why);
+    answer.shared = std::make_shared<const std::string>(std::move(answer.body));
+  }
+  const std::string& body = *answer.shared;
+  if (!head_ && body.size() > piece_bytes) last_ = true;
   std::vector<std::pair<std::string, std::string>> headers = answer.headers;
   add_framing(headers, hub_.options().allow_origin);
   if (!reader_.empty())
@@ -330,7 +387,7 @@ HttpRequest::Progress HttpRequest::send(const HttpAnswer& answer) {
   };
   int failed = lws_add_http_header_status(wsi_, answer.status, &at, end);
   failed |= add("content-type:", answer.type);
-  failed |= lws_add_http_header_content_length(wsi_, answer.body.size(), &at, end);
+  failed |= lws_add_http_header_content_length(wsi_, body.size(), &at, end);
   if (last_) failed |= add("connection:", "close");
   if (!file_name_.empty() && answer.status == 200)
     failed |= add("content-disposition:", "attachment; filename=\"" + file_name_ + "\"");
@@ -338,9 +395,47 @@ HttpRequest::Progress HttpRequest::send(const HttpAnswer& answer) {
   for (const auto& [name, value] : headers) failed |= add(name.c_str(), value);
   if (failed || lws_finalize_http_header(wsi_, &at, end)) return Progress::close;
   bytes.resize(static_cast<std::size_t>(at - bytes.data()));
-  if (!head_) bytes.insert(bytes.end(), answer.body.begin(), answer.body.end());
-  const int written = lws_write(wsi_, bytes.data() + LWS_PRE, bytes.size() - LWS_PRE, LWS_WRITE_HTTP_HEADERS);
-  return written < 0 ? Progress::close : Progress::answered;
+  const std::size_t first = head_ ? 0 : std::min(body.size(), piece_bytes);
+  bytes.insert(bytes.end(), body.begin(), body.begin() + static_cast<std::ptrdiff_t>(first));
+  if (lws_write(wsi_, bytes.data() + LWS_PRE, bytes.size() - LWS_PRE, LWS_WRITE_HTTP_HEADERS) < 0)
+    return Progress::close;
+  if (head_ || first == body.size()) return Progress::answered;
+  rest_ = std::move(answer.shared);
+  sent_ = first;
+  keep_unsent_few();
+  lws_rx_flow_control(wsi_, 1);  // as without it libwebsockets does not say that the socket takes more
+  await_socket();
+  return Progress::waits;
+}
+
+/// Keeps the kernel from taking megabytes that nobody reads.
+void HttpRequest::keep_unsent_few() const {
+  const int unsent = unsent_kernel_bytes;
+  setsockopt(lws_get_socket_fd(wsi_), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &unsent, sizeof unsent);
+}
+
+/// The limit of time is for silence: it begins anew with each piece.
+void HttpRequest::await_socket() const {
+  lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, patience);
+  ask_socket();
+}
+
+// libwebsockets forgets that it was asked while it has bytes of its own to write: so it is asked again.
+void HttpRequest::ask_socket() const {
+  constexpr lws_usec_t again = LWS_USEC_PER_SEC / 10;
+  lws_callback_on_writable(wsi_);
+  lws_set_timer_usecs(wsi_, again);
+}
+
+HttpRequest::Progress HttpRequest::go_on() {
+  if (sent_ == rest_->size()) return Progress::close;  // the kernel has it all
+  const std::size_t size = std::min(piece_bytes, rest_->size() - sent_);
+  std::vector<unsigned char> bytes(LWS_PRE + size);
+  std::copy_n(rest_->data() + sent_, size, bytes.data() + LWS_PRE);
+  sent_ += size;
+  if (lws_write(wsi_, bytes.data() + LWS_PRE, size, LWS_WRITE_HTTP) < 0) return Progress::close;
+  await_socket();
+  return Progress::waits;
 }
 
 }  // namespace clothlab::net

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/base/memory_budget.h"
 #include "server/net/timer.h"
 #include "server/net/web_files.h"
 #include "server/session/exporter.h"
@@ -24,12 +25,13 @@ struct HttpAnswer {
   std::string type = "text/plain; charset=utf-8";
   std::string body;
   std::vector<std::pair<std::string, std::string>> headers;
+  std::shared_ptr<const std::string> shared{};  ///< in the place of `body`: all who get it share one copy
 };
 
 class HttpRequest {
  public:
   enum class Progress {
-    waits,     ///< a session was asked; `deliver` answers
+    waits,     ///< a session was asked, and `deliver` answers; or the rest of an answer waits for the socket
     answered,  ///< the answer is written
     close,     ///< the connection must be closed, after a refusal or a failed write
   };
@@ -48,9 +50,19 @@ class HttpRequest {
   /// While others of the client's address have taken the time of the service thread that is the address's,
   /// the answer waits.
   Progress begin(const std::string& path);
+  /// Writes the next piece of an answer, once the socket takes more.
+  Progress go_on();
+  /// Has libwebsockets say when it does.
+  void ask_socket() const;
+  /// True while an answer is written in pieces.
+  bool sending() const { return rest_ != nullptr; }
   /// Answers with the picture or mesh that this request asked for, or with the error. The request is
   /// destroyed.
   void deliver(session::Exported exported);
+  /// The same with the page of a recording.
+  void deliver_page(std::shared_ptr<const std::string> page);
+  /// What was reserved for what is made for it.
+  MemoryBudget::Reservation take_memory() { return std::move(memory_); }
   /// The same with the mesh of a collider, null: there is none.
   void deliver_collider(const std::shared_ptr<const std::string>& mesh);
   /// The same with the file that a session's document is.
@@ -73,7 +85,11 @@ class HttpRequest {
   std::optional<HttpAnswer> collider_mesh(Room& room, const std::string& name);
   /// The room's recording, alone or (after a while) in its page; a refusal if there is none.
   std::optional<HttpAnswer> recording(const Room& room, bool page);
-  Progress send(const HttpAnswer& answer);
+  Progress send(HttpAnswer answer);
+  /// Reserves memory. Returns the refusal if there is not so much.
+  std::optional<HttpAnswer> reserve(MemoryBudget::Use use, std::uint64_t bytes);
+  void keep_unsent_few() const;
+  void await_socket() const;
   /// Answers a request that may have a body, which is not read: the connection must be closed.
   Progress refuse(const HttpAnswer& refusal);
   /// The answer that refuses a client without a valid token; empty: the client may go on.
@@ -89,8 +105,11 @@ class HttpRequest {
   Timer later_;
   std::string file_name_{};  ///< under which a browser keeps the answer; empty: it shows it
   std::string reader_;       ///< the allowed origin of another page that asks, and may read the answer
-  bool head_ = false;        ///< the request is HEAD: its answer has no body
-  bool last_ = false;        ///< the answer says that the connection will be closed
+  std::shared_ptr<const std::string> rest_{};  ///< the body that is being written in pieces
+  MemoryBudget::Reservation memory_{};  ///< of what is made for it, then of `rest_`, unless it is shared
+  std::size_t sent_ = 0;                ///< of it
+  bool head_ = false;                   ///< the request is HEAD: its answer has no body
+  bool last_ = false;                   ///< the answer says that the connection will be closed
 };
 
 }  // namespace clothlab::net

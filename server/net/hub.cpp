@@ -40,7 +40,9 @@ Hub::Hub(Options options, std::function<void()> wake)
     : options_(with_plain_proxies(std::move(options))),
       wake_(std::move(wake)),
       lab_(std::make_unique<LabQueue>(
-          lab_port(), [gpu = options_.gpu] { return open_lab(gpu); }, options_.limits.lab_seconds)),
+          lab_port(),
+          [gpu = options_.gpu, memory = options_.limits.scene.memory] { return open_lab(gpu, memory); },
+          options_.limits.lab_seconds)),
       exporter_(
           [gpu = options_.gpu](const session::Moment& moment, const session::Export& what) {
             return session::make_export(gpu, moment, what);
@@ -247,6 +249,12 @@ void Hub::make_page(std::uint64_t asker, const session::RecordingFacts& recordin
   pump_exports();
 }
 
+std::shared_ptr<const std::string> Hub::page_of(const std::shared_ptr<const std::string>& recording) const {
+  for (const Page& page : pages_)
+    if (recording && page.recording.lock() == recording) return page.page.lock();
+  return nullptr;
+}
+
 void Hub::pump_exports() {
   if (std::optional<session::Exported> exported = exporter_.take()) {
     ++metrics_.exports;
@@ -257,6 +265,10 @@ void Hub::pump_exports() {
     captured_.pop_front();
     const auto asker = waiting_.find(next.asker);
     if (asker == waiting_.end() || asker->second->hung_up()) continue;
+    if (std::shared_ptr<const std::string> made = page_of(next.moment->recording)) {
+      deliver_page(next.asker, std::move(made));
+      continue;
+    }
     exporter_.begin(next.asker, next.what, std::move(*next.moment));
   }
 }
@@ -267,7 +279,19 @@ HttpRequest* Hub::find_request(std::uint64_t id) {
 }
 
 void Hub::deliver(session::Exported exported) {
-  if (HttpRequest* request = find_request(exported.asker)) request->deliver(std::move(exported));
+  HttpRequest* request = find_request(exported.asker);
+  if (!request) return;
+  if (!exported.recording || !exported.body) return request->deliver(std::move(exported));
+  MemoryBudget::Reservation memory = request->take_memory();
+  (void)memory.resize(exported.body->capacity());
+  std::shared_ptr<const std::string> page = held_text(std::move(*exported.body), std::move(memory));
+  std::erase_if(pages_, [](const Page& old) { return old.page.expired(); });
+  pages_.push_back({exported.recording, page});
+  request->deliver_page(std::move(page));
+}
+
+void Hub::deliver_page(std::uint64_t asker, std::shared_ptr<const std::string> page) {
+  if (HttpRequest* request = find_request(asker)) request->deliver_page(std::move(page));
 }
 
 void Hub::deliver_collider(std::uint64_t asker, const relay::Feed::ColliderMesh& mesh) {
@@ -315,6 +339,7 @@ Gauges Hub::gauges() const {
     if (const std::optional<double> pace = room->pace())
       gauges.slowest = std::min(gauges.slowest.value_or(*pace), *pace);
   }
+  gauges.memory = limits().scene.memory;
   if (bus_) gauges.bus = bus_->counts();
   for (const auto& [id, client] : clients_) gauges.viewers += client->pacing().subscribed() ? 1u : 0u;
   return gauges;

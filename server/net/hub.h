@@ -116,6 +116,8 @@ class Hub {
 
   /// Has the page of a recording made for the HTTP request `asker`.
   void make_page(std::uint64_t asker, const session::RecordingFacts& recording);
+  /// The page of a recording while it is being sent to somebody, so that all get the same copy; else null.
+  std::shared_ptr<const std::string> page_of(const std::shared_ptr<const std::string>& recording) const;
 
   /// Passes on what the sessions, the exporter, the lab and the bus have put out.
   void pump();
@@ -131,6 +133,7 @@ class Hub {
   LabQueue::Port lab_port();
   void pump_bus();
   void deliver(session::Exported exported);
+  void deliver_page(std::uint64_t asker, std::shared_ptr<const std::string> page);
   void pump_exports();
   std::uint64_t steps() const;
   void retire(const std::string& name);
@@ -153,6 +156,10 @@ class Hub {
   std::unique_ptr<bus::Bus> bus_;  ///< before the rooms, which use it
   std::vector<bus::Message> from_bus_;
   std::deque<session::Captured> captured_;  ///< what the exporter makes next, first come first
+  struct Page {
+    std::weak_ptr<const std::string> recording, page;
+  };
+  std::vector<Page> pages_;  ///< of recordings, for as long as they are being sent
   std::map<std::string, std::unique_ptr<Room>> rooms_;
   std::map<std::uint64_t, Client*> clients_;
   std::map<std::uint64_t, HttpRequest*> waiting_;

@@ -105,6 +105,21 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
   count("clothlab_sessions_memory_bytes", "gauge", "buffers of the open sessions on their device",
         gauges.memory_bytes);
   count("clothlab_sessions_stuck", "gauge", "sessions whose thread does not answer", gauges.stuck);
+  if (gauges.memory) {
+    using Use = MemoryBudget::Use;
+    const MemoryBudget& memory = *gauges.memory;
+    count("clothlab_memory_limit_bytes", "gauge", "memory that the server may take (--max-memory)",
+          memory.total());
+    count("clothlab_memory_reserved_bytes", "gauge", "what is reserved of it, the process itself included",
+          memory.used());
+    count("clothlab_memory_simulations_bytes", "gauge", "of that, for scenes", memory.used(Use::simulations));
+    count("clothlab_memory_timelines_bytes", "gauge", "of that, for what sessions can go back to",
+          memory.used(Use::timelines));
+    count("clothlab_memory_recordings_bytes", "gauge", "of that, for recordings",
+          memory.used(Use::recordings));
+    count("clothlab_memory_downloads_bytes", "gauge", "of that, for answers on their way",
+          memory.used(Use::downloads));
+  }
   head(out, "clothlab_slowest_real_time_factor", "gauge",
        "simulated seconds per second over those asked for, of the slowest session that steps; none: none "
        "steps");

@@ -5,11 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "server/base/memory_budget.h"
 #include "server/bus/bus.h"
 
 namespace clothlab::net {
@@ -80,12 +82,13 @@ struct Gauges {
   std::size_t sessions = 0, clients = 0, viewers = 0;
   std::uint64_t steps = 0;  ///< of the open sessions, since each was opened
   LabGauges lab;
-  std::size_t asleep = 0;            ///< sessions whose cloth is at rest
-  std::size_t exports_waiting = 0;   ///< pictures and meshes that wait or are being made
-  std::size_t stuck = 0;             ///< sessions whose thread does not answer; /healthz is 503 then
-  std::optional<double> slowest{};   ///< the least Room::pace; none: no session steps
-  std::uint64_t memory_bytes = 0;    ///< of all buffers of the open sessions on their device
-  std::optional<bus::Counts> bus{};  ///< none: without a message bus
+  std::size_t asleep = 0;           ///< sessions whose cloth is at rest
+  std::size_t exports_waiting = 0;  ///< pictures and meshes that wait or are being made
+  std::size_t stuck = 0;            ///< sessions whose thread does not answer; /healthz is 503 then
+  std::optional<double> slowest{};  ///< the least Room::pace; none: no session steps
+  std::uint64_t memory_bytes = 0;   ///< of all buffers of the open sessions on their device
+  std::shared_ptr<const MemoryBudget> memory{};  ///< null: not bounded
+  std::optional<bus::Counts> bus{};              ///< none: without a message bus
 };
 
 std::string metrics_text(const Metrics& metrics, const Gauges& gauges);

@@ -95,7 +95,7 @@ void Exporter::run() {
       task = *std::exchange(task_, std::nullopt);
     }
     const char* type = task.moment.recording ? "text/html; charset=utf-8" : type_of(task.what.kind);
-    Exported made{task.asker, type, carry_out(task)};
+    Exported made{task.asker, type, carry_out(task), task.moment.recording};
     {
       const std::lock_guard lock(mutex_);
       made_ = std::move(made);

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -19,6 +20,7 @@ struct Exported {
   std::uint64_t asker = 0;
   const char* content_type = "";
   Result<std::string> body;
+  std::shared_ptr<const std::string> recording{};  ///< of which it is the page; else null
 };
 
 class Exporter {

@@ -1,5 +1,8 @@
 // record.*: what happens in a session is recorded, bounded, and fetched over HTTP.
 import assert from "node:assert/strict";
+import { once } from "node:events";
+import { readFileSync } from "node:fs";
+import { connect } from "node:net";
 import { after, before, beforeEach, test } from "node:test";
 import { inflateRawSync } from "node:zlib";
 import { load } from "../page/module.mjs";
@@ -232,5 +235,49 @@ test("the page of a recording has the same recording in it", async () => {
   const inside = Buffer.from(/id="recording">([A-Za-z0-9+/=]*)</.exec(await html.text())[1], "base64");
   const alone = Buffer.from(await (await get(`/api/recording.clothlab?session=${session}`)).arrayBuffer());
   assert.ok(inside.equals(alone));
+  await client.close();
+});
+
+/// Asks for `path` on a connection of its own, and reads nothing but the beginning of the answer.
+async function stalled(path, { from = server } = {}) {
+  const socket = connect({ host: "127.0.0.1", port: from.port });
+  socket.on("error", () => {});
+  socket.write(`GET ${path} HTTP/1.1\r\nHost: ${from.host}\r\n\r\n`);
+  await once(socket, "readable");
+  const [head] = /^[^]*?\r\n\r\n/.exec(socket.read().toString("latin1"));
+  return { socket, head };
+}
+const residentBytes = ({ child }) =>
+  1024 * Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${child.pid}/status`, "utf8"))[1]);
+/// A cloth that starts at random places.
+const incompressible = {
+  version: 1,
+  gravity: [0, 0, 0],
+  cloths: [{ mesh: { grid: { columns: 128, rows: 128 } }, start: { scatter: { size: 1 } } }],
+  solver: { method: "xpbd", dt: 0.005, iterations: 2 },
+};
+
+test("sixty who download and read nothing share one copy of a recording, of its page too, and the next one gets it whole", async () => {
+  await client.request("scene.load", { scene: incompressible });
+  await client.request("record.start", { rate: 60 });
+  await recorded(30);
+  await client.request("record.stop");
+  const { bytes, files } = await client.request("record.get");
+  assert.ok(bytes > 1_500_000, `${bytes}`);
+  for (const [path, share] of [
+    [files.clothlab, 1],
+    [files.html, 4 / 3], // in base64
+  ]) {
+    const first = await stalled(path); // which has the page made
+    const before = residentBytes(server);
+    const others = await Promise.all(Array.from({ length: 59 }, () => stalled(path)));
+    const grown = residentBytes(server) - before;
+    for (const { head } of [first, ...others]) assert.match(head, /^HTTP\/1.1 200/);
+    // Each has a piece of 64 KiB; a third of the copies is less than memory that was free already hides.
+    assert.ok(grown < (59 * share * bytes) / 3, `${path}: ${grown} bytes for 59 more of ${share * bytes}`);
+    const whole = await (await get(path)).arrayBuffer();
+    assert.ok(whole.byteLength >= share * bytes);
+    for (const { socket } of [first, ...others]) socket.destroy();
+  }
   await client.close();
 });
