@@ -1,15 +1,18 @@
 // `clothlab serve`: a scene live in the browser, and for scripts over its WebSocket.
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
 #include "server/base/files.h"
 #include "server/base/lock.h"
+#include "server/base/memory_limit.h"
 #include "server/cli/commands.h"
 #include "server/cli/listening.h"
 #include "server/gl/context.h"
 #include "server/model/model.h"
 #include "server/model/size.h"
 #include "server/net/server.h"
+#include "server/sim/memory.h"
 
 namespace clothlab::cli {
 
@@ -19,7 +22,34 @@ struct ServeArguments {
   SceneChoice scene{"seed", {}};
   Listening listening;
   int gpu = -1;
+  std::string memory;  ///< of the process, as the user gave it; empty: what the system allows
 };
+
+/// Of what the system allows a tenth is left to what is not counted: the kernel's buffers of sockets and
+/// files, and gaps between the pieces of malloc.
+constexpr double counted_share = 0.9;
+
+std::uint64_t memory_of_process(const std::string& given) {
+  if (!given.empty()) return *memory_size(given);
+  return static_cast<std::uint64_t>(counted_share * static_cast<double>(available_memory()));
+}
+
+/// Bounds the memory of the process, and what each session may keep of its past.
+void bound_memory(net::Limits& limits, std::uint64_t bytes) {
+  limits.scene.memory = MemoryBudget::of(std::max(bytes, MemoryBudget::least_bytes));
+  const std::uint64_t past = limits.scene.memory->share(MemoryBudget::Use::timelines);
+  limits.scene.past_bytes = std::min(
+      limits.scene.past_bytes, static_cast<std::size_t>(past / static_cast<std::uint64_t>(limits.sessions)));
+}
+
+CLI::Validator size_of_memory() {
+  return {[](std::string& text) -> std::string {
+            const std::optional<std::uint64_t> bytes = memory_size(text);
+            if (bytes && *bytes >= MemoryBudget::least_bytes) return {};
+            return text + " is no size of at least 256M: a number of bytes, or as 512M or 2G";
+          },
+          "SIZE"};
+}
 
 Status check(const net::Options& options) {
   if (!net::is_loopback(options.bind) && options.token.empty())
@@ -66,6 +96,9 @@ int serve(ServeArguments& arguments) {
                             static_cast<std::size_t>(limits.scene.springs));
       !small)
     return fail(small.error(), exit_usage);
+  bound_memory(options.limits, memory_of_process(arguments.memory));
+  if (const auto place = sim::reserve_memory(limits.scene.memory, document->scene); !place)
+    return fail(place.error(), exit_usage);
   if (const Result<model::Model> model = model::build(document->scene); !model)
     return fail(model.error(), exit_usage);
   const Result<Lock> state_folder = claim_state_folder(options);
@@ -126,6 +159,14 @@ void add_serve(CLI::App& app, int& exit_code) {
       ->type_name("N")
       ->check(whole_number(0, 1000));
   add_session_limits(*command, options.limits);
+  command
+      ->add_option(
+          "--max-memory", arguments->memory,
+          "memory of the server, as 2G, shared out to scenes, recordings and downloads; without it nine "
+          "tenths of the control group's limit, or of the machine's memory")
+      ->type_name("SIZE")
+      ->check(size_of_memory())
+      ->group("Limits");
   add_connection_limits(*command, options.limits);
   command->footer(R"(Examples:
   clothlab serve                                              open http://127.0.0.1:8080

@@ -8,6 +8,7 @@
 #include "server/gl/context.h"
 #include "server/session/fault.h"
 #include "server/sim/cost.h"
+#include "server/sim/memory.h"
 
 namespace clothlab::net {
 
@@ -105,10 +106,15 @@ Result<lab::Outcome> LabWorker::carry_out(const Task& task, const std::stop_toke
   }
 }
 
-Result<LabWorker::Run> open_lab(std::optional<int> gpu) {
+Result<LabWorker::Run> open_lab(std::optional<int> gpu, std::shared_ptr<MemoryBudget> budget) {
   lower_priority(19);
-  return LabWorker::Run([gpu](const scene::Document& document, const lab::Job& job,
-                              const lab::Control<lab::Outcome>& control) -> Result<lab::Outcome> {
+  return LabWorker::Run([gpu, budget](const scene::Document& document, const lab::Job& job,
+                                      const lab::Control<lab::Outcome>& control) -> Result<lab::Outcome> {
+    // It simulates the scene under one method after the other: as much as the one that keeps the most.
+    scene::Scene largest = document.scene;
+    largest.solver.method = scene::Method::implicit_euler;
+    const Result<MemoryBudget::Reservation> place = sim::reserve_memory(budget, largest);
+    if (!place) return place.error();
     // With helper threads or without, whichever is faster for this scene, as sessions and the command line
     // compute; else the costs would be another's.
     const Result<std::unique_ptr<gl::Context>> context =

@@ -11,6 +11,7 @@
 #include <stop_token>
 #include <thread>
 
+#include "server/base/memory_budget.h"
 #include "server/lab/job.h"
 #include "server/scene/document.h"
 
@@ -81,7 +82,7 @@ class LabWorker {
 };
 
 /// The server's Open: lowers the calling thread's priority, then makes a GL context whose helper threads
-/// inherit that priority. Error: no usable OpenGL.
-Result<LabWorker::Run> open_lab(std::optional<int> gpu);
+/// inherit that priority. Each job reserves memory of `budget` (null: any). Error: no usable OpenGL.
+Result<LabWorker::Run> open_lab(std::optional<int> gpu, std::shared_ptr<MemoryBudget> budget = nullptr);
 
 }  // namespace clothlab::net

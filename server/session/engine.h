@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "server/base/memory_budget.h"
 #include "server/gl/context.h"
 #include "server/gl/stage_timer.h"
 #include "server/session/compute_place.h"
@@ -30,6 +31,7 @@ struct Engine {
   /// True on software OpenGL; only there helper threads matter.
   bool software() const { return context->device().software; }
 
+  MemoryBudget::Reservation memory{};  ///< of its scene; the last to be given back
   ComputePlace place;
   std::unique_ptr<gl::Context> context;  ///< before the members below, as they must be freed while it exists
   std::unique_ptr<sim::Simulation> simulation;

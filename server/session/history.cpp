@@ -37,8 +37,10 @@ Result<json> walked(const std::string& way, const json& from) {
 
 std::size_t bytes_of(const MeshShelf::SharedItem& item) {
   if (!item) return 0;
-  return item->bytes.size() + item->mesh->vertices.size() * sizeof(item->mesh->vertices[0]) +
-         item->mesh->triangles.size() * sizeof(item->mesh->triangles[0]);
+  const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
+  const mesh::Mesh& mesh = *item->mesh;
+  return item->bytes.capacity() + of(mesh.vertices) + of(mesh.triangles) + of(mesh.texture) +
+         of(mesh.vertex_of) + of(mesh.face_line);
 }
 
 std::string joined(const std::vector<std::string>& places) {
@@ -51,7 +53,7 @@ std::string joined(const std::vector<std::string>& places) {
 
 std::size_t History::Change::bytes() const {
   const std::size_t meshes = mesh ? bytes_of(mesh->before) + bytes_of(mesh->after) : 0;
-  return name.size() + places.size() + back.size() + forth.size() + meshes;
+  return sizeof *this + name.capacity() + places.capacity() + back.capacity() + forth.capacity() + meshes;
 }
 
 History::Change History::prepare(const json& before, const json& after, std::string name, std::uint64_t by,
@@ -93,6 +95,7 @@ void History::add(Change change) {
   }
   open_ = !change.places.empty();
   if (!open_) return;
+  for (std::string* text : {&change.places, &change.back, &change.forth}) text->shrink_to_fit();
   last_ = Last{"change", change.name, change.by};
   changes_.resize(done_);
   changes_.push_back(std::move(change));
@@ -103,7 +106,7 @@ void History::add(Change change) {
 void History::forget_oldest() {
   std::size_t bytes = 0;
   for (const Change& change : changes_) bytes += change.bytes();
-  while (!changes_.empty() && (changes_.size() > max_changes || bytes > max_change_bytes)) {
+  while (!changes_.empty() && (changes_.size() > max_changes || bytes > most_)) {
     bytes -= changes_.front().bytes();
     changes_.pop_front();
     --done_;

@@ -18,7 +18,8 @@ namespace clothlab::session {
 using nlohmann::json;
 
 inline constexpr std::size_t max_changes = 100;  ///< that can be undone and redone, of a session
-/// Of all of them together: the texts of their patches or documents, and the meshes that uploads replaced.
+/// Of all of them together, unless the server has little memory: the texts of their patches or documents, and
+/// the meshes that uploads replaced.
 inline constexpr std::size_t max_change_bytes = 16 * 1024 * 1024;
 
 enum class Direction { undo, redo };
@@ -26,6 +27,9 @@ enum class Direction { undo, redo };
 class History {
  public:
   using Clock = std::chrono::steady_clock;
+
+  /// `most`: bytes of all changes together.
+  explicit History(std::size_t most = max_change_bytes) : most_(most) {}
 
   /// A mesh that an upload has put in the place of another, which the scene named (null: of a file).
   struct MeshChange {
@@ -74,6 +78,7 @@ class History {
   bool further_part(const Change& change) const;
   void forget_oldest();
 
+  std::size_t most_;
   std::deque<Change> changes_;  ///< the oldest first
   std::size_t done_ = 0;        ///< of them: the others were undone
   bool open_ = false;           ///< the last change may get further parts

@@ -10,8 +10,21 @@
 namespace clothlab::session {
 
 namespace {
-constexpr std::size_t most_waiting = 16;
+
+// Frames that wait: so many, and of a large mesh fewer.
+constexpr std::size_t most_waiting = 16, most_waiting_bytes = 32 << 20;
+
+/// What a recording takes besides its file: frames that wait, and the writer's group, as places, as numbers
+/// and as they are compressed (stream/recording.cpp).
+std::size_t bytes_under_way(std::uint32_t vertices, double rate) {
+  constexpr std::size_t most_in_group = std::size_t{1} << 21, bytes_in_group = 40;
+  const std::size_t frame = facts(stream::Encoding::f32).bytes_per_vertex * vertices;
+  const std::size_t group =
+      std::max<std::size_t>(vertices, std::min(most_in_group, vertices * static_cast<std::size_t>(rate)));
+  return std::max(frame, std::min(most_waiting * frame, most_waiting_bytes)) + bytes_in_group * group;
 }
+
+}  // namespace
 
 Recorder::~Recorder() {
   if (!thread_.joinable()) return;
@@ -23,7 +36,15 @@ Recorder::~Recorder() {
   thread_.join();
 }
 
-void Recorder::start(double rate, const json& document, const std::string& name) {
+clothlab::Status Recorder::start(double rate, const json& document, const std::string& name,
+                                 std::uint32_t vertices) {
+  under_way_ = bytes_under_way(vertices, rate);
+  Result<MemoryBudget::Reservation> place =
+      MemoryBudget::reserve(budget_, MemoryBudget::Use::recordings, under_way_);
+  if (!place) return place.error();
+  memory_ = std::move(*place);
+  rate_ = rate;
+  out_of_memory_ = false;
   RecordingFacts facts;
   facts.state = RecordingFacts::State::recording;
   facts.rate = rate;
@@ -34,6 +55,7 @@ void Recorder::start(double rate, const json& document, const std::string& name)
   revision_ = 0;
   recording_ = true;
   thread_ = std::thread([this, rate, document, facts] { run(rate, document, facts); });
+  return ok();
 }
 
 void Recorder::mesh(std::shared_ptr<const model::Model> model, std::shared_ptr<const scene::Scene> scene,
@@ -45,6 +67,7 @@ void Recorder::frame(stream::SharedMessage frame) {
   {
     const std::lock_guard lock(mutex_);
     if (tasks_.size() >= most_waiting) return;
+    if (!tasks_.empty() && (tasks_.size() + 1) * frame->size() > most_waiting_bytes) return;
   }
   add(std::move(frame));
 }
@@ -77,19 +100,38 @@ void Recorder::run(double rate, const json& document, RecordingFacts facts) {
   lower_priority(5);
   std::string bytes;
   try {
-    stream::Recording writer([&](std::string_view more) { bytes += more; }, document, rate);
+    stream::Recording writer([&](std::string_view more) { append(bytes, more); }, document, rate);
     end_ = record(writer, bytes, facts);
     facts.state = RecordingFacts::State::ready;
-    facts.full = end_ == End::limit;
+    facts.full = end_ == End::limit || end_ == End::memory;
     facts.frames = writer.frames();
     facts.bytes = bytes.size();
-    facts.file = std::make_shared<const std::string>(std::move(bytes));
+    (void)memory_.resize(bytes.capacity());
+    facts.file = held_text(std::move(bytes), std::move(memory_));
   } catch (const std::bad_alloc&) {
     end_ = End::failed;
     facts = {};
+    memory_ = {};
   }
   exchange_.store_recording(facts);
   done_ = true;
+}
+
+/// The file grows by a quarter; meanwhile there are the old and the new copy. Where there is no memory for
+/// that it takes what it must, to end whole: no more than what was under way.
+void Recorder::append(std::string& bytes, std::string_view more) {
+  constexpr std::size_t least = 1 << 20;
+  const std::size_t needed = bytes.size() + more.size(), had = bytes.capacity();
+  if (needed > had) {
+    std::size_t next = std::max(needed, had + std::max(least, had / 4));
+    if (!memory_.resize(under_way_ + had + next)) {
+      out_of_memory_ = true;
+      next = needed;
+    }
+    bytes.reserve(next);
+    (void)memory_.resize(under_way_ + bytes.capacity());
+  }
+  bytes += more;
 }
 
 Recorder::End Recorder::record(stream::Recording& writer, std::string& bytes, RecordingFacts& facts) {
@@ -111,6 +153,7 @@ Recorder::End Recorder::record(stream::Recording& writer, std::string& bytes, Re
     facts.frames = writer.frames();
     facts.bytes = bytes.size();
     if (bytes.size() > most_) return finish(End::limit);
+    if (out_of_memory_) return finish(End::memory);
     exchange_.store_recording(facts);
   }
 }
@@ -119,6 +162,11 @@ void Recorder::perform(Task& task, stream::Recording& writer) {
   if (const auto* mesh = std::get_if<Mesh>(&task)) {
     writer.set_mesh(*mesh->model, *mesh->scene);
     revision_ = mesh->revision;
+    const std::size_t under_way = bytes_under_way(mesh->model->vertex_count(), rate_);
+    if (memory_.resize(memory_.bytes() - std::min<std::uint64_t>(memory_.bytes(), under_way_) + under_way))
+      under_way_ = under_way;
+    else
+      out_of_memory_ = true;
   } else if (const auto* frame = std::get_if<stream::SharedMessage>(&task)) {
     if ((*frame)->header.topology_revision == revision_) write(**frame, writer);
   } else if (const auto* change = std::get_if<json>(&task)) {

@@ -9,6 +9,7 @@
 #include "server/session/fault.h"
 #include "server/session/keeper.h"
 #include "server/session/stepper.h"
+#include "server/sim/memory.h"
 
 namespace clothlab::session {
 
@@ -62,6 +63,7 @@ Result<std::unique_ptr<Stepper>> begin(Beginning& beginning, const Limits& limit
   if (const std::shared_ptr<const Saved> saved = state_to_restore(beginning, exchange)) {
     Result<std::unique_ptr<Stepper>> stepper = bring_back(*saved, beginning, limits, gpu, exchange);
     if (stepper) return stepper;
+    if (sim::is_lack_of_memory(stepper.error())) return stepper;  // it is kept for when there is more
     const bool kept = beginning.file && is_taken(*beginning.file);
     tell_unrestored(beginning, exchange,
                     kept ? set_aside(*beginning.file, stepper.error()) : InTheWay{stepper.error(), true});

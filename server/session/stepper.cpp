@@ -10,6 +10,7 @@
 #include "server/scene/method.h"
 #include "server/session/display_turn.h"
 #include "server/session/fault.h"
+#include "server/sim/memory.h"
 #include "server/sim/slipping.h"
 
 namespace clothlab::session {
@@ -28,9 +29,16 @@ Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Excha
       std::unique_ptr<Stepper>(new Stepper(std::move(document), exchange, limits, gpu, std::move(meshes)));
   const Result<scene::Scene> scene = stepper->prepare(stepper->document_);
   if (!scene) return scene.error();
+  Result<MemoryBudget::Reservation> past =
+      MemoryBudget::reserve(limits.memory, MemoryBudget::Use::timelines, limits.past_bytes);
+  if (!past) return past.error();
+  stepper->past_memory_ = std::move(*past);
+  Result<MemoryBudget::Reservation> place = stepper->place_for(*scene);
+  if (!place) return place.error();
   Result<std::unique_ptr<Engine>> engine = Engine::create(*scene, exchange, {gpu, last_frame});
   if (!engine) return engine.error();
   stepper->engine_ = std::move(*engine);
+  stepper->engine_->memory = std::move(*place);
   stepper->guard_.emplace(stepper->simulation());
   stepper->last_watched_ = stepper->next_status_ = Clock::now();
   stepper->announce_scene(std::nullopt, 0);
@@ -78,6 +86,10 @@ Result<scene::Scene> Stepper::prepare(const scene::Document& document) {
     return fits.error();
   if (fault_due(Fault::change_fails, "", engine_ ? simulation().step_index() : 0)) throw std::bad_alloc();
   return automatic_.settle(document, Clock::now());
+}
+
+Result<MemoryBudget::Reservation> Stepper::place_for(const scene::Scene& scene) const {
+  return sim::reserve_memory(limits_.memory, scene);
 }
 
 Clock::time_point Stepper::turn(std::vector<Command>& commands) {

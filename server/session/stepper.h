@@ -71,7 +71,8 @@ class Stepper {
         document_(std::move(document)),
         exchange_(exchange),
         limits_(limits),
-        gpu_(gpu) {
+        gpu_(gpu),
+        history_(limits.past_bytes / 4) {
     document_.assets = meshes_;
   }
   sim::Simulation& simulation() const { return *engine_->simulation; }
@@ -81,6 +82,9 @@ class Stepper {
   FrameMaker& frames() const { return *engine_->frames; }
   /// The scene to step for a document (see Automatic). Error: it is over the limits, or cannot be built.
   Result<scene::Scene> prepare(const scene::Document& document);
+  /// Reserves the memory of a scene that is to be built, beside the present one's. Error: there is not so
+  /// much.
+  Result<MemoryBudget::Reservation> place_for(const scene::Scene& scene) const;
 
   // In stepper_commands.cpp. Each `perform` answers its ticket if that has an id.
   void handle(Command& command);
@@ -125,7 +129,8 @@ class Stepper {
   void perform(PatchScene& patch, const Ticket& ticket);
   void perform(TravelHistory& travel, const Ticket& ticket);
   bool outdated(std::optional<std::uint64_t> revision, const Ticket& ticket);
-  static Result<std::optional<json>> keep_stable(json& patch, scene::Document& document);
+  Result<std::optional<json>> keep_stable(json& patch, scene::Document& document) const;
+  clothlab::Status check_size(const scene::Document& document) const;
   Result<sim::ChangeDepth> travelled(const History::Change& change, Direction direction);
   Result<sim::ChangeDepth> bring(scene::Document document, bool anew);
   void remember(History::Change change);
@@ -133,6 +138,7 @@ class Stepper {
   void tell_if_rebuilt(sim::ChangeDepth depth);
   Result<sim::ChangeDepth> change(const scene::Scene& scene);
   Result<sim::ChangeDepth> change_engine(const scene::Scene& scene);
+  Result<sim::ChangeDepth> change_here(const scene::Scene& scene);
   Result<sim::ChangeDepth> move_to(const scene::Scene& scene);
   bool returns_to_left_engine(const scene::Scene& scene) const;
   void settle_in(std::unique_ptr<Engine> next);
@@ -153,7 +159,10 @@ class Stepper {
   void bound_timeline();
   void timeline_went_back();
   json timeline_told();
-  static Refusal no_timeline();
+  void forget_timeline();
+  std::size_t most_logged() const;
+  bool timeline_awaits_step() const;
+  Refusal no_timeline() const;
   std::uint64_t replay_changes();
   void end_replay();
   // In stepper_commands.cpp.
@@ -199,6 +208,7 @@ class Stepper {
   Exchange& exchange_;
   Limits limits_;
   std::optional<int> gpu_;
+  MemoryBudget::Reservation past_memory_{};  ///< of what can be gone back to
   std::unique_ptr<Engine> engine_;
   std::unique_ptr<Engine> left_;  ///< by a change since the last step; a change back returns to it
   PieceSize piece_size_;
@@ -214,7 +224,7 @@ class Stepper {
   Timeline timeline_;
   std::optional<Replay> replay_;
   std::deque<Command> waiting_commands_;  ///< until a replay has ended
-  Recorder recorder_{exchange_, static_cast<std::size_t>(limits_.recording_bytes)};
+  Recorder recorder_{exchange_, static_cast<std::size_t>(limits_.recording_bytes), limits_.memory};
   std::uint32_t recorded_revision_ = 0;   ///< of the mesh that the recording has
   std::vector<Ticket> ending_recording_;  ///< requests record.stop that wait for the end of the recording
 

@@ -9,7 +9,10 @@ void Stepper::perform(RecordStart& start, const Ticket& ticket) {
   if (recorder_.busy())
     return reply(ticket, Refusal{Refusal::Reason::over_limit,
                                  {"", "this session is being recorded already", "call record.stop first"}});
-  recorder_.start(start.rate, document_.value, document_.scene.name);
+  if (const clothlab::Status begun = recorder_.start(start.rate, document_.value, document_.scene.name,
+                                                     simulation().model().vertex_count());
+      !begun)
+    return reply(ticket, Refusal{Refusal::Reason::over_limit, begun.error()});
   record_mesh();
   frames().record(start.rate, Clock::now());
   reply(ticket, facts_of(exchange_.recording()));
@@ -48,6 +51,10 @@ void Stepper::follow_recording() {
     exchange_.emit(Notice{"warning",
                           "the recording has as many bytes as it may have (--max-recording-bytes) and "
                           "has ended; it is kept until the next one"});
+  if (*end == Recorder::End::memory)
+    exchange_.emit(Notice{"warning",
+                          "the recording has ended, as the server has no more memory for recordings "
+                          "(--max-memory); it is kept until the next one"});
   if (*end == Recorder::End::failed)
     exchange_.emit(Notice{"error", "the recording was given up: there was not enough memory"});
   for (const Ticket& ticket : std::exchange(ending_recording_, {}))

@@ -71,7 +71,9 @@ void Stepper::perform(PatchScene& patch, const Ticket& ticket) {
 
 /// If the cloth of `document`, which `patch` has made, would not hold with its solver, changes the solver of
 /// both, and returns it.
-Result<std::optional<json>> Stepper::keep_stable(json& patch, scene::Document& document) {
+Result<std::optional<json>> Stepper::keep_stable(json& patch, scene::Document& document) const {
+  if (document.scene.solver.automatic) return std::optional<json>();  // the lab chooses
+  if (const clothlab::Status fits = check_size(document); !fits) return fits.error();
   const Result<model::Model> model = model::build(document.scene);
   if (!model) return model.error();
   const scene::Solver solver = model::solver_that_holds(*model, document.scene);
@@ -190,10 +192,26 @@ Result<sim::ChangeDepth> Stepper::change_engine(const scene::Scene& scene) {
     begin_timeline();
     return depth;
   }
-  if (engine_->place.stays(scene) || !engine_->software()) return simulation().change(scene);
+  if (engine_->place.stays(scene) || !engine_->software()) return change_here(scene);
   const Result<sim::ChangeDepth> depth = move_to(scene);
   if (depth && *depth != sim::ChangeDepth::cloth) begin_timeline();  // its states were on the other engine
   return depth;
+}
+
+/// While what is new is built, what is old stays: both need memory.
+Result<sim::ChangeDepth> Stepper::change_here(const scene::Scene& scene) {
+  const sim::ChangeDepth depth = sim::change_depth(simulation().scene(), scene);
+  if (depth == sim::ChangeDepth::none || depth == sim::ChangeDepth::uniform)
+    return simulation().change(scene);
+  Result<MemoryBudget::Reservation> place = place_for(scene);
+  if (!place && left_) {
+    free_left_engine();
+    place = place_for(scene);
+  }
+  if (!place) return place.error();
+  const Result<sim::ChangeDepth> done = simulation().change(scene);
+  if (done) engine_->memory = std::move(*place);
+  return done;
 }
 
 Result<sim::ChangeDepth> Stepper::move_to(const scene::Scene& scene) {
@@ -206,9 +224,12 @@ Result<sim::ChangeDepth> Stepper::move_to(const scene::Scene& scene) {
   sim::State state;
   if (!anew) state = simulation().read_state();
   free_left_engine();
+  Result<MemoryBudget::Reservation> place = place_for(scene);
+  if (!place) return place.error();
   Result<std::unique_ptr<Engine>> made = Engine::create(
       scene, exchange_, {gpu_, frames().last(), simulation().topology_revision() + (anew ? 1u : 0u)});
   if (!made) return made.error();
+  (*made)->memory = std::move(*place);
   if (!anew) (*made)->simulation->restore(state, simulation().time(), simulation().step_index());
   settle_in(std::move(*made));
   if (anew) free_left_engine();

@@ -11,6 +11,7 @@ namespace clothlab::session {
 /// The run begins, or begins anew: nothing before the present state can be reached again.
 void Stepper::begin_timeline() {
   simulation().kept().clear();
+  simulation().kept().most = limits_.past_bytes / 2;
   timeline_.begin(document_, scene(), simulation().step_index());
   try {
     simulation().keep_state();
@@ -20,7 +21,25 @@ void Stepper::begin_timeline() {
   }
 }
 
-Refusal Stepper::no_timeline() {
+/// The present step cannot be reached again, as what changed the run since the step before takes too much.
+/// Its cloth can hardly be kept either: what methods remember of it may still be put back
+/// (note_before_changes of the simulation), by a change that takes these back. So the timeline begins anew
+/// where the next step ends.
+void Stepper::forget_timeline() {
+  simulation().kept().clear();
+  simulation().kept().after_step = true;
+  timeline_.begin(document_, scene(), next_step_to_begin(), hands_.for_simulation());
+  if (timeline_.bytes() <= most_logged()) return;
+  simulation().kept().every = 0;  // not even the present document can be kept
+  simulation().kept().after_step = false;
+  timeline_.clear();
+}
+
+Refusal Stepper::no_timeline() const {
+  if (simulation().kept().after_step)
+    return {Refusal::Reason::failed,
+            {"", "what changed the scene since the last step takes more than is kept of it",
+             "go on: the timeline begins again with the next step"}};
   return {Refusal::Reason::failed,
           {"", "there is no memory to keep earlier states of this scene", "a smaller scene"}};
 }
@@ -31,30 +50,37 @@ std::uint64_t Stepper::next_step_to_begin() const {
 }
 
 void Stepper::scene_on_timeline() {
-  if (simulation().kept().count() == 0) return;
+  if (simulation().kept().count() == 0 && !timeline_awaits_step()) return;
   simulation().kept().every = Timeline::interval(scene(), limits_.kept_every);
+  if (timeline_awaits_step()) return forget_timeline();
   timeline_.add_scene(next_step_to_begin(), document_, scene(), false);
   bound_timeline();
 }
 
 void Stepper::hands_on_timeline() {
+  if (timeline_awaits_step()) return forget_timeline();
   if (simulation().kept().count() == 0) return;
   timeline_.add_hands(next_step_to_begin(), hands_.for_simulation());
   bound_timeline();
 }
 
+std::size_t Stepper::most_logged() const {
+  return limits_.past_bytes / 4;
+}
+
+bool Stepper::timeline_awaits_step() const {
+  return simulation().kept().count() == 0 && simulation().kept().after_step;
+}
+
 void Stepper::bound_timeline() {
   sim::KeptStates& kept = simulation().kept();
   if (kept.count() == 0) return;  // the cloth is new, and the timeline is about to begin
-  while (timeline_.bytes() > Timeline::most_bytes && simulation().step_index() > kept.oldest()->step) {
-    if (kept.count() < 2) {  // the log goes on from the next one
-      kept.after_step = true;
-      break;
-    }
+  timeline_.forget_before(kept.oldest()->step);
+  while (timeline_.bytes() > most_logged() && kept.count() > 1) {
     kept.drop_oldest();
     timeline_.forget_before(kept.oldest()->step);
   }
-  timeline_.forget_before(kept.oldest()->step);
+  if (timeline_.bytes() > most_logged()) forget_timeline();
 }
 
 /// After a blow-up the run goes on from the last good state, with the scene as it is now.
@@ -92,8 +118,11 @@ void Stepper::perform(ResumeAt& resume, const Ticket& ticket) {
   const std::uint64_t from = simulation().kept().at_or_before(resume.step)->step;
   const Timeline::Event then = timeline_.in_force(from);
   free_left_engine();
+  Result<MemoryBudget::Reservation> place = place_for(*then.scene);
+  if (!place) return reply(ticket, Refusal{Refusal::Reason::failed, place.error()});
   if (const clothlab::Status back = simulation().go_to_kept(resume.step, *then.scene); !back)
     return reply(ticket, Refusal{Refusal::Reason::failed, back.error()});
+  engine_->memory = std::move(*place);
   (void)simulation().set_hands(*then.hands);  // the kernels are there
   finish_waiting(true);
   wake_up();
@@ -126,7 +155,9 @@ void Stepper::end_replay() {
   const Replay done = std::move(*replay_);
   replay_.reset();
   const Timeline::Event then = timeline_.in_force(done.step + 1);
-  const json before = std::exchange(document_, *then.document).value;
+  const json before = std::exchange(document_.value, json::parse(*then.document));
+  document_.scene = *then.scene;
+  document_.scene.solver = then.solver;
   if (!then.hands->empty()) {  // who held the cloth then does so no longer
     (void)simulation().set_hands({});
     hands_on_timeline();

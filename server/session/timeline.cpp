@@ -4,16 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include "server/scene/memory.h"
 #include "server/sim/cost.h"
 
 namespace clothlab::session {
-
-namespace {
-
-/// A document as JSON in memory takes several times its text.
-constexpr std::size_t memory_of_text = 8;
-
-}  // namespace
 
 std::uint32_t Timeline::interval(const scene::Scene& scene, int most_steps) {
   const double steps = std::min({static_cast<double>(most_steps), most_seconds / scene.solver.dt,
@@ -21,26 +15,32 @@ std::uint32_t Timeline::interval(const scene::Scene& scene, int most_steps) {
   return static_cast<std::uint32_t>(std::max(1.0, std::round(steps)));
 }
 
-void Timeline::begin(const scene::Document& document, const scene::Scene& scene, std::uint64_t step) {
+Timeline::Event Timeline::scene_event(std::uint64_t step, const scene::Document& document,
+                                      const scene::Scene& scene) {
+  Event event{step, std::make_shared<const std::string>(document.value.dump()),
+              std::make_shared<const scene::Scene>(scene), document.scene.solver};
+  event.bytes = sizeof event + event.document->capacity() + scene::memory_of(*event.scene);
+  return event;
+}
+
+void Timeline::begin(const scene::Document& document, const scene::Scene& scene, std::uint64_t step,
+                     std::vector<sim::Hand> hands) {
   events_.clear();
   bytes_ = 0;
-  base_ = {step, std::make_shared<const scene::Document>(document),
-           std::make_shared<const scene::Scene>(scene), std::vector<sim::Hand>()};
+  base_ = scene_event(step, document, scene);
+  base_.hands = std::move(hands);
 }
 
 void Timeline::add_scene(std::uint64_t step, const scene::Document& document, const scene::Scene& scene,
                          bool forgets) {
-  add({step,
-       std::make_shared<const scene::Document>(document),
-       std::make_shared<const scene::Scene>(scene),
-       {},
-       forgets,
-       memory_of_text * document.value.dump().size() + sizeof(Event)});
+  Event event = scene_event(step, document, scene);
+  event.forgets = forgets;
+  add(std::move(event));
 }
 
 void Timeline::add_hands(std::uint64_t step, std::vector<sim::Hand> hands) {
   const std::size_t bytes = sizeof(Event) + hands.size() * sizeof(sim::Hand);
-  add({step, nullptr, nullptr, std::move(hands), false, bytes});
+  add({step, nullptr, nullptr, {}, std::move(hands), false, bytes});
 }
 
 /// What came within a step that has been given up now comes before it.
@@ -53,14 +53,19 @@ void Timeline::add(Event event) {
 
 void Timeline::apply(Event& to, const Event& later) {
   to.step = later.step;
-  if (later.scene) to.document = later.document, to.scene = later.scene;
+  if (later.scene) {
+    to.document = later.document;
+    to.scene = later.scene;
+    to.solver = later.solver;
+    to.bytes = later.bytes;
+  }
   if (later.hands) to.hands = later.hands;
 }
 
 void Timeline::forget_before(std::uint64_t step) {
   while (!events_.empty() && events_.front().step < step) {
-    apply(base_, events_.front());
     bytes_ -= events_.front().bytes;
+    apply(base_, events_.front());
     events_.pop_front();
   }
 }

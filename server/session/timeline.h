@@ -7,6 +7,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "server/scene/document.h"
@@ -16,16 +17,16 @@ namespace clothlab::session {
 
 class Timeline {
  public:
-  static constexpr std::size_t most_bytes = 16 * 1024 * 1024;  ///< of what is kept here, about
   static constexpr double most_seconds = 1;    ///< of simulated time between two kept states [s]
   static constexpr double replay_seconds = 2;  ///< that these steps may take, by an estimate [s]
 
   struct Event {
     std::uint64_t step = 0;  ///< it comes before this step
-    /// The document with the scene as it is stepped, which differs from the document's where that has the
-    /// method `auto`; null: only hands change.
-    std::shared_ptr<const scene::Document> document{};
+    /// The document's text (in memory JSON takes several times that) with the scene as it is stepped, whose
+    /// solver differs from the document's where that has the method `auto`; null: only hands change.
+    std::shared_ptr<const std::string> document{};
     std::shared_ptr<const scene::Scene> scene{};
+    scene::Solver solver{};  ///< the document's
     std::optional<std::vector<sim::Hand>> hands{};
     bool forgets = false;  ///< the passes forget what they carry: the run went back to its last good state
     std::size_t bytes = 0;
@@ -34,7 +35,9 @@ class Timeline {
   /// Steps from one kept state to the next, `most_steps` at most.
   static std::uint32_t interval(const scene::Scene& scene, int most_steps);
 
-  void begin(const scene::Document& document, const scene::Scene& scene, std::uint64_t step);
+  void begin(const scene::Document& document, const scene::Scene& scene, std::uint64_t step,
+             std::vector<sim::Hand> hands = {});
+  void clear() { *this = {}; }
   void add_scene(std::uint64_t step, const scene::Document& document, const scene::Scene& scene,
                  bool forgets);
   void add_hands(std::uint64_t step, std::vector<sim::Hand> hands);
@@ -47,10 +50,11 @@ class Timeline {
   Event in_force(std::uint64_t step) const;
   /// What came from `step` on.
   std::deque<Event> from(std::uint64_t step) const;
-  std::size_t bytes() const { return bytes_; }
+  std::size_t bytes() const { return bytes_ + base_.bytes; }
 
  private:
   void add(Event event);
+  static Event scene_event(std::uint64_t step, const scene::Document& document, const scene::Scene& scene);
   static void apply(Event& to, const Event& later);
 
   Event base_;                ///< in force at the beginning

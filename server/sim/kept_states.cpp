@@ -12,8 +12,7 @@ void KeptStates::keep(const std::function<void(KeptState&)>& copy) {
     drop_oldest();
   };
   const std::size_t expected = states_.empty() ? 0 : states_.back().bytes();
-  while (!states_.empty() && (states_.size() >= most_states || bytes() + expected > most_bytes))
-    take_the_oldest();
+  while (!states_.empty() && (states_.size() >= most_states || bytes() + expected > most)) take_the_oldest();
   try {
     copy(next);
   } catch (const std::bad_alloc&) {  // a shorter timeline is no reason to fail

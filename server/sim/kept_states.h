@@ -27,14 +27,14 @@ struct KeptState {
   std::size_t bytes() const { return position.bytes() + velocity.bytes() + carried.bytes(); }
 };
 
-/// The oldest are dropped beyond `most_states` and `most_bytes`. A single one is kept, however large.
+/// The oldest are dropped beyond `most_states` and `most` bytes. A single one is kept, however large.
 class KeptStates {
  public:
   static constexpr std::size_t most_states = 256;
-  static constexpr std::size_t most_bytes = 32 * 1024 * 1024;
 
-  std::uint32_t every = 0;  ///< a state is kept at each multiple of so many steps; 0: at none
-  bool after_step = false;  ///< one is kept at the end of the next step, too
+  std::size_t most = 32 * 1024 * 1024;  ///< [bytes]
+  std::uint32_t every = 0;              ///< a state is kept at each multiple of so many steps; 0: at none
+  bool after_step = false;              ///< one is kept at the end of the next step, too
   bool due(std::uint64_t step) const { return after_step || (every > 0 && step % every == 0); }
 
   /// Keeps what `copy` copies to a state. That may have buffers already, of the oldest, to be used again.

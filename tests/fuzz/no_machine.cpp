@@ -165,7 +165,7 @@ LabWorker::Mail LabWorker::take() {
   return std::exchange(mail_, {});
 }
 
-Result<LabWorker::Run> open_lab(std::optional<int>) {
+Result<LabWorker::Run> open_lab(std::optional<int>, std::shared_ptr<MemoryBudget>) {
   return Error{"lab", "no OpenGL", "a machine"};
 }
 

@@ -181,6 +181,60 @@ test("a scene beyond --max-vertices or --max-springs is refused with the number 
   }
 });
 
+test("a scene that takes more than --max-memory is refused with its number, whoever brings it, and the one that runs is kept", async () => {
+  const cotton = (side, method = "symplectic_euler") => ({
+    version: 1,
+    cloths: [{ mesh: { grid: { columns: side, rows: side } }, material: { fabric: "cotton" } }],
+    solver: { method, dt: 1e-6 },
+  });
+  const server = await start("--max-memory", "2G");
+  const client = await Client.connect(server);
+  const refused = async (client, method, params, path = "/cloths") => {
+    const { code, data } = await client.refusal(method, params);
+    assert.equal(code, -32602);
+    assert.equal(data.path, path);
+    assert.match(data.found, /^\d+ vertices, which take \d\.\d\d GB of memory$/);
+    assert.match(
+      data.allowed,
+      /^at most [\d.]+ [GM]B, which are left of 1\.83 GB for all scenes .*a smaller scene.*--max-memory$/,
+    );
+    assert.ok(data.memory.needed > data.memory.left);
+  };
+  await refused(client, "scene.load", { scene: cotton(1024, "rk4") });
+  const [op, value] = ["replace", 1020];
+  const patch = ["columns", "rows"].map((side) => ({ op, path: `/cloths/0/mesh/grid/${side}`, value }));
+  await refused(client, "scene.patch", { patch });
+  const second = await Client.connect(server, { session: "second" });
+  await second.notification("scene");
+  await refused(second, "scene.patch", { patch });
+  assert.equal((await second.request("scene.get")).document.cloths[0].mesh.grid.columns, 25);
+  for (const each of [client, second]) await each.nextNotification("sim.status", (status) => status.playing);
+  const memory = await server.metric("clothlab_memory_simulations_bytes");
+  assert.ok(memory > 20e6 && memory < 60e6, `${memory}`); // two scenes of 625 vertices
+  assert.equal(await server.metric("clothlab_memory_limit_bytes"), 2 ** 31);
+  await client.close();
+  await second.close();
+});
+
+test("--max-memory is a size of at least 256 MiB, and a scene that takes more does not start the server", async () => {
+  for (const size of ["255M", "1000", "2GB", "-1G", "much"]) {
+    const { code, stderr } = await runProgram(["serve", "--port", "0", "--max-memory", size]);
+    assert.equal(code, 2, size);
+    assert.match(stderr, /no size of at least 256M/);
+  }
+  const scene = [
+    "--scene",
+    "drape",
+    "--set",
+    "/cloths/0/mesh/grid/columns=1000",
+    "--set",
+    "/cloths/0/mesh/grid/rows=1000",
+  ];
+  const { code, stderr } = await runProgram(["serve", "--port", "0", ...scene, "--max-memory", "256M"]);
+  assert.equal(code, 2);
+  assert.match(stderr, /1000000 vertices, which take \d\.\d\d GB of memory; at most \d+ MB/);
+});
+
 test("a measurement that takes longer than --max-lab-seconds ends with what it found and why", async () => {
   const server = await start("--max-lab-seconds", "1");
   const client = await Client.connect(server);

@@ -1,7 +1,11 @@
-// The session's thread, run in this process: counts its allocations.
+// The session's thread, run in this process: counts its allocations, and what they hold.
 #include "server/session/stepper.h"
 
+#include <malloc.h>
+
 #include <algorithm>
+#include <atomic>
+#include <cmath>
 #include <cstdlib>
 #include <new>
 #include <thread>
@@ -11,11 +15,20 @@
 
 namespace {
 thread_local std::size_t allocations = 0;  // by operator new; the GL driver uses other allocators
+std::atomic<std::size_t> bytes_held = 0;   // [bytes], by operator new, of all threads
 
+void* counted(void* memory) {
+  bytes_held += malloc_usable_size(memory);
+  return memory;
+}
 void* allocate(std::size_t bytes) {
   ++allocations;
-  if (void* memory = std::malloc(bytes)) return memory;
+  if (void* memory = std::malloc(bytes)) return counted(memory);
   throw std::bad_alloc();
+}
+void give_back(void* memory) {
+  bytes_held -= malloc_usable_size(memory);
+  std::free(memory);
 }
 }  // namespace
 
@@ -27,22 +40,22 @@ void* operator new[](std::size_t bytes) {
 }
 void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
   ++allocations;
-  return std::malloc(bytes);
+  return counted(std::malloc(bytes));
 }
 void* operator new[](std::size_t bytes, const std::nothrow_t& tag) noexcept {
   return operator new(bytes, tag);
 }
 void operator delete(void* memory) noexcept {
-  std::free(memory);
+  give_back(memory);
 }
 void operator delete[](void* memory) noexcept {
-  std::free(memory);
+  give_back(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
+  give_back(memory);
 }
 void operator delete[](void* memory, std::size_t) noexcept {
-  std::free(memory);
+  give_back(memory);
 }
 
 using namespace clothlab;
@@ -55,13 +68,28 @@ struct Fixture {
   std::unique_ptr<session::Stepper> stepper;
   std::vector<session::Command> commands;
 
-  explicit Fixture(const session::Limits& limits = {}) {
-    Result<scene::Document> seed = scene::load_preset("seed");
-    REQUIRE(seed);
+  explicit Fixture(const session::Limits& limits = {},
+                   Result<scene::Document> document = scene::load_preset("seed")) {
+    REQUIRE(document);
     Result<std::unique_ptr<session::Stepper>> created =
-        session::Stepper::create(std::move(*seed), exchange, limits);
+        session::Stepper::create(std::move(*document), exchange, limits);
     REQUIRE(created);
     stepper = std::move(*created);
+  }
+
+  /// What the session answers to a command.
+  nlohmann::json ask(decltype(session::Command::what) what) {
+    commands.push_back({{1, 1}, std::move(what)});
+    turn();
+    std::vector<session::Event> events;
+    exchange.take_events(events);
+    for (session::Event& event : events)
+      if (auto* reply = std::get_if<session::Reply>(&event)) {
+        if (auto* refusal = std::get_if<session::Refusal>(&reply->answer))
+          return {{"refused", refusal->error.text()}};
+        return std::get<nlohmann::json>(reply->answer);
+      }
+    return nullptr;
   }
 
   void turn() {
@@ -123,4 +151,40 @@ TEST_CASE("an unwatched session steps until --unwatched-timeout, sleeps, and goe
   session.commands.push_back({{}, session::Watchers{1}});
   session.turn_for(1.0);
   CHECK(session.exchange.steps() > asleep);
+}
+
+namespace {
+
+/// A document of some hundred kilobytes: it has its cloth's vertices and triangles, 70 in a row.
+scene::Document large_document() {
+  nlohmann::json vertices, triangles;
+  constexpr int side = 70;
+  for (int i = 0; i < side * side; ++i) {
+    vertices.push_back({0.0125 * (i % side), 1.0, 0.0125 * (i / side)});
+    if (i % side == 0 || i < side) continue;
+    triangles.push_back({i - side - 1, i - 1, i});
+    triangles.push_back({i - side - 1, i, i - side});
+  }
+  return *scene::validate(
+      {{"version", 1}, {"cloths", {{{"mesh", {{"vertices", vertices}, {"triangles", triangles}}}}}}});
+}
+
+}  // namespace
+
+TEST_CASE("what a paused session keeps of its past is bounded, however large its document is") {
+  Fixture session({}, large_document());
+  session.ask(session::Pause{});
+  const std::size_t before = bytes_held;
+  for (int i = 0; i < 80; ++i) {
+    const nlohmann::json changed = session.ask(session::PatchScene{{{"air_drag", 0.01 * i}}, {}, {}});
+    REQUIRE(changed.contains("revision"));
+  }
+  constexpr std::size_t promised = (48 + 16) << 20,
+                        present = 24 << 20;  // with copies of the present document
+  CHECK(bytes_held < before + promised + present);
+  const nlohmann::json told = session.ask(session::GetTimeline{});
+  CHECK((told.contains("refused") || told["bytes"] < 48 << 20));
+  session.ask(session::Step{1});
+  for (int i = 0; i < 5; ++i) session.turn();
+  CHECK(session.ask(session::GetTimeline{})["newest"]["step"] > 0);
 }
