@@ -194,7 +194,7 @@ Status check_bytes(const json& document) {
 Result<json> patched(json target, const json& patch, const PatchLimits& limits) {
   if (patch.is_object()) {
     target.merge_patch(patch);
-    return std::move(target);
+    return target;
   }
   if (!patch.is_array())
     return Error{"/patch", compact(patch), "an object (RFC 7396 merge patch) or an array (RFC 6902 patch)"};
@@ -206,7 +206,7 @@ Result<json> patched(json target, const json& patch, const PatchLimits& limits) 
     const Status done = operations.apply(patch[i], i);
     if (!done) return done.error();
   }
-  return std::move(target);
+  return target;
 }
 
 Result<Document> apply_patch(const Document& document, const json& patch) {

@@ -77,13 +77,14 @@ Saved Stepper::saved() {
           simulation().read_state()};
 }
 
+clothlab::Status Stepper::check_size(const scene::Document& document) const {
+  return model::check_size(model::size_of(document.scene), static_cast<std::size_t>(limits_.vertices),
+                           static_cast<std::size_t>(limits_.springs));
+}
+
 Result<scene::Scene> Stepper::prepare(const scene::Document& document) {
   if (clothlab::Status fits = scene::check_bytes(document.value); !fits) return fits.error();
-  const model::Size size = model::size_of(document.scene);
-  if (clothlab::Status fits = model::check_size(size, static_cast<std::size_t>(limits_.vertices),
-                                                static_cast<std::size_t>(limits_.springs));
-      !fits)
-    return fits.error();
+  if (clothlab::Status fits = check_size(document); !fits) return fits.error();
   if (fault_due(Fault::change_fails, "", engine_ ? simulation().step_index() : 0)) throw std::bad_alloc();
   return automatic_.settle(document, Clock::now());
 }

@@ -72,7 +72,6 @@ void Stepper::perform(PatchScene& patch, const Ticket& ticket) {
 /// If the cloth of `document`, which `patch` has made, would not hold with its solver, changes the solver of
 /// both, and returns it.
 Result<std::optional<json>> Stepper::keep_stable(json& patch, scene::Document& document) const {
-  if (document.scene.solver.automatic) return std::optional<json>();  // the lab chooses
   if (const clothlab::Status fits = check_size(document); !fits) return fits.error();
   const Result<model::Model> model = model::build(document.scene);
   if (!model) return model.error();

@@ -87,7 +87,7 @@ struct Fixture {
       if (auto* reply = std::get_if<session::Reply>(&event)) {
         if (auto* refusal = std::get_if<session::Refusal>(&reply->answer))
           return {{"refused", refusal->error.text()}};
-        return std::get<nlohmann::json>(reply->answer);
+        return nlohmann::json::parse(*std::get<session::JsonText>(reply->answer));
       }
     return nullptr;
   }
