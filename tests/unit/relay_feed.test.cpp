@@ -222,14 +222,16 @@ TEST_CASE("a change that would be much work, or too large or deep, is asked for 
   pair.pass();
   pair.want_frames();
   json doubled = json::array(), deep = json::array();
-  for (int i = 0; i < 30; ++i) doubled.push_back({{"op", "copy"}, {"from", ""}, {"path", "/a"}});
+  for (int i = 0; i < 30; ++i)
+    doubled.push_back({{"op", "copy"}, {"from", ""}, {"path", "/a" + std::to_string(i)}});
   std::string path;
   for (int i = 0; i < 40; ++i)
     deep.push_back({{"op", "add"}, {"path", path += "/a"}, {"value", json::object()}});
   json long_text{{"a", std::string(scene::max_document_bytes, 'x')}};
   json nested = 1;
-  for (int i = 0; i < 32; ++i) nested = json{{"a", nested}};
+  for (std::size_t i = 0; i <= scene::max_json_depth; ++i) nested = json{{"a", nested}};
   for (const json& patch : {doubled, deep, long_text, nested}) {
+    INFO(patch.dump().substr(0, 80));
     pair.events.clear();
     pair.say("scene.changed", {{"revision", pair.revision + 1}, {"patch", patch}, {"by", 3}});
     pair.arrive();
