@@ -143,8 +143,8 @@ async function measure(name, seconds) {
   }
 }
 
-/// The servers of a burst: one with the long scene, one behind a bus and a relay, or one alone. `entry` is where clients
-/// connect to.
+/// The servers of a burst: one with the long scene, one behind a bus and a relay, or one alone. `entry` is where
+/// clients connect to.
 async function serversFor(name) {
   if (name.includes("relay")) {
     const bus = await NatsServer.start();

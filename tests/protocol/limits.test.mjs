@@ -336,8 +336,8 @@ test("a client that asks and does not read is cut off once 4 MiB of answers wait
   const other = await Client.connect(server);
   const deaf = await Client.connect(server, { session: "large" });
   const clients = () => server.metric("clothlab_clients");
-  // A document of about 40 kB: 1000 copies are ten times as much as the client's and the kernel's buffers hold. They are
-  // asked for at once, as nothing more is read from a client for whom many answers wait.
+  // A document of about 40 kB: 1000 copies are ten times as much as the client's and the kernel's buffers hold. They
+  // are asked for at once, as nothing more is read from a client for whom many answers wait.
   const vertices = Array.from({ length: 1000 }, (_, i) => [
     (i % 40) + 0.123456789,
     1.123456789,
