@@ -61,6 +61,7 @@ nlohmann::json hello_params(const Hub& hub, const Room& room, const Client& clie
         {"clients_per_address", limits.clients_per_address},
         {"vertices", limits.scene.vertices},
         {"springs", limits.scene.springs},
+        {"document_bytes", scene::max_document_bytes},
         {"idle_seconds", limits.idle_seconds},
         {"rate", max_rate},
         {"in_flight", max_in_flight},

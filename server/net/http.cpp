@@ -70,8 +70,10 @@ HttpAnswer binary(std::string bytes) {
 
 constexpr int patience = 30;  ///< with what is made for a request, and with who reads nothing [s]
 
-/// A longer body is written in pieces of so many bytes, each when the socket takes it, from one copy that all
-/// who get it share: somebody who does not read costs one piece.
+/// A longer body is written in pieces of `piece_bytes`, each when the socket takes it, from one copy that all
+/// who get it share: somebody who does not read costs one piece. The connection then ends. Shorter ones, all
+/// files of the page among them, are handed to libwebsockets whole, and the next request may follow.
+constexpr std::size_t most_at_once = 1024 * 1024;
 constexpr std::size_t piece_bytes = 64 * 1024;
 
 /// A body that lives at least as long as the server's requests.
@@ -365,13 +367,13 @@ HttpRequest::Progress HttpRequest::refuse(const HttpAnswer& refusal) {
 // not say that the socket takes more, and what is read is the next request, which is not answered then.
 HttpRequest::Progress HttpRequest::send(HttpAnswer answer) {
   if (!answer.shared) {
-    if (answer.body.size() > piece_bytes)
+    if (answer.body.size() > most_at_once)
       if (std::optional<HttpAnswer> why = reserve(MemoryBudget::Use::downloads, answer.body.size()))
         answer = std::move(*why);
     answer.shared = std::make_shared<const std::string>(std::move(answer.body));
   }
   const std::string& body = *answer.shared;
-  if (!head_ && body.size() > piece_bytes) last_ = true;
+  if (!head_ && body.size() > most_at_once) last_ = true;
   std::vector<std::pair<std::string, std::string>> headers = answer.headers;
   add_framing(headers, hub_.options().allow_origin);
   if (!reader_.empty())
@@ -395,7 +397,7 @@ HttpRequest::Progress HttpRequest::send(HttpAnswer answer) {
   for (const auto& [name, value] : headers) failed |= add(name.c_str(), value);
   if (failed || lws_finalize_http_header(wsi_, &at, end)) return Progress::close;
   bytes.resize(static_cast<std::size_t>(at - bytes.data()));
-  const std::size_t first = head_ ? 0 : std::min(body.size(), piece_bytes);
+  const std::size_t first = head_ ? 0 : body.size() > most_at_once ? piece_bytes : body.size();
   bytes.insert(bytes.end(), body.begin(), body.begin() + static_cast<std::ptrdiff_t>(first));
   if (lws_write(wsi_, bytes.data() + LWS_PRE, bytes.size() - LWS_PRE, LWS_WRITE_HTTP_HEADERS) < 0)
     return Progress::close;

@@ -12,7 +12,7 @@ const inflate = async (bytes) => new Uint8Array(inflateRawSync(bytes));
 let page, server;
 before(async () => {
   page = await load("player/recording");
-  server = await Server.start("--max-sessions", "20");
+  server = await Server.start("--max-sessions", "20", "--max-clients-per-address", "64"); // 128 connections
 });
 after(() => server.stop());
 

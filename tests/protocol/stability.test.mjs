@@ -32,7 +32,8 @@ test("the limit follows stiffness, mass and damping; margin follows dt", async (
   assert.ok(Math.abs(heavy.dt_limit / dt_limit - 2) < 0.1, "about sqrt(m/k), less the damping");
   await patch({ solver: { dt: 0.0005 } });
   const half = await stability((s) => s.margin < 0.6 * heavy.margin);
-  assert.ok(Math.abs(half.margin - heavy.margin / 2) < 1e-9);
+  // The limit itself may be told more sharply meanwhile, where a busy machine takes long to search for it.
+  assert.ok(Math.abs(half.margin - 0.0005 / half.dt_limit) < 1e-12);
 });
 
 test("a patch that moves the margin above 0.9 warns, once, with the limit in numbers", async () => {
