@@ -139,7 +139,7 @@ void Room::pump() {
   if (!session_) return;
   const std::int64_t now = session::now_us();
   if (feed_) feed_->pump(now);
-  handle_events(now);
+  handle_events();
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     const stream::Form form = stream::Form::at(i);
     const stream::SharedMessage latest = demanded_[i] > 0 ? frame(form) : nullptr;
@@ -152,14 +152,15 @@ void Room::pump() {
 
 /// Handles what the session has put out, for a while: what is left after many answers waits for the next
 /// call, so that frames of other sessions go out between.
-void Room::handle_events(std::int64_t now) {
+void Room::handle_events() {
+  const std::int64_t begun = session::now_us();
   if (events_handled_ == events_.size()) {
     session_->exchange().take_events(events_);
     events_handled_ = 0;
   }
   while (events_handled_ < events_.size()) {
     std::visit([&](auto& what) { handle(what); }, events_[events_handled_++]);
-    if (session::now_us() - now < longest_turn_us) continue;
+    if (session::now_us() - begun < longest_turn_us) continue;
     return wake_();
   }
 }

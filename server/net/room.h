@@ -114,7 +114,7 @@ class Room {
   void handle(session::ChoiceWanted&);
   void handle(const session::Status& status);
   void handle(const gl::StageTimes& times);
-  void handle_events(std::int64_t now);
+  void handle_events();
   void begin_session(std::shared_ptr<const session::Saved> saved);
   void begin_feed();
   int relayed_viewers() const { return publisher_ ? publisher_->audience().viewers() : 0; }

@@ -10,6 +10,9 @@ namespace clothlab::relay {
 
 namespace {
 
+/// Time for viewers' requests at a time [us]: many must not keep frames waiting. What is left is done by the
+/// next call, which the answers to these cause.
+constexpr std::int64_t longest_turn_us = 4000;
 constexpr std::int64_t hurry_us =
     200'000;  ///< the least time between two wants, but for those of new viewers
 /// Before the name, as JSON, of the collider whose mesh is in an answer.
@@ -67,7 +70,7 @@ void Feed::pump(std::int64_t now) {
   do {
     exchange_.take_commands(commands_, session::Clock::now());
     for (session::Command& command : commands_) carry_out(command, now);
-  } while (!commands_.empty());
+  } while (!commands_.empty() && session::now_us() - now < longest_turn_us);
   if (now >= want_due_) send_want(now);
   look_for_silence(now);
 }

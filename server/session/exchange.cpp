@@ -14,41 +14,47 @@ JsonText text_of(const json& value) {
   return std::make_shared<const std::string>(value.dump(-1, ' ', false, json::error_handler_t::replace));
 }
 
-std::optional<Exchange::Awaited> Exchange::answer_to(const Command& command) {
-  const auto* reach = std::get_if<ReachScene>(&command.what);
-  if (command.ticket.id || reach || std::holds_alternative<Export>(command.what))
-    return Awaited{command.ticket, reach ? std::optional(reach->job) : std::nullopt};
-  return std::nullopt;
+void Exchange::await_answer(Ticket ticket, std::optional<std::uint64_t> job, bool exports) {
+  if (job)
+    awaited_jobs_[*job] = std::move(ticket);
+  else if (ticket.id || exports)
+    awaited_[ticket.asker].push_back(std::move(ticket));
 }
 
 void Exchange::remove_awaited(const Event& event) {
-  const auto erase = [&](auto is_it) {
-    const auto found = std::find_if(awaited_.begin(), awaited_.end(), is_it);
-    if (found != awaited_.end()) awaited_.erase(found);
+  const auto erase = [&](std::uint64_t asker, const std::optional<json>& id) {
+    const auto of = awaited_.find(asker);
+    if (of == awaited_.end()) return;
+    const auto found = std::find_if(of->second.begin(), of->second.end(),
+                                    [&](const Ticket& ticket) { return ticket.id == id; });
+    if (found != of->second.end()) of->second.erase(found);
+    if (of->second.empty()) awaited_.erase(of);
   };
   if (const auto* reply = std::get_if<Reply>(&event))
-    erase([&](const Awaited& awaited) {
-      return !awaited.job && awaited.ticket.asker == reply->ticket.asker &&
-             awaited.ticket.id == reply->ticket.id;
-    });
+    erase(reply->ticket.asker, reply->ticket.id);
   else if (const auto* captured = std::get_if<Captured>(&event))
-    erase([&](const Awaited& awaited) {
-      return !awaited.ticket.id && awaited.ticket.asker == captured->asker;
-    });
+    erase(captured->asker, std::nullopt);
   else if (const auto* reached = std::get_if<SceneReached>(&event))
-    erase([&](const Awaited& awaited) { return awaited.job == reached->job; });
+    awaited_jobs_.erase(reached->job);
 }
 
 void Exchange::give_up(const Error& error, std::vector<Event>& out) {
   const std::lock_guard lock(mutex_);
-  for (const Awaited& awaited : awaited_) {
-    if (awaited.job) out.push_back(SceneLost{*awaited.job});
-    if (awaited.ticket.id)
-      out.push_back(Reply{awaited.ticket, Refusal{Refusal::Reason::failed, error}});
-    else if (!awaited.job)
-      out.push_back(Captured{awaited.ticket.asker, {}, error});
+  const auto refuse = [&](const Ticket& ticket) {
+    out.push_back(Reply{ticket, Refusal{Refusal::Reason::failed, error}});
+  };
+  for (const auto& [job, ticket] : awaited_jobs_) {
+    out.push_back(SceneLost{job});
+    if (ticket.id) refuse(ticket);
   }
+  for (const auto& [asker, tickets] : awaited_)
+    for (const Ticket& ticket : tickets)
+      if (ticket.id)
+        refuse(ticket);
+      else
+        out.push_back(Captured{asker, {}, error});
   awaited_.clear();
+  awaited_jobs_.clear();
 }
 
 void Exchange::store_saved(std::shared_ptr<const Saved> saved) {
@@ -74,9 +80,12 @@ RecordingFacts Exchange::recording() const {
 bool Exchange::offer(Command command) {
   {
     const std::lock_guard lock(mutex_);
-    std::optional<Awaited> answer = answer_to(command);
+    const auto* reach = std::get_if<ReachScene>(&command.what);
+    const std::optional<std::uint64_t> job = reach ? std::optional(reach->job) : std::nullopt;
+    const bool exports = std::holds_alternative<Export>(command.what);
+    Ticket ticket = command.ticket;
     if (!commands_.offer(std::move(command))) return false;
-    if (answer) awaited_.push_back(std::move(*answer));
+    await_answer(std::move(ticket), job, exports);
   }
   commands_changed_.notify_one();
   return true;

@@ -11,6 +11,7 @@
 #include <functional>
 #include <glm/vec3.hpp>
 #include <list>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -192,12 +193,9 @@ class Exchange {
   void count_steps(std::uint64_t steps) { steps_.fetch_add(steps, std::memory_order_relaxed); }
 
  private:
-  /// An answer that the session still owes: to a request, to an Export, or to a job of the lab.
-  struct Awaited {
-    Ticket ticket;
-    std::optional<std::uint64_t> job;
-  };
-  static std::optional<Awaited> answer_to(const Command& command);
+  /// Notes the answer that the session will owe for a command, if it will: to a request, to an Export, or to
+  /// a job of the lab.
+  void await_answer(Ticket ticket, std::optional<std::uint64_t> job, bool exports);
   void remove_awaited(const Event& event);
   void hold_events();
   void release_events();  ///< allocates nothing, as it must not fail
@@ -210,7 +208,10 @@ class Exchange {
   bool holding_ = false;          ///< a batch is open
   std::ptrdiff_t held_from_ = 0;  ///< index of its first event; 0 if none is open
   std::array<stream::SharedMessage, form_count> frames_;
-  std::list<Awaited> awaited_;  ///< in the order of asking, so the next to be answered is near the front
+  /// The requests and Exports that are to be answered, by asker, in the order of asking: the next one is near
+  /// the front, however many wait.
+  std::map<std::uint64_t, std::list<Ticket>> awaited_;
+  std::map<std::uint64_t, Ticket> awaited_jobs_;  ///< jobs of the lab that are to be answered
   std::shared_ptr<const Saved> saved_;
   RecordingFacts recording_;
   bool stopping_ = false;

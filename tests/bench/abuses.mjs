@@ -178,8 +178,8 @@ export const bursts = {
   },
   "crowd: lab.export of a map": async (server) => {
     const client = await asOperator(server);
-    const { job } = await client.request("lab.stability", { methods: ["explicit_euler", "rk4"], columns: 41 });
-    await client.notification("lab.result", (result) => result.job === job && result.done);
+    const { job } = await client.request("lab.stability", { methods: ["symplectic_euler"], columns: 8 });
+    await client.notification("lab.result", ({ job: of, state }) => of === job && state === "finished");
     client.receive = () => {};
     const text = call("lab.export", { job, format: "svg" });
     setInterval(() => {
