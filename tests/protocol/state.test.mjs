@@ -310,7 +310,7 @@ test("a viewer may open what is kept, after a restart too, and nothing else", as
   assert.deepEqual(readdirSync(kept).sort(), ["main.session", "other.session"]);
 });
 
-test("a document that patches make larger than a client can get is refused with its size, and the one before is kept over restarts", async () => {
+test("a document that patches make too large for a client is refused with its size, and the one before is kept", async () => {
   const kept = folder();
   let server = await Server.start("--state-dir", kept);
   let client = await Client.connect(server);
