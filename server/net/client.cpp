@@ -127,7 +127,7 @@ void Client::refuse_too_long(std::size_t most) {
 }
 
 // Whether a message is a mesh.upload is known only once all of it is read; until then it is enough that it
-// says so before it is too long for any other. `handle` refuses a long one of another method.
+// says so before it is too long for any other. `take` refuses a long one of another method.
 std::size_t Client::most_bytes(std::string_view data) {
   const auto usual = static_cast<std::size_t>(hub_.limits().message_bytes);
   if (role_ == Role::none) return std::min(std::size_t{max_unadmitted_bytes}, usual);
