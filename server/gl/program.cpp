@@ -9,6 +9,7 @@
 
 #include "server/base/data_files.h"
 #include "server/base/files.h"
+#include "server/base/pieces.h"
 
 namespace clothlab::gl {
 
@@ -157,6 +158,7 @@ Result<GLuint> compile(const std::string& path, const Defines& defines, Reads re
 }  // namespace
 
 Result<Program> Program::load(std::initializer_list<std::string> paths, const Defines& defines) {
+  between_pieces();
   if (fastest_reads() == Reads::storage)
     if (Result<Program> program = load(paths, defines, Reads::storage)) return program;
   return load(paths, defines, Reads::textures);

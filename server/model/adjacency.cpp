@@ -1,5 +1,7 @@
 #include "server/model/adjacency.h"
 
+#include "server/base/pieces.h"
+
 #include <algorithm>
 
 namespace clothlab::model {
@@ -37,7 +39,9 @@ Adjacency contact_exclusions(const Model& model) {
   Adjacency result;
   result.offsets.push_back(0);
   std::vector<Index> others;
+  Pieces pieces;
   for (Index i = 0; i < model.vertex_count(); ++i) {
+    pieces.next();
     others.clear();
     model.elements.each([&](const auto& batch) {
       batch.at(i, [&](const auto& element, std::size_t) {
@@ -56,7 +60,10 @@ Adjacency contact_exclusions(const Model& model) {
 }  // namespace
 
 void list_neighbours(Model& model, bool contacts) {
-  model.elements.each_of_all([&](auto& batch) { batch.at_vertex = corners_at(model.vertex_count(), batch); });
+  model.elements.each_of_all([&](auto& batch) {
+    between_pieces();
+    batch.at_vertex = corners_at(model.vertex_count(), batch);
+  });
   if (contacts) model.contact_exclusions = contact_exclusions(model);
   model.vertex_triangles =
       adjacency(model.vertex_count(), model.triangles, [](const auto& corners) { return corners; });

@@ -1,5 +1,7 @@
 #include "server/model/bending_pairs.h"
 
+#include "server/base/pieces.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -20,6 +22,7 @@ void PairSum::merge() {
     return std::pair(p.a, p.b) < std::pair(q.a, q.b);
   };
   std::stable_sort(pairs_.begin(), pairs_.end(), before);
+  between_pieces();
   std::size_t kept = 0;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     if (kept > 0 && pairs_[kept - 1].a == pairs_[i].a && pairs_[kept - 1].b == pairs_[i].b)

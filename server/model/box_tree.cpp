@@ -1,4 +1,5 @@
 #include "server/model/box_tree.h"
+#include "server/base/pieces.h"
 
 #include <algorithm>
 #include <glm/common.hpp>
@@ -22,7 +23,12 @@ BoxTree::BoxTree(const std::vector<Bounds>& boxes) : boxes_(boxes), order_(boxes
   if (boxes.empty()) return;
   std::iota(order_.begin(), order_.end(), 0u);
   nodes_.push_back({{}, 0, 0, static_cast<std::uint32_t>(boxes.size())});
-  for (std::uint32_t node = 0; node < nodes_.size(); ++node) split(node);
+  Pieces pieces;
+  for (std::uint32_t node = 0; node < nodes_.size(); ++node) {
+    pieces.next();
+    if (nodes_[node].count > 10000) between_pieces();
+    split(node);
+  }
 }
 
 /// Sets the node's bounds, and halves its boxes along its longest side if they are too many for a leaf.

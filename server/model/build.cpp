@@ -6,6 +6,7 @@
 #include <glm/matrix.hpp>
 #include <utility>
 
+#include "server/base/pieces.h"
 #include "server/base/text.h"
 #include "server/model/adjacency.h"
 #include "server/model/bodies.h"
@@ -118,6 +119,7 @@ Status add_cloth(Model& model, const scene::Cloth& cloth, bool sweeps_elements) 
   const MeshArrays arrays =
       grid ? grid_arrays(*grid, cloth.material)
            : triangle_mesh_arrays(std::get<scene::TriangleMesh>(cloth.mesh), cloth.material);
+  between_pieces();
   const std::vector<dvec3> position = scene::placed(cloth.transform, arrays.position);
   std::vector<double> mass = masses(cloth, arrays, position);
   const auto massless = std::find_if(mass.begin(), mass.end(), [](double m) { return !(m >= least_mass); });
@@ -129,6 +131,7 @@ Status add_cloth(Model& model, const scene::Cloth& cloth, bool sweeps_elements) 
         "with area_density every vertex belongs to triangles with an area, and weighs " +
             with_significant_digits(least_mass, 3) + " kg or more"};
 
+  between_pieces();
   std::vector<std::int32_t> pin_motion(position.size(), not_pinned);
   for (std::size_t i = 0; i < cloth.pins.size(); ++i) {
     const auto held =
@@ -144,18 +147,21 @@ Status add_cloth(Model& model, const scene::Cloth& cloth, bool sweeps_elements) 
     for (const Index vertex : *held) mass[vertex] += cloth.weights[i].mass;
   }
 
+  between_pieces();
   const Index first = model.vertex_count();
   ClothRange range{first, static_cast<Index>(position.size()), model.triangle_count(),
                    static_cast<Index>(arrays.triangles.size()), mean_edge_length(arrays, position)};
   for (const auto& [a, b, c] : arrays.triangles) model.triangles.push_back({a + first, b + first, c + first});
   const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
   append(model.rest_position, position);
+  between_pieces();
   append(model.start_position, start_positions(cloth.start, position, pin_motion));
   append(model.mass, mass);
   append(model.pin_motion, pin_motion);
   append(model.texture_coordinates, arrays.texture_coordinates);
   model.vertex_cloth.resize(model.rest_position.size(), cloth_index);
   model.cloths.push_back(range);
+  between_pieces();
   if (std::holds_alternative<scene::Springs>(cloth.material)) {
     add_springs(model, arrays.springs, first, cloth.transform.scale);
     return ok();
@@ -186,8 +192,11 @@ Result<Model> build(const scene::Scene& scene) {
       scene::sweeps(scene.solver.method) && !scene::sweeps_vertices(scene.solver.method);
   for (const scene::Cloth& cloth : scene.cloths)
     if (Status added = add_cloth(model, cloth, sweeps_elements); !added) return added.error();
+  between_pieces();
   add_bodies(model, scene);
+  between_pieces();
   if (Status clean = check_start(model, scene); !clean) return clean.error();
+  between_pieces();
   list_neighbours(model, scene.collides(scene::ContactKind::points));
   return model;
 }

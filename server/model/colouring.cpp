@@ -1,4 +1,5 @@
 #include "server/model/colouring.h"
+#include "server/base/pieces.h"
 
 #include <algorithm>
 #include <numeric>
@@ -59,7 +60,9 @@ template <class Neighbours>
 void colour_greedily(const std::vector<Index>& queue, Neighbours neighbours, std::vector<Index>& colour) {
   std::vector<Index> members;
   std::vector<char> taken;
+  Pieces pieces;
   for (const Index item : queue) {
+    pieces.next();
     taken.assign(members.size() + 1, 0);
     neighbours(item, [&](Index other) {
       if (colour[other] != uncoloured) taken[colour[other]] = 1;
@@ -71,6 +74,7 @@ void colour_greedily(const std::vector<Index>& queue, Neighbours neighbours, std
 /// Groups the items by colour; colours without items are left out.
 Colouring group(const std::vector<Index>& colour) {
   const Index count = colour.empty() ? 0 : *std::max_element(colour.begin(), colour.end()) + 1;
+  between_pieces();
   std::vector<std::vector<Index>> groups(count);
   for (Index item = 0; item < colour.size(); ++item) groups[colour[item]].push_back(item);
   Colouring result;
@@ -91,7 +95,9 @@ template <class Law>
 Colouring colour_batch(const Model& model, const scene::Scene& scene, const Batch<Law>& batch) {
   constexpr auto corners = static_cast<Index>(Element<Law>::corners);
   std::vector<Index> colour(batch.size(), uncoloured), queue;
+  Pieces pieces;
   for (Index i = 0; i < batch.size(); ++i) {
+    pieces.next();
     const Index cloth = model.vertex_cloth[batch[i].vertices[0]];
     if (const scene::Grid* grid = grid_of(scene, cloth))
       colour[i] = grid_colour(*grid, model.cloths[cloth].first_vertex, batch[i]);
@@ -118,7 +124,9 @@ bool counts(const Model& model, const Element<Law>& element) {
 /// Takes the colours from the grids in which an element joins two vertices of one colour.
 void drop_clashes(const Model& model, const scene::Scene& scene, std::vector<Index>& colour) {
   std::vector<char> clashes(scene.cloths.size(), 0);
+  Pieces pieces;
   each_element(model.elements, [&](const auto& element) {
+    pieces.next();
     if (!counts(model, element)) return;
     for (std::size_t b = 1; b < element.vertices.size(); ++b)
       for (std::size_t a = 0; a < b; ++a)
@@ -157,6 +165,7 @@ Colouring colour_vertices(const Model& model, const scene::Scene& scene) {
       if (counts(model, element))
         for (const Index vertex : element.vertices) ++degree[vertex];
   });
+  between_pieces();
   std::stable_sort(queue.begin(), queue.end(), [&](Index a, Index b) { return degree[a] > degree[b]; });
   const auto neighbours = [&](Index vertex, auto visit) {
     model.elements.each([&](const auto& batch) {

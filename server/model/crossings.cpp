@@ -4,6 +4,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "server/base/pieces.h"
 #include "server/model/box_tree.h"
 #include "server/model/orientation.h"
 
@@ -88,6 +89,7 @@ Surfaces surfaces_of(const Model& model, Bodies bodies) {
   for (const auto& [a, b, c] : surfaces.triangles)
     for (const auto& [p, q] : {std::array{a, b}, {b, c}, {c, a}})
       surfaces.edges.push_back({std::min(p, q), std::max(p, q)});
+  between_pieces();
   std::sort(surfaces.edges.begin(), surfaces.edges.end());
   surfaces.edges.erase(std::unique(surfaces.edges.begin(), surfaces.edges.end()), surfaces.edges.end());
   return surfaces;
@@ -98,10 +100,13 @@ Crossings find_crossings(const Surfaces& surfaces, const std::vector<dvec3>& x, 
   boxes.reserve(surfaces.triangles.size());
   for (const auto& [a, b, c] : surfaces.triangles)
     boxes.push_back({glm::min(x[a], glm::min(x[b], x[c])), glm::max(x[a], glm::max(x[b], x[c]))});
+  between_pieces();
   const BoxTree tree(boxes);
   Crossings found;
   std::vector<std::uint32_t> near;
+  Pieces pieces;
   for (const auto& [i, j] : surfaces.edges) {
+    pieces.next();
     near.clear();
     tree.overlapping({glm::min(x[i], x[j]), glm::max(x[i], x[j])}, near);
     std::sort(near.begin(), near.end());

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "server/base/pieces.h"
 #include "server/base/text.h"
 #include "server/model/bodies.h"
 #include "server/model/box_tree.h"
@@ -43,7 +44,9 @@ class Search {
       boxes.push_back({glm::min(x_[a], glm::min(x_[b], x_[c])), glm::max(x_[a], glm::max(x_[b], x_[c]))});
     const BoxTree tree(boxes);
     std::vector<Index> others;
+    Pieces pieces;
     for (Index i = 0; i < boxes.size(); ++i) {
+      pieces.next();
       const Bounds& box = boxes[i];
       const double reach =
           needed(glm::max(glm::abs(box.low), glm::abs(box.high)), glm::distance(box.low, box.high));

@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "server/base/pieces.h"
 #include "server/model/adjacency.h"
 
 namespace clothlab::model {
@@ -79,6 +80,7 @@ class CuthillMcKee {
 
 template <class Value>
 void permute(std::vector<Value>& values, const std::vector<Index>& places) {
+  between_pieces();
   std::vector<Value> moved(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) moved[places[i]] = values[i];
   values = std::move(moved);
@@ -87,6 +89,7 @@ void permute(std::vector<Value>& values, const std::vector<Index>& places) {
 /// Sorts the elements of one cloth by their vertices: sweeps then go through memory in order.
 template <class Law>
 void sort_elements(Batch<Law>& batch, const ClothRange& cloth) {
+  between_pieces();
   const auto first = [](const Element<Law>& element, Index vertex) { return element.vertices[0] < vertex; };
   const auto begin = std::lower_bound(batch.begin(), batch.end(), cloth.first_vertex, first);
   const auto end = std::lower_bound(begin, batch.end(), cloth.first_vertex + cloth.vertex_count, first);

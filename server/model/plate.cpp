@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "server/base/pieces.h"
 #include "server/model/slope_form.h"
 #include "server/model/unfold.h"
 
@@ -158,7 +159,9 @@ std::vector<CurvatureRows> curvature_rows(const Triangles& triangles, const std:
   const Plate plate{triangles, flat, held, stiffness, neighbours(triangles)};
   std::vector<CurvatureRows> result;
   if (!(stiffness.warp > 0.0 || stiffness.weft > 0.0 || stiffness.twist > 0.0)) return result;
+  Pieces pieces;
   for (Index triangle = 0; triangle < triangles.size(); ++triangle) {
+    pieces.next();
     if (plate.clamp(triangle)) continue;
     const auto [nodes, hinges, moment] = bent_triangle(plate, triangle);
     const auto lower = root(moment);
@@ -177,7 +180,11 @@ std::vector<BendingPair> bending_pairs(const Triangles& triangles, const std::ve
                                        const std::vector<char>& held, const PlateStiffness& stiffness) {
   const Plate plate{triangles, flat, held, stiffness, neighbours(triangles)};
   PairSum pairs;
-  for (Index triangle = 0; triangle < triangles.size(); ++triangle) add_triangle(plate, triangle, pairs);
+  Pieces pieces;
+  for (Index triangle = 0; triangle < triangles.size(); ++triangle) {
+    pieces.next();
+    add_triangle(plate, triangle, pairs);
+  }
   return std::move(pairs).take();
 }
 

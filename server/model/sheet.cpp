@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "server/base/pieces.h"
 #include "server/model/shell.h"
 
 namespace clothlab::model {
@@ -57,8 +58,10 @@ bool is_curved(const Model& model, Index first_triangle) {
   constexpr double most_angle = 1e-3;
   std::map<std::pair<Index, Index>, dvec3> at_edge;  // from the edge into the first triangle there
   const std::vector<dvec3>& rest = model.rest_position;
+  Pieces pieces;
   for (Index t = first_triangle; t < model.triangle_count(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
+      pieces.next();
       const Index a = model.triangles[t][k], b = model.triangles[t][(k + 1) % 3];
       const dvec3 along = glm::normalize(rest[b] - rest[a]),
                   across = rest[model.triangles[t][(k + 2) % 3]] - rest[a];
@@ -77,7 +80,9 @@ Result<std::vector<FlatTriangle>> rest_shapes(const Model& model, const scene::C
   std::vector<FlatTriangle> flat;
   const std::vector<FlatTriangle>* pattern = pattern_of(cloth);
   const std::vector<dvec3>& rest = model.rest_position;
+  Pieces pieces;
   for (Index t = first_triangle; t < model.triangle_count(); ++t) {
+    pieces.next();
     if (pattern) {
       flat.push_back(cut_out((*pattern)[t - first_triangle], cloth.transform.scale, grain));
       continue;
@@ -161,7 +166,9 @@ Status add_sheet(Model& model, const scene::Cloth& cloth, const TextureAxes& axe
   const std::vector<FlatTriangle>& flat = *shapes;
   std::vector<std::array<Index, 3>> triangles;
   Batch<elements::Membrane>& membranes = model.elements.of<elements::Membrane>();
+  Pieces pieces;
   for (std::size_t i = 0; i < flat.size(); ++i) {
+    pieces.next();
     const auto& [a, b, c] = model.triangles[first_triangle + i];
     membranes.push_back({{a, b, c}, membrane(flat[i], material)});
     triangles.push_back({a - first, b - first, c - first});

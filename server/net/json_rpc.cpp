@@ -63,6 +63,8 @@ RpcError rpc_error(const session::Refusal& refusal) {
       return {error_diverged, refusal.error.text(), nullptr};
     case Reason::nothing_there:
       return {error_nothing_there, refusal.error.text(), nullptr};
+    case Reason::given_up:
+      return {error_given_up, refusal.error.text(), nullptr};
     case Reason::over_limit:
       return {error_over_limit, refusal.error.text(), nullptr};
     case Reason::failed:

@@ -27,6 +27,7 @@ enum ErrorCode : int {
   error_revision_conflict = -32003,
   error_diverged = -32004,
   error_nothing_there = -32005,  ///< nothing to undo or redo
+  error_given_up = -32006,       ///< a change was given up while it was built
 };
 
 struct RpcError {

@@ -103,6 +103,7 @@ void Room::leave(Client& client) {
   clients_.erase(std::remove(clients_.begin(), clients_.end(), &client), clients_.end());
   hub_.lab().client_left(client.id());
   let_go(client);
+  if (session_) session_->exchange().leave(client.id());
   demand_changed(std::nullopt);
   watchers_changed();
 }

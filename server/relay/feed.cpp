@@ -67,10 +67,11 @@ Feed::~Feed() {
 }
 
 void Feed::pump(std::int64_t now) {
-  do {
-    exchange_.take_commands(commands_, session::Clock::now());
-    for (session::Command& command : commands_) carry_out(command, now);
-  } while (!commands_.empty() && session::now_us() - now < longest_turn_us);
+  while (session::now_us() - now < longest_turn_us) {
+    std::optional<session::Command> command = exchange_.next_command();
+    if (!command) break;
+    carry_out(*command, now);
+  }
   if (now >= want_due_) send_want(now);
   look_for_silence(now);
 }

@@ -63,7 +63,6 @@ class Feed final : public session::Source {
   std::string session_;
   Want want_;
   Deliver deliver_;
-  std::vector<session::Command> commands_;
   std::int64_t begun_ = 0, heard_ = 0;      ///< when made, and when the server answered last [us]
   std::int64_t wanted_ = 0, want_due_ = 0;  ///< when the want was sent last, and when it is due [us]
   bool started_ = false, failed_ = false, silent_ = false;

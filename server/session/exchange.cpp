@@ -21,19 +21,20 @@ void Exchange::await_answer(Ticket ticket, std::optional<std::uint64_t> job, boo
     awaited_[ticket.asker].push_back(std::move(ticket));
 }
 
+void Exchange::remove_awaited(const Ticket& answered) {
+  const auto of = awaited_.find(answered.asker);
+  if (of == awaited_.end()) return;
+  const auto found = std::find_if(of->second.begin(), of->second.end(),
+                                  [&](const Ticket& ticket) { return ticket.id == answered.id; });
+  if (found != of->second.end()) of->second.erase(found);
+  if (of->second.empty()) awaited_.erase(of);
+}
+
 void Exchange::remove_awaited(const Event& event) {
-  const auto erase = [&](std::uint64_t asker, const std::optional<json>& id) {
-    const auto of = awaited_.find(asker);
-    if (of == awaited_.end()) return;
-    const auto found = std::find_if(of->second.begin(), of->second.end(),
-                                    [&](const Ticket& ticket) { return ticket.id == id; });
-    if (found != of->second.end()) of->second.erase(found);
-    if (of->second.empty()) awaited_.erase(of);
-  };
   if (const auto* reply = std::get_if<Reply>(&event))
-    erase(reply->ticket.asker, reply->ticket.id);
+    remove_awaited(reply->ticket);
   else if (const auto* captured = std::get_if<Captured>(&event))
-    erase(captured->asker, std::nullopt);
+    remove_awaited(Ticket{captured->asker, std::nullopt});
   else if (const auto* reached = std::get_if<SceneReached>(&event))
     awaited_jobs_.erase(reached->job);
 }
@@ -99,6 +100,11 @@ void Exchange::post(Command command) {
   commands_changed_.notify_one();
 }
 
+void Exchange::leave(std::uint64_t asker) {
+  const std::lock_guard lock(mutex_);
+  left_[asker] = Clock::now();
+}
+
 void Exchange::stop() {
   {
     const std::lock_guard lock(mutex_);
@@ -125,12 +131,48 @@ stream::SharedMessage Exchange::frame(stream::Form form) const {
   return frames_[form.index()];
 }
 
-bool Exchange::take_commands(std::vector<Command>& out, Clock::time_point until) {
-  out.clear();
+bool Exchange::wait_for_command(Clock::time_point until) {
   std::unique_lock lock(mutex_);
   commands_changed_.wait_until(lock, until, [&] { return stopping_ || !commands_.empty(); });
-  while (!commands_.empty() && out.size() < commands_a_turn) out.push_back(commands_.pop());
   return !stopping_;
+}
+
+std::optional<Command> Exchange::next_command() {
+  const std::lock_guard lock(mutex_);
+  for (auto left = left_.begin(); left != left_.end();) {
+    if (Clock::now() - left->second < leave_time) {
+      ++left;
+      continue;
+    }
+    for (const Command& dropped : commands_.drop(left->first)) remove_awaited(dropped.ticket);
+    left = left_.erase(left);
+  }
+  if (commands_.empty()) return std::nullopt;
+  return commands_.pop();
+}
+
+void Exchange::spent(Clock::duration time) {
+  const std::lock_guard lock(mutex_);
+  commands_.spent(time);
+}
+
+std::optional<Exchange::GiveUp> Exchange::to_give_up(std::uint64_t asker, bool an_undo) const {
+  const std::lock_guard lock(mutex_);
+  if (stopping_) return GiveUp{};
+  if (const auto left = left_.find(asker); left != left_.end() && Clock::now() - left->second >= leave_time)
+    return GiveUp{GiveUp::Why::left};
+  for (const Command* next : commands_.next_changes()) {
+    const auto* travel = std::get_if<TravelHistory>(&next->what);
+    if (travel && travel->direction == Direction::undo && !an_undo)
+      return GiveUp{GiveUp::Why::undone, next->ticket};
+    if (std::holds_alternative<LoadScene>(next->what)) return GiveUp{GiveUp::Why::loaded, next->ticket};
+  }
+  return std::nullopt;
+}
+
+bool Exchange::stopping() const {
+  const std::lock_guard lock(mutex_);
+  return stopping_;
 }
 
 void Exchange::emit(Event event) {

@@ -141,7 +141,8 @@ using Event = std::variant<Started, Failed, Reply, SceneChanged, HistoryChanged,
 
 class Exchange {
  public:
-  static constexpr std::size_t commands_a_turn = 8;
+  /// What a client has sent just before it left is still done, if that begins and ends within this time.
+  static constexpr std::chrono::seconds leave_time{1};
 
   /// `wake` is called on the session's thread after each new event or frame; it must not block.
   explicit Exchange(std::function<void()> wake) : wake_(std::move(wake)) {}
@@ -151,6 +152,8 @@ class Exchange {
   [[nodiscard]] bool offer(Command command);
   /// Adds a command of the server itself; see CommandQueue::post.
   void post(Command command);
+  /// A client has left: what it still asks for is forgotten after `leave_time`.
+  void leave(std::uint64_t asker);
   void stop();
   void take_events(std::vector<Event>& out);  ///< `out` is emptied first
   stream::SharedMessage frame(stream::Form form) const;
@@ -164,9 +167,20 @@ class Exchange {
   std::uint64_t steps() const { return steps_.load(std::memory_order_relaxed); }
 
   // For the session's thread:
-  /// Waits for a command until `until`. False: the session has to end. `out` is emptied first, and gets at
-  /// most `commands_a_turn`, so that a session with many commands still ends, beats and makes frames in time.
-  bool take_commands(std::vector<Command>& out, Clock::time_point until);
+  /// Waits for a command until `until`. False: the session has to end.
+  bool wait_for_command(Clock::time_point until);
+  /// The next command; none: none waits.
+  std::optional<Command> next_command();
+  /// The last command taken has needed so long.
+  void spent(Clock::duration time);
+  /// Why a change of the scene that `asker` has asked for, and that is being built, is to be given up; none:
+  /// it goes on.
+  struct GiveUp {
+    enum class Why { stopping, left, undone, loaded } why = Why::stopping;
+    Ticket by{};  ///< of the scene.undo, or of the scene.load
+  };
+  std::optional<GiveUp> to_give_up(std::uint64_t asker, bool an_undo) const;
+  bool stopping() const;
   void emit(Event event);
   /// While it lives, events are held back; at its end the service thread gets them all at once. So a viewer
   /// who comes when a change has been answered is greeted with the changed scene. Not nested.
@@ -196,6 +210,7 @@ class Exchange {
   /// Notes the answer that the session will owe for a command, if it will: to a request, to an Export, or to
   /// a job of the lab.
   void await_answer(Ticket ticket, std::optional<std::uint64_t> job, bool exports);
+  void remove_awaited(const Ticket& answered);
   void remove_awaited(const Event& event);
   void hold_events();
   void release_events();  ///< allocates nothing, as it must not fail
@@ -205,8 +220,9 @@ class Exchange {
   std::condition_variable commands_changed_;
   CommandQueue commands_;
   std::vector<Event> events_;
-  bool holding_ = false;          ///< a batch is open
-  std::ptrdiff_t held_from_ = 0;  ///< index of its first event; 0 if none is open
+  bool holding_ = false;                             ///< a batch is open
+  std::ptrdiff_t held_from_ = 0;                     ///< index of its first event; 0 if none is open
+  std::map<std::uint64_t, Clock::time_point> left_;  ///< askers that have left with commands open, and when
   std::array<stream::SharedMessage, form_count> frames_;
   /// The requests and Exports that are to be answered, by asker, in the order of asking: the next one is near
   /// the front, however many wait.

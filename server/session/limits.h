@@ -1,6 +1,7 @@
 // The limits of a session: its scene's size, its waiting commands, and how often it checks and reports.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <memory>
 
@@ -19,10 +20,14 @@ struct Limits {
   std::shared_ptr<MemoryBudget> memory{};
   /// Of what a session can go back to: half for states, a quarter each for what changed the run and for undo.
   std::size_t past_bytes = 64 << 20;
+  /// A change of the scene that is built within this time is not given up.
+  std::chrono::milliseconds kept_building{1000};
   int unwatched_seconds = 30;  ///< without viewers for so long, a session stops stepping until one comes [s]
 };
 
 inline constexpr std::size_t max_waiting_commands = 1024;                 ///< per client
+inline constexpr int commands_a_turn = 8;                                 ///< at most
+inline constexpr std::chrono::milliseconds longest_commands{10};          ///< of a turn, or one command
 inline constexpr double min_speed = 0.01, max_speed = 100;                ///< simulated seconds per second
 inline constexpr double min_recording_rate = 1, max_recording_rate = 60;  ///< frames per second
 inline constexpr std::size_t max_inspected_elements = 65536;              ///< in an answer

@@ -15,6 +15,7 @@ struct Refusal {
     other_revision,  ///< the request was made for another revision of the scene than `revision`
     over_limit,      ///< `error` says of what there is too much
     nothing_there,   ///< there is nothing to undo or redo
+    given_up,        ///< the change was given up while it was built; `error` says why
     diverged,        ///< the simulation has blown up, and waits for a change
     failed           ///< the session could not do it; `error` says why
   };

@@ -5,6 +5,7 @@
 
 #include "server/base/files.h"
 #include "server/base/log.h"
+#include "server/base/pieces.h"
 #include "server/gl/context.h"
 #include "server/session/fault.h"
 #include "server/session/keeper.h"
@@ -84,6 +85,7 @@ Session::Session(Beginning beginning, const Limits& limits, std::optional<int> g
     } catch (const std::bad_alloc&) {
       exchange_.emit(
           Failed{{"session", "there was not enough memory", "a smaller scene, or fewer sessions"}});
+    } catch (const GivenUp&) {  // the server stops
     } catch (const std::exception& error) {
       exchange_.emit(
           Failed{{"session", error.what(), "load the scene again; please report it if it happens twice"}});
@@ -100,14 +102,21 @@ void Session::run(Beginning& beginning, const Limits& limits, std::optional<int>
   // First a context without a scene, so that a lack of OpenGL is not reported as a fault of the scene.
   if (const Result<std::unique_ptr<gl::Context>> any = gl::Context::create(gpu); !any)
     return exchange_.emit(Failed{any.error(), true});
-  Result<std::unique_ptr<Stepper>> stepper = begin(beginning, limits, gpu, exchange_);
+  Result<std::unique_ptr<Stepper>> stepper = std::unique_ptr<Stepper>();
+  const PieceWatch watch([&] {
+    exchange_.beat();
+    if (*stepper)
+      (*stepper)->look_up();
+    else if (exchange_.stopping())
+      throw GivenUp();
+  });
+  stepper = begin(beginning, limits, gpu, exchange_);
   if (!stepper) return exchange_.emit(Failed{stepper.error()});
   exchange_.emit(Started{(*stepper)->renderer()});
   Keeper keeper(exchange_, beginning.file, beginning.meshes);
-  std::vector<Command> commands;
   Clock::time_point next = Clock::now();
-  while (exchange_.take_commands(commands, next)) {
-    next = (*stepper)->turn(commands);
+  while (exchange_.wait_for_command(next)) {
+    next = (*stepper)->turn();
     provoke_fault(beginning.name, exchange_.steps());
     if ((*stepper)->lost() || fault_due(Fault::context_lost, beginning.name, exchange_.steps()))
       return exchange_.emit(Failed{{"OpenGL", "the device was reset, and all that was on it is lost",

@@ -93,16 +93,14 @@ Result<MemoryBudget::Reservation> Stepper::place_for(const scene::Scene& scene) 
   return sim::reserve_memory(limits_.memory, scene);
 }
 
-Clock::time_point Stepper::turn(std::vector<Command>& commands) {
+Clock::time_point Stepper::turn() {
   exchange_.beat();
-  for (Command& command : commands) waiting_commands_.push_back(std::move(command));
-  for (; !replay_ && !waiting_commands_.empty(); waiting_commands_.pop_front())
-    handle(waiting_commands_.front());
+  handle_commands();
   const Clock::time_point now = Clock::now();
   if (watchers_ > 0) last_watched_ = now;
   if (replay_) {
     advance(now, 0);
-    return replay_ || !waiting_commands_.empty() ? Clock::now() : next_turn(Clock::now());
+    return replay_ ? Clock::now() : next_turn(Clock::now());
   }
   {
     // Not on a GPU, whose driver shares it out; nor in the first step after a change, in which software

@@ -10,6 +10,7 @@
 #include <set>
 #include <vector>
 
+#include "server/base/pieces.h"
 #include "server/scene/document.h"
 #include "server/session/automatic.h"
 #include "server/session/engine.h"
@@ -49,9 +50,12 @@ class Stepper {
   /// Rises with every change of what `saved` returns.
   std::uint64_t version() const { return state_version_ + revision_; }
 
-  /// Handles `commands`, then does the work that is due. Returns the time of the next turn, unless a command
-  /// comes before.
-  Clock::time_point turn(std::vector<Command>& commands);
+  /// Handles commands that wait, then does the work that is due. Returns the time of the next turn, unless a
+  /// command comes before.
+  Clock::time_point turn();
+  /// Called between the pieces of what this thread does. Throws GivenUp if a change of the scene is being
+  /// built that nobody wants any more.
+  void look_up();
 
  private:
   struct Waiting {  // a sim.step that is not finished
@@ -87,6 +91,7 @@ class Stepper {
   Result<MemoryBudget::Reservation> place_for(const scene::Scene& scene) const;
 
   // In stepper_commands.cpp. Each `perform` answers its ticket if that has an id.
+  void handle_commands();
   void handle(Command& command);
   void perform(Play&, const Ticket& ticket);
   void perform(Pause&, const Ticket& ticket);
@@ -131,8 +136,20 @@ class Stepper {
   bool outdated(std::optional<std::uint64_t> revision, const Ticket& ticket);
   Result<std::optional<json>> keep_stable(json& patch, scene::Document& document) const;
   clothlab::Status check_size(const scene::Document& document) const;
+  /// What `build` makes, or why it was given up: then nothing has changed.
+  template <class Build>
+  auto built(const Build& build) -> decltype(build()) {
+    const MayGiveUp may;
+    try {
+      return build();
+    } catch (const GivenUp&) {
+      return *under_way_.given_up;
+    }
+  }
+  Refusal refused(Error error) const;
   Result<sim::ChangeDepth> travelled(const History::Change& change, Direction direction);
   Result<sim::ChangeDepth> bring(scene::Document document, bool anew);
+  Result<sim::ChangeDepth> engine_for(const scene::Document& document, bool anew);
   void remember(History::Change change);
   void announce_history();
   void tell_if_rebuilt(sim::ChangeDepth depth);
@@ -223,7 +240,6 @@ class Stepper {
 
   Timeline timeline_;
   std::optional<Replay> replay_;
-  std::deque<Command> waiting_commands_;  ///< until a replay has ended
   Recorder recorder_{exchange_, static_cast<std::size_t>(limits_.recording_bytes), limits_.memory};
   std::uint32_t recorded_revision_ = 0;   ///< of the mesh that the recording has
   std::vector<Ticket> ending_recording_;  ///< requests record.stop that wait for the end of the recording
@@ -237,6 +253,17 @@ class Stepper {
     Clock::time_point at{};
   } contacts_;
   JsonText scene_text_;  ///< see scene_text
+
+  /// The command under way.
+  struct UnderWay {
+    Ticket ticket{};
+    bool an_undo = false;
+    Clock::time_point begun{}, next_look{};
+    std::string name{};               ///< what the history will call the change
+    std::optional<Error> given_up{};  ///< why it was
+  } under_way_;
+  /// The scene.undo that has given up a change while it was built, and what that change was called.
+  std::optional<std::pair<Ticket, std::string>> undone_while_built_;
   std::uint64_t scene_text_revision_ = 0;
 
   std::uint64_t revision_ = 1;

@@ -2,12 +2,58 @@
 #include <new>
 #include <utility>
 
+#include "server/base/text.h"
 #include "server/model/constraint_gains.h"
 #include "server/model/thickness.h"
 #include "server/scene/named_fabric.h"
 #include "server/session/stepper.h"
 
 namespace clothlab::session {
+
+using std::chrono::milliseconds;
+
+/// While a replay is under way, commands wait.
+void Stepper::handle_commands() {
+  const Clock::time_point begun = Clock::now();
+  Clock::time_point now = begun;
+  for (int handled = 0; handled < commands_a_turn && !replay_ && now - begun < longest_commands; ++handled) {
+    std::optional<Command> command = exchange_.next_command();
+    if (!command) return;
+    under_way_ = {};
+    under_way_.ticket = command->ticket;
+    under_way_.begun = now;
+    const auto* travel = std::get_if<TravelHistory>(&command->what);
+    under_way_.an_undo = travel && travel->direction == Direction::undo;
+    handle(*command);
+    now = Clock::now();
+    exchange_.spent(now - under_way_.begun);
+  }
+}
+
+void Stepper::look_up() {
+  constexpr milliseconds between_looks{20};
+  const Clock::time_point now = Clock::now();
+  if (!may_give_up() || now < under_way_.next_look) return;
+  under_way_.next_look = now + between_looks;
+  const std::optional<Exchange::GiveUp> wish =
+      exchange_.to_give_up(under_way_.ticket.asker, under_way_.an_undo);
+  if (!wish) return;
+  using Why = Exchange::GiveUp::Why;
+  const Clock::duration worked = now - under_way_.begun;
+  if (wish->why != Why::stopping && worked < limits_.kept_building) return;
+  const char* why = wish->why == Why::stopping ? "the server stops"
+                    : wish->why == Why::left   ? "who asked for it has left"
+                    : wish->why == Why::undone ? "it was undone before it was there"
+                                               : "another scene is loaded";
+  const std::string name = under_way_.name.empty() ? "the change" : under_way_.name;
+  under_way_.given_up = Error{"",
+                              formatted("\"%s\" was given up after %.1f s of building, as %s", name.c_str(),
+                                        std::chrono::duration<double>(worked).count(), why),
+                              "send it again, and wait until it is answered"};
+  if (wish->why == Why::undone) undone_while_built_ = {wish->by, name};
+  if (wish->why == Why::left) exchange_.emit(Notice{"info", under_way_.given_up->what});
+  throw GivenUp();
+}
 
 void Stepper::handle(Command& command) {
   const Exchange::Batch batch(exchange_);

@@ -83,7 +83,7 @@ void Stepper::perform(UploadMesh& upload, const Ticket& ticket) {
   if (named.contains(upload.name)) {
     if (const clothlab::Status used = use_again(upload.name, ticket); !used) {
       meshes_->exchange(upload.name, std::move(before));
-      return reply(ticket, invalid_value(used.error()));
+      return reply(ticket, refused(used.error()));
     }
     remember(replacement({upload.name, std::move(before), *item}, ticket.asker));
   }
@@ -97,9 +97,8 @@ void Stepper::perform(UploadMesh& upload, const Ticket& ticket) {
 clothlab::Status Stepper::use_again(const std::string& mesh, const Ticket& ticket) {
   Result<scene::Document> document = scene::validate(document_.value, meshes_);
   if (!document) return document.error();
-  const Result<scene::Scene> scene = prepare(*document);
-  if (!scene) return scene.error();
-  const Result<sim::ChangeDepth> depth = change(*scene);
+  under_way_.name = "Replace mesh " + mesh;
+  const Result<sim::ChangeDepth> depth = built([&] { return engine_for(*document, false); });
   if (!depth) return depth.error();
   adopt(std::move(*document), *depth);
   announce_scene(std::nullopt, ticket.asker);

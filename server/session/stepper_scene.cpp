@@ -25,9 +25,10 @@ void Stepper::perform(LoadScene& load, const Ticket& ticket) {
                                           shortened("Load " + document->scene.name, max_change_name_bytes),
                                           ticket.asker, Clock::now());
   made.loaded = true;
+  under_way_.name = made.name;
   made.values_only = false;
   if (const Result<sim::ChangeDepth> depth = bring(std::move(*document), true); !depth)
-    return reply(ticket, invalid_value(depth.error()));
+    return reply(ticket, refused(depth.error()));
   reply(ticket, json{{"revision", revision_}, {"applies", sim::name(sim::ChangeDepth::cloth)}});
   announce_scene(std::nullopt, ticket.asker);
   remember(std::move(made));
@@ -52,16 +53,17 @@ void Stepper::perform(PatchScene& patch, const Ticket& ticket) {
   if (!document) return reply(ticket, invalid_value(document.error()));
   json answer = json::object();
   if (patch.keep_stable) {
-    const Result<std::optional<json>> solver = keep_stable(patch.patch, *document);
-    if (!solver) return reply(ticket, invalid_value(solver.error()));
+    const auto solver = built([&] { return keep_stable(patch.patch, *document); });
+    if (!solver) return reply(ticket, refused(solver.error()));
     if (*solver) answer["solver"] = **solver;
   }
   if (const clothlab::Status fits = scene::check_bytes(document->value); !fits)
     return reply(ticket, invalid_value(fits.error()));
   History::Change made =
       history_.prepare(document_.value, document->value, std::move(patch.name), ticket.asker, Clock::now());
+  under_way_.name = made.name;
   const Result<sim::ChangeDepth> depth = bring(std::move(*document), false);
-  if (!depth) return reply(ticket, invalid_value(depth.error()));
+  if (!depth) return reply(ticket, refused(depth.error()));
   answer.update({{"revision", revision_}, {"applies", sim::name(*depth)}});
   reply(ticket, std::move(answer));
   announce_scene(std::move(patch.patch), ticket.asker);
@@ -99,6 +101,13 @@ void Stepper::tell_if_rebuilt(sim::ChangeDepth depth) {
 
 /// A change that cannot be taken back, as its mesh is gone, stays the next one to undo: nothing is lost.
 void Stepper::perform(TravelHistory& travel, const Ticket& ticket) {
+  if (undone_while_built_ && undone_while_built_->first.asker == ticket.asker &&
+      undone_while_built_->first.id == ticket.id) {
+    reply(ticket, json{{"revision", revision_},
+                       {"name", undone_while_built_->second},
+                       {"applies", sim::name(sim::ChangeDepth::none)}});
+    return undone_while_built_.reset();
+  }
   if (outdated(travel.revision, ticket)) return;
   const bool undo = travel.direction == Direction::undo;
   const History::Change* change = history_.next(travel.direction);
@@ -108,7 +117,7 @@ void Stepper::perform(TravelHistory& travel, const Ticket& ticket) {
                                   undo ? "change the scene first; the last " + std::to_string(max_changes) +
                                              " changes are kept"
                                        : "only what was undone can be redone, until the next change"}});
-  const std::string name = change->name;
+  const std::string name = under_way_.name = change->name;
   const std::string& way = undo ? change->back : change->forth;
   std::optional<json> patch;
   if (json step = json::parse(way, nullptr, false); step.is_array() && !change->mesh) patch = std::move(step);
@@ -116,7 +125,7 @@ void Stepper::perform(TravelHistory& travel, const Ticket& ticket) {
   if (!depth) {
     Error why = depth.error();
     why.what = (undo ? "cannot undo " : "cannot redo ") + name + ": " + why.what;
-    return reply(ticket, invalid_value(std::move(why)));
+    return reply(ticket, refused(std::move(why)));
   }
   history_.moved(travel.direction, ticket.asker);
   reply(ticket, json{{"revision", revision_}, {"name", name}, {"applies", sim::name(*depth)}});
@@ -147,14 +156,22 @@ Result<sim::ChangeDepth> Stepper::travelled(const History::Change& change, Direc
 /// Puts a valid document in the place of the present one. `anew`: the cloth starts at its beginning, however
 /// little the documents differ. On error nothing has changed.
 Result<sim::ChangeDepth> Stepper::bring(scene::Document document, bool anew) {
-  const Result<scene::Scene> scene = prepare(document);
-  if (!scene) return scene.error();
-  const Result<sim::ChangeDepth> depth = anew ? change_engine(*scene) : change(*scene);
+  const Result<sim::ChangeDepth> depth = built([&] { return engine_for(document, anew); });
   if (!depth) return depth.error();
   if (anew) run_.go_on();  // after a blow-up the new scene plays or is paused as the old one was before
   adopt(std::move(document), *depth);
   if (anew && *depth != sim::ChangeDepth::cloth) restart();
   return anew ? sim::ChangeDepth::cloth : *depth;
+}
+
+Result<sim::ChangeDepth> Stepper::engine_for(const scene::Document& document, bool anew) {
+  const Result<scene::Scene> scene = prepare(document);
+  if (!scene) return scene.error();
+  return anew ? change_engine(*scene) : change(*scene);
+}
+
+Refusal Stepper::refused(Error error) const {
+  return {under_way_.given_up ? Refusal::Reason::given_up : Refusal::Reason::invalid_value, std::move(error)};
 }
 
 void Stepper::remember(History::Change change) {
@@ -228,6 +245,7 @@ Result<sim::ChangeDepth> Stepper::move_to(const scene::Scene& scene) {
   Result<std::unique_ptr<Engine>> made = Engine::create(
       scene, exchange_, {gpu_, frames().last(), simulation().topology_revision() + (anew ? 1u : 0u)});
   if (!made) return made.error();
+  const Whole whole;
   (*made)->memory = std::move(*place);
   if (!anew) (*made)->simulation->restore(state, simulation().time(), simulation().step_index());
   settle_in(std::move(*made));

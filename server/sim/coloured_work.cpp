@@ -4,6 +4,7 @@
 #include <array>
 #include <type_traits>
 
+#include "server/base/pieces.h"
 #include "server/base/text.h"
 #include "server/model/constraint_gains.h"
 
@@ -22,6 +23,7 @@ void add(Visits& visits, const std::string& function, const model::Colouring& al
   if (visits.offsets.empty()) visits.offsets.push_back(0);
   const std::uint32_t first = visits.colours();
   for (std::uint32_t colour = 0; colour < all.colours(); ++colour) {
+    between_pieces();
     for (std::uint32_t k = all.offsets[colour]; k < all.offsets[colour + 1]; ++k)
       if (wanted(all.order[k])) visits.order.push_back(all.order[k]);
     if (visits.order.size() > visits.offsets.back())
@@ -82,7 +84,9 @@ std::vector<Words> visit_list(const Visits& visits, const model::Model& model, c
   const double mobility = model::mobility(scene);
   model.elements.each_swept([&]<class Law>(const model::Batch<Law>& batch) {
     const Items of_law = items<Law>(visits);
+    Pieces pieces;
     for (std::uint32_t item = of_law.first; item < of_law.end; ++item) {
+      pieces.next();
       const auto& element = batch[visits.order[item]];
       double inverse_mass = 0.0;
       for (const std::uint32_t vertex : element.vertices)

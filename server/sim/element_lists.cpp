@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "server/base/pieces.h"
 #include "server/sim/plan.h"
 
 namespace clothlab::sim {
@@ -38,6 +39,7 @@ void add_list(ElementLists& lists, const model::Batch<Law>& batch, std::uint32_t
   const std::vector<std::uint32_t>& offsets = batch.at_vertex.offsets;
   const auto row = [&] { return static_cast<std::uint32_t>(lists.entries.size() / group_size); };
   for (std::uint32_t first = 0; first < vertex_count; first += group_size) {
+    between_pieces();
     lists.slices.push_back(row());
     const std::uint32_t last = std::min<std::uint32_t>(first + group_size, vertex_count);
     std::uint32_t longest = 0;

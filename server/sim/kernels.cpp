@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "server/base/pieces.h"
 #include "server/model/numbering.h"
 #include "server/sim/element_lists.h"
 
@@ -144,6 +145,7 @@ Status Kernels::update(const scene::Scene& scene) {
   // Masses and pins are part of the model. To build it again is cheap and cannot change its structure here.
   Result<model::Model> rebuilt = model::build(scene);
   if (!rebuilt) return rebuilt.error();
+  const Whole whole;
   if (self_collision)
     if (Status set = self_collision->set_parameters(*scene.self_collision, *rebuilt); !set)
       return set.error();

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "server/base/pieces.h"
 #include "server/model/clean_start.h"
 #include "server/model/size.h"
 #include "server/sim/colliders.h"
@@ -81,6 +82,7 @@ Result<ChangeDepth> Simulation::change(const scene::Scene& scene) {
     if (scene.collides(scene::ContactKind::surface) && !self.scene.collides(scene::ContactKind::surface))
       if (Status apart = model::check_present(model(), scene, read_state().position); !apart)
         return apart.error();
+    const Whole whole;
     self.give_up_work();
     self.note_before_changes();
     self.take_kernels(std::move(*kernels));

@@ -1,10 +1,11 @@
 #include "server/sim/surface_triangles.h"
 
+#include "server/base/pieces.h"
+
 #include <algorithm>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <numeric>
-#include <set>
 #include <span>
 #include <utility>
 
@@ -24,6 +25,7 @@ using Corners = std::array<std::uint32_t, 3>;
 void order_by_place(std::span<std::uint32_t> triangles, const std::vector<model::dvec3>& middle,
                     std::uint32_t block) {
   if (triangles.size() <= bundle_size) return;
+  if (triangles.size() > 4096) between_pieces();
   const std::size_t unit = triangles.size() > block       ? block
                            : triangles.size() > leaf_size ? leaf_size
                                                           : bundle_size;
@@ -125,18 +127,36 @@ void add_box(SurfaceTriangles& made, std::vector<Corners>& triangles, const mode
   }
 }
 
+/// The edges that have been seen: of each vertex its few neighbours of a higher number.
+class EdgesSeen {
+ public:
+  explicit EdgesSeen(std::uint32_t vertex_count) : higher_(vertex_count) {}
+
+  bool is_new(std::uint32_t low, std::uint32_t high) {
+    std::vector<std::uint32_t>& seen = higher_[low];
+    if (std::find(seen.begin(), seen.end(), high) != seen.end()) return false;
+    seen.push_back(high);
+    return true;
+  }
+
+ private:
+  std::vector<std::vector<std::uint32_t>> higher_;
+};
+
 std::vector<std::array<std::uint32_t, 4>> with_owned_parts(const std::vector<Corners>& triangles,
                                                            std::uint32_t vertex_count) {
   std::vector<std::array<std::uint32_t, 4>> list;
   std::vector<bool> vertex_owned(vertex_count, false);
-  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+  EdgesSeen edges(vertex_count);
+  Pieces pieces;
   for (const Corners& corners : triangles) {
+    pieces.next();
     std::array<std::uint32_t, 4>& tags = list.emplace_back();
     for (std::uint32_t k = 0; k < 3; ++k) {
       const std::uint32_t a = corners[k], b = corners[(k + 1) % 3];
       tags[k] = a | (vertex_owned[a] ? 0 : owns_vertex_bit);
       vertex_owned[a] = true;
-      if (a != b && edges.emplace(std::min(a, b), std::max(a, b)).second) tags[k] |= owns_edge_bit;
+      if (a != b && edges.is_new(std::min(a, b), std::max(a, b))) tags[k] |= owns_edge_bit;
     }
   }
   return list;
@@ -144,7 +164,9 @@ std::vector<std::array<std::uint32_t, 4>> with_owned_parts(const std::vector<Cor
 
 std::vector<glm::vec4> places_at_rest(const std::vector<Corners>& triangles, const model::Model& model) {
   std::vector<glm::vec4> list;
+  Pieces pieces;
   for (const auto& [a, b, c] : triangles) {
+    pieces.next();
     if (a >= model.vertex_count()) {
       list.insert(list.end(), {glm::vec4(0, 0, 0, -1), glm::vec4(0)});
       continue;
@@ -168,13 +190,20 @@ class NeighbourPairs {
 
   void add_all(std::uint32_t vertex_count) {
     std::vector<std::vector<std::uint32_t>> around(vertex_count);
-    for (std::uint32_t i = 0; i < made_.cloth_triangle_count; ++i)
-      for (int k = 0; k < 3; ++k) around[number(i, k)].push_back(i);
+    Pieces pieces;
     for (std::uint32_t i = 0; i < made_.cloth_triangle_count; ++i) {
-      std::set<std::uint32_t> neighbours;
+      pieces.next();
+      for (int k = 0; k < 3; ++k) around[number(i, k)].push_back(i);
+    }
+    std::vector<std::uint32_t> neighbours;
+    for (std::uint32_t i = 0; i < made_.cloth_triangle_count; ++i) {
+      pieces.next();
+      neighbours.clear();
       for (int k = 0; k < 3; ++k)
         for (const std::uint32_t j : around[number(i, k)])
-          if (i < j) neighbours.insert(j);
+          if (i < j) neighbours.push_back(j);
+      std::sort(neighbours.begin(), neighbours.end());
+      neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
       for (const std::uint32_t j : neighbours) add(i, j);
     }
   }
@@ -182,7 +211,8 @@ class NeighbourPairs {
   /// Puts pairs together that pass, or fail, the search's cheap tests alike (shaders/surface/reach.glsl), so
   /// that threads that run together have the same to do.
   void sort(const model::Model& model) {
-    const auto kind_and_gap = [&](const std::array<std::uint32_t, 4>& pair) {
+    using Pair = std::array<std::uint32_t, 4>;
+    const auto kind_and_gap = [&](const Pair& pair) {
       const bool edges = (pair[0] & edges_bit) != 0;
       elements::Corners c;
       for (int k = 0; k < 4; ++k) c.x[k] = model.rest_position[pair[k] & ~edges_bit];
@@ -191,11 +221,28 @@ class NeighbourPairs {
       const double length = glm::length(between);
       return std::pair(edges, length > 0.0 ? elements::gap_along(edges, c, between) / length : 0.0);
     };
-    std::stable_sort(made_.neighbour_pairs.begin(), made_.neighbour_pairs.end(),
-                     [&](const auto& a, const auto& b) { return kind_and_gap(a) < kind_and_gap(b); });
+    std::vector<Sorted> sorted;
+    sorted.reserve(made_.neighbour_pairs.size());
+    Pieces pieces;
+    for (const Pair& pair : made_.neighbour_pairs) {
+      pieces.next();
+      const auto [edges, gap] = kind_and_gap(pair);
+      sorted.push_back({pair, edges, gap});
+    }
+    std::stable_sort(sorted.begin(), sorted.end(), [&](const Sorted& a, const Sorted& b) {
+      pieces.next();
+      return std::pair(a.edges, a.gap) < std::pair(b.edges, b.gap);
+    });
+    for (std::size_t i = 0; i < sorted.size(); ++i) made_.neighbour_pairs[i] = sorted[i].pair;
   }
 
  private:
+  struct Sorted {
+    std::array<std::uint32_t, 4> pair;
+    bool edges;
+    double gap;
+  };
+
   void add(std::uint32_t i, std::uint32_t j) {
     const auto &one = made_.triangles[i], &other = made_.triangles[j];
     const bool flat = side_by_side(i, j);

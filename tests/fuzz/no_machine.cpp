@@ -173,15 +173,11 @@ Result<LabWorker::Run> open_lab(std::optional<int>, std::shared_ptr<MemoryBudget
 
 bool fuzz::answer_commands() {
   bool any = false;
-  std::vector<session::Command> commands;
-  for (session::Session* session : sessions()) {
-    while (true) {
-      session->exchange().take_commands(commands, session::Clock::time_point{});
-      if (commands.empty()) break;
+  for (session::Session* session : sessions())
+    while (const std::optional<session::Command> command = session->exchange().next_command()) {
       any = true;
-      for (const session::Command& command : commands) session::scribes().at(session).perform(command);
+      session::scribes().at(session).perform(*command);
     }
-  }
   return any;
 }
 

@@ -192,8 +192,9 @@ TEST_CASE(
   const auto turn_until = [&](auto done) {
     const auto late = session::Clock::now() + std::chrono::seconds(60);
     while (!done() && session::Clock::now() < late) {
+      for (session::Command& command : commands) exchange.post(std::move(command));
       std::this_thread::sleep_until(
-          std::min((*stepper)->turn(commands), session::Clock::now() + std::chrono::milliseconds(5)));
+          std::min((*stepper)->turn(), session::Clock::now() + std::chrono::milliseconds(5)));
       commands.clear();
     }
     REQUIRE(done());

@@ -95,7 +95,8 @@ struct Watched {
   }
 
   void turn(std::vector<session::Command> commands = {}) {
-    const session::Clock::time_point next = stepper->turn(commands);
+    for (session::Command& command : commands) exchange.post(std::move(command));
+    const session::Clock::time_point next = stepper->turn();
     std::this_thread::sleep_until(std::min(next, session::Clock::now() + std::chrono::milliseconds(10)));
   }
 

@@ -93,7 +93,8 @@ struct Fixture {
   }
 
   void turn() {
-    const Clock::time_point next = stepper->turn(commands);
+    for (session::Command& command : commands) exchange.post(std::move(command));
+    const Clock::time_point next = stepper->turn();
     commands.clear();
     std::this_thread::sleep_until(std::min(next, Clock::now() + std::chrono::milliseconds(20)));
   }

@@ -61,6 +61,39 @@ TEST_CASE("clients take turns, and each one's commands keep their order") {
   CHECK(of_one == 100);
 }
 
+TEST_CASE(
+    "who has used less of the session's time is next, and who comes does not wait for what others used") {
+  CommandQueue queue;
+  const auto took = [&](int milliseconds) { queue.spent(std::chrono::milliseconds(milliseconds)); };
+  for (std::size_t i = 0; i < 60; ++i) REQUIRE(queue.offer({by(1), session::Step{i}}));
+  CHECK(asker_of_next(queue) == 1);
+  for (std::size_t i = 0; i < 5; ++i) REQUIRE(queue.offer({by(2), session::Step{i}}));  // meanwhile
+  took(1000);
+  for (std::size_t i = 0; i < 5; ++i) {
+    CHECK(asker_of_next(queue) == 2);
+    took(10);
+  }
+  CHECK(asker_of_next(queue) == 1);
+  REQUIRE(queue.offer({by(3), session::Play{}}));
+  took(1000);
+  CHECK(asker_of_next(queue) == 3);
+  CHECK(asker_of_next(queue) == 1);
+}
+
+TEST_CASE("what a client that has left still asks for is dropped, but not what lets go of the cloth") {
+  CommandQueue queue;
+  for (std::size_t i = 0; i < 60; ++i) REQUIRE(queue.offer({by(1), session::Step{i}}));
+  REQUIRE(queue.offer({by(1), session::ReachScene{7}}));
+  REQUIRE(queue.offer({by(2), session::Step{8}}));
+  queue.post({by(1), GrabEnd{}});
+  CHECK(queue.drop(1).size() == 60);
+  CHECK(queue.drop(3).empty());
+  CHECK(std::get<session::ReachScene>(queue.pop().what).job == 7);
+  CHECK(std::get<session::Step>(queue.pop().what).steps == 8);
+  CHECK(std::holds_alternative<GrabEnd>(queue.pop().what));
+  CHECK(queue.empty());
+}
+
 TEST_CASE("of viewers' wishes and their number only the newest waits, and a wish for a fresh frame stays") {
   CommandQueue queue;
   queue.post({{}, demand(30, true)});

@@ -1,5 +1,7 @@
 #include "server/session/exchange.h"
 
+#include <thread>
+
 #include "tests/catch.h"
 
 using namespace clothlab;
@@ -15,21 +17,60 @@ stream::SharedMessage frame(stream::Encoding encoding, std::uint32_t sequence) {
 }
 }  // namespace
 
-TEST_CASE("a turn takes a few of the commands that wait, and none is lost") {
+TEST_CASE("commands that wait come one after another, and none is lost") {
   Exchange exchange([] {});
   for (std::size_t i = 0; i < 20; ++i) REQUIRE(exchange.offer({{}, session::Step{i}}));
   exchange.post({{}, session::Watchers{3}});
-  std::vector<session::Command> commands;
   std::size_t steps = 0, taken = 0;
-  while (taken < 21) {
-    REQUIRE(exchange.take_commands(commands, Clock::now()));
-    REQUIRE_FALSE(commands.empty());
-    REQUIRE(commands.size() <= Exchange::commands_a_turn);
-    for (const session::Command& command : commands)
-      if (const auto* step = std::get_if<session::Step>(&command.what)) CHECK(step->steps == steps++);
-    taken += commands.size();
-  }
+  REQUIRE(exchange.wait_for_command(Clock::now()));
+  for (; const std::optional<session::Command> command = exchange.next_command(); ++taken)
+    if (const auto* step = std::get_if<session::Step>(&command->what)) CHECK(step->steps == steps++);
+  CHECK(taken == 21);
   CHECK(steps == 20);
+}
+
+TEST_CASE(
+    "a change is given up for an undo or another scene, and for nothing that the same client sent before") {
+  using Why = Exchange::GiveUp::Why;
+  const session::Ticket one{1, 1}, other{2, 5};
+  const session::TravelHistory undo{session::Direction::undo, {}}, redo{session::Direction::redo, {}};
+  const auto why = [](const std::vector<session::Command>& waiting, bool an_undo = false) {
+    Exchange exchange([] {});
+    for (const session::Command& command : waiting) REQUIRE(exchange.offer(command));
+    const std::optional<Exchange::GiveUp> wish = exchange.to_give_up(1, an_undo);
+    return wish ? std::optional(wish->why) : std::nullopt;
+  };
+  CHECK_FALSE(why({}));
+  CHECK_FALSE(why({{one, session::PatchScene{}}, {other, session::PatchScene{}}, {other, session::Play{}}}));
+  CHECK(why({{one, session::GetScene{}}, {one, undo}}) == Why::undone);
+  CHECK(why({{other, undo}}) == Why::undone);
+  CHECK_FALSE(why({{one, undo}}, true));  // two undos are two steps back
+  CHECK_FALSE(why({{one, redo}}));
+  CHECK_FALSE(why({{one, session::PatchScene{}}, {one, undo}}));  // of the second patch
+  CHECK(why({{one, session::LoadScene{}}}) == Why::loaded);
+  CHECK(why({{one, session::LoadScene{}}}, true) == Why::loaded);
+  Exchange ends([] {});
+  ends.stop();
+  CHECK(ends.to_give_up(1, true)->why == Why::stopping);
+}
+
+TEST_CASE(
+    "a second after a client has left, what it asked for is forgotten, and what others asked for is not") {
+  Exchange exchange([] {});
+  REQUIRE(exchange.offer({{1, 1}, session::PatchScene{}}));
+  REQUIRE(exchange.offer({{1, 2}, session::PatchScene{}}));
+  REQUIRE(exchange.offer({{2, 1}, session::Play{}}));
+  exchange.leave(1);
+  CHECK(exchange.next_command()->ticket.asker == 1);  // it has just been sent
+  CHECK_FALSE(exchange.to_give_up(1, false));
+  std::this_thread::sleep_for(Exchange::leave_time);
+  CHECK(exchange.to_give_up(1, false)->why == Exchange::GiveUp::Why::left);
+  CHECK_FALSE(exchange.to_give_up(2, false));
+  CHECK(exchange.next_command()->ticket.asker == 2);
+  CHECK_FALSE(exchange.next_command());
+  std::vector<session::Event> owed;
+  exchange.give_up({"session", "it failed", "again"}, owed);
+  CHECK(owed.size() == 2);  // to what was taken of 1, and of 2; not to what was dropped
 }
 
 TEST_CASE("the mailbox keeps the latest frame of each encoding, for every viewer the same bytes") {
@@ -110,6 +151,5 @@ TEST_CASE("only the newest status waits, after the events before it and before t
 TEST_CASE("a session that is told to stop does not wait for commands") {
   Exchange exchange([] {});
   exchange.stop();
-  std::vector<session::Command> commands;
-  CHECK_FALSE(exchange.take_commands(commands, Clock::now() + std::chrono::hours(1)));
+  CHECK_FALSE(exchange.wait_for_command(Clock::now() + std::chrono::hours(1)));
 }

@@ -59,7 +59,7 @@ export class Page {
   private readonly transport = new Transport({ request: (method, params) => this.request(method, params) });
   private readonly undo: Undo = new Undo({
     request: (method, params) => this.connection.request(method, params),
-    settled: () => this.store.settled(),
+    settled: (longest) => this.store.settled(longest),
     told: ({ undo }) => this.slow.changed(undo),
   });
   private readonly slow = new SlowWatch(() => void this.undo.go("undo"));

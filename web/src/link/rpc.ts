@@ -26,6 +26,7 @@ export interface RpcErrorData {
 
 export const errorNotAllowed = -32001;
 export const errorNothingThere = -32005;
+export const errorGivenUp = -32006; ///< a change was given up while it was built
 
 export class RpcError extends Error {
   constructor(

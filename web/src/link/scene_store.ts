@@ -84,9 +84,12 @@ export class SceneStore {
     return [...this.queue.values()].some(touches) || (this.inFlight?.some(touches) ?? false);
   }
 
-  /// Waits until all edits are answered, so that what undoes the last change meets it.
-  async settled(): Promise<void> {
-    while (this.queue.size > 0 || this.inFlight) await new Promise((resolve) => setTimeout(resolve, sendEvery / 2));
+  /// Waits until all edits are answered, so that what undoes the last change meets it; for one that has been sent, at
+  /// most `longest` [ms].
+  async settled(longest = Infinity): Promise<void> {
+    const since = performance.now();
+    while (this.queue.size > 0 || (this.inFlight && performance.now() - since < longest))
+      await new Promise((resolve) => setTimeout(resolve, sendEvery / 2));
   }
 
   /// The connection was lost: drops unsent edits, as the next `scene` brings the server's document.

@@ -1,7 +1,7 @@
 // Tells what the server refused. For surfaces that cross there are a picture and a way out.
 import { tellCrossings } from "./crossings";
-import { noticeError } from "./notices";
-import { type Crossings, RpcError } from "../link/rpc";
+import { notice, noticeError } from "./notices";
+import { type Crossings, errorGivenUp, RpcError } from "../link/rpc";
 import type { Patch } from "../link/scene_types";
 
 interface Host {
@@ -20,6 +20,10 @@ export class Refusals {
   /// banner reports the loss.
   tell(title: string, error: Error, patch?: Patch): void {
     if (!(error instanceof RpcError)) return;
+    if (error.code === errorGivenUp) {
+      notice("info", { title: error.message });
+      return;
+    }
     const close = patch ? tellCrossings(title, error, patch, this.host) : null;
     if (close) this.closeCrossings = close;
     else noticeError(title, error);

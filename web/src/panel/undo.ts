@@ -12,7 +12,7 @@ export interface History {
 
 export interface UndoHost {
   request<T>(method: string, params: Record<string, unknown>): Promise<T>;
-  settled(): Promise<void>; ///< this page's own edits have been answered
+  settled(longest?: number): Promise<void>; ///< this page's own edits have been answered, or are under way so long [ms]
   told(history: History): void;
 }
 
@@ -21,6 +21,9 @@ const words = {
   undo: { verb: "Undo", done: "Undone", keys: "Ctrl+Z" },
   redo: { verb: "Redo", done: "Redone", keys: "Ctrl+Shift+Z" },
 };
+
+/// An edit that is built for longer [ms] is given up by the server for an undo, which takes nothing else back.
+const kept = 1000;
 
 /// A text field undoes what is typed in it itself.
 const isText = (target: EventTarget | null): boolean =>
@@ -78,7 +81,7 @@ export class Undo {
 
   /// Undoes or redoes a change. With a revision only if nobody has changed the scene since.
   async go(way: Way, revision?: number): Promise<void> {
-    await this.host.settled();
+    await this.host.settled(way === "undo" ? kept : undefined);
     if (!this.enabled) return;
     try {
       const { applies } = await this.host.request<{ applies: string }>(`scene.${way}`, revision ? { revision } : {});
