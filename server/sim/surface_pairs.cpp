@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "server/base/pieces.h"
 #include "server/gl/context.h"
 #include "server/sim/integrator.h"
 #include "server/sim/surface_control.h"
@@ -43,6 +44,7 @@ Result<SurfacePairs> SurfacePairs::create(const model::Model& model, const Surfa
   const gl::Defines defines{{"GROUP_SIZE", std::to_string(group_size)},
                             {"LEAF_SIZE", std::to_string(leaf_size)},
                             {"BUNDLE_SIZE", std::to_string(bundle_size)},
+                            {"BOUGH_SIZE", std::to_string(bough_size)},
                             {"OUT_OF_PLANE", std::to_string(out_of_plane)}};
   for (auto [program, name] : {std::pair{&made.triangle_boxes_program_, "triangle_boxes"},
                                {&made.boxes_program_, "boxes"},
@@ -74,7 +76,8 @@ Result<SurfacePairs> SurfacePairs::create(const model::Model& model, const Surfa
   made.neighbour_pairs_ = {gl::Buffer(surface.neighbour_pairs), GL_RGBA32UI};
   made.triangle_boxes_ = {gl::Buffer(made.triangle_count_ * 16 * sizeof(std::uint32_t)), GL_RGBA32UI};
   const std::uint32_t bundles = (made.triangle_count_ + bundle_size - 1) / bundle_size;
-  made.boxes_ = {gl::Buffer((leaves + bundles) * 16 * sizeof(float)), GL_RGBA32F};
+  const std::uint32_t boughs = (leaves + bough_size - 1) / bough_size;
+  made.boxes_ = {gl::Buffer((leaves + bundles + boughs) * 16 * sizeof(float)), GL_RGBA32F};
   made.expected_ = {gl::Buffer(made.vertex_count_ * 8 * sizeof(float)), GL_RGBA32F};
   made.most_ = most_entries();
   constexpr std::uint32_t generous = 1u << 17;  // entries: little memory, and lists seldom have to grow
@@ -224,6 +227,7 @@ bool SurfacePairs::search(const StateBuffers& state) {
     program.use();
     glDispatchComputeIndirect(static_cast<GLintptr>(groups));
     wait_for_writes();
+    between_pieces();
   };
   state.position().bind(unit_position);
   state.velocity().bind(unit_velocity);

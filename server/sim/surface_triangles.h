@@ -16,6 +16,8 @@ namespace clothlab::sim {
 inline constexpr std::uint32_t leaf_size = 16;
 /// The same of a bundle, a part of a leaf.
 inline constexpr std::uint32_t bundle_size = 4;
+/// Leaves of a bough: a search passes over far ones as a whole.
+inline constexpr std::uint32_t bough_size = 64;
 
 /// Near triangles of a cloth are side by side at rest if their middles are this far out of each other's
 /// plane, or less, as a share of their distance.

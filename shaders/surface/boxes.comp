@@ -1,14 +1,15 @@
-// Pair search, 2 of 10: boxes of leaves, which are LEAF_SIZE triangles each that lie together, and after them of
-// bundles: the same, of BUNDLE_SIZE.
+// Pair search, 2 of 10: boxes of leaves, which are LEAF_SIZE triangles each that lie together; after them of bundles,
+// which are BUNDLE_SIZE triangles; and of boughs.
 #include "surface.glsl"
 #include "triangles.glsl"
 layout(std430, binding = slot_boxes) writeonly buffer Boxes { vec4 boxes[]; };
 
 void main() {
   int item = int(gl_GlobalInvocationID.x);
-  bool leaf = item < leaf_count();
-  int size = leaf ? LEAF_SIZE : BUNDLE_SIZE, begin = leaf ? LEAF_SIZE * item : BUNDLE_SIZE * (item - leaf_count());
-  if (begin >= triangle_count) return;
+  int bundle = item - leaf_count(), bough = bundle - bundle_count();
+  if (bough >= bough_count()) return;
+  int size = bundle < 0 ? LEAF_SIZE : bough < 0 ? BUNDLE_SIZE : LEAF_SIZE * BOUGH_SIZE;
+  int begin = size * (bundle < 0 ? item : bough < 0 ? bundle : bough);
   Box box = Box(vec3(1e30), vec3(-1e30), vec3(1e30), vec3(-1e30));
   for (int i = begin; i < min(begin + size, triangle_count); ++i) {
     Box its = triangle_at(i).box;

@@ -1,5 +1,11 @@
 /// Leaves of LEAF_SIZE triangles each: their boxes come first in the list of boxes, those of bundles after them.
 int leaf_count() { return (triangle_count + LEAF_SIZE - 1) / LEAF_SIZE; }
+int bundle_count() { return (triangle_count + BUNDLE_SIZE - 1) / BUNDLE_SIZE; }
+
+/// Of a large mesh the boxes of boughs come last, of BOUGH_SIZE leaves in turn: leaf by leaf the search for near ones
+/// would take the square of their number.
+bool has_boughs() { return leaf_count() > 4 * BOUGH_SIZE; }
+int bough_count() { return has_boughs() ? (leaf_count() + BOUGH_SIZE - 1) / BOUGH_SIZE : 0; }
 
 /// About something where it is at the search, and where it will be, as far ahead as the search looks, if it keeps its
 /// velocity [m].

@@ -14,9 +14,17 @@ void main() {
   // Each two leaves of cloths once: every leaf looks at the half of the ring that begins with itself; and at all leaves
   // of bodies. A leaf may hold both, at the border.
   int of_cloths = cloth_leaves / 2 + 1;
-  for (int k = 0; k < of_cloths + leaf_count() - cloth_leaves; ++k) {
+  int count = of_cloths + leaf_count() - cloth_leaves, first_bough = leaf_count() + bundle_count();
+  for (int k = 0; k < count; ++k) {
     bool body = k >= of_cloths;
     int other = body ? cloth_leaves + k - of_cloths : one + k < cloth_leaves ? one + k : one + k - cloth_leaves;
+    // A whole bough that is far away is passed over.
+    if (has_boughs() && other % BOUGH_SIZE == 0 && other + BOUGH_SIZE <= (body ? leaf_count() : cloth_leaves) &&
+        k + BOUGH_SIZE <= (body ? count : of_cloths) &&
+        box_gap_squared(box, box_at(first_bough + other / BOUGH_SIZE)) > reach * reach) {
+      k += BOUGH_SIZE - 1;
+      continue;
+    }
     if (box_gap_squared(box, box_at(other)) <= reach * reach &&
            (body || 2 * k != cloth_leaves || one < other) &&
            (cloth_pairs != 0 || LEAF_SIZE * (max(one, other) + 1) > cloth_triangle_count)) {
