@@ -1,7 +1,5 @@
 #include "server/cli/listening.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <atomic>
 #include <csignal>
@@ -14,6 +12,7 @@
 
 #include "server/base/log.h"
 #include "server/base/memory.h"
+#include "server/cli/descriptors.h"
 #include "server/net/request_headers.h"
 #include "server/net/server.h"
 
@@ -82,18 +81,6 @@ class StopOnSignal {
   std::atomic<bool> ended_{false};
   std::thread thread_;  ///< last, because the thread uses the members above
 };
-
-/// Allows this process as many open files as its clients may need, if the system does. Many systems allow
-/// 1024 at first.
-void allow_sockets(const net::Limits& limits) {
-  constexpr rlim_t others = 512;
-  rlimit files{};
-  if (getrlimit(RLIMIT_NOFILE, &files) != 0) return;
-  const rlim_t wanted = 2 * static_cast<rlim_t>(limits.clients) + others;
-  if (files.rlim_cur >= wanted) return;
-  files.rlim_cur = std::min(wanted, files.rlim_max);
-  setrlimit(RLIMIT_NOFILE, &files);
-}
 
 }  // namespace
 
@@ -172,7 +159,7 @@ Status check_listening(const net::Options& options) {
 int listen_and_serve(Listening listening) {
   set_log_level(*log_level(listening.log_level));
   share_free_memory();
-  allow_sockets(listening.options.limits);
+  fit_descriptors(listening.options.limits, listening.options.relay);
   StopOnSignal::block();
   Result<std::unique_ptr<net::Server>> server = net::Server::listen(std::move(listening.options));
   if (!server) return fail(server.error(), exit_internal);

@@ -112,11 +112,11 @@ int on_connection(lws* wsi) {
 int refuse(lws* wsi, const RequestFault& fault) {
   constexpr std::size_t longest = 200;  // bytes of the Origin to log, so that no client fills the log
   ++server_of(wsi).hub().metrics().refused;
-  log(LogLevel::warning, "client_refused",
-      {{"address", client_address(wsi, server_of(wsi).hub().options().trusted_proxies)},
-       {"origin", header(wsi, WSI_TOKEN_ORIGIN).substr(0, longest)},
-       {"status", std::to_string(fault.status)},
-       {"why", fault.why}});
+  server_of(wsi).hub().refusals().log(
+      session::now_us(), {{"address", client_address(wsi, server_of(wsi).hub().options().trusted_proxies)},
+                          {"origin", header(wsi, WSI_TOKEN_ORIGIN).substr(0, longest)},
+                          {"status", std::to_string(fault.status)},
+                          {"why", fault.why}});
   const std::string body = fault.why + "\n";
   std::string text(LWS_PRE, '\0');
   text += "HTTP/1.1 " + std::to_string(fault.status) + " " + reason(fault.status) +

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "server/base/log.h"
+#include "server/base/log_bound.h"
 #include "server/bus/bus.h"
 #include "server/lab/cache.h"
 #include "server/net/connections.h"
@@ -53,6 +54,7 @@ class Hub {
   LabQueue& lab() { return *lab_; }
   Connections& connections() { return connections_; }
   Workbench& workbench() { return workbench_; }
+  LogBound& refusals() { return refusals_; }  ///< lines of the log about clients that are not let in
   /// The service thread's time that all clients share, and that requests over plain HTTP do.
   ServicePool& service() { return service_; }
   ServicePool& http_service() { return http_service_; }
@@ -148,6 +150,7 @@ class Hub {
   ServicePool service_{service_of_address, service_of_all},
       http_service_{http_service_of_address, http_service_of_all};
   Workbench workbench_{wake_};
+  LogBound refusals_{LogLevel::warning, "client_refused"};
   TokenGuard token_guard_{options_.limits.wrong_tokens};
   lab::Cache lab_cache_;
   std::unique_ptr<LabQueue> lab_;

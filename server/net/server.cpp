@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "server/base/log.h"
+#include "server/base/log_bound.h"
 #include "server/net/callbacks.h"
 #include "server/net/request_checks.h"
 #include "server/net/request_headers.h"
@@ -27,20 +28,11 @@ std::chrono::microseconds time_to_gather(std::size_t sockets) {
   return std::min(most, for_each * static_cast<int>(sockets));
 }
 
-/// Logs what libwebsockets says, ten lines a second at most: out of descriptors it says so at every look at
-/// the socket that listens.
-void log_line(const std::string& text) {
-  constexpr int most = 10;
-  constexpr std::int64_t second = 1'000'000;
-  static std::int64_t begun = 0;  // all on the service thread
-  static int said = 0;
-  if (const std::int64_t now = session::now_us(); now - begun >= second) {
-    if (said > most)
-      log(LogLevel::error, "libwebsockets", {{"text", "and " + std::to_string(said - most) + " lines more"}});
-    begun = now;
-    said = 0;
-  }
-  if (++said <= most) log(LogLevel::error, "libwebsockets", {{"text", text}});
+/// What libwebsockets says: out of descriptors it says so at every look at the socket that listens. All on
+/// the service thread.
+LogBound& said_by_libwebsockets() {
+  static LogBound bound(LogLevel::error, "libwebsockets");
+  return bound;
 }
 
 bool is_ipv6(const std::string& address) {
@@ -75,7 +67,7 @@ Result<std::unique_ptr<Server>> Server::listen(Options options) {
   lws_set_log_level(LLL_ERR, [](int, const char* line) {
     std::string text = line;
     while (!text.empty() && text.back() == '\n') text.pop_back();
-    log_line(text);
+    said_by_libwebsockets().log(session::now_us(), {{"text", text}});
   });
   auto server = std::unique_ptr<Server>(new Server(std::move(options)));
   if (const Status joined = server->hub_.join_bus(); !joined) return joined.error();
@@ -120,6 +112,8 @@ void Server::look_each_second() {
   const auto look = [](lws_sorted_usec_list_t* timer) {
     Server& server = *reinterpret_cast<Look*>(timer)->server;
     server.hub_.connections().excuse_slow_readers(silence_seconds(server.hub_.limits()));
+    for (LogBound* bound : {&said_by_libwebsockets(), &server.hub_.refusals()})
+      bound->tell_rest(session::now_us());
     server.look_each_second();
   };
   lws_sul_schedule(context_, 0, &look_.timer, look, LWS_USEC_PER_SEC);

@@ -1,10 +1,12 @@
 // The log that the server writes to stderr for its operator.
 import assert from "node:assert/strict";
+import { once } from "node:events";
 import { chmodSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import net from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
+import { noBus } from "./bus.mjs";
 import { Client, Server, sleep } from "./harness.mjs";
 
 const tokens = ["operators-only", "viewers-only"];
@@ -87,15 +89,20 @@ test("--log-level leaves out what is less urgent", async () => {
   assert.ok(all.some(({ level }) => level === "info"));
 });
 
-test("without descriptors left the server says so, ten times a second at most, and goes on once there are some", async (t) => {
+/// A server that may have so many descriptors.
+async function withDescriptors(t, count, ...args) {
   const folder = mkdtempSync(join(tmpdir(), "clothlab-few-"));
   const program = process.env.CLOTHLAB;
   t.after(() => rmSync(folder, { recursive: true, force: true }));
   const few = join(folder, "few");
-  writeFileSync(few, `#!/bin/sh\nulimit -n 40\nexec "${program}" "$@"\n`);
+  writeFileSync(few, `#!/bin/sh\nulimit -n ${count}\nexec "${program}" "$@"\n`);
   chmodSync(few, 0o755);
   process.env.CLOTHLAB = few;
-  const server = await Server.start().finally(() => (process.env.CLOTHLAB = program));
+  return Server.launch(...args).finally(() => (process.env.CLOTHLAB = program));
+}
+
+test("without descriptors left the server says so, ten times a second at most, and goes on once there are some", async (t) => {
+  const server = await withDescriptors(t, 40, "serve");
   const client = await Client.connect(server);
   const sockets = Array.from({ length: 60 }, () => net.connect(server.port, "127.0.0.1").on("error", () => {}));
   const lines = () => server.stderr.split("\n").filter((text) => text.includes("event=libwebsockets"));
@@ -112,3 +119,38 @@ test("without descriptors left the server says so, ten times a second at most, a
   await client.close();
   assert.equal(await server.stop(), 0);
 });
+
+for (const [args, clients] of [
+  [["serve", "--max-clients", "1000", "--max-sessions", "4"], (200 - 32 - 8 * 4) / 2],
+  [["relay", "--from", "nats://127.0.0.1:9"], (200 - 32) / 2],
+])
+  test(`${args[0]} lowers --max-clients to what its descriptors allow and says so; /healthz is answered, nothing else is told in floods`, {
+    skip: args[0] === "relay" && noBus(),
+  }, async (t) => {
+    const server = await withDescriptors(t, 200, ...args, "--max-clients-per-address", "1000");
+    const [warning, ...others] = server.stderr.split("\n").filter((text) => text.includes("event=limit_lowered"));
+    assert.deepEqual(others, []);
+    assert.match(
+      warning,
+      new RegExp(`level=warning .*limit=--max-clients from=\\d+ to=${clients} why=.* 200 descriptors`),
+    );
+    assert.match(warning, /remedy=".*ulimit -Hn.*LimitNOFILE.*--ulimit nofile/);
+    const viewers = await Promise.all(Array.from({ length: clients }, () => Client.connect(server)));
+    const refused = await Promise.allSettled(Array.from({ length: 60 }, () => Client.connect(server)));
+    for (const { reason } of refused) assert.equal(reason.status, 503);
+    const sockets = Array.from({ length: 300 }, () => net.connect(server.port, "127.0.0.1").on("error", () => {}));
+    await Promise.all(sockets.slice(-100).map((socket) => once(socket.resume(), "close")));
+    for (const socket of sockets) socket.destroy();
+    for (let tries = 0; (await server.get("/healthz").catch(() => null))?.status !== 200; ++tries, await sleep(20))
+      assert.ok(tries < 500, "no room was made");
+    const lines = () => server.stderr.split("\n").filter((text) => text.includes("event=client_refused"));
+    const more = (text) => Number(/why="and (\d+) lines more"/.exec(text)?.[1] ?? 0);
+    const told = () => lines().reduce((sum, text) => sum + (more(text) || 1), 0);
+    for (let tries = 0; told() < 60; ++tries, await sleep(20)) assert.ok(tries < 500, "some refusals are not told");
+    assert.equal(told(), 60);
+    assert.ok(lines().length <= 3 * 11, lines().join("\n")); // all within two seconds, so in three of the clock
+    assert.match(lines()[0], /why="the server has as many clients as it may/);
+    assert.doesNotMatch(server.stderr, /event=libwebsockets/);
+    for (const viewer of viewers) viewer.socket.terminate();
+    assert.equal(await server.stop(), 0);
+  });
