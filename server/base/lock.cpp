@@ -42,6 +42,11 @@ bool Lock::held_by_another(const std::filesystem::path& file) {
   return std::filesystem::exists(file, failure) && !Lock::file(file);
 }
 
+void Lock::write(const std::string& text) {
+  if (descriptor_ < 0 || ftruncate(descriptor_, 0) != 0) return;
+  (void)!pwrite(descriptor_, text.data(), text.size(), 0);
+}
+
 Lock::Lock(Lock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
 
 Lock& Lock::operator=(Lock&& other) noexcept {

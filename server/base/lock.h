@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "server/base/result.h"
 
@@ -23,6 +24,9 @@ class Lock {
   static Result<Lock> file(const std::filesystem::path& file);
   /// True if another process has locked the file; false if it is missing.
   static bool held_by_another(const std::filesystem::path& file);
+
+  /// Replaces what is in the file that is locked, for others to read. A failure is ignored.
+  void write(const std::string& text);
 
   Lock() = default;
   Lock(Lock&& other) noexcept;

@@ -169,6 +169,10 @@ std::optional<HttpAnswer> HttpRequest::find(const std::string& path) {
   if (const std::string why = hub_.host_refusal(header(wsi_, WSI_TOKEN_HOST)); !why.empty())
     return plain(403, why);
   if (path == "/ws") {
+    // A browser does not tell a page for what reason its WebSocket was refused, so the page asks here.
+    const std::string why = hub_.no_place(query(wsi_, "session", main_session),
+                                          client_address(wsi_, hub_.options().trusted_proxies));
+    if (!why.empty()) return try_again(why);
     HttpAnswer refusal = plain(426, "connect with a WebSocket, subprotocol clothlab.v1");
     refusal.headers = {{"upgrade:", "websocket"}};
     return refusal;

@@ -155,6 +155,7 @@ Room* Hub::open_room(const std::string& name) {
     Result<Lock> taken = Lock::file(lock_file(name));
     if (!taken) return nullptr;
     claim = std::move(*taken);
+    claim.write({});  // what a server wrote that was killed
   }
   if (rooms_.size() >= static_cast<std::size_t>(limits().sessions)) retire(sleeping_room());
   return (rooms_[name] = std::make_unique<Room>(*this, name, wake_, std::move(claim))).get();
@@ -210,18 +211,12 @@ void Hub::retire(const std::string& name) {
   rooms_.erase(found);
 }
 
-bool Hub::full(const std::string& address) const {
-  const std::string network = network_of(address);
-  return std::count_if(clients_.begin(), clients_.end(), [&](const auto& item) {
-           return network_of(item.second->address()) == network;
-         }) >= limits().clients_per_address;
-}
-
 void Hub::add(Client& client) {
   clients_[client.id()] = &client;
 }
 void Hub::remove(Client& client) {
   clients_.erase(client.id());
+  forget_full();
 }
 
 Client* Hub::find_client(std::uint64_t id) {

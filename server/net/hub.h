@@ -99,6 +99,9 @@ class Hub {
   bool full() const { return clients_.size() >= static_cast<std::size_t>(options_.limits.clients); }
   /// True if this address has as many clients as one address may have.
   bool full(const std::string& address) const;
+  /// Why a client of this address cannot enter the session now, in words for it; empty: it can. That passes:
+  /// the client may try again.
+  std::string no_place(const std::string& session, const std::string& address);
   bool empty() const { return clients_.empty(); }
   void close_all(int code, const std::string& reason);
   std::uint64_t next_id() { return ++last_id_; }
@@ -139,6 +142,9 @@ class Hub {
   void pump_exports();
   std::uint64_t steps() const;
   void retire(const std::string& name);
+  /// Tells the servers that share the folder for what reason no client more can enter this session.
+  void note_full(const std::string& session, const std::string& line);
+  void forget_full();  ///< a client has left, so that there is room
   std::string sleeping_room() const;
   std::string renderer() const;
   std::filesystem::path lock_file(const std::string& session) const;
@@ -165,6 +171,7 @@ class Hub {
   std::vector<Page> pages_;  ///< of recordings, for as long as they are being sent
   std::map<std::string, std::unique_ptr<Room>> rooms_;
   std::map<std::uint64_t, Client*> clients_;
+  std::map<std::string, std::string> full_notes_;  ///< by session, what is written in its lock
   std::map<std::uint64_t, HttpRequest*> waiting_;
   std::vector<std::future<void>> retiring_;
   /// Of clients and requests. Those of relays differ from those of the server whose messages they pass on.

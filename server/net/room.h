@@ -84,6 +84,7 @@ class Room {
   void stop();
   /// Hands the session to the caller, who ends it; its steps stay counted in the metrics.
   std::unique_ptr<session::Source> give_up_session();
+  Lock& claim() { return claim_; }
   /// To be released when the session has ended.
   Lock give_up_claim() { return std::move(claim_); }
   bool beats() const { return !session_ || session_->beats(); }

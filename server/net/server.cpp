@@ -181,18 +181,8 @@ unsigned Server::refusal(lws* wsi, std::string& why) {
                       hub_.options().allow_origin))
     return why = "pages of this origin may not connect; see --allow-origin", HTTP_STATUS_FORBIDDEN;
   if (stopping_) return why = "the server is shutting down", HTTP_STATUS_SERVICE_UNAVAILABLE;
-  if (hub_.elsewhere(session))
-    return why = "another server has this session open; connect again", HTTP_STATUS_SERVICE_UNAVAILABLE;
-  if (hub_.full(client_address(wsi, hub_.options().trusted_proxies)))
-    return why = "this address has as many clients as it may; see --max-clients-per-address",
-           HTTP_STATUS_SERVICE_UNAVAILABLE;
-  if (hub_.full())
-    return why = "the server has as many clients as it may; see --max-clients",
-           HTTP_STATUS_SERVICE_UNAVAILABLE;
-  if (!hub_.has_place_for(session))
-    return why = "the server has as many sessions as it may; see --max-sessions",
-           HTTP_STATUS_SERVICE_UNAVAILABLE;
-  return 0;
+  why = hub_.no_place(session, client_address(wsi, hub_.options().trusted_proxies));
+  return why.empty() ? 0 : HTTP_STATUS_SERVICE_UNAVAILABLE;
 }
 
 }  // namespace clothlab::net

@@ -1,5 +1,5 @@
 import assert from "node:assert/strict";
-import { Server } from "../protocol/harness.mjs";
+import { Client, Server } from "../protocol/harness.mjs";
 import { browserTest, eventually, withBrowser } from "./browser.mjs";
 
 const { open } = withBrowser();
@@ -129,6 +129,17 @@ browserTest("a page that finds no server says so instead of staying empty", asyn
   await server.stop("SIGKILL");
   // Between two attempts the banner says for a moment that it tries again.
   await viewer.page.locator("#banner", { hasText: /Connection lost|No server answers/ }).waitFor({ state: "visible" });
+});
+
+browserTest("a page that a full server refuses says what is full, and shows the cloth once there is room", async () => {
+  const server = await Server.start("--max-clients-per-address", "8"); // as many connections are left to the page
+  const others = await Promise.all(Array.from({ length: 8 }, () => Client.connect(server)));
+  const { page } = await open(server, { drawn: 0 });
+  const why = "Not connected (this address has as many clients as it may, 8; see --max-clients-per-address)";
+  await page.locator("#banner", { hasText: why }).waitFor({ state: "visible" });
+  await others[0].close();
+  await page.waitForFunction(() => window.clothlab?.framesDrawn >= 1);
+  await server.stop();
 });
 
 browserTest("an address with a name that no session can have says so, and what is allowed", async () => {

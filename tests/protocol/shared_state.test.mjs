@@ -73,6 +73,61 @@ for (const end of ["SIGTERM", "SIGKILL"])
     assert.equal(await b.stop(), 0);
   });
 
+test("each refusal says what is full, on every server that shares the folder, until there is room", async () => {
+  const kept = folder();
+  const few = ["--max-clients", "3", "--max-clients-per-address", "2", "--trusted-proxy", "127.0.0.1"];
+  const [a, b] = [await start(kept, ...few), await start(kept, ...few)];
+  const from = (address) => ({ "X-Forwarded-For": address });
+  const watchers = [];
+  for (const address of ["192.0.2.1", "192.0.2.1"])
+    watchers.push(await Client.connect(a, { session: "s", headers: from(address) }));
+  const refused = async (server, address) => {
+    const headers = from(address);
+    await assert.rejects(Client.connect(server, { session: "s", headers }), { status: 503 });
+    // What a page can read, which is not told why its WebSocket was refused.
+    const answer = await server.get("/ws?session=s", headers);
+    assert.deepEqual([answer.status, answer.headers["retry-after"]], [503, "1"]);
+    return answer.body.toString().trim();
+  };
+  const elsewhere = "another server has this session open; connect again";
+  assert.equal(await refused(b, "192.0.2.1"), elsewhere);
+  const of_address = "this address has as many clients as it may, 2";
+  assert.equal(await refused(a, "192.0.2.1"), `${of_address}; see --max-clients-per-address`);
+  const there = "on the server that has this session open";
+  assert.equal(await refused(b, "192.0.2.1"), `${of_address}, ${there}; see --max-clients-per-address`);
+  assert.equal(await refused(b, "192.0.2.2"), elsewhere, "for that address there is room");
+  watchers.push(await Client.connect(a, { session: "s", headers: from("192.0.2.2") }));
+  assert.equal(await refused(a, "192.0.2.3"), "the server has as many clients as it may, 3; see --max-clients");
+  const full = "the server that has this session open has as many clients as it may, 3; see --max-clients";
+  assert.equal(await refused(b, "192.0.2.3"), full);
+  await watchers.pop().close();
+  for (const until = Date.now() + patience; (await refused(b, "192.0.2.3")) !== elsewhere; await sleep(20))
+    assert.ok(Date.now() < until, "the note stays");
+  assert.equal((await a.get("/ws?session=s", from("192.0.2.3"))).status, 426, "there is room again");
+  // What a server wrote that was killed says nothing of the next one.
+  await refused(a, "192.0.2.1");
+  await a.stop("SIGKILL");
+  const again = await insist(b, "s");
+  const c = await start(kept, ...few);
+  assert.equal(await refused(c, "192.0.2.1"), elsewhere);
+  await again.close();
+  assert.equal(await b.stop(), 0);
+  assert.equal(await c.stop(), 0);
+});
+
+test("a server whose sessions are all watched says so, and opens another once one is left", async () => {
+  const server = await start(folder(), "--max-sessions", "2", "--unwatched-timeout", "1");
+  const [one] = [await Client.connect(server, { session: "one" }), await Client.connect(server, { session: "two" })];
+  await assert.rejects(Client.connect(server, { session: "three" }), { status: 503 });
+  const why =
+    "the server has as many sessions as it may, 2; see --max-sessions (one that nobody has watched for 1 s makes room)";
+  assert.equal((await server.get("/ws?session=three")).body.toString().trim(), why);
+  assert.ok(server.stderr.includes(`why="${why}"`), server.stderr);
+  await one.close();
+  await insist(server, "three");
+  assert.equal(await server.stop(), 0);
+});
+
 test("a session without clients is given up after --unwatched-timeout, so that another server can open it", async () => {
   const kept = folder();
   const [a, b] = [await start(kept, "--unwatched-timeout", "1"), await start(kept)];

@@ -31,6 +31,8 @@ export class Connection {
   private retryTimer = 0;
   private lastHeard = 0;
   private refused = false;
+  private opened = false; // this attempt's handshake was accepted
+  private attempt = 0; // their number, so that an answer about an earlier one is told from one that still matters
   private field: FieldName | null = null;
   private agreed: FieldName | null = null; // what the frames that come now have
   private encoding: "q16" | "c16" = "q16"; // as WebGL takes it, or in fewer bytes, which a thread of the page's unpacks
@@ -57,7 +59,8 @@ export class Connection {
 
   connect(): void {
     clearTimeout(this.retryTimer);
-    this.refused = false;
+    ++this.attempt;
+    this.refused = this.opened = false;
     this.events.state("connecting", 0, "");
     const scheme = location.protocol === "https:" ? "wss:" : "ws:";
     const socket = new WebSocket(
@@ -68,7 +71,10 @@ export class Connection {
     this.socket = socket;
     this.rpc = new Rpc(socket, (method, params) => this.events.notification(method, params));
     this.lastHeard = performance.now();
-    socket.onopen = () => void this.greet(this.rpc as Rpc);
+    socket.onopen = () => {
+      this.opened = true;
+      void this.greet(this.rpc as Rpc);
+    };
     socket.onmessage = (event) => this.receive(event.data as string | ArrayBuffer);
     socket.onclose = (event) => this.closed(socket, event);
   }
@@ -207,6 +213,7 @@ export class Connection {
   /// Closes the link for good: it does not reconnect.
   close(): void {
     clearTimeout(this.retryTimer);
+    ++this.attempt;
     this.abandon();
   }
 
@@ -222,7 +229,27 @@ export class Connection {
   private closed(socket: WebSocket, event: CloseEvent): void {
     if (socket !== this.socket) return;
     this.abandon();
-    if (!this.refused) this.retry(event.reason || (event.code === 1006 ? "" : `closed with code ${event.code}`));
+    if (this.refused) return;
+    const { attempt } = this;
+    if (event.code !== 1006) this.retry(event.reason || `closed with code ${event.code}`);
+    else if (this.opened) this.retry("");
+    else
+      void this.askWhy().then((why) => {
+        if (attempt === this.attempt) this.retry(why);
+      });
+  }
+
+  // A browser does not say for what reason a handshake was refused; asked as a page is, the server does.
+  private async askWhy(): Promise<string> {
+    try {
+      const answer = await fetch(`/ws?session=${encodeURIComponent(this.session)}`, {
+        signal: AbortSignal.timeout(silenceLimit),
+      });
+      const why = answer.status === 503 ? (await answer.text()).trim() : "";
+      return why.startsWith("<") ? "" : why; // a proxy's own page
+    } catch {
+      return "";
+    }
   }
 
   private retry(why: string): void {
