@@ -5,6 +5,7 @@
 
 #include "server/base/files.h"
 #include "server/base/lock.h"
+#include "server/base/log.h"
 #include "server/base/memory_limit.h"
 #include "server/cli/commands.h"
 #include "server/cli/listening.h"
@@ -49,6 +50,20 @@ CLI::Validator size_of_memory() {
             return text + " is no size of at least 256M: a number of bytes, or as 512M or 2G";
           },
           "SIZE"};
+}
+
+/// Says so if not all sessions that may be opened have room, with the scene that each starts with.
+void warn_of_memory(const net::Limits& limits, const scene::Scene& scene) {
+  const std::uint64_t share = limits.scene.memory->share(MemoryBudget::Use::simulations),
+                      each = sim::expected_memory(scene), room = share / each;
+  if (room >= static_cast<std::uint64_t>(limits.sessions)) return;
+  log(LogLevel::warning, "limit_not_kept",
+      {{"limit", "--max-sessions"},
+       {"of", std::to_string(limits.sessions)},
+       {"holds", std::to_string(room)},
+       {"why", "a session of this scene takes " + memory_text(each) + " of memory, and all may take " +
+                   memory_text(share) + "; more are refused when they open"},
+       {"remedy", "a larger --max-memory, a smaller scene, or a smaller --max-sessions"}});
 }
 
 Status check(const net::Options& options) {
@@ -99,6 +114,8 @@ int serve(ServeArguments& arguments) {
   bound_memory(options.limits, memory_of_process(arguments.memory));
   if (const auto place = sim::reserve_memory(limits.scene.memory, document->scene); !place)
     return fail(place.error(), exit_usage);
+  set_log_level(*log_level(arguments.listening.log_level));
+  warn_of_memory(limits, document->scene);
   if (const Result<model::Model> model = model::build(document->scene); !model)
     return fail(model.error(), exit_usage);
   const Result<Lock> state_folder = claim_state_folder(options);

@@ -235,6 +235,16 @@ test("--max-memory is a size of at least 256 MiB, and a scene that takes more do
   assert.match(stderr, /1000000 vertices, which take \d\.\d\d GB of memory; at most \d+ MB/);
 });
 
+test("a server whose memory has no room for all --max-sessions of its scene says so at the start", async () => {
+  const warning =
+    /level=warning event=limit_not_kept limit=--max-sessions of=100 holds=(\d+) why="a session .* MB of memory/;
+  const server = await start("--max-memory", "256M", "--max-sessions", "100");
+  const [, holds] = warning.exec(server.stderr) ?? assert.fail(server.stderr);
+  assert.ok(Number(holds) >= 2 && Number(holds) < 20, holds);
+  const fitting = await start("--max-memory", "256M", "--max-sessions", holds);
+  assert.doesNotMatch(fitting.stderr, /limit_not_kept/);
+});
+
 test("a measurement that takes longer than --max-lab-seconds ends with what it found and why", async () => {
   const server = await start("--max-lab-seconds", "1");
   const client = await Client.connect(server);
