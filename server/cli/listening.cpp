@@ -22,7 +22,7 @@ namespace {
 
 /// Stops the server on SIGINT or SIGTERM. Both must be blocked in all threads: the thread made here waits for
 /// them. The process exits by force if the server has not ended within 3 s (a driver may hang), and on a
-/// second signal. Sessions are saved about once a second (with --state-dir), so at most the last second is
+/// second signal. Sessions are saved about twice a second (with --state-dir), so at most the last second is
 /// lost.
 class StopOnSignal {
  public:

@@ -1,6 +1,7 @@
 #include "server/session/keeper.h"
 
 #include <algorithm>
+#include <ctime>
 
 #include "server/base/files.h"
 #include "server/base/log.h"
@@ -11,6 +12,17 @@
 namespace clothlab::session {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// Of the calling thread.
+Keeper::Clock::duration processor_time() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+}
+
+}  // namespace
 
 fs::path session_file(const fs::path& folder, const std::string& session) {
   return folder / (session + ".session");
@@ -58,10 +70,14 @@ bool Keeper::due(const Stepper& stepper) const {
 
 void Keeper::save_if_due(Stepper& stepper, Clock::time_point now) {
   if (now < next_ || !due(stepper)) return;
-  const Clock::time_point begun = Clock::now();
+  const Clock::duration worked = processor_time();
   save(stepper);
-  // Reading a large state back takes long. Saving takes at most about a tenth of the session's time.
-  next_ = now + std::max<Clock::duration>(period, 10 * (Clock::now() - begun));
+  next_ = next_save(now, Clock::now(), processor_time() - worked);
+}
+
+Keeper::Clock::time_point Keeper::next_save(Clock::time_point begun, Clock::time_point now,
+                                            Clock::duration worked) {
+  return std::max(begun + std::max<Clock::duration>(period, 10 * worked), now + (now - begun));
 }
 
 void Keeper::finish(Stepper& stepper) {

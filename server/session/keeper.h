@@ -1,4 +1,4 @@
-// Saves the state from which a session can be restored: about once a second while it changes, in memory for
+// Saves the state from which a session can be restored: about twice a second while it changes, in memory for
 // its room, and in a file if the server has a folder for sessions.
 #pragma once
 
@@ -42,7 +42,14 @@ class Keeper {
   /// Saves the session at its end, if it has changed or could not be saved, however recent the last save is.
   void finish(Stepper& stepper);
 
-  static constexpr std::chrono::milliseconds period{900};  ///< so that at most a second is lost
+  /// Half a second, so that a turn and the writing have as long again, where others keep the processors busy,
+  /// before more than a second is lost.
+  static constexpr std::chrono::milliseconds period{500};
+  /// When a state is saved next, after one that was read at `begun` and saved at `now`, which took `worked`
+  /// of this thread's processor time. Reading a large state back takes long, so saving takes at most about a
+  /// tenth of what the session works; what the thread only waits, for others on the processors, puts nothing
+  /// off, unless it waits more than half of the time, as for a slow disk.
+  static Clock::time_point next_save(Clock::time_point begun, Clock::time_point now, Clock::duration worked);
 
  private:
   bool due(const Stepper& stepper) const;

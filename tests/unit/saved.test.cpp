@@ -2,6 +2,7 @@
 #include "server/session/saved.h"
 
 #include "server/scene/document.h"
+#include "server/session/keeper.h"
 #include "tests/catch.h"
 
 using namespace clothlab;
@@ -51,4 +52,18 @@ TEST_CASE(
       flipped[at] = static_cast<char>(flipped[at] ^ (1 << bit));
       if (session::saved_from(flipped)) FAIL("taken with bit " << bit << " of byte " << at << " changed");
     }
+}
+
+TEST_CASE("what a save waits for the processors puts off none; its work does, to a tenth of the time") {
+  using session::Keeper;
+  using namespace std::chrono_literals;
+  const Keeper::Clock::time_point begun{1h};
+  const auto next = [&](auto took, auto worked) {
+    return Keeper::next_save(begun, begun + took, worked) - begun;
+  };
+  CHECK(next(1ms, 1ms) == Keeper::period);
+  CHECK(next(220ms, 20ms) == Keeper::period);  // others had the processors for 0.2 s
+  CHECK(Keeper::period <= 500ms);              // a turn and a save may take as long until a second is lost
+  CHECK(next(100ms, 100ms) == 1s);
+  CHECK(next(2s, 10ms) == 4s);  // a slow disk has half of the time
 }
