@@ -9,13 +9,16 @@
 
 namespace clothlab::cli {
 
+namespace {
+constexpr int connections_of_client = 2;  // as net::Connections allows
+}
+
 int descriptors_beside_connections(const net::Limits& limits, bool relay) {
   constexpr int own = 32, of_session = 8;
   return own + (relay ? 0 : of_session * limits.sessions);
 }
 
 int clients_within(int descriptors, const net::Limits& limits, bool relay) {
-  constexpr int connections_of_client = 2;  // as net::Connections allows
   constexpr int least = 32;
   const int left = descriptors - descriptors_beside_connections(limits, relay);
   return std::min(limits.clients, std::max(least, left / connections_of_client));
@@ -25,7 +28,7 @@ void fit_descriptors(net::Limits& limits, bool relay) {
   rlimit files{};
   if (getrlimit(RLIMIT_NOFILE, &files) != 0) return;
   const int beside = descriptors_beside_connections(limits, relay);
-  const rlim_t wanted = 2 * static_cast<rlim_t>(limits.clients) + static_cast<rlim_t>(beside);
+  const auto wanted = static_cast<rlim_t>(connections_of_client * limits.clients + beside);
   constexpr rlim_t spare = 512;  // for what a driver may open
   if (files.rlim_cur < wanted + spare && files.rlim_cur < files.rlim_max) {
     files.rlim_cur = std::min(wanted + spare, files.rlim_max);
