@@ -66,6 +66,7 @@ bool Client::enter_room() {
 
 void Client::leave_room() {
   pacing_.unsubscribe();
+  long_asked_.clear();
   if (Room* room = room_) {
     room_ = nullptr;
     room->leave(*this);
@@ -259,6 +260,9 @@ void Client::answer(const session::Ticket& ticket,
   send(result ? result_text(*ticket.id, *result)
        : text ? result_text(*ticket.id, *text)
               : error_text(*ticket.id, *error));
+  if (!ticket.at_length) return;
+  long_awaited_ = false;
+  ask_next_at_length();
 }
 
 void Client::answer_aside(session::Ticket ticket, std::function<session::JsonText()> make) {
@@ -288,6 +292,34 @@ void Client::send(SharedText text) {
 void Client::send_status(SharedText text) {
   if (!outbox_.push_status(std::move(text))) close(close_policy, "messages are not being read");
   wake();
+}
+
+void Client::send_scene(SharedText text) {
+  outbox_.push_scene(std::move(text));
+  wake();
+}
+
+void Client::send_change(SharedText text, const std::function<SharedText()>& whole) {
+  if (outbox_.crowded()) return send_scene(whole());
+  if (!outbox_.push_change(std::move(text))) close(close_policy, "messages are not being read");
+  wake();
+}
+
+bool Client::ask_at_length(session::Command command) {
+  if (long_asked_.size() >= session::max_waiting_commands) return false;
+  command.ticket.at_length = true;
+  long_asked_.push_back(std::move(command));
+  ask_next_at_length();
+  return true;
+}
+
+void Client::ask_next_at_length() {
+  if (!room_ || long_awaited_ || long_asked_.empty() || outbox_.crowded()) return;
+  session::Command command = std::move(long_asked_.front());
+  long_asked_.pop_front();
+  const session::Ticket ticket = command.ticket;
+  long_awaited_ = room_->offer(std::move(command));
+  if (!long_awaited_) answer(ticket, too_many_waiting());
 }
 
 void Client::wake() {
@@ -388,7 +420,10 @@ int Client::send_next() {
     const Served served(*this);
     text_was_last_ = true;
     wake();
-    if (!outbox_.crowded()) read_on();
+    if (!outbox_.crowded()) {
+      ask_next_at_length();
+      read_on();
+    }
     return write(text->data(), text->size(), true);
   }
   if (!room_ || !pacing_.subscribed()) return 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <string>
@@ -50,6 +51,9 @@ class Client {
   void unsubscribe();
   void acknowledge(std::uint32_t sequence);
   void leave_room();
+  /// Passes a request to the session whose answer may be long, after the answers to those before it have been
+  /// sent: who reads slowly has one of them unread at a time. False: too many wait already.
+  [[nodiscard]] bool ask_at_length(session::Command command);
   /// What a mesh.upload keeps until the session has read its mesh; null while an earlier one does.
   std::shared_ptr<void> begin_upload();
 
@@ -76,6 +80,9 @@ class Client {
   /// Has the answer made on the workbench. Until it is there, nothing more is read from the client.
   void answer_aside(session::Ticket ticket, std::function<session::JsonText()> make);
   void send_status(SharedText text);
+  void send_scene(SharedText text);  ///< the whole document
+  /// A change of the document; to a client that reads slowly `whole` in its place.
+  void send_change(SharedText text, const std::function<SharedText()>& whole);
   /// The session was brought back after it failed: the topology is sent again before the next frame.
   void session_replaced();
   void frame_arrived(stream::Form form, std::int64_t now);
@@ -100,6 +107,7 @@ class Client {
   void take(std::variant<Request, BadRequest> parsed, bool long_text);
   scene::TextLimits text_limits(std::size_t bytes) const;
   void pay(std::int64_t since);
+  void ask_next_at_length();
   void stop_reading_if_due();
   void read_on();
   void schedule_frame(std::int64_t now);
@@ -129,6 +137,8 @@ class Client {
   bool reading_ = true;  ///< false: what the client sends stays in its socket
   bool aside_ = false;   ///< the workbench has something of the client's
   Outbox outbox_;
+  std::deque<session::Command> long_asked_;  ///< of which each is asked when the one before is answered
+  bool long_awaited_ = false;                ///< the session has one that it has not answered
   FramePacing pacing_;
   TokenBucket messages_;
   TokenBucket grab_notices_;    ///< a hand that moves may be wrong often: a notice a second is enough

@@ -113,12 +113,22 @@ session::Ticket ticket(const Client& client, const Request& request) {
   return {client.id(), request.id, request.method, request.received_us};
 }
 
+RpcError too_many_waiting() {
+  return {error_over_limit,
+          std::to_string(session::max_waiting_commands) +
+              " of your requests wait already; wait for their answers",
+          nullptr};
+}
+
 Outcome ask_session(Client& client, const Request& request, decltype(session::Command::what) what) {
   if (client.room()->offer({ticket(client, request), std::move(what)})) return AnsweredLater{};
-  return RpcError{error_over_limit,
-                  std::to_string(session::max_waiting_commands) +
-                      " of your requests wait already; wait for their answers",
-                  nullptr};
+  return too_many_waiting();
+}
+
+Outcome ask_at_length(Client& client, const Request& request, decltype(session::Command::what) what) {
+  if (!request.id) return ask_session(client, request, std::move(what));  // gets no answer
+  if (client.ask_at_length({ticket(client, request), std::move(what)})) return AnsweredLater{};
+  return too_many_waiting();
 }
 
 Outcome call(Client& client, Request& request) {

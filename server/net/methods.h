@@ -29,6 +29,9 @@ session::Ticket ticket(const Client& client, const Request& request);
 
 /// Passes `what` to the client's session, which will answer. Error: too many of the client's requests wait.
 Outcome ask_session(Client& client, const Request& request, decltype(session::Command::what) what);
+/// The same for what may be answered at length (Client::ask_at_length).
+Outcome ask_at_length(Client& client, const Request& request, decltype(session::Command::what) what);
+RpcError too_many_waiting();
 
 // The groups of methods, each in its own file methods_GROUP.cpp.
 Outcome grab_end(Client& client, Request& request);

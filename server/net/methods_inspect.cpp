@@ -13,7 +13,7 @@ Outcome from_first(Client& client, Request& request) {
   Params params(request.params);
   const std::int64_t first = params.integer("first", 0, 64 * scene::max_vertices, 0);
   if (auto error = params.check()) return *error;
-  return ask_session(client, request, What{static_cast<std::size_t>(first)});
+  return ask_at_length(client, request, What{static_cast<std::size_t>(first)});
 }
 
 }  // namespace
@@ -30,7 +30,7 @@ Outcome inspect_contacts(Client& client, Request& request) {
   Params params(request.params);
   const std::int64_t most = params.integer("most", 0, session::max_inspected_contacts, 1000);
   if (auto error = params.check()) return *error;
-  return ask_session(client, request, session::InspectContacts{static_cast<std::size_t>(most)});
+  return ask_at_length(client, request, session::InspectContacts{static_cast<std::size_t>(most)});
 }
 
 }  // namespace clothlab::net

@@ -27,7 +27,8 @@ Outcome travel(Client& client, Request& request, session::Direction direction) {
 Outcome scene_get(Client& client, Request& request) {
   Params params(request.params);
   if (auto error = params.check()) return *error;
-  return ask_session(client, request, session::GetScene{});
+  const bool is_long = client.room()->scene_bytes() > max_answers_ahead_bytes;
+  return (is_long ? ask_at_length : ask_session)(client, request, session::GetScene{});
 }
 
 Outcome scene_load(Client& client, Request& request) {

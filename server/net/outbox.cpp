@@ -30,7 +30,7 @@ SharedText make_text(std::string_view text) {
 bool Outbox::push(SharedText text) {
   bytes_ += text->size();
   texts_.push_back(std::move(text));
-  return bytes_ <= max_unsent_text_bytes;
+  return bytes_ - (scene_ ? scene_->size() : 0) <= max_unsent_text_bytes;
 }
 
 void Outbox::push_first(SharedText text) {
@@ -39,12 +39,31 @@ void Outbox::push_first(SharedText text) {
 }
 
 bool Outbox::push_status(SharedText text) {
-  if (status_) {
-    texts_.erase(std::find(texts_.begin(), texts_.end(), status_));
-    bytes_ -= status_->size();
-  }
+  if (status_) drop(status_);
   status_ = text;
   return push(std::move(text));
+}
+
+bool Outbox::push_change(SharedText text) {
+  changes_.push_back(text);
+  return push(std::move(text));
+}
+
+void Outbox::push_scene(SharedText text) {
+  if (scene_) drop(scene_);
+  std::erase_if(texts_, [&](const SharedText& waits) {
+    if (changes_.empty() || waits != changes_.front()) return false;
+    bytes_ -= waits->size();
+    changes_.pop_front();
+    return true;
+  });
+  scene_ = text;
+  (void)push(std::move(text));
+}
+
+void Outbox::drop(const SharedText& text) {
+  texts_.erase(std::find(texts_.begin(), texts_.end(), text));
+  bytes_ -= text->size();
 }
 
 SharedText Outbox::pop() {
@@ -53,6 +72,8 @@ SharedText Outbox::pop() {
   texts_.pop_front();
   bytes_ -= next->size();
   if (next == status_) status_.reset();
+  if (next == scene_) scene_.reset();
+  if (!changes_.empty() && next == changes_.front()) changes_.pop_front();
   return next;
 }
 

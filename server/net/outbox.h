@@ -1,5 +1,5 @@
-// The text messages that wait to be sent to a client, in order. Only a status is ever dropped, when a newer
-// status replaces it.
+// The text messages that wait to be sent to a client, in order. Only what a newer message replaces is ever
+// dropped: a status by the next one, and what was said of the scene's document by the whole of it.
 #pragma once
 
 #include <cstddef>
@@ -31,6 +31,11 @@ class Outbox {
   /// Appends a message. False: more than max_unsent_text_bytes wait, because the client does not read.
   [[nodiscard]] bool push(SharedText text);
   void push_first(SharedText text);
+  /// Appends a change of the scene's document. Returns the same as `push`.
+  [[nodiscard]] bool push_change(SharedText text);
+  /// Appends the whole document, and drops what waits of earlier ones and their changes. It does not count
+  /// among what `push` bounds: only one ever waits.
+  void push_scene(SharedText text);
   /// Appends a status and drops the status that still waits, if any. Returns the same as `push`.
   [[nodiscard]] bool push_status(SharedText text);
   bool empty() const { return texts_.empty(); }
@@ -39,9 +44,13 @@ class Outbox {
   SharedText pop();  ///< removes the first message; null if empty
 
  private:
+  void drop(const SharedText& text);
+
   std::deque<SharedText> texts_;
-  SharedText status_;  ///< the status in `texts_`; null: none
-  std::size_t bytes_ = 0;
+  SharedText status_;               ///< the status in `texts_`; null: none
+  SharedText scene_;                ///< the document in `texts_`; null: none
+  std::deque<SharedText> changes_;  ///< of the document, in `texts_` in this order
+  std::size_t bytes_ = 0;           ///< of `texts_`
 };
 
 }  // namespace clothlab::net

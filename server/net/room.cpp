@@ -240,10 +240,18 @@ void Room::handle(session::SceneChanged& changed) {
   if (publisher_) publisher_->forget_whole();
   hub_.lab().scene_changed(name_, *document_);
   if (changed.told) return;
-  if (changed.patch)
-    broadcast("scene.changed", {{"revision", revision_}, {"patch", *changed.patch}, {"by", changed.by}});
-  else if (started() && !empty())
-    broadcast(scene_message());
+  if (empty() || (!changed.patch && !started())) return;
+  const SharedText text =
+      changed.patch
+          ? make_text(notification_text(
+                "scene.changed", {{"revision", revision_}, {"patch", *changed.patch}, {"by", changed.by}}))
+          : scene_message();
+  for (Client* client : clients_)
+    if (changed.patch)
+      client->send_change(text, [this] { return scene_message(); });
+    else
+      client->send_scene(text);
+  if (publisher_) publisher_->text(text);
 }
 
 const SharedText& Room::scene_message() {
@@ -340,7 +348,7 @@ void Room::handle(session::ChoiceWanted&) {
 
 void Room::greet(Client& client) {
   client.greet(notification_text("hello", hello_params(hub_, *this, client)));
-  client.send(scene_message());
+  client.send_scene(scene_message());
   if (history_.is_object()) client.send(notification_text("scene.history", history_));
   for (const std::string& notice : standing_notices_) client.send(notice);
 }

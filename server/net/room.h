@@ -38,6 +38,9 @@ class Room {
   const std::string& renderer() const { return renderer_; }
   const json& document() const { return document_->value; }
   const std::shared_ptr<const scene::Document>& shared_document() const { return document_; }
+  std::size_t scene_bytes() const {
+    return scene_text_ ? scene_text_->size() : 0;
+  }  ///< as scene.get tells it
   /// The document as a file, null: it has not been written since the scene changed.
   const session::JsonText& scene_file() const { return scene_file_; }
   void keep_scene_file(const std::shared_ptr<const scene::Document>& of, session::JsonText file) {

@@ -24,6 +24,7 @@ struct Ticket {
   std::optional<json> id;   ///< the request's id; none: a notification, or a command of the server
   std::string method{};
   std::int64_t asked_us = 0;  ///< when the request came, on the clock of now_us [us]
+  bool at_length = false;  ///< its answer may be long, and the client is asked for no other before it has it
 };
 
 struct GetScene {};

@@ -27,6 +27,7 @@
 #include "server/session/step_limit.h"
 #include "server/session/timeline.h"
 #include "server/sim/guarded_run.h"
+#include "server/sim/near_pairs.h"
 
 namespace clothlab::session {
 
@@ -122,7 +123,7 @@ class Stepper {
   void perform(InspectSprings& springs, const Ticket& ticket);
   void perform(InspectElements& elements, const Ticket& ticket);
   void perform(InspectContacts& contacts, const Ticket& ticket);
-  json contacts_told(std::size_t most);
+  json contacts_told(std::size_t most) const;
   // In stepper_meshes.cpp.
   void perform(UploadMesh& upload, const Ticket& ticket);
   clothlab::Status use_again(const std::string& mesh, const Ticket& ticket);
@@ -244,13 +245,18 @@ class Stepper {
   std::uint32_t recorded_revision_ = 0;   ///< of the mesh that the recording has
   std::vector<Ticket> ending_recording_;  ///< requests record.stop that wait for the end of the recording
 
-  /// The last answer to InspectContacts.
+  /// What was last read for InspectContacts, and told of it.
   struct ContactsTold {
-    JsonText text;  ///< null: none yet
+    bool read = false;
+    sim::NearPairs near{};  ///< max_inspected_contacts at most, of `total`
+    std::size_t total = 0;
     std::uint32_t topology_revision = 0;
     std::uint64_t revision = 0, state_version = 0;
-    std::size_t most = 0;
+    double time = 0;  ///< [s]
+    std::uint64_t step = 0;
     Clock::time_point at{};
+    JsonText text{};  ///< the last answer, to `most`; null: none yet
+    std::size_t most = 0;
   } contacts_;
   JsonText scene_text_;  ///< see scene_text
 

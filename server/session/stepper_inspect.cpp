@@ -68,14 +68,14 @@ void Stepper::perform(InspectElements& asked, const Ticket& ticket) {
                      {"shares", to_base64(shares)}});
 }
 
-json Stepper::contacts_told(std::size_t most) {
-  const sim::NearPairs near = simulation().near_pairs();
-  const std::size_t count = std::min(most, near.pairs.size());
+/// The nearest ones of what was read last, `most` at most.
+json Stepper::contacts_told(std::size_t most) const {
+  const std::size_t count = std::min(most, contacts_.near.pairs.size());
   std::vector<std::uint8_t> kind;
   std::vector<std::uint32_t> vertices;
   std::vector<float> shares, gap, keep, nearest;
   for (std::size_t i = 0; i < count; ++i) {
-    const sim::NearPair& pair = near.pairs[i];
+    const sim::NearPair& pair = contacts_.near.pairs[i];
     kind.push_back(static_cast<std::uint8_t>(pair.kind));
     append(vertices, pair.vertices);
     append(shares, pair.shares);
@@ -83,12 +83,12 @@ json Stepper::contacts_told(std::size_t most) {
     keep.push_back(static_cast<float>(pair.keep));
     for (const glm::dvec3& point : pair.nearest) append(nearest, std::array{point.x, point.y, point.z});
   }
-  return {{"topology_revision", simulation().topology_revision()},
-          {"revision", revision_},
-          {"time", simulation().time()},
-          {"step", simulation().step_index()},
-          {"searched", near.searched},
-          {"total", near.pairs.size()},
+  return {{"topology_revision", contacts_.topology_revision},
+          {"revision", contacts_.revision},
+          {"time", contacts_.time},
+          {"step", contacts_.step},
+          {"searched", contacts_.near.searched},
+          {"total", contacts_.total},
           {"count", count},
           {"kind", to_base64(kind)},
           {"vertices", to_base64(vertices)},
@@ -98,21 +98,31 @@ json Stepper::contacts_told(std::size_t most) {
           {"nearest", to_base64(nearest)}};
 }
 
-// The pairs are read from the GPU, which takes time from the steps: who asks often gets the same answer
-// again.
+// The pairs are read from the GPU, which takes time from the steps: who asks often gets what was read before,
+// however many he asks for.
 void Stepper::perform(InspectContacts& asked, const Ticket& ticket) {
   const Clock::time_point now = Clock::now();
-  const bool same = contacts_.text && contacts_.most == asked.most && contacts_.revision == revision_ &&
+  const bool same = contacts_.read && contacts_.revision == revision_ &&
                     contacts_.topology_revision == simulation().topology_revision();
   const bool unmoved = contacts_.state_version == state_version_;
   const bool fresh = run_.plays() && now - contacts_.at < period(inspection_rate);
-  if (!same || (!unmoved && !fresh))
-    contacts_ = {text_of(contacts_told(asked.most)),
+  if (!same || (!unmoved && !fresh)) {
+    contacts_ = {true,
+                 simulation().near_pairs(),
+                 0,
                  simulation().topology_revision(),
                  revision_,
                  state_version_,
-                 asked.most,
+                 simulation().time(),
+                 simulation().step_index(),
                  now};
+    contacts_.total = contacts_.near.pairs.size();
+    contacts_.near.pairs.resize(std::min(contacts_.total, max_inspected_contacts));
+  }
+  if (!contacts_.text || contacts_.most != asked.most) {
+    contacts_.text = text_of(contacts_told(asked.most));
+    contacts_.most = asked.most;
+  }
   reply(ticket, contacts_.text);
 }
 

@@ -1,5 +1,5 @@
 // Memory that a scene takes of the server, against what the server expects of it. Run by hand:
-//   CLOTHLAB=build/release/clothlab node tests/bench/memory.mjs [SIDE]... [--only TEXT] [--out FILE]
+//   CLOTHLAB=build/release/clothlab node tests/bench/memory.mjs [SIDE]... [--only REGEX] [--out FILE]
 // Each scene is a grid of SIDE x SIDE vertices in a server of its own, watched by one viewer until some frames came.
 // Prints (and writes) a line for each: the most memory that the server had less what it has with the smallest scene
 // [bytes], what it reserved for the scene, and their quotient.
@@ -11,7 +11,7 @@ import { Client, Server } from "../protocol/harness.mjs";
 const args = process.argv.slice(2);
 const option = (name) => (args.includes(name) ? args.splice(args.indexOf(name), 2)[1] : null);
 const out = option("--out");
-const only = option("--only") ?? "";
+const only = new RegExp(option("--only") ?? "");
 const sides = args.length > 0 ? args.map(Number) : [256, 512];
 
 const folder = mkdtempSync(join(tmpdir(), "clothlab-memory-"));
@@ -19,6 +19,8 @@ process.on("exit", () => rmSync(folder, { recursive: true, force: true }));
 
 const fem = { model: "fem", warp: 2365, weft: 3801, poisson: 0.311, shear: 97, bending: { warp: 8e-6, weft: 12e-6 } };
 const springs = { model: "springs", structural: 100, shear: 50, bend: 10, damping: 0.01 };
+const patience = 900_000; // [ms]; a million vertices take minutes to build
+
 const dts = { explicit_euler: 1e-8, implicit_euler: 1e-4, pbd: 0.005, xpbd: 0.005, vbd: 0.005 };
 
 function scene(side, method, material, more) {
@@ -63,26 +65,43 @@ function memory(pid) {
   return { most: of("VmHWM"), now: of("VmRSS") };
 }
 
+/// A client that reads no more of frames than whether they are of the scene: [kind, vertices] of each.
+async function viewer(server) {
+  const client = await Client.connect(server);
+  const receive = client.receive.bind(client);
+  client.receive = (data, isBinary) => {
+    if (!isBinary) return receive(data, false);
+    client.binary.push([data.readUInt8(0), data.readUInt32LE(12)]);
+    if (data.readUInt8(0) === 2) client.notify("stream.ack", { frame: data.readUInt32LE(8) });
+    for (const check of client.waiting) check();
+  };
+  return client;
+}
+
 async function measured(document) {
-  const file = join(folder, "scene.json");
-  writeFileSync(file, JSON.stringify(document));
-  const server = await Server.start("--scene", file, "--max-vertices", "1048576");
+  const server = await Server.start("--scene", smallest, "--max-vertices", "1048576");
   try {
-    const client = await Client.connect(server);
-    await client.request("stream.subscribe", { encoding: "q16", rate: 60, in_flight: 2 });
-    await client.frame();
-    const status = await client.notification("sim.status", ({ step, diverged }) => step > 0 || diverged);
+    const client = await viewer(server);
+    await client.request("scene.load", { scene: document }, patience);
+    await client.request("stream.subscribe", { encoding: "q16", rate: 60, in_flight: 2 }, patience);
+    const { columns, rows } = document.cloths[0].mesh.grid;
+    const ofScene = ([kind, vertices]) => kind === 2 && vertices === columns * rows;
+    await client.until(() => client.binary, ofScene, "a frame", patience);
+    const stepped = ({ step, diverged }) => step > 0 || diverged;
+    const status = await client.nextNotification("sim.status", stepped, patience);
     const reserved = await server.metric("clothlab_memory_simulations_bytes");
     return { ...memory(server.child.pid), buffers: status.memory_bytes, reserved };
   } finally {
-    await server.stop();
+    await server.stop("SIGKILL");
   }
 }
 
+const smallest = join(folder, "smallest.json");
+writeFileSync(smallest, JSON.stringify(scene(3, "symplectic_euler", springs, {})));
 const least = await measured(scene(3, "symplectic_euler", springs, {}));
 const rows = [];
 for (const [name, side, document] of cases) {
-  if (!name.includes(only)) continue;
+  if (!only.test(name)) continue;
   try {
     const found = await measured(document);
     const taken = found.most - least.most;

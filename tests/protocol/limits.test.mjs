@@ -1,7 +1,10 @@
 // The limits that an operator sets when starting the server: what each refuses, the error's text, and what goes on.
 import assert from "node:assert/strict";
 import { once } from "node:events";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import net from "node:net";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 import { after, test } from "node:test";
 import { Client, patience, runProgram, Server, sleep, withTimeout } from "./harness.mjs";
 
@@ -368,6 +371,34 @@ test("a client that asks and does not read is cut off once 4 MiB of answers wait
   assert.equal((await other.request("ping", { t: 1 })).t, 1);
   deaf.socket.terminate();
   await other.close();
+});
+
+test("a client that reads slowly while a large scene is loaded three times, and asks for it four times, gets it whole", async () => {
+  const folder = mkdtempSync(join(tmpdir(), "clothlab-large-"));
+  after(() => rmSync(folder, { recursive: true, force: true }));
+  const vertices = Array.from({ length: 46000 }, (_, i) => [
+    (i % 200) / 81 + 1 / 3,
+    1 / 7,
+    Math.floor(i / 200) / 81 + 1 / 3,
+  ]);
+  const cloth = { mesh: { vertices, triangles: [[0, 200, 1]] }, material: { shear: 0 } };
+  writeFileSync(join(folder, "large.json"), JSON.stringify({ version: 1, cloths: [cloth] }));
+  const server = await start("--scene", join(folder, "large.json"));
+  const [operator, slow] = await Promise.all([Client.connect(server), Client.connect(server)]);
+  await slow.notification("scene");
+  slow.socket.pause();
+  for (let time = 0; time < 3; ++time) {
+    await operator.request("scene.load", { preset: "seed" });
+    await operator.request("scene.undo"); // sends all of it, more than 2 MB
+  }
+  const answers = Promise.all(Array.from({ length: 4 }, () => slow.request("scene.get")));
+  const { revision } = await operator.request("scene.patch", { patch: { air_drag: 0.25 } });
+  await operator.statuses(5);
+  slow.socket.resume();
+  for (const { document } of await answers) assert.equal(document.cloths[0].mesh.vertices.length, 46000);
+  const told = ({ method, params }) => /^scene(\.changed)?$/.test(method) && params.revision === revision;
+  await slow.until(() => slow.messages, told, "the last change");
+  for (const client of [operator, slow]) await client.close();
 });
 
 test("a crowd that asks as often as it may is read as the thread that serves all has time, and all is answered in order", async () => {

@@ -189,3 +189,21 @@ TEST_CASE("what a paused session keeps of its past is bounded, however large its
   for (int i = 0; i < 5; ++i) session.turn();
   CHECK(session.ask(session::GetTimeline{})["newest"]["step"] > 0);
 }
+
+TEST_CASE("contacts are read once for each state, however many of them who asks wants") {
+  Fixture session;
+  session.ask(session::Pause{});
+  session.ask(session::Step{20});
+  for (int i = 0; i < 5; ++i) session.turn();
+  const nlohmann::json first = session.ask(session::InspectContacts{1});
+  CHECK(first["step"] == 20);
+  // To read them takes a list of neighbours for each of 625 vertices.
+  for (const std::size_t most : {1000u, 3u}) {
+    const std::size_t before = allocations;
+    CHECK(session.ask(session::InspectContacts{most})["total"] == first["total"]);
+    CHECK(allocations - before < 500);
+  }
+  session.ask(session::Step{1});
+  for (int i = 0; i < 5; ++i) session.turn();
+  CHECK(session.ask(session::InspectContacts{3})["step"] == 21);
+}

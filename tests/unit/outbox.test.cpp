@@ -40,3 +40,28 @@ TEST_CASE("statuses never pile up, what must not be lost does: up to max_unsent_
   REQUIRE(outbox.push(make_text(std::string(net::max_unsent_text_bytes - 2000, ' '))));
   CHECK_FALSE(outbox.push(make_text(std::string(2000, ' '))));
 }
+
+TEST_CASE(
+    "the newest document takes the place of those that wait, and of their changes: a slow reader loses "
+    "none") {
+  Outbox outbox;
+  const std::string large(3 << 20, ' ');
+  for (int i = 0; i < 5; ++i) {
+    outbox.push_scene(make_text(large + std::to_string(i)));
+    REQUIRE(outbox.push_change(make_text("a change")));
+    REQUIRE(outbox.push(make_text("an answer")));
+  }
+  outbox.push_scene(make_text("the scene"));
+  CHECK_FALSE(outbox.crowded());
+  REQUIRE(outbox.push_change(make_text("its change")));
+  for (int i = 0; i < 5; ++i) CHECK(next(outbox) == "an answer");
+  CHECK(next(outbox) == "the scene");
+  // What has been sent cannot be replaced.
+  outbox.push_scene(make_text("the next"));
+  CHECK(next(outbox) == "the next");
+  CHECK(outbox.empty());
+  outbox.push_scene(make_text(large));
+  CHECK(outbox.crowded());
+  REQUIRE(outbox.push(make_text(large)));
+  CHECK_FALSE(outbox.push(make_text(large)));
+}
