@@ -1,6 +1,7 @@
 // The JavaScript client as a server serves it, against that server.
 import assert from "node:assert/strict";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import http from "node:http";
 import { dirname, join } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
@@ -65,6 +66,102 @@ test("a wrong value says where, what and what is allowed; any method can be call
   assert.equal((await error(clothlab.Refused, cloth.request("no.such"))).code, -32601);
   await error(clothlab.Timeout, cloth.wait("no.such", undefined, { timeout: 0.05 }));
   assert.ok(cloth.connected);
+});
+
+/// A WebSocket whose server says hello, then answers each request by the next of these; `sends` comes unasked.
+function hostile(answers, sends = []) {
+  return class {
+    constructor() {
+      queueMicrotask(() => {
+        this.onopen();
+        this.say({ method: "hello", params: { role: "operator" } });
+        for (const data of sends) this.onmessage({ data });
+      });
+    }
+    say(message) {
+      this.onmessage({ data: JSON.stringify({ jsonrpc: "2.0", ...message }) });
+    }
+    send(text) {
+      const { id } = JSON.parse(text);
+      if (id !== undefined && answers.length > 0) queueMicrotask(() => this.say({ id, ...answers.shift() }));
+    }
+    close() {}
+  };
+}
+const pong = { result: { t: null } };
+
+test("what a server sends that is none of the protocol ends the connection with an error of the client's own", async () => {
+  const binary = (bytes, write) => {
+    const view = new DataView(new ArrayBuffer(bytes));
+    write(view);
+    return view.buffer;
+  };
+  const sends = [
+    "no JSON",
+    "null",
+    "[]",
+    '{"method": 5}',
+    '{"method": "notice", "params": "text"}',
+    new ArrayBuffer(0),
+    binary(72, (view) => {
+      view.setUint8(0, 1);
+      view.setUint32(64, 5, true); // triangles
+      view.setUint32(68, 0xffffffff, true); // cloths
+    }),
+    " ".repeat(64 * 1024 * 1024 + 1),
+  ];
+  for (const data of sends) {
+    const refused = clothlab.connect("hostile", { WebSocket: hostile([], [data]), timeout: 20 });
+    const { code } = await error(clothlab.ConnectionLost, refused);
+    assert.equal(code, 1002);
+  }
+});
+
+test("answers that lack what they should have say so", async () => {
+  for (const [ask, result] of [
+    [(cloth) => cloth.get(), null],
+    [(cloth) => cloth.get("/name"), { document: 5 }],
+    [(cloth) => cloth.presets(), []],
+    [(cloth) => cloth.fabrics(), { fabrics: "many" }],
+    [(cloth) => cloth.export(1, "csv"), {}],
+    [(cloth) => cloth.chart(), { job: null }],
+  ]) {
+    const cloth = await clothlab.connect("hostile", { WebSocket: hostile([pong, { result }]), timeout: 20 });
+    const { message } = await error(clothlab.ClothlabError, ask(cloth));
+    assert.match(message, /^the answer to \S+ has no '/);
+  }
+  const cloth = await clothlab.connect("hostile", { WebSocket: hostile([pong, { error: "no" }]), timeout: 20 });
+  assert.equal((await error(clothlab.Refused, cloth.request("ping"))).message, "no");
+});
+
+test("of an answer over HTTP that has no end no more than a few kilobytes are read where it tells an error", async (t) => {
+  let sent = 0;
+  const endless = http.createServer((_, response) => {
+    response.writeHead(500);
+    const more = () => {
+      while (!response.destroyed && sent < 1 << 28 && response.write(" ".repeat(65536))) sent += 65536;
+    };
+    response.on("drain", more);
+    more();
+  });
+  await new Promise((resolve) => endless.listen(0, "127.0.0.1", resolve));
+  t.after(() => endless.close());
+  t.after(() => endless.closeAllConnections());
+  const host = `127.0.0.1:${endless.address().port}`;
+  const cloth = await clothlab.connect(host, { WebSocket: hostile([pong]), timeout: 20 });
+  assert.equal((await error(clothlab.ConnectionLost, cloth.mesh())).code, 500);
+  assert.ok(sent < 1 << 27, `${sent} bytes were taken`);
+  endless.closeAllConnections();
+  endless.close();
+  const { code } = await error(clothlab.ConnectionLost, cloth.picture());
+  assert.equal(code, 0, "nobody answers");
+});
+
+test("a patch may ask that the cloth stays stable", async (t) => {
+  const cloth = await opened(t, "stiff");
+  const stiff = { "/cloths/0/material/structural": 1e5 };
+  const patch = Object.entries(stiff).map(([path, value]) => ({ op: "replace", path, value }));
+  assert.ok((await cloth.patch(patch, undefined, { keepStable: true })).solver.dt > 0);
 });
 
 test("a frame is that of now, in both encodings", async (t) => {

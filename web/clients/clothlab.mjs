@@ -41,12 +41,12 @@ export class Refused extends ClothlabError {
 
   /** @param {{ code: number, message: string, data?: any }} error */
   constructor({ code, message, data }) {
-    super(message);
+    super(message ?? "the server refused this");
     /** Of JSON-RPC: -32601 no such method, -32602 a wrong value, -32001 not allowed, -32002 over a limit, -32003 the
      *  scene has another revision, -32004 diverged. */
     this.code = code;
     /** @type {Json} all that the server said, e.g. { revision: 7 } */
-    this.data = data ?? {};
+    this.data = typeof data === "object" && data !== null ? data : {};
     /** @type {string} of a wrong value its JSON Pointer, else "" */
     this.path = this.data.path ?? "";
     /** @type {string} */
@@ -75,6 +75,10 @@ export class Timeout extends ClothlabError {
 }
 
 const headerBytes = 64;
+// The most that is taken from a server, whatever it sends.
+const mostMessageBytes = 64 * 1024 * 1024; // of a message: a million vertices have less
+const mostAnswerBytes = 512 * 1024 * 1024; // over HTTP: a picture, or a mesh as text
+const mostHeard = 10_000; // notifications that wait for a measurement; beyond, the oldest are forgotten
 const retryTime = 0.5; // [s] between two tries to connect anew
 
 /** What is connected: the same for all frames until another mesh. */
@@ -87,6 +91,8 @@ export class Topology {
     this.vertices = view.getUint32(12, true);
     const count = view.getUint32(headerBytes, true);
     const cloths = view.getUint32(headerBytes + 4, true);
+    if (buffer.byteLength !== headerBytes + 8 + 8 * cloths + 12 * count + 8 * this.vertices)
+      throw new ClothlabError("a topology that is not as long as it says; fetch the server's own client");
     /** each cloth's vertices, within those of the frame */
     this.cloths = Array.from({ length: cloths }, (_, i) => ({
       first: view.getUint32(headerBytes + 8 + 8 * i, true),
@@ -119,6 +125,9 @@ export class Frame {
     /** simulated [s] */
     this.time = view.getFloat64(16, true);
     this.step = Number(view.getBigUint64(24, true));
+    const bytes = (this.encoding === "f32" ? 24 : 8) + (view.getFloat32(60, true) > 0 ? 1 : 0);
+    if (buffer.byteLength !== headerBytes + bytes * this.vertices)
+      throw new ClothlabError("a frame that is not as long as it says; fetch the server's own client");
     this.topology = topology;
     /** the bytes as they came, without the header */
     this.payload = new Uint8Array(buffer, headerBytes);
@@ -156,7 +165,7 @@ export class Frame {
   /** One number a vertex, in 255 levels: the field that was asked for; null without one. @returns {Float32Array | null} */
   get field() {
     const range = this._view.getFloat32(60, true);
-    if (range === 0) return null;
+    if (!(range > 0)) return null;
     return Float32Array.from(this.payload.subarray(-this.vertices), (level) => (range * level) / 255);
   }
 
@@ -179,6 +188,46 @@ export class Frame {
             : quantised(vertex, axis);
     return all;
   }
+}
+
+/**
+ * A text message of JSON-RPC, in the form that all below relies on.
+ * @param {string} text
+ * @returns {Json}
+ */
+function parsedMessage(text) {
+  const isObject = (/** @type {any} */ value) => typeof value === "object" && value !== null && !Array.isArray(value);
+  const message = JSON.parse(text);
+  if (!isObject(message)) throw new ClothlabError("it sent a message that is no object");
+  if (message.method !== undefined && !(typeof message.method === "string" && isObject(message.params ?? {})))
+    throw new ClothlabError("it sent a notification without a name, or without named parameters");
+  if (message.error && !isObject(message.error)) message.error = { message: String(message.error) };
+  return message;
+}
+
+/**
+ * The body of an answer over HTTP, or as much of it as `most` bytes.
+ * @param {Response} answer
+ * @param {number} most
+ */
+async function bodyOf(answer, most) {
+  const pieces = [];
+  let bytes = 0;
+  const reader = answer.body?.getReader();
+  while (reader && bytes <= most) {
+    const { done, value } = await reader.read();
+    if (done) break;
+    pieces.push(value);
+    bytes += value.length;
+  }
+  if (bytes > most) reader?.cancel().catch(() => {});
+  const body = new Uint8Array(Math.min(bytes, most + 1));
+  let at = 0;
+  for (const piece of pieces) {
+    body.set(piece.subarray(0, body.length - at), at);
+    at += Math.min(piece.length, body.length - at);
+  }
+  return body;
 }
 
 /**
@@ -388,8 +437,16 @@ export class Session {
 
   /** @param {string | ArrayBuffer} data */
   _receive(data) {
-    if (typeof data !== "string") return this._take(data);
-    const message = JSON.parse(data);
+    /** @type {Json} */
+    let message;
+    try {
+      if ((typeof data === "string" ? data.length : data.byteLength) > mostMessageBytes)
+        throw new ClothlabError(`a message of more than ${mostMessageBytes} bytes`);
+      if (typeof data !== "string") return this._take(data);
+      message = parsedMessage(data);
+    } catch (error) {
+      return this._refuse(/** @type {Error} */ (error));
+    }
     if (message.method !== undefined)
       for (const listener of [...(this._listeners.get(message.method) ?? [])]) listener(message.params ?? {});
     const call = this._pending.get(message.id);
@@ -397,6 +454,15 @@ export class Session {
     if (message.error) call?.reject(new Refused(message.error));
     else call?.resolve(message.result);
     this._changed();
+  }
+
+  /** Ends the connection to a server that says what is none of this protocol. @param {Error} error */
+  _refuse(error) {
+    const socket = this._socket;
+    this._socket = null;
+    this._lose(new ConnectionLost(`${this._setup.host}: ${error.message}; is it a Clothlab server?`, 1002));
+    socket.onerror = () => {};
+    socket.close();
   }
 
   /** @param {ArrayBuffer} buffer */
@@ -473,6 +539,21 @@ export class Session {
   }
 
   /**
+   * The value at `key` of the answer to a request, if `is` says that it is of its kind.
+   * @param {string} method
+   * @param {string} key
+   * @param {(value: any) => boolean} is
+   * @param {Json} [params]
+   */
+  async _ask(method, key, is, params) {
+    const result = await this.request(method, params);
+    if (typeof result === "object" && result !== null && is(result[key])) return result[key];
+    throw new ClothlabError(
+      `the answer to ${method} has no '${key}', or of another type; fetch the server's own client`,
+    );
+  }
+
+  /**
    * Sends without waiting for an answer; what is wrong with it comes as a `notice`, if at all.
    * @param {string} method
    * @param {Json} [params]
@@ -531,7 +612,10 @@ export class Session {
    * @returns {Promise<any>}
    */
   async get(pointer = "") {
-    return at((await this.request("scene.get")).document, pointer);
+    return at(
+      await this._ask("scene.get", "document", (value) => typeof value === "object" && value !== null),
+      pointer,
+    );
   }
 
   /**
@@ -553,10 +637,16 @@ export class Session {
    * An object is an RFC 7396 merge patch, an array an RFC 6902 patch.
    * @param {Json | Operation[]} patch
    * @param {number} [revision] refused (-32003) if the scene has another
-   * @returns {Promise<{ revision: number, applies: "none" | "uniform" | "kernel" | "cloth" }>} cloth: time began again
+   * @param {{ keepStable?: boolean }} [options] keepStable: the solver changes with it where the cloth would not hold
+   * @returns {Promise<{ revision: number, applies: "none" | "uniform" | "kernel" | "cloth", solver?: Json }>} cloth: time
+   *     began again
    */
-  patch(patch, revision) {
-    return this.request("scene.patch", { patch, ...(revision === undefined ? {} : { revision }) });
+  patch(patch, revision, { keepStable = false } = {}) {
+    return this.request("scene.patch", {
+      patch,
+      ...(revision === undefined ? {} : { revision }),
+      ...(keepStable ? { keep_stable: true } : {}),
+    });
   }
 
   /**
@@ -570,12 +660,12 @@ export class Session {
 
   /** The names of the presets, for load(). @returns {Promise<string[]>} */
   async presets() {
-    return (await this.request("scene.presets")).presets;
+    return this._ask("scene.presets", "presets", Array.isArray);
   }
 
   /** The measured fabrics, for a cloth's /material/fabric. @returns {Promise<{ name: string, feel: string, source: string }[]>} */
   async fabrics() {
-    return (await this.request("scene.presets")).fabrics;
+    return this._ask("scene.presets", "fabrics", Array.isArray);
   }
 
   /**
@@ -722,7 +812,9 @@ export class Session {
 
   /** What a job has found, as a file's text. @param {number} job @param {"svg" | "csv" | "json"} format */
   async export(job, format) {
-    return /** @type {string} */ ((await this.request("lab.export", { job, format })).text);
+    return /** @type {string} */ (
+      await this._ask("lab.export", "text", (value) => typeof value === "string", { job, format })
+    );
   }
 
   /**
@@ -734,18 +826,19 @@ export class Session {
     /** @type {Json[]} */
     const ended = [];
     let job = 0;
-    const result = (/** @type {Json} */ news) => news.state !== "running" && ended.push(news);
+    const keep = (/** @type {Json[]} */ list, /** @type {Json} */ news) => list.push(news) > mostHeard && list.shift();
+    const result = (/** @type {Json} */ news) => news.state !== "running" && keep(ended, news);
     /** @type {Json[]} what came with the answer that names the job, before anybody could read it */
     const early = [];
     const told = (/** @type {Json} */ news) => {
-      if (job === 0) early.push(news);
+      if (job === 0) keep(early, news);
       else if (news.job === job) progress?.(news.done, news.total);
     };
     const cancel = () => this.connected && this.notify("lab.cancel", { job });
     this.on("lab.result", result);
     this.on("lab.progress", told);
     try {
-      job = (await this.request(method, params)).job;
+      job = await this._ask(method, "job", Number.isInteger, params);
       early.forEach(told);
       signal?.addEventListener("abort", cancel);
       if (signal?.aborted) cancel();
@@ -768,23 +861,34 @@ export class Session {
 
   /** A PNG of the cloth now; width and height [pixels]. */
   async picture(width = 1280, height = 720) {
-    return new Uint8Array(await (await this._http("/api/snapshot.png", { width, height })).arrayBuffer());
+    return this._http("/api/snapshot.png", { width, height });
   }
 
   /** The cloth now as an .obj file. */
   async mesh() {
-    return (await this._http("/api/mesh.obj")).text();
+    return new TextDecoder().decode(await this._http("/api/mesh.obj"));
   }
 
   /** @param {string} path @param {Json} [query] */
   async _http(path, query = {}) {
     const { host, secure, session, token } = this._setup;
     const search = new URLSearchParams({ session, ...query });
-    const answer = await fetch(`${secure ? "https" : "http"}://${host}${path}?${search}`, {
-      headers: token === undefined ? {} : { authorization: `Bearer ${token}` },
-    });
-    if (!answer.ok)
-      throw new ConnectionLost(`${path} (${answer.status}): ${(await answer.text()).trim()}`, answer.status);
-    return answer;
+    try {
+      const answer = await fetch(`${secure ? "https" : "http"}://${host}${path}?${search}`, {
+        headers: token === undefined ? {} : { authorization: `Bearer ${token}` },
+      });
+      const most = answer.ok ? mostAnswerBytes : 4096;
+      const body = await bodyOf(answer, most);
+      if (!answer.ok) {
+        const why = new TextDecoder().decode(body.subarray(0, most)).trim();
+        throw new ConnectionLost(`${path} (${answer.status}): ${why}`, answer.status);
+      }
+      if (body.length > most)
+        throw new ConnectionLost(`${path}: an answer of more than ${most} bytes; ask for less`, answer.status);
+      return body;
+    } catch (error) {
+      if (error instanceof ClothlabError) throw error;
+      throw new ConnectionLost(`${path}: ${/** @type {Error} */ (error).message}`, 0);
+    }
   }
 }

@@ -625,10 +625,12 @@ class Session:
         return self._ask("scene.get", "revision", int)
 
     def patch(self, patch: Mapping[str, Json] | Sequence[Mapping[str, Json]],
-              revision: int | None = None) -> dict[str, Json]:
+              revision: int | None = None, keep_stable: bool = False) -> dict[str, Json]:
         """A dict is an RFC 7396 merge patch, a list an RFC 6902 patch. With `revision` it is refused (-32003) if the
-        scene has another. Returns {"revision", "applies"}; applies "cloth" means that time began again at 0."""
-        return self.request("scene.patch", {"patch": patch, **({} if revision is None else {"revision": revision})})
+        scene has another. keep_stable: the solver changes with it where the cloth would not hold, and the answer has
+        it. Returns {"revision", "applies"}; applies "cloth" means that time began again at 0."""
+        return self.request("scene.patch", {"patch": patch, **({} if revision is None else {"revision": revision}),
+                                            **({"keep_stable": True} if keep_stable else {})})
 
     def load(self, scene: str | os.PathLike[str] | Mapping[str, Json]) -> dict[str, Json]:
         """Another scene from its beginning: a preset's name, the path of a .json file, or the document."""
