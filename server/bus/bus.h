@@ -58,11 +58,14 @@ class Bus {
   virtual void close() = 0;
 };
 
+/// Bytes that may have come and not been taken yet; beyond them messages are dropped.
+inline constexpr std::size_t usual_most_come = std::size_t{256} << 20;
+
 /// Connects to the bus at `url` (nats://HOST:PORT, tls:// for TLS), now or as soon as it answers. `name` is
 /// what the bus calls this process. `wake` is called on another thread after messages have come, and four
 /// times a second. Error: the URL is none, or this program was built without the bus's library.
 Result<std::unique_ptr<Bus>> connect(const std::string& url, const std::string& name,
-                                     std::function<void()> wake);
+                                     std::function<void()> wake, std::size_t most_come = usual_most_come);
 
 /// The library and its version, for `clothlab info`; empty: there is none in this program.
 std::string library();

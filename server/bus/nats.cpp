@@ -25,8 +25,7 @@ namespace clothlab::bus {
 namespace {
 
 constexpr std::size_t most_waiting_bytes = std::size_t{64}
-                                           << 20;                ///< to be sent; beyond, messages are dropped
-constexpr std::size_t most_come_bytes = std::size_t{256} << 20;  ///< that have come and are not taken yet
+                                           << 20;  ///< to be sent; beyond, messages are dropped
 constexpr std::size_t head_bytes = 4096;  ///< of a message beside its content and its note, generously
 constexpr std::int64_t ping_ms = 2000, write_ms = 2000, again_ms = 250;
 constexpr const char* note_header = "Clothlab-Note";
@@ -61,7 +60,8 @@ using Order = std::variant<Send, Subscribe, Unsubscribe>;
 
 class Nats final : public Bus {
  public:
-  Nats(std::string url, std::function<void()> wake) : url_(std::move(url)), wake_(std::move(wake)) {}
+  Nats(std::string url, std::function<void()> wake, std::size_t most_come)
+      : url_(std::move(url)), wake_(std::move(wake)), most_come_bytes_(most_come) {}
   ~Nats() override { close(); }
   /// Error: the URL is none, or the bus refuses this client.
   Status open(const std::string& name);
@@ -98,6 +98,7 @@ class Nats final : public Bus {
 
   std::string url_;
   std::function<void()> wake_;
+  const std::size_t most_come_bytes_;
   mutable std::mutex mutex_;
   std::condition_variable orders_changed_;
   std::deque<Order> orders_;
@@ -349,7 +350,7 @@ void Nats::receive(natsMsg* from) {
         come_.erase(older);
       }
     }
-    if (come_bytes_ + message.bytes.size() > most_come_bytes) return;
+    if (come_bytes_ + message.bytes.size() > most_come_bytes_) return;
     come_bytes_ += message.bytes.size();
     alone = come_.empty();
     come_.push_back(std::move(message));
@@ -373,11 +374,11 @@ Counts Nats::counts() const {
 }  // namespace
 
 Result<std::unique_ptr<Bus>> connect(const std::string& url, const std::string& name,
-                                     std::function<void()> wake) {
+                                     std::function<void()> wake, std::size_t most_come) {
   if (!url.starts_with("nats://") && !url.starts_with("tls://"))
     return Error{"the bus", "\"" + without_password(url) + "\"",
                  "an address such as nats://127.0.0.1:4222, or tls://..."};
-  auto bus = std::make_unique<Nats>(url, std::move(wake));
+  auto bus = std::make_unique<Nats>(url, std::move(wake), most_come);
   if (const Status opened = bus->open(name); !opened) return opened.error();
   return Result<std::unique_ptr<Bus>>(std::move(bus));
 }

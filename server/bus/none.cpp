@@ -3,7 +3,8 @@
 
 namespace clothlab::bus {
 
-Result<std::unique_ptr<Bus>> connect(const std::string& url, const std::string&, std::function<void()>) {
+Result<std::unique_ptr<Bus>> connect(const std::string& url, const std::string&, std::function<void()>,
+                                     std::size_t) {
   return Error{url, "this program was built without a client library for NATS",
                "install libnats-dev, and build again"};
 }

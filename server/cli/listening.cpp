@@ -12,6 +12,7 @@
 
 #include "server/base/log.h"
 #include "server/base/memory.h"
+#include "server/base/memory_limit.h"
 #include "server/cli/descriptors.h"
 #include "server/net/request_headers.h"
 #include "server/net/server.h"
@@ -142,6 +143,31 @@ void add_connection_limits(CLI::App& command, net::Limits& limits) {
       "wrong tokens a minute from one address; after that its tokens are refused for a while");
   add("--idle-timeout", limits.idle_seconds, 2, 3600,
       "seconds after which a connection that says nothing, not even pong, is closed");
+}
+
+void add_memory_limit(CLI::App& command, Listening& listening, const std::string& uses) {
+  const auto is_size = [](std::string& text) -> std::string {
+    const std::optional<std::uint64_t> bytes = memory_size(text);
+    if (bytes && *bytes >= MemoryBudget::least_bytes) return {};
+    return text + " is no size of at least 256M: a number of bytes, or as 512M or 2G";
+  };
+  command
+      .add_option("--max-memory", listening.memory,
+                  "memory of the process, as 2G, shared out to " + uses +
+                      "; without it nine tenths of the control group's limit, or of the machine's memory")
+      ->type_name("SIZE")
+      ->check(CLI::Validator(is_size, "SIZE"))
+      ->group("Limits");
+}
+
+void bound_memory(net::Limits& limits, const std::string& given) {
+  // A tenth is left to what is not counted: the kernel's buffers of sockets and files, and gaps between the
+  // pieces of malloc.
+  constexpr double counted_share = 0.9;
+  const std::uint64_t bytes =
+      given.empty() ? static_cast<std::uint64_t>(counted_share * static_cast<double>(available_memory()))
+                    : *memory_size(given);
+  limits.scene.memory = MemoryBudget::of(std::max(bytes, MemoryBudget::least_bytes));
 }
 
 Status check_listening(const net::Options& options) {

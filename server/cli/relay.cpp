@@ -31,6 +31,7 @@ void add_relay(CLI::App& app, int& exit_code) {
       ->envname("CLOTHLAB_VIEW_TOKEN");
   add_limit(*command, "--max-sessions", options.limits.sessions, 1, 1000,
             "sessions that are shown at the same time");
+  add_memory_limit(*command, *listening, "what it shows and to what viewers have not read");
   add_connection_limits(*command, options.limits);
   command->footer(R"(Example, all on one machine:
   /usr/sbin/nats-server -a 127.0.0.1 &                 unless it runs already: apt-get install nats-server
@@ -40,7 +41,12 @@ void add_relay(CLI::App& app, int& exit_code) {
 Prints "listening on http://..." when it accepts connections; Ctrl+C ends it.)");
   command->callback([listening, &exit_code] {
     const Status checked = check_listening(listening->options);
-    exit_code = checked ? listen_and_serve(std::move(*listening)) : fail(checked.error(), exit_usage);
+    if (!checked) {
+      exit_code = fail(checked.error(), exit_usage);
+      return;
+    }
+    bound_memory(listening->options.limits, listening->memory);
+    exit_code = listen_and_serve(std::move(*listening));
   });
 }
 

@@ -6,7 +6,6 @@
 #include "server/base/files.h"
 #include "server/base/lock.h"
 #include "server/base/log.h"
-#include "server/base/memory_limit.h"
 #include "server/cli/commands.h"
 #include "server/cli/listening.h"
 #include "server/gl/context.h"
@@ -23,34 +22,7 @@ struct ServeArguments {
   SceneChoice scene{"seed", {}};
   Listening listening;
   int gpu = -1;
-  std::string memory;  ///< of the process, as the user gave it; empty: what the system allows
 };
-
-/// Of what the system allows a tenth is left to what is not counted: the kernel's buffers of sockets and
-/// files, and gaps between the pieces of malloc.
-constexpr double counted_share = 0.9;
-
-std::uint64_t memory_of_process(const std::string& given) {
-  if (!given.empty()) return *memory_size(given);
-  return static_cast<std::uint64_t>(counted_share * static_cast<double>(available_memory()));
-}
-
-/// Bounds the memory of the process, and what each session may keep of its past.
-void bound_memory(net::Limits& limits, std::uint64_t bytes) {
-  limits.scene.memory = MemoryBudget::of(std::max(bytes, MemoryBudget::least_bytes));
-  const std::uint64_t past = limits.scene.memory->share(MemoryBudget::Use::timelines);
-  limits.scene.past_bytes = std::min(
-      limits.scene.past_bytes, static_cast<std::size_t>(past / static_cast<std::uint64_t>(limits.sessions)));
-}
-
-CLI::Validator size_of_memory() {
-  return {[](std::string& text) -> std::string {
-            const std::optional<std::uint64_t> bytes = memory_size(text);
-            if (bytes && *bytes >= MemoryBudget::least_bytes) return {};
-            return text + " is no size of at least 256M: a number of bytes, or as 512M or 2G";
-          },
-          "SIZE"};
-}
 
 /// Says so if not all sessions that may be opened have room, with the scene that each starts with.
 void warn_of_memory(const net::Limits& limits, const scene::Scene& scene) {
@@ -111,7 +83,10 @@ int serve(ServeArguments& arguments) {
                             static_cast<std::size_t>(limits.scene.springs));
       !small)
     return fail(small.error(), exit_usage);
-  bound_memory(options.limits, memory_of_process(arguments.memory));
+  bound_memory(options.limits, arguments.listening.memory);
+  const std::uint64_t past = limits.scene.memory->share(MemoryBudget::Use::timelines);
+  options.limits.scene.past_bytes = std::min(
+      limits.scene.past_bytes, static_cast<std::size_t>(past / static_cast<std::uint64_t>(limits.sessions)));
   if (const auto place = sim::reserve_memory(limits.scene.memory, document->scene); !place)
     return fail(place.error(), exit_usage);
   set_log_level(*log_level(arguments.listening.log_level));
@@ -176,14 +151,7 @@ void add_serve(CLI::App& app, int& exit_code) {
       ->type_name("N")
       ->check(whole_number(0, 1000));
   add_session_limits(*command, options.limits);
-  command
-      ->add_option(
-          "--max-memory", arguments->memory,
-          "memory of the server, as 2G, shared out to scenes, recordings and downloads; without it nine "
-          "tenths of the control group's limit, or of the machine's memory")
-      ->type_name("SIZE")
-      ->check(size_of_memory())
-      ->group("Limits");
+  add_memory_limit(*command, arguments->listening, "scenes, recordings and downloads");
   add_connection_limits(*command, options.limits);
   command->footer(R"(Examples:
   clothlab serve                                              open http://127.0.0.1:8080

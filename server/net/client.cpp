@@ -13,6 +13,7 @@
 
 namespace clothlab::net {
 
+constexpr const char* not_read = "messages are not being read";
 /// A client that is to wait does so at least this long [us], so that many do not wake the thread all the
 /// time.
 constexpr std::int64_t shortest_rest_us = 2000;
@@ -26,6 +27,7 @@ Client::Client(Hub& hub, lws* wsi, std::string session)
       role_(hub.role_of("")),
       service_(hub.service(), own_service, network_of(address_), session::now_us()),
       read_again_(wsi, [this] { read_on(); }),
+      unread_(std::move(*MemoryBudget::reserve(hub.limits().scene.memory, MemoryBudget::Use::downloads, 0))),
       messages_(hub.limits().message_rate, burst_of(hub.limits()), session::now_us()),
       grab_notices_(1, 3, session::now_us()) {
   const std::int64_t begun = thread_time_us();
@@ -284,13 +286,33 @@ void Client::greet(const std::string& hello) {
   wake();
 }
 
-void Client::send(SharedText text) {
-  if (!outbox_.push(std::move(text))) close(close_policy, "messages are not being read");
+void Client::send(const std::string& text) {
+  if (!outbox_.push_own(make_text(text))) close(close_policy, not_read);
+  account_unread();
   wake();
 }
 
+void Client::send(SharedText text) {
+  if (!outbox_.push(std::move(text))) close(close_policy, not_read);
+  wake();
+}
+
+/// Has the server's memory know of what waits for this client alone, in whole units. Where there is no room
+/// for it, who has read nothing for the longest time makes some.
+void Client::account_unread() {
+  const std::size_t bytes = outbox_.own_bytes() / unread_unit_bytes * unread_unit_bytes;
+  while (bytes != unread_.bytes() && close_code_ == 0 && !unread_.resize(bytes))
+    hub_.close_slowest_reader(*this);
+}
+
+void Client::forget_unread() {
+  outbox_ = Outbox();
+  sending_ = {};
+  (void)unread_.resize(0);
+}
+
 void Client::send_status(SharedText text) {
-  if (!outbox_.push_status(std::move(text))) close(close_policy, "messages are not being read");
+  if (!outbox_.push_status(std::move(text))) close(close_policy, not_read);
   wake();
 }
 
@@ -301,7 +323,7 @@ void Client::send_scene(SharedText text) {
 
 void Client::send_change(SharedText text, const std::function<SharedText()>& whole) {
   if (outbox_.crowded()) return send_scene(whole());
-  if (!outbox_.push_change(std::move(text))) close(close_policy, "messages are not being read");
+  if (!outbox_.push_change(std::move(text))) close(close_policy, not_read);
   wake();
 }
 
@@ -331,6 +353,7 @@ void Client::close(int code, std::string reason) {
   close_code_ = code;
   if (code == close_policy || code == close_too_big) ++hub_.metrics().over_limit;
   close_reason_ = std::move(reason);
+  if (code != close_internal) forget_unread();
   read_on();  // what comes now is dropped
   wake();
   // The socket of a client that reads nothing never becomes writeable, so it is closed after 2 s.
@@ -381,10 +404,12 @@ bool Client::may_send() const {
 }
 
 int Client::writeable() {
+  took_last_ = session::now_us();
   // A client whose session failed first gets the text that waits for it. In all other cases, a flood among
   // them, the close frame goes out at once.
-  const bool finish_first = close_code_ == close_internal && !outbox_.empty();
+  const bool finish_first = close_code_ == close_internal && (is_sending() || !outbox_.empty());
   if (close_code_ != 0 && !finish_first) return send_close();
+  if (is_sending()) return write_piece();
   if (!may_send()) return 0;
   return send_next();
 }
@@ -424,7 +449,8 @@ int Client::send_next() {
       ask_next_at_length();
       read_on();
     }
-    return write(text->data(), text->size(), true);
+    account_unread();
+    return write(text, text->data(), text->size(), true);
   }
   if (!room_ || !pacing_.subscribed()) return 0;
   const stream::SharedMessage& topology = room_->topology();
@@ -432,7 +458,7 @@ int Client::send_next() {
     topology_sent_ = true;
     topology_revision_ = topology->header.topology_revision;
     wake();
-    return write(const_cast<unsigned char*>(topology->data()), topology->size(), false);
+    return write(topology, topology->data(), topology->size(), false);
   }
   const stream::SharedMessage frame = room_->frame(pacing_.form());
   if (!frame || !pacing_.is_news(frame->header.sequence)) return 0;
@@ -447,13 +473,11 @@ int Client::send_frame(const stream::SharedMessage& frame) {
   if (!frame->colliders.empty() && colliders_sent_for_ != frame->header.sequence) {
     colliders_sent_for_ = frame->header.sequence;
     wake();  // the next call sends the frame itself
-    return write(const_cast<unsigned char*>(frame->colliders.data()) + stream::front_room,
+    return write(frame, frame->colliders.data() + stream::front_room,
                  frame->colliders.size() - stream::front_room, true);
   }
   const std::int64_t held_until = pacing_.ready_since(session::now_us());
-  // libwebsockets writes its header into the space before the data: the same bytes for every viewer, so that
-  // viewers can share the message.
-  const int result = write(const_cast<unsigned char*>(frame->data()), frame->size(), false);
+  const int result = write(frame, frame->data(), frame->size(), false);
   const std::int64_t now = session::now_us();
   pacing_.sent(frame->header.sequence, now);
   frame_waits_ = false;
@@ -462,10 +486,35 @@ int Client::send_frame(const stream::SharedMessage& frame) {
   return result;
 }
 
-int Client::write(unsigned char* data, std::size_t size, bool text) {
+// libwebsockets copies what the socket does not take of a write. So a long message goes in pieces, the frames
+// of which RFC 6455 calls fragments: one who reads nothing costs a piece, and what all share.
+int Client::write(std::shared_ptr<const void> owner, const unsigned char* data, std::size_t size, bool text) {
   hub_.metrics().bytes_sent += size;
   bytes_sent_ += size;
-  return lws_write(wsi_, data, size, text ? LWS_WRITE_TEXT : LWS_WRITE_BINARY) < 0 ? -1 : 0;
+  // libwebsockets writes its header into the space before the data: the same bytes for every client, so that
+  // they can share the message.
+  if (size <= most_whole_bytes)
+    return lws_write(wsi_, const_cast<unsigned char*>(data), size, text ? LWS_WRITE_TEXT : LWS_WRITE_BINARY) <
+                   0
+               ? -1
+               : 0;
+  std::shared_ptr<const void> held;
+  while (!(held = hub_.held_messages().hold(owner, size)) && close_code_ == 0)
+    hub_.close_slowest_reader(*this);
+  if (!held) return 0;  // this client is closed itself
+  sending_ = {std::move(held), data, size, 0, text};
+  return write_piece();
+}
+
+int Client::write_piece() {
+  const std::size_t size = std::min(piece_bytes, sending_.size - sending_.sent);
+  const bool first = sending_.sent == 0, last = sending_.sent + size == sending_.size;
+  const Text piece({reinterpret_cast<const char*>(sending_.data + sending_.sent), size});
+  const int protocol = lws_write_ws_flags(sending_.text ? LWS_WRITE_TEXT : LWS_WRITE_BINARY, first, last);
+  sending_.sent += size;
+  if (last) sending_ = {};
+  wake();
+  return lws_write(wsi_, piece.data(), size, static_cast<lws_write_protocol>(protocol)) < 0 ? -1 : 0;
 }
 
 }  // namespace clothlab::net

@@ -72,7 +72,7 @@ class Client {
 
   // Mostly called by the room.
   void greet(const std::string& hello);  ///< sends `hello` before all text that waits
-  void send(const std::string& text) { send(make_text(text)); }
+  void send(const std::string& text);    ///< to this client alone
   void send(SharedText text);
   /// Sends the answer to a request; a notification (a ticket without id) gets none, but for a notice of an
   /// error in one that pulls at the cloth.
@@ -86,6 +86,12 @@ class Client {
   /// The session was brought back after it failed: the topology is sent again before the next frame.
   void session_replaced();
   void frame_arrived(stream::Form form, std::int64_t now);
+
+  /// True if much is in memory because this client has not read it.
+  bool keeps_much() const {
+    return close_code_ == 0 && (is_sending() || outbox_.own_bytes() >= unread_unit_bytes);
+  }
+  std::int64_t took_last() const { return took_last_; }  ///< when its socket took something last [us]
 
   /// Closes the connection with a close code of RFC 6455, as soon as the close frame can be sent.
   void close(int code, std::string reason);
@@ -115,8 +121,13 @@ class Client {
   bool may_send() const;
   int send_close();
   int send_next();
-  int write(unsigned char* data, std::size_t size, bool text);
+  /// Begins to send a message, of which `owner` keeps the bytes.
+  int write(std::shared_ptr<const void> owner, const unsigned char* data, std::size_t size, bool text);
+  int write_piece();
   int send_frame(const stream::SharedMessage& frame);
+  bool is_sending() const { return sending_.size > 0; }
+  void account_unread();
+  void forget_unread();
 
   Hub& hub_;
   lws* wsi_;
@@ -139,6 +150,14 @@ class Client {
   Outbox outbox_;
   std::deque<session::Command> long_asked_;  ///< of which each is asked when the one before is answered
   bool long_awaited_ = false;                ///< the session has one that it has not answered
+  struct Sending {                           // a message of which pieces are still to be written
+    std::shared_ptr<const void> owner;
+    const unsigned char* data = nullptr;
+    std::size_t size = 0, sent = 0;
+    bool text = false;
+  } sending_;
+  MemoryBudget::Reservation unread_;  ///< of the answers in `outbox_`, in whole units
+  std::int64_t took_last_ = since_;
   FramePacing pacing_;
   TokenBucket messages_;
   TokenBucket grab_notices_;    ///< a hand that moves may be wrong often: a notice a second is enough

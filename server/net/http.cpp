@@ -74,7 +74,6 @@ constexpr int patience = 30;  ///< with what is made for a request, and with who
 /// who get it share: somebody who does not read costs one piece. The connection then ends. Shorter ones, all
 /// files of the page among them, are handed to libwebsockets whole, and the next request may follow.
 constexpr std::size_t most_at_once = 1024 * 1024;
-constexpr std::size_t piece_bytes = 64 * 1024;
 
 /// A body that lives at least as long as the server's requests.
 std::shared_ptr<const std::string> lasting(const std::string& body) {

@@ -90,8 +90,15 @@ Status Hub::join_bus() {
   if (options_.bus.empty()) return ok();
   std::random_device random;
   run_name_ = formatted("%08x%08x", random(), random());
+  std::size_t most_come = bus::usual_most_come;
+  if (const std::shared_ptr<MemoryBudget>& memory = limits().scene.memory; memory && relays()) {
+    // A relay has no past to go back to: that share is for what has come and was not looked at yet.
+    constexpr MemoryBudget::Use use = MemoryBudget::Use::timelines;
+    most_come = std::min(most_come, static_cast<std::size_t>(memory->share(use)));
+    bus_memory_ = std::move(*MemoryBudget::reserve(memory, use, most_come));
+  }
   Result<std::unique_ptr<bus::Bus>> joined =
-      bus::connect(options_.bus, relays() ? "clothlab relay" : "clothlab serve", wake_);
+      bus::connect(options_.bus, relays() ? "clothlab relay" : "clothlab serve", wake_, most_come);
   if (!joined) return joined.error();
   bus_ = std::move(*joined);
   return ok();
@@ -222,6 +229,14 @@ void Hub::remove(Client& client) {
 Client* Hub::find_client(std::uint64_t id) {
   const auto found = clients_.find(id);
   return found == clients_.end() ? nullptr : found->second;
+}
+
+void Hub::close_slowest_reader(Client& otherwise) {
+  Client* slowest = nullptr;
+  for (const auto& [id, client] : clients_)
+    if (client->keeps_much() && (!slowest || client->took_last() < slowest->took_last())) slowest = client;
+  (slowest ? slowest : &otherwise)
+      ->close(close_policy, "messages are not being read, and the server has no memory to keep more");
 }
 
 void Hub::close_all(int code, const std::string& reason) {

@@ -17,6 +17,7 @@
 #include "server/bus/bus.h"
 #include "server/lab/cache.h"
 #include "server/net/connections.h"
+#include "server/net/held_messages.h"
 #include "server/net/lab_queue.h"
 #include "server/net/metrics.h"
 #include "server/net/options.h"
@@ -105,6 +106,11 @@ class Hub {
   bool empty() const { return clients_.empty(); }
   void close_all(int code, const std::string& reason);
   std::uint64_t next_id() { return ++last_id_; }
+  /// The large messages that clients are being sent.
+  HeldMessages& held_messages() { return held_messages_; }
+  /// To make room in memory: closes the client whose socket has taken nothing for the longest time, of those
+  /// for whom much is kept; `otherwise`, if there is none.
+  void close_slowest_reader(Client& otherwise);
 
   void add(std::uint64_t id, HttpRequest& request) { waiting_[id] = &request; }
   void remove_request(std::uint64_t id) { waiting_.erase(id); }
@@ -155,6 +161,7 @@ class Hub {
   Connections connections_{options_.limits, options_.trusted_proxies};
   ServicePool service_{service_of_address, service_of_all},
       http_service_{http_service_of_address, http_service_of_all};
+  HeldMessages held_messages_{options_.limits.scene.memory};
   Workbench workbench_{wake_};
   LogBound refusals_{LogLevel::warning, "client_refused"};
   TokenGuard token_guard_{options_.limits.wrong_tokens};
@@ -162,7 +169,8 @@ class Hub {
   std::unique_ptr<LabQueue> lab_;
   session::Exporter exporter_;
   std::string run_name_;
-  std::unique_ptr<bus::Bus> bus_;  ///< before the rooms, which use it
+  MemoryBudget::Reservation bus_memory_{};  ///< of what has come by it to a relay
+  std::unique_ptr<bus::Bus> bus_;           ///< before the rooms, which use it
   std::vector<bus::Message> from_bus_;
   std::deque<session::Captured> captured_;  ///< what the exporter makes next, first come first
   struct Page {

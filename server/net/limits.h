@@ -45,10 +45,14 @@ inline constexpr std::size_t max_unsent_text_bytes =
     4 * 1024 * 1024;  ///< of text waiting for a client; beyond: 1008
 inline constexpr std::size_t max_answers_ahead_bytes =
     256 * 1024;  ///< of that text; beyond: nothing is read from the client
-inline constexpr double min_rate = 0.1, max_rate = 120;  ///< frames a second a viewer may ask for
-inline constexpr int max_in_flight = 8;                  ///< unacknowledged frames a viewer may ask for
-inline constexpr std::int64_t max_steps = 1'000'000;     ///< steps of one sim.step
-inline constexpr int max_hand = 9;                       ///< a client's hands are numbers from 0 to this
+/// A client's answers that it has not read count in the server's memory in units of this many bytes.
+inline constexpr std::size_t unread_unit_bytes = 16 * 1024;
+inline constexpr std::size_t most_whole_bytes = 256 * 1024;  ///< of a message that is written at once
+inline constexpr std::size_t piece_bytes = 64 * 1024;        ///< of a longer one, written at a time
+inline constexpr double min_rate = 0.1, max_rate = 120;      ///< frames a second a viewer may ask for
+inline constexpr int max_in_flight = 8;                      ///< unacknowledged frames a viewer may ask for
+inline constexpr std::int64_t max_steps = 1'000'000;         ///< steps of one sim.step
+inline constexpr int max_hand = 9;                           ///< a client's hands are numbers from 0 to this
 inline constexpr int max_lab_jobs = 8, max_lab_jobs_a_client = 2;   ///< waiting jobs; beyond: -32002
 inline constexpr int max_lab_outcomes_a_client = 8;                 ///< newest results kept for lab.export
 inline constexpr double min_lab_time = 0.01, max_lab_time = 60;     ///< time that a job simulates [s]

@@ -27,15 +27,16 @@ SharedText make_text(std::string_view text) {
   return std::make_shared<const Text>(text);
 }
 
-bool Outbox::push(SharedText text) {
+bool Outbox::append(SharedText text, bool own) {
   bytes_ += text->size();
-  texts_.push_back(std::move(text));
+  if (own) own_bytes_ += text->size();
+  texts_.push_back({std::move(text), own});
   return bytes_ - (scene_ ? scene_->size() : 0) <= max_unsent_text_bytes;
 }
 
 void Outbox::push_first(SharedText text) {
   bytes_ += text->size();
-  texts_.push_front(std::move(text));
+  texts_.push_front({std::move(text)});
 }
 
 bool Outbox::push_status(SharedText text) {
@@ -51,9 +52,9 @@ bool Outbox::push_change(SharedText text) {
 
 void Outbox::push_scene(SharedText text) {
   if (scene_) drop(scene_);
-  std::erase_if(texts_, [&](const SharedText& waits) {
-    if (changes_.empty() || waits != changes_.front()) return false;
-    bytes_ -= waits->size();
+  std::erase_if(texts_, [&](const Waiting& waits) {
+    if (changes_.empty() || waits.text != changes_.front()) return false;
+    bytes_ -= waits.text->size();
     changes_.pop_front();
     return true;
   });
@@ -62,19 +63,21 @@ void Outbox::push_scene(SharedText text) {
 }
 
 void Outbox::drop(const SharedText& text) {
-  texts_.erase(std::find(texts_.begin(), texts_.end(), text));
+  texts_.erase(
+      std::find_if(texts_.begin(), texts_.end(), [&](const Waiting& waits) { return waits.text == text; }));
   bytes_ -= text->size();
 }
 
 SharedText Outbox::pop() {
   if (texts_.empty()) return nullptr;
-  SharedText next = std::move(texts_.front());
+  const Waiting next = std::move(texts_.front());
   texts_.pop_front();
-  bytes_ -= next->size();
-  if (next == status_) status_.reset();
-  if (next == scene_) scene_.reset();
-  if (!changes_.empty() && next == changes_.front()) changes_.pop_front();
-  return next;
+  bytes_ -= next.text->size();
+  if (next.own) own_bytes_ -= next.text->size();
+  if (next.text == status_) status_.reset();
+  if (next.text == scene_) scene_.reset();
+  if (!changes_.empty() && next.text == changes_.front()) changes_.pop_front();
+  return next.text;
 }
 
 }  // namespace clothlab::net

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "server/net/limits.h"
 
@@ -29,7 +30,9 @@ SharedText make_text(std::string_view text);
 class Outbox {
  public:
   /// Appends a message. False: more than max_unsent_text_bytes wait, because the client does not read.
-  [[nodiscard]] bool push(SharedText text);
+  [[nodiscard]] bool push(SharedText text) { return append(std::move(text), false); }
+  /// The same of one that only this client gets.
+  [[nodiscard]] bool push_own(SharedText text) { return append(std::move(text), true); }
   void push_first(SharedText text);
   /// Appends a change of the scene's document. Returns the same as `push`.
   [[nodiscard]] bool push_change(SharedText text);
@@ -41,16 +44,22 @@ class Outbox {
   bool empty() const { return texts_.empty(); }
   /// True while so much waits that the client should read before it is answered more.
   bool crowded() const { return bytes_ > max_answers_ahead_bytes; }
-  SharedText pop();  ///< removes the first message; null if empty
+  std::size_t own_bytes() const { return own_bytes_; }  ///< of those that only this client gets
+  SharedText pop();                                     ///< removes the first message; null if empty
 
  private:
+  struct Waiting {
+    SharedText text;
+    bool own = false;
+  };
+  bool append(SharedText text, bool own);
   void drop(const SharedText& text);
 
-  std::deque<SharedText> texts_;
-  SharedText status_;               ///< the status in `texts_`; null: none
-  SharedText scene_;                ///< the document in `texts_`; null: none
-  std::deque<SharedText> changes_;  ///< of the document, in `texts_` in this order
-  std::size_t bytes_ = 0;           ///< of `texts_`
+  std::deque<Waiting> texts_;
+  SharedText status_;                      ///< the status in `texts_`; null: none
+  SharedText scene_;                       ///< the document in `texts_`; null: none
+  std::deque<SharedText> changes_;         ///< of the document, in `texts_` in this order
+  std::size_t bytes_ = 0, own_bytes_ = 0;  ///< of `texts_`
 };
 
 }  // namespace clothlab::net

@@ -12,7 +12,7 @@ void Room::begin_feed() {
       [this](std::uint64_t asker, const relay::Feed::ColliderMesh& mesh) {
         hub_.deliver_collider(asker, mesh);
       },
-      wake_);
+      wake_, hub_.limits().scene.memory);
   feed_ = feed.get();
   session_ = std::move(feed);
 }

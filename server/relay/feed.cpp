@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "server/scene/document.h"
+#include "server/scene/memory.h"
 #include "server/scene/pointer.h"
 
 namespace clothlab::relay {
@@ -45,12 +46,18 @@ std::shared_ptr<stream::Message> renumbered(const std::vector<std::uint8_t>& byt
 
 }  // namespace
 
-Feed::Feed(bus::Bus& bus, std::string session, std::string relay, Deliver deliver, std::function<void()> wake)
+Feed::Feed(bus::Bus& bus, std::string session, std::string relay, Deliver deliver, std::function<void()> wake,
+           std::shared_ptr<MemoryBudget> budget)
     : Source(std::move(wake)),
       bus_(bus),
+      budget_(std::move(budget)),
       session_(std::move(session)),
       deliver_(std::move(deliver)),
       begun_(session::now_us()) {
+  std::vector<MemoryBudget::Reservation*> all{&document_memory_, &topology_memory_, &colliders_memory_};
+  for (MemoryBudget::Reservation& each : frame_memory_) all.push_back(&each);
+  for (MemoryBudget::Reservation* each : all)
+    *each = std::move(*MemoryBudget::reserve(budget_, MemoryBudget::Use::simulations, 0));
   want_.relay = std::move(relay);
   bus_.subscribe(answer_subject(session_, want_.relay), bus::Keep::all);
   bus_.subscribe(subject(session_, text_word), bus::Keep::all);
@@ -135,6 +142,20 @@ void Feed::tell(const char* level, const std::string& text) {
   exchange_.emit(session::Notice{level, text});
 }
 
+/// Reserves so many bytes in the place of what was reserved there. False: there are not so many. Then viewers
+/// are told, once; those of a session that cannot begin for that are told and closed.
+bool Feed::keep(MemoryBudget::Reservation& memory, std::size_t bytes) {
+  const Status kept = memory.resize(bytes);
+  if (kept) return true;
+  const std::string why =
+      "this relay has no memory for all of session " + session_ + ": " + kept.error().text();
+  if (!std::exchange(told_of_memory_, true) && started_) tell("error", why);
+  if (started_) return false;
+  failed_ = true;
+  exchange_.emit(session::Failed{{"session " + session_, kept.error().text(), "a larger --max-memory"}});
+  return false;
+}
+
 void Feed::receive(const bus::Message& message, std::int64_t now) {
   if (failed_) return;
   if (message.subject == answer_subject(session_, want_.relay)) return take_answer(message, now);
@@ -197,7 +218,10 @@ void Feed::origin_changed(std::int64_t now) {
 
 void Feed::take_scene(json document, std::uint64_t revision, bool told) {
   if (!is_served(document)) return;  // not what a server of this version says
-  if (!told) colliders_.clear();
+  want_.known.revision = revision;   // also if there is no room for it: it is asked for once
+  // With the copy for viewers, and its text twice: alone, and in the message for all.
+  if (!keep(document_memory_, 2 * scene::memory_of(document) + 2 * text_of(document).size())) return;
+  if (!told) forget_colliders();
   document_ = std::move(document);
   revision_ = want_.known.revision = revision;
   tell_scene(std::nullopt, 0, told);
@@ -239,7 +263,7 @@ void Feed::take_patch(const json& params, std::int64_t now) {
   const json& patch = params.at("patch");
   Result<json> changed = scene::patched(document_, patch, little);
   if (!changed || !is_served(*changed)) return want_soon(now);
-  if (changed->value("colliders", json()) != document_.value("colliders", json())) colliders_.clear();
+  if (changed->value("colliders", json()) != document_.value("colliders", json())) forget_colliders();
   document_ = std::move(*changed);
   revision_ = revision;
   tell_scene(patch, params.value("by", std::uint64_t{0}), false);
@@ -248,8 +272,10 @@ void Feed::take_patch(const json& params, std::int64_t now) {
 void Feed::take_topology(const std::vector<std::uint8_t>& bytes) {
   std::optional<stream::Header> header = stream::read_header(bytes.data(), bytes.size());
   if (!header || header->kind != stream::MessageKind::topology) return;
-  want_.known.topology = header->topology_revision;
+  want_.known.topology = header->topology_revision;  // also if there is no room for it: it is asked for once
   if (bytes == their_topology_) return;
+  topology_fits_ = keep(topology_memory_, 2 * bytes.size());
+  if (!topology_fits_) return;
   their_topology_ = bytes;
   header->topology_revision = topology_ ? topology_->header.topology_revision + 1 : 1;
   topology_ = renumbered(bytes, *header);
@@ -261,6 +287,8 @@ void Feed::take_frame(const bus::Message& message, stream::Form form, std::int64
   std::optional<stream::Header> header = stream::read_header(message.bytes.data(), message.bytes.size());
   if (!header || header->kind != stream::MessageKind::frame || header->encoding != form.encoding) return;
   if (header->topology_revision != want_.known.topology) return want_soon(now);
+  // With the one that is on its way to viewers, and the one that has come.
+  if (!topology_fits_ || !keep(frame_memory_[form.index()], 3 * message.bytes.size())) return;
   if (std::exchange(renumber_, false)) frame_offset_ = last_frame_ + 1 - header->sequence;
   header->sequence += frame_offset_;
   // Of different forms frames may come a little out of order.
@@ -274,6 +302,11 @@ void Feed::take_frame(const bus::Message& message, stream::Form form, std::int64
     frame->colliders.insert(frame->colliders.end(), message.note.begin(), message.note.end());
   }
   exchange_.publish(frame);
+}
+
+void Feed::forget_colliders() {
+  colliders_.clear();
+  (void)colliders_memory_.resize(0);
 }
 
 Feed::ColliderMesh Feed::collider(const std::string& name) const {
@@ -301,7 +334,8 @@ void Feed::take_collider(const std::string& quoted_name, const std::vector<std::
   const std::vector<std::uint64_t> askers = std::move(found->second.askers);
   asked_.erase(found);
   ColliderMesh mesh;
-  if (!bytes.empty()) mesh = colliders_[name] = std::make_shared<const std::string>(text_in(bytes));
+  if (!bytes.empty() && keep(colliders_memory_, colliders_memory_.bytes() + bytes.size()))
+    mesh = colliders_[name] = std::make_shared<const std::string>(text_in(bytes));
   for (const std::uint64_t asker : askers) deliver_(asker, mesh);
 }
 

@@ -3,6 +3,7 @@
 // may cause.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -11,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "server/base/memory_budget.h"
 #include "server/bus/bus.h"
 #include "server/relay/wire.h"
 #include "server/session/source.h"
@@ -23,7 +25,10 @@ class Feed final : public session::Source {
   using ColliderMesh = std::shared_ptr<const std::string>;
   using Deliver = std::function<void(std::uint64_t asker, const ColliderMesh& mesh)>;
   /// `relay` is the name of this process on the bus. `deliver` is called with each answer to ask_collider.
-  Feed(bus::Bus& bus, std::string session, std::string relay, Deliver deliver, std::function<void()> wake);
+  /// What is kept of the session is reserved of `budget` (null: it is not bounded); what does not fit is
+  /// dropped, and viewers are told.
+  Feed(bus::Bus& bus, std::string session, std::string relay, Deliver deliver, std::function<void()> wake,
+       std::shared_ptr<MemoryBudget> budget = nullptr);
   ~Feed() override;
   bool beats() const override { return true; }
 
@@ -56,10 +61,16 @@ class Feed final : public session::Source {
   void take_patch(const json& params, std::int64_t now);
   void take_topology(const std::vector<std::uint8_t>& bytes);
   void take_frame(const bus::Message& message, stream::Form form, std::int64_t now);
+  void forget_colliders();
   void take_collider(const std::string& quoted_name, const std::vector<std::uint8_t>& bytes);
   void tell(const char* level, const std::string& text);
+  bool keep(MemoryBudget::Reservation& memory, std::size_t bytes);
 
   bus::Bus& bus_;
+  std::shared_ptr<MemoryBudget> budget_;
+  MemoryBudget::Reservation document_memory_{}, topology_memory_{}, colliders_memory_{};
+  std::array<MemoryBudget::Reservation, form_count> frame_memory_{};
+  bool told_of_memory_ = false;  ///< that something was dropped for lack of it
   std::string session_;
   Want want_;
   Deliver deliver_;
@@ -79,7 +90,8 @@ class Feed final : public session::Source {
   stream::SharedMessage topology_;
   std::vector<std::uint8_t> their_topology_;
   std::uint32_t last_frame_ = 0, frame_offset_ = 0;
-  bool renumber_ = true;  ///< the next frame follows the last one, whatever its number
+  bool topology_fits_ = false;  ///< there was memory for the newest
+  bool renumber_ = true;        ///< the next frame follows the last one, whatever its number
 
   std::map<std::string, ColliderMesh> colliders_;
   struct Asked {

@@ -219,6 +219,66 @@ test("a scene that takes more than --max-memory is refused with its number, whoe
   await second.close();
 });
 
+test("a recording, a job of the lab, a picture and a download that do not fit --max-memory are refused with their numbers; who reads nothing shares one copy of a large message", async () => {
+  const server = await start("--max-memory", "256M");
+  const client = await Client.connect(server);
+  const grid = { columns: 160, rows: 160 };
+  const material = { model: "springs", structural: 100, shear: 50, bend: 10 };
+  const solver = { method: "symplectic_euler", dt: 1e-5 };
+  await client.request("scene.load", { scene: { version: 1, cloths: [{ mesh: { grid }, material }], solver } });
+  await client.request("sim.pause");
+
+  const recording = await client.refusal("record.start", { rate: 60 });
+  assert.equal(recording.code, -32002);
+  assert.match(
+    recording.message,
+    /\d+ MB for recordings, where 38 MB are left; at most 38 MB of them, in a server of 268 MB/,
+  );
+  const { job } = await client.request("lab.simplify", {});
+  const ended = ({ job: of, state }) => of === job && state !== "running";
+  const { state, error } = await client.notification("lab.result", ended);
+  assert.equal(state, "failed");
+  assert.match(error.found, /^25600 vertices, which take \d+ MB of memory$/);
+  assert.match(error.allowed, /^at most \d+ MB, which are left of 136 MB/);
+  const picture = await server.get("/api/snapshot.png?width=4096&height=4096");
+  assert.equal(picture.status, 503);
+  assert.match(picture.body.toString(), /8\d\d MB for simulations, where \d+ MB are left/);
+
+  const downloads = () => server.metric("clothlab_memory_downloads_bytes");
+  const downloadsAre = async (bytes) => {
+    for (const until = Date.now() + patience; (await downloads()) !== bytes; await sleep(50))
+      assert.ok(Date.now() < until, `${await downloads()} bytes of downloads`);
+  };
+  const viewers = await Promise.all(Array.from({ length: 5 }, () => Client.connect(server)));
+  for (const viewer of viewers) {
+    viewer.notify("stream.subscribe", { encoding: "q16", rate: 10, in_flight: 1 });
+    viewer.socket.pause();
+  }
+  const topology = 64 + 8 + 8 + 12 * 2 * 159 * 159 + 8 * 160 * 160;
+  await downloadsAre(topology);
+  await client.statuses(5);
+  assert.equal(await downloads(), topology, "once for all five");
+  for (const viewer of viewers) viewer.socket.resume();
+  for (const viewer of viewers) assert.equal((await viewer.frame()).vertexCount, 25600);
+  await downloadsAre(0);
+
+  const stalled = [];
+  let first = "";
+  for (let i = 0; i < 12 && !first.startsWith("HTTP/1.1 503"); ++i) {
+    const socket = await socketTo(server);
+    stalled.push(socket);
+    socket.write("GET /api/mesh.obj HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    [first] = (await withTimeout(once(socket, "data"), "an answer")).map(String);
+    socket.pause();
+  }
+  assert.match(first, /^HTTP\/1\.1 503[^]*\d MB for downloads, where \d+ MB are left; at most 19 MB of them/);
+  assert.ok(stalled.length > 2, "some fit");
+  for (const socket of stalled) socket.destroy();
+  await downloadsAre(0);
+  assert.equal((await server.get("/api/mesh.obj")).status, 200);
+  for (const each of [client, ...viewers]) await each.close();
+});
+
 test("--max-memory is a size of at least 256 MiB, and a scene that takes more does not start the server", async () => {
   for (const size of ["255M", "1000", "2GB", "-1G", "much"]) {
     const { code, stderr } = await runProgram(["serve", "--port", "0", "--max-memory", size]);

@@ -1,6 +1,7 @@
 // A session as a relay gets it from its server, over a bus in memory that can lose messages.
 #include <algorithm>
 #include <iterator>
+#include <memory>
 #include <set>
 
 #include "server/net/publisher.h"
@@ -57,13 +58,17 @@ stream::SharedMessage message(stream::MessageKind kind, std::uint32_t topology, 
 
 /// A server's session and a relay of it.
 struct Pair {
-  BusInMemory bus;
+  std::shared_ptr<MemoryBudget> budget{};
+  BusInMemory bus{};
   net::Publisher publisher{bus, "main", "origin-1"};
-  relay::Feed feed{bus, "main", "r",
+  relay::Feed feed{bus,
+                   "main",
+                   "r",
                    [this](std::uint64_t asker, const relay::Feed::ColliderMesh& mesh) {
                      delivered.emplace_back(asker, mesh ? *mesh : "none");
                    },
-                   [] {}};
+                   [] {},
+                   budget};
   std::vector<std::pair<std::uint64_t, std::string>> delivered;
   json document{{"name", "one"}, {"gravity", 1}}, history = json::object();
   std::uint64_t revision = 7;
@@ -252,6 +257,49 @@ TEST_CASE("a document that no server has is not shown") {
   ++pair.revision;
   pair.pass();
   CHECK(pair.of<session::SceneChanged>().empty());
+}
+
+TEST_CASE(
+    "what a relay keeps of a session is reserved first; what does not fit is dropped, and viewers are told") {
+  const auto budget = MemoryBudget::of(MemoryBudget::least_bytes);
+  const std::uint64_t all = budget->left(MemoryBudget::Use::simulations);
+  const auto leave = [&](std::uint64_t bytes) {
+    return MemoryBudget::reserve(budget, MemoryBudget::Use::simulations,
+                                 budget->left(MemoryBudget::Use::simulations) - bytes);
+  };
+  const auto large = [&](stream::MessageKind kind, std::uint32_t topology, std::uint32_t sequence) {
+    return message(kind, topology, sequence, std::vector<std::uint8_t>(1 << 20));
+  };
+  {
+    Pair pair{budget};
+    pair.pass();
+    pair.want_frames();
+    REQUIRE(pair.of<session::Started>().size() == 1);
+    const auto others = leave(1 << 20);
+    REQUIRE(others);
+    pair.publisher.frame(message(stream::MessageKind::frame, 1, 5));
+    pair.arrive();
+    const std::uint32_t shown = pair.shown();
+    for (std::uint32_t sequence : {6u, 7u})
+      pair.publisher.frame(large(stream::MessageKind::frame, 1, sequence));
+    pair.topology = large(stream::MessageKind::topology, 2, 0);
+    pair.publisher.topology(pair.topology);
+    pair.arrive();
+    CHECK(pair.shown() == shown);
+    CHECK(pair.of<session::TopologyChanged>().size() == 1);
+    REQUIRE(pair.of<session::Notice>().size() == 1);
+    CHECK(pair.of<session::Notice>()[0].text.find("no memory for all of session main") != std::string::npos);
+    CHECK(pair.of<session::Failed>().empty());
+  }
+  CHECK(budget->left(MemoryBudget::Use::simulations) == all);
+  const auto others = leave(1000);
+  REQUIRE(others);
+  Pair pair{budget};
+  pair.topology = large(stream::MessageKind::topology, 1, 0);
+  pair.pass();
+  CHECK(pair.of<session::Started>().empty());
+  REQUIRE(pair.of<session::Failed>().size() == 1);
+  CHECK(pair.of<session::Failed>()[0].error.remedy == "a larger --max-memory");
 }
 
 TEST_CASE("messages that are none of this protocol change nothing") {
