@@ -16,6 +16,7 @@
 #include "server/net/limits.h"
 #include "server/net/request_checks.h"
 #include "server/net/request_headers.h"
+#include "server/net/server.h"
 
 namespace clothlab::net {
 
@@ -167,18 +168,23 @@ std::optional<HttpAnswer> HttpRequest::find(const std::string& path) {
     return hub_.all_sessions_beat() ? plain(200, "ok") : plain(503, "a session's thread does not answer");
   if (const std::string why = hub_.host_refusal(header(wsi_, WSI_TOKEN_HOST)); !why.empty())
     return plain(403, why);
-  if (path == "/ws") {
-    // A browser does not tell a page for what reason its WebSocket was refused, so the page asks here.
-    const std::string why = hub_.no_place(query(wsi_, "session", main_session),
-                                          client_address(wsi_, hub_.options().trusted_proxies));
-    if (!why.empty()) return try_again(why);
-    HttpAnswer refusal = plain(426, "connect with a WebSocket, subprotocol clothlab.v1");
-    refusal.headers = {{"upgrade:", "websocket"}};
-    return refusal;
-  }
+  if (path == "/ws") return handshake_answer();
   if (path != "/metrics" && path.rfind("/api/", 0) != 0) return file(path);
   if (std::optional<HttpAnswer> why = refusal()) return why;
   return find_protected(path);
+}
+
+/// To who asks without an upgrade: why a handshake would be refused now, which browsers do not tell their
+/// pages.
+HttpAnswer HttpRequest::handshake_answer() const {
+  std::string why;
+  auto& server = *static_cast<Server*>(lws_context_user(lws_get_context(wsi_)));
+  const unsigned status = server.refusal(wsi_, why);
+  if (status == 503) return try_again(why);
+  if (status != 0) return plain(status, why);
+  HttpAnswer refusal = plain(426, "connect with a WebSocket, subprotocol clothlab.v1");
+  refusal.headers = {{"upgrade:", "websocket"}};
+  return refusal;
 }
 
 HttpAnswer HttpRequest::file(const std::string& path) const {

@@ -74,6 +74,7 @@ class HttpRequest {
   /// The answer for this path; empty: a session was asked for it.
   std::optional<HttpAnswer> find(const std::string& path);
   Progress answer();
+  HttpAnswer handshake_answer() const;
   HttpAnswer file(const std::string& path) const;
   /// The document of the room's scene, which the workbench writes.
   std::optional<HttpAnswer> scene_file(Room& room);

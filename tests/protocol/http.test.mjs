@@ -264,10 +264,13 @@ test("other verbs than GET and HEAD answer 405 with what is allowed", async () =
   }
 });
 
-test("/ws without an upgrade says what it is", async () => {
+test("/ws without an upgrade says what it is, or why a handshake would be refused", async () => {
   const { status, body } = await server.get("/ws");
   assert.equal(status, 426);
   assert.match(body.toString(), /clothlab\.v1/);
+  const refused = await server.get("/ws?session=a%20b");
+  assert.equal(refused.status, 400);
+  assert.match(refused.body.toString(), /^a session's name has/);
 });
 
 test("/healthz is 200 while the sessions' threads beat", async () => {

@@ -3,6 +3,7 @@ import { canInflate } from "./inflate";
 import { inTab } from "./kept";
 import { PackedFrames } from "./packed_frames";
 import { BadMessage, decode, isPacked, type FieldName, type Frame, type Topology } from "./protocol";
+import { refusalOf } from "./refusal";
 import { errorNotAllowed, Rpc, RpcError } from "./rpc";
 
 export type LinkState = "connecting" | "open" | "waiting" | "unauthorised";
@@ -31,8 +32,8 @@ export class Connection {
   private retryTimer = 0;
   private lastHeard = 0;
   private refused = false;
-  private opened = false; // this attempt's handshake was accepted
-  private attempt = 0; // their number, so that an answer about an earlier one is told from one that still matters
+  private greeted = false; // the handshake was accepted
+  private turn = 0; // rises with each try to connect
   private field: FieldName | null = null;
   private agreed: FieldName | null = null; // what the frames that come now have
   private encoding: "q16" | "c16" = "q16"; // as WebGL takes it, or in fewer bytes, which a thread of the page's unpacks
@@ -58,9 +59,10 @@ export class Connection {
   }
 
   connect(): void {
+    ++this.turn;
+    this.greeted = false;
     clearTimeout(this.retryTimer);
-    ++this.attempt;
-    this.refused = this.opened = false;
+    this.refused = false;
     this.events.state("connecting", 0, "");
     const scheme = location.protocol === "https:" ? "wss:" : "ws:";
     const socket = new WebSocket(
@@ -72,7 +74,7 @@ export class Connection {
     this.rpc = new Rpc(socket, (method, params) => this.events.notification(method, params));
     this.lastHeard = performance.now();
     socket.onopen = () => {
-      this.opened = true;
+      this.greeted = true;
       void this.greet(this.rpc as Rpc);
     };
     socket.onmessage = (event) => this.receive(event.data as string | ArrayBuffer);
@@ -212,8 +214,8 @@ export class Connection {
 
   /// Closes the link for good: it does not reconnect.
   close(): void {
+    ++this.turn;
     clearTimeout(this.retryTimer);
-    ++this.attempt;
     this.abandon();
   }
 
@@ -228,28 +230,18 @@ export class Connection {
 
   private closed(socket: WebSocket, event: CloseEvent): void {
     if (socket !== this.socket) return;
+    const { greeted } = this;
     this.abandon();
     if (this.refused) return;
-    const { attempt } = this;
-    if (event.code !== 1006) this.retry(event.reason || `closed with code ${event.code}`);
-    else if (this.opened) this.retry("");
-    else
-      void this.askWhy().then((why) => {
-        if (attempt === this.attempt) this.retry(why);
-      });
+    if (event.code === 1006 && !greeted) void this.retryRefused();
+    else this.retry(event.reason || (event.code === 1006 ? "" : `closed with code ${event.code}`));
   }
 
-  // A browser does not say for what reason a handshake was refused; asked as a page is, the server does.
-  private async askWhy(): Promise<string> {
-    try {
-      const answer = await fetch(`/ws?session=${encodeURIComponent(this.session)}`, {
-        signal: AbortSignal.timeout(silenceLimit),
-      });
-      const why = answer.status === 503 ? (await answer.text()).trim() : "";
-      return why.startsWith("<") ? "" : why; // a proxy's own page
-    } catch {
-      return "";
-    }
+  // The handshake has failed.
+  private async retryRefused(): Promise<void> {
+    const turn = ++this.turn;
+    const why = await refusalOf(this.session);
+    if (turn === this.turn && !this.socket) this.retry(why);
   }
 
   private retry(why: string): void {
