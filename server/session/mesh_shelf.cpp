@@ -136,6 +136,11 @@ clothlab::Status MeshShelf::keep_rest() {
   return ok();
 }
 
+void MeshShelf::leave_files() {
+  const std::lock_guard lock(mutex_);
+  stem_.reset();
+}
+
 std::vector<Error> MeshShelf::restore() {
   std::vector<Error> errors;
   if (!stem_) return errors;

@@ -59,6 +59,8 @@ class MeshShelf : public scene::Assets {
   /// Reads the files of an earlier server. Returns what was wrong with those that could not be read, and
   /// where they were moved to: FILE.unreadable, with a number behind it if there is one.
   std::vector<Error> restore();
+  /// From now on no file is written or removed: those that are there belong to what could not be restored.
+  void leave_files();
 
  private:
   std::filesystem::path file_of(const std::string& name) const;

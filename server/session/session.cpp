@@ -1,6 +1,7 @@
 #include "server/session/session.h"
 
 #include <exception>
+#include <filesystem>
 #include <new>
 
 #include "server/base/files.h"
@@ -16,17 +17,26 @@ namespace clothlab::session {
 
 namespace {
 
+/// For the page: the names of files alone. Where the server's folder is, is for its log.
+std::string without_folder(std::string text, const std::filesystem::path& file) {
+  const std::string folder = file.parent_path().string() + "/";
+  for (std::size_t at; (at = text.find(folder)) != std::string::npos;) text.erase(at, folder.size());
+  return text;
+}
+
 /// Tells of what could not be restored. If it could not be moved either, the session is saved in memory only:
-/// its file would take the place of that.
+/// its file would take the place of that, and its meshes that of those which belong to it.
 void tell_unrestored(Beginning& beginning, Exchange& exchange, const InTheWay& found) {
   std::string why = found.why.text();
+  const std::filesystem::path file = beginning.file.value_or("");
   if (!found.moved && beginning.file) {
     beginning.file.reset();
+    if (beginning.meshes) beginning.meshes->leave_files();
     exchange.emit(FileTaken{});
     why += "; this session is not saved before the server starts again";
   }
   log(LogLevel::error, "session_not_restored", {{"session", beginning.name}, {"why", why}});
-  exchange.emit(Notice{"error", "the saved session cannot be restored: " + why, true});
+  exchange.emit(Notice{"error", "the saved session cannot be restored: " + without_folder(why, file), true});
 }
 
 /// The state that the session's earlier thread saved, else the state in the session's file; null: neither.
@@ -59,7 +69,10 @@ Result<std::unique_ptr<Stepper>> begin(Beginning& beginning, const Limits& limit
   if (beginning.meshes && !beginning.saved)  // else they are on the shelf already
     for (const Error& error : beginning.meshes->restore()) {
       log(LogLevel::error, "mesh_not_restored", {{"session", beginning.name}, {"why", error.text()}});
-      exchange.emit(Notice{"error", "an uploaded mesh cannot be restored: " + error.text(), true});
+      exchange.emit(Notice{
+          "error",
+          "an uploaded mesh cannot be restored: " + without_folder(error.text(), beginning.file.value_or("")),
+          true});
     }
   if (const std::shared_ptr<const Saved> saved = state_to_restore(beginning, exchange)) {
     Result<std::unique_ptr<Stepper>> stepper = bring_back(*saved, beginning, limits, gpu, exchange);

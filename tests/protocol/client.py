@@ -189,6 +189,10 @@ class Scene(Connected):
         with self.assertRaisesRegex(clothlab.ClothlabError, "no value of JSON"):
             self.cloth["/name"] = object()
 
+    def test_a_patch_may_ask_that_the_cloth_stays_stable(self):
+        stiff = [{"op": "replace", "path": "/cloths/0/material/structural", "value": 1e5}]
+        self.assertGreater(self.cloth.patch(stiff, keep_stable=True)["solver"]["dt"], 0)
+
     def test_presets_documents_and_files_are_loaded(self):
         self.assertIn("flag", self.cloth.presets())
         self.assertIn("cotton", [fabric["name"] for fabric in self.cloth.fabrics()])

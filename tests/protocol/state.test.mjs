@@ -10,6 +10,7 @@ import {
   readFileSync,
   renameSync,
   rmSync,
+  truncateSync,
   writeFileSync,
 } from "node:fs";
 import { tmpdir } from "node:os";
@@ -218,9 +219,13 @@ test("what is moved aside takes nothing's place: a second damaged file, and a se
   for (const [i, bytes] of ["first", "second"].entries()) {
     writeFileSync(file, bytes);
     writeFileSync(join(kept, "main.mesh-0123456789abcdef"), bytes);
+    writeFileSync(join(kept, "main.mesh-1111111111111111"), `clothlab mesh 1\nlarge\n${leaf}`);
+    truncateSync(join(kept, "main.mesh-1111111111111111"), 9 << 20); // more than an upload may have
     const server = await Server.start("--state-dir", kept);
     await savedAgain(file);
     assert.equal(await server.stop(), 0);
+    assert.match(server.stderr, /main\.mesh-1{16}: it is larger than an upload may be; it was moved/);
+    assert.equal(lstatSync(join(kept, `main.mesh-1111111111111111.unreadable${i === 0 ? "" : "-2"}`)).size, 9 << 20);
     for (const name of ["main.session", "main.mesh-0123456789abcdef"])
       assert.equal(readFileSync(join(kept, `${name}.unreadable${i === 0 ? "" : "-2"}`), "utf8"), bytes);
     fromALaterVersion(file);
@@ -237,18 +242,26 @@ for (const [what, make] of [
 ])
   test(`${what} with the name of a session's file does no harm: it stays, the session runs unsaved and says so`, async () => {
     const kept = folder(),
-      file = join(kept, "main.session");
+      file = join(kept, "main.session"),
+      mesh = "main.mesh-0123456789abcdef";
     make(file);
+    writeFileSync(join(kept, mesh), `clothlab mesh 1\nmine\n${leaf}`);
     const is = lstatSync(file, { throwIfNoEntry: false })?.ino;
     const server = await Server.start("--state-dir", kept);
     const client = await watch(server);
     const { text } = await client.notification("notice", ({ level }) => level === "error");
-    assert.match(text, /main\.session: it is no file; move it away.*not saved before the server starts again/);
+    assert.match(
+      text,
+      /^the saved session cannot be restored: main\.session: it is no file; move it away.*not saved before the server starts again/,
+    );
+    assert.ok(server.stderr.includes(`${file}: it is no file`), "the log names the folder, too");
     await client.frame((frame) => frame.time > 2.5);
     await client.request("scene.patch", { patch: { name: "runs" } });
+    // Uploads push the mesh out of the session, and leave its file.
+    for (let i = 0; i < 17; ++i) await client.request("mesh.upload", { name: `new ${i}`, obj: leaf });
     assert.equal(await server.stop(), 0);
     assert.equal(lstatSync(file, { throwIfNoEntry: false })?.ino, is);
-    assert.deepEqual(readdirSync(kept), ["main.session"]);
+    assert.deepEqual(readdirSync(kept).sort(), [mesh, "main.session"]);
   });
 
 test("a folder belongs to one server: another is refused until that one has ended, however it ended", async () => {
