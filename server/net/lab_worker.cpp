@@ -8,6 +8,7 @@
 #include "server/gl/context.h"
 #include "server/session/fault.h"
 #include "server/sim/cost.h"
+#include "server/sim/list_memory.h"
 #include "server/sim/memory.h"
 
 namespace clothlab::net {
@@ -115,6 +116,7 @@ Result<LabWorker::Run> open_lab(std::optional<int> gpu, std::shared_ptr<MemoryBu
     largest.solver.method = scene::Method::implicit_euler;
     const Result<MemoryBudget::Reservation> place = sim::reserve_memory(budget, largest);
     if (!place) return place.error();
+    sim::ListMemory::of_thread() = std::make_shared<sim::ListMemory>(budget);
     // With helper threads or without, whichever is faster for this scene, as sessions and the command line
     // compute; else the costs would be another's.
     const Result<std::unique_ptr<gl::Context>> context =

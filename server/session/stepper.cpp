@@ -35,6 +35,7 @@ Result<std::unique_ptr<Stepper>> Stepper::create(scene::Document document, Excha
   stepper->past_memory_ = std::move(*past);
   Result<MemoryBudget::Reservation> place = stepper->place_for(*scene);
   if (!place) return place.error();
+  sim::ListMemory::of_thread() = stepper->list_memory_;
   Result<std::unique_ptr<Engine>> engine = Engine::create(*scene, exchange, {gpu, last_frame});
   if (!engine) return engine.error();
   stepper->engine_ = std::move(*engine);
@@ -224,6 +225,7 @@ void Stepper::request_diagnosis(Clock::time_point now) {
 void Stepper::accept(sim::GuardedRun::Verdict verdict) {
   if (verdict == sim::GuardedRun::Verdict::blown_up) return diverge();
   warn_if_crowded();
+  warn_if_lists_stay();
   warn_if_not_taken();
   warn_if_forced();
   warn_if_unconverged();

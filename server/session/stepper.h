@@ -27,6 +27,7 @@
 #include "server/session/step_limit.h"
 #include "server/session/timeline.h"
 #include "server/sim/guarded_run.h"
+#include "server/sim/list_memory.h"
 #include "server/sim/near_pairs.h"
 
 namespace clothlab::session {
@@ -77,6 +78,7 @@ class Stepper {
         exchange_(exchange),
         limits_(limits),
         gpu_(gpu),
+        list_memory_(std::make_shared<sim::ListMemory>(limits.memory)),
         history_(limits.past_bytes / 4) {
     document_.assets = meshes_;
   }
@@ -193,6 +195,7 @@ class Stepper {
   // In stepper_warnings.cpp.
   void warn_if_slow(Clock::time_point now);
   void warn_if_crowded();
+  void warn_if_lists_stay();
   void warn_if_not_taken();
   void warn_if_forced();
   void warn_if_unconverged();
@@ -226,6 +229,7 @@ class Stepper {
   Exchange& exchange_;
   Limits limits_;
   std::optional<int> gpu_;
+  std::shared_ptr<sim::ListMemory> list_memory_;
   MemoryBudget::Reservation past_memory_{};  ///< of what can be gone back to
   std::unique_ptr<Engine> engine_;
   std::unique_ptr<Engine> left_;  ///< by a change since the last step; a change back returns to it
@@ -287,6 +291,7 @@ class Stepper {
   Clock::time_point slow_since_{};
   bool slow_announced_ = false, crowded_announced_ = false, forced_announced_ = false,
        not_taken_announced_ = false, unconverged_announced_ = false, unsolved_announced_ = false;
+  bool lists_stay_announced_ = false;
   bool unsolved_told_ = false;           ///< as of sim.status
   bool layers_may_pass_ = false;         ///< layers of cloth can pass through each other
   bool solids_may_slip_ = false;         ///< solids can pass through triangles of cloth

@@ -318,6 +318,7 @@ void Stepper::state_replaced() {
   finish_waiting(true);
   wake_up();
   run_.begin_again();
+  lists_stay_announced_ = false;
   slow_announced_ = crowded_announced_ = forced_announced_ = not_taken_announced_ = unconverged_announced_ =
       unsolved_announced_ = false;
   ++state_version_;

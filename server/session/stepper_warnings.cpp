@@ -44,6 +44,17 @@ void Stepper::warn_if_crowded() {
                         "a smaller thickness or a coarser mesh helps"});
 }
 
+void Stepper::warn_if_lists_stay() {
+  const std::string why = list_memory_->take_refusal();
+  if (why.empty() || std::exchange(lists_stay_announced_, true)) return;
+  exchange_.emit(Notice{"warning",
+                        "contact has found more pairs than its lists have room for, and they cannot "
+                        "be longer (" +
+                            why +
+                            "): cloth moves more slowly where it is near itself, or stands still; a "
+                            "coarser mesh or a smaller thickness helps, or a larger --max-memory"});
+}
+
 void Stepper::warn_if_not_taken() {
   if (not_taken_announced_ || guard_->state().surface_not_taken == 0) return;
   not_taken_announced_ = true;

@@ -1,5 +1,6 @@
 #include "server/sim/kernels.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <string_view>
 
@@ -90,6 +91,9 @@ Work Kernels::update_lists(const scene::Scene& scene) {
 }
 
 Status Kernels::grow(const scene::Scene& scene, std::uint32_t slots) {
+  const std::size_t bytes = std::size_t{slots - std::min(slots, neighbour_slots)} * 8 * model.vertex_count();
+  if (list_memory && !list_memory->resize(longer_lists, bytes))
+    return Error{"memory", "longer lists of neighbours", "a smaller thickness or a coarser mesh"};
   Plan larger = plan;
   larger.neighbour_slots = slots;
   Result<SelfCollision> grown = SelfCollision::create(model, slots);

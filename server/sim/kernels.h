@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "server/sim/integrator.h"
+#include "server/sim/list_memory.h"
 #include "server/sim/strain_limit.h"
 #include "server/sim/surface_contact.h"
 
@@ -24,6 +25,8 @@ struct Kernels {
   std::unique_ptr<Integrator> integrator;
   std::optional<StrainLimit> strain_limit;
   std::optional<SurfaceContact> surface_contact;
+  std::shared_ptr<ListMemory> list_memory = ListMemory::of_thread();  ///< null: lists are not bounded by it
+  MemoryBudget::Reservation longer_lists{};                           ///< of neighbours, than at first
 
   /// Makes the kernels of `scene`; nothing is carried over from an earlier step.
   static Result<Kernels> create(const scene::Scene& scene);

@@ -84,6 +84,8 @@ Result<SurfacePairs> SurfacePairs::create(const model::Model& model, const Surfa
   made.make_lists({8 * leaves + 256, 8 * bundles + 1024,
                    std::min(8 * made.triangle_count_, 2 * made.triangle_count_ + generous),
                    std::min(32 * made.vertex_count_, 8 * made.vertex_count_ + generous)});
+  made.memory_ = ListMemory::of_thread();
+  made.begun_bytes_ = bytes_of(made.capacity_);
   const SurfaceControl nothing;
   made.control_.upload(&nothing, sizeof nothing);
   return made;
@@ -110,6 +112,20 @@ void SurfacePairs::make_lists(const Capacities& wanted) {
     glProgramUniform1ui(program->id(), program->location("triangle_pair_capacity"), capacity_.triangle_pairs);
     glProgramUniform1ui(program->id(), program->location("pair_capacity"), capacity_.pairs);
   }
+}
+
+std::size_t SurfacePairs::bytes_of(const Capacities& capacities) {
+  constexpr std::size_t pair_of_numbers = 8;
+  constexpr std::size_t pair = 16 + 48 + 8 + 16 + 4 * pair_of_numbers + 32;  // as `make_lists` makes them
+  return pair_of_numbers *
+             (std::size_t{capacities.leaf_pairs} + capacities.bundle_pairs + capacities.triangle_pairs) +
+         pair * capacities.pairs;
+}
+
+/// Reserves what lists of these sizes take beyond those of the beginning.
+bool SurfacePairs::may_have(const Capacities& wanted) {
+  const std::size_t bytes = bytes_of(wanted);
+  return !memory_ || memory_->resize(grown_, bytes - std::min(bytes, begun_bytes_));
 }
 
 std::array<const gl::Program*, 10> SurfacePairs::programs() const {
@@ -164,6 +180,7 @@ void SurfacePairs::invalidate() {
 void SurfacePairs::shorten_lists(std::uint32_t entries, bool for_good) {
   most_ = for_good ? entries : most_entries();
   make_lists({entries, entries, entries, entries});
+  begun_bytes_ = bytes_of(capacity_);
   invalidate();
 }
 
@@ -202,9 +219,11 @@ void SurfacePairs::carry(Carrier& carrier) {
   carrier.number(searched_);
   carrier.ring(sizes_ring_);
   if (carrier.loads() && carrier.fits()) {
-    if (capacity != capacity_) make_lists(capacity);
+    const bool fits = capacity == capacity_ || may_have(capacity);
+    if (fits && capacity != capacity_) make_lists(capacity);
     limit_query(most_query);
     control_.upload(&control, sizeof control);
+    if (!fits) forget_pairs();  // they are searched anew, with the lists that there are
   }
   carrier.buffer(expected_.buffer);
   const std::uint32_t pairs = searched_ ? std::min(control.pairs, capacity_.pairs) : 0;
@@ -314,6 +333,8 @@ bool SurfacePairs::make_room(bool within_step) {
                         wanted(capacity_.bundle_pairs, control.most_bundle_pairs),
                         wanted(capacity_.triangle_pairs, control.most_triangle_pairs),
                         wanted(capacity_.pairs, control.most_pairs)};
+  no_memory_ = longer && !may_have(next);
+  if (no_memory_) longer = false;
   no_room_ = !longer && control.overflow != 0 && query_of(control) <= narrowest_query_;
   if (no_room_) return false;
   if (!longer && control.overflow == 0) {

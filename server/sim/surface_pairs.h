@@ -4,7 +4,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "server/base/result.h"
@@ -13,6 +15,7 @@
 #include "server/model/model.h"
 #include "server/scene/scene.h"
 #include "server/sim/carried.h"
+#include "server/sim/list_memory.h"
 #include "server/sim/state.h"
 #include "server/sim/surface_blocks.h"
 #include "server/sim/surface_triangles.h"
@@ -35,9 +38,10 @@ class SurfacePairs {
   static double thickness(const scene::Scene& scene, const model::Model& model);
 
   /// To be called before a step: brings the pairs up to date. Rest positions must be bound. Every few calls,
-  /// at a fixed count and not by time, reads back how long the lists need to be, and makes them longer. Until
-  /// then no free vertex moves; where other things do (`set_driven`), or steps are long enough to go in
-  /// pieces, it reads back in every call, and waits. Software OpenGL is asked after every search.
+  /// at a fixed count and not by time, reads back how long the lists need to be, and makes them longer, if
+  /// there is memory for that (ListMemory). Until then no free vertex moves; where other things do
+  /// (`set_driven`), or steps are long enough to go in pieces, it reads back in every call, and waits.
+  /// Software OpenGL is asked after every search.
   Work update(const StateBuffers& state);
   /// The same between two pieces of a step, without a stop; a GPU is asked only where other things move.
   /// False: no list may be as long as the pairs need, so no piece can be taken.
@@ -92,6 +96,8 @@ class SurfacePairs {
     bool operator==(const Capacities&) const = default;
   };
   void make_lists(const Capacities& wanted);
+  static std::size_t bytes_of(const Capacities& capacities);
+  bool may_have(const Capacities& wanted);
   std::array<const gl::Program*, 10> programs() const;
   bool waits() const { return driven_ || in_pieces_; }
 
@@ -99,6 +105,10 @@ class SurfacePairs {
   Capacities capacity_;
   std::uint32_t most_ = 0;                                         ///< entries that any list may have
   float most_query_ = 0, widest_query_ = 0, narrowest_query_ = 0;  ///< [m]
+  std::shared_ptr<ListMemory> memory_;                             ///< null: the lists are not bounded by it
+  std::size_t begun_bytes_ = 0;        ///< of the lists at first, which are known of the scene
+  MemoryBudget::Reservation grown_{};  ///< of what they have beyond that
+  bool no_memory_ = false;             ///< the last time that a list had to be longer
   bool no_room_ = false;  ///< the last look found that no search can do with lists of `most_` entries
   bool driven_ = false, in_pieces_ = false, searched_ = false;
   bool asks_ = false;          ///< none(groups) asks

@@ -5,8 +5,11 @@
 // bodies of up to 50,000 triangles.
 #include <algorithm>
 #include <cstdlib>
+#include <memory>
+#include <string>
 #include <tuple>
 
+#include "server/sim/list_memory.h"
 #include "tests/body_meshes.h"
 #include "tests/crossings.h"
 #include "tests/physics/thrown_cloth.h"
@@ -112,6 +115,36 @@ TEST_CASE(
     CHECK(watched.wrong() == "");
     CHECK(simulation->diagnose().surface_not_taken == 3);
   }
+}
+
+TEST_CASE(
+    "lists that the server has no memory for stay: their steps are not taken, and told, until there is "
+    "some") {
+  const auto context = test::context();
+  const auto budget = MemoryBudget::of(MemoryBudget::least_bytes);
+  const auto lists = std::make_shared<sim::ListMemory>(budget);
+  sim::ListMemory::of_thread() = lists;
+  test::ThrownCloth thrown = fast_on_plate(scene::Method::symplectic_euler, 0.0005, 1.0);
+  thrown.scene.cloths[0].transform.translate.y = 0.004;
+  const auto simulation = test::simulation(thrown.scene);
+  sim::ListMemory::of_thread() = nullptr;
+  test::Watched watched(thrown, *simulation);
+  auto others = MemoryBudget::reserve(budget, MemoryBudget::Use::simulations,
+                                      budget->left(MemoryBudget::Use::simulations) - 100);
+  REQUIRE(others);
+  const sim::State before = simulation->read_state();
+  simulation->shorten_contact_lists(4);
+  simulation->step(3);
+  CHECK(simulation->read_state().position == before.position);
+  CHECK(simulation->diagnose().surface_not_taken == 3);
+  CHECK(lists->take_refusal().find("for simulations, where 0 MB are left") != std::string::npos);
+  others = MemoryBudget::Reservation();
+  // How long the lists need to be is looked at every eight steps.
+  simulation->step(12);
+  CHECK(simulation->read_state().position != before.position);
+  CHECK(watched.wrong() == "");
+  CHECK(budget->used(MemoryBudget::Use::simulations) > 0);
+  CHECK(lists->take_refusal().empty());
 }
 
 TEST_CASE(
