@@ -1,5 +1,6 @@
 #include "server/sim/memory.h"
 
+#include <algorithm>
 #include <type_traits>
 
 #include "server/model/size.h"
@@ -15,7 +16,8 @@ constexpr double engine = 16e6;          ///< of any simulation: two contexts, c
 constexpr double vertex = 990;           ///< with its triangles, states, numbering and frames as q16
 constexpr double other_frames = 130;     ///< of a vertex: the latest frame of every other form
 constexpr double spring = 140;           ///< its lists, on both sides, and what building them takes
-constexpr double membrane = 840;         ///< of a triangle
+constexpr double membrane = 600;         ///< of a triangle
+constexpr double building = 240;         ///< of one, while it is built; later methods may have it
 constexpr double bending = 100;          ///< of a pair
 constexpr double shell = 200;            ///< of an entry
 constexpr double limited_element = 130;  ///< with a strain limit
@@ -25,6 +27,8 @@ constexpr double points_vertex = 1150;   ///< with contact of vertices: cells an
 constexpr double surface_vertex = 4700;  ///< with contact of surfaces: pairs, boxes and the filter
 constexpr double scene_copies = 12;      ///< of the document, as JSON or as plain data
 
+constexpr double least_kept = 60;  ///< of a vertex, by any method besides the state
+
 const std::string facts_begin = "{\"memory\": {\"needed\": ";
 
 /// What a method keeps besides the state, of a vertex.
@@ -33,9 +37,9 @@ double kept_by(scene::Method method) {
     case scene::Method::rk4:
       return 490;
     case scene::Method::implicit_euler:
-      return 1220;
+      return 700;
     default:
-      return 60;
+      return least_kept;
   }
 }
 
@@ -74,7 +78,9 @@ std::uint64_t expected_memory(const scene::Scene& scene) {
              bodies = static_cast<double>(body_vertices(scene)),
              all = static_cast<double>(size.all_elements());
   const scene::Method method = scene.solver.method;
-  double bytes = engine + (vertex + other_frames + kept_by(method)) * vertices;
+  const auto membranes = static_cast<double>(size.elements[elements::law_number<elements::Membrane>]);
+  double bytes = engine + (vertex + other_frames) * vertices +
+                 std::max(kept_by(method) * vertices, least_kept * vertices + building * membranes);
   double springs = 0;
   elements::each_law([&]<class Law>(std::type_identity<Law> law) {
     const auto count = static_cast<double>(size.elements[elements::law_number<Law>]);

@@ -89,6 +89,7 @@ async function measured(document) {
     await client.until(() => client.binary, ofScene, "a frame", patience);
     const stepped = ({ step, diverged }) => step > 0 || diverged;
     const status = await client.nextNotification("sim.status", stepped, patience);
+    await client.statuses(20); // some search for the longest step, some states that are kept
     const reserved = await server.metric("clothlab_memory_simulations_bytes");
     return { ...memory(server.child.pid), buffers: status.memory_bytes, reserved };
   } finally {

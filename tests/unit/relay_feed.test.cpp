@@ -69,12 +69,12 @@ struct Pair {
                    },
                    [] {},
                    budget};
-  std::vector<std::pair<std::uint64_t, std::string>> delivered;
+  std::vector<std::pair<std::uint64_t, std::string>> delivered{};
   json document{{"name", "one"}, {"gravity", 1}}, history = json::object();
   std::uint64_t revision = 7;
   stream::SharedMessage topology = message(stream::MessageKind::topology, 1, 0);
   std::int64_t now = session::now_us();
-  std::vector<session::Event> events;
+  std::vector<session::Event> events{};
 
   /// Lets a second pass: the relay says what it wants, and the server answers.
   void pass(const std::string& origin = "origin-1") {
