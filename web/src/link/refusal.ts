@@ -1,4 +1,4 @@
-// Why the server would refuse the page a connection now: a browser does not tell the page what a handshake was answered.
+// Why the server would refuse the page a connection now: browsers do not tell the page what a handshake was answered.
 
 const patience = 5000; // [ms]
 
