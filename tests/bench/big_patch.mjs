@@ -3,8 +3,7 @@
 // an undo is answered that takes the patch back while it is built; then how long the other's requests wait beside 60
 // heavy patches of the one, and for how long patches still arrive after the one has left. By hand, on a quiet machine:
 //   CLOTHLAB=build/release/clothlab node tests/bench/big_patch.mjs [SIDE] [--out FILE]
-// SIDE: vertices along a side of the big patch's cloth, default 1024, whose surfaces are in contact. Prints (and writes)
-// JSON.
+// SIDE: vertices along a side of the big patch's cloth, 1024 unless told; its surfaces are in contact. Prints JSON.
 import { writeFileSync } from "node:fs";
 import { cpus } from "node:os";
 import { Client, Server, sleep } from "../protocol/harness.mjs";
