@@ -397,6 +397,16 @@ test("a request that the server cannot serve is refused as the document says", a
   await poor.stop();
 });
 
+test("a change that is undone while it is built is given up", async () => {
+  const client = await Client.connect(server, { session: "large" });
+  const side = { columns: 500, rows: 500, width: 1, height: 1 }; // more than a second of building, less than 2 GB
+  const large = { cloths: [{ mesh: { grid: side } }], self_collision: { kind: "surface", thickness: 0.0004 } };
+  const given = client.refusal("scene.patch", { patch: large, name: "large" });
+  const { name, applies } = await client.request("scene.undo");
+  assert.deepEqual([name, applies, (await given).code], ["large", "none", -32006]);
+  await client.close();
+});
+
 test("a session's name is what the document takes for one", async () => {
   const { pattern } = document.channels.session.bindings.ws.query.properties.session;
   for (const session of ["a", "A-z_0", "x".repeat(64), "x".repeat(65), "a.b", "a b", "a/b", "é", "%00"]) {
