@@ -45,9 +45,9 @@ void Stepper::look_up() {
                     : wish->why == Why::left   ? "who asked for it has left"
                     : wish->why == Why::undone ? "it was undone before it was there"
                                                : "another scene is loaded";
-  const std::string name = under_way_.name.empty() ? "the change" : under_way_.name;
+  const std::string name = under_way_.name.empty() ? "a change" : under_way_.name;
   under_way_.given_up = Error{"",
-                              formatted("\"%s\" was given up after %.1f s of building, as %s", name.c_str(),
+                              formatted("%s was given up after %.1f s of building, as %s", name.c_str(),
                                         std::chrono::duration<double>(worked).count(), why),
                               "send it again, and wait until it is answered"};
   if (wish->why == Why::undone) undone_while_built_ = {wish->by, name};

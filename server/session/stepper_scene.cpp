@@ -51,6 +51,7 @@ void Stepper::perform(PatchScene& patch, const Ticket& ticket) {
   if (outdated(patch.revision, ticket)) return;
   Result<scene::Document> document = scene::apply_patch(document_, patch.patch);
   if (!document) return reply(ticket, invalid_value(document.error()));
+  under_way_.name = patch.name;
   json answer = json::object();
   if (patch.keep_stable) {
     const auto solver = built([&] { return keep_stable(patch.patch, *document); });

@@ -47,7 +47,7 @@ type Row = (typeof rows)[number][0];
 const factorText = (factor: number): string =>
   `×${factor >= 0.1 || factor === 0 ? factor.toFixed(2) : factor.toPrecision(1)}`;
 
-const megabytes = (bytes: number): string => `${(bytes / 1e6).toPrecision(bytes < 1e9 ? 2 : 3)} MB`;
+const megabytes = (bytes: number): string => `${Number((bytes / 1e6).toPrecision(bytes < 1e9 ? 2 : 3))} MB`;
 const compact = new Intl.NumberFormat("en", { notation: "compact" });
 const short = (count: number): string => compact.format(count);
 
