@@ -67,7 +67,10 @@ test("one client more than --max-clients-per-address is refused, another address
   await assert.rejects(Client.connect(server), { status: 503 });
   const reason = await server.get("/ws?session=main"); // for a page, which is not told the handshake's answer
   assert.equal(reason.status, 503);
-  assert.match(reason.body.toString(), /^this address has as many clients as it may, 2; see --max-clients-per-address$/m);
+  assert.match(
+    reason.body.toString(),
+    /^this address has as many clients as it may, 2; see --max-clients-per-address$/m,
+  );
   const elsewhere = await socketTo(server, { localAddress: "127.0.0.2" });
   elsewhere.write(upgrade);
   const [answer] = await withTimeout(once(elsewhere, "data"), "the handshake's answer");
