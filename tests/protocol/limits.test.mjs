@@ -225,7 +225,7 @@ test("a scene that takes more than --max-memory is refused with its number, whoe
   await second.close();
 });
 
-test("a recording, a job of the lab, a picture and a download that do not fit --max-memory are refused with their numbers; who reads nothing shares one copy of a large message", async () => {
+test("what does not fit --max-memory is refused with its number; who reads nothing shares one copy of a message", async () => {
   const server = await start("--max-memory", "256M");
   const client = await Client.connect(server);
   const grid = { columns: 160, rows: 160 };
