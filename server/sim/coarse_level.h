@@ -1,7 +1,8 @@
-// The coarse level of implicit Euler's preconditioner: the cloth as patches that move without deforming.
-// Block Jacobi alone passes news on from vertex to vertex, one an iteration; the coarse level passes them on
-// from patch to patch at once. Two-level additive Schwarz with the patches' indicator functions: Nicolaides
-// 1987; Toselli & Widlund 2005, chapter 3.
+// The coarse level of implicit Euler's preconditioner: the cloth as patches that move as a whole, and are
+// stretched, sheared and turned along two axes (coarse_modes.h). Block Jacobi alone passes news on from
+// vertex to vertex, one an iteration; the coarse level passes them on from patch to patch at once, and stiff
+// cloth hinders no patch from turning. Two-level additive Schwarz: Nicolaides 1987; Toselli & Widlund 2005,
+// chapter 3. For cloth: Wu, Wang & Wang 2022.
 #pragma once
 
 #include <cstdint>
@@ -22,6 +23,9 @@ struct FineLevel {
 
 class CoarseLevel {
  public:
+  /// The number of threads that shaders/methods/implicit_step.comp has for them.
+  static constexpr std::uint32_t most_patches = 128;
+
   /// Divides the vertices into patches, which stay.
   explicit CoarseLevel(const model::Model& model);
   ~CoarseLevel();
@@ -34,8 +38,8 @@ class CoarseLevel {
   /// Takes over the elements' numbers, which may change.
   void set_parameters(const model::Model& model, const scene::Scene& scene);
 
-  /// Makes the matrix of the patches at the present estimate, and its inverse. Waits for the GPU. `contacts`:
-  /// whether anything may be in contact with a collider.
+  /// Makes the matrix of the patches at the present estimate, and the inverse of its factor. Waits for the
+  /// GPU. `contacts`: whether anything may be in contact with a collider.
   void prepare(const FineLevel& fine, bool contacts);
 
   /// Binds all that the kernels of a solve read, and where they write the sums over patches.

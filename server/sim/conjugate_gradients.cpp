@@ -37,7 +37,7 @@ ConjugateGradients::ConjugateGradients(const model::Model& model)
 }
 
 gl::Defines ConjugateGradients::defines() const {
-  gl::Defines defines;
+  gl::Defines defines{{"MOST_PATCHES", std::to_string(CoarseLevel::most_patches)}};
   if (groups_ <= few_groups) defines.emplace_back("FEW_GROUPS", "1");
   return defines;
 }

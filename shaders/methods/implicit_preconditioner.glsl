@@ -7,6 +7,9 @@ READ_VEC4(coarse_vectors, unit_coarse_vectors);
 /// `r`: the residual, not filtered.
 vec3 preconditioned_residual(int i, vec3 r, float inverse_mass, vec4 held) {
   vec3 own = solve_block(FETCH(block_a, i).xyz, FETCH(block_b, i).xyz, filtered(r, inverse_mass, held));
-  vec3 correction = FETCH(coarse_vectors, 2 * patch_count + patch_list(patch_of, i)).xyz;
+  int at = PATCH_MODES * (2 * patch_count + patch_list(patch_of, i));
+  vec2 share = patch_shares(i);
+  vec3 correction = FETCH(coarse_vectors, at).xyz + share.x * FETCH(coarse_vectors, at + 1).xyz +
+                    share.y * FETCH(coarse_vectors, at + 2).xyz;
   return filtered(own + correction, inverse_mass, held);
 }

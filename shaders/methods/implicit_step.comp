@@ -5,27 +5,81 @@
 #include "group_sums.glsl"
 #include "implicit_control.glsl"
 #include "implicit_patches.glsl"
-READ_VEC4(patch_sums, unit_patch_sums);  // for each slot those of products, then of vectors
-READ_VEC4(coarse_inverse, unit_coarse_inverse);  // for each pair of patches the three rows of its block
-// For each patch the sum of the residual, then of the direction's product with the matrix, then the correction [m/s].
+READ_VEC4(patch_sums, unit_patch_sums);  // see implicit_patch_sums.glsl
+READ_VEC4(coarse_factor, unit_coarse_factor);  // see server/sim/coarse_factor.h
+// For each patch its parts of the residual, a vector for each mode; for each of the direction's product with the
+// matrix; for each of the correction [m/s].
 layout(std430, binding = slot_coarse_vectors) buffer CoarseVectors { vec4 coarse_vectors[]; };
 uniform int iteration;  // -1: none, only the coarse level's equations
-shared vec3 coarse_residual[GROUP_SIZE];  // of patch_count patches
+// Of all unknowns of the coarse level: the residual, and what is between it and the correction.
+// Three more fill up the last four.
+#define ROOM (PATCH_UNKNOWNS * MOST_PATCHES + 3)
+shared float unknowns[ROOM], halfway[ROOM];
 
-void add_up(int patch_number, inout vec4 products, inout vec3 vector) {
+void add_up(int patch_number, inout vec4 products, inout vec3 vectors[PATCH_MODES]) {
   int end = patch_list(patch_slots, patch_number + 1);
   for (int k = patch_list(patch_slots, patch_number); k < end; ++k) {
-    int slot = patch_list(slots, k);
-    products += FETCH(patch_sums, 2 * slot);
-    vector += FETCH(patch_sums, 2 * slot + 1).xyz;
+    int at = (1 + PATCH_MODES) * patch_list(slots, k);
+    products += FETCH(patch_sums, at);
+    for (int mode = 0; mode < PATCH_MODES; ++mode) vectors[mode] += FETCH(patch_sums, at + 1 + mode).xyz;
   }
+}
+
+/// A group of patches in the tree. Numbers of unknowns: of the first in all groups below it, of its own, and the end.
+struct PatchGroup {
+  int first, begin, end;
+  int rows, columns;  // where those of the factor begin
+  int above;          // the group above it, or -1
+};
+
+PatchGroup patch_group(int number) {
+  int at = 6 * number;
+  return PatchGroup(patch_list(tree, at), patch_list(tree, at + 1), patch_list(tree, at + 2),
+                    patch_list(tree, at + 3), patch_list(tree, at + 4), patch_list(tree, at + 5) - 1);
+}
+
+/// Solves the coarse level's equations: W^T W times `unknowns`, with W the inverse of the matrix's Cholesky factor. A
+/// row of W has columns of its own group and of those below, a column rows of its own group and of those above. A
+/// thread does all rows and columns of a patch: in software OpenGL it costs more to get the vector than the matrix.
+void solve_coarse_level(int patch_number) {
+  bool works = patch_number < patch_count;
+  int own = PATCH_UNKNOWNS * patch_number, of_patch = works ? patch_list(group_of, patch_number) : -1;
+  float sum[PATCH_UNKNOWNS];
+  for (int u = 0; u < PATCH_UNKNOWNS; ++u) sum[u] = 0.0;
+  if (works) {
+    PatchGroup group = patch_group(of_patch);
+    int at = group.rows + own - group.begin;
+    for (int k = group.first / 4 * 4; k < own + PATCH_UNKNOWNS; k += 4) {
+      vec4 four = vec4(unknowns[k], unknowns[k + 1], unknowns[k + 2], unknowns[k + 3]);
+      for (int u = 0; u < PATCH_UNKNOWNS; ++u) sum[u] += dot(FETCH(coarse_factor, at + u), four);
+      at += group.end - group.begin;
+    }
+    for (int u = 0; u < PATCH_UNKNOWNS; ++u) halfway[own + u] = sum[u];
+  }
+  barrier();
+  for (int u = 0; u < PATCH_UNKNOWNS; ++u) sum[u] = 0.0;
+  for (int number = of_patch; number >= 0;) {
+    PatchGroup group = patch_group(number);
+    int at = group.columns + own - group.first;
+    for (int k = group.begin / 4 * 4; k < group.end; k += 4) {
+      vec4 four = vec4(halfway[k], halfway[k + 1], halfway[k + 2], halfway[k + 3]);
+      for (int u = 0; u < PATCH_UNKNOWNS; ++u) sum[u] += dot(FETCH(coarse_factor, at + u), four);
+      at += group.end - group.first;
+    }
+    number = group.above;
+  }
+  if (!works) return;
+  int all = PATCH_MODES * patch_count;
+  for (int mode = 0; mode < PATCH_MODES; ++mode)
+    coarse_vectors[2 * all + PATCH_MODES * patch_number + mode] =
+        vec4(sum[3 * mode], sum[3 * mode + 1], sum[3 * mode + 2], 0.0);
 }
 
 void main() {
   int own = int(gl_LocalInvocationID.x);
   float last_product = last, last_step = along;
   vec4 products = vec4(0.0);
-  vec3 r = vec3(0.0);
+  vec3 r[PATCH_MODES] = vec3[](vec3(0.0), vec3(0.0), vec3(0.0));
   if (own < patch_count) add_up(own, products, r);
   float step = 0.0, share = 0.0;
   if (iteration >= 0) {
@@ -51,24 +105,20 @@ void main() {
     }
     if (ended) return;
   }
+  int at = PATCH_MODES * own, all = PATCH_MODES * patch_count;
+  if (own < 3) unknowns[PATCH_UNKNOWNS * patch_count + own] = halfway[PATCH_UNKNOWNS * patch_count + own] = 0.0;
   if (own < patch_count) {
-    if (iteration >= 0) {
-      vec3 q = r;
-      if (iteration > 0) q += share * coarse_vectors[patch_count + own].xyz;
-      r = coarse_vectors[own].xyz - step * q;
-      coarse_vectors[patch_count + own] = vec4(q, 0.0);
+    for (int mode = 0; mode < PATCH_MODES; ++mode) {
+      if (iteration >= 0) {
+        vec3 q = r[mode];
+        if (iteration > 0) q += share * coarse_vectors[all + at + mode].xyz;
+        r[mode] = coarse_vectors[at + mode].xyz - step * q;
+        coarse_vectors[all + at + mode] = vec4(q, 0.0);
+      }
+      coarse_vectors[at + mode] = vec4(r[mode], 0.0);
+      for (int axis = 0; axis < 3; ++axis) unknowns[3 * (at + mode) + axis] = r[mode][axis];
     }
-    coarse_vectors[own] = vec4(r, 0.0);
-    coarse_residual[own] = r;
   }
   barrier();
-  if (own >= patch_count) return;
-  vec3 correction = vec3(0.0);
-  for (int other = 0; other < patch_count; ++other) {
-    int at = 3 * (patch_count * own + other);
-    vec3 there = coarse_residual[other];
-    correction += vec3(dot(FETCH(coarse_inverse, at).xyz, there), dot(FETCH(coarse_inverse, at + 1).xyz, there),
-                       dot(FETCH(coarse_inverse, at + 2).xyz, there));
-  }
-  coarse_vectors[2 * patch_count + own] = vec4(correction, 0.0);
+  solve_coarse_level(own);
 }
