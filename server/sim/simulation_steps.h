@@ -93,13 +93,16 @@ struct Simulation::Implementation {
       if (timer) timer->stage(pass);
     };
     state.position().bind(unit_position);
-    if (kernels.self_collision) {
-      co_await kernels.update_lists(scene);
-      passed("neighbour_search");
-    }
     if (kernels.surface_contact) {
       co_await kernels.surface_contact->update_pairs(state, row);
       passed("pair_search");
+    }
+    // After it: the step itself asks for the next search of neighbours, and both searches bind at the same
+    // places.
+    if (kernels.self_collision) {
+      state.position().bind(unit_position);
+      co_await kernels.update_lists(scene);
+      passed("neighbour_search");
     }
     hands.hold(state, scene);
     if (measures_solves && solved.due(step_index))

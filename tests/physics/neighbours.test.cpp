@@ -8,6 +8,7 @@
 
 #include "server/sim/self_collision.h"
 #include "server/sim/state.h"
+#include "tests/body_meshes.h"
 #include "tests/scenes.h"
 
 using namespace clothlab;
@@ -263,4 +264,21 @@ TEST_CASE("two free sheets that collide keep their momentum and gain no energy")
   REQUIRE(most_contacts > 20);
   // Rounding alone: |dp| / sum |m v| < 1e-5.
   REQUIRE(glm::length(momentum() - before) < 1e-5 * 16.9 * std::sqrt(1.13));
+}
+
+TEST_CASE("neighbour lists are built no more often where the scene has a mesh among its colliders") {
+  const auto context = test::context();
+  const auto rebuilds = [](bool with_mesh) {
+    scene::Scene scene = test::sheet(17, 17);
+    scene.self_collision = scene::SelfCollision{thickness, 0.0};
+    scene::Transform far_away;
+    far_away.translate = {0.0, -100.0, 0.0};
+    if (with_mesh) scene.colliders = {test::body_of(test::ball_mesh(1), far_away)};
+    const auto simulation = test::simulation(scene);
+    simulation->step(100);
+    return simulation->diagnose().neighbour_rebuilds;
+  };
+  const std::uint32_t without = rebuilds(false);
+  REQUIRE(without < 50);  // else steps that build them anyway would hide it
+  CHECK(rebuilds(true) == without);
 }
