@@ -22,6 +22,7 @@ using glm::cross;
 using glm::dot;
 using glm::max;
 using glm::min;
+using std::log;
 using std::sqrt;
 
 #define FUNCTION inline
@@ -38,6 +39,7 @@ using std::sqrt;
 #include "shaders/elements/solid.glsl"
 #include "shaders/elements/spring.glsl"
 #include "shaders/elements/surface.glsl"
+#include "shaders/elements/surface_energy.glsl"
 #include "shaders/elements/wind.glsl"
 #undef FUNCTION
 #undef PRECISE

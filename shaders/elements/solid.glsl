@@ -134,13 +134,43 @@ FUNCTION bool body_contact(vec3 extent, real radius, vec3 from, vec3 to, OUT(rea
   return push > real(0.0);
 }
 
-/// Depth of x below the surface of a solid of this kind [m]; less than 0 outside. An unknown kind is nowhere.
-FUNCTION real solid_depth(int kind, Solid solid, vec3 x) {
-  vec3 from = x - solid.point, normal;
-  if (kind == solid_sphere) return solid.radius - sqrt(dot(from, from));
+/// Depth of x below the surface of a solid of this kind [m], less than 0 outside, and the unit normal where the surface
+/// is nearest. An unknown kind is nowhere.
+FUNCTION real nearest_of_solid(int kind, Solid solid, vec3 x, OUT(vec3) normal) {
+  vec3 from = x - solid.point;
+  normal = solid.direction;
+  if (kind == solid_sphere) {
+    real apart = sqrt(dot(from, from));
+    if (apart > real(0.0)) normal = from * (real(1.0) / apart);
+    return solid.radius - apart;
+  }
   if (kind == solid_plane) return plane_depth(solid, x);
-  if (solid_has_axes(kind)) return body_depth(solid.extent, solid.radius, along_axes(solid, from), normal);
+  if (solid_has_axes(kind)) {
+    vec3 along;
+    real depth = body_depth(solid.extent, solid.radius, along_axes(solid, from), along);
+    normal = solid.direction * along.x + solid.second * along.y + cross(solid.direction, solid.second) * along.z;
+    return depth;
+  }
   return real(-1e30);
+}
+
+FUNCTION real solid_depth(int kind, Solid solid, vec3 x) {
+  vec3 normal;
+  return nearest_of_solid(kind, solid, x, normal);
+}
+
+/// Share of the path from -> to at which it comes within `radius` [m] of a solid's core, which moves from `before` to
+/// `after` meanwhile; 0 if it starts there, more than 1 if it never does. Of a solid that turns an estimate.
+FUNCTION real solid_entry(int kind, Solid before, Solid after, vec3 from, vec3 to, real radius) {
+  if (kind == solid_plane) {
+    real start = dot(from - before.point, before.direction) - radius;
+    real end = dot(to - after.point, after.direction) - radius;
+    return start <= real(0.0) ? real(0.0) : end < real(0.0) ? start / (start - end) : real(2.0);
+  }
+  bool has_axes = solid_has_axes(kind);
+  vec3 start = has_axes ? seen_by(kind, before, after, from) : from - before.point;
+  vec3 end = has_axes ? along_axes(after, to - after.point) : to - after.point;
+  return body_entry(after.extent, radius, start, end - start);  // a sphere's core has no extent
 }
 
 /// A cheap test before solid_contact: false if the path from -> to cannot meet the solid, which moves from `before` to

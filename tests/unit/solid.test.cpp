@@ -281,6 +281,39 @@ TEST_CASE("a path that meets a solid at rest is no longer than what the cheapest
   }
 }
 
+TEST_CASE("a path enters a solid at the share found, and its normal is where the depth falls fastest") {
+  std::mt19937 random(10);
+  for (const Shape& shape : a_shape_of_each_kind) {
+    INFO(scene::shape_to_json(shape));
+    const int kind = scene::solid(shape).kind;
+    const elements::Solid solid = with_margin(shape);
+    int entered = 0;
+    for (int round = 0; round < 5000; ++round) {
+      const dvec3 from = 1.5 * random_vector(random), way = 1.5 * random_vector(random);
+      dvec3 normal, n;
+      const double depth = elements::nearest_of_solid(kind, solid, from, normal);
+      CHECK(glm::length(normal) == Approx(1.0));
+      constexpr double step = 1e-6;
+      // Along the normal the distance from the core grows by as much, also in the core, whose nearest face it
+      // leaves.
+      CHECK(elements::nearest_of_solid(kind, solid, from + step * normal, n) ==
+            Approx(depth - step).margin(1e-10));
+      const double share = elements::solid_entry(kind, solid, solid, from, from + way, solid.radius);
+      if (depth > 0.0) {
+        CHECK(share == 0.0);
+        continue;
+      }
+      const double end = std::min(share, 1.0);
+      for (const double part : {0.2, 0.5, 0.8, 0.99})
+        CHECK(elements::solid_depth(kind, solid, from + part * end * way) < 1e-9);
+      if (share > 1.0) continue;
+      ++entered;
+      CHECK(elements::solid_depth(kind, solid, from + share * way) == Approx(0.0).margin(1e-9));
+    }
+    CHECK(entered > 100);
+  }
+}
+
 TEST_CASE("an unknown kind of solid meets nothing") {
   const elements::Solid solid{dvec3(0.0), dvec3(0.0, 1.0, 0.0), 1.0, dvec3(1.0, 0.0, 0.0), dvec3(0.1)};
   for (const int kind : {-1, elements::solid_kinds}) {
