@@ -106,7 +106,7 @@ const int slot_wind = 0;                // wind
 // Contact between surfaces: surface/NAME.comp. The slots are read as the units of the same name, too.
 const int unit_surface_triangles = 9;   // server/sim/surface_pairs.cpp; triangle_boxes
 const int unit_triangle_boxes = 10;     // triangle_boxes; boxes, triangle_pairs, candidates
-const int unit_expected = 8;            // triangle_boxes; neighbours, candidates, pairs, block_motions
+const int unit_expected = 34;           // triangle_boxes; neighbours, candidates, pairs, block_motions
 const int unit_boxes = 11;              // boxes; leaf_pairs, bundle_pairs
 const int unit_leaf_pairs = 12;         // leaf_pairs; bundle_pairs
 const int unit_bundle_pairs = 9;        // bundle_pairs; triangle_pairs
@@ -128,7 +128,7 @@ const int unit_contact_links = 10;      // contacts; apply
 const int unit_contact_pushes = 11;     // forces; apply
 const int unit_chosen_pairs = 12;       // cull, contacts; contacts, forces
 const int unit_pair_loads = 13;         // contacts, forces; forces
-const int slot_surface_control = 2;     // surface/*.comp; the same, indirect dispatches
+const int slot_surface_control = 8;     // surface/*.comp; the same, indirect dispatches
 const int slot_known_control = 0;       // the same buffer as a uniform block
 const int slot_triangle_boxes = 3;      // triangle_boxes
 const int slot_expected = 4;            // triangle_boxes
@@ -149,6 +149,31 @@ const int slot_step_target = 6;         // begin
 const int slot_path = 6;                // path
 const int slot_step_start = 5;          // advance
 const int slot_chosen_pairs = 7;        // cull, contacts, limit; limit
+
+// Contact as a term of the step's problem: surface/term_NAME.comp. The slots are read as the units of the same name.
+const int unit_term_pairs = 31;      // pairs; friction, lists, and implicit Euler's methods/touching.glsl
+const int unit_term_vertices = 32;   // lists; the same
+const int unit_term_entries = 33;    // lists; the same
+const int unit_term_way = 16;        // way; cull, limit, energy, friction, bodies
+const int unit_term_ends = 17;       // server/sim/surface_bodies.cpp; pairs, way
+const int unit_term_start = 9;       // the step before; solids, limit_solids
+const int unit_term_links = 10;      // pairs; ranks, lists
+const int unit_term_ranks = 12;      // ranks; lists
+const int unit_term_touched = 11;    // pairs; lists
+const int unit_term_energies = 11;   // energy, friction; sum
+const int slot_term_control = 1;     // surface/term_*.comp; the same, indirect dispatches, server/sim/contact_term.cpp
+const int slot_known_term = 2;       // the same buffer; methods/implicit_search.comp, implicit_advance.comp
+const int slot_term_chosen = 3;      // cull
+const int slot_term_pairs = 3;       // pairs
+const int slot_term_vertices = 4;    // pairs, lists
+const int slot_term_entries = 5;     // lists
+const int slot_term_links = 6;       // pairs
+const int slot_term_touched = 7;     // pairs
+const int slot_term_ranks = 3;       // ranks
+const int slot_term_way = 3;         // way, hold
+const int slot_term_target = 4;      // way; as unit_position of the pair search
+const int slot_term_velocity = 5;    // way; as unit_velocity of the pair search
+const int slot_term_energies = 3;    // energy, friction
 
 // The hands': hands/NAME.comp, on the present copy of the state, just before a method's step and after it: what the
 // neighbour search has bound for the method stays bound.
@@ -194,5 +219,5 @@ const int uniform_color = 0;                 // cloth.frag
 const int uniform_pattern = 1;               // cloth.frag
 
 // All of them; with READ_STORAGE units are slots too, after the others.
-const int number_of_units = 31;
-const int number_of_slots = 8;
+const int number_of_units = 35;
+const int number_of_slots = 9;

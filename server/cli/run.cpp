@@ -162,7 +162,8 @@ void print_shortcomings(const sim::Simulation& simulation, const sim::Diagnostic
          "slower or smaller motions help");
   if (const std::uint64_t solves = simulation.solver_work().unconverged; solves > 0)
     note(std::to_string(solves) +
-         " linear solves ended before they met solver.tolerance; a smaller dt or a larger tolerance helps");
+         " linear solves ended before they met solver.tolerance, or steps before contact was solved; a "
+         "smaller dt or a larger tolerance helps");
   if (simulation.solves().often_unsolved()) note(sim::in_words(simulation.solves(), simulation.scene()));
   if (const std::uint64_t steps = simulation.strain_limit_work().unconverged; steps > 0)
     note(std::to_string(steps) +

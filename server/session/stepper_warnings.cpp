@@ -85,8 +85,8 @@ void Stepper::warn_if_unconverged() {
   exchange_.emit(Notice{
       "warning", limit ? "strain_limit: some springs or threads stay longer than it allows; a larger limit, "
                          "a shorter time step or pins that leave room helps"
-                       : "the linear solver often ends before it meets solver.tolerance; a "
-                         "shorter time step or a larger tolerance helps"});
+                       : "linear solves often end before they meet solver.tolerance, or steps before "
+                         "contact is solved; a shorter time step or a larger tolerance helps"});
 }
 
 /// Tells when steps are far from solved, and sim.status when they are so no more.

@@ -171,6 +171,7 @@ void CoarseLevel::set_parameters(const model::Model& model, const scene::Scene& 
 void CoarseLevel::prepare(const FineLevel& fine, bool contacts) {
   parts_->matrix.make(downloaded(fine.position),
                       contacts ? downloaded(fine.constraint) : std::vector<glm::vec4>());
+  for (const PressingPair& pair : fine.pressing) parts_->matrix.add_pair(pair);
   // A cloth that blows up may leave no definite matrix: then block Jacobi works alone.
   const PatchMatrix& matrix = parts_->matrix.matrix();
   const std::vector<float> texels = laid_out(matrix.inverse_factor(), matrix.dissection(), parts_->layout);

@@ -13,12 +13,14 @@
 #include "server/gl/program.h"
 #include "server/model/model.h"
 #include "server/scene/scene.h"
+#include "server/sim/contact_term.h"
 
 namespace clothlab::sim {
 
 /// What the matrix is at a vertex, as the kernels of implicit Euler have it.
 struct FineLevel {
-  const gl::TextureBuffer &position, &constraint, &block_a, &block_b;
+  const gl::TextureBuffer &position, &constraint;
+  std::vector<PressingPair> pressing{};  ///< pairs of surfaces in the matrix
 };
 
 class CoarseLevel {

@@ -115,6 +115,26 @@ void CoarseMatrix::add(std::uint32_t vertex, std::uint32_t other, const dmat3& p
   add_unfiltered(vertex, other, filter(vertex) * part * filter(other));
 }
 
+void CoarseMatrix::add_pair(const PressingPair& pair) {
+  std::vector<std::size_t> corners;  // that may move
+  for (std::size_t k = 0; k < pair.vertices.size(); ++k)
+    if (pair.vertices[k] < shares_.size() && shares_[pair.vertices[k]][0] != 0.0) corners.push_back(k);
+  const auto apart = [&](std::size_t a, std::size_t b) {
+    const std::uint32_t one = patch_of_[pair.vertices[a]], other = patch_of_[pair.vertices[b]];
+    return !matrix_.couples(std::max(one, other), std::min(one, other));
+  };
+  bool dropped = false;
+  for (const std::size_t a : corners)
+    for (const std::size_t b : corners) dropped = dropped || apart(a, b);
+  // |x + y|^2 is at most 2 |x|^2 + 2 |y|^2, and so on for up to four parts.
+  const double scale = dropped ? static_cast<double>(corners.size()) : 1.0;
+  for (const std::size_t a : corners)
+    for (const std::size_t b : corners)
+      if (!dropped || a == b)
+        add(pair.vertices[a], pair.vertices[b],
+            dt_ * dt_ * scale * pair.weights[a] * pair.weights[b] * pair.stiffness);
+}
+
 void CoarseMatrix::add_unfiltered(std::uint32_t vertex, std::uint32_t other, const dmat3& part) {
   const std::uint32_t row = patch_of_[vertex], column = patch_of_[other];
   if (row < column || !matrix_.couples(row, column)) return;  // the transposed is enough

@@ -11,6 +11,7 @@
 #include "server/model/model.h"
 #include "server/scene/scene.h"
 #include "server/sim/coarse_modes.h"
+#include "server/sim/contact_term.h"
 #include "server/sim/patch_matrix.h"
 
 namespace clothlab::sim {
@@ -33,6 +34,9 @@ class CoarseMatrix {
   /// contacts between cloths, can be added to a matrix made. Patches that no element joins may have no place
   /// in it (PatchMatrix::couples): between them nothing is added.
   void add(std::uint32_t vertex, std::uint32_t other, const glm::dmat3& part);
+  /// Adds a pair of surfaces that press each other. Where it joins patches that have no place for that in the
+  /// matrix, each has as much of its own as keeps the matrix definite.
+  void add_pair(const PressingPair& pair);
   const PatchMatrix& matrix() const { return matrix_; }
 
  private:

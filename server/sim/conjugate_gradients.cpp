@@ -91,6 +91,8 @@ Work ConjugateGradients::solve(const gl::TextureBuffer& guess, Solved& solved) {
   // Whoever asked may write the next guess while it reads the solution.
   if (control.iterations == 0) vectors_[0].change.buffer.copy_from(guess.buffer);
   solved = {control.iterations, control.converged != 0, dispatches_, &last.change, &last.residual};
+  solved.lost_precision = !solved.converged && control.iterations > 0 &&
+                          control.iterations < static_cast<std::uint32_t>(most_iterations);
 }
 
 /// Makes the preconditioned residual from the residual alone. Iterations keep the patches' sums up to date

@@ -19,6 +19,7 @@ struct Solved {
   std::uint32_t dispatches = 0;
   const gl::TextureBuffer* change = nullptr;    ///< the solution
   const gl::TextureBuffer* residual = nullptr;  ///< what is left of the right side
+  bool lost_precision = false;  ///< it ended as rounding was all that was left of the residual
 };
 
 class ConjugateGradients {

@@ -1,11 +1,13 @@
 // Implicit Euler on the GPU: shaders/methods/implicit_*.comp. This file has the passes of a step before and
 // after the solves, conjugate_gradients.h the solver.
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <utility>
 
 #include "server/sim/conjugate_gradients.h"
 #include "server/sim/integrator.h"
+#include "server/sim/surface_contact.h"
 
 namespace clothlab::sim {
 
@@ -14,6 +16,17 @@ namespace {
 /// Passes of self-collision after the solve. Each pass leaves half of the speed at which two vertices
 /// approach each other, or less.
 constexpr int contact_passes = 4;
+/// Newton steps of a time step with contact, at most: crushed layers take that many. Where contact presses
+/// they go on until one moves no vertex farther than this share of a cloth's mean edge.
+constexpr int most_contact_steps = 40;
+constexpr double solved_share = 0.05;
+/// The last one is to be taken but for less than this share of what gravity lets fall in a step: what is not
+/// taken is lost for the velocity.
+constexpr double untaken_share = 0.02, gravity_at_least = 9.81;
+/// And until friction is off by no more than this share of all friction.
+constexpr double slips_share = 0.05;
+/// Of a solve with contact whose residual has lost its precision to rounding.
+constexpr int most_restarts = 4;
 constexpr std::uint32_t trends = 3;  ///< TRENDS in implicit_euler.glsl
 
 class ImplicitEuler : public Integrator {
@@ -22,7 +35,8 @@ class ImplicitEuler : public Integrator {
     std::unique_ptr<ImplicitEuler> made(new ImplicitEuler(model, plan));
     gl::Defines defines = step_defines(plan);
     for (gl::Defines::value_type& define : made->solver_.defines()) defines.push_back(std::move(define));
-    if (!plan.pins && plan.solid_count() == 0) defines.emplace_back("FREE", "1");
+    if (plan.contact_term()) defines.emplace_back("CONTACT_TERM", "1");
+    if (!plan.pins && plan.solid_count() == 0 && plan.bodies == 0) defines.emplace_back("FREE", "1");
     for (auto [program, name] : {std::pair{&made->start_, "start"},
                                  {&made->system_, "system"},
                                  {&made->project_, "project"},
@@ -37,6 +51,12 @@ class ImplicitEuler : public Integrator {
       made->solver_.set_layout(*program);
     }
     if (const Status loaded = made->solver_.load(defines); !loaded) return loaded.error();
+    if (plan.contact_term()) {
+      Result<gl::Program> loaded = gl::Program::load({"methods/implicit_choose.comp"}, defines);
+      if (!loaded) return loaded.error();
+      made->choose_ = std::move(*loaded);
+      made->solver_.set_layout(made->choose_);
+    }
     if (plan.self_collision) {
       Result<gl::Program> loaded = gl::Program::load({"methods/implicit_contacts.comp"}, defines);
       if (!loaded) return loaded.error();
@@ -53,33 +73,56 @@ class ImplicitEuler : public Integrator {
 
   void set_parameters(const Surroundings& around) override {
     for (const gl::Program* program :
-         {&start_, &system_, &project_, &improve_, &search_, &advance_, &end_, &contacts_, &wind_})
+         {&start_, &system_, &project_, &improve_, &search_, &choose_, &advance_, &end_, &contacts_, &wind_})
       if (program->id()) set_step_uniforms(*program, around);
     if (around.scene.solver.dt != dt_) restart();  // impulses kept in `contact_friction_` are forces times dt
     dt_ = around.scene.solver.dt;
     solver_.set_parameters(around);
     most_newton_steps_ = around.scene.solver.iterations;
+    solved_way_ = solved_share * SurfacePairs::finest_edge(around.model);
+    untaken_way_ = std::min(0.1 * solved_way_, untaken_share * gravity_at_least * dt_ * dt_);
     system_.set("tolerance", static_cast<float>(around.scene.solver.tolerance));
   }
 
   Work step(StateBuffers& state, int row) override {
     begin(state, row);
     Solved solved;
-    for (int newton = 0; newton < most_newton_steps_; ++newton) {
+    int most = most_newton_steps_;
+    for (int newton = 0; newton < most; ++newton) {
+      if (contact_) find_contact(state, newton == 0);
       set_up(newton == 0);
-      if (newton == 0) {
-        improve_guess();
-        solver_.prepare({start_position_, constraint_, block_a_, block_b_}, touches_);
-      }
+      if (newton == 0) improve_guess();
+      if (newton == 0 || contact_)
+        solver_.prepare({newton == 0 ? start_position_ : position_, constraint_,
+                         contact_ ? contact_->term()->read() : std::vector<PressingPair>()},
+                        touches_);
       co_await solver_.solve(guess_, solved);
+      for (int again = 0; contact_ && again < most_restarts && solved.lost_precision; ++again) {
+        // The residual is computed anew, of what is solved so far.
+        work_.linear_iterations += solved.iterations;
+        dispatches_ += solved.dispatches;
+        guess_.buffer.copy_from(solved.change->buffer);
+        set_up(newton == 0, true);
+        co_await solver_.solve(guess_, solved);
+      }
       dispatches_ += solved.dispatches;
       ++work_.newton_steps;
       work_.linear_iterations += solved.iterations;
       work_.unconverged += solved.converged ? 0 : 1;
-      if (newton > 0 && solved.iterations == 0) break;  // the estimate already meets the tolerance
-      advance(solved, row, newton + 1 < most_newton_steps_);
+      const bool met = newton > 0 && solved.iterations == 0;  // the estimate already meets the tolerance
+      if (met && !contact_) break;
+      if (contact_) {
+        const ContactTerm::Limit limit = limit_by_contact(state, solved, newton == 0);
+        search(solved);
+        most = choose(limit, newton, met, most);
+      } else {
+        search(solved);
+      }
+      advance(row, newton + 1 < most);
+      if (contact_) contact_->term()->take(newton == 0 ? start_position_ : position_, position_);
       co_await may_stop;
     }
+    if (contact_) contact_->end_solve(position_);
     if (contacts_.id()) keep_apart();
     finish(state, *solved.residual, row);
   }
@@ -110,7 +153,9 @@ class ImplicitEuler : public Integrator {
 
  private:
   ImplicitEuler(const model::Model& model, const Plan& plan)
-      : groups_(vertex_groups(model.vertex_count())), touches_(plan.solid_count() > 0), solver_(model) {
+      : groups_(vertex_groups(model.vertex_count())),
+        touches_(plan.solid_count() > 0 && !plan.contact_term()),
+        solver_(model) {
     const std::size_t vertex_count = model.vertex_count();
     for (gl::TextureBuffer* vector : {&start_position_, &start_velocity_, &position_, &velocity_, &guess_,
                                       &constraint_, &surface_, &block_a_, &block_b_})
@@ -146,8 +191,70 @@ class ImplicitEuler : public Integrator {
     wait_for_writes();
   }
 
-  void begin(const StateBuffers& state, int row) {
+  void begin(StateBuffers& state, int row) {
+    if (contact_) take_bodies(state, row);
     state.bind_for_step();
+    bind_inputs(state);
+    if (wind_.id()) {
+      wind_loads_.buffer.bind_storage(slot_wind);
+      wind_.set("start_row", row);
+      run(wind_);
+    }
+    start_position_.buffer.bind_storage(slot_start_position);
+    bind_estimate();
+    start_.set("start_row", row);
+    run(start_);
+  }
+
+  /// Makes the estimates as long as the state, whose bodies they have, too.
+  void take_bodies(const StateBuffers& state, int row) {
+    const std::size_t bytes = state.position().buffer.bytes();
+    for (gl::TextureBuffer* places : {&start_position_, &position_}) {
+      if (places->buffer.bytes() != bytes) *places = {gl::Buffer(bytes), GL_RGBA32F};
+      places->buffer.copy_from(state.position().buffer);
+    }
+    contact_->begin_solve(state, row);
+  }
+
+  /// Finds the pairs of surfaces that press at the present estimate.
+  void find_contact(const StateBuffers& state, bool first) {
+    pressing_ = contact_->find_pressing(first ? start_position_ : position_, first);
+    bind_inputs(state);
+    contact_->term()->bind();
+  }
+
+  /// Finds how much of a solved change can be taken before surfaces would meet.
+  ContactTerm::Limit limit_by_contact(const StateBuffers& state, const Solved& solved, bool first) {
+    const gl::TextureBuffer& position = first ? start_position_ : position_;
+    const ContactTerm::Limit limit = contact_->limit(position, *solved.change);
+    bind_inputs(state);
+    position.bind(unit_position);
+    velocity_.bind(unit_velocity);
+    contact_->term()->bind();
+    contact_->term()->bind_shares();
+    contact_->term()->set_solids(search_);
+    return limit;
+  }
+
+  /// Chooses the share that is taken. Returns how many Newton steps the time step has now. `met`: the solve
+  /// has found nothing left.
+  int choose(const ContactTerm::Limit& limit, int newton, bool met, int most) {
+    choose_.use();
+    dispatch(1);
+    wait_for_writes();
+    const double left = 1.0 - static_cast<double>(contact_->term()->take_share());
+    if (!limit.known) return newton + 1;
+    if (pressing_ == 0 && limit.reachable == 0) return met ? newton + 1 : most;
+    const bool whole = left * static_cast<double>(limit.longest) <= untaken_way_;
+    const bool still = limit.pressed <= solved_way_ && limit.longest <= 3.0 * solved_way_;
+    const bool rubs = limit.slips <= slips_share;
+    if (whole && rubs && (met || still)) return newton + 1;
+    const int most_of_all = std::max(most_newton_steps_, most_contact_steps);
+    if (newton + 1 == most_of_all) ++work_.unconverged;  // and what is left of the step is not taken
+    return most_of_all;
+  }
+
+  void bind_inputs(const StateBuffers& state) {
     state.position().bind(unit_before_position);
     state.velocity().bind(unit_before_velocity);
     start_position_.bind(unit_start_position);
@@ -157,16 +264,7 @@ class ImplicitEuler : public Integrator {
     solver_.bind();
     block_a_.bind(unit_block_a);
     block_b_.bind(unit_block_b);
-    if (wind_.id()) {
-      wind_loads_.buffer.bind_storage(slot_wind);
-      wind_loads_.bind(unit_wind);
-      wind_.set("start_row", row);
-      run(wind_);
-    }
-    start_position_.buffer.bind_storage(slot_start_position);
-    bind_estimate();
-    start_.set("start_row", row);
-    run(start_);
+    if (wind_.id()) wind_loads_.bind(unit_wind);
   }
 
   /// Binds the buffers that the passes before and after a solve write.
@@ -181,9 +279,9 @@ class ImplicitEuler : public Integrator {
 
   /// Sets up the linear system at the present estimate, in the first Newton step the state at the step's
   /// start.
-  void set_up(bool first) {
+  void set_up(bool first, bool again = false) {
     (first ? start_position_ : position_).bind(unit_position);
-    system_.set("first", first ? 1 : 0);
+    system_.set("first", first && !again ? 1 : 0);
     velocity_.bind(unit_velocity);
     guess_.bind(unit_change);
     solver_.residual().buffer.bind_storage(slot_residual);
@@ -207,13 +305,17 @@ class ImplicitEuler : public Integrator {
     run(improve_);
   }
 
-  /// Does the line search, then adds the share of the solved change that it found best to the estimate.
-  /// `another`: a further Newton step may follow in this time step.
-  void advance(const Solved& solved, int row, bool another) {
+  /// Does the line search along the solved change.
+  void search(const Solved& solved) {
     solved.change->bind(unit_change);
     solved.residual->bind(unit_residual);
     solver_.sums().buffer.bind_storage(slot_group_sums);
     run(search_);
+  }
+
+  /// Adds the share of the solved change that the line search found best to the estimate. `another`: a
+  /// further Newton step may follow in this time step.
+  void advance(int row, bool another) {
     position_.buffer.bind_storage(slot_next_position);
     bind_estimate();
     advance_.set("start_row", row);
@@ -240,16 +342,21 @@ class ImplicitEuler : public Integrator {
     contact_friction_.bind_storage(slot_grip);
     state.bind_outputs();
     end_.set("start_row", row);
+    if (contact_) contact_->bind_end(end_);
     run(end_);
     state.swap();
   }
 
   GLuint groups_;
-  bool touches_;  ///< whether the scene has colliders that a vertex may touch
+  bool touches_;  ///< whether vertices may be kept at solids, which then press them by no force
   ConjugateGradients solver_;
   double dt_ = 0;
   int most_newton_steps_ = 1;
+  double untaken_way_ = 0;      ///< the most that a last Newton step may not take [m]
+  double solved_way_ = 0;       ///< a Newton step that moves no vertex farther has solved the problem [m]
+  std::uint32_t pressing_ = 0;  ///< pairs of surfaces that press at the present estimate
   gl::Program start_, system_, project_, improve_, search_, advance_, end_;
+  gl::Program choose_;                                 ///< none without contact in the problem
   gl::Program contacts_, wind_;                        ///< none if the scene has no self-collision, no wind
   gl::TextureBuffer start_position_, start_velocity_;  ///< state at the step's start, after self-collision
   gl::TextureBuffer position_, velocity_;              ///< estimate of the state at the step's end

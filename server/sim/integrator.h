@@ -26,6 +26,8 @@ struct Surroundings {
   const SelfCollision* self_collision;  ///< null if the scene has none
 };
 
+class SurfaceContact;
+
 class Integrator {
  public:
   virtual ~Integrator() = default;
@@ -37,6 +39,10 @@ class Integrator {
   /// the step's start in the pose table. The element lists, their slices, rest positions, poses and neighbour
   /// lists must be bound. A step of many dispatches may stop between them; `state` must outlive the step.
   virtual Work step(StateBuffers& state, int row) = 0;
+
+  /// To be called before a step: where contact between surfaces is a term of the step's problem, what knows
+  /// it.
+  void set_contact(SurfaceContact* contact) { contact_ = contact; }
 
   /// Forgets what was carried over from the last step. To be called if the present state was not made by this
   /// object's last step, or if that step was given up half-way.
@@ -62,6 +68,7 @@ class Integrator {
     ++dispatches_;
   }
   std::uint64_t dispatches_ = 0;
+  SurfaceContact* contact_ = nullptr;
 };
 
 /// Makes the integrator for the scene's method and sets its parameters.

@@ -69,7 +69,8 @@ std::uint64_t state_hash(const State& state);
 struct SolverWork {
   std::uint64_t linear_iterations = 0;  ///< iterations of conjugate gradients
   std::uint64_t newton_steps = 0;
-  std::uint64_t unconverged = 0;  ///< linear solves that ended before the tolerance was met
+  std::uint64_t unconverged = 0;  ///< linear solves that ended before the tolerance was met, and steps
+                                  ///< whose Newton steps ended before contact between surfaces was solved
 };
 
 /// How far the solves of a run's steps are from solved (solved.h), by the step that was measured last. All 0

@@ -105,6 +105,7 @@ struct Simulation::Implementation {
       passed("neighbour_search");
     }
     hands.hold(state, scene);
+    kernels.integrator->set_contact(kernels.plan.contact_term() ? &*kernels.surface_contact : nullptr);
     if (measures_solves && solved.due(step_index))
       co_await solved.measure(state, kernels, scene, row, step_index);
     state.position().bind(unit_position);

@@ -39,25 +39,31 @@ void SurfaceBlocks::set_parameters(float skin, float dt) {
   program_.set("dt", dt);
 }
 
-void SurfaceBlocks::check(const StateBuffers& state, const gl::TextureBuffer& expected) const {
-  run(state, expected, [] { glDispatchCompute(1, 1, 1); });
+void SurfaceBlocks::check(const gl::TextureBuffer& position, const gl::TextureBuffer& expected) const {
+  check_later(position, expected, 0.0f);
 }
 
-void SurfaceBlocks::check_again(const StateBuffers& state, const gl::TextureBuffer& expected,
+void SurfaceBlocks::check_later(const gl::TextureBuffer& position, const gl::TextureBuffer& expected,
+                                float later) const {
+  run(position, expected, later, [] { glDispatchCompute(1, 1, 1); });
+}
+
+void SurfaceBlocks::check_again(const gl::TextureBuffer& position, const gl::TextureBuffer& expected,
                                 std::size_t groups) const {
-  run(state, expected, [&] { glDispatchComputeIndirect(static_cast<GLintptr>(groups)); });
+  run(position, expected, 0.0f, [&] { glDispatchComputeIndirect(static_cast<GLintptr>(groups)); });
 }
 
 template <class Dispatch>
-void SurfaceBlocks::run(const StateBuffers& state, const gl::TextureBuffer& expected,
+void SurfaceBlocks::run(const gl::TextureBuffer& position, const gl::TextureBuffer& expected, float later,
                         const Dispatch& dispatch) const {
-  state.position().bind(unit_position);
+  position.bind(unit_position);
   expected.bind(unit_expected);
   vertices_.bind(unit_block_vertices);
   motions_.bind(unit_block_motions);
   motions_.buffer.bind_storage(slot_block_motions);
   for (const gl::Program* program : {&motions_program_, &program_}) {
     program->use();
+    program->set("later", later);
     dispatch();
     wait_for_writes();
   }

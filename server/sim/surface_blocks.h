@@ -10,7 +10,6 @@
 #include "server/gl/buffer.h"
 #include "server/gl/program.h"
 #include "server/sim/plan.h"
-#include "server/sim/state.h"
 #include "server/sim/surface_triangles.h"
 
 namespace clothlab::sim {
@@ -28,14 +27,18 @@ class SurfaceBlocks {
 
   /// Asks for a search, in the control block that must be bound, if one is needed. `expected`:
   /// of each vertex, as shaders/surface/expected.glsl has it.
-  void check(const StateBuffers& state, const gl::TextureBuffer& expected) const;
+  void check(const gl::TextureBuffer& position, const gl::TextureBuffer& expected) const;
+  /// The same for the places where all will be so much later [s].
+  void check_later(const gl::TextureBuffer& position, const gl::TextureBuffer& expected, float later) const;
   /// The same, dispatched indirectly: `groups` is the offset in the control block of 1, or of 0 to do
   /// nothing.
-  void check_again(const StateBuffers& state, const gl::TextureBuffer& expected, std::size_t groups) const;
+  void check_again(const gl::TextureBuffer& position, const gl::TextureBuffer& expected,
+                   std::size_t groups) const;
 
  private:
   template <class Dispatch>
-  void run(const StateBuffers& state, const gl::TextureBuffer& expected, const Dispatch& dispatch) const;
+  void run(const gl::TextureBuffer& position, const gl::TextureBuffer& expected, float later,
+           const Dispatch& dispatch) const;
 
   gl::Program motions_program_, program_;
   gl::TextureBuffer vertices_, motions_;

@@ -41,18 +41,19 @@ void SurfaceBodies::set_parameters(const scene::Scene& scene, const model::Model
 }
 
 void SurfaceBodies::place_at_start(const StateBuffers& state, int row) const {
-  if (count() > 0 && changes()) place(state, row, 0);
+  if (count() > 0 && changes()) place(state.position().buffer, state.velocity().buffer, row, 0);
 }
 
 void SurfaceBodies::place_at_end(const StateBuffers& state, int row) {
-  if (count() > 0 && changes()) place(state, row, end_row_);
+  if (count() > 0 && changes()) place(state.position().buffer, state.velocity().buffer, row, end_row_);
   steps_since_ = std::min(steps_since_ + 1, 2);
 }
 
-void SurfaceBodies::place(const StateBuffers& state, int start_row, int row) const {
+void SurfaceBodies::place(const gl::Buffer& position, const gl::Buffer& velocity, int start_row,
+                          int row) const {
   bind();
-  state.position().buffer.bind_storage(slot_next_position);
-  state.velocity().buffer.bind_storage(slot_next_velocity);
+  position.bind_storage(slot_next_position);
+  velocity.bind_storage(slot_next_velocity);
   program_.use();
   program_.set("start_row", start_row);
   program_.set("row", row);

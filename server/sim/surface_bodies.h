@@ -36,11 +36,15 @@ class SurfaceBodies {
   /// motion table, or at its end.
   void place_at_start(const StateBuffers& state, int row) const;
   void place_at_end(const StateBuffers& state, int row);
+  /// Writes where they are at the end of the step, and how fast, into other buffers of the state's size.
+  void place_end(const gl::Buffer& position, const gl::Buffer& velocity, int row) const {
+    place(position, velocity, row, end_row_);
+  }
   /// For kernels that ask for the friction of bodies, or what is inside boxes.
   void bind() const { buffer_.bind(unit_body_places); }
 
  private:
-  void place(const StateBuffers& state, int start_row, int row) const;
+  void place(const gl::Buffer& position, const gl::Buffer& velocity, int start_row, int row) const;
 
   std::vector<BodyPlace> places_;
   bool moves_ = false;

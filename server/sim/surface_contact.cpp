@@ -119,6 +119,11 @@ Result<SurfaceContact> SurfaceContact::create(const model::Model& model, const P
     program->set("triangle_count", static_cast<GLint>(surface.triangles.size()));
     program->set("cloth_vertex_count", static_cast<GLint>(made.cloth_vertex_count_));
   }
+  if (plan.contact_term()) {
+    Result<ContactTerm> term = ContactTerm::create(model, plan, made.vertex_count_);
+    if (!term) return term.error();
+    made.term_ = std::move(*term);
+  }
   made.target_ = vector_per_vertex(made.vertex_count_);
   made.start_ = vector_per_vertex(made.vertex_count_);
   made.start_velocity_ = vector_per_vertex(made.vertex_count_);
@@ -144,7 +149,9 @@ void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Mode
   const double driven_pieces = driven_ ? std::ceil(dt * fastest_driven(scene, model) / advance) : 1.0;
   pieces_ = std::max(dt > longest_whole_step ? most_pieces : 1,
                      static_cast<int>(std::min<double>(driven_pieces, most_driven_pieces)));
-  pairs_.set_parameters(scene, model, pieces_);
+  if (term_) pieces_ = 1;
+  pairs_.set_parameters(scene, model, pieces_, term_.has_value());
+  if (term_) term_->set_parameters(scene, model, motions);
   advance_.set("most_advance", static_cast<float>(advance));
   for (const gl::Program* program : programs()) {
     program->set("dt", static_cast<float>(dt));
@@ -155,8 +162,8 @@ void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Mode
   const Passes passes = driven_       ? long_steps_ ? of_long_driven_step : of_short_driven_step
                         : long_steps_ ? of_long_step
                                       : of_short_step;
-  push_passes_ = passes.pushes;
-  rub_passes_ = passes.rubs;
+  push_passes_ = term_ ? 0 : passes.pushes;
+  rub_passes_ = term_ ? 0 : passes.rubs;
   filter_passes_ = passes.filter;
   for (const gl::Program* program : {&apply_, &advance_, &move_, &move_last_})
     set_colliders(*program, scene, model, motions);
@@ -261,7 +268,7 @@ void SurfaceContact::push_and_filter(StateBuffers& state, int row, std::uint32_t
     pairs_.set_limits(*program);
   state.position().bind(unit_position);
   state.velocity().bind(unit_velocity);
-  (keeps_start_ || pieces_ > 1 ? start_ : state.previous_position()).bind(unit_step_start);
+  (keeps_start_ || term_ || pieces_ > 1 ? start_ : state.previous_position()).bind(unit_step_start);
   target_.bind(unit_step_target);
   state.position().buffer.bind_storage(slot_next_position);
   state.velocity().buffer.bind_storage(slot_next_velocity);

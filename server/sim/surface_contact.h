@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "server/base/result.h"
@@ -12,6 +13,7 @@
 #include "server/model/model.h"
 #include "server/scene/scene.h"
 #include "server/sim/carried.h"
+#include "server/sim/contact_term.h"
 #include "server/sim/plan.h"
 #include "server/sim/state.h"
 #include "server/sim/surface_bodies.h"
@@ -36,6 +38,27 @@ class SurfaceContact {
   /// To be called after a step: changes the new state so that it keeps apart and nothing has passed through.
   void keep_apart(StateBuffers& state, int row);
 
+  /// For methods that solve a step's problem: contact is a term of it, with which an iterate begins and ends
+  /// (ContactTerm). Null for others.
+  ContactTerm* term() { return term_ ? &*term_ : nullptr; }
+  void begin_solve(const StateBuffers& state, int row) { term_->begin(state, bodies_, row); }
+  std::uint32_t find_pressing(const gl::TextureBuffer& position, bool first) {
+    bodies_.bind();
+    return term_->find(pairs_, position, first);
+  }
+  ContactTerm::Limit limit(const gl::TextureBuffer& position, const gl::TextureBuffer& change) {
+    bodies_.bind();
+    return term_->limit(pairs_, position, change);
+  }
+  /// Binds and sets what the program that ends a step needs.
+  void bind_end(const gl::Program& program) const {
+    term_->bind();
+    term_->set_solids(program);
+    bodies_.bind();
+  }
+  /// Where the problem's solution has taken all: what comes after it is filtered from there on.
+  void end_solve(const gl::TextureBuffer& position) { start_.buffer.copy_from(position.buffer); }
+
   /// Forgets the pairs and what is carried over from step to step.
   void invalidate();
   /// To be called when a step has ended: the next one brings the pairs up to date anew. A step that is given
@@ -44,7 +67,10 @@ class SurfaceContact {
   /// Names the pairs and what is carried over from step to step. Waits for the GPU.
   void carry(Carrier& carrier);
 
-  void shorten_lists(std::uint32_t entries, bool for_good) { pairs_.shorten_lists(entries, for_good); }
+  void shorten_lists(std::uint32_t entries, bool for_good) {
+    pairs_.shorten_lists(entries, for_good);
+    if (term_) term_->shorten_lists(entries, for_good);
+  }
   /// As of SurfacePairs.
   std::vector<SurfacePairs::Pair> read_pairs() const { return pairs_.read_pairs(); }
   bool searched() const { return pairs_.searched(); }
@@ -84,6 +110,7 @@ class SurfaceContact {
   bool keeps_start_ = false;  ///< the strain limit writes over the positions at the step's start
   SurfaceBodies bodies_;
   SurfacePairs pairs_;
+  std::optional<ContactTerm> term_;
   gl::Program cull_, contacts_, forces_, apply_, begin_, move_, move_last_, path_program_, advance_;
   gl::Program limit_first_, limit_again_, limit_stop_;
   gl::TextureBuffer start_;           ///< of the step, or of the piece under way

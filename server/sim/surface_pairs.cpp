@@ -26,14 +26,6 @@ std::uint32_t most_entries() {
   return std::min(most_listed, static_cast<std::uint32_t>(texels) / 4);
 }
 
-/// The least mean edge of a cloth [m].
-double finest_edge(const model::Model& model) {
-  double edge = 0.0;
-  for (const model::ClothRange& cloth : model.cloths)
-    edge = edge > 0.0 ? std::min(edge, cloth.mean_edge_length) : cloth.mean_edge_length;
-  return edge;
-}
-
 }  // namespace
 
 Result<SurfacePairs> SurfacePairs::create(const model::Model& model, const SurfaceTriangles& surface) {
@@ -141,29 +133,42 @@ std::array<const gl::Program*, 10> SurfacePairs::programs() const {
           &finish_};
 }
 
+double SurfacePairs::least_query(const scene::Scene& scene, const model::Model& model) {
+  return std::min(1.2 * thickness(scene, model), 0.25 * finest_edge(model));
+}
+
+double SurfacePairs::finest_edge(const model::Model& model) {
+  double edge = 0.0;
+  for (const model::ClothRange& cloth : model.cloths)
+    edge = edge > 0.0 ? std::min(edge, cloth.mean_edge_length) : cloth.mean_edge_length;
+  return edge;
+}
+
 double SurfacePairs::thickness(const scene::Scene& scene, const model::Model& model) {
   if (scene.collides(scene::ContactKind::surface)) return scene.self_collision->thickness;
   return std::min(0.1 * finest_edge(model), 0.005);
 }
 
-void SurfacePairs::set_parameters(const scene::Scene& scene, const model::Model& model, int pieces) {
+void SurfacePairs::set_parameters(const scene::Scene& scene, const model::Model& model, int pieces,
+                                  bool asks_ahead) {
   const double thickness = SurfacePairs::thickness(scene, model), edge = finest_edge(model);
-  in_pieces_ = pieces > 1;
+  in_pieces_ = pieces > 1 || asks_ahead;
+  constexpr int no_motion = 1 << 20;  // in so many pieces a step goes no way that a search could see
   // Parts of a flat grid that share no vertex are 0.7 of a cell's side apart, which is 0.6 of the mean edge.
   // A search that reaches less far for what is side by side, also where the cloth goes together somewhat,
   // lists little.
   const double skin = std::max(0.45 * edge - 1.2 * thickness, 0.2 * edge);
-  const auto least_query = static_cast<float>(std::min(1.2 * thickness, 0.25 * edge));
+  const auto least = static_cast<float>(least_query(scene, model));
   blocks_.set_parameters(static_cast<float>(skin), static_cast<float>(scene.solver.dt));
   for (const gl::Program* program : programs()) {
     program->set("dt", static_cast<float>(scene.solver.dt));
-    program->set("piece_count", pieces);
+    program->set("piece_count", asks_ahead ? no_motion : pieces);
     program->set("thickness", static_cast<float>(thickness));
-    program->set("least_query", least_query);
+    program->set("least_query", least);
     program->set("cloth_pairs", scene.collides(scene::ContactKind::surface) ? 1 : 0);
   }
   widest_query_ = static_cast<float>(24.0 * edge + 4.0 * thickness);
-  narrowest_query_ = 0.25f * least_query;
+  narrowest_query_ = 0.25f * least;
   limit_query(widest_query_);
 }
 
@@ -241,6 +246,10 @@ bool SurfacePairs::none_for_sure(std::size_t groups) const {
 }
 
 bool SurfacePairs::search(const StateBuffers& state) {
+  return search(state.position(), state.velocity());
+}
+
+bool SurfacePairs::search(const gl::TextureBuffer& position, const gl::TextureBuffer& velocity) {
   if (none(offsetof(SurfaceControl, rebuild))) return false;
   const auto dispatch = [](const gl::Program& program, std::size_t groups) {
     program.use();
@@ -248,8 +257,8 @@ bool SurfacePairs::search(const StateBuffers& state) {
     wait_for_writes();
     between_pieces();
   };
-  state.position().bind(unit_position);
-  state.velocity().bind(unit_velocity);
+  position.bind(unit_position);
+  velocity.bind(unit_velocity);
   triangles_.bind(unit_surface_triangles);
   rest_places_.bind(unit_rest_places);
   triangle_boxes_.bind(unit_triangle_boxes);
@@ -289,7 +298,7 @@ bool SurfacePairs::search(const StateBuffers& state) {
 Work SurfacePairs::update(const StateBuffers& state) {
   wait_for_writes();
   bind();
-  blocks_.check(state, expected_);
+  blocks_.check(state.position(), expected_);
   const bool searched = search(state);
   bool look = updates_++ % updates_between_size_looks == 0 || waits();
   if (searched && asks_) look = look || !none(offsetof(SurfaceControl, overflow));
@@ -300,11 +309,28 @@ Work SurfacePairs::update(const StateBuffers& state) {
 }
 
 bool SurfacePairs::update_within_step(const StateBuffers& state) {
-  blocks_.check_again(state, expected_, offsetof(SurfaceControl, check));
+  blocks_.check_again(state.position(), expected_, offsetof(SurfaceControl, check));
   const bool searched = search(state);
   const bool look = driven_ || (searched && asks_ && !none(offsetof(SurfaceControl, overflow)));
   while (look && make_room(true)) search(state);
   return !no_room_;
+}
+
+bool SurfacePairs::update_for(const gl::TextureBuffer& from, const gl::TextureBuffer& to,
+                              const gl::TextureBuffer& velocity, float dt) {
+  bind();
+  blocks_.check_later(to, expected_, dt);
+  const bool searched = search(from, velocity);
+  const bool look = searched && (driven_ || !asks_ || !none(offsetof(SurfaceControl, overflow)));
+  while (look && make_room(true)) search(from, velocity);
+  std::uint32_t overflow = 0;
+  control_.download(&overflow, sizeof overflow, offsetof(SurfaceControl, overflow));
+  return !no_room_ && overflow == 0;
+}
+
+void SurfacePairs::leave_out() {
+  const std::uint32_t overflow = 1;
+  control_.upload(&overflow, sizeof overflow, offsetof(SurfaceControl, overflow));
 }
 
 /// Makes lists longer that have too little room, or the search shorter, if they may not be longer: by the
@@ -378,6 +404,17 @@ void SurfacePairs::bind_pushes() const {
   contact_links_.bind(unit_contact_links);
   contact_pushes_.bind(unit_contact_pushes);
   contact_pushes_.buffer.bind_storage(slot_contact_pushes);
+}
+
+void SurfacePairs::bind_term() const {
+  chosen_pairs_.buffer.bind_storage(slot_term_chosen);
+  chosen_pairs_.bind(unit_chosen_pairs);
+  pairs_.bind(unit_surface_pairs);
+}
+
+void SurfacePairs::bind_energies() const {
+  contact_pushes_.buffer.bind_storage(slot_term_energies);
+  contact_pushes_.bind(unit_term_energies);
 }
 
 void SurfacePairs::set_limits(const gl::Program& program) const {

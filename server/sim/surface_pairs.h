@@ -30,12 +30,19 @@ class SurfacePairs {
   static Result<SurfacePairs> create(const model::Model& model, const SurfaceTriangles& surface);
 
   /// Takes over the numbers of a scene. `invalidate` must follow.
-  /// `pieces`: the most in which a step is gone.
-  void set_parameters(const scene::Scene& scene, const model::Model& model, int pieces);
+  /// `pieces`: the most in which a step is gone. `asks_ahead`: `update_for` is called before anything moves,
+  /// so that the search need not reach as far as a step may go.
+  void set_parameters(const scene::Scene& scene, const model::Model& model, int pieces,
+                      bool asks_ahead = false);
 
   /// The distance that surfaces are kept apart [m]: that of the scene's self-collision, if surfaces keep
   /// apart there; else cloths keep from bodies a tenth of their mean edge, 5 mm at most.
   static double thickness(const scene::Scene& scene, const model::Model& model);
+
+  /// How far a search reaches at least, for parts that lie side by side at rest [m].
+  static double least_query(const scene::Scene& scene, const model::Model& model);
+  /// The least mean edge of a cloth [m].
+  static double finest_edge(const model::Model& model);
 
   /// To be called before a step: brings the pairs up to date. Rest positions must be bound. Every few calls,
   /// at a fixed count and not by time, reads back how long the lists need to be, and makes them longer, if
@@ -46,6 +53,13 @@ class SurfacePairs {
   /// The same between two pieces of a step, without a stop; a GPU is asked only where other things move.
   /// False: no list may be as long as the pairs need, so no piece can be taken.
   bool update_within_step(const StateBuffers& state);
+  /// The same before all vertices go straight from one place to another, by `velocity` in a step: then no
+  /// pair that is not listed presses on the way.
+  bool update_for(const gl::TextureBuffer& from, const gl::TextureBuffer& to,
+                  const gl::TextureBuffer& velocity, float dt);
+
+  /// What was listed for `update_for` is not all after all: nothing may move.
+  void leave_out();
 
   /// `driven`: pins, bodies or colliders move, also while a list is too short.
   void set_driven(bool driven) { driven_ = driven; }
@@ -73,6 +87,9 @@ class SurfacePairs {
   /// buffers' afterwards.
   void bind_contacts() const;
   void bind_pushes() const;
+  /// Binds, for the contact's term, room for pairs that it chooses, and for their energies.
+  void bind_term() const;
+  void bind_energies() const;
 
   struct Pair {
     std::array<std::uint32_t, 4> corners{};  ///< a vertex and a triangle, or the ends of two edges
@@ -86,6 +103,7 @@ class SurfacePairs {
 
  private:
   bool search(const StateBuffers& state);  ///< false: none was due
+  bool search(const gl::TextureBuffer& position, const gl::TextureBuffer& velocity);
   bool make_room(bool within_step);
   float query_of(const SurfaceControl& control) const;
   void forget_pairs(bool within_step = false);  ///< within a step: not how far it has got

@@ -6,7 +6,9 @@
 #include "implicit_euler.glsl"
 #include "implicit_friction.glsl"
 #include "group_sums.glsl"
+#ifndef CONTACT_TERM
 #include "../collide/colliders.glsl"
+#endif
 READ_VEC4(start_position, unit_start_position);
 READ_VEC4(group_sums, unit_group_sums);
 READ_VEC4(change, unit_change);
@@ -22,15 +24,10 @@ layout(std430, binding = slot_grip) buffer Grip { vec4 grip[]; };
 
 #define ROWS SUMS
 #include "implicit_total.glsl"
-
-/// The largest share that the next smaller one does not beat by a hundredth: rounding must not decide.
-float best_share() {
-  vec4 first = total(0), second = total(1);
-  float energy[SHARES] = float[](first.x, first.y, first.z, first.w, second.x, second.y, second.z, second.w);
-  int k = 0;
-  while (k + 1 < SHARES && !(energy[k] <= energy[k + 1] + 0.01 * abs(energy[k + 1]))) ++k;
-  return shares[k];
-}
+#ifdef CONTACT_TERM
+#include "implicit_term.glsl"
+#endif
+#include "implicit_share.glsl"
 
 /// A linear solver that stops at a tolerance loses momentum, and a free cloth would drift: returns the velocity [m/s]
 /// that gives it back to the whole cloth.
@@ -43,6 +40,7 @@ vec3 drift() {
 #endif
 }
 
+#ifndef CONTACT_TERM
 /// Updates a contact after the solve. Returns the change of velocity with which the next Newton step begins.
 vec3 follow_contact(int i, float inverse_mass, vec3 u) {
   vec4 before = grip[i], under = surface[i];
@@ -74,23 +72,35 @@ vec3 meet_contact(int i, float inverse_mass, vec3 start, vec3 x, vec3 u) {
   }
   return change;
 }
+#endif
 
 void main() {
+#ifdef CONTACT_TERM
+  float share = uintBitsToFloat(term.taken);  // implicit_choose.comp
+#else
   float share = best_share();
+#endif
   vec3 regained = drift();
   int i = int(gl_GlobalInvocationID.x);
   if (i >= vertex_count) return;
   vec4 start = FETCH(start_position, i);
-  vec3 u = estimate[i].xyz + (start.w == 0.0 ? 1.0 : share) * FETCH(change, i).xyz;
+#ifdef CONTACT_TERM
+  float own = share * (start.w == 0.0 ? uintBitsToFloat(term.pins) : 1.0);
+#else
+  float own = start.w == 0.0 ? 1.0 : share;
+#endif
+  vec3 u = estimate[i].xyz + own * FETCH(change, i).xyz;
   if (share == 1.0) u += regained;  // the sum is valid for the whole change only
   vec3 x = start.xyz + dt * u;
   estimate[i] = vec4(u, start.w > 0.0 ? start_velocity[i].w : 0.0);
-  vec3 first = vec3(0.0);
+  vec3 first = start.w == 0.0 ? (1.0 - own) * FETCH(change, i).xyz : vec3(0.0);
+#ifndef CONTACT_TERM
   if (another && start.w > 0.0) {
     bool kept = constraint[i].xyz != vec3(0.0);
     RARELY(kept) first = follow_contact(i, start.w, u);
     if (!kept && grip[i].w != pulled_away) first = meet_contact(i, start.w, start.xyz, x, u);
   }
+#endif
   guess[i] = vec4(first, 0.0);
   next_position[i] = vec4(x, start.w);
 }

@@ -2,6 +2,7 @@
 // all sums of an iteration at once: Chronopoulos & Gear 1989.
 #include "implicit_euler.glsl"
 #include "implicit_patch_sums.glsl"
+#include "touching.glsl"
 READ_VEC4(constraint, unit_constraint);
 READ_VEC4(residual, unit_residual);
 READ_VEC4(preconditioned, unit_preconditioned);
@@ -21,6 +22,8 @@ vec3 multiply(int i, vec4 x, vec3 z) {
     result += matrix_product(step_matrix(element_hessian(entry.law, dx), dt), dz);
   }
 #end
+#define PRECONDITIONED(j) FETCH(preconditioned, j).xyz
+  ADD_TOUCHES(i, PRECONDITIONED, result)
   return result;
 }
 

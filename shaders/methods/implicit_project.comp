@@ -2,6 +2,7 @@
 // implicit_improve.comp finds the combination of trends that is nearest to the solution.
 #include "implicit_euler.glsl"
 #include "group_sums.glsl"
+#include "touching.glsl"
 READ_VEC4(residual, unit_residual);
 READ_VEC4(trends, unit_trends);
 layout(std430, binding = slot_trend_products) writeonly buffer Products { vec4 trend_products[]; };
@@ -22,6 +23,8 @@ void multiply(int i, vec4 x, vec3 trend[TRENDS], out vec3 product[TRENDS]) {
     }
   }
 #end
+#define TREND(j) FETCH(trends, TRENDS * int(j) + t).xyz
+  for (int t = 0; t < TRENDS; ++t) ADD_TOUCHES(i, TREND, product[t])
 }
 
 void main() {

@@ -3,6 +3,13 @@
 // for each share of the Newton step. A pin moves its whole way at any share.
 #include "implicit_euler.glsl"
 #include "group_sums.glsl"
+#ifdef CONTACT_TERM
+#include "implicit_term.glsl"
+#include "../surface/term_solids.glsl"
+READ_VEC4(start_position, unit_start_position);
+#else
+float most_share(float inverse_mass) { return 1.0; }
+#endif
 READ_VEC4(start_velocity, unit_start_velocity);
 READ_VEC4(change, unit_change);
 layout(std430, binding = slot_group_sums) writeonly buffer Sums { vec4 group_sums[]; };  // SUMS per work group
@@ -22,13 +29,34 @@ vec4 momentum_left_out(int i, vec4 x) {
 vec3 if_pinned(vec3 d, float inverse_mass) { return inverse_mass == 0.0 ? d : vec3(0.0); }
 vec3 if_free(vec3 d, float inverse_mass) { return inverse_mass == 0.0 ? vec3(0.0) : d; }
 
+#if defined(CONTACT_TERM) && SOLID_ROWS > 0
+/// Adds the change of a solid's energy at each share of the way `moved`, less the work that the solid does, as it goes
+/// on in any case (surface/term_energy.comp).
+void add_solid(int kind, bool moves, int first, int i, vec4 x, vec3 moved, inout float energy[SHARES]) {
+  Solid now, later;
+  place_at_iterate(kind, moves, first, most_share(), now, later);
+  if (!(solid_entry(kind, now, later, x.xyz, x.xyz + moved, now.radius) <= 1.0)) return;
+  if (begins_within(kind, moves, first, FETCH(start_position, i).xyz)) return;
+  float stiffness = solid_stiffness(x.w), least = 1e-4 * margin;
+  vec3 n, driven = dt * (1.0 - gone) * most_share() * solid_velocity(first, x.xyz);
+  float gap = max(margin - nearest_of_solid(kind, now, x.xyz, n), least);
+  float before = contact_energy(gap, margin, stiffness), push = contact_force(gap, margin, stiffness) * dot(n, driven);
+  for (int k = 0; k < SHARES; ++k) {
+    place_at_iterate(kind, moves, first, most_share() * shares[k], now, later);
+    gap = max(margin - nearest_of_solid(kind, later, x.xyz + shares[k] * moved, n), least);
+    float work = 0.5 * shares[k] * (push + contact_force(gap, margin, stiffness) * dot(n, driven));
+    energy[k] += contact_energy(gap, margin, stiffness) - before - work;
+  }
+}
+#endif
+
 void main() {
   int i = int(gl_GlobalInvocationID.x);
   float energy[SHARES];
   for (int k = 0; k < SHARES; ++k) energy[k] = 0.0;
   vec4 x = i < vertex_count ? FETCH(position, i) : vec4(0.0);
   if (i < vertex_count) {
-    vec3 u = FETCH(velocity, i).xyz, d = FETCH(change, i).xyz;
+    vec3 u = FETCH(velocity, i).xyz, d = most_share(x.w) * FETCH(change, i).xyz;
     vec3 fixed_change = if_pinned(d, x.w), scaled_change = if_free(d, x.w);
 #each Law
     for (EntryRange at = entry_range(Law_LIST, i); at.first < at.end; at.first += Law_TEXELS * SLICE_SIZE) {
@@ -36,7 +64,8 @@ void main() {
       LawEdges dx, du, scaled;
       for (int k = 0; k < Law_CORNERS - 1; ++k) {
         vec4 y = FETCH(position, entry.others[k]);
-        vec3 dy = FETCH(change, entry.others[k]).xyz, fixed_edge = fixed_change - if_pinned(dy, y.w);
+        vec3 dy = most_share(y.w) * FETCH(change, entry.others[k]).xyz;
+        vec3 fixed_edge = fixed_change - if_pinned(dy, y.w);
         dx.d[k] = x.xyz - y.xyz + dt * fixed_edge;
         du.d[k] = u - FETCH(velocity, entry.others[k]).xyz + fixed_edge;
         scaled.d[k] = scaled_change - if_free(dy, y.w);
@@ -51,6 +80,12 @@ void main() {
       float slope = m * dot(d, u - FETCH(start_velocity, i).xyz - dt * gravity.xyz + dt * drag(i) * u);
       float curvature = m * (1.0 + dt * drag(i)) * dot(d, d);
       for (int k = 0; k < SHARES; ++k) energy[k] += shares[k] * (slope + 0.5 * shares[k] * curvature);
+#if defined(CONTACT_TERM) && SOLID_ROWS > 0
+      meet_as(i);
+#define ADD_SOLIDS(kind, moves, first, end) \
+  for (int row = first; row < end; row += solid_rows(kind)) add_solid(kind, moves, row, i, x, dt * d, energy);
+      EACH_SOLID(ADD_SOLIDS)
+#endif
     }
   }
   vec4 first = sum_of_group(vec4(energy[0], energy[1], energy[2], energy[3]));

@@ -2,7 +2,9 @@
 // guess.
 #include "implicit_euler.glsl"
 #include "implicit_friction.glsl"
+#ifndef CONTACT_TERM
 #include "../collide/colliders.glsl"
+#endif
 #ifdef SELF_COLLISION
 #include "../collide/neighbours.glsl"
 #include "../collide/self_contact.glsl"
@@ -23,6 +25,7 @@ struct Beginning {
   vec3 velocity, guess;
 };
 
+#ifndef CONTACT_TERM
 /// Applies friction to a vertex that is kept at the surface just met.
 void rub(int i, float inverse_mass, float impulse, inout Beginning start) {
   vec4 kept = grip[i];
@@ -40,6 +43,7 @@ void rub(int i, float inverse_mass, float impulse, inout Beginning start) {
   surface[i] = vec4(met_velocity, met_surface.x);
   grip[i] = kept;
 }
+#endif
 
 /// Finds out if a vertex without springs would meet a collider or stay near one. Then its velocity along the normal is
 /// the one that takes it to the surface, whatever the springs do, unless they pulled it away in the last step. Near is
@@ -50,9 +54,12 @@ Beginning foresee(int i, vec3 x, vec3 v, float inverse_mass) {
   vec4 load = FETCH(wind_loads, i);
   start.guess = (start.guess + load.xyz) / (1.0 + dt * load.w);
 #endif
+  constraint[i] = vec4(0.0);
+#ifdef CONTACT_TERM  // solids press, as the surfaces do
+  grip[i] = vec4(vec3(0.0), untouched);
+#else
   vec3 stopped = x + dt * start.guess, after = start.guess;
   bool pulled = grip[i].w == pulled_away;
-  constraint[i] = vec4(0.0);
   float near = 0.25 * dt * length(start.guess);
   bool met = false;
   meet_as(i);
@@ -63,6 +70,7 @@ Beginning foresee(int i, vec3 x, vec3 v, float inverse_mass) {
     rub(i, inverse_mass, max(lacks, 0.0) / inverse_mass, start);
   }
   if (!met) grip[i] = vec4(vec3(0.0), untouched);
+#endif
   return start;
 }
 

@@ -91,7 +91,8 @@ void main() {
     }
     step = now / curvature;
     bool met = sum.z <= sum.w;
-    bool ended = met || !(now > 0.0 && curvature > 0.0);  // or there is no precision left
+    // Or there is no precision left: what is the difference of two like numbers is their rounding.
+    bool ended = met || !(now > 0.0 && curvature > 1e-3 * sum.y);
     if (own == 0) {
       if (ended) {
         groups = single = 0;

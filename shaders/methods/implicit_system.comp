@@ -1,6 +1,7 @@
 // Implicit Euler, once per Newton step: the residual of the first guess, and each vertex's block of the matrix,
 // factorised. In the first Newton step also the trends of the motion.
 #include "implicit_euler.glsl"
+#include "touching.glsl"
 READ_VEC4(start_velocity, unit_start_velocity);
 READ_VEC4(constraint, unit_constraint);
 READ_VEC4(change, unit_change);
@@ -19,12 +20,13 @@ uniform bool first;       // the first Newton step of the time step
 /// one step. From the second Newton step on it is not less than a tenth of the error that rounding the estimate makes
 /// in forces: a float of size x is off by 2.4e-8 x, the root of the mean square over all floats. A tenth, because
 /// rounding errors of neighbours cancel, and what is left of the residual may push them all the same way. The state at
-/// the step's start counts as exact.
-float good_enough(float inverse_mass, vec3 v, vec3 force, float stiffness, float damping, vec3 x, vec3 u) {
+/// the step's start counts as exact. `in_product` [kg m/s]: what rounding the guess makes in the matrix times it.
+float good_enough(float inverse_mass, vec3 v, vec3 force, float stiffness, float damping, vec3 x, vec3 u,
+                  float in_product) {
   float own = (dot(v, v) + dt * dt * dot(gravity.xyz, gravity.xyz)) / inverse_mass +
               dt * dt * inverse_mass * dot(force, force);
   float rounding = first ? 0.0 : 2.4e-9 * dt * (stiffness * length(x) + damping * length(u));
-  return tolerance * tolerance * own + inverse_mass * rounding * rounding;
+  return tolerance * tolerance * own + inverse_mass * (rounding * rounding + in_product * in_product);
 }
 
 void write_trends(int i, float inverse_mass, vec4 held) {
@@ -65,6 +67,23 @@ void main() {
     add_block(matrix, diagonal, corner);
   }
 #end
+#ifdef CONTACT_TERM
+  uvec2 listed = FETCH_UVEC2(term_vertices, i);
+  for (uint place = listed.x; place < listed.x + listed.y; ++place) {
+    Touch t = touch_at(place);
+    vec3 relative = t.to_come;
+    for (int c = 0; c < 4; ++c)
+      if (int(t.corner[c]) < vertex_count) relative += t.weight[c] * FETCH(change, t.corner[c]).xyz;
+    force += t.force;
+    product += touch_product(t, relative);
+    float own = dt * dt * t.own * t.own, more = own * (t.along - t.across);
+    diagonal += own * t.across + more * t.n * t.n;
+    corner += more * vec3(t.n.x * t.n.y, t.n.x * t.n.z, t.n.y * t.n.z);
+    float less = own * t.slid.w;
+    diagonal -= less * t.slid.xyz * t.slid.xyz;
+    corner -= less * vec3(t.slid.x * t.slid.y, t.slid.x * t.slid.z, t.slid.y * t.slid.z);
+  }
+#endif
   vec4 held = FETCH(constraint, i);
   if (first) write_trends(i, x.w, held);
   if (x.w == 0.0) {
@@ -79,5 +98,6 @@ void main() {
   factorise(diagonal + inertia, corner, inertia, a, b);
   block_a[i] = vec4(a, 0.0);
   block_b[i] = vec4(b, 0.0);
-  residual[i] = vec4(r, good_enough(x.w, v, force, stiffness, damping, x.xyz, u));
+  float in_product = 2.4e-8 * length(d) * max(diagonal.x, max(diagonal.y, diagonal.z));
+  residual[i] = vec4(r, good_enough(x.w, v, force, stiffness, damping, x.xyz, u, in_product));
 }

@@ -6,12 +6,13 @@ READ_UINT(block_vertices, unit_block_vertices);  // where each block's list ends
 // Of each block two texels: blocks.comp, Block.
 layout(std430, binding = slot_block_motions) writeonly buffer BlockMotions { vec4 block_motions[]; };
 uniform int block_count;  // at most GROUP_SIZE
+uniform float later;      // `position` is where vertices will be so much later [s]
 
 void main() {
   int block = int(gl_GlobalInvocationID.x);
   if (block >= block_count) return;
   // A vertex is expected to move straight on, as far ahead as the search looked, and no farther.
-  float ahead = uintBitsToFloat(known.ahead), since = uintBitsToFloat(known.since);
+  float ahead = uintBitsToFloat(known.ahead), since = uintBitsToFloat(known.since) + later;
   float share = ahead > 0.0 ? min(since / ahead, 1.0) : 0.0;
   uint begin = block > 0 ? FETCH_UINT(block_vertices, block - 1) : uint(block_count);
   uint end = FETCH_UINT(block_vertices, block);

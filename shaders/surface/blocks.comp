@@ -8,6 +8,7 @@ READ_VEC4(block_motions, unit_block_motions);
 uniform int block_count;        // at most GROUP_SIZE
 uniform int cloth_block_count;  // those of bodies come after them, and do not meet each other
 uniform float most_skin;        // [m]
+uniform float later;            // 0: a check of the present places, which counts [s]
 
 const float rounding = 1.001;
 
@@ -74,7 +75,7 @@ void main() {
   if (block == 0) {
     control.next_skin = floatBitsToUint(next_skin());
     control.next_ahead = floatBitsToUint(next_ahead());
-    ++control.checks;
+    if (later == 0.0) ++control.checks;
   }
   if (block < block_count && (!valid(block) || too_long()))
     control.rebuild_groups = uint((max(vertex_count, triangle_count) + GROUP_SIZE - 1) / GROUP_SIZE);
