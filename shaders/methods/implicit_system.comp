@@ -26,7 +26,7 @@ float good_enough(float inverse_mass, vec3 v, vec3 force, float stiffness, float
   float own = (dot(v, v) + dt * dt * dot(gravity.xyz, gravity.xyz)) / inverse_mass +
               dt * dt * inverse_mass * dot(force, force);
   float rounding = first ? 0.0 : 2.4e-9 * dt * (stiffness * length(x) + damping * length(u));
-  return tolerance * tolerance * own + inverse_mass * (rounding * rounding + in_product * in_product);
+  return tolerance * tolerance * own + inverse_mass * rounding * rounding + inverse_mass * in_product * in_product;
 }
 
 void write_trends(int i, float inverse_mass, vec4 held) {
@@ -98,6 +98,9 @@ void main() {
   factorise(diagonal + inertia, corner, inertia, a, b);
   block_a[i] = vec4(a, 0.0);
   block_b[i] = vec4(b, 0.0);
-  float in_product = 2.4e-8 * length(d) * max(diagonal.x, max(diagonal.y, diagonal.z));
+  float in_product = 0.0;
+#ifdef CONTACT_TERM  // whose stiffness is far more than the cloth's
+  in_product = 2.4e-8 * length(d) * max(diagonal.x, max(diagonal.y, diagonal.z));
+#endif
   residual[i] = vec4(r, good_enough(x.w, v, force, stiffness, damping, x.xyz, u, in_product));
 }
