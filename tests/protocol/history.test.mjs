@@ -222,13 +222,12 @@ test("a mesh that replaced one of the scene is undone; one that is forgotten is 
   await a.request("mesh.upload", { name: "leaf", obj: mesh(1) });
   const cloth = { ...strip(5).cloths[0], mesh: { obj: "leaf" }, pins: [] };
   await a.request("scene.patch", { patch: { cloths: [cloth] } });
-  await a.request("stream.subscribe", { encoding: "f32" });
   const shows = async (size, what) => {
     const seen = a.frames.at(-1)?.sequence ?? 0;
     await what?.();
     await a.frame(({ sequence, boxExtent }) => sequence > seen && Math.abs(boxExtent[0] - size) < 1e-3);
   };
-  await shows(1);
+  await shows(1, () => a.request("stream.subscribe", { encoding: "f32" }));
   await shows(2, () => a.request("mesh.upload", { name: "leaf", obj: mesh(2) }));
   assert.equal((await told(a)).undo, "Replace mesh leaf");
   await shows(1, () => a.request("scene.undo"));
