@@ -48,6 +48,20 @@ constexpr double layers = 10.0, gravity_at_least = 9.81;
 /// Slower than this is no sliding [m/s]: what lies still creeps by less.
 constexpr float still_speed = 2e-4f;
 
+/// Runs a program over a list: its groups are at this place of the bound buffer.
+void run(const gl::Program& program, std::size_t groups) {
+  program.use();
+  glDispatchComputeIndirect(static_cast<GLintptr>(groups));
+  wait_for_writes();
+}
+
+/// Runs a program over so many vertices.
+void run_each(const gl::Program& program, std::uint32_t vertices) {
+  program.use();
+  glDispatchCompute(vertex_groups(vertices), 1, 1);
+  wait_for_writes();
+}
+
 }  // namespace
 
 Result<ContactTerm> ContactTerm::create(const model::Model& model, const Plan& plan,
@@ -173,11 +187,6 @@ std::uint32_t ContactTerm::find(const SurfacePairs& pairs, const gl::TextureBuff
   if (!any_pairs && !solids_) return 0;
   pairs.bind();
   set_limits(pairs);
-  const auto run = [&](const gl::Program& program, std::size_t groups) {
-    program.use();
-    glDispatchComputeIndirect(static_cast<GLintptr>(groups));
-    wait_for_writes();
-  };
   for (;;) {
     const Term nothing;
     control_.upload(&nothing, sizeof nothing);
@@ -189,7 +198,10 @@ std::uint32_t ContactTerm::find(const SurfacePairs& pairs, const gl::TextureBuff
     step_start_->bind(unit_step_start);
     step_velocity_->bind(unit_step_velocity);
     for (const gl::Program* program : {&pairs_, &press_solids_, &friction_})
-      program->set("first", first ? 1 : 0);
+      if (program->id()) program->set("first", first ? 1 : 0);
+    for (const gl::Program* program : {&pairs_, &press_solids_})
+      if (program->id()) program->set("last_share", first ? 0.0f : last_share_);
+    way_.bind(unit_term_way);
     ends_.bind(unit_term_ends);
     term_pairs_.buffer.bind_storage(slot_term_pairs);
     vertices_.buffer.bind_storage(slot_term_vertices);
@@ -199,9 +211,8 @@ std::uint32_t ContactTerm::find(const SurfacePairs& pairs, const gl::TextureBuff
     if (solids_) {
       step_start_->bind(unit_term_start);
       set_solids(press_solids_);
-      press_solids_.use();
-      glDispatchCompute(vertex_groups(cloth_vertex_count_), 1, 1);
-      wait_for_writes();
+      press_solids_.set("last_gone", last_gone_);
+      run_each(press_solids_, cloth_vertex_count_);
     }
     term_pairs_.bind(unit_term_pairs);
     links_.bind(unit_term_links);
@@ -270,11 +281,6 @@ void ContactTerm::bind() const {
 
 ContactTerm::Limit ContactTerm::limit(SurfacePairs& pairs, const gl::TextureBuffer& position,
                                       const gl::TextureBuffer& change) {
-  const auto run = [&](const gl::Program& program, std::size_t groups) {
-    program.use();
-    glDispatchComputeIndirect(static_cast<GLintptr>(groups));
-    wait_for_writes();
-  };
   {
     const Term fresh;  // but for the pairs that press
     const std::size_t from = offsetof(Term, reachable);
@@ -288,9 +294,7 @@ ContactTerm::Limit ContactTerm::limit(SurfacePairs& pairs, const gl::TextureBuff
   target_.buffer.bind_storage(slot_term_target);
   velocity_.buffer.bind_storage(slot_term_velocity);
   vertices_.bind(unit_term_vertices);
-  way_program_.use();
-  glDispatchCompute(vertex_groups(vertex_count_), 1, 1);
-  wait_for_writes();
+  run_each(way_program_, vertex_count_);
   Limit found;
   found.known = pairs.update_for(position, target_, velocity_, dt_);
   if (incomplete_) {
@@ -309,17 +313,13 @@ ContactTerm::Limit ContactTerm::limit(SurfacePairs& pairs, const gl::TextureBuff
   if (pins_wait_) {
     run(limit_pins_, offsetof(Term, reachable));
     way_.buffer.bind_storage(slot_term_way);
-    hold_.use();
-    glDispatchCompute(vertex_groups(cloth_vertex_count_), 1, 1);
-    wait_for_writes();
+    run_each(hold_, cloth_vertex_count_);
   }
   run(limit_, offsetof(Term, reachable));
   if (solids_) {
     step_start_->bind(unit_term_start);
     set_solids(limit_solids_);
-    limit_solids_.use();
-    glDispatchCompute(vertex_groups(cloth_vertex_count_), 1, 1);
-    wait_for_writes();
+    run_each(limit_solids_, cloth_vertex_count_);
   }
   pairs.bind_energies();
   run(energy_, offsetof(Term, reachable));
@@ -346,7 +346,9 @@ ContactTerm::Limit ContactTerm::limit(SurfacePairs& pairs, const gl::TextureBuff
 float ContactTerm::take_share() {
   float share = 0.0f;
   control_.download(&share, sizeof share, offsetof(Term, taken));
-  gone_ += (1.0f - gone_) * share;
+  last_share_ = share;
+  last_gone_ = (1.0f - gone_) * share;
+  gone_ += last_gone_;
   return share;
 }
 
@@ -356,9 +358,7 @@ void ContactTerm::take(const gl::TextureBuffer& position, const gl::TextureBuffe
   position.bind(unit_position);
   way_.bind(unit_term_way);
   next.buffer.bind_storage(slot_next_position);
-  bodies_.use();
-  glDispatchCompute(vertex_groups(vertex_count_ - cloth_vertex_count_), 1, 1);
-  wait_for_writes();
+  run_each(bodies_, vertex_count_ - cloth_vertex_count_);
 }
 
 }  // namespace clothlab::sim

@@ -58,7 +58,7 @@ class ContactTerm {
     std::uint32_t reachable = 0;  ///< listed pairs, and vertices at solids, that may press on the way
     float longest = 0;            ///< way of a free vertex [m]
     float pressed = 0;            ///< the same of one that a pair presses
-    double slips = 0;  ///< how far friction is off on the way from what the solve took it to be, of all
+    double slips = 0;  ///< how far friction is off from what the solve took it to be, over all of it
   };
   /// Finds the share that may be taken of a change of velocity, and the change of contact's energy at shares
   /// of that. Waits for the GPU.
@@ -85,8 +85,9 @@ class ContactTerm {
   std::uint32_t pressing_ = 0;
   bool bodies_move_ = false, pins_wait_ = false, solids_ = false;
   float dt_ = 0, margin_ = 0, solid_stiffness_ = 0, heaviest_ = 0;
-  float gone_ = 0;  ///< share of the step that bodies and solids have gone
-  int row_ = 0;     ///< of the motion table, the step's first
+  float gone_ = 0;                        ///< share of the step that bodies and solids have gone
+  float last_share_ = 0, last_gone_ = 0;  ///< of the way to the last target, and of the step: taken last
+  int row_ = 0;                           ///< of the motion table, the step's first
   gl::Program cull_, cull_way_, pairs_, ranks_program_, lists_, way_program_, limit_, limit_pins_, hold_,
       energy_, friction_, sum_, sum_friction_, bodies_, press_solids_, limit_solids_;
   gl::Buffer control_;

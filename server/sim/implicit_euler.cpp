@@ -21,9 +21,9 @@ constexpr int contact_passes = 4;
 constexpr int most_contact_steps = 40;
 constexpr double solved_share = 0.05;
 /// The last one is to be taken but for less than this share of what gravity lets fall in a step: what is not
-/// taken is lost for the velocity.
+/// taken is lost for the velocity. Where nothing is near, one that moves no vertex farther is the last, too.
 constexpr double untaken_share = 0.02, gravity_at_least = 9.81;
-/// And until friction is off by no more than this share of all friction.
+/// And until the friction of all pairs together is off by no more than this share of it.
 constexpr double slips_share = 0.05;
 /// Of a solve with contact whose residual has lost its precision to rounding.
 constexpr int most_restarts = 4;
@@ -244,9 +244,11 @@ class ImplicitEuler : public Integrator {
     wait_for_writes();
     const double left = 1.0 - static_cast<double>(contact_->term()->take_share());
     if (!limit.known) return newton + 1;
-    if (pressing_ == 0 && limit.reachable == 0) return met ? newton + 1 : most;
-    const bool whole = left * static_cast<double>(limit.longest) <= untaken_way_;
-    const bool still = limit.pressed <= solved_way_ && limit.longest <= 3.0 * solved_way_;
+    const double longest = limit.longest;
+    if (pressing_ == 0 && limit.reachable == 0) return met || longest <= untaken_way_ ? newton + 1 : most;
+    const bool whole = left * longest <= untaken_way_;
+    const bool still =
+        limit.pressed <= solved_way_ && (longest <= solved_way_ || newton + 1 >= most_newton_steps_);
     const bool rubs = limit.slips <= slips_share;
     if (whole && rubs && (met || still)) return newton + 1;
     const int most_of_all = std::max(most_newton_steps_, most_contact_steps);

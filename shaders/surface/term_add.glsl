@@ -7,6 +7,7 @@ layout(std430, binding = slot_term_links) writeonly buffer Links { uvec2 links[]
 layout(std430, binding = slot_term_touched) writeonly buffer Touched { uint touched[]; };
 uniform uint term_capacity; // pairs that there is room for
 uniform int first;          // 1: the iterate is where the step begins, and nothing has slid yet
+uniform float last_share;   // of the way to the last iterate's target, what was taken; 0: there was none
 
 struct Pressing {
   uvec4 pair, corner;
@@ -16,6 +17,7 @@ struct Pressing {
   float stiffness, friction;
   vec3 moved;     // the first part against the second, in the step so far [m]
   vec3 expected;  // the same in the whole step, with the velocities that it begins with [m]
+  vec3 last;      // the same by the last iterate's change [m]
   vec3 to_come;   // what bodies have yet to bring of it [m/s]
 };
 
@@ -28,7 +30,12 @@ void add(Pressing p) {
   // held, each step would have to find out anew.
   if (first != 0) slid = p.expected - p.n * dot(p.expected, p.n);
   float still = still_way(slides, p.inverse_mass, p.least), way = length(slid);
-  float rubs = slides * friction_stiffness(way, still), excess = 0.99 * slides * friction_excess(way, still);
+  // Friction that slides has no stiffness along its way. But where the last change has turned it back, or may do so if
+  // another one as long follows, it needs one: or iterates go to and fro past the place where it holds.
+  float growth = dot(p.last, slid) / max(way * way, still * still);
+  float slides_on = clamp(min(1.0 + growth, 3.0 - 2.0 * growth), 0.0, 1.0);
+  float rubs = slides * friction_stiffness(way, still);
+  float excess = 0.99 * slides_on * slides * friction_excess(way, still);
   vec3 braked = (first != 0 ? excess : rubs) * slid;
   uint at = pair_texels * slot;
   pairs[at] = p.pair;

@@ -51,7 +51,7 @@ void main() {
     float work = 0.5 * part * (work_before + friction_work(there, driven, still));
     change[s] = slid.w * (friction_energy(length(there), still) - before - work);
   }
-  // What the matrix has for friction after the way, against what it is there.
+  // What the matrix has for friction after the way.
   vec3 after = slid.xyz + share * moved, change_of_way = share * moved;
   float rubs = uintBitsToFloat(FETCH(term_pairs, at + 3u).w), excess = uintBitsToFloat(FETCH(term_pairs, at + 5u).w);
   vec3 along = length(direction.xyz) > 0.0 ? normalize(direction.xyz) : vec3(0.0);
@@ -61,10 +61,11 @@ void main() {
   float along_n = uintBitsToFloat(FETCH(term_pairs, at + 1u).w);
   float presses = dot(uintBitsToFloat(FETCH(term_pairs, at + 3u).xyz), n);
   float slides = presses > 0.0 ? slid.w * max(1.0 - share * along_n * apart / presses, 0.0) : slid.w;
-  vec3 found = length(after) > 0.0 ? slides * friction_stiffness(length(after), still) * after : vec3(0.0);
+  // What slides was to be braked by so much, and what holds by no more.
+  float more = length(taken) - slides, off_by = length(after) < still ? max(more, 0.0) : abs(more);
   // Over what half of the radius would give.
   float whole = 0.5 * stiffness_of(inverse_mass) * thickness;
-  ivec2 friction = in_units(slides / whole), off = in_units(distance(taken, found) / whole);
+  ivec2 friction = in_units(slides / whole), off = in_units(off_by / whole);
   if (friction != ivec2(0)) {
     atomicAdd(term.rubs.x, uint(friction.x));
     atomicAdd(term.rubs.y, uint(friction.y));

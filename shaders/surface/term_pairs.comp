@@ -8,6 +8,7 @@ READ_UVEC4(pair_list, unit_surface_pairs);
 READ_UINT(chosen, unit_chosen_pairs);          // term_cull.comp
 READ_VEC4(body_places, unit_body_places);      // home, motion; friction, restitution, a box's corner
 READ_VEC4(ends, unit_term_ends);               // of bodies, behind the places of cloths
+READ_VEC4(way, unit_term_way);                 // to the last iterate's target
 uniform float friction;     // of cloths
 uniform int bodies_move;    // 1: some have yet to go
 READ_VEC4(step_velocity, unit_step_velocity);  // at the step's start
@@ -46,11 +47,12 @@ void main() {
   pressing.stiffness = stiffness_of(inverse_mass);
   pressing.friction = friction_of(corner);
   pressing.least = least;
-  pressing.moved = pressing.to_come = pressing.expected = vec3(0.0);
+  pressing.moved = pressing.to_come = pressing.expected = pressing.last = vec3(0.0);
   for (int k = 0; k < 4; ++k) {
     vec3 x = FETCH(position, corner[k]).xyz;
     pressing.weight[k] = apart.weight[k];
     pressing.moved += apart.weight[k] * (x - FETCH(step_start, corner[k]).xyz);
+    if (last_share > 0.0) pressing.last += apart.weight[k] * last_share * FETCH(way, corner[k]).xyz;
     pressing.expected += apart.weight[k] * (dt * FETCH(step_velocity, corner[k]).xyz);
     if (bodies_move != 0 && int(corner[k]) >= cloth_vertex_count)
       pressing.to_come += apart.weight[k] * (FETCH(ends, corner[k]).xyz - x) / dt;

@@ -7,6 +7,8 @@
 READ_VEC4(position, unit_position);    // w: inverse mass [1/kg]
 READ_VEC4(term_start, unit_term_start);  // places at the step's start
 READ_VEC4(step_velocity, unit_step_velocity);  // at the step's start
+READ_VEC4(way, unit_term_way);                 // to the last iterate's target
+uniform float last_gone;                       // share of the step that solids have gone in the last change
 #include "term_add.glsl"
 
 void press(int kind, bool moves, int first_row, int i, vec4 x, vec3 start) {
@@ -29,6 +31,8 @@ void press(int kind, bool moves, int first_row, int i, vec4 x, vec3 start) {
   pressing.least = least;
   pressing.moved = x.xyz - start - dt * gone * moving;
   pressing.expected = dt * (FETCH(step_velocity, i).xyz - moving);
+  pressing.last = vec3(0.0);
+  if (last_share > 0.0) pressing.last = last_share * FETCH(way, i).xyz - dt * last_gone * moving;
   pressing.to_come = -(1.0 - gone) * moving;
   add(pressing);
 }
