@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cstring>
 
+#include "server/decode/frame.h"
 #include "server/stream/compressor.h"
 #include "server/stream/frame.h"
-#include "tests/fuzz/decode_frame.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace clothlab;
 
 namespace {
 
-stream::Header server_header(const fuzz::FrameHeader& header, std::size_t payload) {
+stream::Header server_header(const decode::FrameHeader& header, std::size_t payload) {
   stream::Header same;
   same.kind = static_cast<stream::MessageKind>(header.kind);
   same.encoding = static_cast<stream::Encoding>(header.encoding);
@@ -31,7 +31,7 @@ stream::Header server_header(const fuzz::FrameHeader& header, std::size_t payloa
   return same;
 }
 
-model::Model server_model(const fuzz::FrameHeader& header, const fuzz::Topology& topology) {
+model::Model server_model(const decode::FrameHeader& header, const decode::Topology& topology) {
   model::Model model;
   model.rest_position.resize(header.vertex_count);
   model.triangles = topology.triangles;
@@ -41,9 +41,9 @@ model::Model server_model(const fuzz::FrameHeader& header, const fuzz::Topology&
   return model;
 }
 
-void require_in_box(const fuzz::FrameHeader& header, const fuzz::Quantised& frame) {
-  for (const fuzz::Quantised::Vertex& vertex : frame.vertices) {
-    const std::array<double, 3> place = fuzz::Quantised::position(header, vertex);
+void require_in_box(const decode::FrameHeader& header, const decode::Quantised& frame) {
+  for (const decode::Quantised::Vertex& vertex : frame.vertices) {
+    const std::array<double, 3> place = decode::Quantised::position(header, vertex);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double low = static_cast<double>(header.box_minimum[axis]);
       fuzz::require(place[axis] >= low && place[axis] <= low + static_cast<double>(header.box_extent[axis]),
@@ -64,7 +64,7 @@ Strip strip_of(std::span<const std::uint8_t> bytes) {
 }
 
 /// The server's code compresses these vertices to what is read to them.
-void require_server_writes(const fuzz::FrameHeader& header, const fuzz::Compressed& frame,
+void require_server_writes(const decode::FrameHeader& header, const decode::Compressed& frame,
                            const std::vector<std::uint8_t>& field, const Strip& strip) {
   stream::Message packed;
   packed.header = server_header(header, 0);
@@ -79,24 +79,24 @@ void require_server_writes(const fuzz::FrameHeader& header, const fuzz::Compress
   }
   packed.bytes.insert(packed.bytes.end(), field.begin(), field.end());
   const stream::SharedMessage made = stream::compress(packed, stream::Predictor(header.vertex_count, strip));
-  const Result<fuzz::Decoded> read = fuzz::decode_frame({made->data(), made->size()}, strip);
+  const Result<decode::Decoded> read = decode::decode_frame({made->data(), made->size()}, strip);
   fuzz::require(
-      read && std::get<fuzz::Compressed>(read->payload).vertices == frame.vertices && read->field == field,
+      read && std::get<decode::Compressed>(read->payload).vertices == frame.vertices && read->field == field,
       "the server compresses the same vertices");
 }
 
 /// Reads the bytes; false if they are refused.
 bool check(std::span<const std::uint8_t> bytes) {
   const Strip strip = strip_of(bytes);
-  const Result<fuzz::Decoded> message = fuzz::decode_frame(bytes, strip);
+  const Result<decode::Decoded> message = decode::decode_frame(bytes, strip);
   if (!message) {
     fuzz::require_complete(message.error());
     return false;
   }
-  const std::vector<std::uint8_t> again = fuzz::encode_frame(*message, strip);
-  if (const auto* compressed = std::get_if<fuzz::Compressed>(&message->payload)) {
-    const Result<fuzz::Decoded> same = fuzz::decode_frame(again, strip);
-    fuzz::require(same && std::get<fuzz::Compressed>(same->payload).vertices == compressed->vertices &&
+  const std::vector<std::uint8_t> again = decode::encode_frame(*message, strip);
+  if (const auto* compressed = std::get_if<decode::Compressed>(&message->payload)) {
+    const Result<decode::Decoded> same = decode::decode_frame(again, strip);
+    fuzz::require(same && std::get<decode::Compressed>(same->payload).vertices == compressed->vertices &&
                       same->field == message->field,
                   "what is compressed again is read to the same");
     require_server_writes(message->header, *compressed, message->field, strip);
@@ -107,9 +107,9 @@ bool check(std::span<const std::uint8_t> bytes) {
   std::array<std::uint8_t, stream::header_bytes> header{};
   stream::write_header(server_header(message->header, bytes.size() - header.size()), header.data());
   fuzz::require(std::equal(header.begin(), header.end(), bytes.begin()), "the server writes the same header");
-  if (const auto* frame = std::get_if<fuzz::Quantised>(&message->payload))
+  if (const auto* frame = std::get_if<decode::Quantised>(&message->payload))
     require_in_box(message->header, *frame);
-  if (const auto* topology = std::get_if<fuzz::Topology>(&message->payload)) {
+  if (const auto* topology = std::get_if<decode::Topology>(&message->payload)) {
     const stream::SharedMessage same = stream::encode_topology(server_model(message->header, *topology), 1);
     fuzz::require(std::equal(same->data() + header.size(), same->data() + same->size(),
                              bytes.begin() + header.size(), bytes.end()),

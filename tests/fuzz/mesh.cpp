@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstring>
 
+#include "server/decode/frame.h"
 #include "server/model/constraint_gains.h"
 #include "server/model/mesh_file.h"
 #include "server/stream/frame.h"
-#include "tests/fuzz/decode_frame.h"
 #include "tests/fuzz/document.h"
 
 using namespace clothlab;
@@ -98,9 +98,9 @@ void require_exports(const model::Model& model) {
   fuzz::require(ply.size() == head + 20 * positions.size() + 13 * model.triangles.size(),
                 "a PLY file is whole");
   const stream::SharedMessage message = stream::encode_topology(model, 7);
-  const Result<fuzz::Decoded> decoded = fuzz::decode_frame({message->data(), message->size()});
+  const Result<decode::Decoded> decoded = decode::decode_frame({message->data(), message->size()});
   fuzz::require(bool(decoded), "a topology message is read", decoded ? "" : decoded.error().text());
-  const auto* topology = std::get_if<fuzz::Topology>(&decoded->payload);
+  const auto* topology = std::get_if<decode::Topology>(&decoded->payload);
   fuzz::require(topology && decoded->header.vertex_count == model.vertex_count() &&
                     topology->triangles == model.triangles && topology->cloths.size() == model.cloths.size(),
                 "a topology message says what the model is");

@@ -3,9 +3,9 @@
 #include <random>
 
 #include "server/base/deflate.h"
+#include "server/decode/frame.h"
 #include "server/stream/compressor.h"
 #include "tests/catch.h"
-#include "tests/fuzz/decode_frame.h"
 
 using namespace clothlab;
 
@@ -79,9 +79,9 @@ TEST_CASE("c16 is read to the same positions and field, whatever the triangles a
 
     const stream::Predictor predictor(static_cast<std::uint32_t>(positions.size()), triangles);
     const stream::SharedMessage made = stream::compress(frame, predictor);
-    const auto read = fuzz::decode_frame({made->data(), made->size()}, triangles);
+    const auto read = decode::decode_frame({made->data(), made->size()}, triangles);
     REQUIRE(read);
-    CHECK(std::get<fuzz::Compressed>(read->payload).vertices == positions);
+    CHECK(std::get<decode::Compressed>(read->payload).vertices == positions);
     CHECK(read->field == field);
   }
 }

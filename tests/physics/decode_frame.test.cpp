@@ -1,5 +1,5 @@
 // The fuzz targets' decoder, written from the protocol's table alone, against the server's messages.
-#include "tests/fuzz/decode_frame.h"
+#include "server/decode/frame.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@ using namespace clothlab;
 
 namespace {
 
-Result<fuzz::Decoded> decoded(const stream::SharedMessage& message) {
-  return fuzz::decode_frame({message->data(), message->size()});
+Result<decode::Decoded> decoded(const stream::SharedMessage& message) {
+  return decode::decode_frame({message->data(), message->size()});
 }
 
 stream::SharedMessage frame_of(const sim::Simulation& simulation, stream::Encoding encoding,
@@ -34,14 +34,14 @@ TEST_CASE(
   const sim::State state = simulation->read_state();
   for (const stream::Encoding encoding : {stream::Encoding::f32, stream::Encoding::q16}) {
     const stream::SharedMessage frame = frame_of(*simulation, encoding, stream::flag_asleep);
-    const Result<fuzz::Decoded> message = decoded(frame);
+    const Result<decode::Decoded> message = decoded(frame);
     INFO((message ? "" : message.error().text()));
     REQUIRE(message);
     CHECK(message->header.vertex_count == 625);
     CHECK(message->header.step == 300);
     CHECK(message->header.time == Approx(0.3));
     CHECK(message->header.flags == 1);
-    const std::vector<std::uint8_t> again = fuzz::encode_frame(*message);
+    const std::vector<std::uint8_t> again = decode::encode_frame(*message);
     CHECK(std::equal(again.begin(), again.end(), frame->data(), frame->data() + frame->size()));
     double farthest = 0.0;
     for (std::size_t i = 0; i < state.position.size(); ++i) {
@@ -49,9 +49,9 @@ TEST_CASE(
         const double quantum = static_cast<double>(message->header.box_extent[axis]) / 65535.0;
         const double place =
             encoding == stream::Encoding::f32
-                ? static_cast<double>(std::get<fuzz::Float32>(message->payload).vertices[i][axis])
-                : fuzz::Quantised::position(message->header,
-                                            std::get<fuzz::Quantised>(message->payload).vertices[i])[axis];
+                ? static_cast<double>(std::get<decode::Float32>(message->payload).vertices[i][axis])
+                : decode::Quantised::position(
+                      message->header, std::get<decode::Quantised>(message->payload).vertices[i])[axis];
         const double off = std::abs(place - static_cast<double>(state.position[i][static_cast<int>(axis)]));
         // Half a quantum, and the rounding of float32 where the shader computes it.
         farthest = std::max(farthest, off - (encoding == stream::Encoding::f32 ? 0.0 : 0.5 * quantum + 1e-6));
@@ -66,15 +66,15 @@ TEST_CASE("the reference decoder reads the server's topology, and no part of it 
   scene.cloths.push_back(scene.cloths[0]);
   const model::Model model = *model::build(scene);
   const stream::SharedMessage message = stream::encode_topology(model, 5);
-  const Result<fuzz::Decoded> read = decoded(message);
+  const Result<decode::Decoded> read = decoded(message);
   INFO((read ? "" : read.error().text()));
   REQUIRE(read);
   CHECK(read->header.topology_revision == 5);
-  const auto& topology = std::get<fuzz::Topology>(read->payload);
+  const auto& topology = std::get<decode::Topology>(read->payload);
   CHECK(topology.triangles == model.triangles);
   REQUIRE(topology.cloths.size() == 2);
   CHECK(topology.cloths[1] == std::array<std::uint32_t, 2>{12, 12});
   CHECK(topology.texture_coordinates[11] == std::array<float, 2>{1.0f, 1.0f});
   for (std::size_t part = 0; part < message->size(); ++part)
-    CHECK_FALSE(fuzz::decode_frame({message->data(), part}));
+    CHECK_FALSE(decode::decode_frame({message->data(), part}));
 }

@@ -9,9 +9,9 @@
 
 #include "server/base/deflate.h"
 #include "server/base/files.h"
+#include "server/decode/frame.h"
 #include "server/stream/compressor.h"
 #include "server/stream/packer.h"
-#include "tests/fuzz/decode_frame.h"
 #include "tests/scenes.h"
 
 using namespace clothlab;
@@ -109,10 +109,10 @@ TEST_CASE("c16 frames hold the committed bytes, with a field and without") {
     CHECK(*ours == *committed);
     CHECK(std::equal(made->data(), made->data() + 56, bytes));
     CHECK(std::equal(made->data() + 60, made->data() + 64, bytes + 60));
-    const auto read = fuzz::decode_frame({made->data(), made->size()}, model.triangles);
+    const auto read = decode::decode_frame({made->data(), made->size()}, model.triangles);
     REQUIRE(read);
     const std::uint8_t* vertex = packed->data() + 64;
-    for (const auto& position : std::get<fuzz::Compressed>(read->payload).vertices) {
+    for (const auto& position : std::get<decode::Compressed>(read->payload).vertices) {
       CHECK(std::memcmp(position.data(), vertex, sizeof position) == 0);
       vertex += 8;
     }
@@ -133,26 +133,26 @@ TEST_CASE(
           .at("triangles")
           .get_to(triangles);
     const auto same = [&](const std::vector<std::uint8_t>& given) {
-      const Result<fuzz::Decoded> message = fuzz::decode_frame(given, triangles);
+      const Result<decode::Decoded> message = decode::decode_frame(given, triangles);
       if (message && message->header.encoding == 2) {
-        const Result<fuzz::Decoded> again =
-            fuzz::decode_frame(fuzz::encode_frame(*message, triangles), triangles);
-        return again && std::get<fuzz::Compressed>(again->payload).vertices ==
-                            std::get<fuzz::Compressed>(message->payload).vertices;
+        const Result<decode::Decoded> again =
+            decode::decode_frame(decode::encode_frame(*message, triangles), triangles);
+        return again && std::get<decode::Compressed>(again->payload).vertices ==
+                            std::get<decode::Compressed>(message->payload).vertices;
       }
-      return message && fuzz::encode_frame(*message) == given;
+      return message && decode::encode_frame(*message) == given;
     };
     INFO(name);
     REQUIRE(same(bytes));
     // Each in memory of its own size, so that AddressSanitizer sees a read behind it.
     for (auto end = bytes.begin(); end != bytes.end(); ++end)
-      REQUIRE_FALSE(fuzz::decode_frame(std::vector<std::uint8_t>(bytes.begin(), end), triangles));
+      REQUIRE_FALSE(decode::decode_frame(std::vector<std::uint8_t>(bytes.begin(), end), triangles));
     int refused = 0;
     for (std::size_t bit = 0; bit < 8 * stream::header_bytes; ++bit) {
       std::vector<std::uint8_t> flipped = bytes;
       flipped[bit / 8] ^= static_cast<std::uint8_t>(1u << bit % 8);
       INFO("bit " << bit % 8 << " of byte " << bit / 8);
-      if (!fuzz::decode_frame(flipped, triangles))
+      if (!decode::decode_frame(flipped, triangles))
         ++refused;
       else
         REQUIRE(same(flipped));

@@ -1,13 +1,13 @@
-// Reads and writes the payload of a c16 frame by the rules in server/net/README.md, for decode_frame.h.
+// Reads and writes the payload of a c16 frame by the rules in server/net/README.md, for frame.h.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "tests/fuzz/decode_frame.h"
+#include "server/decode/frame.h"
 
-namespace clothlab::fuzz {
+namespace clothlab::decode {
 
 /// Reads a frame with this header, `bytes` with its 64 bytes. Error: what of it is no such frame.
 Result<Decoded> read_compressed(std::span<const std::uint8_t> bytes, const FrameHeader& header,
@@ -17,4 +17,4 @@ Result<Decoded> read_compressed(std::span<const std::uint8_t> bytes, const Frame
 void put_compressed(std::vector<std::uint8_t>& out, const FrameHeader& header, Compressed frame,
                     Triangles triangles);
 
-}  // namespace clothlab::fuzz
+}  // namespace clothlab::decode

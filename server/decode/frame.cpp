@@ -1,4 +1,4 @@
-#include "tests/fuzz/decode_frame.h"
+#include "server/decode/frame.h"
 
 #include <bit>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "server/base/deflate.h"
-#include "tests/fuzz/decode_c16.h"
+#include "server/decode/c16.h"
 
-namespace clothlab::fuzz {
+namespace clothlab::decode {
 
 Error refused(std::size_t offset, std::string found, std::string allowed) {
   return {"byte " + std::to_string(offset), std::move(found), std::move(allowed)};
@@ -201,4 +201,4 @@ std::vector<std::uint8_t> encode_frame(const Decoded& message, Triangles triangl
   return out;
 }
 
-}  // namespace clothlab::fuzz
+}  // namespace clothlab::decode

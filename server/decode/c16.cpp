@@ -1,4 +1,4 @@
-#include "tests/fuzz/decode_c16.h"
+#include "server/decode/c16.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "server/base/deflate.h"
 
-namespace clothlab::fuzz {
+namespace clothlab::decode {
 
 namespace {
 
@@ -178,4 +178,4 @@ void put_compressed(std::vector<std::uint8_t>& out, const FrameHeader& header, C
   });
 }
 
-}  // namespace clothlab::fuzz
+}  // namespace clothlab::decode

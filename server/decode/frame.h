@@ -13,7 +13,7 @@
 
 #include "server/base/result.h"
 
-namespace clothlab::fuzz {
+namespace clothlab::decode {
 
 struct FrameHeader {
   std::uint8_t kind = 2;      ///< 1 topology, 2 frame
@@ -68,4 +68,4 @@ Result<Decoded> decode_frame(std::span<const std::uint8_t> bytes, Triangles tria
 /// The same bytes; of a c16 frame others may be read to the same, as there are many ways to compress.
 std::vector<std::uint8_t> encode_frame(const Decoded& message, Triangles triangles = {});
 
-}  // namespace clothlab::fuzz
+}  // namespace clothlab::decode
