@@ -16,6 +16,18 @@ std::size_t buffer_bytes() {
   return held;
 }
 
+namespace {
+thread_local std::size_t most_texels_of_thread = 0;
+
+std::size_t bytes_of_texel(GLenum format) {
+  return format == GL_R32UI ? 4 : format == GL_RG32UI ? 8 : 16;
+}
+}  // namespace
+
+std::size_t most_texels() {
+  return most_texels_of_thread;
+}
+
 Buffer::Buffer(std::size_t bytes, const void* data, GLbitfield flags) : bytes_(bytes) {
   glCreateBuffers(1, &id_);
   while (glGetError() == GL_OUT_OF_MEMORY) {
@@ -62,6 +74,7 @@ void Buffer::copy_from(const Buffer& other) {
 BufferTexture::BufferTexture(const Buffer& buffer, GLenum format) {
   glCreateTextures(GL_TEXTURE_BUFFER, 1, &id_);
   glTextureBuffer(id_, format, buffer.id());
+  most_texels_of_thread = std::max(most_texels_of_thread, buffer.bytes() / bytes_of_texel(format));
 }
 
 BufferTexture::~BufferTexture() {

@@ -46,6 +46,10 @@ class Buffer {
 /// memory, or of the machine's where that computes.
 std::size_t buffer_bytes();
 
+/// Texels of the largest buffer texture that the calling thread has made: what its scenes need of
+/// GL_MAX_TEXTURE_BUFFER_SIZE.
+std::size_t most_texels();
+
 /// A texture view of a buffer. On software OpenGL kernels read it much faster than a storage buffer
 /// (shaders/access.glsl).
 class BufferTexture {

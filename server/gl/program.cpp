@@ -155,13 +155,37 @@ Result<GLuint> compile(const std::string& path, const Defines& defines, Reads re
   return compile_error(source, log);
 }
 
+thread_local ProgramWatch watch_of_thread;
+
+/// What the device allows a program, for a link that failed: drivers seldom say which limit it was.
+std::string limits_of_device() {
+  const auto limit = [](GLenum name) {
+    GLint value = 0;
+    glGetIntegerv(name, &value);
+    return std::to_string(value);
+  };
+  return "this device allows a compute program " + limit(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS) +
+         " storage blocks, " + limit(GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS) + " textures, " +
+         limit(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE) + " bytes of shared memory and " +
+         limit(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS) + " invocations a group";
+}
+
 }  // namespace
+
+void watch_programs(ProgramWatch watch) {
+  watch_of_thread = std::move(watch);
+}
 
 Result<Program> Program::load(std::initializer_list<std::string> paths, const Defines& defines) {
   between_pieces();
-  if (fastest_reads() == Reads::storage)
-    if (Result<Program> program = load(paths, defines, Reads::storage)) return program;
-  return load(paths, defines, Reads::textures);
+  const auto load_with_fastest_reads = [&] {
+    if (fastest_reads() == Reads::storage)
+      if (Result<Program> program = load(paths, defines, Reads::storage)) return program;
+    return load(paths, defines, Reads::textures);
+  };
+  Result<Program> loaded = load_with_fastest_reads();
+  if (watch_of_thread) watch_of_thread(*paths.begin(), defines, loaded);
+  return loaded;
 }
 
 Result<Program> Program::load(std::initializer_list<std::string> paths, const Defines& defines, Reads reads) {
@@ -176,9 +200,13 @@ Result<Program> Program::load(std::initializer_list<std::string> paths, const De
   glLinkProgram(program.id_);
   GLint linked = 0;
   glGetProgramiv(program.id_, GL_LINK_STATUS, &linked);
-  if (!linked)
-    return Error{"shaders/" + *paths.begin(), info_log(program.id_, glGetProgramiv, glGetProgramInfoLog),
-                 "mend the shader and start again"};
+  if (!linked) {
+    const std::string log = info_log(program.id_, glGetProgramiv, glGetProgramInfoLog);
+    return Error{"shaders/" + *paths.begin(),
+                 "does not link: " + (log.empty() ? "the driver does not say why" : log) + " (" +
+                     limits_of_device() + ")",
+                 "update the driver, or take another device (--gpu N, see `clothlab info`)"};
+  }
   glObjectLabel(GL_PROGRAM, program.id_, -1, paths.begin()->c_str());  // for debuggers and bench_profile
   program.list_uniforms();
   return program;

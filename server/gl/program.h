@@ -56,4 +56,11 @@ class Program {
   std::map<std::string, GLint, std::less<>> uniforms_;  ///< locations by name, read once after linking
 };
 
+/// Told of each program that Program::load, left to choose how it reads, has loaded or not: the file that
+/// names it, its defines, and the program or why there is none.
+using ProgramWatch =
+    std::function<void(const std::string& path, const Defines& defines, const Result<Program>& loaded)>;
+/// From now on `watch` is told of the calling thread's programs; empty: nobody is.
+void watch_programs(ProgramWatch watch);
+
 }  // namespace clothlab::gl
