@@ -1,6 +1,5 @@
 // Finds the files that are installed with the program: shaders/, server/scene/presets/,
-// server/scene/fabrics.json, web/dist/, web/pictures/,
-// web/clients/.
+// server/scene/fabrics.json, server/selftest/scenes/ and places/, web/dist/, web/pictures/, web/clients/.
 #pragma once
 
 #include <filesystem>

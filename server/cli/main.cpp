@@ -17,6 +17,7 @@ constexpr const char* examples = R"(Examples:
   clothlab chart seed --out results                speed against accuracy of every method on this scene
   clothlab choose seed --tolerance 0.01            the cheapest method and step that are good enough
   clothlab validate my-scene.json
+  clothlab selftest --quick                        whether this device does it right
   clothlab COMMAND --help                          the options of one command
 
 Exit codes: 0 done, 1 internal error, 2 wrong usage or invalid scene, 3 no usable OpenGL, 4 the simulation diverged.)";
@@ -41,6 +42,7 @@ void describe(CLI::App& app, int& exit_code) {
   add_presets(app, exit_code);
   add_fabrics(app, exit_code);
   add_info(app, exit_code);
+  add_selftest(app, exit_code);
   app.footer(examples);  // after the subcommands, which would inherit it
 }
 

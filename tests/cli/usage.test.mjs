@@ -17,6 +17,7 @@ const commands = [
   "presets",
   "fabrics",
   "info",
+  "selftest",
   "serve",
 ];
 
