@@ -1,6 +1,7 @@
 // Where the vertices of the frame on screen are, as numbers here and on the graphics processor.
 import { BufferAttribute } from "three";
 import { q16Words, type ShownFrame } from "../link/protocol";
+import { decodePlaces } from "../view/places";
 
 export class ShownPlaces {
   readonly places: Float32Array; ///< [vertex_count * 3] [m]
@@ -19,14 +20,7 @@ export class ShownPlaces {
   /// Takes a frame of as many vertices.
   take(frame: ShownFrame): void {
     this.frame = frame;
-    const { boxMinimum: low, boxExtent: extent } = frame.header;
-    const words = q16Words(frame);
-    const step = extent.map((size) => size / 65535) as [number, number, number];
-    for (let i = 0, from = 0, to = 0; i < this.vertexCount; ++i, from += 4, to += 3) {
-      this.places[to] = low[0] + step[0] * (words[from] as number);
-      this.places[to + 1] = low[1] + step[1] * (words[from + 1] as number);
-      this.places[to + 2] = low[2] + step[2] * (words[from + 2] as number);
-    }
+    decodePlaces({ header: frame.header, words: q16Words(frame) }, this.places);
     this.buffers.reverse();
     (this.attribute.array as Float32Array).set(this.places);
     this.attribute.needsUpdate = true;

@@ -1,6 +1,6 @@
 // Where a frame has its vertices.
 import { Vector3 } from "three";
-import { q16Words, type Frame } from "../link/protocol";
+import { q16Words, type Frame, type Header } from "../link/protocol";
 
 /// Reads places of vertices from a q16 frame.
 export class Places {
@@ -18,5 +18,16 @@ export class Places {
     const { boxMinimum: low, boxExtent: extent } = this.frame.header;
     const at = (axis: 0 | 1 | 2): number => low[axis] + (extent[axis] * (this.words[4 * vertex + axis] ?? 0)) / 65535;
     return into.set(at(0), at(1), at(2));
+  }
+}
+
+/// All places of a frame [m], into an array of as many threes.
+export function decodePlaces({ header, words }: { header: Header; words: Uint16Array }, into: Float32Array): void {
+  const { boxMinimum: low, boxExtent: extent } = header;
+  const [sx, sy, sz] = extent.map((size) => size / 65535) as [number, number, number];
+  for (let from = 0, to = 0; to < into.length; from += 4, to += 3) {
+    into[to] = low[0] + sx * (words[from] as number);
+    into[to + 1] = low[1] + sy * (words[from + 1] as number);
+    into[to + 2] = low[2] + sz * (words[from + 2] as number);
   }
 }
