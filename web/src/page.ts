@@ -154,6 +154,7 @@ export class Page {
       text: () => this.drawers.toggle("text"),
       compare: () => this.drawers.toggle("compare"),
       inside: () => this.inside?.toggle(),
+      mesh: () => (this.stage.showsMesh = !this.stage.showsMesh),
     });
     bindCameraInput(this.stage.controls, () => this.hand?.holding === true);
     bindTimeline({

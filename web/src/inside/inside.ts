@@ -112,6 +112,7 @@ export class Inside {
   private chosen(): void {
     inBrowser.set(choicesKey, JSON.stringify(this.choices));
     this.contacts.want(this.choices.contacts);
+    this.host.stage.showsMeshBelow = overlays.some((overlay) => this.choices[overlay]);
     this.source(0);
     this.saidAt = 0;
     this.redraw();

@@ -14,9 +14,10 @@ interface Commanded {
   text(): void;
   compare(): void;
   inside(): void;
+  mesh(): void;
 }
 
-export function bindCommands({ transport, layout, theme, fit, lab, text, compare, inside }: Commanded): void {
+export function bindCommands({ transport, layout, theme, fit, lab, text, compare, inside, mesh }: Commanded): void {
   const dialog = element("help-dialog", HTMLDialogElement);
   const help = (): void => dialog.showModal();
   bindKeys({
@@ -30,6 +31,7 @@ export function bindCommands({ transport, layout, theme, fit, lab, text, compare
     text,
     compare,
     inside,
+    mesh,
   });
   button("fit").onclick = fit;
   button("help").onclick = help;

@@ -1,7 +1,7 @@
 // The keyboard: one key, one command. Keys do nothing while the user types or a dialog is open.
 
 export type Commands = Record<
-  "toggle" | "step" | "reset" | "fit" | "hide" | "help" | "lab" | "text" | "compare" | "inside",
+  "toggle" | "step" | "reset" | "fit" | "hide" | "help" | "lab" | "text" | "compare" | "inside" | "mesh",
   () => void
 >;
 
@@ -13,6 +13,7 @@ const bindings: Record<string, keyof Commands> = {
   h: "hide",
   l: "lab",
   i: "inside",
+  m: "mesh",
   j: "text",
   c: "compare",
   "?": "help",

@@ -14,16 +14,30 @@ import {
   clothCasterMaterial,
   FabricMaterial,
   pinMaterial,
+  setSmooth,
   type DecodeUniforms,
   type StageUniforms,
 } from "./fabric_material";
+import { lookOf, metresPerTexture } from "./fabric_looks";
 import { fields } from "./fields";
 import { fixedRange } from "./field_ranges";
 import { heldVertices } from "./pins";
+import { decodePlaces } from "./places";
+import { stepsFor } from "./refinement";
+import { SmoothCloth } from "./smooth_cloth";
 import { fieldBytes, q16Words, type ShownFrame, type Topology } from "../link/protocol";
 import type { SceneDocument } from "../link/scene_types";
 
 const mostMarkers = 160; // more would hide the cloth
+const hemLayers = 3; // a hem is the cloth folded twice
+
+/// How finely the cloths of a stage are drawn.
+export interface Detail {
+  triangles: number; ///< at most so many of a finer mesh
+  details: boolean; ///< uneven threads and seams
+  mesh: boolean; ///< the simulated triangles instead, flat
+  below: boolean; ///< the simulated triangles, as something is drawn over them
+}
 
 export class ClothView {
   readonly object = new Group();
@@ -44,23 +58,34 @@ export class ClothView {
     fieldScale: { value: 1 },
   };
   private readonly materials: FabricMaterial[] = [];
-  private readonly depthMaterial = clothCasterMaterial(this.decode);
-  private readonly casterMaterial = clothCasterMaterial(this.decode);
+  private readonly depthMaterial; // of the shadow map
+  private readonly casterMaterial; // of the ground's shadow, too soft to show more than the simulated triangles
+  private raw: BufferGeometry | null = null; // the frame as it came
+  private smooth: SmoothCloth | null = null; // what is drawn instead, if the stage's detail allows it
+  private latest: ShownFrame | null = null;
   private readonly pinMaterial;
+  private metres: number[] = []; // per unit of texture coordinates, of each cloth
   private mesh: Mesh | null = null;
   private markers: Points | null = null;
 
   constructor(
     private readonly stage: StageUniforms,
     pixelRatio: IUniform<number>,
+    private readonly detail: Detail,
   ) {
+    this.depthMaterial = clothCasterMaterial(this.decode, stage, true);
+    this.casterMaterial = clothCasterMaterial(this.decode, stage, false);
     this.pinMaterial = pinMaterial(this.decode, pixelRatio);
   }
 
   setDocument(document: SceneDocument): void {
     this.document = document;
-    document.cloths.forEach((cloth, i) => this.material(i).show(cloth));
+    this.dress();
     this.rebuildMarkers();
+  }
+
+  private dress(): void {
+    this.document?.cloths.forEach((cloth, i) => this.material(i).show(cloth, this.metres[i] ?? 1));
   }
 
   setTopology(topology: Topology): void {
@@ -84,18 +109,67 @@ export class ClothView {
       this.words.reverse();
       this.words[0].array = words;
       this.words[0].needsUpdate = true;
-      this.bindWords(this.mesh?.geometry);
       this.bindWords(this.markers?.geometry);
     } else {
       this.words = [new BufferAttribute(words, 4, true), new BufferAttribute(words, 4, true)];
-      this.build(this.topology);
+      this.measure(frame, this.topology);
     }
+    this.latest = frame;
+    this.fill(frame, this.topology);
     this.vertices = header.vertexCount;
     this.decode.boxMinimum.value.set(...header.boxMinimum);
     this.decode.boxExtent.value.set(...header.boxExtent);
     this.box.min.set(...header.boxMinimum);
     this.box.max.copy(this.box.min).add(this.decode.boxExtent.value);
     return true;
+  }
+
+  /// Takes the stage's detail as it is now.
+  refit(): void {
+    if (this.latest && this.topology && this.words) this.fill(this.latest, this.topology);
+  }
+
+  // Puts a frame into the mesh that is drawn, which is made if there is none as fine as it should be.
+  private fill(frame: ShownFrame, topology: Topology): void {
+    const { detail } = this;
+    const steps = detail.mesh || detail.below ? 0 : stepsFor(topology.triangles.length / 3, detail.triangles);
+    if (!this.mesh || !this.raw) this.build(topology);
+    if (steps !== (this.smooth?.steps ?? 0)) {
+      this.smooth?.dispose();
+      this.smooth = steps > 0 ? new SmoothCloth(topology, steps) : null;
+    }
+    this.bindWords(this.raw ?? undefined);
+    this.smooth?.show({ header: frame.header, words: q16Words(frame) }, fieldBytes(frame), this.hems());
+    if (this.mesh && this.raw) this.mesh.geometry = this.smooth?.geometry ?? this.raw;
+    for (const material of [...this.materials, this.depthMaterial]) setSmooth(material, steps > 0);
+    for (const material of this.materials)
+      if (material.flatShading !== detail.mesh) {
+        material.flatShading = detail.mesh;
+        material.needsUpdate = true;
+      }
+  }
+
+  /// Before a picture: the size of its pixels on the nearest cloth [m].
+  set pixel(size: number) {
+    for (const material of this.materials) {
+      material.pixel = size;
+      material.details = this.detail.details;
+    }
+  }
+
+  // Radii of the hems of the cloths [m].
+  private hems(): number[] {
+    return (this.document?.cloths ?? []).map(
+      ({ material }) => (hemLayers / 2 / 1000) * lookOf(material.fabric).thickness,
+    );
+  }
+
+  // Texture coordinates of mesh files have no unit: their first frame tells it.
+  private measure({ header }: ShownFrame, { triangles, textureCoordinates, cloths }: Topology): void {
+    const places = new Float32Array(3 * header.vertexCount);
+    decodePlaces({ header, words: this.words?.[0].array as Uint16Array }, places);
+    this.metres = cloths.map((range) => metresPerTexture(places, textureCoordinates, triangles, range));
+    this.dress();
   }
 
   // A frame without a field leaves the last one where it is, unseen.
@@ -115,6 +189,7 @@ export class ClothView {
   /// there is a cloth.
   samples(): { shown: Object3D[]; cast: Object3D[] } {
     const nothing = new BufferGeometry();
+    this.material(0).details = this.detail.details;
     return {
       shown: [new Mesh(nothing, this.material(0)), new Points(nothing, this.pinMaterial)],
       cast: [new Mesh(nothing, this.casterMaterial)],
@@ -136,8 +211,7 @@ export class ClothView {
   }
 
   private build(topology: Topology): void {
-    const geometry = new BufferGeometry();
-    this.bindWords(geometry);
+    const geometry = (this.raw = new BufferGeometry());
     geometry.setAttribute("textureCoordinate", new BufferAttribute(topology.textureCoordinates, 2));
     geometry.setIndex(new BufferAttribute(topology.triangles, 1));
     this.addGroups(geometry, topology);
@@ -145,15 +219,14 @@ export class ClothView {
       geometry,
       topology.cloths.map((_, i) => this.material(i)),
     );
-    this.mesh.frustumCulled = false; // only the shader knows its box
     this.mesh.castShadow = this.mesh.receiveShadow = true;
     this.mesh.customDepthMaterial = this.depthMaterial;
-    this.object.add(this.mesh);
     const caster = new Mesh(
       geometry,
       topology.cloths.map(() => this.casterMaterial),
     );
-    caster.frustumCulled = false;
+    for (const mesh of [this.mesh, caster]) mesh.frustumCulled = false; // only the shader knows its box
+    this.object.add(this.mesh);
     this.caster.add(caster);
     this.rebuildMarkers();
   }
@@ -202,9 +275,10 @@ export class ClothView {
   private dispose(): void {
     if (this.mesh) this.object.remove(this.mesh);
     this.caster.clear();
-    this.mesh?.geometry.dispose();
-    this.mesh = null;
-    this.words = this.fields = null;
+    this.raw?.dispose();
+    this.smooth?.dispose();
+    this.mesh = this.raw = this.smooth = null;
+    this.words = this.fields = this.latest = null;
     this.rebuildMarkers();
   }
 }

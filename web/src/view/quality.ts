@@ -1,15 +1,20 @@
-// Lowers the resolution if the machine cannot draw every frame in time, and tries a higher one later.
+// Lowers the resolution and the mesh's fineness if the machine cannot draw every frame in time, and tries higher ones
+// later.
+
+/// Of a finer mesh in a picture at rest, which takes its time.
+export const stillTriangles = 25_000;
 
 export interface Level {
-  scale: number;
-  shadow: number;
+  scale: number; ///< of the picture
+  triangles: number; ///< at most so many of a finer mesh; a cloth of more is drawn as it came
+  details: boolean; ///< uneven threads and seams: a third of the time that a software renderer takes for cloth
 }
 
 const levels: Level[] = [
-  { scale: 1, shadow: 2048 },
-  { scale: 1, shadow: 1024 },
-  { scale: 0.8, shadow: 1024 },
-  { scale: 0.65, shadow: 512 },
+  { scale: 1, triangles: 80_000, details: true },
+  { scale: 1, triangles: 13_000, details: false },
+  { scale: 0.8, triangles: 13_000, details: false },
+  { scale: 0.65, triangles: 5_000, details: false },
 ];
 const tooSlow = 34; // [ms] between drawn frames: below 30 frames/s
 const fastEnough = 20; // [ms]

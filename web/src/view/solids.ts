@@ -34,6 +34,7 @@ import {
 } from "../link/scene_types";
 import { sweep } from "./motion";
 import { groundFragment, groundVertex, porcelain } from "./shaders";
+import { studio } from "./studio_shader";
 
 export const forward = new Vector3(0, 0, 1); // the normal of a disc
 const upwards = new Vector3(0, 1, 0); // a capsule's axis
@@ -190,10 +191,9 @@ function bodyMaterial(stage: StageUniforms, round: boolean, bothSides = false): 
       vec4 deeper = projectionMatrix * vec4(more * mvPosition.xyz, 1.0);
       gl_Position.z = deeper.z / deeper.w * gl_Position.w;`,
       );
-    shader.fragmentShader = shader.fragmentShader.replace(
-      "#include <opaque_fragment>",
-      `${porcelain}\n#include <opaque_fragment>`,
-    );
+    shader.fragmentShader = shader.fragmentShader
+      .replace("#include <lights_lambert_pars_fragment>", `#include <lights_lambert_pars_fragment>\n${studio}`)
+      .replace("#include <opaque_fragment>", `${porcelain}\n#include <opaque_fragment>`);
     Object.assign(shader.uniforms, stage);
   };
   return material;

@@ -5,16 +5,16 @@ import {
   DirectionalLight,
   Group,
   HemisphereLight,
+  MathUtils,
   PCFShadowMap,
   PerspectiveCamera,
   Scene,
-  ShaderChunk,
   Vector3,
   Vector4,
   WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import { ClothView } from "./cloth_view";
+import { ClothView, type Detail } from "./cloth_view";
 import { ColliderView } from "./collider_view";
 import { CameraKeeper } from "./camera_keeper";
 import { CrossingView } from "./crossing_view";
@@ -23,24 +23,15 @@ import { centerIn, type FreeArea } from "./framing";
 import { GroundShadow } from "./ground_shadow";
 import type { ShownFrame, Topology } from "../link/protocol";
 import type { Crossings } from "../link/rpc";
-import { Quality } from "./quality";
+import { Quality, stillTriangles } from "./quality";
 import { framePoints, scenePoints } from "./reach";
 import type { SceneDocument } from "../link/scene_types";
+import { shadowSize, softenShadows } from "./studio_shader";
 import type { Graphics } from "./webgl";
 
 const stillAfter = 300; // [ms] without a change: then the picture is drawn at full resolution
 const explodedAt = 12; // times the scene's radius
 const lightFrom = new Vector3(0.55, 1, 0.62).normalize();
-
-// Five filtered reads of the shadow map per pixel are most of what a software renderer spends on the cloth: one will
-// do.
-function readShadowsOnce(): void {
-  const fiveReads = /shadow = \(\s*texture\( shadowMap, vec3\( shadowCoord\.xy \+ vogelDiskSample[\s\S]*?\) \* 0\.2;/;
-  ShaderChunk.shadowmap_pars_fragment = ShaderChunk.shadowmap_pars_fragment.replace(
-    fiveReads,
-    "shadow = texture( shadowMap, shadowCoord.xyz );",
-  );
-}
 
 /// What is drawn in the place of the session's cloth.
 export interface Replacement {
@@ -67,6 +58,8 @@ export class Stage {
   private fitAfter = false; // the camera looks at crossings, and was fitted to the scene before
   private readonly groundShadow: GroundShadow;
   private readonly quality: Quality;
+  private readonly detail: Detail;
+  private cloths: ClothView[]; // all that are drawn, by a replacement, too
   private readonly pixelRatio = { value: 1 };
   private readonly ground = {
     groundColor: { value: new Color() },
@@ -89,7 +82,7 @@ export class Stage {
 
   constructor({ canvas, context, software }: Graphics) {
     this.canvas = canvas;
-    if (software) readShadowsOnce();
+    softenShadows(software);
     this.stillScale = software ? 1.5 : 1; // a software renderer has no antialiasing: more pixels smooth the edges
     this.renderer = new WebGLRenderer({ canvas, context, alpha: true });
     this.renderer.setClearColor(0, 0);
@@ -98,13 +91,17 @@ export class Stage {
     const stage = (this.shared = {
       lightDirection: { value: lightFrom },
       occluders: { value: Array.from({ length: 4 }, () => new Vector4()) },
+      pixel: { value: 1 },
     });
-    this.cloth = new ClothView(stage, this.pixelRatio);
+    this.quality = new Quality(() => this.takeQuality(), software ? 1 : 0);
+    this.detail = { ...this.quality.level, mesh: false, below: false };
+    this.cloth = new ClothView(stage, this.pixelRatio, this.detail);
+    this.cloths = [this.cloth];
     this.groundShadow = new GroundShadow(this.renderer, this.cloth.caster);
     this.colliders = new ColliderView(stage, this.ground, this.groundShadow.uniforms);
     this.groundShadow.casters.add(this.colliders.caster);
     this.light.castShadow = true;
-    this.light.shadow.radius = 3;
+    this.light.shadow.mapSize.setScalar(shadowSize(software));
     this.scene.add(this.light, this.light.target, this.sky, this.colliders.object, this.cloth.object);
     this.scene.add(this.crossings.object, this.overlays);
     this.controls = new OrbitControls(this.camera, canvas);
@@ -117,7 +114,6 @@ export class Stage {
     });
     canvas.addEventListener("webglcontextlost", () => this.onLost());
     canvas.addEventListener("webglcontextrestored", () => this.invalidate());
-    this.quality = new Quality(() => this.takeQuality(), software ? 1 : 0);
     this.compileAhead();
   }
 
@@ -132,7 +128,30 @@ export class Stage {
 
   /// Another cloth in the same light, for a replacement.
   makeCloth(): ClothView {
-    return new ClothView(this.shared, this.pixelRatio);
+    const cloth = new ClothView(this.shared, this.pixelRatio, this.detail);
+    this.cloths.push(cloth);
+    return cloth;
+  }
+
+  /// True while the simulated triangles are drawn, instead of a finer mesh with a hem.
+  get showsMesh(): boolean {
+    return this.detail.mesh;
+  }
+  set showsMesh(mesh: boolean) {
+    this.refit({ mesh });
+  }
+
+  /// True while lines are drawn over the simulated triangles, which a finer mesh would hide.
+  set showsMeshBelow(below: boolean) {
+    this.refit({ below });
+  }
+
+  private refit(detail: Partial<Detail>): void {
+    const before = { ...this.detail };
+    Object.assign(this.detail, detail);
+    if ((Object.keys(before) as (keyof Detail)[]).every((key) => before[key] === this.detail[key])) return;
+    for (const cloth of this.cloths) cloth.refit();
+    this.dirty = true;
   }
 
   /// What casts the ground's shadow.
@@ -143,6 +162,7 @@ export class Stage {
   /// Draws this in the place of the session's cloth, with the same camera; null: the session's cloth again.
   replace(replacement: Replacement | null): void {
     this.replacement = replacement;
+    if (!replacement) this.cloths = [this.cloth];
     this.cloth.object.visible = this.cloth.caster.visible = this.overlays.visible = !replacement;
     this.resize(this.area);
   }
@@ -282,16 +302,15 @@ export class Stage {
     this.area = area;
     const { clientWidth: width, clientHeight: height } = this.canvas;
     this.renderer.setSize(width, height, false);
+    this.shared.pixel.value = 2 / Math.max(1, height);
     this.takeQuality();
     this.keeper.resize(this.replacement?.area(area) ?? area, width, height);
     if (this.keeper.fitted) this.orbit(this.keeper.jump());
   }
 
-  /// The picture's and the shadow's resolution. The camera stays where it is.
+  /// The picture's resolution. The camera stays where it is.
   private takeQuality(): void {
-    const { scale, shadow } = this.quality.level;
-    this.setScale(scale);
-    if (this.light.shadow.mapSize.x !== shadow) this.light.shadow.mapSize.setScalar(shadow);
+    this.setScale(this.quality.level.scale);
     this.invalidate();
   }
 
@@ -306,6 +325,7 @@ export class Stage {
     if (this.still || (!this.dirty && sinceLast < stillAfter)) return false;
     const scale = this.dirty ? this.quality.level.scale : this.stillScale;
     if (scale !== this.scale) this.setScale(scale);
+    this.setFineness(!this.dirty);
     if (this.dirty) this.quality.sample(sinceLast);
     this.lastDrawn = now;
     this.render();
@@ -320,12 +340,25 @@ export class Stage {
   /// Draws at full resolution at once; until the caller returns, the picture can be copied from the canvas.
   drawSharp(): void {
     if (this.scale !== this.stillScale) this.setScale(this.stillScale);
+    this.setFineness(true);
     this.render();
+  }
+
+  private setFineness(still: boolean): void {
+    const { triangles, details } = this.quality.level;
+    const { dirty } = this;
+    this.detail.details = still || details;
+    this.refit({ triangles: still ? Math.max(stillTriangles, triangles) : triangles });
+    this.dirty = dirty;
   }
 
   private render(): void {
     this.dirty = false;
     this.onDraw();
+    for (const cloth of this.cloths) {
+      const away = Math.max(cloth.box.distanceToPoint(this.camera.position), this.camera.near);
+      cloth.pixel = (away * 2 * Math.tan(MathUtils.degToRad(this.camera.fov / 2))) / this.canvas.height;
+    }
     const render = (): void => {
       this.groundShadow.draw();
       this.renderer.render(this.scene, this.camera);
