@@ -21,7 +21,7 @@ export interface FabricLook {
 const cotton: FabricLook = {
   weave: "plain",
   pitch: [0.4, 0.4],
-  relief: 0.55,
+  relief: 0.4,
   slub: 0.1,
   slubSize: 9,
   roughness: 0.82,

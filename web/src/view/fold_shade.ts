@@ -3,7 +3,8 @@
 // lighting).
 import type { Topology } from "../link/protocol";
 
-const reach = 4; // mean edges: discs that are farther away keep off little
+const reach = 3; // mean edges: discs that are farther away keep off little
+export const rounds = 4; // of frames that follow each other, for the shade of all vertices
 const flat = 0.08; // sine of the angle above a surface from which a disc counts: less is the mesh's own roughness
 
 export class FoldShade {
@@ -19,8 +20,14 @@ export class FoldShade {
   }
 
   /// The share of light that is kept from the front and the back of each vertex, of 255, into `shade` at every
-  /// `stride`-th byte.
-  measure(places: Float32Array, normals: Float32Array, shade: Uint8Array, stride: number): void {
+  /// `stride`-th byte; of every so many vertices one, from the `first`.
+  measure(
+    places: Float32Array,
+    normals: Float32Array,
+    shade: Uint8Array,
+    stride: number,
+    [first, every]: [number, number] = [0, 1],
+  ): void {
     const { vertexCount: count } = this.mesh;
     const radius = reach * this.measureAreas(places);
     if (!(radius > 0)) return;
@@ -50,7 +57,7 @@ export class FoldShade {
     const begin = (c: number): number => cells[c + 1] as number;
     const end = (c: number): number => (c + 2 <= nx * ny * nz ? (cells[c + 2] as number) : count);
     const square = radius * radius;
-    for (let v = 0; v < count; ++v) {
+    for (let v = first; v < count; v += every) {
       const px = places[3 * v] as number,
         py = places[3 * v + 1] as number,
         pz = places[3 * v + 2] as number;
@@ -71,10 +78,11 @@ export class FoldShade {
               dz = (places[3 * w + 2] as number) - pz;
             const far = dx * dx + dy * dy + dz * dz;
             if (far >= square || far === 0) continue;
+            const rise = dx * mx + dy * my + dz * mz;
+            if (rise * rise < flat * flat * far) continue;
             const over = 1 / Math.sqrt(far);
-            const height = (dx * mx + dy * my + dz * mz) * over;
+            const height = rise * over;
             const above = Math.abs(height) - flat;
-            if (above <= 0) continue;
             const facing = Math.abs(
               dx * (normals[3 * w] as number) +
                 dy * (normals[3 * w + 1] as number) +
@@ -86,8 +94,8 @@ export class FoldShade {
             else back += kept;
           }
         }
-      shade[stride * v] = 255 * (1 - Math.exp(-1.6 * front));
-      shade[stride * v + 1] = 255 * (1 - Math.exp(-1.6 * back));
+      shade[stride * v] = 255 * (1 - Math.exp(-1.9 * front));
+      shade[stride * v + 1] = 255 * (1 - Math.exp(-1.9 * back));
     }
   }
 

@@ -11,7 +11,7 @@ export interface Level {
 }
 
 const levels: Level[] = [
-  { scale: 1, triangles: 80_000, details: true },
+  { scale: 1, triangles: 40_000, details: true },
   { scale: 1, triangles: 13_000, details: false },
   { scale: 0.8, triangles: 13_000, details: false },
   { scale: 0.65, triangles: 5_000, details: false },

@@ -1,7 +1,7 @@
 // The cloth as a finer, curved mesh with a rounded hem and darkness in its folds: made of the same frames, in the page.
 import { BufferAttribute, BufferGeometry } from "three";
 import type { Header, Topology } from "../link/protocol";
-import { FoldShade } from "./fold_shade";
+import { FoldShade, rounds } from "./fold_shade";
 import { around, Hem } from "./hem";
 import { Patches } from "./patches";
 import { decodePlaces } from "./places";
@@ -27,6 +27,8 @@ export class SmoothCloth {
   private readonly buffers: [Buffers, Buffers]; // in turn, as in ClothView
   private readonly clothOf: Uint8Array | Uint32Array; ///< of each vertex of the topology
   private readonly count: number;
+  private shadedAt = Number.NEGATIVE_INFINITY; // simulated time [s]
+  private round = 0;
 
   constructor(
     topology: Topology,
@@ -108,7 +110,8 @@ export class SmoothCloth {
     this.patches.place(places, normals);
     this.hem.place(places, normals, of.vertexCount, (vertex) => radii[this.clothOf[vertex] as number] ?? 0);
     const shade = now.shade.array as Uint8Array;
-    this.folds.measure(places, normals, shade, shadeBytes);
+    shade.set((resting.shade.array as Uint8Array).subarray(0, shadeBytes * of.coarse));
+    this.shadeFolds(frame.header.time, shade);
     interpolate(of, shade.subarray(0, shadeBytes * of.vertexCount), shadeBytes);
     (now.position.array as Float32Array).set(places);
     const packed = now.normal.array as Int16Array;
@@ -126,6 +129,15 @@ export class SmoothCloth {
     }
     this.bind(now, "");
     this.bind(resting, "resting"); // so that it is freed with the geometry
+  }
+
+  // Of frames that follow each other each has the shade of some vertices anew: it changes slowly, and all of it would
+  // take as long as the rest. A frame that is shown again, or that is of another time, has all of it.
+  private shadeFolds(time: number, shade: Uint8Array): void {
+    const follows = time > this.shadedAt && time < this.shadedAt + 0.1;
+    this.shadedAt = time;
+    this.round = (this.round + 1) % rounds;
+    this.folds.measure(this.places, this.normals, shade, shadeBytes, follows ? [this.round, rounds] : [0, 1]);
   }
 
   private bind(buffers: Buffers, prefix: string): void {
