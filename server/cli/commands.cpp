@@ -77,7 +77,8 @@ void SceneChoice::add_set(CLI::App& command) {
 void add_asset_root(CLI::App& command, std::string& folder) {
   command
       .add_option("--asset-root", folder,
-                  "the folder of the .obj and .ply files that a scene names; without it, the folder that the "
+                  "the folder of the meshes (.obj, .ply, .glb, .gltf) that a scene names; without it, the "
+                  "folder that the "
                   "scene file is in")
       ->type_name("FOLDER");
 }

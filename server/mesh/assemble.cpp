@@ -15,69 +15,108 @@ using Index = std::uint32_t;
 
 class Assembly {
  public:
-  /// `first`: see joined().
-  Assembly(const Raw& raw, const std::vector<Index>& first) : raw_(raw), first_(first) {}
+  Assembly(const Raw& raw, const Joined& one)
+      : raw_(raw), one_(one), first_(one.first), mended_(raw.mended) {}
 
   Result<Mesh> run() {
-    if (raw_.vertices.empty() || raw_.faces.empty())
-      return Error{raw_.name,
-                   std::to_string(raw_.vertices.size()) + " vertices and " +
-                       std::to_string(raw_.faces.size()) + " faces",
-                   "a mesh: vertices, and faces between them"};
+    if (raw_.vertices.empty() || raw_.faces.empty()) return empty();
     mesh_.line_word = raw_.line_word;
+    mesh_.no_cloth = raw_.no_cloth;
     if (const Status cut = make_triangles(); !cut) return cut.error();
+    if (const Status single = leave_doubles_out(); !single) return single.error();
+    if (mesh_.triangles.empty()) return empty();
     drop_unused();
-    if (const Status single = refuse_doubles(); !single) return single.error();
+    if (raw_.mend && divide_edges(mesh_, one_.reach, raw_, mended_))
+      if (const Status single = leave_doubles_out(); !single) return single.error();
     const std::vector<Side> sides = sides_of(mesh_.triangles);
     if (const Status turned = turn_to_one_side(sides); !turned) return turned.error();
     count_parts();
-    mesh_.notes = notes_of(open_places(mesh_.vertices, mesh_.triangles, sides),
-                           [&](std::size_t triangle) { return mesh_.place_of(triangle); });
+    if (raw_.mend) mesh_.notes = mended_.notes();
+    for (std::string& note : notes_of(open_places(mesh_.vertices, mesh_.triangles, sides),
+                                      [&](std::size_t triangle) { return mesh_.place_of(triangle); }))
+      mesh_.notes.push_back(std::move(note));
     return std::move(mesh_);
   }
 
  private:
-  std::string place(std::size_t line) const { return raw_.line_word + (" " + std::to_string(line)); }
+  /// There are no triangles: what was mended may be why.
+  Error empty() const {
+    if (raw_.no_cloth) return *raw_.no_cloth;
+    std::string what = std::to_string(raw_.vertices.size()) + " vertices and " +
+                       std::to_string(raw_.faces.size()) + " faces";
+    if (raw_.mend)
+      for (const std::string& note : mended_.notes()) what += "; " + note;
+    return Error{raw_.name, what, "a mesh: vertices, and faces with an area between them"};
+  }
 
   Status make_triangles() {
     for (Index i = 0; i < first_.size(); ++i) mesh_.merged += first_[i] != i;
+    for (const Index i : one_.welded) mended_.add(Fault::welded, "vertex " + std::to_string(i));
     const bool textured = std::all_of(raw_.corners.begin(), raw_.corners.end(),
                                       [](const Corner& corner) { return corner.texture != no_texture; });
     mesh_.triangles.reserve(raw_.triangles);
     mesh_.face_line.reserve(raw_.triangles);
     if (textured) mesh_.texture.reserve(raw_.triangles);
-    std::size_t budget = 200'000'000;  // about half a second
-    std::vector<dvec3> corners;
-    std::vector<std::array<Index, 3>> cut;
-    std::vector<Index> sorted;
-    for (const Face& face : raw_.faces) {
-      const Corner* of = raw_.corners.data() + face.first;
-      corners.clear();
-      sorted.clear();
-      for (Index i = 0; i < face.count; ++i) {
-        corners.push_back(raw_.vertices[of[i].vertex]);
-        sorted.push_back(first_[of[i].vertex]);
-      }
-      std::sort(sorted.begin(), sorted.end());
-      if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
-        return raw_.error(face.line, "a face with two corners at the same place",
-                          "corners at different places");
-      cut.clear();
-      if (const std::string wrong = triangulate(corners, cut, budget); !wrong.empty())
-        return raw_.error(face.line, wrong, "a polygon with an area, cut into triangles if need be");
-      for (const auto& [a, b, c] : cut) {
-        if (has_no_area(corners[a], corners[b], corners[c]))
-          return raw_.error(face.line, "a triangle without area (its corners are in line)",
-                            "triangles with an area");
-        mesh_.triangles.push_back({first_[of[a].vertex], first_[of[b].vertex], first_[of[c].vertex]});
-        mesh_.face_line.push_back(face.line);
-        if (textured)
-          mesh_.texture.push_back(
-              {raw_.texture[of[a].texture], raw_.texture[of[b].texture], raw_.texture[of[c].texture]});
-      }
-    }
+    for (const Face& face : raw_.faces)
+      if (const Status cut = cut_face(face, textured); !cut) return cut.error();
     mesh_.vertex_of = first_;
     return ok();
+  }
+
+  Status cut_face(const Face& face, bool textured) {
+    const auto mend = [&](Fault fault) { mended_.add(fault, raw_.place(face.line)); };
+    const Corner* of = raw_.corners.data() + face.first;
+    std::vector<Corner> left;
+    for (Index i = 0; i < face.count; ++i)
+      if (!raw_.mend || first_[of[i].vertex] != first_[of[(i + 1) % face.count].vertex])
+        left.push_back(of[i]);
+    if (left.size() < 3) return mend(Fault::no_area), ok();
+    if (left.size() < face.count) mend(Fault::corner_twice);
+    corners_.clear();
+    sorted_.clear();
+    for (const Corner& corner : left) {
+      corners_.push_back(raw_.vertices[corner.vertex]);
+      sorted_.push_back(first_[corner.vertex]);
+    }
+    std::sort(sorted_.begin(), sorted_.end());
+    if (!raw_.mend && std::adjacent_find(sorted_.begin(), sorted_.end()) != sorted_.end())
+      return raw_.error(face.line, "a face with two corners at the same place",
+                        "corners at different places");
+    cut_.clear();
+    const std::string wrong = triangulate(corners_, cut_, budget_);
+    if (!wrong.empty()) {
+      if (!raw_.mend)
+        return raw_.error(face.line, wrong, "a polygon with an area, cut into triangles if need be");
+      cut_.clear();
+      triangulate_folded(corners_, cut_, budget_);
+    }
+    bool some = false, flat = false;
+    for (const auto& [a, b, c] : cut_) {
+      const std::array<Index, 3> one{first_[left[a].vertex], first_[left[b].vertex], first_[left[c].vertex]};
+      const bool flat_as_written = has_no_area(corners_[a], corners_[b], corners_[c]);
+      if (flat_as_written || (raw_.mend && is_flat_now(one))) {
+        if (!raw_.mend)
+          return raw_.error(face.line, "a triangle without area (its corners are in line)",
+                            "triangles with an area");
+        flat = true;
+        continue;
+      }
+      some = true;
+      mesh_.triangles.push_back(one);
+      mesh_.face_line.push_back(face.line);
+      if (textured)
+        mesh_.texture.push_back(
+            {raw_.texture[left[a].texture], raw_.texture[left[b].texture], raw_.texture[left[c].texture]});
+    }
+    if (some && !wrong.empty()) mend(Fault::folded);
+    if (!some || (flat && wrong.empty())) mend(Fault::no_area);
+    return ok();
+  }
+
+  /// With its corners where they are once vertices are joined.
+  bool is_flat_now(const std::array<Index, 3>& one) const {
+    return one[0] == one[1] || one[1] == one[2] || one[2] == one[0] ||
+           has_no_area(raw_.vertices[one[0]], raw_.vertices[one[1]], raw_.vertices[one[2]]);
   }
 
   void drop_unused() {
@@ -87,7 +126,10 @@ class Assembly {
       for (const Index corner : triangle) number[corner] = used;
     Index next = 0;
     for (Index i = 0; i < number.size(); ++i) {
-      if (number[i] == 0 && mesh_.vertex_of[i] == i) ++mesh_.unused;
+      if (number[i] == 0 && mesh_.vertex_of[i] == i) {
+        ++mesh_.unused;
+        if (!raw_.part) mended_.add(Fault::unused, "vertex " + std::to_string(i));
+      }
       if (number[i] == used) mesh_.vertices.push_back(raw_.vertices[i]);
       number[i] = number[i] == used ? next++ : no_vertex;
     }
@@ -96,7 +138,8 @@ class Assembly {
     for (Index& vertex : mesh_.vertex_of) vertex = number[vertex];
   }
 
-  Status refuse_doubles() const {
+  /// Of triangles with the same corners the first stays.
+  Status leave_doubles_out() {
     std::vector<std::pair<std::array<Index, 3>, Index>> sorted;
     sorted.reserve(mesh_.triangles.size());
     for (Index i = 0; i < mesh_.triangles.size(); ++i) {
@@ -104,12 +147,33 @@ class Assembly {
       std::sort(sorted.back().first.begin(), sorted.back().first.end());
     }
     std::sort(sorted.begin(), sorted.end());
-    for (std::size_t i = 1; i < sorted.size(); ++i)
-      if (sorted[i].first == sorted[i - 1].first)
-        return raw_.error(
-            mesh_.face_line[sorted[i].second],
-            "a triangle at the same place as that of " + place(mesh_.face_line[sorted[i - 1].second]),
-            "each triangle once: layers of cloth need a distance between them");
+    std::vector<Index> doubled;
+    for (std::size_t i = 1; i < sorted.size(); ++i) {
+      if (sorted[i].first != sorted[i - 1].first) continue;
+      if (!raw_.mend)
+        return raw_.error(mesh_.face_line[sorted[i].second],
+                          "a triangle at the same place as that of " + mesh_.place_of(sorted[i - 1].second),
+                          "each triangle once: layers of cloth need a distance between them");
+      doubled.push_back(sorted[i].second);
+    }
+    std::sort(doubled.begin(), doubled.end());
+    for (const Index triangle : doubled) mended_.add(Fault::doubled, mesh_.place_of(triangle));
+    if (doubled.empty()) return ok();
+    const auto keep_others = [&](auto& list) {
+      if (list.empty()) return;
+      std::size_t next = 0;
+      auto left_out = doubled.begin();
+      for (Index i = 0; i < list.size(); ++i) {
+        if (left_out != doubled.end() && *left_out == i)
+          ++left_out;
+        else
+          list[next++] = list[i];
+      }
+      list.resize(next);
+    };
+    keep_others(mesh_.triangles);
+    keep_others(mesh_.face_line);
+    keep_others(mesh_.texture);
     return ok();
   }
 
@@ -147,9 +211,14 @@ class Assembly {
             state[next.triangle] = wanted;
             open.push_back(next.triangle);
           } else if (state[next.triangle] != wanted) {
-            return raw_.error(mesh_.face_line[next.triangle],
-                              "a surface with one side only, like a Moebius band, which closes here",
-                              "a surface with two sides");
+            const Error wrong =
+                raw_.error(mesh_.face_line[next.triangle],
+                           "a surface with one side only, like a Moebius band, which closes here",
+                           "a surface with two sides");
+            if (!raw_.mend) return wrong;
+            if (!mesh_.no_cloth) mesh_.no_cloth = wrong;
+            if (at < next.triangle)  // each edge is seen from both sides
+              mended_.add(Fault::one_sided, mesh_.place_of(next.triangle));
           }
         }
       }
@@ -176,19 +245,28 @@ class Assembly {
   }
 
   const Raw& raw_;
+  const Joined& one_;
   const std::vector<Index>& first_;
+  Mending mended_;
   Mesh mesh_;
+  std::size_t budget_ = 200'000'000;  // of cutting polygons: about half a second
+  std::vector<dvec3> corners_;        // of the face that is cut
+  std::vector<std::array<Index, 3>> cut_;
+  std::vector<Index> sorted_;
 };
 
 }  // namespace
 
 Result<Mesh> assemble(const Raw& raw) {
-  const std::vector<Index> first = joined(raw, true);
-  Result<Mesh> mesh = Assembly(raw, first).run();
-  if (mesh) return mesh;
+  const Joined near = joined(raw, true);
+  Result<Mesh> mesh = Assembly(raw, near).run();
+  const auto whole = [&](const Result<Mesh>& of) { return of && (!of->no_cloth || raw.no_cloth); };
+  if (whole(mesh)) return mesh;
   // What is a mesh as it is written is not refused for what joining would make of it.
-  const std::vector<Index> exact = joined(raw, false);
-  return first == exact ? mesh : Assembly(raw, exact).run();
+  const Joined exact = joined(raw, false);
+  if (near.first == exact.first) return mesh;
+  Result<Mesh> as_written = Assembly(raw, exact).run();
+  return mesh && !whole(as_written) ? std::move(mesh) : std::move(as_written);
 }
 
 }  // namespace clothlab::mesh

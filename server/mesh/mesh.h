@@ -1,12 +1,15 @@
-// Reads a triangle mesh from the bytes of an .obj or .ply file: checked, cleaned of what a file may have and
-// a cloth may not, and with an error that names the file's line for all else. See README.md here.
+// Reads a triangle mesh from the bytes of an .obj, .ply, .glb or .gltf file: checked, mended where it can be,
+// and with an error that names the file's line for all else. See README.md here.
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,7 +37,10 @@ struct Mesh {
   std::string place_of(std::size_t triangle) const;
 
   std::vector<std::string>
-      notes;  ///< what a person should know of it, by line: where it is open, in sentences
+      notes;  ///< what a person should know of it, by line: what was mended, where it is open, in sentences
+  /// Why it can be a body and no cloth: what is wrong with the file and cannot be mended, but does no harm to
+  /// a body.
+  std::optional<Error> no_cloth;
 
   std::vector<std::uint32_t> face_line;  ///< [triangle_count]
   const char* line_word = "line";        ///< of a binary file, which has no lines: "face"
@@ -53,14 +59,26 @@ inline constexpr double largest_coordinate = 1e6;
 /// The most corners of a polygon.
 inline constexpr std::size_t max_corners = 1024;
 
-/// Reads the bytes of a file. It is a PLY file (text or binary) if it starts as one or `name` ends in ".ply",
-/// else an OBJ file. Error: `where` is `name` and the line, `what` was found there and `remedy` is allowed.
-Result<Mesh> read(std::string_view bytes, const std::string& name, const Limits& limits);
+/// What of a file is read, and how.
+struct Reading {
+  bool mend = true;    ///< what can be mended is, with a note; false: it is refused
+  std::string node{};  ///< the name of one object, group or node of the file; empty: all of it
+  auto operator<=>(const Reading&) const = default;
+};
+/// The bytes of a file beside the one that is read, by the name that it has there: a buffer of a .gltf file.
+using Beside = std::function<Result<std::string>(const std::string& name)>;
+
+/// Reads the bytes of a file. It is a PLY or glTF file if it starts as one or `name` ends in ".ply", ".glb"
+/// or
+/// ".gltf", else an OBJ file. Error: `where` is `name` and the line, `what` was found there and `remedy` is
+/// allowed. `beside` (may be empty): what a .gltf file names.
+Result<Mesh> read(std::string_view bytes, const std::string& name, const Limits& limits,
+                  const Reading& reading = {}, const Beside& beside = {});
 
 /// The same of triangles that are given as such, each of three different vertices that exist. Errors count
 /// them from 0: "triangle 3".
 Result<Mesh> assemble_triangles(const std::vector<glm::dvec3>& vertices,
-                                const std::vector<std::array<std::uint32_t, 3>>& triangles);
+                                const std::vector<std::array<std::uint32_t, 3>>& triangles, bool mend = true);
 
 /// Mesh::notes of triangles that stay as they are given, counted from 0.
 std::vector<std::string> notes_of_triangles(const std::vector<glm::dvec3>& vertices,

@@ -1,5 +1,6 @@
-// OBJ files: the `v`, `vt` and `f` lines of Wavefront's format. Normals, groups and materials are left aside;
-// curved surfaces and all that is no OBJ are refused.
+// OBJ files: the `v`, `vt` and `f` lines of Wavefront's format, of all of it or of one object or group (`o`,
+// `g`). Normals and materials are left aside; of curved surfaces and other words a cloth or a body is made
+// without them, or they are refused.
 #include <algorithm>
 #include <cmath>
 
@@ -12,9 +13,9 @@ namespace clothlab::mesh {
 namespace {
 
 /// Keywords without a meaning for cloth.
-constexpr std::string_view ignored[] = {"vn",    "vp",  "o",        "g",        "s",          "mg",
-                                        "l",     "p",   "usemtl",   "mtllib",   "usemap",     "maplib",
-                                        "bevel", "lod", "c_interp", "d_interp", "shadow_obj", "trace_obj"};
+constexpr std::string_view ignored[] = {"vn",       "vp",       "s",          "mg",       "l",     "p",
+                                        "usemtl",   "mtllib",   "usemap",     "maplib",   "bevel", "lod",
+                                        "c_interp", "d_interp", "shadow_obj", "trace_obj"};
 constexpr std::string_view curved[] = {"cstype", "deg",  "bmat", "step", "curv", "curv2", "surf",
                                        "parm",   "trim", "hole", "scrv", "sp",   "end",   "con"};
 
@@ -25,7 +26,11 @@ bool contains(const std::string_view (&words)[count], std::string_view word) {
 
 class ObjReader {
  public:
-  ObjReader(const std::string& name, const Limits& limits) : limits_(limits) { raw_.name = name; }
+  ObjReader(const std::string& name, const Limits& limits, const Reading& reading)
+      : limits_(limits), node_(reading.node), wanted_(reading.node.empty()) {
+    raw_.name = name;
+    raw_.mend = reading.mend;
+  }
 
   Result<Raw> read(std::string_view text) {
     Lines lines(text);
@@ -43,6 +48,7 @@ class ObjReader {
       }
       if (const Status read = read_line(line); !read) return read.error();
     }
+    if (!node_.empty() && !found_) return no_part(raw_.name, node_, parts_);
     return std::move(raw_);
   }
 
@@ -61,9 +67,44 @@ class ObjReader {
     if (keyword == "v") return read_vertex(line);
     if (keyword == "vt") return read_texture(line);
     if (keyword == "f") return read_face(line);
+    if (keyword == "o" || keyword == "g") return read_part(keyword == "o", line), ok();
     if (contains(curved, keyword))
-      return wrong(quoted(keyword) + ", of a curved surface", "polygons alone: convert it to a mesh");
-    return wrong(quoted(keyword), "a line of an .obj file: v, vt, vn, f, o, g, s, usemtl, mtllib, #");
+      return raw_.leave_out(
+          Fault::curve, line_,
+          wrong(quoted(keyword) + ", of a curved surface", "polygons alone: convert it to a mesh"));
+    if (!raw_.mend)
+      return wrong(quoted(keyword), "a line of an .obj file: v, vt, vn, f, o, g, s, usemtl, mtllib, #");
+    raw_.mended.add(Fault::word, quoted(keyword) + " in line " + std::to_string(line_));
+    return ok();
+  }
+
+  /// The faces that follow are of this object, or of these groups.
+  void read_part(bool object, std::string_view rest) {
+    bool& in = object ? in_object_ : in_group_;
+    in = false;
+    if (object) {  // its name may have blanks in it
+      const std::size_t first = std::min(rest.find_first_not_of(" \t"), rest.size());
+      const std::size_t last = rest.find_last_not_of(" \t");
+      name_part(rest.substr(first, last == std::string_view::npos ? 0 : last + 1 - first), in);
+      in_group_ = false;
+    } else {
+      const std::size_t first = std::min(rest.find_first_not_of(" \t"), rest.size());
+      const std::size_t last = rest.find_last_not_of(" \t");
+      if (last != std::string_view::npos && rest.substr(first, last + 1 - first) == node_)
+        name_part(node_, in);
+      else
+        for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest))
+          name_part(word, in);
+    }
+    wanted_ = node_.empty() || in_object_ || in_group_;
+  }
+
+  void name_part(std::string_view name, bool& in) {
+    if (name.empty()) return;
+    if (parts_.size() < most_parts_named && std::find(parts_.begin(), parts_.end(), name) == parts_.end())
+      parts_.emplace_back(name);
+    if (name != node_) return;
+    in = found_ = true;
   }
 
   /// One finite number in range. `what` names it in the error.
@@ -91,6 +132,12 @@ class ObjReader {
   }
 
   Status read_vertex(std::string_view rest) {
+    const Result<glm::dvec3> place = place_in(rest);
+    return place ? raw_.add_vertex(*place, line_, limits_)
+                 : raw_.add_placeless(place.error(), line_, limits_);
+  }
+
+  Result<glm::dvec3> place_in(std::string_view rest) {
     glm::dvec3 place(0.0);
     constexpr const char* names[] = {"x", "y", "z"};
     for (int axis = 0; axis < 3; ++axis) {
@@ -99,20 +146,28 @@ class ObjReader {
       raw_.unit = std::min(raw_.unit, unit_of(word));
     }
     if (const Status rest_read = no_more_than(rest, 4); !rest_read) return rest_read.error();
-    return raw_.add_vertex(place, line_, limits_);
+    return place;
   }
 
-  Status read_texture(std::string_view rest) {
+  Result<glm::dvec2> texture_in(std::string_view rest) const {
     glm::dvec2 place(0.0);
     if (const Status read = number(next_word(rest), "u", place.x); !read) return read.error();
     std::string_view word = next_word(rest);
     if (!word.empty())
       if (const Status read = number(word, "v", place.y); !read) return read.error();
     if (const Status rest_read = no_more_than(rest, 1); !rest_read) return rest_read.error();
+    return place;
+  }
+
+  Status read_texture(std::string_view rest) {
+    const Result<glm::dvec2> place = texture_in(rest);
+    if (!place)
+      if (const Status left = raw_.leave_out(Fault::texture, line_, place.error()); !left)
+        return left.error();
     if (raw_.texture.size() >= 3 * limits_.triangles)
       return wrong("more than " + std::to_string(3 * limits_.triangles) + " texture coordinates",
                    "at most so many");
-    raw_.texture.push_back(place);
+    raw_.texture.push_back(place ? *place : glm::dvec2(0.0));
     return ok();
   }
 
@@ -150,10 +205,11 @@ class ObjReader {
   }
 
   Status read_face(std::string_view rest) {
+    if (!wanted_) return ok();
     corners_.clear();
     for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
       const Result<Corner> read = corner(word);
-      if (!read) return read.error();
+      if (!read) return raw_.leave_out(Fault::face, line_, read.error());
       corners_.push_back(*read);
       if (corners_.size() > max_corners) break;  // add_face refuses it
     }
@@ -161,6 +217,10 @@ class ObjReader {
   }
 
   const Limits& limits_;
+  const std::string node_;
+  bool wanted_;  ///< the faces that follow are those of the part that is read
+  bool in_object_ = false, in_group_ = false, found_ = false;
+  std::vector<std::string> parts_;  ///< names of objects and groups
   Raw raw_;
   std::size_t line_ = 0;
   std::vector<Corner> corners_;
@@ -168,8 +228,9 @@ class ObjReader {
 
 }  // namespace
 
-Result<Raw> read_obj(std::string_view text, const std::string& name, const Limits& limits) {
-  return ObjReader(name, limits).read(text);
+Result<Raw> read_obj(std::string_view text, const std::string& name, const Limits& limits,
+                     const Reading& reading) {
+  return ObjReader(name, limits, reading).read(text);
 }
 
 }  // namespace clothlab::mesh

@@ -21,6 +21,7 @@ using Index = std::uint32_t;
 /// makes, and layers that lie on each other are some times that apart.
 constexpr double near_share = 1e-3;
 constexpr std::size_t most_open_looks = 50'000'000;
+constexpr std::size_t most_listed = 1u << 20;
 
 class Search {
  public:
@@ -32,11 +33,22 @@ class Search {
     });
   }
 
+  /// Those that are no farther than `reach` from the edge.
+  std::vector<CornerOnEdge> list(double reach) {
+    if (border_.empty()) return {};
+    const PlaceGrid grid = border_places();
+    std::size_t budget = most_open_looks;
+    listed_within_ = reach;
+    for (const Side& edge : border_)
+      if (!look_at_edge(grid, edge, budget) || listed_.size() > most_listed) break;
+    std::sort(listed_.begin(), listed_.end(),
+              [](const CornerOnEdge& a, const CornerOnEdge& b) { return a.triangle < b.triangle; });
+    return std::move(listed_);
+  }
+
   OpenPlaces run() {
     if (border_.empty()) return {};
-    list_border_vertices();
-    PlaceGrid grid(mean_);
-    for (const Index i : on_border_) grid.add(i, vertices_[i]);
+    const PlaceGrid grid = border_places();
     std::size_t budget = most_open_looks;
     for (const Index i : on_border_)
       if (!look_at_corner(grid, i, budget)) return found_;
@@ -46,6 +58,13 @@ class Search {
   }
 
  private:
+  PlaceGrid border_places() {
+    list_border_vertices();
+    PlaceGrid grid(mean_);
+    for (const Index i : on_border_) grid.add(i, vertices_[i]);
+    return grid;
+  }
+
   void list_border_vertices() {
     shortest_.assign(vertices_.size(), std::numeric_limits<double>::infinity());
     triangle_.assign(vertices_.size(), 0);
@@ -87,6 +106,7 @@ class Search {
       const double share = glm::dot(place - a, b - a) / (length * length);
       const double gap = glm::distance(place, a + share * (b - a));
       if (!(share > 0.0 && share < 1.0 && gap <= near)) return;
+      if (gap <= listed_within_) listed_.push_back({edge.triangle, i, edge.low, edge.high, share});
       if (found_.on_edges++ == 0) found_.on_edge = {triangle_[i], edge.triangle, gap};
     });
   }
@@ -97,6 +117,8 @@ class Search {
   std::vector<Index> on_border_, triangle_;
   std::vector<double> shortest_;  // side of the border at each of its vertices [m]
   double mean_ = 0.0;
+  double listed_within_ = -1.0;
+  std::vector<CornerOnEdge> listed_;
   OpenPlaces found_;
 };
 
@@ -105,6 +127,12 @@ class Search {
 OpenPlaces open_places(const std::vector<dvec3>& vertices, const std::vector<std::array<Index, 3>>& triangles,
                        const std::vector<Side>& sides) {
   return Search(vertices, triangles, sides).run();
+}
+
+std::vector<CornerOnEdge> corners_on_edges(const std::vector<dvec3>& vertices,
+                                           const std::vector<std::array<Index, 3>>& triangles,
+                                           const std::vector<Side>& sides, double reach) {
+  return Search(vertices, triangles, sides).list(reach);
 }
 
 std::vector<std::string> notes_of(const OpenPlaces& open,

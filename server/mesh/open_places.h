@@ -30,6 +30,17 @@ OpenPlaces open_places(const std::vector<glm::dvec3>& vertices,
                        const std::vector<std::array<std::uint32_t, 3>>& triangles,
                        const std::vector<Side>& sides);
 
+/// A corner on the inside of an edge of a triangle that has no vertex there.
+struct CornerOnEdge {
+  std::uint32_t triangle = 0, vertex = 0;
+  std::uint32_t from = 0, to = 0;  ///< the edge's ends
+  double share = 0;                ///< of the way from `from` to `to`
+};
+/// All of them that are no farther than `reach` [m] from the edge, by triangle; of very many the first.
+std::vector<CornerOnEdge> corners_on_edges(const std::vector<glm::dvec3>& vertices,
+                                           const std::vector<std::array<std::uint32_t, 3>>& triangles,
+                                           const std::vector<Side>& sides, double reach);
+
 /// What to tell a person of them, a sentence each; none if there are none. `place_of` says where a triangle
 /// is.
 std::vector<std::string> notes_of(const OpenPlaces& open,

@@ -1,6 +1,6 @@
-// PLY files, as text or binary of either byte order (Turk 1994): the elements `vertex` and `face`; others are
-// skipped. Texture coordinates are those of the vertices (s t, u v, texture_u texture_v) or of the faces'
-// corners (a list `texcoord`).
+// PLY files, as text or binary of either byte order (Turk 1994): the elements `vertex` and `face`, and
+// `tristrips` if that is mended; others are skipped. Texture coordinates are those of the vertices (s t, u v,
+// texture_u texture_v) or of the faces' corners (a list `texcoord`).
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -86,9 +86,10 @@ double value_of(Type type, const char* from, bool swap) {
 
 class PlyReader {
  public:
-  PlyReader(std::string_view bytes, const std::string& name, const Limits& limits)
+  PlyReader(std::string_view bytes, const std::string& name, const Limits& limits, bool mend)
       : bytes_(bytes), limits_(limits), lines_(bytes) {
     raw_.name = name;
+    raw_.mend = mend;
   }
 
   Result<Raw> read() {
@@ -184,14 +185,17 @@ class PlyReader {
       return std::find_if(elements_.begin(), elements_.end(),
                           [&](const Element& element) { return element.name == name; });
     };
-    const auto vertex = named("vertex"), face = named("face");
+    const auto vertex = named("vertex"), strips = named("tristrips");
+    auto face = named("face");
+    if (face == elements_.end() && raw_.mend) face = strips;
     if (vertex == elements_.end() || face == elements_.end() || face < vertex)
       return in_header("end_header", "an element vertex, then an element face, above it");
     for (const char* axis : {"x", "y", "z"})
       if (const Property* found = vertex->find({axis}); !found || found->count)
         return in_header("an element vertex without " + std::string(axis), "x, y and z of each vertex");
     if (const Property* found = face->find({"vertex_indices", "vertex_index"}); !found || !found->count)
-      return in_header("an element face without vertex_indices", "property list uchar int vertex_indices");
+      return in_header("an element " + element_word(*face) + " without vertex_indices",
+                       "property list uchar int vertex_indices");
     const auto over = [&](const Element& element, std::size_t most) {
       return Error{raw_.name + ", line " + std::to_string(element.line),
                    std::to_string(element.count) + " of " + quoted(element.name),
@@ -284,7 +288,8 @@ class PlyReader {
     if (vertex)
       wanted = {element.find({"x"}), element.find({"y"}), element.find({"z"}),
                 element.find({"s", "u", "texture_u"}), element.find({"t", "v", "texture_v"})};
-    const Property* indices = face ? element.find({"vertex_indices", "vertex_index"}) : nullptr;
+    const bool strip = element.name == "tristrips" && raw_.mend;
+    const Property* indices = face || strip ? element.find({"vertex_indices", "vertex_index"}) : nullptr;
     const Property* texture = face ? element.find({"texcoord"}) : nullptr;
     if (vertex) per_vertex_ = wanted[3] && wanted[4] && !wanted[3]->count && !wanted[4]->count;
     std::vector<double> numbers, corners, corner_texture, skipped;
@@ -298,7 +303,9 @@ class PlyReader {
           std::vector<double>& into = &property == indices   ? corners
                                       : &property == texture ? corner_texture
                                                              : skipped;
-          const std::size_t most = &property == indices ? max_corners : 2 * max_corners;
+          const std::size_t most = strip                  ? 4 * limits_.triangles
+                                   : &property == indices ? max_corners
+                                                          : 2 * max_corners;
           if (const Status read = list(property, most, into); !read) return read.error();
           continue;
         }
@@ -316,17 +323,36 @@ class PlyReader {
       Status added = ok();
       if (vertex) added = add_vertex(numbers);
       if (face) added = add_face(corners, corner_texture);
+      if (strip) added = add_strip(corners);
       if (!added) return added.error();
     }
     return ok();
   }
 
   Status add_vertex(const std::vector<double>& numbers) {
+    if (per_vertex_) raw_.texture.emplace_back(numbers[3], numbers[4]);
     for (std::size_t i = 0; i < (per_vertex_ ? 5 : 3); ++i)
       if (!(std::abs(numbers[i]) <= largest_coordinate))  // true for NaN
-        return wrong(std::to_string(numbers[i]) + " as a coordinate", "a number from -1e+06 to 1e+06");
-    if (per_vertex_) raw_.texture.emplace_back(numbers[3], numbers[4]);
+        return raw_.add_placeless(
+            wrong(std::to_string(numbers[i]) + " as a coordinate", "a number from -1e+06 to 1e+06"), number_,
+            limits_);
     return raw_.add_vertex({numbers[0], numbers[1], numbers[2]}, number_, limits_);
+  }
+
+  /// Each corner from the third on makes a triangle with the two before it, every second one turned over; a
+  /// negative number ends a strip.
+  Status add_strip(const std::vector<double>& corners) {
+    raw_.mended.add(Fault::strip, at_);
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      if (corners[i] < 0) first = i + 1;
+      if (i < first + 2 || corners[i] < 0) continue;
+      const bool turned = (i - first) % 2 == 1;
+      const double a = corners[i - (turned ? 1 : 2)], b = corners[i - (turned ? 2 : 1)], c = corners[i];
+      if (a == b || b == c || c == a) continue;  // joins two strips
+      if (const Status added = add_face({a, b, c}, {}); !added) return added.error();
+    }
+    return ok();
   }
 
   Status add_face(const std::vector<double>& corners, const std::vector<double>& texture) {
@@ -334,9 +360,11 @@ class PlyReader {
     for (const double corner : corners) {
       if (!(corner >= 0 && corner < static_cast<double>(raw_.vertices.size())) ||
           corner != std::floor(corner))
-        return wrong(std::to_string(corner) + " as a vertex",
-                     raw_.vertices.empty() ? "no face, as there is no vertex"
-                                           : "0 to " + std::to_string(raw_.vertices.size() - 1));
+        return raw_.leave_out(
+            Fault::face, number_,
+            wrong(std::to_string(corner) + " as a vertex",
+                  raw_.vertices.empty() ? "no face, as there is no vertex"
+                                        : "0 to " + std::to_string(raw_.vertices.size() - 1)));
       face_.push_back({static_cast<std::uint32_t>(corner),
                        per_vertex_ ? static_cast<std::uint32_t>(corner) : no_texture});
     }
@@ -344,7 +372,9 @@ class PlyReader {
       for (std::size_t i = 0; i < face_.size(); ++i) {
         const glm::dvec2 place(texture[2 * i], texture[2 * i + 1]);
         if (!(std::abs(place.x) <= largest_coordinate && std::abs(place.y) <= largest_coordinate))
-          return wrong("a texture coordinate that is no number", "numbers from -1e+06 to 1e+06");
+          return raw_.leave_out(
+              Fault::face, number_,
+              wrong("a texture coordinate that is no number", "numbers from -1e+06 to 1e+06"));
         face_[i].texture = static_cast<std::uint32_t>(raw_.texture.size());
         raw_.texture.push_back(place);
       }
@@ -369,8 +399,10 @@ class PlyReader {
 
 }  // namespace
 
-Result<Raw> read_ply(std::string_view bytes, const std::string& name, const Limits& limits) {
-  return PlyReader(bytes, name, limits).read();
+Result<Raw> read_ply(std::string_view bytes, const std::string& name, const Limits& limits,
+                     const Reading& reading) {
+  if (!reading.node.empty()) return no_part(name, reading.node, {});
+  return PlyReader(bytes, name, limits, reading.mend).read();
 }
 
 }  // namespace clothlab::mesh

@@ -91,4 +91,31 @@ std::string triangulate(const std::vector<dvec3>& corners,
   return "";
 }
 
+void triangulate_folded(const std::vector<dvec3>& corners,
+                        std::vector<std::array<std::uint32_t, 3>>& triangles, std::size_t& budget) {
+  std::vector<std::uint32_t> left(corners.size());
+  for (std::uint32_t i = 0; i < left.size(); ++i) left[i] = i;
+  const auto flat = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    return has_no_area(corners[a], corners[b], corners[c]);
+  };
+  while (left.size() > 3) {
+    const std::size_t count = left.size();
+    const auto at = [&](std::size_t i) { return left[i % count]; };
+    std::size_t best = 1;
+    double shortest = std::numeric_limits<double>::infinity();
+    const bool search = budget >= count;  // else all cuts go from the first corner
+    if (search) budget -= count;
+    for (std::size_t i = 0; search && i < count; ++i) {
+      const std::uint32_t a = at(i + count - 1), b = at(i), c = at(i + 1);
+      const double cut = glm::distance(corners[a], corners[c]);
+      if (cut >= shortest || flat(a, b, c) || (count == 4 && flat(a, c, at(i + 2)))) continue;
+      best = i;
+      shortest = cut;
+    }
+    triangles.push_back({at(best + count - 1), at(best), at(best + 1)});
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(best));
+  }
+  triangles.push_back({left[0], left[1], left[2]});
+}
+
 }  // namespace clothlab::mesh

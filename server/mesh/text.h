@@ -34,6 +34,10 @@ std::optional<std::int64_t> integer_in(std::string_view word);
 
 /// The word in quotation marks for a message: cut after 40 bytes, all but printable ASCII as "?".
 std::string quoted(std::string_view word);
+/// Without it std::quoted would be preferred where it is declared.
+inline std::string quoted(const std::string& word) {
+  return quoted(std::string_view(word));
+}
 
 /// The place of the first byte that no text has (a control character but tab), or npos.
 std::size_t first_binary_byte(std::string_view line);

@@ -1,4 +1,5 @@
 // Reads the meshes of cloths and bodies.
+#include <algorithm>
 #include <memory>
 
 #include "server/scene/sections.h"
@@ -50,8 +51,8 @@ TriangleMesh read_triangle_mesh(const Reader& mesh, std::size_t most_vertices, s
   return result;
 }
 
-/// The texture coordinates of a file as a pattern. An error if a triangle has no place in it.
-void read_pattern(const Reader& pattern, const std::string& name, const mesh::Mesh& file,
+/// The texture coordinates of a file times `scale` as a pattern. An error if a triangle has no place in it.
+void read_pattern(const Reader& pattern, double scale, const std::string& name, const mesh::Mesh& file,
                   TriangleMesh& result) {
   pattern.choice({"uv"});
   if (file.texture.empty())
@@ -65,30 +66,63 @@ void read_pattern(const Reader& pattern, const std::string& name, const mesh::Me
           "null, or a flat pattern in which every triangle has an area");
   }
   result.pattern = file.texture;
+  for (auto& corners : result.pattern)
+    for (glm::dvec2& corner : corners) corner *= scale;
+}
+
+/// The names of the key that names a file; the second is the older one.
+const Words file_keys{"file", "obj"};
+
+bool names_file(const Reader& mesh) {
+  return std::any_of(file_keys.begin(), file_keys.end(),
+                     [&](const std::string& key) { return mesh.has(key); });
+}
+
+/// How the document wants the file read, which `mesh` has the keys of.
+mesh::Reading read_reading(const Reader& mesh) {
+  mesh::Reading reading;
+  reading.mend = mesh.member("mend", true).boolean(true);
+  const Reader node = mesh.member("node", json(nullptr));
+  if (!node.is_null())
+    reading.node = node.string("null, or the name of an object, group or node of the file");
+  if (node.is_string() && reading.node.empty()) node.fail("null, or a name");
+  return reading;
 }
 
 /// The mesh of this name that `assets` has: a file, or one that was uploaded. Null after an error.
-SharedMesh find_mesh(const Reader& obj, const Assets* assets, const char* instead) {
-  const std::string name = obj.string("the name of a mesh: an .obj or .ply file, or one of mesh.upload");
-  if (!obj.is_string()) return nullptr;
-  Result<SharedMesh> found = preset_mesh(name);
-  if (!found) found = assets ? assets->mesh(name) : Error{name, "there are no meshes to name here", instead};
+SharedMesh find_mesh(const Reader& file, const mesh::Reading& reading, const Assets* assets,
+                     const char* instead) {
+  const std::string name =
+      file.string("the name of a mesh: an .obj, .ply, .glb or .gltf file, or one of mesh.upload");
+  if (!file.is_string()) return nullptr;
+  Result<SharedMesh> found = preset_mesh(name, reading);
+  if (!found)
+    found = assets ? assets->mesh(name, reading) : Error{name, "there are no meshes to name here", instead};
   if (found) return *found;
-  obj.fail(found.error().where + ": " + found.error().what, found.error().remedy);
+  file.fail(found.error().where + ": " + found.error().what, found.error().remedy);
   return nullptr;
 }
 
-TriangleMesh of_file(const mesh::Mesh& file) {
-  return {file.vertices, file.triangles, {}, file.vertex_of, file.notes};
+/// `name`: of the file, for its notes; empty: there is none.
+TriangleMesh of_file(const mesh::Mesh& file, const std::string& name) {
+  TriangleMesh result{file.vertices, file.triangles, {}, file.vertex_of, file.notes};
+  if (!name.empty())
+    for (std::string& note : result.notes) note = name + ": " + note;
+  return result;
 }
 
 TriangleMesh read_named_mesh(const Reader& mesh, const Assets* assets) {
-  const Reader obj = mesh.member("obj"), pattern = mesh.member("pattern", json(nullptr));
-  const SharedMesh file = find_mesh(obj, assets, "a grid, or vertices and triangles");
+  const Reader named = mesh.member(mesh.exactly_one(file_keys));
+  const Reader pattern = mesh.member("pattern", json(nullptr));
+  const double scale = mesh.member("pattern_scale", 1.0).number(ranges::scale);
+  const SharedMesh file = find_mesh(named, read_reading(mesh), assets, "a grid, or vertices and triangles");
   if (!file) return {};
-  TriangleMesh result = of_file(*file);
-  for (std::string& note : result.notes) note = obj.string("") + ": " + note;
-  if (!pattern.is_null()) read_pattern(pattern, obj.string(""), *file, result);
+  if (file->no_cloth) {
+    named.fail(file->no_cloth->where + ": " + file->no_cloth->what, file->no_cloth->remedy);
+    return {};
+  }
+  TriangleMesh result = of_file(*file, named.string(""));
+  if (!pattern.is_null()) read_pattern(pattern, scale, named.string(""), *file, result);
   return result;
 }
 
@@ -103,37 +137,28 @@ TriangleMesh read_own_mesh(const Reader& mesh) {
 TriangleMesh read_body_mesh(const Reader& mesh) {
   const TriangleMesh given = read_triangle_mesh(mesh, max_body_vertices, max_body_triangles);
   if (mesh.failed()) return {};
-  const Result<mesh::Mesh> clean = mesh::assemble_triangles(given.vertices, given.triangles);
-  if (clean) return of_file(*clean);
-  mesh.fail(clean.error().where + ": " + clean.error().what, clean.error().remedy);
+  const bool mend = mesh.member("mend", true).boolean(true);
+  const Result<mesh::Mesh> clean = mesh::assemble_triangles(given.vertices, given.triangles, mend);
+  if (clean) return of_file(*clean, "");
+  const std::string where = clean.error().where.empty() ? "" : clean.error().where + ": ";
+  mesh.fail(where + clean.error().what, clean.error().remedy);
   return {};
 }
 
 }  // namespace
 
-std::vector<std::string> mesh_notes(const Scene& scene) {
-  std::vector<std::string> notes;
-  const auto add = [&](const char* list, std::size_t i, const TriangleMesh& mesh) {
-    for (const std::string& note : mesh.notes) notes.push_back(list + std::to_string(i) + "/mesh: " + note);
-  };
-  for (std::size_t i = 0; i < scene.cloths.size(); ++i)
-    if (const auto* mesh = std::get_if<TriangleMesh>(&scene.cloths[i].mesh)) add("/cloths/", i, *mesh);
-  for (std::size_t i = 0; i < scene.colliders.size(); ++i)
-    if (const auto* body = std::get_if<Body>(&scene.colliders[i].shape)) add("/colliders/", i, *body->mesh);
-  return notes;
-}
-
 Mesh read_mesh(const Reader& mesh, const Assets* assets) {
-  mesh.object({"grid", "vertices", "triangles", "obj", "pattern"});
-  if (mesh.has("pattern") && !mesh.has("obj")) mesh.fail("\"pattern\" only beside \"obj\"");
+  mesh.object({"grid", "vertices", "triangles", "file", "obj", "node", "mend", "pattern", "pattern_scale"});
+  const bool file = names_file(mesh);
+  for (const char* key : {"pattern", "pattern_scale", "node", "mend"})
+    if (mesh.has(key) && !file) mesh.fail("\"" + std::string(key) + "\" only beside \"file\"");
   if (mesh.has("triangles")) {
-    if (mesh.has("grid") || mesh.has("obj"))
-      mesh.fail("either \"grid\", or \"obj\", or \"vertices\" and \"triangles\"");
+    if (mesh.has("grid") || file)
+      mesh.fail("either \"grid\", or \"file\", or \"vertices\" and \"triangles\"");
     return read_own_mesh(mesh);
   }
-  const std::string kind = mesh.exactly_one({"grid", "vertices", "obj"});
-  if (kind == "vertices") return read_own_mesh(mesh);
-  if (kind == "obj") return read_named_mesh(mesh, assets);
+  if (file && !mesh.has("grid") && !mesh.has("vertices")) return read_named_mesh(mesh, assets);
+  if (mesh.exactly_one({"grid", "vertices", "file"}) == "vertices") return read_own_mesh(mesh);
   return read_grid(mesh.member("grid"));
 }
 
@@ -147,13 +172,16 @@ Transform read_transform(const Reader& transform) {
 
 Body read_body(const Reader& collider, const Assets* assets) {
   const Reader mesh = collider.member("mesh");
-  mesh.object({"vertices", "triangles", "obj"});
+  mesh.object({"vertices", "triangles", "file", "obj", "node", "mend"});
   Body body;
   if (mesh.has("triangles") || mesh.has("vertices")) {
-    if (mesh.has("obj")) mesh.fail("either \"obj\", or \"vertices\" and \"triangles\"");
+    if (names_file(mesh)) mesh.fail("either \"file\", or \"vertices\" and \"triangles\"");
+    if (mesh.has("node")) mesh.fail("\"node\" only beside \"file\"");
     body.mesh = std::make_shared<const TriangleMesh>(read_body_mesh(mesh));
-  } else if (const SharedMesh file = find_mesh(mesh.member("obj"), assets, "vertices and triangles")) {
-    body.mesh = std::make_shared<const TriangleMesh>(of_file(*file));
+  } else {
+    const Reader named = mesh.member(mesh.exactly_one(file_keys));
+    if (const SharedMesh file = find_mesh(named, read_reading(mesh), assets, "vertices and triangles"))
+      body.mesh = std::make_shared<const TriangleMesh>(of_file(*file, named.string("")));
   }
   body.transform = read_transform(collider.member("transform", json::object()));
   return body;

@@ -121,6 +121,12 @@ Reader Reader::element(std::size_t index) const {
   return Reader(&(*value_)[index], pointer_ + "/" + std::to_string(index), *error_);
 }
 
+bool Reader::boolean(bool otherwise) const {
+  if (value_ && value_->is_boolean()) return value_->get<bool>();
+  fail("true or false");
+  return otherwise;
+}
+
 double Reader::number(const Range& range) const {
   if (value_ && value_->is_number() && inside(value_->get<double>(), range)) return value_->get<double>();
   fail(range_text("a number", range));

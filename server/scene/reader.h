@@ -42,6 +42,7 @@ class Reader {
   bool is_null() const { return value_ && value_->is_null(); }
   bool is_object() const { return value_ && value_->is_object(); }
   bool is_string() const { return value_ && value_->is_string(); }
+  bool boolean(bool otherwise) const;  ///< `otherwise` after an error
   double number(const Range& range) const;
   int integer(const Range& range) const;  ///< accepts 3.0, too: to JSON it is the same number as 3
   dvec3 vector(const Range& range) const;

@@ -38,12 +38,24 @@ std::vector<fs::path> mesh_files(const fs::path& stem) {
   return files;
 }
 
-Result<scene::SharedMesh> MeshShelf::mesh(const std::string& name) const {
+Result<scene::SharedMesh> MeshShelf::mesh(const std::string& name, const mesh::Reading& reading) const {
+  SharedItem item;
   {
     const std::lock_guard lock(mutex_);
-    if (const auto found = items_.find(name); found != items_.end()) return found->second->mesh;
+    if (const auto found = items_.find(name); found != items_.end()) item = found->second;
+    if (item && reading == mesh::Reading{}) return item->mesh;
+    if (item)
+      if (const auto read = read_otherwise_.find({item->number, reading}); read != read_otherwise_.end())
+        return read->second;
   }
-  if (files_) return files_->mesh(name);
+  if (item) {
+    Result<mesh::Mesh> mesh = mesh::read(item->bytes, name, upload_limits(), reading);
+    if (!mesh) return mesh.error();
+    const std::lock_guard lock(mutex_);
+    if (read_otherwise_.size() >= 2 * max_meshes) read_otherwise_.clear();
+    return read_otherwise_[{item->number, reading}] = std::make_shared<const mesh::Mesh>(std::move(*mesh));
+  }
+  if (files_) return files_->mesh(name, reading);
   return Error{name, "no such mesh",
                "the name of a mesh.upload; for files start the server with --asset-root"};
 }

@@ -11,6 +11,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/scene/assets.h"
@@ -28,8 +29,8 @@ std::vector<std::filesystem::path> mesh_files(const std::filesystem::path& stem)
 class MeshShelf : public scene::Assets {
  public:
   struct Item {
-    std::string bytes;  ///< of the file
-    scene::SharedMesh mesh;
+    std::string bytes;         ///< of the file
+    scene::SharedMesh mesh;    ///< read as a file is unless a scene says otherwise
     std::uint64_t number = 0;  ///< rises with every upload
   };
   using SharedItem = std::shared_ptr<const Item>;
@@ -41,7 +42,7 @@ class MeshShelf : public scene::Assets {
       : files_(std::move(files)), stem_(std::move(stem)) {}
 
   /// An uploaded mesh comes before a file of the same name.
-  Result<scene::SharedMesh> mesh(const std::string& name) const override;
+  Result<scene::SharedMesh> mesh(const std::string& name, const mesh::Reading& reading) const override;
 
   /// Reads the bytes of a file. Error: it is no mesh, or larger than an upload may be.
   Result<SharedItem> read(const std::string& name, std::string bytes);
@@ -70,6 +71,8 @@ class MeshShelf : public scene::Assets {
   std::optional<std::filesystem::path> stem_;
   mutable std::mutex mutex_;
   std::map<std::string, SharedItem> items_;
+  /// Uploads that scenes have read in another way, by number; emptied when they are many.
+  mutable std::map<std::pair<std::uint64_t, mesh::Reading>, scene::SharedMesh> read_otherwise_;
   std::set<std::string> unkept_;  ///< names of meshes that could not be written
   std::uint64_t last_number_ = 0;
 };

@@ -15,8 +15,9 @@ std::set<std::string> mesh_names(const json& document) {
   std::set<std::string> names;
   for (const char* list : {"cloths", "colliders"})
     for (const json& item : document[list])
-      if (item.contains("mesh") && item["mesh"].contains("obj"))
-        names.insert(item["mesh"]["obj"].get<std::string>());
+      for (const char* key : {"file", "obj"})
+        if (item.contains("mesh") && item["mesh"].contains(key))
+          names.insert(item["mesh"][key].get<std::string>());
   return names;
 }
 
@@ -48,7 +49,8 @@ json facts(const std::string& name, const mesh::Mesh& mesh) {
           {"unused", mesh.unused},
           {"flipped", mesh.flipped},
           {"pattern", !mesh.texture.empty()},
-          {"box", json::array({point_list(low), point_list(high)})}};
+          {"box", json::array({point_list(low), point_list(high)})},
+          {"notes", mesh.notes}};
 }
 
 }  // namespace

@@ -133,7 +133,7 @@ browserTest("a patch refused for crossings is applied with points instead, by on
   });
   const refused = page.locator("#notices .notice", { hasText: "crossed.obj was refused" });
   await refused.getByRole("button", { name: "Use points instead" }).press("Enter");
-  const applied = await eventually("the patch", scene, (now) => now.cloths[0].mesh.obj === "crossed.obj");
+  const applied = await eventually("the patch", scene, (now) => now.cloths[0].mesh.file === "crossed.obj");
   assert.equal(applied.self_collision.kind, "points");
   assert.equal(await refused.count(), 0);
   await client.close();

@@ -26,7 +26,7 @@ browserTest("a mesh dropped on the page hangs and moves; what is no mesh is refu
   await eventually(
     "the cloth's mesh",
     async () => (await scene()).cloths[0].mesh,
-    (mesh) => mesh.obj === "strip.obj",
+    (mesh) => mesh.file === "strip.obj",
   );
   const drawn = () => viewer.page.evaluate(() => [window.clothlab.lastFrame.header.vertexCount, window.clothlab.step]);
   const [, step] = await eventually("the strip's frames", drawn, ([vertices]) => vertices === 22);
@@ -50,6 +50,6 @@ browserTest("a mesh dropped on the page hangs and moves; what is no mesh is refu
     () => notices(viewer.page),
     (all) => all.some((notice) => /photo\.jpg is no mesh/i.test(notice)),
   );
-  assert.equal((await scene()).cloths[0].mesh.obj, "strip.obj");
+  assert.equal((await scene()).cloths[0].mesh.file, "strip.obj");
   await client.close();
 });

@@ -1,6 +1,6 @@
 // Scenes whose mesh is a file, on the command line.
 import assert from "node:assert/strict";
-import { mkdirSync, writeFileSync } from "node:fs";
+import { mkdirSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { clothlab, folder } from "./program.mjs";
@@ -65,7 +65,7 @@ test("a seam that rounding has opened is closed, and one that stays open is told
   const open = told(halves(1e-4));
   assert.match(open.stdout, /8 vertices/);
   assert.match(open.stderr, /\/cloths\/0\/mesh: seam\.obj: 2 corners .*line 9 and line 10: the mesh is open there/);
-  assert.match(told(halves(0, true)).stderr, /1 corner at its borders lies on an edge .*line 9/);
+  assert.match(told(halves(0, true)).stderr, /1 corner lies on an edge .*: the edge was divided: line 9/);
   const vertices = [
     [0, 0, 0],
     [1, 0, 0],
@@ -84,6 +84,82 @@ test("a seam that rounding has opened is closed, and one that stays open is told
   writeFileSync(join(folder, "scenes/own.json"), JSON.stringify({ version: 1, cloths: [{ mesh }] }));
   const own = clothlab(["validate", "scenes/own.json"]);
   assert.match(own.stderr, /\/cloths\/0\/mesh: 2 corners .*triangle 0 and triangle 1/);
+});
+
+const written = (name, value) => writeFileSync(join(folder, "scenes", name), value);
+
+test("what people bring is mended with a note that counts it and says where, and is refused with mend false", () => {
+  written("brought.obj", `\uFEFFHead scan\n${square}f 1 2 4\nstitch 1 2\nf 1 1 2\n`);
+  const of = (mesh) => {
+    written("brought.json", JSON.stringify({ version: 1, cloths: [{ mesh: { file: "brought.obj", ...mesh } }] }));
+    return "scenes/brought.json";
+  };
+  for (const command of [["validate"], ["run", "--time", "0.01"]]) {
+    const { status, stderr } = clothlab([command[0], of({}), ...command.slice(1)]);
+    assert.equal(status, 0, stderr);
+    for (const told of [
+      /\/cloths\/0\/mesh: brought\.obj: 2 lines with words .*"Head" in line 1, "stitch" in line 8/,
+      /\/cloths\/0\/mesh: brought\.obj: 1 triangle is there already and was left out: line 7/,
+      /\/cloths\/0\/mesh: brought\.obj: 1 face without area was left out: line 9/,
+    ])
+      assert.match(stderr, told);
+  }
+  const { status, stderr } = clothlab(["validate", of({ mend: false })]);
+  assert.equal(status, 2);
+  assert.match(stderr, /\/cloths\/0\/mesh\/file.*brought\.obj, line 1: "Head"/);
+});
+
+test("a node of a .gltf file with its buffer beside it is a cloth, another one a body", () => {
+  const buffer = Buffer.from(new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0]).buffer);
+  written("dress.bin", buffer);
+  written(
+    "dress.gltf",
+    JSON.stringify({
+      asset: { version: "2.0" },
+      scenes: [{ nodes: [0, 1] }],
+      nodes: [
+        { name: "skirt", mesh: 0 },
+        { name: "form", mesh: 0, scale: [2, 2, 2], translation: [5, 0, 0] },
+      ],
+      meshes: [{ primitives: [{ attributes: { POSITION: 0 } }] }],
+      accessors: [{ bufferView: 0, componentType: 5126, count: 3, type: "VEC3" }],
+      bufferViews: [{ buffer: 0, byteLength: 36 }],
+      buffers: [{ byteLength: 36, uri: "dress.bin" }],
+    }),
+  );
+  const of = (node) => ({ mesh: { file: "dress.gltf", node } });
+  const scene = { version: 1, cloths: [of("skirt")], colliders: [of("form")] };
+  written("dress.json", JSON.stringify(scene));
+  const { status, stdout, stderr } = clothlab(["validate", "scenes/dress.json"]);
+  assert.equal(status, 0, stderr);
+  assert.match(stdout, /3 vertices.*1 collider/);
+  written("dress.json", JSON.stringify({ ...scene, cloths: [of("hat")] }));
+  assert.match(clothlab(["validate", "scenes/dress.json"]).stderr, /"hat".*one of "skirt", "form"/);
+  rmSync(join(folder, "scenes/dress.bin"));
+  written("dress.json", JSON.stringify(scene));
+  assert.match(clothlab(["validate", "scenes/dress.json"]).stderr, /dress\.bin: no such file.*beside dress\.gltf/);
+});
+
+test("vertices in centimetres with a pattern in metres are told, each with what to set", () => {
+  const corners = [
+    [0, 0],
+    [1, 0],
+    [1, 1],
+    [0, 1],
+  ]; // prettier-ignore
+  const lines = corners.map(([x, y]) => `v ${100 * x} ${100 * y} 0\nvt ${x} ${y}\n`);
+  written("cm.obj", `${lines.join("")}f 1/1 2/2 3/3 4/4\n`);
+  const told = (cloth) => {
+    written("cm.json", JSON.stringify({ version: 1, cloths: [cloth] }));
+    const { status, stderr } = clothlab(["validate", "scenes/cm.json"]);
+    assert.equal(status, 0, stderr);
+    return stderr;
+  };
+  const stderr = told({ mesh: { file: "cm.obj", pattern: "uv" } });
+  assert.match(stderr, /\/cloths\/0\/transform: it is 100 m large.*"scale": 0\.01} makes it 1 m/);
+  assert.match(stderr, /\/cloths\/0\/mesh\/pattern: .* 0\.01 times as long.*"pattern_scale": 100 /);
+  const set = { mesh: { file: "cm.obj", pattern: "uv", pattern_scale: 100 }, transform: { scale: 0.01 } };
+  assert.doesNotMatch(told(set), /\/cloths/);
 });
 
 test("a start that is too near for contact is told once with its cause, and is not blamed on pins or bodies", () => {

@@ -1,5 +1,5 @@
-// Any bytes as an .obj or .ply file: refused with a complete error, or a sound mesh that a scene can name and
-// a model be built of.
+// Any bytes as an .obj, .ply, .glb or .gltf file, mended, strictly and of one part: refused with a complete
+// error, or a sound mesh that a scene can name and a model be built of.
 #include <cmath>
 
 #include "tests/fuzz/document.h"
@@ -36,36 +36,57 @@ void require_sound_mesh(const mesh::Mesh& mesh) {
 /// Has one mesh, of any name.
 struct OneMesh : scene::Assets {
   explicit OneMesh(mesh::Mesh read) : shared(std::make_shared<const mesh::Mesh>(std::move(read))) {}
-  Result<scene::SharedMesh> mesh(const std::string&) const override { return shared; }
+  Result<scene::SharedMesh> mesh(const std::string&, const mesh::Reading&) const override { return shared; }
   scene::SharedMesh shared;
 };
+
+/// A scene names the mesh, as a cloth with and without its pattern and as a body.
+void require_scenes(mesh::Mesh&& mesh) {
+  scene::json pattern = nullptr;
+  if (!mesh.texture.empty()) pattern = "uv";
+  const auto assets = std::make_shared<OneMesh>(std::move(mesh));
+  const scene::json grid{{"mesh", {{"grid", {{"columns", 2}, {"rows", 2}}}}}};
+  const scene::json body{{"mesh", {{"file", "fuzz.obj"}}}};
+  for (const scene::json& of : {scene::json(nullptr), pattern, scene::json("body")}) {
+    scene::json value{{"version", 1}};
+    if (of == "body") {
+      value["cloths"] = scene::json::array({grid});
+      value["colliders"] = scene::json::array({body});
+    } else {
+      value["cloths"] = scene::json::array({{{"mesh", {{"obj", "fuzz.obj"}, {"pattern", of}}}}});
+    }
+    const Result<scene::Document> document = scene::validate(value, assets);
+    if (document)
+      fuzz::require_model(document->scene);
+    else
+      fuzz::require_pointer(document.error());
+    if (document)
+      for (const std::string& note : scene::mesh_notes(document->scene))
+        fuzz::require(fuzz::is_utf8(note), "a note is UTF-8", note);
+  }
+}
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string bytes = fuzz::text_of(data, size);
-  Result<mesh::Mesh> mesh = mesh::read(bytes, "fuzz.obj", limits);
-  if (!mesh) {
-    const Error& error = mesh.error();
-    fuzz::require_complete(error);
-    fuzz::require(error.where.starts_with("fuzz.obj"), "an error names the file", error.where);
-    fuzz::require(fuzz::is_utf8(error.what) && fuzz::is_utf8(error.remedy), "an error is UTF-8",
-                  error.text());
-    return 0;
-  }
-  require_sound_mesh(*mesh);
-  scene::json pattern = nullptr;
-  if (!mesh->texture.empty()) pattern = "uv";
-  const auto assets = std::make_shared<OneMesh>(std::move(*mesh));
-  for (const scene::json& of : {scene::json(nullptr), pattern}) {
-    const Result<scene::Document> document = scene::validate(
-        {{"version", 1},
-         {"cloths", scene::json::array({{{"mesh", {{"obj", "fuzz.obj"}, {"pattern", of}}}}})}},
-        assets);
-    if (document)
-      fuzz::require_model(document->scene);
-    else
-      fuzz::require_pointer(document.error());
+  const mesh::Reading mended, strict{.mend = false}, part{.node = "part"};
+  bool sound = false;
+  for (const mesh::Reading& reading : {strict, mended, part}) {
+    Result<mesh::Mesh> mesh = mesh::read(bytes, "fuzz.obj", limits, reading);
+    if (!mesh) {
+      const Error& error = mesh.error();
+      fuzz::require_complete(error);
+      fuzz::require(error.where.starts_with("fuzz.obj"), "an error names the file", error.where);
+      fuzz::require(fuzz::is_utf8(error.what) && fuzz::is_utf8(error.remedy), "an error is UTF-8",
+                    error.text());
+      fuzz::require(!sound || reading == part, "what needs no mending is read as well with it", error.text());
+      continue;
+    }
+    require_sound_mesh(*mesh);
+    fuzz::require(!mesh->no_cloth || reading.mend, "what no cloth can be is refused strictly");
+    sound = reading == strict;
+    require_scenes(std::move(*mesh));
   }
   return 0;
 }

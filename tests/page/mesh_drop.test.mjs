@@ -43,7 +43,7 @@ test("a mesh hangs upright above the floor, in the middle, by its top alone", ()
   ];
   for (const box of boxes) {
     const { mesh, transform, pins } = values(box);
-    assert.deepEqual(mesh, { obj: "a.obj", pattern: null });
+    assert.deepEqual(mesh, { file: "a.obj", pattern: null });
     const corners = [box[0], box[1]].map((corner) => placed(corner, transform));
     const low = [0, 1, 2].map((axis) => Math.min(corners[0][axis], corners[1][axis]));
     const high = [0, 1, 2].map((axis) => Math.max(corners[0][axis], corners[1][axis]));
@@ -57,10 +57,11 @@ test("a mesh hangs upright above the floor, in the middle, by its top alone", ()
   }
 });
 
-test("a binary .ply file goes as base64, everything else as text", () => {
+test("a binary .ply or a .glb file goes as base64, everything else as text", () => {
   const bytes = (text) => new TextEncoder().encode(text);
   assert.deepEqual(content(bytes("v 0 0 0\n")), { obj: "v 0 0 0\n", encoding: "text" });
   assert.equal(content(bytes("ply\nformat ascii 1.0\n")).encoding, "text");
+  assert.equal(content(new Uint8Array([...bytes("glTF"), 2, 0, 0, 0])).encoding, "base64");
   const binary = new Uint8Array([...bytes("ply\nformat binary_little_endian 1.0\n"), 0, 255, 128]);
   const { obj, encoding } = content(binary);
   assert.equal(encoding, "base64");

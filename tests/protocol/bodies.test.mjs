@@ -60,7 +60,7 @@ function readPly(bytes) {
 test("a scene has a mesh as a collider, whose place and motion are patched; a new place starts time again", async () => {
   const client = await enter();
   const { document } = await client.request("scene.get");
-  assert.deepEqual(document.colliders[0].mesh, body.mesh);
+  assert.deepEqual(document.colliders[0].mesh, { ...body.mesh, mend: true });
   assert.deepEqual(document.colliders[0].transform, { translate: [0, 0, 0], rotate: [0, 0, 0], scale: 1 });
   const { step } = await client.request("sim.step", { steps: 3 });
   assert.ok(step >= 3);
@@ -114,7 +114,11 @@ test("a collider names an uploaded mesh, which can be replaced, and whose triang
   await client.request("mesh.upload", { name: "tent", obj });
   const named = { patch: [{ op: "replace", path: "/colliders/0/mesh", value: { obj: "tent" } }] };
   await client.request("scene.patch", named);
-  assert.deepEqual((await client.request("scene.get")).document.colliders[0].mesh, { obj: "tent" });
+  assert.deepEqual((await client.request("scene.get")).document.colliders[0].mesh, {
+    obj: "tent",
+    node: null,
+    mend: true,
+  });
   const path = `/api/collider.ply?${session()}&name=tent`;
   const { status, headers, body: bytes } = await server.get(path);
   assert.equal(status, 200);

@@ -92,12 +92,16 @@ test("an uploaded mesh is read, answered for and named by the scene of its sessi
       [0, 0, 0],
       [1, 1, 0],
     ],
+    notes: [],
     removed: [],
   });
   await client.request("scene.patch", { patch: named("leaf.obj") });
   const base64 = Buffer.from(square).toString("base64");
   await client.request("mesh.upload", { name: "é", obj: base64, encoding: "base64" });
-  assert.match((await other.refusal("scene.patch", { patch: named("é") })).data.found, /neither \.obj nor \.ply/);
+  assert.match(
+    (await other.refusal("scene.patch", { patch: named("é") })).data.found,
+    /does not end in \.obj, \.ply, \.glb or \.gltf/,
+  );
   for (const [params, path] of [
     [{ name: "", obj: square }, "/name"],
     [{ name: "a\n", obj: square }, "/name"],
@@ -109,6 +113,25 @@ test("an uploaded mesh is read, answered for and named by the scene of its sessi
     assert.equal((await client.refusal("mesh.upload", params)).data.path, path, JSON.stringify(params));
   await client.close();
   await other.close();
+});
+
+test("an upload is mended, which its answer and a notice tell, and is strict where the scene wants it so", async () => {
+  const client = await enter();
+  const told = ["1 triangle is there already and was left out: line 6"];
+  const { notes } = await client.request("mesh.upload", { name: "twice", obj: `${square}f 4 2 1\n` });
+  assert.deepEqual(notes, told);
+  const cloth = (mesh) => [{ op: "replace", path: "/cloths/0", value: { name: "cloth", mesh } }];
+  const notice = client.notification("notice", ({ text }) => text === `/cloths/0/mesh: twice: ${told[0]}`);
+  await client.request("scene.patch", { patch: cloth({ file: "twice" }) });
+  await notice;
+  const { data } = await client.refusal("scene.patch", { patch: cloth({ file: "twice", mend: false }) });
+  assert.equal(data.path, "/cloths/0/mesh/file");
+  assert.match(data.found, /twice, line 6: a triangle at the same place as that of line 5/);
+  const parts = `o a\n${square}o b\nf 1 2 3\no c\nf 1 3 4\n`;
+  await client.request("mesh.upload", { name: "parts", obj: parts });
+  await client.request("scene.patch", { patch: cloth({ file: "parts", node: "b" }) });
+  assert.equal((await client.request("scene.get")).document.cloths[0].mesh.node, "b");
+  await client.close();
 });
 
 test("a mesh that the scene names can be replaced, and is not if its pins do not fit", async () => {

@@ -23,8 +23,9 @@ const crossFieldRules = {
   "pbd has no finite elements": /\/solver\/method: .*PBD's stiffness is no N\/m/,
   "names are unique": /a name that no earlier one has/,
   "all cloths together are not too large": /vertices so far/,
-  "a mesh's file is there and is one": /\/mesh\/obj: /,
-  "a collider's triangles can be simulated": /^\/colliders\/\d+\/mesh: found triangle \d+: /,
+  "a mesh's file is there and is one": /\/mesh\/(obj|file): /,
+  "a collider's triangles can be simulated":
+    /^\/colliders\/\d+\/mesh: found (triangle \d+: |\d+ vertices and (?!\d+ triangles so far))/,
   "all colliders together are not too large": /triangles so far/,
   "no cloth starts through or inside a collider": /^\/colliders\/\d+: .*, and (cloth that goes through|inside it) /,
   "surfaces that keep apart start apart": /^\/self_collision\/kind: "surface", but the start has /,
@@ -94,7 +95,7 @@ const whole = {
       weights: [{ at: "vertex:1", mass: 1 }],
       start: { scale: [1, 0, -1] },
     },
-    { mesh: { obj: "leaf.obj", pattern: "uv" }, pins: [{ at: "vertex:3" }] },
+    { mesh: { file: "leaf.obj", pattern: "uv", pattern_scale: 2, node: null, mend: true }, pins: [{ at: "vertex:3" }] },
   ],
   colliders: [
     { name: "ball", sphere: { center: [0, 0.6, 0], radius: 0.25 }, friction: 0.3, restitution: 0, motion: linear },
@@ -238,6 +239,7 @@ function* mutations() {
           motion: null,
           grid: grid.grid,
           obj: "a.obj",
+          file: "a.ply",
           fabric: "cotton",
           per_vertex: 1,
           scale: [1, 1, 1],
@@ -279,6 +281,8 @@ function* mutations() {
     },
   });
   for (const scale of [0.5, 4]) yield { ...least, cloths: [small], colliders: [cube(scale)] };
+  const line = { vertices: many(3, (i) => [i, 50, 0]), triangles: [[0, 1, 2]], mend: false };
+  yield { ...least, cloths: [small], colliders: [{ mesh: line }] };
   const strip = (n) => ({
     vertices: many(n, (i) => [i, 50 + (i % 2), 0]),
     triangles: many(n - 2, (i) => [i, i + 1, i + 2]),

@@ -18,7 +18,7 @@ const tables = [
   ["A cloth: `cloths[]`", ["$defs", "cloth"]],
   ["`mesh: {grid}`", ["$defs", "cloth", "properties", "mesh", "oneOf", 0, "properties", "grid"]],
   ["`mesh: {vertices, triangles}`", ["$defs", "cloth", "properties", "mesh", "oneOf", 1]],
-  ["`mesh: {obj}`", ["$defs", "cloth", "properties", "mesh", "oneOf", 2]],
+  ["`mesh: {file}`", ["$defs", "cloth", "properties", "mesh", "oneOf", 2]],
   ["`transform`", ["$defs", "cloth", "properties", "transform"]],
   ["`mass: {per_vertex}` or `{area_density}`", ["$defs", "cloth", "properties", "mass"]],
   ["`material`, of springs", ["$defs", "cloth", "properties", "material", "oneOf", 0]],
@@ -51,6 +51,8 @@ function allowed(schema) {
   if ("const" in schema) return code(JSON.stringify(schema.const));
   if (schema.enum) return schema.enum.map((value) => code(String(value))).join(", ");
   if (schema.type === "string") return schema.pattern?.startsWith("^#") ? "`#rrggbb`" : "text";
+  if (schema.type === "boolean") return "`true`, `false`";
+  if (schema.type?.includes?.("string")) return "text or null";
   if (schema.oneOf) return [...new Set(schema.oneOf.map(allowed))].join(" or ");
   const types = [schema.type].flat();
   if (types.includes("null") && types.length === 1) return "null";

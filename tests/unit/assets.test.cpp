@@ -61,7 +61,7 @@ TEST_CASE("a scene names meshes below a folder, and nothing else") {
       {(folder.outer / "secret.obj").string(), "an absolute path"},
       {"outside.obj", "a symbolic link that leads out"},
       {"up/secret.obj", "a symbolic link that leads out"},
-      {"notes.txt", "neither .obj nor .ply"},
+      {"notes.txt", "does not end in .obj, .ply, .glb or .gltf"},
       {"folder.obj", "no ordinary file"},
       {"", "0 bytes of name"},
       {std::string("leaf\0.obj", 9), "a control character"},
@@ -107,14 +107,14 @@ TEST_CASE("pins and weights count the vertices of the file") {
 TEST_CASE("a file is read again once it has changed, and not at all once its folder is closed") {
   const Folder folder;
   const auto assets = std::make_shared<scene::FolderAssets>(folder.root);
-  REQUIRE(assets->mesh("leaf.obj"));
-  CHECK(*assets->mesh("leaf.obj") == *assets->mesh("leaf.obj"));
+  REQUIRE(assets->mesh("leaf.obj", {}));
+  CHECK(*assets->mesh("leaf.obj", {}) == *assets->mesh("leaf.obj", {}));
   Folder::write(folder.root / "leaf.obj", leaf + "v 5 5 5\nf 2 3 5\n");
-  CHECK((*assets->mesh("leaf.obj"))->triangles.size() == 2);
+  CHECK((*assets->mesh("leaf.obj", {}))->triangles.size() == 2);
   assets->close();
   fs::remove(folder.root / "leaf.obj");
-  CHECK((*assets->mesh("leaf.obj"))->triangles.size() == 2);
-  CHECK_FALSE(assets->mesh("inside.obj"));
+  CHECK((*assets->mesh("leaf.obj", {}))->triangles.size() == 2);
+  CHECK_FALSE(assets->mesh("inside.obj", {}));
 }
 
 TEST_CASE("a pattern gives the lengths at rest, and needs texture coordinates with an area") {
@@ -184,8 +184,8 @@ TEST_CASE("a session's uploads are bounded, come before files and are there agai
     return removed->empty() ? std::string() : removed->front();
   };
   CHECK(put("leaf.obj", {}).empty());
-  CHECK((*shelf.mesh("leaf.obj"))->vertices.size() == 4);
-  CHECK((*shelf.mesh("deep/LEAF.OBJ"))->vertices.size() == 3);
+  CHECK((*shelf.mesh("leaf.obj", {}))->vertices.size() == 4);
+  CHECK((*shelf.mesh("deep/LEAF.OBJ", {}))->vertices.size() == 3);
   std::set<std::string> all{"leaf.obj"};
   for (std::size_t i = 1; i < session::max_meshes; ++i) {
     const std::string name = "mesh " + std::to_string(i) + " / \xc3\xa9";
@@ -199,7 +199,7 @@ TEST_CASE("a session's uploads are bounded, come before files and are there agai
 
   session::MeshShelf again(files, folder.outer / "main");
   CHECK(again.restore().size() == 1);
-  CHECK((*again.mesh("one more"))->triangles.size() == 2);
-  CHECK((*again.mesh("leaf.obj"))->triangles.size() == 2);
-  CHECK_FALSE(again.mesh("mesh 1 / \xc3\xa9"));
+  CHECK((*again.mesh("one more", {}))->triangles.size() == 2);
+  CHECK((*again.mesh("leaf.obj", {}))->triangles.size() == 2);
+  CHECK_FALSE(again.mesh("mesh 1 / \xc3\xa9", {}));
 }

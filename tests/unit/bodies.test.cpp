@@ -42,10 +42,11 @@ Result<scene::Document> with_collider(const json& collider) {
   return scene::validate(value);
 }
 
-/// The error for a mesh of these vertices and triangles, as a body; empty: none.
+/// The error for a mesh of these vertices and triangles, as a body that is not mended; empty: none.
 std::string refusal(const char* vertices, const char* triangles) {
-  const auto document =
-      with_collider({{"mesh", {{"vertices", json::parse(vertices)}, {"triangles", json::parse(triangles)}}}});
+  const auto document = with_collider(
+      {{"mesh",
+        {{"vertices", json::parse(vertices)}, {"triangles", json::parse(triangles)}, {"mend", false}}}});
   return document ? "" : document.error().text();
 }
 
@@ -79,6 +80,7 @@ bool inside(const scene::TriangleMesh& mesh, const dvec3& point) {
 
 TEST_CASE("a body's mesh and transform are read, with defaults and without what no face uses") {
   json collider = {{"mesh", json_of(cube_mesh())}, {"friction", 0.5}};
+  collider["mesh"]["mend"] = true;
   collider["mesh"]["vertices"].insert(collider["mesh"]["vertices"].begin(), json::array({9, 9, 9}));
   for (json& triangle : collider["mesh"]["triangles"])
     for (json& corner : triangle) corner = corner.get<int>() + 1;

@@ -50,7 +50,7 @@ struct Square : scene::Assets {
     square.vertex_of = {0, 1, 2, 3};
     shared = std::make_shared<const mesh::Mesh>(std::move(square));
   }
-  Result<scene::SharedMesh> mesh(const std::string&) const override { return shared; }
+  Result<scene::SharedMesh> mesh(const std::string&, const mesh::Reading&) const override { return shared; }
   scene::SharedMesh shared;
 };
 

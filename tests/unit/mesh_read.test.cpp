@@ -12,9 +12,11 @@ using namespace clothlab;
 namespace {
 
 constexpr mesh::Limits limits{1 << 20, 1000, 2000};
+const mesh::Reading strict{.mend = false};
 
-mesh::Mesh read(const std::string& text, const std::string& name = "a.obj") {
-  Result<mesh::Mesh> mesh = mesh::read(text, name, limits);
+mesh::Mesh read(const std::string& text, const std::string& name = "a.obj",
+                const mesh::Reading& reading = strict) {
+  Result<mesh::Mesh> mesh = mesh::read(text, name, limits, reading);
   if (!mesh) FAIL(mesh.error().text());
   return *mesh;
 }
@@ -37,7 +39,7 @@ struct Refusal {
 void check_refusals(const std::vector<Refusal>& refusals, const std::string& name) {
   for (const Refusal& refusal : refusals) {
     INFO(refusal.text.substr(0, 200));
-    const Result<mesh::Mesh> mesh = mesh::read(refusal.text, name, limits);
+    const Result<mesh::Mesh> mesh = mesh::read(refusal.text, name, limits, strict);
     REQUIRE_FALSE(mesh);
     INFO(mesh.error().text());
     CHECK(mesh.error().where == name + refusal.where);
@@ -104,7 +106,7 @@ TEST_CASE("a .ply file is read as text and as bytes of either order") {
     CHECK(mesh.triangles == read(text, "a.ply").triangles);
     CHECK(area_of(mesh) == Approx(1.0));
     for (std::size_t length = 0; length < file.size(); ++length)
-      if (mesh::read(file.substr(0, length), "a.ply", limits))
+      if (mesh::read(file.substr(0, length), "a.ply", limits, strict))
         CHECK(length + 1 == file.size());  // a last newline
   }
 }

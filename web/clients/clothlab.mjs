@@ -669,9 +669,9 @@ export class Session {
   }
 
   /**
-   * Gives the session a mesh that a cloth or a collider can name: { mesh: { obj: name } }.
+   * Gives the session a mesh that a cloth or a collider can name: { mesh: { file: name } }.
    * @param {string} name
-   * @param {string | Uint8Array} content of an .obj or .ply file, at most 8 MiB
+   * @param {string | Uint8Array} content of an .obj, .ply, .glb or .gltf file, at most 8 MiB
    * @returns {Promise<Json>} what is in it: vertices, triangles, box, ...
    */
   uploadMesh(name, content) {

@@ -648,9 +648,9 @@ class Session:
         return self._ask("scene.presets", "fabrics", list)
 
     def upload_mesh(self, name: str, content: str | bytes | os.PathLike[str] | None = None) -> dict[str, Json]:
-        """Gives the session a mesh that a cloth or a collider can name: {"mesh": {"obj": name}}.
+        """Gives the session a mesh that a cloth or a collider can name: {"mesh": {"file": name}}.
 
-        content: of an .obj or .ply file, as text or bytes; or a path; None: `name` is the path, its last part the
+        content: of an .obj, .ply or glTF file, as text or bytes; or a path; None: `name` is the path, its last part the
         name. At most 8 MiB. Returns what is in it: {"vertices", "triangles", "box", ...}.
         """
         if content is None or isinstance(content, os.PathLike):

@@ -25,7 +25,7 @@ export function readPly(buffer: ArrayBuffer): InlineMesh {
 }
 
 export class Bodies {
-  private readonly known = new Map<string, InlineMesh>(); // by the name of the mesh
+  private readonly known = new Map<string, InlineMesh>(); // by the mesh in the document
   private readonly asked = new Set<string>();
 
   /// `fetchPly` gets the mesh of a collider by the collider's name; `arrived` is called when one is there.
@@ -39,8 +39,8 @@ export class Bodies {
   filled(document: SceneDocument, whole: boolean): SceneDocument {
     if (whole) this.asked.clear();
     const colliders = document.colliders.map((collider) => {
-      if (!("mesh" in collider) || !("obj" in collider.mesh)) return collider;
-      const name = collider.mesh.obj;
+      if (!("mesh" in collider) || "vertices" in collider.mesh) return collider;
+      const name = JSON.stringify(collider.mesh); // of one file there may be several nodes
       if (!this.asked.has(name)) void this.ask(name, collider.name);
       return { ...collider, mesh: this.known.get(name) ?? nothing };
     });

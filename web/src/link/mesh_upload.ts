@@ -1,4 +1,4 @@
-// What becomes of an .obj or .ply file of the user's: a message with its content, and a cloth that hangs.
+// What becomes of a mesh's file of the user's: a message with its content, and a cloth that hangs.
 import type { Operation, Vec3 } from "./scene_types";
 
 /// The answer of mesh.upload, the part that is used here.
@@ -31,7 +31,7 @@ export function hung(mesh: Uploaded): Operation[] {
   ];
   const replace = (key: string, value: unknown): Operation => ({ op: "replace", path: `/cloths/0/${key}`, value });
   return [
-    replace("mesh", { obj: mesh.name, pattern: null }),
+    replace("mesh", { file: mesh.name, pattern: null }),
     replace("transform", { translate, rotate: [lying ? -90 : 0, 0, 0], scale }),
     replace("pins", [{ at: { box: held }, motion: null }]),
     replace("weights", []),
@@ -39,10 +39,10 @@ export function hung(mesh: Uploaded): Operation[] {
   ];
 }
 
-/// The content for mesh.upload: text as it is, a binary .ply file in base64.
+/// The content for mesh.upload: text as it is, a binary .ply or a .glb file in base64.
 export function content(bytes: Uint8Array): { obj: string; encoding: "text" | "base64" } {
   const head = new TextDecoder("latin1").decode(bytes.subarray(0, 200));
-  if (!/^ply\s[^]*format binary/.test(head)) return { obj: new TextDecoder().decode(bytes), encoding: "text" };
+  if (!/^glTF|^ply\s[^]*format binary/.test(head)) return { obj: new TextDecoder().decode(bytes), encoding: "text" };
   let text = "";
   for (let at = 0; at < bytes.length; at += 8192) text += String.fromCharCode(...bytes.subarray(at, at + 8192));
   return { obj: btoa(text), encoding: "base64" };

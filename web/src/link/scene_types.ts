@@ -29,10 +29,12 @@ export interface InlineMesh {
   triangles: Vec3[];
 }
 /// A file, or a mesh that was uploaded.
-export interface NamedMesh {
-  obj: string;
-  pattern: null | "uv";
-}
+export type NamedMesh = ({ file: string } | { obj: string }) & {
+  node?: null | string;
+  mend?: boolean;
+  pattern?: null | "uv";
+  pattern_scale?: number;
+};
 export type Mesh = { grid: Grid } | InlineMesh | NamedMesh;
 
 export type At = string | { box: [Vec3, Vec3] };
@@ -111,7 +113,7 @@ export interface Box {
 }
 /// A rigid body of triangles. Where the document names a file, bodies.ts puts its triangles in.
 export interface Body {
-  mesh: InlineMesh | { obj: string };
+  mesh: InlineMesh | NamedMesh;
   transform: Transform;
 }
 /// The kinds of solid, under their names in the document.

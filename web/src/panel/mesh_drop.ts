@@ -1,4 +1,4 @@
-// An .obj or .ply file dropped on the page: uploaded, and hung up in place of the scene's first cloth. A scene's file
+// The file of a mesh dropped on the page: uploaded, and hung up in place of the scene's first cloth. A scene's file
 // goes to the scene's text.
 import { content, hung, type Uploaded } from "../link/mesh_upload";
 import { RpcError } from "../link/rpc";
@@ -22,10 +22,10 @@ function refused(title: string, line: string): void {
 
 async function take(file: File, host: Host): Promise<void> {
   if (!host.mayEdit()) return refused("Only operators may drop a mesh", "You are a viewer of this session.");
-  if (!/\.(obj|ply)$/i.test(file.name))
+  if (!/\.(obj|ply|glb|gltf)$/i.test(file.name))
     return refused(
       `${file.name} is no mesh`,
-      "The page takes .obj and .ply files, and scenes as .json; other formats can be converted.",
+      "The page takes .obj, .ply, .glb and .gltf files, and scenes as .json; other formats can be converted.",
     );
   const parameters = { name: file.name.slice(-longestName), ...content(new Uint8Array(await file.arrayBuffer())) };
   if (JSON.stringify(parameters).length + 200 > largestMessage)

@@ -8,9 +8,13 @@ import type { SceneDocument } from "../link/scene_types";
 
 const counted = (count: number, one: string, many: string): string => `${count} ${count === 1 ? one : many}`;
 
+/// The name of the file that a mesh is.
+const namedIn = (mesh: object): string[] =>
+  "file" in mesh ? [String(mesh.file)] : "obj" in mesh ? [String(mesh.obj)] : [];
+
 function described({ cloths, colliders = [], name }: SceneDocument): string {
   const meshes = [...cloths.map(({ mesh }) => mesh), ...colliders.map((each) => ("mesh" in each ? each.mesh : {}))];
-  const files = meshes.flatMap((mesh) => (mesh && "obj" in mesh ? [mesh.obj] : []));
+  const files = meshes.flatMap((mesh) => namedIn(mesh ?? {}));
   const parts = [counted(cloths.length, "cloth", "cloths"), counted(colliders.length, "body", "bodies")];
   const needs = files.length > 0 ? ` It names ${files.join(", ")}, which this server must have.` : "";
   return `“${name ?? "scene"}”: ${parts.join(" and ")}.${needs}`;

@@ -2,7 +2,7 @@
 import { isObject } from "../link/json_patch";
 
 const keys = `version name gravity cloths colliders self_collision wind air_drag solver
-  mesh grid columns rows width height obj pattern vertices triangles
+  mesh grid columns rows width height file obj node mend pattern pattern_scale vertices triangles
   sphere plane capsule box point normal a b center half radius at place transform translate rotate scale
   mass per_vertex area_density material model fabric structural warp weft twist poisson shear bend bending damping grain
   strain_limit pins weights start scatter size seed kind thickness friction restitution

@@ -13,8 +13,8 @@ export function restPositions(cloth: Cloth): Vector3[] {
       .multiplyScalar(scale)
       .applyEuler(turn)
       .add(new Vector3(...translate));
-  if ("obj" in cloth.mesh) return [];
-  if (!("grid" in cloth.mesh)) return cloth.mesh.vertices.map((vertex) => place(new Vector3(...vertex)));
+  if ("vertices" in cloth.mesh) return cloth.mesh.vertices.map((vertex) => place(new Vector3(...vertex)));
+  if (!("grid" in cloth.mesh)) return [];
   const { columns, rows, width, height } = cloth.mesh.grid;
   const points: Vector3[] = [];
   for (let row = 0; row < rows; ++row) {

@@ -69,7 +69,7 @@ const cornersOf = (box: Box): Vector3[] => {
     corner.applyEuler(turnOf(box)).add(new Vector3(...box.center)),
   );
 };
-const meshOf = ({ mesh }: Body): InlineMesh => ("obj" in mesh ? { vertices: [], triangles: [] } : mesh);
+const meshOf = ({ mesh }: Body): InlineMesh => ("vertices" in mesh ? mesh : { vertices: [], triangles: [] });
 
 /// The box around a body [m]; an empty one while its triangles are on their way.
 function boundsOf(body: Body): Box3 {

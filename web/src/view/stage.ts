@@ -210,7 +210,7 @@ export class Stage {
   }
 
   private hasFiles(): boolean {
-    return this.document?.cloths.some(({ mesh }) => "obj" in mesh) ?? false;
+    return this.document?.cloths.some(({ mesh }) => "file" in mesh || "obj" in mesh) ?? false;
   }
 
   /// Takes the scene's size from the points that it reaches.
