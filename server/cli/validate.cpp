@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "server/cli/commands.h"
+#include "server/cli/fit_files.h"
 #include "server/model/model.h"
 #include "server/model/stability.h"
 
@@ -46,6 +47,17 @@ bool report(const std::string& name, const std::string& asset_root) {
   return true;
 }
 
+/// Makes a scene of files, says what was chosen, and checks it as any other.
+bool fit(const FitRequest& request) {
+  const Result<std::vector<std::string>> chosen = fit_files(request);
+  if (!chosen) {
+    std::cerr << request.out << ": " << chosen.error().text() << "\n";
+    return false;
+  }
+  for (const std::string& sentence : *chosen) note(sentence);
+  return report(request.out, "");
+}
+
 }  // namespace
 
 void add_validate(CLI::App& app, int& exit_code) {
@@ -53,10 +65,39 @@ void add_validate(CLI::App& app, int& exit_code) {
       app.add_subcommand("validate", "check scene files: what is wrong, where, and what is allowed");
   const auto names = std::make_shared<std::vector<std::string>>();
   const auto asset_root = std::make_shared<std::string>();
-  command->add_option("scene", *names, "scene files, or names of presets")->required();
+  const auto request = std::make_shared<FitRequest>();
+  command->add_option("scene", *names, "scene files, or names of presets; with --fit the files of cloths")
+      ->required();
   add_asset_root(*command, *asset_root);
-  command->footer("Exit code 2 if any of them is not valid.");
-  command->callback([names, asset_root, &exit_code] {
+  CLI::Option* out =
+      command
+          ->add_option("--fit", request->out,
+                       "make a scene of meshes (.obj, .ply, .glb, .gltf) and write it there (.json)")
+          ->type_name("F");
+  command->add_option("--body", request->bodies, "with --fit: the file of a body; may be repeated")
+      ->type_name("F")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->needs(out);
+  command->add_option("--fabric", request->fabric, "with --fit: of the cloths (see `clothlab fabrics`)")
+      ->type_name("NAME")
+      ->capture_default_str()
+      ->needs(out);
+  command->footer(R"(Exit code 2 if any of them is not valid.
+Examples:
+  clothlab validate my-scene.json
+  clothlab validate --fit dressed.json shirt.obj --body figure.glb
+
+--fit guesses the unit from the size of all files together, takes a fabric's numbers, contact between surfaces if
+there is a body or more than one cloth, a solver that holds, and pins at the top where nothing carries the cloth. It
+says what it has chosen; all of it can be changed in the file. The meshes lie in the folder of the scene's file or
+below.)");
+  command->callback([names, asset_root, request, &exit_code] {
+    if (!request->out.empty()) {
+      request->cloths = *names;
+      exit_code = fit(*request) ? exit_done : exit_usage;
+      return;
+    }
     bool all_valid = true;
     for (const std::string& name : *names) all_valid = report(name, *asset_root) && all_valid;
     exit_code = all_valid ? exit_done : exit_usage;

@@ -1,6 +1,6 @@
 // Scenes whose mesh is a file, on the command line.
 import assert from "node:assert/strict";
-import { mkdirSync, rmSync, writeFileSync } from "node:fs";
+import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { clothlab, folder } from "./program.mjs";
@@ -160,6 +160,57 @@ test("vertices in centimetres with a pattern in metres are told, each with what 
   assert.match(stderr, /\/cloths\/0\/mesh\/pattern: .* 0\.01 times as long.*"pattern_scale": 100 /);
   const set = { mesh: { file: "cm.obj", pattern: "uv", pattern_scale: 100 }, transform: { scale: 0.01 } };
   assert.doesNotMatch(told(set), /\/cloths/);
+});
+
+/** A tube round the y axis, of so many centimetres. */
+function tube(radius, from, to) {
+  const [around, rings] = [24, 16];
+  const lines = [];
+  for (let ring = 0; ring <= rings; ++ring)
+    for (let i = 0; i < around; ++i) {
+      const angle = (2 * Math.PI * i) / around;
+      const y = from + ((to - from) * ring) / rings;
+      lines.push(`v ${(radius * Math.cos(angle)).toFixed(4)} ${y.toFixed(4)} ${(radius * Math.sin(angle)).toFixed(4)}`);
+    }
+  for (let ring = 0; ring < rings; ++ring)
+    for (let i = 0; i < around; ++i) {
+      const [a, b] = [ring * around + i + 1, ring * around + ((i + 1) % around) + 1];
+      lines.push(`f ${a} ${a + around} ${b + around} ${b}`);
+    }
+  return `${lines.join("\n")}\n`;
+}
+
+test("--fit makes a scene of a garment and a body that runs, in metres, of cotton, with contact that fits", () => {
+  written("sleeve.obj", tube(12, 60, 110));
+  written("figure.obj", tube(10, 0, 170));
+  const args = ["validate", "--fit", "scenes/fitted.json", "scenes/sleeve.obj"];
+  const { status, stdout, stderr } = clothlab([...args, "--body", "scenes/figure.obj"]);
+  assert.equal(status, 0, stderr);
+  assert.match(stdout, /scenes\/fitted\.json: valid \(1 cloth/);
+  assert.match(stderr, /scaled by 0\.01 all of them measure 1\.7 m/);
+  const scene = JSON.parse(readFileSync(join(folder, "scenes/fitted.json"), "utf8"));
+  const { cloths, colliders, self_collision: contact, solver } = scene;
+  assert.deepEqual(cloths, [
+    { name: "sleeve", mesh: { file: "sleeve.obj" }, material: { fabric: "cotton" }, transform: { scale: 0.01 } },
+  ]);
+  assert.deepEqual(colliders[0].mesh, { file: "figure.obj" });
+  assert.equal(colliders[0].transform.scale, 0.01);
+  assert.equal(contact.kind, "surface");
+  assert.ok(contact.thickness > 0.001 && contact.thickness < 0.005, `${contact.thickness} m`); // of edges of 3 cm
+  assert.equal(solver.method, "implicit_euler");
+  const run = clothlab(["run", "scenes/fitted.json", "--time", "0.1", "--verify", "--report", "fitted-report.json"]);
+  assert.equal(run.status, 0, run.stderr);
+  const report = JSON.parse(readFileSync(join(folder, "fitted-report.json"), "utf8"));
+  assert.equal(report.diverged, false);
+  assert.equal(report.crossings, 0);
+
+  const alone = clothlab(args);
+  assert.equal(alone.status, 0, alone.stderr);
+  const [{ pins }] = JSON.parse(readFileSync(join(folder, "scenes/fitted.json"), "utf8")).cloths;
+  assert.ok(Math.abs(pins[0].at.box[0][1] - (1.1 - 0.03 * 0.5)) < 1e-3, "the highest 3 % are held");
+  const outside = clothlab(["validate", "--fit", "scenes/fitted.json", "meshes/other.obj"]);
+  assert.equal(outside.status, 2);
+  assert.match(outside.stderr, /meshes\/other\.obj.*does not lie below the folder of scenes\/fitted\.json/);
 });
 
 test("a start that is too near for contact is told once with its cause, and is not blamed on pins or bodies", () => {
