@@ -1,4 +1,5 @@
 // The container, the JSON and the buffers of a glTF file.
+#include <algorithm>
 #include <bit>
 #include <cstring>
 

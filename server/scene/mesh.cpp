@@ -157,9 +157,9 @@ Mesh read_mesh(const Reader& mesh, const Assets* assets) {
       mesh.fail("either \"grid\", or \"file\", or \"vertices\" and \"triangles\"");
     return read_own_mesh(mesh);
   }
-  if (file && !mesh.has("grid") && !mesh.has("vertices")) return read_named_mesh(mesh, assets);
-  if (mesh.exactly_one({"grid", "vertices", "file"}) == "vertices") return read_own_mesh(mesh);
-  return read_grid(mesh.member("grid"));
+  const std::string kind = mesh.exactly_one({"grid", "vertices", "file", "obj"});
+  if (kind == "vertices") return read_own_mesh(mesh);
+  return kind == "grid" ? read_grid(mesh.member("grid")) : Mesh(read_named_mesh(mesh, assets));
 }
 
 Transform read_transform(const Reader& transform) {

@@ -222,6 +222,9 @@ TEST_CASE("a document reads a file by either name, mended unless it says no, wit
     REQUIRE_FALSE(strict);
     CHECK(strict.error().where == std::string("/cloths/0/mesh/") + key);
   }
+  for (const char* key : {"file", "obj"})
+    CHECK(validated(cloth_of({{"grid", json::object()}, {key, "a.obj"}}), twice).error().where ==
+          "/cloths/0/mesh");
   CHECK(validated(cloth_of({{"file", "a.obj"}, {"obj", "a.obj"}}), twice).error().where == "/cloths/0/mesh");
   CHECK(validated(cloth_of({{"file", "a.obj"}, {"mend", 1}}), twice).error().where == "/cloths/0/mesh/mend");
   for (const auto& [key, wrong] :
