@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <string>
 
 #include "server/base/text.h"
 #include "server/scene/placement.h"
@@ -24,8 +25,9 @@ constexpr double far_in_sizes = 10.0;
 constexpr double float_spacing = 0x1p-23;     // over the number, at most
 constexpr double most_pattern_stretch = 2.0;  // no cloth is cut half or twice as long as it is worn
 
+/// With three significant digits, and without an exponent.
 std::string digits(double number) {
-  return with_significant_digits(number, 3);
+  return with_significant_digits(std::stod(formatted("%.2e", number)), 9);
 }
 
 /// The mesh's largest extent along an axis and the middle of its box, in world space [m].
