@@ -2,6 +2,8 @@
 // pins and colliders: it overwrites what a method returns for a pinned vertex.
 #pragma once
 
+#include <functional>
+
 #include "server/reference/reference.h"
 
 namespace clothlab::reference {
@@ -15,7 +17,7 @@ struct StepStart {
   double t, dt;                ///< [s]
 };
 
-using StepMethod = State (*)(const StepStart&);
+using StepMethod = std::function<State(const StepStart&)>;
 
 /// x += v dt; v += a(x, v) dt, both from the state at t.
 State explicit_euler(const StepStart& start);
@@ -33,7 +35,7 @@ State backward_euler(const StepStart& start);
 State baraff_witkin(const StepStart& start);
 
 /// A whole step by `method` with contacts, pins and strain limit, from time t to t_next = t + solver.dt.
-void advance(StepMethod method, const World& world, State& state, double t, double t_next);
+void advance(const StepMethod& method, const World& world, State& state, double t, double t_next);
 
 /// The function above for `method`. PBD, XPBD and VBD have none: see gauss_seidel.h.
 StepMethod step_method(scene::Method method);

@@ -93,7 +93,7 @@ Energy energy(const World& world, const State& state) {
   return sum;
 }
 
-void advance(StepMethod method, const World& world, State& state, double t, double t_next) {
+void advance(const StepMethod& method, const World& world, State& state, double t, double t_next) {
   const std::uint32_t count = world.model.vertex_count();
   StepStart start{
       world, state, Vectors(count, dvec3(0.0)), Vectors(count, dvec3(0.0)), t, world.scene.solver.dt};
