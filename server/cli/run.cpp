@@ -13,9 +13,9 @@
 #include "server/gl/buffer.h"
 #include "server/model/near_start.h"
 #include "server/scene/method.h"
+#include "server/sim/convergence.h"
 #include "server/sim/crossing_check.h"
 #include "server/sim/plan.h"
-#include "server/sim/solved.h"
 
 namespace clothlab::cli {
 
@@ -38,13 +38,19 @@ constexpr double default_every = 0.01;  // [s], between two rows of a trace, or 
 class Trace {
  public:
   explicit Trace(const std::string& path) : path_(path), file_(path) {
-    file_ << "time,kinetic,elastic,gravitational,max_strain,max_speed,contacts\n";
+    file_ << "time,kinetic,elastic,gravitational,max_strain,max_speed,contacts,residual,error_m\n";
   }
-  Status add(const sim::Diagnostics& state) {
+  Status add(const sim::Diagnostics& state, const sim::Convergence& convergence) {
     for (const double value :
          {state.time, state.kinetic, state.elastic, state.gravitational, state.max_strain, state.max_speed})
       file_ << with_significant_digits(value, 9) << ',';
-    file_ << state.contacts << '\n' << std::flush;
+    file_ << state.contacts << ',';
+    if (convergence.measured > 0)
+      file_ << with_significant_digits(convergence.residual, 9) << ','
+            << with_significant_digits(convergence.error, 9) << '\n';
+    else
+      file_ << ",\n";
+    file_ << std::flush;
     if (!file_)
       return Error{path_, "could not be written", "check the disk's space and the file's permissions"};
     return ok();
@@ -94,11 +100,11 @@ Report make_report(const Prepared& prepared, const Progress& progress, double wa
     report["solver"] = {{"newton_steps", work.newton_steps},
                         {"linear_iterations", work.linear_iterations},
                         {"unconverged", work.unconverged}};
-  if (const sim::Solves& solves = simulation.solves(); solves.measured > 0)
-    report["solves"] = {{"measured", solves.measured}, {"unsolved", solves.unsolved_steps},
-                        {"left_m", solves.left},       {"left_edges", solves.edges},
-                        {"ratio", solves.ratio},       {"share", solves.share},
-                        {"undone", solves.undone}};
+  report["convergence"] = nullptr;
+  if (const sim::Convergence& of = simulation.convergence(); of.measured > 0)
+    report["convergence"] = {{"residual", of.residual},     {"error_m", of.error},
+                             {"tolerance_m", of.tolerance}, {"largest_error_m", of.largest_error},
+                             {"measured", of.measured},     {"unsolved", of.unsolved_steps}};
   if (const sim::StrainLimitWork work = simulation.strain_limit_work(); work.sweeps > 0)
     report["strain_limit"] = {{"sweeps", work.sweeps}, {"unconverged", work.unconverged}};
   if (simulation.scene().collides(scene::ContactKind::points))
@@ -164,7 +170,8 @@ void print_shortcomings(const sim::Simulation& simulation, const sim::Diagnostic
     note(std::to_string(solves) +
          " linear solves ended before they met solver.tolerance, or steps before contact was solved; a "
          "smaller dt or a larger tolerance helps");
-  if (simulation.solves().often_unsolved()) note(sim::in_words(simulation.solves(), simulation.scene()));
+  if (simulation.convergence().often_unsolved())
+    note(sim::in_words(simulation.convergence(), simulation.scene()));
   if (const std::uint64_t steps = simulation.strain_limit_work().unconverged; steps > 0)
     note(std::to_string(steps) +
          " steps ended with a spring or thread longer than its strain_limit; a smaller dt or a larger limit "
@@ -231,10 +238,11 @@ int run(const RunOptions& options) {
   if (!options.trace.empty()) outputs->trace.emplace(options.trace);
   std::optional<sim::CrossingCheck> check;
   if (options.verify) check.emplace(simulation);
+  if (*steps > 0) simulation.measure_step(*steps - 1);
   const auto at_stop = [&](const sim::Diagnostics& state) -> Status {
     if (check) check->add(simulation.read_state(), state.time);
     if (outputs->trace)
-      if (Status added = outputs->trace->add(state); !added) return added;
+      if (Status added = outputs->trace->add(state, simulation.convergence()); !added) return added;
     if (!outputs->states || !options.every) return ok();
     return outputs->states->add(simulation.model(), simulation.scene(), simulation.read_state(),
                                 comment(state, scene_name, false));

@@ -53,7 +53,7 @@ const std::string cost_header = "median_ms_per_simulated_s,minimum_ms_per_simula
 std::string of_points(const std::vector<Point>& points) {
   Table table("method,dt_s,iterations,linear_tolerance," + errors_header +
               ",largest_position_error_over_size,largest_position_error_low,largest_position_error_high," +
-              cost_header + ",blew_up_at_s,dt_over_limit");
+              cost_header + ",blew_up_at_s,residual,error_m,dt_over_limit");
   for (const Point& point : points) {
     const Setting& setting = point.setting;
     table.row().add(scene::name(setting.method)).add(setting.dt);
@@ -64,7 +64,7 @@ std::string of_points(const std::vector<Point>& points) {
         .add(point.error_low)
         .add(point.error_high)
         .add(point.cost);
-    table.add(point.blew_up_at).add(point.dt_over_limit);
+    table.add(point.blew_up_at).add(point.residual).add(point.step_error).add(point.dt_over_limit);
   }
   return table.finish();
 }

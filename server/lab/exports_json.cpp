@@ -46,6 +46,9 @@ json of(const Point& point) {
   object["largest_position_error_high"] = number(point.error_high);
   object["ms_a_simulated_s"] = of(point.cost);
   object["blew_up_at_s"] = number(point.blew_up_at);
+  object["convergence"] = nullptr;
+  if (point.step_error)
+    object["convergence"] = {{"residual", number(point.residual)}, {"error_m", number(point.step_error)}};
   object["dt_over_limit"] = number(point.dt_over_limit);
   object["patch"] = patch(point.setting);
   return object;

@@ -63,6 +63,10 @@ Point point(const json& value) {
   point.error_high = maybe(value.at("largest_position_error_high"));
   point.cost = cost(value.at("ms_a_simulated_s"));
   point.blew_up_at = maybe(value.at("blew_up_at_s"));
+  if (const json& of = value.at("convergence"); !of.is_null()) {
+    point.residual = maybe(of.at("residual"));
+    point.step_error = maybe(of.at("error_m"));
+  }
   point.dt_over_limit = maybe(value.at("dt_over_limit"));
   return point;
 }

@@ -16,6 +16,13 @@ json surface_counts(const sim::Diagnostics& d) {
           {"searches", d.surface_searches}};
 }
 
+/// How far the last step that was measured is from solved; null before the first, and under a method that
+/// does not iterate.
+json convergence_text(const sim::Convergence& of) {
+  if (of.measured == 0) return nullptr;
+  return {{"residual", of.residual}, {"error_m", of.error}, {"tolerance_m", of.tolerance}};
+}
+
 json hands_text(const std::vector<session::HandAt>& hands) {
   json list = json::array();
   for (const session::HandAt& at : hands)
@@ -40,6 +47,7 @@ json status_of_session(const session::Status& status) {
           {"max_strain", d.max_strain},
           {"max_speed", d.max_speed},
           {"contacts", d.contacts},
+          {"convergence", convergence_text(status.convergence)},
           {"surface", surface_counts(d)},
           {"hands", hands_text(status.hands)},
           {"memory_bytes", status.memory_bytes},

@@ -132,6 +132,7 @@ struct Status {
   double dt_limit = 0;           ///< [s]; infinite: any step is stable, 0: no step is
   std::optional<double> margin;  ///< dt over dt_limit; none: any step is stable, or no step is
   sim::Diagnostics diagnostics;
+  sim::Convergence convergence;
   std::vector<HandAt> hands;  ///< empty, and so without memory, while nobody holds the cloth
   gl::StageTimes pass_times;  ///< the GPU times that have arrived since the last status
 };

@@ -283,6 +283,7 @@ void Stepper::publish_status(Clock::time_point now) {
   status.dt_limit = step_limit_.dt_limit();
   status.margin = step_limit_.margin();
   status.diagnostics = guard_->state();
+  status.convergence = simulation().convergence();
   status.hands = hands_.told();
   // The timers measure again only after their times are taken, which gives a few samples a second.
   engine_->step_timer.poll(status.pass_times);

@@ -292,7 +292,6 @@ class Stepper {
   bool slow_announced_ = false, crowded_announced_ = false, forced_announced_ = false,
        not_taken_announced_ = false, unconverged_announced_ = false, unsolved_announced_ = false;
   bool lists_stay_announced_ = false;
-  bool unsolved_told_ = false;           ///< as of sim.status
   bool layers_may_pass_ = false;         ///< layers of cloth can pass through each other
   bool solids_may_slip_ = false;         ///< solids can pass through triangles of cloth
   std::string near_start_;               ///< model::near_start_warning of the present cloth

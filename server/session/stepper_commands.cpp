@@ -201,7 +201,6 @@ void Stepper::announce_solver() {
   exchange_.emit(SolverChanged{{{"pbd_stiffness", shares},
                                 {"auto", automatic_.facts()},
                                 {"thickness_that_holds", thickness},
-                                {"unsolved", unsolved_told_},
                                 {"from_fabrics", scene::left_to_fabrics(document_)}}});
 }
 

@@ -9,9 +9,9 @@
 #include "server/model/thickness.h"
 #include "server/scene/method.h"
 #include "server/session/stepper.h"
+#include "server/sim/convergence.h"
 #include "server/sim/plan.h"
 #include "server/sim/slipping.h"
-#include "server/sim/solved.h"
 
 namespace clothlab::session {
 
@@ -89,16 +89,11 @@ void Stepper::warn_if_unconverged() {
                          "contact is solved; a shorter time step or a larger tolerance helps"});
 }
 
-/// Tells when steps are far from solved, and sim.status when they are so no more.
 void Stepper::warn_if_unsolved() {
-  const sim::Solves& solves = simulation().solves();
-  if (solves.unsolved != unsolved_told_) {
-    unsolved_told_ = solves.unsolved;
-    announce_solver();
-  }
-  if (unsolved_announced_ || !solves.often_unsolved()) return;
+  const sim::Convergence& convergence = simulation().convergence();
+  if (unsolved_announced_ || !convergence.often_unsolved()) return;
   unsolved_announced_ = true;
-  exchange_.emit(Notice{"warning", sim::in_words(solves, scene())});
+  exchange_.emit(Notice{"warning", sim::in_words(convergence, scene())});
 }
 
 // Warns once, after a change of scene that lets layers of cloth pass through each other.

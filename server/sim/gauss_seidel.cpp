@@ -81,9 +81,8 @@ class GaussSeidel : public Integrator {
 
   int iterations() const override { return sweeps_; }
 
-  Work again(StateBuffers& state, int row, int iterations) override {
+  Work again(StateBuffers& state, int row) override {
     const Uncounted uncounted(*this);
-    set_sweeps(iterations);
     co_await step(state, row);
   }
 
@@ -119,29 +118,17 @@ class GaussSeidel : public Integrator {
     for (gl::TextureBuffer& deviation : deviation_) deviation = per_vertex(vertex_count_);
   }
 
-  /// While it lives, what is dispatched is not counted, and sweeps may be others; it may end half-way.
+  /// While it lives, what is dispatched is not counted; it may end half-way.
   class Uncounted {
    public:
-    explicit Uncounted(GaussSeidel& of) : of_(of), dispatches_(of.dispatches_), sweeps_(of.sweeps_) {}
-    ~Uncounted() {
-      of_.dispatches_ = dispatches_;
-      of_.set_sweeps(sweeps_);
-    }
+    explicit Uncounted(GaussSeidel& of) : of_(of), dispatches_(of.dispatches_) {}
+    ~Uncounted() { of_.dispatches_ = dispatches_; }
     Uncounted(const Uncounted&) = delete;
 
    private:
     GaussSeidel& of_;
     std::uint64_t dispatches_;
-    int sweeps_;
   };
-
-  void set_sweeps(int sweeps) {
-    sweeps_ = sweeps;
-    for (const gl::Program* program : {&whole_, &begin_, &contacts_pass_, &balance_, &finish_})
-      if (program->id()) program->set("last_sweep", sweeps - 1);
-    for (const gl::Program& program : visits_)
-      if (program.id()) program.set("last_sweep", sweeps - 1);
-  }
 
   /// Upper bound of the turns that one thread takes in all loops of a step, if the work group has `lanes`
   /// threads.

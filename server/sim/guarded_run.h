@@ -18,7 +18,8 @@ namespace clothlab::sim {
 /// said of a run does not depend on who looks at it.
 std::uint32_t judged_every(const scene::Scene& scene, const model::Model& model);
 
-/// Does `count` steps and waits for the GPU. Returns the time that this took [s].
+/// Does `count` steps and waits for the GPU. Returns the time that this took [s], without what measures how
+/// far steps are from solved.
 double timed_steps(Simulation& simulation, std::uint32_t count);
 
 class GuardedRun {

@@ -25,6 +25,8 @@ constexpr double solved_share = 0.05;
 constexpr double untaken_share = 0.02, gravity_at_least = 9.81;
 /// And until the friction of all pairs together is off by no more than this share of it.
 constexpr double slips_share = 0.05;
+/// `solve` goes on with contact until this share of those ways is left.
+constexpr double exact_share = 0.1;
 /// Of a solve with contact whose residual has lost its precision to rounding.
 constexpr int most_restarts = 4;
 constexpr std::uint32_t trends = 3;  ///< TRENDS in implicit_euler.glsl
@@ -81,7 +83,7 @@ class ImplicitEuler : public Integrator {
     most_newton_steps_ = around.scene.solver.iterations;
     solved_way_ = solved_share * SurfacePairs::finest_edge(around.model);
     untaken_way_ = std::min(0.1 * solved_way_, untaken_share * gravity_at_least * dt_ * dt_);
-    system_.set("tolerance", static_cast<float>(around.scene.solver.tolerance));
+    set_tolerance(around.scene.solver.tolerance);
   }
 
   Work step(StateBuffers& state, int row) override {
@@ -136,12 +138,21 @@ class ImplicitEuler : public Integrator {
   }
 
   int iterations() const override { return most_newton_steps_; }
-  int fewest_iterations() const override { return 1; }
 
-  Work again(StateBuffers& state, int row, int iterations) override {
+  Work again(StateBuffers& state, int row) override {
     const Uncounted uncounted(*this);
-    most_newton_steps_ = iterations;
     co_await step(state, row);
+  }
+
+  Work solve(StateBuffers& state, int row, const Precision& precision, SolverWork& spent) override {
+    const Uncounted uncounted(*this);
+    most_newton_steps_ = precision.newton_steps;
+    set_tolerance(precision.tolerance);
+    solved_way_ *= exact_share;
+    untaken_way_ *= exact_share;
+    work_ = {};
+    co_await step(state, row);
+    spent = work_;
   }
 
   void carry(Carrier& carrier) override {
@@ -166,15 +177,24 @@ class ImplicitEuler : public Integrator {
     contact_friction_ = gl::Buffer(vertex_count * 4 * sizeof(float));
   }
 
-  /// While it lives, no work is counted, and Newton steps may be more; it may end half-way.
+  /// While it lives, no work is counted, and a step may be solved further; it may end half-way.
   class Uncounted {
    public:
     explicit Uncounted(ImplicitEuler& of)
-        : of_(of), dispatches_(of.dispatches_), work_(of.work_), most_newton_steps_(of.most_newton_steps_) {}
+        : of_(of),
+          dispatches_(of.dispatches_),
+          work_(of.work_),
+          most_newton_steps_(of.most_newton_steps_),
+          tolerance_(of.tolerance_),
+          solved_way_(of.solved_way_),
+          untaken_way_(of.untaken_way_) {}
     ~Uncounted() {
       of_.dispatches_ = dispatches_;
       of_.work_ = work_;
       of_.most_newton_steps_ = most_newton_steps_;
+      of_.set_tolerance(tolerance_);
+      of_.solved_way_ = solved_way_;
+      of_.untaken_way_ = untaken_way_;
     }
     Uncounted(const Uncounted&) = delete;
 
@@ -183,7 +203,13 @@ class ImplicitEuler : public Integrator {
     std::uint64_t dispatches_;
     SolverWork work_;
     int most_newton_steps_;
+    double tolerance_, solved_way_, untaken_way_;
   };
+
+  void set_tolerance(double tolerance) {
+    tolerance_ = tolerance;
+    system_.set("tolerance", static_cast<float>(tolerance));
+  }
 
   void run(const gl::Program& program) {
     program.use();
@@ -354,6 +380,7 @@ class ImplicitEuler : public Integrator {
   ConjugateGradients solver_;
   double dt_ = 0;
   int most_newton_steps_ = 1;
+  double tolerance_ = 0;        ///< of a linear solve: relative, of the residual
   double untaken_way_ = 0;      ///< the most that a last Newton step may not take [m]
   double solved_way_ = 0;       ///< a Newton step that moves no vertex farther has solved the problem [m]
   std::uint32_t pressing_ = 0;  ///< pairs of surfaces that press at the present estimate

@@ -51,11 +51,18 @@ class Integrator {
   /// Names what the next step needs of the last one, besides the state. It must be all of it.
   virtual void carry(Carrier&) {}
 
-  /// Of methods that iterate: the iterations of a step, and the fewest that it can be done with; else 0.
+  /// Of methods that iterate: the iterations of a step, at most; else 0.
   virtual int iterations() const { return 0; }
-  virtual int fewest_iterations() const { return 0; }
-  /// A step as `step` does, with so many iterations, which is not counted. For methods that iterate.
-  virtual Work again(StateBuffers&, int /*row*/, int /*iterations*/) { return {}; }
+  /// A step as `step` does, which is not counted. For methods that iterate.
+  virtual Work again(StateBuffers&, int /*row*/) { return {}; }
+  /// How far `solve` goes: Newton steps at most, and the relative residual that a linear solve may leave.
+  struct Precision {
+    int newton_steps = 1;
+    double tolerance = 0;
+  };
+  /// A step to another precision, which is not counted either. `spent`: its work. For methods that solve
+  /// equations.
+  virtual Work solve(StateBuffers&, int /*row*/, const Precision&, SolverWork& /*spent*/) { return {}; }
 
   virtual SolverWork work() const { return {}; }
 

@@ -206,11 +206,17 @@ double Simulation::search_candidates() const {
 SolverWork Simulation::solver_work() const {
   return implementation_->kernels.integrator->work();
 }
-const Solves& Simulation::solves() const {
-  return implementation_->solved.solves();
+const Convergence& Simulation::convergence() const {
+  return implementation_->convergence.last();
 }
-void Simulation::measure_solves(bool on) {
-  implementation_->measures_solves = on;
+void Simulation::measure_convergence(bool on) {
+  implementation_->convergence.measure_now_and_then(on);
+}
+void Simulation::measure_step(std::uint64_t step) {
+  implementation_->convergence.ask(step);
+}
+double Simulation::measuring_seconds() const {
+  return implementation_->convergence.seconds();
 }
 StrainLimitWork Simulation::strain_limit_work() const {
   return implementation_->kernels.strain_limit ? implementation_->kernels.strain_limit->work()

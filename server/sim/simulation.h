@@ -73,21 +73,22 @@ struct SolverWork {
                                   ///< whose Newton steps ended before contact between surfaces was solved
 };
 
-/// How far the solves of a run's steps are from solved (solved.h), by the step that was measured last. All 0
-/// for methods that do not iterate.
-struct Solves {
+/// How far the steps of a run are from solved (convergence.h), by the one that was measured last. All 0 for
+/// methods that do not iterate.
+struct Convergence {
   std::uint64_t measured = 0, unsolved_steps = 0;  ///< steps
   std::uint64_t since_first = 0;                   ///< steps measured since the first that was unsolved
   std::uint64_t step = 0;                          ///< number of the last one
-  double left = 0;   ///< how far from where it ended the solved step ends, at the farthest vertex, about [m]
-  double edges = 0;  ///< the same over the mean edge of the vertex's cloth, at most
-  double ratio = 0;  ///< what an iteration still changes, over what the one before did
-  double share = 0;  ///< what all of the step's iterations leave of what the first one found to change, about
-  double undone = 0;  ///< `left` as an acceleration that the step leaves out, over that of gravity
+  /// Root of the mean square over the free vertices: how far each ended from where the solved step ends [m].
+  double error = 0;
+  /// The same over how far the solved step ends from where gravity and inertia alone would take the vertices,
+  /// or over the way of gravity in a step if that is more: the share that the method has left of what it had
+  /// to do.
+  double residual = 0;
+  double largest_error = 0;  ///< of all steps measured [m]
+  double tolerance = 0;      ///< a step whose error is larger is unsolved [m]
 
-  /// The last step measured was far from solved: much is left for its iterations to change, by how far it
-  /// would move a vertex and as a force.
-  bool unsolved = false;
+  bool unsolved() const { return error > tolerance; }
   /// True if half of the steps measured were, or more, since the first that was: a cloth may fall before it
   /// has anything to solve.
   bool often_unsolved() const;
@@ -143,9 +144,13 @@ class Simulation {
   /// The work of the present method's equation solver since the kernels were made.
   SolverWork solver_work() const;
   /// Since the kernels were made, or the state was set from outside.
-  const Solves& solves() const;
+  const Convergence& convergence() const;
   /// Whether steps are measured from now on; without a call, they are.
-  void measure_solves(bool on);
+  void measure_convergence(bool on);
+  /// Step number `step` is measured, too, even if others are not.
+  void measure_step(std::uint64_t step);
+  /// How long measurements have taken [s], of the time of all steps.
+  double measuring_seconds() const;
   /// The work of the strain limit since the kernels were made.
   StrainLimitWork strain_limit_work() const;
   /// Number of dispatches that the present method has queued since the kernels were made, without those of

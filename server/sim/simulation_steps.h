@@ -12,6 +12,7 @@
 
 #include "server/gl/bindings.h"
 #include "server/scene/method.h"
+#include "server/sim/convergence.h"
 #include "server/sim/diagnose.h"
 #include "server/sim/hands.h"
 #include "server/sim/kept_states.h"
@@ -19,7 +20,6 @@
 #include "server/sim/last_good.h"
 #include "server/sim/scene_order.h"
 #include "server/sim/simulation.h"
-#include "server/sim/solved.h"
 #include "server/sim/state.h"
 
 namespace clothlab::sim {
@@ -37,8 +37,7 @@ struct Simulation::Implementation {
   std::uint32_t diagnosed_every = 0;
   LastGood last_good;
   KeptStates kept;
-  SolvedMeasure solved;
-  bool measures_solves = true;
+  ConvergenceMeasure convergence;
   /// What methods carry, at the start of the step under way if that may be cut; else empty.
   Carried at_step_start;
   bool may_be_cut = false, has_step_start = false;
@@ -106,8 +105,7 @@ struct Simulation::Implementation {
     }
     hands.hold(state, scene);
     kernels.integrator->set_contact(kernels.plan.contact_term() ? &*kernels.surface_contact : nullptr);
-    if (measures_solves && solved.due(step_index))
-      co_await solved.measure(state, kernels, scene, row, step_index);
+    if (convergence.due(step_index)) co_await convergence.measure(state, kernels, scene, row, step_index);
     state.position().bind(unit_position);
     co_await kernels.integrator->step(state, row);
     passed(scene::name(kernels.plan.method));
@@ -194,7 +192,7 @@ struct Simulation::Implementation {
     kernels.forget();
     start_time = time;
     step_index = start_step = step;
-    solved.begin(step);
+    convergence.begin(step);
   }
 
   /// Copies all that the next step depends on besides the scene. Not to be called within a step.
@@ -277,7 +275,8 @@ struct Simulation::Implementation {
 
   void take_kernels(Kernels next) {
     kernels = std::move(next);
-    solved.begin(step_index);
+    convergence.forget_solver();
+    convergence.begin(step_index);
     state.make_room(kernels.body_places());
   }
 
@@ -291,7 +290,7 @@ struct Simulation::Implementation {
         differs(scene, next, &scene::Cloth::mass) || differs(scene, next, &scene::Cloth::weights) ||
         differs(scene, next, &scene::Cloth::pins) || moving_motions(scene) != moving_motions(next);
     settle_new_pins(next);
-    if (next.solver != scene.solver) solved.begin(step_index);
+    if (next.solver != scene.solver) convergence.begin(step_index);
     scene = next;
     if (constants) state.rewrite_constants(kernels.model, kernels.motions);
     if (!hands.empty())

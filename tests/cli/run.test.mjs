@@ -102,14 +102,46 @@ test("a time that is not whole in steps is rounded, and that is said", () => {
 test("the trace has a row per --every, the start and the end among them", () => {
   run("seed", "--time", "0.05", "--trace", "trace.csv", "--every", "0.02");
   const [header, ...rows] = file("trace.csv").toString().trim().split("\n");
-  assert.equal(header, "time,kinetic,elastic,gravitational,max_strain,max_speed,contacts");
-  const values = rows.map((row) => row.split(",").map(Number));
+  assert.equal(header, "time,kinetic,elastic,gravitational,max_strain,max_speed,contacts,residual,error_m");
+  // symplectic_euler has nothing to solve: its last two columns are empty
+  assert.ok(rows.every((row) => row.endsWith(",,")));
+  const values = rows.map((row) => row.slice(0, -2).split(",").map(Number));
   assert.deepEqual(
     values.map(([time]) => Math.round(time * 1000)),
     [0, 20, 40, 50],
   );
   assert.ok(values.flat().every(Number.isFinite));
   assert.equal(values[0][1], 0, "it starts at rest");
+});
+
+test("under a method that iterates report and trace tell how far steps are from solved, under others nothing", () => {
+  const few = ["--set", "/solver/method=xpbd", "--set", "/solver/dt=0.016", "--set", "/solver/iterations=3"];
+  const { stderr } = run(
+    "seed",
+    "--time",
+    "0.48",
+    ...few,
+    "--report",
+    "few.json",
+    "--trace",
+    "few.csv",
+    "--every",
+    "0.16",
+  );
+  const { convergence } = report("few.json");
+  assert.ok(convergence.error_m > convergence.tolerance_m && convergence.largest_error_m >= convergence.error_m);
+  assert.ok(convergence.residual > 0.1 && convergence.measured >= 2 && convergence.unsolved >= 1);
+  assert.match(stderr, /far from solved.*more iterations, a smaller dt, or the method implicit_euler/);
+  const rows = file("few.csv")
+    .toString()
+    .trim()
+    .split("\n")
+    .slice(1)
+    .map((row) => row.split(",").slice(-2));
+  assert.deepEqual(rows[0], ["", ""], "nothing is measured at the start");
+  assert.equal(Number(rows.at(-1)[1]), Number(convergence.error_m.toPrecision(9)), "the last step is");
+  run("seed", "--time", "0.01", "--report", "explicit.json");
+  assert.equal(report("explicit.json").convergence, null);
 });
 
 test("an OBJ has every vertex and two triangles a cell, with indices in range", () => {

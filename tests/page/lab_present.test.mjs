@@ -14,6 +14,7 @@ const point = (of, error, cost, blew_up_at_s = null) => ({
   largest_position_error: error,
   ms_a_simulated_s: cost === null ? null : { median: cost, minimum: cost, runs: 3 },
   blew_up_at_s,
+  convergence: null,
   dt_over_limit: null,
   patch: {},
 });

@@ -46,8 +46,9 @@ TEST_CASE(
     INFO(scene::name(method));
     const scene::Scene few = hanging(50, method, 10, 1.0 / 60.0);
     const auto simulation = test::simulation(few);
+    simulation->measure_step(69);
     simulation->step(70);
-    CHECK(simulation->solves().often_unsolved());
+    CHECK(simulation->convergence().often_unsolved());
     const std::string warning = model::sweeps_warning(simulation->model(), few);
     CHECK(warning.find("implicit_euler") != std::string::npos);
     CHECK(model::sweeps_warning(simulation->model(), hanging(50, method, 10, 0.0005)).empty());
@@ -59,29 +60,8 @@ TEST_CASE(
   const scene::Scene solved = hanging(9, Method::vbd, 40, 0.0005);
   const auto simulation = test::simulation(solved);
   simulation->step(70);
-  CHECK(simulation->solves().measured == 7);
-  CHECK(!simulation->solves().unsolved);
-}
-
-TEST_CASE("to measure how far a step is from solved changes no bit of the run") {
-  const auto context = test::context();
-  for (const Method method : {Method::xpbd, Method::vbd, Method::implicit_euler}) {
-    INFO(scene::name(method));
-    scene::Scene scene = test::seed();
-    scene.solver.method = method;
-    scene.solver.dt = 0.004;
-    scene.solver.iterations = method == Method::implicit_euler ? 1 : 4;
-    const auto measured = test::simulation(scene), never = test::simulation(scene);
-    measured->step(20);
-    for (int step = 0; step < 20; ++step) {
-      never->measure_solves(false);
-      never->step(1);
-    }
-    CHECK(measured->solves().measured == 3);
-    CHECK(never->solves().measured == 0);
-    CHECK(measured->dispatches() == never->dispatches());
-    CHECK(sim::state_hash(measured->read_state()) == sim::state_hash(never->read_state()));
-  }
+  CHECK(simulation->convergence().measured == 1);
+  CHECK(simulation->convergence().unsolved_steps == 0);
 }
 
 // With a share of what a vertex had followed as the first guess it went on at 3 m/s.

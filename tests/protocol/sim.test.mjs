@@ -24,12 +24,26 @@ test("sim.status has every field of the contract, with the passes that run and t
   assert.ok(status.skipped.every(({ name, reason }) => name && reason));
   assert.ok(status.stability.dt_limit > 0 && status.stability.margin > 0);
   const { thickness_that_holds: holds, ...solver } = status.solver;
-  assert.deepEqual(solver, { pbd_stiffness: null, auto: null, unsolved: false, from_fabrics: [null] });
+  assert.deepEqual(solver, { pbd_stiffness: null, auto: null, from_fabrics: [null] });
   // a vertex in the middle of a cell, and a fifth more
   assert.ok(Math.abs(holds - 1.2 / 24 / Math.SQRT2) < 1e-9, `${holds}`);
   assert.equal(status.surface, null);
+  assert.equal(status.convergence, null);
   assert.equal(status.asleep, false);
   assert.equal(status.diverged, false);
+});
+
+test("sim.status tells how far steps are from solved, under methods that iterate, and a notice what helps", async () => {
+  await client.request("scene.patch", { patch: { solver: { method: "xpbd", dt: 1 / 60, iterations: 3 } } });
+  const told = client.nextNotification("notice", (n) => n.text.includes("far from solved"));
+  await client.request("sim.step", { steps: 400 });
+  const { convergence } = await client.nextNotification("sim.status", (s) => s.convergence);
+  assert.deepEqual(Object.keys(convergence).sort(), ["error_m", "residual", "tolerance_m"]);
+  assert.ok(convergence.error_m > convergence.tolerance_m, JSON.stringify(convergence));
+  assert.ok(convergence.residual > 0.1 && convergence.residual < 2, JSON.stringify(convergence));
+  assert.match((await told).text, /3 sweeps of xpbd.* mm.*more iterations/);
+  await client.request("scene.patch", { patch: { solver: { method: "verlet", dt: 0.001 } } });
+  await client.nextNotification("sim.status", (s) => s.convergence === null);
 });
 
 test("sim.status counts what contact between surfaces does", async () => {

@@ -4,6 +4,7 @@ import { Connection, type LinkEvents } from "./link/connection";
 import { act } from "./panel/act";
 import { ColourBy } from "./panel/colour_by";
 import { bindCommands } from "./panel/commands";
+import type { Convergence } from "./panel/convergence_gauge";
 import { element } from "./panel/dom";
 import type { SolverFacts } from "./panel/field";
 import { Divergence } from "./panel/divergence";
@@ -343,6 +344,7 @@ export class Page {
         this.slow.told(params as Status);
         this.stability = (params.stability as Stability | undefined) ?? this.stability;
         if (params.stability) this.panel.showStability(params.stability as Stability);
+        this.panel.showConvergence((params.convergence as Convergence | null | undefined) ?? null);
         if (params.solver) this.store.fabricsGive((params.solver as SolverFacts).from_fabrics ?? []);
         if (params.solver) this.panel.showSolver(params.solver as SolverFacts);
         this.hand?.told((params.hands as HandAt[] | undefined) ?? []);

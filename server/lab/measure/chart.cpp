@@ -38,6 +38,7 @@ class ChartMeasurement {
     chart_.scene = scene_.name;
     chart_.renderer = gl::renderer_name();
     if (Status computed = compute_truth(); !computed) return computed.error();
+    trials_.measure_convergence(true);
     ladders_ = make_ladders(scene_, request_, truth_);
     if (Status measured = measure_present(); !measured) return ended(measured.error());
     control_.arrived(chart_);
@@ -188,6 +189,10 @@ class ChartMeasurement {
     if (!trial) return trial.error();
     point.error = trial->error;
     point.largest_position_error = trial->largest_position_error;
+    if (trial->convergence.measured > 0) {
+      point.residual = trial->convergence.residual;
+      point.step_error = trial->convergence.error;
+    }
     point.blew_up_at = trial->blew_up_at;
     if (std::isfinite(ladder.limit) && ladder.limit > 0.0)
       point.dt_over_limit = point.setting.dt / ladder.limit;

@@ -50,7 +50,9 @@ struct Point {
   /// Bounds of the largest position error at any step, see LargestError; only a Choice fills them in.
   std::optional<double> error_low, error_high;
   std::optional<Cost> cost;
-  std::optional<double> blew_up_at;     ///< [s]; a point that blew up has no errors
+  std::optional<double> blew_up_at;  ///< [s]; a point that blew up has no errors
+  /// Of the run's last step, see sim::Convergence: a share, and [m]; none: the method does not iterate.
+  std::optional<double> residual, step_error;
   std::optional<double> dt_over_limit;  ///< dt over its sharp limit about the rest shape; none: no limit
 };
 

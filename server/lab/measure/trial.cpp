@@ -88,6 +88,7 @@ Result<sim::Simulation*> TrialRunner::prepare(const scene::Scene& scene) {
     return changed.error();
   }
   // Drivers compile a kernel when it first runs, and caches are cold after another scene.
+  simulation->measure_convergence(false);
   simulation->step(3);
   simulation->finish();
   simulation->reset();
@@ -108,6 +109,7 @@ Result<Trial> TrialRunner::run(scene::Scene scene, const Truth& truth, double un
   const auto steps_a_sample = static_cast<std::uint64_t>(steps / common);
   const int samples_apart = samples_to_horizon / common;
   const auto last = static_cast<std::uint64_t>(std::ceil(until / scene.solver.dt - 1e-6));
+  if (measures_convergence_ && last > 0) simulation.measure_step(last - 1);
   Trial trial;
   ErrorsSoFar errors(truth);
   Stepping stepping(simulation);
@@ -126,6 +128,7 @@ Result<Trial> TrialRunner::run(scene::Scene scene, const Truth& truth, double un
     if (step % steps_a_sample == 0)
       errors.add(static_cast<int>(step / steps_a_sample) * samples_apart, simulation, guard.state(), trial);
   }
+  trial.convergence = simulation.convergence();
   return trial;
 }
 

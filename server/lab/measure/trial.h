@@ -19,6 +19,7 @@ struct Trial {
   std::optional<double> largest_position_error;  ///< at any sample up to the horizon, over the size
   std::optional<double> blew_up_at;              ///< [s]
   double wall = 0, simulated = 0;                ///< wall time of stepping alone [s]; simulated time [s]
+  sim::Convergence convergence;                  ///< of the last step
   std::vector<glm::vec3> at_horizon;  ///< [vertex] positions [m]; empty: the horizon was not reached
 };
 
@@ -45,7 +46,11 @@ class TrialRunner {
   Result<std::vector<std::vector<double>>> time(const std::vector<scene::Scene>& scenes, double simulated,
                                                 double most, int rounds, const std::stop_token& stop);
 
+  /// Whether `run` measures how far its last step is from solved.
+  void measure_convergence(bool on) { measures_convergence_ = on; }
+
  private:
+  bool measures_convergence_ = false;
   /// By method and the number of sweeps for which the kernels were made (0 for a method that does not sweep).
   std::map<std::pair<scene::Method, int>, std::unique_ptr<sim::Simulation>> simulations_;
 };

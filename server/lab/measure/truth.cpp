@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <optional>
 #include <random>
@@ -11,6 +10,7 @@
 #include "server/base/text.h"
 #include "server/lab/measure/control.h"
 #include "server/lab/measure/follower.h"
+#include "server/model/extent.h"
 #include "server/reference/trajectory.h"
 #include "server/sim/colliders.h"
 
@@ -35,21 +35,6 @@ constexpr int most_halvings = 8;  // of the step
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// The largest extent of a cloth at rest along an axis [m].
-double largest_extent(const model::Model& model) {
-  double most = 0.0;
-  for (const model::ClothRange& cloth : model.cloths) {
-    glm::dvec3 low(1e300), high(-1e300);
-    for (std::uint32_t i = cloth.first_vertex; i < cloth.first_vertex + cloth.vertex_count; ++i) {
-      low = glm::min(low, model.rest_position[i]);
-      high = glm::max(high, model.rest_position[i]);
-    }
-    const glm::dvec3 extent = high - low;
-    most = std::max({most, extent.x, extent.y, extent.z});
-  }
-  return most;
 }
 
 double largest_strain(const World& world, const State& state) {
@@ -269,7 +254,7 @@ Result<Truth> truth(const scene::Scene& scene, const TruthRequest& request, cons
   if (!world) return world.error();
   Truth truth;
   truth.world = std::move(*world);
-  truth.size = largest_extent(truth.world.model);
+  truth.size = model::largest_extent(truth.world.model);
   if (Status found = Search(truth, request, stop, progress).run(); !found) return found.error();
   if (!truth.why_no_reference.empty()) {  // steps and costs can be measured without it
     truth.time = request.time;

@@ -1,7 +1,7 @@
 // The points of a chart or of a choice: the tooltip of one point, and the table of all.
 import { make, makeButton } from "./dom";
 import { Table } from "./table";
-import { axisNames, costText, errorText, iterationsText, limitText, settingText, stepText } from "./text";
+import { axisNames, costText, errorText, iterationsText, limitText, settingText, solvedText, stepText } from "./text";
 import type { Axis, Point } from "./types";
 import type { Tip } from "./picture";
 import { methodText } from "../panel/methods";
@@ -36,6 +36,7 @@ export function pointTip(point: Point, { name, size, of }: Shown, mayApply: bool
     lines.push(`${name} ${errorText(error)}${length}`);
     if (point.ms_a_simulated_s) lines.push(`${costText(point.ms_a_simulated_s)} a simulated second`);
   }
+  if (point.convergence) lines.push(`${solvedText(point.convergence)} from solved at the last step`);
   if (point.dt_over_limit !== null) lines.push(`${limitText(point.dt_over_limit)} of the stability limit`);
   return {
     title: settingText(point),
@@ -86,6 +87,13 @@ export class PointTable {
           text: (point) => costText(point.ms_a_simulated_s),
           order: (point) => point.ms_a_simulated_s?.median ?? null,
           className: "number",
+        },
+        {
+          title: "Left",
+          hint: "what the last step leaves unsolved",
+          text: ({ convergence }) => (convergence ? solvedText(convergence) : "–"),
+          order: ({ convergence }) => convergence?.error_m ?? null,
+          className: "number wide",
         },
         {
           title: "Limit",

@@ -1,5 +1,6 @@
 // Writes the lab's settings, errors and costs in words.
 import { methodText } from "../panel/methods";
+import { lengthText } from "../panel/length";
 import type { Axis, Cost, Setting } from "./types";
 
 const digits = (value: number, count: number): string => String(Number(value.toPrecision(count)));
@@ -51,6 +52,9 @@ export function limitText(share: number | null): string {
   if (share === null) return "–";
   return share < 10 ? `${digits(100 * share, 2)}\u00a0%` : `${digits(share, 2)}\u00a0×`;
 }
+
+/// How far a step is from solved, as a length.
+export const solvedText = ({ error_m: error }: { error_m: number }): string => lengthText(error);
 
 export const axisNames: Record<Axis, string> = {
   position: "Position",

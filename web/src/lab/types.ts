@@ -31,6 +31,7 @@ export interface Point extends Setting {
   largest_position_error_high: number | null;
   ms_a_simulated_s: Cost | null;
   blew_up_at_s: number | null;
+  convergence: { residual: number; error_m: number } | null; ///< of the last step; null: not measured
   dt_over_limit: number | null;
   patch: Patch;
 }

@@ -10,8 +10,6 @@ export const kinds = ["structural", "shear", "bend"] as const;
 
 /// Facts about the solver in `sim.status`.
 export interface SolverFacts {
-  /// The last step that was measured ended far from solved.
-  unsolved?: boolean;
   /// Under the method `auto`: the method that steps the scene, and why.
   auto?: {
     state: "measuring" | "chosen" | "failed";

@@ -27,8 +27,8 @@ export interface Reading {
   filled: number;
 }
 
-/// The gauge's reading for a time step [s]. `unsolved`: the method's iterations end far from the step's solution.
-export function reading(dt: number, limit: number | null, unsolved = false): Reading {
+/// The gauge's reading for a time step [s].
+export function reading(dt: number, limit: number | null): Reading {
   const always = (verdict: Verdict, word: string): Reading => ({
     verdict,
     word,
@@ -36,14 +36,6 @@ export function reading(dt: number, limit: number | null, unsolved = false): Rea
     spoken: `${word} at any time step`,
     filled: 1,
   });
-  if (limit === null && unsolved)
-    return {
-      verdict: "near",
-      word: "Unsolved",
-      share: "steps end far from solved",
-      spoken: "stable, but steps end far from solved",
-      filled: 1,
-    };
   if (limit === null) return always("good", "Stable");
   if (limit <= 0) return always("beyond", "Unstable");
   const ratio = dt / limit;
@@ -60,9 +52,10 @@ export function reading(dt: number, limit: number | null, unsolved = false): Rea
   };
 }
 
-const glyphs: Record<Verdict, string> = { good: "✓", near: "!", beyond: "✕" };
+export const glyphs: Record<Verdict, string> = { good: "✓", near: "!", beyond: "✕" };
 
-function part(tag: string, className: string, parent: HTMLElement): HTMLElement {
+/// A new element in `parent`.
+export function part(tag: string, className: string, parent: HTMLElement): HTMLElement {
   const made = document.createElement(tag);
   made.className = className;
   parent.append(made);
@@ -96,8 +89,8 @@ export class Gauge {
     this.limit.onclick = () => setTimeStep(this.saferStep);
   }
 
-  show(dt: number, { dt_limit }: Stability, unsolved: boolean): void {
-    const now = reading(dt, dt_limit, unsolved);
+  show(dt: number, { dt_limit }: Stability): void {
+    const now = reading(dt, dt_limit);
     const { style, dataset } = this.element;
     this.element.hidden = false;
     if (dataset.verdict !== now.verdict) this.spoken.textContent = `time step: ${now.word.toLowerCase()}`;
@@ -109,7 +102,7 @@ export class Gauge {
     this.share.textContent = now.share;
     this.track.setAttribute("aria-valuenow", (end * now.filled).toFixed(3));
     this.track.setAttribute("aria-valuetext", now.spoken);
-    this.element.title = explain(dt, dt_limit, unsolved);
+    this.element.title = explain(dt, dt_limit);
     this.showLimit(dt_limit);
   }
 
@@ -124,12 +117,7 @@ export class Gauge {
   }
 }
 
-function explain(dt: number, limit: number | null, unsolved: boolean): string {
-  if (limit === null && unsolved)
-    return (
-      "The iterations of a step leave much of it unsolved: the cloth stretches and lags more than its material " +
-      "would. A shorter time step, more iterations or another method helps."
-    );
+function explain(dt: number, limit: number | null): string {
   if (limit === null)
     return "This method is stable at any time step; a long one damps the motion and asks for more iterations.";
   if (limit <= 0)

@@ -4,6 +4,7 @@ import { Explanation } from "../explain/explanation";
 import type { Guide } from "../explain/guide";
 import { type Field, type Note, operationsFor, readField, type Section, type SolverFacts } from "./field";
 import { sectionsOf } from "./fields";
+import { type Convergence, ConvergenceGauge } from "./convergence_gauge";
 import { Gauge, type Stability } from "./gauge";
 import type { Fabric } from "../link/fabrics";
 import type { Operation, SceneDocument } from "../link/scene_types";
@@ -43,6 +44,7 @@ export class Panel {
   private stability: Stability | null = null;
   private facts: SolverFacts = {};
   private notes: (() => void)[] = [];
+  private readonly convergence = new ConvergenceGauge();
   private readonly gauge = new Gauge((dt) => this.events.edit([{ op: "replace", path: timeStep, value: dt }]));
   private document: SceneDocument | null = null;
   private stored: SceneDocument | null = null; // the same as the server keeps it
@@ -103,6 +105,11 @@ export class Panel {
   showStability(stability: Stability): void {
     this.stability = stability;
     this.moveGauge();
+  }
+
+  /// Takes how far the server has measured steps to be from solved.
+  showConvergence(convergence: Convergence | null): void {
+    this.convergence.show(convergence);
   }
 
   /// Takes what the server tells about the solver.
@@ -197,7 +204,7 @@ export class Panel {
       this.document && this.stored ? this.guide.explain(field, this.document, this.stored) : null,
     );
     if (field.note) this.addNote(folder, { ...field, note: field.note });
-    if (field.key === timeStep) folder.$children.append(this.gauge.element);
+    if (field.key === timeStep) folder.$children.append(this.gauge.element, this.convergence.element);
     controller.onChange((value: unknown) => {
       control.held = field.onRelease === true;
       if (!field.onRelease) this.edit(field, value);
@@ -298,7 +305,7 @@ export class Panel {
 
   private moveGauge(): void {
     if (!this.stability) return;
-    this.gauge.show(Number(this.values[timeStep]), this.stability, this.facts.unsolved ?? false);
+    this.gauge.show(Number(this.values[timeStep]), this.stability);
     const control = this.controls.find(({ field }) => field.key === timeStep);
     if (control?.controller instanceof SliderController) control.controller.mark(this.stability.dt_limit);
   }

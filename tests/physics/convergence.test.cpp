@@ -1,0 +1,180 @@
+// How far a step is from solved: against the step's solution in double precision, and who is told.
+#include <cmath>
+
+#include "server/model/extent.h"
+#include "server/reference/reference.h"
+#include "server/scene/document.h"
+#include "server/scene/method.h"
+#include "server/sim/convergence.h"
+#include "tests/scenes.h"
+
+using namespace clothlab;
+using scene::Method;
+
+namespace {
+
+constexpr double frame = 1.0 / 60;
+
+/// A sheet of springs, 0.1 kg a vertex as the seed's, or of cotton, hung by two corners.
+scene::Scene hung(int side, bool cotton, Method method, int iterations, double dt) {
+  scene::Scene scene = test::sheet(side, side);
+  scene::Cloth& cloth = scene.cloths[0];
+  if (cotton) {
+    cloth.mass = {scene::Mass::Kind::area_density, 0.1036};
+    cloth.material = scene::Fem{};
+  }
+  cloth.pins = {{scene::AtCorner{0, 0}, {}}, {scene::AtCorner{side - 1, 0}, {}}};
+  scene.solver = {.method = method, .dt = dt, .iterations = iterations};
+  return scene;
+}
+
+/// RMS distance over the free vertices [m] from where the simulation's next step ends to where it ends in
+/// double precision, solved to rounding. The step is done, and measured.
+double true_error(sim::Simulation& simulation, scene::Scene scene) {
+  scene.solver.method = Method::implicit_euler;
+  const reference::World world = *reference::make_world(scene, 0.0);
+  const sim::State start = simulation.read_state();
+  reference::State solved = reference::at_rest(world);
+  solved.position.assign(start.position.begin(), start.position.end());
+  solved.velocity.assign(start.velocity.begin(), start.velocity.end());
+  solved.step = simulation.step_index();
+  reference::step(world, solved);
+  simulation.measure_step(simulation.step_index());
+  simulation.step(1);
+  const sim::State end = simulation.read_state();
+  double squares = 0.0, free = 0.0;
+  for (std::size_t i = 0; i < end.position.size(); ++i) {
+    if (world.pinned(i)) continue;
+    const glm::dvec3 left = glm::dvec3(end.position[i]) - solved.position[i];
+    squares += glm::dot(left, left);
+    free += 1.0;
+  }
+  return std::sqrt(squares / free);
+}
+
+struct Case {
+  bool cotton;
+  Method method;
+  int iterations;
+  double dt;
+};
+
+}  // namespace
+
+TEST_CASE("the error of a step is that against its solution in double precision, within a factor of two") {
+  const auto context = test::context();
+  for (const auto& [cotton, method, iterations, dt] :
+       {Case{false, Method::pbd, 10, frame}, Case{false, Method::pbd, 3, 0.004},
+        Case{false, Method::xpbd, 10, frame}, Case{false, Method::xpbd, 60, frame},
+        Case{false, Method::xpbd, 4, 0.004}, Case{true, Method::xpbd, 10, frame},
+        Case{false, Method::vbd, 10, frame}, Case{false, Method::vbd, 60, frame},
+        Case{true, Method::vbd, 10, frame}, Case{true, Method::vbd, 5, 0.004},
+        Case{false, Method::implicit_euler, 1, frame}, Case{true, Method::implicit_euler, 1, frame},
+        Case{true, Method::implicit_euler, 1, 0.004}}) {
+    const scene::Scene scene = hung(13, cotton, method, iterations, dt);
+    const auto simulation = test::simulation(scene);
+    for (const int steps : {10, 20}) {  // while it falls, and when it swings or has stretched
+      simulation->step(steps);
+      const double truth = true_error(*simulation, scene), found = simulation->convergence().error;
+      INFO((cotton ? "cotton, " : "springs, ")
+           << scene::name(method) << ", " << iterations << " iterations, dt " << dt << ", step "
+           << simulation->step_index() << ": " << 1000 * found << " mm, in truth " << 1000 * truth);
+      CHECK(simulation->convergence().step + 1 == simulation->step_index());
+      CHECK(found < 2.0 * truth);
+      CHECK(found > 0.5 * truth);
+    }
+  }
+}
+
+TEST_CASE("cotton that few sweeps stretch is told, with what helps that method; solved cotton is not") {
+  const auto context = test::context();
+  for (const Method method : {Method::xpbd, Method::vbd}) {
+    INFO(scene::name(method));
+    const scene::Scene few = hung(33, true, method, 10, frame);
+    const auto simulation = test::simulation(few);
+    simulation->step(20);
+    simulation->measure_step(20);
+    simulation->step(1);
+    CHECK(simulation->convergence().often_unsolved());
+    CHECK(simulation->convergence().residual > 0.5);
+    const std::string told = sim::in_words(simulation->convergence(), few);
+    CHECK(told.find("more iterations, a smaller dt, or the method implicit_euler") != std::string::npos);
+  }
+  const scene::Scene sheet = hung(33, false, Method::pbd, 10, frame);
+  const auto soft = test::simulation(sheet);
+  soft->measure_step(29);
+  soft->step(30);
+  CHECK(soft->convergence().often_unsolved());
+  CHECK(sim::in_words(soft->convergence(), sheet).find("xpbd") != std::string::npos);
+
+  scene::Scene solved = hung(33, true, Method::implicit_euler, 1, frame);
+  solved.solver.tolerance = 1e-2;
+  const auto simulation = test::simulation(solved);
+  simulation->step(20);
+  simulation->measure_step(20);
+  simulation->step(1);
+  INFO(1000 * simulation->convergence().largest_error << " mm");
+  CHECK(simulation->convergence().measured >= 2);
+  CHECK(simulation->convergence().unsolved_steps == 0);
+}
+
+TEST_CASE("presets that iterate are solved as they ship, and the seed under sweeps of its own dt") {
+  const auto context = test::context();
+  for (const char* preset : {"fabrics", "funnel", "skirt", "seed"}) {
+    scene::Scene scene = scene::load_preset(preset)->scene;
+    for (const Method method : scene::iterates(scene.solver.method)
+                                   ? std::vector<Method>{scene.solver.method}
+                                   : std::vector<Method>{Method::xpbd, Method::vbd, Method::pbd}) {
+      scene.solver.method = method;
+      const auto simulation = test::simulation(scene);
+      simulation->measure_step(19);
+      simulation->step(20);
+      INFO(preset << " under " << scene::name(method) << ": "
+                  << 1000 * simulation->convergence().largest_error << " mm of "
+                  << 1000 * simulation->convergence().tolerance);
+      CHECK(simulation->convergence().measured == 2);
+      CHECK(simulation->convergence().unsolved_steps == 0);
+    }
+  }
+}
+
+TEST_CASE("to measure how far a step is from solved changes no bit of the run") {
+  const auto context = test::context();
+  for (const Method method : {Method::pbd, Method::xpbd, Method::vbd, Method::implicit_euler}) {
+    INFO(scene::name(method));
+    scene::Scene scene = test::seed();
+    scene.solver.method = method;
+    scene.solver.dt = 0.004;
+    scene.solver.iterations = method == Method::implicit_euler ? 1 : 4;
+    const auto measured = test::simulation(scene), never = test::simulation(scene);
+    never->measure_convergence(false);
+    for (int step = 0; step < 20; ++step) {
+      measured->measure_step(step);
+      measured->step(1);
+      never->step(1);
+    }
+    CHECK(measured->convergence().measured == 20);
+    CHECK(never->convergence().measured == 0);
+    CHECK(measured->dispatches() == never->dispatches());
+    CHECK(measured->solver_work().linear_iterations == never->solver_work().linear_iterations);
+    CHECK(sim::state_hash(measured->read_state()) == sim::state_hash(never->read_state()));
+  }
+}
+
+TEST_CASE("steps are measured seldom enough that it takes a small part of them") {
+  const auto context = test::context();
+  scene::Scene scene = hung(9, false, Method::xpbd, 10, 0.004);
+  const auto simulation = test::simulation(scene);
+  simulation->step(9);
+  CHECK(simulation->convergence().measured == 1);
+  CHECK(simulation->convergence().step == 8);
+  // The least that it takes, 4 Newton steps, is worth 32 sweeps, more than 4 steps with the one done again:
+  // the next comes no sooner than after 80.
+  simulation->step(75);
+  CHECK(simulation->convergence().measured == 1);
+  scene.solver.iterations = 20;
+  REQUIRE(simulation->change(scene));
+  CHECK(simulation->convergence().measured == 0);
+  simulation->step(9);
+  CHECK(simulation->convergence().measured == 1);
+}
