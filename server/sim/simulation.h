@@ -81,9 +81,8 @@ struct Convergence {
   std::uint64_t step = 0;                          ///< number of the last one
   /// Root of the mean square over the free vertices: how far each ended from where the solved step ends [m].
   double error = 0;
-  /// The same over how far the solved step ends from where gravity and inertia alone would take the vertices,
-  /// or over the way of gravity in a step if that is more: the share that the method has left of what it had
-  /// to do.
+  /// The same over how far the solved step ends from where gravity and inertia alone take the vertices, or
+  /// over the way of gravity in a step if that is more: the share of its task that the method has left.
   double residual = 0;
   double largest_error = 0;  ///< of all steps measured [m]
   double tolerance = 0;      ///< a step whose error is larger is unsolved [m]
