@@ -20,7 +20,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uint64_t first_measured = 8;
 /// A step whose error is a larger share of the largest cloth's extent is unsolved: three pixels where the
 /// cloth fills the 720 lines of a picture. Presets as they ship leave up to 3.4e-3; sheets that sweeps
 /// stretch by 74 % instead of 18 %, 4.5e-3 and more.

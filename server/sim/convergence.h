@@ -43,6 +43,8 @@ class ConvergenceMeasure {
   double seconds() const { return seconds_; }
 
  private:
+  static constexpr std::uint64_t first_measured = 8;  ///< steps after the start
+
   Integrator* solver_for(Kernels& kernels, const scene::Scene& scene);
   bool take(const model::Model& model, const scene::Scene& scene, double tolerance, double newton);
   void count(std::uint64_t step, const scene::Scene& scene, const Kernels& kernels, double spent);
@@ -53,7 +55,7 @@ class ConvergenceMeasure {
   std::unique_ptr<Integrator> solver_;    ///< of the step of a method that sweeps
   Plan solver_plan_;
   Convergence last_;
-  std::uint64_t next_ = 0;  ///< step
+  std::uint64_t next_ = first_measured;  ///< step
   std::optional<std::uint64_t> asked_;
   bool now_and_then_ = true;
   double seconds_ = 0;
