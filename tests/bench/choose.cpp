@@ -17,6 +17,7 @@
 #include "server/lab/measure/truth.h"
 #include "server/model/element_operator.h"
 #include "server/model/stability.h"
+#include "server/reference/follower.h"
 #include "server/reference/trajectory.h"
 #include "server/scene/document.h"
 #include "server/scene/method.h"
@@ -60,17 +61,17 @@ double independent_error(const Case& of, const Setting& setting, const lab::Trut
     at.push_back(step);
     times.push_back(step * setting.dt);
   }
-  // its finer run takes half of this step
-  const auto exact = reference::trajectory(truth.world, times, truth.dt);
-  if (!exact) std::fprintf(stderr, "%s\n", exact.error().text().c_str()), std::exit(1);
+  reference::Follower follower(truth.world, truth.pace.halved(1), {});
+  reference::State exact = reference::at_rest(truth.world);
   auto made = sim::Simulation::create(lab::with(of.scene, setting));
   const auto simulation = std::move(*made);
   double worst = 0.0;
   for (std::size_t k = 0; k < at.size(); ++k) {
     simulation->step(static_cast<std::uint32_t>(at[k] - (k ? at[k - 1] : 0)));
     const sim::State read = simulation->read_state();
-    worst = std::max(worst, reference::rms_distance({read.position.begin(), read.position.end()},
-                                                    exact->states[k].position));
+    follower.follow(exact, k ? times[k - 1] : 0.0, times[k]);
+    worst = std::max(worst,
+                     reference::rms_distance({read.position.begin(), read.position.end()}, exact.position));
   }
   return worst / truth.size;
 }

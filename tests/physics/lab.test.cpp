@@ -5,6 +5,7 @@
 #include "server/lab/measure/choice.h"
 #include "server/lab/measure/trial.h"
 #include "server/lab/measure/truth.h"
+#include "server/reference/follower.h"
 #include "server/reference/trajectory.h"
 #include "server/scene/method.h"
 #include "tests/physics/stage.h"
@@ -94,6 +95,32 @@ TEST_CASE("a horizon ends where a cloth buckles, and a tangle has none: the lab 
   CHECK(lost.position.empty());
   CHECK(lost.energy.size() == samples_to_horizon);
   CHECK(lost.horizon_reason.find("chaotic at once") != std::string::npos);
+}
+
+TEST_CASE("woven cloth has a reference, which RK4 confirms within its estimate") {
+  scene::Scene scene = test::sheet_of_elements(Method::implicit_euler, 1e-2, 11, 1e-3);
+  scene.gravity = {0.0, -9.81, 0.0};
+  scene::Fem& woven = std::get<scene::Fem>(scene.cloths[0].material);
+  woven.warp = 2365.0;
+  woven.weft = 3801.0;
+  woven.shear = 97.0;
+  scene.cloths[0].pins = {{scene::AtCorner{0, 0}, {}}, {scene::AtCorner{10, 0}, {}}};
+  const double time = 0.06;
+  const Truth found = truth_of(scene, {time, 1e-8, 60.0});
+  INFO(found.horizon_reason);
+  CHECK(found.pace.method == reference::Pace::Method::esdirk);
+  CHECK(found.why_no_reference.empty());
+  CHECK(found.horizon == time);
+  CHECK(found.position_error < 1e-6 * found.size);
+  REQUIRE(found.position.size() == samples_to_horizon);
+  // RK4 at its limit has an error far below.
+  reference::Follower follower(
+      found.world, {reference::Pace::Method::rk4, 1.0 / reference::fastest_rate(found.world)}, {});
+  reference::State exact = reference::at_rest(found.world);
+  follower.follow(exact, 0.0, time);
+  const double off = reference::rms_distance(found.position.back(), exact.position);
+  INFO("off by " << off << " m, said " << found.position_error << " m");
+  CHECK(off < 3.0 * found.position_error);
 }
 
 TEST_CASE(

@@ -22,6 +22,7 @@ using Clock = std::chrono::steady_clock;
 using scene::Method;
 
 constexpr double share_of_truth = 0.3;         // share of the budget for the reference
+constexpr double share_of_stiff_truth = 0.5;   // the same of a scene that is too stiff for RK4
 constexpr double share_of_rest = 0.2;          // share of the budget kept for the errors of Axis::rest
 constexpr double useless_error = 0.3;          // a point with a larger error is useless and timed only once
 constexpr double dominated_cost_ratio = 20.0;  // a ladder is left out if other iterations cost this much less
@@ -68,7 +69,9 @@ class ChartMeasurement {
     const auto progress = [this](double share) {
       control_.progress({share * share_of_truth, 1.0, "the reference, in double precision"});
     };
-    Result<Truth> found = truth(scene_, {request_.time.value_or(1.0), 1e-7, share_of_truth * request_.budget},
+    Result<Truth> found = truth(scene_,
+                                {request_.time.value_or(1.0), 1e-7, share_of_truth * request_.budget,
+                                 share_of_stiff_truth * request_.budget},
                                 control_.stop, progress);
     if (!found) return found.error();
     truth_ = std::move(*found);
@@ -108,7 +111,9 @@ class ChartMeasurement {
     return ok();
   }
 
+  /// Of RK4, where that is the reference.
   Status compute_floor() {
+    if (truth_.pace.method != reference::Pace::Method::rk4) return ok();
     const double limit = limit_of(Method::rk4, scene_, truth_);
     Result<std::optional<double>> floor =
         float32_floor(scene_, truth_, 0.5 * limit, 0.1 * request_.budget, trials_, control_.stop);

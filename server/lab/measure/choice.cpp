@@ -21,6 +21,8 @@ namespace {
 
 using scene::Method;
 
+/// Wall time to spend on the reference [s]; the second where a scene is too stiff for RK4.
+constexpr double reference_budget = 30.0, stiff_reference_budget = 120.0;
 constexpr int rounds = 7;       // chance that all are above the median: 1/128
 constexpr int looks_again = 3;  // looks at a candidate at most, see bound_errors()
 /// A candidate that blows up for want of a margin gets a step shorter by this factor, this often at most: a
@@ -67,7 +69,8 @@ class Chooser {
     };
     const double accuracy = std::min(1e-7, 1e-3 * request_.tolerance);
     Result<Truth> found =
-        truth(scene_, {request_.time.value_or(1.0), accuracy, 30.0}, control_.stop, progress);
+        truth(scene_, {request_.time.value_or(1.0), accuracy, reference_budget, stiff_reference_budget},
+              control_.stop, progress);
     if (!found) return found.error();
     truth_ = std::move(*found);
     choice_.time = truth_.time;

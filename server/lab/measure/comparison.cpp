@@ -8,11 +8,11 @@
 #include "server/base/text.h"
 #include "server/gl/context.h"
 #include "server/lab/measure/automatic.h"
-#include "server/lab/measure/follower.h"
 #include "server/lab/measure/stepping.h"
 #include "server/lab/measure/truth.h"
 #include "server/model/size.h"
 #include "server/model/stability.h"
+#include "server/reference/follower.h"
 
 namespace clothlab::lab {
 
@@ -23,6 +23,7 @@ using scene::Document;
 constexpr double same_time = 1e-6;           // two times that differ by less, in steps, are the same
 constexpr double accuracy_aimed_for = 1e-6;  // of the reference: RMS over the cloth's size at the horizon
 constexpr double search_budget = 20.0;       // wall time to look for the reference's step [s]
+constexpr double stiff_budget = 60.0;        // the same for a scene that is too stiff for RK4 [s]
 constexpr double search_share = 0.4;         // of the job's progress: looking for it
 
 /// Positions as they are told, in 32-bit floats.
@@ -190,8 +191,8 @@ class Comparing {
       control_.progress({search_share * share, 1.0, "the truth, in double precision"});
     };
     progress(0.0);
-    Result<Truth> truth =
-        lab::truth(scene, {request_.time, accuracy_aimed_for, search_budget}, control_.stop, progress);
+    Result<Truth> truth = lab::truth(scene, {request_.time, accuracy_aimed_for, search_budget, stiff_budget},
+                                     control_.stop, progress);
     if (!truth) return truth.error();
     if (!truth->why_no_reference.empty()) return no_truth(truth->why_no_reference);
     if (truth->horizon == 0.0) return no_truth(truth->horizon_reason);
@@ -201,7 +202,7 @@ class Comparing {
     found_.notes = truth->notes;
     found_.notes.push_back(truth->horizon_reason);
     reference_ = reference::at_rest(truth->world);
-    follower_.emplace(std::move(truth->world), truth->dt, control_.stop);
+    follower_.emplace(std::move(truth->world), truth->pace, control_.stop);
     return ok();
   }
 
@@ -251,7 +252,7 @@ class Comparing {
   const Control<Comparison>& control_;
   Comparison found_;
   std::unique_ptr<Stepped> a_, b_;  // a_: null where A is the truth
-  std::optional<Follower> follower_;
+  std::optional<reference::Follower> follower_;
   reference::State reference_;
   double reference_time_ = 0;  // [s]
 };

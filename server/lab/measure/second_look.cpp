@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "server/lab/measure/control.h"
-#include "server/lab/measure/follower.h"
+#include "server/reference/follower.h"
 
 namespace clothlab::lab {
 
@@ -55,7 +55,7 @@ double rms(const std::vector<glm::vec3>& position, const std::vector<glm::dvec3>
 
 /// Runs the reference through every time of every path and fills in the paths' errors. False: cancelled.
 bool compare(std::vector<Path>& paths, const Truth& truth, const std::stop_token& stop) {
-  Follower follower(truth.world, truth.dt, stop);
+  reference::Follower follower(truth.world, truth.pace, stop);
   reference::State state = reference::at_rest(truth.world);
   const double same = 1e-9 * truth.spacing;  // times closer than this [s] differ only by rounding
   for (double now = 0.0;;) {

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
 
 #include "server/base/result.h"
+#include "server/reference/pace.h"
 #include "server/reference/reference.h"
 
 namespace clothlab::lab {
@@ -32,7 +34,7 @@ struct Truth {
   double energy_scale = 0;     ///< largest kinetic + elastic energy at any sample [J]
   double position_error = 0;   ///< the reference's own error at the horizon, RMS [m]
   double energy_error = 0, strain_error = 0;  ///< the reference's own errors, as shares (see Axis)
-  double dt = 0;                              ///< the reference's step [s]
+  reference::Pace pace;                       ///< the reference's method and steps
   std::vector<std::string> notes;             ///< for the user, whole sentences
 };
 
@@ -40,11 +42,13 @@ struct TruthRequest {
   double time = 1.0;       ///< to simulate [s]
   double accuracy = 1e-7;  ///< error of the reference to aim for: RMS over size at the horizon
   double budget = 30.0;    ///< wall time to spend [s]
+  std::optional<double> stiff_budget = {};  ///< the same for a scene too stiff for RK4 [s]; none: as `budget`
 };
 
-/// Runs RK4 in double precision, halving the step until two runs agree or the budget is spent. Shortens the
-/// time where the budget is not enough for it even at the longest step. Error: the scene cannot be built, or
-/// cancelled.
+/// Runs the reference in double precision, by RK4 or, for a scene for which that costs less, by Esdirk
+/// (reference/pace.h), halving its steps until two runs agree or the budget is spent. A stiff reference stops
+/// at a hundred times `accuracy`. Shortens the time where the budget is not enough for it even at the longest
+/// steps. Error: the scene cannot be built, or cancelled.
 Result<Truth> truth(const scene::Scene& scene, const TruthRequest& request, const std::stop_token& stop,
                     const std::function<void(double share)>& progress);
 
