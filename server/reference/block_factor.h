@@ -1,6 +1,6 @@
 // A symmetric matrix of 3x3 blocks, one row and one column of blocks for each free vertex, and its Cholesky
 // factor: multifrontal, in the order of a nested dissection (Duff & Reid 1983; George 1973), with Eigen's
-// dense kernels for the fronts. Eigen's SimplicialLDLT works entry by entry; README.md has the times of both.
+// dense kernels for the fronts. Eigen's SimplicialLDLT works entry by entry.
 #pragma once
 
 #include <Eigen/Core>

@@ -101,8 +101,9 @@ Scout::Scout(World world, double error_rate, double precision, double first_step
       error_rate_(error_rate),
       step_(first_step) {}
 
-bool Scout::follow(State& state, double from, double to) {
+bool Scout::follow(State& state, double from, double to, Clock::time_point deadline) {
   for (double t = from; t < to;) {
+    if (late_ = Clock::now() > deadline; late_) return false;
     const double steps = std::ceil((to - t) / step_ - 1e-6), dt = (to - t) / std::max(steps, 1.0);
     const double next = steps <= 1.0 ? to : t + dt;
     const Mark before = mark(state);

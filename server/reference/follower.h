@@ -1,6 +1,7 @@
 // Advances the reference from one time to another, by the method and with the steps that its pace says.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <stop_token>
@@ -55,16 +56,20 @@ class Follower {
 /// Advances a state by Esdirk with steps that keep its error estimate, and so finds a pace.
 class Scout : public Follower {
  public:
+  using Clock = std::chrono::steady_clock;
+
   /// `error_rate`: estimated error a second of motion [m/s]; `precision` as in Pace [m]; `first_step` [s].
   Scout(World world, double error_rate, double precision, double first_step, const std::stop_token& stop);
 
-  /// Like Follower's; for rising times, one after another.
-  bool follow(State& state, double from, double to);
+  /// Like Follower's; for rising times, one after another. False, too: it is past `deadline`, and `late`.
+  bool follow(State& state, double from, double to, Clock::time_point deadline = Clock::time_point::max());
+  bool late() const { return late_; }
   /// Up to where it has been.
   const Pace& pace() const { return pace_; }
 
  private:
   double error_rate_, step_;
+  bool late_ = false;
 };
 
 }  // namespace clothlab::reference

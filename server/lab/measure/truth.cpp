@@ -39,8 +39,9 @@ constexpr double stiff_precision = 1e-11;
 constexpr double stiff_first_step = 1e-3;  // [s]
 /// The error that it aims for, in units of RK4's: each further tenth costs it two to four times the time.
 constexpr double stiff_accuracy = 100.0;
-constexpr double share_of_scouting = 0.4;  // of the budget: two of five runs like the first one
-constexpr int fewest_stiff_looks = 3;      // with a shorter affordable time there is no reference
+constexpr double share_of_scouting = 0.4;     // of the budget: two of five runs like the first one
+constexpr double share_of_first_look = 0.05;  // of that
+constexpr int fewest_stiff_looks = 3;         // with a shorter affordable time there is no reference
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -84,6 +85,9 @@ class Search {
   }
 
  private:
+  Clock::time_point after(double seconds) const {
+    return start_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  }
   double left() const { return budget_ - seconds_since(start_); }
 
   /// Sets the time that the reference can afford to simulate, or the reason why there is no reference. The
@@ -162,7 +166,17 @@ class Search {
     for (int look = 1; look <= looks_for_horizon; ++look) {
       const double from = request_.time * (look - 1) / looks_for_horizon,
                    to = request_.time * look / looks_for_horizon;
-      if (!scout.follow(state, from, to)) return cancelled;
+      // What does not get through the first of the looks in this time will not through the others.
+      const double share = share_of_scouting * (look == 1 ? share_of_first_look : 1.0);
+      if (!scout.follow(state, from, to, after(share * budget_))) {
+        if (!scout.late()) return cancelled;
+        truth_.time = from;
+        const auto steps = static_cast<double>(std::max<std::uint64_t>(scout.work().steps, 1));
+        end_earlier(steps / std::max(from, scout.pace().largest_step), seconds_since(start_) / (2.0 * steps),
+                    look <= fewest_stiff_looks);
+        if (!truth_.why_no_reference.empty()) return ok();
+        break;
+      }
       beside.set_pace(scout.pace());
       if (near && !beside.follow(horizon.copy(), from, to)) return cancelled;
       if (!finite(state)) {
@@ -171,12 +185,6 @@ class Search {
       }
       near = near && horizon.look(state, to);
       progress_(0.3 * look / looks_for_horizon);
-      if (look == looks_for_horizon || seconds_since(start_) < share_of_scouting * budget_) continue;
-      truth_.time = to;
-      const auto steps = static_cast<double>(scout.work().steps);
-      end_earlier(steps / to, seconds_since(start_) / (2.0 * steps), look < fewest_stiff_looks);
-      if (!truth_.why_no_reference.empty()) return ok();
-      break;
     }
     set_horizon(horizon);
     pace_ = scout.pace();
