@@ -7,7 +7,7 @@ export const stillTriangles = 25_000;
 export interface Level {
   scale: number; ///< of the picture
   triangles: number; ///< at most so many of a finer mesh; a cloth of more is drawn as it came
-  details: boolean; ///< uneven threads and seams: a third of the time that a software renderer takes for cloth
+  details: boolean; ///< uneven threads and seams, which a software renderer takes long for
 }
 
 const levels: Level[] = [
