@@ -51,9 +51,8 @@ Result<std::vector<ShortRun>> runs_of(const fs::path& path) {
 }  // namespace
 
 std::string ShortRun::places_file() const {
-  std::string file = name + ".json";
-  file.replace(file.find(", "), 2, "-");
-  return file;
+  const std::size_t comma = name.find(", ");
+  return name.substr(0, comma) + "-" + name.substr(comma + 2) + ".json";
 }
 
 Result<std::vector<ShortRun>> short_runs() {

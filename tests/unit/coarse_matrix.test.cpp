@@ -32,7 +32,7 @@ double scattered(std::size_t key) {
 Coarse coarse(const scene::Material& material, std::uint32_t side, std::uint32_t count) {
   scene::Scene scene;
   scene::Cloth& cloth = scene.cloths.emplace_back();
-  cloth.mesh = scene::Grid{side, side, 1.0, 1.0};
+  cloth.mesh = scene::Grid{static_cast<int>(side), static_cast<int>(side), 1.0, 1.0};
   cloth.material = material;
   cloth.pins.emplace_back().at = scene::AtCorner{0, 0};
   scene.air_drag = 0.5;
