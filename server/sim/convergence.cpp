@@ -26,6 +26,8 @@ using Clock = std::chrono::steady_clock;
 constexpr double solved_share = 3.0 / 720;
 /// The steps from one measurement to the next are worth so many times what it took.
 constexpr double steps_for_one = 20.0;
+/// Or they are so many times those before: what a cloth does first tells little of what it does later.
+constexpr std::uint64_t growth_of_interval = 3;
 constexpr std::uint64_t after_a_blow_up = 256;  ///< steps until the next one
 /// What a Newton step takes besides its linear iterations, each of which takes as long as a sweep.
 constexpr double newton_in_iterations = 8.0;
@@ -98,6 +100,7 @@ std::string in_words(const Convergence& convergence, const scene::Scene& scene) 
 
 void ConvergenceMeasure::begin(std::uint64_t step) {
   last_ = {};
+  begun_ = step;
   next_ = step + first_measured;
 }
 
@@ -203,7 +206,8 @@ void ConvergenceMeasure::count(std::uint64_t step, const scene::Scene& scene, co
   double of_step = scene.solver.iterations;
   if (const SolverWork work = kernels.integrator->work(); work.newton_steps > 0)
     of_step *= iterations_in(work) / static_cast<double>(work.newton_steps);
-  next_ = step + static_cast<std::uint64_t>(std::ceil(steps_for_one * (1.0 + spent / of_step)));
+  const auto worth = static_cast<std::uint64_t>(std::ceil(steps_for_one * (1.0 + spent / of_step)));
+  next_ = step + std::min(worth, growth_of_interval * (step + 1 - begun_));
 }
 
 }  // namespace clothlab::sim

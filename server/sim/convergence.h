@@ -24,8 +24,9 @@ std::string in_words(const Convergence& convergence, const scene::Scene& scene);
 
 class ConvergenceMeasure {
  public:
-  /// True if the step after so many is to be measured: the ninth since `begin`, and whenever the steps since
-  /// the last one are worth 20 times what that took, by its iterations; and one that was asked for.
+  /// True if the step after so many is to be measured: the ninth since `begin`; then whenever the steps since
+  /// the last one are worth 20 times what that took, by its iterations, or are three times as many as those
+  /// before; and one that was asked for.
   bool due(std::uint64_t step) const { return step == asked_ || (now_and_then_ && step >= next_); }
   void ask(std::uint64_t step) { asked_ = step; }
   void measure_now_and_then(bool on) { now_and_then_ = on; }
@@ -55,7 +56,7 @@ class ConvergenceMeasure {
   std::unique_ptr<Integrator> solver_;    ///< of the step of a method that sweeps
   Plan solver_plan_;
   Convergence last_;
-  std::uint64_t next_ = first_measured;  ///< step
+  std::uint64_t begun_ = 0, next_ = first_measured;  ///< steps
   std::optional<std::uint64_t> asked_;
   bool now_and_then_ = true;
   double seconds_ = 0;

@@ -168,10 +168,15 @@ TEST_CASE("steps are measured seldom enough that it takes a small part of them")
   simulation->step(9);
   CHECK(simulation->convergence().measured == 1);
   CHECK(simulation->convergence().step == 8);
-  // The least that it takes, 4 Newton steps, is worth 32 sweeps, more than 4 steps with the one done again:
-  // the next comes no sooner than after 80.
-  simulation->step(75);
+  // The next comes after three times as many steps.
+  simulation->step(26);
   CHECK(simulation->convergence().measured == 1);
+  simulation->step(1);
+  CHECK(simulation->convergence().measured == 2);
+  // The least that it takes, 4 Newton steps, is worth 32 sweeps, more than 4 steps with the one done again:
+  // the one after that comes no sooner than after 80.
+  simulation->step(79);
+  CHECK(simulation->convergence().measured == 2);
   scene.solver.iterations = 20;
   REQUIRE(simulation->change(scene));
   CHECK(simulation->convergence().measured == 0);

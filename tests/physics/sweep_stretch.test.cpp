@@ -60,7 +60,7 @@ TEST_CASE(
   const scene::Scene solved = hanging(9, Method::vbd, 40, 0.0005);
   const auto simulation = test::simulation(solved);
   simulation->step(70);
-  CHECK(simulation->convergence().measured == 1);
+  CHECK(simulation->convergence().measured >= 1);
   CHECK(simulation->convergence().unsolved_steps == 0);
 }
 
