@@ -19,7 +19,7 @@ struct Control {
   std::uint32_t single = 1, single_y = 1, single_z = 1;
   std::uint32_t iterations = 0, converged = 0;
   float along = 0, kept = 0, last = 0;
-  std::uint32_t unused = 0;
+  float enough = 0;
 };
 
 }  // namespace
@@ -73,7 +73,8 @@ void ConjugateGradients::bind() const {
   sums_.bind(unit_group_sums);
 }
 
-Work ConjugateGradients::solve(const gl::TextureBuffer& guess, Solved& solved) {
+Work ConjugateGradients::solve(const gl::TextureBuffer& guess, double left_share, Solved& solved) {
+  step_.set("left_share", static_cast<float>(left_share * left_share));  // of a product of two
   Control control;
   control.groups = groups_;
   control_.upload(&control, sizeof control);

@@ -43,8 +43,10 @@ class ConjugateGradients {
 
   /// Makes the preconditioner's coarse level for the matrix `fine`. `contacts`: see CoarseLevel::prepare.
   void prepare(const FineLevel& fine, bool contacts) { coarse_.prepare(fine, contacts); }
-  /// Solves for the change of velocity from `guess` on. The Work fills `solved`.
-  Work solve(const gl::TextureBuffer& guess, Solved& solved);
+  /// Solves for the change of velocity from `guess` on, until the residual is as small as the tolerance asks,
+  /// or the error is about `left_share` of the guess's, in the norm of the preconditioner. The Work fills
+  /// `solved`.
+  Work solve(const gl::TextureBuffer& guess, double left_share, Solved& solved);
 
  private:
   /// The vectors that an iteration leaves to the next one.

@@ -8,5 +8,5 @@ layout(std430, binding = slot_solver_control) buffer Control {
   float along;  // length of the present iteration's step
   float kept;   // share of the last direction in the present one
   float last;   // residual times preconditioned residual, in the last iteration
-  uint unused;
+  float enough;  // of that product: the solve may end when no more is left
 };

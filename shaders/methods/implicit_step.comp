@@ -11,6 +11,7 @@ READ_VEC4(coarse_factor, unit_coarse_factor);  // see server/sim/coarse_factor.h
 // matrix; for each of the correction [m/s].
 layout(std430, binding = slot_coarse_vectors) buffer CoarseVectors { vec4 coarse_vectors[]; };
 uniform int iteration;  // -1: none, only the coarse level's equations
+uniform float left_share;  // of the first residual times its preconditioned one: see `enough`
 // Of all unknowns of the coarse level: the residual, and what is between it and the correction.
 // Three more fill up the last four.
 #define ROOM (PATCH_UNKNOWNS * MOST_PATCHES + 3)
@@ -90,7 +91,8 @@ void main() {
       curvature -= share * now / last_step;
     }
     step = now / curvature;
-    bool met = sum.z <= sum.w;
+    if (own == 0 && iteration == 0) enough = left_share * now;
+    bool met = sum.z <= sum.w || (iteration > 0 && now <= enough);
     // Or there is no precision left. With contact, whose stiffness differs from pair to pair, a thousandth of two like
     // numbers is their rounding.
 #ifdef CONTACT_TERM
