@@ -4,10 +4,11 @@ import assert from "node:assert/strict";
 import { mkdirSync, readdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
+import { userShaders } from "../caches.mjs";
 import { clothlab, folder } from "./program.mjs";
 
 const cache = join(folder, "facts");
-const env = { XDG_CACHE_HOME: cache, CLOTHLAB_READS: undefined, CLOTHLAB_SWEEPS: undefined };
+const env = { ...userShaders, XDG_CACHE_HOME: cache, CLOTHLAB_READS: undefined, CLOTHLAB_SWEEPS: undefined };
 const kept = () => {
   const devices = join(cache, "clothlab", "devices");
   return readdirSync(devices).map((file) => join(devices, file));
