@@ -24,4 +24,16 @@ inline bool thorough() {
   return std::getenv("CLOTHLAB_THOROUGH") != nullptr;
 }
 
+/// Which of a claim's combinations, say of scene and method, are tried unless all are: the first of each
+/// `every` in their order.
+class Part {
+ public:
+  explicit Part(int every) : every_(every) {}
+  /// Asked once for each combination.
+  bool leaves_out() { return number_++ % every_ != 0 && !thorough(); }
+
+ private:
+  int every_, number_ = 0;
+};
+
 }  // namespace clothlab::test

@@ -95,6 +95,10 @@ TEST_CASE("a free sheet keeps its linear momentum to 1e-5 under every method") {
     for (const Model model : models) {
       for (const Method method : scene::methods) {
         if (scene::unsuited(method, held(method, 1e-4, model))) continue;
+        // On the GPU finite elements under one method that adds forces up, and under all that solve or sweep.
+        if (!thorough() && side == Side::gpu && model == Model::elements &&
+            !scene::any_step_is_stable(method) && method != Method::verlet)
+          continue;
         // Methods that hold at any step take longer ones, of which each costs many sweeps or products.
         const double dt = (scene::any_step_is_stable(method) ? 0.4 : 0.1) * cloth_unit;
         const double change = change_after_release(side, method, dt, model).linear;

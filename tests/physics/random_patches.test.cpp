@@ -110,7 +110,7 @@ class Session {
 };
 
 struct Seeds {
-  std::uint64_t from = 1, to = test::thorough() ? 12 : 3;
+  std::uint64_t from = 1, to = test::thorough() ? 12 : 1;
 };
 
 Seeds seeds() {
@@ -168,6 +168,6 @@ TEST_CASE(
                      << " refused by the model");
   // The patches are random enough to meet both outcomes, and are seldom refused.
   if (std::getenv("CLOTHLAB_PATCH_SEEDS")) return;
-  CHECK(count.blow_ups > 5);
+  CHECK(count.blow_ups > (test::thorough() ? 5 : 1));
   CHECK(count.refused * 10 < count.patches);
 }

@@ -104,6 +104,9 @@ TEST_CASE("a sheet thrown along a floor or over another slides v^2 / (2 mu g) fa
   for (const bool over_another : {false, true}) {
     for (const scene::Method method : {scene::Method::symplectic_euler, scene::Method::implicit_euler,
                                        scene::Method::xpbd, scene::Method::vbd}) {
+      // Each method once: half of them over the floor, the others over another sheet.
+      const bool second = method == scene::Method::implicit_euler || method == scene::Method::vbd;
+      if (!test::thorough() && over_another != second) continue;
       scene::Scene scene = above_floor(method, friction);
       scene.air_drag = 0.0;
       scene.colliders[0].friction = friction;
