@@ -20,7 +20,8 @@ test("a method without a limit is stable at any time step", () => {
 
 test("a step is solved up to the tolerance, where the gauge's mark is, and lost beyond ten times that", () => {
   const of = (error_m) => solvedReading({ error_m, tolerance_m: 1e-3, residual: 0.02 });
-  assert.deepEqual(of(1e-3), { verdict: "good", word: "Solved", share: "to 1 mm, 2 % left", filled: 0.75 });
+  const share = "to 1 mm, 2 % left";
+  assert.deepEqual(of(1e-3), { verdict: "good", word: "Solved", share, spoken: `Solved ${share}`, filled: 0.75 });
   assert.equal(of(1.1e-3).verdict, "near");
   assert.equal(of(1.1e-3).word, "Unsolved");
   assert.equal(of(1.1e-2).verdict, "beyond");

@@ -1,5 +1,6 @@
 // The stability gauge: the time step as a share of the longest stable one. The server computes that for the present
 // scene.
+import { Meter, part, type Reading, type Verdict } from "./meter";
 import { readable } from "./slider";
 
 /// Part of `sim.status`. null: no limit; 0: no time step is stable.
@@ -17,15 +18,6 @@ export const saferStep = (limit: number): number => Math.max(1e-9, Number((safer
 /// A time step [s] with which the cloth blows up soon; null if there is no limit.
 export const beyond = (stability: Stability | null): number | null =>
   stability?.dt_limit ? Number((1.5 * stability.dt_limit).toPrecision(2)) : null;
-
-export type Verdict = "good" | "near" | "beyond";
-export interface Reading {
-  verdict: Verdict;
-  word: string;
-  share: string;
-  spoken: string;
-  filled: number;
-}
 
 /// The gauge's reading for a time step [s].
 export function reading(dt: number, limit: number | null): Reading {
@@ -52,57 +44,20 @@ export function reading(dt: number, limit: number | null): Reading {
   };
 }
 
-export const glyphs: Record<Verdict, string> = { good: "✓", near: "!", beyond: "✕" };
-
-/// A new element in `parent`.
-export function part(tag: string, className: string, parent: HTMLElement): HTMLElement {
-  const made = document.createElement(tag);
-  made.className = className;
-  parent.append(made);
-  return made;
-}
-
 export class Gauge {
-  readonly element = document.createElement("div");
-  private readonly track = part("div", "gauge-track", this.element);
-  private readonly line = part("div", "gauge-line", this.element);
-  private readonly glyph = part("span", "gauge-glyph", this.line);
-  private readonly word = part("b", "gauge-word", this.line);
-  private readonly share = part("span", "gauge-share", this.line);
-  private readonly limit = part("button", "gauge-limit", this.line) as HTMLButtonElement;
-  // the word for a screen reader, written when it changes
-  private readonly spoken = part("span", "visually-hidden", this.element);
+  private readonly meter = new Meter("gauge", "time step against its stability limit", "time step", end, 1);
+  readonly element = this.meter.element;
+  private readonly limit = part("button", "gauge-limit", this.meter.line) as HTMLButtonElement;
   private saferStep = 0; // [s]: what the button sets
 
   constructor(setTimeStep: (dt: number) => void) {
-    this.element.className = "gauge";
-    this.element.hidden = true;
-    part("i", "gauge-fill", this.track);
-    part("i", "gauge-mark", this.track).style.left = `${100 / end}%`;
-    this.track.setAttribute("role", "meter");
-    this.track.setAttribute("aria-label", "time step against its stability limit");
-    this.track.setAttribute("aria-valuemin", "0");
-    this.track.setAttribute("aria-valuemax", String(end));
-    this.glyph.setAttribute("aria-hidden", "true");
-    this.spoken.setAttribute("role", "status");
     this.limit.type = "button";
     this.limit.onclick = () => setTimeStep(this.saferStep);
   }
 
   show(dt: number, { dt_limit }: Stability): void {
-    const now = reading(dt, dt_limit);
-    const { style, dataset } = this.element;
-    this.element.hidden = false;
-    if (dataset.verdict !== now.verdict) this.spoken.textContent = `time step: ${now.word.toLowerCase()}`;
-    dataset.verdict = now.verdict;
-    dataset.limited = String(dt_limit !== null && dt_limit > 0);
-    style.setProperty("--filled", `${100 * now.filled}%`);
-    this.glyph.textContent = glyphs[now.verdict];
-    this.word.textContent = now.word;
-    this.share.textContent = now.share;
-    this.track.setAttribute("aria-valuenow", (end * now.filled).toFixed(3));
-    this.track.setAttribute("aria-valuetext", now.spoken);
-    this.element.title = explain(dt, dt_limit);
+    this.meter.show(reading(dt, dt_limit), explain(dt, dt_limit));
+    this.element.dataset.limited = String(dt_limit !== null && dt_limit > 0);
     this.showLimit(dt_limit);
   }
 

@@ -108,7 +108,9 @@ float dye() {
 }
 
 // The share of a pixel that a line covers, "off" away from its middle.
-float line(float off, float width, float pixel) { return clamp((0.5 * width + 0.5 * pixel - abs(off)) / pixel, 0.0, 1.0) * min(1.0, width / pixel); }
+float line(float off, float width, float pixel) {
+  return clamp((0.5 * width + 0.5 * pixel - abs(off)) / pixel, 0.0, 1.0) * min(1.0, width / pixel);
+}
 
 // The hem: its fold is a little darker, and stitches hold it.
 vec3 withHem(vec3 color) {
