@@ -82,6 +82,7 @@ class Fitting {
 
   Status add(const std::string& file, bool body) {
     std::error_code failure;
+    if (!fs::exists(file, failure)) return Error{file, "no such file", "check the name and the folder"};
     const fs::path below = fs::relative(file, root_, failure);
     if (failure || below.empty() || *below.begin() == "..")
       return Error{file, "does not lie below the folder of " + request_.out,

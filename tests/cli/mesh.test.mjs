@@ -211,6 +211,9 @@ test("--fit makes a scene of a garment and a body that runs, in metres, of cotto
   const outside = clothlab(["validate", "--fit", "scenes/fitted.json", "meshes/other.obj"]);
   assert.equal(outside.status, 2);
   assert.match(outside.stderr, /meshes\/other\.obj.*does not lie below the folder of scenes\/fitted\.json/);
+  const absent = clothlab(["validate", "--fit", "scenes/fitted.json", "scenes/absent.obj"]);
+  assert.equal(absent.status, 2);
+  assert.match(absent.stderr, /scenes\/absent\.obj.*no such file/);
 });
 
 test("a start that is too near for contact is told once with its cause, and is not blamed on pins or bodies", () => {
