@@ -10,6 +10,7 @@
 #include "server/model/model.h"
 #include "server/scene/document.h"
 #include "tests/catch.h"
+#include "tests/mesh_area.h"
 
 using namespace clothlab;
 using nlohmann::json;
@@ -108,14 +109,6 @@ mesh::Mesh read(const std::string& bytes, const std::string& node = "") {
   return *mesh;
 }
 
-double area_of(const mesh::Mesh& mesh) {
-  double area = 0;
-  for (const auto& [a, b, c] : mesh.triangles)
-    area += 0.5 *
-            glm::length(glm::cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]));
-  return area;
-}
-
 void check_refused(const std::string& bytes, const std::string& what, const mesh::Reading& reading = {}) {
   const Result<mesh::Mesh> mesh = mesh::read(bytes, "a.glb", limits, reading);
   REQUIRE_FALSE(mesh);
@@ -155,7 +148,7 @@ TEST_CASE("lists, strips and fans of triangles, with and without indices, have o
     const mesh::Mesh mesh = read(file.glb());
     CHECK(mesh.triangles.size() == count);
     CHECK(mesh.flipped == 0);
-    CHECK(area_of(mesh) == Approx(0.5 * count));
+    CHECK(test::area_of(mesh) == Approx(0.5 * count));
   }
   Gltf lines = square<std::uint16_t>(5123);
   lines.document["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 0}}}, {"mode", 1}});
@@ -174,7 +167,7 @@ TEST_CASE("nodes are where their transforms and those above put them, mirrored o
   const mesh::Mesh mesh = read(file.glb());
   // (1, 0, 0): to (1, 0, 1), doubled, a quarter turn about y to (2, 0, -2), mirrored and moved along x.
   CHECK(glm::distance(mesh.vertices[1], glm::dvec3(8, 0, -2)) < 1e-6);
-  CHECK(area_of(mesh) == Approx(4.0));
+  CHECK(test::area_of(mesh) == Approx(4.0));
   CHECK(mesh.triangles[0] == std::array<std::uint32_t, 3>{0, 2, 1});
 }
 

@@ -9,6 +9,7 @@
 #include "server/mesh/mesh.h"
 #include "server/scene/document.h"
 #include "tests/catch.h"
+#include "tests/mesh_area.h"
 
 using namespace clothlab;
 using scene::json;
@@ -31,14 +32,6 @@ mesh::Mesh mended_with(const std::string& text, const std::string& note, const s
   CHECK(mesh.notes[0] == note);
   CHECK_FALSE(mesh::read(text, name, limits, {.mend = false}));
   return mesh;
-}
-
-double area_of(const mesh::Mesh& mesh) {
-  double area = 0;
-  for (const auto& [a, b, c] : mesh.triangles)
-    area += 0.5 *
-            glm::length(glm::cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]));
-  return area;
 }
 
 /// Edges of one triangle alone.
@@ -86,7 +79,7 @@ TEST_CASE("a face without area is left out, and the edge that it lay along is di
                           "1 face without area was left out: line 12",
                           "1 corner lies on an edge that has no vertex there: the edge was divided: line 8"});
   CHECK(mesh.triangles.size() == 6);
-  CHECK(area_of(mesh) == Approx(2.0));
+  CHECK(test::area_of(mesh) == Approx(2.0));
   CHECK(mesh.parts == 1);
   CHECK(border_edges(mesh) == 6);  // of the outline, which has six corners; before, 9
   CHECK(border_edges(*mesh::read(square + faces, "a.obj", limits, {.mend = false})) == 9);
@@ -110,7 +103,7 @@ TEST_CASE("the texture of a divided edge is that of the whole one") {
 TEST_CASE("a face that has a corner twice has the others") {
   const mesh::Mesh mesh = mended_with(square + "f 1 2 2 3\nf 1 3 4\n",
                                       "1 face has a corner twice, of which one was left out: line 5");
-  CHECK(area_of(mesh) == Approx(1.0));
+  CHECK(test::area_of(mesh) == Approx(1.0));
 }
 
 TEST_CASE("a folded quad is cut so that a closed body stays closed") {
@@ -181,7 +174,7 @@ TEST_CASE("strips of a .ply file are cut into their triangles, all with one side
   const mesh::Mesh mesh = mended_with(ply, "1 strip was cut into its triangles: line 16", "a.ply");
   CHECK(mesh.triangles.size() == 4);
   CHECK(mesh.flipped == 0);
-  CHECK(area_of(mesh) == Approx(2.0));
+  CHECK(test::area_of(mesh) == Approx(2.0));
 }
 
 TEST_CASE("what no cloth can be, a body is made of without what is wrong; of nothing it is refused") {

@@ -6,6 +6,7 @@
 
 #include "server/mesh/mesh.h"
 #include "tests/catch.h"
+#include "tests/mesh_area.h"
 
 using namespace clothlab;
 
@@ -19,14 +20,6 @@ mesh::Mesh read(const std::string& text, const std::string& name = "a.obj",
   Result<mesh::Mesh> mesh = mesh::read(text, name, limits, reading);
   if (!mesh) FAIL(mesh.error().text());
   return *mesh;
-}
-
-double area_of(const mesh::Mesh& mesh) {
-  double area = 0;
-  for (const auto& [a, b, c] : mesh.triangles)
-    area += 0.5 *
-            glm::length(glm::cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]));
-  return area;
 }
 
 const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -92,7 +85,7 @@ TEST_CASE("an .obj file is read with every form of corner, comments, groups and 
                                  "vt 0.5 0.5\nvn 0 0 1\ng part\nusemtl red\ns 1\n" + face);
     CHECK(mesh.vertices.size() == 4);
     CHECK(mesh.triangles.size() == 2);
-    CHECK(area_of(mesh) == Approx(1.0));
+    CHECK(test::area_of(mesh) == Approx(1.0));
     CHECK(mesh.parts == 1);
   }
 }
@@ -104,7 +97,7 @@ TEST_CASE("a .ply file is read as text and as bytes of either order") {
     const mesh::Mesh mesh = read(file, "a.ply");
     CHECK(mesh.vertices == read(text, "a.ply").vertices);
     CHECK(mesh.triangles == read(text, "a.ply").triangles);
-    CHECK(area_of(mesh) == Approx(1.0));
+    CHECK(test::area_of(mesh) == Approx(1.0));
     for (std::size_t length = 0; length < file.size(); ++length)
       if (mesh::read(file.substr(0, length), "a.ply", limits, strict))
         CHECK(length + 1 == file.size());  // a last newline
@@ -115,12 +108,12 @@ TEST_CASE("polygons are cut into triangles that cover them, convex or not") {
   const mesh::Mesh arrow =
       read("v 0 0 0\nv 2 -1 0\nv 0 2 0\nv -2 -1 0\nf 1 2 3 4\n");  // a dart: corner 1 is reflex
   CHECK(arrow.triangles.size() == 2);
-  CHECK(area_of(arrow) == Approx(4.0));
+  CHECK(test::area_of(arrow) == Approx(4.0));
   // Its shortest cut, between corners 2 and 4, would have corners 1 and 5 inside.
   const mesh::Mesh notched =
       read("v 0.2 -0.5 0\nv 1 -1 0\nv 0 10 0\nv -1 -1 0\nv -0.2 -0.5 0\nf 1 2 3 4 5\n");
   CHECK(notched.triangles.size() == 3);
-  CHECK(area_of(notched) == Approx(10.4));
+  CHECK(test::area_of(notched) == Approx(10.4));
   // A convex quad is cut between corners 2 and 4, which are nearer to each other.
   for (const auto& corners : read("v 0 0 0\nv 3 0 0\nv 4 1 0\nv 0.5 1 0\nf 1 2 3 4\n").triangles)
     CHECK(std::count(corners.begin(), corners.end(), 1u) == 1);
@@ -130,7 +123,7 @@ TEST_CASE("polygons are cut into triangles that cover them, convex or not") {
       "0 3 0\n"
       "f 1 2 3 4 5 6 7 8 9 10 11 12\n");
   CHECK(comb.triangles.size() == 10);
-  CHECK(area_of(comb) == Approx(5.0 + 3 * 2.0));
+  CHECK(test::area_of(comb) == Approx(5.0 + 3 * 2.0));
 }
 
 TEST_CASE("a vertex on a seam of the texture stays one vertex, with its own place in each panel") {
