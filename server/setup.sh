@@ -5,7 +5,7 @@
 
 build_packages=(g++ cmake ninja-build pkg-config python3-glad libegl1 libgl1-mesa-dri libwebsockets-dev
   nlohmann-json3-dev libstb-dev libglm-dev libeigen3-dev libcli11-dev libdeflate-dev libnats-dev)
-test_packages=(catch2 zlib1g-dev prometheus nats-server)
+test_packages=(catch2 zlib1g-dev prometheus nats-server glslang-tools)
 
 say() { echo "$script: $*"; }
 die() { echo "$script: error: $*" >&2; exit 1; }

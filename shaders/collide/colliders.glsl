@@ -91,11 +91,14 @@ Solid moved_to(int kind, int motion, int row, Solid solid) {
   return solid;
 }
 
-/// Between two places of a solid, at a share of the way.
+/// Between two places of a solid, at a share of the way. Where it turns by half a turn there is no direction in the
+/// middle: it has that of the end there.
 Solid between(Solid before, Solid after, float share) {
   Solid solid = after;
   solid.point = mix(before.point, after.point, share);
-  solid.direction = normalize(mix(before.direction, after.direction, share));
+  vec3 direction = mix(before.direction, after.direction, share);
+  float length_squared = dot(direction, direction);
+  if (length_squared > 0.0) solid.direction = direction * inversesqrt(length_squared);
   vec3 second = mix(before.second, after.second, share);
   vec3 across = second - solid.direction * dot(second, solid.direction);
   float squared = dot(across, across);

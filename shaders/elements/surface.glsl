@@ -165,11 +165,12 @@ FUNCTION real share_of_step(real room, real away, real size, real rounding, real
 /// tenth of it (share_of_step) rounding is too small to turn it about.
 const real shortest_part = real(16.0);
 
-/// The steps of a pair's corners along n [m]; a corner that nothing may stop: `held`.
+/// The steps of a pair's corners along n [m]; a corner that nothing may stop: `held`, 1, others 0. (Not bool: Mesa 22's
+/// zink makes SPIR-V of an array of these that no Vulkan driver takes.)
 struct StepsAlong {
   real y[4];  // the corner's place
   real d[4];  // its step
-  bool held[4];
+  int held[4];
 };
 
 /// Where the plane is that divides a pair, along n [m]: each part may take the share of the gap that it wants to take,
@@ -182,8 +183,8 @@ FUNCTION real dividing_plane(bool edges, StepsAlong s, real rounding) {
     bool of_first = k == 0 || (edges && k == 1);
     if (of_first) first = max(first, -s.d[k]);
     else second = max(second, s.d[k]);
-    if (of_first && s.held[k]) first_held = max(first_held, low - s.y[k] - s.d[k]);
-    if (!of_first && s.held[k]) second_held = max(second_held, s.y[k] + s.d[k] - high);
+    if (of_first && s.held[k] != 0) first_held = max(first_held, low - s.y[k] - s.d[k]);
+    if (!of_first && s.held[k] != 0) second_held = max(second_held, s.y[k] + s.d[k] - high);
   }
   real sum = first + second;
   real share = sum > real(0.0) ? clamp(second / sum, real(0.05), real(0.95)) : real(0.5);

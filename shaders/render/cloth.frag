@@ -45,8 +45,10 @@ vec3 fabric(vec2 at) {
 }
 
 void main() {
-  vec3 normal = normalize(surface.normal);
   vec3 to_eye = normalize(eye.xyz - surface.position);
+  // Where the normals of a fold's corners cancel each other there is none.
+  float size = length(surface.normal);
+  vec3 normal = size > 0.0 ? surface.normal / size : to_eye;
   vec3 albedo = fabric(surface.texture_coordinate);
   vec3 through = 0.25 * diffuse(surface.position, -normal);
   float grazing = pow(1.0 - clamp(dot(normal, to_eye), 0.0, 1.0), 4.0);

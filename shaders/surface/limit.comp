@@ -96,7 +96,7 @@ void main() {
   for (int k = 0; k < 4; ++k) {
     along.y[k] = dot(apart.xyz, c.x[k]);
     along.d[k] = dot(apart.xyz, steps[k]);
-    along.held[k] = int(corner[k]) >= cloth_vertex_count;
+    along.held[k] = int(corner[k]) >= cloth_vertex_count ? 1 : 0;
   }
   float rounding = rounding_at(origin, size), least = max(rounding, least_room * thickness);
 #if PASS == 0
@@ -119,7 +119,7 @@ void main() {
     for (int k = 0; k < 4; ++k) {
       float side = k == 0 || (edges && k == 1) ? 1.0 : -1.0;
       float room = side * (along.y[k] - plane), away = side * along.d[k];
-      shares[k] = along.held[k] ? 1.0 : share_of_step(room, away, length(steps[k]), rounding, least);
+      shares[k] = along.held[k] != 0 ? 1.0 : share_of_step(room, away, length(steps[k]), rounding, least);
     }
     if (min(min(shares.x, shares.y), min(shares.z, shares.w)) < 1.0) {
 #if PASS == 2
