@@ -54,6 +54,7 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
 }
 
 void Buffer::upload(const void* data, std::size_t bytes, std::size_t offset) {
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glNamedBufferSubData(id_, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes), data);
 }
 
@@ -63,6 +64,7 @@ void Buffer::download(void* data, std::size_t bytes, std::size_t offset) const {
 }
 
 void Buffer::fill(std::uint32_t value) {
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glClearNamedBufferData(id_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
 }
 

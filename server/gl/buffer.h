@@ -28,6 +28,7 @@ class Buffer {
 
   GLuint id() const { return id_; }
   std::size_t bytes() const { return bytes_; }
+  // These see all that shaders have written before, and what they write themselves needs no barrier.
   void upload(const void* data, std::size_t bytes, std::size_t offset = 0);
   /// Copies bytes from the buffer to `data`; waits for the GPU.
   void download(void* data, std::size_t bytes, std::size_t offset = 0) const;

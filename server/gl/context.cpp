@@ -13,6 +13,8 @@
 #include <string_view>
 #include <thread>
 
+#include "server/gl/checked_calls.h"
+
 namespace clothlab::gl {
 
 namespace {
@@ -178,11 +180,12 @@ Opened open(Candidate& candidate) {
     return {};
   }
   if (!eglMakeCurrent(opened.display, EGL_NO_SURFACE, EGL_NO_SURFACE, opened.context) ||
-      !gladLoadGL(eglGetProcAddress)) {
+      !gladLoadGL(function_of)) {
     device.problem = "the OpenGL context cannot be made current without a surface";
     eglDestroyContext(opened.display, opened.context);
     return {};
   }
+  begin_context_checks();
   device.name = gl_text(GL_RENDERER);
   device.version = gl_text(GL_VERSION);
   device.vendor = gl_text(GL_VENDOR);

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "server/gl/buffer.h"
+#include "server/gl/reflection.h"
 
 namespace clothlab::selftest {
 
@@ -36,18 +37,6 @@ bool is_sampler(GLenum type) {
   return std::find(samplers.begin(), samplers.end(), static_cast<int>(type)) != samplers.end();
 }
 
-GLint active(GLuint program, GLenum interface) {
-  GLint count = 0;
-  glGetProgramInterfaceiv(program, interface, GL_ACTIVE_RESOURCES, &count);
-  return count;
-}
-
-GLint property(GLuint program, GLenum interface, GLuint index, GLenum which) {
-  GLint value = 0;
-  glGetProgramResourceiv(program, interface, index, 1, &which, 1, nullptr, &value);
-  return value;
-}
-
 }  // namespace
 
 ProgramWatch::ProgramWatch() {
@@ -73,22 +62,22 @@ void ProgramWatch::need(const char* what, GLint count, const std::string& progra
 }
 
 void ProgramWatch::measure(const std::string& path, GLuint id) {
-  for (GLint i = 0; i < active(id, GL_SHADER_STORAGE_BLOCK); ++i)
-    need(storage_bindings,
-         1 + property(id, GL_SHADER_STORAGE_BLOCK, static_cast<GLuint>(i), GL_BUFFER_BINDING), path);
+  const auto count = [&](GLenum kind) { return static_cast<GLint>(gl::active_resources(id, kind)); };
+  for (GLuint i = 0; i < gl::active_resources(id, GL_SHADER_STORAGE_BLOCK); ++i)
+    need(storage_bindings, 1 + gl::resource_property(id, GL_SHADER_STORAGE_BLOCK, i, GL_BUFFER_BINDING),
+         path);
   GLint samplers = 0;
-  for (GLint i = 0; i < active(id, GL_UNIFORM); ++i) {
-    const auto index = static_cast<GLuint>(i);
-    if (!is_sampler(static_cast<GLenum>(property(id, GL_UNIFORM, index, GL_TYPE)))) continue;
-    samplers += property(id, GL_UNIFORM, index, GL_ARRAY_SIZE);
+  for (GLuint index = 0; index < gl::active_resources(id, GL_UNIFORM); ++index) {
+    if (!is_sampler(static_cast<GLenum>(gl::resource_property(id, GL_UNIFORM, index, GL_TYPE)))) continue;
+    samplers += gl::resource_property(id, GL_UNIFORM, index, GL_ARRAY_SIZE);
     GLint unit = 0;
-    glGetUniformiv(id, property(id, GL_UNIFORM, index, GL_LOCATION), &unit);
+    glGetUniformiv(id, gl::resource_property(id, GL_UNIFORM, index, GL_LOCATION), &unit);
     need(texture_units, 1 + unit, path);
   }
   if (!path.ends_with(".comp")) return;
-  need(storage_blocks, active(id, GL_SHADER_STORAGE_BLOCK), path);
+  need(storage_blocks, count(GL_SHADER_STORAGE_BLOCK), path);
   need(textures, samplers, path);
-  need(uniform_blocks, active(id, GL_UNIFORM_BLOCK), path);
+  need(uniform_blocks, count(GL_UNIFORM_BLOCK), path);
   std::array<GLint, 3> group{1, 1, 1};
   glGetProgramiv(id, GL_COMPUTE_WORK_GROUP_SIZE, group.data());
   need(invocations, group[0] * group[1] * group[2], path);

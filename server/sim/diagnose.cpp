@@ -49,16 +49,13 @@ void DiagnosticsPass::request(const StateBuffers& state, const SelfCollision* se
   state.shown_velocity().bind(unit_velocity);
   results_.bind_storage(slot_partials);
   glDispatchCompute(groups_, 1, 1);
-  if (self_collision) {
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  // The next step may write over the state that this reads.
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+  if (self_collision)
     glCopyNamedBufferSubData(self_collision->control().id(), results_.id(), SelfCollision::counters_offset,
                              static_cast<GLintptr>(groups_ * sizeof(Partial)),
                              sizeof(SelfCollision::Counters));
-  }
-  if (surfaces) {
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    surfaces->copy_counts(results_, groups_ * sizeof(Partial) + sizeof(SelfCollision::Counters));
-  }
+  if (surfaces) surfaces->copy_counts(results_, groups_ * sizeof(Partial) + sizeof(SelfCollision::Counters));
   ring_.push(results_, results_.bytes());
   pending_[requested_++ % ring_slots] = {time, step, self_collision != nullptr, surfaces != nullptr};
 }

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "server/sim/plan.h"
+#include "server/sim/integrator.h"
 
 namespace clothlab::sim {
 
@@ -49,7 +49,7 @@ const gl::TextureBuffer& SceneOrder::to_scene(const gl::TextureBuffer& in_memory
   place_texels_.bind(unit_places);
   in_scene_.buffer.bind_storage(slot_in_scene_order);
   glDispatchCompute(vertex_groups(static_cast<std::uint32_t>(places_.size())), 1, 1);
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  wait_for_writes();
   return in_scene_;
 }
 
