@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "server/base/files.h"
 #include "server/cli/commands.h"
@@ -17,6 +19,7 @@ namespace {
 struct SelftestOptions {
   selftest::Options checks;
   std::string json, places;
+  std::vector<std::string> only;
   std::optional<int> gpu;
 };
 
@@ -37,13 +40,16 @@ int selftest_device(const SelftestOptions& options) {
   const std::string name = device.name + ", OpenGL " + device.version;
   std::cout << "clothlab " CLOTHLAB_VERSION " on " << name << std::endl;
   selftest::Report report(
-      [](const selftest::Check& check) { std::cout << selftest::line(check) << std::endl; });
+      [](const selftest::Check& check) { std::cout << selftest::line(check) << std::endl; }, options.only);
   selftest::run(report, options.checks);
+  if (report.checks().empty())
+    return fail({"--only", "no check's name begins so", "`clothlab selftest --quick` tells names"},
+                exit_usage);
   const std::size_t wrong = report.failed();
   std::cout << report.checks().size() << " checks, "
             << (wrong == 0 ? "all passed: this device does it right"
                            : std::to_string(wrong) + " failed: this device does not do it right")
-            << (options.checks.quick ? " (--quick leaves most out)" : "") << std::endl;
+            << (options.checks.quick || !options.only.empty() ? " (others were left out)" : "") << std::endl;
   if (!options.json.empty())
     if (Status written = write_file(options.json, report.as_json(name).dump(1) + "\n"); !written)
       return fail(written.error(), exit_internal);
@@ -57,6 +63,9 @@ void add_selftest(CLI::App& app, int& exit_code) {
       "selftest", "whether this device does it right: its limits, all programs, short scenes, frames");
   const auto options = std::make_shared<SelftestOptions>();
   command->add_flag("--quick", options->checks.quick, "fewer programs and scenes: half a minute at most");
+  command
+      ->add_option("--only", options->only, "makes only checks whose name begins so, e.g. \"scene: swing\"")
+      ->type_name("NAME");
   command->add_option("--json", options->json, "writes the checks as JSON")->type_name("F");
   command
       ->add_option("--write-places", options->places,

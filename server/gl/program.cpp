@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <iterator>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -10,6 +11,7 @@
 #include "server/base/data_files.h"
 #include "server/base/files.h"
 #include "server/base/pieces.h"
+#include "server/gl/reflection.h"
 
 namespace clothlab::gl {
 
@@ -100,10 +102,15 @@ class Expansion {
   std::set<std::string> seen_;
 };
 
+constexpr const char* other_device =
+    "update the driver, or take another device (--gpu N, see `clothlab info`)";
+
 /// The driver's first error (its first message, if none says so), with its line of the expanded text replaced
 /// by the source file's name and line.
 Error compile_error(const Source& source, const std::string& log) {
   const std::string remedy = "mend the shader and start again";
+  if (log.empty())
+    return Error{source.origins.back(), "does not compile, and the driver does not say why", other_device};
   // Mesa: "0:12(5): error: ..."; NVIDIA: "0(12) : error C0000: ..."; AMD, Intel: "ERROR: 0:12: ..."
   static const std::regex position(R"(\d+[:(](\d+)\)?(?:\(\d+\))?\s*:?\s*([^\n]*))");
   std::smatch match;
@@ -135,8 +142,7 @@ std::string info_log(GLuint id, Get get, GetLog get_log) {
   return log;
 }
 
-Result<GLuint> compile(const std::string& path, const Defines& defines, Reads reads) {
-  Source source;
+Result<GLuint> compile(const std::string& path, const Defines& defines, Reads reads, Source& source) {
   const std::string prologue = "shaders/" + path + ":0";
   source.add_line("#version 450 core", prologue);
   if (reads == Reads::storage) source.add_line("#define READ_STORAGE", prologue);
@@ -157,17 +163,30 @@ Result<GLuint> compile(const std::string& path, const Defines& defines, Reads re
 
 thread_local ProgramWatch watch_of_thread;
 
-/// What the device allows a program, for a link that failed: drivers seldom say which limit it was.
-std::string limits_of_device() {
+/// How often a text declares something, at most: a declaration may be within an #if that is not taken.
+std::size_t declared(const std::string& text, const char* pattern) {
+  const std::regex declaration(pattern);
+  return static_cast<std::size_t>(
+      std::distance(std::sregex_iterator(text.begin(), text.end(), declaration), std::sregex_iterator()));
+}
+
+/// What a program that does not link may have too much of, against what the device allows: drivers seldom say
+/// which limit it was.
+std::string limits_of_device(const std::string& texts, Reads reads) {
   const auto limit = [](GLenum name) {
     GLint value = 0;
     glGetIntegerv(name, &value);
     return std::to_string(value);
   };
-  return "this device allows a compute program " + limit(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS) +
-         " storage blocks, " + limit(GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS) + " textures, " +
+  const std::size_t read = declared(texts, R"(\n\s*READ_\w+\()"),
+                    written = declared(texts, R"(\n\s*layout\([^)]*\)[\w ]* buffer \w+ \{)");
+  const bool storage = reads == Reads::storage;
+  return "its text declares at most " + std::to_string(written + (storage ? read : 0)) +
+         " storage blocks, of which this device allows " + std::to_string(most_storage_blocks()) + ", and " +
+         std::to_string(storage ? 0 : read) + " buffer textures, of " +
+         limit(GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS) + "; a compute program may also have " +
          limit(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE) + " bytes of shared memory and " +
-         limit(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS) + " invocations a group";
+         limit(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS) + " invocations a group here";
 }
 
 }  // namespace
@@ -191,9 +210,12 @@ Result<Program> Program::load(std::initializer_list<std::string> paths, const De
 Result<Program> Program::load(std::initializer_list<std::string> paths, const Defines& defines, Reads reads) {
   Program program;
   program.id_ = glCreateProgram();
+  std::string texts;
   for (const std::string& path : paths) {
-    Result<GLuint> shader = compile(path, defines, reads);
+    Source source;
+    Result<GLuint> shader = compile(path, defines, reads, source);
     if (!shader) return shader.error();
+    texts += source.text;
     glAttachShader(program.id_, *shader);
     glDeleteShader(*shader);  // freed with the program
   }
@@ -204,9 +226,15 @@ Result<Program> Program::load(std::initializer_list<std::string> paths, const De
     const std::string log = info_log(program.id_, glGetProgramiv, glGetProgramInfoLog);
     return Error{"shaders/" + *paths.begin(),
                  "does not link: " + (log.empty() ? "the driver does not say why" : log) + " (" +
-                     limits_of_device() + ")",
-                 "update the driver, or take another device (--gpu N, see `clothlab info`)"};
+                     limits_of_device(texts, reads) + ")",
+                 other_device};
   }
+  const auto blocks = static_cast<int>(active_resources(program.id_, GL_SHADER_STORAGE_BLOCK));
+  if (blocks > most_storage_blocks())
+    return Error{"shaders/" + *paths.begin(),
+                 "has " + std::to_string(blocks) + " storage blocks, and a program may have " +
+                     std::to_string(most_storage_blocks()) + " here",
+                 other_device};
   glObjectLabel(GL_PROGRAM, program.id_, -1, paths.begin()->c_str());  // for debuggers and bench_profile
   program.list_uniforms();
   return program;

@@ -2,6 +2,7 @@
 
 #include <glad/gl.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <optional>
@@ -50,6 +51,13 @@ double measure() {
 
 double storage_over_texture_reads() {
   return device_fact("storage reads over texture reads", measure);
+}
+
+int most_storage_blocks() {
+  GLint allowed = 0;
+  glGetIntegerv(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS, &allowed);
+  const char* asked = std::getenv("CLOTHLAB_STORAGE_BLOCKS");
+  return asked ? std::min(allowed, std::atoi(asked)) : allowed;
 }
 
 Reads fastest_reads() {

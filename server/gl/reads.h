@@ -11,6 +11,10 @@ enum class Reads { textures, storage };
 /// instead.
 Reads fastest_reads();
 
+/// Storage blocks that a compute program may have: as many as the device allows, or CLOTHLAB_STORAGE_BLOCKS=N
+/// in the environment, if that is less, to play a device that allows fewer.
+int most_storage_blocks();
+
 /// Time of storage reads over that of texture reads, measured as shaders/reads.comp reads.
 double storage_over_texture_reads();
 

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "server/gl/buffer.h"
+#include "server/gl/reads.h"
 #include "server/gl/reflection.h"
 
 namespace clothlab::selftest {
@@ -92,6 +93,7 @@ std::vector<Check> ProgramWatch::limits() const {
       most = {static_cast<GLint>(gl::most_texels()), "the largest list of a preset"};
     GLint allowed = 0;
     glGetIntegerv(limit.value, &allowed);
+    if (limit.value == GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS) allowed = gl::most_storage_blocks();
     const bool passed = most.needed <= allowed;
     checks.push_back({std::string("limit: ") + limit.name, passed, most.needed, allowed, "",
                       std::to_string(most.needed) + " needed (" + most.program + "), " +

@@ -37,12 +37,19 @@ Check failed(std::string name, const Error& error) {
       std::move(name), false, said, nullptr, {}, said, error.remedy.empty() ? wrong_device : error.remedy};
 }
 
+bool Report::wants(const std::string& name) const {
+  return only_.empty() || std::any_of(only_.begin(), only_.end(),
+                                      [&](const std::string& begins) { return name.starts_with(begins); });
+}
+
 void Report::add(Check check) {
+  if (!wants(check.name)) return;
   checks_.push_back(std::move(check));
   told_(checks_.back());
 }
 
 void Report::make(const std::string& name, const std::function<Result<Check>()>& check) {
+  if (!wants(name)) return;
   const auto made = [&]() -> Result<Check> {
     try {
       return check();

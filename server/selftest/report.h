@@ -34,8 +34,10 @@ Check failed(std::string name, const Error& error);
 class Report {
  public:
   using Told = std::function<void(const Check&)>;
-  /// `told` is called with each check as it is made.
-  explicit Report(Told told) : told_(std::move(told)) {}
+  /// `told` is called with each check as it is made. Of `only` none is made whose name begins with none of
+  /// these; empty: all are.
+  explicit Report(Told told, std::vector<std::string> only = {})
+      : told_(std::move(told)), only_(std::move(only)) {}
 
   void add(Check check);
   /// Makes a check that may not end: an error, an exception, or an error that OpenGL has noted become a
@@ -49,7 +51,10 @@ class Report {
   json as_json(const std::string& device) const;
 
  private:
+  bool wants(const std::string& name) const;
+
   Told told_;
+  std::vector<std::string> only_;
   std::vector<Check> checks_;
 };
 
