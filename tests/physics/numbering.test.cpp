@@ -5,9 +5,11 @@
 #include <cstring>
 #include <numeric>
 #include <random>
+#include <string>
 
 #include "server/scene/method.h"
 #include "server/stream/packer.h"
+#include "tests/checked_context.h"
 #include "tests/physics/stage.h"
 #include "tests/sheets.h"
 
@@ -181,4 +183,16 @@ TEST_CASE("a renumbered model has all that belongs to a vertex at its new place,
         wrong += element.vertices[0] >= element.vertices[1];
   });
   CHECK(wrong == 0);
+}
+
+TEST_CASE("no barrier is missing where vertices lie in memory in another order") {
+  const test::BarrierContext context;
+  const auto simulation = test::simulation(sheets(scene::Method::symplectic_euler).shuffled);
+  const auto packer = stream::Packer::create();
+  REQUIRE(packer);
+  simulation->step(2);
+  (*packer)->request(*simulation, {stream::Encoding::q16, stream::Field::strain}, 0);
+  REQUIRE((*packer)->wait());
+  for (const std::string& fault : context.faults()) UNSCOPED_INFO(fault);
+  CHECK(context.faults().empty());
 }

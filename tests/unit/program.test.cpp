@@ -1,6 +1,7 @@
 // Shader errors name the file and line of the source, also inside an include; uniforms are found by name.
 #include <filesystem>
 #include <fstream>
+#include <string>
 #include <utility>
 
 #include "server/gl/program.h"
@@ -71,4 +72,34 @@ TEST_CASE("a uniform is set by its name, an array by its name alone, and one tha
   CHECK(value("whole") == 3.0f);
   CHECK(value("part") == 0.5f);
   CHECK(value("list[0]") == 0.25f);
+}
+
+TEST_CASE("a program with too many storage blocks is an error that says how many it has and may have") {
+  const auto context = test::context();
+  const fs::path root = fs::temp_directory_path() / "clothlab-blocks-test";
+  fs::create_directories(root / "shaders");
+  constexpr int many = 100;
+  for (const int blocks : {2, many}) {
+    std::ofstream file(root / "shaders" / (std::to_string(blocks) + ".comp"));
+    file << "layout(local_size_x = 1) in;\n";
+    for (int i = 0; i < blocks; ++i)
+      file << "layout(std430, binding = " << i % 8 << ") buffer B" << i << " { float b" << i << "; };\n";
+    file << "void main() {\n";
+    for (int i = 0; i < blocks; ++i) file << "b" << i << " += 1.0;\n";
+    file << "}\n";
+  }
+  setenv("CLOTHLAB_DATA", root.c_str(), 1);
+  CHECK(gl::Program::load({"2.comp"}));
+  const Result<gl::Program> refused = gl::Program::load({std::to_string(many) + ".comp"});
+  setenv("CLOTHLAB_STORAGE_BLOCKS", "1", 1);
+  const Result<gl::Program> limited = gl::Program::load({"2.comp"});
+  unsetenv("CLOTHLAB_STORAGE_BLOCKS");
+  unsetenv("CLOTHLAB_DATA");
+  fs::remove_all(root);
+  REQUIRE_FALSE(refused);
+  CHECK_THAT(refused.error().what,
+             ContainsSubstring("at most 100 storage blocks, of which this device allows"));
+  REQUIRE_FALSE(limited);
+  CHECK(limited.error().where == "shaders/2.comp");
+  CHECK(limited.error().what == "has 2 storage blocks, and a program may have 1 here");
 }
