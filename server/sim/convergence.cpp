@@ -130,14 +130,13 @@ Work ConvergenceMeasure::measure(const StateBuffers& state, Kernels& kernels, co
   if (integrator.iterations() == 0 || !solver_for(kernels, scene)) co_return;
   glFinish();
   const Clock::time_point begin = Clock::now();
-  {
-    Carrier out = Carrier::to(carried_);
-    integrator.carry(out);
-  }
-  const auto put_back = [&] {
-    Carrier back = Carrier::from(carried_);
-    integrator.carry(back);
+  // Where contact is a term of the step's problem, a step lists pairs of surfaces anew.
+  const auto carry = [&](Carrier carrier) {
+    integrator.carry(carrier);
+    if (kernels.plan.contact_term()) kernels.surface_contact->carry(carrier);
   };
+  carry(Carrier::to(carried_));
+  const auto put_back = [&] { carry(Carrier::from(carried_)); };
   keep(places_, state.position().buffer);
   keep(velocities_, state.velocity().buffer);
   trial_.copy_from(state);
