@@ -82,8 +82,10 @@ TEST_CASE("a program with too many storage blocks is an error that says how many
   for (const int blocks : {2, many}) {
     std::ofstream file(root / "shaders" / (std::to_string(blocks) + ".comp"));
     file << "layout(local_size_x = 1) in;\n";
-    for (int i = 0; i < blocks; ++i)
-      file << "layout(std430, binding = " << i % 8 << ") buffer B" << i << " { float b" << i << "; };\n";
+    for (int i = 0; i < blocks; ++i) {
+      const int slot = i % 8;
+      file << "layout(std430, binding = " << slot << ") buffer B" << i << " { float b" << i << "; };\n";
+    }
     file << "void main() {\n";
     for (int i = 0; i < blocks; ++i) file << "b" << i << " += 1.0;\n";
     file << "}\n";
