@@ -79,6 +79,7 @@ const int unit_patch_lists = 27;        // server/sim/coarse_level.cpp; collect,
 const int unit_coarse_factor = 28;      // the same; step
 const int unit_patch_sums = 29;         // collect, multiply; step
 const int unit_coarse_vectors = 30;     // step; precondition, update
+const int unit_history = 28;            // BDF2: bdf2_keep; start, bdf2_keep, bdf2_expect
 const int slot_start_position = 0;      // start
 const int slot_start_velocity = 1;      // start, advance; advance
 const int slot_estimate = 3;            // start, advance, contacts; advance, and all as unit_velocity
@@ -102,6 +103,8 @@ const int slot_direction = 4;           // update
 const int slot_direction_product = 5;   // update
 const int slot_change = 6;              // update
 const int slot_wind = 0;                // wind
+const int slot_history = 0;             // BDF2: bdf2_keep; as unit_history
+const int slot_met = 1;                 // BDF2: bdf2_keep; server/sim/bdf2.cpp
 
 // Contact between surfaces: surface/NAME.comp. The slots are read as the units of the same name, too.
 const int unit_surface_triangles = 9;   // server/sim/surface_pairs.cpp; triangle_boxes

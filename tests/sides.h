@@ -56,7 +56,9 @@ class Stepped {
   void change(const scene::Scene& scene) {
     world_ = world_of(scene);
     if (!simulation_) {
-      state_.half_dt.clear();  // Verlet starts anew from the present velocity
+      // Verlet and BDF2 start anew from the present velocity.
+      state_.half_dt.clear();
+      state_.way = state_.gain = {};
       return;
     }
     const auto changed = simulation_->change(scene);

@@ -81,6 +81,7 @@ double dt_limit(Method method, const Mode& found) {
     case Method::pbd:
     case Method::xpbd:
     case Method::vbd:
+    case Method::bdf2:
       return no_limit;
   }
   return no_limit;
@@ -118,6 +119,7 @@ double dt_limit_bound(Method method, const ElementOperator& elements) {
     case Method::pbd:
     case Method::xpbd:
     case Method::vbd:
+    case Method::bdf2:
       break;  // stable at any step
   }
   return no_limit;

@@ -1,5 +1,6 @@
 // Backward Euler as an equation for the velocity u at the end of the step (Baraff & Witkin 1998, section 3),
-// solved by Newton's method: to rounding, or by a given number of Newton steps from u = 0.
+// solved by Newton's method: to rounding, or by a given number of Newton steps from the places at its start.
+// BDF2 is the same equation with another start and another time (shaders/methods/bdf2.glsl).
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -24,27 +25,36 @@ constexpr int most_newton_steps =
 /// the drag.
 struct Equation {
   const World& world;
-  Vectors x, v;              ///< at the step's start [m], [m/s], with self-collision's push and impulse added
+  Vectors x, v;  ///< at the step's start [m], [m/s], with self-collision's push and impulse added;
+                 ///< of BDF2, x_0 and v_0
   std::vector<double> drag;  ///< [vertex_count] of the air [1/s]
   Vectors pin_velocity;      ///< (position at the end - x) / dt of pinned vertices, 0 of free ones [m/s]
   double dt;
+  Vectors first;  ///< velocity at which the places are those at the step's start [m/s]
 
-  explicit Equation(const StepStart& start)
+  /// `way`, `gain`: of the last step, for BDF2; empty: backward Euler.
+  explicit Equation(const StepStart& start, const Vectors& way = {}, const Vectors& gain = {})
       : world(start.world),
         x(start.state.position),
         v(start.state.velocity),
         drag(x.size(), start.world.scene.air_drag),
-        dt(start.dt) {
-    const std::vector<elements::WindLoad> wind = wind_loads(world, x, v, start.t + dt);
+        dt(way.empty() ? start.dt : 2.0 / 3.0 * start.dt),
+        first(x.size(), dvec3(0.0)) {
+    const bool goes_on = !way.empty();
+    const Vectors there = goes_on ? plus(x, 1.0, way) : x, as_fast = goes_on ? plus(v, 1.0, gain) : v;
+    const std::vector<elements::WindLoad> wind = wind_loads(world, there, as_fast, start.t + start.dt);
     for (std::size_t i = 0; i < x.size(); ++i) {
       const double mass = world.model.mass[i];
       drag[i] += wind[i].braking / mass;
-      v[i] += start.impulse[i] + dt / mass * (wind[i].force + wind[i].braking * v[i]);
+      if (goes_on) v[i] += 1.0 / 3.0 * gain[i];
+      v[i] += start.impulse[i] + dt / mass * (wind[i].force + wind[i].braking * as_fast[i]);
+      if (goes_on) x[i] += 1.0 / 3.0 * way[i];
       x[i] += start.push[i];
+      if (goes_on) first[i] = (start.state.position[i] - x[i]) / dt;
     }
     Vectors unused(x.size());
     pin_velocity = x;
-    place_pins(world, start.t + dt, pin_velocity, unused);
+    place_pins(world, start.t + start.dt, pin_velocity, unused);
     for (std::size_t i = 0; i < x.size(); ++i) pin_velocity[i] = (pin_velocity[i] - x[i]) / dt;
   }
 
@@ -143,8 +153,9 @@ State end_state(const StepStart& start, const Equation& equation, const Vectors&
 
 }  // namespace
 
-State backward_euler(const StepStart& start) {
-  const Equation equation(start);
+namespace {
+
+State solved_end(const StepStart& start, const Equation& equation) {
   Vectors u = equation.v;
   for (std::size_t i = 0; i < u.size(); ++i)
     u[i] /= 1.0 + equation.dt * (equation.drag[i] - start.world.scene.air_drag);
@@ -168,9 +179,30 @@ State backward_euler(const StepStart& start) {
   return end_state(start, equation, u);
 }
 
+}  // namespace
+
+State backward_euler(const StepStart& start) {
+  return solved_end(start, Equation(start));
+}
+
+State bdf2(const StepStart& start) {
+  return solved_end(start, Equation(start, start.state.way, start.state.gain));
+}
+
+bool note_step(const World& world, const State& before, State& next) {
+  const double impact = 2.0 * world.scene.solver.dt * glm::length(world.scene.gravity);
+  next.way = plus(next.position, -1.0, before.position);
+  next.gain = plus(next.velocity, -1.0, before.velocity);
+  bool smooth = true;
+  for (std::size_t i = 0; i < next.gain.size(); ++i)
+    smooth = smooth && (next.contacts[i] <= before.contacts[i] || glm::length(next.gain[i]) <= impact);
+  if (!smooth) next.way = next.gain = {};
+  return smooth;
+}
+
 State baraff_witkin(const StepStart& start) {
-  const Equation equation(start);
-  Vectors u(equation.x.size(), dvec3(0.0));
+  const Equation equation(start, start.state.way, start.state.gain);
+  Vectors u = equation.first;
   for (int n = 0; n < start.world.scene.solver.iterations; ++n) {
     const Vectors r = equation.residual(u), wanted = plus(Vectors(u.size(), dvec3(0.0)), -1.0, r);
     const Vectors to_pins =

@@ -83,6 +83,8 @@ StepMethod step_method(scene::Method method) {
       return rk4;
     case scene::Method::implicit_euler:
       return backward_euler;
+    case scene::Method::bdf2:
+      return bdf2;
     case scene::Method::pbd:
     case scene::Method::xpbd:
     case scene::Method::vbd:

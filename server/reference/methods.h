@@ -30,8 +30,14 @@ State verlet(const StepStart& start);
 State rk4(const StepStart& start);
 /// Backward Euler: u = v + dt a(x + dt u, u), x += dt u, solved by Newton's method to rounding.
 State backward_euler(const StepStart& start);
+/// BDF2 (Choi & Ko 2002): backward Euler from x_0 and v_0 of shaders/methods/bdf2.glsl with 2/3 of dt, solved
+/// likewise; without a way and gain of the last step, backward Euler.
+State bdf2(const StepStart& start);
+/// To be called when a step of `bdf2` from `before` has ended at `next`, with contacts: notes its way and
+/// gain there. Returns false if contact began in it: the motion is not smooth, and nothing is noted.
+bool note_step(const World& world, const State& before, State& next);
 /// Backward Euler with exactly `solver.iterations` Newton steps from u = 0 (Baraff & Witkin 1998, who take
-/// one step).
+/// one step); the same of BDF2, from the state at the step's start.
 State baraff_witkin(const StepStart& start);
 
 /// A whole step by `method` with contacts, pins and strain limit, from time t to t_next = t + solver.dt.

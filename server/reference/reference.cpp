@@ -107,11 +107,23 @@ void advance(const StepMethod& method, const World& world, State& state, double 
     start.impulse[i] = contact.impulse;
     touched[i] = contact.touched;
   }
-  State next = method(start);
-  next.step = state.step + 1;
-  next.contacts = touched;
-  place_pins(world, t_next, next.position, next.velocity);
-  stop_at_colliders(world, state, t, next);
+  const auto solve = [&] {
+    State end = method(start);
+    end.step = state.step + 1;
+    end.contacts = touched;
+    place_pins(world, t_next, end.position, end.velocity);
+    stop_at_colliders(world, state, t, end);
+    return end;
+  };
+  State next = solve();
+  if (world.scene.solver.method == scene::Method::bdf2) {
+    const bool by_formula = !state.way.empty();
+    if (!note_step(world, state, next) && by_formula) {
+      state.way = state.gain = {};  // then by backward Euler
+      next = solve();
+      note_step(world, state, next);
+    }
+  }
   limit_strain(world, state, next);
   state = std::move(next);
 }

@@ -42,6 +42,9 @@ struct State {
   /// VBD only, [vertex_count] or empty before its first step: the velocity at the start of the last step
   /// [m/s]; none where the vertex hit a collider in an impact in that step.
   std::vector<std::optional<dvec3>> velocity_before = {};
+  /// BDF2 only, [vertex_count] or empty where the next step is one of implicit Euler: the way [m] and the
+  /// gain of velocity [m/s] of the last step.
+  std::vector<dvec3> way = {}, gain = {};
   /// The residual that an implicit method left, as a share of the largest momentum in its equation; 0 after
   /// other methods.
   double residual = 0;

@@ -8,7 +8,7 @@
 
 namespace clothlab::scene {
 
-enum class Method { explicit_euler, symplectic_euler, verlet, rk4, implicit_euler, pbd, xpbd, vbd };
+enum class Method { explicit_euler, symplectic_euler, verlet, rk4, implicit_euler, pbd, xpbd, vbd, bdf2 };
 
 /// The kind of iteration that `solver.iterations` counts.
 enum class Iterations { none, newton_steps, spring_sweeps, vertex_sweeps };
@@ -32,6 +32,7 @@ inline constexpr std::array method_table{
     MethodFacts{Method::pbd, "pbd", 1, 1, Iterations::spring_sweeps, false},
     MethodFacts{Method::xpbd, "xpbd", 1, 1, Iterations::spring_sweeps, false},
     MethodFacts{Method::vbd, "vbd", 1, 1, Iterations::vertex_sweeps, false},
+    MethodFacts{Method::bdf2, "bdf2", 2, 1, Iterations::newton_steps, false},
 };
 
 /// All methods, in the order in which they are listed to a user.

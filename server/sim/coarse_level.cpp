@@ -168,6 +168,10 @@ void CoarseLevel::set_parameters(const model::Model& model, const scene::Scene& 
                               parts_->lists.shares * sizeof(float));
 }
 
+void CoarseLevel::set_dt(double dt) {
+  parts_->matrix.set_dt(dt);
+}
+
 void CoarseLevel::prepare(const FineLevel& fine, bool contacts) {
   parts_->matrix.make(downloaded(fine.position),
                       contacts ? downloaded(fine.constraint) : std::vector<glm::vec4>());

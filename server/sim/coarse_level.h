@@ -39,6 +39,8 @@ class CoarseLevel {
 
   /// Takes over the elements' numbers, which may change.
   void set_parameters(const model::Model& model, const scene::Scene& scene);
+  /// As of CoarseMatrix.
+  void set_dt(double dt);
 
   /// Makes the matrix of the patches at the present estimate, and the inverse of its factor. Waits for the
   /// GPU. `contacts`: whether anything may be in contact with a collider.

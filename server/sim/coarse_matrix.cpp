@@ -81,16 +81,24 @@ void CoarseMatrix::set_parameters(const model::Model& model, const scene::Scene&
     for (const Element<Law>& element : batch)
       if (!std::all_of(element.vertices.begin(), element.vertices.end(), pinned)) kept.push_back(element);
   });
-  add_bending();
+  bending_.clear();
+  Elements<elements::Bending>& pairs = std::get<Elements<elements::Bending>>(elements_);
+  if (scene.solver.method == scene::Method::bdf2) bending_ = pairs;
+  add_bending(pairs);
+  pairs.clear();
 }
 
-void CoarseMatrix::add_bending() {
+void CoarseMatrix::set_dt(double dt) {
+  if (dt == dt_) return;
+  dt_ = dt;
+  add_bending(bending_);
+}
+
+void CoarseMatrix::add_bending(const Elements<elements::Bending>& pairs) {
   matrix_ = PatchMatrix(empty_.dissection());
   constraint_.clear();
   const std::vector<glm::vec4> anywhere(patch_of_.size(), glm::vec4(0.0F));
-  Elements<elements::Bending>& pairs = std::get<Elements<elements::Bending>>(elements_);
   for (const Element<elements::Bending>& pair : pairs) add_element(pair, anywhere);
-  pairs.clear();
   empty_ = matrix_;
 }
 

@@ -24,6 +24,10 @@ class CoarseMatrix {
   /// Takes over the elements' numbers, which may change, and which vertices are pinned.
   void set_parameters(const model::Model& model, const scene::Scene& scene);
 
+  /// The time in the equations, in place of the scene's dt [s], of a method that has several; until
+  /// `set_parameters`.
+  void set_dt(double dt);
+
   const std::vector<Shares>& shares() const { return shares_; }  ///< [vertex]
 
   /// Makes the matrix at the places `position` [vertex] (w: inverse mass). `constraint` [vertex]: as in
@@ -43,7 +47,7 @@ class CoarseMatrix {
   template <class Law>
   using Elements = std::vector<model::Element<Law>>;
 
-  void add_bending();
+  void add_bending(const Elements<elements::Bending>& pairs);
   bool touches(std::uint32_t vertex) const {
     return !constraint_.empty() && constraint_[vertex] != glm::vec4(0.0F);
   }
@@ -56,6 +60,7 @@ class CoarseMatrix {
   PatchMatrix empty_;  ///< with what stays: bending, whose matrix does not depend on places
   PatchMatrix matrix_;
   elements::PerLaw<Elements> elements_;  ///< those with a vertex that is not pinned
+  Elements<elements::Bending> bending_;  ///< of a method that may `set_dt`; else left out, as `empty_` has it
   std::vector<glm::vec4> constraint_;    ///< of `make`
   double dt_ = 0, air_drag_ = 0;
 };

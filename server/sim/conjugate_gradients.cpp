@@ -68,6 +68,12 @@ void ConjugateGradients::set_parameters(const Surroundings& around) {
   coarse_.set_parameters(around.model, around.scene);
 }
 
+void ConjugateGradients::set_dt(double dt) {
+  for (const gl::Program* program : {&collect_, &precondition_, &multiply_, &step_, &update_})
+    program->set("dt", static_cast<float>(dt));
+  coarse_.set_dt(dt);
+}
+
 void ConjugateGradients::bind() const {
   product_.bind(unit_product);
   sums_.bind(unit_group_sums);

@@ -33,6 +33,8 @@ class ConjugateGradients {
   /// Loads the kernels; `defines` has those of this object, too.
   Status load(const gl::Defines& defines);
   void set_parameters(const Surroundings& around);
+  /// The time in the equations, in place of the scene's dt [s]; until `set_parameters`.
+  void set_dt(double dt);
 
   /// Binds what the kernels of a whole step read: the products and the sums of the work groups.
   void bind() const;

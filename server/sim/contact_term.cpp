@@ -72,6 +72,7 @@ Result<ContactTerm> ContactTerm::create(const model::Model& model, const Plan& p
   made.solids_ = plan.solid_count() > 0;
   const auto with = [&](const char* name, const char* value) {
     gl::Defines defines = step_defines(plan);
+    if (plan.method == scene::Method::bdf2) defines.emplace_back("BDF2", "1");
     if (*name) defines.emplace_back(name, value);
     return defines;
   };
@@ -133,6 +134,14 @@ std::vector<const gl::Program*> ContactTerm::programs() const {
         &energy_, &friction_, &sum_, &sum_friction_, &bodies_, &press_solids_, &limit_solids_})
     if (program->id()) loaded.push_back(program);
   return loaded;
+}
+
+void ContactTerm::set_dt(double dt, double step_length) {
+  dt_ = static_cast<float>(dt);
+  for (const gl::Program* program : programs()) {
+    program->set("dt", dt_);
+    program->set("step_length", static_cast<float>(step_length));
+  }
 }
 
 void ContactTerm::set_parameters(const scene::Scene& scene, const model::Model& model,

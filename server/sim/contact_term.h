@@ -37,6 +37,9 @@ class ContactTerm {
   static Result<ContactTerm> create(const model::Model& model, const Plan& plan, std::uint32_t vertex_count);
 
   void set_parameters(const scene::Scene& scene, const model::Model& model, const MotionTable& motions);
+  /// The time in the equations of a step of another length [s] (shaders/methods/bdf2.glsl); until
+  /// `set_parameters`.
+  void set_dt(double dt, double step_length);
   /// Sets what a program needs that includes shaders/surface/term_solids.glsl.
   void set_solids(const gl::Program& program) const;
 

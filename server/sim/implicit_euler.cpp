@@ -1,11 +1,13 @@
 // Implicit Euler on the GPU: shaders/methods/implicit_*.comp. This file has the passes of a step before and
-// after the solves, conjugate_gradients.h the solver.
+// after the solves, conjugate_gradients.h the solver. BDF2 has the same passes, and bdf2.h.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "server/sim/bdf2.h"
 #include "server/sim/conjugate_gradients.h"
 #include "server/sim/integrator.h"
 #include "server/sim/surface_contact.h"
@@ -39,6 +41,12 @@ class ImplicitEuler : public Integrator {
     gl::Defines defines = step_defines(plan);
     for (gl::Defines::value_type& define : made->solver_.defines()) defines.push_back(std::move(define));
     if (plan.contact_term()) defines.emplace_back("CONTACT_TERM", "1");
+    if (plan.method == scene::Method::bdf2) {
+      defines.emplace_back("BDF2", "1");
+      Result<Bdf2> bdf2 = Bdf2::create(model, plan, defines);
+      if (!bdf2) return bdf2.error();
+      made->bdf2_ = std::move(*bdf2);
+    }
     if (!plan.pins && plan.solid_count() == 0 && plan.bodies == 0) defines.emplace_back("FREE", "1");
     for (auto [program, name] : {std::pair{&made->start_, "start"},
                                  {&made->system_, "system"},
@@ -70,16 +78,21 @@ class ImplicitEuler : public Integrator {
       if (!loaded) return loaded.error();
       made->wind_ = std::move(*loaded);
       made->wind_loads_ = {gl::Buffer(std::size_t{model.vertex_count()} * 4 * sizeof(float)), GL_RGBA32F};
+      if (made->bdf2_)
+        for (gl::TextureBuffer* vector : {&made->expected_position_, &made->expected_velocity_})
+          *vector = {gl::Buffer(made->wind_loads_.buffer.bytes()), GL_RGBA32F};
     }
     return std::unique_ptr<Integrator>(std::move(made));
   }
 
   void set_parameters(const Surroundings& around) override {
-    for (const gl::Program* program :
-         {&start_, &system_, &project_, &improve_, &search_, &choose_, &advance_, &end_, &contacts_, &wind_})
-      if (program->id()) set_step_uniforms(*program, around);
+    for (const gl::Program* program : programs()) {
+      set_step_uniforms(*program, around);
+      program->set("step_length", static_cast<float>(around.scene.solver.dt));
+    }
     if (around.scene.solver.dt != dt_) restart();  // impulses kept in `contact_friction_` are forces times dt
     dt_ = around.scene.solver.dt;
+    if (bdf2_) bdf2_->set_parameters(around);
     solver_.set_parameters(around);
     most_newton_steps_ = around.scene.solver.iterations;
     solved_way_ = solved_share * SurfacePairs::finest_edge(around.model);
@@ -88,7 +101,17 @@ class ImplicitEuler : public Integrator {
   }
 
   Work step(StateBuffers& state, int row) override {
+    if (bdf2_)
+      co_await step_by_bdf2(state, row);
+    else
+      co_await solve_step(state, row);
+    state.swap();
+  }
+
+  /// Writes the state at the step's end to the other copy.
+  Work solve_step(StateBuffers& state, int row) {
     begin(state, row);
+    taken_whole_ = true;
     Solved solved;
     // With contact a solve may leave this share of the change to the next Newton step, whose pairs are
     // others: more exactness would be lost (inexact Newton: Dembo, Eisenstat & Steihaug 1982). A Newton step
@@ -100,7 +123,7 @@ class ImplicitEuler : public Integrator {
       set_up(newton == 0);
       if (newton == 0) improve_guess();
       if (newton == 0 || contact_)
-        solver_.prepare({newton == 0 ? start_position_ : position_, constraint_,
+        solver_.prepare({iterate(newton == 0), constraint_,
                          contact_ ? contact_->term()->read() : std::vector<PressingPair>()},
                         touches_);
       co_await solver_.solve(guess_, left_share, solved);
@@ -126,12 +149,30 @@ class ImplicitEuler : public Integrator {
         search(solved);
       }
       advance(row, newton + 1 < most);
-      if (contact_) contact_->term()->take(newton == 0 ? start_position_ : position_, position_);
+      if (contact_) contact_->term()->take(iterate(newton == 0), position_);
       co_await may_stop;
     }
     if (contact_) contact_->end_solve(position_);
     if (contacts_.id()) keep_apart();
     finish(state, *solved.residual, row);
+  }
+
+  /// By the formula where the motion is smooth, else by implicit Euler. Where contact begins in a step by the
+  /// formula, which would then give back a part of what it stops, the step is done again.
+  Work step_by_bdf2(StateBuffers& state, int row) {
+    bdf2_->begin(held_);
+    if (bdf2_->by_formula()) bdf2_->put_aside({&contact_friction_, &past_velocities_});
+    for (bool again = true; again;) {
+      set_equation_time();
+      co_await solve_step(state, row);
+      if (contact_) contact_->term()->bind();
+      const bool smooth = !bdf2_->look(state) && taken_whole_;
+      again = !smooth && bdf2_->begin_by_implicit_euler();
+      if (again)
+        bdf2_->put_back({&contact_friction_, &past_velocities_});
+      else
+        bdf2_->accept(smooth);
+    }
   }
 
   /// Forgets the past velocities and all contacts with colliders: -1 is `untouched` in
@@ -140,6 +181,7 @@ class ImplicitEuler : public Integrator {
     const std::vector<float> untouched(contact_friction_.bytes() / sizeof(float), -1.0F);
     contact_friction_.upload(untouched.data(), contact_friction_.bytes());
     past_velocities_.fill(0);
+    if (bdf2_) bdf2_->restart();
   }
 
   int iterations() const override { return most_newton_steps_; }
@@ -163,6 +205,7 @@ class ImplicitEuler : public Integrator {
   void carry(Carrier& carrier) override {
     carrier.buffer(contact_friction_);
     carrier.buffer(past_velocities_);
+    if (bdf2_) bdf2_->carry(carrier);
   }
 
   SolverWork work() const override { return work_; }
@@ -211,6 +254,26 @@ class ImplicitEuler : public Integrator {
     double tolerance_, solved_way_, untaken_way_;
   };
 
+  std::vector<const gl::Program*> programs() const {
+    std::vector<const gl::Program*> loaded;
+    for (const gl::Program* program :
+         {&start_, &system_, &project_, &improve_, &search_, &choose_, &advance_, &end_, &contacts_, &wind_})
+      if (program->id()) loaded.push_back(program);
+    return loaded;
+  }
+
+  /// Gives BDF2's equations their time in place of the step's length.
+  void set_equation_time() {
+    for (const gl::Program* program : programs()) program->set("dt", static_cast<float>(bdf2_->dt()));
+    solver_.set_dt(bdf2_->dt());
+    if (contact_) contact_->term()->set_dt(bdf2_->dt(), bdf2_->step_length());
+  }
+
+  /// The present estimate, of which the `first` is where the step begins.
+  const gl::TextureBuffer& iterate(bool first) const {
+    return first && !(bdf2_ && bdf2_->by_formula()) ? start_position_ : position_;
+  }
+
   void set_tolerance(double tolerance) {
     tolerance_ = tolerance;
     system_.set("tolerance", static_cast<float>(tolerance));
@@ -226,15 +289,27 @@ class ImplicitEuler : public Integrator {
     if (contact_) take_bodies(state, row);
     state.bind_for_step();
     bind_inputs(state);
+    if (bdf2_ && bdf2_->by_formula()) begin_by_formula(state);
     if (wind_.id()) {
       wind_loads_.buffer.bind_storage(slot_wind);
       wind_.set("start_row", row);
       run(wind_);
+      state.bind_for_step();
     }
+    if (bdf2_) bdf2_->bind_begin(start_);
     start_position_.buffer.bind_storage(slot_start_position);
     bind_estimate();
     start_.set("start_row", row);
     run(start_);
+  }
+
+  void begin_by_formula(const StateBuffers& state) {
+    if (wind_.id()) {
+      bdf2_->expect(expected_position_, expected_velocity_);
+      expected_position_.bind(unit_position);
+      expected_velocity_.bind(unit_velocity);
+    }
+    if (!contact_) position_.buffer.copy_from(state.position().buffer);
   }
 
   /// Makes the estimates as long as the state, whose bodies they have, too.
@@ -249,14 +324,14 @@ class ImplicitEuler : public Integrator {
 
   /// Finds the pairs of surfaces that press at the present estimate.
   void find_contact(const StateBuffers& state, bool first) {
-    pressing_ = contact_->find_pressing(first ? start_position_ : position_, first);
+    pressing_ = contact_->find_pressing(iterate(first), first);
     bind_inputs(state);
     contact_->term()->bind();
   }
 
   /// Finds how much of a solved change can be taken before surfaces would meet.
   ContactTerm::Limit limit_by_contact(const StateBuffers& state, const Solved& solved, bool first) {
-    const gl::TextureBuffer& position = first ? start_position_ : position_;
+    const gl::TextureBuffer& position = iterate(first);
     const ContactTerm::Limit limit = contact_->limit(position, *solved.change);
     bind_inputs(state);
     position.bind(unit_position);
@@ -274,7 +349,10 @@ class ImplicitEuler : public Integrator {
     dispatch(1);
     wait_for_writes();
     const double left = 1.0 - static_cast<double>(contact_->term()->take_share());
-    if (!limit.known) return newton + 1;
+    if (!limit.known) {
+      taken_whole_ = false;
+      return newton + 1;
+    }
     const double longest = limit.longest;
     if (pressing_ == 0 && limit.reachable == 0) return met || longest <= untaken_way_ ? newton + 1 : most;
     const bool whole = left * longest <= untaken_way_;
@@ -283,7 +361,10 @@ class ImplicitEuler : public Integrator {
     const bool rubs = limit.slips <= slips_share;
     if (whole && rubs && (met || still)) return newton + 1;
     const int most_of_all = std::max(most_newton_steps_, most_contact_steps);
-    if (newton + 1 == most_of_all) ++work_.unconverged;  // and what is left of the step is not taken
+    if (newton + 1 == most_of_all) {  // and what is left of the step is not taken
+      ++work_.unconverged;
+      taken_whole_ = false;
+    }
     return most_of_all;
   }
 
@@ -313,7 +394,7 @@ class ImplicitEuler : public Integrator {
   /// Sets up the linear system at the present estimate, in the first Newton step the state at the step's
   /// start.
   void set_up(bool first, bool again = false) {
-    (first ? start_position_ : position_).bind(unit_position);
+    iterate(first).bind(unit_position);
     system_.set("first", first && !again ? 1 : 0);
     velocity_.bind(unit_velocity);
     guess_.bind(unit_change);
@@ -377,13 +458,14 @@ class ImplicitEuler : public Integrator {
     end_.set("start_row", row);
     if (contact_) contact_->bind_end(end_);
     run(end_);
-    state.swap();
   }
 
   GLuint groups_;
   bool touches_;  ///< whether vertices may be kept at solids, which then press them by no force
   ConjugateGradients solver_;
+  std::optional<Bdf2> bdf2_;  ///< none: implicit Euler
   double dt_ = 0;
+  bool taken_whole_ = true;  ///< the step under way, but for what contact has kept it from
   int most_newton_steps_ = 1;
   double tolerance_ = 0;        ///< of a linear solve: relative, of the residual
   double untaken_way_ = 0;      ///< the most that a last Newton step may not take [m]
@@ -397,10 +479,11 @@ class ImplicitEuler : public Integrator {
   gl::TextureBuffer guess_;                            ///< first guess of the solved change of velocity
   gl::TextureBuffer constraint_, surface_;             ///< for each vertex: its contact with a collider
   gl::TextureBuffer wind_loads_;                       ///< for each vertex: the wind at the step's start
-  gl::Buffer contact_friction_;                        ///< friction of the contacts, kept between steps
-  gl::TextureBuffer trends_, trend_products_;          ///< for each vertex `trends` vectors
-  gl::Buffer past_velocities_;                         ///< at the starts of the last `trends` steps
-  gl::TextureBuffer block_a_, block_b_;                ///< each vertex' own block of the matrix
+  gl::TextureBuffer expected_position_, expected_velocity_;  ///< BDF2's, in which the wind is taken
+  gl::Buffer contact_friction_;                              ///< friction of the contacts, kept between steps
+  gl::TextureBuffer trends_, trend_products_;                ///< for each vertex `trends` vectors
+  gl::Buffer past_velocities_;                               ///< at the starts of the last `trends` steps
+  gl::TextureBuffer block_a_, block_b_;                      ///< each vertex' own block of the matrix
   SolverWork work_;
 };
 

@@ -16,6 +16,7 @@ Result<std::unique_ptr<Integrator>> make(const Surroundings& around, const Plan&
     case scene::Method::rk4:
       return make_rk4(around.model.vertex_count(), plan);
     case scene::Method::implicit_euler:
+    case scene::Method::bdf2:
       return make_implicit_euler(around.model, plan);
     case scene::Method::pbd:
     case scene::Method::xpbd:

@@ -1,5 +1,5 @@
 // A method that advances the state by one step on the GPU. Each family of methods is one file: whole_step.cpp
-// (one dispatch a step), rk4.cpp, implicit_euler.cpp, gauss_seidel.cpp.
+// (one dispatch a step), rk4.cpp, implicit_euler.cpp (with bdf2.h), gauss_seidel.cpp.
 #pragma once
 
 #include <cstdint>
@@ -44,6 +44,9 @@ class Integrator {
   /// it.
   void set_contact(SurfaceContact* contact) { contact_ = contact; }
 
+  /// To be called before a step: whether hands hold the cloth in it (hands.h).
+  void set_held(bool held) { held_ = held; }
+
   /// Forgets what was carried over from the last step. To be called if the present state was not made by this
   /// object's last step, or if that step was given up half-way.
   virtual void restart() {}
@@ -76,6 +79,7 @@ class Integrator {
   }
   std::uint64_t dispatches_ = 0;
   SurfaceContact* contact_ = nullptr;
+  bool held_ = false;
 };
 
 /// Makes the integrator for the scene's method and sets its parameters.

@@ -29,6 +29,7 @@ constexpr double scene_copies = 12;      ///< of the document, as JSON or as pla
 
 constexpr double least_kept = 60;  ///< of a vertex, by any method besides the state
 constexpr double implicit = 700;   ///< the same by implicit_euler
+constexpr double history = 130;    ///< what bdf2 has beside that: two steps, and contact's friction twice
 
 const std::string facts_begin = "{\"memory\": {\"needed\": ";
 
@@ -39,6 +40,8 @@ double kept_by(scene::Method method) {
       return 490;
     case scene::Method::implicit_euler:
       return implicit;
+    case scene::Method::bdf2:
+      return implicit + history;
     case scene::Method::pbd:
     case scene::Method::xpbd:
     case scene::Method::vbd:

@@ -58,7 +58,7 @@ struct Plan {
   int pose_rows() const { return scene::facts(method).needs_midpoint_poses ? 2 : 1; }
   bool surface_contact() const { return surfaces || bodies > 0; }
   /// Contact between surfaces is a term of the step's problem, which the method solves.
-  bool contact_term() const { return surface_contact() && method == scene::Method::implicit_euler; }
+  bool contact_term() const { return surface_contact() && scene::solves(method); }
   bool strain_limit() const { return limits_springs || limits_sheets; }
   int solid_count() const {
     return std::accumulate(solids.begin(), solids.end(), 0,

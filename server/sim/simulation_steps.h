@@ -105,6 +105,7 @@ struct Simulation::Implementation {
     }
     hands.hold(state, scene);
     kernels.integrator->set_contact(kernels.plan.contact_term() ? &*kernels.surface_contact : nullptr);
+    kernels.integrator->set_held(!hands.empty());
     if (convergence.due(step_index)) co_await convergence.measure(state, kernels, scene, row, step_index);
     state.position().bind(unit_position);
     co_await kernels.integrator->step(state, row);

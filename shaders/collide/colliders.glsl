@@ -43,11 +43,12 @@ float met_depth;
 /// Displacement [m] that friction takes from the path. The caller applies it: not all callers use the velocity given.
 vec3 met_braking;
 
+#include "../methods/step_time.glsl"
 #ifdef SOLIDS_IN_PIECES
 float piece_begin = 0.0, piece_end = 1.0;  // of the step, which part the path is
-float path_time() { return dt * (piece_end - piece_begin); }
+float path_time() { return whole_dt * (piece_end - piece_begin); }
 #else
-float path_time() { return dt; }
+float path_time() { return whole_dt; }
 #endif
 
 #ifdef SECOND_VELOCITY

@@ -1,10 +1,14 @@
 // Self-collision of a vertex with those of its neighbours that it touches within this step (elements/contact.glsl).
 // Each of the two takes its share by inverse mass; both compute the same contact, so momentum is kept.
 // START_POSITION and START_VELOCITY name the state at the step's start if that is not position and velocity.
+// CONTACT_TIME names the time that they have [s], if that is not dt.
 // Needs neighbours.glsl, contact.glsl, position, velocity, dt.
 #ifndef START_POSITION
 #define START_POSITION position
 #define START_VELOCITY velocity
+#endif
+#ifndef CONTACT_TIME
+#define CONTACT_TIME dt
 #endif
 READ_UINT(neighbour_count, unit_neighbour_count);
 READ_UVEC2(neighbours, unit_neighbours);
@@ -21,7 +25,8 @@ int self_contacts(int i, vec4 x, vec4 v, inout vec3 push, inout vec3 impulse) {
     vec4 y = FETCH(START_POSITION, neighbour.x);
     vec4 w = FETCH(START_VELOCITY, neighbour.x);
     vec3 apart, change;
-    if (!self_contact(x.xyz, y.xyz, v.xyz, w.xyz, uintBitsToFloat(neighbour.y), self_friction, dt, apart, change))
+    if (!self_contact(x.xyz, y.xyz, v.xyz, w.xyz, uintBitsToFloat(neighbour.y), self_friction, CONTACT_TIME, apart,
+                      change))
       continue;
     ++touched;
     float others = y.w > 0.0 ? w.w : 0.0;  // w of a pinned vertex is its motion's index

@@ -9,6 +9,7 @@ READ_VEC4(position, unit_position);  // w: inverse mass [1/kg], 0 if pinned
 READ_VEC4(velocity, unit_velocity);  // w: contacts of the last step; for a pinned vertex its motion's index or -1
 READ_VEC4(rest_position, unit_rest_position);  // w: the cloth
 uniform float dt;      // [s]
+#include "step_time.glsl"
 uniform vec4 gravity;  // xyz [m/s^2], w: air drag [1/s]
 
 vec3 element_forces(int i, vec3 x, vec3 v) {
@@ -46,10 +47,10 @@ const float catch_up = 1.0;  // how much faster than its motion a pin goes that 
 /// since the step's start [m].
 void catch_up_from(vec3 start, float way, inout vec3 x, inout vec3 v) {
   vec3 missing = x - start;
-  float most = way + dt * catch_up, left = length(missing);
+  float most = way + whole_dt * catch_up, left = length(missing);
   if (left > most) {
     x = start + missing * (most / left);
-    v = (x - start) / dt;
+    v = (x - start) / whole_dt;
   }
 }
 #endif

@@ -10,6 +10,9 @@
 #include "../collide/colliders.glsl"
 #endif
 READ_VEC4(start_position, unit_start_position);
+#ifndef CONTACT_TERM
+#include "step_start.glsl"
+#endif
 READ_VEC4(group_sums, unit_group_sums);
 READ_VEC4(change, unit_change);
 READ_VEC4(residual, unit_residual);
@@ -98,7 +101,7 @@ void main() {
   if (another && start.w > 0.0) {
     bool kept = constraint[i].xyz != vec3(0.0);
     RARELY(kept) first = follow_contact(i, start.w, u);
-    if (!kept && grip[i].w != pulled_away) first = meet_contact(i, start.w, start.xyz, x, u);
+    if (!kept && grip[i].w != pulled_away) first = meet_contact(i, start.w, step_start(i), x, u);
   }
 #endif
   guess[i] = vec4(first, 0.0);

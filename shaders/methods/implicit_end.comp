@@ -31,7 +31,7 @@ int rebound(int kind, bool moves, int first, vec3 before, vec3 x, inout vec3 v) 
   vec3 moving = solid_velocity(first, x);
   float approach = dot(moving - before, n), restitution = solids[first + 2].y;
   // A speed that gravity gives in two steps is no impact: a vertex at rest must not bounce.
-  if (presses && restitution > 0.0 && approach > 2.0 * dt * length(gravity.xyz))
+  if (presses && restitution > 0.0 && approach > 2.0 * whole_dt * length(gravity.xyz))
     v += n * (restitution * approach - dot(v - moving, n));
   return int(presses);
 }
@@ -70,7 +70,7 @@ void rebound_from_bodies(int i, inout vec3 v) {
     }
     vec3 away = t.own > 0.0 ? t.n : -t.n;
     float approach = -dot(t.n, relative), restitution = body < 0 ? 0.0 : FETCH(body_places, 2 * body + 1).y;
-    if (restitution > 0.0 && approach > 2.0 * dt * length(gravity.xyz))
+    if (restitution > 0.0 && approach > 2.0 * whole_dt * length(gravity.xyz))
       v += away * max(restitution * approach - dot(v - of_body, away), 0.0);
   }
 }

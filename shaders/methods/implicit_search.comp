@@ -7,6 +7,7 @@
 #include "implicit_term.glsl"
 #include "../surface/term_solids.glsl"
 READ_VEC4(start_position, unit_start_position);
+#include "step_start.glsl"
 #else
 float most_share(float inverse_mass) { return 1.0; }
 #endif
@@ -36,9 +37,9 @@ void add_solid(int kind, bool moves, int first, int i, vec4 x, vec3 moved, inout
   Solid now, later;
   place_at_iterate(kind, moves, first, most_share(), now, later);
   if (!(solid_entry(kind, now, later, x.xyz, x.xyz + moved, now.radius) <= 1.0)) return;
-  if (begins_within(kind, moves, first, FETCH(start_position, i).xyz)) return;
+  if (begins_within(kind, moves, first, step_start(i))) return;
   float stiffness = solid_stiffness(x.w), least = 1e-4 * margin;
-  vec3 n, driven = dt * (1.0 - gone) * most_share() * solid_velocity(first, x.xyz);
+  vec3 n, driven = whole_dt * (1.0 - gone) * most_share() * solid_velocity(first, x.xyz);
   float gap = max(margin - nearest_of_solid(kind, now, x.xyz, n), least);
   float before = contact_energy(gap, margin, stiffness), push = contact_force(gap, margin, stiffness) * dot(n, driven);
   for (int k = 0; k < SHARES; ++k) {

@@ -2,22 +2,27 @@
 // guess.
 #include "implicit_euler.glsl"
 #include "implicit_friction.glsl"
+#include "bdf2.glsl"
 #ifndef CONTACT_TERM
 #include "../collide/colliders.glsl"
 #endif
 #ifdef SELF_COLLISION
 #include "../collide/neighbours.glsl"
+#define CONTACT_TIME whole_dt
 #include "../collide/self_contact.glsl"
 #endif
 layout(std430, binding = slot_start_position) writeonly buffer Start { vec4 start_position[]; };  // w: inverse mass
 // w: number of vertices touched
 layout(std430, binding = slot_start_velocity) writeonly buffer Inertia { vec4 start_velocity[]; };
-layout(std430, binding = slot_estimate) writeonly buffer Estimate { vec4 estimate[]; };  // velocity: 0
+layout(std430, binding = slot_estimate) writeonly buffer Estimate { vec4 estimate[]; };  // velocity
 layout(std430, binding = slot_guess) writeonly buffer Guess { vec4 first_guess[]; };  // of the solver
 layout(std430, binding = slot_constraint) writeonly buffer Constraint { vec4 constraint[]; };
 // its velocity [m/s], its friction
 layout(std430, binding = slot_surface) writeonly buffer Surface { vec4 surface[]; };
 // read: of the last step; written: of this step
+#ifdef BDF2
+uniform float grip_scale;  // dt over that of the last step: an impulse is a force times dt
+#endif
 layout(std430, binding = slot_grip) buffer Grip { vec4 grip[]; };
 
 /// Velocity at which a vertex enters the solve, and the guess of the velocity that comes out [m/s].
@@ -29,6 +34,9 @@ struct Beginning {
 /// Applies friction to a vertex that is kept at the surface just met.
 void rub(int i, float inverse_mass, float impulse, inout Beginning start) {
   vec4 kept = grip[i];
+#ifdef BDF2
+  if (kept.w > 0.0) kept.w *= grip_scale;
+#endif
   vec3 sliding = along_surface(start.guess - met_velocity, met_normal);
   if (kept.w < 0.0) kept = first_grip(sliding, impulse, met_surface.x, inverse_mass);
   else kept.xyz = direction(along_surface(kept.xyz, met_normal));
@@ -38,7 +46,7 @@ void rub(int i, float inverse_mass, float impulse, inout Beginning start) {
   start.guess -= taken;
   // A speed that gravity gives in two steps is no impact: a vertex at rest must not bounce.
   float approach = dot(met_velocity - start.velocity, met_normal);
-  float rebound = approach > 2.0 * dt * length(gravity.xyz) ? met_surface.y * approach : 0.0;
+  float rebound = approach > 2.0 * whole_dt * length(gravity.xyz) ? met_surface.y * approach : 0.0;
   constraint[i] = vec4(met_normal, slides ? rebound : -1.0 - rebound);
   surface[i] = vec4(met_velocity, met_surface.x);
   grip[i] = kept;
@@ -47,8 +55,9 @@ void rub(int i, float inverse_mass, float impulse, inout Beginning start) {
 
 /// Finds out if a vertex without springs would meet a collider or stay near one. Then its velocity along the normal is
 /// the one that takes it to the surface, whatever the springs do, unless they pulled it away in the last step. Near is
-/// a quarter of its way: a vertex that slides over a sphere must not count as leaving.
-Beginning foresee(int i, vec3 x, vec3 v, float inverse_mass) {
+/// a quarter of its way: a vertex that slides over a sphere must not count as leaving. `from`: where it is; x: where
+/// the step's equations have it.
+Beginning foresee(int i, vec3 from, vec3 x, vec3 v, float inverse_mass) {
   Beginning start = Beginning(v, v + dt * gravity.xyz);
 #ifdef WIND
   vec4 load = FETCH(wind_loads, i);
@@ -63,7 +72,7 @@ Beginning foresee(int i, vec3 x, vec3 v, float inverse_mass) {
   float near = 0.25 * dt * length(start.guess);
   bool met = false;
   meet_as(i);
-  RARELY(!pulled && resolve_colliders(x, stopped, after, near) > 0) {
+  RARELY(!pulled && resolve_colliders(from, stopped, after, near) > 0) {
     met = true;
     float lacks = (dot(stopped - x, met_normal) - near) / dt - dot(start.guess, met_normal);
     start.guess += met_normal * lacks;
@@ -78,24 +87,26 @@ void main() {
   int i = int(gl_GlobalInvocationID.x);
   if (i >= vertex_count) return;
   vec4 x = FETCH(position, i), v = FETCH(velocity, i);
-  vec3 push = vec3(0.0), impulse = vec3(0.0);
+  vec3 push = vec3(0.0), impulse = vec3(0.0), origin = origin_of(i, x.xyz);
   Beginning start;
   int contacts = 0;
   if (x.w == 0.0) {
     vec3 x_next, v_next;
     follow_motion(i, x.xyz, v.w, END_ROW, x_next, v_next);
-    start = Beginning(v.xyz, (x_next - x.xyz) / dt);
+    start = Beginning(v.xyz, (x_next - origin) / dt);
   } else {
 #ifdef SELF_COLLISION
     contacts = self_contacts(i, x, v, push, impulse);
 #endif
-    start = foresee(i, x.xyz + push, v.xyz + impulse, x.w);
+    origin += push;
+    start = foresee(i, x.xyz + push, origin, carried_on(i, v.xyz + impulse), x.w);
 #ifdef WIND
     start.velocity += FETCH(wind_loads, i).xyz;
 #endif
   }
-  start_position[i] = vec4(x.xyz + push, x.w);
+  vec3 first = first_velocity(x.xyz, origin);
+  start_position[i] = vec4(origin, x.w);
   start_velocity[i] = vec4(start.velocity, float(contacts));
-  estimate[i] = vec4(0.0);
-  first_guess[i] = vec4(start.guess, 0.0);
+  estimate[i] = vec4(first, 0.0);
+  first_guess[i] = vec4(start.guess - first, 0.0);
 }

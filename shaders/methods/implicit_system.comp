@@ -33,7 +33,7 @@ void write_trends(int i, float inverse_mass, vec4 held) {
   vec3 now = FETCH(before_velocity, i).xyz;
   vec4 last = past_velocities[TRENDS * i], second = past_velocities[TRENDS * i + 1];
   vec4 third = past_velocities[TRENDS * i + 2];
-  vec3 trend[TRENDS] = vec3[](last.w * (now - last.xyz - dt * gravity.xyz),
+  vec3 trend[TRENDS] = vec3[](last.w * (now - last.xyz - whole_dt * gravity.xyz),
                               second.w * (now - 2.0 * last.xyz + second.xyz),
                               third.w * (now - 3.0 * (last.xyz - second.xyz) - third.xyz));
   for (int t = 0; t < TRENDS; ++t) trends[TRENDS * i + t] = vec4(filtered(trend[t], inverse_mass, held), 0.0);

@@ -85,6 +85,7 @@ layout(std140, binding = slot_known_control) uniform KnownControl { Control know
 // else those of cloths.
 uniform int vertex_count, triangle_count, cloth_vertex_count, cloth_triangle_count, changing_vertex_count;
 uniform float dt;           // [s]
+#include "../methods/step_time.glsl"
 uniform float thickness;    // [m]
 uniform float most_query;   // [m]
 uniform float least_query;  // [m]

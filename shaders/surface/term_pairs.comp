@@ -53,7 +53,7 @@ void main() {
     pressing.weight[k] = apart.weight[k];
     pressing.moved += apart.weight[k] * (x - FETCH(step_start, corner[k]).xyz);
     if (last_share > 0.0) pressing.last += apart.weight[k] * last_share * FETCH(way, corner[k]).xyz;
-    pressing.expected += apart.weight[k] * (dt * FETCH(step_velocity, corner[k]).xyz);
+    pressing.expected += apart.weight[k] * (whole_dt * FETCH(step_velocity, corner[k]).xyz);
     if (bodies_move != 0 && int(corner[k]) >= cloth_vertex_count)
       pressing.to_come += apart.weight[k] * (FETCH(ends, corner[k]).xyz - x) / dt;
   }

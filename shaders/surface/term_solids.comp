@@ -29,11 +29,11 @@ void press(int kind, bool moves, int first_row, int i, vec4 x, vec3 start) {
   pressing.stiffness = solid_stiffness(x.w);
   pressing.friction = solids[first_row + 2].x;
   pressing.least = least;
-  pressing.moved = x.xyz - start - dt * gone * moving;
-  pressing.expected = dt * (FETCH(step_velocity, i).xyz - moving);
+  pressing.moved = x.xyz - start - whole_dt * gone * moving;
+  pressing.expected = whole_dt * (FETCH(step_velocity, i).xyz - moving);
   pressing.last = vec3(0.0);
-  if (last_share > 0.0) pressing.last = last_share * FETCH(way, i).xyz - dt * last_gone * moving;
-  pressing.to_come = -(1.0 - gone) * moving;
+  if (last_share > 0.0) pressing.last = last_share * FETCH(way, i).xyz - whole_dt * last_gone * moving;
+  pressing.to_come = -(1.0 - gone) * (whole_dt / dt) * moving;
   add(pressing);
 }
 

@@ -60,6 +60,7 @@ const kernels = {
   xpbd: ["gauss_seidel.comp", "element_projection.glsl"],
   vbd: ["gauss_seidel.comp", "vertex_descent.glsl"],
 };
+kernels.bdf2 = [...kernels.implicit_euler, "bdf2_keep.comp"];
 const sweepAlone = { pbd: "vertex_descent.glsl", xpbd: "vertex_descent.glsl", vbd: "element_projection.glsl" };
 const kernelLines = (method) => {
   const all = lines(kernels[method], join(shaders, "methods"));

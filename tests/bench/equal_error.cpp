@@ -40,10 +40,10 @@ struct Setting {
 /// Estimated cost, in forces, to choose the settings to try and to time: a sweep costs about as much as a
 /// force; a small step of implicit Euler, which needs few iterations of conjugate gradients, about 12.
 double work(const Setting& setting) {
-  const double step = setting.method == Method::implicit_euler ? 12.0
-                      : setting.method == Method::rk4          ? 4.0
-                      : scene::sweeps(setting.method)          ? 0.6 + setting.iterations
-                                                               : 1.0;
+  const double step = scene::solves(setting.method)   ? 12.0
+                      : setting.method == Method::rk4 ? 4.0
+                      : scene::sweeps(setting.method) ? 0.6 + setting.iterations
+                                                      : 1.0;
   return step * setting.steps;
 }
 
@@ -141,7 +141,7 @@ class Search {
 
 std::vector<int> iterations_of(Method method) {
   if (scene::sweeps(method)) return {1, 2, 4, 8, 16};
-  if (method == Method::implicit_euler) return {1, 4};
+  if (scene::solves(method)) return {1, 4};
   return {1};
 }
 

@@ -14,7 +14,7 @@ const program = process.env.CLOTHLAB;
 if (!program) throw new Error("CLOTHLAB must name the program");
 const args = process.argv.slice(2);
 const option = (flag) => (args.includes(flag) ? args[args.indexOf(flag) + 1] : null);
-const methods = ["explicit_euler", "symplectic_euler", "verlet", "rk4", "implicit_euler", "pbd", "xpbd", "vbd"];
+const methods = ["explicit_euler", "symplectic_euler", "verlet", "rk4", "implicit_euler", "pbd", "xpbd", "vbd", "bdf2"];
 
 const springs = { model: "springs", structural: 300, shear: 150, bend: 20, damping: 0.02 };
 const grid = (columns, rows, more = {}) => ({

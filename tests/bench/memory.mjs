@@ -21,7 +21,7 @@ const fem = { model: "fem", warp: 2365, weft: 3801, poisson: 0.311, shear: 97, b
 const springs = { model: "springs", structural: 100, shear: 50, bend: 10, damping: 0.01 };
 const patience = 900_000; // [ms]; a million vertices take minutes to build
 
-const dts = { explicit_euler: 1e-8, implicit_euler: 1e-4, pbd: 0.005, xpbd: 0.005, vbd: 0.005 };
+const dts = { explicit_euler: 1e-8, implicit_euler: 1e-4, bdf2: 1e-4, pbd: 0.005, xpbd: 0.005, vbd: 0.005 };
 
 function scene(side, method, material, more) {
   return {
@@ -39,7 +39,7 @@ function scene(side, method, material, more) {
   };
 }
 
-const methods = ["symplectic_euler", "verlet", "rk4", "implicit_euler", "pbd", "xpbd", "vbd"];
+const methods = ["symplectic_euler", "verlet", "rk4", "implicit_euler", "pbd", "xpbd", "vbd", "bdf2"];
 const contact = (kind) => ({ self_collision: { thickness: 0.001, kind } });
 const cases = [];
 for (const side of sides) {

@@ -21,9 +21,9 @@ namespace {
 std::vector<scene::Solver> settings() {
   std::vector<scene::Solver> result;
   for (const scene::Method method : scene::methods) {
-    const double dt = method == scene::Method::explicit_euler   ? 5e-5
-                      : method == scene::Method::implicit_euler ? 1.0 / 60
-                                                                : 1e-3;
+    const double dt = method == scene::Method::explicit_euler ? 5e-5
+                      : scene::solves(method)                 ? 1.0 / 60
+                                                              : 1e-3;
     result.push_back({method, dt, 1, 1e-4});
     if (scene::sweeps(method)) result.push_back({method, dt, 10, 1e-4});
   }
@@ -39,7 +39,7 @@ scene::Scene seed_of(int side, const scene::Solver& solver) {
 
 /// Number of steps for a round of about a tenth of a second.
 std::uint32_t steps_a_round(const scene::Solver& solver, double vertices) {
-  if (solver.method == scene::Method::implicit_euler) return 3;
+  if (scene::solves(solver.method)) return 3;
   const double steps = 20 + 2e5 / vertices;
   return static_cast<std::uint32_t>(scene::sweeps(solver.method) ? 2 + steps / (10 * solver.iterations)
                                                                  : steps);
@@ -69,6 +69,7 @@ double bytes_a_vertex(scene::Method method, double entries, double iterations) {
     case scene::Method::vbd:
       return (8 + 9) * vector + iterations * (entries * 4 * vector + 5 * vector + 4);
     case scene::Method::implicit_euler:
+    case scene::Method::bdf2:
       break;
   }
   const double once = (3 + 6) * vector + (entries * 4 + 5 + 4) * vector +  // start, system

@@ -111,7 +111,7 @@ async function viewer() {
   await client.close();
 }
 
-const methods = ["explicit_euler", "symplectic_euler", "verlet", "rk4", "implicit_euler", "pbd", "xpbd", "vbd"];
+const methods = ["explicit_euler", "symplectic_euler", "verlet", "rk4", "implicit_euler", "pbd", "xpbd", "vbd", "bdf2"];
 const presets = [
   "seed",
   "flag",

@@ -2,6 +2,7 @@
 // changed by the method's own law.
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numeric>
 
 #include "server/model/stability.h"
@@ -201,7 +202,7 @@ TEST_CASE("on a swinging sheet of finite elements implicit Euler's energy falls 
 
 TEST_CASE(
     "on one spring implicit Euler loses energy by 1/(1 + y^2) a step, RK4 by 1 - y^6/72 + y^8/576, y = omega "
-    "dt") {
+    "dt, BDF2 by the square of the root of its recurrence") {
   const auto context = test::context();
   for (const Side side : sides) {
     for (const double y : {0.03, 0.1, 0.3}) {
@@ -213,6 +214,20 @@ TEST_CASE(
       stepped.step(count);
       INFO("implicit Euler, " << name(side) << ", y " << y << ", " << count << " steps");
       CHECK(-std::log(spring_energy(stepped.state()) / spring_start) == Approx(count * law).epsilon(0.003));
+    }
+    for (const double y : {0.2, 0.5, 1.0}) {
+      scene::Scene scene = one_spring(Method::bdf2, y / spring_omega);
+      scene.solver.tolerance = 1e-7;
+      const std::complex<double> z(0.0, y);  // (3 - 2 z) root^2 - 4 root + 1 = 0; the other one starts at 1/3
+      const double root = std::abs((2.0 + std::sqrt(1.0 + 2.0 * z)) / (3.0 - 2.0 * z)),
+                   law = -2.0 * std::log(root);
+      const int count = std::min(steps, static_cast<int>(3.0 / law));
+      Stepped stepped(side, scene);
+      stepped.step(20);  // the first one is implicit Euler's, and what it begins of the other root is gone
+      const double before = spring_energy(stepped.state());
+      stepped.step(count);
+      INFO("BDF2, " << name(side) << ", y " << y << ", " << count << " steps");
+      CHECK(-std::log(spring_energy(stepped.state()) / before) == Approx(count * law).epsilon(0.02));
     }
     for (const double y : {0.2, 0.5, 1.0, 2.0}) {
       const double law = -std::log1p(std::pow(y, 6) * (y * y / 8 - 1) / 72);

@@ -5,6 +5,7 @@
 
 #include "server/reference/rest_shape.h"
 #include "server/reference/trajectory.h"
+#include "server/reference/vectors.h"
 #include "tests/sides.h"
 #include "tests/small_scenes.h"
 
@@ -13,39 +14,47 @@ using namespace clothlab::test;
 using scene::Method;
 
 TEST_CASE(
-    "each step of implicit Euler with one and with two Newton steps is the reference's with as many, pins "
-    "moving") {
+    "each step of implicit Euler and of BDF2 with one and with two Newton steps is the reference's with as "
+    "many, pins moving") {
   const auto context = test::context();
-  for (const int iterations : {1, 2}) {
-    scene::Scene scene = swinging_cloth(Method::implicit_euler, 3 * cloth_unit);
-    scene.cloths[0].springs().damping = 0.01;
-    scene.cloths[0].pins[0].motion = scene::Oscillate{{0.0, 0.0, 1.0}, 0.02, 5.0};
-    scene.air_drag = 0.5;
-    scene.solver.iterations = iterations;
-    scene.solver.tolerance = 1e-7;
-    Stepped gpu(Side::gpu, scene);
-    double worst = 0.0, moved = 0.0, apart = 0.0;
-    for (int n = 0; n < 40; ++n) {
-      reference::State before = gpu.state();
-      before.contacts.assign(before.position.size(), 0);
-      before.step = static_cast<std::uint64_t>(n);
-      reference::State expected = before, exact = before;
-      reference::baraff_witkin_step(gpu.world(), expected);
-      if (n == 39) reference::step(gpu.world(), exact);
-      gpu.step(1);
-      const reference::State found = gpu.state();
-      worst = std::max(worst, reference::rms_distance(found.position, expected.position));
-      moved = reference::rms_distance(found.position, before.position);
-      if (n == 39) apart = reference::rms_distance(expected.position, exact.position);
+  for (const Method method : {Method::implicit_euler, Method::bdf2})
+    for (const int iterations : {1, 2}) {
+      scene::Scene scene = swinging_cloth(method, 3 * cloth_unit);
+      scene.cloths[0].springs().damping = 0.01;
+      scene.cloths[0].pins[0].motion = scene::Oscillate{{0.0, 0.0, 1.0}, 0.02, 5.0};
+      scene.air_drag = 0.5;
+      scene.solver.iterations = iterations;
+      scene.solver.tolerance = 1e-7;
+      Stepped gpu(Side::gpu, scene);
+      double worst = 0.0, moved = 0.0, apart = 0.0;
+      reference::State last;
+      for (int n = 0; n < 40; ++n) {
+        reference::State before = gpu.state();
+        before.contacts.assign(before.position.size(), 0);
+        before.step = static_cast<std::uint64_t>(n);
+        if (method == Method::bdf2 && n > 0) {
+          before.way = reference::plus(before.position, -1.0, last.position);
+          before.gain = reference::plus(before.velocity, -1.0, last.velocity);
+        }
+        last = before;
+        reference::State expected = before, exact = before;
+        reference::baraff_witkin_step(gpu.world(), expected);
+        if (n == 39) reference::step(gpu.world(), exact);
+        gpu.step(1);
+        const reference::State found = gpu.state();
+        worst = std::max(worst, reference::rms_distance(found.position, expected.position));
+        moved = reference::rms_distance(found.position, before.position);
+        if (n == 39) apart = reference::rms_distance(expected.position, exact.position);
+      }
+      // Each end of 12 springs is off by float32's half ulp of 0.5 m; that, times k dt^2 / m, moves a vertex.
+      const double rounding = 0.5 * 0x1p-24 * std::sqrt(12.0) * 9.0;
+      INFO(scene::name(method) << ", " << iterations << " Newton steps: off by " << worst
+                               << " m, of a step of " << moved << " m; from the exact step " << apart
+                               << " m");
+      CHECK(worst < 2 * rounding);
+      CHECK(apart > 4 * rounding);  // this number of Newton steps differs visibly from more
+      CHECK(moved > 1e-3);
     }
-    // Each end of 12 springs is off by float32's half ulp of 0.5 m; that, times k dt^2 / m, moves a vertex.
-    const double rounding = 0.5 * 0x1p-24 * std::sqrt(12.0) * 9.0;
-    INFO(iterations << " Newton steps: off by " << worst << " m, of a step of " << moved
-                    << " m; from the exact step " << apart << " m");
-    CHECK(worst < 2 * rounding);
-    CHECK(apart > 4 * rounding);  // this number of Newton steps differs visibly from more
-    CHECK(moved > 1e-3);
-  }
 }
 
 TEST_CASE(

@@ -15,7 +15,8 @@ struct Plan {
   int coarsest;      ///< steps at the largest dt
   int gpu_halvings;  ///< halvings of dt on the GPU before float32 hides the method's error; -1: it always
                      ///< does
-  double floor;      ///< the most that float32 may add [m]; for implicit Euler with its solver's tolerance
+  double floor;      ///< the most that float32 may add [m]; for implicit Euler and BDF2 with their solver's
+                     ///< tolerance
 };
 
 constexpr int halvings = 3;
@@ -76,6 +77,7 @@ TEST_CASE("one spring: every method has its order, in float32 down to a micromet
       {Method::verlet, 20, 3, 1e-6},          {Method::rk4, 12, 2, 1e-6},
       {Method::implicit_euler, 100, 3, 5e-6}, {Method::pbd, 100, 3, 5e-6},
       {Method::xpbd, 100, 3, 5e-6},           {Method::vbd, 100, 3, 5e-6},
+      {Method::bdf2, 100, 2, 5e-6},
   };
   CHECK(plans.size() == scene::methods.size());
   check_orders([](Method method, double dt) { return precise(one_spring(method, dt)); }, 2.0, 4000, plans);
@@ -90,11 +92,12 @@ TEST_CASE("one damped spring: every method has its order, in float32 down to a m
                 {Method::implicit_euler, 100, 3, 5e-6},
                 {Method::pbd, 100, 3, 5e-6},
                 {Method::xpbd, 100, 3, 5e-6},
-                {Method::vbd, 100, 3, 5e-6}});
+                {Method::vbd, 100, 3, 5e-6},
+                {Method::bdf2, 100, 2, 5e-6}});
 }
 
-// Implicit Euler leaves 1e-7 of a momentum of 4 m/s unsolved per step, for up to 800 steps in 1 s: at most
-// 3e-4 m.
+// Implicit Euler and BDF2 leave 1e-7 of a momentum of 4 m/s unsolved per step, for up to 800 steps in 1 s: at
+// most 3e-4 m.
 TEST_CASE("a pendulum: every method has its order, in float32 down to some micrometres") {
   check_orders([](Method method, double dt) { return precise(pendulum(method, dt, 60.0, 100.0)); }, 1.0, 4000,
                {{Method::explicit_euler, 400, 3, 3e-6},
@@ -103,7 +106,8 @@ TEST_CASE("a pendulum: every method has its order, in float32 down to some micro
                 {Method::rk4, 15, 2, 1e-6},
                 {Method::implicit_euler, 100, 3, 1e-4},
                 {Method::xpbd, 100, 3, 1e-5},
-                {Method::vbd, 100, 3, 1e-5}});
+                {Method::vbd, 100, 3, 1e-5},
+                {Method::bdf2, 100, 0, 3e-4}});
 }
 
 TEST_CASE(
@@ -145,12 +149,16 @@ TEST_CASE("a sheet of finite elements hung by two corners: every method has its 
                                 {Method::rk4, 75, -1, 1e-6},
                                 {Method::implicit_euler, 50, 2, 2e-5},
                                 {Method::xpbd, 100, 2, 1e-5},
-                                {Method::vbd, 100, 2, 1e-5}};
+                                {Method::vbd, 100, 2, 1e-5},
+                                {Method::bdf2, 50, 0, 2e-5}};
   CHECK(plans.size() == scene::suited_methods(scene(Method::verlet, 1e-4), {})->size());
   check_orders(scene, 0.05, 1000, plans);
 }
 
-TEST_CASE("a sheet as stiff as cotton: implicit Euler has order 1, down to steps that need no such method") {
+TEST_CASE(
+    "a sheet as stiff as cotton: implicit Euler has order 1 and BDF2 order 2, down to steps that need no "
+    "such "
+    "method") {
   // Stretch of 4 kN/m on 0.1 kg/m^2 lets explicit steps be 20 us at most. A solver that takes stiffness times
   // the rounding of places for the precision to be had would leave gravity unsolved at the shorter steps.
   const SceneOf scene = [](Method method, double dt) {
@@ -164,7 +172,7 @@ TEST_CASE("a sheet as stiff as cotton: implicit Euler has order 1, down to steps
     sheet.solver.iterations = 8;
     return sheet;
   };
-  check_orders(scene, 0.1, 7000, {{Method::implicit_euler, 50, 3, 2e-5}});
+  check_orders(scene, 0.1, 7000, {{Method::implicit_euler, 50, 3, 2e-5}, {Method::bdf2, 100, 1, 2e-5}});
 }
 
 TEST_CASE("a damped swinging cloth: explicit Euler has order 1, in float32 too") {

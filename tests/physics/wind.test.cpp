@@ -57,7 +57,7 @@ TEST_CASE("a flat sheet falls through air at rest as its closed form says, under
   REQUIRE(g * t / v_t > 9.0);  // then the speed is within 1e-7 of v_t
   for (const Side side : test::sides)
     for (const scene::Method method : scene::methods) {
-      const bool long_step = scene::any_step_is_stable(method);
+      const bool long_step = scene::any_step_is_stable(method) && scene::facts(method).order == 1;
       const int steps = long_step ? 60 : 500;
       scene::Scene scene = sheet_in({{0.0, 0.0, 0.0}, 0.0, 0.0, drag, 0.2}, density, method, t / steps);
       Stepped stepped(side, scene);
@@ -74,7 +74,7 @@ TEST_CASE("a flat sheet falls through air at rest as its closed form says, under
 }
 
 TEST_CASE(
-    "a sheet a thousand times too light is taken along by the wind in long steps and never overtakes it") {
+    "a sheet a thousand times too light is taken along by the wind in long steps and does not overtake it") {
   const auto context = test::context();
   const glm::dvec3 air(4.0, 3.0, 0.0);
   for (const Side side : test::sides)
@@ -83,12 +83,15 @@ TEST_CASE(
         scene::Scene scene = sheet_in({air, 0.0, 0.0, 1.0, lift}, 1e-4, method, 1.0 / 60);
         scene.gravity = glm::dvec3(0.0);
         scene.solver.iterations = 1;
+        // What is left of y' = -k (a - y) after a step of Euler's and one of BDF2 is
+        // (4 / (1 + k dt) - 1) / (3 + 2 k dt) of the start, which is -0.03 at most.
+        const double beyond = method == scene::Method::bdf2 ? 0.03 : 1e-5;
         Stepped stepped(side, scene);
         INFO(test::name(side) << ", " << scene::name(method) << ", lift " << lift);
         for (int n = 0; n < 40; ++n) {
           stepped.step(1);
           const reference::State state = stepped.state();
-          REQUIRE(fastest(state.velocity) <= glm::length(air) * (1.0 + 1e-5));
+          REQUIRE(fastest(state.velocity) <= glm::length(air) * (1.0 + beyond));
         }
         // Every step but of a flow that grazes takes a good part of what is left across the sheet.
         for (const glm::dvec3& v : stepped.state().velocity) CHECK(v.y > 0.98 * air.y);

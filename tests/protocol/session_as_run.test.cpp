@@ -4,7 +4,9 @@
 // every method, for longer.
 #include <map>
 #include <set>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "server/gl/context.h"
 #include "server/model/stability.h"
@@ -21,10 +23,30 @@ const bool thorough = test::thorough();
 const int compared_every = thorough ? 100 : 10, kept_every = thorough ? 70 : 7;
 constexpr int stretches = 4;
 
-constexpr Method every_method[] = {Method::explicit_euler, Method::symplectic_euler,
-                                   Method::verlet,         Method::rk4,
-                                   Method::implicit_euler, Method::pbd,
-                                   Method::xpbd,           Method::vbd};
+/// The kinds of self-collision under which a method is tried. CLOTHLAB_THOROUGH: both, under each method.
+/// Else none under three whose steps hold nothing that another's do not: explicit Euler's are symplectic
+/// Euler's, PBD's are XPBD's without its memory, and RK4 has none; both under VBD, which remembers most, and
+/// under implicit Euler, whose problem surfaces are a term of.
+std::vector<std::string> kinds_under(Method method) {
+  const std::vector<std::string> both{"points", "surface"};
+  if (thorough) return both;
+  switch (method) {
+    case Method::explicit_euler:
+    case Method::rk4:
+    case Method::pbd:
+      return {};
+    case Method::verlet:
+    case Method::xpbd:
+      return {"points"};
+    case Method::symplectic_euler:
+    case Method::bdf2:
+      return {"surface"};
+    case Method::implicit_euler:
+    case Method::vbd:
+      break;
+  }
+  return both;
+}
 
 /// Small, and with all that passes remember: lists of neighbours or pairs, pulls of a strain limit, wind, a
 /// pin that moves and a ball that the cloth lies on from the first step.
@@ -55,13 +77,13 @@ scene::Document under(const scene::Document& document, Method method) {
     if (!made) FAIL(made.error().text());
     return *made;
   };
-  const bool limited = !scene::iterates(method) && method != Method::implicit_euler;
+  const bool limited = !scene::iterates(method);
   if (limited) {
     const scene::Document tried = validated();
     value["solver"]["dt"] = 0.5 * model::dt_limit_bound(*model::build(tried.scene), tried.scene);
   } else if (document.scene.solver.method != method) {
     value["solver"]["dt"] = 0.004;
-    value["solver"]["iterations"] = method == Method::implicit_euler ? 1 : 4;
+    value["solver"]["iterations"] = scene::solves(method) ? 1 : 4;
   }
   return validated();
 }
@@ -204,17 +226,8 @@ void compare_session_with_run(const scene::Document& document) {
 
 TEST_CASE(
     "a session computes what a run computes, bit for bit, under each method, whatever is done to watch it") {
-  bool points = false;  // first for explicit Euler
-  for (const std::string kind : {"points", "surface"})
-    for (const Method method : every_method) {
-      points = !points;
-      // Every other method keeps points apart, the others surfaces; both are kept apart by VBD, which
-      // remembers most, and by implicit Euler, whose problem surfaces are a term of.
-      const bool both = method == Method::vbd || method == Method::implicit_euler;
-      if (!thorough && !both && points != (kind == "points")) continue;
-      // Their steps are those of symplectic Euler and of XPBD without its memory; RK4 has none.
-      if (!thorough && (method == Method::explicit_euler || method == Method::rk4 || method == Method::pbd))
-        continue;
+  for (const Method method : scene::methods)
+    for (const std::string& kind : kinds_under(method)) {
       INFO(kind << " under " << scene::name(method));
       compare_session_with_run(under(busy(kind), method));
     }
@@ -226,7 +239,7 @@ TEST_CASE("a session of a preset computes what a run of it computes, bit for bit
     if (part.leaves_out()) continue;
     const Result<scene::Document> preset = scene::load_preset(name);
     REQUIRE(preset);
-    for (const Method method : every_method) {
+    for (const Method method : scene::methods) {
       if (!thorough && method != preset->scene.solver.method) continue;
       INFO(name << " under " << scene::name(method));
       compare_session_with_run(under(*preset, method));

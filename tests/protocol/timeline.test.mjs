@@ -49,6 +49,7 @@ const cases = {
     { solver: { method: "verlet", dt: 0.0002 } },
   ],
   "implicit Euler, a curtain that a ball moves": [curtain, { solver: { method: "implicit_euler", dt: 0.004 } }],
+  "BDF2, a curtain that a ball moves": [curtain, { solver: { method: "bdf2", dt: 0.004 } }],
   VBD: [strip(9), { solver: { method: "vbd", dt: 0.002 } }],
   "a strain limit": [limited, { solver: { dt: 0.0001 } }],
 };

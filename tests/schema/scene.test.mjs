@@ -210,6 +210,7 @@ function* mutations() {
     "pbd",
     "xpbd",
     "vbd",
+    "bdf2",
     "auto",
     "first",
     "cloth-2",

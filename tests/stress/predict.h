@@ -173,7 +173,7 @@ inline Prediction predict_settling(const Case& test, const scene::Scene& base) {
     return {still * base.solver.dt * 0x1p23, "the last bit of a place, 2^-23 of it, flickers once a step"};
   const Method method = base.solver.method;
   const double best = test.knob.name == "dt" ? 1e-5 : test.knob.values.back();
-  if (method == Method::implicit_euler) return {never, "no limit: each linear system is positive definite"};
+  if (scene::solves(method)) return {never, "no limit: each linear system is positive definite"};
   if (method == Method::vbd)
     return {
         threshold(test, base, best, [](const scene::Scene& s) { return s.solver.dt > reach_of_sweeps(s); }),

@@ -76,6 +76,28 @@ TEST_CASE("backward Euler's step of a spring is the inverse of an explicit step 
     });
 }
 
+TEST_CASE(
+    "BDF2's step of a spring solves 3 x - 4 x_n + x_(n-1) = 2 h v, and so for v, after one of Euler's") {
+  const double w = test::spring_omega, h = 0.3 / w, t = 2.0 / 3.0 * h, k = w * w;
+  for (const double z : {0.0, 0.1}) {
+    const double c = 2 * z * w;
+    const reference::World world = world_of(test::one_spring(Method::bdf2, h, c));
+    reference::State state = reference::at_rest(world);
+    const double first = 1.0 + c * h + k * h * h, further = 1.0 + c * t + k * t * t;
+    std::array<double, 2> before{test::spring_amplitude, 0.0};
+    std::array<double, 2> now{(1.0 + c * h) / first * before[0], -k * h / first * before[0]};
+    for (int n = 1; n < 50; ++n) {
+      reference::step(world, state);
+      INFO("step " << n << ", z " << z);
+      CHECK(std::abs(state.position[test::spring_end].z - test::spring_balance - now[0]) < 2000 * rounding);
+      CHECK(std::abs(state.velocity[test::spring_end].z - now[1]) < 2000 * w * rounding);
+      const double x = (4.0 * now[0] - before[0]) / 3.0, v = (4.0 * now[1] - before[1]) / 3.0;
+      before = now;
+      now = {((1.0 + c * t) * x + t * v) / further, (v - k * t * x) / further};
+    }
+  }
+}
+
 TEST_CASE("RK4's step of a spring is the exponential's series up to the fourth power") {
   for (const double z : {0.0, 0.1})
     check_map(Method::rk4, z, [](double k, double c, double dt) {
@@ -171,7 +193,7 @@ TEST_CASE("one Baraff-Witkin step of a spring at balance solves the linearised e
 TEST_CASE(
     "every method carries a pin's whole motion: a sheet held everywhere is where the closed form says") {
   for (const Method method : {Method::explicit_euler, Method::symplectic_euler, Method::verlet, Method::rk4,
-                              Method::implicit_euler}) {
+                              Method::implicit_euler, Method::bdf2}) {
     scene::Scene scene = test::one_spring(method, 0.01);
     const scene::Linear sideways{{0.3, 0.0, 0.0}};
     for (const int row : {0, 1, 2})

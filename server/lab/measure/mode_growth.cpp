@@ -71,6 +71,7 @@ double growth_a_step(Method method, const model::Mode& mode, double dt) {
       case Method::pbd:
       case Method::xpbd:
       case Method::vbd:
+      case Method::bdf2:
         break;  // stable at any step
     }
     return 1.0;

@@ -12,12 +12,12 @@ const sentences: [RegExp, string][] = [
   [
     /\/solver\/method$/,
     "A step of rk4 takes 4 times one of symplectic_euler, of pbd, xpbd and vbd 2 to 3 times for each iteration, of " +
-      "implicit_euler 100 times and more: it makes up for that by longer steps. The lab's chart measures it.",
+      "implicit_euler and bdf2 100 times and more: they make up for that by longer steps. The lab's chart measures it.",
   ],
   [/\/solver\/dt$/, "Half the step is twice the work for each simulated second."],
   [
     /\/solver\/iterations$/,
-    "A step's work grows in proportion. Under implicit_euler it is the most that a step may take.",
+    "A step's work grows in proportion. Under implicit_euler and bdf2 it is the most that a step may take.",
   ],
   [/\/solver\/tolerance$/, "A smaller one takes more work in each step."],
   [
