@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "server/model/motion.h"
 #include "server/reference/methods.h"
 #include "server/reference/system.h"
 #include "server/reference/vectors.h"
@@ -15,7 +16,8 @@ namespace clothlab::reference {
 
 namespace {
 
-constexpr double solved = 1e-13;  // residual over Equation::scale: a few hundred roundings
+constexpr double solved = 1e-13;   // residual over Equation::scale: a few hundred roundings
+constexpr double rounded = 1e-10;  // below it a search that fails is rounding's
 constexpr int most_newton_steps =
     200;  // far from the solution convergence is only linear, where the negative `across` is dropped
 
@@ -30,7 +32,7 @@ struct Equation {
   std::vector<double> drag;  ///< [vertex_count] of the air [1/s]
   Vectors pin_velocity;      ///< (position at the end - x) / dt of pinned vertices, 0 of free ones [m/s]
   double dt;
-  Vectors first;  ///< velocity at which the places are those at the step's start [m/s]
+  Vectors first;  ///< the first estimate of the velocity at the step's end [m/s]
 
   /// `way`, `gain`: of the last step, for BDF2; empty: backward Euler.
   explicit Equation(const StepStart& start, const Vectors& way = {}, const Vectors& gain = {})
@@ -39,7 +41,7 @@ struct Equation {
         v(start.state.velocity),
         drag(x.size(), start.world.scene.air_drag),
         dt(way.empty() ? start.dt : 2.0 / 3.0 * start.dt),
-        first(x.size(), dvec3(0.0)) {
+        first(start.state.velocity) {
     const bool goes_on = !way.empty();
     const Vectors there = goes_on ? plus(x, 1.0, way) : x, as_fast = goes_on ? plus(v, 1.0, gain) : v;
     const std::vector<elements::WindLoad> wind = wind_loads(world, there, as_fast, start.t + start.dt);
@@ -50,12 +52,15 @@ struct Equation {
       v[i] += start.impulse[i] + dt / mass * (wind[i].force + wind[i].braking * as_fast[i]);
       if (goes_on) x[i] += 1.0 / 3.0 * way[i];
       x[i] += start.push[i];
-      if (goes_on) first[i] = (start.state.position[i] - x[i]) / dt;
+      first[i] += start.impulse[i];
     }
     Vectors unused(x.size());
     pin_velocity = x;
     place_pins(world, start.t + start.dt, pin_velocity, unused);
-    for (std::size_t i = 0; i < x.size(); ++i) pin_velocity[i] = (pin_velocity[i] - x[i]) / dt;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      pin_velocity[i] = (pin_velocity[i] - x[i]) / dt;
+      if (world.pinned(i)) first[i] = pin_velocity[i];
+    }
   }
 
   Vectors end(const Vectors& u) const {
@@ -162,21 +167,44 @@ State solved_end(const StepStart& start, const Equation& equation) {
   for (std::size_t i = 0; i < u.size(); ++i)
     if (start.world.pinned(i)) u[i] = equation.pin_velocity[i];
   const double scale = equation.scale(u);
-  Vectors r = equation.residual(u);
+  Vectors r = equation.residual(u), best = u;
+  double least = largest(r);
   for (int n = 0; n < most_newton_steps && largest(r) > solved * scale; ++n) {
     const Vectors du = newton_step(equation, u, r);
     // Near the solution rounding hides the merit's decrease; the residual shows the progress better.
     Vectors next = plus(u, 1.0, du), r_next = equation.residual(next);
     if (!(largest(r_next) < 0.5 * largest(r))) {
       const double share = line_search(equation, u, du);
-      if (share == 0.0) break;
-      next = plus(u, share, du);
-      r_next = equation.residual(next);
+      if (share == 0.0 && largest(r) < rounded * scale) break;
+      // The direction of a matrix without the negative `across` need not lower |r|^2. Taken whole, it still
+      // leads to where the true matrix is positive definite.
+      if (share > 0.0) {
+        next = plus(u, share, du);
+        r_next = equation.residual(next);
+      }
     }
     u = next;
     r = r_next;
+    if (largest(r) < least) {
+      least = largest(r);
+      best = u;
+    }
   }
-  return end_state(start, equation, u);
+  return end_state(start, equation, best);
+}
+
+/// Whether the wind takes a vertex along within the step: it could take all of the flow's speed in less than
+/// the step, and the vertex has gained more than half of it.
+bool taken_along(const StepStart& start, const Vectors& gain) {
+  const World& world = start.world;
+  const Equation equation(start, start.state.way, start.state.gain);
+  const dvec3 air = model::wind_velocity(*world.scene.wind, start.t + start.dt);
+  for (std::size_t i = 0; i < gain.size(); ++i) {
+    const double by_wind = equation.drag[i] - world.scene.air_drag,
+                 flow = glm::length(air - start.state.velocity[i]);
+    if (!world.pinned(i) && start.dt * by_wind > 1.0 && glm::length(gain[i]) > 0.5 * flow) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -189,26 +217,27 @@ State bdf2(const StepStart& start) {
   return solved_end(start, Equation(start, start.state.way, start.state.gain));
 }
 
-bool note_step(const World& world, const State& before, State& next) {
-  const double impact = 2.0 * world.scene.solver.dt * glm::length(world.scene.gravity);
+bool note_step(const StepStart& start, State& next) {
+  const World& world = start.world;
+  const State& before = start.state;
+  const double impact = 2.0 * start.dt * glm::length(world.scene.gravity);
   next.way = plus(next.position, -1.0, before.position);
   next.gain = plus(next.velocity, -1.0, before.velocity);
   bool smooth = true;
   for (std::size_t i = 0; i < next.gain.size(); ++i)
     smooth = smooth && (next.contacts[i] <= before.contacts[i] || glm::length(next.gain[i]) <= impact);
+  if (world.scene.wind) smooth = smooth && !taken_along(start, next.gain);
   if (!smooth) next.way = next.gain = {};
   return smooth;
 }
 
-State baraff_witkin(const StepStart& start) {
+State limited_newton(const StepStart& start) {
   const Equation equation(start, start.state.way, start.state.gain);
   Vectors u = equation.first;
   for (int n = 0; n < start.world.scene.solver.iterations; ++n) {
-    const Vectors r = equation.residual(u), wanted = plus(Vectors(u.size(), dvec3(0.0)), -1.0, r);
-    const Vectors to_pins =
-        plus(equation.pin_velocity, -1.0, u);  // the first Newton step takes pins all the way
+    const Vectors r = equation.residual(u), still(u.size(), dvec3(0.0)), wanted = plus(still, -1.0, r);
     Vectors du;
-    solve_with_pins(start.world, equation.jacobian(u, Across::dropped), wanted, to_pins, du);
+    solve_with_pins(start.world, equation.jacobian(u, Across::dropped), wanted, still, du);
     u = plus(u, 1.0, du);
   }
   return end_state(start, equation, u);

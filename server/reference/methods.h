@@ -33,12 +33,13 @@ State backward_euler(const StepStart& start);
 /// BDF2 (Choi & Ko 2002): backward Euler from x_0 and v_0 of shaders/methods/bdf2.glsl with 2/3 of dt, solved
 /// likewise; without a way and gain of the last step, backward Euler.
 State bdf2(const StepStart& start);
-/// To be called when a step of `bdf2` from `before` has ended at `next`, with contacts: notes its way and
-/// gain there. Returns false if contact began in it: the motion is not smooth, and nothing is noted.
-bool note_step(const World& world, const State& before, State& next);
-/// Backward Euler with exactly `solver.iterations` Newton steps from u = 0 (Baraff & Witkin 1998, who take
-/// one step); the same of BDF2, from the state at the step's start.
-State baraff_witkin(const StepStart& start);
+/// To be called when a step of `bdf2` has ended at `next`, with contacts: notes its way and gain there.
+/// Returns false if the motion is not smooth, as contact began or the wind took a vertex along: then nothing
+/// is noted.
+bool note_step(const StepStart& start, State& next);
+/// Backward Euler or BDF2 with exactly `solver.iterations` Newton steps from the velocity at the step's start
+/// (Baraff & Witkin 1998 take one, from u = 0).
+State limited_newton(const StepStart& start);
 
 /// A whole step by `method` with contacts, pins and strain limit, from time t to t_next = t + solver.dt.
 void advance(const StepMethod& method, const World& world, State& state, double t, double t_next);

@@ -118,10 +118,10 @@ void advance(const StepMethod& method, const World& world, State& state, double 
   State next = solve();
   if (world.scene.solver.method == scene::Method::bdf2) {
     const bool by_formula = !state.way.empty();
-    if (!note_step(world, state, next) && by_formula) {
+    if (!note_step(start, next) && by_formula) {
       state.way = state.gain = {};  // then by backward Euler
       next = solve();
-      note_step(world, state, next);
+      note_step(start, next);
     }
   }
   limit_strain(world, state, next);
@@ -134,9 +134,9 @@ void step(const World& world, State& state) {
   advance(step_method(world.scene.solver.method), world, state, n * dt, (n + 1) * dt);
 }
 
-void baraff_witkin_step(const World& world, State& state) {
+void limited_newton_step(const World& world, State& state) {
   const double dt = world.scene.solver.dt, n = static_cast<double>(state.step);
-  advance(baraff_witkin, world, state, n * dt, (n + 1) * dt);
+  advance(limited_newton, world, state, n * dt, (n + 1) * dt);
 }
 
 }  // namespace clothlab::reference

@@ -65,10 +65,10 @@ State at_rest(const World& world);
 /// precision, whatever `iterations` says.
 void step(const World& world, State& state);
 
-/// Like `step`, but with Baraff & Witkin's implicit Euler as the method: exactly `solver.iterations` Newton
-/// steps, without a line search. With whole Newton steps the GPU computes the same, to its solver's
-/// tolerance.
-void baraff_witkin_step(const World& world, State& state);
+/// Like `step` under implicit Euler or BDF2, but with exactly `solver.iterations` Newton steps from the
+/// velocity at the step's start, without a line search. With whole Newton steps the GPU computes the same, to
+/// its solver's tolerance.
+void limited_newton_step(const World& world, State& state);
 
 /// Forces of the elements on each vertex [N].
 std::vector<dvec3> element_forces(const World& world, const std::vector<dvec3>& position,

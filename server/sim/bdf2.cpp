@@ -19,7 +19,7 @@ void run(const gl::Program& program, GLuint groups) {
 Result<Bdf2> Bdf2::create(const model::Model& model, const Plan& plan, const gl::Defines& defines) {
   Bdf2 made;
   made.groups_ = vertex_groups(model.vertex_count());
-  made.contact_ = plan.solid_count() > 0 || plan.self_collision || plan.surface_contact();
+  made.may_meet_ = plan.solid_count() > 0 || plan.self_collision || plan.surface_contact() || plan.wind;
   Result<gl::Program> keep = gl::Program::load({"methods/bdf2_keep.comp"}, defines);
   if (!keep) return keep.error();
   made.keep_ = std::move(*keep);
@@ -38,6 +38,7 @@ void Bdf2::set_parameters(const Surroundings& around) {
   step_length_ = around.scene.solver.dt;
   for (const gl::Program* program : {&keep_, &expect_})
     if (program->id()) set_step_uniforms(*program, around);
+  keep_.set("step_length", static_cast<float>(step_length_));
   keep_.set("impact", static_cast<float>(2.0 * step_length_ * glm::length(around.scene.gravity)));
 }
 
@@ -51,7 +52,7 @@ bool Bdf2::begin_by_implicit_euler() {
 }
 
 void Bdf2::put_aside(const std::vector<const gl::Buffer*>& changed) {
-  if (!contact_) return;
+  if (!may_meet_) return;
   aside_.resize(changed.size());
   for (std::size_t i = 0; i < changed.size(); ++i) {
     if (aside_[i].bytes() != changed[i]->bytes()) aside_[i] = gl::Buffer(changed[i]->bytes());
@@ -77,18 +78,22 @@ void Bdf2::expect(const gl::TextureBuffer& position, const gl::TextureBuffer& ve
   run(expect_, groups_);
 }
 
-bool Bdf2::look(const StateBuffers& state) {
+bool Bdf2::look(const StateBuffers& state, const gl::TextureBuffer& wind_loads, int row) {
   state.position().bind(unit_before_position);
   state.velocity().bind(unit_before_velocity);
   state.previous_position().bind(unit_position);
   state.previous_velocity().bind(unit_velocity);
   history_[0].bind(unit_history);
+  if (expect_.id()) {
+    wind_loads.bind(unit_wind);
+    keep_.set("start_row", row);
+  }
   history_[1].buffer.bind_storage(slot_history);
   std::uint32_t met = 0;
   met_.upload(&met, sizeof met);
   met_.bind_storage(slot_met);
   run(keep_, groups_);
-  if (contact_) met_.download(&met, sizeof met);
+  if (may_meet_) met_.download(&met, sizeof met);
   return met != 0;
 }
 

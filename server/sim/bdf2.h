@@ -43,9 +43,10 @@ class Bdf2 {
   void bind_begin(const gl::Program& start) const;
   /// Writes the state in which the wind is taken.
   void expect(const gl::TextureBuffer& position, const gl::TextureBuffer& velocity) const;
-  /// To be called when the step's end is in the other copy of the state. Returns true if contact has begun
-  /// in it. Waits for the GPU where contact may. The pairs that press must be bound.
-  bool look(const StateBuffers& state);
+  /// To be called when the step's end is in the other copy of the state. Returns true if the motion was not
+  /// smooth in it: contact began, or the wind took a vertex along. Waits for the GPU where it may be so. The
+  /// pairs that press must be bound. `row`: of the table of motions, at the step's start.
+  bool look(const StateBuffers& state, const gl::TextureBuffer& wind_loads, int row);
   /// Takes over the step that `look` saw. `smooth`: the next one may use it.
   void accept(bool smooth);
 
@@ -54,7 +55,7 @@ class Bdf2 {
 
  private:
   GLuint groups_ = 0;
-  bool contact_ = false;  ///< may begin
+  bool may_meet_ = false;  ///< something from which on the motion is not smooth
   double step_length_ = 0;
   bool holds_ = false;       ///< the history, for the next step
   bool held_ = false;        ///< hands hold the cloth in the step under way

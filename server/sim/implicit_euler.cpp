@@ -62,12 +62,12 @@ class ImplicitEuler : public Integrator {
       made->solver_.set_layout(*program);
     }
     if (const Status loaded = made->solver_.load(defines); !loaded) return loaded.error();
-    if (plan.contact_term()) {
-      Result<gl::Program> loaded = gl::Program::load({"methods/implicit_choose.comp"}, defines);
-      if (!loaded) return loaded.error();
-      made->choose_ = std::move(*loaded);
-      made->solver_.set_layout(made->choose_);
-    }
+    gl::Program& either = plan.contact_term() ? made->choose_ : made->first_;
+    Result<gl::Program> loaded = gl::Program::load(
+        {std::string("methods/implicit_") + (plan.contact_term() ? "choose" : "first") + ".comp"}, defines);
+    if (!loaded) return loaded.error();
+    either = std::move(*loaded);
+    made->solver_.set_layout(either);
     if (plan.self_collision) {
       Result<gl::Program> loaded = gl::Program::load({"methods/implicit_contacts.comp"}, defines);
       if (!loaded) return loaded.error();
@@ -157,8 +157,8 @@ class ImplicitEuler : public Integrator {
     finish(state, *solved.residual, row);
   }
 
-  /// By the formula where the motion is smooth, else by implicit Euler. Where contact begins in a step by the
-  /// formula, which would then give back a part of what it stops, the step is done again.
+  /// By the formula where the motion is smooth, else by implicit Euler. Where it shows that it is not in a
+  /// step by the formula, which would give back a part of what contact stops, the step is done again.
   Work step_by_bdf2(StateBuffers& state, int row) {
     bdf2_->begin(held_);
     if (bdf2_->by_formula()) bdf2_->put_aside({&contact_friction_, &past_velocities_});
@@ -166,7 +166,7 @@ class ImplicitEuler : public Integrator {
       set_equation_time();
       co_await solve_step(state, row);
       if (contact_) contact_->term()->bind();
-      const bool smooth = !bdf2_->look(state) && taken_whole_;
+      const bool smooth = !bdf2_->look(state, wind_loads_, row) && taken_whole_;
       again = !smooth && bdf2_->begin_by_implicit_euler();
       if (again)
         bdf2_->put_back({&contact_friction_, &past_velocities_});
@@ -221,6 +221,10 @@ class ImplicitEuler : public Integrator {
       *vector = {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
     for (gl::TextureBuffer* of_each : {&trends_, &trend_products_})
       *of_each = {gl::Buffer(vertex_count * trends * 4 * sizeof(float)), GL_RGBA32F};
+    if (!plan.contact_term()) {
+      still_ = {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
+      still_.buffer.fill(0);
+    }
     past_velocities_ = gl::Buffer(vertex_count * trends * 4 * sizeof(float));
     contact_friction_ = gl::Buffer(vertex_count * 4 * sizeof(float));
   }
@@ -256,8 +260,8 @@ class ImplicitEuler : public Integrator {
 
   std::vector<const gl::Program*> programs() const {
     std::vector<const gl::Program*> loaded;
-    for (const gl::Program* program :
-         {&start_, &system_, &project_, &improve_, &search_, &choose_, &advance_, &end_, &contacts_, &wind_})
+    for (const gl::Program* program : {&start_, &first_, &system_, &project_, &improve_, &search_, &choose_,
+                                       &advance_, &end_, &contacts_, &wind_})
       if (program->id()) loaded.push_back(program);
     return loaded;
   }
@@ -269,9 +273,9 @@ class ImplicitEuler : public Integrator {
     if (contact_) contact_->term()->set_dt(bdf2_->dt(), bdf2_->step_length());
   }
 
-  /// The present estimate, of which the `first` is where the step begins.
+  /// The present estimate; the `first` with contact in the problem is where the step begins.
   const gl::TextureBuffer& iterate(bool first) const {
-    return first && !(bdf2_ && bdf2_->by_formula()) ? start_position_ : position_;
+    return contact_ && first && !(bdf2_ && bdf2_->by_formula()) ? start_position_ : position_;
   }
 
   void set_tolerance(double tolerance) {
@@ -289,8 +293,8 @@ class ImplicitEuler : public Integrator {
     if (contact_) take_bodies(state, row);
     state.bind_for_step();
     bind_inputs(state);
-    if (bdf2_ && bdf2_->by_formula()) begin_by_formula(state);
     if (wind_.id()) {
+      if (bdf2_ && bdf2_->by_formula()) expect();
       wind_loads_.buffer.bind_storage(slot_wind);
       wind_.set("start_row", row);
       run(wind_);
@@ -301,15 +305,27 @@ class ImplicitEuler : public Integrator {
     bind_estimate();
     start_.set("start_row", row);
     run(start_);
+    if (!contact_) begin_with_velocity();
   }
 
-  void begin_by_formula(const StateBuffers& state) {
-    if (wind_.id()) {
-      bdf2_->expect(expected_position_, expected_velocity_);
-      expected_position_.bind(unit_position);
-      expected_velocity_.bind(unit_velocity);
-    }
-    if (!contact_) position_.buffer.copy_from(state.position().buffer);
+  /// Makes the velocity at the step's start the first estimate, or the share of it that a line search finds
+  /// best.
+  void begin_with_velocity() {
+    start_position_.bind(unit_position);
+    still_.bind(unit_velocity);
+    velocity_.bind(unit_change);
+    solver_.sums().buffer.bind_storage(slot_group_sums);
+    run(search_);
+    position_.buffer.bind_storage(slot_next_position);
+    bind_estimate();
+    run(first_);
+  }
+
+  /// Binds the state in which BDF2 takes the wind.
+  void expect() {
+    bdf2_->expect(expected_position_, expected_velocity_);
+    expected_position_.bind(unit_position);
+    expected_velocity_.bind(unit_velocity);
   }
 
   /// Makes the estimates as long as the state, whose bodies they have, too.
@@ -396,6 +412,7 @@ class ImplicitEuler : public Integrator {
   void set_up(bool first, bool again = false) {
     iterate(first).bind(unit_position);
     system_.set("first", first && !again ? 1 : 0);
+    system_.set("exact", contact_ && first && !again ? 1 : 0);
     velocity_.bind(unit_velocity);
     guess_.bind(unit_change);
     solver_.residual().buffer.bind_storage(slot_residual);
@@ -473,9 +490,11 @@ class ImplicitEuler : public Integrator {
   std::uint32_t pressing_ = 0;  ///< pairs of surfaces that press at the present estimate
   gl::Program start_, system_, project_, improve_, search_, advance_, end_;
   gl::Program choose_;                                 ///< none without contact in the problem
+  gl::Program first_;                                  ///< none with it
   gl::Program contacts_, wind_;                        ///< none if the scene has no self-collision, no wind
   gl::TextureBuffer start_position_, start_velocity_;  ///< state at the step's start, after self-collision
   gl::TextureBuffer position_, velocity_;              ///< estimate of the state at the step's end
+  gl::TextureBuffer still_;                            ///< no velocity, for each vertex
   gl::TextureBuffer guess_;                            ///< first guess of the solved change of velocity
   gl::TextureBuffer constraint_, surface_;             ///< for each vertex: its contact with a collider
   gl::TextureBuffer wind_loads_;                       ///< for each vertex: the wind at the step's start

@@ -8,9 +8,6 @@
 // and damping and drag act on v, which is the formula's derivative of the places, (3 x - 4 x_n + x_(n-1)) / (2 h). Of a
 // pin whose places are given, too.
 //
-// The first iterate is the state at the step's start, x_n, as a share of the way to the end may be all that contact
-// allows: there v = (x_n - x_0) / dt.
-//
 // The formula holds where the motion is smooth. What a step has not solved for itself, as what the strain limit adds
 // after it, is left out of both differences: an impulse then acts once, and not, in the long run, one and a half times.
 // Without a smooth step before it a step is one of implicit Euler: `history_share` is 0 then, and dt is h.
@@ -22,10 +19,7 @@ uniform float history_share;  // of the last step's way and gain: 1/3, or 0
 /// x_0 and v_0, of x_n and v_n.
 vec3 origin_of(int i, vec3 x) { return x + history_share * FETCH(history, 2 * i).xyz; }
 vec3 carried_on(int i, vec3 v) { return v + history_share * FETCH(history, 2 * i + 1).xyz; }
-/// The velocity of the first iterate.
-vec3 first_velocity(vec3 x, vec3 origin) { return history_share > 0.0 ? (x - origin) / dt : vec3(0.0); }
 #else
 vec3 origin_of(int i, vec3 x) { return x; }
 vec3 carried_on(int i, vec3 v) { return v; }
-vec3 first_velocity(vec3 x, vec3 origin) { return vec3(0.0); }
 #endif

@@ -2,7 +2,9 @@
 // = start + dt u, each Newton step solves
 //   J change = m (v - u) + dt f(x, u),   J = m (1 + dt drag) + dt C + dt^2 K,
 // with C and K the matrices of the elements' damping and stiffness at x, without the indefinite part of K. The first
-// estimate is u = 0: one Newton step from there is their method. A motion that a pin or a collider prevents is filtered
+// estimate is the velocity at the step's start, with contact in the problem u = 0: one Newton step from there is their
+// method. From the velocity elements have turned nearly as far as they will, and one Newton step does what takes two
+// from u = 0. A motion that a pin or a collider prevents is filtered
 // out of every vector of the solver (sections 5.1 to 5.3). A full Newton step can overshoot if elements turn by much in
 // one step, so it is shortened until the energy that is minimised falls (a line search: Nocedal & Wright 2006, chapter
 // 3). Here `position` and `velocity` are the estimates.

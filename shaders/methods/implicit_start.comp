@@ -25,10 +25,20 @@ uniform float grip_scale;  // dt over that of the last step: an impulse is a for
 #endif
 layout(std430, binding = slot_grip) buffer Grip { vec4 grip[]; };
 
-/// Velocity at which a vertex enters the solve, and the guess of the velocity that comes out [m/s].
+/// Velocity at which a vertex enters the solve, the first estimate, and the guess of the velocity that comes out [m/s].
 struct Beginning {
-  vec3 velocity, guess;
+  vec3 velocity, estimate, guess;
 };
+
+/// The first estimate of the velocity [m/s]: `expected`. But where contact is a term of the problem it is the one that
+/// leaves the vertex at x, where the step begins, as contact may allow no more than a share of the way from there.
+vec3 first_estimate(vec3 expected, vec3 x, vec3 origin) {
+#ifdef CONTACT_TERM
+  return (x - origin) / dt;
+#else
+  return expected;
+#endif
+}
 
 #ifndef CONTACT_TERM
 /// Applies friction to a vertex that is kept at the surface just met.
@@ -56,9 +66,9 @@ void rub(int i, float inverse_mass, float impulse, inout Beginning start) {
 /// Finds out if a vertex without springs would meet a collider or stay near one. Then its velocity along the normal is
 /// the one that takes it to the surface, whatever the springs do, unless they pulled it away in the last step. Near is
 /// a quarter of its way: a vertex that slides over a sphere must not count as leaving. `from`: where it is; x: where
-/// the step's equations have it.
-Beginning foresee(int i, vec3 from, vec3 x, vec3 v, float inverse_mass) {
-  Beginning start = Beginning(v, v + dt * gravity.xyz);
+/// the step's equations have it; `estimate`: the first one [m/s], unless it meets a collider.
+Beginning foresee(int i, vec3 from, vec3 x, vec3 v, vec3 estimate, float inverse_mass) {
+  Beginning start = Beginning(v, estimate, v + dt * gravity.xyz);
 #ifdef WIND
   vec4 load = FETCH(wind_loads, i);
   start.guess = (start.guess + load.xyz) / (1.0 + dt * load.w);
@@ -77,6 +87,7 @@ Beginning foresee(int i, vec3 from, vec3 x, vec3 v, float inverse_mass) {
     float lacks = (dot(stopped - x, met_normal) - near) / dt - dot(start.guess, met_normal);
     start.guess += met_normal * lacks;
     rub(i, inverse_mass, max(lacks, 0.0) / inverse_mass, start);
+    start.estimate = start.guess;
   }
   if (!met) grip[i] = vec4(vec3(0.0), untouched);
 #endif
@@ -93,20 +104,21 @@ void main() {
   if (x.w == 0.0) {
     vec3 x_next, v_next;
     follow_motion(i, x.xyz, v.w, END_ROW, x_next, v_next);
-    start = Beginning(v.xyz, (x_next - origin) / dt);
+    vec3 whole = (x_next - origin) / dt;
+    start = Beginning(v.xyz, first_estimate(whole, x.xyz, origin), whole);
   } else {
 #ifdef SELF_COLLISION
     contacts = self_contacts(i, x, v, push, impulse);
 #endif
     origin += push;
-    start = foresee(i, x.xyz + push, origin, carried_on(i, v.xyz + impulse), x.w);
+    vec3 estimate = first_estimate(v.xyz + impulse, x.xyz, origin);
+    start = foresee(i, x.xyz + push, origin, carried_on(i, v.xyz + impulse), estimate, x.w);
 #ifdef WIND
     start.velocity += FETCH(wind_loads, i).xyz;
 #endif
   }
-  vec3 first = first_velocity(x.xyz, origin);
   start_position[i] = vec4(origin, x.w);
   start_velocity[i] = vec4(start.velocity, float(contacts));
-  estimate[i] = vec4(first, 0.0);
-  first_guess[i] = vec4(start.guess - first, 0.0);
+  estimate[i] = vec4(start.estimate, 0.0);
+  first_guess[i] = vec4(start.guess - start.estimate, 0.0);
 }

@@ -15,17 +15,18 @@ layout(std430, binding = slot_trends) writeonly buffer Trends { vec4 trends[]; }
 layout(std430, binding = slot_past_velocities) buffer Past { vec4 past_velocities[]; };
 uniform float tolerance;  // relative, of the residual
 uniform bool first;       // the first Newton step of the time step
+uniform bool exact;       // the estimate is the state at the step's start
 
 /// Allowed residual of the vertex, squared and over its mass [J]: relative to its own energy and to what forces add in
-/// one step. From the second Newton step on it is not less than a tenth of the error that rounding the estimate makes
-/// in forces: a float of size x is off by 2.4e-8 x, the root of the mean square over all floats. A tenth, because
-/// rounding errors of neighbours cancel, and what is left of the residual may push them all the same way. The state at
-/// the step's start counts as exact. `in_product` [kg m/s]: what rounding the guess makes in the matrix times it.
+/// one step. It is not less than a tenth of the error that rounding the estimate makes in forces: a float of size x is
+/// off by 2.4e-8 x, the root of the mean square over all floats. A tenth, because rounding errors of neighbours
+/// cancel, and what is left of the residual may push them all the same way. An estimate that is the state at the
+/// step's start counts as exact. `in_product` [kg m/s]: what rounding the guess makes in the matrix times it.
 float good_enough(float inverse_mass, vec3 v, vec3 force, float stiffness, float damping, vec3 x, vec3 u,
                   float in_product) {
   float own = (dot(v, v) + dt * dt * dot(gravity.xyz, gravity.xyz)) / inverse_mass +
               dt * dt * inverse_mass * dot(force, force);
-  float rounding = first ? 0.0 : 2.4e-9 * dt * (stiffness * length(x) + damping * length(u));
+  float rounding = exact ? 0.0 : 2.4e-9 * dt * (stiffness * length(x) + damping * length(u));
   return tolerance * tolerance * own + inverse_mass * rounding * rounding + inverse_mass * in_product * in_product;
 }
 

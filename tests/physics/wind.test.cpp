@@ -84,8 +84,8 @@ TEST_CASE(
         scene.gravity = glm::dvec3(0.0);
         scene.solver.iterations = 1;
         // What is left of y' = -k (a - y) after a step of Euler's and one of BDF2 is
-        // (4 / (1 + k dt) - 1) / (3 + 2 k dt) of the start, which is -0.03 at most.
-        const double beyond = method == scene::Method::bdf2 ? 0.03 : 1e-5;
+        // (4 / (1 + k dt) - 1) / (3 + 2 k dt) of the start, which is -0.03 at most. Wind is not linear.
+        const double beyond = method == scene::Method::bdf2 ? 0.05 : 1e-5;
         Stepped stepped(side, scene);
         INFO(test::name(side) << ", " << scene::name(method) << ", lift " << lift);
         for (int n = 0; n < 40; ++n) {
@@ -172,7 +172,7 @@ TEST_CASE("a single Newton step in wind is the reference's: the wind is part of 
   const auto simulation = test::simulation(scene);
   const reference::World world = world_of(scene);
   reference::State exact = reference::at_rest(world);
-  for (int n = 0; n < 20; ++n) reference::baraff_witkin_step(world, exact);
+  for (int n = 0; n < 20; ++n) reference::limited_newton_step(world, exact);
   simulation->step(20);
   // 20 steps of a cloth so light that the rounding of a spring's force, 1e-6 N, moves a vertex by 5e-8 m in
   // one.

@@ -153,7 +153,7 @@ TEST_CASE("Verlet starts anew where its half step is of length 0, as after a sta
 }
 
 TEST_CASE(
-    "a step of backward Euler on a cloth is solved to rounding, and many Newton steps from rest come to the "
+    "a step of backward Euler on a cloth is solved to rounding, and many Newton steps come to the "
     "same") {
   for (const double damping : {0.0, 1e-3}) {
     scene::Scene scene = test::swinging_cloth(Method::implicit_euler, 5e-3);
@@ -164,7 +164,7 @@ TEST_CASE(
     for (int n = 0; n < 4; ++n) {
       reference::State other = state;
       reference::step(world, state);
-      reference::baraff_witkin_step(world, other);
+      reference::limited_newton_step(world, other);
       INFO("step " << n << ", damping " << damping << ": residuals " << state.residual << ", "
                    << other.residual);
       CHECK(state.residual < 1e-12);
@@ -177,14 +177,14 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("one Baraff-Witkin step of a spring at balance solves the linearised equation exactly") {
+TEST_CASE("one Newton step of a spring at balance solves the linearised equation exactly") {
   // On a straight spring the force is linear, so that one Newton step is backward Euler.
   scene::Scene scene = test::one_spring(Method::implicit_euler, 0.2, 1.5);
   scene.solver.iterations = 1;
   const reference::World world = world_of(scene);
   reference::State one = reference::at_rest(world), full = one;
   for (int n = 0; n < 10; ++n) {
-    reference::baraff_witkin_step(world, one);
+    reference::limited_newton_step(world, one);
     reference::step(world, full);
     CHECK(glm::distance(one.position[test::spring_end], full.position[test::spring_end]) < 100 * rounding);
   }

@@ -56,8 +56,8 @@ const texts: Record<string, MethodText> = {
       solves: true,
       suits: { dt: frame, iterations: 1 },
       trade:
-        "Each iteration is a Newton step: one linear solve. One will do for short steps; " +
-        "a long one in which the cloth turns far asks for a few.",
+        "Each iteration is a Newton step: one linear solve. One will do, but for a step in which the cloth turns far " +
+        "or meets something.",
     },
   },
   bdf2: {
@@ -68,10 +68,10 @@ const texts: Record<string, MethodText> = {
     iterations: {
       most: 20,
       solves: true,
-      suits: { dt: frame, iterations: 3 },
+      suits: { dt: frame, iterations: 2 },
       trade:
-        "Each iteration is a Newton step: one linear solve. With fewer than two or three a step in which the cloth " +
-        "turns is no more exact than Implicit Euler's.",
+        "Each iteration is a Newton step: one linear solve. A second one makes a long step in which the cloth turns " +
+        "three times as exact.",
     },
   },
   pbd: {
