@@ -9,29 +9,11 @@
 #include "server/base/text.h"
 #include "server/model/glb.h"
 #include "server/model/mesh_file.h"
+#include "server/model/point_cache.h"
 
 namespace clothlab::cli {
 
 namespace fs = std::filesystem;
-
-namespace {
-constexpr std::size_t point_cache_header_bytes = 32;
-
-/// The header of a PC2 file: "POINTCACHE2\0", version (1), points, first frame, frames per sample, samples;
-/// little-endian.
-std::string point_cache_header(std::uint32_t points, std::uint32_t samples) {
-  std::string header("POINTCACHE2\0", 12);
-  const auto append = [&header](const auto& value) {
-    header.append(reinterpret_cast<const char*>(&value), sizeof value);
-  };
-  append(std::int32_t{1});
-  append(points);
-  append(0.0f);
-  append(1.0f);
-  append(samples);
-  return header;
-}
-}  // namespace
 
 Status check_writable(const std::string& option, const std::string& path) {
   const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
@@ -101,15 +83,15 @@ Status StateFiles::add(const model::Model& model, const scene::Scene& scene, con
 Status StateFiles::add_to_point_cache(const sim::State& state) {
   const auto points = static_cast<std::uint32_t>(state.position.size());
   if (samples_ == 0)
-    if (Status created = write_file(path_, point_cache_header(points, 0)); !created) return created;
+    if (Status created = write_file(path_, model::point_cache_header(points, 0)); !created) return created;
   // The header is rewritten with every sample, so that its count is right even if the run ends early.
   std::fstream file(path_, std::ios::binary | std::ios::in | std::ios::out);
   const std::size_t sample_bytes = points * sizeof(glm::vec3);
-  file.seekp(static_cast<std::streamoff>(point_cache_header_bytes + samples_ * sample_bytes));
+  file.seekp(static_cast<std::streamoff>(model::point_cache_header_bytes + samples_ * sample_bytes));
   file.write(reinterpret_cast<const char*>(state.position.data()),
              static_cast<std::streamsize>(sample_bytes));
   file.seekp(0);
-  const std::string header = point_cache_header(points, samples_ + 1);
+  const std::string header = model::point_cache_header(points, samples_ + 1);
   file.write(header.data(), static_cast<std::streamsize>(header.size()));
   file.close();
   if (!file) return Error{path_, "could not be written", "check the disk's space and the file's permissions"};

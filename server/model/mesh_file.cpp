@@ -27,8 +27,14 @@ void append_bytes(std::string& out, const Value& value) {
 
 std::string obj_text(const Model& model, const std::vector<glm::vec3>& positions,
                      const std::string& comment) {
+  return obj_text(model.triangles, model.texture_coordinates, positions, comment);
+}
+
+std::string obj_text(std::span<const std::array<std::uint32_t, 3>> triangles,
+                     std::span<const glm::vec2> texture_coordinates, std::span<const glm::vec3> positions,
+                     const std::string& comment) {
   std::string out = "# " + comment + "\n";
-  out.reserve(out.size() + positions.size() * 56 + model.triangles.size() * 40);
+  out.reserve(out.size() + positions.size() * 56 + triangles.size() * 40);
   const auto numbers = [&out](const char* what, std::initializer_list<float> values) {
     out += what;
     for (const float value : values) {
@@ -38,8 +44,8 @@ std::string obj_text(const Model& model, const std::vector<glm::vec3>& positions
     out += '\n';
   };
   for (const glm::vec3& p : positions) numbers("v", {p.x, p.y, p.z});
-  for (const glm::vec2& t : model.texture_coordinates) numbers("vt", {t.x, t.y});
-  for (const auto& triangle : model.triangles) {
+  for (const glm::vec2& t : texture_coordinates) numbers("vt", {t.x, t.y});
+  for (const auto& triangle : triangles) {
     out += 'f';
     for (const std::uint32_t corner : triangle) {
       out += ' ';

@@ -11,4 +11,9 @@ constexpr std::uint16_t folded(std::int32_t value, std::int32_t prediction) {
   return static_cast<std::uint16_t>((difference << 1) ^ (difference >> 15));
 }
 
+/// The difference that `folded` wrote as `number`, in [-32768, 32767].
+constexpr std::int32_t unfolded(std::uint16_t number) {
+  return static_cast<std::int16_t>((number >> 1) ^ -(number & 1));
+}
+
 }  // namespace clothlab::stream

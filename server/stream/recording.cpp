@@ -13,6 +13,7 @@
 #include "server/model/rest_lengths.h"
 #include "server/stream/folded.h"
 #include "server/stream/frame.h"
+#include "server/stream/recording_chunk.h"
 
 namespace clothlab::stream {
 
@@ -91,13 +92,7 @@ Recording::Recording(std::function<void(std::string_view)> put, const json& scen
 }
 
 void Recording::chunk(const char (&kind)[5], std::string_view head, std::string_view content) {
-  std::string start(kind, 4);
-  const std::size_t size = head.size() + content.size();
-  put_number(start, static_cast<std::uint32_t>(size));
-  std::uint32_t check = 0;
-  for (const std::string_view part : {std::string_view(kind, 4), head, content})
-    check = crc32_of(check, part);
-  put_number(start, check);
+  std::string start = chunk_start(std::string_view(kind, 4), head, content);
   put_(start.append(head));
   put_(content);
   bytes_ += start.size() + content.size();
