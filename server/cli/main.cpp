@@ -13,7 +13,7 @@ constexpr const char* examples = R"(Examples:
   clothlab run seed --time 5 --report report.json  as fast as it goes, with speed and energy
   clothlab run seed --time 2 --out cloth.obj --every 0.1 --set /solver/dt=0.0005
   clothlab render seed --time 1.5 --out seed.png
-  clothlab record seed --time 10 --out seed.html   plays in any browser, without a server
+  clothlab record seed --time 10 --out seed.html   plays in any browser, without a server; .glb: elsewhere
   clothlab chart seed --out results                speed against accuracy of every method on this scene
   clothlab choose seed --tolerance 0.01            the cheapest method and step that are good enough
   clothlab validate my-scene.json

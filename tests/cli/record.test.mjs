@@ -2,36 +2,9 @@
 import assert from "node:assert/strict";
 import { existsSync, readFileSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { before, test } from "node:test";
-import { inflateRawSync } from "node:zlib";
-import { load } from "../page/module.mjs";
+import { test } from "node:test";
 import { clothlab, folder } from "./program.mjs";
-
-const inflate = async (bytes) => new Uint8Array(inflateRawSync(bytes));
-let page;
-before(async () => (page = await load("player/recording")));
-
-function record(args, out) {
-  const { status, stdout, stderr } = clothlab(["record", ...args, "--out", out]);
-  return { status, stdout, stderr, path: join(folder, out) };
-}
-async function read(bytes) {
-  const recording = await page.Reader.open(new Uint8Array(bytes).buffer, inflate);
-  const moments = [];
-  for (const group of recording.groups) moments.push(...(await page.readGroup(group, inflate)));
-  return { recording, moments };
-}
-/// The bytes of a recording in a page.
-const inPage = (html) => Buffer.from(/id="recording">([A-Za-z0-9+/=]*)</.exec(html)[1], "base64");
-
-/// The positions of a PC2 file's samples.
-function pointCache(path) {
-  const bytes = readFileSync(path);
-  const [points, samples] = [bytes.readInt32LE(16), bytes.readInt32LE(28)];
-  return Array.from({ length: samples }, (_, sample) =>
-    Array.from({ length: 3 * points }, (_, i) => bytes.readFloatLE(32 + 4 * (3 * points * sample + i))),
-  );
-}
+import { inPage, pointCache, readRecording as read, record } from "./recordings.mjs";
 
 test("its frames are the states that run computes, to half a 512th of an edge, with colliders that move", async () => {
   const changed = ["--set", '/colliders/0/motion={"linear":{"velocity":[1,0,0]}}'];
@@ -112,7 +85,7 @@ test("a rate between whole steps is told, and a step longer than a frame makes f
 });
 
 for (const [what, [args, out, message]] of Object.entries({
-  "another kind of file": [["seed", "--time", "1"], "a.gif", /\.html .*\.clothlab/],
+  "another kind of file": [["seed", "--time", "1"], "a.gif", /\.html .*\.clothlab .*\.glb, \.usda or \.pc2 .*\.obj/],
   "no frames a second": [["seed", "--time", "1", "--rate", "0"], "a.html", /1 to 120/],
   "too many frames a second": [["seed", "--time", "1", "--rate", "121"], "a.html", /1 to 120/],
   "a rate that is no number": [["seed", "--time", "1", "--rate", "nan"], "a.html", /1 to 120/],
