@@ -7,6 +7,8 @@
 #include <charconv>
 #include <utility>
 
+#include "server/base/text.h"
+#include "server/film/formats.h"
 #include "server/model/mesh_file.h"
 #include "server/model/size.h"
 #include "server/net/hub.h"
@@ -33,11 +35,28 @@ HttpAnswer scene_answer(std::shared_ptr<const std::string> file) {
 HttpAnswer shared_binary(std::shared_ptr<const std::string> bytes) {
   return {200, "application/octet-stream", {}, {{"cache-control:", "no-store"}}, std::move(bytes)};
 }
-HttpAnswer page_of_recording(std::shared_ptr<const std::string> page) {
-  return {200, "text/html; charset=utf-8", {}, {{"cache-control:", "no-store"}}, std::move(page)};
-}
 HttpAnswer binary(std::string bytes) {
   return shared_binary(std::make_shared<const std::string>(std::move(bytes)));
+}
+
+/// The ending of a file of a recording that is at this path; empty: none is.
+std::string recording_ending(const std::string& path) {
+  const std::string start = "/api/recording";
+  for (const char* ending : {".clothlab", ".html", ".glb", ".usda"})
+    if (path == start + ending) return ending;
+  return {};
+}
+
+/// The name of a recording's file: its scene, and the times of its first and last frame.
+std::string name_of_file(const session::RecordingFacts& facts, const std::string& ending) {
+  std::string name;  // as a header may have it
+  for (const char letter : facts.scene.substr(0, 60)) {
+    const bool plain = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
+                       (letter >= '0' && letter <= '9') || letter == '-' || letter == '_' || letter == ' ';
+    name += plain ? letter : '_';
+  }
+  const auto [from, to] = facts.times.value_or(std::pair(0.0, 0.0));
+  return name + formatted(" %.2f-%.2f s", from, to) + ending;
 }
 
 /// A body that lives at least as long as the server's requests.
@@ -199,12 +218,12 @@ std::optional<HttpAnswer> HttpRequest::find_protected(const std::string& path) {
   const bool mesh = path == "/api/mesh.obj", model = path == "/api/mesh.glb",
              picture = path == "/api/snapshot.png";
   const bool collider = path == "/api/collider.ply";
-  const bool page = path == "/api/recording.html", recorded = page || path == "/api/recording.clothlab";
-  if (!mesh && !model && !picture && !collider && !recorded && path != "/api/scene")
+  const std::string recorded = recording_ending(path);
+  if (!mesh && !model && !picture && !collider && recorded.empty() && path != "/api/scene")
     return plain(
         404,
         "the API has /api/scene, /api/mesh.obj, /api/mesh.glb, /api/collider.ply, /api/snapshot.png, "
-        "/api/recording.clothlab and /api/recording.html");
+        "/api/recording.clothlab, .html, .glb and .usda");
   Room* room = hub_.find_room(session);
   if (!room && hub_.elsewhere(session)) return try_again("another server has this session open; ask again");
   if (!room || !room->started())
@@ -215,7 +234,7 @@ std::optional<HttpAnswer> HttpRequest::find_protected(const std::string& path) {
   if (collider) return collider_mesh(*room, query(wsi_, "name", ""));
   if (hub_.relays())
     return plain(404, "a relay only passes on what viewers see; ask the server that runs the session");
-  if (recorded) return recording(*room, page);
+  if (!recorded.empty()) return recording(*room, recorded);
   using Kind = session::Export::Kind;
   if (mesh || model) return ask_session(session, {mesh ? Kind::obj : Kind::glb});
   const session::Export what{Kind::picture, side(query(wsi_, "width", "1280"), max_snapshot_side),
@@ -260,23 +279,30 @@ std::optional<HttpAnswer> HttpRequest::collider_mesh(Room& room, const std::stri
   return mesh ? binary(std::move(*mesh)) : no_collider();
 }
 
-std::optional<HttpAnswer> HttpRequest::recording(const Room& room, bool page) {
+std::optional<HttpAnswer> HttpRequest::recording(const Room& room, const std::string& ending) {
   const session::RecordingFacts facts = room.recording();
   if (!facts.file)
     return plain(
         404, facts.state == session::RecordingFacts::State::recording
                  ? "this session is being recorded; record.stop over the WebSocket ends that"
                  : "nothing has been recorded in this session; record.start over the WebSocket does that");
-  file_name_ = "clothlab-" + room.name() + (page ? ".html" : ".clothlab");
-  if (!page) return shared_binary(facts.file);
-  if (std::shared_ptr<const std::string> made = hub_.page_of(facts.file)) return page_of_recording(made);
+  file_name_ = name_of_file(facts, ending);
+  ending_ = ending;
+  if (ending == ".clothlab") return shared_binary(facts.file);
+  if (const clothlab::Status fits = film::check_size(ending, facts.frames, facts.vertices); !fits)
+    return plain(409,
+                 fits.error().text() + "; save the .clothlab, of which `clothlab record` makes the file");
+  if (std::shared_ptr<const std::string> made = hub_.made_of(facts.file, ending))
+    return made_of_recording(std::move(made));
   if (hub_.exports_full()) return busy();
-  // In base64, and as text while it is made; beside the player, which it is written into.
+  // A page has it in base64, and as text while it is made; beside the player, which it is written into.
   constexpr std::uint64_t player = 1 << 20;
-  if (std::optional<HttpAnswer> why = reserve(MemoryBudget::Use::downloads, facts.file->size() * 3 + player))
-    return why;
+  const film::Format* film = film::format_of(ending);
+  // A text that grows takes up to twice as much, and three times while it moves.
+  const std::uint64_t bytes = 3 * (film ? film->bytes(facts.frames, facts.vertices) : facts.file->size());
+  if (std::optional<HttpAnswer> why = reserve(MemoryBudget::Use::downloads, bytes + player)) return why;
   lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, http_patience);
-  hub_.make_page(id_, facts);
+  hub_.make_of_recording(id_, facts, ending);
   return std::nullopt;
 }
 
@@ -316,12 +342,21 @@ void HttpRequest::deliver(session::Exported exported) {
       wsi_,
       exported.body
           ? send({200, exported.content_type, std::move(*exported.body), {{"cache-control:", "no-store"}}})
-          : send(plain(500, exported.body.error().text())));
+          : send(plain(film::format_of(exported.ending) ? 409 : 500, exported.body.error().text())));
 }
 
-void HttpRequest::deliver_page(std::shared_ptr<const std::string> page) {
+void HttpRequest::deliver_made(std::shared_ptr<const std::string> file) {
   const Served served(hub_, network_);
-  finish_(wsi_, send(page_of_recording(std::move(page))));
+  finish_(wsi_, send(made_of_recording(std::move(file))));
+}
+
+HttpAnswer HttpRequest::made_of_recording(std::shared_ptr<const std::string> file) const {
+  const film::Format* film = film::format_of(ending_);
+  return {200,
+          film ? film->content_type : "text/html; charset=utf-8",
+          {},
+          {{"cache-control:", "no-store"}},
+          std::move(file)};
 }
 
 void HttpRequest::deliver_collider(const std::shared_ptr<const std::string>& mesh) {

@@ -59,8 +59,8 @@ class HttpRequest {
   /// Answers with the picture or mesh that this request asked for, or with the error. The request is
   /// destroyed.
   void deliver(session::Exported exported);
-  /// The same with the page of a recording.
-  void deliver_page(std::shared_ptr<const std::string> page);
+  /// The same with the page or the film of a recording.
+  void deliver_made(std::shared_ptr<const std::string> file);
   /// What was reserved for what is made for it.
   MemoryBudget::Reservation take_memory() { return std::move(memory_); }
   /// The same with the mesh of a collider, null: there is none.
@@ -84,8 +84,9 @@ class HttpRequest {
   std::optional<HttpAnswer> ask_session(const std::string& session, session::Export what);
   /// The mesh of a collider, of which a relay asks the server.
   std::optional<HttpAnswer> collider_mesh(Room& room, const std::string& name);
-  /// The room's recording, alone or (after a while) in its page; a refusal if there is none.
-  std::optional<HttpAnswer> recording(const Room& room, bool page);
+  /// The room's recording, alone or (after a while) in its page or as a film; a refusal if there is none.
+  std::optional<HttpAnswer> recording(const Room& room, const std::string& ending);
+  HttpAnswer made_of_recording(std::shared_ptr<const std::string> file) const;
   Progress send(HttpAnswer answer);
   /// Reserves memory. Returns the refusal if there is not so much.
   std::optional<HttpAnswer> reserve(MemoryBudget::Use use, std::uint64_t bytes);
@@ -104,6 +105,7 @@ class HttpRequest {
   std::string network_;  ///< of the client, as limits count it
   std::string path_{};
   Timer later_;
+  std::string ending_{};     ///< of a file of a recording
   std::string file_name_{};  ///< under which a browser keeps the answer; empty: it shows it
   std::string reader_;       ///< the allowed origin of another page that asks, and may read the answer
   std::shared_ptr<const std::string> rest_{};  ///< the body that is being written in pieces

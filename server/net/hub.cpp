@@ -254,14 +254,18 @@ void Hub::captured(session::Captured captured) {
   captured_.push_back(std::move(captured));
 }
 
-void Hub::make_page(std::uint64_t asker, const session::RecordingFacts& recording) {
-  captured_.push_back({asker, {}, session::Moment{nullptr, 0, {}, {}, recording.file, recording.scene}});
+void Hub::make_of_recording(std::uint64_t asker, const session::RecordingFacts& recording,
+                            const std::string& ending) {
+  session::Export what;
+  what.recording = ending;
+  captured_.push_back({asker, what, session::Moment{nullptr, 0, {}, {}, recording.file, recording.scene}});
   pump_exports();
 }
 
-std::shared_ptr<const std::string> Hub::page_of(const std::shared_ptr<const std::string>& recording) const {
-  for (const Page& page : pages_)
-    if (recording && page.recording.lock() == recording) return page.page.lock();
+std::shared_ptr<const std::string> Hub::made_of(const std::shared_ptr<const std::string>& recording,
+                                                const std::string& ending) const {
+  for (const MadeFile& made : made_files_)
+    if (recording && made.ending == ending && made.recording.lock() == recording) return made.file.lock();
   return nullptr;
 }
 
@@ -275,8 +279,8 @@ void Hub::pump_exports() {
     captured_.pop_front();
     const auto asker = waiting_.find(next.asker);
     if (asker == waiting_.end() || asker->second->hung_up()) continue;
-    if (std::shared_ptr<const std::string> made = page_of(next.moment->recording)) {
-      deliver_page(next.asker, std::move(made));
+    if (std::shared_ptr<const std::string> made = made_of(next.moment->recording, next.what.recording)) {
+      deliver_made(next.asker, std::move(made));
       continue;
     }
     exporter_.begin(next.asker, next.what, std::move(*next.moment));
@@ -294,14 +298,14 @@ void Hub::deliver(session::Exported exported) {
   if (!exported.recording || !exported.body) return request->deliver(std::move(exported));
   MemoryBudget::Reservation memory = request->take_memory();
   (void)memory.resize(exported.body->capacity());
-  std::shared_ptr<const std::string> page = held_text(std::move(*exported.body), std::move(memory));
-  std::erase_if(pages_, [](const Page& old) { return old.page.expired(); });
-  pages_.push_back({exported.recording, page});
-  request->deliver_page(std::move(page));
+  std::shared_ptr<const std::string> file = held_text(std::move(*exported.body), std::move(memory));
+  std::erase_if(made_files_, [](const MadeFile& old) { return old.file.expired(); });
+  made_files_.push_back({exported.recording, exported.ending, file});
+  request->deliver_made(std::move(file));
 }
 
-void Hub::deliver_page(std::uint64_t asker, std::shared_ptr<const std::string> page) {
-  if (HttpRequest* request = find_request(asker)) request->deliver_page(std::move(page));
+void Hub::deliver_made(std::uint64_t asker, std::shared_ptr<const std::string> file) {
+  if (HttpRequest* request = find_request(asker)) request->deliver_made(std::move(file));
 }
 
 void Hub::deliver_collider(std::uint64_t asker, const relay::Feed::ColliderMesh& mesh) {

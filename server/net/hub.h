@@ -125,10 +125,12 @@ class Hub {
   /// Passes on the mesh of a collider that the HTTP request `asker` asked for; null: there is none.
   void deliver_collider(std::uint64_t asker, const relay::Feed::ColliderMesh& mesh);
 
-  /// Has the page of a recording made for the HTTP request `asker`.
-  void make_page(std::uint64_t asker, const session::RecordingFacts& recording);
-  /// The page of a recording while it is being sent to somebody, so that all get the same copy; else null.
-  std::shared_ptr<const std::string> page_of(const std::shared_ptr<const std::string>& recording) const;
+  /// Has the page or the film of a recording, as `ending` says, made for the HTTP request `asker`.
+  void make_of_recording(std::uint64_t asker, const session::RecordingFacts& recording,
+                         const std::string& ending);
+  /// The same while it is being sent to somebody, so that all get the same copy; else null.
+  std::shared_ptr<const std::string> made_of(const std::shared_ptr<const std::string>& recording,
+                                             const std::string& ending) const;
 
   /// Passes on what the sessions, the exporter, the lab and the bus have put out.
   void pump();
@@ -144,7 +146,7 @@ class Hub {
   LabQueue::Port lab_port();
   void pump_bus();
   void deliver(session::Exported exported);
-  void deliver_page(std::uint64_t asker, std::shared_ptr<const std::string> page);
+  void deliver_made(std::uint64_t asker, std::shared_ptr<const std::string> file);
   void pump_exports();
   std::uint64_t steps() const;
   void retire(const std::string& name);
@@ -173,10 +175,12 @@ class Hub {
   std::unique_ptr<bus::Bus> bus_;           ///< before the rooms, which use it
   std::vector<bus::Message> from_bus_;
   std::deque<session::Captured> captured_;  ///< what the exporter makes next, first come first
-  struct Page {
-    std::weak_ptr<const std::string> recording, page;
+  struct MadeFile {
+    std::weak_ptr<const std::string> recording;
+    std::string ending;
+    std::weak_ptr<const std::string> file;
   };
-  std::vector<Page> pages_;  ///< of recordings, for as long as they are being sent
+  std::vector<MadeFile> made_files_;  ///< of recordings, for as long as they are being sent
   std::map<std::string, std::unique_ptr<Room>> rooms_;
   std::map<std::uint64_t, Client*> clients_;
   std::map<std::string, std::string> full_notes_;  ///< by session, what is written in its lock

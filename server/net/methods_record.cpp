@@ -25,7 +25,7 @@ Outcome record_get(Client& client, Request& request) {
   json answer = session::facts_of(facts);
   answer["files"] = nullptr;
   if (facts.file)
-    for (const char* ending : {"clothlab", "html"})
+    for (const char* ending : {"clothlab", "html", "glb", "usda"})
       answer["files"][ending] = std::string("/api/recording.") + ending + "?session=" + client.room()->name();
   return answer;
 }

@@ -88,6 +88,9 @@ struct Watchers {
 struct Export {
   enum class Kind { obj, glb, picture } kind = Kind::obj;
   int width = 0, height = 0;  ///< of a picture [pixels]
+  /// Of a recording, in place of all that: the ending of the file to make, ".html" or a film's
+  /// (film/formats.h).
+  std::string recording{};
 };
 /// Asks which steps the session can go on from.
 struct GetTimeline {};

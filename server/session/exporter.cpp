@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "server/base/priority.h"
+#include "server/film/formats.h"
 #include "server/gl/context.h"
 #include "server/model/glb.h"
 #include "server/model/mesh_file.h"
@@ -18,8 +19,10 @@ namespace clothlab::session {
 
 namespace {
 
-const char* type_of(Export::Kind kind) {
-  switch (kind) {
+const char* type_of(const Export& what) {
+  if (const film::Format* film = film::format_of(what.recording)) return film->content_type;
+  if (!what.recording.empty()) return "text/html; charset=utf-8";
+  switch (what.kind) {
     case Export::Kind::obj:
       return "text/plain; charset=utf-8";
     case Export::Kind::glb:
@@ -28,6 +31,18 @@ const char* type_of(Export::Kind kind) {
       return "image/png";
   }
   return "";
+}
+
+Result<std::string> film_of(std::string_view recording, const film::Format& format) {
+  const Result<film::Film> film = film::Film::of(recording);
+  if (!film) return film.error();
+  std::string bytes;
+  const clothlab::Status written = format.write(*film, [&](std::string_view more) {
+    bytes += more;
+    return ok();
+  });
+  if (!written) return written.error();
+  return bytes;
 }
 
 /// A PNG. Each picture has a new context, as Mesa frees a picture's memory, up to 0.8 GB, only with its
@@ -94,8 +109,8 @@ void Exporter::run() {
       if (ending_) return;
       task = *std::exchange(task_, std::nullopt);
     }
-    const char* type = task.moment.recording ? "text/html; charset=utf-8" : type_of(task.what.kind);
-    Exported made{task.asker, type, carry_out(task), task.moment.recording};
+    const char* type = type_of(task.what);
+    Exported made{task.asker, type, carry_out(task), task.moment.recording, task.what.recording};
     {
       const std::lock_guard lock(mutex_);
       made_ = std::move(made);
@@ -116,6 +131,7 @@ Result<std::string> Exporter::carry_out(const Task& task) const {
 }
 
 Result<std::string> make_export(std::optional<int> gpu, const Moment& moment, const Export& what) {
+  if (const film::Format* film = film::format_of(what.recording)) return film_of(*moment.recording, *film);
   if (moment.recording) return stream::player_page(*moment.recording, moment.title);
   const Result<model::Model> model = model::build(moment.document->scene);
   if (!model) return model.error();

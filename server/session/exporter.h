@@ -20,7 +20,8 @@ struct Exported {
   std::uint64_t asker = 0;
   const char* content_type = "";
   Result<std::string> body;
-  std::shared_ptr<const std::string> recording{};  ///< of which it is the page; else null
+  std::shared_ptr<const std::string> recording{};  ///< that it is made of; else null
+  std::string ending{};                            ///< of a recording's file
 };
 
 class Exporter {
@@ -64,8 +65,8 @@ class Exporter {
   std::thread thread_;
 };
 
-/// A PNG or OBJ file of `moment`, or the page of the recording in it. For a PNG a GL context is current on
-/// the calling thread until the picture is drawn. Error: what failed, e.g. no usable OpenGL.
+/// A PNG or OBJ file of `moment`, or the page or the film of the recording in it. For a PNG a GL context is
+/// current on the calling thread until the picture is drawn. Error: what failed, e.g. no usable OpenGL.
 Result<std::string> make_export(std::optional<int> gpu, const Moment& moment, const Export& what);
 
 }  // namespace clothlab::session

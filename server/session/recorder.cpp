@@ -49,10 +49,12 @@ clothlab::Status Recorder::start(double rate, const json& document, const std::s
   facts.state = RecordingFacts::State::recording;
   facts.rate = rate;
   facts.scene = name;
+  facts.vertices = vertices;
   exchange_.store_recording(facts);
   tasks_.clear();
   done_ = false;
   revision_ = 0;
+  times_.reset();
   recording_ = true;
   thread_ = std::thread([this, rate, document, facts] { run(rate, document, facts); });
   return ok();
@@ -105,6 +107,7 @@ void Recorder::run(double rate, const json& document, RecordingFacts facts) {
     facts.state = RecordingFacts::State::ready;
     facts.full = end_ == End::limit || end_ == End::memory;
     facts.frames = writer.frames();
+    facts.times = times_;
     facts.bytes = bytes.size();
     (void)memory_.resize(bytes.capacity());
     facts.file = held_text(std::move(bytes), std::move(memory_));
@@ -136,7 +139,7 @@ void Recorder::append(std::string& bytes, std::string_view more) {
 
 Recorder::End Recorder::record(stream::Recording& writer, std::string& bytes, RecordingFacts& facts) {
   const auto finish = [&](End end) {
-    writer.finish({{"time", time_}, {"diverged", nullptr}});
+    writer.finish({{"time", times_ ? times_->second : 0.0}, {"diverged", nullptr}});
     return end;
   };
   while (true) {
@@ -151,6 +154,7 @@ Recorder::End Recorder::record(stream::Recording& writer, std::string& bytes, Re
     if (std::holds_alternative<Stop>(task)) return finish(End::asked);
     perform(task, writer);
     facts.frames = writer.frames();
+    facts.times = times_;
     facts.bytes = bytes.size();
     if (bytes.size() > most_) return finish(End::limit);
     if (out_of_memory_) return finish(End::memory);
@@ -188,7 +192,7 @@ void Recorder::write(const stream::Message& frame, stream::Recording& writer) {
     moving =
         json::parse(frame.colliders.begin() + stream::front_room, frame.colliders.end())["params"]["moving"];
   writer.add({header.time, header.step, header.flags, positions, std::move(moving)});
-  time_ = header.time;
+  times_ = {times_ ? times_->first : header.time, header.time};
 }
 
 }  // namespace clothlab::session

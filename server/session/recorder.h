@@ -90,7 +90,7 @@ class Recorder {
   std::size_t under_way_ = 0;           ///< bytes of frames that wait, and of the group that is written
   bool out_of_memory_ = false;
   std::uint32_t revision_ = 0;
-  double time_ = 0;  ///< of the last frame [s]
+  std::optional<std::pair<double, double>> times_{};  ///< of the first and the last frame [s]
 };
 
 }  // namespace clothlab::session

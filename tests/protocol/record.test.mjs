@@ -5,6 +5,7 @@ import { readFileSync } from "node:fs";
 import { connect } from "node:net";
 import { after, before, beforeEach, test } from "node:test";
 import { inflateRawSync } from "node:zlib";
+import { readGlb, readUsda } from "../cli/film_files.mjs";
 import { load } from "../page/module.mjs";
 import { Client, Server, sleep } from "./harness.mjs";
 
@@ -57,7 +58,15 @@ test("what plays is recorded at the rate, and what changes the scene with its st
   const id = (await client.notification("hello")).client;
   const startedAt = performance.now();
   const started = await client.request("record.start", { rate: 20 });
-  assert.deepEqual(started, { state: "recording", rate: 20, frames: 0, bytes: started.bytes, full: false });
+  assert.deepEqual(started, {
+    state: "recording",
+    scene: "seed",
+    rate: 20,
+    frames: 0,
+    bytes: started.bytes,
+    full: false,
+    times: null,
+  });
   await recordedMore(30);
   await client.request("scene.patch", { patch: { gravity: [0, -1, 0] } });
   await recordedMore(5);
@@ -69,10 +78,15 @@ test("what plays is recorded at the rate, and what changes the scene with its st
   assert.deepEqual(files, {
     clothlab: `/api/recording.clothlab?session=${session}`,
     html: `/api/recording.html?session=${session}`,
+    glb: `/api/recording.glb?session=${session}`,
+    usda: `/api/recording.usda?session=${session}`,
   });
   const answer = await get(files.clothlab);
   assert.equal(answer.status, 200);
-  assert.match(answer.headers.get("content-disposition"), /^attachment; filename="clothlab-record\d+\.clothlab"$/);
+  assert.match(
+    answer.headers.get("content-disposition"),
+    /^attachment; filename="seed \d+\.\d\d-\d+\.\d\d s\.clothlab"$/,
+  );
   const bytes = await answer.arrayBuffer();
   assert.equal(bytes.byteLength, stopped.bytes);
   const { recording, moments } = await read(bytes);
@@ -224,6 +238,29 @@ test("with a token: viewers may fetch and ask, not start or stop; without it nob
   await guarded.stop();
 });
 
+test("the films of a recording have its frames, and what cannot be a film says why", async () => {
+  await client.request("record.start");
+  await recordedMore(10);
+  await client.request("record.stop");
+  const { moments } = await read(await (await get(`/api/recording.clothlab?session=${session}`)).arrayBuffer());
+  const answer = await get(`/api/recording.glb?session=${session}`);
+  assert.equal(answer.status, 200);
+  assert.equal(answer.headers.get("content-type"), "model/gltf-binary");
+  assert.match(answer.headers.get("content-disposition"), /^attachment; filename="seed \d+\.\d\d-\d+\.\d\d s\.glb"$/);
+  const glb = readGlb(Buffer.from(await answer.arrayBuffer()));
+  assert.equal(glb.array(glb.json.animations[0].samplers[0].input).length, moments.length);
+  const usda = await (await get(`/api/recording.usda?session=${session}`)).text();
+  assert.equal(readUsda(usda).prims[0].name, "seed");
+  await client.request("record.start");
+  await recordedMore(3);
+  await client.request("scene.load", { preset: "hanging-strip" });
+  await recordedMore(6);
+  await client.request("record.stop");
+  const refused = await get(`/api/recording.glb?session=${session}`);
+  assert.equal(refused.status, 409);
+  assert.match(await refused.text(), /mesh changes .* s after its first frame/);
+});
+
 test("the page of a recording has the same recording in it", async () => {
   await client.request("record.start");
   await recorded(10);
@@ -231,7 +268,7 @@ test("the page of a recording has the same recording in it", async () => {
   const html = await get(`/api/recording.html?session=${session}`);
   assert.equal(html.status, 200);
   assert.match(html.headers.get("content-type"), /^text\/html/);
-  assert.match(html.headers.get("content-disposition"), /^attachment; filename="clothlab-record\d+\.html"$/);
+  assert.match(html.headers.get("content-disposition"), /^attachment; filename="seed \d+\.\d\d-\d+\.\d\d s\.html"$/);
   const inside = Buffer.from(/id="recording">([A-Za-z0-9+/=]*)</.exec(await html.text())[1], "base64");
   const alone = Buffer.from(await (await get(`/api/recording.clothlab?session=${session}`)).arrayBuffer());
   assert.ok(inside.equals(alone));

@@ -8,12 +8,15 @@ const megabytes = (bytes: number): string => `${(bytes / 1e6).toFixed(bytes < 1e
 const kinds = [
   ["html", "Save as page", "One file that plays in any browser, without a server"],
   ["clothlab", "Save as .clothlab", "The recording alone"],
+  ["glb", "Export .glb", "With bodies, for Blender, game engines and viewers: glTF with a shape a frame"],
+  ["usda", "Export .usda", "With bodies, for programs that read USD"],
 ] as const;
 
 export class RecordControl {
   private readonly start = button("record");
   private readonly files = element("record-files", HTMLElement);
   private recording = false;
+  private name = "clothlab"; ///< of its files: the scene and the times that they show
 
   constructor(private readonly port: RecordPort) {
     for (const [ending, text, title] of kinds) {
@@ -32,7 +35,8 @@ export class RecordControl {
       .catch((error: Error) => noticeError("Not recorded", error));
   }
 
-  show({ state, frames, bytes }: RecordingFacts): void {
+  show({ state, scene, frames, bytes, times }: RecordingFacts): void {
+    if (times) this.name = `${scene} ${times.map((time) => time.toFixed(2)).join("-")} s`;
     this.recording = state === "recording";
     const text = this.recording ? `Stop recording (${megabytes(bytes)})` : "Record";
     if (this.start.textContent !== text) this.start.textContent = text;
@@ -45,7 +49,7 @@ export class RecordControl {
       const bytes = await this.port.get(`/api/recording.${ending}`);
       const link = document.createElement("a");
       link.href = URL.createObjectURL(new Blob([bytes]));
-      link.download = `clothlab.${ending}`;
+      link.download = `${this.name}.${ending}`;
       link.click();
       setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
     } catch (error) {

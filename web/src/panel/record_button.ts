@@ -5,9 +5,11 @@ import type { RecordControl } from "./record";
 /// As `sim.status` and `record.*` tell it.
 export interface RecordingFacts {
   state: "none" | "recording" | "ready";
+  scene: string; ///< the name of the one that it began with
   frames: number;
   bytes: number;
   full: boolean;
+  times: [number, number] | null; ///< of the first and the newest frame [s]
 }
 
 export interface RecordPort {
