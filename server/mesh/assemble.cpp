@@ -22,6 +22,7 @@ class Assembly {
     if (raw_.vertices.empty() || raw_.faces.empty()) return empty();
     mesh_.line_word = raw_.line_word;
     mesh_.no_cloth = raw_.no_cloth;
+    mesh_.part_names = raw_.parts;
     if (const Status cut = make_triangles(); !cut) return cut.error();
     if (const Status single = leave_doubles_out(); !single) return single.error();
     if (mesh_.triangles.empty()) return empty();

@@ -59,7 +59,7 @@ class GltfReader {
       const std::vector<std::size_t> below = indices_in(**node, "children");
       for (auto child = below.rbegin(); child != below.rend(); ++child) open.push_back({*child, wanted});
     }
-    if (!node_.empty() && !found_) return no_part(raw_.name, node_, parts_);
+    if (!node_.empty() && !found_) return no_part(raw_.name, node_, raw_.parts);
     return std::move(raw_);
   }
 
@@ -75,8 +75,7 @@ class GltfReader {
     for (const std::string& name : {data_.name_of(node), of ? data_.name_of(**of) : std::string()}) {
       if (name.empty()) continue;
       is = is || name == node_;
-      if (parts_.size() < most_parts_named && std::find(parts_.begin(), parts_.end(), name) == parts_.end())
-        parts_.push_back(name);
+      raw_.name_part(name);
     }
     found_ = found_ || is;
     return is;
@@ -248,7 +247,6 @@ class GltfReader {
   Raw raw_;
   GltfNodes nodes_;
   std::vector<dmat4> joints_;  // of the skin of the mesh that is read
-  std::vector<std::string> parts_;
   bool found_ = false;
   std::size_t face_ = 0;  // triangles so far
   std::size_t work_ = 0;  // numbers that were read

@@ -59,6 +59,11 @@ Status Raw::leave_out(Fault fault, std::size_t line, const Error& wrong) {
   return ok();
 }
 
+void Raw::name_part(const std::string& part) {
+  if (parts.size() < most_parts_named && std::find(parts.begin(), parts.end(), part) == parts.end())
+    parts.push_back(part);
+}
+
 Status Raw::add_vertex(const glm::dvec3& place, std::size_t line, const Limits& limits) {
   if (vertices.size() >= limits.vertices)
     return error(line, "more than " + std::to_string(limits.vertices) + " vertices", "at most so many");

@@ -33,6 +33,8 @@ struct Mesh {
   std::size_t unused = 0;   ///< vertices of the file that are part of no face
   std::size_t flipped = 0;  ///< triangles turned over, so that each part has one outside
   std::size_t parts = 0;    ///< pieces that share no vertex
+  /// Names of the file's objects, groups and nodes, each once, in its order: the first twelve.
+  std::vector<std::string> part_names;
   /// Where to find the triangle's face in the file, e.g. "line 12", for errors.
   std::string place_of(std::size_t triangle) const;
 

@@ -48,7 +48,7 @@ class ObjReader {
       }
       if (const Status read = read_line(line); !read) return read.error();
     }
-    if (!node_.empty() && !found_) return no_part(raw_.name, node_, parts_);
+    if (!node_.empty() && !found_) return no_part(raw_.name, node_, raw_.parts);
     return std::move(raw_);
   }
 
@@ -101,8 +101,7 @@ class ObjReader {
 
   void name_part(std::string_view name, bool& in) {
     if (name.empty()) return;
-    if (parts_.size() < most_parts_named && std::find(parts_.begin(), parts_.end(), name) == parts_.end())
-      parts_.emplace_back(name);
+    raw_.name_part(std::string(name));
     if (name != node_) return;
     in = found_ = true;
   }
@@ -220,7 +219,6 @@ class ObjReader {
   const std::string node_;
   bool wanted_;  ///< the faces that follow are those of the part that is read
   bool in_object_ = false, in_group_ = false, found_ = false;
-  std::vector<std::string> parts_;  ///< names of objects and groups
   Raw raw_;
   std::size_t line_ = 0;
   std::vector<Corner> corners_;

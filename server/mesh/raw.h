@@ -36,6 +36,7 @@ struct Raw {
   const char* line_word = "line";
   std::size_t most_triangles = std::numeric_limits<std::size_t>::max();
   Mending mended;
+  std::vector<std::string> parts;        ///< Mesh::part_names
   std::vector<std::uint32_t> placeless;  ///< vertices without a place, rising: their faces are left out
   std::optional<Error> no_cloth;         ///< Mesh::no_cloth
 
@@ -45,6 +46,8 @@ struct Raw {
   /// The error `wrong` if nothing is mended. Else what it tells is left out, and no cloth can be made of the
   /// file.
   Status leave_out(Fault fault, std::size_t line, const Error& wrong);
+  /// The file has an object, group or node of this name.
+  void name_part(const std::string& part);
   /// An error if there would be more vertices than allowed.
   Status add_vertex(const glm::dvec3& place, std::size_t line, const Limits& limits);
   /// The same of one whose place is `wrong`.

@@ -1,9 +1,9 @@
 // mesh.upload, as a session's thread carries it out.
-#include <glm/common.hpp>
 #include <set>
 
 #include "server/base/base64.h"
 #include "server/session/change_name.h"
+#include "server/session/mesh_facts.h"
 #include "server/session/stepper.h"
 
 namespace clothlab::session {
@@ -29,28 +29,6 @@ History::Change replacement(History::MeshChange mesh, std::uint64_t by) {
   change.back = change.forth = "[]";
   change.mesh = std::move(mesh);
   return change;
-}
-
-json point_list(const glm::dvec3& point) {
-  return json::array({point.x, point.y, point.z});
-}
-
-json facts(const std::string& name, const mesh::Mesh& mesh) {
-  glm::dvec3 low = mesh.vertices[0], high = low;
-  for (const glm::dvec3& vertex : mesh.vertices) {
-    low = glm::min(low, vertex);
-    high = glm::max(high, vertex);
-  }
-  return {{"name", name},
-          {"vertices", mesh.vertices.size()},
-          {"triangles", mesh.triangles.size()},
-          {"parts", mesh.parts},
-          {"merged", mesh.merged},
-          {"unused", mesh.unused},
-          {"flipped", mesh.flipped},
-          {"pattern", !mesh.texture.empty()},
-          {"box", json::array({point_list(low), point_list(high)})},
-          {"notes", mesh.notes}};
 }
 
 }  // namespace
@@ -90,7 +68,7 @@ void Stepper::perform(UploadMesh& upload, const Ticket& ticket) {
     remember(replacement({upload.name, std::move(before), *item}, ticket.asker));
   }
   keep_mesh(upload.name);
-  json answer = facts(upload.name, *(*item)->mesh);
+  json answer = mesh_facts(upload.name, *(*item)->mesh, *meshes_, bytes);
   answer["removed"] = *removed;
   reply(ticket, std::move(answer));
 }

@@ -4,6 +4,7 @@ import { mkdirSync, mkdtempSync, rmSync, symlinkSync, writeFileSync } from "node
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
+import { figure, tube } from "../browser/garment.mjs";
 import { Client, Server } from "./harness.mjs";
 
 const leaf = "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 4\n";
@@ -92,7 +93,18 @@ test("an uploaded mesh is read, answered for and named by the scene of its sessi
       [0, 0, 0],
       [1, 1, 0],
     ],
+    area: 1,
+    pattern_area: 0,
+    mean_edge: (4 + Math.SQRT2) / 5,
+    no_cloth: null,
+    borders: [{ vertices: [0, 1, 2, 3], middle: [0.5, 0.5, 0] }],
+    ends: [
+      [1, 2],
+      [2, 3],
+      [0, 1, 2, 3],
+    ],
     notes: [],
+    nodes: [],
     removed: [],
   });
   await client.request("scene.patch", { patch: named("leaf.obj") });
@@ -113,6 +125,47 @@ test("an uploaded mesh is read, answered for and named by the scene of its sessi
     assert.equal((await client.refusal("mesh.upload", params)).data.path, path, JSON.stringify(params));
   await client.close();
   await other.close();
+});
+
+test("an upload's answer has its openings, areas and parts by their names, in the numbers of the file", async () => {
+  const client = await enter();
+  // the shirt's vertices come after one that no face has and one that is there twice
+  const head = "v 9 9 9\nv 0 0 0\n";
+  const shirt = tube({ around: 8, rows: 2, unit: 1, first: 3 });
+  const body = figure({ around: 6, rows: 4, unit: 1, first: 27 });
+  const whole = await client.request("mesh.upload", { name: "both.obj", obj: head + shirt + body });
+  assert.deepEqual(
+    whole.nodes.map(({ node, borders }) => [node, borders.length]),
+    [
+      ["shirt", 2],
+      ["figure", 0],
+    ],
+  );
+  const [{ borders, ends, area, box, mean_edge: edge, pattern_area: none }] = whole.nodes;
+  const sorted = (list) => [...list].sort((a, b) => a - b);
+  const [low, high] = [...borders].sort((one, other) => one.middle[1] - other.middle[1]);
+  assert.deepEqual(sorted(low.vertices), [2, 3, 4, 5, 6, 7, 8, 9]);
+  assert.deepEqual(sorted(high.vertices), [18, 19, 20, 21, 22, 23, 24, 25]);
+  // all round in order: each is a neighbour of the one before
+  for (const [i, vertex] of high.vertices.entries()) {
+    const steps = (high.vertices[(i + 1) % 8] - vertex + 8) % 8;
+    assert.ok(steps === 1 || steps === 7, `${high.vertices}`);
+  }
+  assert.ok(Math.abs(high.middle[1] - 1.45) < 1e-12);
+  assert.deepEqual(ends[1], sorted(high.vertices));
+  assert.deepEqual(box[1][1], 1.45);
+  // eight sides of an ellipse, half-axes 0.24 and 0.18, round a height of 0.55
+  const corner = (i) => [0.24 * Math.cos((Math.PI * i) / 4), 0.18 * Math.sin((Math.PI * i) / 4)];
+  const round = Array.from({ length: 8 }, (_, i) => {
+    const [[x, z], [u, w]] = [corner(i), corner(i + 1)];
+    return Math.hypot(u - x, w - z);
+  }).reduce((sum, length) => sum + length);
+  assert.ok(Math.abs(area - 0.55 * round) < 2e-3 * area, `${area}`); // the file has three digits
+  assert.ok(edge > 0.1 && edge < 0.4 && none === 0);
+  // many vertices are told by some of them, evenly chosen
+  const fine = await client.request("mesh.upload", { name: "fine.obj", obj: tube({ around: 200, rows: 2 }) });
+  assert.equal(fine.borders[0].vertices.length, 64);
+  await client.close();
 });
 
 test("an upload is mended, which its answer and a notice tell, and is strict where the scene wants it so", async () => {
