@@ -50,6 +50,7 @@ const { metafile } = await build({
     gallery: "src/gallery/gallery.css",
     compare: "src/compare/compare.css",
     inside: "src/inside/inside.css",
+    open: "src/open/open.css",
   },
   outdir: "dist",
   splitting: true, // what an import() names is loaded when it is used

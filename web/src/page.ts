@@ -19,7 +19,7 @@ import { Layout } from "./panel/layout";
 import { LinkView } from "./panel/link_view";
 import { Guide } from "./explain/guide";
 import { notice, noticeError, showApplied, type Diverged, type Level } from "./panel/notices";
-import { takeDroppedMeshes } from "./panel/mesh_drop";
+import { OpenDoor } from "./open/door";
 import { Panel } from "./panel/panel";
 import { Presets } from "./panel/presets";
 import { RecordButton } from "./panel/record_button";
@@ -74,13 +74,18 @@ export class Page {
   private readonly guide = new Guide();
   private readonly presets = new Presets({
     ask: () => this.connection.request("scene.presets"),
-    arrived: (presets, fabrics) => this.panel.setOffers(presets, fabrics),
+    arrived: (presets, fabrics) => {
+      this.fabricNames = fabrics.map(({ name }) => name);
+      this.presetNames = presets;
+      this.panel.setOffers(presets, fabrics);
+    },
     current: () => this.sceneName,
     mayEdit: () => this.mayEdit,
     load: (name) => this.loadPreset(name),
   });
   private readonly panel: Panel = this.makePanel();
   private readonly drawers = this.makeDrawers();
+  private readonly files = this.makeOpenDoor();
   private readonly notifications = this.makeNotifications();
   private readonly colourBy = new ColourBy(
     (field) => {
@@ -105,6 +110,8 @@ export class Page {
   private hand: Hand | null = null; // with the stage, as the next
   private layout: Layout | null = null;
   private welcome = (): void => undefined; // a newcomer
+  private fabricNames: string[] = []; // that come with the server, as the next
+  private presetNames: string[] = [];
   private sceneName = "";
   private stability: Stability | null = null; // in the last status
   private mayEdit = true; // false for a viewer, who may only watch
@@ -169,13 +176,6 @@ export class Page {
       blowUp: () => this.blowUp(),
       lab,
       changed: () => layout.cardToggled(),
-    });
-    takeDroppedMeshes({
-      request: (method, params) => this.connection.request(method, params),
-      mayEdit: () => this.mayEdit,
-      refused: (title, error, patch) => this.refusals.tell(title, error, patch),
-      hung: () => this.picture.fitAtNext(),
-      scene: (files) => this.drawers.take(files),
     });
   }
 
@@ -266,6 +266,7 @@ export class Page {
         openText: () => this.drawers.toggle("text"),
         openCompare: () => this.drawers.toggle("compare"),
         openGallery: () => this.presets.openGallery(),
+        openFiles: () => this.files.choose(),
         act: (deed) =>
           act(deed, {
             stored: () => this.store.stored,
@@ -320,6 +321,23 @@ export class Page {
       undo: (revision) => void this.undo.go("undo", revision),
       toggled: (open) => this.layout?.labToggled(open),
       returned: () => this.picture.again(),
+    });
+  }
+
+  private makeOpenDoor(): OpenDoor {
+    return new OpenDoor({
+      request: (method, params) => this.connection.request(method, params),
+      mayEdit: () => this.mayEdit,
+      stored: () => this.store.stored,
+      fabrics: () => this.fabricNames,
+      presets: () => this.presetNames,
+      refused: (title, error, patch) => this.refusals.tell(title, error, patch),
+      showCrossings: (crossings) => this.stage.showCrossings(crossings),
+      hideCrossings: () => this.stage.hideCrossings(),
+      pause: () => this.transport.stop(),
+      play: () => this.transport.start(),
+      fit: () => this.picture.fitAtNext(),
+      scene: (files) => this.drawers.take(files),
     });
   }
 
@@ -392,6 +410,7 @@ export class Page {
     this.picture.moved = [];
     this.refusals.sceneShown(this.store.revision, whole);
     const newScene = whole && document.name !== this.sceneName;
+    if (newScene && this.store.stored) this.guide.baseline.take(this.store.stored); // by a patch, too
     this.sceneName = document.name;
     element("scene-name", HTMLElement).textContent = document.name;
     this.drawDocument(newScene, whole);

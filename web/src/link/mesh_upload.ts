@@ -1,49 +1,74 @@
-// What becomes of a mesh's file of the user's: a message with its content, and a cloth that hangs.
-import type { Operation, Vec3 } from "./scene_types";
+// A file of meshes on its way to the server: the message with its content, and what the server answers of it.
+import type { Vec3 } from "./scene_types";
 
-/// The answer of mesh.upload, the part that is used here.
-export interface Uploaded {
-  name: string;
+/// An opening of a mesh, or its outline.
+export interface Border {
+  vertices: number[]; ///< in order, of many some, evenly chosen; as a pin counts them
+  middle: Vec3;
+}
+
+/// What mesh.upload answers of a file, and of each named part of it. Lengths are in the file's unit.
+export interface Part {
+  node?: string; ///< the name of the part; none: the whole file
   vertices: number;
   triangles: number;
-  box: [Vec3, Vec3]; // [m]
+  pattern: boolean; ///< it has texture coordinates
+  box: [Vec3, Vec3];
+  area: number;
+  pattern_area: number;
+  mean_edge: number;
+  no_cloth: string | null; ///< why it can be a body alone
+  borders: Border[]; ///< the longest first
+  ends: [number[], number[], number[]]; ///< vertices of the last 3 % along x, y and z
+}
+export interface Uploaded extends Part {
+  name: string;
+  notes: string[]; ///< what was mended, where it is open
+  nodes: Part[];
 }
 
-const rounded = (value: number): number => Number(value.toPrecision(4));
+export const largestMessage = 8 * 1024 * 1024; // bytes: hello.limits.meshes.message_bytes
+const longestName = 64; // bytes
 
-/// What makes the first cloth of this mesh: upright, of a size between a hand and a tent, its top 3 % held.
-export function hung(mesh: Uploaded): Operation[] {
-  const [low, high] = mesh.box;
-  const size = [0, 1, 2].map((axis) => (high[axis] as number) - (low[axis] as number)) as Vec3;
-  const largest = Math.max(...size);
-  // A file in centimetres or millimetres; else the cloth gets a size of 1 m.
-  const scale = [1, 0.01, 0.001].find((unit) => largest * unit >= 0.2 && largest * unit <= 5) ?? rounded(1 / largest);
-  const lying = size[1] < 0.05 * largest && size[2] > size[1]; // its third axis then points up
-  const [bottom, top] = lying ? [low[2], high[2]] : [low[1], high[1]];
-  const [front, back] = lying ? [-high[1], -low[1]] : [low[2], high[2]];
-  const height = (top - bottom) * scale;
-  const hangsFrom = rounded(height + 0.2);
-  const middle = (from: number, to: number): number => rounded(-0.5 * scale * (from + to)) || 0;
-  const translate: Vec3 = [middle(low[0], high[0]), rounded(hangsFrom - top * scale), middle(front, back)];
-  const held: [Vec3, Vec3] = [
-    [-1000, rounded(hangsFrom - 0.03 * height), -1000],
-    [1000, rounded(hangsFrom + 0.01 * height + 0.001), 1000],
-  ];
-  const replace = (key: string, value: unknown): Operation => ({ op: "replace", path: `/cloths/0/${key}`, value });
-  return [
-    replace("mesh", { file: mesh.name, pattern: null }),
-    replace("transform", { translate, rotate: [lying ? -90 : 0, 0, 0], scale }),
-    replace("pins", [{ at: { box: held }, motion: null }]),
-    replace("weights", []),
-    replace("start", null),
-  ];
-}
+const coded = (bytes: Uint8Array): string => {
+  let text = "";
+  for (let at = 0; at < bytes.length; at += 8192) text += String.fromCharCode(...bytes.subarray(at, at + 8192));
+  return btoa(text);
+};
 
 /// The content for mesh.upload: text as it is, a binary .ply or a .glb file in base64.
 export function content(bytes: Uint8Array): { obj: string; encoding: "text" | "base64" } {
   const head = new TextDecoder("latin1").decode(bytes.subarray(0, 200));
   if (!/^glTF|^ply\s[^]*format binary/.test(head)) return { obj: new TextDecoder().decode(bytes), encoding: "text" };
-  let text = "";
-  for (let at = 0; at < bytes.length; at += 8192) text += String.fromCharCode(...bytes.subarray(at, at + 8192));
-  return { obj: btoa(text), encoding: "base64" };
+  return { obj: coded(bytes), encoding: "base64" };
+}
+
+/// A .gltf file with the buffers in it that lie beside it: an upload is one file. What is no JSON stays as it is, and
+/// the server says what is wrong.
+export function withBuffers(gltf: string, beside: Map<string, Uint8Array>): string {
+  let file: { buffers?: { uri?: string }[] };
+  try {
+    file = JSON.parse(gltf) as typeof file;
+  } catch {
+    return gltf;
+  }
+  for (const buffer of file.buffers ?? []) {
+    const bytes = beside.get(decodeURIComponent(buffer.uri ?? ""));
+    if (bytes) buffer.uri = `data:application/octet-stream;base64,${coded(bytes)}`;
+  }
+  return JSON.stringify(file);
+}
+
+/// The name of a file in the session: its end, of at most 64 bytes, with a number if the scene has it already. An
+/// upload by a name that the scene has would change the scene unasked.
+export function freeName(file: string, taken: Set<string>): string {
+  const [, stem = "", ending = ""] = /^(.*?)(\.[^.]*)?$/.exec(file) ?? [];
+  const bytes = (text: string): number => new TextEncoder().encode(text).length;
+  for (let number = 1; ; ++number) {
+    const rest = (number === 1 ? "" : `-${number}`) + ending;
+    let from = 0;
+    while (bytes(stem.slice(from) + rest) > longestName) ++from;
+    const name = stem.slice(from) + rest;
+    if (!taken.has(name)) return name;
+  }
 }

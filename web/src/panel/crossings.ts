@@ -4,6 +4,7 @@ import type { Crossings, CrossingPart, RpcError } from "../link/rpc";
 import type { Patch } from "../link/scene_types";
 
 const mostNamed = 3;
+export const ofCloth = "/self_collision/kind"; // the place of a refusal for cloth that meets cloth; else it meets a body
 
 interface Host {
   show(crossings: Crossings): void;
@@ -19,31 +20,34 @@ export function underPoints(patch: Patch): Patch {
 
 const named = ({ vertices, name }: CrossingPart): string => `${vertices.join("-")} of ${name}`;
 
+/// What passes through what, and the first `most` edges and triangles; none if the refusal has another reason.
+export function crossingLines({ data: { crossings, path } }: RpcError, most = mostNamed): string[] {
+  if (!crossings) return [];
+  const { when, count, complete, pairs } = crossings;
+  const many = `${count}${complete ? "" : " or more"} ${count === 1 ? "place" : "places"}`;
+  const subject = when === "start" ? "The scene would start with cloth" : "At present there is cloth";
+  const list = pairs.slice(0, most).map(({ edge, triangle }) => `edge ${named(edge)} × triangle ${named(triangle)}`);
+  return [
+    path === ofCloth
+      ? `${subject} passing through cloth, in ${many}. “Surface” keeps apart only what is apart.`
+      : `${subject} passing through a body, in ${many}. Contact keeps apart only what is apart.`,
+    ...list.map((pair, i) => (i === most - 1 && count > most ? `${pair}, …` : pair)),
+  ];
+}
+
 /// Tells the refusal of `patch`. Returns a function that takes the notice away; null, and nothing is told, if the
 /// refusal has another reason.
 export function tellCrossings(title: string, error: RpcError, patch: Patch, host: Host): (() => void) | null {
   const { crossings, path } = error.data;
   if (!crossings) return null;
-  const ofCloth = path === "/self_collision/kind"; // else cloth meets a body
-  const { when, count, complete, pairs } = crossings;
-  const many = `${count}${complete ? "" : " or more"} ${count === 1 ? "place" : "places"}`;
-  const subject = when === "start" ? "The scene would start with cloth" : "At present there is cloth";
-  const list = pairs
-    .slice(0, mostNamed)
-    .map(({ edge, triangle }) => `edge ${named(edge)} × triangle ${named(triangle)}`);
   return notice("error", {
     title,
-    lines: [
-      ofCloth
-        ? `${subject} passing through cloth, in ${many}. “Surface” keeps apart only what is apart.`
-        : `${subject} passing through a body, in ${many}. Contact keeps apart only what is apart.`,
-      ...list.map((pair, i) => (i === mostNamed - 1 && count > mostNamed ? `${pair}, …` : pair)),
-    ],
+    lines: crossingLines(error),
     stays: true,
     closed: () => host.hide(),
     actions: [
       { label: "Show me", keeps: true, run: () => host.show(crossings) },
-      ...(ofCloth ? [{ label: "Use points instead", run: () => host.send(underPoints(patch)) }] : []),
+      ...(path === ofCloth ? [{ label: "Use points instead", run: () => host.send(underPoints(patch)) }] : []),
     ],
   });
 }

@@ -20,6 +20,7 @@ export interface PanelEvents {
   openText(): void;
   openCompare(): void;
   openGallery(): void;
+  openFiles(): void;
   act(deed: Deed): void;
 }
 
@@ -51,6 +52,11 @@ export class Panel {
   private readonly explanation: Explanation;
   private readonly differences = document.createElement("p");
   private readonly actions = offers([
+    {
+      text: "Open files",
+      title: "A garment or a body of your own, as .obj, .ply, .glb or .gltf; or drop it anywhere",
+      run: () => this.events.openFiles(),
+    },
     { text: "Gallery", title: "The presets with pictures", run: () => this.events.openGallery() },
     { text: "Edit as text, save, share", title: "The scene as JSON (J)", run: () => this.events.openText() },
     { text: "Compare", title: "Two settings of the scene side by side (C)", run: () => this.events.openCompare() },

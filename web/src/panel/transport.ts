@@ -37,6 +37,10 @@ export class Transport {
     if (!this.playing) this.toggle();
   }
 
+  stop(): void {
+    if (this.playing) this.toggle();
+  }
+
   step(): void {
     this.events.request("sim.step", { steps: 1 });
     this.assume(false);
