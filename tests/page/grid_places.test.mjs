@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { load } from "./module.mjs";
 
-const { placeIn, withPlaces } = await load("link/grid_places");
+const { masses, placeIn, withPlaces } = await load("link/grid_places");
 const { sessionFault } = await load("link/session_name");
 
 const size = { columns: 25, rows: 25 };
@@ -43,6 +43,32 @@ test("a change of both numbers of a grid moves its pins and weights once, and th
   ]);
   const other = [{ op: "replace", path: "/gravity/1", value: 0 }];
   assert.deepEqual(withPlaces(document, other), other);
+});
+
+test("a grid that gets other rows or columns keeps its mass as a whole, or that of a vertex if the user has said it", () => {
+  const of = (columns, rows, per_vertex) => ({
+    cloths: [{ mesh: { grid: { columns, rows, width: 1, height: 1 } }, mass: { per_vertex } }],
+  });
+  const path = "/cloths/0/mass/per_vertex";
+  const resize = (columns) => [{ op: "replace", path: "/cloths/0/mesh/grid/columns", value: columns }];
+  const loaded = of(25, 25, 0.1);
+  const finer = masses(loaded, resize(49), loaded);
+  assert.deepEqual(finer.operations, [{ op: "replace", path, value: 0.0510204 }]);
+  const { whole, ...change } = finer.changes[0];
+  assert.deepEqual(change, { path, vertex: 0.0510204, kept: "whole", otherwise: 0.1 });
+  assert.ok(Math.abs(whole - 62.5) < 1e-3);
+  assert.deepEqual(masses(of(49, 25, 0.0510204), resize(25), loaded).operations, [{ op: "replace", path, value: 0.1 }]);
+  // the user's own number
+  const own = masses(of(25, 25, 0.2), resize(49), loaded);
+  assert.deepEqual(own.operations, []);
+  assert.deepEqual(own.changes, [{ path, vertex: 0.2, kept: "vertex", otherwise: 0.102041, whole: 245 }]);
+  // what is loaded may be unknown yet; a density is no mass of a vertex; a reset says the mass itself
+  assert.equal(masses(of(25, 25, 0.2), resize(49), null).operations[0].value, 0.102041);
+  const dense = of(25, 25, 0.1);
+  dense.cloths[0].mass = { area_density: 0.1 };
+  assert.deepEqual(masses(dense, resize(49), loaded), { operations: [], changes: [] });
+  const said = [...resize(49), { op: "replace", path: "/cloths/0/mass", value: { per_vertex: 0.1 } }];
+  assert.deepEqual(masses(loaded, said, loaded).changes, []);
 });
 
 test("a session's name that the server would refuse is told, with what is allowed", () => {

@@ -13,6 +13,7 @@ import { Hud, type Status } from "./panel/hud";
 import { Refusals } from "./panel/refusals";
 import { bindFirstSteps } from "./panel/newcomer";
 import { InsideDoor } from "./inside/door";
+import { tellMass } from "./panel/kept_mass";
 import { tellKept } from "./panel/kept_stable";
 import { StatusLog } from "./panel/status_log";
 import { Layout } from "./panel/layout";
@@ -28,7 +29,7 @@ import { Bodies } from "./link/bodies";
 import { LineWatch, type Second } from "./link/line_watch";
 import { SlowWatch } from "./panel/slow_watch";
 import { SceneStore } from "./link/scene_store";
-import { withPlaces } from "./link/grid_places";
+import { masses, withPlaces } from "./link/grid_places";
 import { sessionFault } from "./link/session_name";
 import { Picture } from "./picture";
 import type { MovedCollider, Patch, SceneDocument } from "./link/scene_types";
@@ -258,8 +259,11 @@ export class Page {
       element("panel-body", HTMLElement),
       {
         edit: (operations, keepStable) => {
-          const { document } = this.store;
-          this.store.edit(document ? withPlaces(document, operations) : operations, keepStable);
+          const document = this.store.expected;
+          if (!document) return;
+          const mass = masses(document, operations, this.guide.baseline.alignedTo(document));
+          this.store.edit([...withPlaces(document, operations), ...mass.operations], keepStable);
+          for (const each of mass.changes) tellMass(each, (more) => this.store.edit(more, true));
         },
         busy: (path) => this.store.busy(path),
         loadPreset: (name) => this.loadPreset(name),

@@ -78,6 +78,17 @@ export class SceneStore {
     this.schedule();
   }
 
+  /// The document as it will be shown once the edits on their way are applied: what another edit is made for.
+  get expected(): SceneDocument | null {
+    const more = [...(this.inFlight ?? []), ...this.queue.values()];
+    if (!this.document || more.length === 0) return this.document;
+    try {
+      return applyPatch(this.document, more);
+    } catch {
+      return this.document; // one of them is in a place that the server alone knows
+    }
+  }
+
   /// True while a change at or below `path` is unanswered: the control there keeps its value until the answer comes.
   busy(path: string): boolean {
     const touches = (operation: Operation) => operation.path === path || path.startsWith(operation.path + "/");
