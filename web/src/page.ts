@@ -35,6 +35,7 @@ import { Picture } from "./picture";
 import type { MovedCollider, Patch, SceneDocument } from "./link/scene_types";
 import type { HandAt } from "./view/grab";
 import { Hand } from "./view/hand";
+import { Picker } from "./view/picking";
 import type { Stage } from "./view/stage";
 import { hook } from "./test_hook";
 import { bindCameraInput } from "./view/camera_input";
@@ -113,6 +114,8 @@ export class Page {
   private welcome = (): void => undefined; // a newcomer
   private fabricNames: string[] = []; // that come with the server, as the next
   private presetNames: string[] = [];
+  private startWidths: number[] = []; // of cloths as they start, along x [m]
+  private handlesFor: number | null = null; // the cloth that gets handles once it is back at its start
   private sceneName = "";
   private stability: Stability | null = null; // in the last status
   private mayEdit = true; // false for a viewer, who may only watch
@@ -201,6 +204,7 @@ export class Page {
         this.colourBy.show(field, header.range);
         this.hud.set("vertices", String(header.vertexCount));
         this.link.drawing();
+        if (header.step === 0) this.started();
       },
       first: () => void this.guide.load().then(() => this.panel.mark()),
     });
@@ -250,6 +254,7 @@ export class Page {
       rejected: (error, operations) => {
         this.refusals.tell("Not applied", error, operations);
         this.panel.snapBack();
+        this.hand?.sceneChanged();
       },
     });
   }
@@ -271,8 +276,10 @@ export class Page {
         openCompare: () => this.drawers.toggle("compare"),
         openGallery: () => this.presets.openGallery(),
         openFiles: () => this.files.choose(),
+        handles: (cloth) => this.giveHandles(cloth),
         act: (deed) =>
           act(deed, {
+            wide: (cloth) => Math.max(this.startWidths[cloth] ?? 0, new Picker(this.stage).wide(cloth)),
             stored: () => this.store.stored,
             request: (method, params) => this.connection.request(method, params),
             refused: (title, error, patch) => this.refusals.tell(title, error, patch),
@@ -289,7 +296,7 @@ export class Page {
         this.connection.request("scene.patch", { patch: operations }).catch((error: Error) => {
           noticeError("Not pinned", error);
         }),
-      edit: (operations) => this.store.edit(operations),
+      edit: (operations, keepStable) => this.store.edit(operations, keepStable),
       document: () => this.store.document,
       mayEdit: () => this.mayEdit && !this.drawers.compared,
       mayGrab: () => this.mayEdit && this.connection.open && !this.divergence.now && !this.drawers.compared,
@@ -402,6 +409,22 @@ export class Page {
       () => this.transport.start(), // who chooses a scene wants to see it move
       (error: Error) => this.refusals.tell("The server refused this", error),
     );
+  }
+
+  // Handles move a cloth at its start.
+  private giveHandles(cloth: number): void {
+    this.transport.stop();
+    element("view", HTMLElement).focus({ preventScroll: true }); // keys are the handles' now, not the button's
+    this.handlesFor = cloth;
+    if (this.stage.frame?.header.step === 0) this.started();
+    else this.transport.reset();
+  }
+
+  private started(): void {
+    const picker = new Picker(this.stage);
+    this.startWidths = (picker.topology?.cloths ?? []).map((_, cloth) => picker.wide(cloth));
+    if (this.handlesFor !== null) this.hand?.chooseCloth(this.handlesFor);
+    this.handlesFor = null;
   }
 
   private enableEdits(): void {

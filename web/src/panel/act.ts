@@ -12,6 +12,7 @@ interface Done {
 
 interface Host {
   stored(): SceneDocument | null;
+  wide(cloth: number): number; ///< along x, at its start or at present [m]
   request<T>(method: string, params: Record<string, unknown>): Promise<T>;
   refused(title: string, error: Error, patch?: Patch): void;
 }
@@ -22,7 +23,7 @@ let closeLast = (): void => undefined; // the button of the last change is the o
 export function act({ says, change, keepStable }: Deed, host: Host): void {
   const stored = host.stored();
   if (!stored) return;
-  const patch = change(stored);
+  const patch = change(stored, (cloth) => host.wide(cloth));
   const done = ({ revision, solver }: Done): void => {
     // Of this change alone: after another one the server refuses it.
     const back = (): void =>

@@ -62,6 +62,7 @@ export interface Section {
   fields: Field[];
   sections: Section[];
   deeds?: Deed[]; ///< buttons below the fields
+  handles?: number; ///< of this cloth: a button for its handles
 }
 
 export const meter = { unit: "m" };

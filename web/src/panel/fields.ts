@@ -145,14 +145,37 @@ function clothSection(document: SceneDocument, index: number, fabrics: Fabric[])
         choices: ["weave", "checker", "stripes", "plain"],
       },
     ],
-    sections: pinSections(document, index),
+    sections: [
+      {
+        key: `${base}/transform`,
+        title: "Place",
+        open: false,
+        fields: transformFields(base, true),
+        sections: [],
+      },
+      ...pinSections(document, index),
+    ],
     deeds: clothDeeds(document, index),
+    handles: index,
   };
+}
+
+const place = { min: -2, max: 2, step: 0.005, ...meter };
+
+/// Where a mesh is put. A `cloth` starts anew there.
+function transformFields(base: string, cloth = false): Field[] {
+  const at = `${base}/transform`;
+  const turn = { min: -180, max: 180, step: 1, unit: "°" };
+  const fields = [
+    ...vector("place", [`${at}/translate`], place),
+    ...vector("turned about", [`${at}/rotate`], turn),
+    number("scale", [`${at}/scale`], { min: 0.001, max: 10, log: true }),
+  ];
+  return cloth ? fields.map((field) => ({ ...field, onRelease: true, keepStable: true })) : fields;
 }
 
 /// The fields of a shape, and the center around which it spins by default.
 function shapeFields(shape: Shape, base: string): { fields: Field[]; center: Vec3 } {
-  const place = { min: -2, max: 2, step: 0.005, ...meter };
   const radius = { min: 0.02, max: 1, step: 0.005, ...meter };
   const made = byKind<{ fields: Field[]; center: Vec3 }>(shape, {
     sphere: ({ center }) => ({
@@ -179,14 +202,7 @@ function shapeFields(shape: Shape, base: string): { fields: Field[]; center: Vec
       ],
       center,
     }),
-    mesh: ({ transform }) => ({
-      fields: [
-        ...vector("place", [`${base}/transform/translate`], place),
-        ...vector("turned about", [`${base}/transform/rotate`], { min: -180, max: 180, step: 1, unit: "°" }),
-        number("scale", [`${base}/transform/scale`], { min: 0.01, max: 10, log: true }),
-      ],
-      center: transform.translate,
-    }),
+    mesh: ({ transform }) => ({ fields: transformFields(base), center: transform.translate }),
   });
   return made ?? { fields: [], center: [0, 0, 0] };
 }

@@ -1,6 +1,4 @@
 // Rows of small buttons in the panel.
-import type { Deed } from "./parts";
-
 export interface Offer {
   text: string;
   title?: string;
@@ -18,6 +16,3 @@ export function offers(all: Offer[]): HTMLElement {
   }
   return row;
 }
-
-export const deedOffers = (deeds: Deed[], act: (deed: Deed) => void): HTMLElement =>
-  offers(deeds.map((deed) => ({ text: deed.label, run: () => act(deed) })));

@@ -8,7 +8,7 @@ import { type Convergence, ConvergenceGauge } from "./convergence_gauge";
 import { Gauge, type Stability } from "./gauge";
 import type { Fabric } from "../link/fabrics";
 import type { Operation, SceneDocument } from "../link/scene_types";
-import { deedOffers, offers } from "./offers";
+import { type Offer, offers } from "./offers";
 import type { Deed } from "./parts";
 import { SliderController } from "./slider";
 import { timeStep } from "./solver_section";
@@ -22,6 +22,7 @@ export interface PanelEvents {
   openGallery(): void;
   openFiles(): void;
   act(deed: Deed): void;
+  handles(cloth: number): void; ///< this cloth is to be moved, turned, scaled
 }
 
 interface Control {
@@ -194,8 +195,17 @@ export class Panel {
       if (changed === folder) this.folded.set(section.key, !folder._closed);
     });
     for (const field of section.fields) this.addField(folder, field);
-    if (section.deeds?.length) folder.$children.append(deedOffers(section.deeds, (deed) => this.events.act(deed)));
+    const actions = this.actionsOf(section);
+    if (actions.length > 0) folder.$children.append(offers(actions));
     for (const inner of section.sections) this.addSection(folder, inner);
+  }
+
+  /// The buttons below a section's fields.
+  private actionsOf({ deeds = [], handles }: Section): Offer[] {
+    const all = deeds.map((deed): Offer => ({ text: deed.label, run: () => this.events.act(deed) }));
+    if (handles === undefined) return all;
+    const title = "Move, turn and scale it at the start: the simulation is paused and goes back to it";
+    return [{ text: "Move by handles", title, run: () => this.events.handles(handles) }, ...all];
   }
 
   private addField(folder: GUI, field: Field): void {

@@ -1,13 +1,15 @@
 // Cloths, pins and bodies that come and go: what the panel's buttons for that change in the document.
 import type { Section } from "./field";
-import type { Collider, Operation, Pin, SceneDocument, Vec3 } from "../link/scene_types";
+import { shiftedCloth } from "../link/shifted_cloth";
+import type { Cloth, Collider, Operation, Pin, SceneDocument, Vec3 } from "../link/scene_types";
 
 /// A button of a section: one change, with what it says when it is done.
 export interface Deed {
   label: string;
   says: string;
   keepStable?: boolean; ///< the solver changes with it where the cloth would not hold
-  change(stored: SceneDocument): Operation[]; ///< of the document as the server keeps it
+  /// Of the document as the server keeps it. `wide`: how wide a cloth is along x [m].
+  change(stored: SceneDocument, wide: (cloth: number) => number): Operation[];
 }
 
 const removal = (label: string, says: string, paths: string[]): Deed => ({
@@ -26,7 +28,27 @@ const pinned = (label: string, cloth: number, places: string[]): Deed => ({
   },
 });
 
-/// What can be done to a cloth: pinned by its top, if that is known, and taken out, unless it is the last one.
+const gap = 1.1; // of copies, in widths
+
+/// Another of it beside it, as far along x as it is wide and a tenth more; behind the copies that are there.
+const copied = (index: number, name: string): Deed => ({
+  label: `Copy ${name}`,
+  says: `${name} has a copy`,
+  keepStable: true,
+  change: ({ cloths }, wide) => {
+    const cloth = cloths[index] as Cloth;
+    const names = new Set(cloths.map((each) => each.name));
+    let number = 2;
+    while (names.has(`${cloth.name}-${number}`)) ++number;
+    const { mesh, transform } = cloth;
+    const atRest = "grid" in mesh ? mesh.grid.width * transform.scale : 0;
+    const by: Vec3 = [Number(((number - 1) * gap * Math.max(wide(index), atRest)).toFixed(4)), 0, 0];
+    return [{ op: "add", path: `/cloths/${cloths.length}`, value: shiftedCloth(cloth, `${cloth.name}-${number}`, by) }];
+  },
+});
+
+/// What can be done to a cloth: pinned by its top, if that is known, copied, and taken out, unless it is the last
+/// one.
 export function clothDeeds({ cloths }: SceneDocument, cloth: number): Deed[] {
   const { mesh, name, pins } = cloths[cloth] as SceneDocument["cloths"][number];
   const lacks = (places: string[]): boolean => places.some((place) => !pins.some(({ at }) => at === place));
@@ -36,6 +58,7 @@ export function clothDeeds({ cloths }: SceneDocument, cloth: number): Deed[] {
     if (lacks(corners)) deeds.push(pinned("Pin the top corners", cloth, corners));
     if (lacks(["edge:row:0"])) deeds.push(pinned("Pin the top edge", cloth, ["edge:row:0"]));
   }
+  deeds.push(copied(cloth, name));
   if (cloths.length > 1) deeds.push(removal(`Remove ${name}`, `${name} is removed`, [`/cloths/${cloth}`]));
   return deeds;
 }

@@ -1,8 +1,8 @@
 // The hand of somebody who does not point: G grabs the vertex in the middle of the view, arrows pull it; B chooses a
 // body, arrows move it.
 import { takes } from "../panel/keys";
-import type { BodyDoor } from "./body_door";
 import type { Grab } from "./grab";
+import type { HandlesDoor } from "./handles_door";
 
 const stride = 16; // [CSS pixels] a press of an arrow; with Shift a quarter
 const deeper = 0.04; // share of the distance
@@ -13,7 +13,7 @@ const ownsKeys = (target: EventTarget | null): boolean =>
   target.id !== "view" &&
   target.closest("input, select, button, summary, [tabindex]") !== null;
 
-export function bindGrabKeys(grab: Grab, bodies: BodyDoor): void {
+export function bindGrabKeys(grab: Grab, handles: HandlesDoor): void {
   const whileHeldByKeys: Record<string, (fine: number) => void> = {
     ArrowLeft: (fine) => grab.nudge(-stride * fine, 0),
     ArrowRight: (fine) => grab.nudge(stride * fine, 0),
@@ -32,23 +32,23 @@ export function bindGrabKeys(grab: Grab, bodies: BodyDoor): void {
     Escape: () => grab.choose(null),
   };
   const whileBodyChosen: Record<string, (fine: number) => void> = {
-    ArrowLeft: (fine) => bodies.nudge(-fine, 0, 0),
-    ArrowRight: (fine) => bodies.nudge(fine, 0, 0),
-    ArrowUp: (fine) => bodies.nudge(0, fine, 0),
-    ArrowDown: (fine) => bodies.nudge(0, -fine, 0),
-    PageUp: (fine) => bodies.nudge(0, 0, fine),
-    PageDown: (fine) => bodies.nudge(0, 0, -fine),
-    t: () => bodies.toggleMode(),
-    Escape: () => bodies.leave(),
+    ArrowLeft: (fine) => handles.nudge(-fine, 0, 0),
+    ArrowRight: (fine) => handles.nudge(fine, 0, 0),
+    ArrowUp: (fine) => handles.nudge(0, fine, 0),
+    ArrowDown: (fine) => handles.nudge(0, -fine, 0),
+    PageUp: (fine) => handles.nudge(0, 0, fine),
+    PageDown: (fine) => handles.nudge(0, 0, -fine),
+    t: () => handles.toggleMode(),
+    Escape: () => handles.leave(),
   };
   const free: Record<string, () => void> = {
     g: () => grab.grabMiddle(),
     n: () => grab.chooseNext(),
-    b: () => bodies.chooseNext(),
+    b: () => handles.chooseNext(),
   };
   const commandFor = (key: string): ((fine: number) => void) | undefined => {
     if (grab.holding) return whileHeld[key] ?? (grab.holdsByKeys ? whileHeldByKeys[key] : undefined);
-    const chosen = grab.hasChosen ? whileChosen[key] : bodies.hasChosen ? whileBodyChosen[key] : undefined;
+    const chosen = grab.hasChosen ? whileChosen[key] : handles.hasChosen ? whileBodyChosen[key] : undefined;
     return chosen ?? free[key];
   };
   addEventListener(

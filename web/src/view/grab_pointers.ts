@@ -7,10 +7,12 @@ import type { Stage } from "./stage";
 export interface PressEvents {
   busy(event: PointerEvent): boolean; ///< something over the cloth takes this press
   clicked(x: number, y: number): void; ///< a click on neither cloth nor pin, at this point of the canvas
+  clickedCloth(cloth: number): void; ///< a click on this cloth
 }
 
 const slop = 6; // [CSS pixels] within which a press is a click, or a finger is still
 const pinsReach = { mouse: 12, touch: 24 }; // [CSS pixels]
+const clickTime = 400; // [ms] a longer press is a pull
 const secondFinger = 200; // [ms] after the first, both still: they are the camera's
 
 export class GrabPointers {
@@ -99,6 +101,8 @@ export class GrabPointers {
       stop(event);
       if (event.type === "pointerup" && this.grab.still(held)) this.grab.pin();
       else this.grab.drop();
+      const click = event.type === "pointerup" && !held.travelled && performance.now() - held.since < clickTime;
+      if (click) this.events.clickedCloth(held.cloth);
       return;
     }
     if (held || !pressed || event.type !== "pointerup") return;

@@ -1,26 +1,27 @@
-// The hand on the picture: pulling the cloth, the handles of bodies, and the keys of both.
-import { BodyDoor } from "./body_door";
-import type { BodyEvents } from "./body_handles";
+// The hand on the picture: pulling the cloth, the handles of bodies and cloths, and the keys of both.
 import { Grab, type GrabEvents, type HandAt } from "./grab";
 import { bindGrabKeys } from "./grab_keys";
 import { GrabPointers } from "./grab_pointers";
+import type { HandleEvents } from "./handles";
+import { HandlesDoor } from "./handles_door";
 import type { Stage } from "./stage";
 
-export type HandHost = Omit<GrabEvents, "took"> & BodyEvents;
+export type HandHost = Omit<GrabEvents, "took"> & HandleEvents;
 
 export class Hand {
   private readonly grab: Grab;
-  private readonly bodies: BodyDoor;
+  private readonly handles: HandlesDoor;
 
   constructor(stage: Stage, host: HandHost) {
     const { notify, patch, document, mayGrab } = host;
-    this.bodies = new BodyDoor(stage, host);
-    this.grab = new Grab(stage, { notify, patch, document, mayGrab, took: () => this.bodies.leave() });
+    this.handles = new HandlesDoor(stage, host);
+    this.grab = new Grab(stage, { notify, patch, document, mayGrab, took: () => this.handles.leave() });
     new GrabPointers(stage, this.grab, {
-      busy: (event) => this.bodies.takes(event),
-      clicked: (x, y) => this.bodies.click(x, y),
+      busy: (event) => this.handles.takes(event),
+      clicked: (x, y) => this.handles.click(x, y),
+      clickedCloth: (cloth) => this.handles.chooseCloth(cloth),
     });
-    bindGrabKeys(this.grab, this.bodies);
+    bindGrabKeys(this.grab, this.handles);
   }
 
   /// True while it holds the cloth.
@@ -40,8 +41,12 @@ export class Hand {
   lost(): void {
     this.grab.lost();
   }
+  /// Gives a cloth handles, once it is as it starts.
+  chooseCloth(index: number): void {
+    this.handles.chooseCloth(index);
+  }
   /// The document has changed.
   sceneChanged(): void {
-    this.bodies.follow();
+    this.handles.follow();
   }
 }

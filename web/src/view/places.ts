@@ -1,6 +1,6 @@
 // Where a frame has its vertices.
-import { Vector3 } from "three";
-import { q16Words, type Frame, type Header } from "../link/protocol";
+import { Box3, Vector3 } from "three";
+import { type ClothRange, q16Words, type Frame, type Header } from "../link/protocol";
 
 /// Reads places of vertices from a q16 frame.
 export class Places {
@@ -19,6 +19,15 @@ export class Places {
     const at = (axis: 0 | 1 | 2): number => low[axis] + (extent[axis] * (this.words[4 * vertex + axis] ?? 0)) / 65535;
     return into.set(at(0), at(1), at(2));
   }
+}
+
+/// The box of one cloth in a frame [m].
+export function boxOf(frame: Frame, { firstVertex, vertexCount }: ClothRange): Box3 {
+  const places = new Places(frame);
+  const box = new Box3();
+  const place = new Vector3();
+  for (let i = 0; i < vertexCount; ++i) box.expandByPoint(places.of(firstVertex + i, place));
+  return box;
 }
 
 /// All places of a frame [m], into an array of as many threes.

@@ -1,17 +1,17 @@
-// The way to the handles of bodies, which are loaded when somebody chooses one.
+// The way to the handles of bodies and cloths, which are loaded when somebody chooses one.
 import { noticeError } from "../panel/notices";
-import type { BodyEvents, BodyHandles } from "./body_handles";
+import type { HandleEvents, Handles } from "./handles";
 import { Picker } from "./picking";
 import type { Stage } from "./stage";
 
-export class BodyDoor {
-  private handles: BodyHandles | null = null;
-  private loading: Promise<typeof import("./body_handles")> | null = null;
+export class HandlesDoor {
+  private handles: Handles | null = null;
+  private loading: Promise<typeof import("./handles")> | null = null;
   private readonly picker: Picker;
 
   constructor(
     private readonly stage: Stage,
-    private readonly events: BodyEvents,
+    private readonly events: HandleEvents,
   ) {
     this.picker = new Picker(stage);
   }
@@ -29,7 +29,12 @@ export class BodyDoor {
   click(x: number, y: number): void {
     const index = this.picker.body(x, y)?.index ?? null;
     if (index === null) this.leave();
-    else this.with((handles) => handles.choose(index));
+    else this.with((handles) => handles.choose({ of: "body", index }));
+  }
+
+  /// Chooses the cloth of this number, if it is as it starts: that is what handles move.
+  chooseCloth(index: number): void {
+    if (this.stage.frame?.header.step === 0) this.with((handles) => handles.chooseCloth(index));
   }
 
   /// Chooses the next body, for keys.
@@ -53,14 +58,14 @@ export class BodyDoor {
     this.handles?.nudge(right, up, away);
   }
 
-  private with(use: (handles: BodyHandles) => void): void {
+  private with(use: (handles: Handles) => void): void {
     if (!this.events.mayEdit()) return;
-    this.loading ??= import("./body_handles");
+    this.loading ??= import("./handles");
     this.loading
-      .then((module) => use((this.handles ??= new module.BodyHandles(this.stage, this.events))))
+      .then((module) => use((this.handles ??= new module.Handles(this.stage, this.events))))
       .catch((error: Error) => {
         this.loading = null;
-        noticeError("The handles of bodies could not be loaded", error);
+        noticeError("The handles could not be loaded", error);
       });
   }
 }
