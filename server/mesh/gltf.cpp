@@ -53,7 +53,8 @@ class GltfReader {
       if (seen[at.node]++) continue;
       const Result<std::size_t> mesh = data_.whole(**node, "mesh");
       if (!mesh) return mesh.error();
-      const bool wanted = at.wanted || named(**node, *mesh);
+      const bool here = named(**node, *mesh);
+      const bool wanted = at.wanted || here;
       if (wanted && *mesh != absent)
         if (const Status read = read_mesh(**node, at.node, *mesh); !read) return read.error();
       const std::vector<std::size_t> below = indices_in(**node, "children");

@@ -1,5 +1,6 @@
 #include "server/session/mesh_facts.h"
 
+#include <algorithm>
 #include <glm/common.hpp>
 
 #include "server/mesh/shape.h"
@@ -78,9 +79,11 @@ json mesh_facts(const std::string& name, const mesh::Mesh& mesh, const scene::As
       const Result<scene::SharedMesh> part = assets.mesh(name, reading);
       if (!part) continue;  // a node without triangles
       json of = shape_facts(**part);
-      // a node and its mesh of another name are the same part
-      if (!nodes.empty() && nodes.back()["box"] == of["box"] && nodes.back()["triangles"] == of["triangles"])
-        continue;
+      if (of["triangles"] == facts["triangles"]) continue;  // all of the file
+      const auto same = [&](const json& other) {            // a node and its mesh have names of their own
+        return other["triangles"] == of["triangles"] && other["box"] == of["box"];
+      };
+      if (std::any_of(nodes.begin(), nodes.end(), same)) continue;
       of["node"] = node;
       nodes.push_back(std::move(of));
     }

@@ -29,6 +29,34 @@ after(async () => {
   rmSync(folder, { recursive: true });
 });
 
+/// A .gltf file with two nodes below a third: a triangle, and two triangles as a strip.
+function twoNodes() {
+  const places = [
+    [0, 0, 0, 1, 0, 0, 0, 1, 0],
+    [0, 0, 1, 1, 0, 1, 0, 1, 1, 1, 1, 1],
+  ].map((numbers) => Buffer.from(new Float32Array(numbers).buffer));
+  const bytes = Buffer.concat(places);
+  const uri = `data:application/octet-stream;base64,${bytes.toString("base64")}`;
+  const place = (bufferView, count) => ({ bufferView, componentType: 5126, count, type: "VEC3" });
+  return {
+    asset: { version: "2.0" },
+    scene: 0,
+    scenes: [{ nodes: [0] }],
+    nodes: [
+      { name: "all", children: [1, 2] },
+      { name: "shirt", mesh: 0 },
+      { name: "body", mesh: 1, translation: [3, 0, 0] },
+    ],
+    meshes: [
+      { name: "shirt of triangles", primitives: [{ attributes: { POSITION: 0 } }] },
+      { name: "body of strips", primitives: [{ attributes: { POSITION: 1 }, mode: 5 }] },
+    ],
+    accessors: [place(0, 3), place(1, 4)],
+    bufferViews: places.map(({ length }, i) => ({ buffer: 0, byteOffset: 36 * i, byteLength: length })),
+    buffers: [{ byteLength: bytes.length, uri }],
+  };
+}
+
 let sessions = 0;
 async function enter(at = server) {
   const client = await Client.connect(at, { session: `mesh-${++sessions}` });
@@ -162,6 +190,15 @@ test("an upload's answer has its openings, areas and parts by their names, in th
   }).reduce((sum, length) => sum + length);
   assert.ok(Math.abs(area - 0.55 * round) < 2e-3 * area, `${area}`); // the file has three digits
   assert.ok(edge > 0.1 && edge < 0.4 && none === 0);
+  // of glTF the nodes; one that holds all of the file, and a mesh that a node has told already, are no parts
+  const gltf = await client.request("mesh.upload", { name: "two.gltf", obj: JSON.stringify(twoNodes()) });
+  assert.deepEqual(
+    gltf.nodes.map(({ node, vertices, box: [from] }) => [node, vertices, from]),
+    [
+      ["shirt", 3, [0, 0, 0]],
+      ["body", 4, [3, 0, 1]],
+    ],
+  );
   // many vertices are told by some of them, evenly chosen
   const fine = await client.request("mesh.upload", { name: "fine.obj", obj: tube({ around: 200, rows: 2 }) });
   assert.equal(fine.borders[0].vertices.length, 64);
