@@ -35,8 +35,8 @@ import { Picture } from "./picture";
 import type { MovedCollider, Patch, SceneDocument } from "./link/scene_types";
 import type { HandAt } from "./view/grab";
 import { Hand } from "./view/hand";
-import { Picker } from "./view/picking";
 import type { Stage } from "./view/stage";
+import { StartState } from "./view/start_state";
 import { hook } from "./test_hook";
 import { bindCameraInput } from "./view/camera_input";
 import { bindTimeline } from "./panel/timeline_opener";
@@ -110,12 +110,11 @@ export class Page {
     send: (instead) => this.request("scene.patch", { patch: instead }),
   });
   private hand: Hand | null = null; // with the stage, as the next
+  private startState: StartState | null = null;
   private layout: Layout | null = null;
   private welcome = (): void => undefined; // a newcomer
   private fabricNames: string[] = []; // that come with the server, as the next
   private presetNames: string[] = [];
-  private startWidths: number[] = []; // of cloths as they start, along x [m]
-  private handlesFor: number | null = null; // the cloth that gets handles once it is back at its start
   private sceneName = "";
   private stability: Stability | null = null; // in the last status
   private mayEdit = true; // false for a viewer, who may only watch
@@ -131,6 +130,11 @@ export class Page {
     this.stage = hook.stage = stage;
     const layout: Layout = (this.layout = new Layout(() => stage.resize(layout.freeArea())));
     this.hand = this.makeHand(stage);
+    this.startState = new StartState(stage, {
+      stop: () => this.transport.stop(),
+      reset: () => this.transport.reset(),
+      chooseCloth: (cloth) => this.hand?.chooseCloth(cloth),
+    });
     this.inside = this.makeInside(stage);
     bindSaveButtons({ stage, sceneName: () => this.sceneName, get: (path) => this.connection.get(path) });
     this.bind(layout, new ThemeSwitch(() => stage.setTheme()));
@@ -204,7 +208,7 @@ export class Page {
         this.colourBy.show(field, header.range);
         this.hud.set("vertices", String(header.vertexCount));
         this.link.drawing();
-        if (header.step === 0) this.started();
+        this.startState?.drawn(header.step);
       },
       first: () => void this.guide.load().then(() => this.panel.mark()),
     });
@@ -276,10 +280,10 @@ export class Page {
         openCompare: () => this.drawers.toggle("compare"),
         openGallery: () => this.presets.openGallery(),
         openFiles: () => this.files.choose(),
-        handles: (cloth) => this.giveHandles(cloth),
+        handles: (cloth) => this.startState?.giveHandles(cloth),
         act: (deed) =>
           act(deed, {
-            wide: (cloth) => Math.max(this.startWidths[cloth] ?? 0, new Picker(this.stage).wide(cloth)),
+            wide: (cloth) => this.startState?.wide(cloth) ?? 0,
             stored: () => this.store.stored,
             request: (method, params) => this.connection.request(method, params),
             refused: (title, error, patch) => this.refusals.tell(title, error, patch),
@@ -297,7 +301,7 @@ export class Page {
           noticeError("Not pinned", error);
         }),
       edit: (operations, keepStable) => this.store.edit(operations, keepStable),
-      document: () => this.store.document,
+      document: () => this.store.expected, // keys come faster than answers
       mayEdit: () => this.mayEdit && !this.drawers.compared,
       mayGrab: () => this.mayEdit && this.connection.open && !this.divergence.now && !this.drawers.compared,
     });
@@ -409,22 +413,6 @@ export class Page {
       () => this.transport.start(), // who chooses a scene wants to see it move
       (error: Error) => this.refusals.tell("The server refused this", error),
     );
-  }
-
-  // Handles move a cloth at its start.
-  private giveHandles(cloth: number): void {
-    this.transport.stop();
-    element("view", HTMLElement).focus({ preventScroll: true }); // keys are the handles' now, not the button's
-    this.handlesFor = cloth;
-    if (this.stage.frame?.header.step === 0) this.started();
-    else this.transport.reset();
-  }
-
-  private started(): void {
-    const picker = new Picker(this.stage);
-    this.startWidths = (picker.topology?.cloths ?? []).map((_, cloth) => picker.wide(cloth));
-    if (this.handlesFor !== null) this.hand?.chooseCloth(this.handlesFor);
-    this.handlesFor = null;
   }
 
   private enableEdits(): void {

@@ -5,7 +5,8 @@ import { holds, sizeText, type Unit, units, type Up } from "./guess";
 import { type Answers, type Aside, beside, contact, extent, falls, patchFor, thicknessIn } from "./scene";
 import { content, freeName, largestMessage, type Uploaded, withBuffers } from "../link/mesh_upload";
 import { RpcError } from "../link/rpc";
-import type { Operation, Patch, SceneDocument } from "../link/scene_types";
+import type { Operation, Patch, SceneDocument, Vec3 } from "../link/scene_types";
+import { shiftedPlace } from "../link/shifted_cloth";
 import { crossingLines, ofCloth } from "../panel/crossings";
 import { methodText } from "../panel/methods";
 import { type Action, notice, noticeError } from "../panel/notices";
@@ -199,13 +200,13 @@ function tellAside(answers: Answers, stored: SceneDocument, aside: Aside, refusa
   const moved = aside.move[0] !== 0;
   const first = answers.fresh ? 0 : stored.cloths.length;
   const cloths = answers.items.filter(({ role }) => role === "cloth").length;
+  // As far back as it was put aside: the user may have moved and scaled it meanwhile.
   const back = (): Patch => [
-    ...Array.from(
-      { length: moved ? cloths : 0 },
-      (_, i): Operation => ({
+    ...(host.stored()?.cloths ?? []).slice(first, first + (moved ? cloths : 0)).map(
+      ({ transform: { translate } }, i): Operation => ({
         op: "replace",
         path: `/cloths/${first + i}/transform/translate`,
-        value: [0, 0, 0],
+        value: shiftedPlace(translate, aside.move.map((value) => -value) as Vec3),
       }),
     ),
     ...(aside.points ? [{ op: "replace", path: "/self_collision/kind", value: "surface" } as Operation] : []),
