@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat2x2.hpp>
 #include <glm/matrix.hpp>
+#include <type_traits>
 #include <utility>
 
 #include "server/base/pieces.h"
@@ -134,6 +135,7 @@ Status add_cloth(Model& model, const scene::Cloth& cloth, bool sweeps_elements) 
   between_pieces();
   std::vector<std::int32_t> pin_motion(position.size(), not_pinned);
   for (std::size_t i = 0; i < cloth.pins.size(); ++i) {
+    if (!cloth.pins[i].held) continue;
     const auto held =
         held_at(where + "/pins/" + std::to_string(i) + "/at", cloth, cloth.pins[i].at, position);
     if (!held) return held.error();
@@ -186,12 +188,34 @@ double stiffness(const scene::Springs& material, SpringKind kind) {
   return 0.0;
 }
 
-Result<Model> build(const scene::Scene& scene) {
-  Model model;
+namespace {
+
+Status add_cloths(Model& model, const scene::Scene& scene) {
   const bool sweeps_elements =
       scene::sweeps(scene.solver.method) && !scene::sweeps_vertices(scene.solver.method);
   for (const scene::Cloth& cloth : scene.cloths)
-    if (Status added = add_cloth(model, cloth, sweeps_elements); !added) return added.error();
+    if (Status added = add_cloth(model, cloth, sweeps_elements); !added) return added;
+  return ok();
+}
+
+}  // namespace
+
+Status take_materials(Model& model, const scene::Scene& scene) {
+  Model fresh;
+  if (Status added = add_cloths(fresh, scene); !added) return added;
+  bool same = true;
+  elements::each_law<elements::AllLaws>([&]<class Law>(std::type_identity<Law>) {
+    std::vector<Element<Law>>&present = model.elements.of<Law>(), &next = fresh.elements.of<Law>();
+    same = same && std::equal(present.begin(), present.end(), next.begin(), next.end(),
+                              [](const auto& a, const auto& b) { return a.vertices == b.vertices; });
+    if (same) present = std::move(next);
+  });
+  return same ? ok() : Error{"/keys", "numbers that change which vertices bend together", "other numbers"};
+}
+
+Result<Model> build(const scene::Scene& scene) {
+  Model model;
+  if (Status added = add_cloths(model, scene); !added) return added.error();
   between_pieces();
   add_bodies(model, scene);
   between_pieces();

@@ -74,6 +74,11 @@ struct Model {
 /// body that cloth starts through or in.
 Result<Model> build(const scene::Scene& scene);
 
+/// Gives the elements of a model that is in the scene's order the numbers of the scene's materials. The scene
+/// may differ from the one that the model was built of in these, and in what elements have nothing of. Error:
+/// the scene has other elements.
+Status take_materials(Model& model, const scene::Scene& scene);
+
 /// For each vertex the two other corners of each of its triangles, counter-clockwise, in the order of
 /// `vertex_triangles`. shaders/stream/normal.glsl reads this list.
 std::vector<std::uint32_t> vertex_fans(const Model& model);

@@ -5,6 +5,7 @@
 #include <complex>
 
 #include "server/base/text.h"
+#include "server/scene/keys.h"
 #include "server/scene/method.h"
 
 namespace clothlab::model {
@@ -147,12 +148,36 @@ double dt_limit(Method method, const ElementOperator& elements, const std::stop_
   return stop.stop_requested() ? dt_limit_bound(method, elements) : least;
 }
 
+std::vector<ElementOperator> extreme_operators(const Model& model, const scene::Scene& scene) {
+  std::vector<ElementOperator> list;
+  if (!scene.keys.empty())
+    for (const scene::Scene& extreme : scene::extremes(scene))
+      if (const Result<Model> built = build(extreme))
+        list.emplace_back(*built, extreme, built->rest_position);
+  if (list.empty()) list.emplace_back(model, scene, model.rest_position);
+  return list;
+}
+
+double dt_limit_bound(Method method, const Model& model, const scene::Scene& scene) {
+  double least = no_limit;
+  for (const ElementOperator& elements : extreme_operators(model, scene))
+    least = std::min(least, dt_limit_bound(method, elements));
+  return least;
+}
+
+double dt_limit(Method method, const Model& model, const scene::Scene& scene, const std::stop_token& stop) {
+  double least = no_limit;
+  for (const ElementOperator& elements : extreme_operators(model, scene))
+    least = std::min(least, dt_limit(method, elements, stop));
+  return least;
+}
+
 double dt_limit_bound(const Model& model, const scene::Scene& scene) {
-  return dt_limit_bound(scene.solver.method, ElementOperator(model, scene, model.rest_position));
+  return dt_limit_bound(scene.solver.method, model, scene);
 }
 
 double dt_limit(const Model& model, const scene::Scene& scene) {
-  return dt_limit(scene.solver.method, ElementOperator(model, scene, model.rest_position));
+  return dt_limit(scene.solver.method, model, scene);
 }
 
 double dt_limit_if_near(const Model& model, const scene::Scene& scene) {

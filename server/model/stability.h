@@ -9,6 +9,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include "server/model/extreme_mode.h"
 #include "server/model/model.h"
@@ -40,6 +41,15 @@ double dt_limit_bound(scene::Method method, const ElementOperator& elements);
 /// The longest stable step itself [s], at most about 0.1 % too long, at the cost of some 60 passes. `stop`
 /// ends the search early; then it returns the lower bound.
 double dt_limit(scene::Method method, const ElementOperator& elements, const std::stop_token& stop = {});
+
+/// The lower bound, and the longest stable step [s] of a method on a scene's cloth, about the rest shape.
+/// With keys of what decides it, the shortest over the scenes that have these at their extremes
+/// (scene::extremes).
+double dt_limit_bound(scene::Method method, const Model& model, const scene::Scene& scene);
+double dt_limit(scene::Method method, const Model& model, const scene::Scene& scene,
+                const std::stop_token& stop = {});
+/// The cloths about the rest shape that these are of.
+std::vector<ElementOperator> extreme_operators(const Model& model, const scene::Scene& scene);
 
 /// The lower bound and the longest stable step [s] of the scene's own method, about the rest shape.
 double dt_limit_bound(const Model& model, const scene::Scene& scene);

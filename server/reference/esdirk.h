@@ -31,6 +31,7 @@ class Esdirk {
   void set_acceleration(const Vectors& of) { acceleration_ = of; }
 
   const EsdirkWork& work() const { return work_; }
+  void set_work(const EsdirkWork& work) { work_ = work; }
 
  private:
   /// Solves the stage's equation from `velocity` on.

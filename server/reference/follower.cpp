@@ -32,6 +32,13 @@ EsdirkWork Follower::work() const {
 }
 
 bool Follower::follow(State& state, double from, double to) {
+  const std::vector<double> ends = between_keys(*world_, from, to);
+  for (std::size_t i = 1; i < ends.size(); ++i)
+    if (!follow_smoothly(state, ends[i - 1], ends[i])) return false;
+  return true;
+}
+
+bool Follower::follow_smoothly(State& state, double from, double to) {
   if (pace_.method == Pace::Method::rk4) {
     const auto steps = static_cast<std::int64_t>(std::ceil((to - from) / pace_.largest_step - 1e-9));
     const double dt = (to - from) / static_cast<double>(steps);
@@ -53,6 +60,7 @@ bool Follower::follow(State& state, double from, double to) {
 }
 
 Follower::Outcome Follower::step(State& state, double from, double to) {
+  if (!at_step(*world_, state, from).scene.keys.empty()) take_pins();
   const Mark before = mark(state);
   Esdirk::Outcome outcome = Esdirk::Outcome::done;
   const auto method = [&](const StepStart& start) {
@@ -67,7 +75,18 @@ Follower::Outcome Follower::step(State& state, double from, double to) {
   return outcome == Esdirk::Outcome::stopped ? Outcome::stopped : Outcome::unsolved;
 }
 
+/// Pins let go with keys: then the equations are of other vertices.
+void Follower::take_pins() {
+  const World& now = at_time(*world_, 0.0);
+  if (now.model.pin_motion == pins_) return;
+  pins_ = now.model.pin_motion;
+  const EsdirkWork work = esdirk_->work();
+  esdirk_ = std::make_unique<Esdirk>(now, pace_.precision, stop_);
+  esdirk_->set_work(work);
+}
+
 bool Follower::step_divided(State& state, double from, double to) {
+  if (!at_step(*world_, state, from).scene.keys.empty()) take_pins();
   const Mark before = mark(state);
   for (int divisions = 0; divisions <= most_divisions; ++divisions) {
     const int parts = 1 << divisions;
@@ -102,6 +121,13 @@ Scout::Scout(World world, double error_rate, double precision, double first_step
       step_(first_step) {}
 
 bool Scout::follow(State& state, double from, double to, Clock::time_point deadline) {
+  const std::vector<double> ends = between_keys(*world_, from, to);
+  for (std::size_t i = 1; i < ends.size(); ++i)
+    if (!follow_smoothly(state, ends[i - 1], ends[i], deadline)) return false;
+  return true;
+}
+
+bool Scout::follow_smoothly(State& state, double from, double to, Clock::time_point deadline) {
   for (double t = from; t < to;) {
     if (late_ = Clock::now() > deadline; late_) return false;
     const double steps = std::ceil((to - t) / step_ - 1e-6), dt = (to - t) / std::max(steps, 1.0);

@@ -32,6 +32,8 @@ class Follower {
   bool follow(State& state, double from, double to);
 
  protected:
+  bool follow_smoothly(State& state, double from, double to);
+  void take_pins();
   enum class Outcome { done, unsolved, stopped };
   /// One step of Esdirk with contacts.
   Outcome step(State& state, double from, double to);
@@ -51,6 +53,7 @@ class Follower {
   Pace pace_;
   std::stop_token stop_;
   std::unique_ptr<Esdirk> esdirk_;
+  std::vector<std::int32_t> pins_;  ///< of a scene with keys: pin_motion that esdirk_ was made for
 };
 
 /// Advances a state by Esdirk with steps that keep its error estimate, and so finds a pace.
@@ -68,6 +71,9 @@ class Scout : public Follower {
   const Pace& pace() const { return pace_; }
 
  private:
+  /// Between two times of keys.
+  bool follow_smoothly(State& state, double from, double to, Clock::time_point deadline);
+
   double error_rate_, step_;
   bool late_ = false;
 };

@@ -149,7 +149,9 @@ dvec3 bounced(const SweepState& step, std::uint32_t i, const dvec3& v) {
 
 }  // namespace
 
-void gauss_seidel_step(const World& world, State& state, double t, double t_next) {
+void gauss_seidel_step(const World& of, State& state, double t, double t_next) {
+  at_step(of, state, t);
+  const World& world = at_time(of, t_next);
   const scene::Scene& scene = world.scene;
   const bool by_vertices = scene::sweeps_vertices(scene.solver.method);
   const bool passes = scene.collides(scene::ContactKind::points) || (!by_vertices && scene.has_solids());

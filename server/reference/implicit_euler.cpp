@@ -36,10 +36,10 @@ struct Equation {
 
   /// `way`, `gain`: of the last step, for BDF2; empty: backward Euler.
   explicit Equation(const StepStart& start, const Vectors& way = {}, const Vectors& gain = {})
-      : world(start.world),
+      : world(at_time(start.world, start.t + start.dt)),
         x(start.state.position),
         v(start.state.velocity),
-        drag(x.size(), start.world.scene.air_drag),
+        drag(x.size(), world.scene.air_drag),
         dt(way.empty() ? start.dt : 2.0 / 3.0 * start.dt),
         first(start.state.velocity) {
     const bool goes_on = !way.empty();
@@ -163,7 +163,7 @@ namespace {
 State solved_end(const StepStart& start, const Equation& equation) {
   Vectors u = equation.v;
   for (std::size_t i = 0; i < u.size(); ++i)
-    u[i] /= 1.0 + equation.dt * (equation.drag[i] - start.world.scene.air_drag);
+    u[i] /= 1.0 + equation.dt * (equation.drag[i] - equation.world.scene.air_drag);
   for (std::size_t i = 0; i < u.size(); ++i)
     if (start.world.pinned(i)) u[i] = equation.pin_velocity[i];
   const double scale = equation.scale(u);
@@ -200,7 +200,7 @@ bool taken_along(const StepStart& start, const Vectors& gain) {
   const Equation equation(start, start.state.way, start.state.gain);
   const dvec3 air = model::wind_velocity(*world.scene.wind, start.t + start.dt);
   for (std::size_t i = 0; i < gain.size(); ++i) {
-    const double by_wind = equation.drag[i] - world.scene.air_drag,
+    const double by_wind = equation.drag[i] - equation.world.scene.air_drag,
                  flow = glm::length(air - start.state.velocity[i]);
     if (!world.pinned(i) && start.dt * by_wind > 1.0 && glm::length(gain[i]) > 0.5 * flow) return true;
   }

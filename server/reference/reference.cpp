@@ -37,7 +37,7 @@ Result<World> make_world(const scene::Scene& scene, double contact_margin) {
 Result<World> make_world(const scene::Scene& scene, const std::vector<double>& contact_margin) {
   Result<model::Model> model = model::build(scene);
   if (!model) return model.error();
-  World world{scene, std::move(*model), contact_margin, {}, {}};
+  World world{scene, std::move(*model), contact_margin, {}, {}, {}};
   world.element_colours = model::colour_elements(world.model, scene);
   world.vertex_colours = model::colour_vertices(world.model, scene);
   return world;
@@ -62,7 +62,8 @@ Vectors element_forces(const World& world, const Vectors& x, const Vectors& v) {
   return force;
 }
 
-Vectors accelerations(const World& world, const Vectors& x, const Vectors& v, double t) {
+Vectors accelerations(const World& of, const Vectors& x, const Vectors& v, double t) {
+  const World& world = at_time(of, t);
   Vectors a = element_forces(world, x, v);
   for (std::size_t i = 0; i < a.size(); ++i)
     a[i] = a[i] / world.model.mass[i] + world.scene.gravity - world.scene.air_drag * v[i];
@@ -93,11 +94,13 @@ Energy energy(const World& world, const State& state) {
   return sum;
 }
 
-void advance(const StepMethod& method, const World& world, State& state, double t, double t_next) {
+void advance(const StepMethod& method, const World& of, State& state, double t, double t_next) {
+  const World& world = at_step(of, state, t);
   const std::uint32_t count = world.model.vertex_count();
   StepStart start{
       world, state, Vectors(count, dvec3(0.0)), Vectors(count, dvec3(0.0)), t, world.scene.solver.dt};
   std::vector<int> touched(count, 0);
+  at_time(world, t_next);  // friction and restitution are those of the step's end
   const model::Adjacency reach =
       world.scene.collides(scene::ContactKind::points) ? within_reach(world, state) : model::Adjacency{};
   for (std::uint32_t i = 0; world.scene.collides(scene::ContactKind::points) && i < count; ++i) {
@@ -111,6 +114,7 @@ void advance(const StepMethod& method, const World& world, State& state, double 
     State end = method(start);
     end.step = state.step + 1;
     end.contacts = touched;
+    at_time(world, t_next);
     place_pins(world, t_next, end.position, end.velocity);
     stop_at_colliders(world, state, t, end);
     return end;

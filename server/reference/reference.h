@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -17,7 +18,22 @@ namespace clothlab::reference {
 
 using glm::dvec3;
 
-/// Everything that stays constant during a run.
+struct KeyedWorld;
+struct State;
+struct World;
+
+/// Holds a world's KeyedWorld, which is made when it is first asked for. A copy of a world makes its own.
+struct KeyedWorldSlot {
+  mutable std::shared_ptr<KeyedWorld> made{};
+  KeyedWorldSlot() = default;
+  KeyedWorldSlot(const KeyedWorldSlot&) {}
+  KeyedWorldSlot& operator=(const KeyedWorldSlot&) {
+    made.reset();
+    return *this;
+  }
+};
+
+/// Everything that stays constant during a run, but for what keys set.
 struct World {
   scene::Scene scene;
   model::Model model;
@@ -25,6 +41,7 @@ struct World {
   std::array<model::Colouring, elements::swept_count>
       element_colours;              ///< the orders of PBD's and XPBD's sweeps
   model::Colouring vertex_colours;  ///< the order of VBD's sweeps
+  KeyedWorldSlot keyed{};
 
   bool pinned(std::size_t vertex) const { return model.pin_motion[vertex] != model::not_pinned; }
 };
@@ -54,6 +71,15 @@ struct State {
 Result<World> make_world(const scene::Scene& scene, const std::vector<double>& contact_margin);
 /// The same, with one margin for all cloths.
 Result<World> make_world(const scene::Scene& scene, double contact_margin);
+
+/// The world with what keys set at time t [s]; the world itself if its scene has no keys. The same object
+/// each time, until the next call. Pins are as at the start of the step under way.
+const World& at_time(const World& world, double t);
+/// To be called at the start of each step, at time t [s]: pins whose keys say so let go, and what a method
+/// remembers of earlier steps in `state` is forgotten. Then as `at_time`.
+const World& at_step(const World& world, State& state, double t);
+/// The times from `from` on to `to` [s], both in the list, between which no key has a corner or a jump.
+std::vector<double> between_keys(const World& world, double from, double to);
 
 /// The state at time 0: start positions, and velocity 0.
 State at_rest(const World& world);

@@ -77,6 +77,7 @@ void StageEquation::set(Vectors x, Vectors v, double t, double h) {
   v_ = std::move(v);
   t_ = t;
   h_ = h;
+  at_time(world_, t);
   pin_place_ = x_;
   pin_velocity_ = v_;
   place_pins(world_, t_, pin_place_, pin_velocity_);

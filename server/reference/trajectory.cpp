@@ -7,6 +7,7 @@
 
 #include "server/model/wind.h"
 #include "server/reference/methods.h"
+#include "server/scene/keys.h"
 
 namespace clothlab::reference {
 
@@ -17,13 +18,17 @@ std::vector<State> follow(World world, const std::vector<double>& times, double 
   std::vector<State> states;
   State state = at_rest(world);
   double from = 0.0;
-  for (const double time : times) {
+  const auto go_to = [&](double time) {
     const auto steps = static_cast<int>(std::ceil((time - from) / largest_step - 1e-9));
     const double dt = (time - from) / steps;
     world.scene.solver.dt = dt;
     for (int n = 0; n < steps; ++n) advance(rk4, world, state, from + n * dt, from + (n + 1) * dt);
-    states.push_back(state);
     from = time;
+  };
+  for (const double time : times) {
+    const std::vector<double> ends = between_keys(world, from, time);
+    std::for_each(ends.begin() + 1, ends.end(), go_to);
+    states.push_back(state);
   }
   return states;
 }
@@ -53,7 +58,9 @@ Result<Trajectory> trajectory(const World& world, const std::vector<double>& tim
   return result;
 }
 
-double fastest_rate(const World& world) {
+namespace {
+
+double rate_of(const World& world) {
   const std::size_t count = world.model.vertex_count();
   std::vector<double> stiffness(count, 0.0), damping(count, 0.0);
   model::each_element(world.model.elements, [&](const auto& element) {
@@ -72,6 +79,16 @@ double fastest_rate(const World& world) {
         {fastest, std::sqrt(2.0 * stiffness[i] / mass), 2.0 * damping[i] / mass + world.scene.air_drag});
   }
   return fastest;
+}
+
+}  // namespace
+
+double fastest_rate(const World& world) {
+  if (world.scene.keys.empty()) return rate_of(world);
+  World extreme = world;
+  extreme.scene = scene::at_largest(world.scene);
+  (void)model::take_materials(extreme.model, extreme.scene);
+  return rate_of(extreme);
 }
 
 double rms_distance(const std::vector<dvec3>& a, const std::vector<dvec3>& b) {

@@ -6,8 +6,9 @@
 
 namespace clothlab::reference {
 
-std::vector<elements::WindLoad> wind_loads(const World& world, const std::vector<dvec3>& x,
+std::vector<elements::WindLoad> wind_loads(const World& of, const std::vector<dvec3>& x,
                                            const std::vector<dvec3>& v, double t) {
+  const World& world = at_time(of, t);
   std::vector<elements::WindLoad> loads(x.size(), {dvec3(0.0), 0.0});
   if (!world.scene.wind) return loads;
   const scene::Wind& wind = *world.scene.wind;

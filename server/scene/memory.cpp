@@ -39,6 +39,10 @@ std::size_t outside(const Collider& collider) {
   return (body ? piece(sizeof(TriangleMesh)) + outside(*body->mesh) : 0) + outside(collider.name);
 }
 
+std::size_t outside(const Key& key) {
+  return outside(key.of) + outside(key.times) + outside(key.values);
+}
+
 /// The nodes of the tree in which an object keeps its keys.
 constexpr std::size_t node_links = 32;
 
@@ -73,7 +77,9 @@ std::size_t memory_of(const json& value) {
 }
 
 std::size_t memory_of(const Scene& scene) {
-  std::size_t sum = sizeof scene + outside(scene.name) + outside(scene.cloths) + outside(scene.colliders);
+  std::size_t sum = sizeof scene + outside(scene.name) + outside(scene.cloths) + outside(scene.colliders) +
+                    outside(scene.keys);
+  for (const Key& key : scene.keys) sum += outside(key);
   for (const Cloth& cloth : scene.cloths) sum += outside(cloth);
   for (const Collider& collider : scene.colliders) sum += outside(collider);
   return sum;

@@ -64,6 +64,12 @@ constexpr bool sweeps_vertices(Method method) {
 constexpr bool solves(Method method) {
   return facts(method).iterations == Iterations::newton_steps;
 }
+/// The share of a step after which a method with one evaluation of outer forces takes them: those that
+/// iterate look for the state at the step's end. The stages of the others have times of their own, or are at
+/// the step's start.
+constexpr double forces_after(Method method) {
+  return iterates(method) ? 1.0 : 0.0;
+}
 /// True if the method is stable at any time step. This holds for all methods that iterate, and for no others.
 constexpr bool any_step_is_stable(Method method) {
   return iterates(method);

@@ -49,6 +49,8 @@ inline constexpr Range gust{0, 10, "of the wind's velocity"};
 inline constexpr Range air_coefficient{0, 100};  ///< of drag or lift
 inline constexpr Range air_drag{0, 1e6, "1/s"};
 
+inline constexpr Range key_time{0, 1e9, "s"};
+
 inline constexpr Range dt{1e-9, 1, "s"};
 inline constexpr Range iterations{1, 10000};
 inline constexpr Range tolerance{1e-12, 1};
@@ -58,8 +60,10 @@ inline constexpr Range tolerance{1e-12, 1};
 inline constexpr std::size_t max_name_length = 64;  ///< characters, not bytes
 inline constexpr std::size_t max_cloths = 64;
 inline constexpr std::size_t max_colliders = 64;
-inline constexpr std::size_t max_pins = 1024;          ///< of one cloth
-inline constexpr std::size_t max_weights = 1024;       ///< of one cloth
+inline constexpr std::size_t max_pins = 1024;     ///< of one cloth
+inline constexpr std::size_t max_weights = 1024;  ///< of one cloth
+inline constexpr std::size_t max_keys = 1024;
+inline constexpr std::size_t max_keyframes = 4096;     ///< of one key
 inline constexpr std::size_t max_vertices = 1u << 20;  ///< of the whole scene
 inline constexpr std::size_t max_triangles = 1u << 21;
 inline constexpr std::size_t max_body_vertices = 200'000;  ///< of all bodies of triangles together

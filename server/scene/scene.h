@@ -161,6 +161,7 @@ using At = std::variant<AtCorner, AtVertex, AtEdge, AtBox>;
 struct Pin {
   At at;
   Motion motion;
+  bool held = true;  ///< false: it has let its vertices go, by a key (keys.h); true in every document
   bool operator==(const Pin&) const = default;
 };
 
@@ -294,6 +295,19 @@ struct Solver {
   bool operator==(const Solver&) const = default;
 };
 
+/// How a keyed value goes from one keyframe to the next: evenly, with rest at both (3 s^2 - 2 s^3 of the way
+/// at the share s of the time), or at once at the later one.
+enum class Ease { linear, smooth, step };
+
+/// A value of the scene by times (keys.h); before the first and after the last it is theirs.
+struct Key {
+  std::string of;  ///< a JSON Pointer
+  Ease ease = Ease::linear;
+  std::vector<double> times{};  ///< [s], one or more, 0 or more, rising
+  std::vector<dvec3> values{};  ///< one for each; a number is in x, a pin that is held is 1 in x
+  bool operator==(const Key&) const = default;
+};
+
 struct Scene {
   std::string name;
   dvec3 gravity{0.0, -9.8, 0.0};  ///< [m/s^2]
@@ -303,6 +317,7 @@ struct Scene {
   std::optional<Wind> wind;
   double air_drag = 0.0;  ///< [1/s]
   Solver solver;
+  std::vector<Key> keys;  ///< each of another value; they count more than the value that the scene has
   /// True if a collider is no body of triangles.
   bool has_solids() const {
     return std::any_of(colliders.begin(), colliders.end(), [](const Collider& of) { return !of.is_body(); });

@@ -30,6 +30,9 @@ Shape read_shape(const Reader& collider, const Assets* assets);
 Body read_body(const Reader& collider, const Assets* assets);
 Motion read_motion(const Reader& motion);
 
+/// Reads the keys into a scene that is else complete.
+void read_keys(const Reader& keys, Scene& scene);
+
 /// The mesh of a cloth.
 Mesh read_mesh(const Reader& mesh, const Assets* assets);
 Transform read_transform(const Reader& transform);

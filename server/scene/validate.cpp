@@ -85,8 +85,8 @@ Solver read_solver(const Reader& solver) {
 }
 
 Scene read_scene(const Reader& top, const Assets* assets) {
-  top.object(
-      {"version", "name", "gravity", "cloths", "colliders", "self_collision", "wind", "air_drag", "solver"});
+  top.object({"version", "name", "gravity", "cloths", "colliders", "self_collision", "wind", "air_drag",
+              "solver", "keys"});
   top.member("version").integer({1, 1});
   Scene scene;
   scene.name = top.member("name", "scene").name();
@@ -99,6 +99,7 @@ Scene read_scene(const Reader& top, const Assets* assets) {
   scene.solver = read_solver(top.member("solver", json::object()));
   if (const char* reason = unsuited(scene.solver.method, scene))
     top.member("solver").member("method").fail(reason);
+  read_keys(top.member("keys", json::array()), scene);
   return scene;
 }
 

@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "server/scene/keys.h"
+
 namespace clothlab::session {
 
 namespace {
@@ -64,7 +66,8 @@ double size_of(const model::Model& model, const model::ClothRange& cloth) {
 
 void Rest::follow(const scene::Scene& scene, const model::Model& model) {
   disturb();
-  driven_ = is_driven(scene);
+  driven_ = is_driven(scene.keys.empty() ? scene : scene::at_time(scene, scene::last_change(scene)));
+  keyed_until_ = scene::last_change(scene);
   double smallest = std::numeric_limits<double>::max(), largest = 0;
   for (const model::ClothRange& cloth : model.cloths) {
     smallest = std::min(smallest, size_of(model, cloth));
@@ -96,7 +99,7 @@ bool Rest::drifted(const std::vector<glm::vec3>& now) const {
 }
 
 bool Rest::look(double time, double max_speed, const std::function<std::vector<glm::vec3>()>& positions) {
-  if (driven_) return false;
+  if (driven_ || time < keyed_until_) return false;
   if (!(max_speed <= speed_)) {
     disturb();
     return false;

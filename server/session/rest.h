@@ -26,9 +26,11 @@ class Rest {
   /// the speed is low, about `most_looks` times per stretch. True: the cloth is at rest.
   bool look(double time, double max_speed, const std::function<std::vector<glm::vec3>()>& positions);
 
-  bool driven() const { return driven_; }  ///< a pin or a collider moves, or the wind gusts: never at rest
-  double speed() const { return speed_; }  ///< a cloth that moves faster is not at rest [m/s]
-  double drift() const { return drift_; }  ///< the distance that a vertex at rest may move [m]
+  bool driven() const {
+    return driven_;
+  }  ///< a pin or a collider moves, or the wind gusts, in the end: never at rest
+  double speed() const { return speed_; }      ///< a cloth that moves faster is not at rest [m/s]
+  double drift() const { return drift_; }      ///< the distance that a vertex at rest may move [m]
   double stretch() const { return stretch_; }  ///< simulated time [s]
   /// How often positions are compared in a stretch; at least `least_looks`, however fast time runs.
   static constexpr int least_looks = 16, most_looks = 32;
@@ -37,6 +39,7 @@ class Rest {
   void begin(double time, std::vector<glm::vec3> positions);
   bool drifted(const std::vector<glm::vec3>& now) const;
 
+  double keyed_until_ = 0;  ///< from then on no keyed value changes [s]
   bool driven_ = true;
   double speed_ = 0, drift_ = 0, stretch_ = 0;
   std::optional<double> begun_;  ///< beginning of the present stretch [s]

@@ -1,7 +1,9 @@
 #include "server/session/step_limit.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
+#include <vector>
 
 #include "server/base/priority.h"
 
@@ -14,17 +16,22 @@ constexpr std::chrono::milliseconds worth_waiting{8};  // half a frame at 60 Hz
 void StepLimit::set_scene(const model::Model& model, const scene::Scene& scene) {
   warning_checked_ = false;
   const bool same_limit = scene_.cloths == scene.cloths && scene_.air_drag == scene.air_drag &&
-                          scene_.solver.method == scene.solver.method;
+                          scene_.solver.method == scene.solver.method && scene_.keys == scene.keys;
   scene_ = scene;
   if (same_limit) return;
   give_up_search();
-  model::ElementOperator springs(model, scene, model.rest_position);
-  dt_limit_ = model::dt_limit_bound(scene.solver.method, springs);
-  search_ = std::async(std::launch::async, [springs = std::move(springs), method = scene.solver.method,
-                                            stop = stop_.get_token()] {
-    lower_priority(10);  // the search on a large mesh takes many seconds
-    return model::dt_limit(method, springs, stop);
-  });
+  std::vector<model::ElementOperator> cloths = model::extreme_operators(model, scene);
+  dt_limit_ = model::no_limit;
+  for (const model::ElementOperator& elements : cloths)
+    dt_limit_ = std::min(dt_limit_, model::dt_limit_bound(scene.solver.method, elements));
+  search_ = std::async(std::launch::async,
+                       [cloths = std::move(cloths), method = scene.solver.method, stop = stop_.get_token()] {
+                         lower_priority(10);  // the search on a large mesh takes many seconds
+                         double least = model::no_limit;
+                         for (const model::ElementOperator& elements : cloths)
+                           least = std::min(least, model::dt_limit(method, elements, stop));
+                         return least;
+                       });
   search_.wait_for(worth_waiting);
   poll();
 }

@@ -10,6 +10,7 @@
 
 #include "server/base/text.h"
 #include "server/model/wind.h"
+#include "server/scene/keys.h"
 #include "server/scene/method.h"
 #include "server/scene/solid.h"
 
@@ -91,7 +92,9 @@ double stable_swing(double dt, double dt_limit) {
 
 }  // namespace
 
-Allowance allowance(const scene::Scene& scene, const model::Model& model, double dt_limit) {
+Allowance allowance(const scene::Scene& keyed, const model::Model& model, double dt_limit) {
+  const scene::Scene scene = keyed.keys.empty() ? keyed : scene::at_largest(keyed);
+  const double stiffer = scene::stiffness_growth(keyed);
   Allowance allowed;
   const double wind = scene.wind ? model::largest_wind_speed(*scene.wind) : 0.0;
   std::vector<double> farthest;
@@ -106,6 +109,7 @@ Allowance allowance(const scene::Scene& scene, const model::Model& model, double
     allowed.slack_energy += cloth.mass * (0.25 * glm::length(scene.gravity) * cloth.size +
                                           2.0 * speed * speed + 0.5 * wind * wind);
     farthest.push_back(cloth.farthest);
+    if (scene::has_key(keyed, "/gravity")) allowed.weight += cloth.mass * glm::length(scene.gravity);
   }
   const double push = scene.self_collision ? 0.2 * scene.self_collision->thickness : 0.0;
   double elastic = 0.0;
@@ -115,9 +119,9 @@ Allowance allowance(const scene::Scene& scene, const model::Model& model, double
         push + 1e-3 * element_size(element.law) + 1e-6 * farthest[model.vertex_cloth[element.vertices[0]]];
     elastic += 0.5 * element_stiffness(element.law) * stretch * stretch;
   });
-  allowed.slack_energy += elastic;
+  allowed.slack_energy += stiffer * elastic;
   allowed.wind_power = model::largest_wind_power(model, scene);
-  allowed.energy_ratio = stable_swing(scene.solver.dt, dt_limit);
+  allowed.energy_ratio = stiffer * stable_swing(scene.solver.dt, dt_limit);
   allowed.counts_elastic = !scene::sweeps(scene.solver.method);
   allowed.growth = scene.solver.dt > dt_limit ? proved_already : growth_that_proves;
   return allowed;
@@ -128,14 +132,17 @@ bool changes_energy(const scene::Scene& from, scene::Scene to) {
   return change_depth(from, to) != ChangeDepth::none;
 }
 
-void BlowUp::start(const Allowance& allowance, const Diagnostics& state) {
+void BlowUp::start(const Allowance& allowance, const Diagnostics& diagnosis) {
   *this = BlowUp();
   allowance_ = allowance;
+  const Diagnostics state = seen(diagnosis);
   ledger_ = total(state);
-  last_ = last_good_ = state;
+  last_ = state;
+  last_good_ = diagnosis;
 }
 
-void BlowUp::rebase(const Diagnostics& state) {
+void BlowUp::rebase(const Diagnostics& diagnosis) {
+  const Diagnostics state = seen(diagnosis);
   const double before = growing_energy(last_);
   ledger_ += total(state) - total(last_);
   if (before > 0.0) doubted_energy_ *= growing_energy(state) / before;
@@ -153,10 +160,12 @@ double BlowUp::work_since_last(const Diagnostics& state) const {
   const double pulled =
       allowance_.hand_force * (seconds * std::max(state.max_speed, last_.max_speed) + allowance_.hand_reach);
   const double thrown = 2.0 * allowance_.collider_speed * allowance_.collider_speed * state.contact_mass;
-  return seconds * (pins + colliders + allowance_.wind_power) + pulled + thrown;
+  const double fallen = allowance_.weight * std::max(state.max_speed, last_.max_speed);
+  return seconds * (pins + colliders + allowance_.wind_power + fallen) + pulled + thrown;
 }
 
-BlowUp::Verdict BlowUp::judge(const Diagnostics& state) {
+BlowUp::Verdict BlowUp::judge(const Diagnostics& diagnosis) {
+  const Diagnostics state = seen(diagnosis);
   if (!finite(state)) {
     last_ = state;
     return Verdict::blown_up;
@@ -172,7 +181,7 @@ BlowUp::Verdict BlowUp::judge(const Diagnostics& state) {
   if (excess > allowed_excess) return judge_doubtful(state);
   doubted_energy_ = 0.0;
   if (excess > share_of_good * allowed_excess) return Verdict::doubtful;
-  last_good_ = state;
+  last_good_ = diagnosis;
   work_ = 0.0;
   return Verdict::good;
 }
@@ -201,7 +210,7 @@ std::string BlowUp::reason() const {
       "with at most %.3g J of work done on the cloth and %.3g J released by falling",
       allowance_.counts_elastic ? " and stretch" : "", growing_energy(last_good_), last_good_.time,
       growing_energy(last_), last_.time, work_,
-      std::max(0.0, last_good_.gravitational - last_.gravitational));
+      std::max(0.0, seen(last_good_).gravitational - last_.gravitational));
 }
 
 }  // namespace clothlab::sim

@@ -16,6 +16,7 @@ struct Allowance {
   double pin_speed = 0;        ///< speed of the fastest pin [m/s]
   double collider_speed = 0;   ///< speed of the fastest point of a collider near the cloth [m/s]
   double wind_power = 0;       ///< the most that the wind does [W]
+  double weight = 0;           ///< where gravity changes by keys: the most that the cloths weigh [N]; else 0
   double hand_force = 0;       ///< the most that hands pull with [N]
   double hand_reach = 0;       ///< the way over which such a pull sets a vertex going [m]
   bool counts_elastic = true;  ///< true if growth of elastic energy counts, false if only kinetic energy does
@@ -48,13 +49,13 @@ class BlowUp {
   };
 
   /// Begins a new ledger with `state`, which counts as good whatever it is.
-  void start(const Allowance& allowance, const Diagnostics& state);
+  void start(const Allowance& allowance, const Diagnostics& diagnosis);
   /// To be called after a change of scene, before the next step. `state`: diagnosis, under the new scene, of
   /// the state that was judged last. The energy that the change added does not count as growth.
-  void rebase(const Diagnostics& state);
+  void rebase(const Diagnostics& diagnosis);
   void set_allowance(const Allowance& allowance) { allowance_ = allowance; }
   /// Judges a state. States must come in the order of time.
-  Verdict judge(const Diagnostics& state);
+  Verdict judge(const Diagnostics& diagnosis);
 
   /// After `blown_up`: the first half of a sentence that says which energy grew, between which values and
   /// times.
@@ -64,6 +65,11 @@ class BlowUp {
  private:
   double work_since_last(const Diagnostics& state) const;
   Verdict judge_doubtful(const Diagnostics& state);
+  /// Gravity that changes has no energy: it does work, as the wind does.
+  Diagnostics seen(Diagnostics state) const {
+    if (allowance_.weight > 0.0) state.gravitational = 0.0;
+    return state;
+  }
   double growing_energy(const Diagnostics& state) const {
     return state.kinetic + (allowance_.counts_elastic ? state.elastic : 0.0);
   }

@@ -41,14 +41,18 @@ class GaussSeidel : public Integrator {
   }
 
   void set_parameters(const Surroundings& around) override {
+    set_numbers(around);
+    if (by_vertex_) return;
+    visit_list_ = {gl::Buffer(visit_list(work_, around.model, around.scene)), GL_RGBA32UI};
+  }
+
+  void set_numbers(const Surroundings& around) override {
     sweeps_ = around.scene.solver.iterations;
     const float mobility = static_cast<float>(model::mobility(around.scene));
     for (const gl::Program* program : {&whole_, &begin_, &contacts_pass_, &balance_, &finish_})
       set_parameters(*program, around, mobility);
     for (const gl::Program& program : visits_) set_parameters(program, around, mobility);
     if (restores_momentum_) set_free_vertices(around);
-    if (by_vertex_) return;
-    visit_list_ = {gl::Buffer(visit_list(work_, around.model, around.scene)), GL_RGBA32UI};
   }
 
   Work step(StateBuffers& state, int row) override {

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <utility>
 
 #include "server/base/result.h"
 #include "server/gl/program.h"
@@ -34,6 +36,9 @@ class Integrator {
 
   /// Takes over the numbers of the scene, which may change without new kernels.
   virtual void set_parameters(const Surroundings& around) = 0;
+  /// The same where only numbers of forces and contacts differ: gravity, drag of the air, wind, friction,
+  /// restitution.
+  virtual void set_numbers(const Surroundings& around) { set_parameters(around); }
 
   /// Does one step: reads the present copy of the state, writes the other copy, swaps the two. `row`: row of
   /// the step's start in the pose table. The element lists, their slices, rest positions, poses and neighbour
@@ -43,6 +48,9 @@ class Integrator {
   /// To be called before a step: where contact between surfaces is a term of the step's problem, what knows
   /// it.
   void set_contact(SurfaceContact* contact) { contact_ = contact; }
+  /// Called by a method that evaluates forces at several times of a step, before each: which share of the
+  /// step has passed. Such a method's parameters may be set then.
+  void set_stage_watch(std::function<void(double share)> watch) { at_stage_ = std::move(watch); }
 
   /// To be called before a step: whether hands hold the cloth in it (hands.h).
   void set_held(bool held) { held_ = held; }
@@ -80,6 +88,7 @@ class Integrator {
   std::uint64_t dispatches_ = 0;
   SurfaceContact* contact_ = nullptr;
   bool held_ = false;
+  std::function<void(double share)> at_stage_;
 };
 
 /// Makes the integrator for the scene's method and sets its parameters.

@@ -8,6 +8,7 @@
 #include <functional>
 #include <vector>
 
+#include "server/scene/keys.h"
 #include "server/scene/scene.h"
 #include "server/sim/carried.h"
 #include "server/sim/state.h"
@@ -22,7 +23,8 @@ struct KeptState {
   double start_time = 0;  ///< of Simulation::Implementation, as the next
   std::uint64_t start_step = 0;
   std::vector<scene::Motion> settled{};  ///< likewise
-  std::uint32_t neighbour_slots = 0;     ///< of Plan
+  std::vector<scene::KeyedScene::LetGo> released{};
+  std::uint32_t neighbour_slots = 0;  ///< of Plan
 
   std::size_t bytes() const { return position.bytes() + velocity.bytes() + carried.bytes(); }
 };

@@ -21,7 +21,7 @@ std::size_t upload_elements(Kernels& kernels) {
 }
 
 MotionTable motion_table(const scene::Scene& scene, const Plan& plan) {
-  return MotionTable(moving_motions(scene), scene.wind, plan.pose_rows());
+  return MotionTable(moving_motions(scene), scene.wind, plan.pose_rows(), scene.keys);
 }
 
 /// CLOTHLAB_NUMBERING=scene in the environment leaves vertices where they are: tests/bench/numbering.mjs
@@ -143,6 +143,21 @@ void Kernels::end_step() {
 
 void Kernels::give_up_step() {
   if (self_collision) self_collision->give_up_step();
+}
+
+void Kernels::take_keyed(const scene::Scene& scene, const scene::KeyedScene::Changed& changed) {
+  if (changed.materials) {
+    const Whole whole;
+    // Keys change no elements but their numbers (scene/keyable.cpp), so that this cannot fail.
+    (void)model::take_materials(as_in_scene ? *as_in_scene : model, scene);
+    if (as_in_scene) model = model::renumbered(*as_in_scene, places);
+    upload_elements(*this);
+    integrator->set_parameters(surroundings(scene));
+  } else {
+    integrator->set_numbers(surroundings(scene));
+  }
+  if (strain_limit) strain_limit->set_parameters(surroundings(scene));
+  if (surface_contact) surface_contact->set_numbers(scene, model, motions);
 }
 
 Status Kernels::update(const scene::Scene& scene) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "server/scene/keys.h"
 #include "server/sim/integrator.h"
 #include "server/sim/list_memory.h"
 #include "server/sim/strain_limit.h"
@@ -38,6 +39,10 @@ struct Kernels {
 
   /// Takes over the numbers of a scene with the same structure.
   Status update(const scene::Scene& scene);
+
+  /// Takes over what keys have changed of the scene. Not within a step, but between its stages. The element
+  /// lists must be bound anew if materials have changed.
+  void take_keyed(const scene::Scene& scene, const scene::KeyedScene::Changed& changed);
 
   /// Names what the method and the strain limit carry from step to step: what a step may change before it is
   /// given up.

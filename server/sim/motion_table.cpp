@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "server/model/motion.h"
+#include "server/scene/keys.h"
 
 namespace clothlab::sim {
 
@@ -10,8 +11,9 @@ namespace {
 constexpr std::size_t floats_a_pose = 20, floats_a_wind = 4;
 }
 
-MotionTable::MotionTable(std::vector<scene::Motion> motions, std::optional<scene::Wind> wind, int rows_a_step)
-    : motions_(std::move(motions)), settled_(motions_.size(), false), wind_(wind) {
+MotionTable::MotionTable(std::vector<scene::Motion> motions, std::optional<scene::Wind> wind, int rows_a_step,
+                         std::vector<scene::Key> keys)
+    : motions_(std::move(motions)), settled_(motions_.size(), false), wind_(wind), keys_(std::move(keys)) {
   if (empty()) return;
   const std::size_t rows = batch_steps * static_cast<std::size_t>(rows_a_step) + 1;
   rows_.resize(rows * (motions_.size() * floats_a_pose + (wind_ ? floats_a_wind : 0)));
@@ -42,7 +44,7 @@ void MotionTable::upload(const std::vector<double>& times) {
       write(pose.linear_velocity, 0.0);
       write(pose.angular_velocity, 0.0);
     }
-    if (wind_) write(model::wind_velocity(*wind_, time), 0.0);
+    if (wind_) write(model::wind_velocity(scene::wind_at(*wind_, keys_, time), time), 0.0);
   }
   table_.buffer.upload(rows_.data(), static_cast<std::size_t>(out - rows_.data()) * sizeof(float));
 }

@@ -17,8 +17,10 @@ inline constexpr std::uint32_t batch_steps = 32;
 class MotionTable {
  public:
   MotionTable() = default;
-  /// `rows_a_step`: number of rows of each step after the row of its start (Plan::pose_rows).
-  MotionTable(std::vector<scene::Motion> motions, std::optional<scene::Wind> wind, int rows_a_step);
+  /// `rows_a_step`: number of rows of each step after the row of its start (Plan::pose_rows). `keys`:
+  /// among them those of the wind.
+  MotionTable(std::vector<scene::Motion> motions, std::optional<scene::Wind> wind, int rows_a_step,
+              std::vector<scene::Key> keys = {});
 
   bool empty() const { return motions_.empty() && !wind_; }
   /// The index under which kernels find `motion` in the table; -1 for a null motion.
@@ -36,6 +38,7 @@ class MotionTable {
   std::vector<scene::Motion> motions_;
   std::vector<bool> settled_;  ///< for each of them
   std::optional<scene::Wind> wind_;
+  std::vector<scene::Key> keys_;
   std::vector<float> rows_;
   gl::TextureBuffer table_;
 };

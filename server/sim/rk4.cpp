@@ -27,6 +27,7 @@ class Rk4 : public Integrator {
     state.position().bind(unit_start_position);
     state.velocity().bind(unit_start_velocity);
     for (std::size_t stage = 0; stage < 4; ++stage) {
+      if (at_stage_) at_stage_(shares[stage]);
       if (stage > 0) between_[(stage - 1) % 2].bind_for_reading();
       if (stage < 3) {
         between_[stage % 2].bind_for_writing();
@@ -60,6 +61,7 @@ class Rk4 : public Integrator {
     }
   };
 
+  static constexpr std::array shares{0.0, 0.5, 0.5, 1.0};  ///< of the step, at the stages
   std::array<gl::Program, 4> stages_;
   std::array<Between, 2> between_;
   std::array<gl::TextureBuffer, 3> slopes_;

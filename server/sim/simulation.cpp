@@ -49,7 +49,9 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const scene::Scene& scene
   std::unique_ptr<Simulation> made(new Simulation);
   Implementation& self = *made->implementation_;
   if (Status fits = fits_device(scene); !fits) return fits.error();
-  Result<Kernels> kernels = Kernels::create(scene);
+  self.scene = scene;
+  self.keyed = self.keyed_now(scene);
+  Result<Kernels> kernels = Kernels::create(self.now());
   if (!kernels) return kernels.error();
   self.kernels = std::move(*kernels);
   Result<DiagnosticsPass> diagnostics = DiagnosticsPass::create(self.kernels.model.vertex_count());
@@ -58,7 +60,6 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const scene::Scene& scene
   Result<SceneOrder> scene_order = SceneOrder::create(self.kernels.places);
   if (!scene_order) return scene_order.error();
   self.scene_order = std::move(*scene_order);
-  self.scene = scene;
   self.topology_revision = topology_revision;
   self.rest = rest_positions(self.kernels.model);
   self.state = StateBuffers(self.kernels.model, self.kernels.motions, self.kernels.body_places());
@@ -76,8 +77,10 @@ Result<ChangeDepth> Simulation::change(const scene::Scene& scene) {
     implementation_ = std::move((*fresh)->implementation_);
     return depth;
   }
+  std::unique_ptr<scene::KeyedScene> keyed = self.keyed_now(scene);
+  const scene::Scene& next = keyed ? keyed->scene() : scene;
   if (depth == ChangeDepth::kernel) {
-    Result<Kernels> kernels = Kernels::create(scene);
+    Result<Kernels> kernels = Kernels::create(next);
     if (!kernels) return kernels.error();
     if (scene.collides(scene::ContactKind::surface) && !self.scene.collides(scene::ContactKind::surface))
       if (Status apart = model::check_present(model(), scene, read_state().position); !apart)
@@ -89,9 +92,9 @@ Result<ChangeDepth> Simulation::change(const scene::Scene& scene) {
   } else if (depth == ChangeDepth::uniform) {
     self.give_up_work();
     self.note_before_changes();
-    if (Status updated = self.kernels.update(scene); !updated) return updated.error();
+    if (Status updated = self.kernels.update(next); !updated) return updated.error();
   }
-  self.adopt(scene);
+  self.adopt(scene, std::move(keyed));
   if (depth != ChangeDepth::none) self.undo_changes();
   return depth;
 }
@@ -125,8 +128,9 @@ void Simulation::reset() {
   Implementation& self = *implementation_;
   self.give_up_work();
   // Kernels whose neighbour lists have grown are made anew: then the same steps follow as at the start.
-  if (self.kernels.plan != sim::plan(self.scene))
-    if (Result<Kernels> kernels = Kernels::create(self.scene)) self.kernels = std::move(*kernels);
+  const bool held_anew = self.keyed && self.keyed->release({});
+  if (self.kernels.plan != sim::plan(self.now()) || held_anew)
+    if (Result<Kernels> kernels = Kernels::create(self.now())) self.take_kernels(std::move(*kernels));
   self.settled.clear();
   self.kernels.motions.settle({});
   self.state.reset(self.kernels.model, self.kernels.motions);
@@ -144,6 +148,7 @@ void Simulation::go_back() {
   const LastGood::When when = self.last_good.restore(self.state);
   self.state.rewrite_constants(self.kernels.model, self.kernels.motions);  // masses and pins may have changed
   self.state_replaced(when.time, when.step);
+  self.hold_again();
 }
 
 KeptStates& Simulation::kept() {
@@ -164,14 +169,17 @@ bool Simulation::in_step() const {
 Status Simulation::go_to_kept(std::uint64_t step, const scene::Scene& scene) {
   Implementation& self = *implementation_;
   const KeptState& then = *self.kept.at_or_before(step);
-  Result<Kernels> kernels = Kernels::create(scene);
+  std::unique_ptr<scene::KeyedScene> keyed = self.keyed_as(scene, then.released);
+  const scene::Scene& next = keyed ? keyed->scene() : scene;
+  Result<Kernels> kernels = Kernels::create(next);
   if (!kernels) return kernels.error();
   if (kernels->self_collision && kernels->plan.neighbour_slots != then.neighbour_slots)
-    if (Status grown = kernels->grow(scene, then.neighbour_slots); !grown) return grown.error();
+    if (Status grown = kernels->grow(next, then.neighbour_slots); !grown) return grown.error();
   self.give_up_work();
   self.before_changes.reset();
   self.take_kernels(std::move(*kernels));
   self.scene = scene;
+  self.keyed = std::move(keyed);
   (void)self.set_hands({});
   if (Status done = self.go_on_from(then); !done) return done;
   self.kept.drop_after(then.step);
@@ -255,6 +263,7 @@ void Simulation::restore(const State& state, double time, std::uint64_t step) {
   self.give_up_work();
   self.state.write(self.scene_order.to_memory(state), self.kernels.model, self.kernels.motions);
   self.state_replaced(time, step);
+  self.hold_again();
   self.keep_start();
 }
 
@@ -262,7 +271,7 @@ State Simulation::read_state() {
   return implementation_->scene_order.to_scene(implementation_->state.read());
 }
 NearPairs Simulation::near_pairs() {
-  return sim::near_pairs(implementation_->kernels, scene(), read_state(), time());
+  return sim::near_pairs(implementation_->kernels, implementation_->now(), read_state(), time());
 }
 void Simulation::shorten_contact_lists(std::uint32_t entries, bool for_good) {
   if (implementation_->kernels.surface_contact)

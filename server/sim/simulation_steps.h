@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <glm/vec4.hpp>
 #include <limits>
+#include <memory>
 #include <new>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "server/base/pieces.h"
 #include "server/gl/bindings.h"
+#include "server/scene/keys.h"
 #include "server/scene/method.h"
 #include "server/sim/convergence.h"
 #include "server/sim/diagnose.h"
@@ -26,7 +29,8 @@ namespace clothlab::sim {
 
 struct Simulation::Implementation {
   scene::Scene scene;
-  Kernels kernels;
+  std::unique_ptr<scene::KeyedScene> keyed;  ///< `scene` as its keys make it; null: it has none
+  Kernels kernels;                           ///< of `now()`
   SceneOrder scene_order;
   gl::TextureBuffer rest;
   StateBuffers state;
@@ -66,6 +70,61 @@ struct Simulation::Implementation {
     return start_time + (static_cast<double>(step - start_step) + share) * scene.solver.dt;
   }
 
+  /// The scene that the kernels are at.
+  const scene::Scene& now() const { return keyed ? keyed->scene() : scene; }
+
+  /// The scene `next` with its keys as at the present time, in which the pins that have let go still have;
+  /// null: neither is there.
+  std::unique_ptr<scene::KeyedScene> keyed_now(const scene::Scene& next) const {
+    return keyed_as(next, keyed ? keyed->released() : std::vector<scene::KeyedScene::LetGo>{});
+  }
+  std::unique_ptr<scene::KeyedScene> keyed_as(const scene::Scene& next,
+                                              const std::vector<scene::KeyedScene::LetGo>& released) const {
+    if (next.keys.empty() && released.empty()) return nullptr;
+    auto made = std::make_unique<scene::KeyedScene>(next);
+    made->set(time_of(step_index), time_of(step_index));
+    made->release(released);
+    return made;
+  }
+
+  /// Sets keyed values: those of forces as of `share` of the step under way, those of contacts as of its end.
+  void set_keyed(double share) {
+    const scene::KeyedScene::Changed changed =
+        keyed->set(time_of(step_index, share), time_of(step_index, 1.0));
+    if (!changed.any()) return;
+    kernels.take_keyed(keyed->scene(), changed);
+    if (changed.materials) bind_constants();
+  }
+
+  /// Makes the kernels anew, as pins have let go, or hold again where the state went back. If they cannot be
+  /// made, the next batch of steps tries again.
+  void follow_holds(const std::vector<scene::KeyedScene::LetGo>& before) {
+    const Whole whole;
+    Result<Kernels> made = Kernels::create(keyed->scene());
+    if (!made) {
+      keyed->release(before);
+      return;
+    }
+    made->motions.settle(settled);
+    take_kernels(std::move(*made));
+    state.rewrite_constants(kernels.model, kernels.motions);
+    if (!hands.empty()) (void)set_hands(hands.all());
+  }
+
+  /// To be called before a batch of steps: lets go of the pins whose keys say so.
+  void let_go() {
+    if (!keyed) return;
+    const std::vector<scene::KeyedScene::LetGo> before = keyed->released();
+    if (keyed->let_go(time_of(step_index)).holds) follow_holds(before);
+  }
+
+  /// To be called when the state is another step's: pins that let go only after it hold again.
+  void hold_again() {
+    if (!keyed) return;
+    const std::vector<scene::KeyedScene::LetGo> before = keyed->released();
+    if (keyed->hold_again(time_of(step_index, -1.0))) follow_holds(before);
+  }
+
   void bind_constants() const {
     kernels.elements.bind(unit_elements);
     kernels.slices.bind(unit_element_slices);
@@ -92,6 +151,7 @@ struct Simulation::Implementation {
       if (timer) timer->stage(pass);
     };
     state.position().bind(unit_position);
+    if (keyed) set_keyed(scene::forces_after(kernels.plan.method));
     if (kernels.surface_contact) {
       co_await kernels.surface_contact->update_pairs(state, row);
       passed("pair_search");
@@ -100,13 +160,15 @@ struct Simulation::Implementation {
     // places.
     if (kernels.self_collision) {
       state.position().bind(unit_position);
-      co_await kernels.update_lists(scene);
+      co_await kernels.update_lists(now());
       passed("neighbour_search");
     }
-    hands.hold(state, scene);
+    hands.hold(state, now());
+    kernels.integrator->set_stage_watch(keyed ? [this](double share) { set_keyed(share); }
+                                              : std::function<void(double)>());
     kernels.integrator->set_contact(kernels.plan.contact_term() ? &*kernels.surface_contact : nullptr);
     kernels.integrator->set_held(!hands.empty());
-    if (convergence.due(step_index)) co_await convergence.measure(state, kernels, scene, row, step_index);
+    if (convergence.due(step_index)) co_await convergence.measure(state, kernels, now(), row, step_index);
     state.position().bind(unit_position);
     co_await kernels.integrator->step(state, row);
     passed(scene::name(kernels.plan.method));
@@ -124,6 +186,7 @@ struct Simulation::Implementation {
   /// Does up to `count` steps; ends earlier if no steps are left to do.
   Work run_batch(std::uint32_t count) {
     gl::StageTimer* timer = std::exchange(next_timer, nullptr);
+    let_go();
     bind_constants();
     upload_poses(count);
     for (std::uint32_t step = 0; step < count && steps_to_do > 0; ++step) {
@@ -139,6 +202,7 @@ struct Simulation::Implementation {
       if (kept.due(step_index)) keep_state();
       if (diagnosed_every > 0 && step_index % diagnosed_every == 0) request_diagnostics();
       co_await may_stop;
+      if (keyed && keyed->lets_go(time_of(step_index))) co_return;
     }
   }
 
@@ -146,7 +210,8 @@ struct Simulation::Implementation {
     bind_constants();
     const SelfCollision* self_collision = kernels.self_collision ? &*kernels.self_collision : nullptr;
     const SurfaceContact* surfaces = kernels.surface_contact ? &*kernels.surface_contact : nullptr;
-    diagnostics.request(state, self_collision, surfaces, scene.gravity, time_of(step_index), step_index);
+    diagnostics.request(state, self_collision, surfaces, scene::gravity_at(scene, time_of(step_index)),
+                        time_of(step_index), step_index);
     last_good.put_aside(state, time_of(step_index), step_index);
   }
 
@@ -209,6 +274,7 @@ struct Simulation::Implementation {
     copy.start_time = start_time;
     copy.start_step = start_step;
     copy.settled = settled;
+    copy.released = keyed ? keyed->released() : std::vector<scene::KeyedScene::LetGo>{};
     copy.neighbour_slots = kernels.plan.neighbour_slots;
   }
 
@@ -216,7 +282,7 @@ struct Simulation::Implementation {
   /// nothing has changed.
   Status go_on_from(const KeptState& copy) {
     if (kernels.self_collision && kernels.plan.neighbour_slots != copy.neighbour_slots)
-      if (Status grown = kernels.grow(scene, copy.neighbour_slots); !grown) return grown;
+      if (Status grown = kernels.grow(now(), copy.neighbour_slots); !grown) return grown;
     settled = copy.settled;
     kernels.motions.settle(settled);
     state.load(copy.position, copy.velocity);
@@ -282,7 +348,7 @@ struct Simulation::Implementation {
   }
 
   /// Takes over a changed scene; positions, velocities and time stay as they are.
-  void adopt(const scene::Scene& next) {
+  void adopt(const scene::Scene& next, std::unique_ptr<scene::KeyedScene> next_keyed) {
     if (next.solver.dt != scene.solver.dt) {
       start_time = time_of(step_index);
       start_step = step_index;
@@ -291,6 +357,7 @@ struct Simulation::Implementation {
         differs(scene, next, &scene::Cloth::mass) || differs(scene, next, &scene::Cloth::weights) ||
         differs(scene, next, &scene::Cloth::pins) || moving_motions(scene) != moving_motions(next);
     settle_new_pins(next);
+    keyed = std::move(next_keyed);
     if (next.solver != scene.solver) convergence.begin(step_index);
     scene = next;
     if (constants) state.rewrite_constants(kernels.model, kernels.motions);

@@ -144,14 +144,12 @@ std::array<const gl::Program*, 12> SurfaceContact::programs() const {
 void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Model& model,
                                     const MotionTable& motions) {
   const double dt = scene.solver.dt;
-  bodies_.set_parameters(scene, model, motions);
   const double advance = driven_ ? driven_advance * SurfacePairs::thickness(scene, model) : 1e30;
   const double driven_pieces = driven_ ? std::ceil(dt * fastest_driven(scene, model) / advance) : 1.0;
   pieces_ = std::max(dt > longest_whole_step ? most_pieces : 1,
                      static_cast<int>(std::min<double>(driven_pieces, most_driven_pieces)));
   if (term_) pieces_ = 1;
   pairs_.set_parameters(scene, model, pieces_, term_.has_value());
-  if (term_) term_->set_parameters(scene, model, motions);
   advance_.set("most_advance", static_cast<float>(advance));
   for (const gl::Program* program : programs()) {
     program->set("dt", static_cast<float>(dt));
@@ -165,13 +163,20 @@ void SurfaceContact::set_parameters(const scene::Scene& scene, const model::Mode
   push_passes_ = term_ ? 0 : passes.pushes;
   rub_passes_ = term_ ? 0 : passes.rubs;
   filter_passes_ = passes.filter;
-  for (const gl::Program* program : {&apply_, &advance_, &move_, &move_last_})
-    set_colliders(*program, scene, model, motions);
   for (const gl::Program* program : {&move_, &move_last_})
     program->set("margin", static_cast<float>(least_contact_margin(scene, model)));
-  forces_.set("friction", static_cast<float>(scene.self_collision ? scene.self_collision->friction : 0.0));
+  set_numbers(scene, model, motions);
   forces_.set("mend", static_cast<float>(std::min(mended_in_step, mended_in_second * dt)));
   invalidate();
+}
+
+void SurfaceContact::set_numbers(const scene::Scene& scene, const model::Model& model,
+                                 const MotionTable& motions) {
+  bodies_.set_parameters(scene, model, motions);
+  if (term_) term_->set_parameters(scene, model, motions);
+  for (const gl::Program* program : {&apply_, &advance_, &move_, &move_last_})
+    set_colliders(*program, scene, model, motions);
+  forces_.set("friction", static_cast<float>(scene.self_collision ? scene.self_collision->friction : 0.0));
 }
 
 void SurfaceContact::invalidate() {

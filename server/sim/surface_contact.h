@@ -29,6 +29,9 @@ class SurfaceContact {
   /// Takes over the numbers of a scene; the pairs are searched anew before the next step.
   void set_parameters(const scene::Scene& scene, const model::Model& model, const MotionTable& motions);
 
+  /// The same where only gravity, friction or restitution differ: the pairs stay.
+  void set_numbers(const scene::Scene& scene, const model::Model& model, const MotionTable& motions);
+
   /// Places for which the state's buffers need room behind the cloths' vertices.
   std::uint32_t extra_places() const { return bodies_.count(); }
 

@@ -88,6 +88,24 @@ scene::Document under(const scene::Document& document, Method method) {
   return validated();
 }
 
+/// The document with keys of all kinds that change in the first 30 steps, in which its pin lets go, too.
+scene::Document keyed(const scene::Document& document) {
+  const double dt = document.scene.solver.dt;
+  scene::json value = document.value;
+  const auto key = [&](const char* of, double from, double to, scene::json first, scene::json last) {
+    value["keys"].push_back({{"of", of}, {"at", {{from * dt, first}, {to * dt, last}}}});
+  };
+  key("/gravity", 3, 25, {0, -9.8, 0}, {2, -5, 0});
+  key("/air_drag", 0, 30, 0, 2);
+  key("/wind/velocity", 5.5, 20, {1, 0, 0}, {0, 0, 3});
+  key("/colliders/0/friction", 0, 30, 0.3, 0.8);
+  key("/cloths/0/material/shear", 8, 18, 10000, 5000);
+  key("/cloths/0/pins/0/held", 0, 16.5, true, false);
+  Result<scene::Document> made = scene::validate(value, document.assets);
+  if (!made) FAIL(made.error().text());
+  return *made;
+}
+
 using Hashes = std::map<std::uint64_t, std::uint64_t>;  ///< [step]
 
 /// What `run` computes: steps, and nothing else.
@@ -230,6 +248,16 @@ TEST_CASE(
     for (const std::string& kind : kinds_under(method)) {
       INFO(kind << " under " << scene::name(method));
       compare_session_with_run(under(busy(kind), method));
+    }
+}
+
+TEST_CASE("a session of a scene with keys computes what a run computes, bit for bit, under each method") {
+  for (const std::string kind : {"points", "surface"})
+    for (const Method method : every_method) {
+      const bool surface = method == Method::implicit_euler || method == Method::vbd;
+      if (!thorough && surface != (kind == "surface")) continue;
+      INFO(kind << " under " << scene::name(method));
+      compare_session_with_run(keyed(under(busy(kind), method)));
     }
 }
 

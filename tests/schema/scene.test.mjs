@@ -21,6 +21,10 @@ const crossFieldRules = {
   "with area_density every vertex has an area": /would have no mass/,
   "poisson^2 is below warp / weft": /\/poisson: .*the square root of warp \/ weft/,
   "pbd has no finite elements": /\/solver\/method: .*PBD's stiffness is no N\/m/,
+  "a key is of something that can be keyed, once": /^\/keys\/\d+\/of: /,
+  "a key's times rise": /^\/keys\/\d+\/at\/\d+\/0: .*times rise/,
+  "a key's values are of the range of what it is of": /^\/keys\/\d+\/at\/\d+\/1(\/\d)?: /,
+  "a pin lets go at once": /^\/keys\/\d+\/ease: .*between true and false/,
   "names are unique": /a name that no earlier one has/,
   "all cloths together are not too large": /vertices so far/,
   "a mesh's file is there and is one": /\/mesh\/(obj|file): /,
@@ -124,6 +128,25 @@ const whole = {
   wind: { velocity: [2, 0, 0], gust: 0.3, gust_frequency: 0.7, drag: 1, lift: 0.2 },
   air_drag: 0,
   solver: { method: "symplectic_euler", dt: 0.001, iterations: 10, tolerance: 1e-4 },
+  keys: [
+    {
+      of: "/wind/velocity",
+      at: [
+        [0, [0, 0, 0]],
+        [2, [6, 0, 0]],
+      ],
+      ease: "smooth",
+    },
+    {
+      of: "/cloths/0/pins/0/held",
+      at: [
+        [0, true],
+        [2.5, false],
+      ],
+      ease: "step",
+    },
+    { of: "/air_drag", at: [[1, 0.5]] },
+  ],
 };
 /// The file beside it; its first vertex is part of no face.
 const leaf = "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 2/1 3/2 4/3\n";
@@ -198,6 +221,8 @@ function* mutations() {
     "plain",
     "checker",
     "stripes",
+    "linear",
+    "smooth",
     "velvet",
     "denim",
     "fem",

@@ -15,6 +15,7 @@ const tables = [
   ["`self_collision`", ["properties", "self_collision", "oneOf", 1]],
   ["`wind`", ["properties", "wind", "oneOf", 1]],
   ["`solver`", ["properties", "solver"]],
+  ["`keys[]`", ["$defs", "key"]],
   ["A cloth: `cloths[]`", ["$defs", "cloth"]],
   ["`mesh: {grid}`", ["$defs", "cloth", "properties", "mesh", "oneOf", 0, "properties", "grid"]],
   ["`mesh: {vertices, triangles}`", ["$defs", "cloth", "properties", "mesh", "oneOf", 1]],
@@ -55,11 +56,13 @@ function allowed(schema) {
   if (schema.type?.includes?.("string")) return "text or null";
   if (schema.oneOf) return [...new Set(schema.oneOf.map(allowed))].join(" or ");
   const types = [schema.type].flat();
+  if (types.includes("boolean")) return "a value";
   if (types.includes("null") && types.length === 1) return "null";
   if (types.includes("array")) {
     const size =
       schema.minItems === schema.maxItems ? `${schema.minItems}` : `${schema.minItems ?? 0} to ${schema.maxItems}`;
-    const items = allowed(schema.items);
+    const items = schema.prefixItems ? schema.prefixItems.map(allowed).join(", ") : allowed(schema.items);
+    if (schema.prefixItems) return `list of ${items}`;
     if (items === "see below") return `list of ${size}`;
     return `list of ${size}, each ${items}`;
   }

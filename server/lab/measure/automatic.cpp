@@ -42,8 +42,7 @@ json without_solver(json scene) {
 
 Setting provisional(const model::Model& model, const scene::Scene& scene) {
   Setting setting{scene::Method::verlet, scene.solver.dt, 1, 1e-4};
-  const double limit =
-      model::dt_limit_bound(setting.method, model::ElementOperator(model, scene, model.rest_position));
+  const double limit = model::dt_limit_bound(setting.method, model, scene);
   if (std::isfinite(limit)) setting.dt = model::rounded_down(provisional_share_of_limit * limit);
   return setting;
 }

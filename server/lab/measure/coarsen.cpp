@@ -103,6 +103,29 @@ Error no_counterpart(const std::string& where, const json& at, const scene::Grid
           "a place that is also a vertex of the coarser mesh"};
 }
 
+/// What the numbers of springs are multiplied by.
+struct SpringFactors {
+  double structural, shear, bend;
+};
+SpringFactors spring_factors(const scene::Grid& from, const scene::Grid& to) {
+  return {factor_of(from, to, structural_share), shear_share(from) / shear_share(to),
+          factor_of(from, to, bend_share)};
+}
+
+/// Coarsens the values that keys give the springs of cloth `index`.
+void coarsen_keys(json& keys, std::size_t index, const SpringFactors& by) {
+  const std::string material = "/cloths/" + std::to_string(index) + "/material/";
+  for (json& key : keys) {
+    const std::string of = key["of"];
+    for (const auto& [name, factor] : {std::pair("structural", by.structural),
+                                       {"shear", by.shear},
+                                       {"bend", by.bend},
+                                       {"damping", by.structural}})
+      if (of == material + name)
+        for (json& frame : key["at"]) frame[1] = frame[1].get<double>() * factor;
+  }
+}
+
 /// Coarsens the mesh, mass, material and pins of a cloth. Its weights follow in coarsen_weights, which needs
 /// the coarse vertices.
 Status coarsen_cloth(json& value, const scene::Cloth& cloth, std::size_t index, const scene::Grid& to) {
@@ -114,11 +137,11 @@ Status coarsen_cloth(json& value, const scene::Cloth& cloth, std::size_t index, 
                                   (static_cast<double>(to.columns) * to.rows);
   // The moduli of finite elements are the sheet's own, on any mesh.
   if (const auto* springs = std::get_if<scene::Springs>(&cloth.material)) {
-    const double structural = factor_of(from, to, structural_share);
-    value["material"]["structural"] = springs->structural * structural;
-    value["material"]["shear"] = springs->shear * shear_share(from) / shear_share(to);
-    value["material"]["bend"] = springs->bend * factor_of(from, to, bend_share);
-    value["material"]["damping"] = springs->damping * structural;
+    const SpringFactors by = spring_factors(from, to);
+    value["material"]["structural"] = springs->structural * by.structural;
+    value["material"]["shear"] = springs->shear * by.shear;
+    value["material"]["bend"] = springs->bend * by.bend;
+    value["material"]["damping"] = springs->damping * by.structural;
   }
   for (std::size_t i = 0; i < cloth.pins.size(); ++i) {
     json& at = value["pins"][i]["at"];
@@ -195,6 +218,8 @@ Result<scene::Document> coarsen(const scene::Document& document, int factor) {
                    "another start, or none"};
     value["cloths"][i]["weights"] = json::array();
     if (Status done = coarsen_cloth(value["cloths"][i], cloths[i], i, *to); !done) return done.error();
+    if (std::holds_alternative<scene::Springs>(cloths[i].material))
+      coarsen_keys(value["keys"], i, spring_factors(std::get<scene::Grid>(cloths[i].mesh), *to));
   }
   if (!any)
     return Error{"/cloths",

@@ -48,8 +48,7 @@ void Ladder::go_on(std::optional<double> error, std::optional<double> reference_
 }
 
 double limit_of(Method method, const scene::Scene& scene, const Truth& truth) {
-  return model::dt_limit(method,
-                         model::ElementOperator(truth.world.model, scene, truth.world.model.rest_position));
+  return model::dt_limit(method, truth.world.model, scene);
 }
 
 std::vector<Ladder> make_ladders(const scene::Scene& scene, const ChartRequest& request, const Truth& truth) {

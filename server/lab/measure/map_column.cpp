@@ -58,12 +58,18 @@ class Column {
  private:
   Status find_theory(const model::Model& model) {
     const Method method = scene_.solver.method;
-    const model::ElementOperator springs(model, scene_, model.rest_position);
-    const double limit = model::dt_limit(method, springs, stop_);
+    const std::vector<model::ElementOperator> extremes = model::extreme_operators(model, scene_);
+    double limit = model::no_limit;
+    const model::ElementOperator* decisive = nullptr;
+    for (const model::ElementOperator& elements : extremes)
+      if (const double own = model::dt_limit(method, elements, stop_); !decisive || own < limit) {
+        limit = own;
+        decisive = &elements;
+      }
     if (stop_.stop_requested()) return cancelled;
     if (limit == model::no_limit) return ok();
     theory_ = measured_.column.theory = limit;
-    mode_ = fastest_growing(method, springs, stop_);
+    mode_ = fastest_growing(method, *decisive, stop_);
     most_steps_ = steps_at_limit(method, mode_, limit, model.vertex_count());
     shortest_visible_dt_ = shortest_visible(method, mode_, most_steps_, e_folds_to_show);
     return ok();

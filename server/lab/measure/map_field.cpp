@@ -63,8 +63,16 @@ Result<MapField> MapField::find(const scene::Document& document, const std::stri
   if (field == stiffness) {
     if (!any_spring(document.scene))
       return Error{"field", "\"stiffness\", but no cloth has a spring", "the JSON Pointer of another number"};
+    for (const scene::Key& key : document.scene.keys)
+      if (key.of.find("/material/") != std::string::npos && !key.of.ends_with("damping"))
+        return Error{"field", "\"stiffness\", which the key of " + key.of + " changes over time",
+                     "another number, or the scene without that key"};
     return found;
   }
+  for (const scene::Key& key : document.scene.keys)
+    if (field == key.of || field.starts_with(key.of + "/"))
+      return Error{"field", scene::compact(field) + ", which a key changes over time",
+                   "another number, or the scene without that key"};
   const json* value = find_value(found.document_.value, field);
   if (!value)
     return Error{"field", scene::compact(field),

@@ -6,6 +6,7 @@
 #include "server/lab/measure/coarsen.h"
 #include "server/model/model.h"
 #include "server/scene/fitted_springs.h"
+#include "server/scene/keys.h"
 #include "server/scene/sections.h"
 
 namespace clothlab::lab {
@@ -17,6 +18,24 @@ using scene::json;
 
 Error not_there(const char* what) {
   return {"", std::string("the scene has no ") + what, ""};
+}
+
+/// Takes the keys out whose pointer begins with `prefix`.
+void drop_keys(json& document, const std::string& prefix) {
+  json kept = json::array();
+  for (json& key : document["keys"])
+    if (!key["of"].get<std::string>().starts_with(prefix)) kept.push_back(std::move(key));
+  document["keys"] = std::move(kept);
+}
+
+std::string material_of(std::size_t cloth) {
+  return "/cloths/" + std::to_string(cloth) + "/material/";
+}
+
+/// True if keys change numbers of a cloth's material.
+bool has_keyed_material(const scene::Scene& scene) {
+  return std::any_of(scene.keys.begin(), scene.keys.end(),
+                     [](const scene::Key& key) { return key.of.find("/material/") != std::string::npos; });
 }
 
 std::size_t elements(const model::Model& model) {
@@ -39,9 +58,12 @@ bool all_sheets(const scene::Scene& scene) {
 Result<Document> without_elements(const Document& document, const char* key, const char* key_of_sheet,
                                   const char* what) {
   json value = document.value;
-  for (json& cloth : value["cloths"]) {
-    const bool springs = cloth["material"]["model"] == "springs";
-    if (const char* removed = springs ? key : key_of_sheet) cloth["material"][removed] = 0.0;
+  for (std::size_t i = 0; i < value["cloths"].size(); ++i) {
+    json& material = value["cloths"][i]["material"];
+    const char* const removed = material["model"] == "springs" ? key : key_of_sheet;
+    if (!removed) continue;
+    material[removed] = 0.0;
+    drop_keys(value, material_of(i) + removed);
   }
   Result<Document> without = scene::validate(std::move(value), document.assets);
   if (!without) return without;
@@ -65,6 +87,7 @@ Result<Document> without_self_collision(const Document& document) {
   if (!document.scene.self_collision) return not_there("self-collision");
   json value = document.value;
   value["self_collision"] = nullptr;
+  drop_keys(value, "/self_collision/");
   return scene::validate(std::move(value), document.assets);
 }
 
@@ -80,15 +103,20 @@ Result<Document> without_wind(const Document& document) {
   if (!document.scene.wind) return not_there("wind");
   json value = document.value;
   value["wind"] = nullptr;
+  drop_keys(value, "/wind/");
   return scene::validate(std::move(value), document.assets);
 }
 
 Result<Document> undamped(const Document& document) {
-  if (std::none_of(document.scene.cloths.begin(), document.scene.cloths.end(),
+  const scene::Scene most = scene::at_largest(document.scene);
+  if (std::none_of(most.cloths.begin(), most.cloths.end(),
                    [](const scene::Cloth& cloth) { return cloth.damping() > 0.0; }))
     return not_there("damping");
   json value = document.value;
-  for (json& cloth : value["cloths"]) cloth["material"]["damping"] = 0.0;
+  for (std::size_t i = 0; i < value["cloths"].size(); ++i) {
+    value["cloths"][i]["material"]["damping"] = 0.0;
+    drop_keys(value, material_of(i) + "damping");
+  }
   return scene::validate(std::move(value), document.assets);
 }
 
@@ -116,6 +144,7 @@ json fitted_springs(const scene::Cloth& cloth) {
 /// Every cloth of finite elements as springs that are fitted to it (scene/fitted_springs.h).
 Result<Document> springs_instead(const Document& document) {
   if (!any_sheet(document.scene)) return not_there("finite elements");
+  if (has_keyed_material(document.scene)) return not_there("material that stays the same: keys change it");
   json value = document.value;
   for (std::size_t i = 0; i < document.scene.cloths.size(); ++i) {
     const scene::Cloth& cloth = document.scene.cloths[i];
@@ -132,6 +161,7 @@ Result<Document> springs_instead(const Document& document) {
 /// the Poisson's ratio that keeps the coupling of both. What the sheet resists when its threads slant stays:
 /// that of woven cloth is some twentieth of what an isotropic sheet has, and nobody would call it a detail.
 Result<Document> alike_along_both(const Document& document) {
+  if (has_keyed_material(document.scene)) return not_there("material that stays the same: keys change it");
   json value = document.value;
   bool differs = false;
   for (std::size_t i = 0; i < document.scene.cloths.size(); ++i) {

@@ -29,6 +29,8 @@ bool moves(const scene::Motion& motion) {
 std::optional<Error> unfit(const reference::World& world) {
   for (const scene::Motion& motion : world.model.motions)
     if (moves(motion)) return Error{"rest", "a pin moves, so nothing comes to rest", "pins that stand still"};
+  if (!world.scene.keys.empty())
+    return Error{"rest", "keys change the scene, so nothing comes to rest", "no keys"};
   if (world.scene.wind) return Error{"rest", "the wind blows, so nothing comes to rest", "no wind"};
   if (!(glm::length(world.scene.gravity) > 0.0))
     return Error{"rest", "there is no gravity, so there is no shape of rest", "gravity"};

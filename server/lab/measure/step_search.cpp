@@ -39,8 +39,7 @@ std::vector<Setting> settings_of(Method method) {
 }  // namespace
 
 double StepSearch::limit_of(Method method) const {
-  const model::Model& model = truth_.world.model;
-  return model::dt_limit(method, model::ElementOperator(model, scene_, model.rest_position));
+  return model::dt_limit(method, truth_.world.model, scene_);
 }
 
 Status StepSearch::list(const std::vector<Method>& wanted) {

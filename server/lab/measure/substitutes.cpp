@@ -114,8 +114,7 @@ Status Substitutes::same_share_of_limit(Substitute& candidate) {
 Result<double> Substitutes::limit_of(const scene::Scene& scene) const {
   const Result<model::Model> model = model::build(scene);
   if (!model) return model.error();
-  const double limit = model::dt_limit(scene.solver.method,
-                                       model::ElementOperator(*model, scene, model->rest_position), stop_);
+  const double limit = model::dt_limit(scene.solver.method, *model, scene, stop_);
   if (stop_.stop_requested()) return cancelled;
   return limit;
 }

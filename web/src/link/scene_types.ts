@@ -162,6 +162,13 @@ export interface Wind {
   lift: number;
 }
 
+/// A value of the scene by times [s]; `of` is its JSON Pointer.
+export interface Key {
+  of: string;
+  at: [number, number | boolean | Vec3][];
+  ease: "linear" | "smooth" | "step";
+}
+
 export interface SceneDocument {
   version: number;
   name: string;
@@ -172,6 +179,7 @@ export interface SceneDocument {
   wind: null | Wind;
   air_drag: number;
   solver: { method: string; dt: number; iterations: number; tolerance: number };
+  keys: Key[];
 }
 
 export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };

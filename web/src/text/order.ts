@@ -7,7 +7,7 @@ const keys = `version name gravity cloths colliders self_collision wind air_drag
   mass per_vertex area_density material model fabric structural warp weft twist poisson shear bend bending damping grain
   strain_limit pins weights start scatter size seed kind thickness friction restitution
   motion oscillate linear spin axis amplitude frequency degrees_per_second velocity gust gust_frequency drag lift
-  color texture method dt iterations tolerance`.split(/\s+/);
+  color texture method dt iterations tolerance keys of ease`.split(/\s+/);
 const rank = new Map(keys.map((key, i) => [key, i]));
 
 /// The same value, its keys in that order; keys that no scene has come last.
