@@ -116,6 +116,7 @@ export class Page {
   private fabricNames: string[] = []; // that come with the server, as the next
   private presetNames: string[] = [];
   private sceneName = "";
+  private shownTime = 0; // of the picture [s]
   private stability: Stability | null = null; // in the last status
   private mayEdit = true; // false for a viewer, who may only watch
 
@@ -177,6 +178,7 @@ export class Page {
       picture: this.picture,
       mayEdit: () => this.mayEdit && this.connection.open,
       resume: (step) => this.connection.request("timeline.resume", { step }),
+      keys: () => this.store.document?.keys ?? [],
       changed: () => layout.cardToggled(),
     });
     this.welcome = bindFirstSteps({
@@ -204,6 +206,7 @@ export class Page {
       },
       drawn: ({ header, field }) => {
         this.hud.countDrawn();
+        this.shownTime = header.time;
         this.hud.setTime(header.time);
         this.colourBy.show(field, header.range);
         this.hud.set("vertices", String(header.vertexCount));
@@ -275,6 +278,7 @@ export class Page {
           for (const each of mass.changes) tellMass(each, (more) => this.store.edit(more, true));
         },
         busy: (path) => this.store.busy(path),
+        time: () => this.shownTime,
         loadPreset: (name) => this.loadPreset(name),
         openText: () => this.drawers.toggle("text"),
         openCompare: () => this.drawers.toggle("compare"),

@@ -4,6 +4,7 @@ import { Explanation } from "../explain/explanation";
 import type { Guide } from "../explain/guide";
 import { type Field, type Note, operationsFor, readField, type Section, type SolverFacts } from "./field";
 import { sectionsOf } from "./fields";
+import { keyedPlace, keyOf, keyOperations } from "./keying";
 import { type Convergence, ConvergenceGauge } from "./convergence_gauge";
 import { Gauge, type Stability } from "./gauge";
 import type { Fabric } from "../link/fabrics";
@@ -16,6 +17,7 @@ import { timeStep } from "./solver_section";
 export interface PanelEvents {
   edit(operations: Operation[], keepStable?: boolean): void;
   busy(path: string): boolean;
+  time(): number; ///< that the picture shows [s]
   loadPreset(name: string): void;
   openText(): void;
   openCompare(): void;
@@ -215,6 +217,8 @@ export class Panel {
     this.controls.push(control);
     control.reset.onclick = () => this.events.edit(control.back, field.keepStable);
     if (controller instanceof SliderController) controller.allowed = () => this.rangeOf(field);
+    const place = keyedPlace(field, this.document as SceneDocument);
+    if (place !== null) controller.domElement.append(this.keyButton(field, place));
     controller.domElement.append(control.reset); // last: the row of a checkbox is a label, of the first control in it
     this.explanation.attach(controller.domElement, controller.$name, () =>
       this.document && this.stored ? this.guide.explain(field, this.document, this.stored) : null,
@@ -236,6 +240,27 @@ export class Panel {
   private rangeOf(field: Field): string {
     const told = this.document && this.stored ? this.guide.explain(field, this.document, this.stored) : null;
     return told?.facts.find(([name]) => name === "Range")?.[1] ?? "";
+  }
+
+  /// Marked while its value has a key.
+  private keyButton(field: Field, place: string): HTMLButtonElement {
+    const key = document.createElement("button");
+    key.type = "button";
+    key.className = "key";
+    key.textContent = "◆";
+    key.onclick = () => {
+      if (this.document) this.events.edit(keyOperations(place, this.document, this.events.time()));
+    };
+    this.notes.push(() => {
+      const there = this.document ? keyOf(place, this.document) : undefined;
+      const times = there?.at.map(([time]) => `${time} s`).join(", ");
+      const says = `Key ${field.label} at the present time${times === undefined ? "" : `: has keys at ${times}`}`;
+      if (key.title === says) return;
+      key.title = says;
+      key.setAttribute("aria-label", says);
+      key.classList.toggle("keyed", there !== undefined);
+    });
+    return key;
   }
 
   private resetButton(): HTMLButtonElement {

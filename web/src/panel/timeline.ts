@@ -4,12 +4,14 @@ import { button, element } from "./dom";
 import { takes } from "./keys";
 import { notice, noticeError } from "./notices";
 import { longest, mostBytes, type KeptFrame } from "../link/kept_frames";
+import type { Key } from "../link/scene_types";
 import type { Picture } from "../picture";
 
 export interface TimelineHost {
   picture: Picture;
   mayEdit(): boolean;
   resume(step: number): Promise<unknown>;
+  keys(): Key[];
   changed(): void; ///< the card came or went
 }
 
@@ -18,6 +20,8 @@ const megabytes = (bytes: number): string => `${(bytes / 1e6).toFixed(1)} MB`;
 export class Timeline {
   private readonly card = document.createElement("section");
   private readonly range = document.createElement("input");
+  private readonly marks = document.createElement("div");
+  private markedAs = "";
   private readonly where = document.createElement("span");
   private readonly size = document.createElement("span");
   private readonly live = document.createElement("button");
@@ -41,7 +45,8 @@ export class Timeline {
     for (const each of [this.live, this.from]) each.type = "button";
     this.where.className = "timeline-where";
     this.size.className = "timeline-size";
-    this.card.append(this.range, this.where, this.size, this.live, this.from);
+    this.marks.className = "timeline-keys";
+    this.card.append(this.marks, this.range, this.where, this.size, this.live, this.from);
     element("transport", HTMLElement).before(this.card);
     addEventListener("keydown", (event) => this.key(event), { capture: true });
     this.open(true);
@@ -85,6 +90,33 @@ export class Timeline {
     this.size.textContent = `${seconds.toFixed(0)} s, ${megabytes(kept.bytes)}`;
     this.size.title = `Kept in this page: the last ${longest / 1000} s, at most ${megabytes(mostBytes)}`;
     if (!this.looksBack) this.tell(all.at(-1), "live");
+    this.mark(all);
+  }
+
+  /// Marks where the scene's keyframes are among the frames.
+  private mark(frames: KeptFrame[]): void {
+    const timeAt = (index: number): number => frames[index]?.frame.header.time ?? Number.NaN;
+    const first = timeAt(0),
+      last = timeAt(frames.length - 1);
+    const marks = this.host.keys().flatMap(({ of, at }) =>
+      at
+        .filter(([time]) => time >= first && time <= last)
+        .map(([time]) => {
+          const index = frames.findIndex(({ frame }) => frame.header.time >= time);
+          return { share: index / Math.max(1, frames.length - 1), says: `${of} at ${time} s` };
+        }),
+    );
+    const now = JSON.stringify(marks);
+    if (now === this.markedAs) return;
+    this.markedAs = now;
+    this.marks.replaceChildren(
+      ...marks.map(({ share, says }) => {
+        const mark = document.createElement("span");
+        mark.style.setProperty("--share", share.toFixed(4));
+        mark.title = says;
+        return mark;
+      }),
+    );
   }
 
   private show(index: number): void {
