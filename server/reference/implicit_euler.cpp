@@ -196,11 +196,11 @@ State solved_end(const StepStart& start, const Equation& equation) {
 /// Whether the wind takes a vertex along within the step: it could take all of the flow's speed in less than
 /// the step, and the vertex has gained more than half of it.
 bool taken_along(const StepStart& start, const Vectors& gain) {
-  const World& world = start.world;
   const Equation equation(start, start.state.way, start.state.gain);
+  const World& world = equation.world;
   const dvec3 air = model::wind_velocity(*world.scene.wind, start.t + start.dt);
   for (std::size_t i = 0; i < gain.size(); ++i) {
-    const double by_wind = equation.drag[i] - equation.world.scene.air_drag,
+    const double by_wind = equation.drag[i] - world.scene.air_drag,
                  flow = glm::length(air - start.state.velocity[i]);
     if (!world.pinned(i) && start.dt * by_wind > 1.0 && glm::length(gain[i]) > 0.5 * flow) return true;
   }

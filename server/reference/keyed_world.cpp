@@ -47,6 +47,7 @@ const World& at_step(const World& world, State& state, double t) {
   if (held || released) {
     state.half_dt.clear();
     state.velocity_before.clear();
+    state.way = state.gain = {};
     scene::take_keyed(keyed.keys.scene(), keyed.now.scene);
     if (Result<model::Model> model = model::build(keyed.keys.scene())) {
       keyed.now.model = std::move(*model);

@@ -41,14 +41,18 @@ class GaussSeidel : public Integrator {
   }
 
   void set_parameters(const Surroundings& around) override {
+    listed_mobility_ = -1.0;  // the list follows from dt and the materials, too
     set_numbers(around);
-    if (by_vertex_) return;
-    visit_list_ = {gl::Buffer(visit_list(work_, around.model, around.scene)), GL_RGBA32UI};
   }
 
   void set_numbers(const Surroundings& around) override {
     sweeps_ = around.scene.solver.iterations;
-    const float mobility = static_cast<float>(model::mobility(around.scene));
+    const double exact = model::mobility(around.scene);
+    if (!by_vertex_ && exact != listed_mobility_) {
+      visit_list_ = {gl::Buffer(visit_list(work_, around.model, around.scene)), GL_RGBA32UI};
+      listed_mobility_ = exact;
+    }
+    const auto mobility = static_cast<float>(exact);
     for (const gl::Program* program : {&whole_, &begin_, &contacts_pass_, &balance_, &finish_})
       set_parameters(*program, around, mobility);
     for (const gl::Program& program : visits_) set_parameters(program, around, mobility);
@@ -289,7 +293,8 @@ class GaussSeidel : public Integrator {
   std::uint32_t lanes_ = 0;  ///< threads of the one work group; 0: many dispatches instead
   std::uint32_t vertex_count_, cloths_;
   int sweeps_ = 1;
-  Visits work_;  ///< what a sweep visits
+  double listed_mobility_ = -1.0;  ///< model::mobility that the list of visits has; below 0 before the first
+  Visits work_;                    ///< what a sweep visits
   gl::Program whole_, begin_, contacts_pass_, balance_, finish_;
   std::vector<gl::Program> visits_;  ///< for each of work_.functions; without a program if it has no items
   std::array<gl::TextureBuffer, 2> deviation_;  ///< a pass of contacts reads one and writes the other

@@ -119,7 +119,8 @@ TEST_CASE(
       // such a law exactly. Float32 rounds places and velocities in each step, by 1.2e-7 of up to 2 m or 2
       // m/s, independently.
       const double rounding = side == test::Side::gpu ? 2.4e-7 * steps : 1e-12;
-      const double first = dt * most * time, second = dt * dt * most;
+      // BDF2's error has four times the trapezoid's factor.
+      const double first = dt * most * time, second = (method == Method::bdf2 ? 4 : 1) * dt * dt * most;
       const int order = scene::facts(method).order;
       CHECK(off(stepped.state(), stepped.world(), way) < rounding + (order == 1   ? first
                                                                      : order == 2 ? second
@@ -178,7 +179,8 @@ TEST_CASE(
       const double changed = reference::rms_distance(without.position, expected.position);
       INFO("off by " << worst << " m; without keys " << changed << " m");
       // Rounding, which this cloth's folds magnify little in so short a time, and what linear solves leave.
-      CHECK(worst < 1e-5);
+      // BDF2 also goes on with the rounding of the last step's way.
+      CHECK(worst < (method == Method::bdf2 ? 3e-5 : 1e-5));
       CHECK(changed > 100 * worst);
     }
 }

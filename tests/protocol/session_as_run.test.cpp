@@ -253,7 +253,7 @@ TEST_CASE(
 
 TEST_CASE("a session of a scene with keys computes what a run computes, bit for bit, under each method") {
   for (const std::string kind : {"points", "surface"})
-    for (const Method method : every_method) {
+    for (const Method method : scene::methods) {
       const bool surface = method == Method::implicit_euler || method == Method::vbd;
       if (!thorough && surface != (kind == "surface")) continue;
       INFO(kind << " under " << scene::name(method));
