@@ -193,8 +193,8 @@ State solved_end(const StepStart& start, const Equation& equation) {
   return end_state(start, equation, best);
 }
 
-/// Whether the wind takes a vertex along within the step: it could take all of the flow's speed in less than
-/// the step, and the vertex has gained more than half of it.
+/// Whether the wind takes a vertex along within the step: it could take a quarter of the flow's speed in
+/// it, and the vertex has gained more than that.
 bool taken_along(const StepStart& start, const Vectors& gain) {
   const Equation equation(start, start.state.way, start.state.gain);
   const World& world = equation.world;
@@ -202,7 +202,7 @@ bool taken_along(const StepStart& start, const Vectors& gain) {
   for (std::size_t i = 0; i < gain.size(); ++i) {
     const double by_wind = equation.drag[i] - world.scene.air_drag,
                  flow = glm::length(air - start.state.velocity[i]);
-    if (!world.pinned(i) && start.dt * by_wind > 1.0 && glm::length(gain[i]) > 0.5 * flow) return true;
+    if (!world.pinned(i) && start.dt * by_wind > 0.25 && glm::length(gain[i]) > 0.25 * flow) return true;
   }
   return false;
 }

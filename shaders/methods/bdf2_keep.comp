@@ -1,7 +1,7 @@
 // BDF2, after a step's solve: what the next step needs of it, and whether the motion is smooth. It is not where contact
 // begins: at a vertex that touches more than in the step before, and whose velocity has changed by more than gravity
-// gives in two steps. Nor where the wind takes a vertex along within the step: it could take all of the flow's speed in
-// less than the step, and the vertex has gained more than half of it.
+// gives in two steps. Nor where the wind takes a vertex along within the step: it could take a quarter of the flow's
+// speed in it, and the vertex has gained more than that.
 layout(local_size_x = GROUP_SIZE) in;
 #include "../access.glsl"
 #include "motions.glsl"
@@ -36,7 +36,7 @@ void main() {
     if (touched > FETCH(history, 2 * i).w && length(gain) > impact) met = 1u;
 #ifdef WIND
     float flow = length(wind_velocity(END_ROW) - FETCH(before_velocity, i).xyz);
-    if (whole_dt * FETCH(wind_loads, i).w > 1.0 && length(gain) > 0.5 * flow) met = 1u;
+    if (whole_dt * FETCH(wind_loads, i).w > 0.25 && length(gain) > 0.25 * flow) met = 1u;
 #endif
   }
   next_history[2 * i] = vec4(x.xyz - FETCH(before_position, i).xyz, touched);

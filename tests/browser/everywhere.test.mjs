@@ -88,10 +88,7 @@ for (const [width, height] of [
       await page.getByRole("dialog", { name: "A scene by link" }).waitFor();
       found.push(...(await violations(viewer, "a scene by link")));
       await page.keyboard.press("Escape");
-      await page
-        .locator(".scene-actions button")
-        .first()
-        .evaluate((gallery) => gallery.click());
+      await page.locator(".scene-actions button", { hasText: "Gallery" }).evaluate((gallery) => gallery.click());
       await page.getByRole("dialog", { name: "Presets" }).waitFor();
       found.push(...(await violations(viewer, "the gallery")));
       await page.keyboard.press("Escape");
