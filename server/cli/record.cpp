@@ -105,17 +105,31 @@ void tell(const std::string& names, std::uint32_t frames, const std::string& tit
             << " bytes\n";
 }
 
+/// An error in the recording that is read, with the name of its file.
+Error in_file(const RecordOptions& options, Error error) {
+  if (options.of_recording()) error.where = options.scene.name + ", " + error.where;
+  return error;
+}
+
+/// Says so if a recording ends [s], by a frame or more, before the time that was asked for.
+void tell_early_end(const RecordOptions& options, std::uint32_t frames, double end) {
+  if (options.of_recording() && options.time && *options.time >= end + end / std::max(1U, frames - 1))
+    note("--time " + with_significant_digits(*options.time, 9) + ": the recording ends at " +
+         with_significant_digits(end, 9) + " s");
+}
+
 /// Makes the file for other programs of a recording.
 Status write_film(const RecordOptions& options, std::string_view recording) {
   // Of a scene the recording has what was asked for.
   const Result<film::Film> film = film::Film::of(
       recording, options.of_recording() ? film::Choice{options.time, options.rate} : film::Choice{});
-  if (!film) return film.error();
+  if (!film) return in_file(options, film.error());
   if (options.of_recording())
     if (Status fits = announce(options, film->frames(), film->vertex_count()); !fits) return fits;
   const Result<film::Written> written = film::write_files(*film, options.out);
   if (!written) return written.error();
   tell(written->names, film->frames(), film->title, film->times.back(), written->bytes);
+  tell_early_end(options, film->frames(), film->times.back());
   return ok();
 }
 
@@ -197,7 +211,12 @@ int record_scene(const RecordOptions& options) {
   if (!progress) return fail(progress.error(), exit_internal);
   recording.finish(ending_of(*progress));
   Status done = file.close();
-  if (done) done = deliver(options, file, simulation.scene().name, recording.frames(), progress->state.time);
+  if (done) {
+    done = deliver(options, file, simulation.scene().name, recording.frames(), progress->state.time);
+    // What took long to simulate is not lost with a film that could not be made.
+    const std::string kept = options.out + ".clothlab";
+    if (!done && file.rename_to(kept)) note("the recording is kept: " + kept);
+  }
   if (!done) return fail(done.error(), exit_internal);
   return exit_after(*progress);
 }
@@ -210,8 +229,9 @@ Status record_again(const RecordOptions& options, std::string_view recording) {
         file.put(more);
         return ok();
       });
-  if (!kept) return kept.error();
+  if (!kept) return in_file(options, kept.error());
   if (Status closed = file.close(); !closed) return closed;
+  tell_early_end(options, kept->frames, kept->seconds);
   return deliver(options, file, kept->title, kept->frames, kept->seconds);
 }
 

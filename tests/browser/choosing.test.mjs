@@ -21,7 +21,9 @@ browserTest(
         await named.waitFor();
         await viewer.page.screenshot({ path: `${screenshots}choosing-fabric.png` });
       }
-      await client.nextNotification("sim.status", ({ time }) => time > 0.5);
+      // Changes of one value within a second are one step of undo.
+      const { time: chosen } = await client.nextNotification("sim.status");
+      await client.nextNotification("sim.status", ({ time }) => time > chosen + 1.2);
     }
     assert.deepEqual(diverged(client), []);
     for (const fabric of ["rib", "canvas", undefined]) {

@@ -380,13 +380,20 @@ for (const [what, [args, out, message]] of Object.entries({
     else assert.throws(() => statSync(path));
   });
 
+test("a film that is shorter than was asked for says where its recording ends", () => {
+  const ends = (name) => made(name, "--time", "60").stderr.match(/--time 60: the recording ends at ([\d.]+) s/)?.[1];
+  const last = String(Number(moments.at(-1).time.toFixed(3)));
+  for (const name of ["long.usda", "long.clothlab"]) assert.equal(String(Number(Number(ends(name)).toFixed(3))), last);
+  assert.doesNotMatch(made("short.clothlab", "--time", "0.2").stderr, /the recording ends/);
+});
+
 test("a recording that is cut off or changed is refused wherever that is, and nothing is made of it", () => {
   const whole = file("half.clothlab", made("half.clothlab", "--time", "0.2"));
   for (const size of [0, 7, 15, 20, Math.floor(whole.length / 2), whole.length - 1]) {
     writeFileSync(join(folder, "cut.clothlab"), whole.subarray(0, size));
     const { status, stderr } = clothlab(["record", "cut.clothlab", "--out", "cut.glb"]);
     assert.equal(status, 2, `${size} bytes: ${stderr}`);
-    assert.match(stderr, /byte \d+ of the recording: .*; copy or download it again/);
+    assert.match(stderr, /cut\.clothlab, byte \d+ of the recording: .*; copy or download it again/);
   }
   for (const at of some(whole.length)) {
     const wrong = Buffer.from(whole);
