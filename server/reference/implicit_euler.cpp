@@ -1,6 +1,6 @@
 // Backward Euler as an equation for the velocity u at the end of the step (Baraff & Witkin 1998, section 3),
-// solved by Newton's method: to rounding, or by a given number of Newton steps from the places at its start.
-// BDF2 is the same equation with another start and another time (shaders/methods/bdf2.glsl).
+// solved by Newton's method: to rounding, or by a given number of Newton steps from the velocity at its
+// start. BDF2 is the same equation with another start and another time (shaders/methods/bdf2.glsl).
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -155,10 +155,6 @@ State end_state(const StepStart& start, const Equation& equation, const Vectors&
   next.residual = largest(equation.residual(u)) / equation.scale(u);
   return next;
 }
-
-}  // namespace
-
-namespace {
 
 State solved_end(const StepStart& start, const Equation& equation) {
   Vectors u = equation.v;
