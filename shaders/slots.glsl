@@ -82,6 +82,7 @@ const int unit_coarse_vectors = 30;     // step; precondition, update
 const int unit_history = 28;            // BDF2: bdf2_keep; start, bdf2_keep, bdf2_expect
 const int slot_start_position = 0;      // start
 const int slot_start_velocity = 1;      // start, advance; advance
+const int slot_first_change = 2;        // start; as unit_change
 const int slot_estimate = 3;            // start, advance, contacts; advance, and all as unit_velocity
 const int slot_guess = 4;               // start, improve, advance; as unit_change
 const int slot_constraint = 5;          // start, advance; advance

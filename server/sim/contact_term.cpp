@@ -361,12 +361,12 @@ float ContactTerm::take_share() {
   return share;
 }
 
-void ContactTerm::take(const gl::TextureBuffer& position, const gl::TextureBuffer& next) const {
+void ContactTerm::take(const gl::TextureBuffer& position) const {
   if (!bodies_move_) return;
   control_.bind_storage(slot_term_control);
   position.bind(unit_position);
   way_.bind(unit_term_way);
-  next.buffer.bind_storage(slot_next_position);
+  position.buffer.bind_storage(slot_next_position);
   run_each(bodies_, vertex_count_ - cloth_vertex_count_);
 }
 

@@ -68,8 +68,8 @@ class ContactTerm {
   Limit limit(SurfacePairs& pairs, const gl::TextureBuffer& position, const gl::TextureBuffer& change);
   /// The share that the method has chosen to take. Waits for the GPU. Solids go it, too.
   float take_share();
-  /// Takes bodies along, after the method has taken its share; `next`: the next iterate.
-  void take(const gl::TextureBuffer& position, const gl::TextureBuffer& next) const;
+  /// Takes bodies along, after the method has taken its share of the way to the next iterate.
+  void take(const gl::TextureBuffer& position) const;
   /// Binds the control block for shaders/methods/implicit_term.glsl.
   void bind_shares() const { control_.bind_storage(slot_known_term); }
 

@@ -27,7 +27,7 @@ constexpr double solved_share = 0.05;
 /// taken is lost for the velocity. Where nothing is near, one that moves no vertex farther is the last, too.
 constexpr double untaken_share = 0.02, gravity_at_least = 9.81;
 /// And until the friction of all pairs together is off by no more than this share of it.
-constexpr double slips_share = 0.05;
+constexpr double slips_share = 0.03;
 /// `solve` goes on with contact until this share of those ways is left.
 constexpr double exact_share = 0.1;
 /// Of a solve with contact whose residual has lost its precision to rounding.
@@ -61,6 +61,7 @@ class ImplicitEuler : public Integrator {
       *program = std::move(*loaded);
       made->solver_.set_layout(*program);
     }
+    if (plan.contact_term()) made->advance_.set("solved", 1);
     if (const Status loaded = made->solver_.load(defines); !loaded) return loaded.error();
     gl::Program& either = plan.contact_term() ? made->choose_ : made->first_;
     Result<gl::Program> loaded = gl::Program::load(
@@ -112,6 +113,7 @@ class ImplicitEuler : public Integrator {
   Work solve_step(StateBuffers& state, int row) {
     begin(state, row);
     taken_whole_ = true;
+    bool moved = contact_ && begin_between_surfaces(state, row);  // from the step's start
     Solved solved;
     // With contact a solve may leave this share of the change to the next Newton step, whose pairs are
     // others: more exactness would be lost (inexact Newton: Dembo, Eisenstat & Steihaug 1982). A Newton step
@@ -119,20 +121,20 @@ class ImplicitEuler : public Integrator {
     const double left_share = contact_ ? std::sqrt(tolerance_) : 0.0;
     int most = most_newton_steps_;
     for (int newton = 0; newton < most; ++newton) {
-      if (contact_) find_contact(state, newton == 0);
-      set_up(newton == 0);
+      if (contact_ && moved) find_contact(state, false);
+      set_up(newton == 0, !moved);
       if (newton == 0) improve_guess();
       if (newton == 0 || contact_)
-        solver_.prepare({iterate(newton == 0), constraint_,
-                         contact_ ? contact_->term()->read() : std::vector<PressingPair>()},
-                        touches_);
+        solver_.prepare(
+            {position_, constraint_, contact_ ? contact_->term()->read() : std::vector<PressingPair>()},
+            touches_);
       co_await solver_.solve(guess_, left_share, solved);
       for (int again = 0; contact_ && again < most_restarts && solved.lost_precision; ++again) {
         // The residual is computed anew, of what is solved so far.
         work_.linear_iterations += solved.iterations;
         dispatches_ += solved.dispatches;
         guess_.buffer.copy_from(solved.change->buffer);
-        set_up(newton == 0, true);
+        set_up(false, false);
         co_await solver_.solve(guess_, left_share, solved);
       }
       dispatches_ += solved.dispatches;
@@ -142,14 +144,16 @@ class ImplicitEuler : public Integrator {
       const bool met = newton > 0 && solved.iterations == 0;  // the estimate already meets the tolerance
       if (met && !contact_) break;
       if (contact_) {
-        const ContactTerm::Limit limit = limit_by_contact(state, solved, newton == 0);
-        search(solved);
+        const ContactTerm::Limit limit = limit_by_contact(state, *solved.change);
+        search(*solved.change);
         most = choose(limit, newton, met, most);
       } else {
-        search(solved);
+        solved.residual->bind(unit_residual);
+        search(*solved.change);
       }
       advance(row, newton + 1 < most);
-      if (contact_) contact_->term()->take(iterate(newton == 0), position_);
+      if (contact_) contact_->term()->take(position_);
+      moved = true;
       co_await may_stop;
     }
     if (contact_) contact_->end_solve(position_);
@@ -224,6 +228,8 @@ class ImplicitEuler : public Integrator {
     if (!plan.contact_term()) {
       still_ = {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
       still_.buffer.fill(0);
+    } else {
+      first_change_ = {gl::Buffer(vertex_count * 4 * sizeof(float)), GL_RGBA32F};
     }
     past_velocities_ = gl::Buffer(vertex_count * trends * 4 * sizeof(float));
     contact_friction_ = gl::Buffer(vertex_count * 4 * sizeof(float));
@@ -273,11 +279,6 @@ class ImplicitEuler : public Integrator {
     if (contact_) contact_->term()->set_dt(bdf2_->dt(), bdf2_->step_length());
   }
 
-  /// The present estimate; the `first` with contact in the problem is where the step begins.
-  const gl::TextureBuffer& iterate(bool first) const {
-    return contact_ && first && !(bdf2_ && bdf2_->by_formula()) ? start_position_ : position_;
-  }
-
   void set_tolerance(double tolerance) {
     tolerance_ = tolerance;
     system_.set("tolerance", static_cast<float>(tolerance));
@@ -303,6 +304,7 @@ class ImplicitEuler : public Integrator {
     if (bdf2_) bdf2_->bind_begin(start_);
     start_position_.buffer.bind_storage(slot_start_position);
     bind_estimate();
+    if (contact_) first_change_.buffer.bind_storage(slot_first_change);
     start_.set("start_row", row);
     run(start_);
     if (!contact_) begin_with_velocity();
@@ -319,6 +321,20 @@ class ImplicitEuler : public Integrator {
     position_.buffer.bind_storage(slot_next_position);
     bind_estimate();
     run(first_);
+  }
+
+  /// Goes the share of the way of the start's velocity that contact allows and a line search finds best.
+  /// Returns whether that is more than nothing; if not, the pairs that press are known.
+  bool begin_between_surfaces(const StateBuffers& state, int row) {
+    find_contact(state, true);
+    if (limit_by_contact(state, first_change_).longest <= solved_way_) return false;
+    search(first_change_);
+    const bool moves = choose_share() > 0.0f;
+    advance_.set("solved", 0);
+    advance(row, true);
+    advance_.set("solved", 1);
+    contact_->term()->take(position_);
+    return moves;
   }
 
   /// Binds the state in which BDF2 takes the wind.
@@ -340,17 +356,16 @@ class ImplicitEuler : public Integrator {
 
   /// Finds the pairs of surfaces that press at the present estimate.
   void find_contact(const StateBuffers& state, bool first) {
-    pressing_ = contact_->find_pressing(iterate(first), first);
+    pressing_ = contact_->find_pressing(position_, first);
     bind_inputs(state);
     contact_->term()->bind();
   }
 
   /// Finds how much of a solved change can be taken before surfaces would meet.
-  ContactTerm::Limit limit_by_contact(const StateBuffers& state, const Solved& solved, bool first) {
-    const gl::TextureBuffer& position = iterate(first);
-    const ContactTerm::Limit limit = contact_->limit(position, *solved.change);
+  ContactTerm::Limit limit_by_contact(const StateBuffers& state, const gl::TextureBuffer& change) {
+    const ContactTerm::Limit limit = contact_->limit(position_, change);
     bind_inputs(state);
-    position.bind(unit_position);
+    position_.bind(unit_position);
     velocity_.bind(unit_velocity);
     contact_->term()->bind();
     contact_->term()->bind_shares();
@@ -358,13 +373,18 @@ class ImplicitEuler : public Integrator {
     return limit;
   }
 
-  /// Chooses the share that is taken. Returns how many Newton steps the time step has now. `met`: the solve
-  /// has found nothing left.
-  int choose(const ContactTerm::Limit& limit, int newton, bool met, int most) {
+  /// Chooses the share of a change that is taken, by what contact allows and the line search found.
+  float choose_share() {
     choose_.use();
     dispatch(1);
     wait_for_writes();
-    const double left = 1.0 - static_cast<double>(contact_->term()->take_share());
+    return contact_->term()->take_share();
+  }
+
+  /// Chooses the share of a solved change that is taken. Returns how many Newton steps the time step has now.
+  /// `met`: the solve has found nothing left.
+  int choose(const ContactTerm::Limit& limit, int newton, bool met, int most) {
+    const double left = 1.0 - static_cast<double>(choose_share());
     if (!limit.known) {
       taken_whole_ = false;
       return newton + 1;
@@ -407,12 +427,12 @@ class ImplicitEuler : public Integrator {
     contact_friction_.bind_storage(slot_grip);
   }
 
-  /// Sets up the linear system at the present estimate, in the first Newton step the state at the step's
-  /// start.
-  void set_up(bool first, bool again = false) {
-    iterate(first).bind(unit_position);
-    system_.set("first", first && !again ? 1 : 0);
-    system_.set("exact", contact_ && first && !again ? 1 : 0);
+  /// Sets up the linear system at the present estimate. `first` in the time step; `exact`: the estimate is
+  /// the state at the step's start.
+  void set_up(bool first, bool exact) {
+    position_.bind(unit_position);
+    system_.set("first", first ? 1 : 0);
+    system_.set("exact", contact_ && exact ? 1 : 0);
     velocity_.bind(unit_velocity);
     guess_.bind(unit_change);
     solver_.residual().buffer.bind_storage(slot_residual);
@@ -436,10 +456,9 @@ class ImplicitEuler : public Integrator {
     run(improve_);
   }
 
-  /// Does the line search along the solved change.
-  void search(const Solved& solved) {
-    solved.change->bind(unit_change);
-    solved.residual->bind(unit_residual);
+  /// Does the line search along a change.
+  void search(const gl::TextureBuffer& change) {
+    change.bind(unit_change);
     solver_.sums().buffer.bind_storage(slot_group_sums);
     run(search_);
   }
@@ -495,9 +514,10 @@ class ImplicitEuler : public Integrator {
   gl::TextureBuffer start_position_, start_velocity_;  ///< state at the step's start, after self-collision
   gl::TextureBuffer position_, velocity_;              ///< estimate of the state at the step's end
   gl::TextureBuffer still_;                            ///< no velocity, for each vertex
-  gl::TextureBuffer guess_;                            ///< first guess of the solved change of velocity
-  gl::TextureBuffer constraint_, surface_;             ///< for each vertex: its contact with a collider
-  gl::TextureBuffer wind_loads_;                       ///< for each vertex: the wind at the step's start
+  gl::TextureBuffer first_change_;          ///< with contact: of the estimate, before the first solve
+  gl::TextureBuffer guess_;                 ///< first guess of the solved change of velocity
+  gl::TextureBuffer constraint_, surface_;  ///< for each vertex: its contact with a collider
+  gl::TextureBuffer wind_loads_;            ///< for each vertex: the wind at the step's start
   gl::TextureBuffer expected_position_, expected_velocity_;  ///< BDF2's, in which the wind is taken
   gl::Buffer contact_friction_;                              ///< friction of the contacts, kept between steps
   gl::TextureBuffer trends_, trend_products_;                ///< for each vertex `trends` vectors

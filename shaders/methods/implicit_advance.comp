@@ -18,10 +18,15 @@ READ_VEC4(change, unit_change);
 READ_VEC4(residual, unit_residual);
 layout(std430, binding = slot_next_position) writeonly buffer NextPosition { vec4 next_position[]; };
 layout(std430, binding = slot_estimate) buffer Estimate { vec4 estimate[]; };  // w: number of vertices touched
-layout(std430, binding = slot_guess) writeonly buffer Guess { vec4 guess[]; };  // of the next change
+layout(std430, binding = slot_guess) buffer Guess { vec4 guess[]; };  // of the next change
 layout(std430, binding = slot_constraint) buffer Constraint { vec4 constraint[]; };
 layout(std430, binding = slot_surface) buffer Surface { vec4 surface[]; };
 uniform bool another;  // another Newton step follows in this time step
+#ifdef CONTACT_TERM
+uniform bool solved;  // false: the change is that of the first estimate, and a part of the guess
+#else
+const bool solved = true;
+#endif
 layout(std430, binding = slot_start_velocity) buffer Inertia { vec4 start_velocity[]; };
 layout(std430, binding = slot_grip) buffer Grip { vec4 grip[]; };
 
@@ -93,7 +98,7 @@ void main() {
   float own = start.w == 0.0 ? 1.0 : share;
 #endif
   vec3 u = estimate[i].xyz + own * FETCH(change, i).xyz;
-  if (share == 1.0) u += regained;  // the sum is valid for the whole change only
+  if (solved && share == 1.0) u += regained;  // the sum is valid for the whole change only
   vec3 x = start.xyz + dt * u;
   estimate[i] = vec4(u, start.w > 0.0 ? start_velocity[i].w : 0.0);
   vec3 first = start.w == 0.0 ? (1.0 - own) * FETCH(change, i).xyz : vec3(0.0);
@@ -104,6 +109,7 @@ void main() {
     if (!kept && grip[i].w != pulled_away) first = meet_contact(i, start.w, step_start(i), x, u);
   }
 #endif
+  if (!solved) first = guess[i].xyz - own * FETCH(change, i).xyz;
   guess[i] = vec4(first, 0.0);
   next_position[i] = vec4(x, start.w);
 }

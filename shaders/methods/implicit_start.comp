@@ -16,6 +16,10 @@ layout(std430, binding = slot_start_position) writeonly buffer Start { vec4 star
 layout(std430, binding = slot_start_velocity) writeonly buffer Inertia { vec4 start_velocity[]; };
 layout(std430, binding = slot_estimate) writeonly buffer Estimate { vec4 estimate[]; };  // velocity
 layout(std430, binding = slot_guess) writeonly buffer Guess { vec4 first_guess[]; };  // of the solver
+#ifdef CONTACT_TERM
+// The change of the first estimate that the start's velocity makes.
+layout(std430, binding = slot_first_change) writeonly buffer FirstChange { vec4 first_change[]; };
+#endif
 layout(std430, binding = slot_constraint) writeonly buffer Constraint { vec4 constraint[]; };
 // its velocity [m/s], its friction
 layout(std430, binding = slot_surface) writeonly buffer Surface { vec4 surface[]; };
@@ -31,10 +35,13 @@ struct Beginning {
 };
 
 /// The first estimate of the velocity [m/s]: `expected`. But where contact is a term of the problem it is the one that
-/// leaves the vertex at x, where the step begins, as contact may allow no more than a share of the way from there.
-vec3 first_estimate(vec3 expected, vec3 x, vec3 origin) {
+/// leaves the vertex at x, where the step begins, as contact may allow no more than a share of the way from there: what
+/// lacks is a change of its own, before the first solve.
+vec3 first_estimate(int i, vec3 expected, vec3 x, vec3 origin) {
 #ifdef CONTACT_TERM
-  return (x - origin) / dt;
+  vec3 here = (x - origin) / dt;
+  first_change[i] = vec4(expected - here, 0.0);
+  return here;
 #else
   return expected;
 #endif
@@ -105,13 +112,13 @@ void main() {
     vec3 x_next, v_next;
     follow_motion(i, x.xyz, v.w, END_ROW, x_next, v_next);
     vec3 whole = (x_next - origin) / dt;
-    start = Beginning(v.xyz, first_estimate(whole, x.xyz, origin), whole);
+    start = Beginning(v.xyz, first_estimate(i, whole, x.xyz, origin), whole);
   } else {
 #ifdef SELF_COLLISION
     contacts = self_contacts(i, x, v, push, impulse);
 #endif
     origin += push;
-    vec3 estimate = first_estimate(v.xyz + impulse, x.xyz, origin);
+    vec3 estimate = first_estimate(i, v.xyz + impulse, x.xyz, origin);
     start = foresee(i, x.xyz + push, origin, carried_on(i, v.xyz + impulse), estimate, x.w);
 #ifdef WIND
     start.velocity += FETCH(wind_loads, i).xyz;

@@ -20,11 +20,39 @@ export function browserTest(name, body) {
   test(name, { skip, timeout: 600_000 }, async (t) => {
     try {
       await body(t);
+    } catch (error) {
+      for (const page of (running?.contexts() ?? []).flatMap((context) => context.pages()))
+        t.diagnostic(`${page.url()}: ${await stateOf(page)}`);
+      throw error;
     } finally {
       // pages left open would go on drawing
       await Promise.all((running?.contexts() ?? []).map((context) => context.close()));
     }
   });
+}
+
+/// How far the page has come, as text: what helps to find out why a test has failed that passes alone.
+async function stateOf(page) {
+  const state = () => {
+    const { framesReceived, framesDrawn, lastFrame, simTime } = window.clothlab ?? {};
+    const { sequence, topologyRevision, range } = lastFrame?.header ?? {};
+    const drawing = new Promise((resolve) => {
+      requestAnimationFrame(() => resolve("drawing"));
+      setTimeout(() => resolve("no animation frame in 5 s"), 5000);
+    });
+    const notices = [...document.querySelectorAll("#notices > *")].map((notice) => notice.textContent.trim());
+    return drawing.then((draws) =>
+      JSON.stringify({
+        draws,
+        visibility: document.visibilityState,
+        link: document.getElementById("link")?.textContent.trim(),
+        notices,
+        ...{ framesReceived, framesDrawn, simTime, sequence, topologyRevision, range },
+      }),
+    );
+  };
+  const late = new Promise((resolve) => setTimeout(() => resolve("does not answer"), 20_000).unref());
+  return Promise.race([page.evaluate(state).catch((error) => error.message), late]);
 }
 
 /// Reads repeatedly until `good` accepts the value, for at most `milliseconds`.
