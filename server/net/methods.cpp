@@ -59,6 +59,7 @@ constexpr std::array methods{
     Method{"inspect.contacts", For::direct, inspect_contacts},
     Method{"inspect.elements", For::direct, inspect_elements},
     Method{"inspect.springs", For::direct, inspect_springs},
+    Method{"inspect.vertices", For::direct, inspect_vertices},
     Method{"lab.cancel", For::operators, lab_cancel},
     Method{"lab.chart", For::operators, lab_chart},
     Method{"lab.choose", For::operators, lab_choose},

@@ -40,6 +40,7 @@ Outcome grab_start(Client& client, Request& request);
 Outcome inspect_contacts(Client& client, Request& request);
 Outcome inspect_elements(Client& client, Request& request);
 Outcome inspect_springs(Client& client, Request& request);
+Outcome inspect_vertices(Client& client, Request& request);
 Outcome mesh_upload(Client& client, Request& request);
 Outcome record_get(Client& client, Request& request);
 Outcome record_start(Client& client, Request& request);

@@ -8,12 +8,16 @@ namespace clothlab::net {
 
 namespace {
 
+std::size_t read_first(Params& params) {
+  return static_cast<std::size_t>(params.integer("first", 0, 64 * scene::max_vertices, 0));
+}
+
 template <class What>
 Outcome from_first(Client& client, Request& request) {
   Params params(request.params);
-  const std::int64_t first = params.integer("first", 0, 64 * scene::max_vertices, 0);
+  const What what{read_first(params)};
   if (auto error = params.check()) return *error;
-  return ask_at_length(client, request, What{static_cast<std::size_t>(first)});
+  return ask_at_length(client, request, what);
 }
 
 }  // namespace
@@ -24,6 +28,14 @@ Outcome inspect_springs(Client& client, Request& request) {
 
 Outcome inspect_elements(Client& client, Request& request) {
   return from_first<session::InspectElements>(client, request);
+}
+
+Outcome inspect_vertices(Client& client, Request& request) {
+  Params params(request.params);
+  const auto cloth = static_cast<std::uint32_t>(params.integer("cloth", 0, scene::max_vertices - 1, 0));
+  const session::InspectVertices what{cloth, read_first(params)};
+  if (auto error = params.check()) return *error;
+  return ask_at_length(client, request, what);
 }
 
 Outcome inspect_contacts(Client& client, Request& request) {

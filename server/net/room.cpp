@@ -175,6 +175,7 @@ json Room::status_params(const session::Status& status) const {
                  {"skipped", skipped_},
                  {"pass_seconds", pass_seconds_},
                  {"solver", solver_},
+                 {"renumbered", renumbered_},
                  {"asleep", asleep_},
                  {"recording", session::facts_of(recording())}});
   return params;

@@ -156,7 +156,7 @@ class Room {
   bool file_taken_ = false;                    ///< see session::FileTaken
   stream::SharedMessage topology_;
   json passes_ = json::array(), terms_ = json::array(), skipped_ = json::array(),
-       pass_seconds_ = json::object(), solver_ = json::object();
+       pass_seconds_ = json::object(), solver_ = json::object(), renumbered_ = json::object();
   std::array<double, stream::form_count> demanded_{};
   std::array<std::uint32_t, stream::form_count>
       seen_{};                           ///< number of the last frame offered to viewers, by form

@@ -128,6 +128,7 @@ void Room::handle(session::HistoryChanged& changed) {
 
 void Room::handle(session::TopologyChanged& changed) {
   topology_ = changed.message;
+  renumbered_ = {{"topology_revision", topology_->header.topology_revision}, {"cloths", changed.renumbered}};
   if (publisher_) publisher_->topology(topology_);
   for (Client* client : clients_) client->wake();
 }

@@ -247,10 +247,23 @@ void Feed::take_text(const bus::Message& message, std::int64_t now) {
       take_patch(params, now);
     else if (method == "scene.history")
       exchange_.emit(session::HistoryChanged{params});
+    else if (method == "sim.status")
+      take_status(said);
     else
-      exchange_.emit(session::Told{std::string(text_in(message.bytes)), method == "sim.status"});
+      exchange_.emit(session::Told{std::string(text_in(message.bytes)), false});
   } catch (const json::exception&) {  // not what a server of this version says
   }
+}
+
+/// Passes a status on. What it says of a topology, it says of one that has another revision here.
+void Feed::take_status(json status) {
+  json& params = status.at("params");
+  if (const auto renumbered = params.find("renumbered"); renumbered != params.end()) {
+    json& revision = renumbered->at("topology_revision");
+    const bool here = topology_ && revision == json(want_.known.topology);
+    revision = here ? topology_->header.topology_revision : 0;
+  }
+  exchange_.emit(session::Told{text_of(status), true});
 }
 
 /// Passes a change on at once. It is made here as the page makes it, without the defaults that the server

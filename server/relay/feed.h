@@ -56,6 +56,7 @@ class Feed final : public session::Source {
   void take_state(const json& state, std::int64_t now);
   void origin_changed(std::int64_t now);
   void take_text(const bus::Message& message, std::int64_t now);
+  void take_status(json status);
   void take_scene(json document, std::uint64_t revision, bool told);
   void tell_scene(std::optional<json> patch, std::uint64_t by, bool told);
   void take_patch(const json& params, std::int64_t now);

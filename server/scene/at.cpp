@@ -4,6 +4,7 @@
 
 #include "server/scene/pointer.h"
 #include "server/scene/sections.h"
+#include "server/scene/vertex_numbers.h"
 
 namespace clothlab::scene {
 
@@ -49,11 +50,9 @@ std::string up_to(const char* what, std::size_t count) {
 /// The number in a document is the file's; that in a scene is the mesh's. Empty if the vertex exists, else
 /// what is allowed.
 std::string find_vertex(AtVertex& at, const Mesh& mesh) {
-  const TriangleMesh* triangles = std::get_if<TriangleMesh>(&mesh);
-  const bool renumbered = triangles && !triangles->vertex_of.empty();
-  const std::size_t count = renumbered ? triangles->vertex_of.size() : vertex_count(mesh);
+  const std::size_t count = counted_vertices(mesh);
   if (at.vertex >= count) return "a vertex of this mesh: " + up_to("vertex", count);
-  if (renumbered) at.vertex = triangles->vertex_of[at.vertex];
+  at.vertex = vertex_of(mesh, at.vertex);
   return at.vertex == mesh::no_vertex ? "a vertex of a face: this one is part of none, and left out" : "";
 }
 

@@ -68,6 +68,11 @@ struct InspectSprings {
 struct InspectElements {
   std::size_t first = 0;
 };
+/// Asks which vertices became of those that the document counts of a cloth, from this one on.
+struct InspectVertices {
+  std::uint32_t cloth = 0;
+  std::size_t first = 0;
+};
 /// Asks for so many of the pairs that contact keeps apart, the nearest ones.
 struct InspectContacts {
   std::size_t most = 0;
@@ -131,7 +136,7 @@ struct Command {
   std::variant<GetScene, LoadScene, UploadMesh, PatchScene, TravelHistory, Play, Pause, Step, Reset, Speed,
                Demand, Watchers, Export, ReachScene, Hold, Release, Chosen, GrabStart, GrabMove, GrabEnd,
                GetTimeline, ResumeAt, RecordStart, RecordStop, InspectSprings, InspectElements,
-               InspectContacts>
+               InspectVertices, InspectContacts>
       what;
 };
 

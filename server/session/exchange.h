@@ -70,6 +70,7 @@ struct HistoryChanged {
 };
 struct TopologyChanged {
   stream::SharedMessage message;
+  std::vector<std::uint32_t> renumbered{};  ///< cloths of whose vertices the document counts others
 };
 struct PartsChanged {
   std::vector<sim::Simulation::Part> parts;

@@ -12,21 +12,15 @@ Refusal too_many() {
           {"", std::to_string(Hands::most) + " hands hold the cloth already", "wait until one lets go"}};
 }
 
-std::string up_to(const char* what, std::size_t count) {
-  return std::string(what) + " 0 to " + std::to_string(count - 1);
-}
-
 }  // namespace
 
 std::optional<Refusal> Hands::start(std::uint64_t by, const GrabStart& start, sim::Simulation& simulation) {
   const model::Model& model = simulation.model();
   if (start.cloth >= model.cloths.size())
-    return invalid_value({"/cloth", std::to_string(start.cloth),
-                          "a cloth of the scene: " + up_to("cloth", model.cloths.size())});
+    return no_such("/cloth", start.cloth, "a cloth of the scene: cloth", model.cloths.size());
   const model::ClothRange& cloth = model.cloths[start.cloth];
   if (start.vertex >= cloth.vertex_count)
-    return invalid_value({"/vertex", std::to_string(start.vertex),
-                          "a vertex of this cloth: " + up_to("vertex", cloth.vertex_count)});
+    return no_such("/vertex", start.vertex, "a vertex of this cloth: vertex", cloth.vertex_count);
   const std::uint32_t vertex = cloth.first_vertex + start.vertex;
   if (model.pin_motion[vertex] != model::not_pinned)
     return invalid_value({"/vertex", std::to_string(start.vertex) + ", which a pin holds",

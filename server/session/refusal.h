@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <utility>
 
 #include "server/base/result.h"
@@ -26,6 +27,14 @@ struct Refusal {
 
 inline Refusal invalid_value(Error error) {
   return {Refusal::Reason::invalid_value, std::move(error)};
+}
+
+/// A number that counts one of `count` things, and none of them. `allowed`: e.g. "a cloth of the scene:
+/// cloth".
+inline Refusal no_such(std::string where, std::uint32_t number, const std::string& allowed,
+                       std::size_t count) {
+  return invalid_value(
+      {std::move(where), std::to_string(number), allowed + " 0 to " + std::to_string(count - 1)});
 }
 
 }  // namespace clothlab::session

@@ -124,6 +124,7 @@ class Stepper {
   // In stepper_inspect.cpp.
   void perform(InspectSprings& springs, const Ticket& ticket);
   void perform(InspectElements& elements, const Ticket& ticket);
+  void perform(InspectVertices& vertices, const Ticket& ticket);
   void perform(InspectContacts& contacts, const Ticket& ticket);
   json contacts_told(std::size_t most) const;
   // In stepper_meshes.cpp.

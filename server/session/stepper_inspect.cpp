@@ -4,6 +4,7 @@
 
 #include "server/base/base64.h"
 #include "server/model/spring_kinds.h"
+#include "server/scene/vertex_numbers.h"
 #include "server/session/stepper.h"
 #include "server/sim/near_pairs.h"
 
@@ -66,6 +67,22 @@ void Stepper::perform(InspectElements& asked, const Ticket& ticket) {
                      {"count", part.count()},
                      {"vertices", to_base64(vertices)},
                      {"shares", to_base64(shares)}});
+}
+
+void Stepper::perform(InspectVertices& asked, const Ticket& ticket) {
+  const model::Model& model = simulation().model();
+  if (asked.cloth >= model.cloths.size())
+    return reply(ticket, no_such("/cloth", asked.cloth, "a cloth of the scene: cloth", model.cloths.size()));
+  const scene::Mesh& mesh = scene().cloths[asked.cloth].mesh;
+  const Part part(asked.first, scene::counted_vertices(mesh));
+  const std::vector<std::uint32_t> vertices =
+      scene::numbers_in_frames(mesh, model.cloths[asked.cloth].first_vertex, part.first, part.end);
+  reply(ticket, json{{"topology_revision", simulation().topology_revision()},
+                     {"cloth", asked.cloth},
+                     {"total", scene::counted_vertices(mesh)},
+                     {"first", part.first},
+                     {"count", part.count()},
+                     {"vertices", to_base64(vertices)}});
 }
 
 /// The nearest ones of what was read last, `most` at most.

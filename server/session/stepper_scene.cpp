@@ -4,6 +4,7 @@
 
 #include "server/model/remedy.h"
 #include "server/scene/method.h"
+#include "server/scene/vertex_numbers.h"
 #include "server/session/change_name.h"
 #include "server/session/stepper.h"
 
@@ -332,7 +333,11 @@ void Stepper::announce_scene(std::optional<json> patch, std::uint64_t by) {
   // Clients need a topology before its frames, so it is sent together with the scene that changed it.
   if (const std::uint32_t revision = simulation().topology_revision(); revision != topology_revision_) {
     topology_revision_ = revision;
-    exchange_.emit(TopologyChanged{stream::encode_topology(simulation().model(), revision)});
+    std::vector<std::uint32_t> renumbered;
+    for (std::uint32_t cloth = 0; cloth < scene().cloths.size(); ++cloth)
+      if (scene::renumbered(scene().cloths[cloth].mesh)) renumbered.push_back(cloth);
+    exchange_.emit(
+        TopologyChanged{stream::encode_topology(simulation().model(), revision), std::move(renumbered)});
   }
   record_change({{patch ? "patch" : "document", patch ? *patch : document_.value}, {"by", by}});
   exchange_.emit(SceneChanged{std::make_shared<const scene::Document>(document_), scene_text(), revision_,

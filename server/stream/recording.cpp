@@ -11,6 +11,7 @@
 
 #include "server/base/deflate.h"
 #include "server/model/rest_lengths.h"
+#include "server/scene/vertex_numbers.h"
 #include "server/stream/folded.h"
 #include "server/stream/frame.h"
 #include "server/stream/recording_chunk.h"
@@ -78,6 +79,16 @@ std::string body_of(std::uint32_t collider, const scene::TriangleMesh& mesh) {
   return out;
 }
 
+/// The numbers in frames of the vertices that the document counts of a cloth.
+std::string numbers_of(std::uint32_t cloth, const scene::Mesh& mesh, std::uint32_t first_vertex) {
+  std::string out;
+  put_number(out, cloth);
+  for (const std::uint32_t number :
+       scene::numbers_in_frames(mesh, first_vertex, 0, scene::counted_vertices(mesh)))
+    put_number(out, number);
+  return out;
+}
+
 }  // namespace
 
 Recording::Recording(std::function<void(std::string_view)> put, const json& scene, double rate)
@@ -108,6 +119,9 @@ void Recording::set_mesh(const model::Model& model, const scene::Scene& scene) {
   for (std::size_t i = 0; i < scene.colliders.size(); ++i)
     if (const auto* body = std::get_if<scene::Body>(&scene.colliders[i].shape))
       chunk("body", "", deflated(body_of(static_cast<std::uint32_t>(i), *body->mesh)));
+  for (std::uint32_t cloth = 0; cloth < scene.cloths.size(); ++cloth)
+    if (const scene::Mesh& mesh = scene.cloths[cloth].mesh; scene::renumbered(mesh))
+      chunk("nums", "", deflated(numbers_of(cloth, mesh, model.cloths[cloth].first_vertex)));
   predictor_ = Predictor(model.vertex_count(), model.triangles);
   const double sum = std::accumulate(lengths.begin(), lengths.end(), 0.0);
   finest_ =

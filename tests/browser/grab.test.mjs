@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { hanging } from "../protocol/hanging.mjs";
 import { browserTest, eventually, screenshots, withServer } from "./browser.mjs";
+import { cameraPlace, complaints, distance, handsOf, hint, near, placeOf, seen, still } from "./hands.mjs";
 
 const here = withServer();
 const { both } = here;
@@ -20,55 +21,8 @@ async function hang(session, width, height) {
   await opened.client.request("scene.load", { scene: sheet });
   await opened.viewer.until(() => window.clothlab.document?.name === "hanging" && window.clothlab.simTime > 0.5);
   await opened.client.request("stream.subscribe", { encoding: "f32", rate: 30 });
-  // A press is aimed at what is seen: wait until neither the cloth nor the camera moves much from one picture to
-  // another that is a while later, however slowly the machine draws.
-  let before = { x: -1e3, y: 0 };
-  await eventually(
-    "a still picture",
-    async () => {
-      await drawn(opened.viewer, 3);
-      await opened.viewer.page.waitForTimeout(200);
-      const now = await seen(opened.viewer, vertex);
-      const moved = pixels(before, now);
-      before = now;
-      return moved;
-    },
-    (moved) => moved < 1,
-  );
+  await still(opened.viewer, vertex);
   return { ...opened, width, height };
-}
-
-/// Waits until the page has drawn this many pictures.
-const drawn = (viewer, pictures) =>
-  viewer.page.evaluate(async (count) => {
-    for (let i = 0; i < count; ++i) await new Promise(requestAnimationFrame);
-  }, pictures);
-
-/// Where a vertex is on the page [CSS pixels].
-const seen = (viewer, index) =>
-  viewer.page.evaluate((i) => {
-    const { stage, lastFrame } = window.clothlab;
-    const { header, buffer } = lastFrame;
-    const words = new Uint16Array(buffer, 64, header.vertexCount * 4);
-    const [x, y, z] = [0, 1, 2].map((k) => header.boxMinimum[k] + (header.boxExtent[k] * words[4 * i + k]) / 65535);
-    const at = stage.controls.target.clone().set(x, y, z).project(stage.camera);
-    return { x: ((at.x + 1) / 2) * innerWidth, y: ((1 - at.y) / 2) * innerHeight };
-  }, index);
-const cameraPlace = (viewer) => viewer.page.evaluate(() => window.clothlab.stage.camera.position.toArray());
-const handsOf = (client, fits) => client.nextNotification("sim.status", ({ hands }) => fits(hands));
-const placeOf = async (client, index) => (await client.nextFrame()).positions[index];
-const distance = (a, b) => Math.hypot(...a.map((value, axis) => value - b[axis]));
-/// What the browser says to the page's code: not that a screenshot makes the GPU wait.
-const complaints = (viewer) => viewer.complaints.filter((text) => !text.includes("ReadPixels"));
-const pixels = (a, b) => Math.hypot(a.x - b.x, a.y - b.y);
-const hint = (viewer, of = "hand") => viewer.page.locator(`.hand-hint[data-of=${of}]`);
-
-async function near(viewer, index, goal, what) {
-  await eventually(
-    what,
-    () => seen(viewer, index),
-    (at) => pixels(at, goal) < 25,
-  );
 }
 
 browserTest(

@@ -2,34 +2,13 @@
 import assert from "node:assert/strict";
 import { browserTest, eventually, screenshots, withServer } from "./browser.mjs";
 import { dressed, figure, tube } from "./garment.mjs";
+import { choose, drag } from "./opening.mjs";
 
 const { both } = withServer();
 
 // Wider than the body where it begins, narrower than its hips: it comes to rest there.
 const poncho = { radius: 0.18, from: 1.35, to: 1.62 };
 
-const asFile = (name, text) => ({ name, mimeType: "text/plain", buffer: Buffer.from(text) });
-
-/// Chooses files by the panel's button.
-async function choose(page, files, click = (button) => button.click()) {
-  const chooser = page.waitForEvent("filechooser");
-  await click(page.getByRole("button", { name: "Open files" }));
-  await (await chooser).setFiles(files.map(([name, text]) => asFile(name, text)));
-  const dialog = page.getByRole("dialog", { name: /^Open/ });
-  await dialog.waitFor();
-  return dialog;
-}
-/// Lets files hang over the page, and drops them, as a file manager would.
-const drag = (page, kinds, files) =>
-  page.evaluate(
-    ({ kinds, files }) => {
-      const dataTransfer = new DataTransfer();
-      for (const [name, text] of files) dataTransfer.items.add(new File([text], name));
-      for (const kind of kinds)
-        document.body.dispatchEvent(new DragEvent(kind, { dataTransfer, bubbles: true, cancelable: true }));
-    },
-    { kinds, files },
-  );
 const notices = (page) => page.locator("#notices .notice").allTextContents();
 const told = (page, what) =>
   eventually(

@@ -186,6 +186,8 @@ test("requests and their answers are as it says, with and without parameters, fo
     ["inspect.springs"],
     ["inspect.springs", { first: 3 }],
     ["inspect.elements"],
+    ["inspect.vertices"],
+    ["inspect.vertices", { cloth: 0, first: 3 }],
     ["inspect.contacts"],
     ["inspect.contacts", { most: 0 }],
     ["timeline.get"],

@@ -8,6 +8,7 @@ import { inflateRawSync } from "node:zlib";
 import { readGlb, readUsda } from "../cli/film_files.mjs";
 import { load } from "../page/module.mjs";
 import { Client, Server, sleep } from "./harness.mjs";
+import { seamed } from "./seamed.mjs";
 
 const inflate = async (bytes) => new Uint8Array(inflateRawSync(bytes));
 let page, server;
@@ -105,6 +106,27 @@ test("what plays is recorded at the rate, and what changes the scene with its st
   assert.deepEqual([documents[0], documents.at(-1)], [-9.8, -1]);
   const changed = recording.groups.find(({ setting }) => setting.document.gravity[1] === -1);
   assert.ok(moments[changed.first].step >= edits[0].step);
+  await client.close();
+});
+
+test("it tells which vertex in frames each vertex of a mesh's file is, where numbers differ", async () => {
+  const sheet = seamed(5);
+  await client.request("sim.pause");
+  await client.request("mesh.upload", { name: "sheet.obj", obj: sheet.obj });
+  const cloths = [
+    { name: "grid", mesh: { grid: { columns: 2, rows: 2 } } },
+    { name: "sheet", mesh: { file: "sheet.obj" } },
+  ];
+  await client.request("record.start");
+  await client.request("scene.load", { scene: { version: 1, name: "numbered", cloths } });
+  await recorded(1);
+  await client.request("record.stop");
+  const { recording } = await read(await (await get(`/api/recording.clothlab?session=${session}`)).arrayBuffer());
+  const { topology } = recording.groups.at(-1).setting;
+  assert.deepEqual(
+    topology.cloths.map(({ numbers }) => numbers),
+    ["same", Uint32Array.from(sheet.inFrames, (vertex) => (vertex === 0xffffffff ? vertex : 4 + vertex))],
+  );
   await client.close();
 });
 

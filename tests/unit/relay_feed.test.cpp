@@ -165,6 +165,27 @@ TEST_CASE("frames come under numbers that rise, also from a server that counts a
   CHECK(!pair.of<session::SceneChanged>().back().told);
 }
 
+TEST_CASE("a status tells of the topology under the revision that it has here") {
+  Pair pair;
+  pair.pass();
+  pair.topology = message(stream::MessageKind::topology, 1, 0, {9});
+  pair.pass("origin-2");
+  const auto told_of = [&](int theirs) {
+    pair.events.clear();
+    pair.say("sim.status", {{"time", 2.5}, {"renumbered", {{"topology_revision", theirs}, {"cloths", {0}}}}});
+    pair.arrive();
+    const auto told = pair.of<session::Told>();
+    REQUIRE(told.size() == 1);
+    CHECK(told[0].status);
+    const json params = json::parse(told[0].text).at("params");
+    CHECK(params.at("time") == 2.5);
+    CHECK(params.at("renumbered").at("cloths") == json{0});
+    return params.at("renumbered").at("topology_revision").get<int>();
+  };
+  CHECK(told_of(1) == 2);  // the second one here
+  CHECK(told_of(2) == 0);  // one that is not here
+}
+
 TEST_CASE("a frame of a mesh that the relay does not know is not shown, and the relay asks at once") {
   Pair pair;
   pair.pass();

@@ -26,6 +26,7 @@ import { Presets } from "./panel/presets";
 import { RecordButton } from "./panel/record_button";
 import { bindSaveButtons } from "./panel/save_buttons";
 import { Bodies } from "./link/bodies";
+import { NumbersSource, type Renumbered } from "./link/numbers_source";
 import { LineWatch, type Second } from "./link/line_watch";
 import { SlowWatch } from "./panel/slow_watch";
 import { SceneStore } from "./link/scene_store";
@@ -72,6 +73,11 @@ export class Page {
     (name) => this.connection.get("/api/collider.ply", { name }),
     () => this.drawDocument(this.stage.fitted),
   );
+  private readonly numbers = new NumbersSource({
+    ask: (method, params) => this.connection.request(method, params),
+    topology: () => this.stage.cloth.topology,
+    arrived: () => this.stage.numbersArrived(),
+  });
   private readonly store: SceneStore = this.makeStore();
   private readonly guide = new Guide();
   private readonly presets = new Presets({
@@ -384,6 +390,7 @@ export class Page {
         this.panel.showConvergence((params.convergence as Convergence | null | undefined) ?? null);
         if (params.solver) this.store.fabricsGive((params.solver as SolverFacts).from_fabrics ?? []);
         if (params.solver) this.panel.showSolver(params.solver as SolverFacts);
+        this.numbers.told(params.renumbered as Renumbered | undefined);
         this.hand?.told((params.hands as HandAt[] | undefined) ?? []);
         this.recording.told((params as Status).recording);
         this.divergence.follow(params as Status);
@@ -402,6 +409,7 @@ export class Page {
     this.hand?.greeted(Number(params.client));
     this.undo.greeted(Number(params.client));
     this.welcome();
+    this.numbers.mayAsk = (params.requests as string[] | undefined)?.includes("inspect.vertices") ?? false;
     const methods = (params.methods as string[] | undefined) ?? [];
     this.panel.setMethods(methods);
     this.drawers.greeted(methods, (params.limits as { message_bytes?: number } | undefined)?.message_bytes);

@@ -1,5 +1,6 @@
 // The binary messages (server/net/README.md): 64-byte header, then the payload, little-endian.
 import type { MovedCollider } from "./scene_types";
+import type { FileNumbers } from "./vertex_numbers";
 
 const headerBytes = 64;
 const kindTopology = 1;
@@ -43,6 +44,7 @@ export interface ShownFrame extends Frame {
 export interface ClothRange {
   firstVertex: number;
   vertexCount: number;
+  numbers?: FileNumbers; ///< of a mesh from a file, once they are known
 }
 
 export interface Topology {

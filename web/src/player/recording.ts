@@ -145,6 +145,8 @@ export class Reader {
       this.restLengths = new Float32Array(content.slice().buffer);
     } else if (kind === "body") {
       this.takeBody(content);
+    } else if (kind === "nums") {
+      this.takeNumbers(content);
     } else if (kind === "edit") {
       const { patch, document } = json() as { patch?: Patch; document?: SceneDocument };
       if (document) this.document = document;
@@ -162,6 +164,7 @@ export class Reader {
     const read = decode(message.slice().buffer);
     if (!("topology" in read)) throw new BadMessage("a frame in place of a topology");
     this.topology = read.topology;
+    for (const range of this.topology.cloths) range.numbers = "same"; // what has others says so in its own chunk
     this.candidates = candidatesOf(read.topology.vertexCount, read.topology.triangles);
     this.edges = edgesOf(read.topology.triangles);
     this.restLengths = new Float32Array();
@@ -179,6 +182,14 @@ export class Reader {
       vertices: Array.from({ length: vertices }, (_, i) => three(12 + 12 * i, float)),
       triangles: Array.from({ length: triangles }, (_, i) => three(12 + 12 * vertices + 12 * i, index)),
     });
+  }
+
+  private takeNumbers(content: Uint8Array): void {
+    demand(content.length >= 4 && content.length % 4 === 0, "numbers of vertices that are none");
+    const all = new Uint32Array(content.slice().buffer);
+    const range = this.topology?.cloths[all[0] as number];
+    demand(range !== undefined, `numbers of vertices of cloth ${all[0]}, which is none`);
+    range.numbers = all.subarray(1);
   }
 
   private takeGroup(bytes: Uint8Array, at: number): void {

@@ -21,7 +21,7 @@ import {
 import { lookOf, metresPerTexture } from "./fabric_looks";
 import { fields } from "./fields";
 import { fixedRange } from "./field_ranges";
-import { heldVertices } from "./pins";
+import { heldInFrame } from "./pins";
 import { decodePlaces } from "./places";
 import { stepsFor } from "./refinement";
 import { SmoothCloth } from "./smooth_cloth";
@@ -248,7 +248,8 @@ export class ClothView {
     }
   }
 
-  private rebuildMarkers(): void {
+  /// Makes the markers of pins anew: where they are is known now.
+  rebuildMarkers(): void {
     if (this.markers) {
       this.object.remove(this.markers);
       this.markers.geometry.dispose();
@@ -258,9 +259,7 @@ export class ClothView {
     const ranges = this.topology.cloths;
     const pinned = this.document.cloths.flatMap((cloth, i) => {
       const range = ranges[i];
-      return range
-        ? [...heldVertices(cloth).keys()].filter((v) => v < range.vertexCount).map((v) => range.firstVertex + v)
-        : [];
+      return range ? [...heldInFrame(cloth, range)] : [];
     });
     if (pinned.length === 0 || pinned.length > mostMarkers) return;
     const geometry = new BufferGeometry();

@@ -8,6 +8,7 @@ import { Picker } from "./picking";
 import { Places } from "./places";
 import type { Stage } from "./stage";
 import type { Operation, SceneDocument, Vec3 } from "../link/scene_types";
+import { inDocument } from "../link/vertex_numbers";
 
 /// A hand as sim.status tells of it.
 export interface HandAt {
@@ -46,6 +47,7 @@ export interface Held {
 
 const sendEvery = 8; // [ms]: a mouse may tell of itself 1000 times a second
 const pinAfter = 800; // [ms] that a finger is still: then it pins when it leaves
+const unknownNumber = "The server has not said yet which vertex of the file this is: P again in a moment.";
 const farthest = 4; // times the distance at which the cloth was grabbed
 
 export class Grab {
@@ -122,15 +124,26 @@ export class Grab {
     const document = this.events.document();
     const frame = this.picker.frame;
     if (!held || !document || !frame) return;
-    const first = this.picker.topology?.cloths[held.cloth]?.firstVertex ?? 0;
+    const number = this.numberOf(held);
+    if (number === null) {
+      this.hint.say(unknownNumber);
+      return;
+    }
     const place = new Places(frame).of(held.vertex).toArray();
     const path = `/cloths/${held.cloth}/pins/${document.cloths[held.cloth]?.pins.length ?? 0}`;
-    const value = { at: `vertex:${held.vertex - first}`, place };
+    const value = { at: `vertex:${number}`, place };
     const ended = () => {
       if (!this.held) this.events.notify("grab.end", {}); // else the hand has let go by taking something else
     };
     this.events.patch([{ op: "add", path, value }]).then(ended, ended);
     this.forget();
+  }
+
+  /// The number of what is held in the document; null: the server has not told it yet.
+  private numberOf({ cloth, vertex }: Held): number | null {
+    const of = this.events.document()?.cloths[cloth];
+    const range = this.picker.topology?.cloths[cloth];
+    return of && range ? inDocument(vertex, of, range) : null;
   }
 
   /// Takes off the pin that is chosen.
@@ -203,7 +216,8 @@ export class Grab {
 
   /// True for a finger that has kept still after its pull: it pins when it leaves.
   still(held: Held): boolean {
-    return held.by === "touch" && held.travelled && performance.now() - held.stillSince >= pinAfter;
+    const waited = held.by === "touch" && held.travelled && performance.now() - held.stillSince >= pinAfter;
+    return waited && this.numberOf(held) !== null;
   }
 
   private marksNow(): Mark[] {

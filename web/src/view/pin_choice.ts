@@ -1,5 +1,5 @@
 // The pins of the scene as one points at them: which vertices they hold, and the one that is chosen, to be taken off.
-import { heldVertices } from "./pins";
+import { heldInFrame } from "./pins";
 import type { Picker } from "./picking";
 import { Places } from "./places";
 import type { Operation, SceneDocument } from "../link/scene_types";
@@ -23,9 +23,7 @@ export class PinChoice {
     return (this.document()?.cloths ?? []).flatMap((of, cloth) => {
       const range = ranges[cloth];
       if (!range) return [];
-      return [...heldVertices(of).keys()]
-        .filter((vertex) => vertex < range.vertexCount)
-        .map((vertex) => ({ cloth, vertex: range.firstVertex + vertex }));
+      return [...heldInFrame(of, range)].map((vertex) => ({ cloth, vertex }));
     });
   }
 
@@ -58,10 +56,10 @@ export class PinChoice {
   /// hold a row.
   removal(): Operation[] {
     const of = this.chosen && this.document()?.cloths[this.chosen.cloth];
-    if (!this.chosen || !of) return [];
+    const range = this.chosen && this.picker.topology?.cloths[this.chosen.cloth];
+    if (!this.chosen || !of || !range) return [];
     const { cloth, vertex } = this.chosen;
-    const inCloth = vertex - (this.picker.topology?.cloths[cloth]?.firstVertex ?? 0);
-    const holds = of.pins.map((pin) => heldVertices({ ...of, pins: [pin] }).has(inCloth));
+    const holds = of.pins.map((pin) => heldInFrame({ ...of, pins: [pin] }, range).has(vertex));
     const index = holds.lastIndexOf(true);
     return index < 0 ? [] : [{ op: "remove", path: `/cloths/${cloth}/pins/${index}` }];
   }

@@ -1,6 +1,8 @@
 // Finds the vertices that a scene's pins hold, by the rules of server/scene/README.md, to draw markers on them.
 import { Euler, MathUtils, Vector3 } from "three";
+import type { ClothRange } from "../link/protocol";
 import type { At, Cloth, Motion, Vec3 } from "../link/scene_types";
+import { inFrame } from "../link/vertex_numbers";
 
 /// Rest positions of a cloth in world space [m]; none of a mesh from a file, which the page does not have.
 export function restPositions(cloth: Cloth): Vector3[] {
@@ -44,10 +46,14 @@ function verticesAt(at: At, cloth: Cloth, rest: Vector3[]): number[] {
     : Array.from({ length: rows }, (_, row) => row * columns + line);
 }
 
-/// Vertices of the cloth that pins hold, each once, with the motion of its last pin.
+/// Vertices that pins of the cloth hold, as the document counts them, each with the motion of its last pin.
 export function heldVertices(cloth: Cloth): Map<number, Motion> {
   const rest = cloth.pins.some((pin) => typeof pin.at !== "string") ? restPositions(cloth) : [];
   return new Map(
     cloth.pins.flatMap((pin) => verticesAt(pin.at, cloth, rest).map((vertex) => [vertex, pin.motion] as const)),
   );
 }
+
+/// Vertices that pins of the cloth hold, as frames count them, each once; none while the numbers are not known.
+export const heldInFrame = (cloth: Cloth, range: ClothRange): Set<number> =>
+  new Set([...heldVertices(cloth).keys()].flatMap((number) => inFrame(number, cloth, range) ?? []));

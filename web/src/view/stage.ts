@@ -190,6 +190,12 @@ export class Stage {
     return this.keeper.fitted;
   }
 
+  /// It is known now which vertex in frames each vertex of the document is.
+  numbersArrived(): void {
+    for (const cloth of this.cloths) cloth.rebuildMarkers();
+    this.dirty = true;
+  }
+
   /// Shows a document, of which bodies.ts has named the triangles; `fit` it into the view.
   setDocument(document: SceneDocument, fit: boolean): void {
     const fresh = fit || !this.document;
