@@ -5,6 +5,9 @@ import type { RecordingFacts, RecordPort } from "./record_button";
 
 const megabytes = (bytes: number): string => `${(bytes / 1e6).toFixed(bytes < 1e7 ? 1 : 0)} MB`;
 
+/// How long it plays [s]: it begins with its first frame, at 0.
+const secondsOf = (frames: number, rate: number): string => (Math.max(0, frames - 1) / rate).toFixed(0);
+
 const kinds = [
   ["html", "Save as page", "One file that plays in any browser, without a server"],
   ["clothlab", "Save as .clothlab", "The recording alone"],
@@ -35,10 +38,10 @@ export class RecordControl {
       .catch((error: Error) => noticeError("Not recorded", error));
   }
 
-  show({ state, scene, frames, bytes, times }: RecordingFacts): void {
+  show({ state, scene, rate, frames, bytes, times }: RecordingFacts): void {
     if (times) this.name = `${scene} ${times.map((time) => time.toFixed(2)).join("-")} s`;
     this.recording = state === "recording";
-    const text = this.recording ? `Stop recording (${megabytes(bytes)})` : "Record";
+    const text = this.recording ? `Stop recording (${secondsOf(frames, rate)} s, ${megabytes(bytes)})` : "Record";
     if (this.start.textContent !== text) this.start.textContent = text;
     this.start.classList.toggle("live", this.recording);
     this.files.hidden = state !== "ready" || frames === 0;

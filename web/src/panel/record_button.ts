@@ -6,6 +6,7 @@ import type { RecordControl } from "./record";
 export interface RecordingFacts {
   state: "none" | "recording" | "ready";
   scene: string; ///< the name of the one that it began with
+  rate: number; ///< [1/s]
   frames: number;
   bytes: number;
   full: boolean;

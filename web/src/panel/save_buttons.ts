@@ -1,4 +1,4 @@
-// The buttons that save what is on screen, as a picture or a video, and the cloths as a model. What they do is loaded
+// The buttons that save the scene, as a picture or a video, and the cloths as a model. What they do is loaded
 // with the first press.
 import { button } from "./dom";
 import { noticeError } from "./notices";

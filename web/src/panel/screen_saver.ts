@@ -1,9 +1,11 @@
-// Saves what is on screen: a PNG of the picture, or a video that the browser itself records of it; and the present
-// cloths as the server writes them.
-import { button } from "./dom";
+// Saves the scene as it is seen, in the size that is chosen: a PNG, or a video that the browser itself records; and the
+// present cloths as the server writes them.
+import { button, element } from "./dom";
 import { fileName } from "./file_name";
 import { notice, noticeError } from "./notices";
 import type { Screen } from "./save_buttons";
+import { withDuration } from "./webm_duration";
+import type { PictureSize } from "../view/photograph";
 
 const mostSeconds = 600; // of a video
 const mostBytes = 256e6; // of a video, which the browser keeps in memory
@@ -24,7 +26,7 @@ function save(blob: Blob, name: string): void {
 }
 
 export class ScreenSaver {
-  // The picture is transparent beside the scene: here it lies on the page's backdrop.
+  // Of a video. The stage's picture is transparent beside the scene: here it lies on the page's backdrop.
   private readonly canvas = document.createElement("canvas");
   private readonly button = button("save-video");
   private recorder: MediaRecorder | null = null;
@@ -36,33 +38,45 @@ export class ScreenSaver {
     return this.screen.stage.frame?.header.time ?? 0;
   }
 
-  private paint(): void {
-    const { canvas: view } = this.screen.stage;
-    const { canvas } = this;
-    const context = canvas.getContext("2d") as CanvasRenderingContext2D;
-    const { width, height } = canvas;
-    const style = getComputedStyle(document.documentElement);
-    const backdrop = context.createRadialGradient(0, 0, 0, 0, 0, 1);
-    backdrop.addColorStop(0, style.getPropertyValue("--backdrop-near").trim());
-    backdrop.addColorStop(1, style.getPropertyValue("--backdrop-far").trim());
-    context.setTransform(0.9 * width, 0, 0, 0.75 * height, 0.45 * width, 0.55 * height); // as in style.css
-    context.fillStyle = backdrop;
-    context.fillRect(-1, -1, 3, 3);
-    context.resetTransform();
-    context.drawImage(view, 0, 0, width, height);
+  /// The size that is chosen; else that of the window's picture. Video's need even numbers.
+  private get size(): PictureSize {
+    const [width, height] = element("picture-size", HTMLSelectElement).value.split("x").map(Number);
+    if (width && height) return { width, height };
+    const { clientWidth, clientHeight } = this.screen.stage.canvas;
+    const ratio = Math.min(devicePixelRatio, 2);
+    const even = (side: number): number => Math.max(2, 2 * Math.round((side * ratio) / 2));
+    return { width: even(clientWidth), height: even(clientHeight) };
   }
 
-  private resize(): void {
-    const { width, height } = this.screen.stage.canvas;
-    Object.assign(this.canvas, { width, height });
+  /// Copies the picture that is on the stage's canvas.
+  private paint(to: HTMLCanvasElement, clear = false): void {
+    const { stage } = this.screen;
+    const { canvas: view } = stage;
+    const context = to.getContext("2d") as CanvasRenderingContext2D;
+    const { width, height } = to;
+    context.clearRect(0, 0, width, height);
+    if (!clear) {
+      const style = getComputedStyle(document.documentElement);
+      const backdrop = context.createRadialGradient(0, 0, 0, 0, 0, 1);
+      backdrop.addColorStop(0, style.getPropertyValue("--backdrop-near").trim());
+      backdrop.addColorStop(1, style.getPropertyValue("--backdrop-far").trim());
+      context.setTransform(0.9 * width, 0, 0, 0.75 * height, 0.45 * width, 0.55 * height); // as in style.css
+      context.fillStyle = backdrop;
+      context.fillRect(-1, -1, 3, 3);
+      context.resetTransform();
+    }
+    // A film of the stage's is stretched to its canvas; what replaces the scene has the window's shape.
+    const scale = Math.min(width / view.width, height / view.height);
+    const [wide, high] = stage.replaced ? [scale * view.width, scale * view.height] : [width, height];
+    context.drawImage(view, (width - wide) / 2, (height - high) / 2, wide, high);
   }
 
   savePicture(): void {
     const name = fileName(this.screen.sceneName(), this.time, "png");
-    this.screen.stage.drawSharp();
-    if (!this.recorder) this.resize();
-    this.paint();
-    this.canvas.toBlob((blob) => {
+    const { size } = this;
+    const canvas = Object.assign(document.createElement("canvas"), size);
+    this.screen.stage.photograph(size, () => this.paint(canvas, element("picture-clear", HTMLInputElement).checked));
+    canvas.toBlob((blob) => {
       if (blob) save(blob, name);
       else noticeError("Not saved", new Error("The browser made no picture of it."));
     }, "image/png");
@@ -96,10 +110,11 @@ export class ScreenSaver {
     }
     const [type, ending] = kind;
     const name = fileName(this.screen.sceneName(), this.time, ending);
-    this.resize();
     const { stage } = this.screen;
-    stage.drawSharp();
-    this.paint();
+    const { size } = this;
+    Object.assign(this.canvas, size).getContext("2d"); // there is no stream of a canvas without
+    stage.film = { size, take: () => this.paint(this.canvas) };
+    stage.invalidate();
     const stream = this.canvas.captureStream(rate);
     const recorder = (this.recorder = new MediaRecorder(stream, { mimeType: type, videoBitsPerSecond: 8e6 }));
     const chunks: Blob[] = [];
@@ -118,18 +133,23 @@ export class ScreenSaver {
     };
     recorder.onerror = () => noticeError("The video has ended", new Error("The browser could not go on recording it."));
     recorder.onstop = () => {
-      stage.onDrawn = () => undefined;
+      stage.film = null;
       for (const track of stream.getTracks()) track.stop();
       clearInterval(this.timer);
       this.recorder = null;
       this.tell("Video", false);
-      if (bytes > 0) save(new Blob(chunks, { type: type.split(";")[0] ?? type }), name);
+      if (bytes > 0) void this.saveVideo(new Blob(chunks, { type: type.split(";")[0] ?? type }), name);
     };
-    stage.onDrawn = () => this.paint();
     recorder.start(1000);
     const tell = (): void => this.tell(`Stop video (${((performance.now() - begun) / 1000).toFixed(0)} s)`, true);
     tell();
     this.timer = window.setInterval(tell, 1000);
+  }
+
+  private async saveVideo(video: Blob, name: string): Promise<void> {
+    const { type } = video;
+    if (type !== "video/webm") return save(video, name);
+    save(new Blob(withDuration(new Uint8Array(await video.arrayBuffer()), 1 / rate), { type }), name);
   }
 
   private tell(text: string, live: boolean): void {

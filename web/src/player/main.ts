@@ -95,7 +95,8 @@ async function start(): Promise<void> {
     },
     shown: (frame, { time }, range) => {
       slider.value = String(frame);
-      clock.textContent = `${time.toFixed(2)} s`;
+      clock.textContent = `${(frame / recording.rate).toFixed(2)} s`;
+      clock.title = `Simulated time: ${time.toFixed(2)} s`;
       slider.setAttribute("aria-valuetext", clock.textContent);
       if (range > 0) element("legend-most", HTMLElement).textContent = fields.strain.most(range);
       document.body.classList.add("drawing");

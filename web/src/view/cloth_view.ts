@@ -248,6 +248,11 @@ export class ClothView {
     }
   }
 
+  /// The markers of pins; null: there are none.
+  get marks(): Object3D | null {
+    return this.markers;
+  }
+
   /// Makes the markers of pins anew: where they are is known now.
   rebuildMarkers(): void {
     if (this.markers) {

@@ -23,6 +23,7 @@ import { centerIn, type FreeArea } from "./framing";
 import { GroundShadow } from "./ground_shadow";
 import type { ShownFrame, Topology } from "../link/protocol";
 import type { Crossings } from "../link/rpc";
+import { bodyPoints, frameArea, frameSubject, type PictureSize } from "./photograph";
 import { Quality, stillTriangles } from "./quality";
 import { framePoints, scenePoints } from "./reach";
 import type { SceneDocument } from "../link/scene_types";
@@ -30,6 +31,7 @@ import { shadowSize, softenShadows } from "./studio_shader";
 import type { Graphics } from "./webgl";
 
 const stillAfter = 300; // [ms] without a change: then the picture is drawn at full resolution
+const mostSamples = 3840 * 2160; // of a picture: more take memory that not every device has
 const explodedAt = 12; // times the scene's radius
 const lightFrom = new Vector3(0.55, 1, 0.62).normalize();
 
@@ -39,12 +41,19 @@ export interface Replacement {
   draw(renderer: WebGLRenderer, render: () => void): void; ///< calls `render` for each picture that it is made of
 }
 
+/// Takes pictures of its own size. While `take` is called the picture can be copied from the canvas, to which it is
+/// stretched.
+export interface Film {
+  size: PictureSize;
+  take(): void;
+}
+
 export class Stage {
   readonly controls: OrbitControls;
   readonly cloth: ClothView;
   onShow = (): void => undefined; ///< another frame is to be drawn
   onDraw = (): void => undefined; ///< before each picture
-  onDrawn = (): void => undefined; ///< after it, while it can be copied from the canvas
+  film: Film | null = null; ///< takes a picture of its own with each picture of the window
   onLost = (): void => undefined; ///< the WebGL context is lost; three.js restores what it can when the context returns
   readonly canvas: HTMLCanvasElement;
   private readonly renderer: WebGLRenderer;
@@ -165,6 +174,10 @@ export class Stage {
     if (!replacement) this.cloths = [this.cloth];
     this.cloth.object.visible = this.cloth.caster.visible = this.overlays.visible = !replacement;
     this.resize(this.area);
+  }
+
+  get replaced(): boolean {
+    return this.replacement !== null;
   }
 
   /// Shifts the picture so that its middle is the middle of this area.
@@ -343,11 +356,48 @@ export class Stage {
     return !this.dirty && this.scale === this.stillScale;
   }
 
-  /// Draws at full resolution at once; until the caller returns, the picture can be copied from the canvas.
-  drawSharp(): void {
-    if (this.scale !== this.stillScale) this.setScale(this.stillScale);
+  /// Draws one picture of this size, with the scene in its middle and without marks, and calls `take`, which can copy
+  /// it from the canvas. A replacement is drawn as it is in the window.
+  photograph({ width, height }: PictureSize, take: () => void): void {
+    const { film } = this;
+    const samples = width * height * this.stillScale ** 2 <= mostSamples ? this.stillScale : 1;
+    if (!this.replacement) {
+      this.renderer.setPixelRatio(samples);
+      this.pixelRatio.value = samples;
+      this.renderer.setSize(width, height, false);
+      this.shared.pixel.value = 2 / height;
+    } else if (this.scale !== this.stillScale) {
+      this.setScale(this.stillScale);
+    }
     this.setFineness(true);
-    this.render();
+    this.film = null;
+    this.expose({ size: { width, height }, take }, this.fitted);
+    this.film = film;
+    this.resize(this.area);
+  }
+
+  /// Draws a picture beside those of the window. `refit`: as near as the scene allows that is there now.
+  private expose({ size, take }: Film, refit: boolean): void {
+    if (this.replacement) {
+      this.renderReplacement();
+      take();
+      return;
+    }
+    const { camera, canvas, latest } = this;
+    const before = camera.clone();
+    const marks = [this.crossings.object, ...this.cloths.flatMap(({ marks }) => marks ?? [])].filter(
+      ({ visible }) => visible,
+    );
+    for (const mark of marks) mark.visible = false;
+    const bodies = this.colliders.bodies.flatMap(({ mesh }) => bodyPoints(mesh));
+    if (refit && latest) frameSubject(camera, [...framePoints(latest), ...bodies], size);
+    else frameArea(camera, this.area, { width: canvas.clientWidth, height: canvas.clientHeight }, size);
+    camera.updateMatrixWorld();
+    this.renderOnce();
+    take();
+    for (const mark of marks) mark.visible = true;
+    camera.copy(before, false);
+    camera.updateMatrixWorld();
   }
 
   private setFineness(still: boolean): void {
@@ -360,18 +410,23 @@ export class Stage {
 
   private render(): void {
     this.dirty = false;
+    if (this.film) this.expose(this.film, false);
     this.onDraw();
+    if (this.replacement) this.renderReplacement();
+    else this.renderOnce();
+  }
+
+  private renderReplacement(): void {
+    this.replacement?.draw(this.renderer, () => this.renderOnce());
+  }
+
+  private renderOnce(): void {
     for (const cloth of this.cloths) {
       const away = Math.max(cloth.box.distanceToPoint(this.camera.position), this.camera.near);
       cloth.pixel = (away * 2 * Math.tan(MathUtils.degToRad(this.camera.fov / 2))) / this.canvas.height;
     }
-    const render = (): void => {
-      this.groundShadow.draw();
-      this.renderer.render(this.scene, this.camera);
-    };
-    if (this.replacement) this.replacement.draw(this.renderer, render);
-    else render();
-    this.onDrawn();
+    this.groundShadow.draw();
+    this.renderer.render(this.scene, this.camera);
   }
 
   // Lets the driver compile while the page connects, so that the first frame need not wait.
