@@ -20,6 +20,7 @@ namespace {
 
 struct ServeArguments {
   SceneChoice scene{"seed", {}};
+  bool scene_named = false;  ///< on the command line
   Listening listening;
   int gpu = -1;
 };
@@ -99,6 +100,7 @@ int serve(ServeArguments& arguments) {
   if (arguments.scene.asset_root.empty()) (*assets)->close();
   options.assets = *assets;
   options.document = std::move(*document);
+  options.usual_scene = !arguments.scene_named && arguments.scene.set.empty();
   if (arguments.gpu >= 0) options.gpu = arguments.gpu;
   gl::compute_without_helper_threads();
   return listen_and_serve(std::move(arguments.listening));
@@ -159,7 +161,10 @@ void add_serve(CLI::App& app, int& exit_code) {
   clothlab serve --bind 0.0.0.0 --token SECRET --view-token PUBLIC
 
 Prints "listening on http://..." when it accepts connections; Ctrl+C ends it.)");
-  command->callback([arguments, &exit_code] { exit_code = serve(*arguments); });
+  command->callback([arguments, command, &exit_code] {
+    arguments->scene_named = command->count("--scene") > 0;
+    exit_code = serve(*arguments);
+  });
 }
 
 }  // namespace clothlab::cli

@@ -49,6 +49,7 @@ nlohmann::json hello_params(const Hub& hub, const Room& room, const Client& clie
       {"methods", method_list()},
       {"requests", method_names(hub.relays())},
       {"relay", hub.relays()},
+      {"untouched", room.untouched()},
       {"encodings", encoding_list()},
       {"fields", field_list()},
       {"limits",

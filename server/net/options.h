@@ -13,7 +13,8 @@
 namespace clothlab::net {
 
 struct Options {
-  scene::Document document;                     ///< the scene that every new session starts with
+  scene::Document document;  ///< the scene that every new session starts with
+  bool usual_scene = false;  ///< nobody has named that scene: it is the program's own choice
   std::shared_ptr<const scene::Assets> assets;  ///< the meshes that scenes may name besides uploaded ones
   std::string bind = "127.0.0.1";
   int port = 8080;                        ///< 0: any free port

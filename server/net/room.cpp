@@ -1,6 +1,7 @@
 #include "server/net/room.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "server/net/client.h"
 #include "server/net/greeting.h"
@@ -32,6 +33,10 @@ Room::Room(Hub& hub, std::string name, const std::function<void()>& wake, Lock c
   std::optional<std::filesystem::path> stem;
   if (!options.state_folder.empty()) stem = options.state_folder / name_;
   meshes_ = std::make_shared<session::MeshShelf>(options.assets, std::move(stem));
+  std::error_code unseen;
+  untouched_ = options.usual_scene && !publisher_ &&
+               (options.state_folder.empty() ||
+                !std::filesystem::exists(session::session_file(options.state_folder, name_), unseen));
   begin_session(nullptr);
 }
 
@@ -68,6 +73,7 @@ bool Room::offer(session::Command command) {
 bool Room::capture(std::uint64_t asker, const session::Export& what) {
   if (!offer({{asker, std::nullopt}, what})) return false;
   ++capturing_;
+  untouched_ = false;
   return true;
 }
 
@@ -83,6 +89,7 @@ void Room::stop() {
 
 void Room::enter(Client& client) {
   clients_.push_back(&client);
+  untouched_ = untouched_ && ++entered_ == 1;
   if (started()) greet(client);
   watchers_changed();
 }

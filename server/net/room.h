@@ -61,6 +61,9 @@ class Room {
   void ask_collider(const std::string& name, std::uint64_t asker);
 
   void enter(Client& client);
+  /// True if nobody has chosen this session's scene, and one client at most has ever come. A picture or a
+  /// mesh that was asked for over HTTP counts as somebody.
+  bool untouched() const { return untouched_; }
   void leave(Client& client);
   void let_go(const Client& client);  ///< ends the client's hold on the cloth
   /// True if nobody watches, here or through a relay.
@@ -143,6 +146,8 @@ class Room {
   relay::Feed* feed_ = nullptr;         ///< `session_` on a relay; null elsewhere
   std::optional<Publisher> publisher_;  ///< with --publish
   std::vector<Client*> clients_;
+  bool untouched_ = false;
+  int entered_ = 0;  ///< clients that have come, while untouched
   std::vector<session::Event> events_, given_up_events_;
   std::size_t events_handled_ = 0;  ///< of `events_`
   std::string renderer_;

@@ -1,5 +1,6 @@
 // What a room does with what its session has put out.
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "server/base/log.h"
@@ -172,12 +173,20 @@ void Room::handle(session::SolverChanged& changed) {
 
 void Room::handle(session::Diverged& diverged) {
   ++hub_.metrics().divergences;
+  const auto finite = [](double value) { return std::isfinite(value) ? json(value) : json(nullptr); };
+  const sim::BlowUp::Energy& energy = diverged.energy;
   broadcast("sim.diverged", {{"reason", diverged.reason},
-                             {"remedy", {{"text", diverged.remedy}, {"patch", diverged.patch}}}});
+                             {"remedy", {{"text", diverged.remedy}, {"patch", diverged.patch}}},
+                             {"energy",
+                              {{"allowed", finite(energy.allowed)},
+                               {"found", finite(energy.found)},
+                               {"time", finite(energy.time)},
+                               {"elastic", energy.counts_elastic}}}});
 }
 
 void Room::handle(session::Notice& notice) {
-  const json params{{"level", notice.level}, {"text", notice.text}};
+  json params{{"level", notice.level}, {"text", notice.text}};
+  if (notice.about != nullptr) params["about"] = notice.about;
   if (notice.standing) standing_notices_.push_back(notification_text("notice", params));
   if (!notice.standing || started()) broadcast("notice", params);  // else it comes with the greeting
 }

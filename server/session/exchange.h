@@ -28,6 +28,7 @@
 #include "server/session/refusal.h"
 #include "server/session/run_state.h"
 #include "server/session/saved.h"
+#include "server/sim/blow_up.h"
 #include "server/sim/simulation.h"
 #include "server/stream/frame.h"
 
@@ -83,11 +84,13 @@ struct Diverged {
   std::string reason;
   std::string remedy;
   json patch;
+  sim::BlowUp::Energy energy{};
 };
 struct Notice {
   const char* level = "info";  ///< info | warning | error
   std::string text;
-  bool standing = false;  ///< also for each client that comes later
+  bool standing = false;        ///< also for each client that comes later
+  const char* about = nullptr;  ///< what it is about, if clients may tell that in a way of their own; or null
 };
 /// In the place of the session's file is what could not be restored, and could not be moved: threads of the
 /// session to come must not save there either.

@@ -247,7 +247,7 @@ void Stepper::wake_up() {
 
 void Stepper::diverge() {
   const scene::Solver& solver = scene().solver;
-  auto [reason, remedy] = guard_->go_back();
+  auto [reason, remedy, energy] = guard_->go_back();
   timeline_went_back();
   json change{{"dt", remedy.dt}};
   if (remedy.method || solver.automatic)
@@ -259,7 +259,7 @@ void Stepper::diverge() {
   run_.diverge();
   finish_waiting(true);
   frames().diverge();
-  exchange_.emit(Diverged{std::move(reason), std::move(remedy.text), {{"solver", change}}});
+  exchange_.emit(Diverged{std::move(reason), std::move(remedy.text), {{"solver", change}}, energy});
 }
 
 // After a blow-up and a change of scene the session goes on from the last good state, playing or paused as

@@ -32,7 +32,7 @@ void Stepper::warn_if_slow(Clock::time_point now) {
   if (const double others = simulation().search_candidates(); others >= 500)
     text += formatted("a smaller self_collision thickness (each vertex is compared with about %.0f others), ",
                       others);
-  exchange_.emit(Notice{"warning", text + "a longer time step or a lower speed helps"});
+  exchange_.emit(Notice{"warning", text + "a longer time step or a lower speed helps", false, "pace"});
 }
 
 void Stepper::warn_if_crowded() {

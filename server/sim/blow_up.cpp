@@ -175,6 +175,7 @@ BlowUp::Verdict BlowUp::judge(const Diagnostics& diagnosis) {
   ledger_ += work;
   const double available = std::max(0.0, ledger_ - state.gravitational);
   const double allowed_excess = (allowance_.energy_ratio - 1.0) * available + allowance_.slack_energy;
+  allowed_ = available + allowed_excess;
   const double excess = growing_energy(state) - available;
   ledger_ = std::min(ledger_, total(state));
   last_ = state;

@@ -60,6 +60,14 @@ class BlowUp {
   /// After `blown_up`: the first half of a sentence that says which energy grew, between which values and
   /// times.
   std::string reason() const;
+  /// What is compared in the state that was judged last.
+  struct Energy {
+    double allowed = 0;           ///< the most with which it would not have been in doubt [J]
+    double found = 0;             ///< [J]
+    double time = 0;              ///< of that state [s]
+    bool counts_elastic = false;  ///< both are of kinetic and elastic energy; else of kinetic energy alone
+  };
+  Energy energy() const { return {allowed_, growing_energy(last_), last_.time, allowance_.counts_elastic}; }
   const Diagnostics& last_good() const { return last_good_; }
 
  private:
@@ -76,6 +84,7 @@ class BlowUp {
 
   Allowance allowance_;
   double ledger_ = 0;          ///< [J]
+  double allowed_ = 0;         ///< Energy::allowed
   double work_ = 0;            ///< work done since the last good state [J]
   double doubted_energy_ = 0;  ///< growing_energy when the doubt began [J]; 0: no doubt
   int doubted_for_ = 0;        ///< number of judgements since the doubt began or was last reviewed

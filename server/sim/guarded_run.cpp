@@ -117,7 +117,7 @@ std::optional<GuardedRun::Verdict> GuardedRun::poll_verdict() {
 GuardedRun::Setback GuardedRun::go_back() {
   const scene::Scene& scene = simulation_->scene();
   Setback setback{blow_up_.reason() + model::against_limit(scene.solver, dt_limit_),
-                  model::remedy(simulation_->model(), scene, dt_limit_)};
+                  model::remedy(simulation_->model(), scene, dt_limit_), blow_up_.energy()};
   simulation_->go_back();
   verdict_requested_ = false;
   state_ = blow_up_.last_good();

@@ -70,8 +70,9 @@ class GuardedRun {
   std::string reason() const { return blow_up_.reason(); }
 
   struct Setback {
-    std::string reason;    ///< which energy grew, and how dt compares with dt_limit
-    model::Remedy remedy;  ///< what to change in the scene
+    std::string reason;       ///< which energy grew, and how dt compares with dt_limit
+    model::Remedy remedy;     ///< what to change in the scene
+    BlowUp::Energy energy{};  ///< of the state that was judged last
   };
   /// After a blow-up: puts the last good state back. Returns why, and what to change.
   Setback go_back();

@@ -130,7 +130,8 @@ export function withServer(...args) {
 export class Viewer {
   /// Opens the page on a session of its own, and waits until it has drawn. Pixels in software take most of the time
   /// of these tests: unless the picture must be `sharp`, there is one for every 4x4 of the layout's. A `newcomer` has
-  /// never been here; `more` are options of Playwright's contexts, such as hasTouch.
+  /// never been here; `session` null: the address names none; `more` are options of Playwright's contexts, such as
+  /// hasTouch.
   static async open(
     browser,
     server,
@@ -148,14 +149,19 @@ export class Viewer {
     const viewer = new Viewer();
     const deviceScaleFactor = sharp ? 1 : 0.25;
     viewer.page = await browser.newPage({ viewport: { width, height }, deviceScaleFactor, colorScheme, ...more });
-    // The card of the first minute is for the tests that ask for it.
-    if (!newcomer) await viewer.page.addInitScript(() => localStorage.setItem("clothlab-first-steps", "seen"));
+    // The card of the first minute is for the tests that ask for it. The panel is open for all others, whatever the
+    // window's size.
+    if (!newcomer)
+      await viewer.page.addInitScript(() => {
+        localStorage.setItem("clothlab-first-steps", "seen");
+        localStorage.getItem("clothlab-panel") ?? localStorage.setItem("clothlab-panel", "open");
+      });
     viewer.complaints = [];
     viewer.page.on("console", (message) => {
       if (["error", "warning"].includes(message.type())) viewer.complaints.push(message.text());
     });
     viewer.page.on("pageerror", (error) => viewer.complaints.push(error.message));
-    await viewer.page.goto(`http://${server.host}/?session=${session}`);
+    await viewer.page.goto(`http://${server.host}/${session === null ? "" : `?session=${session}`}`);
     if (drawn > 0) await viewer.until((count) => window.clothlab?.framesDrawn >= count, drawn);
     return viewer;
   }
@@ -174,6 +180,11 @@ export class Viewer {
     await this.page.keyboard.press(" ");
     await this.page.getByRole("button", { name: "Play", exact: true }).waitFor({ state: "attached" });
     await this.still();
+  }
+
+  /// Opens the card of figures, whose headline alone is seen before.
+  figures() {
+    return this.page.locator("#figures > summary").click();
   }
 
   read(name) {

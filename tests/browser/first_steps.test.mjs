@@ -85,6 +85,29 @@ for (const [width, height] of [
     assert.equal(await remedy.count(), 0);
   });
 
+browserTest("each step is ticked off when it is done, and after the last one the card goes by itself", async () => {
+  const viewer = await newcomer("ticks", 1440, 900);
+  const { page } = viewer;
+  await card(page).waitFor();
+  const done = () => card(page).locator("li.done").allInnerTexts();
+  assert.deepEqual(await done(), []);
+  const cloth = await page.evaluate(() => {
+    const { left, top, width, height } = window.clothlab.stage.area;
+    return [left + width / 2, top + height / 2];
+  });
+  await page.mouse.move(...cloth);
+  await page.mouse.down();
+  await page.mouse.move(cloth[0] + 60, cloth[1] - 40, { steps: 5 });
+  await page.mouse.up();
+  await eventually("the first tick", done, ([first]) => /Done: Pull it/.test(first));
+  await card(page).getByRole("button", { name: "Make it blow up" }).click();
+  await page.getByRole("button", { name: "Apply the remedy" }).click();
+  await eventually("the second tick", done, ({ length }) => length === 2);
+  await card(page).getByRole("button", { name: "Ask the lab" }).click();
+  await page.getByRole("tab", { name: "Chart" }).waitFor();
+  await page.locator("#first-steps").waitFor({ state: "detached" });
+});
+
 browserTest("the third step opens the lab, and the card stands back while it is open", async () => {
   const viewer = await newcomer("ask", 1440, 900);
   const { page } = viewer;

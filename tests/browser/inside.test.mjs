@@ -10,7 +10,7 @@ const box = (viewer, name) => card(viewer).getByRole("checkbox", { name, exact: 
 const opener = ({ page }) => page.getByRole("button", { name: "See inside", exact: true });
 /// Opens the card; on a phone the figures that hold its button first.
 async function open(viewer, press = (locator) => locator.click()) {
-  if (!(await opener(viewer).isVisible())) await press(viewer.page.locator("#hud > summary"));
+  if (!(await opener(viewer).isVisible())) await press(viewer.page.locator("#figures > summary"));
   await press(opener(viewer));
   await card(viewer).waitFor();
 }

@@ -12,7 +12,9 @@ browserTest("the page of a relay draws the cloth and offers nothing that a relay
   const server = await Server.start("--publish", bus.url, "--scene", "mannequin");
   const relay = await Server.launch("relay", "--from", bus.url);
   try {
-    const { page } = await open(relay);
+    const viewer = await open(relay);
+    const { page } = viewer;
+    await viewer.figures();
     assert.equal(await page.locator("#scene-name").innerText(), "mannequin");
     for (const id of ["#save-model", "#inside-open", "#record"])
       assert.equal(await page.locator(id).isVisible(), false);

@@ -44,6 +44,7 @@ browserTest("a picture has the size that is chosen, its subject in the middle, a
   const viewer = await here.open({ session: "save-picture", width: 1280, height: 800, sharp: true });
   const { page } = viewer;
   await viewer.until(() => window.clothlab.simTime > 0.5);
+  await viewer.figures();
   await viewer.pause();
   const time = await viewer.read("simTime");
   const onPage = await picture(viewer);
@@ -97,6 +98,7 @@ browserTest("a picture from the user's own camera has what the cards leave free 
 
 browserTest("a model is the cloths as binary glTF", async () => {
   const viewer = await here.open({ session: "save-model", width: 1280, height: 800 });
+  await viewer.figures();
   const { name, bytes } = await saved(viewer, () => viewer.page.getByRole("button", { name: "Model" }).click());
   assert.match(name, /^seed-\d+\.\d\ds\.glb$/);
   assert.equal(bytes.subarray(0, 4).toString(), "glTF");
@@ -106,6 +108,7 @@ browserTest("a model is the cloths as binary glTF", async () => {
 browserTest("a video is a WebM that plays, with the motion that was on screen", async () => {
   const viewer = await here.open({ session: "save-video", width: 900, height: 600 });
   const { page } = viewer;
+  await viewer.figures();
   await page.getByRole("combobox", { name: "Size of pictures and videos" }).selectOption({ label: "Square" });
   const video = page.locator("#save-video");
   await video.click();
@@ -155,6 +158,7 @@ browserTest("a video is a WebM that plays, with the motion that was on screen", 
 browserTest("a browser without MediaRecorder says so, and offers what it can", async () => {
   const viewer = await here.open({ session: "save-none", width: 900, height: 600 });
   await viewer.page.evaluate(() => delete window.MediaRecorder);
+  await viewer.figures();
   await viewer.page.locator("#save-video").click();
   await viewer.page.getByText("This browser records no video").waitFor();
   assert.equal(await viewer.page.locator("#save-video").textContent(), "Video");

@@ -57,11 +57,20 @@ browserTest(
 );
 
 browserTest("time that creeps is told of with its factor, a pause and a scene at rest are not", async () => {
-  const { viewer, client, link } = await throttled("slow-creeps");
+  const { viewer, client, scene, link } = await throttled("slow-creeps");
   const box = viewer.page.locator("#slow");
   Object.assign(link, { slow: true, factor: 0.02 });
   await box.filter({ hasText: "Only ×0.02 of real time" }).waitFor({ state: "visible" });
-  assert.equal(await box.getByRole("button", { name: "Undo" }).isVisible(), false); // this page has changed nothing
+  // Nothing has changed that could be undone: the one thing to do is a coarser cloth.
+  assert.deepEqual(await box.getByRole("button").allInnerTexts(), ["Coarser cloth"]);
+  await box.getByRole("button").click();
+  await eventually("half the rows and columns", scene, ({ cloths: [{ mesh }] }) => mesh.grid.rows === 13);
+  await eventually(
+    "then an undo",
+    () => box.getByRole("button").allInnerTexts(),
+    ([only]) => only === "Undo",
+  );
+  assert.deepEqual(await viewer.page.locator(".notice", { hasText: "keep up" }).count(), 0);
   await client.request("sim.pause", {});
   await box.waitFor({ state: "hidden" });
   await viewer.page.waitForTimeout(4000); // paused: no pictures come, and nothing is wrong

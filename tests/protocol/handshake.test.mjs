@@ -66,6 +66,25 @@ test("hello comes first, then the whole scene", async () => {
   await client.close();
 });
 
+test("a session is untouched for the first client alone, and only where no scene was named", async () => {
+  const untouched = async (on, session) => {
+    const client = await Client.connect(on, { session });
+    const hello = await client.notification("hello");
+    await client.close();
+    return hello.untouched;
+  };
+  const plain = await Server.start();
+  const named = await Server.start("--scene", "seed");
+  const set = await Server.start("--set", "/solver/dt=0.0005");
+  try {
+    assert.deepEqual([await untouched(plain, "main"), await untouched(plain, "main")], [true, false]);
+    assert.equal(await untouched(plain, "other"), true);
+    for (const on of [named, set]) assert.equal(await untouched(on, "main"), false);
+  } finally {
+    await Promise.all([plain, named, set].map((each) => each.stop()));
+  }
+});
+
 test("a handshake without the subprotocol is refused", () => refused({ protocols: [] }));
 test("a handshake with another subprotocol is refused", () => refused({ protocols: ["chat"] }));
 test("a handshake for the plain protocol's internal name is refused", () => refused({ protocols: ["http"] }));

@@ -207,7 +207,8 @@ test("a blow-up is a state with a remedy: told, stopped, the last good frame kep
   await client.request("stream.subscribe", { encoding: "q16" });
   const told = client.nextNotification("sim.diverged");
   await client.request("sim.play");
-  const { reason, remedy } = await told;
+  const { reason, remedy, energy } = await told;
+  assert.ok(energy.elastic && energy.found > energy.allowed && energy.time > 0, JSON.stringify(energy));
   assert.ok(reason.length > 0 && remedy.text.length > 0);
   const flagged = await client.frame((frame) => (frame.flags & 2) !== 0);
   assert.ok(

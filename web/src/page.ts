@@ -5,13 +5,13 @@ import { act } from "./panel/act";
 import { ColourBy } from "./panel/colour_by";
 import { bindCommands } from "./panel/commands";
 import type { Convergence } from "./panel/convergence_gauge";
-import { element } from "./panel/dom";
+import { button, element } from "./panel/dom";
 import type { SolverFacts } from "./panel/field";
 import { Divergence } from "./panel/divergence";
 import { beyond, type Stability } from "./panel/gauge";
 import { Hud, type Status } from "./panel/hud";
 import { Refusals } from "./panel/refusals";
-import { bindFirstSteps } from "./panel/newcomer";
+import { Newcomer } from "./panel/newcomer";
 import { InsideDoor } from "./inside/door";
 import { tellMass } from "./panel/kept_mass";
 import { tellKept } from "./panel/kept_stable";
@@ -30,16 +30,17 @@ import { NumbersSource, type Renumbered } from "./link/numbers_source";
 import { LineWatch, type Second } from "./link/line_watch";
 import { SlowWatch } from "./panel/slow_watch";
 import { SceneStore } from "./link/scene_store";
-import { masses, withPlaces } from "./link/grid_places";
+import { coarser, masses, withPlaces } from "./link/grid_places";
 import { sessionFault } from "./link/session_name";
 import { Picture } from "./picture";
-import type { MovedCollider, Patch, SceneDocument } from "./link/scene_types";
+import type { MovedCollider, Operation, Patch, SceneDocument } from "./link/scene_types";
 import type { HandAt } from "./view/grab";
 import { Hand } from "./view/hand";
 import type { Stage } from "./view/stage";
 import { StartState } from "./view/start_state";
 import { hook } from "./test_hook";
 import { bindCameraInput } from "./view/camera_input";
+import { bindFocusFrame } from "./view/focus_frame";
 import { bindTimeline } from "./panel/timeline_opener";
 import { ThemeSwitch } from "./view/theme";
 import { Transport } from "./panel/transport";
@@ -66,7 +67,13 @@ export class Page {
     settled: (longest) => this.store.settled(longest),
     told: ({ undo }) => this.slow.changed(undo),
   });
-  private readonly slow = new SlowWatch(() => void this.undo.go("undo"));
+  private readonly slow = new SlowWatch({
+    mayEdit: () => this.mayEdit,
+    undo: () => void this.undo.go("undo"),
+    coarser: () => this.store.document && coarser(this.store.document),
+    edit: (operations) => this.edit(operations, true),
+    lab: () => this.drawers.toggle("lab"),
+  });
   private readonly line = new LineWatch();
   private lastSecond: Second = { pictures: 0, frames: 0, latency: 0, steps: false };
   private readonly bodies = new Bodies(
@@ -107,8 +114,9 @@ export class Page {
     request: (method, params) => this.connection.request(method, params),
     get: (path) => this.connection.get(path),
   });
-  private readonly divergence = new Divergence((patch) =>
-    this.connection.request("scene.patch", { patch, name: "Remedy" }),
+  private readonly divergence = new Divergence(
+    (patch) => this.connection.request("scene.patch", { patch, name: "Remedy" }),
+    () => this.newcomer?.did("mend"),
   );
   private readonly refusals = new Refusals({
     show: (crossings) => this.stage.showCrossings(crossings),
@@ -118,7 +126,8 @@ export class Page {
   private hand: Hand | null = null; // with the stage, as the next
   private startState: StartState | null = null;
   private layout: Layout | null = null;
-  private welcome = (): void => undefined; // a newcomer
+  private newcomer: Newcomer | null = null;
+  private viewers = 1; // of the session
   private fabricNames: string[] = []; // that come with the server, as the next
   private presetNames: string[] = [];
   private sceneName = "";
@@ -167,7 +176,10 @@ export class Page {
   }
 
   private bind(layout: Layout, theme: ThemeSwitch): void {
-    const lab = (): void => this.drawers.toggle("lab");
+    const lab = (): void => {
+      this.drawers.toggle("lab");
+      this.newcomer?.did("lab");
+    };
     bindCommands({
       transport: this.transport,
       layout,
@@ -179,6 +191,7 @@ export class Page {
       inside: () => this.inside?.toggle(),
       mesh: () => (this.stage.showsMesh = !this.stage.showsMesh),
     });
+    bindFocusFrame(this.stage.canvas);
     bindCameraInput(this.stage.controls, () => this.hand?.holding === true);
     bindTimeline({
       picture: this.picture,
@@ -187,12 +200,27 @@ export class Page {
       keys: () => this.store.document?.keys ?? [],
       changed: () => layout.cardToggled(),
     });
-    this.welcome = bindFirstSteps({
-      mayEdit: () => this.mayEdit,
-      blowUp: () => this.blowUp(),
-      lab,
-      changed: () => layout.cardToggled(),
-    });
+    button("share").onclick = () => void this.share();
+    this.newcomer = new Newcomer(
+      {
+        mayEdit: () => this.mayEdit,
+        blowUp: () => this.blowUp(),
+        lab,
+        load: (name) => this.loadPreset(name),
+        gallery: () => this.presets.openGallery(),
+        changed: () => layout.cardToggled(),
+      },
+      {
+        alone: () => this.viewers === 1,
+        patch: (patch, revision, name) => this.connection.request("scene.patch", { patch, revision, name }),
+        hold: (held) => (this.picture.held = held),
+      },
+    );
+  }
+
+  private async share(): Promise<void> {
+    const { openShare } = await import("./panel/share");
+    if (this.store.stored) await openShare(this.store.stored);
   }
 
   // Steps beyond the limit, if the method has one; else the preset that does so.
@@ -276,13 +304,7 @@ export class Page {
     return new Panel(
       element("panel-body", HTMLElement),
       {
-        edit: (operations, keepStable) => {
-          const document = this.store.expected;
-          if (!document) return;
-          const mass = masses(document, operations, this.guide.baseline.alignedTo(document));
-          this.store.edit([...withPlaces(document, operations), ...mass.operations], keepStable);
-          for (const each of mass.changes) tellMass(each, (more) => this.store.edit(more, true));
-        },
+        edit: (operations, keepStable) => this.edit(operations, keepStable),
         busy: (path) => this.store.busy(path),
         time: () => this.shownTime,
         loadPreset: (name) => this.loadPreset(name),
@@ -303,9 +325,21 @@ export class Page {
     );
   }
 
+  // A grid that gets other rows and columns keeps its pins' places and its mass.
+  private edit(operations: Operation[], keepStable?: boolean): void {
+    const document = this.store.expected;
+    if (!document) return;
+    const mass = masses(document, operations, this.guide.baseline.alignedTo(document));
+    this.store.edit([...withPlaces(document, operations), ...mass.operations], keepStable);
+    for (const each of mass.changes) tellMass(each, (more) => this.store.edit(more, true));
+  }
+
   private makeHand(stage: Stage): Hand {
     return new Hand(stage, {
-      notify: (method, params) => this.connection.notify(method, params),
+      notify: (method, params) => {
+        this.connection.notify(method, params);
+        if (method === "grab.move") this.newcomer?.did("pull");
+      },
       patch: (operations) =>
         this.connection.request("scene.patch", { patch: operations }).catch((error: Error) => {
           noticeError("Not pinned", error);
@@ -373,6 +407,7 @@ export class Page {
         this.guide.baseline.take(params.document as SceneDocument);
         this.store.replace(params.document as SceneDocument, Number(params.revision));
         this.drawers.arrived();
+        void this.newcomer?.arrived(Number(params.revision));
       },
       "scene.changed": (params) => this.store.patched(Number(params.revision), params.patch as Patch),
       "scene.history": (params) => this.undo.told(params as unknown as History),
@@ -398,8 +433,13 @@ export class Page {
       "sim.diverged": (params) => this.divergence.tell(params as unknown as Diverged),
       "lab.progress": (params) => this.drawers.told("progress", params),
       "lab.result": (params) => this.drawers.told("result", params),
-      viewers: (params) => this.hud.set("viewers", String(params.count)),
-      notice: (params) => notice(params.level as Level, { title: String(params.text) }),
+      viewers: (params) => {
+        this.viewers = Number(params.count);
+        this.hud.set("viewers", String(params.count));
+      },
+      notice: (params) => {
+        if (params.about !== "pace") notice(params.level as Level, { title: String(params.text) }); // that: SlowWatch
+      },
     };
   }
 
@@ -408,7 +448,7 @@ export class Page {
     this.mayEdit = params.role !== "viewer";
     this.hand?.greeted(Number(params.client));
     this.undo.greeted(Number(params.client));
-    this.welcome();
+    this.newcomer?.welcome(params.untouched === true);
     this.numbers.mayAsk = (params.requests as string[] | undefined)?.includes("inspect.vertices") ?? false;
     const methods = (params.methods as string[] | undefined) ?? [];
     this.panel.setMethods(methods);
@@ -433,7 +473,7 @@ export class Page {
 
   private sceneChanged(document: SceneDocument, whole: boolean): void {
     hook.document = document;
-    this.slow.dt = document.solver.dt;
+    this.slow.dt = this.hud.dt = document.solver.dt;
     this.picture.moved = [];
     this.refusals.sceneShown(this.store.revision, whole);
     const newScene = whole && document.name !== this.sceneName;

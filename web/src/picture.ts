@@ -14,6 +14,7 @@ interface PictureEvents {
 }
 
 export class Picture {
+  held = false; ///< what comes is acknowledged, and not drawn: another scene is about to come
   moved: MovedCollider[] = []; ///< colliders' places for the next frame
   readonly kept = new KeptFrames();
   private latest: ShownFrame | null = null;
@@ -26,6 +27,10 @@ export class Picture {
   /// Takes a frame from the link.
   take(frame: Frame, field: FieldName | null): void {
     hook.framesReceived++;
+    if (this.held) {
+      this.events.acknowledge(frame.header.sequence);
+      return;
+    }
     const replaced = this.latest; // a newer frame came before this one was drawn
     if (replaced && !document.hidden) this.events.acknowledge(replaced.header.sequence);
     this.latest = { ...frame, field, moved: this.moved };

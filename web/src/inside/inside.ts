@@ -53,7 +53,7 @@ export class Inside {
       this.curves.element,
       run,
     );
-    const hud = element("hud", HTMLDetailsElement);
+    const hud = element("hud", HTMLElement);
     hud.after(this.card.element);
     new ResizeObserver(() =>
       this.card.element.style.setProperty("--below", `${hud.offsetTop + hud.offsetHeight}px`),
@@ -78,11 +78,11 @@ export class Inside {
   /// `byKey`: the focus goes along.
   toggle(byKey = false): void {
     const open = !this.open;
-    const hud = element("hud", HTMLDetailsElement);
+    const figures = element("figures", HTMLDetailsElement);
     const focused = this.card.element.contains(document.activeElement);
     this.card.element.hidden = !open;
-    if (open) this.foldedFigures = hud.open && (innerHeight < lowWindow || innerWidth <= narrowWindow);
-    if (this.foldedFigures) hud.open = !open;
+    if (open) this.foldedFigures = figures.open && (innerHeight < lowWindow || innerWidth <= narrowWindow);
+    if (this.foldedFigures) figures.open = !open;
     document.body.classList.toggle("inside-open", open);
     button("inside-open").setAttribute("aria-expanded", String(open));
     this.curves.run(this.card.showsCurves);

@@ -52,6 +52,19 @@ export function withPlaces(document: SceneDocument, operations: Operation[]): Op
   return [...operations, ...moves];
 }
 
+/// The operations that give every grid half the rows and columns; null: all have few.
+export function coarser({ cloths }: SceneDocument, least = 9): Operation[] | null {
+  const half = (count: number): number => Math.max(least, Math.ceil(count / 2));
+  const operations = cloths.flatMap(({ mesh }, i): Operation[] =>
+    "grid" in mesh
+      ? (["columns", "rows"] as const)
+          .filter((key) => half(mesh.grid[key]) < mesh.grid[key])
+          .map((key) => ({ op: "replace", path: `/cloths/${i}/mesh/grid/${key}`, value: half(mesh.grid[key]) }))
+      : [],
+  );
+  return operations.length > 0 ? operations : null;
+}
+
 /// What becomes of the mass of a grid that gets other rows and columns.
 export interface MassChange {
   path: string; ///< of the mass of a vertex

@@ -19,7 +19,10 @@ interface Commanded {
 
 export function bindCommands({ transport, layout, theme, fit, lab, text, compare, inside, mesh }: Commanded): void {
   const dialog = element("help-dialog", HTMLDialogElement);
-  const help = (): void => dialog.showModal();
+  const help = (): void => {
+    dialog.showModal();
+    dialog.scrollTop = 0;
+  };
   bindKeys({
     toggle: () => transport.toggle(),
     step: () => transport.step(),

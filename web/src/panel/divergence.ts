@@ -8,7 +8,10 @@ export class Divergence {
   private toldOf = false;
   private diverged = false; // in the last status
 
-  constructor(private readonly send: (patch: Patch) => Promise<unknown>) {}
+  constructor(
+    private readonly send: (patch: Patch) => Promise<unknown>,
+    private readonly mended: () => void,
+  ) {}
 
   get now(): boolean {
     return this.diverged;
@@ -26,6 +29,7 @@ export class Divergence {
     if (this.diverged && !diverged) {
       clearDiverged();
       this.toldOf = false;
+      this.mended();
     }
     this.diverged = diverged === true;
     if (!this.diverged || this.toldOf) return;

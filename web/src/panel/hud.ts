@@ -1,6 +1,6 @@
 // The card with figures: what is drawn, what arrives, how the simulation keeps up, and which passes run.
 import { element } from "./dom";
-import type { Stability } from "./gauge";
+import { reading, type Stability } from "./gauge";
 import type { RecordingFacts } from "./record_button";
 
 /// Notification `sim.status`; every part may be missing.
@@ -61,6 +61,8 @@ export class Hud {
   private readonly passTimes = new Map<string, HTMLElement>();
   private passSeconds: Record<string, number> = {};
   private timeShownAt = 0;
+  private stability: Stability | null = null;
+  dt = 0; ///< time step of the scene [s]
 
   constructor() {
     const list = element("stats", HTMLDListElement);
@@ -114,7 +116,6 @@ export class Hud {
 
   private showTime(seconds: number): void {
     this.set("time", `${seconds.toFixed(2)} s`);
-    element("headline-time", HTMLElement).textContent = seconds.toFixed(1);
   }
 
   showStatus(status: Status): void {
@@ -125,12 +126,25 @@ export class Hud {
       this.set("rtf", status.asleep ? "at rest" : text);
       element("headline-rtf", HTMLElement).textContent = status.asleep ? "at rest" : text;
     }
+    this.showStable(status);
     if (status.max_strain !== undefined) this.set("strain", `${(100 * status.max_strain).toFixed(1)} %`);
     if (status.contacts !== undefined) this.set("contacts", String(status.contacts));
     if (status.memory_bytes !== undefined) this.set("memory", megabytes(status.memory_bytes));
     if (status.surface !== undefined) this.showSurface(status.surface);
     if (status.passes) this.showPasses(status.passes, status.terms ?? [], status.skipped ?? []);
     if (status.pass_seconds) this.passSeconds = status.pass_seconds;
+  }
+
+  /// The verdict of the stability gauge, for the scene's time step [s].
+  private showStable({ diverged, stability }: Status): void {
+    this.stability = stability ?? this.stability;
+    if (!this.stability || this.dt <= 0) return;
+    const { verdict, word } = diverged
+      ? ({ verdict: "beyond", word: "Blown up" } as const)
+      : reading(this.dt, this.stability.dt_limit);
+    const cell = element("headline-stable", HTMLElement);
+    cell.dataset.verdict = verdict;
+    if (cell.textContent !== word) cell.textContent = word;
   }
 
   // Only contact between surfaces has these counts.

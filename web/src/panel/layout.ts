@@ -1,13 +1,17 @@
 // Finds the part of the window that is free for the picture. On a narrow window the panel is a sheet at the bottom.
 import { button, element } from "./dom";
+import { inBrowser } from "../link/kept";
 import type { FreeArea } from "../view/framing";
 
 const narrow = matchMedia("(max-width: 760px)");
-const low = matchMedia("(max-height: 560px)"); // no room for the card of figures beside a picture
 const leastSide = 120; // [px]: the least useful side of a picture
+const leastForWords = 60; // [px]: of a notice
+const leastPicture = 0.5; // of the window, beside the open panel
+const panelKey = "clothlab-panel"; // in the browser: "open" or "folded", as somebody has chosen
 
-/// The largest rectangle of a window that none of the `covered` rectangles overlaps.
-function largestFree(covered: DOMRect[], width: number, height: number): FreeArea {
+/// The largest rectangle of a window that none of the `covered` rectangles overlaps, with sides of `least` [px] and
+/// more; the whole window if there is none.
+function largestFree(covered: DOMRect[], width: number, height: number, least = leastSide): FreeArea {
   const cuts = (ends: number[], most: number) =>
     [...new Set([0, most, ...ends.filter((end) => end > 0 && end < most)])].sort((a, b) => a - b);
   const across = cuts(
@@ -24,7 +28,7 @@ function largestFree(covered: DOMRect[], width: number, height: number): FreeAre
       for (const top of down)
         for (const bottom of down) {
           if (
-            Math.min(right - left, bottom - top) < leastSide ||
+            Math.min(right - left, bottom - top) < least ||
             (right - left) * (bottom - top) <= best.width * best.height
           )
             continue;
@@ -37,42 +41,66 @@ function largestFree(covered: DOMRect[], width: number, height: number): FreeAre
 
 export class Layout {
   private readonly handle = button("sheet-handle");
-  private readonly hud = element("hud", HTMLDetailsElement);
+  private readonly figures = element("figures", HTMLDetailsElement);
   private readonly lab = element("lab", HTMLElement);
   private readonly panel = element("panel", HTMLElement);
   private foldedForLab = false;
 
   constructor(private readonly changed: () => void) {
-    this.foldFigures();
     this.handle.onclick = () => this.turnHandle();
-    this.tellHandle();
-    narrow.addEventListener("change", () => {
-      this.foldFigures();
-      this.showSheet(false);
+    this.foldIfLarge();
+    narrow.addEventListener("change", () => this.showSheet(false));
+    new ResizeObserver(() => this.tell()).observe(element("hud", HTMLElement));
+    addEventListener("resize", () => {
+      this.foldIfLarge();
+      this.tell();
     });
-    low.addEventListener("change", () => this.foldFigures());
-    this.hud.addEventListener("toggle", () => this.changed());
-    addEventListener("resize", () => this.changed());
     // it moves with the sheet
-    element("transport", HTMLElement).addEventListener("transitionend", () => this.changed());
+    element("transport", HTMLElement).addEventListener("transitionend", () => this.tell());
+    this.placeWords();
+  }
+
+  private tell(): void {
+    this.placeWords();
+    this.changed();
+  }
+
+  /// Tells the style sheet where notices and banners cover no card, and so no button.
+  private placeWords(): void {
+    const bare = document.body.classList.contains("bare");
+    const free = largestFree(bare ? [] : this.covered(), innerWidth, innerHeight, leastForWords);
+    const below = innerHeight - free.top - free.height;
+    for (const [name, pixels] of Object.entries({ ...free, below }))
+      document.body.style.setProperty(`--free-${name}`, `${pixels}px`);
+  }
+
+  /// Folds the panel where the picture beside it would be too small, unless somebody has chosen.
+  private foldIfLarge(): void {
+    const chosen = inBrowser.get(panelKey);
+    document.body.classList.toggle("panel-folded", chosen === "folded");
+    if (chosen === null && !narrow.matches) {
+      const { width, height } = this.freeArea();
+      document.body.classList.toggle("panel-folded", width * height < leastPicture * innerWidth * innerHeight);
+    }
+    this.tellHandle();
   }
 
   toggleInterface(): void {
     document.body.classList.toggle("bare");
-    this.changed();
+    this.tell();
   }
 
   /// The lab's drawer opened or closed. Beside it there is room only for the headline of the figures.
   labToggled(open: boolean): void {
-    if (open) this.foldedForLab = this.hud.open;
-    if (this.foldedForLab) this.hud.open = !open;
+    if (open) this.foldedForLab = this.figures.open;
+    if (this.foldedForLab) this.figures.open = !open;
     if (open && narrow.matches) this.showSheet(false);
-    this.changed();
+    this.tell();
   }
 
   /// A card came or went: the legend of the cloth's colours, the first steps.
   cardToggled(): void {
-    this.changed();
+    this.tell();
   }
 
   freeArea(): FreeArea {
@@ -92,10 +120,6 @@ export class Layout {
     });
   }
 
-  private foldFigures(): void {
-    this.hud.open = !narrow.matches && !low.matches;
-  }
-
   /// On a wide window the panel stands open until it is folded; on a narrow one it is a sheet that opens.
   private get folded(): boolean {
     return document.body.classList.contains("panel-folded");
@@ -109,13 +133,14 @@ export class Layout {
   private showSheet(open: boolean): void {
     document.body.classList.toggle("sheet-open", open);
     this.tellHandle();
-    this.changed();
+    this.tell();
   }
 
   private fold(folded: boolean): void {
     document.body.classList.toggle("panel-folded", folded);
+    inBrowser.set(panelKey, folded ? "folded" : "open");
     this.tellHandle();
-    this.changed();
+    this.tell();
   }
 
   private tellHandle(): void {

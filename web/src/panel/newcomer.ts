@@ -1,27 +1,81 @@
-// Shows the first steps to a browser that has not seen them, or when the help's button asks for them.
+// A browser that has not been here: it gets a scene that shows what this is, where nobody misses the one that is there,
+// and the first steps, which the help's button brings back.
 import { button, element } from "./dom";
+import type { FirstSteps } from "./first_steps";
 import { inBrowser } from "../link/kept";
-import type { FirstStepsHost } from "./first_steps";
+import type { Patch, SceneDocument } from "../link/scene_types";
 
-const key = "clothlab-first-steps";
+/// pull: the cloth was pulled; mend: it blew up and stands again; lab: the lab was opened.
+export type Step = "pull" | "mend" | "lab";
 
-/// True if nobody has seen them here. A browser that keeps nothing shows them each time.
-const isNewcomer = (): boolean => inBrowser.get(key) === null;
-
-export function remember(): void {
-  inBrowser.set(key, "seen");
+export interface FirstStepsHost {
+  mayEdit(): boolean;
+  blowUp(): void;
+  lab(): void;
+  load(preset: string): void;
+  gallery(): void;
+  changed(): void; ///< the card came, went, or has another size
 }
 
-/// Returns what shows them to a newcomer, to be called once the server has told this page's role.
-export function bindFirstSteps(host: FirstStepsHost): () => void {
-  const show = async (): Promise<void> => (await import("./first_steps")).showFirstSteps(host);
-  button("first-steps-again").onclick = () => {
-    element("help-dialog", HTMLDialogElement).close();
-    void show();
-  };
-  let due = isNewcomer();
-  return () => {
-    if (due) void show();
-    due = false;
-  };
+export interface FirstSceneHost {
+  alone(): boolean; ///< nobody else watches the session
+  patch(patch: Patch, revision: number, name: string): Promise<unknown>;
+  hold(held: boolean): void; ///< frames are not drawn: another scene comes
+}
+
+/// The preset of a first visit: within a second cloth falls over a ball. It computes in real time without a GPU, and
+/// has a longest stable step, beyond which the second step goes.
+const firstScene = "drape";
+
+export class Newcomer {
+  private due = inBrowser.get("clothlab-first-steps") === null; // a browser that keeps nothing shows them each time
+  private sceneDue = false;
+  private card: FirstSteps | null = null;
+
+  constructor(
+    private readonly host: FirstStepsHost,
+    private readonly scenes: FirstSceneHost,
+  ) {
+    button("first-steps-again").onclick = () => {
+      element("help-dialog", HTMLDialogElement).close();
+      void this.show();
+    };
+  }
+
+  /// To be called once the server has told this page's role. `untouched`: nobody has chosen the session's scene, and
+  /// nobody has been there. Who names a session or a scene in the address has come for that.
+  welcome(untouched: boolean): void {
+    if (!this.due) return;
+    this.due = false;
+    this.sceneDue = untouched && this.host.mayEdit() && !location.search.includes("session=") && location.hash === "";
+    if (this.sceneDue) this.scenes.hold(true);
+    void this.show();
+  }
+
+  /// The session's scene has come, in this revision.
+  async arrived(revision: number): Promise<void> {
+    if (!this.sceneDue) return;
+    this.sceneDue = false;
+    try {
+      const known = await fetch("scenes.json");
+      const value = ((await known.json()) as { presets: Record<string, SceneDocument> }).presets[firstScene];
+      // The server refuses the patch if anybody has changed the scene since.
+      if (value && this.scenes.alone())
+        await this.scenes.patch([{ op: "replace", path: "", value }], revision, `Load ${firstScene}`);
+    } catch {
+      // the scene stays that was there
+    } finally {
+      this.scenes.hold(false);
+    }
+  }
+
+  did(step: Step): void {
+    this.card?.did(step);
+  }
+
+  private async show(): Promise<void> {
+    if (this.card) return;
+    const { FirstSteps } = await import("./first_steps");
+    this.card ??= new FirstSteps(this.host, () => (this.card = null));
+  }
 }

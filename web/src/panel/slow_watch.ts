@@ -1,12 +1,22 @@
-// Shows a bar while the scene is too much for the server: the simulation is slow, or no picture comes. A button in it
-// undoes the scene's last change.
+// Shows a bar while the scene is too much for the server: the simulation is slow, or no picture comes. It is the page's
+// only message of that, and has the one thing to do: undo the scene's last change, or make the cloth coarser, or else
+// ask the lab for a faster setting.
 import { button, element } from "./dom";
+import type { Operation } from "../link/scene_types";
 import type { Status } from "./hud";
 
-const creeping = 0.1; // share of the speed asked for: nobody sees a slower motion
+const creeping = 0.5; // share of the speed asked for; more than that the figures alone tell
 const creepingFor = 3000; // [ms] before the bar appears: compiling a kernel takes a while too
 const noPictureFor = 2000; // [ms]
 const lookEvery = 250; // [ms]
+
+export interface SlowHost {
+  mayEdit(): boolean;
+  undo(): void;
+  coarser(): Operation[] | null; ///< that give every grid half the rows and columns; null: no grid is large enough
+  edit(operations: Operation[]): void;
+  lab(): void;
+}
 
 export class SlowWatch {
   dt = 0; ///< time step of the scene [s]
@@ -17,10 +27,10 @@ export class SlowWatch {
   private undoes: string | null = null; // the name of the change that Undo undoes
   private readonly box = element("slow", HTMLElement);
   private readonly text = element("slow-text", HTMLElement);
-  private readonly undo = button("slow-undo");
+  private readonly act = button("slow-act");
 
-  constructor(undo: () => void) {
-    this.undo.onclick = undo;
+  constructor(private readonly host: SlowHost) {
+    this.act.onclick = () => this.remedy().run();
     document.addEventListener("visibilitychange", () => this.startAgain()); // a hidden page gets no pictures
     setInterval(() => this.look(), lookEvery);
   }
@@ -54,8 +64,19 @@ export class SlowWatch {
     document.body.classList.toggle("slow", said !== "");
     this.box.hidden = said === "";
     if (this.text.textContent !== said) this.text.textContent = said;
-    this.undo.hidden = this.undoes === null;
-    this.undo.title = `Undo: ${this.undoes}`;
+    const { label, title } = this.remedy();
+    if (this.act.textContent !== label) this.act.textContent = label;
+    this.act.title = title;
+    this.act.hidden = !this.host.mayEdit();
+  }
+
+  private remedy(): { label: string; title: string; run(): void } {
+    if (this.undoes !== null)
+      return { label: "Undo", title: `Undo the scene's last change: ${this.undoes}`, run: () => this.host.undo() };
+    const coarser = this.host.coarser();
+    if (coarser)
+      return { label: "Coarser cloth", title: "Half the rows and columns", run: () => this.host.edit(coarser) };
+    return { label: "Ask the lab", title: "Measure which setting is fast enough", run: () => this.host.lab() };
   }
 
   private say(): string {
@@ -63,7 +84,7 @@ export class SlowWatch {
     if (!this.open || document.hidden || playing !== true || asleep || diverged) return "";
     const now = performance.now();
     const still = now - this.pictureAt;
-    const why = `this scene is too much for the server${this.aStep(factor)}. Make it smaller, or undo.`;
+    const why = `this scene is too much for the server${this.aStep(factor)}.`;
     if (still > noPictureFor) return `No new picture for ${Math.floor(still / 1000)} s: ${why}`;
     if (now - this.fastAt > creepingFor) return `Only ×${Number(factor.toPrecision(2))} of real time: ${why}`;
     return "";
